@@ -1,0 +1,127 @@
+"""What can be asked of the :class:`~webdemo.inference.engine.Engine`, and what it answers.
+
+These dataclasses import no torch, so the page, the shell and the API build them before any network loads.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import asdict, dataclass, field
+from typing import Any
+
+from webdemo.motion import Duet, InputError
+
+MAX_PROMPT = 500
+SECONDS = (1.0, 10.0)
+STEPS = (1, 1000)
+SAMPLES = (1, 8)
+GUIDANCE = (0.0, 10.0)
+DAMPING = (0.0, 1.0)
+MAX_SEED = 2**32 - 1
+SAMPLERS = ("ddim", "dpm++")
+
+
+def _number(name: str, value: Any, low: float, high: float, unit: str = "") -> float:
+    if isinstance(value, bool) or not isinstance(value, (int, float)) or not math.isfinite(value):
+        raise InputError(f"{name} must be a number from {low:g} to {high:g}{unit}, not {value!r:.40}.")
+    if not low <= value <= high:
+        raise InputError(f"{name} must be from {low:g} to {high:g}{unit}, not {value:g}.")
+    return float(value)
+
+
+def _whole(name: str, value: Any, low: int, high: int) -> int:
+    number = _number(name, value, low, high)
+    if number != int(number):
+        raise InputError(f"{name} must be a whole number from {low} to {high}, not {value:g}.")
+    return int(number)
+
+
+@dataclass(frozen=True, kw_only=True)
+class GenerateRequest:
+    """Two people from one sentence.
+
+    Attributes:
+        prompt: what the two people do, in English.
+        seconds: length of the motion.
+        seed: the same request with the same seed gives the same motion.
+        samples: how many different motions to draw in one pass.
+        guidance: scale s of classifier-free guidance, s·conditioned + (1−s)·unconditioned; 1 is none.
+        steps: denoising steps.
+        damping: t̄ as a fraction of the diffusion's T: while t ≤ t̄·T the predicted motion is corrected by
+            the regularisers; 0 is the plain sampler.
+        sampler: "ddim" (η = 0) or "dpm++" (DPM-Solver++ multistep).
+        model: the name of a generator in the registry.
+        cleanup: end in a projection onto constant bones and planted feet.
+    """
+
+    prompt: str
+    seconds: float = 5.0
+    seed: int = 0
+    samples: int = 1
+    guidance: float = 2.5
+    steps: int = 50
+    damping: float = 0.7
+    sampler: str = "ddim"
+    model: str = "intergen"
+    cleanup: bool = True
+
+    def __post_init__(self) -> None:
+        if not isinstance(self.prompt, str) or not self.prompt.strip():
+            raise InputError("The prompt is empty: say in a sentence what the two people do.")
+        if len(self.prompt) > MAX_PROMPT:
+            raise InputError(
+                f"The prompt has {len(self.prompt):,} characters: shorten it to {MAX_PROMPT} or fewer."
+            )
+        set_ = object.__setattr__
+        set_(self, "seconds", _number("Length", self.seconds, *SECONDS, " seconds"))
+        set_(self, "seed", _whole("Seed", self.seed, 0, MAX_SEED))
+        set_(self, "samples", _whole("Samples", self.samples, *SAMPLES))
+        set_(self, "guidance", _number("Guidance scale", self.guidance, *GUIDANCE))
+        set_(self, "steps", _whole("DDIM steps", self.steps, *STEPS))
+        set_(self, "damping", _number("Damping threshold", self.damping, *DAMPING))
+        if self.sampler not in SAMPLERS:
+            raise InputError(f"Sampler {self.sampler!r:.40} is not known: choose one of {', '.join(SAMPLERS)}.")
+
+    def to_dict(self) -> dict[str, Any]:
+        return {"kind": "generate", **asdict(self)}
+
+
+@dataclass(frozen=True, kw_only=True)
+class Progress:
+    """One thing that happened on the way to a result.
+
+    Attributes:
+        stage: "load", "text", "sample", "finish".
+        step: steps of the stage that are done.
+        total: steps the stage has.
+        elapsed: seconds since the request began.
+    """
+
+    stage: str
+    step: int = 0
+    total: int = 1
+    elapsed: float = 0.0
+
+
+@dataclass(frozen=True, kw_only=True)
+class Result:
+    """What a request gave.
+
+    Attributes:
+        duets: one a sample.
+        manifest: request, model, weights hash, versions: all that reproduces the result.
+        readouts: one dictionary of interaction measures a sample (see :mod:`webdemo.metrics`), each
+            measure with its value ``before`` and ``after`` the damping and clean-up where both exist.
+        timings: seconds by stage.
+        notes: sentences the user should read, such as a prompt far from all training captions.
+    """
+
+    duets: tuple[Duet, ...]
+    manifest: dict[str, Any]
+    readouts: tuple[dict[str, Any], ...] = ()
+    timings: dict[str, float] = field(default_factory=dict)
+    notes: tuple[str, ...] = ()
+
+
+class Cancelled(Exception):
+    """The run was cancelled by its owner; nothing was written."""
