@@ -80,7 +80,9 @@ class GenerateRequest:
         set_(self, "steps", _whole("DDIM steps", self.steps, *STEPS))
         set_(self, "damping", _number("Damping threshold", self.damping, *DAMPING))
         if self.sampler not in SAMPLERS:
-            raise InputError(f"Sampler {self.sampler!r:.40} is not known: choose one of {', '.join(SAMPLERS)}.")
+            raise InputError(
+                f"Sampler {self.sampler!r:.40} is not known: choose one of {', '.join(SAMPLERS)}."
+            )
 
     def to_dict(self) -> dict[str, Any]:
         return {"kind": "generate", **asdict(self)}

@@ -24,7 +24,9 @@ def forward_kinematics(rotations: Array, root: Array, skeleton: Skeleton = SMPL2
     positions = np.empty((*rotations.shape[:-3], skeleton.num_joints, 3))
     positions[..., 0, :] = root
     for parent, joint in skeleton.bones:
-        positions[..., joint, :] = positions[..., parent, :] + world_rotations[..., parent, :, :] @ skeleton.offsets[joint]
+        positions[..., joint, :] = (
+            positions[..., parent, :] + world_rotations[..., parent, :, :] @ skeleton.offsets[joint]
+        )
     return positions
 
 
@@ -62,7 +64,11 @@ def fit_rotations(positions: Array, skeleton: Skeleton = SMPL22) -> Array:
     world = np.empty((*positions.shape[:-1], 3, 3))
     for joint, children in enumerate(skeleton.children):
         parent = skeleton.parents[joint]
-        inherited = np.broadcast_to(np.eye(3), (*positions.shape[:-2], 3, 3)) if parent < 0 else world[..., parent, :, :]
+        inherited = (
+            np.broadcast_to(np.eye(3), (*positions.shape[:-2], 3, 3))
+            if parent < 0
+            else world[..., parent, :, :]
+        )
         if not children:
             world[..., joint, :, :] = inherited
             continue

@@ -1,0 +1,64 @@
+"""The two things the corpus is made of: source clips of one person, and scenes of two."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+Array = NDArray[np.floating]
+
+
+@dataclass(frozen=True, eq=False)
+class SourceClip:
+    """A real single-person clip on the 22-joint skeleton.
+
+    Attributes:
+        positions: (T, 22, 3) metres, 30 fps, floor at 0, root at the origin facing +Z at the first frame.
+        action: what the person does, e.g. "bow", "wave", "raise-hand", "walk", "idle".
+        style: the actor's manner, e.g. "tired"; "normal" where there is none.
+        side: "left", "right", "both" or None: the hand or the turn the action names.
+        source: unique stem of the file, for credit and for splits.
+        dataset: "bandai-namco-1", "bandai-namco-2", "reactidle", …
+        split: "train" or "test", decided by the source alone.
+    """
+
+    positions: Array = field(repr=False)
+    action: str
+    style: str
+    side: str | None
+    source: str
+    dataset: str
+    split: str = "train"
+
+    @property
+    def num_frames(self) -> int:
+        return len(self.positions)
+
+
+@dataclass(eq=False)
+class Scene:
+    """Two people in one world, with the sentences that describe them.
+
+    Attributes:
+        positions: (2, T, 22, 3) metres, 30 fps, canonical: a's root at XZ = 0 facing +Z at frame 0.
+        family: the kind of interaction, e.g. "handshake".
+        captions: different sentences that are all true of the motion.
+        sources: the files the motion comes from.
+        split: "train" or "test".
+        events: what a person would check, each key only where it applies:
+            "contact": [{"a": joint or None, "b": joint, "start": frame, "end": frame}, …] joints that touch;
+            "side": {"a": "left"} the hand that the caption names, by person;
+            "distance": "approach" | "part" | "keep";
+            "order": ["bow", "wave"] actions in the order in which they happen;
+            "facing": True where the two face each other in the middle of the motion.
+    """
+
+    positions: Array = field(repr=False)
+    family: str
+    captions: list[str]
+    sources: tuple[str, ...]
+    split: str
+    events: dict[str, Any] = field(default_factory=dict)
