@@ -1,0 +1,52 @@
+"""Layers that several of the networks share, by the names that their released weights use."""
+
+from __future__ import annotations
+
+import math
+
+import torch
+import torch.nn.functional as F
+from torch import Tensor, nn
+
+
+def sinusoids_at(positions: Tensor, width: int) -> Tensor:
+    """Rows of the sinusoid table (Vaswani et al. 2017, section 3.5): (N,) positions → (N, width), float32.
+
+    Sine on even channels, cosine on odd ones, base 10000.
+    """
+    exponents = torch.arange(0, width, 2, device=positions.device, dtype=torch.float32)
+    frequencies = torch.exp(exponents * (-math.log(10000.0) / width))
+    angles = positions[:, None].float() * frequencies
+    return torch.stack([angles.sin(), angles.cos()], dim=-1).flatten(1)[:, :width]
+
+
+def sinusoids(length: int, width: int, *, device: torch.device | str = "cpu", start: int = 0) -> Tensor:
+    """Rows start … start + length − 1 of the sinusoid table, (length, width)."""
+    return sinusoids_at(torch.arange(start, start + length, device=device), width)
+
+
+class TimestepEmbedding(nn.Module):
+    """A timestep's sinusoid row through Linear, SiLU, Linear: (B,) → (B, d)."""
+
+    def __init__(self, latent_dim: int) -> None:
+        super().__init__()
+        self.latent_dim = latent_dim
+        self.time_embed = nn.Sequential(
+            nn.Linear(latent_dim, latent_dim), nn.SiLU(), nn.Linear(latent_dim, latent_dim)
+        )
+
+    def forward(self, t: Tensor) -> Tensor:
+        return self.time_embed(sinusoids_at(t, self.latent_dim))
+
+
+class FeedForward(nn.Module):
+    """Linear, GELU, dropout, Linear."""
+
+    def __init__(self, latent_dim: int, ff_size: int, *, dropout: float = 0.0) -> None:
+        super().__init__()
+        self.linear1 = nn.Linear(latent_dim, ff_size)
+        self.linear2 = nn.Linear(ff_size, latent_dim)
+        self.dropout = dropout
+
+    def forward(self, h: Tensor) -> Tensor:
+        return self.linear2(F.dropout(F.gelu(self.linear1(h)), self.dropout, self.training))

@@ -1,0 +1,96 @@
+"""The noise schedule and the samplers, checked on a case whose exact denoiser is known."""
+
+from __future__ import annotations
+
+import pytest
+import torch
+from reference_arrays import Reference
+
+from models.diffusion import NoiseSchedule, SamplerError, cosine_betas, make_scheduler, sample_steps
+
+
+def test_betas_equal_the_reference():
+    reference = Reference("intergen_small")["betas"]
+    assert abs(torch.from_numpy(cosine_betas()) - reference).max() < 1e-12
+
+
+def test_q_sample_has_the_variance_it_should():
+    schedule = NoiseSchedule()
+    t = torch.tensor([0, 500, 999]).repeat_interleave(20000)
+    noise = torch.randn(60000, 1, generator=torch.Generator().manual_seed(0))
+    noised = schedule.q_sample(torch.full((60000, 1), 2.0), t, noise).view(3, -1)
+    alpha_bar = schedule.alphas_cumprod[[0, 500, 999]]
+    assert torch.allclose(noised.mean(1), 2 * alpha_bar.sqrt(), atol=0.02)
+    assert torch.allclose(noised.var(1), 1 - alpha_bar, atol=0.02)
+
+
+def test_timesteps_follow_their_generator():
+    schedule = NoiseSchedule()
+    first, again = (schedule.sample_timesteps(64, generator=torch.Generator().manual_seed(3)) for _ in "ab")
+    assert torch.equal(first, again)
+    assert first.min() >= 0 and first.max() < 1000
+
+
+def gaussian_denoiser(mean: float, std: float):
+    """E[x0 | xt] for x0 ~ N(mean, std²): the network that perfect training would give."""
+    alphas = NoiseSchedule().alphas_cumprod
+
+    def predict(x, t):
+        a = alphas[t].view(-1, 1)
+        return mean + (x - a.sqrt() * mean) * a.sqrt() * std**2 / (a * std**2 + 1 - a)
+
+    return predict
+
+
+@pytest.mark.parametrize(
+    ("name", "steps", "tolerance"),
+    [("ddim", 50, 0.03), ("ddim", 200, 0.02), ("dpm++", 20, 0.02), ("ddpm", 250, 0.03)],
+)
+def test_samplers_reach_the_distribution(name, steps, tolerance):
+    noise = torch.randn(20000, 1, generator=torch.Generator().manual_seed(0))
+    seen = list(
+        sample_steps(
+            gaussian_denoiser(1.5, 0.5),
+            noise,
+            make_scheduler(name, steps),
+            generator=torch.Generator().manual_seed(1),
+        )
+    )
+    assert [s.step for s in seen] == list(range(1, steps + 1))
+    assert seen[0].total == steps
+    assert abs(seen[-1].sample.mean() - 1.5) < tolerance
+    assert abs(seen[-1].sample.std() - 0.5) < tolerance
+
+
+def test_the_correction_reaches_the_sample():
+    noise = torch.zeros(1, 1)
+    *_, last = sample_steps(
+        gaussian_denoiser(1.5, 0.5), noise, make_scheduler("ddim", 10), correct=lambda x0, t: x0 + 1
+    )
+    *_, plain = sample_steps(gaussian_denoiser(1.5, 0.5), noise, make_scheduler("ddim", 10))
+    assert last.sample > plain.sample + 0.9
+
+
+def test_noise_drawn_while_sampling_follows_the_generator():
+    def run(seed):
+        *_, last = sample_steps(
+            gaussian_denoiser(0, 1),
+            torch.ones(2, 1),
+            make_scheduler("ddim", 10),
+            eta=1.0,
+            generator=torch.Generator().manual_seed(seed),
+        )
+        return last.sample
+
+    assert torch.equal(run(1), run(1))
+    assert not torch.equal(run(1), run(2))
+
+
+@pytest.mark.parametrize(
+    ("name", "steps", "words"),
+    [("ddim", 0, "between 1 and 1000"), ("ddim", 1001, "between 1 and 1000"),
+     ("ddim", 600, "do not spread"), ("euler", 10, "no sampler named 'euler'")],
+)  # fmt: skip
+def test_what_cannot_be_sampled_is_said(name, steps, words):
+    with pytest.raises(SamplerError, match=words):
+        make_scheduler(name, steps)
