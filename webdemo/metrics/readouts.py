@@ -1,0 +1,128 @@
+"""All measures of a duet in one dictionary, and two duets side by side."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+from webdemo.motion import Duet
+
+from .interaction import contact_events, facing_angle, pelvis_distance, wrist_to_body, wrist_to_wrist
+from .quality import bone_drift, foot_skate, jerk, penetration
+
+
+@dataclass(frozen=True)
+class Measure:
+    """How a number of :func:`summary` is called and shown.
+
+    Attributes:
+        key: its key in the summary.
+        label: what people call it.
+        unit: behind the number.
+        digits: after the decimal point.
+        meaning: one line.
+        better: "lower" where less is better, "" where it only describes.
+    """
+
+    key: str
+    label: str
+    unit: str
+    digits: int
+    meaning: str
+    better: str = ""
+
+
+MEASURES = (
+    Measure(
+        "foot_skate", "Foot skate", "cm/s", 1, "Mean speed of feet while they stand on the floor.", "lower"
+    ),
+    Measure(
+        "skate_ratio", "Skating frames", "%", 1, "Standing feet that slide faster than 50 cm/s.", "lower"
+    ),
+    Measure(
+        "penetration", "Penetration", "cm", 2, "Mean over time of the deepest overlap of the bodies.", "lower"
+    ),
+    Measure("penetration_max", "Deepest overlap", "cm", 1, "At the worst frame.", "lower"),
+    Measure("jerk", "Jerk", "m/s³", 0, "Mean third derivative of the joints: shaking and snapping.", "lower"),
+    Measure("bone_drift", "Bone drift", "%", 2, "How much the bones change their length.", "lower"),
+    Measure("distance", "Distance, mean", "m", 2, "Between the two pelvises, over the floor."),
+    Measure("distance_min", "Distance, closest", "m", 2, "Between the two pelvises, over the floor."),
+    Measure("hands_min", "Hands, closest", "m", 2, "Between the nearest two wrists, one of each person."),
+    Measure("facing", "Facing", "°", 0, "Mean angle between where a person faces and where the other is."),
+    Measure(
+        "contact_seconds", "In contact", "s", 1, "Time during which a hand or foot is on the other person."
+    ),
+)
+"""What the summary holds, in the order in which it is shown."""
+
+
+def summary(duet: Duet) -> dict[str, float]:
+    """One number a measure; keys, labels and units are those of :data:`MEASURES`."""
+    return readouts(duet)["summary"]
+
+
+def readouts(duet: Duet) -> dict[str, Any]:
+    """Everything that is measured on a duet, ready for JSON.
+
+    Returns:
+        ``summary``: numbers by the keys of :data:`MEASURES`;
+        ``curves``: ``pelvis_distance``, ``wrist_distance``, ``wrist_to_body_a``, ``wrist_to_body_b``
+        (metres), ``facing_a``, ``facing_b`` (degrees) and ``penetration`` (cm), a list of T numbers each;
+        ``contacts``: dictionaries with ``start``, ``stop`` (frames), ``kind`` and ``label``.
+    """
+    skate, overlap = foot_skate(duet), penetration(duet)
+    apart, hands, body, angles = (
+        pelvis_distance(duet),
+        wrist_to_wrist(duet),
+        wrist_to_body(duet),
+        facing_angle(duet),
+    )
+    contacts = contact_events(duet)
+    touched = {frame for contact in contacts for frame in range(contact.start, contact.stop)}
+    numbers = {
+        "foot_skate": skate.speed,
+        "skate_ratio": 100 * skate.ratio,
+        "penetration": overlap.mean,
+        "penetration_max": overlap.deepest,
+        "jerk": jerk(duet),
+        "bone_drift": bone_drift(duet),
+        "distance": float(apart.mean()),
+        "distance_min": float(apart.min()),
+        "hands_min": float(hands.min()),
+        "facing": float(angles.mean()),
+        "contact_seconds": len(touched) / duet.fps,
+    }
+    curves = {
+        "pelvis_distance": apart,
+        "wrist_distance": hands,
+        "wrist_to_body_a": body[0],
+        "wrist_to_body_b": body[1],
+        "facing_a": angles[0],
+        "facing_b": angles[1],
+        "penetration": overlap.depth,
+    }
+    return {
+        "summary": {key: round(value, 4) for key, value in numbers.items()},
+        "curves": {key: [round(float(value), 4) for value in curve] for key, curve in curves.items()},
+        "contacts": [contact.to_dict() for contact in contacts],
+    }
+
+
+def compare(before: Duet | None, after: Duet) -> dict[str, Any]:
+    """Read-outs of a motion beside those it had before it was corrected.
+
+    Args:
+        before: the motion as it was, or None where there was nothing to correct.
+        after: the motion as it is shown.
+
+    Returns:
+        ``before`` (a summary, or None), ``after`` (a summary), and the ``curves`` and ``contacts`` of
+        the motion that is shown.
+    """
+    shown = readouts(after)
+    return {
+        "before": None if before is None else summary(before),
+        "after": shown["summary"],
+        "curves": shown["curves"],
+        "contacts": shown["contacts"],
+    }
