@@ -1,0 +1,266 @@
+"""Any rig's motion onto the 22 SMPL joints with their own constant bones.
+
+Positions carry everything that is needed here, so rest poses that make no sense (Bandai Namco's, whose bones
+all point along X) do no harm. Limbs keep the directions of the rig's bones. Pelvis, spine, chest and neck
+are turned as frames made of an up and a left–right direction, measured against the rig's own rest pose
+where that is a standing one. The root's path is scaled by leg length, so that steps fit the legs.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from .cleaning import foot_contacts, plant_feet
+from .clip import Clip
+from .errors import InputError
+from .kinematics import fit_rotations, forward_kinematics
+from .rigs import BodyParts, RigMotion, match_joints
+from .skeleton import SMPL22
+from .transforms import resample
+
+Array = NDArray[np.floating]
+
+_J = {name: index for index, name in enumerate(SMPL22.joint_names)}
+_LEG = float(SMPL22.bone_lengths[_J["left_knee"]] + SMPL22.bone_lengths[_J["left_ankle"]])
+# The pitch of SMPL's foot (ankle to toe) when it stands flat, downwards.
+_toe = SMPL22.offsets[_J["left_foot"]]
+_FLAT_FOOT = float(np.arctan2(-_toe[1], np.hypot(_toe[0], _toe[2])))
+# Where pelvis, spine1, spine2 and spine3 lie on the way from between the hips to the neck.
+_spine = [float(-SMPL22.offsets[_J["left_hip"], 1])]
+_spine += [float(SMPL22.bone_lengths[_J[name]]) for name in ("spine1", "spine2", "spine3", "neck")]
+_SPINE_FRACTIONS = np.cumsum(_spine) / np.sum(_spine)
+
+
+def retarget(rig: RigMotion, *, fps: float = 30.0, plant: bool = True, floor: bool = True) -> Clip:
+    """Brings a rig's motion onto SMPL22.
+
+    Args:
+        rig: any humanoid rig with its motion.
+        fps: frame rate of the result.
+        plant: hold standing feet still and above the floor.
+        floor: put the lowest standing foot at height 0; leave off for a person who shares a floor with another.
+
+    Returns:
+        a clip with positions and local rotations against SMPL22's T-pose, where it stood in the file.
+
+    Raises:
+        InputError: where no human body is found in the rig.
+    """
+    parts = match_joints(rig)
+    to_y_up = up_rotation(rig, parts)
+    source = _bodies(rig.positions @ to_y_up.T, rig, parts)
+    rest = _standing_rest(rig, parts)
+    positions = _transfer(source, rest)
+    positions = resample(positions, rig.fps, fps)
+    # A spline between frames bends bones by fractions of a millimetre; rotations set them right.
+    positions = forward_kinematics(fit_rotations(positions), positions[:, 0])
+    if floor:
+        positions[..., 1] -= _floor_height(positions)
+    if plant:
+        positions = plant_feet(positions, foot_contacts(positions, fps))
+    rotations = fit_rotations(positions)
+    return Clip(forward_kinematics(rotations, positions[:, 0]), fps, SMPL22, rotations, rig.name)
+
+
+def up_rotation(rig: RigMotion, parts: BodyParts | None = None) -> Array:
+    """(3, 3) rotation that turns the file's up axis to Y.
+
+    People stand most of the time: up is the axis along which ankles and head are furthest apart; where
+    that is not clear from the motion (someone lying), the rest pose decides.
+    """
+    parts = parts or match_joints(rig)
+    heads = [joint for joint in (parts.head, parts.neck, parts.spine[-1]) if joint is not None]
+    ankles = [parts.left["ankle"], parts.right["ankle"]]
+    tall = np.median(rig.positions[:, heads[0]] - rig.positions[:, ankles].mean(axis=1), axis=0)
+    tall_rest = _rest_positions(rig)[heads[0]] - _rest_positions(rig)[ankles].mean(axis=0)
+    for vector in (tall, tall_rest):
+        axis = int(np.argmax(np.abs(vector)))
+        if abs(vector[axis]) > 0.8 * np.linalg.norm(vector) and np.linalg.norm(vector) > 0.7:
+            return _to_y(axis, float(np.sign(vector[axis])))
+    return np.eye(3)
+
+
+def _to_y(axis: int, sign: float) -> Array:
+    """(3, 3) the quarter or half turn that takes a signed coordinate axis to +Y."""
+    if axis == 1:
+        return np.diag([1.0, sign, sign])
+    if axis == 2:
+        return np.array([[1.0, 0, 0], [0, 0, sign], [0, -sign, 0]])
+    return np.array([[0, -sign, 0], [sign, 0, 0], [0, 0, 1.0]])
+
+
+def _bodies(positions: Array, rig: RigMotion, parts: BodyParts) -> dict[str, Array]:
+    """(T, 3) of every part the rig has, by SMPL22's names; ``spine0``… are the joints of its spine."""
+    bodies = {}
+    for side, limb in (("left", parts.left), ("right", parts.right)):
+        for part, joint in limb.items():
+            if joint is not None:
+                bodies[f"{side}_{'foot' if part == 'toe' else part}"] = positions[:, joint]
+    for number, joint in enumerate(parts.spine):
+        bodies[f"spine_{number}"] = positions[:, joint]
+    if parts.head is not None:
+        bodies["head"] = positions[:, parts.head]
+    shoulders = (bodies["left_shoulder"] + bodies["right_shoulder"]) / 2
+    bodies["neck"] = shoulders if parts.neck is None else positions[:, parts.neck]
+    return bodies
+
+
+def _rest_positions(rig: RigMotion) -> Array:
+    positions = np.array(rig.offsets, dtype=np.float64)
+    for joint, parent in enumerate(rig.parents):
+        if parent >= 0:
+            positions[joint] += positions[parent]
+    return positions
+
+
+def _standing_rest(rig: RigMotion, parts: BodyParts) -> dict[str, Array] | None:
+    """The rig's rest pose (1 frame), Y up and facing +Z, or ``None`` where it is not a standing one."""
+    rest = _rest_positions(rig)[None]
+    bodies = _bodies(rest, rig, parts)
+    ankles = (bodies["left_ankle"] + bodies["right_ankle"]) / 2
+    tall = (bodies["neck"] - ankles)[0]
+    axis = int(np.argmax(np.abs(tall)))
+    straight = abs(tall[axis]) > 0.97 * np.linalg.norm(tall) and np.linalg.norm(tall) > 0.7
+    across = (bodies["left_hip"] - bodies["right_hip"])[0]
+    if not straight or np.linalg.norm(across) < 0.05:
+        return None
+    rest = rest @ _to_y(axis, float(np.sign(tall[axis]))).T
+    bodies = _bodies(rest, rig, parts)
+    frame = _frame(np.array([[0.0, 1.0, 0.0]]), bodies["left_hip"] - bodies["right_hip"])[0]
+    bodies = {name: place @ frame for name, place in bodies.items()}
+    legs_down = all(
+        (bodies[f"{s}_hip"] - bodies[f"{s}_ankle"])[0, 1] > 0.5
+        and (bodies["neck"] - bodies[f"{s}_hip"])[0, 1] > 0.2
+        for s in ("left", "right")
+    )
+    return bodies if legs_down else None
+
+
+def _trunk(bodies: dict[str, Array]) -> dict[str, Array]:
+    """(T, 3, 3) world frames (left, up, forward as columns) of pelvis, spine1–3 and neck."""
+    hips = (bodies["left_hip"] + bodies["right_hip"]) / 2
+    # The pelvis joint itself (spine_0) lies at no agreed height, the hips do.
+    chain = [hips, *(bodies[f"spine_{n}"] for n in range(1, 30) if f"spine_{n}" in bodies), bodies["neck"]]
+    points = _along(np.stack(chain, axis=1), _SPINE_FRACTIONS[:-1])
+    points = np.concatenate([hips[:, None], points[:, 1:], bodies["neck"][:, None]], axis=1)
+    ups = np.diff(points, axis=1)  # pelvis, spine1, spine2, spine3
+    across_hips = _unit(bodies["left_hip"] - bodies["right_hip"])
+    across_chest = bodies["left_shoulder"] - bodies["right_shoulder"]
+    if "left_collar" in bodies and "right_collar" in bodies:
+        collars = bodies["left_collar"] - bodies["right_collar"]
+        if np.median(np.linalg.norm(collars, axis=-1)) > 0.06:
+            across_chest = collars
+    across_chest = _unit(across_chest)
+    frames = {}
+    for number, name in enumerate(("pelvis", "spine1", "spine2", "spine3")):
+        share = number / 3
+        frames[name] = _frame(ups[:, number], (1 - share) * across_hips + share * across_chest)
+    head = bodies.get("head")
+    frames["neck"] = frames["spine3"] if head is None else _frame(head - bodies["neck"], across_chest)
+    return frames
+
+
+def _transfer(source: dict[str, Array], rest: dict[str, Array] | None) -> Array:
+    """(T, 22, 3) positions on SMPL22's bones, scaled; the floor is still where it was, scaled."""
+    legs = [
+        np.linalg.norm(source[f"{s}_{upper}"] - source[f"{s}_{lower}"], axis=-1)
+        for s in ("left", "right")
+        for upper, lower in (("hip", "knee"), ("knee", "ankle"))
+    ]
+    leg = float(sum(np.median(length) for length in legs)) / 2
+    if not leg > 0.05:
+        raise InputError("The legs of this rig have no length: export it with its OFFSETs.")
+    scale = _LEG / leg
+    frames = _trunk(source)
+    if rest is not None:
+        # What the rig calls upright is upright: frames count from its rest pose.
+        frames = {name: frame @ np.swapaxes(_trunk(rest)[name], -1, -2) for name, frame in frames.items()}
+
+    count = len(source["neck"])
+    result = np.zeros((count, SMPL22.num_joints, 3))
+    offsets = SMPL22.offsets
+    middle_of_hips = (offsets[_J["left_hip"]] + offsets[_J["right_hip"]]) / 2
+    hips = (source["left_hip"] + source["right_hip"]) / 2
+    result[:, 0] = hips * scale - frames["pelvis"] @ middle_of_hips
+    for parent, joint in SMPL22.bones:
+        name, parent_name = SMPL22.joint_names[joint], SMPL22.joint_names[parent]
+        if parent_name in frames:
+            bone = frames[parent_name] @ offsets[joint]
+        else:
+            bone = _limb_bone(source, name, parent_name, joint, frames)
+        result[:, joint] = result[:, parent] + bone
+    _level_feet(result, source, rest)
+    return result
+
+
+def _limb_bone(
+    source: dict[str, Array], name: str, parent_name: str, joint: int, frames: dict[str, Array]
+) -> Array:
+    side = name.split("_")[0]
+    length = SMPL22.bone_lengths[joint]
+    if name.endswith("_shoulder"):
+        if f"{side}_collar" not in source:
+            return frames["spine3"] @ SMPL22.offsets[joint]
+        # Collars begin anywhere between the spine and halfway out; their middle is a place all rigs share.
+        start = (source["left_collar"] + source["right_collar"]) / 2
+        return _unit(source[name] - start) * length
+    if name not in source:  # a toe or wrist that the rig lacks
+        return frames["pelvis"] @ SMPL22.offsets[joint]
+    return _unit(source[name] - source[parent_name]) * length
+
+
+def _level_feet(result: Array, source: dict[str, Array], rest: dict[str, Array] | None) -> None:
+    """Pitches feet so that the rig's flat foot is SMPL's flat foot, in place."""
+    for side in ("left", "right"):
+        ankle, toe = _J[f"{side}_ankle"], _J[f"{side}_foot"]
+        if f"{side}_foot" not in source:
+            continue
+        bone = result[:, toe] - result[:, ankle]
+        pitch = np.arctan2(-bone[:, 1], np.hypot(bone[:, 0], bone[:, 2]))
+        if rest is not None:
+            flat_bone = (rest[f"{side}_foot"] - rest[f"{side}_ankle"])[0]
+            flat = np.arctan2(-flat_bone[1], np.hypot(flat_bone[0], flat_bone[2]))
+        else:
+            # A foot is flat where it stands: low and slow.
+            places = source[f"{side}_ankle"]
+            speed = np.linalg.norm(np.gradient(places, axis=0), axis=-1) if len(places) > 1 else np.zeros(1)
+            low = places[:, 1] <= np.quantile(places[:, 1], 0.5)
+            slow = speed <= np.quantile(speed[low], 0.5)
+            flat = np.median(pitch[low & slow])
+        correction = np.clip(_FLAT_FOOT - flat, -0.5, 0.5)
+        horizontal = bone * np.array([1.0, 0.0, 1.0])
+        horizontal = horizontal / np.maximum(np.linalg.norm(horizontal, axis=-1, keepdims=True), 1e-9)
+        length = np.linalg.norm(bone, axis=-1, keepdims=True)
+        new_pitch = (pitch + correction)[:, None]
+        down = np.array([0.0, -1.0, 0.0])
+        result[:, toe] = result[:, ankle] + length * (
+            np.cos(new_pitch) * horizontal + np.sin(new_pitch) * down
+        )
+
+
+def _floor_height(positions: Array) -> float:
+    """Where the feet stand most: a low quantile of the lower foot's height, so that one bad frame does no harm."""
+    feet = positions[:, [_J["left_foot"], _J["right_foot"], _J["left_ankle"], _J["right_ankle"]], 1]
+    return float(np.quantile(feet.min(axis=-1), 0.05))
+
+
+def _along(points: Array, fractions: Array) -> Array:
+    """(T, F, 3) places at fractions of the length of polylines (T, P, 3)."""
+    lengths = np.median(np.linalg.norm(np.diff(points, axis=1), axis=-1), axis=0)
+    at = np.concatenate([[0.0], np.cumsum(lengths)])
+    at = at / max(at[-1], 1e-9)
+    segment = np.clip(np.searchsorted(at, fractions, side="right") - 1, 0, len(lengths) - 1)
+    share = (fractions - at[segment]) / np.maximum(at[segment + 1] - at[segment], 1e-9)
+    return points[:, segment] + share[:, None] * (points[:, segment + 1] - points[:, segment])
+
+
+def _frame(up: Array, across: Array) -> Array:
+    """(T, 3, 3) rotations whose Y column is ``up`` and whose X column is ``across`` made square to it."""
+    y = _unit(up)
+    x = _unit(across - np.sum(across * y, axis=-1, keepdims=True) * y)
+    return np.stack([x, y, np.cross(x, y)], axis=-1)
+
+
+def _unit(vector: Array) -> Array:
+    return vector / np.maximum(np.linalg.norm(vector, axis=-1, keepdims=True), 1e-9)
