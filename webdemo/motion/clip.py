@@ -86,8 +86,8 @@ class Duet:
     def __post_init__(self) -> None:
         if self.a.num_frames != self.b.num_frames or self.a.fps != self.b.fps:
             raise InputError(
-                f"The two people must share one clock: a has {self.a.num_frames} frames at {self.a.fps:g} fps, "
-                f"b has {self.b.num_frames} at {self.b.fps:g}. Resample or trim one of them."
+                f"The two people must share one clock: a has {self.a.num_frames} frames at {self.a.fps:g} fps "
+                f"and b {self.b.num_frames} at {self.b.fps:g}. Resample or trim one of them."
             )
         if self.a.skeleton.joint_names != self.b.skeleton.joint_names:
             raise InputError("The two people must have the same joints: retarget one of them.")

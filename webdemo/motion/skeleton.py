@@ -130,7 +130,7 @@ SMPL22 = _topology(
 )
 """The 22 body joints of SMPL with the proportions of an average adult; what every network here speaks."""
 
-ANKLES_TOES = tuple(SMPL22.index(n) for n in ("left_ankle", "left_foot", "right_ankle", "right_foot"))
+FEET = tuple(SMPL22.index(n) for n in ("left_ankle", "left_foot", "right_ankle", "right_foot"))
 
 _SBU = [
     ("head", None),
@@ -153,8 +153,8 @@ SBU15 = _topology("sbu15", _SBU)
 """SBU Kinect Interaction (Yun et al. 2012); joints in the order of its files."""
 
 _K3HI_ORDER = [
-    "head", "neck", "left_shoulder", "right_shoulder", "left_elbow", "right_elbow", "left_wrist", "right_wrist",
-    "torso", "left_hip", "right_hip", "left_knee", "right_knee", "left_foot", "right_foot",
+    "head", "neck", "left_shoulder", "right_shoulder", "left_elbow", "right_elbow", "left_wrist",
+    "right_wrist", "torso", "left_hip", "right_hip", "left_knee", "right_knee", "left_foot", "right_foot",
 ]  # fmt: skip
 _SBU_PARENT = dict(_SBU)
 K3HI15 = Skeleton(

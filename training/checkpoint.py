@@ -1,0 +1,62 @@
+"""Checkpoints of a training run as one ``.safetensors`` file, written whole or not at all."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import torch
+from safetensors import SafetensorError, safe_open
+from safetensors.torch import save_file
+from torch import Tensor, nn
+
+from training.files import replacing
+from webdemo.motion import InputError
+
+Parts = dict[str, nn.Module | torch.optim.Optimizer]
+
+
+def _tensors(parts: Parts) -> dict[str, Tensor]:
+    found: dict[str, Tensor] = {}
+    for name, part in parts.items():
+        if isinstance(part, nn.Module):
+            found |= {f"{name}/{key}": value for key, value in part.state_dict().items()}
+        else:
+            for row, state in part.state_dict()["state"].items():
+                found |= {f"{name}/{row}/{key}": torch.as_tensor(value) for key, value in state.items()}
+    return {key: value.detach().contiguous().cpu().clone() for key, value in found.items()}
+
+
+def save(path: Path, parts: Parts, step: int, settings: str) -> None:
+    """Writes modules and optimisers with the step number and the run's settings (JSON text)."""
+    with replacing(path) as temporary:
+        save_file(_tensors(parts), temporary, metadata={"step": str(step), "settings": settings})
+
+
+def restore(path: Path, parts: Parts, settings: str) -> int:
+    """Loads what :func:`save` wrote into ``parts`` and returns its step; 0 where there is no checkpoint.
+
+    Raises InputError for a damaged file and for a checkpoint of other settings.
+    """
+    if not path.exists():
+        return 0
+    try:
+        with safe_open(path, framework="pt") as file:
+            metadata = file.metadata()
+            tensors = {key: file.get_tensor(key) for key in file.keys()}  # noqa: SIM118 (no mapping)
+    except (OSError, SafetensorError) as error:
+        raise InputError(f"{path} is damaged ({error}): delete it to begin anew.") from error
+    if metadata.get("settings") != settings:
+        raise InputError(
+            f"{path} belongs to a run of other settings: give another --out, or the same settings."
+        )
+    for name, part in parts.items():
+        own = {key.removeprefix(f"{name}/"): v for key, v in tensors.items() if key.startswith(f"{name}/")}
+        if isinstance(part, nn.Module):
+            part.load_state_dict(own)
+            continue
+        states: dict[int, dict[str, Tensor]] = {}
+        for key, value in own.items():
+            row, field = key.split("/")
+            states.setdefault(int(row), {})[field] = value
+        part.load_state_dict(part.state_dict() | {"state": states})
+    return int(metadata["step"])

@@ -1,0 +1,278 @@
+"""Trains the compact InterGen: ``python -m training.intergen --scenes FILE --out DIR``.
+
+InterGen (Liang et al., section 4): both people's clean motion from their noised motion, the timestep and a
+text vector; x0 prediction, eq. 8, the regularisers of eq. 11–14 and the damping of eq. 15. The motion is
+the control points of :mod:`models.motion_tokens`; the regularisers see positions at 30 fps.
+
+Everything random is drawn from the seed and the step number, so a run that stops (``--minutes``, Ctrl+C) and
+is started again with the same command goes on exactly as if it had never stopped.
+"""
+
+from __future__ import annotations
+
+import argparse
+import json
+import math
+import time
+from collections.abc import Iterator
+from dataclasses import asdict, dataclass, field, fields
+from pathlib import Path
+
+import numpy as np
+import torch
+from torch import Tensor
+
+from models.diffusion import NoiseSchedule
+from models.intergen import InterGenConfig, InterGenDenoiser
+from models.intergen_losses import InterGenLoss, LossWeights, simple_loss
+from models.motion_tokens import decode, mirror_control, pack, unpack
+from models.text import TextConditioner, TextConditionerConfig
+from training import checkpoint
+from training.corpus.captions import mirror_caption
+from training.prepare import Scenes, load, normalizer
+from training.text_features import CaptionFeatures
+from webdemo.motion import SMPL22, InputError
+
+
+@dataclass(frozen=True)
+class Settings:
+    """What a run depends on; a checkpoint of other settings is refused."""
+
+    latent_dim: int = 320
+    ff_size: int = 1024
+    num_layers: int = 6
+    num_heads: int = 5
+    cond_dim: int = 256
+    dropout: float = 0.0
+    batch: int = 32
+    steps: int = 20_000
+    learning_rate: float = 4e-4
+    warmup: int = 300
+    weight_decay: float = 2e-5
+    ema: float = 0.9985
+    unconditional: float = 0.1
+    t_bar: float = 0.7
+    seed: int = 0
+    weights: LossWeights = field(
+        default_factory=lambda: LossWeights(
+            velocity=300.0,
+            foot_contact=300.0,
+            bone_length=30.0,
+            distance_map=5.0,
+            joint_affinity=1.0,
+            relative_orientation=0.02,
+        )
+    )
+
+
+def seeded(*words: int) -> torch.Generator:
+    """A generator that depends on all the given numbers, the same on every machine."""
+    return torch.Generator().manual_seed(int(np.random.SeedSequence(words).generate_state(1)[0]))
+
+
+@dataclass
+class Batch:
+    """x0 (B, tokens, 2·F) normalised, mask (B, tokens, 2), frame_mask (B, T), text features and mask."""
+
+    x0: Tensor
+    mask: Tensor
+    frame_mask: Tensor
+    text: Tensor
+    text_mask: Tensor
+
+
+class Data:
+    """Draws batches of similar lengths; batch ``step`` is the same in every run of the same seed."""
+
+    def __init__(self, scenes: Scenes, settings: Settings, cache: Path, device: str) -> None:
+        self.scenes, self.settings, self.device = scenes, settings, device
+        self.rows = scenes.split("train")
+        if len(self.rows) < settings.batch:
+            raise InputError(f"{len(self.rows)} training scenes do not fill a batch of {settings.batch}.")
+        captions = {c for row in self.rows for c in row["captions"]}
+        captions |= {mirror_caption(c) for c in captions}
+        self.captions = CaptionFeatures(sorted(captions), cache, device=device)
+        self.mean, self.std = normalizer(scenes, SMPL22.mirror)
+        self.tokens = torch.tensor([row["tokens"] for row in self.rows])
+        self.batches_an_epoch = len(self.rows) // settings.batch
+        self._epoch, self._order = -1, torch.empty(0)
+
+    def _rows_of(self, step: int) -> Tensor:
+        epoch, place = divmod(step, self.batches_an_epoch)
+        if epoch != self._epoch:
+            generator = seeded(self.settings.seed, 1, epoch)
+            jitter = torch.rand(len(self.rows), generator=generator) * 6
+            by_length = (self.tokens + jitter).argsort()
+            spare = len(by_length) % self.settings.batch
+            keep = torch.randperm(len(by_length), generator=generator)[spare:].sort().values
+            groups = by_length[keep].view(self.batches_an_epoch, -1)
+            self._order = groups[torch.randperm(len(groups), generator=generator)]
+            self._epoch = epoch
+        return self._order[place]
+
+    def batch(self, step: int) -> Batch:
+        settings, layout = self.settings, self.scenes.layout
+        rows = [self.rows[i] for i in self._rows_of(step)]
+        generator = seeded(settings.seed, 2, step)
+        draw = torch.rand(len(rows), 2, generator=generator)
+        tokens = max(row["tokens"] for row in rows)
+        control = self.mean.expand(len(rows), 2, tokens * layout.knots_per_token, -1).clone()
+        mask = torch.zeros(len(rows), tokens, 2)
+        frame_mask = torch.zeros(len(rows), layout.num_frames(tokens))
+        captions = []
+        for i, row in enumerate(rows):
+            one, caption = self.scenes.scene(row), row["captions"][int(draw[i, 0] * len(row["captions"]))]
+            if draw[i, 1] < 0.5:
+                one, caption = mirror_control(one, SMPL22.mirror), mirror_caption(caption)
+            control[i, :, : one.shape[1]] = one
+            mask[i, : row["tokens"]] = 1
+            frame_mask[i, : layout.num_frames(row["tokens"])] = 1
+            captions.append(caption)
+        text, text_mask = self.captions.batch(captions)
+        x0 = pack((control - self.mean) / self.std, layout)
+        return Batch(*(x.to(self.device) for x in (x0, mask, frame_mask, text, text_mask)))
+
+
+class Model(torch.nn.Module):
+    """Denoiser and text conditioner: what is trained, averaged and shipped together."""
+
+    def __init__(self, settings: Settings, token_features: int) -> None:
+        super().__init__()
+        self.denoiser = InterGenDenoiser(
+            InterGenConfig(
+                input_features=token_features,
+                latent_dim=settings.latent_dim,
+                ff_size=settings.ff_size,
+                num_layers=settings.num_layers,
+                num_heads=settings.num_heads,
+                cond_dim=settings.cond_dim,
+                dropout=settings.dropout,
+                role_embedding=True,
+            )
+        )
+        self.conditioner = TextConditioner(TextConditionerConfig(latent_dim=settings.cond_dim, dropout=0.05))
+
+    def forward(self, x: Tensor, t: Tensor, batch: Batch, keep: Tensor) -> Tensor:
+        cond = self.conditioner(batch.text, batch.text_mask) * keep[:, None]
+        return self.denoiser(x, t, cond, batch.mask)
+
+
+class Trainer:
+    """One training run: :meth:`run` goes on from wherever its checkpoint stands."""
+
+    def __init__(self, scenes: Scenes, settings: Settings, out: Path, *, device: str = "cpu") -> None:
+        self.scenes, self.settings, self.out, self.device = scenes, settings, out, device
+        torch.manual_seed(settings.seed)
+        self.data = Data(scenes, settings, out, device)
+        self.model = Model(settings, scenes.layout.token_features).to(device)
+        self.ema = Model(settings, scenes.layout.token_features).to(device).requires_grad_(False)
+        self.ema.load_state_dict(self.model.state_dict())
+        self.optimizer = torch.optim.AdamW(
+            self.model.parameters(), lr=settings.learning_rate, weight_decay=settings.weight_decay, fused=True
+        )
+        self.schedule = NoiseSchedule(device=device)
+        self.loss = InterGenLoss(
+            settings.weights, t_bar=round(settings.t_bar * self.schedule.timesteps), near_by="truth"
+        )
+        self.mean, self.std = self.data.mean.to(device), self.data.std.to(device)
+        self.step = 0
+        self.settings_json = json.dumps(asdict(settings), sort_keys=True)
+        self.step = checkpoint.restore(self.out / "last.safetensors", self.parts(), self.settings_json)
+
+    def parts(self) -> dict[str, torch.nn.Module | torch.optim.Optimizer]:
+        return {"model": self.model, "ema": self.ema, "optimizer": self.optimizer}
+
+    def learning_rate(self) -> float:
+        """Linear warm-up, then a cosine to 2 % of the peak."""
+        s = self.settings
+        warm = min(1.0, (self.step + 1) / s.warmup)
+        place = min(1.0, self.step / s.steps)
+        return s.learning_rate * warm * (0.02 + 0.98 * 0.5 * (1 + math.cos(math.pi * place)))
+
+    def terms(self, batch: Batch, t: Tensor, noise: Tensor, keep: Tensor) -> dict[str, Tensor]:
+        """Every loss term of one batch, weighted."""
+        xt = self.schedule.q_sample(batch.x0, t, noise)
+        with torch.autocast(self.device, torch.bfloat16):
+            predicted = self.model(xt, t, batch, keep)
+        predicted = predicted.float()
+        people = (*batch.x0.shape[:2], 2, -1)
+        terms = {"simple": simple_loss(predicted.view(people), batch.x0.view(people), batch.mask)}
+        layout = self.scenes.layout
+        positions = [
+            decode(unpack(x, layout) * self.std + self.mean, layout)[0].transpose(1, 2)
+            for x in (predicted, batch.x0)
+        ]
+        return terms | self.loss.regularizers(*positions, t, batch.frame_mask)
+
+    def train_step(self) -> dict[str, float]:
+        """One optimiser step; returns the loss terms."""
+        batch = self.data.batch(self.step)
+        generator = seeded(self.settings.seed, 3, self.step)
+        size = len(batch.x0)
+        t = torch.randint(self.schedule.timesteps, (size,), generator=generator).to(self.device)
+        noise = torch.randn(batch.x0.shape, generator=generator).to(self.device)
+        keep = (torch.rand(size, generator=generator) >= self.settings.unconditional).float().to(self.device)
+        torch.manual_seed(seeded(self.settings.seed, 4, self.step).initial_seed())  # dropout
+        self.model.train()
+        terms = self.terms(batch, t, noise, keep)
+        total = torch.stack(list(terms.values())).sum()
+        for group in self.optimizer.param_groups:
+            group["lr"] = self.learning_rate()
+        self.optimizer.zero_grad(set_to_none=True)
+        total.backward()
+        torch.nn.utils.clip_grad_norm_(self.model.parameters(), 1.0)
+        self.optimizer.step()
+        self.step += 1
+        decay = min(self.settings.ema, (self.step + 1) / (self.step + 10))
+        with torch.no_grad():
+            averaged, current = list(self.ema.parameters()), list(self.model.parameters())
+            torch._foreach_lerp_(averaged, current, 1 - decay)
+        return {name: value.item() for name, value in terms.items()} | {"total": total.item()}
+
+    def save(self) -> None:
+        checkpoint.save(self.out / "last.safetensors", self.parts(), self.step, self.settings_json)
+
+    def run(self, *, minutes: float, save_every: float = 5.0) -> Iterator[dict[str, float]]:
+        """Trains until the steps or the minutes are over; yields each step's terms; saves as it goes."""
+        began = saved = time.monotonic()
+        while self.step < self.settings.steps and time.monotonic() - began < minutes * 60:
+            yield self.train_step()
+            if time.monotonic() - saved > save_every * 60:
+                self.save()
+                saved = time.monotonic()
+        self.save()
+
+
+def main(argv: list[str] | None = None) -> None:
+    parser = argparse.ArgumentParser(description="Train the compact InterGen on prepared scenes.")
+    parser.add_argument("--scenes", type=Path, required=True, help="file of `python -m training.prepare`")
+    parser.add_argument("--out", type=Path, required=True, help="folder of the checkpoint and the log")
+    parser.add_argument(
+        "--minutes", type=float, default=1e9, help="stop after this long; start again to go on"
+    )
+    parser.add_argument("--device", default="cuda" if torch.cuda.is_available() else "cpu")
+    for setting in fields(Settings):
+        if setting.name != "weights":
+            kind = type(setting.default)
+            flag = "--" + setting.name.replace("_", "-")
+            parser.add_argument(flag, type=kind, default=setting.default)
+    options = parser.parse_args(argv)
+    chosen = {f.name: getattr(options, f.name) for f in fields(Settings) if f.name != "weights"}
+    trainer = Trainer(load(options.scenes), Settings(**chosen), options.out, device=options.device)
+    log, began, first = [], time.monotonic(), trainer.step
+    with open(options.out / "log.jsonl", "a") as file:
+        for terms in trainer.run(minutes=options.minutes):
+            log.append(terms)
+            if trainer.step % 50 == 0:
+                mean = {name: sum(t[name] for t in log) / len(log) for name in terms}
+                pace = (time.monotonic() - began) / (trainer.step - first)
+                line = {"step": trainer.step, "pace": round(pace, 3)} | {
+                    k: round(v, 5) for k, v in mean.items()
+                }
+                print(json.dumps(line), file=file, flush=True)
+                print(json.dumps(line), flush=True)
+                log = []
+
+
+if __name__ == "__main__":
+    main()

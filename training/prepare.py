@@ -1,0 +1,148 @@
+"""Corpus → the tensors a trainer carries: ``python -m training.prepare --corpus DIR --out FILE``.
+
+The corpus (``motions.npy`` + ``index.json``, see :mod:`training.corpus`) becomes one ``.safetensors`` file:
+spline control points of every scene in float16, and as JSON in its metadata the captions, families, splits
+and events. Five hours of two people take under 40 MB.
+"""
+
+from __future__ import annotations
+
+import argparse
+import json
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import torch
+from safetensors import SafetensorError, safe_open
+from safetensors.torch import save_file
+from torch import Tensor
+
+from models.motion_tokens import TokenLayout, encode
+from training.files import replacing
+from webdemo.motion import InputError
+from webdemo.motion.skeleton import FEET
+
+CONTACT_HEIGHTS = (0.12, 0.08, 0.12, 0.08)
+CONTACT_SPEED = 0.35  # m/s
+
+
+def foot_contacts(positions: Tensor, fps: float = 30.0) -> Tensor:
+    """(…, T, 4) 1 where an ankle or toe is low and slow; positions (…, T, 22, 3) in metres."""
+    feet = positions[..., list(FEET), :]
+    velocity = torch.linalg.vector_norm(feet.diff(dim=-3), dim=-1) * fps
+    speed = torch.cat([velocity[..., :1, :], velocity], dim=-2)
+    low = feet[..., 1] < positions.new_tensor(CONTACT_HEIGHTS)
+    return (low & (speed < CONTACT_SPEED)).to(positions.dtype)
+
+
+@dataclass
+class Scenes:
+    """Prepared scenes.
+
+    Attributes:
+        control: (total knots, 2, 70) float16, the scenes one after the other.
+        rows: for each scene {"start", "tokens", "family", "captions", "split", "events", "sources"}.
+        layout: frames a knot and knots a token.
+    """
+
+    control: Tensor
+    rows: list[dict[str, Any]]
+    layout: TokenLayout
+
+    def scene(self, row: dict[str, Any]) -> Tensor:
+        """(2, knots, 70) float32 control points of one scene."""
+        knots = row["tokens"] * self.layout.knots_per_token
+        return self.control[row["start"] : row["start"] + knots].float().transpose(0, 1)
+
+    def split(self, name: str) -> list[dict[str, Any]]:
+        return [row for row in self.rows if row["split"] == name]
+
+
+def load_corpus(folder: Path) -> tuple[np.ndarray, list[dict[str, Any]]]:
+    """Motions (frames, 2, 22, 3) as a memory map, and the index; raises InputError if either is damaged."""
+    try:
+        motions = np.load(folder / "motions.npy", mmap_mode="r", allow_pickle=False)
+        index = json.loads((folder / "index.json").read_text())
+    except (OSError, ValueError) as error:
+        raise InputError(
+            f"{folder} holds no readable corpus ({error}): build one with `python -m training.corpus`."
+        ) from error
+    return motions, index["scenes"] if isinstance(index, dict) else index
+
+
+def prepare(folder: Path, layout: TokenLayout, max_seconds: float = 10.0) -> Scenes:
+    """Fits control points to every scene of a corpus; scenes are cut to whole tokens."""
+    motions, index = load_corpus(folder)
+    parts, rows, start = [], [], 0
+    for entry in index:
+        frames = min(entry["frames"], int(max_seconds * 30) + 1)
+        tokens = layout.num_tokens(frames)
+        if layout.num_frames(tokens) > frames:
+            tokens -= 1
+        frames = layout.num_frames(tokens)
+        if frames < 30:
+            continue
+        motion = np.asarray(motions[entry["start"] : entry["start"] + frames], dtype=np.float32)
+        positions = torch.from_numpy(motion).transpose(0, 1)
+        control = encode(positions, foot_contacts(positions), layout)
+        parts.append(control.transpose(0, 1).half())
+        kept = ("family", "captions", "split", "events", "sources")
+        rows.append({"start": start, "tokens": tokens} | {key: entry.get(key) for key in kept})
+        start += tokens * layout.knots_per_token
+    if not rows:
+        raise InputError(f"The corpus in {folder} has no scene of a second or more.")
+    return Scenes(torch.cat(parts), rows, layout)
+
+
+def save(scenes: Scenes, path: Path) -> None:
+    """Writes prepared scenes; an interrupted write leaves no file of that name."""
+    layout = {
+        "frames_per_knot": scenes.layout.frames_per_knot,
+        "knots_per_token": scenes.layout.knots_per_token,
+    }
+    metadata = {"rows": json.dumps(scenes.rows), "layout": json.dumps(layout)}
+    with replacing(path) as temporary:
+        save_file({"control": scenes.control}, temporary, metadata=metadata)
+
+
+def load(path: Path) -> Scenes:
+    """Reads what :func:`save` wrote; raises InputError where it is missing or damaged."""
+    try:
+        with safe_open(path, framework="pt") as file:
+            metadata = file.metadata()
+            layout = TokenLayout(**json.loads(metadata["layout"]))
+            return Scenes(file.get_tensor("control"), json.loads(metadata["rows"]), layout)
+    except (OSError, SafetensorError, KeyError, TypeError, ValueError) as error:
+        raise InputError(
+            f"{path} holds no prepared scenes ({error}): run `python -m training.prepare`."
+        ) from error
+
+
+def normalizer(scenes: Scenes, joint_mirror: tuple[int, ...]) -> tuple[Tensor, Tensor]:
+    """Mean and standard deviation (70,) of the training control points and their mirror images."""
+    from models.motion_tokens import mirror_control
+
+    knots = scenes.layout.knots_per_token
+    rows = [scenes.control[r["start"] : r["start"] + r["tokens"] * knots] for r in scenes.split("train")]
+    control = torch.cat(rows).float().flatten(0, 1)
+    control = torch.cat([control, mirror_control(control, joint_mirror)])
+    return control.mean(0), control.std(0).clamp_min(0.01)
+
+
+def main(argv: list[str] | None = None) -> None:
+    parser = argparse.ArgumentParser(description="Turn a corpus into the tensors that training reads.")
+    parser.add_argument("--corpus", type=Path, required=True, help="folder with motions.npy and index.json")
+    parser.add_argument("--out", type=Path, required=True, help="the .safetensors file to write")
+    parser.add_argument("--frames-per-knot", type=int, default=4)
+    parser.add_argument("--knots-per-token", type=int, default=2)
+    options = parser.parse_args(argv)
+    scenes = prepare(options.corpus, TokenLayout(options.frames_per_knot, options.knots_per_token))
+    save(scenes, options.out)
+    seconds = len(scenes.control) * options.frames_per_knot / 30
+    print(f"{len(scenes.rows)} scenes, {seconds / 3600:.2f} hours, {options.out.stat().st_size / 1e6:.1f} MB")
+
+
+if __name__ == "__main__":
+    main()
