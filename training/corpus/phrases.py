@@ -426,7 +426,7 @@ ENTRIES: dict[str, Entry] = {
          "*give {other} a pat on the shoulder", "*clap {other} on the shoulder{with_hand}"),
         ("*stand still", "*look at {them}", "*accept it", "*face {them}"),
         (),
-        ("a pat on the shoulder", "patting someone's shoulder", "shoulder pat", "a (friendly) pat on the shoulder"),
+        ("a pat on the shoulder", "patting someone's shoulder", "shoulder pat", "a friendly pat on the shoulder"),
         ("{B} *get a pat on the shoulder from {A}.", "{B} *is patted on the shoulder by {A}{a_with_hand}."),
     ),
     "hand-on-shoulder": Entry(
