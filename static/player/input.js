@@ -1,0 +1,67 @@
+// Hands on the scene: mouse, touch, pen and wheel turn, move and zoom the camera.
+
+const TURN = Math.PI; // radians for a drag as long as the stage is high
+
+/**
+ * Listens on `surface`. `orbit` is changed in place; `changed` is called after each change and
+ * `hover` with [x, y] or null while nothing is pressed. `mayScroll` says whether the wheel belongs to us.
+ */
+export function attach(surface, orbit, { changed, hover, mayScroll }) {
+  const pointers = new Map();
+  let pinch = null;
+
+  const local = (event) => {
+    const box = surface.getBoundingClientRect();
+    return [event.clientX - box.left, event.clientY - box.top];
+  };
+  const spread = () => {
+    const [a, b] = [...pointers.values()];
+    return { distance: Math.hypot(a[0] - b[0], a[1] - b[1]), x: (a[0] + b[0]) / 2, y: (a[1] + b[1]) / 2 };
+  };
+
+  surface.addEventListener("pointerdown", (event) => {
+    surface.setPointerCapture(event.pointerId);
+    pointers.set(event.pointerId, local(event));
+    pinch = pointers.size === 2 ? spread() : null;
+    orbit.turning = true;
+    hover(null);
+  });
+
+  surface.addEventListener("pointermove", (event) => {
+    const now = local(event);
+    const before = pointers.get(event.pointerId);
+    if (!before) return hover(event.pointerType === "touch" ? null : now);
+    pointers.set(event.pointerId, now);
+    const height = surface.clientHeight || 1;
+    const [dx, dy] = [(now[0] - before[0]) / height, (now[1] - before[1]) / height];
+    if (pointers.size === 2) {
+      const next = spread();
+      if (pinch?.distance > 0 && next.distance > 0) orbit.zoom(pinch.distance / next.distance);
+      orbit.slide((next.x - pinch.x) / height, (pinch.y - next.y) / height);
+      pinch = next;
+    } else if (event.buttons & 6 || event.shiftKey) orbit.slide(dx, -dy);
+    else orbit.turn(-TURN * dx, TURN * dy);
+    changed();
+  });
+
+  const release = (event) => {
+    pointers.delete(event.pointerId);
+    pinch = pointers.size === 2 ? spread() : null;
+    orbit.turning = pointers.size > 0;
+  };
+  surface.addEventListener("pointerup", release);
+  surface.addEventListener("pointercancel", release);
+  surface.addEventListener("pointerleave", () => hover(null));
+  surface.addEventListener("contextmenu", (event) => event.preventDefault());
+  surface.addEventListener(
+    "wheel",
+    (event) => {
+      if (!mayScroll(event)) return;
+      event.preventDefault();
+      const lines = event.deltaMode === 1 ? 30 : 1;
+      orbit.zoom(Math.exp((event.deltaY * lines) / 800));
+      changed();
+    },
+    { passive: false },
+  );
+}

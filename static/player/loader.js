@@ -1,0 +1,38 @@
+// The things the player needs beside its modules, each loaded once a page and from our own server only.
+
+const once = new Map();
+
+function load(key, make) {
+  if (!once.has(key)) {
+    const pending = make();
+    pending.catch(() => once.delete(key)); // so that a later mount may try again
+    once.set(key, pending);
+  }
+  return once.get(key);
+}
+
+/** The plotly.js that ships in the plotly Python package. */
+export function loadPlotly(url) {
+  return load(url, () =>
+    window.Plotly?.newPlot ? Promise.resolve(window.Plotly) : new Promise((resolve, reject) => {
+      const script = document.createElement("script");
+      script.src = url;
+      script.onload = () => resolve(window.Plotly);
+      script.onerror = () => reject(new Error("plotly.js did not load"));
+      document.head.append(script);
+    }),
+  );
+}
+
+export function loadStyles(url) {
+  return load(url, () =>
+    new Promise((resolve, reject) => {
+      const link = document.createElement("link");
+      link.rel = "stylesheet";
+      link.href = url;
+      link.onload = resolve;
+      link.onerror = () => reject(new Error("The player's styles did not load"));
+      document.head.append(link);
+    }),
+  );
+}

@@ -1,0 +1,78 @@
+// Entry point: gives an element of the page a player and keeps it in step with its Python side.
+
+import { loadPlotly, loadStyles } from "./loader.js";
+import { loops, Player } from "./player.js";
+
+const players = new Set();
+
+/** What tests and curious people look at; always about the player that was made last. */
+const hooks = {
+  get player() {
+    return [...players].pop() ?? null;
+  },
+  get count() {
+    return players.size;
+  },
+  get loops() {
+    return loops.running;
+  },
+  get id() {
+    return hooks.player?.data?.id ?? null;
+  },
+  get frame() {
+    return hooks.player?.frameShown ?? null;
+  },
+  get playing() {
+    return hooks.player?.clock.playing ?? false;
+  },
+  get fps() {
+    return hooks.player?.fps ?? 0;
+  },
+  get eye() {
+    return hooks.player?.orbit.eye ?? null;
+  },
+  /** World coordinates (Y up), metres: [person][joint][x, y, z]. */
+  get positions() {
+    return hooks.player?.pose?.map((points) => points.map(([z, x, y]) => [x, y, z])) ?? null;
+  },
+  get mode() {
+    return hooks.player?.scene.mode ?? null;
+  },
+};
+
+/**
+ * `element` holds player.html; `props` are the component's, watched by `watch`; `plotlyUrl` is ours.
+ * Safe to call again for an element that was hidden and shown.
+ */
+export async function mount(element, props, watch, plotlyUrl) {
+  const root = element.querySelector(".pdd");
+  const player = new Player(root);
+  let shown;
+  const sync = () => {
+    player.setBusy(props.busy, props.progress);
+    player.setEmptyText(props.empty_text);
+    const id = props.value?.id ?? null;
+    if (player.scene && id !== shown) {
+      shown = id;
+      player.load(props.value || null);
+    }
+  };
+  sync();
+  watch(["value", "busy", "progress", "empty_text"], sync);
+  try {
+    const [Plotly] = await Promise.all([loadPlotly(plotlyUrl), loadStyles(new URL("player.css", import.meta.url).href)]);
+    root.classList.add("pdd-styled");
+    if (!root.isConnected) return;
+    await player.open(Plotly);
+  } catch (error) {
+    root.classList.add("pdd-styled");
+    player.setEmptyText("The 3D view could not start: this browser may have WebGL switched off.");
+    console.error(error);
+    return;
+  }
+  players.add(player);
+  player.onclose = () => players.delete(player);
+  sync(); // the value may have come before the scene was ready, with nothing left for watch to see
+}
+
+window.__pasdedeux = hooks;

@@ -1,0 +1,136 @@
+// The camera: an orbit around a target in scene axes (x towards where A faces at first, z up), metres.
+
+const LOWEST = -0.05; // radians of elevation; the floor hides what lies under it
+const HIGHEST = 1.5;
+const NEAREST = 0.8;
+const FARTHEST = 40;
+const GLIDE_SECONDS = 0.45;
+const FOLLOW_SECONDS = 0.35; // time constant of the follow
+export const FIELD_OF_VIEW = Math.PI / 4; // plotly's
+
+const ease = (t) => 1 - (1 - t) ** 3;
+const clamp = (v, low, high) => Math.min(Math.max(v, low), high);
+
+export class Orbit {
+  constructor() {
+    this.yaw = 0.9;
+    this.elevation = 0.3;
+    this.distance = 5;
+    this.target = [0, 0, 0.9];
+    this.pan = [0, 0, 0]; // what the user moved the target by
+    this.glide = null;
+    this.following = true;
+    this.turning = false;
+    this.version = 0;
+  }
+
+  get center() {
+    return this.target.map((v, i) => v + this.pan[i]);
+  }
+
+  get eye() {
+    const [c, flat] = [this.center, this.distance * Math.cos(this.elevation)];
+    return [
+      c[0] + flat * Math.cos(this.yaw),
+      c[1] + flat * Math.sin(this.yaw),
+      c[2] + this.distance * Math.sin(this.elevation),
+    ];
+  }
+
+  /** Turns by radians. */
+  turn(yaw, elevation) {
+    this.glide = null;
+    this.yaw += yaw;
+    this.elevation = clamp(this.elevation + elevation, LOWEST, HIGHEST);
+    this.version++;
+  }
+
+  zoom(factor) {
+    if (this.glide) this.glide = null;
+    this.distance = clamp(this.distance * factor, NEAREST, FARTHEST);
+    this.version++;
+  }
+
+  /** Moves the target in the image plane by fractions of the view's height. */
+  slide(right, up) {
+    const scale = 2 * this.distance * Math.tan(FIELD_OF_VIEW / 2);
+    const [s, c] = [Math.sin(this.yaw), Math.cos(this.yaw)];
+    const [se, ce] = [Math.sin(this.elevation), Math.cos(this.elevation)];
+    this.pan[0] += scale * (right * s + up * se * c);
+    this.pan[1] += scale * (-right * c + up * se * s);
+    this.pan[2] += scale * -up * ce;
+    this.version++;
+  }
+
+  /** Glides to a view; what is left out stays. */
+  goTo({ yaw = this.yaw, elevation = this.elevation, distance = this.distance, keepPan = false }, now = null) {
+    const turn = Math.atan2(Math.sin(yaw - this.yaw), Math.cos(yaw - this.yaw)); // the short way round
+    const to = { yaw: this.yaw + turn, elevation, distance: clamp(distance, NEAREST, FARTHEST), pan: keepPan ? this.pan.slice() : [0, 0, 0] };
+    const reduced = matchMedia("(prefers-reduced-motion: reduce)").matches;
+    if (now === null || reduced) {
+      Object.assign(this, to);
+      this.glide = null;
+    } else {
+      this.glide = { from: { yaw: this.yaw, elevation: this.elevation, distance: this.distance, pan: this.pan.slice() }, to, start: now };
+    }
+    this.version++;
+  }
+
+  /** Follows `wanted` smoothly and plays a glide. `seconds` since the last call. */
+  step(now, seconds, wanted) {
+    if (this.glide) {
+      const { from, to, start } = this.glide;
+      const t = clamp((now - start) / 1000 / GLIDE_SECONDS, 0, 1);
+      const at = (a, b) => a + (b - a) * ease(t);
+      this.yaw = at(from.yaw, to.yaw);
+      this.elevation = at(from.elevation, to.elevation);
+      this.distance = at(from.distance, to.distance);
+      this.pan = from.pan.map((v, i) => at(v, to.pan[i]));
+      if (t >= 1) this.glide = null;
+      this.version++;
+    }
+    if (this.following && wanted) {
+      const k = 1 - Math.exp(-seconds / FOLLOW_SECONDS);
+      const move = wanted.map((v, i) => k * (v - this.target[i]));
+      if (Math.hypot(...move) > 1e-5) {
+        this.target = this.target.map((v, i) => v + move[i]);
+        this.version++;
+      }
+    }
+  }
+
+  jump(target) {
+    this.target = target.slice();
+    this.version++;
+  }
+
+  /** Whether the picture still changes without anyone's doing. */
+  settled(wanted) {
+    if (this.glide) return false;
+    return !this.following || !wanted || Math.hypot(...wanted.map((v, i) => v - this.target[i])) < 1e-3;
+  }
+
+  /** The view matrix, column-major as WebGL wants it. */
+  matrix() {
+    const { eye, center } = this;
+    const back = normalise(eye.map((v, i) => v - center[i]));
+    const right = normalise([-back[1], back[0], 0]);
+    const up = cross(back, right);
+    const dot = (a) => -(a[0] * eye[0] + a[1] * eye[1] + a[2] * eye[2]);
+    return [
+      right[0], up[0], back[0], 0,
+      right[1], up[1], back[1], 0,
+      right[2], up[2], back[2], 0,
+      dot(right), dot(up), dot(back), 1,
+    ];
+  }
+}
+
+function normalise(v) {
+  const n = Math.hypot(...v) || 1;
+  return v.map((x) => x / n);
+}
+
+function cross(a, b) {
+  return [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]];
+}

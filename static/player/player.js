@@ -1,0 +1,443 @@
+// The player: one element, one scene, one clock. main.js makes these; everything else is a part of it.
+
+import { Clock } from "./clock.js";
+import { decode, poseAt } from "./decode.js";
+import * as figure from "./figure.js";
+import { attach } from "./input.js";
+import { actionFor, belongsToControl } from "./keys.js";
+import { FIELD_OF_VIEW, Orbit } from "./orbit.js";
+import { Labels, Tip, project, roleText } from "./overlay.js";
+import { THEMES, themeName } from "./palette.js";
+import { savePicture } from "./picture.js";
+import { Scene } from "./scene.js";
+import { describe } from "./skeleton.js";
+import { Strip } from "./strip.js";
+import { heading, midpoint, preset, widest } from "./views.js";
+
+const SPEEDS = [0.25, 0.5, 1, 1.5, 2];
+const FPS_WINDOW = 1500; // ms
+export const loops = { running: 0 }; // animation loops alive on the page; a leak shows here
+
+export class Player {
+  constructor(root) {
+    this.root = root;
+    this.find = (selector) => root.querySelector(selector);
+    this.stage = this.find(".pdd-stage");
+    this.clock = new Clock();
+    this.orbit = new Orbit();
+    this.labels = new Labels(this.find(".pdd-labels"));
+    this.tip = new Tip(this.find(".pdd-tip"));
+    this.strip = new Strip(root, { onSeek: (frame) => this.seek(frame) });
+    this.show = { trails: false, ghosts: false };
+    this.data = null;
+    this.sampleIndex = 0;
+    this.painted = { floor: "", ghosts: "", camera: -1 };
+    this.times = [];
+    this.dirty = true;
+    this.handle = 0;
+    this.camera = "threequarter";
+  }
+
+  async open(Plotly) {
+    this.themeName = themeName();
+    this.root.dataset.theme = this.themeName;
+    this.scene = await new Scene(this.find(".pdd-gl"), Plotly).open(this.theme.background);
+    this.listen();
+    this.wake();
+    return this;
+  }
+
+  get theme() {
+    return THEMES[this.themeName];
+  }
+
+  get sample() {
+    return this.data?.samples[this.sampleIndex] ?? null;
+  }
+
+  poseAt(frame) {
+    return poseAt(this.sample.motion, frame);
+  }
+
+  // ---- content -------------------------------------------------------------------------------
+
+  /** Shows a payload of webdemo/view/payload.py, or the empty state for null. */
+  load(payload) {
+    if (!payload?.samples?.length) {
+      this.data = null;
+      this.clock.pause();
+      this.root.dataset.state = "empty";
+      this.strip.load(null);
+      this.labels.load([]);
+      for (const name of this.scene.names) if (name !== "floor") this.scene.hide(name);
+      this.refresh();
+      return;
+    }
+    this.data = decode(payload);
+    this.skeleton = describe(this.data.names, this.data.parents);
+    this.root.dataset.state = "ready";
+    const title = this.find(".pdd-title");
+    title.textContent = this.data.title;
+    title.title = this.data.title;
+    title.hidden = !this.data.title;
+    this.clock.frame = 0;
+    this.buildTabs();
+    this.select(0);
+    this.resetCamera();
+    this.clock.play();
+    this.refresh();
+  }
+
+  buildTabs() {
+    const tabs = this.find(".pdd-tabs");
+    const { samples } = this.data;
+    tabs.hidden = samples.length < 2;
+    tabs.replaceChildren(
+      ...samples.map((sample, i) => {
+        const tab = document.createElement("button");
+        tab.type = "button";
+        tab.setAttribute("role", "tab");
+        tab.setAttribute("aria-label", `Sample ${sample.label || i + 1}`);
+        tab.textContent = sample.label || String(i + 1);
+        tab.addEventListener("click", () => this.select(i));
+        return tab;
+      }),
+    );
+  }
+
+  /** Another sample of the same payload, at the same moment and under the same camera. */
+  select(index) {
+    const count = this.data.samples.length;
+    this.sampleIndex = ((index % count) + count) % count;
+    const { sample } = this;
+    this.clock.load(sample);
+    this.find(".pdd-range").max = String(sample.frames - 1);
+    this.labels.load(sample.roles);
+    this.strip.load(sample, this.theme.curve);
+    for (const [person, key] of ["a", "b"].entries()) {
+      const text = this.find(`[data-key=${key}]`);
+      text.hidden = text.previousElementSibling.hidden = person >= sample.roles.length;
+      text.textContent = text.hidden ? "" : roleText(person, sample.roles[person]);
+    }
+    [...this.find(".pdd-tabs").children].forEach((tab, i) => {
+      tab.setAttribute("aria-selected", String(i === this.sampleIndex));
+      tab.tabIndex = i === this.sampleIndex ? 0 : -1;
+    });
+    for (const name of ["bonesB", "jointsB"]) if (sample.motion.people < 2) this.scene.hide(name);
+    this.refresh();
+  }
+
+  /** The overlay while something is being made; "" takes it away. `progress` is 0..1 or null. */
+  setBusy(text, progress = null) {
+    const busy = this.find(".pdd-busy");
+    busy.hidden = !text;
+    this.root.setAttribute("aria-busy", String(Boolean(text)));
+    this.find(".pdd-busy-text").textContent = text || "";
+    const meter = this.find(".pdd-meter");
+    meter.hidden = !Number.isFinite(progress);
+    meter.firstElementChild.style.width = `${100 * Math.min(Math.max(progress || 0, 0), 1)}%`;
+  }
+
+  setEmptyText(text) {
+    this.find(".pdd-empty-text").textContent = text || "";
+  }
+
+  // ---- actions -------------------------------------------------------------------------------
+
+  seek(frame) {
+    this.clock.seek(frame);
+    this.wake();
+  }
+
+  act(action, argument) {
+    const { clock } = this;
+    const toggle = { follow: 1, trails: 1, ghosts: 1 }[action];
+    if (action === "help" || action === "close") return this.toggleHelp(action === "help" ? undefined : false);
+    if (action === "fullscreen") return this.toggleFullscreen();
+    if (!this.data) return;
+    if (action === "play") clock.playing ? clock.pause() : clock.play();
+    else if (action === "loop") clock.loop = !clock.loop;
+    else if (action === "step" || action === "back" || action === "forward") {
+      clock.pause();
+      clock.seek(Math.round(clock.shown) + (argument ?? (action === "back" ? -1 : 1)));
+    } else if (action === "first") clock.seek(0);
+    else if (action === "last") clock.seek(clock.frames - 1);
+    else if (action === "faster") this.setSpeed(SPEEDS[Math.min(Math.max(SPEEDS.indexOf(clock.speed) + argument, 0), SPEEDS.length - 1)]);
+    else if (action === "sample") this.select(this.sampleIndex + argument);
+    else if (action === "camera") this.goTo(argument);
+    else if (action === "picture") this.savePicture();
+    else if (toggle && action === "follow") this.orbit.following = !this.orbit.following;
+    else if (toggle) this.show[action] = !this.show[action];
+    this.refresh();
+  }
+
+  setSpeed(speed) {
+    this.clock.speed = speed;
+    this.find(".pdd-speed select").value = String(speed);
+  }
+
+  /** Glides to a preset; without motion at first. */
+  goTo(name, now = performance.now()) {
+    this.camera = name;
+    const pose = this.poseAt(this.clock.shown);
+    const aspect = this.stage.clientWidth / Math.max(this.stage.clientHeight, 1);
+    const apart = widest((f) => this.poseAt(f), this.clock.frames, this.skeleton);
+    this.orbit.goTo(preset(name, { along: heading(pose, this.skeleton), apart, aspect }), now);
+    if (!this.orbit.following) this.orbit.jump(midpoint(pose, this.skeleton));
+    this.refresh();
+  }
+
+  resetCamera() {
+    this.orbit.jump(midpoint(this.poseAt(0), this.skeleton));
+    this.goTo("threequarter", null);
+  }
+
+  toggleHelp(open = this.find(".pdd-help").hidden) {
+    this.find(".pdd-help").hidden = !open;
+    this.find("[data-act=help]").setAttribute("aria-expanded", String(open));
+  }
+
+  async toggleFullscreen() {
+    if (document.fullscreenElement === this.root) await document.exitFullscreen();
+    else if (this.root.requestFullscreen) await this.root.requestFullscreen().catch(() => this.fillWindow());
+    else this.fillWindow(); // phones without the interface
+  }
+
+  fillWindow() {
+    this.root.classList.toggle("pdd-full");
+    this.refresh();
+  }
+
+  savePicture() {
+    const frame = Math.round(this.clock.shown);
+    const caption = [this.data.title, `${(frame / this.clock.fps).toFixed(2)} s`].filter(Boolean).join("  ·  ");
+    return savePicture({
+      scene: this.scene, stage: this.stage, labels: this.labels.labels, theme: this.theme, caption,
+      name: `pas-de-deux-${this.sampleIndex + 1}-frame-${frame}.png`,
+    });
+  }
+
+  // ---- listening -----------------------------------------------------------------------------
+
+  listen() {
+    const { root } = this;
+    root.addEventListener("click", (event) => {
+      const button = event.target.closest("button");
+      if (button?.dataset.act) this.act(button.dataset.act);
+      else if (button?.dataset.camera) this.act("camera", button.dataset.camera);
+      else if (!event.target.closest(".pdd-help")) this.toggleHelp(false);
+    });
+    root.addEventListener("keydown", (event) => {
+      if (belongsToControl(event)) return;
+      const asked = actionFor(event);
+      if (!asked) return;
+      event.preventDefault();
+      event.stopPropagation();
+      this.act(...asked);
+    });
+    this.find(".pdd-tabs").addEventListener("keydown", (event) => {
+      if (!event.key.startsWith("Arrow")) return;
+      this.select(this.sampleIndex + (event.key === "ArrowLeft" || event.key === "ArrowUp" ? -1 : 1));
+      this.find(".pdd-tabs [aria-selected=true]").focus();
+      event.preventDefault();
+    });
+    this.find(".pdd-range").addEventListener("input", (event) => this.seek(Number(event.target.value)));
+    this.find(".pdd-speed select").addEventListener("change", (event) => this.setSpeed(Number(event.target.value)));
+    attach(this.find(".pdd-touch"), this.orbit, {
+      changed: () => {
+        this.camera = null;
+        this.wake();
+      },
+      hover: (pointer) => {
+        this.pointer = pointer;
+        this.showTip();
+      },
+      mayScroll: (event) => event.ctrlKey || root.contains(document.activeElement) || document.fullscreenElement === root,
+    });
+    this.find(".pdd-touch").addEventListener("pointerdown", () => root.focus({ preventScroll: true }));
+
+    this.abort = new AbortController();
+    const { signal } = this.abort;
+    document.addEventListener("visibilitychange", () => this.wake(), { signal });
+    document.addEventListener("fullscreenchange", () => this.refresh(), { signal });
+    this.themeWatch = new MutationObserver(() => this.setTheme(themeName()));
+    this.themeWatch.observe(document.body, { attributes: true, attributeFilter: ["class"] });
+    // Fires with size 0 when the element leaves the page or is hidden, and again when it comes back.
+    this.sizeWatch = new ResizeObserver(() => {
+      if (!root.isConnected) return this.close();
+      if (this.stage.clientWidth) this.resize();
+    });
+    this.sizeWatch.observe(this.stage);
+  }
+
+  setTheme(name) {
+    if (name === this.themeName) return;
+    this.themeName = name;
+    this.root.dataset.theme = name;
+    this.scene.setBackground(this.theme.background);
+    this.strip.load(this.sample, this.theme.curve);
+    this.refresh();
+  }
+
+  resize() {
+    this.scene.resize();
+    this.strip.paint();
+    this.refresh();
+  }
+
+  /** Everything is drawn anew at the next frame. */
+  refresh() {
+    this.painted.floor = this.painted.ghosts = "";
+    this.wake();
+  }
+
+  // ---- the loop ------------------------------------------------------------------------------
+
+  /** Asks for a picture; the loop goes on by itself for as long as something moves. */
+  wake() {
+    this.dirty = true;
+    if (this.handle || this.closed || !this.scene) return;
+    loops.running++;
+    this.handle = requestAnimationFrame((now) => this.tick(now));
+  }
+
+  tick(now) {
+    this.handle = 0;
+    loops.running--;
+    if (!this.root.isConnected) return this.close();
+    if (document.hidden || !this.stage.clientWidth) {
+      this.clock.last = null;
+      this.lastTick = null;
+      return;
+    }
+    const seconds = this.lastTick ? Math.min((now - this.lastTick) / 1000, 0.5) : 0;
+    this.lastTick = now;
+    this.clock.advance(now);
+    const pose = this.data && this.poseAt(this.clock.shown);
+    const wanted = pose && midpoint(pose, this.skeleton);
+    this.orbit.step(now, seconds, wanted);
+    const moving = this.clock.playing || !this.orbit.settled(wanted);
+    if (moving || this.dirty) {
+      this.dirty = false;
+      this.paint(pose);
+      this.count(now);
+    }
+    if (moving || this.dirty) {
+      const asked = this.dirty;
+      this.wake();
+      this.dirty = asked;
+    } else this.lastTick = null;
+  }
+
+  paint(pose) {
+    const { scene, orbit, theme, clock, skeleton } = this;
+    const [width, height] = [this.stage.clientWidth, this.stage.clientHeight];
+    this.matrix = orbit.matrix();
+    scene.setView(this.matrix, orbit.eye, orbit.center);
+    const put = (name, layer) => scene.set(name, layer);
+    const floorKey = `${this.themeName} ${orbit.target.map(Math.round)}`;
+    if (this.painted.floor !== floorKey) put("floor", figure.floor(orbit.target, 9, theme));
+    this.painted.floor = floorKey;
+    if (pose) {
+      const lens = new figure.Lens(orbit, height);
+      put("shadow", figure.shadow(pose, skeleton, theme));
+      put("outline", figure.outline(pose, skeleton, theme.outline, lens));
+      pose.forEach((points, person) => {
+        put(`bones${"AB"[person]}`, figure.bones(points, skeleton, theme.people[person], lens));
+        put(`joints${"AB"[person]}`, figure.joints(points, skeleton, theme.people[person], lens));
+      });
+      this.paintExtras(put);
+      this.spots = pose.map((points) => points.map((p) => project(p, this.matrix, width, height, FIELD_OF_VIEW)));
+      this.labels.place(pose.map((points) => {
+        const above = figure.headCenter(points, skeleton);
+        return project([above[0], above[1], above[2] + 0.17], this.matrix, width, height, FIELD_OF_VIEW);
+      }));
+      this.showTip();
+    }
+    scene.draw();
+    this.showState();
+    this.pose = pose;
+    this.frameShown = clock.shown;
+  }
+
+  paintExtras(put) {
+    const { scene, theme, clock, skeleton, sample, show } = this;
+    if (show.trails) put("trails", figure.trails((f) => this.poseAt(f), clock.shown, clock.fps, skeleton, theme));
+    else if (this.painted.trails) scene.hide("trails");
+    this.painted.trails = show.trails;
+    const other = sample.ghostMotion ? poseAt(sample.ghostMotion, clock.shown) : [];
+    const key = `${show.ghosts} ${this.themeName} ${this.sampleIndex} ${other.length ? clock.shown : ""}`;
+    if (key === this.painted.ghosts) return;
+    this.painted.ghosts = key;
+    const moments = show.ghosts ? figure.ghostFrames(clock.frames).map((f) => this.poseAt(f)) : [];
+    if (moments.length || other.length) put("ghosts", figure.ghosts(moments, other, skeleton, theme));
+    else scene.hide("ghosts");
+  }
+
+  /** Brings the controls to what is true now. */
+  showState() {
+    const { clock, root, sample } = this;
+    const frame = clock.shown;
+    const range = this.find(".pdd-range");
+    const at = String(Math.round(frame));
+    if (range.value !== at) range.value = at;
+    range.style.setProperty("--done", `${(100 * frame) / Math.max(clock.frames - 1, 1)}%`);
+    range.setAttribute("aria-valuetext", `${clock.seconds.toFixed(1)} of ${clock.duration.toFixed(1)} seconds`);
+    this.find(".pdd-time").textContent = sample
+      ? `${(frame / clock.fps).toFixed(2)} / ${clock.duration.toFixed(2)} s · frame ${Math.round(frame) + 1} of ${clock.frames}` : "";
+    root.dataset.playing = String(clock.playing);
+    this.find(".pdd-play").setAttribute("aria-label", clock.playing ? "Pause" : "Play");
+    const press = (name, on) => this.find(`[data-act=${name}]`).setAttribute("aria-pressed", String(on));
+    press("loop", clock.loop);
+    press("follow", this.orbit.following);
+    press("trails", this.show.trails);
+    press("ghosts", this.show.ghosts);
+    press("fullscreen", document.fullscreenElement === root || root.classList.contains("pdd-full"));
+    for (const button of root.querySelectorAll("[data-camera]")) button.setAttribute("aria-pressed", String(button.dataset.camera === this.camera));
+    const chip = this.find(".pdd-chip");
+    const given = sample?.past_until;
+    chip.hidden = !given;
+    if (given) {
+      chip.dataset.part = frame < given ? "given" : "predicted";
+      chip.textContent = frame < given ? "given" : "predicted";
+    }
+    this.strip.show(frame);
+  }
+
+  showTip() {
+    if (!this.pointer || !this.spots || !this.data) return this.tip.hide();
+    this.tip.show(this.pointer, this.spots, (person, joint) => {
+      const frame = this.clock.shown;
+      const [now, soon] = [this.poseAt(frame), this.poseAt(Math.min(frame + 1, this.clock.frames - 1))].map((p) => p[person][joint]);
+      const speed = Math.hypot(...now.map((v, i) => soon[i] - v)) * this.clock.fps;
+      return `${"AB"[person]} · ${this.data.names[joint].replaceAll("_", " ")} — ${now[2].toFixed(2)} m high, ${speed.toFixed(1)} m/s`;
+    });
+  }
+
+  count(now) {
+    this.times.push(now);
+    while (now - this.times[0] > FPS_WINDOW) this.times.shift();
+  }
+
+  /** Pictures a second over the last second and a half. */
+  get fps() {
+    const span = this.times[this.times.length - 1] - this.times[0];
+    return span > 0 ? (1000 * (this.times.length - 1)) / span : 0;
+  }
+
+  close() {
+    if (this.closed) return;
+    this.closed = true;
+    if (this.handle) {
+      cancelAnimationFrame(this.handle);
+      loops.running--;
+    }
+    this.handle = 0;
+    this.abort?.abort();
+    this.themeWatch?.disconnect();
+    this.sizeWatch?.disconnect();
+    this.scene?.close();
+    this.onclose?.();
+  }
+}
+

@@ -1,0 +1,231 @@
+// One plotly 3D scene, driven past plotly's own update path.
+//
+// Plotly.restyle rebuilds every trace and reaches about 16 frames a second. The fast way writes the
+// points into each trace's own line and point objects and asks the scene to redraw. These objects are
+// plotly's inside, so openFast() tests each of them; where one is missing, everything goes through
+// Plotly.restyle and Plotly.relayout instead, slower but the same picture.
+//
+// Nothing here is translucent: one translucent object makes plotly draw the whole scene twice.
+
+import { css } from "./palette.js";
+
+const HALF = 60; // metres; a box this wide around the origin makes scene units metres and clips nothing
+const KINDS = {
+  floor: "lines", shadow: "mesh", ghosts: "lines", trails: "lines", outline: "lines",
+  bonesA: "lines", bonesB: "lines", jointsA: "points", jointsB: "points",
+};
+const HOLDERS = { lines: "linePlot", points: "scatterPlot", mesh: "mesh" }; // plotly's names for the drawing objects
+const NOWHERE = [[NaN, NaN, NaN], [NaN, NaN, NaN], [NaN, NaN, NaN]];
+const FLAT = { ambient: 1, diffuse: 0, specular: 0, roughness: 1, fresnel: 0 };
+const DISC_EM = 0.6; // width of the glyph "●" in ems, by which gl-scatter3d counts sizes
+
+const axis = { visible: false, range: [-HALF, HALF], showspikes: false, tickmode: "array", tickvals: [] };
+
+export class Scene {
+  constructor(host, Plotly) {
+    this.host = host;
+    this.Plotly = Plotly;
+    this.mode = "restyle";
+    this.pending = new Map();
+    this.names = Object.keys(KINDS);
+    this.frames = 0;
+  }
+
+  /** Draws the empty scene. `background` is [r, g, b]. */
+  async open(background) {
+    const common = { x: [-1, 1, 0], y: [-1, 1, 0], z: [0, 1, 0], hoverinfo: "skip", showlegend: false };
+    const color = css(background);
+    const make = {
+      lines: () => ({ ...common, type: "scatter3d", mode: "lines", line: { width: 4, color } }),
+      points: () => ({ ...common, type: "scatter3d", mode: "markers", marker: { size: 1, color, line: { width: 0 } } }),
+      mesh: () => ({ ...common, type: "mesh3d", i: [0], j: [1], k: [2], color, lighting: FLAT, flatshading: false }),
+    };
+    const traces = this.names.map((name) => ({ name, ...make[KINDS[name]]() }));
+    const layout = {
+      margin: { l: 0, r: 0, t: 0, b: 0 }, autosize: true, showlegend: false, paper_bgcolor: "rgba(0,0,0,0)",
+      uirevision: "kept",
+      scene: {
+        xaxis: { ...axis }, yaxis: { ...axis }, zaxis: { ...axis }, bgcolor: css(background), hovermode: false,
+        dragmode: false, aspectmode: "manual", aspectratio: { x: 2 * HALF, y: 2 * HALF, z: 2 * HALF },
+        camera: { eye: { x: 4, y: 4, z: 2 }, center: { x: 0, y: 0, z: 1 }, up: { x: 0, y: 0, z: 1 } },
+      },
+    };
+    const config = {
+      displayModeBar: false, responsive: false, scrollZoom: false, doubleClick: false, showTips: false,
+      plotGlPixelRatio: pixelRatio(),
+    };
+    await this.Plotly.newPlot(this.host, traces, layout, config);
+    this.openFast();
+    for (const name of this.names) this.hide(name);
+    return this;
+  }
+
+  get inside() {
+    return this.host._fullLayout?.scene?._scene;
+  }
+
+  /** Takes hold of plotly's objects, or leaves `mode` at "restyle". */
+  openFast() {
+    const scene = this.inside;
+    const gl = scene?.glplot;
+    if (!gl?.redraw || !gl.camera?.tick || gl.camera.view?.computedMatrix?.length !== 16) return;
+    this.objects = {};
+    for (const [index, name] of this.names.entries()) {
+      const trace = scene.traces?.[this.host._fullData[index]?.uid];
+      const object = trace?.[HOLDERS[KINDS[name]]];
+      if (typeof object?.update !== "function" || !("dirty" in object)) return;
+      this.objects[name] = object;
+    }
+    this.view = new Float64Array(16);
+    this.size = [0, 0];
+    gl.camera.tick = () => this.tick(gl.camera);
+    this.skipPicking(gl);
+    this.mode = "fast";
+  }
+
+  /** plotly asks this every frame whether the view changed; the view is ours, see orbit.js. */
+  tick(camera) {
+    const target = camera.view.computedMatrix;
+    const size = [this.host.clientWidth, this.host.clientHeight];
+    let changed = size[0] !== this.size[0] || size[1] !== this.size[1];
+    this.size = size;
+    for (let i = 0; i < 16; i++) {
+      changed ||= target[i] !== this.view[i];
+      target[i] = this.view[i];
+    }
+    return changed;
+  }
+
+  /** Hover labels are our own; without pick slots plotly draws no hidden picture to find points in. */
+  skipPicking(gl) {
+    if (!Array.isArray(gl.objects) || !gl.remove || !gl.add) return;
+    for (const object of gl.objects) object.pickSlots = 0;
+    const last = gl.objects[gl.objects.length - 1];
+    gl.remove(last); // recounts the slots
+    gl.add(last);
+  }
+
+  setView(matrix, eye, center) {
+    if (this.mode === "fast") this.view.set(matrix);
+    else {
+      const point = ([x, y, z]) => ({ x, y, z });
+      this.pendingCamera = { eye: point(eye), center: point(center), up: { x: 0, y: 0, z: 1 } };
+    }
+  }
+
+  /**
+   * New content for a layer: `points` [x, y, z] each, NaN breaks a line; `colors` one [r, g, b] or one
+   * a point; `sizes` in CSS pixels, one or one a point (lines: the width of the segment that starts
+   * there); `cells` the triangles of a mesh, indices of points.
+   */
+  set(name, { points, colors = [0, 0, 0], sizes = 1, cells = [[0, 1, 2]] }) {
+    if (this.mode !== "fast") {
+      this.pending.set(name, { points, colors, sizes, cells });
+      return;
+    }
+    const scale = this.inside.dataScale;
+    const position = points.map((p) => [p[0] * scale[0], p[1] * scale[1], p[2] * scale[2]]);
+    const object = this.objects[name];
+    if (KINDS[name] === "lines") {
+      // gl-line3d halves the width it is given
+      const lineWidth = Array.isArray(sizes) ? sizes.map((s) => 2 * s) : 2 * sizes;
+      object.update({ position, color: colors, lineWidth, connectGaps: false });
+    } else if (KINDS[name] === "points") {
+      const size = sizes.map?.((s) => s / DISC_EM) ?? sizes / DISC_EM;
+      object.update({ position, color: colors, size, glyph: "●", lineWidth: 0, orthographic: true, opacity: 1, project: [false, false, false] });
+    } else {
+      const rgba = Array.isArray(colors[0]) ? colors.map((c) => [...c, 1]) : points.map(() => [...colors, 1]);
+      object.update({ positions: position, cells, vertexColors: rgba, vertexNormals: points.map(() => [0, 0, 1]), ...FLAT });
+    }
+  }
+
+  hide(name) {
+    this.set(name, { points: NOWHERE });
+  }
+
+  draw() {
+    this.frames++;
+    if (this.mode === "fast") {
+      this.inside.glplot.redraw();
+      return;
+    }
+    this.drawSlowly();
+  }
+
+  drawSlowly() {
+    const whole = (v) => (Number.isNaN(v) ? null : v);
+    const each = (colors, points) => (Array.isArray(colors[0]) ? colors.map(css) : points.map(() => css(colors)));
+    const mean = (sizes) => (Array.isArray(sizes) ? sizes.reduce((a, b) => a + b, 0) / sizes.length : sizes);
+    const keys = {
+      lines: ({ points, colors, sizes }) => ({ "line.color": each(colors, points), "line.width": 2 * mean(sizes) }),
+      points: ({ points, colors, sizes }) => ({ "marker.color": each(colors, points), "marker.size": sizes }),
+      mesh: ({ points, colors, cells }) => ({
+        vertexcolor: each(colors, points), i: cells.map((c) => c[0]), j: cells.map((c) => c[1]), k: cells.map((c) => c[2]),
+      }),
+    };
+    for (const [kind, extra] of Object.entries(keys)) {
+      const update = {};
+      const indices = [];
+      for (const [name, layer] of this.pending) {
+        if (KINDS[name] !== kind) continue;
+        const values = { ...extra(layer) };
+        for (const [i, key] of ["x", "y", "z"].entries()) values[key] = layer.points.map((p) => whole(p[i]));
+        for (const [key, value] of Object.entries(values)) (update[key] ||= []).push(value);
+        indices.push(this.names.indexOf(name));
+      }
+      if (indices.length) this.Plotly.restyle(this.host, update, indices);
+    }
+    this.pending.clear();
+    if (this.pendingCamera) this.Plotly.relayout(this.host, { "scene.camera": this.pendingCamera });
+    this.pendingCamera = null;
+  }
+
+  setBackground(color) {
+    if (this.mode === "fast") {
+      this.inside.glplot.setClearColor([...color, 1]);
+      this.inside.fullSceneLayout.bgcolor = css(color);
+    } else this.Plotly.relayout(this.host, { "scene.bgcolor": css(color) });
+  }
+
+  /** After the box changed its size. */
+  resize() {
+    this.Plotly.Plots.resize(this.host);
+  }
+
+  setPixelRatio(ratio) {
+    const gl = this.inside?.glplot;
+    if (!gl || this.mode !== "fast") return;
+    gl.pixelRatio = ratio;
+    gl.update({});
+  }
+
+  /** The scene alone as a canvas, whatever its drawing buffer keeps. */
+  async picture() {
+    const image = new Image();
+    image.src = this.inside.toImage("png");
+    await image.decode();
+    return image;
+  }
+
+  close() {
+    this.Plotly.purge(this.host);
+    this.objects = null;
+  }
+}
+
+/** Drawing on the processor costs by the pixel; a graphics card draws every pixel the screen has. */
+export function pixelRatio() {
+  return softwareGl() ? 1 : Math.min(window.devicePixelRatio || 1, 2);
+}
+
+let software = null;
+function softwareGl() {
+  if (software === null) {
+    const gl = document.createElement("canvas").getContext("webgl");
+    const info = gl?.getExtension("WEBGL_debug_renderer_info");
+    const name = info ? gl.getParameter(info.UNMASKED_RENDERER_WEBGL) : "";
+    software = /swiftshader|llvmpipe|software|basic render/i.test(name);
+    gl?.getExtension("WEBGL_lose_context")?.loseContext();
+  }
+  return software;
+}

@@ -1,0 +1,105 @@
+"""A page with nothing but the player, for tests and for looking at it: ``python tests/e2e/harness.py``."""
+
+from __future__ import annotations
+
+import os
+import sys
+from pathlib import Path
+
+os.environ.setdefault("GRADIO_ANALYTICS_ENABLED", "False")
+sys.path.insert(0, str(Path(__file__).resolve().parents[2]))
+
+import gradio as gr  # noqa: E402
+import numpy as np  # noqa: E402
+
+from webdemo.motion import SMPL22, Duet  # noqa: E402
+from webdemo.ui.player import MotionPlayer, busy, player_payload, show  # noqa: E402
+
+FPS = 30.0
+HOSTILE = ("<img src=x onerror=\"window.__hacked=1\">", "${window.__hacked=2}{{value}}")
+
+
+def walking_duet(seconds: float = 5.0, *, roles: tuple[str, str] = ("actor", "reactor"), phase: float = 0.0) -> Duet:
+    """Two people who walk up to each other and hold out their right hands. Made by hand, not captured."""
+    frames = int(seconds * FPS)
+    t = np.arange(frames) / FPS
+    arrive = 0.55 * seconds
+    walked = np.clip(t / arrive, 0, 1)
+    walked = walked * walked * (3 - 2 * walked)
+    stride = np.clip((arrive - t) / 0.4, 0, 1)
+    reach = np.clip((t - arrive) / 0.5, 0, 1) * np.clip((seconds - 0.3 - t) / 0.5, 0, 1)
+    people = []
+    for me in range(2):
+        swing = np.sin(2 * np.pi * 0.95 * t + phase + 0.7 * me) * stride
+        body = np.zeros((frames, 22, 3))
+        rest = SMPL22.rest_positions()
+        rest[:, 1] -= rest[:, 1].min()
+        body[:] = rest
+        body[:, :, 1] += 0.025 * np.abs(swing)[:, None] - 0.02
+        for side, sign in (("left", 1.0), ("right", -1.0)):
+            leg, arm = 0.45 * sign * swing, -0.5 * sign * swing
+            lift = reach if side == "right" else 0 * reach
+            _turn(body, f"{side}_hip", [f"{side}_knee", f"{side}_ankle", f"{side}_foot"], leg)
+            _turn(body, f"{side}_knee", [f"{side}_ankle", f"{side}_foot"], -0.7 * np.clip(-leg, 0, None))
+            names = [f"{side}_elbow", f"{side}_wrist"]
+            _hang(body, side, names)
+            _turn(body, f"{side}_shoulder", names, arm + 0.75 * lift)
+            _turn(body, f"{side}_elbow", names[1:], 0.25 + 0.75 * lift + 0.08 * lift * np.sin(14 * t))
+        gap = 2.4 * (1 - walked) + 0.98
+        if me == 1:
+            body[:, :, [0, 2]] *= -1
+        body[:, :, 2] += (gap if me == 1 else 0 * gap)[:, None] + (walked * 1.0)[:, None]
+        people.append(body)
+    return Duet.from_positions(np.stack(people).astype(np.float32), fps=FPS, roles=roles)
+
+
+def _turn(body: np.ndarray, pivot: str, names: list[str], angle: np.ndarray) -> None:
+    """Turns joints forward (towards +Z) about the X axis through a pivot."""
+    centre = body[:, SMPL22.index(pivot)][:, None]
+    joints = [SMPL22.index(n) for n in names]
+    offset = body[:, joints] - centre
+    c, s = np.cos(angle)[:, None], np.sin(angle)[:, None]
+    y, z = offset[..., 1], offset[..., 2]
+    body[:, joints] = centre + np.stack([offset[..., 0], c * y + s * z, -s * y + c * z], axis=-1)
+
+
+def _hang(body: np.ndarray, side: str, names: list[str]) -> None:
+    """Lowers an arm from the T-pose to the side."""
+    shoulder = body[:, SMPL22.index(f"{side}_shoulder")]
+    out = 0.08 if side == "left" else -0.08
+    for name, length in zip(names, (0.26, 0.52), strict=True):
+        body[:, SMPL22.index(name)] = shoulder + np.array([out * length / 0.26, -length, 0.0])
+
+
+def build() -> gr.Blocks:
+    with gr.Blocks(title="Player") as page:
+        player = MotionPlayer(elem_id="player")
+        with gr.Row():
+            load = gr.Button("load")
+            several = gr.Button("several")
+            hostile = gr.Button("hostile")
+            predicted = gr.Button("predicted")
+            working = gr.Button("busy")
+            clear = gr.Button("clear")
+            hide = gr.Button("hide")
+            unhide = gr.Button("show")
+        duet = walking_duet()
+        load.click(lambda: show(player_payload(duet, title="two people walk up to each other and shake hands")), None, player)
+        several.click(
+            lambda: show(player_payload([walking_duet(phase=0.8 * i) for i in range(4)], title="four takes")), None, player
+        )
+        hostile.click(
+            lambda: show(player_payload(walking_duet(roles=HOSTILE), title=" ".join(HOSTILE))), None, player
+        )
+        predicted.click(
+            lambda: show(player_payload(duet, ghost=walking_duet(phase=0.5), past_until=60)), None, player
+        )
+        working.click(lambda: busy("Step 12 of 50 ${1+1}", progress=0.24), None, player)
+        clear.click(lambda: show(None), None, player)
+        hide.click(lambda: gr.update(visible=False), None, player)
+        unhide.click(lambda: gr.update(visible=True), None, player)
+    return page
+
+
+if __name__ == "__main__":
+    build().launch(server_port=int(sys.argv[1]) if len(sys.argv) > 1 else 7861)
