@@ -169,16 +169,16 @@ def time_warp(motion: Motion, rate: float) -> Motion:
     )
 
 
-def join(first: Motion, second: Motion, *, blend: int = 12) -> Motion:
+def join(first: Motion, second: Motion, *, blend: int = 12, turn: float = 0.0) -> Motion:
     """``first`` then ``second``, which is moved to start where the first ends, cross-faded over ``blend``.
 
     The two overlap by ``blend`` frames (at most half of either), so the result is that much shorter
-    than both together.
+    than both together. The second faces ``turn`` radians beside where the first faces.
     """
     blend = max(min(blend, len(first) // 2, len(second) // 2), 1)
     middle = blend // 2
     seam = len(first) - blend + middle
-    second = place(second, *first.root[seam, [0, 2]], facing_at(first, seam), frame=middle)
+    second = place(second, *first.root[seam, [0, 2]], facing_at(first, seam) + turn, frame=middle)
     weight = ease(blend)
     tail, head = slice(len(first) - blend, None), slice(0, blend)
     rotations = slerp(first.rotations[tail], second.rotations[head], weight[:, None])

@@ -1,0 +1,313 @@
+"""Greetings, gestures and dances: two people who stand apart and answer each other."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from webdemo.motion.kinematics import global_rotations, local_rotations
+
+from ..compose import ARMS, Motion, ease, mirror, place, slerp, steer, turned
+from ..library import Library, Take, pick
+from ..scene import Scene
+from ..stage import Rng, act, finish, how_far, manner, oppose, pad, seconds, stride, waiting
+from . import register
+
+SIDES = ("left", "right")
+SPAN = {"wave": (66, 120), "raise-hand": (40, 90), "bow": (60, 125), "bye": (60, 130), "guide": (60, 125)}
+
+
+def gesture(
+    rng: Rng, library: Library, name: str, *, side: str | None = None, style: str | None = None
+) -> Take:
+    """A gesture by the name that captions use: "raise-hands" and "cheer" are raised hands of both sides."""
+    if name in ("raise-hands", "cheer"):
+        return library.take(rng, "raise-hand", side="both", style=style, frames=SPAN["raise-hand"])
+    if name in ("raise-hand", "wave") and side is None:
+        side = pick(rng, SIDES)
+    return library.take(rng, name, side=side, style=style, frames=SPAN.get(name, (50, 150)))
+
+
+def pair(
+    rng: Rng,
+    library: Library,
+    family: str,
+    first: Take,
+    second: Take | None,
+    *,
+    delay: tuple[float, float] = (0.25, 1.2),
+    distance: tuple[float, float] = (1.2, 2.6),
+    slots: dict | None = None,
+    events: dict | None = None,
+) -> Scene:
+    """Face to face: a performs ``first``, b performs ``second`` after a delay in seconds or just watches."""
+    start = seconds(rng, 0.1, 0.7)
+    a, _ = act(rng, library, (start, first.motion), tail=seconds(rng, 0.2, 0.6))
+    if second is None:
+        b = waiting(rng, library, len(a))
+    else:
+        later = max(start + seconds(rng, *delay), 0)
+        b, _ = act(rng, library, (later, second.motion), tail=seconds(rng, 0.2, 0.6))
+    frames = min(max(len(a), len(b)), 270)
+    a, b = pad(rng, library, a, frames), pad(rng, library, b, frames)
+    gap = rng.uniform(*distance)
+    known = {"manner_a": first.style, "side_a": first.side, "distance": how_far(gap)}
+    if second is not None:
+        known |= {"manner_b": second.style, "side_b": second.side}
+    known |= slots or {}
+    if rng.random() < 0.4 or "side_a" in (slots or {}):
+        known = {
+            key: value for key, value in known.items() if not key.startswith("side") or key in (slots or {})
+        }
+    said = {key[-1]: value for key, value in known.items() if key.startswith("side") and value}
+    found = {"facing": True, "distance": "keep"} | ({"side": said} if said else {}) | (events or {})
+    b = oppose(rng, a, b, gap)
+    return finish(rng, library, family, a, b, slots=known, events=found)
+
+
+@register("wave-back", needs=("wave",), weight=2.0)
+def wave_back(rng: Rng, library: Library) -> Scene:
+    style = manner(rng, library, "wave")
+    first = gesture(rng, library, "wave", side=pick(rng, ("left", "right", "both")), style=style)
+    second = gesture(
+        rng,
+        library,
+        "wave",
+        side=first.side if rng.random() < 0.6 else None,
+        style=style if rng.random() < 0.6 else None,
+    )
+    slots = {"side_b": second.side} if second.side != first.side and rng.random() < 0.3 else None
+    scene = pair(rng, library, "wave-back", first, second, slots=slots, distance=(1.2, 3.2))
+    return scene
+
+
+@register("bow-back", needs=("bow",), weight=1.5)
+def bow_back(rng: Rng, library: Library) -> Scene:
+    style = manner(rng, library, "bow")
+    first = gesture(rng, library, "bow", style=style)
+    second = gesture(rng, library, "bow", style=style if rng.random() < 0.6 else None)
+    return pair(rng, library, "bow-back", first, second, distance=(1.5, 2.6))
+
+
+@register("raise-copy", needs=("raise-hand",), weight=1.3)
+def raise_copy(rng: Rng, library: Library) -> Scene:
+    side, style = pick(rng, ("left", "right", "both")), manner(rng, library, "raise-hand")
+    first, second = (gesture(rng, library, "raise-hand", side=side, style=style) for _ in range(2))
+    return pair(
+        rng,
+        library,
+        "raise-copy",
+        first,
+        second,
+        delay=(0.5, 1.5),
+        slots={"side_a": side, "side_b": side},
+        events={"side": {"a": side, "b": side}},
+    )
+
+
+@register("raise-watch", needs=("raise-hand",), weight=1.3)
+def raise_watch(rng: Rng, library: Library) -> Scene:
+    side = pick(rng, ("left", "right", "both"))
+    first = gesture(rng, library, "raise-hand", side=side, style=manner(rng, library, "raise-hand"))
+    return pair(rng, library, "raise-watch", first, None, slots={"side_a": side}, distance=(1.0, 3.0))
+
+
+@register("goodbye", needs=("bye", "wave", "walk"), weight=1.5)
+def goodbye(rng: Rng, library: Library) -> Scene:
+    first = gesture(rng, library, "bye", style=manner(rng, library, "bye"))
+    second = gesture(rng, library, pick(rng, ("bye", "wave")))
+    if rng.random() < 0.55:
+        return pair(rng, library, "goodbye", first, second, delay=(0.2, 1.0))
+    start = seconds(rng, 0.1, 0.5)
+    a, _ = act(rng, library, (start, first.motion), (None, walk_off(rng, library)), idle_after=False)
+    b, _ = act(rng, library, (start + seconds(rng, 0.2, 0.8), second.motion))
+    frames = min(max(len(a) - 5, 90), 270)
+    b = oppose(rng, a, pad(rng, library, b, frames), rng.uniform(1.2, 2.2))
+    return finish(rng, library, "goodbye", a, b, slots={"manner_a": first.style}, events={"distance": "part"})
+
+
+def walk_off(rng: Rng, library: Library, *, style: str | None = None, distance: float = 2.2) -> Motion:
+    """A walk that begins with a turn about, as who leaves does."""
+    walk = stride(rng, library, "walk", distance + rng.uniform(0, 1.0), style=style).motion
+    return about(rng, walk)
+
+
+def about(rng: Rng, walk: Motion, *, angle: float | None = None) -> Motion:
+    """Bends the first second of a walk so that it turns about by ``angle`` (default: half a turn)."""
+    angle = angle if angle is not None else (np.pi + rng.normal(0, 0.2)) * pick(rng, (-1.0, 1.0))
+    frames = min(int(rng.uniform(30, 42)), len(walk) - 2)
+    extra = np.full(len(walk), angle)
+    extra[:frames] = angle * ease(frames)
+    return steer(walk, extra)
+
+
+@register("cheer", needs=("raise-hand",), weight=1.2)
+def cheer(rng: Rng, library: Library) -> Scene:
+    style = pick(rng, ("normal", "active", "youthful", "happy"))
+    first, second = (gesture(rng, library, "cheer", style=style) for _ in range(2))
+    return pair(
+        rng,
+        library,
+        "cheer",
+        first,
+        second,
+        delay=(-0.2, 0.5),
+        distance=(1.0, 2.2),
+        slots={"side_a": None, "side_b": None},
+        events={"side": {"a": "both", "b": "both"}},
+    )
+
+
+@register("point", needs=("idle",), weight=1.0)
+def point(rng: Rng, library: Library) -> Scene:
+    side, gap = pick(rng, SIDES), rng.uniform(1.2, 3.0)
+    start, hold = seconds(rng, 0.2, 0.8), seconds(rng, 1.2, 2.6)
+    frames = start + hold + seconds(rng, 0.8, 1.2)
+    a, b = waiting(rng, library, frames), waiting(rng, library, frames)
+    a = place(a, 0.0, 0.0, 0.0)
+    b = oppose(rng, a, b, gap)
+    a = pointing(a, b.root + np.array([0.0, 0.25, 0.0]), side, start, start + hold)
+    return finish(
+        rng,
+        library,
+        "point",
+        a,
+        b,
+        slots={"side_a": side if rng.random() < 0.7 else None, "distance": how_far(gap)},
+        events={"side": {"a": side}, "facing": True},
+    )
+
+
+def pointing(
+    motion: Motion, target: np.ndarray, side: str, start: int, stop: int, *, raise_in: int = 16
+) -> Motion:
+    """Stretches one arm towards ``target`` (T, 3) from frame ``start`` to ``stop``."""
+    world = global_rotations(motion.rotations)
+    _, shoulder, elbow, wrist = ARMS[side]
+    sign = 1.0 if side == "left" else -1.0
+    reach = target - motion.root - np.array([0.0, 0.45, 0.0])
+    reach = reach / np.linalg.norm(reach, axis=-1, keepdims=True)
+    up = np.broadcast_to([0.0, 1.0, 0.0], reach.shape)
+    x = sign * reach  # the arm's rest direction is +X on the left, -X on the right
+    z = np.cross(x, up)
+    z = z / np.linalg.norm(z, axis=-1, keepdims=True)
+    aimed = np.stack([x, np.cross(z, x), z], axis=-1)
+    wanted = world.copy()
+    for joint in (shoulder, elbow, wrist):
+        wanted[:, joint] = aimed
+    weight = np.zeros(len(motion))
+    weight[start : start + raise_in] = ease(raise_in)
+    weight[start + raise_in : stop] = 1.0
+    weight[stop : stop + raise_in] = ease(raise_in)[::-1][: len(motion) - stop]
+    rotations = motion.rotations.copy()
+    local = local_rotations(wanted)
+    chosen = [shoulder, elbow, wrist]
+    rotations[:, chosen] = slerp(rotations[:, chosen], local[:, chosen], weight[:, None])
+    return Motion(rotations, motion.root, motion.contacts, motion.sources)
+
+
+@register("call-come", needs=("call", "walk"), weight=1.5)
+def call_come(rng: Rng, library: Library) -> Scene:
+    call = gesture(rng, library, pick(rng, ("call", "call", "guide")) if library.has("guide") else "call")
+    a, _ = act(rng, library, (seconds(rng, 0.1, 0.4), call.motion), tail=20)
+    runs = library.has("run") and rng.random() < 0.25
+    distance, stop = rng.uniform(1.8, 3.2), rng.uniform(0.8, 1.3)
+    walk = stride(rng, library, "run" if runs else "walk", distance, style=manner(rng, library, "walk"))
+    b, _ = act(rng, library, (min(len(call) // 2 + seconds(rng, 0.3, 0.8), 75), walk.motion), tail=20)
+    frames = min(max(len(a), len(b)), 270)
+    a, b = pad(rng, library, a, frames), pad(rng, library, b, frames)
+    b = oppose(rng, a, b, stop, frame_b=-1)
+    return finish(
+        rng,
+        library,
+        "call-come",
+        a,
+        b,
+        slots={"manner_b": walk.style, "speed": "fast" if runs else None},
+        events={"distance": "approach", "facing": True},
+    )
+
+
+@register("talk", needs=("guide", "respond"), weight=1.3)
+def talk(rng: Rng, library: Library) -> Scene:
+    style = manner(rng, library, "guide")
+    first = gesture(rng, library, "guide", style=style)
+    more = gesture(rng, library, pick(rng, ("guide", "respond")), style=style)
+    a, _ = act(
+        rng, library, (seconds(rng, 0.0, 0.5), first.motion), (None, more.motion), tail=seconds(rng, 0.2, 1)
+    )
+    if rng.random() < 0.5:
+        answer = gesture(rng, library, pick(rng, ("respond", "guide")))
+        b, _ = act(rng, library, (seconds(rng, 1.5, 3.5), answer.motion))
+    else:
+        b = waiting(rng, library, len(a))
+    frames = min(max(len(a), 90), 270)
+    a, b = pad(rng, library, a, frames), pad(rng, library, b, frames)
+    b = oppose(rng, a, b, rng.uniform(1.0, 1.8))
+    return finish(
+        rng, library, "talk", a, b, slots={"manner_a": style}, events={"facing": True, "distance": "keep"}
+    )
+
+
+@register("turn-away", needs=("walk",), weight=0.8)
+def turn_away(rng: Rng, library: Library) -> Scene:
+    walk = about(
+        rng, stride(rng, library, "walk", rng.uniform(0.8, 1.6), style=manner(rng, library, "walk")).motion
+    )
+    a, _ = act(rng, library, (seconds(rng, 0.3, 1.2), walk), tail=seconds(rng, 0.5, 1.2))
+    b = oppose(rng, a, waiting(rng, library, len(a)), rng.uniform(1.1, 2.2))
+    return finish(rng, library, "turn-away", a, b, events={"distance": "part"})
+
+
+@register("idle", needs=("idle",), weight=0.8)
+def idle(rng: Rng, library: Library) -> Scene:
+    frames, gap = seconds(rng, 3, 7), rng.uniform(0.9, 3.0)
+    a, b = waiting(rng, library, frames), waiting(rng, library, frames)
+    b = oppose(rng, a, b, gap)
+    return finish(rng, library, "idle", a, b, slots={"distance": how_far(gap)}, events={"distance": "keep"})
+
+
+# ---- dances ------------------------------------------------------------------------------------------------
+
+
+def dance_piece(rng: Rng, library: Library) -> Take:
+    """Four to eight seconds of the dance."""
+    take = library.take(rng, "dance")
+    frames = min(seconds(rng, 4, 8), len(take))
+    start = int(rng.integers(0, len(take) - frames + 1))
+    return Take(take.motion[start : start + frames], take.action, take.style)
+
+
+@register("dance-together", needs=("dance",), weight=1.3)
+def dance_together(rng: Rng, library: Library) -> Scene:
+    first = dance_piece(rng, library).motion
+    second = first if rng.random() < 0.5 else dance_piece(rng, library).motion
+    frames = min(len(first), len(second))
+    a, b = first[:frames], second[:frames]
+    across = rng.random() < 0.6
+    b = (
+        oppose(rng, a, b, rng.uniform(1.7, 2.6))
+        if across
+        else place(
+            b,
+            *(a.root[0, [0, 2]] + pick(rng, (-1, 1)) * rng.uniform(1.5, 2.2) * a.rotations[0, 0, [0, 2], 0]),
+            a.headings[0],
+        )
+    )
+    return finish(rng, library, "dance-together", a, b, gaze=(0.0, 0.0))
+
+
+@register("dance-mirrored", needs=("dance",), weight=1.2)
+def dance_mirrored(rng: Rng, library: Library) -> Scene:
+    a = place(dance_piece(rng, library).motion, 0.0, 0.0, 0.0)
+    b = turned(mirror(a), np.pi)
+    gap = 2 * max(float(a.root[:, 2].max()), 0.0) + rng.uniform(1.2, 1.8)
+    b = Motion(b.rotations, b.root + np.array([0.0, 0.0, gap]), b.contacts, b.sources)
+    lag = int(rng.integers(0, 5))
+    return finish(rng, library, "dance-mirrored", a[lag:], b[: len(b) - lag], gaze=(0.0, 0.0))
+
+
+@register("dance-watch", needs=("dance", "idle"), weight=1.0)
+def dance_watch(rng: Rng, library: Library) -> Scene:
+    a = dance_piece(rng, library).motion
+    b = oppose(rng, a, waiting(rng, library, len(a)), rng.uniform(1.8, 3.0))
+    return finish(rng, library, "dance-watch", a, b, gaze=(0.0, 0.9))

@@ -1,0 +1,268 @@
+"""The source clips as a library to draw from, by action, manner and side; splits never mix."""
+
+from __future__ import annotations
+
+from collections import defaultdict
+from collections.abc import Iterable
+from dataclasses import dataclass, replace
+from functools import cache
+
+import numpy as np
+from scipy.ndimage import gaussian_filter1d
+from scipy.signal import find_peaks
+
+from webdemo.motion.kinematics import forward_kinematics
+from webdemo.motion.skeleton import SMPL22
+
+from .compose import LEGS, Motion, join, mirror, motion_from_positions, time_warp
+from .scene import SourceClip
+
+OTHER = {"left": "right", "right": "left", "both": "both", None: None}
+ONE_HANDED = ("bye", "guide", "respond")
+STRIKES = {"punch": ("wrist", 12, 14), "kick": ("ankle", 30, 30), "slash": ("wrist", 32, 26)}
+"""Actions whose clips hold several blows: the joint that strikes, and frames kept before and after a blow."""
+
+
+@dataclass(frozen=True, eq=False)
+class Take:
+    """One drawn performance of an action.
+
+    Attributes:
+        motion: where and how the person moves, starting anywhere.
+        action, style: as in the source clip.
+        side: the hand, foot or turn as performed (after mirroring).
+        peaks: the frames at which blows reach furthest; none where the action is no blow.
+        aim: heading of the first blow against the motion's first heading, radians.
+        speed: playing speed against the source, 1 where untouched.
+    """
+
+    motion: Motion
+    action: str
+    style: str
+    side: str | None = None
+    peaks: tuple[int, ...] = ()
+    aim: float = 0.0
+    speed: float = 1.0
+
+    def __len__(self) -> int:
+        return len(self.motion)
+
+
+class Library:
+    """Source clips of one split, as motions that are converted once and kept.
+
+    Args:
+        clips: the source clips; those of the other split are left out.
+        split: "train" or "test".
+    """
+
+    def __init__(self, clips: Iterable[SourceClip], split: str) -> None:
+        self.split = split
+        self._takes: dict[str, list[Take]] = defaultdict(list)
+        self._clips: dict[str, list[SourceClip]] = defaultdict(list)
+        for clip in clips:
+            if clip.split == split:
+                self._clips[clip.action].append(clip)
+        self._load = cache(self._load_action)
+
+    def has(self, *actions: str) -> bool:
+        """Whether there is at least one clip of each action."""
+        return all(self._clips.get(action) for action in actions)
+
+    def styles(self, action: str) -> list[str]:
+        """The manners in which an action is performed."""
+        return sorted({clip.style for clip in self._clips.get(action, ())})
+
+    def take(
+        self,
+        rng: np.random.Generator,
+        action: str,
+        *,
+        style: str | None = None,
+        side: str | None = None,
+        frames: tuple[int, int] = (1, 10_000),
+        warp: bool = True,
+    ) -> Take:
+        """Draws a performance of an action, mirrored half of the time, played up to 15 % off its speed.
+
+        Args:
+            style: wanted manner; where no clip has it, any manner is taken.
+            side: wanted hand, foot or turn; a clip of the other side is mirrored.
+            frames: (at least, at most) so many frames; a longer clip is shortened, a shorter one not drawn
+                unless there is none else.
+
+        Raises:
+            LookupError: where the split has no such clip.
+        """
+        takes = self._load(action)
+        if side is not None:
+            takes = [take for take in takes if take.side in (side, OTHER[side])]
+        if not takes:
+            raise LookupError(f"The {self.split} sources hold no {action!r} with side {side!r}.")
+        wanted = [take for take in takes if style is None or take.style == style] or takes
+        wanted = [take for take in wanted if len(take) >= frames[0]] or wanted
+        chosen = pick(rng, wanted)
+        flip = chosen.side != side if side in ("left", "right") else bool(rng.random() < 0.5)
+        motion = mirror(chosen.motion) if flip else chosen.motion
+        speed = float(np.clip(rng.normal(1.0, 0.07), 0.85, 1.15)) if warp else 1.0
+        if not chosen.peaks and len(motion) / speed > frames[1]:
+            motion = shorten(motion, int(frames[1] * speed))
+        if warp:
+            motion = time_warp(motion, speed)
+        return replace(
+            chosen,
+            motion=motion,
+            side=OTHER[chosen.side] if flip else chosen.side,
+            peaks=tuple(round(peak / speed) for peak in chosen.peaks),
+            aim=-chosen.aim if flip else chosen.aim,
+            speed=speed,
+        )
+
+    def idle(self, rng: np.random.Generator, frames: int) -> Motion:
+        """``frames`` frames of a real person who stands and waits."""
+        takes = self._load("idle") or self._load("wave")
+        motion = pick(rng, takes).motion
+        if rng.random() < 0.5:
+            motion = mirror(motion)
+        while len(motion) <= frames + 1:
+            motion = join(motion, motion, blend=20)
+        start = int(rng.integers(0, len(motion) - frames))
+        return motion[start : start + frames]
+
+    def _load_action(self, action: str) -> list[Take]:
+        takes = []
+        for clip in self._clips.get(action, ()):
+            if clip.num_frames < 16:
+                continue
+            motion = motion_from_positions(clip.positions, sources=(clip.source,))
+            if action in STRIKES:
+                takes += blows(motion, clip)
+            elif action == "idle":
+                takes += [Take(part, action, clip.style) for part in calm(motion)]
+            else:
+                side = clip.side
+                if side is None and action in ONE_HANDED:
+                    side = higher_hand(clip.positions)
+                takes.append(Take(motion, action, clip.style, side))
+        return takes
+
+
+def pick(rng: np.random.Generator, items):
+    """One item, each as likely; works on lists of anything."""
+    return items[int(rng.integers(len(items)))]
+
+
+def higher_hand(positions) -> str:
+    """The hand that a gesture is made with: the one that is higher while raised, or "both"."""
+    left, right = (positions[:, SMPL22.index(f"{side}_wrist"), 1] for side in ("left", "right"))
+    left, right = np.percentile(left, 80), np.percentile(right, 80)
+    if abs(left - right) < 0.15:
+        return "both"
+    return "left" if left > right else "right"
+
+
+def calm(motion: Motion, *, radius: float = 0.35, shortest: int = 120) -> list[Motion]:
+    """The stretches of an idle clip in which the person stays within ``radius`` metres of one place."""
+    parts, start = [], 0
+    flat = motion.root[:, [0, 2]]
+    for frame in range(30, len(motion) + 1, 30):
+        inside = flat[start:frame]
+        turn = np.ptp(motion.headings[start:frame])
+        if (
+            np.linalg.norm(inside - inside.mean(0), axis=-1).max() > radius
+            or turn > 0.7
+            or frame - start > 600
+        ):
+            if frame - 30 - start >= shortest:
+                parts.append(motion[start : frame - 30])
+            start = frame - 30
+    if len(motion) - start >= shortest:
+        parts.append(motion[start:])
+    return parts
+
+
+def blows(motion: Motion, clip: SourceClip, *, most: int = 3) -> list[Take]:
+    """A clip of punches, kicks or sword cuts as takes of 1 to ``most`` blows in a row, with peaks and aim."""
+    joint, before, after = STRIKES[clip.action]
+    sword = clip.action == "slash"  # held with both hands; the right one tells
+    takes = []
+    for side in ("right",) if sword else ("left", "right"):
+        tip = clip.positions[:, SMPL22.index(f"{side}_{joint}")]
+        if sword:
+            speed = np.linalg.norm(np.gradient(tip - clip.positions[:, 0], axis=0), axis=-1) * 30
+            peaks, _ = find_peaks(speed, height=3.0, distance=40)
+        elif clip.action == "kick":
+            peaks, _ = find_peaks(tip[:, 1], height=0.7, prominence=0.3)
+        else:
+            reach = np.linalg.norm(tip - clip.positions[:, SMPL22.index(f"{side}_shoulder")], axis=-1)
+            peaks, _ = find_peaks(reach, height=0.42, prominence=0.12)
+        for first in range(len(peaks)):
+            for last in range(first, min(first + most, len(peaks))):
+                start = max(int(peaks[first]) - before, 0)
+                stop = min(int(peaks[last]) + after, len(motion))
+                reach = tip[peaks[first]] - clip.positions[peaks[first], 0]
+                aim = 0.0 if sword else float(np.arctan2(reach[0], reach[2]) - motion.headings[start])
+                takes.append(
+                    Take(
+                        motion[start:stop],
+                        clip.action,
+                        clip.style,
+                        None if sword else side,
+                        tuple(int(peak) - start for peak in peaks[first : last + 1]),
+                        (aim + np.pi) % (2 * np.pi) - np.pi,
+                    )
+                )
+    return takes
+
+
+def shorten(motion: Motion, frames: int, *, blend: int = 10) -> Motion:
+    """At most ``frames`` frames: the middle is left out, between two moments that look most alike."""
+    surplus = len(motion) - frames
+    if surplus <= 0 or frames < 40:
+        return motion
+    local = forward_kinematics(motion.rotations, np.zeros_like(motion.root))
+    feature = np.concatenate(
+        [local.reshape(len(motion), -1), 4 * np.gradient(local, axis=0).reshape(len(motion), -1)], axis=-1
+    )
+    best: tuple[float, int, int] | None = None
+    for skip in range(surplus, min(surplus + 20, len(motion) - 30)):
+        low, high = 15, len(motion) - skip - 15
+        if high <= low:
+            break
+        cost = np.linalg.norm(feature[low:high] - feature[low + skip : high + skip], axis=-1)
+        index = int(cost.argmin())
+        if best is None or cost[index] < best[0]:
+            best = (float(cost[index]), low + index, low + index + skip)
+    if best is None:
+        return motion
+    _, leave, enter = best
+    half = blend // 2
+    return join(motion[: leave + half], motion[enter - half :], blend=blend)
+
+
+def feet_together(motion: Motion) -> np.ndarray:
+    """Frames of a walk at which one foot passes the other: where a person can start or stop walking."""
+    toes = forward_kinematics(motion.rotations, motion.root)[:, [LEGS[0][2], LEGS[1][2]]]
+    gap = np.linalg.norm((toes[:, 0] - toes[:, 1])[:, [0, 2]], axis=-1)
+    valleys, _ = find_peaks(-gaussian_filter1d(gap, 2.0), distance=6)
+    return valleys if len(valleys) else np.array([len(motion) // 2])
+
+
+def extend(motion: Motion, frames: int) -> Motion:
+    """At least ``frames`` frames of a walk or run: its end leads back into an earlier, alike moment."""
+    if len(motion) >= frames:
+        return motion
+    local = forward_kinematics(motion.rotations, motion.root * np.array([0.0, 1.0, 0.0]))
+    feature = np.concatenate(
+        [local.reshape(len(motion), -1), 4 * np.gradient(local, axis=0).reshape(len(motion), -1)], axis=-1
+    )
+    half = min(5, len(motion) // 8)
+    early = np.arange(half, max(len(motion) // 2, half + 1))
+    late = np.arange(max(len(motion) - 12, len(motion) // 2 + half), len(motion) - half)
+    cost = np.linalg.norm(feature[early][:, None] - feature[late][None], axis=-1)
+    enter, leave = np.unravel_index(int(cost.argmin()), cost.shape)
+    enter, leave = int(early[enter]), int(late[leave])
+    longer = motion[: leave + half]
+    while len(longer) < frames:
+        longer = join(longer, motion[enter - half : leave + half], blend=2 * half)
+    return longer
