@@ -56,7 +56,9 @@ def load_sources(data_dir: str | Path, *, cache_dir: str | Path | None = None) -
     """
     root = Path(data_dir)
     if not root.is_dir():
-        raise InputError(f"The data folder {root} does not exist: give the folder that holds {' and '.join(_FOLDERS)}.")
+        raise InputError(
+            f"The data folder {root} does not exist: give the folder that holds {' and '.join(_FOLDERS)}."
+        )
     found = _find_files(root)
     if not found:
         raise InputError(
@@ -149,7 +151,7 @@ def _read_all(root: Path, files: list[Path]) -> list[SourceClip]:
 
 
 def _splits(described: list[tuple[str, str, str | None, str, str]]) -> dict[str, str]:
-    """"train" or "test" of every source: in each action and side those whose names hash lowest are tested."""
+    """ "train" or "test" of every source: in each action and side those whose names hash lowest are tested."""
     groups: dict[tuple[str, str | None], list[str]] = defaultdict(list)
     for action, _, side, source, _ in described:
         groups[action, side].append(source)
@@ -162,7 +164,9 @@ def _splits(described: list[tuple[str, str, str | None, str, str]]) -> dict[str,
 
 
 def _cache_path(root: Path, files: list[Path], cache_dir: str | Path | None) -> Path:
-    folder = Path(cache_dir or Path(os.environ.get("XDG_CACHE_HOME", "~/.cache")).expanduser() / "pas-de-deux")
+    folder = Path(
+        cache_dir or Path(os.environ.get("XDG_CACHE_HOME", "~/.cache")).expanduser() / "pas-de-deux"
+    )
     state = [
         (path.relative_to(root).as_posix(), path.stat().st_size, path.stat().st_mtime_ns) for path in files
     ]

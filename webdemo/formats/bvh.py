@@ -131,7 +131,9 @@ def _parse_hierarchy(text: str, label: str) -> list[_Joint]:
                 joints.append(_Joint(given, parent, number, is_end=keyword == "END"))
                 pending = len(joints) - 1
                 if sum(not joint.is_end for joint in joints) > MAX_JOINTS or len(joints) > 2 * MAX_JOINTS:
-                    raise InputError(f"{where}: more than {MAX_JOINTS} joints; export the body without extras.")
+                    raise InputError(
+                        f"{where}: more than {MAX_JOINTS} joints; export the body without extras."
+                    )
             elif keyword == "{":
                 if pending is None:
                     raise InputError(f"{where}: '{{' without a joint before it.")
@@ -149,7 +151,9 @@ def _parse_hierarchy(text: str, label: str) -> list[_Joint]:
                 raise InputError(f"{where}: {words[0][:40]!r} is not understood in the HIERARCHY part.")
     if stack or pending is not None:
         open_joint = joints[stack[-1] if stack else pending or 0]
-        raise InputError(f"{label}: joint {open_joint.name} (line {open_joint.line}) is never closed by '}}'.")
+        raise InputError(
+            f"{label}: joint {open_joint.name} (line {open_joint.line}) is never closed by '}}'."
+        )
     if not joints:
         raise InputError(f"{label} has no ROOT joint.")
     if sum(joint.parent < 0 for joint in joints) > 1:
@@ -165,7 +169,9 @@ def _three_numbers(words: list[str], where: str, joint: str) -> tuple[float, flo
     try:
         x, y, z = (float(word) for word in words)
     except ValueError:
-        raise InputError(f"{where}: OFFSET of joint {joint} must be three numbers, not {' '.join(words)[:40]!r}.") from None
+        raise InputError(
+            f"{where}: OFFSET of joint {joint} must be three numbers, not {' '.join(words)[:40]!r}."
+        ) from None
     if not np.isfinite([x, y, z]).all() or max(abs(x), abs(y), abs(z)) > 1e6:
         raise InputError(f"{where}: OFFSET of joint {joint} is not a usable length.")
     return x, y, z
@@ -179,7 +185,9 @@ def _channels(words: list[str], where: str, joint: str) -> list[tuple[str, int]]
             raise InputError(f"{where}: joint {joint} has an unknown channel {word[:40]!r}.")
         found.append((match[2].lower(), _AXES[match[1].lower()]))
     if not words or words[0] != str(len(found)) or len(set(found)) != len(found):
-        raise InputError(f"{where}: CHANNELS of joint {joint} must be a count and that many different channels.")
+        raise InputError(
+            f"{where}: CHANNELS of joint {joint} must be a count and that many different channels."
+        )
     return found
 
 
@@ -188,11 +196,15 @@ def _parse_motion(text: str, start: int, joints: list[_Joint], label: str) -> tu
         r"\s*Frames:[ \t]*(\S+)[ \t]*\r?\n\s*Frame[ \t]+Time:[ \t]*(\S+)[ \t]*(?:\r?\n|$)", re.IGNORECASE
     ).match(text, start)
     if not head:
-        raise InputError(f"{label}: after MOTION there must be the lines 'Frames: N' and 'Frame Time: SECONDS'.")
+        raise InputError(
+            f"{label}: after MOTION there must be the lines 'Frames: N' and 'Frame Time: SECONDS'."
+        )
     try:
         frames, frame_time = int(head[1]), float(head[2].replace(",", "."))
     except ValueError:
-        raise InputError(f"{label}: Frames {head[1][:20]!r} or Frame Time {head[2][:20]!r} is not a number.") from None
+        raise InputError(
+            f"{label}: Frames {head[1][:20]!r} or Frame Time {head[2][:20]!r} is not a number."
+        ) from None
     if frames < 1:
         raise InputError(f"{label} holds no frames: export it again.")
     if not 1e-4 < frame_time <= 1.0:

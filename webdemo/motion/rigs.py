@@ -146,11 +146,17 @@ def _match_limbs(rig: RigMotion, keys: list[tuple[str, str]], side: str) -> dict
 
 
 def _first(
-    rig: RigMotion, keys: list[tuple[str, str]], side: str, names: tuple[str, ...], taken: set[int] | None = None
+    rig: RigMotion,
+    keys: list[tuple[str, str]],
+    side: str,
+    names: tuple[str, ...],
+    taken: set[int] | None = None,
 ) -> int | None:
     """The joint with the best-liked name; among equals the one nearest to the root."""
     for name in names:
-        found = [joint for joint, key in enumerate(keys) if key == (side, name) and joint not in (taken or ())]
+        found = [
+            joint for joint, key in enumerate(keys) if key == (side, name) and joint not in (taken or ())
+        ]
         if found:
             return min(found, key=lambda joint: len(rig.path_to_root(joint)))
     return None

@@ -1,0 +1,94 @@
+"""The 262-number representation against the released numbers, and its round trips."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from webdemo.motion import representation as rep
+from webdemo.motion.kinematics import forward_kinematics
+from webdemo.motion.skeleton import SMPL22
+from webdemo.motion.transforms import turn
+
+REFERENCE = Path(__file__).parents[1] / "data" / "reference" / "intergen_representation.npz"
+
+
+@pytest.fixture(scope="module")
+def reference():
+    with np.load(REFERENCE) as stored:
+        return dict(stored)
+
+
+def _people(seed: int, frames: int = 12):
+    """Two random people whose bodies turn, bend and walk."""
+    rng = np.random.default_rng(seed)
+    rotations = rep.from_6d(rep.to_6d(np.eye(3)) + 0.3 * rng.normal(size=(2, 1, 22, 6)))
+    rotations = np.repeat(rotations, frames, axis=1)
+    root = (
+        np.cumsum(rng.normal(scale=0.02, size=(2, frames, 3)), axis=1)
+        + [0, 1, 0]
+        + rng.normal(size=(2, 1, 3))
+    )
+    return forward_kinematics(rotations, root)
+
+
+@pytest.mark.parametrize("person", "ab")
+def test_canonical_person_equals_the_release(reference, person):
+    positions, rotations = rep.read_raw(reference[f"raw_{person}"])
+    features = rep.encode_person(rep.canonical(positions).positions, rotations)
+    expected = reference["features_a" if person == "a" else "features_b_canonical"]
+    np.testing.assert_allclose(features, expected, atol=1e-5)
+
+
+def test_placement_equals_the_release(reference):
+    a, b = (rep.canonical(rep.read_raw(reference[f"raw_{p}"])[0]) for p in "ab")
+    np.testing.assert_allclose(rep.placement(a, b), reference["relative"], atol=1e-5)
+
+
+def test_pair_equals_the_release(reference):
+    (a, rot_a), (b, rot_b) = (rep.read_raw(reference[f"raw_{p}"]) for p in "ab")
+    features = rep.encode_pair(a, b, (rot_a, rot_b))
+    expected = np.concatenate([reference["features_a"], reference["features_b"]], axis=-1)
+    np.testing.assert_allclose(features, expected, atol=1e-5)
+
+
+@settings(max_examples=15, deadline=None)
+@given(st.integers(0, 10**6))
+def test_positions_survive_the_round_trip(seed):
+    a, b = _people(seed)
+    decoded = rep.decode_positions(rep.encode_pair(a, b))
+    assert decoded.shape == (2, 12, 22, 3)
+    again = rep.decode_positions(rep.encode_pair(*decoded))
+    np.testing.assert_allclose(again, decoded, atol=1e-5)
+
+
+@settings(max_examples=15, deadline=None)
+@given(st.integers(0, 10**6), st.floats(-3.1, 3.1), st.floats(-9, 9), st.floats(-9, 9))
+def test_turning_and_moving_the_scene_changes_nothing(seed, angle, x, z):
+    people = _people(seed)
+    moved = turn(people, angle) + np.array([x, 0.0, z])
+    np.testing.assert_allclose(rep.encode_pair(*moved), rep.encode_pair(*people), atol=2e-5)
+
+
+def test_fitted_rotations_come_back_from_features():
+    a, b = _people(3)
+    features = rep.encode_pair(a, b)
+    rotations = rep.from_6d(features[:, rep.ROTATIONS].reshape(-1, 21, 6))
+    root = rep.fit_rotations(rep.decode_positions(features)[0, :-1])[:, :1]
+    positions = forward_kinematics(np.concatenate([root, rotations], axis=1), features[:, :3], SMPL22)
+    np.testing.assert_allclose(positions.reshape(-1, 66), features[:, rep.POSITIONS], atol=1e-4)
+
+
+@pytest.mark.parametrize("shape", [(5, 261), (262,), (2, 5, 262)])
+def test_wrong_features_are_refused(shape):
+    with pytest.raises(ValueError, match="262"):
+        rep.decode_positions(np.zeros(shape))
+
+
+def test_one_frame_is_refused():
+    with pytest.raises(ValueError, match="two frames"):
+        rep.encode_person(np.zeros((1, 22, 3)))
