@@ -1,0 +1,115 @@
+"""An engine without networks: two people who walk up to each other, made by sines."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Iterator
+from typing import Any
+
+import numpy as np
+
+from webdemo.inference.requests import Cancelled, GenerateRequest, Progress, Result
+from webdemo.metrics import compare
+from webdemo.motion import SMPL22, Duet, InputError
+from webdemo.motion.kinematics import forward_kinematics
+from webdemo.motion.transforms import heading_matrix
+
+FPS = 30
+_WALK = 0.8  # metres a second
+_STRIDE = 2 * np.pi * 0.9  # radians a second
+
+
+def walking(seconds: float, seed: int = 0) -> Duet:
+    """Two people who walk towards each other with swinging arms and legs, as far apart as the seed says."""
+    times = np.arange(round(seconds * FPS)) / FPS
+    apart = 2.4 + 1.6 * np.random.default_rng(seed).random()
+    reach = min(_WALK * times[-1], apart / 2 - 0.35)
+    along = reach * np.minimum(times * _WALK / max(reach, 1e-6), 1.0)
+    people = []
+    for turn, start in ((0.0, -apart / 2), (np.pi, apart / 2)):
+        rotations = np.tile(np.eye(3), (len(times), 22, 1, 1))
+        rotations[:, 0] = heading_matrix(turn)
+        swing = np.sin(_STRIDE * times) * (along < reach - 1e-6)
+        for side, sign in (("left", 1.0), ("right", -1.0)):
+            rotations[:, SMPL22.index(f"{side}_hip")] = _about_x(-0.45 * sign * swing)
+            rotations[:, SMPL22.index(f"{side}_knee")] = _about_x(0.35 * (1 + sign * swing) / 2)
+            down = _about_z(-sign * 1.25)
+            rotations[:, SMPL22.index(f"{side}_shoulder")] = _about_x(0.4 * sign * swing) @ down
+        root = np.zeros((len(times), 3))
+        root[:, 1] = 0.94
+        root[:, 2] = start + (along if turn == 0 else -along)
+        people.append(forward_kinematics(rotations, root))
+    positions = np.stack(people)
+    positions[..., 1] -= positions[..., 1].min()
+    return Duet.from_positions(positions, fps=FPS)
+
+
+def _about_x(angle: Any) -> np.ndarray:
+    cos, sin = np.cos(np.asarray(angle)), np.sin(np.asarray(angle))
+    one, zero = np.ones_like(cos), np.zeros_like(cos)
+    return np.stack([one, zero, zero, zero, cos, -sin, zero, sin, cos], -1).reshape(*cos.shape, 3, 3)
+
+
+def _about_z(angle: float) -> np.ndarray:
+    cos, sin = np.cos(angle), np.sin(angle)
+    return np.array([[cos, -sin, 0], [sin, cos, 0], [0, 0, 1.0]])
+
+
+class StubEngine:
+    """Answers as the real engine does, after ``steps`` pauses of ``pause`` seconds.
+
+    A prompt that holds the word "impossible" is refused, one with "crash" raises an error that is no
+    sentence for a user, and one with "unknown" comes with a note.
+    """
+
+    def __init__(self, *, pause: float = 0.0, load: float = 0.0) -> None:
+        self.pause = pause
+        self.load = load
+        self.ready = load == 0.0
+        self.steps_done = 0
+        self.requests: list[GenerateRequest] = []
+
+    def warm_up(self) -> None:
+        time.sleep(self.load)
+        self.ready = True
+
+    def info(self) -> dict[str, Any]:
+        return {
+            "name": "Stub walkers",
+            "summary": "No network at all: two people walk up to each other.\n\nMade for trying the page.",
+            "parameters": 0,
+            "weights": "none",
+        }
+
+    def run(self, request: GenerateRequest, cancel: Any = None) -> Iterator[Progress | Result]:
+        started = time.monotonic()
+        self.requests.append(request)
+        if "impossible" in request.prompt:
+            raise InputError("The stub cannot do this: ask for something possible.")
+        yield Progress(stage="text")
+        for step in range(request.steps):
+            if cancel is not None and cancel.cancelled:
+                raise Cancelled("The run was cancelled.")
+            if "crash" in request.prompt and step == 1:
+                raise RuntimeError("tensor sizes 3 and 4 do not match")
+            time.sleep(self.pause)
+            self.steps_done = step + 1
+            yield Progress(
+                stage="sample", step=step + 1, total=request.steps, elapsed=time.monotonic() - started
+            )
+        after = tuple(walking(request.seconds, request.seed + i) for i in range(request.samples))
+        noise = np.random.default_rng(request.seed).normal(0, 0.004, after[0].positions.shape)
+        before = [duet.with_positions(duet.positions + noise) for duet in after]
+        notes = ()
+        if "unknown" in request.prompt:
+            notes = (
+                "This lies far from anything the model was trained on. The nearest that it knows: "
+                "“two people shake hands”, “one person waves <b>hello</b>”.",
+            )
+        yield Result(
+            duets=after,
+            manifest={"model": "stub", "request": request.to_dict()},
+            readouts=tuple(compare(b, a) for b, a in zip(before, after, strict=True)),
+            timings={"text": 0.01, "sampling": time.monotonic() - started, "finish": 0.05},
+            notes=notes,
+        )

@@ -1,0 +1,45 @@
+"""The engine, imported when it is first needed, so that the page is up before torch is."""
+
+from __future__ import annotations
+
+import threading
+from collections.abc import Iterator
+from typing import Any
+
+from webdemo.inference.cancel import CancelToken
+from webdemo.inference.requests import Progress, Result
+
+
+class LazyEngine:
+    """Stands for :class:`webdemo.inference.engine.Engine` and makes it on first use, in any thread."""
+
+    def __init__(self) -> None:
+        self._lock = threading.Lock()
+        self._engine: Any = None
+
+    def _made(self) -> Any:
+        with self._lock:
+            if self._engine is None:
+                from webdemo.inference.engine import Engine
+
+                self._engine = Engine()
+            return self._engine
+
+    @property
+    def ready(self) -> bool:
+        """Whether the networks are loaded; does not load anything."""
+        return self._engine is not None and bool(self._engine.ready)
+
+    def warm_up(self) -> None:
+        """Imports and loads everything."""
+        self._made().warm_up()
+
+    def info(self) -> dict[str, Any]:
+        """The default model's card."""
+        return self._made().info()
+
+    def run(self, request: Any, cancel: CancelToken | None = None) -> Iterator[Progress | Result]:
+        """Runs a request; the first one may have to load the networks."""
+        if not self.ready:
+            yield Progress(stage="load")
+        yield from self._made().run(request, cancel=cancel)

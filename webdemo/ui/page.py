@@ -1,0 +1,98 @@
+"""The page: a header and a tab for every job."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+import gradio as gr
+
+from .api import GenerateEndpoint
+from .context import PageContext
+from .exports import Shelf
+from .generate_tab import GenerateTab
+from .panels import model_state
+from .runs import EngineLike, Loader, Runs
+from .theme import style_sheet, theme
+
+TITLE = "Pas de Deux"
+TABS = (GenerateTab,)
+"""A class a job, with a ``label`` and ``build(demo)``; with more than one the page shows tabs."""
+ENDPOINTS = (GenerateEndpoint,)
+
+_HEADER = (
+    '<div class="pd-brand"><h1>Pas de Deux</h1>'
+    "<p>Write what two people do, watch them do it in 3D, take the motion home.</p></div>"
+)
+_CACHE = (1800, 7200)
+"""Seconds: how often Gradio's copies of downloads are looked through, and how old they may get."""
+
+
+def build_page(engine: EngineLike, *, loader: Loader | None = None, files: Path | None = None) -> gr.Blocks:
+    """Builds the page for an engine.
+
+    Args:
+        engine: answers the page's requests; nothing of it is loaded before the page is up.
+        loader: loads the engine's networks; by default the first visit starts one.
+        files: folder for the files that users take home; by default in the system's temporary folder.
+
+    Returns:
+        the page; launch it with :func:`launch_options`.
+    """
+    page = PageContext(engine=engine, runs=Runs(engine), loader=loader or Loader(engine), shelf=Shelf(files))
+
+    def leave(request: gr.Request) -> None:
+        page.runs.cancel(str(request.session_hash))
+
+    with gr.Blocks(title=TITLE, delete_cache=_CACHE, fill_width=True, analytics_enabled=False) as demo:
+        with gr.Row(elem_classes="pd-header", equal_height=True):
+            gr.HTML(_HEADER)
+            mark = gr.HTML(model_state(page.loader.state), elem_id="model-state")
+        tabs = [tab(page) for tab in TABS]
+        if len(tabs) == 1:
+            tabs[0].build(demo)
+        else:
+            with gr.Tabs():
+                for tab in tabs:
+                    with gr.Tab(tab.label):
+                        tab.build(demo)
+        for endpoint in ENDPOINTS:
+            endpoint(page).publish()
+        demo.load(
+            lambda: watch_loading(page.loader),
+            outputs=mark,
+            api_visibility="private",
+            show_progress="hidden",
+            concurrency_limit=None,
+        )
+        demo.unload(leave)
+    demo.queue(default_concurrency_limit=4, max_size=64)
+    return demo
+
+
+def watch_loading(loader: Loader, *, interval: float = 0.3) -> Iterator[str]:
+    """Starts to load the networks and yields the header's mark until they are there, or failed."""
+    loader.start()
+    shown = None
+    while True:
+        state = loader.state
+        if state != shown:
+            shown = state
+            yield model_state(state, loader.error)
+        if state != "loading":
+            return
+        time.sleep(interval)
+
+
+def launch_options() -> dict[str, Any]:
+    """Keyword arguments for ``launch`` (or ``gr.mount_gradio_app``) that give the page its looks."""
+    return {
+        "theme": theme(),
+        "css": style_sheet(),
+        "footer_links": ["api"],
+        "run_history": False,
+        "ssr_mode": False,
+        "show_error": True,
+    }

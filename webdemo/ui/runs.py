@@ -1,0 +1,132 @@
+"""Who is running what: one run a session, a place in the line, and a way to stop."""
+
+from __future__ import annotations
+
+import logging
+import threading
+import time
+from collections.abc import Iterator
+from typing import Any, Protocol
+
+from webdemo.inference.cancel import CancelToken
+from webdemo.inference.requests import Cancelled, Progress, Result
+
+log = logging.getLogger(__name__)
+
+
+class EngineLike(Protocol):
+    """What the page needs of an engine."""
+
+    @property
+    def ready(self) -> bool:
+        """Whether the networks are loaded."""
+
+    def warm_up(self) -> None:
+        """Loads the networks; returns when they are ready."""
+
+    def info(self) -> dict[str, Any]:
+        """``name`` and ``summary`` of the default model, and whatever else its card tells."""
+
+    def run(self, request: Any, cancel: CancelToken | None = None) -> Iterator[Progress | Result]:
+        """Progress, then one result; raises ``Cancelled`` within one step of a cancellation."""
+
+
+class Runs:
+    """The runs of all sessions of one page.
+
+    Args:
+        engine: what runs them.
+        parallel: how many run at the same time; on few cores two runs at once are slower than one after
+            the other. Those that wait say so and can be cancelled.
+    """
+
+    def __init__(self, engine: EngineLike, *, parallel: int = 1) -> None:
+        self.engine = engine
+        self._places = threading.Semaphore(parallel)
+        self._tokens: dict[str, CancelToken] = {}
+        self._lock = threading.Lock()
+
+    def cancel(self, session: str) -> bool:
+        """Stops the session's run within one step; False where it has none."""
+        with self._lock:
+            token = self._tokens.get(session)
+        if token is not None:
+            token.cancel()
+        return token is not None
+
+    def run(self, session: str, request: Any) -> Iterator[Progress | Result]:
+        """Runs a request: its progress, with the stage "queue" while others run, then its result.
+
+        An earlier run of the same session is cancelled. Closing the iterator cancels the run.
+
+        Raises:
+            InputError: for what the engine cannot do.
+            Cancelled: where the run was cancelled.
+        """
+        token = CancelToken()
+        with self._lock:
+            if (earlier := self._tokens.get(session)) is not None:
+                earlier.cancel()
+            self._tokens[session] = token
+        try:
+            yield from self._wait_for_place(token)
+            try:
+                yield from self._guarded(request, token)
+            finally:
+                self._places.release()
+        finally:
+            token.cancel()
+            with self._lock:
+                if self._tokens.get(session) is token:
+                    del self._tokens[session]
+
+    def _guarded(self, request: Any, token: CancelToken) -> Iterator[Progress | Result]:
+        for event in self.engine.run(request, cancel=token):
+            yield event
+            if isinstance(event, Result):
+                return
+        # An engine that stops without a result was told to.
+        raise Cancelled("The run ended without a result.")
+
+    def _wait_for_place(self, token: CancelToken) -> Iterator[Progress]:
+        started = time.monotonic()
+        if self._places.acquire(blocking=False):
+            return
+        while not self._places.acquire(timeout=0.25):
+            token.raise_if_cancelled()
+            yield Progress(stage="queue", elapsed=time.monotonic() - started)
+
+
+class Loader:
+    """Loads an engine's networks in a thread of its own, once, and tells how that went."""
+
+    def __init__(self, engine: EngineLike) -> None:
+        self.engine = engine
+        self._lock = threading.Lock()
+        self._thread: threading.Thread | None = None
+        self.error: str | None = None
+
+    def start(self) -> None:
+        """Begins to load where nothing has begun yet; a load that failed is tried again."""
+        with self._lock:
+            if self.engine.ready or (self._thread is not None and self._thread.is_alive()):
+                return
+            self.error = None
+            self._thread = threading.Thread(target=self._load, name="warm-up", daemon=True)
+            self._thread.start()
+
+    @property
+    def state(self) -> str:
+        """ "ready", "failed" or "loading"."""
+        if self.engine.ready:
+            return "ready"
+        return "failed" if self.error else "loading"
+
+    def _load(self) -> None:
+        try:
+            self.engine.warm_up()
+        except ValueError as error:  # InputError: a sentence for the user
+            self.error = str(error)
+        except Exception as error:
+            log.exception("Loading the model failed.")
+            self.error = f"The model could not be loaded ({type(error).__name__}): see the server's log."

@@ -1,0 +1,65 @@
+"""What the page says about progress, errors and numbers."""
+
+from __future__ import annotations
+
+import errno
+import html
+import logging
+
+from webdemo.inference.requests import Progress
+from webdemo.motion import InputError
+
+log = logging.getLogger(__name__)
+
+_STAGES = {
+    "queue": "Waiting for another run to finish",
+    "load": "Loading the model",
+    "text": "Reading the prompt",
+    "sample": "Denoising",
+    "finish": "Finishing the motion",
+}
+
+
+def text(value: object) -> str:
+    """Any value as text inside HTML: no tags, no attributes, no ``${…}`` of a template."""
+    escaped = html.escape(str(value), quote=True)
+    return escaped.replace("$", "&#36;").replace("{", "&#123;").replace("}", "&#125;").replace("`", "&#96;")
+
+
+def progress_line(progress: Progress) -> str:
+    """One line for a progress event, such as "Denoising: step 12 of 50"."""
+    stage = _STAGES.get(progress.stage, progress.stage.capitalize())
+    if progress.stage == "sample":
+        return f"{stage}: step {progress.step} of {progress.total}"
+    return f"{stage} …"
+
+
+def cancelled_line(progress: Progress | None) -> str:
+    """What is said after a cancellation, with the last step that was done."""
+    if progress is None or progress.stage != "sample":
+        return "Cancelled before the first step."
+    return f"Cancelled at step {progress.step} of {progress.total}."
+
+
+def error_line(error: Exception) -> str:
+    """The sentence for an error; what is not the user's doing goes to the log with its traceback."""
+    if isinstance(error, InputError):
+        return str(error)
+    log.error("A request failed.", exc_info=error)
+    if isinstance(error, OSError) and error.errno == errno.ENOSPC:
+        return "The disk is full: free some space and try again."
+    if isinstance(error, OSError):
+        return f"A file could not be read or written ({error.strerror or error}): try again."
+    if isinstance(error, MemoryError):
+        return "There is not enough memory for this: ask for a shorter motion or fewer samples."
+    return f"Something went wrong inside the program ({type(error).__name__}); its log says more. Try again."
+
+
+def number(value: float, digits: int) -> str:
+    """A number with ``digits`` after the point and a thin space between thousands."""
+    return f"{value:,.{digits}f}".replace(",", "\u202f")
+
+
+def seconds(value: float) -> str:
+    """A duration: "0.24 s", "3.1 s", "72 s"."""
+    return f"{value:.2f} s" if value < 1 else f"{value:.1f} s" if value < 60 else f"{value:.0f} s"
