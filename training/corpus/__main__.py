@@ -1,0 +1,44 @@
+"""``python -m training.corpus --data DIR --out DIR``: builds the corpus from the data folder."""
+
+from __future__ import annotations
+
+import argparse
+import logging
+import sys
+import time
+from pathlib import Path
+
+from webdemo.motion import InputError
+
+from .build import build, report, save
+from .compose import FPS
+
+
+def main(arguments: list[str] | None = None) -> int:
+    parser = argparse.ArgumentParser(prog="python -m training.corpus", description=__doc__)
+    parser.add_argument("--data", type=Path, required=True, help="folder with the motion data sets")
+    parser.add_argument("--out", type=Path, required=True, help="folder for motions.npy and index.json")
+    parser.add_argument("--hours", type=float, default=5.0, help="hours of composed motion (5)")
+    parser.add_argument("--seed", type=int, default=0)
+    parser.add_argument("--families", nargs="+", metavar="NAME", help="only these families")
+    parser.add_argument("--report", type=Path, metavar="DIR", help="write report.md there")
+    options = parser.parse_args(arguments)
+    logging.basicConfig(level=logging.WARNING, format="%(message)s")
+    began = time.monotonic()
+    try:
+        scenes, tally = build(options.data, hours=options.hours, seed=options.seed, only=options.families)
+        save(scenes, options.out)
+        if options.report:
+            report(scenes, tally, options.report)
+    except InputError as error:
+        print(error, file=sys.stderr)
+        return 2
+    for line in tally.lines():
+        print(line)
+    total = sum(scene.positions.shape[1] for scene in scenes) / FPS / 3600
+    print(f"{len(scenes)} scenes, {total:.2f} h, in {time.monotonic() - began:.0f} s -> {options.out}")
+    return 0
+
+
+if __name__ == "__main__":
+    raise SystemExit(main())

@@ -1,0 +1,192 @@
+"""Builds the corpus: draws scenes family by family, checks each, writes them."""
+
+from __future__ import annotations
+
+import json
+import logging
+from collections import Counter
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+from pathlib import Path
+
+import numpy as np
+
+from training.files import replacing
+from webdemo.motion import InputError
+
+from .checks import fault, measure
+from .compose import FPS
+from .families import Family, load_families
+from .library import Library
+from .scene import Scene
+from .sources import load_sources
+
+logger = logging.getLogger(__name__)
+TEST_SHARE = 0.08
+TRIES = 30
+
+
+@dataclass
+class Tally:
+    """What was built: frames by family, and scenes turned away by family and reason."""
+
+    frames: Counter[str] = field(default_factory=Counter)
+    scenes: Counter[str] = field(default_factory=Counter)
+    rejected: Counter[tuple[str, str]] = field(default_factory=Counter)
+
+    def lines(self) -> list[str]:
+        """One line a family."""
+        lines = [
+            f"{name}: {self.scenes[name]} scenes, {self.frames[name] / FPS / 60:.1f} min"
+            for name in sorted(self.frames)
+        ]
+        return lines + [
+            f"rejected {count}: {name}: {why}" for (name, why), count in self.rejected.most_common()
+        ]
+
+
+def draw(
+    rng: np.random.Generator, library: Library, families: dict[str, Family], frames: int, tally: Tally
+) -> list[Scene]:
+    """Checked scenes of ``frames`` frames in all, spread over the families by their weights.
+
+    A family whose scenes fail :data:`TRIES` times in a row is left out from then on, with a warning.
+    """
+    open_families = {name: family for name, family in families.items() if library.has(*family.needs)}
+    own: Counter[str] = Counter()
+    failures: Counter[str] = Counter()
+    scenes: list[Scene] = []
+    while open_families and sum(own.values()) < frames:
+        name = min(open_families, key=lambda key: own[key] / open_families[key].weight)
+        family = open_families[name]
+        try:
+            scene = family.build(rng, library)
+            why = fault(scene, contact=family.contact)
+        except LookupError as error:
+            why = str(error)
+        if why:
+            tally.rejected[name, why] += 1
+            failures[name] += 1
+            if failures[name] >= TRIES:
+                logger.warning("%s is left out of the %s split: %s", name, library.split, why)
+                del open_families[name]
+            continue
+        failures[name] = 0
+        own[name] += scene.positions.shape[1]
+        tally.frames[name] += scene.positions.shape[1]
+        tally.scenes[name] += 1
+        scenes.append(scene)
+    return scenes
+
+
+def build(
+    data_dir: str | Path,
+    *,
+    hours: float = 5.0,
+    seed: int = 0,
+    only: Sequence[str] | None = None,
+    recorded: bool = True,
+) -> tuple[list[Scene], Tally]:
+    """All scenes of a corpus.
+
+    Args:
+        data_dir: the unpacked or packed data sets; see :func:`training.corpus.sources.load_sources`.
+        hours: composed motion, of which 8 % is the test split.
+        seed: the same seed, data and code give the same corpus.
+        only: names of families; all by default.
+        recorded: whether the recorded pairs join where their data are there.
+
+    Raises:
+        InputError: where the data or a family's name are unknown.
+    """
+    families = load_families()
+    if only:
+        unknown = sorted(set(only) - set(families))
+        if unknown:
+            raise InputError(f"No family {', '.join(unknown)}: choose from {', '.join(sorted(families))}.")
+        families = {name: families[name] for name in only}
+    if not 0 < hours <= 200:
+        raise InputError(f"{hours} hours cannot be built: give a number above 0 and up to 200.")
+    clips = load_sources(data_dir)
+    tally, scenes = Tally(), []
+    for number, (split, share) in enumerate((("train", 1 - TEST_SHARE), ("test", TEST_SHARE))):
+        rng = np.random.default_rng([seed, number])
+        frames = int(hours * share * 3600 * FPS)
+        scenes += draw(rng, Library(clips, split), families, frames, tally)
+    if recorded and not only:
+        scenes += _recorded(data_dir, tally)
+    return scenes, tally
+
+
+def _recorded(data_dir: str | Path, tally: Tally) -> list[Scene]:
+    """The recorded pairs, without the benchmark's test sets."""
+    from .pairs import load_pairs
+
+    try:
+        pairs = load_pairs(data_dir)
+    except InputError as error:
+        logger.warning("No recorded pairs: %s", error)
+        return []
+    kept = [scene for scene in pairs if scene.split != "benchmark"]
+    for scene in kept:
+        tally.frames[f"recorded {scene.family}"] += scene.positions.shape[1]
+        tally.scenes[f"recorded {scene.family}"] += 1
+    return kept
+
+
+def save(scenes: Sequence[Scene], folder: Path) -> None:
+    """Writes ``motions.npy`` (frames, 2, 22, 3) float32 metres and ``index.json``, each whole or not at all.
+
+    Float16 would round positions 4 to 8 m from the origin to 4 mm, which shows as jitter.
+    """
+    if not scenes:
+        raise InputError("There is no scene to write: ask for more hours or other families.")
+    index, start = [], 0
+    for scene in scenes:
+        frames = int(scene.positions.shape[1])
+        index.append(
+            {
+                "start": start,
+                "frames": frames,
+                "family": scene.family,
+                "captions": scene.captions,
+                "sources": list(scene.sources),
+                "split": scene.split,
+                "events": scene.events,
+            }
+        )
+        start += frames
+    with replacing(folder / "motions.npy") as temporary, temporary.open("wb") as file:
+        header = {"descr": "<f4", "fortran_order": False, "shape": (start, 2, 22, 3)}
+        np.lib.format.write_array_header_1_0(file, header)
+        for scene in scenes:
+            file.write(np.ascontiguousarray(scene.positions.swapaxes(0, 1), dtype="<f4").tobytes())
+    with replacing(folder / "index.json") as temporary:
+        temporary.write_text(json.dumps(index, default=_plain))
+
+
+def _plain(value: object) -> object:
+    if isinstance(value, np.generic):
+        return value.item()
+    raise TypeError(f"{type(value).__name__} cannot be written to the index.")
+
+
+def report(scenes: Sequence[Scene], tally: Tally, folder: Path) -> None:
+    """Writes ``report.md``: families, minutes, measures."""
+    by_family: dict[str, list[Scene]] = {}
+    for scene in scenes:
+        by_family.setdefault(scene.family, []).append(scene)
+    rows = [
+        "| family | scenes | minutes | foot skate m/s | acceleration m/s² | least trunk gap m |",
+        "|---|---|---|---|---|---|",
+    ]
+    for name, group in sorted(by_family.items()):
+        found = [measure(scene.positions) for scene in group[:40]]
+        minutes = sum(scene.positions.shape[1] for scene in group) / FPS / 60
+        rows.append(
+            f"| {name} | {len(group)} | {minutes:.1f} | {np.mean([m.skate for m in found]):.3f} | "
+            f"{np.median([m.acceleration for m in found]):.0f} | {min(m.trunk_gap for m in found):.2f} |"
+        )
+    folder.mkdir(parents=True, exist_ok=True)
+    with replacing(folder / "report.md") as temporary:
+        temporary.write_text("\n".join([*rows, "", *tally.lines(), ""]))

@@ -1,0 +1,109 @@
+"""What a composed scene must pass before it enters the corpus."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from webdemo.motion.skeleton import SMPL22
+
+from .compose import FPS
+from .scene import Scene
+
+Array = NDArray[np.floating]
+FEET = tuple(
+    tuple(SMPL22.index(f"{side}_{joint}") for joint in ("ankle", "foot")) for side in ("left", "right")
+)
+TRUNK = tuple(SMPL22.index(name) for name in ("pelvis", "spine1", "spine2", "spine3", "neck", "head"))
+LIMBS = tuple(
+    SMPL22.index(f"{side}_{joint}")
+    for side in ("left", "right")
+    for joint in ("elbow", "wrist", "knee", "ankle")
+)
+SLIDING = {
+    **dict.fromkeys(("run-together", "chase"), 1.2),
+    **dict.fromkeys(("spar", "sword-fight", "punch-dodge", "punch-recoil", "kick-step-back"), 0.3),
+    **dict.fromkeys(("dance-together", "dance-mirrored", "dance-watch"), 0.3),
+}
+"""Foot skate allowed where the recorded motion itself flies or pivots on the foot, metres a second."""
+
+
+@dataclass(frozen=True)
+class Measures:
+    """Numbers on one scene.
+
+    Attributes:
+        bone_drift: largest difference of a bone from the skeleton's length in metres.
+        trunk_gap: least distance between the two trunks in metres.
+        limb_gap: least distance from a limb's joint to the other's trunk in metres.
+        skate: mean speed of the foot that carries the body, metres a second.
+        acceleration: largest acceleration of a joint, metres a second squared.
+        floor: lowest joint over the scene, metres.
+    """
+
+    bone_drift: float
+    trunk_gap: float
+    limb_gap: float
+    skate: float
+    acceleration: float
+    floor: float
+
+
+def measure(positions: Array) -> Measures:
+    """Measures a scene (2, T, 22, 3) in metres at 30 fps."""
+    positions = np.asarray(positions, dtype=np.float64)
+    parents = list(SMPL22.parents[1:])
+    lengths = np.linalg.norm(positions[..., 1:, :] - positions[..., parents, :], axis=-1)
+    trunks = positions[:, :, list(TRUNK)]
+    gaps = np.linalg.norm(trunks[0, :, :, None] - trunks[1, :, None], axis=-1)
+    limbs = positions[:, :, list(LIMBS)]
+    limb = min(
+        float(np.linalg.norm(limbs[p][:, :, None] - trunks[1 - p][:, None], axis=-1).min()) for p in (0, 1)
+    )
+    acceleration = np.linalg.norm(np.diff(positions, n=2, axis=1), axis=-1).max() * FPS**2
+    return Measures(
+        float(np.abs(lengths - SMPL22.bone_lengths[1:]).max()),
+        float(gaps.min()),
+        limb,
+        max(foot_skate(person) for person in positions),
+        float(acceleration),
+        float(positions[..., 1].min()),
+    )
+
+
+def foot_skate(positions: Array) -> float:
+    """Mean speed over the ground, in metres a second, of the slower foot joint of a person (T, 22, 3).
+
+    In walking and standing at least one heel or toe rests at any time, so this is near 0 without sliding;
+    frames in which no foot is low (flight) are left out.
+    """
+    joints = [joint for foot in FEET for joint in foot]
+    speed = np.linalg.norm(np.diff(positions[:, joints][..., [0, 2]], axis=0), axis=-1) * FPS
+    low = positions[:-1][:, [FEET[0][1], FEET[1][1]], 1].min(axis=-1) < 0.06
+    return float(speed.min(axis=-1)[low].mean()) if low.any() else 0.0
+
+
+def fault(scene: Scene, *, contact: bool = False) -> str | None:
+    """Why a scene must not enter the corpus, or ``None`` where it may."""
+    if not np.isfinite(scene.positions).all():
+        return "not finite"
+    if not 45 <= scene.positions.shape[1] <= 300:
+        return "too short or too long"
+    if len(scene.captions) < 3:
+        return "too few captions"
+    found = measure(scene.positions)
+    if found.bone_drift > 1e-3:
+        return "bones drift"
+    if found.trunk_gap < (0.12 if contact else 0.3):
+        return "trunks overlap"
+    if not contact and found.limb_gap < 0.14:
+        return "a limb in the other's trunk"
+    if found.skate > SLIDING.get(scene.family, 0.15):
+        return "feet slide"
+    if found.acceleration > 260:
+        return "a joint jumps"
+    if found.floor < -0.08:
+        return "below the floor"
+    return None
