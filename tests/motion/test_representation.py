@@ -30,7 +30,7 @@ def _people(seed: int, frames: int = 12):
     rotations = np.repeat(rotations, frames, axis=1)
     root = (
         np.cumsum(rng.normal(scale=0.02, size=(2, frames, 3)), axis=1)
-        + [0, 1, 0]
+        + np.array([0, 1, 0])
         + rng.normal(size=(2, 1, 3))
     )
     return forward_kinematics(rotations, root)

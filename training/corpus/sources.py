@@ -62,7 +62,7 @@ def load_sources(data_dir: str | Path, *, cache_dir: str | Path | None = None) -
     found = _find_files(root)
     if not found:
         raise InputError(
-            f"{root} holds no motion recordings: put {' or '.join(_FOLDERS)} with .bvh files or their .tar.xz there."
+            f"{root} holds no motion recordings: put {' or '.join(_FOLDERS)} there (.bvh files or a .tar.xz)."
         )
     cache = _cache_path(root, found, cache_dir)
     if cache.exists():
@@ -138,7 +138,7 @@ def _read_all(root: Path, files: list[Path]) -> list[SourceClip]:
         logger.warning("%d of %d recordings were left out.", len(dropped), len(dropped) + len(read))
     if len(dropped) > len(read):
         raise InputError(
-            f"{len(dropped)} of {len(dropped) + len(read)} recordings below {root} cannot be used, the first: "
+            f"{len(dropped)} of {len(dropped) + len(read)} recordings in {root} cannot be used, the first: "
             f"{next(iter(dropped.values()))} Unpack or download the data again."
         )
     read.sort(key=lambda item: item[0][3])
@@ -151,7 +151,7 @@ def _read_all(root: Path, files: list[Path]) -> list[SourceClip]:
 
 
 def _splits(described: list[tuple[str, str, str | None, str, str]]) -> dict[str, str]:
-    """ "train" or "test" of every source: in each action and side those whose names hash lowest are tested."""
+    """The split of every source: in each action and side those whose names hash lowest are for testing."""
     groups: dict[tuple[str, str | None], list[str]] = defaultdict(list)
     for action, _, side, source, _ in described:
         groups[action, side].append(source)

@@ -1,0 +1,151 @@
+"""One file a format, one registry: :func:`read` and :func:`write` pick the format by a path's suffix."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from importlib.util import find_spec
+from pathlib import Path
+
+from webdemo.motion import SMPL22, Clip, Duet, InputError
+from webdemo.motion.retarget import retarget, retarget_duet
+from webdemo.motion.rigs import RigMotion
+
+from .bvh import read_bvh
+from .bvh_writer import write_bvh
+from .glb import write_glb
+from .npz import read_npy, read_npz, write_npy, write_npz
+
+__all__ = ["FORMATS", "Format", "can_read", "can_write", "read", "read_pair", "write"]
+
+
+@dataclass(frozen=True)
+class Format:
+    """One kind of file.
+
+    Attributes:
+        suffix: with its dot, lower case.
+        label: what people call it.
+        reader: ``reader(source, name=…, fps=…)`` gives a clip or a duet; ``None`` where it is only written.
+        writer: ``writer(duet, path)`` gives the paths it wrote; ``None`` where it is only read.
+        needs: a package that must be installed for writing.
+    """
+
+    suffix: str
+    label: str
+    reader: Callable[..., Clip | Duet] | None = None
+    writer: Callable[[Duet, Path], list[Path]] | None = None
+    needs: str | None = None
+
+
+def _read_bvh_clip(source: str | Path | bytes, *, name: str | None = None, fps: float | None = None) -> Clip:
+    rig = read_bvh(source, name=name)
+    return _own_clip(rig) or retarget(rig, fps=fps or 30.0)
+
+
+def _own_clip(rig: RigMotion) -> Clip | None:
+    """A file whose joints are SMPL22's needs no retargeting: it keeps its frame rate, bones and place."""
+    if not set(SMPL22.joint_names) <= set(rig.joint_names) or rig.metres_per_unit != 1.0:
+        return None
+    order = [rig.joint_names.index(name) for name in SMPL22.joint_names]
+    return Clip(rig.positions[:, order], rig.fps, SMPL22, rig.rotations[:, order], rig.name)
+
+
+FORMATS: dict[str, Format] = {
+    f.suffix: f
+    for f in (
+        Format(".npz", "NumPy archive", read_npz, write_npz),
+        Format(".bvh", "Biovision BVH", _read_bvh_clip, write_bvh),
+        Format(".npy", "NumPy array", read_npy, write_npy),
+        Format(".glb", "glTF binary", None, write_glb, needs="pygltflib"),
+    )
+}
+
+
+def can_read(suffix: str) -> bool:
+    """Whether files with this suffix (with its dot) are understood."""
+    return suffix.lower() in FORMATS and FORMATS[suffix.lower()].reader is not None
+
+
+def can_write(suffix: str) -> bool:
+    """Whether this installation writes files with this suffix (with its dot)."""
+    known = FORMATS.get(suffix.lower())
+    return (
+        known is not None
+        and known.writer is not None
+        and (known.needs is None or find_spec(known.needs) is not None)
+    )
+
+
+def read(path: str | Path | bytes, *, name: str | None = None, fps: float | None = None) -> Clip | Duet:
+    """Reads one motion file.
+
+    Args:
+        path: the file, or its bytes; then ``name`` must end in its suffix.
+        name: what to call the file in messages, if not by its own name.
+        fps: the rate to resample other rigs' BVH to, and that of arrays without one; 30 by default.
+
+    Returns:
+        a clip, or a duet where the file holds two people, in metres and Y up. Rigs of any kind come back
+        on SMPL22, with the feet on the floor at 0.
+
+    Raises:
+        InputError: one sentence saying what is wrong with the file and what to do.
+    """
+    label = name or (path.name if isinstance(path, Path) else path if isinstance(path, str) else "")
+    suffix = Path(label).suffix.lower()
+    known = FORMATS.get(suffix)
+    if known is None or known.reader is None:
+        raise InputError(_unknown(suffix, "read", [f.suffix for f in FORMATS.values() if f.reader]))
+    return known.reader(path, name=Path(label).name, fps=fps)
+
+
+def read_pair(
+    a: str | Path, b: str | Path, *, fps: float | None = None, roles: tuple[str, str] = ("a", "b")
+) -> Duet:
+    """Reads two files of one person each that share one world, such as ``NAME_a.bvh`` and ``NAME_b.bvh``.
+
+    The longer one is cut to the length of the other.
+
+    Raises:
+        InputError: where a file cannot be read, holds two people, or the rates differ.
+    """
+    paths = (Path(a), Path(b))
+    if all(path.suffix.lower() == ".bvh" for path in paths):
+        rigs = [read_bvh(path) for path in paths]
+        own = [_own_clip(rig) for rig in rigs]
+        if own[0] is None or own[1] is None:
+            return retarget_duet(rigs[0], rigs[1], fps=fps or 30.0, roles=roles)
+        clips = [clip for clip in own if clip is not None]
+    else:
+        clips = []
+        for path in paths:
+            motion = read(path, fps=fps)
+            if isinstance(motion, Duet):
+                raise InputError(f"{path.name} already holds two people: give it alone.")
+            clips.append(motion)
+    frames = min(clip.num_frames for clip in clips)
+    return Duet(clips[0].cut(0, frames), clips[1].cut(0, frames), roles)
+
+
+def write(duet: Duet, path: str | Path) -> list[Path]:
+    """Writes a duet in the format of the path's suffix.
+
+    Returns:
+        the files written; BVH gives two, ``NAME_a.bvh`` and ``NAME_b.bvh``.
+
+    Raises:
+        InputError: for an unknown suffix, a full disk or a folder that cannot be written; nothing is left.
+    """
+    path = Path(path)
+    known = FORMATS.get(path.suffix.lower())
+    if known is None or known.writer is None:
+        raise InputError(_unknown(path.suffix, "written", [f.suffix for f in FORMATS.values() if f.writer]))
+    if not can_write(path.suffix):
+        raise InputError(f"{known.label} files need the package {known.needs}: install it with pip.")
+    return known.writer(duet, path)
+
+
+def _unknown(suffix: str, verb: str, known: list[str]) -> str:
+    shown = f"Files ending in {suffix!r}" if suffix else "Files without an ending"
+    return f"{shown} cannot be {verb}: use {', '.join(known[:-1])} or {known[-1]}."

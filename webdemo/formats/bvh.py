@@ -18,10 +18,10 @@ from numpy.typing import NDArray
 from webdemo.motion.errors import InputError
 from webdemo.motion.rigs import RigMotion
 
+from .files import check_duration, read_bytes
+
 Array = NDArray[np.floating]
 
-MAX_BYTES = 50 * 2**20
-MAX_SECONDS = 600.0
 MAX_JOINTS = 200
 MAX_NUMBERS = 40_000_000
 
@@ -55,20 +55,7 @@ def read_bvh(source: str | Path | bytes, *, name: str | None = None) -> RigMotio
     Raises:
         InputError: one sentence with the line and joint where the file is wrong.
     """
-    if isinstance(source, bytes):
-        data, label = source, name or "The file"
-    else:
-        path = Path(source)
-        label = name or path.name
-        try:
-            if path.stat().st_size > MAX_BYTES:
-                raise InputError(_too_large(label, path.stat().st_size))
-            data = path.read_bytes()
-        except OSError as error:
-            raise InputError(f"{label} cannot be read ({error.strerror}): check the path.") from None
-    if len(data) > MAX_BYTES:
-        raise InputError(_too_large(label, len(data)))
-
+    data, label = read_bytes(source, name)
     text = _decode(data, label)
     motion = re.search(r"^[ \t]*MOTION[ \t]*\r?$", text, re.MULTILINE | re.IGNORECASE)
     if not re.search(r"^\s*HIERARCHY\b", text[:4096], re.IGNORECASE):
@@ -78,13 +65,6 @@ def read_bvh(source: str | Path | bytes, *, name: str | None = None) -> RigMotio
     joints = _parse_hierarchy(text[: motion.start()], label)
     frame_time, values = _parse_motion(text, motion.end(), joints, label)
     return _to_rig(joints, values, frame_time, label)
-
-
-def _too_large(label: str, size: int) -> str:
-    return (
-        f"{label} has {size / 2**20:.0f} MB, more than the {MAX_BYTES // 2**20} MB allowed: "
-        "cut the motion or lower its frame rate."
-    )
 
 
 def _decode(data: bytes, label: str) -> str:
@@ -209,10 +189,7 @@ def _parse_motion(text: str, start: int, joints: list[_Joint], label: str) -> tu
         raise InputError(f"{label} holds no frames: export it again.")
     if not 1e-4 < frame_time <= 1.0:
         raise InputError(f"{label}: a Frame Time of {frame_time:g} s is not possible, 0.0333 is usual.")
-    if frames * frame_time > MAX_SECONDS:
-        raise InputError(
-            f"{label} says it lasts {frames * frame_time:.0f} s, more than the {MAX_SECONDS:.0f} s allowed: cut it."
-        )
+    check_duration(frames, 1 / frame_time, label)
     width = sum(len(joint.channels) for joint in joints)
     if width == 0:
         raise InputError(f"{label}: no joint has CHANNELS, so nothing moves: export it with its animation.")
@@ -247,7 +224,7 @@ def _find_bad_line(text: str, start: int, frames: int, width: int, joints: list[
                 float(word)
             except ValueError:
                 joint = _joint_of_column(joints, count % width)
-                return f"{label}, line {number}: {word[:20]!r} of joint {joint} is not a number: export it again."
+                return f"{label}, line {number}: {word[:20]!r} ({joint}) is not a number: export it again."
             count += 1
     return (
         f"{label} is cut short: it says {frames} frames of {width} numbers but holds {count // width} whole "
@@ -311,7 +288,7 @@ def _axis_rotation(axis: int, angle: Array) -> Array:
 
 
 def _frame_rate(frame_time: float) -> float:
-    """Frames a second; files round the frame time, so a rate within 0.05 % of a whole number is that number."""
+    """Frames a second; files round the frame time, so a rate within 0.05 % of a whole one is that one."""
     rate = 1.0 / frame_time
     return float(round(rate)) if abs(rate - round(rate)) < 5e-4 * rate else round(rate, 4)
 

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import itertools
+
 import numpy as np
 from numpy.typing import NDArray
 from scipy.ndimage import binary_closing, binary_opening, gaussian_filter1d, maximum_filter1d
@@ -155,7 +157,7 @@ def _pin(joint: Array, stands: Array, blend: int, heights: tuple[float, float]) 
         goal[1] = np.clip(goal[1], *heights)
         shift[start:stop] = goal - joint[start:stop]
     edges = [(0, 0), *runs, (len(joint), len(joint))]
-    for (_, before), (after, _) in zip(edges[:-1], edges[1:], strict=True):
+    for (_, before), (after, _) in itertools.pairwise(edges):
         gap = after - before
         if gap <= 0:
             continue

@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .cleaning import foot_contacts, plant_feet
-from .clip import Clip
+from .clip import Clip, Duet
 from .errors import InputError
 from .kinematics import fit_rotations, forward_kinematics
 from .rigs import BodyParts, RigMotion, match_joints
@@ -32,35 +32,72 @@ _spine += [float(SMPL22.bone_lengths[_J[name]]) for name in ("spine1", "spine2",
 _SPINE_FRACTIONS = np.cumsum(_spine) / np.sum(_spine)
 
 
-def retarget(rig: RigMotion, *, fps: float = 30.0, plant: bool = True, floor: bool = True) -> Clip:
-    """Brings a rig's motion onto SMPL22.
+def retarget(rig: RigMotion, *, fps: float = 30.0, plant: bool = True) -> Clip:
+    """Brings a rig's motion onto SMPL22, its feet on the floor at height 0.
 
     Args:
         rig: any humanoid rig with its motion.
         fps: frame rate of the result.
         plant: hold standing feet still and above the floor.
-        floor: put the lowest standing foot at height 0; leave off for a person who shares a floor with another.
 
     Returns:
-        a clip with positions and local rotations against SMPL22's T-pose, where it stood in the file.
+        a clip with positions and local rotations against SMPL22's T-pose, over the same place as in the file.
 
     Raises:
         InputError: where no human body is found in the rig.
     """
+    positions = _on_smpl(rig, fps, leg_scale(rig))
+    positions[..., 1] -= _floor_height(positions)
+    return _finished(positions, fps, rig.name, plant)
+
+
+def retarget_duet(
+    a: RigMotion, b: RigMotion, *, fps: float = 30.0, plant: bool = True, roles: tuple[str, str] = ("a", "b")
+) -> Duet:
+    """Brings two rigs that share one world onto SMPL22: one scale, one floor, the shorter one's length.
+
+    Raises:
+        InputError: where no human body is found in a rig.
+    """
+    scale = (leg_scale(a) + leg_scale(b)) / 2
+    people = [_on_smpl(rig, fps, scale) for rig in (a, b)]
+    frames = min(len(person) for person in people)
+    floor = min(_floor_height(person) for person in people)
+    clips = [
+        _finished(person[:frames] - np.array([0.0, floor, 0.0]), fps, rig.name, plant)
+        for person, rig in zip(people, (a, b), strict=True)
+    ]
+    return Duet(clips[0], clips[1], roles)
+
+
+def leg_scale(rig: RigMotion) -> float:
+    """SMPL22's leg length over the rig's: what its path is multiplied by so that its steps fit the legs."""
     parts = match_joints(rig)
-    to_y_up = up_rotation(rig, parts)
-    source = _bodies(rig.positions @ to_y_up.T, rig, parts)
-    rest = _standing_rest(rig, parts)
-    positions = _transfer(source, rest)
+    total = 0.0
+    for limb in (parts.left, parts.right):
+        for upper, lower in (("hip", "knee"), ("knee", "ankle")):
+            bone = rig.positions[:, limb[upper]] - rig.positions[:, limb[lower]]
+            total += float(np.median(np.linalg.norm(bone, axis=-1))) / 2
+    if not total > 0.05:
+        raise InputError("The legs of this rig have no length: export it with its OFFSETs.")
+    return _LEG / total
+
+
+def _on_smpl(rig: RigMotion, fps: float, scale: float) -> Array:
+    """(T, 22, 3) Y-up positions on SMPL22's bones at the new frame rate; the floor is the file's, scaled."""
+    parts = match_joints(rig)
+    source = _bodies(rig.positions @ up_rotation(rig, parts).T, rig, parts)
+    positions = _transfer(source, _standing_rest(rig, parts), scale)
     positions = resample(positions, rig.fps, fps)
     # A spline between frames bends bones by fractions of a millimetre; rotations set them right.
-    positions = forward_kinematics(fit_rotations(positions), positions[:, 0])
-    if floor:
-        positions[..., 1] -= _floor_height(positions)
+    return forward_kinematics(fit_rotations(positions), positions[:, 0])
+
+
+def _finished(positions: Array, fps: float, name: str, plant: bool) -> Clip:
     if plant:
         positions = plant_feet(positions, foot_contacts(positions, fps))
     rotations = fit_rotations(positions)
-    return Clip(forward_kinematics(rotations, positions[:, 0]), fps, SMPL22, rotations, rig.name)
+    return Clip(forward_kinematics(rotations, positions[:, 0]), fps, SMPL22, rotations, name)
 
 
 def up_rotation(rig: RigMotion, parts: BodyParts | None = None) -> Array:
@@ -161,17 +198,8 @@ def _trunk(bodies: dict[str, Array]) -> dict[str, Array]:
     return frames
 
 
-def _transfer(source: dict[str, Array], rest: dict[str, Array] | None) -> Array:
+def _transfer(source: dict[str, Array], rest: dict[str, Array] | None, scale: float) -> Array:
     """(T, 22, 3) positions on SMPL22's bones, scaled; the floor is still where it was, scaled."""
-    legs = [
-        np.linalg.norm(source[f"{s}_{upper}"] - source[f"{s}_{lower}"], axis=-1)
-        for s in ("left", "right")
-        for upper, lower in (("hip", "knee"), ("knee", "ankle"))
-    ]
-    leg = float(sum(np.median(length) for length in legs)) / 2
-    if not leg > 0.05:
-        raise InputError("The legs of this rig have no length: export it with its OFFSETs.")
-    scale = _LEG / leg
     frames = _trunk(source)
     if rest is not None:
         # What the rig calls upright is upright: frames count from its rest pose.
@@ -240,7 +268,7 @@ def _level_feet(result: Array, source: dict[str, Array], rest: dict[str, Array] 
 
 
 def _floor_height(positions: Array) -> float:
-    """Where the feet stand most: a low quantile of the lower foot's height, so that one bad frame does no harm."""
+    """Where the feet stand most: a low quantile of the lower foot, so that one bad frame does no harm."""
     feet = positions[:, [_J["left_foot"], _J["right_foot"], _J["left_ankle"], _J["right_ankle"]], 1]
     return float(np.quantile(feet.min(axis=-1), 0.05))
 

@@ -101,6 +101,7 @@ _LIMB_NAMES = {
     "knee": ("knee", "lowerleg", "lowleg", "shin", "shank", "calf", "tibia", "leg"),
     "hip": ("upleg", "upperleg", "thigh", "femur", "hip", "leg"),
 }
+_ALL_LIMB_NAMES = {name for names in _LIMB_NAMES.values() for name in names}
 _REQUIRED = ("shoulder", "elbow", "wrist", "hip", "knee", "ankle")
 
 
@@ -116,7 +117,7 @@ def match_joints(rig: RigMotion) -> BodyParts:
     if missing:
         raise InputError(
             f"{rig.name or 'The file'} has no joint that looks like the {', '.join(missing)} (it has "
-            f"{_shorten(rig.joint_names)}): rename its joints as in Mixamo's rig, e.g. LeftArm, LeftForeArm, LeftHand."
+            f"{_shorten(rig.joint_names)}): rename its joints as Mixamo does: LeftArm, LeftForeArm …"
         )
     pelvis = rig.common_ancestor(limbs["left"]["hip"], limbs["right"]["hip"])  # type: ignore[arg-type]
     chest = rig.common_ancestor(limbs["left"]["shoulder"], limbs["right"]["shoulder"])  # type: ignore[arg-type]
@@ -167,10 +168,9 @@ def _side_and_key(name: str) -> tuple[str, str]:
     words = [w.lower() for w in re.findall(r"[A-Z]+(?![a-z])|[A-Z]?[a-z]+", name.rsplit(":", 1)[-1])]
     sides = [_SIDES[w] for w in words if w in _SIDES]
     rest = [w for w in words if w not in _SIDES and w not in _NOISE]
-    if not sides and len(rest) == 1 and rest[0][0] in "lr":
-        # "lfemur": a side glued to the part, only where the remainder is a part's name.
-        if any(rest[0][1:] in names for names in _LIMB_NAMES.values()):
-            return _SIDES[rest[0][0]], rest[0][1:]
+    if not sides and len(rest) == 1 and rest[0][0] in "lr" and rest[0][1:] in _ALL_LIMB_NAMES:
+        # "lfemur": a side glued to the part.
+        return _SIDES[rest[0][0]], rest[0][1:]
     return (sides[0] if sides else "centre"), "".join(rest)
 
 

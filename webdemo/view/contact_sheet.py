@@ -64,7 +64,7 @@ def contact_sheet(
                     [(tile * column + 3, ground), (tile * (column + 1) - 3, ground)], fill=_GROUND, width=2
                 )
             # Whoever stands further away is drawn first.
-            for person in sorted(range(len(people)), key=lambda p: view[p, frame, 0, 2]):  # noqa: B023
+            for person in np.argsort(view[:, frame, 0, 2]):
                 _draw_person(draw, pixels[person], motion, person)
                 if row == 1:
                     _draw_facing(draw, pixels[person], motion)

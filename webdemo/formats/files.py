@@ -1,0 +1,87 @@
+"""Reading within limits, and writing so that a half-written file is never taken for a whole one."""
+
+from __future__ import annotations
+
+import errno
+import os
+import tempfile
+from collections.abc import Mapping
+from pathlib import Path
+
+from webdemo.motion.errors import InputError
+
+MAX_BYTES = 50 * 2**20
+MAX_SECONDS = 600.0
+
+
+def read_bytes(source: str | Path | bytes, name: str | None = None) -> tuple[bytes, str]:
+    """A file's bytes and what to call it in messages.
+
+    Raises:
+        InputError: where it cannot be read or is larger than 50 MB.
+    """
+    if isinstance(source, bytes):
+        data, label = source, name or "The file"
+        size = len(data)
+    else:
+        path = Path(source)
+        label = name or path.name
+        try:
+            size = path.stat().st_size
+            data = path.read_bytes() if size <= MAX_BYTES else b""
+        except OSError as error:
+            raise InputError(f"{label} cannot be read ({error.strerror}): check the path.") from None
+    if size > MAX_BYTES:
+        raise InputError(
+            f"{label} has {size / 2**20:.0f} MB, more than the {MAX_BYTES // 2**20} MB allowed: "
+            "cut the motion or lower its frame rate."
+        )
+    if not data:
+        raise InputError(f"{label} is empty: export it again.")
+    return data, label
+
+
+def check_duration(frames: int, fps: float, label: str) -> None:
+    """Raises InputError for motions longer than ten minutes."""
+    if fps > 0 and frames / fps > MAX_SECONDS:
+        raise InputError(
+            f"{label} lasts {frames / fps:.0f} s, more than the {MAX_SECONDS:.0f} s allowed: cut it."
+        )
+
+
+def write_files(contents: Mapping[Path, bytes]) -> list[Path]:
+    """Writes all files or none: each to a temporary one beside it first, then all take their places.
+
+    Raises:
+        InputError: where the disk is full or a folder cannot be written; earlier files are as before.
+    """
+    waiting: dict[Path, Path] = {}
+    try:
+        for path, data in contents.items():
+            path.parent.mkdir(parents=True, exist_ok=True)
+            descriptor, temporary = tempfile.mkstemp(prefix=f".{path.name}.", suffix=".tmp", dir=path.parent)
+            waiting[path] = Path(temporary)
+            with os.fdopen(descriptor, "wb") as file:
+                file.write(data)
+            # mkstemp makes private files; an exported one is as readable as any other.
+            os.chmod(temporary, 0o666 & ~_umask())
+        for path, temporary_path in waiting.items():
+            os.replace(temporary_path, path)
+    except OSError as error:
+        if error.errno in (errno.ENOSPC, errno.EDQUOT):
+            raise InputError(
+                f"{path} could not be written, the disk is full: free some space and try again."
+            ) from None
+        raise InputError(
+            f"{path} could not be written ({error.strerror or error}): choose another folder or name."
+        ) from None
+    finally:
+        for temporary_path in waiting.values():
+            temporary_path.unlink(missing_ok=True)
+    return list(contents)
+
+
+def _umask() -> int:
+    mask = os.umask(0)
+    os.umask(mask)
+    return mask

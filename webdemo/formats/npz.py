@@ -1,0 +1,246 @@
+"""NumPy files: our two-person .npz, single arrays, and AMASS' parameters.
+
+Uploads are never unpickled, and nothing is unpacked before the sizes that a file declares have been checked.
+"""
+
+from __future__ import annotations
+
+import io
+import json
+import zipfile
+import zlib
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.spatial.transform import Rotation
+
+from webdemo.motion.clip import Clip, Duet
+from webdemo.motion.errors import InputError
+from webdemo.motion.kinematics import forward_kinematics
+from webdemo.motion.representation import NUM_FEATURES, RAW_FEATURES, decode_positions, read_raw
+from webdemo.motion.skeleton import SKELETONS, SMPL22, Skeleton
+
+from .files import check_duration, read_bytes, write_files
+
+Array = NDArray[Any]
+
+MAX_UNPACKED = 256 * 2**20
+_MAX_HEADER = 4096
+_KEYS = (
+    "positions", "fps", "joint_names", "parents", "roles", "manifest",
+    "poses", "trans", "mocap_framerate", "mocap_frame_rate",
+)  # fmt: skip
+
+
+def write_npz(duet: Duet, path: str | Path) -> list[Path]:
+    """Writes a duet's positions (2, T, J, 3) float32 with fps, joint_names, parents, roles and manifest."""
+    buffer = io.BytesIO()
+    np.savez_compressed(
+        buffer,
+        positions=duet.positions,
+        fps=np.float64(duet.fps),
+        joint_names=np.array(duet.skeleton.joint_names),
+        parents=np.array(duet.skeleton.parents, dtype=np.int64),
+        roles=np.array(duet.roles),
+        manifest=np.array(json.dumps(duet.manifest or {}, ensure_ascii=False)),
+    )
+    return write_files({Path(path): buffer.getvalue()})
+
+
+def write_npy(duet: Duet, path: str | Path) -> list[Path]:
+    """Writes a duet's positions (2, T, J, 3) float32 alone; the frame rate is not kept."""
+    buffer = io.BytesIO()
+    np.save(buffer, duet.positions, allow_pickle=False)
+    return write_files({Path(path): buffer.getvalue()})
+
+
+def read_npz(source: str | Path | bytes, *, name: str | None = None, fps: float | None = None) -> Clip | Duet:
+    """Reads our .npz (one person or two) or AMASS' (one person).
+
+    Args:
+        source: a path, or the file's bytes.
+        name: what to call it in messages.
+        fps: frame rate where the file gives none; 30 by default.
+
+    Raises:
+        InputError: one sentence saying what is wrong with the file.
+    """
+    data, label = read_bytes(source, name)
+    arrays = _load_members(data, label)
+    if "positions" in arrays:
+        return _from_arrays(arrays, label, fps)
+    if "poses" in arrays and "trans" in arrays:
+        return _from_amass(arrays, label, fps)
+    raise InputError(
+        f"{label} holds neither 'positions' (2, frames, 22, 3) nor AMASS' 'poses' and 'trans': save it so."
+    )
+
+
+def read_npy(source: str | Path | bytes, *, name: str | None = None, fps: float | None = None) -> Clip | Duet:
+    """Reads a single array: positions (2, T, J, 3) or (T, J, 3), features (T, 262) or (T, 524), raw (T, 192).
+
+    Args:
+        source: a path, or the file's bytes.
+        name: what to call it in messages.
+        fps: frame rate; 30 by default, as the file has none.
+
+    Raises:
+        InputError: one sentence saying what is wrong with the file.
+    """
+    data, label = read_bytes(source, name)
+    array = _load_array(io.BytesIO(data), len(data), label)
+    rate = fps or 30.0
+    if array.ndim == 2 and array.shape[-1] in (NUM_FEATURES, 2 * NUM_FEATURES, RAW_FEATURES) and len(array):
+        array = _numbers(array, label)
+        check_duration(len(array), rate, label)
+        positions = read_raw(array)[0] if array.shape[-1] == RAW_FEATURES else decode_positions(array)
+        return _motion(positions, rate, SMPL22, ("a", "b"), None, label)
+    if array.ndim not in (3, 4):
+        raise InputError(
+            f"{label} has the shape {array.shape}: give positions (2, frames, 22, 3) or (frames, 22, 3)."
+        )
+    skeleton = next((s for s in SKELETONS.values() if s.num_joints == array.shape[-2]), SMPL22)
+    return _motion(_numbers(array, label), rate, skeleton, ("a", "b"), None, label)
+
+
+def _load_members(data: bytes, label: str) -> dict[str, Array]:
+    arrays = {}
+    try:
+        with zipfile.ZipFile(io.BytesIO(data)) as archive:
+            members = {m.filename.removesuffix(".npy"): m for m in archive.infolist()}
+            wanted = [members[key] for key in _KEYS if key in members]
+            total = sum(member.file_size for member in wanted)
+            if total > MAX_UNPACKED:
+                raise InputError(
+                    f"{label} would unpack to {total / 2**20:.0f} MB, more than is allowed: cut it."
+                )
+            for member in wanted:
+                with archive.open(member) as stream:
+                    key = member.filename.removesuffix(".npy")
+                    # ZipExtFile gives no more than the declared size, so neither does this read.
+                    content = stream.read(member.file_size + 1)
+                arrays[key] = _load_array(io.BytesIO(content), len(content), f"{label}, {key}")
+    except (zipfile.BadZipFile, zlib.error, EOFError, NotImplementedError, RuntimeError, OSError) as error:
+        raise InputError(f"{label} is not a whole .npz file ({error}): save it again.") from None
+    return arrays
+
+
+def _load_array(stream: io.BytesIO, size: int, label: str) -> Array:
+    """One .npy, whose header is checked against the bytes that are there before anything is made."""
+    try:
+        version = np.lib.format.read_magic(stream)
+        reader = {(1, 0): np.lib.format.read_array_header_1_0, (2, 0): np.lib.format.read_array_header_2_0}
+        shape, _, dtype = reader[version](stream, max_header_size=_MAX_HEADER)
+    except (ValueError, KeyError, EOFError, SyntaxError, TypeError, OverflowError, MemoryError):
+        raise InputError(
+            f"{label} is not a NumPy array file: save it with numpy.save or numpy.savez."
+        ) from None
+    if dtype.hasobject:
+        raise InputError(f"{label} holds Python objects, which are not read: save plain numbers.")
+    count = 1
+    for length in shape:
+        count *= int(length)
+    if count * dtype.itemsize != size - stream.tell():
+        raise InputError(f"{label} is damaged: its header says {shape}, its data has another size.")
+    stream.seek(0)
+    return np.lib.format.read_array(stream, allow_pickle=False, max_header_size=_MAX_HEADER)
+
+
+def _from_arrays(arrays: dict[str, Array], label: str, fps: float | None) -> Clip | Duet:
+    positions = _numbers(arrays["positions"], label)
+    rate = _rate(arrays.get("fps"), fps, label)
+    skeleton = _skeleton(arrays, positions, label)
+    roles = tuple(str(role)[:40] for role in np.atleast_1d(arrays.get("roles", ("a", "b")))[:2])
+    manifest = None
+    if "manifest" in arrays:
+        try:
+            manifest = json.loads(str(arrays["manifest"]))
+        except (ValueError, RecursionError):
+            raise InputError(f"{label}: its manifest is not JSON text: save it again.") from None
+    return _motion(
+        positions,
+        rate,
+        skeleton,
+        roles if len(roles) == 2 else ("a", "b"),  # type: ignore[arg-type]
+        manifest if isinstance(manifest, dict) and manifest else None,
+        label,
+    )
+
+
+def _from_amass(arrays: dict[str, Array], label: str, fps: float | None) -> Clip:
+    """AMASS: axis-angle ``poses`` (T, 3·J), ``trans`` (T, 3), Z up; body joints only, on SMPL22's bones."""
+    poses, trans = _numbers(arrays["poses"], label), _numbers(arrays["trans"], label)
+    if poses.ndim != 2 or poses.shape[1] < 66 or trans.shape != (len(poses), 3) or len(poses) == 0:
+        raise InputError(f"{label}: AMASS poses must be (frames, 66 or more) and trans (frames, 3).")
+    rate = _rate(arrays.get("mocap_framerate", arrays.get("mocap_frame_rate")), fps, label)
+    check_duration(len(poses), rate, label)
+    rotations = Rotation.from_rotvec(poses[:, :66].reshape(-1, 3)).as_matrix().reshape(-1, 22, 3, 3)
+    z_up_to_y_up = np.array([[1.0, 0, 0], [0, 0, 1], [0, -1, 0]])
+    rotations[:, 0] = z_up_to_y_up @ rotations[:, 0]
+    positions = forward_kinematics(rotations, trans @ z_up_to_y_up.T)
+    positions[..., 1] -= positions[..., 1].min()
+    return Clip(positions, rate, SMPL22, rotations, label)
+
+
+def _motion(
+    positions: Array,
+    fps: float,
+    skeleton: Skeleton,
+    roles: tuple[str, str],
+    manifest: dict[str, Any] | None,
+    label: str,
+) -> Clip | Duet:
+    if positions.ndim == 4 and len(positions) == 1:
+        positions = positions[0]
+    check_duration(positions.shape[-3] if positions.ndim > 2 else 0, fps, label)
+    try:
+        if positions.ndim == 4:
+            return Duet.from_positions(positions, fps=fps, skeleton=skeleton, roles=roles, manifest=manifest)
+        return Clip(positions, fps, skeleton, name=label)
+    except InputError as error:
+        raise InputError(f"{label}: {error}") from None
+
+
+def _numbers(array: Array, label: str) -> Array:
+    if array.dtype.kind not in "fiu":
+        raise InputError(f"{label} holds {array.dtype} where numbers are needed: save float32 metres.")
+    with np.errstate(over="ignore"):
+        numbers = array.astype(np.float32)
+    if not np.isfinite(numbers).all():
+        raise InputError(f"{label} holds NaN or infinite numbers: remove or repair those frames.")
+    if numbers.size and np.abs(numbers).max() > 1e4:
+        raise InputError(f"{label} holds places more than 10 km away: save metres.")
+    return numbers
+
+
+def _rate(stored: Array | None, given: float | None, label: str) -> float:
+    if stored is None:
+        return given or 30.0
+    try:
+        rate = float(np.asarray(stored).reshape(()))
+    except (TypeError, ValueError):
+        raise InputError(f"{label}: its frame rate is not one number: save fps as a number.") from None
+    if not 1.0 <= rate <= 1000.0:
+        raise InputError(f"{label}: a frame rate of {rate:g} is not possible: save frames a second.")
+    return rate
+
+
+def _skeleton(arrays: dict[str, Array], positions: Array, label: str) -> Skeleton:
+    joints = positions.shape[-2] if positions.ndim > 1 else 0
+    if "joint_names" in arrays and arrays["joint_names"].ndim == 1:
+        names = tuple(str(name) for name in arrays["joint_names"])
+        for skeleton in SKELETONS.values():
+            if names == skeleton.joint_names:
+                return skeleton
+        raise InputError(
+            f"{label} has joints that are not known ({', '.join(names[:4])}, …): use the joints of "
+            f"{' or '.join(SKELETONS)}, or save it as BVH, where any rig is understood."
+        )
+    found = next((skeleton for skeleton in SKELETONS.values() if skeleton.num_joints == joints), None)
+    if found is None:
+        raise InputError(
+            f"{label} has {joints} joints a frame and no joint_names: save the 22 joints of SMPL."
+        )
+    return found
