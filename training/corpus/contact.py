@@ -1,0 +1,307 @@
+"""Touching: arms that reach for the other person, hands that meet, bodies that give way.
+
+Everything works on the (T, 22, 3) positions of a person whose feet are already planted. Bones keep their
+length: arms are solved by two-bone IK, the spine and the neck bend as rigid parts, and where the hips move
+the legs are solved again so that the feet stay. A reach starts from wherever the arm is at that moment and
+follows a minimum-jerk course (Flash and Hogan 1985), so nothing jumps.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+import numpy as np
+from scipy.ndimage import gaussian_filter1d
+from scipy.spatial.transform import Rotation
+
+from webdemo.motion.skeleton import SMPL22
+from webdemo.motion.transforms import heading
+
+from .compose import ARMS, FPS, LEGS, Array, two_bone
+
+UP = np.array([0.0, 1.0, 0.0])
+SPINE = tuple(SMPL22.index(name) for name in ("spine1", "spine2", "spine3"))
+NECK, HEAD, CHEST = (SMPL22.index(name) for name in ("neck", "head", "spine3"))
+ELBOW_DOWN = (0.45, -1.0, -0.25)
+"""Where an elbow points in its owner's frame: outwards, up, forwards."""
+FULL_REACH = 0.93
+"""The share of the arm's length up to which an arm reaches before the trunk helps."""
+_LEGS_AND_ROOT = (0, *(joint for leg in LEGS for joint in leg))
+
+
+def _below(joint: int) -> list[int]:
+    found = [joint]
+    for parent, child in SMPL22.bones:
+        if parent in found:
+            found.append(child)
+    return found[1:]
+
+
+_DESCENDANTS = {joint: _below(joint) for joint in (*SPINE, NECK)}
+
+
+def envelope(frames: int, start: int, arrive: int, leave: int, end: int) -> Array:
+    """(frames,) 0 up to ``start``, 1 from ``arrive`` to ``leave``, 0 from ``end`` on; minimum jerk between."""
+    time = np.arange(frames, dtype=np.float64)
+    rise = np.clip((time - start) / max(arrive - start, 1), 0, 1)
+    fall = np.clip((end - time) / max(end - leave, 1), 0, 1)
+    return _minimum_jerk(rise) * _minimum_jerk(fall)
+
+
+def _minimum_jerk(t: Array) -> Array:
+    return t**3 * (10 + t * (6 * t - 15))
+
+
+def impulse(frames: int, start: int, *, rise: int = 5, fall: int = 22) -> Array:
+    """(frames,) how a body gives way to a blow: up within ``rise`` frames, back within ``fall``."""
+    return envelope(frames, start, start + rise, start + rise, start + rise + fall)
+
+
+def axes(positions: Array) -> tuple[Array, Array]:
+    """(T, 3) unit vectors to the person's left and ahead, level, of the shoulder girdle."""
+    across = positions[:, ARMS["left"][1]] - positions[:, ARMS["right"][1]]
+    across = across * np.array([1.0, 0.0, 1.0])
+    left = across / np.maximum(np.linalg.norm(across, axis=-1, keepdims=True), 1e-6)
+    return left, np.stack([-left[:, 2], np.zeros(len(left)), left[:, 0]], axis=-1)
+
+
+def on_body(positions: Array, joint: str, left: float, up: float, ahead: float) -> Array:
+    """(T, 3) a point fixed to a joint of a person: metres to their left, up and ahead of it."""
+    to_left, forward = axes(positions)
+    return positions[:, SMPL22.index(joint)] + left * to_left + up * UP + ahead * forward
+
+
+def towards(origin: Array, target: Array) -> Array:
+    """(T, 3) level unit vector from one point to another."""
+    gap = (target - origin) * np.array([1.0, 0.0, 1.0])
+    return gap / np.maximum(np.linalg.norm(gap, axis=-1, keepdims=True), 1e-6)
+
+
+def meeting(
+    a: Array, b: Array, side_a: str, side_b: str, *, height: float, apart: float = 0.08
+) -> tuple[Array, Array]:
+    """Where two wrists go when two hands meet between two people.
+
+    Args:
+        a, b: (T, 22, 3) the two people.
+        height: of the meeting point above the floor in metres.
+        apart: distance between the wrists in metres; the hands reach over each other.
+
+    Returns:
+        (T, 3) wrist of a and (T, 3) wrist of b, steady over time.
+    """
+    own, other = a[:, ARMS[side_a][1]], b[:, ARMS[side_b][1]]
+    middle = gaussian_filter1d((own + other) / 2, 4.0, axis=0, mode="nearest")
+    middle[:, 1] = height
+    line = towards(gaussian_filter1d(own, 4.0, axis=0), gaussian_filter1d(other, 4.0, axis=0)) * (apart / 2)
+    return middle - line, middle + line
+
+
+def bend(positions: Array, turn: Array, *, joints: tuple[int, ...] = SPINE) -> Array:
+    """Bends the spine by a rotation vector (T, 3) in radians against the world, shared between ``joints``."""
+    positions = positions.copy()
+    matrices = Rotation.from_rotvec(np.asarray(turn) / len(joints)).as_matrix()
+    for joint in joints:
+        moved = _DESCENDANTS[joint]
+        pivot = positions[:, joint : joint + 1]
+        positions[:, moved] = pivot + (positions[:, moved] - pivot) @ np.swapaxes(matrices, -1, -2)
+    return positions
+
+
+def lean_to(positions: Array, direction: Array, angle: Array) -> Array:
+    """Leans the trunk by ``angle`` (T,) radians towards a level ``direction`` (T, 3)."""
+    return bend(positions, np.cross(UP, direction) * angle[:, None])
+
+
+def nod(positions: Array, angle: Array) -> Array:
+    """Bends the neck forward by ``angle`` (T,) radians."""
+    _, forward = axes(positions)
+    return bend(positions, np.cross(UP, forward) * angle[:, None], joints=(NECK,))
+
+
+def shift_hips(positions: Array, offset: Array) -> Array:
+    """Moves the body by ``offset`` (T, 3) metres over feet that stay where they are."""
+    moved = positions + offset[:, None]
+    angle = heading(positions)
+    forward = np.stack([np.sin(angle), np.zeros(len(angle)), np.cos(angle)], axis=-1)
+    for hip, knee, ankle, toe in LEGS:
+        moved[:, knee], moved[:, ankle] = two_bone(
+            moved[:, hip], moved[:, knee], moved[:, ankle], positions[:, ankle], forward
+        )
+        moved[:, toe] = moved[:, ankle] + positions[:, toe] - positions[:, ankle]
+    return moved
+
+
+def reach(
+    positions: Array,
+    targets: Mapping[str, Array],
+    weight: Array,
+    *,
+    elbow: tuple[float, float, float] = ELBOW_DOWN,
+    lean: float = 0.3,
+    twist: float = 0.55,
+    shift: float = 0.12,
+) -> Array:
+    """Brings one or both wrists to moving targets and lets go again.
+
+    Where a target is farther than the arm, the trunk turns that shoulder forward and leans towards it,
+    then the hips move; no more than needed at the frame of the fullest reach, and as the arm's weight.
+
+    Args:
+        positions: (T, 22, 3) the person.
+        targets: "left" and/or "right" to (T, 3) where that wrist should be.
+        weight: (T,) from 0, the arm as it was, to 1, the wrist at its target.
+        elbow: which way the elbows point (outwards, up, forwards).
+        lean, twist: most that the trunk may lean and turn, radians.
+        shift: most that the hips may move, metres.
+
+    Returns:
+        (T, 22, 3) with the same bone lengths.
+    """
+    full = int(np.flatnonzero(weight >= weight.max() - 1e-9).mean()) if weight.max() > 0 else 0
+    still = slice(full, full + 1)
+    goals = {side: target[still] for side, target in targets.items()}
+    direction = towards(positions[still, 0], sum(goals.values()) / len(goals))
+    turn = twist * {("left",): -1.0, ("right",): 1.0}.get(tuple(goals), 0.0)
+
+    def trunk(share: float) -> Array:
+        return np.cross(UP, direction[0]) * (lean * share) + UP * (turn * share)
+
+    def missing(body: Array) -> float:
+        return max(
+            float(np.linalg.norm(goal - body[:, ARMS[side][1]], axis=-1)[0])
+            - FULL_REACH * _arm_length(body, side)
+            for side, goal in goals.items()
+        )
+
+    shares = np.linspace(0, 1, 6)
+    gaps = [missing(bend(positions[still], trunk(share)[None])) for share in shares]
+    enough = np.flatnonzero(np.array(gaps) <= 0)
+    if len(enough) and enough[0] > 0:  # between the last share too little and the first enough
+        high = int(enough[0])
+        share = shares[high - 1] + (shares[1]) * gaps[high - 1] / (gaps[high - 1] - gaps[high])
+    else:
+        share = shares[enough[0]] if len(enough) else 1.0
+    if share > 0:
+        left_over = 0.0 if len(enough) else min(gaps[-1] * 1.2, shift)
+        if left_over > 0.005:
+            positions = shift_hips(positions, direction * left_over * weight[:, None])
+        positions = bend(positions, trunk(float(share))[None] * weight[:, None])
+    for side, target in targets.items():
+        positions = reach_arm(positions, side, target, weight, elbow=elbow)
+    return positions
+
+
+def _arm_length(positions: Array, side: str) -> float:
+    _, shoulder, elbow, wrist = ARMS[side]
+    points = positions[0, [shoulder, elbow, wrist]]
+    return float(np.linalg.norm(np.diff(points, axis=0), axis=-1).sum())
+
+
+def reach_arm(
+    positions: Array,
+    side: str,
+    target: Array,
+    weight: Array,
+    *,
+    elbow: tuple[float, float, float] = ELBOW_DOWN,
+) -> Array:
+    """Two-bone IK of one arm towards ``target`` (T, 3) by ``weight`` (T,); nothing but the arm moves."""
+    _, shoulder, middle, wrist = ARMS[side]
+    root, old = positions[:, shoulder], positions[:, wrist] - positions[:, shoulder]
+    upper = np.linalg.norm(positions[:, middle] - root, axis=-1, keepdims=True)
+    lower = np.linalg.norm(positions[:, wrist] - positions[:, middle], axis=-1, keepdims=True)
+    share = weight[:, None]
+    gap = old * (1 - share) + (target - root) * share
+    distance = np.linalg.norm(gap, axis=-1, keepdims=True)
+    along = gap / np.maximum(distance, 1e-6)
+    distance = _soft_limit(distance, upper + lower)
+    # The limits act only as far as the reach does, so that an untouched frame stays as it was.
+    distance = np.linalg.norm(old, axis=-1, keepdims=True) * (share == 0) + distance * (share > 0)
+    distance = np.clip(distance, np.abs(upper - lower) + 0.02, upper + lower - 1e-4)
+
+    to_left, forward = axes(positions)
+    outwards = to_left if side == "left" else -to_left
+    pole = _unit(elbow[0] * outwards + elbow[1] * UP + elbow[2] * forward)
+    pole = _unit(pole - np.sum(pole * along, axis=-1, keepdims=True) * along)
+    was = _unit(old)
+    offset = positions[:, middle] - root
+    offset = offset - np.sum(offset * was, axis=-1, keepdims=True) * was
+    carried = _carry(offset + 0.02 * pole, was, along)
+    # A straight arm has no bend to keep; its elbow turns to the pole as soon as it folds.
+    side_of = _unit(_unit(carried) * (1 - share) + pole * share)
+    side_of = _unit(side_of - np.sum(side_of * along, axis=-1, keepdims=True) * along)
+
+    cosine = (upper**2 + distance**2 - lower**2) / (2 * distance)
+    height = np.sqrt(np.maximum(upper**2 - cosine**2, 0))
+    solved = positions.copy()
+    solved[:, middle] = root + along * cosine + side_of * height
+    solved[:, wrist] = root + along * distance
+    untouched = weight <= 0
+    solved[untouched] = positions[untouched]
+    return solved
+
+
+def pose_arm(positions: Array, side: str, upper: Array, lower: Array, weight: Array) -> Array:
+    """Turns upper arm and forearm towards the directions ``upper`` and ``lower`` (T, 3) by ``weight`` (T,)."""
+    _, shoulder, elbow, wrist = ARMS[side]
+    posed = positions.copy()
+    start = positions[:, shoulder]
+    for end, begin, direction in ((elbow, shoulder, upper), (wrist, elbow, lower)):
+        bone = positions[:, end] - positions[:, begin]
+        length = np.linalg.norm(bone, axis=-1, keepdims=True)
+        posed[:, end] = start + length * _between(_unit(bone), _unit(direction), weight[:, None])
+        start = posed[:, end]
+    return posed
+
+
+def _between(first: Array, second: Array, share: Array) -> Array:
+    """Unit vectors on the great circle from ``first`` to ``second``."""
+    axis = np.cross(first, second)
+    sine = np.linalg.norm(axis, axis=-1, keepdims=True)
+    angle = np.arctan2(sine, np.sum(first * second, axis=-1, keepdims=True))
+    axis = axis / np.maximum(sine, 1e-9)
+    turned = Rotation.from_rotvec(axis * angle * share).apply(first)
+    return turned
+
+
+def _carry(vector: Array, start: Array, end: Array) -> Array:
+    """``vector`` turned by the smallest rotation that takes the unit vector ``start`` to ``end``."""
+    axis = np.cross(start, end)
+    cosine = np.sum(start * end, axis=-1, keepdims=True)
+    turned = vector * cosine + np.cross(axis, vector)
+    return turned + axis * np.sum(axis * vector, axis=-1, keepdims=True) / np.maximum(1 + cosine, 1e-3)
+
+
+def _soft_limit(distance: Array, length: Array) -> Array:
+    """Distances that approach the arm's length smoothly and never pass it."""
+    knee, room = 0.94 * length, 0.055 * length
+    return np.where(distance > knee, knee + room * (1 - np.exp(-(distance - knee) / room)), distance)
+
+
+def _unit(vector: Array) -> Array:
+    return vector / np.maximum(np.linalg.norm(vector, axis=-1, keepdims=True), 1e-9)
+
+
+def keep_apart(positions: Array, other: Array, *, radius: float = 0.2) -> Array:
+    """Leans two trunks out of each other: this person moves back where the spines come closer than ``2 radius``."""
+    gap = (positions[:, CHEST] - other[:, CHEST]) * np.array([1.0, 0.0, 1.0])
+    distance = np.linalg.norm(gap, axis=-1, keepdims=True)
+    push = np.maximum(2 * radius - distance, 0) / 2
+    push = gaussian_filter1d(push, 4.0, axis=0, mode="nearest")
+    return shift_hips(positions, gap / np.maximum(distance, 1e-6) * push)
+
+
+def touching(a: Array, b: Array, joint_a: str, joint_b: str) -> Array:
+    """(T,) distance in metres between a joint of one person and a joint of the other."""
+    return np.linalg.norm(a[:, SMPL22.index(joint_a)] - b[:, SMPL22.index(joint_b)], axis=-1)
+
+
+def shaking(frames: int, start: int, stop: int, *, hertz: float, size: float) -> Array:
+    """(frames,) metres up and down of a handshake: starts gently and dies away."""
+    time = (np.arange(frames) - start) / FPS
+    length = max((stop - start) / FPS, 1e-3)
+    inside = (time >= 0) & (time <= length)
+    share = np.clip(time / length, 0, 1)
+    wave = np.sin(2 * np.pi * hertz * time) * np.sin(np.pi * share) * (1 - 0.4 * share)
+    return np.where(inside, size * wave, 0.0)
