@@ -15,8 +15,9 @@ Array = NDArray[np.floating]
 # Person a blue, person b orange; left limbs lighter, so that sides can be told apart.
 _COLOURS = {0: ((31, 95, 168), (120, 175, 232)), 1: ((196, 84, 10), (250, 168, 100))}
 _BACKGROUND, _INK, _GROUND = (252, 252, 250), (60, 60, 60), (205, 205, 200)
-_YAW = np.radians(35.0)
-_PITCH = np.radians(12.0)
+# One person is seen from front and aside, two from the side, so that they stand beside each other.
+_YAW_OF_ONE, _YAW_OF_TWO = np.radians(35.0), np.radians(-65.0)
+_PITCH = np.radians(10.0)
 
 
 def contact_sheet(
@@ -32,9 +33,9 @@ def contact_sheet(
         tile: width of a picture in pixels.
 
     Returns:
-        the picture. In the upper row the viewer stands in front of +Z, a little to the left; in the lower
-        row +Z points down the page and +X to the right. A small triangle shows where each person faces.
-        The upper row follows the people, the lower one stays where it is.
+        the picture. The upper row follows the people: one is seen from the front and a little aside, two from
+        the side with person a on the left where a faces b along +Z. In the lower row, which stays in place,
+        +Z points down the page and +X to the right. A small triangle shows where each person faces.
     """
     people = motion.positions if isinstance(motion, Duet) else motion.positions[None]
     people = people.astype(np.float64)
@@ -79,7 +80,8 @@ def contact_sheet(
 def _front(people: Array) -> Array:
     """(P, T, J, 3) right, up, towards the viewer, around the middle of the people in each frame."""
     people = people - people[:, :, :1].mean(axis=0, keepdims=True) * np.array([1.0, 0.0, 1.0])
-    cos, sin = np.cos(_YAW), np.sin(_YAW)
+    yaw = _YAW_OF_ONE if len(people) == 1 else _YAW_OF_TWO
+    cos, sin = np.cos(yaw), np.sin(yaw)
     x, y, z = people[..., 0], people[..., 1], people[..., 2]
     right, depth = x * cos - z * sin, x * sin + z * cos
     # Seen from slightly above: what is nearer sinks.
