@@ -51,7 +51,7 @@ def register(
 
 def load_families() -> dict[str, Family]:
     """All registered families, after importing every module of this package that defines some."""
-    for module in ("gestures", "locomotion", "combat", "sequences", "contact"):
+    for module in ("gestures", "locomotion", "combat", "sequences", "contact", "bodies"):
         if find_spec(f"{__name__}.{module}") is not None:
             import_module(f"{__name__}.{module}")
     return REGISTRY
