@@ -23,11 +23,10 @@ import torch
 from torch import Tensor
 from torch.nn.attention import SDPBackend, sdpa_kernel
 
+from models.compact import CompactConfig, CompactInterGen
 from models.diffusion import NoiseSchedule
-from models.intergen import InterGenConfig, InterGenDenoiser
 from models.intergen_losses import InterGenLoss, LossWeights, simple_loss
-from models.motion_tokens import decode, mirror_control, pack, unpack
-from models.text import TextConditioner, TextConditionerConfig
+from models.motion_tokens import mirror_control, pack
 from training import checkpoint
 from training.corpus.captions import mirror_caption
 from training.prepare import Scenes, load, normalizer
@@ -134,28 +133,22 @@ class Data:
         return Batch(*(x.to(self.device) for x in (x0, mask, frame_mask, text, text_mask)))
 
 
-class Model(torch.nn.Module):
-    """Denoiser and text conditioner: what is trained, averaged and shipped together."""
-
-    def __init__(self, settings: Settings, token_features: int) -> None:
-        super().__init__()
-        self.denoiser = InterGenDenoiser(
-            InterGenConfig(
-                input_features=token_features,
-                latent_dim=settings.latent_dim,
-                ff_size=settings.ff_size,
-                num_layers=settings.num_layers,
-                num_heads=settings.num_heads,
-                cond_dim=settings.cond_dim,
-                dropout=settings.dropout,
-                role_embedding=True,
-            )
+def new_model(settings: Settings, data: Data) -> CompactInterGen:
+    """An untrained network of the run's sizes that carries the data's normaliser."""
+    model = CompactInterGen(
+        CompactConfig(
+            latent_dim=settings.latent_dim,
+            ff_size=settings.ff_size,
+            num_layers=settings.num_layers,
+            num_heads=settings.num_heads,
+            cond_dim=settings.cond_dim,
+            dropout=settings.dropout,
+            layout=data.scenes.layout,
         )
-        self.conditioner = TextConditioner(TextConditionerConfig(latent_dim=settings.cond_dim, dropout=0.05))
-
-    def forward(self, x: Tensor, t: Tensor, batch: Batch, keep: Tensor) -> Tensor:
-        cond = self.conditioner(batch.text, batch.text_mask) * keep[:, None]
-        return self.denoiser(x, t, cond, batch.mask)
+    )
+    model.mean.copy_(data.mean)
+    model.std.copy_(data.std)
+    return model
 
 
 class Trainer:
@@ -165,8 +158,8 @@ class Trainer:
         self.scenes, self.settings, self.out, self.device = scenes, settings, out, device
         torch.manual_seed(settings.seed)
         self.data = Data(scenes, settings, out, device)
-        self.model = Model(settings, scenes.layout.token_features).to(device)
-        self.ema = Model(settings, scenes.layout.token_features).to(device).requires_grad_(False)
+        self.model = new_model(settings, self.data).to(device)
+        self.ema = new_model(settings, self.data).to(device).requires_grad_(False)
         self.ema.load_state_dict(self.model.state_dict())
         self.optimizer = torch.optim.AdamW(
             self.model.parameters(), lr=settings.learning_rate, weight_decay=settings.weight_decay, fused=True
@@ -175,8 +168,6 @@ class Trainer:
         self.loss = InterGenLoss(
             settings.weights, t_bar=round(settings.t_bar * self.schedule.timesteps), near_by="truth"
         )
-        self.mean, self.std = self.data.mean.to(device), self.data.std.to(device)
-        self.step = 0
         self.settings_json = json.dumps(asdict(settings), sort_keys=True)
         self.step = checkpoint.restore(self.out / "last.safetensors", self.parts(), self.settings_json)
 
@@ -195,15 +186,12 @@ class Trainer:
         xt = self.schedule.q_sample(batch.x0, t, noise)
         # The fused attention kernel's backward pass is slow for sequences this short.
         with torch.autocast(self.device, torch.bfloat16), sdpa_kernel(SDPBackend.MATH):
-            predicted = self.model(xt, t, batch, keep)
+            cond = self.model.conditioner(batch.text, batch.text_mask) * keep[:, None]
+            predicted = self.model.denoiser(xt, t, cond, batch.mask)
         predicted = predicted.float()
         people = (*batch.x0.shape[:2], 2, -1)
         terms = {"simple": simple_loss(predicted.view(people), batch.x0.view(people), batch.mask)}
-        layout = self.scenes.layout
-        positions = [
-            decode(unpack(x, layout) * self.std + self.mean, layout)[0].transpose(1, 2)
-            for x in (predicted, batch.x0)
-        ]
+        positions = [self.model.positions(x)[0].transpose(1, 2) for x in (predicted, batch.x0)]
         return terms | self.loss.regularizers(*positions, t, batch.frame_mask)
 
     def train_step(self) -> dict[str, float]:
