@@ -115,8 +115,10 @@ def solve_two_bones(root: Array, middle: Array, end: Array, goal: Array, pole: A
     old_axis = old_axis / np.maximum(np.linalg.norm(old_axis, axis=-1, keepdims=True), 1e-9)
     bend = middle - root
     bend = bend - np.sum(bend * old_axis, axis=-1, keepdims=True) * old_axis
-    # The pole only decides where the limb is straight: its 3 mm vanish beside any visible bend.
-    bend = bend + 0.003 * pole
+    # The pole only decides where the limb is straight: its 3 mm vanish beside any visible bend, and a limb
+    # that need not move keeps its own.
+    moved = np.linalg.norm(goal - end, axis=-1, keepdims=True)
+    bend = bend + 0.003 * np.minimum(moved / 0.01, 1.0) * pole
     bend = bend - np.sum(bend * axis, axis=-1, keepdims=True) * axis
     bend = bend / np.maximum(np.linalg.norm(bend, axis=-1, keepdims=True), 1e-9)
     return root + along * axis + aside * bend, root + distance * axis

@@ -1,0 +1,96 @@
+"""Feet that stand."""
+
+from __future__ import annotations
+
+import time
+
+import numpy as np
+import pytest
+
+from webdemo.motion import SMPL22
+from webdemo.motion.cleaning import foot_contacts, plant_feet, solve_two_bones
+from webdemo.motion.skeleton import FEET
+
+from .bodies import FPS, gliding, marching
+
+
+def _bones(positions):
+    return np.stack(
+        [np.linalg.norm(positions[:, j] - positions[:, p], axis=-1) for p, j in SMPL22.bones], axis=-1
+    )
+
+
+def test_a_gliding_person_stands_still_after_planting():
+    positions = gliding(speed=0.08, sink=0.02)
+    contacts = foot_contacts(positions, FPS)
+    assert contacts.all()
+    planted = plant_feet(positions, contacts)
+    feet = planted[:, list(FEET)]
+    assert np.ptp(feet[..., [0, 2]], axis=0).max() < 1e-6
+    assert feet[..., 1].min() > -1e-9
+    np.testing.assert_allclose(_bones(planted), _bones(positions), atol=1e-6)
+    # The body still glides above the feet.
+    np.testing.assert_allclose(planted[:, 0, 0], positions[:, 0, 0], atol=1e-9)
+
+
+def test_bodies_without_contact_stay_as_they_are():
+    positions, _ = marching()
+    flying = positions + np.array([0, 1.0, 0])
+    contacts = foot_contacts(flying, FPS)
+    assert not contacts.any()
+    np.testing.assert_allclose(plant_feet(flying, contacts), flying, atol=1e-6)
+
+
+def test_marching_is_planted_without_jumps():
+    positions, _ = marching(120)
+    positions[..., 1] -= 0.03
+    planted = plant_feet(positions, foot_contacts(positions, FPS))
+    assert planted[:, list(FEET), 1].min() >= -1e-9
+    np.testing.assert_allclose(_bones(planted), _bones(positions), atol=1e-6)
+    steps = np.abs(np.diff(planted - positions, axis=0)).max()
+    assert steps < 0.03  # metres a frame that the correction itself moves
+
+
+def test_a_contact_that_travels_far_is_not_pinned_to_one_place():
+    positions = gliding(120, speed=0.35)
+    planted = plant_feet(positions, np.ones((120, 4), bool))
+    travelled = planted[-1, FEET[0], 0] - planted[0, FEET[0], 0]
+    assert travelled > 0.7
+
+
+def test_contacts_of_short_motions():
+    positions = gliding(1)
+    assert foot_contacts(positions, FPS).shape == (1, 4)
+    assert plant_feet(positions, foot_contacts(positions, FPS)).shape == (1, 22, 3)
+    assert foot_contacts(gliding(2), FPS).shape == (2, 4)
+
+
+def test_a_single_slow_frame_is_no_contact():
+    positions = gliding(20, speed=2.0, sink=0.0)
+    positions[10] = positions[9]
+    assert not foot_contacts(positions, FPS).any()
+
+
+def test_planting_is_fast():
+    positions, _ = marching(300)
+    contacts = foot_contacts(positions, FPS)
+    plant_feet(positions, contacts)
+    start = time.perf_counter()
+    plant_feet(positions, contacts)
+    assert time.perf_counter() - start < 0.06
+
+
+@pytest.mark.parametrize("goal", [(0.1, -0.5, 0.2), (0.0, -2.0, 0.0), (0.0, -0.05, 0.0)])
+def test_two_bones_reach_or_draw_in(goal):
+    hip, knee, ankle = np.zeros(3), np.array([0, -0.4, 0.05]), np.array([0, -0.8, 0.0])
+    new_knee, new_ankle = solve_two_bones(hip, knee, ankle, np.array(goal), np.array([0, 0, 1.0]))
+    upper, lower = np.linalg.norm(knee), np.linalg.norm(ankle - knee)
+    assert np.isclose(np.linalg.norm(new_knee), upper, atol=1e-5)
+    assert np.isclose(np.linalg.norm(new_ankle - new_knee), lower, atol=1e-5)
+    reach = np.linalg.norm(goal)
+    if abs(upper - lower) < reach < upper + lower:
+        np.testing.assert_allclose(new_ankle, goal, atol=1e-5)
+    else:
+        assert np.cross(new_ankle, goal) == pytest.approx(0, abs=1e-6)
+    if reach < upper + lower:
+        assert new_knee[2] > 0  # knees bend forward

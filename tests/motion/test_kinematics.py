@@ -1,0 +1,88 @@
+"""Forward kinematics and rotations back from positions."""
+
+from __future__ import annotations
+
+import numpy as np
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from scipy.spatial.transform import Rotation
+
+from webdemo.motion import SMPL22
+from webdemo.motion.kinematics import (
+    fit_rotations,
+    forward_kinematics,
+    global_rotations,
+    local_rotations,
+    project_to_skeleton,
+)
+
+quick = settings(max_examples=25, deadline=None)
+
+
+def _pose(seed: int, spread: float) -> tuple[np.ndarray, np.ndarray]:
+    rng = np.random.default_rng(seed)
+    rotations = (
+        Rotation.from_rotvec(rng.normal(scale=spread, size=(3 * 22, 3))).as_matrix().reshape(3, 22, 3, 3)
+    )
+    root = rng.normal(size=(3, 3))
+    return rotations, root
+
+
+def _bones(positions: np.ndarray) -> np.ndarray:
+    return np.stack(
+        [np.linalg.norm(positions[..., j, :] - positions[..., p, :], axis=-1) for p, j in SMPL22.bones],
+        axis=-1,
+    )
+
+
+def test_rest_pose_comes_from_identity():
+    positions = forward_kinematics(np.tile(np.eye(3), (22, 1, 1)), np.zeros(3))
+    np.testing.assert_allclose(positions, SMPL22.rest_positions(), atol=1e-12)
+
+
+@quick
+@given(st.integers(0, 10**6), st.floats(0.0, 2.0))
+def test_bones_keep_their_lengths(seed, spread):
+    positions = forward_kinematics(*_pose(seed, spread))
+    np.testing.assert_allclose(_bones(positions), np.tile(SMPL22.bone_lengths[1:], (3, 1)), atol=1e-9)
+
+
+@quick
+@given(st.integers(0, 10**6), st.floats(0.0, 2.0))
+def test_fitted_rotations_give_the_positions_back(seed, spread):
+    rotations, root = _pose(seed, spread)
+    positions = forward_kinematics(rotations, root)
+    fitted = fit_rotations(positions)
+    np.testing.assert_allclose(forward_kinematics(fitted, root), positions, atol=1e-6)
+    np.testing.assert_allclose(np.linalg.det(fitted), 1, atol=1e-9)
+
+
+@quick
+@given(st.integers(0, 10**6))
+def test_local_and_global_rotations_are_inverse(seed):
+    rotations, _ = _pose(seed, 1.0)
+    np.testing.assert_allclose(local_rotations(global_rotations(rotations)), rotations, atol=1e-9)
+
+
+@quick
+@given(st.integers(0, 10**6))
+def test_projection_restores_bones_and_changes_nothing_twice(seed):
+    rotations, root = _pose(seed, 0.5)
+    noisy = forward_kinematics(rotations, root) + np.random.default_rng(seed).normal(
+        scale=0.03, size=(3, 22, 3)
+    )
+    projected, _ = project_to_skeleton(noisy)
+    np.testing.assert_allclose(_bones(projected), np.tile(SMPL22.bone_lengths[1:], (3, 1)), atol=1e-9)
+    again, _ = project_to_skeleton(projected)
+    np.testing.assert_allclose(again, projected, atol=1e-6)
+    np.testing.assert_allclose(projected[:, 0], noisy[:, 0])
+
+
+def test_opposite_bone_has_a_rotation():
+    positions = SMPL22.rest_positions()
+    knee, ankle, foot = (SMPL22.index(f"left_{n}") for n in ("knee", "ankle", "foot"))
+    bone = positions[ankle] - positions[knee]
+    positions[[ankle, foot]] -= 2 * bone
+    projected, rotations = project_to_skeleton(positions)
+    assert np.isfinite(rotations).all()
+    np.testing.assert_allclose(projected[ankle], positions[ankle], atol=1e-6)

@@ -1,0 +1,89 @@
+"""Properties of placing motion in the world."""
+
+from __future__ import annotations
+
+import numpy as np
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from webdemo.motion import SMPL22
+from webdemo.motion.transforms import (
+    canonicalize,
+    facing,
+    heading,
+    heading_matrix,
+    mirrored,
+    put_on_floor,
+    resample,
+    turn,
+)
+
+from .bodies import FPS, marching
+
+ANGLES = st.floats(-3.1, 3.1)
+quick = settings(max_examples=20, deadline=None)
+
+
+@quick
+@given(ANGLES)
+def test_heading_follows_a_turn(angle):
+    body = SMPL22.rest_positions()
+    assert np.isclose(heading(body), 0)
+    assert np.isclose(heading(turn(body, angle)), angle, atol=1e-9)
+    np.testing.assert_allclose(facing(turn(body, angle)), [np.sin(angle), 0, np.cos(angle)], atol=1e-9)
+
+
+@quick
+@given(ANGLES, ANGLES)
+def test_headings_add_up(first, second):
+    np.testing.assert_allclose(
+        heading_matrix(first) @ heading_matrix(second), heading_matrix(first + second), atol=1e-12
+    )
+
+
+@quick
+@given(ANGLES, st.floats(-50, 50), st.floats(-50, 50), st.integers(0, 59))
+def test_canonical_frame_forgets_where_the_scene_was(angle, x, z, frame):
+    positions, _ = marching()
+    scene = np.stack([positions, turn(positions, 2.0) + np.array([1.0, 0, 2.0])])
+    moved = turn(scene, angle) + np.array([x, 0, z])
+    first = canonicalize(scene, frame=frame)
+    np.testing.assert_allclose(canonicalize(moved, frame=frame), first, atol=1e-9)
+    np.testing.assert_allclose(first[0, frame, 0, [0, 2]], 0, atol=1e-9)
+    assert abs(heading(first[0, frame])) < 1e-9
+    np.testing.assert_allclose(first[..., 1], scene[..., 1])
+
+
+def test_mirror_is_its_own_inverse_and_swaps_hands():
+    positions, _ = marching()
+    reflected = mirrored(positions)
+    np.testing.assert_allclose(mirrored(reflected), positions)
+    left, right = SMPL22.index("left_wrist"), SMPL22.index("right_wrist")
+    np.testing.assert_allclose(reflected[:, left], positions[:, right] * [-1, 1, 1])
+    np.testing.assert_allclose(heading(reflected), -heading(positions), atol=1e-9)
+
+
+def test_floor_is_the_lowest_joint_of_all():
+    positions, _ = marching()
+    people = np.stack([positions + np.array([0, 0.3, 0]), positions - np.array([0, 0.4, 0])])
+    floored = put_on_floor(people)
+    assert floored[..., 1].min() == 0
+    np.testing.assert_allclose(floored[0] - floored[1], people[0] - people[1])
+
+
+@quick
+@given(st.sampled_from([24.0, 25.0, 30.0, 50.0, 60.0, 120.0]))
+def test_resampling_keeps_length_and_smooth_motion(fps):
+    positions, _ = marching(60)
+    there = resample(positions, FPS, fps)
+    assert len(there) == int(59 / FPS * fps + 1e-6) + 1
+    np.testing.assert_allclose(there[0], positions[0], atol=1e-9)
+    if fps >= 50:
+        back = resample(there, fps, FPS)
+        np.testing.assert_allclose(back, positions[: len(back)], atol=0.003)
+
+
+def test_resampling_short_motion():
+    positions, _ = marching(2)
+    assert len(resample(positions, 30, 60)) == 3
+    assert len(resample(positions[:1], 30, 60)) == 1
