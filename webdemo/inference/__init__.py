@@ -1,0 +1,22 @@
+"""The shared inference layer: requests, the engine that runs them, results.
+
+Importing this package imports no torch; :class:`Engine` does when it is first asked for.
+"""
+
+from typing import TYPE_CHECKING, Any
+
+from .cancel import CancelToken
+from .requests import Cancelled, GenerateRequest, Progress, Result
+
+if TYPE_CHECKING:
+    from .engine import Engine
+
+__all__ = ["CancelToken", "Cancelled", "Engine", "GenerateRequest", "Progress", "Result"]
+
+
+def __getattr__(name: str) -> Any:
+    if name == "Engine":
+        from .engine import Engine
+
+        return Engine
+    raise AttributeError(f"module {__name__!r} has no attribute {name!r}")

@@ -1,0 +1,148 @@
+"""Regularisers without ground truth, and the correction that they make while t ≤ t̄·T.
+
+InterGen's damping (section 4.3, eq. 15) lets the regularisers act only at small timesteps. In training they
+compare with the true motion; at inference there is none, so the terms here are those that need none: bones
+of constant length, feet that stand still and stay above the floor, smooth joints, bodies that do not pass
+through each other, hands that meet where they nearly meet, people who turn fully towards each other where
+they nearly do. While t ≤ t̄·T the predicted clean motion takes a few gradient steps on them, in the network's
+own space of spline control points. At t̄ = 0 nothing is done and the sampler is the plain one, bit for bit.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import torch
+from torch import Tensor
+
+from models.compact import CompactInterGen
+from webdemo.motion import SMPL22
+from webdemo.motion.skeleton import FEET
+
+_WRISTS = [SMPL22.index("left_wrist"), SMPL22.index("right_wrist")]
+_PARENTS, _CHILDREN = (list(side) for side in zip(*SMPL22.bones, strict=True))
+_TRUNK = [SMPL22.index(n) for n in ("pelvis", "spine2", "spine3", "neck", "head", "left_hip", "right_hip")]
+_HIPS = [SMPL22.index("left_hip"), SMPL22.index("right_hip")]
+
+
+@dataclass(frozen=True)
+class DampingWeights:
+    """λ of each term; lengths are in metres, times in frames at 30 a second."""
+
+    bone: float = 1.0
+    foot: float = 2.0
+    floor: float = 1.0
+    smooth: float = 4.0
+    overlap: float = 1.0
+    contact: float = 0.5
+    facing: float = 0.02
+    trunk_radius: float = 0.28
+    touch: float = 0.08
+    nearly: float = 0.20
+
+
+def energy(positions: Tensor, contacts: Tensor, weights: DampingWeights) -> Tensor:
+    """How much a motion offends against the regularisers, summed over frames.
+
+    Args:
+        positions: (B, 2, T, 22, 3) metres.
+        contacts: (B, 2, T, 4) predicted contact of the feet, about 0 to 1.
+
+    Returns:
+        (B,) energy in m².
+    """
+    lengths = torch.linalg.vector_norm(positions[..., _CHILDREN, :] - positions[..., _PARENTS, :], dim=-1)
+    true_lengths = positions.new_tensor(SMPL22.bone_lengths[_CHILDREN])
+    bone = (lengths - true_lengths).square().sum((1, 2, 3))
+
+    feet = positions[..., list(FEET), :]
+    step = feet.diff(dim=2).square().sum(-1)
+    standing = torch.minimum(contacts[:, :, 1:], contacts[:, :, :-1]).clamp(0, 1).detach()
+    foot = (step * (standing > 0.5) * standing).sum((1, 2, 3))
+    floor = (-feet[..., 1]).clamp_min(0).square().sum((1, 2, 3))
+
+    smooth = positions.diff(n=3, dim=2).square().sum((1, 2, 3, 4))
+
+    a, b = positions.unbind(1)
+    trunks = torch.linalg.vector_norm(a[:, :, _TRUNK, None] - b[:, :, None, _TRUNK] + 1e-6, dim=-1)
+    overlap = (weights.trunk_radius - trunks).clamp_min(0).square().sum((1, 2, 3))
+
+    hands = torch.linalg.vector_norm(a[:, :, _WRISTS, None] - b[:, :, None, _WRISTS] + 1e-6, dim=-1)
+    # Only the hands and moments that come nearest: hands that pass by at some distance are left alone.
+    nearest = hands.flatten(1).amin(1)[:, None, None, None]
+    due = (hands < nearest + 0.05) & (nearest < weights.nearly)
+    contact = ((hands - weights.touch).clamp_min(0).square() * due).sum((1, 2, 3))
+
+    facing = _turned_away(a, b) + _turned_away(b, a)
+    terms = (bone, foot, floor, smooth, overlap, contact, facing)
+    factors = (
+        weights.bone,
+        weights.foot,
+        weights.floor,
+        weights.smooth,
+        weights.overlap,
+        weights.contact,
+        weights.facing,
+    )
+    return torch.stack([factor * term for factor, term in zip(factors, terms, strict=True)]).sum(0)
+
+
+def _turned_away(person: Tensor, other: Tensor) -> Tensor:
+    """(B,) how far from straight a person faces a near partner whom they nearly face; (B, T, 22, 3) each."""
+    across = person[:, :, _HIPS[0]] - person[:, :, _HIPS[1]]
+    forward = torch.stack([-across[..., 2], across[..., 0]], dim=-1)
+    forward = forward / torch.linalg.vector_norm(forward, dim=-1, keepdim=True).clamp_min(1e-4)
+    towards = (other[:, :, 0] - person[:, :, 0])[..., [0, 2]].detach()
+    distance = torch.linalg.vector_norm(towards, dim=-1)
+    cos = (forward * towards).sum(-1) / distance.clamp_min(1e-4)
+    nearly = (cos > 0.9) & (distance < 1.2)
+    return ((1 - cos) * nearly).sum(1)
+
+
+class Damping:
+    """The correction of predicted clean motion that sampling applies while t ≤ t̄·T.
+
+    Args:
+        model: gives positions from network space.
+        threshold: t̄ as a fraction of T; 0 does nothing.
+        frames: frames that will be shown; what the last token decodes to beyond them is ignored.
+        timesteps: T.
+        gradient_steps: steps at each timestep.
+        step_size: of one gradient step; the largest move of any number is held to ``largest``.
+    """
+
+    def __init__(
+        self,
+        model: CompactInterGen,
+        threshold: float,
+        *,
+        frames: int,
+        timesteps: int = 1000,
+        gradient_steps: int = 3,
+        step_size: float = 0.03,
+        largest: float = 0.03,
+        weights: DampingWeights | None = None,
+    ) -> None:
+        self.model, self.frames = model, frames
+        self.last = threshold * timesteps
+        self.off = threshold == 0
+        self.gradient_steps, self.step_size, self.largest = gradient_steps, step_size, largest
+        self.weights = weights or DampingWeights()
+
+    def __call__(self, x0: Tensor, timestep: int) -> Tensor:
+        """The corrected prediction, (B, tokens, 2·token_features) as given; the same object if not due."""
+        if self.off or timestep > self.last:
+            return x0
+        scale = self.model.std.repeat(self.model.layout.knots_per_token * 2)
+        for _ in range(self.gradient_steps):
+            with torch.enable_grad():
+                x = x0.detach().requires_grad_(True)
+                positions, contacts = self.model.positions(x)
+                total = energy(
+                    positions[:, :, : self.frames], contacts[:, :, : self.frames], self.weights
+                ).sum()
+                (gradient,) = torch.autograd.grad(total, x)
+            # The step is taken on control points in metres: d/dcontrol = d/dx / std.
+            move = (self.step_size * gradient / scale).clamp(-self.largest, self.largest)
+            x0 = x0.detach() - move / scale
+        return x0

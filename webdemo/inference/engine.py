@@ -1,0 +1,114 @@
+"""The shared inference layer: a request in, progress events and one result out.
+
+::
+
+    from webdemo.inference import Engine, GenerateRequest
+
+    for event in Engine().run(GenerateRequest(prompt="Two people shake hands.")):
+        ...  # Progress, Progress, …, Result
+"""
+
+from __future__ import annotations
+
+import platform
+import threading
+from collections.abc import Iterator
+from dataclasses import replace
+from importlib.metadata import PackageNotFoundError, version
+from pathlib import Path
+from typing import Any
+
+from webdemo.motion import InputError
+
+from .cancel import CancelToken
+from .generator import Clock, TextToDuet
+from .requests import GenerateRequest, Progress, Result
+
+WEIGHTS = Path(__file__).resolve().parents[2] / "models" / "weights"
+GENERATORS = {"intergen": "intergen"}
+"""Text generators by name: the folder of their weights."""
+
+
+class Engine:
+    """Runs requests on networks that are loaded once, on first use.
+
+    Safe to share between threads: loading happens once, and a run keeps its state to itself.
+
+    Args:
+        weights: folder that holds a folder a model; the shipped one by default.
+    """
+
+    def __init__(self, weights: Path = WEIGHTS) -> None:
+        self.weights = weights
+        self._lock = threading.Lock()
+        self._generators: dict[str, TextToDuet] = {}
+
+    @property
+    def ready(self) -> bool:
+        """Whether the default network is in memory."""
+        return "intergen" in self._generators
+
+    def warm_up(self) -> None:
+        """Loads the default network and takes one step with it, so that the first request is fast."""
+        generator = self._generator("intergen")
+        request = GenerateRequest(prompt="Two people wave.", seconds=2.0, steps=1, damping=0.0)
+        for _ in generator.run(request, CancelToken(), Clock.start()):
+            pass
+
+    def info(self) -> dict[str, Any]:
+        """Name, summary and figures of the default model, as its folder tells them; loads no network."""
+        from models.compact import WeightsFolder
+
+        meta = WeightsFolder(self.weights / GENERATORS["intergen"]).meta
+        return {"name": "intergen", "ready": self.ready, **meta.get("card", {})}
+
+    def run(self, request: GenerateRequest, cancel: CancelToken | None = None) -> Iterator[Progress | Result]:
+        """Yields :class:`Progress` events, then exactly one :class:`Result`.
+
+        The same request on the same machine gives the same bytes.
+
+        Raises:
+            InputError: one sentence on what is wrong and what to do.
+            Cancelled: within one sampling step of ``cancel.cancel()``.
+        """
+        cancel = cancel or CancelToken()
+        clock = Clock.start()
+        yield clock.progress("load")
+        generator = self._generator(request.model)
+        clock.lap("load", clock.began)
+        cancel.raise_if_cancelled()
+        for event in generator.run(request, cancel, clock):
+            if isinstance(event, Result):
+                manifest = _manifest(request, generator)
+                duets = tuple(
+                    replace(duet, manifest=manifest | {"sample": i}) for i, duet in enumerate(event.duets)
+                )
+                event = replace(event, duets=duets, manifest=manifest)
+            yield event
+
+    def _generator(self, name: str) -> TextToDuet:
+        if name not in GENERATORS:
+            raise InputError(f"There is no model {name!r:.40}: choose one of {', '.join(GENERATORS)}.")
+        with self._lock:
+            if name not in self._generators:
+                self._generators[name] = TextToDuet(self.weights / GENERATORS[name])
+            return self._generators[name]
+
+
+def _manifest(request: GenerateRequest, generator: TextToDuet) -> dict[str, Any]:
+    """Everything that reproduces a result."""
+    return {
+        "product": "Pas de Deux",
+        "request": request.to_dict(),
+        "model": generator.name,
+        "weights_sha256": generator.digest,
+        "versions": {name: _version(name) for name in ("torch", "diffusers", "numpy")}
+        | {"python": platform.python_version()},
+    }
+
+
+def _version(package: str) -> str:
+    try:
+        return version(package)
+    except PackageNotFoundError:
+        return "unknown"
