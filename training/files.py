@@ -23,7 +23,7 @@ def replacing(path: Path) -> Iterator[Path]:
         os.replace(temporary, path)
     except OSError as error:
         raise InputError(
-            f"{path} could not be written ({error.strerror or error}): free disk space or choose another folder."
+            f"{path} could not be written ({error.strerror or error}): free disk space or choose another."
         ) from error
     finally:
         temporary.unlink(missing_ok=True)

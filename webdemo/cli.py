@@ -1,0 +1,208 @@
+"""The same jobs from a shell: ``python -m webdemo generate|render|info|benchmark|serve``.
+
+The last line on stdout is one JSON object. What goes wrong is one line on stderr that says what is wrong and
+what to do, with exit code 2; a cancelled run (Ctrl+C) ends with 130. No file is left half-written.
+"""
+
+from __future__ import annotations
+
+import argparse
+import json
+import sys
+import time
+from collections.abc import Callable, Sequence
+from dataclasses import fields
+from pathlib import Path
+from typing import Any, NoReturn
+
+from webdemo.inference.requests import GenerateRequest, Progress, Result
+from webdemo.motion import InputError
+
+
+class _Parser(argparse.ArgumentParser):
+    """Says what is wrong in one line, without the usage."""
+
+    def error(self, message: str) -> NoReturn:
+        raise InputError(f"{message[:1].upper()}{message[1:]}: see `{self.prog} --help`.")
+
+
+def _default(name: str) -> Any:
+    return next(field.default for field in fields(GenerateRequest) if field.name == name)
+
+
+def _add_generate(commands: Any) -> None:
+    parser = commands.add_parser("generate", help="two people from one sentence")
+    parser.add_argument("--prompt", required=True, help="what the two people do, in English")
+    parser.add_argument("--out", type=Path, required=True, help="file to write: .npz, .bvh, .glb …")
+    parser.add_argument("--seconds", type=float, default=_default("seconds"))
+    parser.add_argument("--seed", type=int, default=_default("seed"))
+    parser.add_argument("--samples", type=int, default=_default("samples"), help="how many motions to draw")
+    parser.add_argument("--guidance", type=float, default=_default("guidance"), help="guidance scale s")
+    parser.add_argument("--steps", type=int, default=_default("steps"), help="denoising steps")
+    parser.add_argument(
+        "--damping", type=float, default=_default("damping"), help="damping threshold, 0 to 1"
+    )
+    parser.add_argument("--sampler", default=_default("sampler"), help="ddim or dpm++")
+    parser.add_argument("--model", default=_default("model"))
+    parser.add_argument(
+        "--no-cleanup", action="store_true", help="leave bones and feet as the network gives them"
+    )
+    parser.set_defaults(job=generate)
+
+
+def generate(options: argparse.Namespace) -> dict[str, Any]:
+    """Runs a :class:`GenerateRequest` and writes its duets."""
+    from webdemo.formats import can_write, write
+
+    if not can_write(options.out.suffix):
+        write_names = "choose another suffix, such as .npz, .bvh or .glb"
+        raise InputError(f"{options.out.name} has a suffix that cannot be written: {write_names}.")
+    request = GenerateRequest(
+        prompt=options.prompt,
+        seconds=options.seconds,
+        seed=options.seed,
+        samples=options.samples,
+        guidance=options.guidance,
+        steps=options.steps,
+        damping=options.damping,
+        sampler=options.sampler,
+        model=options.model,
+        cleanup=not options.no_cleanup,
+    )
+    result = _run(request)
+    paths: list[Path] = []
+    for i, duet in enumerate(result.duets):
+        number = f"_{i + 1}" if len(result.duets) > 1 else ""
+        paths += write(duet, options.out.with_stem(options.out.stem + number))
+    for note in result.notes:
+        print(note, file=sys.stderr)
+    return {
+        "files": [str(path) for path in paths],
+        "manifest": result.manifest,
+        "readouts": [{k: r[k] for k in ("before", "after")} for r in result.readouts],
+        "timings": result.timings,
+        "notes": list(result.notes),
+    }
+
+
+def _run(request: GenerateRequest) -> Result:
+    """Runs a request with a step counter on stderr, where that is a terminal."""
+    from webdemo.inference.engine import Engine
+
+    show = sys.stderr.isatty()
+    for event in Engine().run(request):
+        if isinstance(event, Result):
+            if show:
+                print("\r\033[K", end="", file=sys.stderr)
+            return event
+        if show and isinstance(event, Progress):
+            print(f"\r\033[K{event.stage} {event.step}/{event.total}", end="", file=sys.stderr, flush=True)
+    raise InputError("The run ended without a result: try again.")
+
+
+def _add_render(commands: Any) -> None:
+    parser = commands.add_parser("render", help="a contact sheet (PNG) of any motion file")
+    parser.add_argument("file", type=Path, help="motion file: .npz, .bvh, .npy …")
+    parser.add_argument("second", type=Path, nargs="?", help="the other person, where each has a file")
+    parser.add_argument("--out", type=Path, help="the PNG; beside the motion file by default")
+    parser.add_argument("--frames", type=int, default=8, help="how many evenly spaced frames, 2 to 24")
+    parser.set_defaults(job=render)
+
+
+def render(options: argparse.Namespace) -> dict[str, Any]:
+    """Draws the contact sheet of a motion file; a BVH pair may be given as two files, or by its first."""
+    from webdemo.formats import read, read_pair
+    from webdemo.view.contact_sheet import contact_sheet
+
+    if not 2 <= options.frames <= 24:
+        raise InputError(f"--frames must be from 2 to 24, not {options.frames}.")
+    second = options.second
+    if second is None and options.file.stem.endswith("_a"):
+        other = options.file.with_stem(options.file.stem[:-2] + "_b")
+        second = other if other.exists() else None
+    motion = read(options.file) if second is None else read_pair(options.file, second)
+    out = options.out or options.file.with_suffix(".png")
+    if out.suffix.lower() != ".png":
+        raise InputError(f"A contact sheet is a PNG: give --out a name that ends in .png, not {out.name}.")
+    try:
+        contact_sheet(motion, out, frames=options.frames, title=options.file.stem)
+    except OSError as error:
+        raise InputError(
+            f"{out} could not be written ({error.strerror or error}): choose another place."
+        ) from error
+    return {"files": [str(out)], "frames": motion.num_frames, "fps": motion.fps, "seconds": motion.seconds}
+
+
+def _add_others(commands: Any) -> None:
+    info_parser = commands.add_parser("info", help="what is installed, which model is shipped, what it knows")
+    info_parser.set_defaults(job=info)
+    bench = commands.add_parser("benchmark", help="measure speed here, as figures and as ratios")
+    bench.add_argument("--seconds", type=float, default=10.0, help="length of the motion")
+    bench.add_argument("--steps", type=int, default=50)
+    bench.add_argument("--repeats", type=int, default=3)
+    bench.add_argument("--browser", action="store_true", help="also the page and the player, in Chromium")
+    bench.set_defaults(job=benchmark)
+    serve_parser = commands.add_parser("serve", help="the page, as `python app.py`")
+    serve_parser.add_argument("--host")
+    serve_parser.add_argument("--port", type=int)
+    serve_parser.set_defaults(job=serve)
+
+
+def info(options: argparse.Namespace) -> dict[str, Any]:
+    """Versions, formats and the model card."""
+    from importlib.metadata import version
+
+    from webdemo.formats import FORMATS, can_read, can_write
+    from webdemo.inference.engine import Engine
+
+    card = Engine().info()
+    found = {
+        "model": card,
+        "formats": {s: {"read": can_read(s), "write": can_write(s)} for s in FORMATS},
+        "versions": {name: version(name) for name in ("gradio", "torch", "numpy", "plotly", "diffusers")},
+    }
+    print(f"{card['name']}: {card.get('summary', '')}")
+    return found
+
+
+def benchmark(options: argparse.Namespace) -> dict[str, Any]:
+    """Speed figures of :mod:`webdemo.benchmark`."""
+    from webdemo.benchmark import run_benchmark
+
+    return run_benchmark(
+        seconds=options.seconds, steps=options.steps, repeats=options.repeats, browser=options.browser
+    )
+
+
+def serve(options: argparse.Namespace) -> dict[str, Any]:
+    """Serves the page until it is stopped."""
+    import os
+
+    for name in ("host", "port"):
+        if (value := getattr(options, name)) is not None:
+            os.environ[f"PASDEDEUX_{name.upper()}"] = str(value)
+    import app
+
+    app.main()
+    return {"served": True}
+
+
+def main(argv: Sequence[str] | None = None) -> int:
+    """Runs one command; returns the exit code."""
+    parser = _Parser(prog="python -m webdemo", description="Motion of two people, from a shell.")
+    commands = parser.add_subparsers(required=True, metavar="COMMAND", parser_class=_Parser)
+    for add in (_add_generate, _add_render, _add_others):
+        add(commands)
+    began = time.perf_counter()
+    try:
+        options = parser.parse_args(argv)
+        job: Callable[[argparse.Namespace], dict[str, Any]] = options.job
+        answer = job(options)
+    except InputError as error:
+        print(" ".join(str(error).split()), file=sys.stderr)
+        return 2
+    except KeyboardInterrupt:
+        print("Stopped; nothing was written.", file=sys.stderr)
+        return 130
+    print(json.dumps(answer | {"wall_seconds": round(time.perf_counter() - began, 3)}))
+    return 0
