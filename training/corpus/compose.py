@@ -103,6 +103,14 @@ def mirror(motion: Motion) -> Motion:
     )
 
 
+def tempo(motion: Motion, scale: Array) -> Motion:
+    """Scales how fast the root travels over the ground by ``scale`` (T,); feet are planted later."""
+    steps = np.diff(motion.root, axis=0)
+    steps[:, [0, 2]] *= np.asarray(scale)[:-1, None]
+    root = np.concatenate([motion.root[:1], motion.root[:1] + np.cumsum(steps, axis=0)])
+    return replace(motion, root=root)
+
+
 def turned(motion: Motion, angle: float) -> Motion:
     """Turns the whole motion by ``angle`` radians about the world's vertical axis."""
     matrix = heading_matrix(angle)
@@ -271,7 +279,7 @@ def realise(motion: Motion) -> Array:
     return plant_feet(forward_kinematics(motion.rotations, motion.root), motion.contacts)
 
 
-def plant_feet(positions: Array, contacts: NDArray[np.bool_], *, stride: float = 0.12) -> Array:
+def plant_feet(positions: Array, contacts: NDArray[np.bool_], *, stride: float = 0.18) -> Array:
     """Holds every planted foot where it landed by bending the leg; bones keep their length.
 
     A "planted" foot that travels more than ``stride`` metres (a blend between two stances) takes a step
@@ -282,9 +290,13 @@ def plant_feet(positions: Array, contacts: NDArray[np.bool_], *, stride: float =
         contacts: (T, 2) left and right foot planted.
     """
     positions = positions.copy()
+    toes = [positions[:, leg[3]] for leg in LEGS]
+    steps = one_after_the_other([steps_in(toes[f], contacts[:, f], stride=stride) for f in (0, 1)])
     targets = []
     for foot, (_, _, ankle, toe) in enumerate(LEGS):
-        shift = foot_shift(positions[:, toe], contacts[:, foot], stride=stride)
+        shift = foot_shift(toes[foot], contacts[:, foot], steps[foot])
+        below = np.maximum(-toes[foot][:, 1], 0.04 - positions[:, ankle, 1])
+        shift[:, 1] += gaussian_filter1d(np.maximum(below, 0), 1.5)
         targets.append(positions[:, [ankle, toe]] + shift[:, None])
     sink = np.zeros(len(positions))
     for target, (hip, knee, ankle, _) in zip(targets, LEGS, strict=True):
@@ -302,23 +314,54 @@ def plant_feet(positions: Array, contacts: NDArray[np.bool_], *, stride: float =
     return positions
 
 
-def foot_shift(toe: Array, contact: NDArray[np.bool_], *, stride: float) -> Array:
-    """(T, 3) how far a foot must move each frame so that it rests while planted; smooth in between."""
+def steps_in(toe: Array, contact: NDArray[np.bool_], *, stride: float) -> list[int]:
+    """Frames at which a "planted" foot is carried further than ``stride`` metres and so must step."""
+    found, open_runs = [], runs(contact)
+    while open_runs:
+        start, stop = open_runs.pop()
+        flat = toe[start:stop][:, [0, 2]]
+        if stop - start < 4 or np.linalg.norm(np.ptp(flat, axis=0)) <= stride:
+            continue
+        speed = np.linalg.norm(np.gradient(flat, axis=0), axis=-1)
+        middle = start + int(np.argmax(gaussian_filter1d(speed, 2.0)))
+        found.append(middle)
+        open_runs += [(start, middle - 8), (middle + 9, stop)]
+    return sorted(found)
+
+
+def one_after_the_other(steps: list[list[int]], *, apart: int = 12) -> list[list[int]]:
+    """Step times of both feet, moved so that the two never step at once (``apart`` frames at least)."""
+    left, right = (list(foot) for foot in steps)
+    for i, one in enumerate(left):
+        for j, other in enumerate(right):
+            if abs(one - other) < apart:
+                centre, sign = (one + other) / 2, 1 if one <= other else -1
+                left[i], right[j] = int(centre - sign * apart / 2), int(centre + sign * apart / 2)
+    return [left, right]
+
+
+def foot_shift(toe: Array, contact: NDArray[np.bool_], steps: list[int], *, half: int = 6) -> Array:
+    """(T, 3) how far a foot must move each frame so that it rests while planted; smooth in between.
+
+    Args:
+        toe: (T, 3) the toe before.
+        contact: (T,) where it should rest.
+        steps: frames around which it is lifted and set down elsewhere, ``half`` frames before to after.
+    """
     contact = contact.copy()
     lift = np.zeros(len(toe))
-    for start, stop in runs(contact):
-        flat = toe[start:stop][:, [0, 2]]
-        speed = np.linalg.norm(np.gradient(flat, axis=0), axis=-1) if stop - start > 1 else np.zeros(1)
-        if np.linalg.norm(np.ptp(flat, axis=0)) > stride:
-            middle = start + int(np.argmax(gaussian_filter1d(speed, 2.0)))
-            low, high = max(middle - 7, 0), min(middle + 8, len(toe))
-            contact[low:high] = False
-            lift[low:high] = np.maximum(lift[low:high], 0.05 * np.sin(np.linspace(0, np.pi, high - low)) ** 2)
+    carried = np.zeros(len(toe), dtype=bool)
+    for middle in steps:
+        low, high = max(middle - half, 0), min(middle + half + 1, len(toe))
+        contact[low:high] = False
+        carried[max(middle - 14, 0) : middle + 15] = True
+        lift[low:high] = np.maximum(lift[low:high], 0.05 * np.sin(np.linspace(0, np.pi, high - low)) ** 2)
     shift = np.zeros_like(toe)
     known = np.zeros(len(toe), dtype=bool)
     for start, stop in runs(contact):
-        anchor = toe[start:stop].mean(axis=0)
-        shift[start:stop] = (anchor - toe[start:stop]) * np.array([1.0, 0.0, 1.0])
+        settled = ~carried[start:stop]
+        rest = toe[start:stop][settled] if settled.any() else toe[start:stop]
+        shift[start:stop] = (rest.mean(axis=0) - toe[start:stop]) * np.array([1.0, 0.0, 1.0])
         known[start:stop] = True
     if known.any():
         for start, stop in runs(~known):

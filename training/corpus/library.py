@@ -118,9 +118,15 @@ class Library:
             speed=speed,
         )
 
-    def idle(self, rng: np.random.Generator, frames: int) -> Motion:
-        """``frames`` frames of a real person who stands and waits."""
+    def idle(self, rng: np.random.Generator, frames: int, *, at_ease: float = 0.75) -> Motion:
+        """``frames`` frames of a real person who stands and waits.
+
+        Args:
+            at_ease: the share of people whose arms hang; the others fold them or rest them on the hips.
+        """
         takes = self._load("idle") or self._load("wave")
+        if rng.random() < at_ease:
+            takes = [take for take in takes if take.style == "at ease"] or takes
         motion = pick(rng, takes).motion
         if rng.random() < 0.5:
             motion = mirror(motion)
@@ -138,7 +144,7 @@ class Library:
             if action in STRIKES:
                 takes += blows(motion, clip)
             elif action == "idle":
-                takes += [Take(part, action, clip.style) for part in calm(motion)]
+                takes += [Take(part, action, "at ease" if hanging(part) else "busy") for part in calm(motion)]
             else:
                 side = clip.side
                 if side is None and action in ONE_HANDED:
@@ -181,7 +187,14 @@ def calm(motion: Motion, *, radius: float = 0.35, shortest: int = 120) -> list[M
     return parts
 
 
-def blows(motion: Motion, clip: SourceClip, *, most: int = 3) -> list[Take]:
+def hanging(motion: Motion) -> bool:
+    """Whether both arms hang down all the time."""
+    positions = forward_kinematics(motion.rotations, motion.root)
+    wrists = positions[:, [SMPL22.index("left_wrist"), SMPL22.index("right_wrist")]]
+    return bool((wrists[..., 1] - positions[:, :1, 1]).max() < 0.12)
+
+
+def blows(motion: Motion, clip: SourceClip, *, most: int = 5) -> list[Take]:
     """A clip of punches, kicks or sword cuts as takes of 1 to ``most`` blows in a row, with peaks and aim."""
     joint, before, after = STRIKES[clip.action]
     sword = clip.action == "slash"  # held with both hands; the right one tells

@@ -203,7 +203,7 @@ def finish(
     heads = [m.root + np.array([0.0, 0.65, 0.0]) for m in (a, b)]
     a, b = look_at(a, heads[1], amount=gaze[0]), look_at(b, heads[0], amount=gaze[1])
     positions = canonicalize(np.stack([realise(a), realise(b)]))
-    positions[..., 1] -= np.percentile(positions[..., 1].min(axis=(0, 2)), 20)
+    positions[..., 1] -= np.percentile(positions[..., 1].min(axis=2), 10, axis=1)[:, None, None]
     return Scene(
         positions.astype(np.float32),
         family,

@@ -16,13 +16,18 @@ from . import register
 TIPS = {"punch": "wrist", "kick": "ankle"}
 
 
-def blow(rng: Rng, library: Library, action: str, *, most: int = 2) -> Take:
-    """One to ``most`` blows in a row."""
-    for _ in range(20):
+def blow(rng: Rng, library: Library, action: str, *, most: int = 2, least: int = 1) -> Take:
+    """``least`` to ``most`` blows in a row."""
+    for _ in range(40):
         take = library.take(rng, action)
-        if len(take.peaks) <= most:
+        if least <= len(take.peaks) <= most:
             break
     return take
+
+
+def _way(motion: Motion) -> np.ndarray:
+    """(3,) from the first to the last root over the ground."""
+    return (motion.root[-1] - motion.root[0]) * np.array([1.0, 0.0, 1.0])
 
 
 def reach(take: Take) -> float:
@@ -136,13 +141,11 @@ def _exchange(rng: Rng, library: Library, family: str, action: str, distance: tu
     frames = seconds(rng, 4, 7.5)
     people = []
     for later in (0.1, rng.uniform(0.3, 1.2)):
-        parts, total = [], 0
-        while total < frames:
-            take = blow(rng, library, action, most=3)
-            start = seconds(rng, later, later + 0.4) if not parts else None
-            parts.append((start, take.motion, take.aim))
-            total += len(take)
-        people.append(act(rng, library, *parts, idle_after=False)[0])
+        start = seconds(rng, later, later + 0.4)
+        bouts = [blow(rng, library, action, most=5, least=2) for _ in range(3)]
+        take = max(bouts, key=lambda bout: min(len(bout), frames - start))
+        stay = drift(take.motion, -np.linspace(0, 1, len(take))[:, None] * _way(take.motion))
+        people.append(act(rng, library, (start, stay, take.aim))[0])
     a, b = (pad(rng, library, person, frames) for person in people)
     b = oppose(rng, a, b, rng.uniform(*distance), aside=0.05)
     return finish(rng, library, family, a, b, events={"facing": True, "distance": "keep"}, gaze=(0.2, 0.2))

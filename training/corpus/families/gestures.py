@@ -6,7 +6,7 @@ import numpy as np
 
 from webdemo.motion.kinematics import global_rotations, local_rotations
 
-from ..compose import ARMS, Motion, ease, mirror, place, slerp, steer, turned
+from ..compose import ARMS, Motion, ease, mirror, place, slerp, steer, tempo, turned
 from ..library import Library, Take, pick
 from ..scene import Scene
 from ..stage import Rng, act, finish, how_far, manner, oppose, pad, seconds, stride, waiting
@@ -135,9 +135,10 @@ def about(rng: Rng, walk: Motion, *, angle: float | None = None) -> Motion:
     """Bends the first second of a walk so that it turns about by ``angle`` (default: half a turn)."""
     angle = angle if angle is not None else (np.pi + rng.normal(0, 0.2)) * pick(rng, (-1.0, 1.0))
     frames = min(int(rng.uniform(30, 42)), len(walk) - 2)
-    extra = np.full(len(walk), angle)
+    extra, scale = np.full(len(walk), angle), np.ones(len(walk))
     extra[:frames] = angle * ease(frames)
-    return steer(walk, extra)
+    scale[:frames] = 0.25 + 0.75 * ease(frames) ** 2  # who turns hardly gets on meanwhile
+    return steer(tempo(walk, scale), extra)
 
 
 @register("cheer", needs=("raise-hand",), weight=1.2)
