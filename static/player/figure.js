@@ -6,7 +6,8 @@ import { FIELD_OF_VIEW } from "./orbit.js";
 const GAP = [NaN, NaN, NaN];
 const OUTLINE_PX = 2.2;
 const OUTLINE_BEHIND = 0.05; // metres away from the eye, so that the outline shows only around a body
-const SHADOW_HEIGHT = 0.004;
+const GHOST_BEHIND = 0.25; // metres away from the eye, so that they never cover the figures
+const SHADOW_BEHIND = 0.15; // so that feet, which are drawn flat, stand on it instead of in it
 const DISC_SIDES = 10;
 const TRAIL_SECONDS = 1;
 const GHOSTS = 5;
@@ -90,16 +91,16 @@ export function outline(pose, skeleton, color, lens) {
 }
 
 /** The bodies laid flat on the floor as a lamp overhead would: a pale rim and a darker core, as one mesh. */
-export function shadow(pose, skeleton, theme) {
+export function shadow(pose, skeleton, theme, lens) {
   const out = { points: [], colors: [], cells: [] };
   const layers = [
-    { color: theme.shadow, spread: 0.05, z: SHADOW_HEIGHT },
-    { color: theme.shadowCore, spread: 0, z: SHADOW_HEIGHT + 0.003 },
+    { color: theme.shadow, spread: 0.05, behind: SHADOW_BEHIND },
+    { color: theme.shadowCore, spread: 0, behind: SHADOW_BEHIND - 0.01 },
   ];
-  for (const { color, spread, z } of layers) {
+  for (const { color, spread, behind } of layers) {
     const add = (x, y) => {
       out.colors.push(color);
-      return out.points.push([x, y, z]) - 1;
+      return out.points.push(lens.behind([x, y, 0], behind)) - 1;
     };
     const disc = (p, radius) => {
       const ring = Array.from({ length: DISC_SIDES }, (_, i) => (2 * Math.PI * i) / DISC_SIDES);
@@ -145,11 +146,12 @@ export function trails(poseAt, frame, fps, skeleton, theme) {
 }
 
 /** Pale figures: moments along the way, and a second motion where the payload has one. */
-export function ghosts(moments, other, skeleton, theme) {
+export function ghosts(moments, other, skeleton, theme, lens) {
   const out = { points: [], colors: [], sizes: [] };
   const add = (points, color, width) => {
+    const back = points.map((p) => lens.behind(p, GHOST_BEHIND));
     for (const bone of skeleton.bones) {
-      out.points.push(points[bone.from], points[bone.to], GAP);
+      out.points.push(back[bone.from], back[bone.to], GAP);
       out.colors.push(color, color, color);
       out.sizes.push(width, width, width);
     }

@@ -5,7 +5,9 @@ const HIGHEST = 1.5;
 const NEAREST = 0.8;
 const FARTHEST = 40;
 const GLIDE_SECONDS = 0.45;
-const FOLLOW_SECONDS = 0.35; // time constant of the follow
+const FOLLOW_SECONDS = 0.3; // time constants of the follow
+const FRAME_SECONDS = 0.8;
+const SETTLED = 0.004; // metres
 export const FIELD_OF_VIEW = Math.PI / 4; // plotly's
 
 const ease = (t) => 1 - (1 - t) ** 3;
@@ -20,8 +22,8 @@ export class Orbit {
     this.pan = [0, 0, 0]; // what the user moved the target by
     this.glide = null;
     this.following = true;
+    this.framing = true; // whether the distance adapts, until the user zooms
     this.turning = false;
-    this.version = 0;
   }
 
   get center() {
@@ -42,13 +44,12 @@ export class Orbit {
     this.glide = null;
     this.yaw += yaw;
     this.elevation = clamp(this.elevation + elevation, LOWEST, HIGHEST);
-    this.version++;
   }
 
   zoom(factor) {
-    if (this.glide) this.glide = null;
+    this.glide = null;
+    this.framing = false;
     this.distance = clamp(this.distance * factor, NEAREST, FARTHEST);
-    this.version++;
   }
 
   /** Moves the target in the image plane by fractions of the view's height. */
@@ -59,13 +60,13 @@ export class Orbit {
     this.pan[0] += scale * (right * s + up * se * c);
     this.pan[1] += scale * (-right * c + up * se * s);
     this.pan[2] += scale * -up * ce;
-    this.version++;
   }
 
   /** Glides to a view; what is left out stays. */
   goTo({ yaw = this.yaw, elevation = this.elevation, distance = this.distance, keepPan = false }, now = null) {
     const turn = Math.atan2(Math.sin(yaw - this.yaw), Math.cos(yaw - this.yaw)); // the short way round
     const to = { yaw: this.yaw + turn, elevation, distance: clamp(distance, NEAREST, FARTHEST), pan: keepPan ? this.pan.slice() : [0, 0, 0] };
+    this.framing = true;
     const reduced = matchMedia("(prefers-reduced-motion: reduce)").matches;
     if (now === null || reduced) {
       Object.assign(this, to);
@@ -73,10 +74,9 @@ export class Orbit {
     } else {
       this.glide = { from: { yaw: this.yaw, elevation: this.elevation, distance: this.distance, pan: this.pan.slice() }, to, start: now };
     }
-    this.version++;
   }
 
-  /** Follows `wanted` smoothly and plays a glide. `seconds` since the last call. */
+  /** Follows `wanted` ({ target, distance } or null) smoothly and plays a glide. `seconds` since the last call. */
   step(now, seconds, wanted) {
     if (this.glide) {
       const { from, to, start } = this.glide;
@@ -87,27 +87,23 @@ export class Orbit {
       this.distance = at(from.distance, to.distance);
       this.pan = from.pan.map((v, i) => at(v, to.pan[i]));
       if (t >= 1) this.glide = null;
-      this.version++;
     }
-    if (this.following && wanted) {
-      const k = 1 - Math.exp(-seconds / FOLLOW_SECONDS);
-      const move = wanted.map((v, i) => k * (v - this.target[i]));
-      if (Math.hypot(...move) > 1e-5) {
-        this.target = this.target.map((v, i) => v + move[i]);
-        this.version++;
-      }
-    }
+    if (!this.following || !wanted || this.settled(wanted)) return;
+    const k = 1 - Math.exp(-seconds / FOLLOW_SECONDS);
+    this.target = this.target.map((v, i) => v + k * (wanted.target[i] - v));
+    if (this.framing && !this.glide) this.distance += (1 - Math.exp(-seconds / FRAME_SECONDS)) * (wanted.distance - this.distance);
   }
 
   jump(target) {
     this.target = target.slice();
-    this.version++;
   }
 
-  /** Whether the picture still changes without anyone's doing. */
+  /** Whether the picture would stay as it is without anyone's doing. */
   settled(wanted) {
     if (this.glide) return false;
-    return !this.following || !wanted || Math.hypot(...wanted.map((v, i) => v - this.target[i])) < 1e-3;
+    if (!this.following || !wanted) return true;
+    const away = Math.hypot(...wanted.target.map((v, i) => v - this.target[i]));
+    return away < SETTLED && (!this.framing || Math.abs(wanted.distance - this.distance) < SETTLED);
   }
 
   /** The view matrix, column-major as WebGL wants it. */

@@ -1,6 +1,8 @@
 // HTML over the scene: names above heads and the tip that tells about a joint. Text only, never markup.
 
 const REACH_PX = 16;
+const LABEL_PX = 25; // height of a label with room
+const SPACE_PX = 8;
 
 /** Scene point to CSS pixels in the stage: [x, y, depth in metres]. */
 export function project(point, matrix, width, height, fieldOfView) {
@@ -25,6 +27,7 @@ export class Labels {
 
   load(roles) {
     this.host.replaceChildren();
+    this.widths = null; // measured when first placed
     this.labels = roles.map((role, person) => {
       const label = document.createElement("span");
       label.className = `pdd-label pdd-label-${"ab"[person]}`;
@@ -34,10 +37,21 @@ export class Labels {
     });
   }
 
-  /** Puts each label over its spot; `spots` are project() results. The nearer one lies on top. */
+  /** Puts each label over its spot; `spots` are project() results. The nearer one lies on top and low. */
   place(spots) {
+    this.widths ??= this.labels.map((label) => label.offsetWidth);
+    const lifted = spots.map(([x, y]) => [x, y]);
+    if (spots.length === 2) {
+      const [near, far] = spots[0][2] < spots[1][2] ? [0, 1] : [1, 0];
+      const gap = Math.abs(spots[0][0] - spots[1][0]) - (this.widths[0] + this.widths[1]) / 2 - SPACE_PX;
+      const overlap = LABEL_PX - (lifted[near][1] - lifted[far][1]);
+      // The lift sets in gradually while two labels come close, so that none of them jumps.
+      if (overlap > 0 && overlap < 2 * LABEL_PX) lifted[far][1] -= overlap * Math.min(Math.max(-gap / SPACE_PX, 0), 1);
+    }
     this.labels.forEach((label, i) => {
-      const [x, y, depth] = spots[i];
+      const depth = spots[i][2];
+      const x = lifted[i][0];
+      const y = Math.max(lifted[i][1], LABEL_PX); // never above the stage, as over a shoulder
       label.style.transform = `translate(${x.toFixed(1)}px, ${y.toFixed(1)}px) translate(-50%, -100%)`;
       label.style.visibility = depth > 0.1 ? "visible" : "hidden";
       label.style.zIndex = String(1000 - Math.round(10 * Math.min(depth, 99)));

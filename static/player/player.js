@@ -12,10 +12,11 @@ import { savePicture } from "./picture.js";
 import { Scene } from "./scene.js";
 import { describe } from "./skeleton.js";
 import { Strip } from "./strip.js";
-import { heading, midpoint, preset, widest } from "./views.js";
+import { apart, heading, midpoint, preset } from "./views.js";
 
 const SPEEDS = [0.25, 0.5, 1, 1.5, 2];
 const FPS_WINDOW = 1500; // ms
+const STILL_AFTER = 250; // ms
 export const loops = { running: 0 }; // animation loops alive on the page; a leak shows here
 
 export class Player {
@@ -31,7 +32,7 @@ export class Player {
     this.show = { trails: false, ghosts: false };
     this.data = null;
     this.sampleIndex = 0;
-    this.painted = { floor: "", ghosts: "", camera: -1 };
+    this.painted = { floor: "", trails: false, ghosts: false };
     this.times = [];
     this.dirty = true;
     this.handle = 0;
@@ -176,19 +177,21 @@ export class Player {
     this.find(".pdd-speed select").value = String(speed);
   }
 
-  /** Glides to a preset; without motion at first. */
+  /** Glides to a preset; at once where `now` is null. */
   goTo(name, now = performance.now()) {
-    this.camera = name;
+    this.camera = this.framed = name;
     const pose = this.poseAt(this.clock.shown);
-    const aspect = this.stage.clientWidth / Math.max(this.stage.clientHeight, 1);
-    const apart = widest((f) => this.poseAt(f), this.clock.frames, this.skeleton);
-    this.orbit.goTo(preset(name, { along: heading(pose, this.skeleton), apart, aspect }), now);
-    if (!this.orbit.following) this.orbit.jump(midpoint(pose, this.skeleton));
+    if (!this.orbit.following || now === null) this.orbit.jump(midpoint(pose, this.skeleton));
+    this.orbit.goTo(this.viewOf(name, pose), now);
     this.refresh();
   }
 
+  viewOf(name, pose) {
+    const aspect = this.stage.clientWidth / Math.max(this.stage.clientHeight, 1);
+    return preset(name, { along: heading(pose, this.skeleton), apart: apart(pose, this.skeleton), aspect });
+  }
+
   resetCamera() {
-    this.orbit.jump(midpoint(this.poseAt(0), this.skeleton));
     this.goTo("threequarter", null);
   }
 
@@ -287,15 +290,17 @@ export class Player {
 
   /** Everything is drawn anew at the next frame. */
   refresh() {
-    this.painted.floor = this.painted.ghosts = "";
+    this.painted.floor = "";
     this.wake();
   }
 
   // ---- the loop ------------------------------------------------------------------------------
 
   /** Asks for a picture; the loop goes on by itself for as long as something moves. */
-  wake() {
+  wake(still = false) {
     this.dirty = true;
+    clearTimeout(this.stillTimer);
+    if (!still) this.scene?.setStill(false);
     if (this.handle || this.closed || !this.scene) return;
     loops.running++;
     this.handle = requestAnimationFrame((now) => this.tick(now));
@@ -314,7 +319,7 @@ export class Player {
     this.lastTick = now;
     this.clock.advance(now);
     const pose = this.data && this.poseAt(this.clock.shown);
-    const wanted = pose && midpoint(pose, this.skeleton);
+    const wanted = pose && { target: midpoint(pose, this.skeleton), distance: this.viewOf(this.framed, pose).distance };
     this.orbit.step(now, seconds, wanted);
     const moving = this.clock.playing || !this.orbit.settled(wanted);
     if (moving || this.dirty) {
@@ -326,7 +331,10 @@ export class Player {
       const asked = this.dirty;
       this.wake();
       this.dirty = asked;
-    } else this.lastTick = null;
+    } else {
+      this.lastTick = null;
+      this.stillTimer = setTimeout(() => this.scene.setStill(true) && this.wake(true), STILL_AFTER);
+    }
   }
 
   paint(pose) {
@@ -340,13 +348,13 @@ export class Player {
     this.painted.floor = floorKey;
     if (pose) {
       const lens = new figure.Lens(orbit, height);
-      put("shadow", figure.shadow(pose, skeleton, theme));
+      put("shadow", figure.shadow(pose, skeleton, theme, lens));
       put("outline", figure.outline(pose, skeleton, theme.outline, lens));
       pose.forEach((points, person) => {
         put(`bones${"AB"[person]}`, figure.bones(points, skeleton, theme.people[person], lens));
         put(`joints${"AB"[person]}`, figure.joints(points, skeleton, theme.people[person], lens));
       });
-      this.paintExtras(put);
+      this.paintExtras(put, lens);
       this.spots = pose.map((points) => points.map((p) => project(p, this.matrix, width, height, FIELD_OF_VIEW)));
       this.labels.place(pose.map((points) => {
         const above = figure.headCenter(points, skeleton);
@@ -360,18 +368,17 @@ export class Player {
     this.frameShown = clock.shown;
   }
 
-  paintExtras(put) {
+  paintExtras(put, lens) {
     const { scene, theme, clock, skeleton, sample, show } = this;
     if (show.trails) put("trails", figure.trails((f) => this.poseAt(f), clock.shown, clock.fps, skeleton, theme));
     else if (this.painted.trails) scene.hide("trails");
     this.painted.trails = show.trails;
     const other = sample.ghostMotion ? poseAt(sample.ghostMotion, clock.shown) : [];
-    const key = `${show.ghosts} ${this.themeName} ${this.sampleIndex} ${other.length ? clock.shown : ""}`;
-    if (key === this.painted.ghosts) return;
-    this.painted.ghosts = key;
     const moments = show.ghosts ? figure.ghostFrames(clock.frames).map((f) => this.poseAt(f)) : [];
-    if (moments.length || other.length) put("ghosts", figure.ghosts(moments, other, skeleton, theme));
-    else scene.hide("ghosts");
+    const pale = moments.length + other.length > 0;
+    if (pale) put("ghosts", figure.ghosts(moments, other, skeleton, theme, lens));
+    else if (this.painted.ghosts) scene.hide("ghosts");
+    this.painted.ghosts = pale;
   }
 
   /** Brings the controls to what is true now. */
@@ -428,6 +435,7 @@ export class Player {
   close() {
     if (this.closed) return;
     this.closed = true;
+    clearTimeout(this.stillTimer);
     if (this.handle) {
       cancelAnimationFrame(this.handle);
       loops.running--;

@@ -17,6 +17,8 @@ const KINDS = {
 const HOLDERS = { lines: "linePlot", points: "scatterPlot", mesh: "mesh" }; // plotly's names for the drawing objects
 const NOWHERE = [[NaN, NaN, NaN], [NaN, NaN, NaN], [NaN, NaN, NaN]];
 const FLAT = { ambient: 1, diffuse: 0, specular: 0, roughness: 1, fresnel: 0 };
+const MOVING_RATIO = 1;
+const STILL_RATIO = 2;
 const DISC_EM = 0.6; // width of the glyph "●" in ems, by which gl-scatter3d counts sizes
 
 const axis = { visible: false, range: [-HALF, HALF], showspikes: false, tickmode: "array", tickvals: [] };
@@ -28,7 +30,8 @@ export class Scene {
     this.mode = "restyle";
     this.pending = new Map();
     this.names = Object.keys(KINDS);
-    this.frames = 0;
+    this.software = softwareGl();
+    this.ratio = this.software ? MOVING_RATIO : Math.min(window.devicePixelRatio || 1, 2);
   }
 
   /** Draws the empty scene. `background` is [r, g, b]. */
@@ -52,9 +55,14 @@ export class Scene {
     };
     const config = {
       displayModeBar: false, responsive: false, scrollZoom: false, doubleClick: false, showTips: false,
-      plotGlPixelRatio: pixelRatio(),
+      plotGlPixelRatio: this.ratio,
     };
-    await this.Plotly.newPlot(this.host, traces, layout, config);
+    const restore = this.software ? withoutMultisampling() : null;
+    try {
+      await this.Plotly.newPlot(this.host, traces, layout, config);
+    } finally {
+      restore?.();
+    }
     this.openFast();
     for (const name of this.names) this.hide(name);
     return this;
@@ -68,6 +76,7 @@ export class Scene {
   openFast() {
     const scene = this.inside;
     const gl = scene?.glplot;
+    this.mode = "restyle";
     if (!gl?.redraw || !gl.camera?.tick || gl.camera.view?.computedMatrix?.length !== 16) return;
     this.objects = {};
     for (const [index, name] of this.names.entries()) {
@@ -76,7 +85,8 @@ export class Scene {
       if (typeof object?.update !== "function" || !("dirty" in object)) return;
       this.objects[name] = object;
     }
-    this.view = new Float64Array(16);
+    this.gl = gl;
+    this.view ||= new Float64Array(16);
     this.size = [0, 0];
     gl.camera.tick = () => this.tick(gl.camera);
     this.skipPicking(gl);
@@ -144,7 +154,7 @@ export class Scene {
   }
 
   draw() {
-    this.frames++;
+    if (this.mode === "fast" && this.inside?.glplot !== this.gl) this.openFast(); // plotly made a new one after a lost context
     if (this.mode === "fast") {
       this.inside.glplot.redraw();
       return;
@@ -192,11 +202,17 @@ export class Scene {
     this.Plotly.Plots.resize(this.host);
   }
 
-  setPixelRatio(ratio) {
+  /**
+   * Where the processor draws, a picture that stands still is drawn at twice the size for smooth edges,
+   * which it could not keep up while moving. Says whether that changed anything.
+   */
+  setStill(still) {
     const gl = this.inside?.glplot;
-    if (!gl || this.mode !== "fast") return;
+    if (!this.software || this.mode !== "fast" || !gl) return false;
+    const ratio = still ? STILL_RATIO : MOVING_RATIO;
+    if (gl.pixelRatio === ratio) return false;
     gl.pixelRatio = ratio;
-    gl.update({});
+    return true;
   }
 
   /** The scene alone as a canvas, whatever its drawing buffer keeps. */
@@ -213,19 +229,29 @@ export class Scene {
   }
 }
 
-/** Drawing on the processor costs by the pixel; a graphics card draws every pixel the screen has. */
-export function pixelRatio() {
-  return softwareGl() ? 1 : Math.min(window.devicePixelRatio || 1, 2);
+/**
+ * plotly always asks for multisampling, which halves the frame rate where the processor draws.
+ * Until the returned function is called, WebGL contexts are made without.
+ */
+function withoutMultisampling() {
+  const original = HTMLCanvasElement.prototype.getContext;
+  HTMLCanvasElement.prototype.getContext = function getContext(kind, options) {
+    return original.call(this, kind, kind === "webgl" ? { ...options, antialias: false } : options);
+  };
+  return () => {
+    HTMLCanvasElement.prototype.getContext = original;
+  };
 }
 
+/** Whether WebGL runs on the processor, as on machines without a graphics card and in tests. */
 let software = null;
 function softwareGl() {
   if (software === null) {
     const gl = document.createElement("canvas").getContext("webgl");
-    const info = gl?.getExtension("WEBGL_debug_renderer_info");
-    const name = info ? gl.getParameter(info.UNMASKED_RENDERER_WEBGL) : "";
-    software = /swiftshader|llvmpipe|software|basic render/i.test(name);
-    gl?.getExtension("WEBGL_lose_context")?.loseContext();
+    if (!gl) throw new Error("This browser offers no WebGL");
+    const info = gl.getExtension("WEBGL_debug_renderer_info");
+    software = /swiftshader|llvmpipe|software|basic render/i.test(info ? gl.getParameter(info.UNMASKED_RENDERER_WEBGL) : "");
+    gl.getExtension("WEBGL_lose_context")?.loseContext();
   }
   return software;
 }

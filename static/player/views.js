@@ -5,6 +5,7 @@ import { FIELD_OF_VIEW } from "./orbit.js";
 const BODY_HEIGHT = 2.45; // metres that must fit from floor to above the names
 const SIDE_ROOM = 1.5; // metres beside the outermost pelvis
 const LOOK_AT = 0.92;
+const WIDEST = 8; // metres; people farther apart than this are not kept in view together
 
 /** The point the camera follows: between the pelvises, at a height that does not bob. */
 export function midpoint(pose, skeleton) {
@@ -22,26 +23,22 @@ export function heading(pose, skeleton) {
   return Math.atan2(left[1] - right[1], left[0] - right[0]) - Math.PI / 2;
 }
 
-/** The widest that the pair stands apart in the whole motion, metres. */
-export function widest(poseAt, frames, skeleton) {
-  let most = 0;
-  for (let i = 0; i <= 24; i++) {
-    const [a, b] = poseAt(((frames - 1) * i) / 24).map((points) => points[skeleton.pelvis]);
-    if (b) most = Math.max(most, Math.hypot(b[0] - a[0], b[1] - a[1]));
-  }
-  return Math.min(most, 6);
+/** How far apart the pelvises stand on the floor, metres; 0 for one person. */
+export function apart(pose, skeleton) {
+  const [a, b] = pose.map((points) => points[skeleton.pelvis]);
+  return b ? Math.min(Math.hypot(b[0] - a[0], b[1] - a[1]), WIDEST) : 0;
 }
 
 /** Yaw, elevation and distance of a preset. */
-export function preset(name, { along, apart, aspect }) {
+export function preset(name, { along, apart: gap, aspect }) {
   const tangent = 2 * Math.tan(FIELD_OF_VIEW / 2);
   const fit = (across) => Math.max(BODY_HEIGHT / tangent, (across + SIDE_ROOM) / (tangent * aspect)) + across / 6;
   switch (name) {
-    case "front": return { yaw: along, elevation: 0.16, distance: BODY_HEIGHT / tangent + apart / 2 + 0.6 };
-    case "side": return { yaw: along + Math.PI / 2, elevation: 0.1, distance: fit(apart) };
-    case "top": return { yaw: along + Math.PI / 2, elevation: 1.48, distance: Math.max(fit(apart), 4) + 0.5 };
-    case "a": return { yaw: along + Math.PI - 0.28, elevation: 0.3, distance: apart / 2 + 2.3 };
-    case "b": return { yaw: along + 0.28, elevation: 0.3, distance: apart / 2 + 2.3 };
-    default: return { yaw: along + 1.05, elevation: 0.24, distance: fit(apart * 0.9) };
+    case "front": return { yaw: along, elevation: 0.16, distance: BODY_HEIGHT / tangent + gap / 2 + 0.6 };
+    case "side": return { yaw: along - Math.PI / 2, elevation: 0.1, distance: fit(gap) };
+    case "top": return { yaw: along - Math.PI / 2, elevation: 1.48, distance: Math.max(fit(gap), 4) + 0.5 };
+    case "a": return { yaw: along + Math.PI + 0.28, elevation: 0.3, distance: gap / 2 + 2.3 };
+    case "b": return { yaw: along - 0.28, elevation: 0.3, distance: gap / 2 + 2.3 };
+    default: return { yaw: along - 1.05, elevation: 0.24, distance: fit(gap * 0.9) };
   }
 }

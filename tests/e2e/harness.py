@@ -9,17 +9,19 @@ from pathlib import Path
 os.environ.setdefault("GRADIO_ANALYTICS_ENABLED", "False")
 sys.path.insert(0, str(Path(__file__).resolve().parents[2]))
 
-import gradio as gr  # noqa: E402
-import numpy as np  # noqa: E402
+import gradio as gr
+import numpy as np
 
-from webdemo.motion import SMPL22, Duet  # noqa: E402
-from webdemo.ui.player import MotionPlayer, busy, player_payload, show  # noqa: E402
+from webdemo.motion import SMPL22, Duet
+from webdemo.ui.player import MotionPlayer, busy, player_payload, show
 
 FPS = 30.0
-HOSTILE = ("<img src=x onerror=\"window.__hacked=1\">", "${window.__hacked=2}{{value}}")
+HOSTILE = ('<img src=x onerror="window.__hacked=1">', "${window.__hacked=2}{{value}}")
 
 
-def walking_duet(seconds: float = 5.0, *, roles: tuple[str, str] = ("actor", "reactor"), phase: float = 0.0) -> Duet:
+def walking_duet(
+    seconds: float = 5.0, *, roles: tuple[str, str] = ("actor", "reactor"), phase: float = 0.0
+) -> Duet:
     """Two people who walk up to each other and hold out their right hands. Made by hand, not captured."""
     frames = int(seconds * FPS)
     t = np.arange(frames) / FPS
@@ -45,11 +47,18 @@ def walking_duet(seconds: float = 5.0, *, roles: tuple[str, str] = ("actor", "re
             _hang(body, side, names)
             _turn(body, f"{side}_shoulder", names, arm + 0.75 * lift)
             _turn(body, f"{side}_elbow", names[1:], 0.25 + 0.75 * lift + 0.08 * lift * np.sin(14 * t))
-        gap = 2.4 * (1 - walked) + 0.98
+        gap = 2.6 * (1 - walked) + 0.72
         if me == 1:
             body[:, :, [0, 2]] *= -1
         body[:, :, 2] += (gap if me == 1 else 0 * gap)[:, None] + (walked * 1.0)[:, None]
         people.append(body)
+    # The hands meet in the middle; hand-made motion may stretch an arm a little.
+    meet = 0.5 * (people[0][:, 0] + people[1][:, 0]) + np.array([0.0, 0.1, 0.0])
+    for body, side in zip(people, (-1.0, 1.0), strict=True):
+        for name, back in (("right_elbow", 0.24), ("right_wrist", 0.05)):
+            joint = SMPL22.index(name)
+            spot = meet + np.array([side * back * 0.6, 0.0, side * back])
+            body[:, joint] += reach[:, None] * (spot - body[:, joint])
     return Duet.from_positions(np.stack(people).astype(np.float32), fps=FPS, roles=roles)
 
 
@@ -84,9 +93,15 @@ def build() -> gr.Blocks:
             hide = gr.Button("hide")
             unhide = gr.Button("show")
         duet = walking_duet()
-        load.click(lambda: show(player_payload(duet, title="two people walk up to each other and shake hands")), None, player)
+        load.click(
+            lambda: show(player_payload(duet, title="two people walk up to each other and shake hands")),
+            None,
+            player,
+        )
         several.click(
-            lambda: show(player_payload([walking_duet(phase=0.8 * i) for i in range(4)], title="four takes")), None, player
+            lambda: show(player_payload([walking_duet(phase=0.8 * i) for i in range(4)], title="four takes")),
+            None,
+            player,
         )
         hostile.click(
             lambda: show(player_payload(walking_duet(roles=HOSTILE), title=" ".join(HOSTILE))), None, player

@@ -25,12 +25,15 @@ gr.set_static_paths([PLAYER_FOLDER, PLOTLY_JS])
 
 _CSS = "& { min-height: 320px; } .pdd:not(.pdd-styled) { visibility: hidden; }"
 
-_ON_LOAD = """
-const config = window.gradio_config || {};
-const root = (config.root || new URL(".", document.baseURI).href).replace(/\\/$/, "");
-const file = (path) => root + (config.api_prefix || "/gradio_api") + "/file=" + encodeURI(path);
-import(file(%s)).then((player) => player.mount(element, props, watch, file(%s)));
-""" % (json.dumps((PLAYER_FOLDER / "main.js").as_posix()), json.dumps(PLOTLY_JS.as_posix()))
+_ON_LOAD = f"""
+const config = window.gradio_config || {{}};
+const root = (config.root || new URL(".", document.baseURI).href).replace(/[/]$/, "");
+const encode = (path) => path.split("/").map(encodeURIComponent).join("/");
+const file = (path) => root + (config.api_prefix || "/gradio_api") + "/file=" + encode(path);
+const main = file({json.dumps((PLAYER_FOLDER / "main.js").as_posix())});
+const plotly = file({json.dumps(PLOTLY_JS.as_posix())});
+import(main).then((player) => player.mount(element, props, watch, plotly));
+"""
 
 
 class MotionPlayer(gr.HTML):

@@ -1,0 +1,396 @@
+"""The player in a real browser: it plays, it can be turned, scrubbed and read, and it cleans up."""
+
+from __future__ import annotations
+
+import io
+import math
+
+import numpy as np
+import pytest
+
+pytestmark = pytest.mark.e2e
+
+Image = pytest.importorskip("PIL.Image")
+
+
+@pytest.fixture(scope="session")
+def player_url(start_server) -> str:
+    return start_server(["tests/e2e/harness.py", "{port}"])
+
+
+@pytest.fixture
+def player(open_page, player_url):
+    """``player(button)`` opens the page, presses one of the harness' buttons and waits for motion."""
+
+    def open_(button: str | None = "load", *, theme: str = "light", **options):
+        page = open_page(f"{player_url}?__theme={theme}", **options)
+        page.wait_for_selector(".pdd-styled", timeout=30_000)
+        page.wait_for_function("window.__pasdedeux.mode !== null", timeout=30_000)
+        if button:
+            press(page, button)
+            page.wait_for_function("window.__pasdedeux.frame > 0", timeout=30_000)
+        return page
+
+    return open_
+
+
+def press(page, name: str) -> None:
+    """Presses a button of the harness, which lies after the player's own."""
+    page.get_by_role("button", name=name, exact=True).last.click()
+
+
+def hook(page, name: str):
+    return page.evaluate(f"window.__pasdedeux.{name}")
+
+
+def until(page, expression: str, seconds: float = 15) -> None:
+    page.wait_for_function(expression, timeout=1000 * seconds)
+
+
+def pause(page) -> None:
+    if hook(page, "playing"):
+        page.locator(".pdd-play").click()
+    until(page, "!window.__pasdedeux.playing && window.__pasdedeux.loops === 0")
+
+
+def stage_pixels(page) -> np.ndarray:
+    image = Image.open(io.BytesIO(page.locator(".pdd-stage").screenshot())).convert("RGB")
+    return np.asarray(image, dtype=np.int16)
+
+
+def has_color(pixels: np.ndarray, *, blue: bool) -> bool:
+    """Whether some thousand pixels are clearly of A's blue or B's orange."""
+    red, _, blue_channel = pixels[..., 0], pixels[..., 1], pixels[..., 2]
+    strength = blue_channel - red if blue else red - blue_channel
+    return int((strength > 80).sum()) > 1000
+
+
+def drag(page, dx: float, dy: float, steps: int = 12) -> None:
+    box = page.locator(".pdd-touch").bounding_box()
+    x, y = box["x"] + 0.3 * box["width"], box["y"] + 0.4 * box["height"]
+    page.mouse.move(x, y)
+    page.mouse.down()
+    page.mouse.move(x + dx, y + dy, steps=steps)
+    page.mouse.up()
+
+
+def yaw(page) -> float:
+    return page.evaluate("window.__pasdedeux.player.orbit.yaw")
+
+
+def test_plays_both_people(player):
+    page = player()
+    assert hook(page, "mode") == "fast"
+    assert hook(page, "playing")
+    first, frame = np.array(hook(page, "positions")), hook(page, "frame")
+    assert first.shape == (2, 22, 3)
+    until(page, f"Math.abs(window.__pasdedeux.frame - {frame}) > 20")
+    moved = np.linalg.norm(np.array(hook(page, "positions")) - first, axis=-1).max(axis=1)
+    assert (moved > 0.05).all(), f"metres each person moved: {moved}"
+    pixels = stage_pixels(page)
+    assert has_color(pixels, blue=True)
+    assert has_color(pixels, blue=False)
+    print(f"\nplaying: {hook(page, 'fps'):.1f} frames a second")
+
+
+def test_shows_what_was_sent(player):
+    page = player()
+    pause(page)
+    page.locator(".pdd").focus()
+    page.keyboard.press("Home")
+    until(page, "window.__pasdedeux.frame === 0 && window.__pasdedeux.loops === 0")
+    shown = np.array(hook(page, "positions"))
+    assert abs(shown[0, 0, 2] - 0.0) < 0.3  # the actor starts at the origin …
+    assert 3.0 < shown[1, 0, 2] < 3.6  # … and the reactor stands before him along +Z
+    assert shown[:, :, 1].min() > -0.1
+    assert 1.3 < shown[:, :, 1].max() < 1.9
+
+
+def test_time_goes_by_the_clock(player):
+    page = player()
+    page.locator(".pdd-speed select").select_option("0.5")
+    start = page.evaluate("[performance.now(), window.__pasdedeux.frame]")
+    page.wait_for_timeout(1500)
+    end = page.evaluate("[performance.now(), window.__pasdedeux.frame]")
+    frames = (end[1] - start[1]) % 150
+    assert frames == pytest.approx(15 * (end[0] - start[0]) / 1000, abs=5)
+
+
+def test_scrub_strip_and_contact_marks(player):
+    page = player()
+    pause(page)
+    slider = page.locator(".pdd-range")
+    slider.fill("100")
+    until(page, "window.__pasdedeux.frame === 100")
+    assert "frame 101 of 150" in page.locator(".pdd-time").inner_text()
+    strip = page.locator(".pdd-curve").bounding_box()
+    page.mouse.click(strip["x"] + 0.25 * strip["width"], strip["y"] + strip["height"] / 2)
+    until(page, "Math.abs(window.__pasdedeux.frame - 37) <= 1")
+    tick = page.locator(".pdd-tick").first
+    assert "hand on hand" in tick.get_attribute("aria-label")
+    tick.click()
+    until(page, "window.__pasdedeux.frame > 80 && window.__pasdedeux.frame < 110")
+    values = page.locator(".pdd-values dd").all_inner_texts()
+    assert all(value.endswith(" m") for value in values)
+
+
+def test_dragging_turns_the_camera_while_playing(player):
+    page = player()
+    before, frame = np.array(hook(page, "eye")), hook(page, "frame")
+    turned = yaw(page)
+    drag(page, 260, 0, steps=40)
+    print(f"\nturning: {hook(page, 'fps'):.1f} frames a second")
+    after = np.array(hook(page, "eye"))
+    assert hook(page, "playing")
+    assert hook(page, "frame") != frame
+    assert abs(yaw(page) - turned) > 0.8
+    assert np.linalg.norm(after - before) > 1.0
+
+
+def test_wheel_and_right_drag(player):
+    page = player()
+    pause(page)
+    page.locator(".pdd").focus()
+    box = page.locator(".pdd-touch").bounding_box()
+    page.mouse.move(box["x"] + 200, box["y"] + 200)
+    distance = page.evaluate("window.__pasdedeux.player.orbit.distance")
+    page.mouse.wheel(0, -300)
+    until(page, f"window.__pasdedeux.player.orbit.distance < {0.8 * distance}")
+    center = page.evaluate("window.__pasdedeux.player.orbit.center")
+    page.mouse.down(button="right")
+    page.mouse.move(box["x"] + 300, box["y"] + 200, steps=5)
+    page.mouse.up(button="right")
+    moved = math.dist(center, page.evaluate("window.__pasdedeux.player.orbit.center"))
+    assert moved > 0.2
+
+
+def test_keyboard(player):
+    page = player()
+    page.locator(".pdd").focus()
+    page.keyboard.press("Space")
+    until(page, "!window.__pasdedeux.playing")
+    page.keyboard.press("Home")
+    until(page, "window.__pasdedeux.frame === 0")
+    page.keyboard.press("ArrowRight")
+    until(page, "window.__pasdedeux.frame === 1")
+    page.keyboard.press("Shift+ArrowRight")
+    until(page, "window.__pasdedeux.frame === 11")
+    page.keyboard.press("ArrowLeft")
+    until(page, "window.__pasdedeux.frame === 10")
+    page.keyboard.press("End")
+    until(page, "window.__pasdedeux.frame === 149")
+    seen = []
+    for key in "123456":
+        page.keyboard.press(key)
+        until(page, "window.__pasdedeux.player.orbit.glide === null && window.__pasdedeux.loops === 0")
+        seen.append(tuple(round(v, 2) for v in hook(page, "eye")))
+    assert len(set(seen)) == 6
+    assert page.locator("[data-camera=b]").get_attribute("aria-pressed") == "true"
+    for key, act in (("f", "follow"), ("t", "trails"), ("g", "ghosts"), ("l", "loop")):
+        control = page.locator(f"[data-act={act}]")
+        before = control.get_attribute("aria-pressed")
+        page.keyboard.press(key)
+        until(page, f"document.querySelector('[data-act={act}]').getAttribute('aria-pressed') !== '{before}'")
+    page.keyboard.press("?")
+    assert page.locator(".pdd-help").is_visible()
+    page.keyboard.press("Escape")
+    assert page.locator(".pdd-help").is_hidden()
+    page.keyboard.press("ArrowUp")
+    assert page.locator(".pdd-speed select").input_value() == "1.5"
+
+
+def test_without_loop_it_stops_on_the_last_frame(player):
+    page = player()
+    page.locator(".pdd").focus()
+    page.keyboard.press("l")
+    page.locator(".pdd-range").fill("135")
+    until(page, "!window.__pasdedeux.playing && window.__pasdedeux.frame === 149")
+
+
+def test_everything_has_a_name_and_can_be_reached(player):
+    page = player()
+    nameless = page.evaluate("""() => [...document.querySelectorAll('.pdd button, .pdd input, .pdd select')]
+        .filter((e) => !(e.getAttribute('aria-label') || e.textContent.trim())).length""")
+    assert nameless == 0
+    page.locator(".pdd").focus()
+    reached = set()
+    for _ in range(24):
+        page.keyboard.press("Tab")
+        reached.add(page.evaluate("document.activeElement.dataset.act || document.activeElement.className"))
+    assert {"play", "follow", "help", "pdd-range"} <= reached
+
+
+def test_trails_and_onion_skin_are_drawn(player):
+    page = player()
+    pause(page)
+    page.locator(".pdd-range").fill("60")
+    page.wait_for_timeout(1500)
+    plain = stage_pixels(page)
+    page.locator("[data-act=ghosts]").click()
+    page.wait_for_timeout(1500)
+    ghosts = stage_pixels(page)
+    page.locator("[data-act=trails]").click()
+    page.wait_for_timeout(1500)
+    trails = stage_pixels(page)
+
+    def changed(a, b):
+        return int((np.abs(a[:, :-60] - b[:, :-60]).max(axis=-1) > 24).sum())
+
+    assert changed(plain, ghosts) > 1000
+    assert changed(ghosts, trails) > 100
+
+
+def test_theme_follows_the_page(player):
+    page = player()
+    light = stage_pixels(page)[5:40, 200:400].mean()
+    page.evaluate("document.body.classList.add('dark')")
+    until(page, "document.querySelector('.pdd').dataset.theme === 'dark'")
+    page.wait_for_timeout(500)
+    dark = stage_pixels(page)[5:40, 200:400].mean()
+    assert light > 200
+    assert dark < 60
+    assert has_color(stage_pixels(page), blue=True)
+    page.evaluate("document.body.classList.remove('dark')")
+    until(page, "document.querySelector('.pdd').dataset.theme === 'light'")
+
+
+def test_several_samples_share_the_clock(player):
+    page = player("several")
+    pause(page)
+    page.locator(".pdd-range").fill("40")
+    until(page, "window.__pasdedeux.frame === 40")
+    first = np.array(hook(page, "positions"))
+    tabs = page.get_by_role("tab")
+    assert tabs.count() == 4
+    tabs.nth(2).click()
+    until(page, "document.querySelectorAll('.pdd [role=tab]')[2].getAttribute('aria-selected') === 'true'")
+    until(page, "window.__pasdedeux.loops === 0")
+    assert hook(page, "frame") == 40
+    assert np.abs(np.array(hook(page, "positions")) - first).max() > 0.02
+
+
+def test_user_text_stays_text(player):
+    page = player("hostile")
+    page.wait_for_timeout(500)
+    assert page.evaluate("window.__hacked") is None
+    assert page.locator(".pdd img").count() == 0
+    labels = page.locator(".pdd-label").all_text_contents()
+    assert labels[0].startswith("A · <img src=x onerror=")
+    assert labels[1] == "B · ${window.__hacked=2}{{value}}"
+    assert "${window.__hacked=2}" in page.locator(".pdd-title").inner_text()
+
+
+def test_empty_busy_and_empty_again(player):
+    page = player(None)
+    assert page.locator(".pdd-empty").inner_text() == "Type a sentence and press Generate"
+    assert page.locator(".pdd-foot").is_hidden()
+    press(page, "busy")
+    page.wait_for_selector(".pdd-busy:visible")
+    assert page.locator(".pdd-busy-text").inner_text() == "Step 12 of 50 ${1+1}"
+    press(page, "load")
+    until(page, "window.__pasdedeux.frame > 0")
+    assert page.locator(".pdd-busy").is_hidden()
+    assert page.locator(".pdd-empty").is_hidden()
+    press(page, "clear")
+    page.wait_for_selector(".pdd-empty:visible")
+    until(page, "window.__pasdedeux.loops === 0")
+
+
+def test_marks_what_was_given_and_what_was_predicted(player):
+    page = player("predicted")
+    pause(page)
+    page.locator(".pdd-range").fill("10")
+    page.wait_for_function("document.querySelector('.pdd-chip').textContent === 'given'")
+    page.locator(".pdd-range").fill("100")
+    page.wait_for_function("document.querySelector('.pdd-chip').textContent === 'predicted'")
+    assert page.locator(".pdd-past").is_visible()
+
+
+def test_hiding_and_showing_leaves_no_loop_behind(player):
+    page = player()
+    for _ in range(3):
+        press(page, "hide")
+        page.wait_for_selector(".pdd", state="detached")
+        until(page, "window.__pasdedeux.loops === 0 && window.__pasdedeux.count === 0")
+        press(page, "show")
+        until(page, "window.__pasdedeux.frame > 0 && window.__pasdedeux.playing")
+    assert hook(page, "count") == 1
+    assert hook(page, "loops") <= 1
+    pause(page)
+
+
+def test_saves_a_picture(player):
+    page = player()
+    pause(page)
+    with page.expect_download() as download:
+        page.locator("[data-act=picture]").click()
+    assert download.value.suggested_filename.startswith("pas-de-deux-1-frame-")
+    image = np.asarray(Image.open(download.value.path()).convert("RGB"), dtype=np.int16)
+    assert has_color(image, blue=True)
+    assert has_color(image, blue=False)
+
+
+@pytest.mark.parametrize("size", [(360, 740), (390, 844), (1280, 800), (1920, 1080)])
+def test_fits_the_screen(player, size):
+    page = player("several", width=size[0], height=size[1])
+    inside = page.evaluate("""() => {
+        const box = document.querySelector('.pdd').getBoundingClientRect();
+        return [...document.querySelectorAll('.pdd-stage, .pdd-foot, .pdd-tools, .pdd-range')]
+            .map((e) => e.getBoundingClientRect())
+            .every((b) => b.left >= box.left - 1 && b.right <= box.right + 1);
+    }""")
+    assert inside
+    assert page.evaluate("document.documentElement.scrollWidth") <= size[0]
+    assert has_color(stage_pixels(page), blue=True) or size[0] < 400
+
+
+def test_touch_turns_the_scene(player):
+    page = player(width=390, height=844, has_touch=True, is_mobile=True)
+    before = yaw(page)
+    box = page.locator(".pdd-touch").bounding_box()
+    session = page.context.new_cdp_session(page)
+    x, y = box["x"] + 60, box["y"] + 120
+
+    def touch(kind: str, at: float | None) -> None:
+        points = [] if at is None else [{"x": at, "y": y}]
+        session.send("Input.dispatchTouchEvent", {"type": kind, "touchPoints": points})
+
+    touch("touchStart", x)
+    for i in range(1, 8):
+        touch("touchMove", x + 15 * i)
+    touch("touchEnd", None)
+    until(page, f"Math.abs(window.__pasdedeux.player.orbit.yaw - {before}) > 0.5")
+    assert hook(page, "playing")
+
+
+def test_falls_back_to_restyle(player):
+    """Another plotly may name its inside otherwise; the picture must be the same, only slower."""
+
+    def rename(page):
+        def answer(route):
+            response = route.fetch()
+            route.fulfill(response=response, body=response.text().replace("scatterPlot", "somethingElse"))
+
+        page.route("**/plotly.min.js", answer)
+
+    page = player(before=rename)
+    assert hook(page, "mode") == "restyle"
+    before = np.array(hook(page, "eye"))
+    drag(page, 200, 0)
+    assert np.linalg.norm(np.array(hook(page, "eye")) - before) > 0.5
+    pause(page)
+    page.wait_for_timeout(500)
+    pixels = stage_pixels(page)
+    assert has_color(pixels, blue=True)
+    assert has_color(pixels, blue=False)
+
+
+def test_says_so_without_webgl(open_page, player_url):
+    def no_webgl(page):
+        page.add_init_script("""const original = HTMLCanvasElement.prototype.getContext;
+            HTMLCanvasElement.prototype.getContext = function (kind, ...rest) {
+                return /webgl/.test(kind) ? null : original.call(this, kind, ...rest);
+            };""")
+
+    page = open_page(player_url, before=no_webgl)
+    page.wait_for_function("/WebGL/.test(document.querySelector('.pdd-empty-text')?.textContent)")

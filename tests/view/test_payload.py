@@ -1,0 +1,143 @@
+"""The player's payload: small, exact enough, and it refuses what it cannot show."""
+
+from __future__ import annotations
+
+import json
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from webdemo.motion import SKELETONS, SMPL22, Clip, Duet, InputError
+from webdemo.view.curves import Contact, Curve, find_contacts, interaction_curves
+from webdemo.view.payload import pack_positions, player_payload, sample_payload, unpack_positions
+
+PARENTS, NAMES = SMPL22.parents, SMPL22.joint_names
+
+
+def standing(frames: int = 30, apart: float = 2.0) -> np.ndarray:
+    """Two people in T-pose along Z, (2, T, 22, 3)."""
+    rest = SMPL22.rest_positions()
+    a = np.repeat(rest[None], frames, axis=0)
+    return np.stack([a, a + np.array([0.0, 0.0, apart])])
+
+
+def duet(frames: int = 30, apart: float = 2.0, **kwargs) -> Duet:
+    return Duet.from_positions(standing(frames, apart), fps=30.0, **kwargs)
+
+
+def test_quantisation_is_finer_than_a_fifth_of_a_millimetre_over_ten_metres():
+    positions = np.random.default_rng(0).uniform(-5, 5, size=(2, 40, 22, 3))
+    back = unpack_positions(pack_positions(positions))
+    assert back.shape == positions.shape
+    assert np.abs(back - positions).max() < 2e-4 / 2
+
+
+@settings(max_examples=50, deadline=None)
+@given(
+    size=st.floats(1e-3, 100), centre=st.floats(-50, 50), frames=st.integers(1, 6), seed=st.integers(0, 2**16)
+)  # fmt: skip
+def test_round_trip_error_is_half_a_level(size, centre, frames, seed):
+    positions = centre + size * np.random.default_rng(seed).standard_normal((2, frames, 5, 3))
+    packed = pack_positions(positions)
+    error = np.abs(unpack_positions(packed) - positions).max(axis=(0, 1, 2))
+    float32 = 1e-7 * np.abs(positions).max()
+    assert (error <= 0.501 * np.asarray(packed["scale"]) + float32).all()
+
+
+def test_a_flat_axis_survives():
+    positions = np.zeros((1, 2, 3, 3))
+    positions[..., 0] = [0.0, 1.0, 2.0]
+    positions[..., 1] = 0.7
+    assert np.allclose(unpack_positions(pack_positions(positions)), positions, atol=1e-4)
+
+
+def test_ten_seconds_are_small_and_plain_json():
+    payload = player_payload(duet(300), title="${alert(1)}")
+    text = json.dumps(payload)
+    assert len(payload["samples"][0]["positions"]["data"]) < 110_000
+    assert len(text) < 130_000
+    assert json.loads(text) == payload
+
+
+def test_ids_tell_motions_apart():
+    one, same, other = player_payload(duet()), player_payload(duet()), player_payload(duet(apart=1.9))
+    assert one["id"] == same["id"]
+    assert one["id"] != other["id"]
+
+
+def test_several_samples_and_one_person():
+    payload = player_payload([duet(20), duet(30)])
+    assert [s["label"] for s in payload["samples"]] == ["1", "2"]
+    assert [s["frames"] for s in payload["samples"]] == [20, 30]
+    alone = player_payload(Clip(standing()[0], 30.0, name="solo"))
+    assert alone["samples"][0]["positions"]["shape"] == [1, 30, 22, 3]
+    assert alone["samples"][0]["curves"] == alone["samples"][0]["contacts"] == []
+
+
+def test_curves_measure_metres():
+    curves = {c.key: c.values for c in interaction_curves(standing(apart=2.0), NAMES)}
+    assert np.allclose(curves["pelvis_distance"], 2.0)
+    assert np.allclose(curves["wrist_distance"], 2.0)
+
+
+def test_own_curves_and_contacts_are_kept():
+    sample = sample_payload(
+        duet(4), curves=[Curve("k", "Label", "s", np.arange(4.0))], contacts=[Contact(1, 3, "hands", "x")]
+    )
+    assert sample["curves"] == [{"key": "k", "label": "Label", "unit": "s", "values": [0.0, 1.0, 2.0, 3.0]}]
+    assert sample["contacts"] == [{"start": 1, "stop": 3, "kind": "hands", "label": "x"}]
+
+
+def test_contacts_find_when_hands_meet():
+    positions = standing(60)
+    wrist = NAMES.index("right_wrist")
+    positions[1, 20:40, wrist] = positions[0, 20:40, wrist] + [0.05, 0, 0]
+    found = find_contacts(positions, NAMES, PARENTS, fps=30.0)
+    assert [(c.start, c.stop, c.kind) for c in found] == [(20, 40, "hands")]
+
+
+def test_contacts_tell_a_touch_and_a_kick_apart():
+    positions = standing(60)
+    positions[0, 10:30, NAMES.index("left_wrist")] = positions[1, 10:30, NAMES.index("spine3")]
+    positions[1, 30:50, NAMES.index("right_foot")] = positions[0, 30:50, NAMES.index("left_knee")]
+    found = find_contacts(positions, NAMES, PARENTS, fps=30.0)
+    assert [(c.start, c.stop, c.kind, c.label) for c in found] == [
+        (10, 30, "touch", "hand of A on B"),
+        (30, 50, "foot", "foot of B on A"),
+    ]
+
+
+def test_short_gaps_are_joined_and_blinks_dropped():
+    positions = standing(60)
+    wrist = NAMES.index("right_wrist")
+    for frames in (slice(10, 20), slice(22, 30), slice(50, 51)):
+        positions[1, frames, wrist] = positions[0, frames, wrist]
+    found = find_contacts(positions, NAMES, PARENTS, fps=30.0)
+    assert [(c.start, c.stop) for c in found] == [(10, 30)]
+
+
+def test_ghost_and_past():
+    sample = sample_payload(duet(10), ghost=duet(10, apart=1.0), past_until=4)
+    assert sample["past_until"] == 4
+    assert np.allclose(unpack_positions(sample["ghost"])[1, 0, 0, 2], 1.0, atol=1e-3)
+
+
+@pytest.mark.parametrize(
+    "make",
+    [
+        lambda: pack_positions(np.zeros((2, 0, 22, 3))),
+        lambda: pack_positions(np.zeros((4, 22, 3))),
+        lambda: pack_positions(np.full((1, 2, 3, 3), np.nan)),
+        lambda: player_payload([]),
+        lambda: sample_payload(duet(4), curves=[Curve("k", "L", "m", np.zeros(3))]),
+        lambda: sample_payload(duet(4), past_until=5),
+        lambda: player_payload([duet(), Clip(np.zeros((3, 15, 3)), 30.0, SKELETONS["sbu15"])]),
+    ],
+)  # fmt: skip
+def test_refuses_in_one_sentence(make):
+    with pytest.raises(InputError) as error:
+        make()
+    assert str(error.value).endswith(".")
+    assert "\n" not in str(error.value)
