@@ -21,12 +21,11 @@ from .compose import ARMS, FPS, LEGS, Array, two_bone
 
 UP = np.array([0.0, 1.0, 0.0])
 SPINE = tuple(SMPL22.index(name) for name in ("spine1", "spine2", "spine3"))
-NECK, HEAD, CHEST = (SMPL22.index(name) for name in ("neck", "head", "spine3"))
+NECK = SMPL22.index("neck")
 ELBOW_DOWN = (0.45, -1.0, -0.25)
 """Where an elbow points in its owner's frame: outwards, up, forwards."""
 FULL_REACH = 0.93
 """The share of the arm's length up to which an arm reaches before the trunk helps."""
-_LEGS_AND_ROOT = (0, *(joint for leg in LEGS for joint in leg))
 
 
 def _below(joint: int) -> list[int]:
@@ -41,7 +40,7 @@ _DESCENDANTS = {joint: _below(joint) for joint in (*SPINE, NECK)}
 
 
 def envelope(frames: int, start: int, arrive: int, leave: int, end: int) -> Array:
-    """(frames,) 0 up to ``start``, 1 from ``arrive`` to ``leave``, 0 from ``end`` on; minimum jerk between."""
+    """(frames,) 0 up to ``start``, 1 from ``arrive`` to ``leave``, 0 from ``end``; minimum jerk between."""
     time = np.arange(frames, dtype=np.float64)
     rise = np.clip((time - start) / max(arrive - start, 1), 0, 1)
     fall = np.clip((end - time) / max(end - leave, 1), 0, 1)
@@ -120,8 +119,19 @@ def nod(positions: Array, angle: Array) -> Array:
 
 
 def shift_hips(positions: Array, offset: Array) -> Array:
-    """Moves the body by ``offset`` (T, 3) metres over feet that stay where they are."""
+    """Moves the body by ``offset`` (T, 3) metres over feet that stay where they are.
+
+    The hips sink as far as a leg would otherwise be too short.
+    """
     moved = positions + offset[:, None]
+    sink = np.zeros(len(positions))
+    for hip, knee, ankle, _ in LEGS:
+        longest = 0.998 * (SMPL22.bone_lengths[knee] + SMPL22.bone_lengths[ankle])
+        gap = moved[:, hip] - positions[:, ankle]
+        before = np.linalg.norm(positions[:, hip] - positions[:, ankle], axis=-1)
+        height = np.sqrt(np.maximum(np.maximum(longest, before) ** 2 - gap[:, 0] ** 2 - gap[:, 2] ** 2, 0.2))
+        sink = np.maximum(sink, gap[:, 1] - height)
+    moved[..., 1] -= gaussian_filter1d(sink, 2.0)[:, None]
     angle = heading(positions)
     forward = np.stack([np.sin(angle), np.zeros(len(angle)), np.cos(angle)], axis=-1)
     for hip, knee, ankle, toe in LEGS:
@@ -140,7 +150,7 @@ def reach(
     elbow: tuple[float, float, float] = ELBOW_DOWN,
     lean: float = 0.3,
     twist: float = 0.55,
-    shift: float = 0.12,
+    shift: float = 0.2,
 ) -> Array:
     """Brings one or both wrists to moving targets and lets go again.
 
@@ -158,7 +168,10 @@ def reach(
     Returns:
         (T, 22, 3) with the same bone lengths.
     """
-    full = int(np.flatnonzero(weight >= weight.max() - 1e-9).mean()) if weight.max() > 0 else 0
+    arrived = np.flatnonzero(weight >= weight.max() - 1e-9)
+    gaps = [target - positions[:, ARMS[side][1]] for side, target in targets.items()]
+    far = np.linalg.norm(gaps, axis=-1).sum(axis=0)[arrived]
+    full = int(arrived[np.argmax(far)])
     still = slice(full, full + 1)
     goals = {side: target[still] for side, target in targets.items()}
     direction = towards(positions[still, 0], sum(goals.values()) / len(goals))
@@ -175,15 +188,15 @@ def reach(
         )
 
     shares = np.linspace(0, 1, 6)
-    gaps = [missing(bend(positions[still], trunk(share)[None])) for share in shares]
-    enough = np.flatnonzero(np.array(gaps) <= 0)
+    lacking = [missing(bend(positions[still], trunk(share)[None])) for share in shares]
+    enough = np.flatnonzero(np.array(lacking) <= 0)
     if len(enough) and enough[0] > 0:  # between the last share too little and the first enough
         high = int(enough[0])
-        share = shares[high - 1] + (shares[1]) * gaps[high - 1] / (gaps[high - 1] - gaps[high])
+        share = shares[high - 1] + shares[1] * lacking[high - 1] / (lacking[high - 1] - lacking[high])
     else:
         share = shares[enough[0]] if len(enough) else 1.0
     if share > 0:
-        left_over = 0.0 if len(enough) else min(gaps[-1] * 1.2, shift)
+        left_over = 0.0 if len(enough) else min(lacking[-1] * 1.2, shift)
         if left_over > 0.005:
             positions = shift_hips(positions, direction * left_over * weight[:, None])
         positions = bend(positions, trunk(float(share))[None] * weight[:, None])
@@ -242,8 +255,38 @@ def reach_arm(
     return solved
 
 
+def settle(
+    a: Array,
+    b: Array,
+    sides: tuple[str, str],
+    weights: tuple[Array, Array],
+    *,
+    apart: float,
+    away: tuple[Array, Array] | None = None,
+    elbow: tuple[float, float, float] = ELBOW_DOWN,
+) -> tuple[Array, Array]:
+    """Makes two hands meet where an arm has stopped short: both go to the point between the wrists.
+
+    Args:
+        sides: whose which hand.
+        weights: (T,) of the two reaches; the hands are joined as far as both have arrived.
+        apart: distance between the wrists in metres.
+        away: (T, 3) each by which a wrist keeps off the meeting point for the moment.
+    """
+    off = away if away is not None else (np.zeros(3), np.zeros(3))
+    ends = [body[:, ARMS[side][3]] - gap for body, side, gap in zip((a, b), sides, off, strict=True)]
+    smooth = [gaussian_filter1d(end, 2.0, axis=0, mode="nearest") for end in ends]
+    middle = (smooth[0] + smooth[1]) / 2
+    line = towards(a[:, 0], b[:, 0]) * (apart / 2)
+    both = np.minimum(*weights) ** 2
+    return (
+        reach_arm(a, sides[0], middle - line + off[0], both, elbow=elbow),
+        reach_arm(b, sides[1], middle + line + off[1], both, elbow=elbow),
+    )
+
+
 def pose_arm(positions: Array, side: str, upper: Array, lower: Array, weight: Array) -> Array:
-    """Turns upper arm and forearm towards the directions ``upper`` and ``lower`` (T, 3) by ``weight`` (T,)."""
+    """Turns upper arm and forearm towards ``upper`` and ``lower`` (T, 3) by ``weight`` (T,)."""
     _, shoulder, elbow, wrist = ARMS[side]
     posed = positions.copy()
     start = positions[:, shoulder]
@@ -281,20 +324,6 @@ def _soft_limit(distance: Array, length: Array) -> Array:
 
 def _unit(vector: Array) -> Array:
     return vector / np.maximum(np.linalg.norm(vector, axis=-1, keepdims=True), 1e-9)
-
-
-def keep_apart(positions: Array, other: Array, *, radius: float = 0.2) -> Array:
-    """Leans two trunks out of each other: this person moves back where the spines come closer than ``2 radius``."""
-    gap = (positions[:, CHEST] - other[:, CHEST]) * np.array([1.0, 0.0, 1.0])
-    distance = np.linalg.norm(gap, axis=-1, keepdims=True)
-    push = np.maximum(2 * radius - distance, 0) / 2
-    push = gaussian_filter1d(push, 4.0, axis=0, mode="nearest")
-    return shift_hips(positions, gap / np.maximum(distance, 1e-6) * push)
-
-
-def touching(a: Array, b: Array, joint_a: str, joint_b: str) -> Array:
-    """(T,) distance in metres between a joint of one person and a joint of the other."""
-    return np.linalg.norm(a[:, SMPL22.index(joint_a)] - b[:, SMPL22.index(joint_b)], axis=-1)
 
 
 def shaking(frames: int, start: int, stop: int, *, hertz: float, size: float) -> Array:

@@ -7,7 +7,7 @@ import numpy as np
 from webdemo.motion.kinematics import forward_kinematics
 from webdemo.motion.skeleton import SMPL22
 
-from ..compose import LEGS, Array, two_bone
+from ..compose import LEGS, Array, Motion, two_bone
 from ..contact import (
     UP,
     axes,
@@ -19,6 +19,7 @@ from ..contact import (
     on_body,
     reach,
     reach_arm,
+    settle,
     shift_hips,
     towards,
 )
@@ -57,12 +58,15 @@ def hug(rng: Rng, library: Library) -> Scene:
     weights = [envelope(frames, start + late, arrive + late, leave, leave + 24) for late in (0, lag)]
     # Each head goes past the other's: the trunks lean in and a little to the same own side.
     over = pick(rng, ("left", "right"))
-    for turn, weight in ((0, weights[0]), (1, weights[1])):
-        body, other = (a, b) if turn == 0 else (b, a)
-        left, _ = axes(body)
-        aside = 0.35 * left if over == "right" else -0.35 * left
-        body = lean_to(body, towards(body[:, 0], other[:, 0]) + aside, weight * rng.uniform(0.08, 0.16))
-        a, b = (body, b) if turn == 0 else (a, body)
+    upright = (a, b)
+    a, b = (
+        lean_to(
+            body,
+            towards(body[:, 0], other[:, 0]) + (0.35 if over == "right" else -0.35) * axes(body)[0],
+            weight * rng.uniform(0.08, 0.16),
+        )
+        for body, other, weight in zip(upright, upright[::-1], weights, strict=True)
+    )
     under = opposite(over)
     # On the side where a's arm goes over, b's goes under it, since the two face each other.
     solved = []
@@ -71,7 +75,6 @@ def hug(rng: Rng, library: Library) -> Scene:
         high = on_body(other, "spine3", 0.13 * sign, rng.uniform(0.06, 0.14), -rng.uniform(0.05, 0.1))
         low = on_body(other, "spine2", -0.15 * sign, rng.uniform(0.0, 0.06), -rng.uniform(0.02, 0.07))
         elbow_high, elbow_low = (1.0, 0.1, 0.25), (1.0, -0.45, 0.2)
-        body = reach(body, {over: high, under: low}, weight * 0.0)  # the trunk is set above
         body = reach_arm(body, over, high, weight, elbow=elbow_high)
         solved.append(reach_arm(body, under, low, weight, elbow=elbow_low))
     touches = [
@@ -144,7 +147,8 @@ def _hand_on_shoulder(rng: Rng, library: Library, family: str, *, pat: bool) -> 
         b = nod(b, weight * rng.uniform(0.05, 0.25))
     return conclude(
         rng, library, family, meet, a, b,
-        touches=[(f"{side}_wrist", f"{opposite(side)}_shoulder", arrive, leave)], side=side if named else None,
+        touches=[(f"{side}_wrist", f"{opposite(side)}_shoulder", arrive, leave)],
+        side=side if named else None,
     )  # fmt: skip
 
 
@@ -175,7 +179,8 @@ def arm_around(rng: Rng, library: Library) -> Scene:
     )
     return conclude(
         rng, library, "arm-around", meet, a, b,
-        touches=[(f"{side}_wrist", f"{side}_collar", arrive, leave)], side=side if rng.random() < 0.3 else None,
+        touches=[(f"{side}_wrist", f"{side}_collar", arrive, leave)],
+        side=side if rng.random() < 0.3 else None,
     )  # fmt: skip
 
 
@@ -239,7 +244,7 @@ def whisper(rng: Rng, library: Library) -> Scene:
         + 0.07 * (axes(a)[0] if side == "left" else -axes(a)[0])
     )
     a = reach_arm(a, side, mouth, weight, elbow=(0.7, -0.8, 0.2))
-    return conclude(rng, library, "whisper", meet, a, b, touches=[("head", "head", arrive, leave)][:0])
+    return conclude(rng, library, "whisper", meet, a, b, touches=[])
 
 
 @register("help-up", needs=("walk", "idle"), weight=1.2, contact=True)
@@ -269,6 +274,7 @@ def help_up(rng: Rng, library: Library) -> Scene:
     )
     a = reach(a, {side: point - line}, weights[0])
     b = reach(b, {side: point + line}, weights[1])
+    a, b = settle(a, b, (side, side), weights, apart=0.08)
     wrist = f"{side}_wrist"
     return conclude(
         rng,
@@ -323,24 +329,43 @@ def tap_turn(rng: Rng, library: Library) -> Scene:
     )  # fmt: skip
 
 
+def _tip(side: str, family: str) -> int:
+    return SMPL22.index(f"{side}_{'wrist' if family == 'punch' else 'ankle'}")
+
+
+def _blow_lands(motion: Motion, about_frame: int, side: str, family: str) -> tuple[int, float, float]:
+    """The frame near ``about_frame`` at which a blow reaches furthest, its heading and reach in metres."""
+    near = np.arange(max(about_frame - 18, 9), min(about_frame + 6, len(motion) - 12))
+    body = forward_kinematics(motion.rotations[near], motion.root[near])
+    tip = body[:, _tip(side, family)]
+    if family == "punch":
+        extent = np.linalg.norm(tip - body[:, SMPL22.index(f"{side}_shoulder")], axis=-1)
+    else:
+        extent = np.linalg.norm((tip - body[:, 0])[:, [0, 2]], axis=-1) + 0.5 * tip[:, 1]
+    best = int(extent.argmax())
+    hit = int(near[best])
+    step = (tip[best] - motion.root[hit - 8])[[0, 2]]
+    return hit, float(np.arctan2(*step)), float(np.linalg.norm(step))
+
+
 def _strike(rng: Rng, library: Library, family: str) -> Scene:
     take = blow(rng, library, family, most=1)
-    a, starts = act(
-        rng, library, (seconds(rng, 0.2, 0.7), take.motion, take.aim), tail=seconds(rng, 0.5, 1.0)
-    )
-    hit = starts[0] + take.peaks[0]
+    start, tail, aim = seconds(rng, 0.2, 0.7), seconds(rng, 0.5, 1.0), take.aim
+    for _ in range(2):  # the first round measures which way the blow goes, the second turns it straight ahead
+        a, starts = act(rng, library, (start, take.motion, aim), tail=tail)
+        hit, ahead, gap = _blow_lands(a, starts[0] + take.peaks[0], take.side or "right", family)
+        aim += (ahead - forward(a, 0)[1] + np.pi) % (2 * np.pi) - np.pi
     b = library.idle(rng, hit + 30)
     if rng.random() < 0.75:
         steps = stride(rng, library, "walk-back", rng.uniform(0.4, 1.1)).motion
         b, _ = act(rng, library, (0, b[: hit + 12]), (None, steps), tail=20)
     frames = min(max(len(a), len(b)), 240)
     a, b = pad(rng, library, a, frames), pad(rng, library, b, frames)
-    tip_joint = SMPL22.index(f"{take.side}_{'wrist' if family == 'punch' else 'ankle'}")
-    tip = forward_kinematics(a.rotations[hit], a.root[hit])[tip_joint]
     # b stands where the blow ends: the trunk's front at the fist, or the belly at the foot.
-    origin, heading = a.root[hit - 8, [0, 2]], float(np.arctan2(*(tip - a.root[hit - 8])[[0, 2]]))
-    gap = float(np.linalg.norm((tip - a.root[hit - 8])[[0, 2]])) + rng.uniform(0.1, 0.16)
-    b = beside(b, origin, heading, gap, 0.0, np.pi + rng.normal(0, 0.1), frame=hit)
+    gap += rng.uniform(0.02, 0.07) if family == "punch" else rng.uniform(0.07, 0.13)
+    origin = a.root[hit - 8, [0, 2]]
+    b = beside(b, origin, ahead, gap, 0.0, np.pi + rng.normal(0, 0.1), frame=hit)
+    tip_joint = _tip(take.side or "right", family)
     meet = Encounter(a, b, hit - 2, hit + 4, {}, {"facing": True})
     pa, pb = meet.bodies(gaze=(0.3, 0.7))
     line = towards(pa[:, 0], pb[:, 0])

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import numpy as np
-from scipy.ndimage import gaussian_filter1d
 
 from ..compose import ARMS, Array
 from ..contact import (
@@ -16,7 +15,7 @@ from ..contact import (
     on_body,
     pose_arm,
     reach,
-    reach_arm,
+    settle,
     shaking,
     towards,
 )
@@ -48,17 +47,8 @@ def _meet_hands(
         for person, side in enumerate((own, other)):
             targets[person][side] = points[person] + (away[person] if away is not None else 0.0)
     a, b = reach(a, targets[0], weights[0], elbow=elbow), reach(b, targets[1], weights[1], elbow=elbow)
-    # One arm may have stopped short: both settle on the point between where the wrists have come.
     for own, other in pairs:
-        offsets = away if away is not None else (np.zeros(3), np.zeros(3))
-        ends = [
-            body[:, _WRIST[side]] - off for body, side, off in zip((a, b), (own, other), offsets, strict=True)
-        ]
-        line = towards(targets[0][own] - offsets[0], targets[1][other] - offsets[1]) * (apart / 2)
-        middle = gaussian_filter1d((ends[0] + ends[1]) / 2, 2.0, axis=0, mode="nearest")
-        both = np.minimum(*weights) ** 2
-        a = reach_arm(a, own, middle - line + offsets[0], both, elbow=elbow)
-        b = reach_arm(b, other, middle + line + offsets[1], both, elbow=elbow)
+        a, b = settle(a, b, (own, other), weights, apart=apart, away=away, elbow=elbow)
     return a, b
 
 
@@ -168,8 +158,8 @@ def low_five(rng: Rng, library: Library) -> Scene:
 @register("high-ten", needs=("walk", "idle"), weight=1.5, contact=True)
 def high_ten(rng: Rng, library: Library) -> Scene:
     return _slap(
-        rng, library, "high-ten", (("left", "right"), ("right", "left")), distance=(0.66, 0.8), height=(1.45, 1.6),
-        offered=float(rng.random() < 0.4),
+        rng, library, "high-ten", (("left", "right"), ("right", "left")), distance=(0.66, 0.8),
+        height=(1.45, 1.6), offered=float(rng.random() < 0.4),
     )  # fmt: skip
 
 
@@ -184,24 +174,21 @@ def fist_bump(rng: Rng, library: Library) -> Scene:
 
 @register("elbow-bump", needs=("walk", "idle"), weight=1.0, contact=True)
 def elbow_bump(rng: Rng, library: Library) -> Scene:
-    meet = come_together(rng, library, rng.uniform(0.52, 0.6), (1.3, 2.0))
+    meet = come_together(rng, library, rng.uniform(0.46, 0.54), (1.3, 2.0))
     a, b = meet.bodies()
     side, named = chosen_side(rng)
     hit = meet.start + int(rng.integers(20, 28))
     stop = hit + int(rng.integers(3, 9))
     weight = envelope(len(a), meet.start, hit, stop, stop + int(rng.integers(18, 26)))
     middle = (on_body(a, f"{side}_shoulder", 0, -0.12, 0) + on_body(b, f"{side}_shoulder", 0, -0.12, 0)) / 2
-    for _ in range(2):  # the second round sees where the first has brought the shoulders
-        raised = []
-        for body in (a, b):
-            left, forward = axes(body)
-            out = left if side == "left" else -left
-            raised.append(
-                (middle - on_body(body, f"{side}_shoulder", 0, 0, 0), -0.75 * out + 0.5 * UP + 0.25 * forward)
-            )
-        if _ == 0:
-            a, b = (_turn_shoulder(body, side, weight) for body in (a, b))
-    a, b = (pose_arm(body, side, *pose, weight) for body, pose in zip((a, b), raised, strict=True))
+    a, b = (bend(body, UP * ((0.5 if side == "right" else -0.5) * weight)[:, None]) for body in (a, b))
+    solved = []
+    for body in (a, b):
+        left, forward = axes(body)
+        out = left if side == "left" else -left
+        upper = middle - on_body(body, f"{side}_shoulder", 0, 0, 0)
+        solved.append(pose_arm(body, side, upper, -0.75 * out + 0.5 * UP + 0.25 * forward, weight))
+    a, b = solved
     joint = f"{side}_elbow"
     return conclude(
         rng,
@@ -213,11 +200,6 @@ def elbow_bump(rng: Rng, library: Library) -> Scene:
         touches=[(joint, joint, hit, stop)],
         side=side if named else None,
     )
-
-
-def _turn_shoulder(body: Array, side: str, weight: Array) -> Array:
-    """Turns the trunk so that one shoulder comes forward."""
-    return bend(body, UP * (0.5 if side == "right" else -0.5) * weight[:, None])
 
 
 @register("hand-over", needs=("walk", "idle"), weight=2.0, contact=True)
