@@ -42,7 +42,7 @@ def marching(frames: int = 60, *, seed: int = 0) -> tuple[np.ndarray, np.ndarray
 
 
 def gliding(frames: int = 90, *, speed: float = 0.1, sink: float = 0.02) -> np.ndarray:
-    """Someone who stands with slightly bent knees while the whole body glides along X and sinks into the floor."""
+    """Someone who stands with bent knees while the whole body glides along X, sunk into the floor."""
     angles = np.zeros((22, 3))
     for side in ("left", "right"):
         angles[SMPL22.index(f"{side}_hip"), 0] = -0.15

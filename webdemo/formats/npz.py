@@ -7,6 +7,8 @@ from __future__ import annotations
 
 import io
 import json
+import lzma
+import struct
 import zipfile
 import zlib
 from pathlib import Path
@@ -28,6 +30,11 @@ Array = NDArray[Any]
 
 MAX_UNPACKED = 256 * 2**20
 _MAX_HEADER = 4096
+# What zipfile raises over damaged files, from wrong sums to sizes below zero.
+_ZIP_ERRORS = (
+    zipfile.BadZipFile, zlib.error, struct.error, lzma.LZMAError, EOFError, NotImplementedError, RuntimeError,
+    OSError, ValueError, OverflowError, IndexError, KeyError,
+)  # fmt: skip
 _KEYS = (
     "positions", "fps", "joint_names", "parents", "roles", "manifest",
     "poses", "trans", "mocap_framerate", "mocap_frame_rate",
@@ -122,7 +129,9 @@ def _load_members(data: bytes, label: str) -> dict[str, Array]:
                     # ZipExtFile gives no more than the declared size, so neither does this read.
                     content = stream.read(member.file_size + 1)
                 arrays[key] = _load_array(io.BytesIO(content), len(content), f"{label}, {key}")
-    except (zipfile.BadZipFile, zlib.error, EOFError, NotImplementedError, RuntimeError, OSError) as error:
+    except InputError:
+        raise
+    except _ZIP_ERRORS as error:
         raise InputError(f"{label} is not a whole .npz file ({error}): save it again.") from None
     return arrays
 
@@ -133,7 +142,7 @@ def _load_array(stream: io.BytesIO, size: int, label: str) -> Array:
         version = np.lib.format.read_magic(stream)
         reader = {(1, 0): np.lib.format.read_array_header_1_0, (2, 0): np.lib.format.read_array_header_2_0}
         shape, _, dtype = reader[version](stream, max_header_size=_MAX_HEADER)
-    except (ValueError, KeyError, EOFError, SyntaxError, TypeError, OverflowError, MemoryError):
+    except Exception:  # the header is parsed as Python literals, which can fail in any way
         raise InputError(
             f"{label} is not a NumPy array file: save it with numpy.save or numpy.savez."
         ) from None
@@ -206,7 +215,7 @@ def _motion(
 def _numbers(array: Array, label: str) -> Array:
     if array.dtype.kind not in "fiu":
         raise InputError(f"{label} holds {array.dtype} where numbers are needed: save float32 metres.")
-    with np.errstate(over="ignore"):
+    with np.errstate(all="ignore"):
         numbers = array.astype(np.float32)
     if not np.isfinite(numbers).all():
         raise InputError(f"{label} holds NaN or infinite numbers: remove or repair those frames.")

@@ -134,6 +134,8 @@ def _bodies(positions: Array, rig: RigMotion, parts: BodyParts) -> dict[str, Arr
         for part, joint in limb.items():
             if joint is not None:
                 bodies[f"{side}_{'foot' if part == 'toe' else part}"] = positions[:, joint]
+    if not {"left_collar", "right_collar"} <= set(bodies):  # one collar alone tells nothing about the chest
+        bodies = {name: place for name, place in bodies.items() if not name.endswith("_collar")}
     for number, joint in enumerate(parts.spine):
         bodies[f"spine_{number}"] = positions[:, joint]
     if parts.head is not None:
@@ -228,7 +230,7 @@ def _limb_bone(
     side = name.split("_")[0]
     length = SMPL22.bone_lengths[joint]
     if name.endswith("_shoulder"):
-        if f"{side}_collar" not in source:
+        if "left_collar" not in source:
             return frames["spine3"] @ SMPL22.offsets[joint]
         # Collars begin anywhere between the spine and halfway out; their middle is a place all rigs share.
         start = (source["left_collar"] + source["right_collar"]) / 2
