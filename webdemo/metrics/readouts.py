@@ -48,7 +48,9 @@ MEASURES = (
     Measure("distance", "Distance, mean", "m", 2, "Between the two pelvises, over the floor."),
     Measure("distance_min", "Distance, closest", "m", 2, "Between the two pelvises, over the floor."),
     Measure("hands_min", "Hands, closest", "m", 2, "Between the nearest two wrists, one of each person."),
-    Measure("facing", "Facing", "°", 0, "Mean angle between where a person faces and where the other is."),
+    Measure(
+        "facing", "Facing, mean", "°", 0, "Mean angle between where a person faces and where the other is."
+    ),
     Measure(
         "contact_seconds", "In contact", "s", 1, "Time during which a hand or foot is on the other person."
     ),

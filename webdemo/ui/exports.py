@@ -40,7 +40,7 @@ class Kind:
 
     def offered(self) -> bool:
         """Whether this installation can write it."""
-        return self.key in ("png", "json") or f".{self.key}" in getattr(formats, "WRITERS", {})
+        return self.key in ("png", "json") or formats.can_write(f".{self.key}")
 
 
 KINDS = (

@@ -39,9 +39,9 @@ _DAMPING_INFO = (
     "While t ≤ threshold × T the predicted motion is corrected for foot contact, bone length, smoothness, "
     "interpenetration, near-contacts and facing; 0 = plain sampler."
 )
-_GUIDANCE_INFO = "How strongly the motion follows the sentence; 1 = not guided, high = overdone."
-_STEPS_INFO = "Denoising steps from noise to motion: fewer are faster, more are finer."
-_SEED_INFO = "The same seed gives the same motion. Empty: a new one each time."
+_GUIDANCE_INFO = "How closely the motion follows the words; 1 = unguided."
+_STEPS_INFO = "From noise to motion: fewer are faster, more are finer."
+_SEED_INFO = "Same seed, same motion; empty draws a new one."
 
 Updates = tuple[Any, ...]
 
@@ -98,12 +98,13 @@ class GenerateTab:
     def _settings(self) -> None:
         start = GenerateRequest(prompt=EXAMPLES[0][1])
         with gr.Column(elem_classes="pd-panel pd-settings", min_width=0):
-            self.seconds = gr.Slider(
-                *SECONDS, value=start.seconds, step=0.5, label="Length in seconds", elem_id="seconds"
-            )
-            self.samples = gr.Slider(
-                *SAMPLES, value=start.samples, step=1, label="Samples", elem_id="samples"
-            )
+            with gr.Row(elem_classes="pd-pair"):
+                self.seconds = gr.Slider(
+                    *SECONDS, value=start.seconds, step=0.5, label="Seconds", elem_id="seconds"
+                )
+                self.samples = gr.Slider(
+                    *SAMPLES, value=start.samples, step=1, label="Samples", elem_id="samples"
+                )
             with gr.Row(elem_classes="pd-seed"):
                 self.seed = gr.Number(
                     value=start.seed, precision=0, label="Seed", info=_SEED_INFO, elem_id="seed", min_width=0
@@ -147,7 +148,7 @@ class GenerateTab:
         }
         run = gr.on(
             [self.go.click, self.prompt.submit],
-            self.generate,
+            self.start,  # not "generate": that name is the public endpoint's
             inputs=[
                 self.prompt, self.seconds, self.seed, self.samples, self.guidance, self.steps, self.damping
             ],
@@ -174,7 +175,7 @@ class GenerateTab:
             )
         demo.load(self.describe_model, outputs=self.card, queue=False, **quiet)
 
-    def generate(
+    def start(
         self,
         prompt: str,
         seconds: float,

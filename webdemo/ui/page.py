@@ -46,6 +46,9 @@ def build_page(engine: EngineLike, *, loader: Loader | None = None, files: Path 
     def leave(request: gr.Request) -> None:
         page.runs.cancel(str(request.session_hash))
 
+    def loading() -> Iterator[str]:
+        yield from watch_loading(page.loader)
+
     with gr.Blocks(title=TITLE, delete_cache=_CACHE, fill_width=True, analytics_enabled=False) as demo:
         with gr.Row(elem_classes="pd-header", equal_height=True):
             gr.HTML(_HEADER)
@@ -61,7 +64,7 @@ def build_page(engine: EngineLike, *, loader: Loader | None = None, files: Path 
         for endpoint in ENDPOINTS:
             endpoint(page).publish()
         demo.load(
-            lambda: watch_loading(page.loader),
+            loading,
             outputs=mark,
             api_visibility="private",
             show_progress="hidden",

@@ -116,7 +116,8 @@ def _change(measure: Measure, before: Summary, after: Summary) -> str:
     tone = "pd-better" if new < old else "pd-worse"
     if old < smallest:
         return f'<td class="{tone}">+{number(new - old, measure.digits)}</td>'
-    return f'<td class="{tone}">{100 * (new - old) / old:+.0f} %</td>'.replace("-", "−")
+    percent = f"{100 * (new - old) / old:+.0f}".replace("-", "−")
+    return f'<td class="{tone}">{percent} %</td>'
 
 
 def _relation_table(samples: Sequence[tuple[Summary | None, Summary]], result: Result) -> str:

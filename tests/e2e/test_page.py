@@ -1,0 +1,272 @@
+"""The whole page in a real browser, with an engine that needs no networks.
+
+Every page comes from ``open_page``, which fails a test whose page asks another host or has a script error.
+"""
+
+from __future__ import annotations
+
+import json
+import os
+import re
+import time
+from collections.abc import Callable, Iterator
+from pathlib import Path
+from types import SimpleNamespace
+
+import pytest
+
+os.environ.setdefault("GRADIO_ANALYTICS_ENABLED", "False")
+
+from playwright.sync_api import Page, expect
+
+from webdemo.ui.page import build_page, launch_options
+
+from ..ui.stub_engine import StubEngine
+
+pytestmark = pytest.mark.e2e
+
+HOSTILE = (
+    "<img src=x onerror=\"window.hacked='img'\">",
+    "${(window.hacked='template')}{{value}}",
+    "</script><script>window.hacked='script'</script>",
+    "`${alert(1)}` 🕺💃 שלום 你好",
+)
+ERRORS = {
+    "": "The prompt is empty",
+    "x" * 10_000: "The prompt has 10,000 characters",
+    "something impossible": "The stub cannot do this",
+    "a crash": "Something went wrong inside the program (RuntimeError)",
+}
+SLOW = 60_000
+"""Milliseconds that a busy machine may take to draw."""
+STEP = 0.01
+"""Seconds that a step of the stub takes, where a test does not look at the steps."""
+
+
+@pytest.fixture(scope="module")
+def server(tmp_path_factory: pytest.TempPathFactory) -> Iterator[SimpleNamespace]:
+    engine = StubEngine(pause=STEP)
+    page = build_page(engine, files=tmp_path_factory.mktemp("files"))
+    _, url, _ = page.launch(prevent_thread_lock=True, quiet=True, server_name="127.0.0.1", **launch_options())
+    yield SimpleNamespace(url=url, engine=engine)
+    page.close()
+
+
+@pytest.fixture
+def page(server: SimpleNamespace, open_page: Callable[..., Page]) -> Page:
+    return _drawn(open_page(server.url, accept_downloads=True))
+
+
+@pytest.fixture
+def slow_steps(server: SimpleNamespace) -> Iterator[None]:
+    """Steps slow enough for a browser on a busy machine to be seen following them."""
+    server.engine.pause = 0.12
+    yield
+    server.engine.pause = STEP
+
+
+@pytest.fixture
+def phone(server: SimpleNamespace, open_page: Callable[..., Page]) -> Page:
+    return _drawn(open_page(server.url, width=390, height=844))
+
+
+def _drawn(tab: Page) -> Page:
+    expect(tab.locator("#prompt textarea")).to_be_visible(timeout=SLOW)
+    return tab
+
+
+def ask(page: Page, prompt: str) -> None:
+    page.fill("#prompt textarea", prompt)
+    page.click("#generate button, button#generate")
+
+
+def status(page: Page, tone: str) -> str:
+    line = page.locator(f"#status .pd-{tone}")
+    expect(line).to_be_visible(timeout=SLOW)
+    return line.inner_text()
+
+
+def wait_for_line(page: Page, pattern: str) -> None:
+    expect(page.locator("#status")).to_contain_text(re.compile(pattern), timeout=SLOW)
+
+
+def shown_id(page: Page) -> str | None:
+    return page.evaluate("window.__pasdedeux?.id ?? null")
+
+
+def set_number(page: Page, selector: str, value: float) -> None:
+    field = page.locator(f"{selector} input[type=number]")
+    field.fill(str(value))
+    field.press("Tab")
+
+
+def test_a_prompt_becomes_two_moving_skeletons(page: Page, server: SimpleNamespace) -> None:
+    ask(page, "two people walk up to each other")
+    assert status(page, "done").startswith("Done in")
+    page.wait_for_function("window.__pasdedeux?.positions?.length === 2")
+    first = page.evaluate("window.__pasdedeux.positions")
+    page.wait_for_timeout(700)
+    second = page.evaluate("window.__pasdedeux.positions")
+    for person in (0, 1):
+        moved = max(
+            abs(a - b)
+            for before, after in zip(first[person], second[person], strict=True)
+            for a, b in zip(before, after, strict=True)
+        )
+        assert moved > 0.05, f"person {person} stands still"
+    expect(page.locator("#readouts")).to_contain_text("Foot skate")
+    expect(page.locator("#readouts")).to_contain_text("Before")
+    assert server.engine.requests[-1].prompt == "two people walk up to each other"
+
+
+def test_enter_and_ctrl_enter_generate(page: Page) -> None:
+    for keys in ("Enter", "Control+Enter"):
+        page.fill("#prompt textarea", f"two people wave, says {keys}")
+        page.press("#prompt textarea", keys)
+        expect(page.locator(".pdd-title")).to_have_text(f"two people wave, says {keys}", timeout=SLOW)
+        status(page, "done")
+
+
+def test_chips_fill_the_prompt(page: Page) -> None:
+    page.click("button.pd-chip >> nth=0")
+    expect(page.locator("#prompt textarea")).to_have_value(
+        "Two people walk up to each other and shake hands."
+    )
+    expect(page.locator("#prompt textarea")).to_be_focused()
+
+
+def test_progress_counts_the_steps_in_text_and_over_the_player(page: Page, slow_steps: None) -> None:
+    ask(page, "two people bow")
+    page.wait_for_function(
+        "/step \\d+ of 50/.test(document.querySelector('#status').innerText) &&"
+        "/step \\d+ of 50/.test(document.querySelector('.pdd-busy-text').innerText)",
+        timeout=SLOW,
+    )
+    assert page.locator("button#cancel").is_enabled()
+    status(page, "done")
+    expect(page.locator(".pdd-busy")).to_be_hidden()
+    expect(page.locator("button#cancel")).to_be_disabled()
+
+
+def test_cancel_stops_at_a_step_and_keeps_the_last_motion(page: Page, server: SimpleNamespace) -> None:
+    ask(page, "two people hug")
+    status(page, "done")
+    before = shown_id(page)
+    server.engine.pause = 0.4
+    try:
+        ask(page, "two people dance for long")
+        wait_for_line(page, r"step \d+ of")
+        page.click("button#cancel")
+        line = status(page, "warning")
+    finally:
+        server.engine.pause = STEP
+    assert line.startswith("Cancelled at step")
+    assert line.endswith("of 50.")
+    done = server.engine.steps_done
+    assert abs(int(line.split()[3]) - done) <= 1
+    time.sleep(1.0)
+    assert server.engine.steps_done == done, "the loop went on"
+    assert shown_id(page) == before
+    expect(page.locator(".pdd-busy")).to_be_hidden()
+    ask(page, "two people hug again")
+    status(page, "done")
+
+
+def test_errors_are_sentences_and_the_next_request_works(page: Page) -> None:
+    for prompt, sentence in ERRORS.items():
+        ask(page, prompt)
+        expect(page.locator("#status .pd-error")).to_contain_text(sentence, timeout=SLOW)
+        assert "Traceback" not in page.content()
+    ask(page, "two people shake hands")
+    status(page, "done")
+
+
+def test_hostile_prompts_are_shown_literally_and_run_nothing(page: Page) -> None:
+    for prompt in HOSTILE:
+        ask(page, prompt + " unknown")
+        expect(page.locator(".pdd-title")).to_have_text(prompt + " unknown", timeout=SLOW)
+        status(page, "done")
+        expect(page.locator("#readouts .pd-note")).to_contain_text("<b>hello</b>")
+    page.wait_for_timeout(200)
+    assert page.evaluate("window.hacked ?? null") is None
+    assert page.locator("img[src='x']").count() == 0
+
+
+def test_the_used_seed_is_shown_and_repeats_the_motion(page: Page, server: SimpleNamespace) -> None:
+    page.locator("#seed input").fill("")
+    ask(page, "two people walk")
+    status(page, "done")
+    seed = server.engine.requests[-1].seed
+    expect(page.locator(".pd-asked")).to_contain_text(str(seed))
+    first = shown_id(page)
+    page.click("button#dice")
+    page.wait_for_function("document.querySelector('#seed input').value !== ''")
+    page.locator("#seed input").fill(str(seed))
+    seen = len(server.engine.requests)
+    ask(page, "two people walk")
+    wait_for_line(page, "Done")
+    page.wait_for_function("!document.querySelector('button#generate').disabled")
+    assert [request.seed for request in server.engine.requests[seen:]] == [seed]
+    assert shown_id(page) == first
+
+
+def test_samples_become_tabs_and_columns(page: Page) -> None:
+    set_number(page, "#samples", 3)
+    ask(page, "two people walk")
+    assert status(page, "done").startswith("3 samples")
+    expect(page.locator(".pdd-tabs button")).to_have_count(3)
+    expect(page.locator("#readouts")).to_contain_text("Sample 3")
+
+
+def test_downloads_are_files(page: Page, tmp_path: Path) -> None:
+    ask(page, "two people walk home")
+    status(page, "done")
+    button = page.locator("#download-json")
+    expect(button).to_be_enabled(timeout=SLOW)
+    with page.expect_download() as waiting:
+        button.click()
+    path = tmp_path / "manifest.json"
+    waiting.value.save_as(path)
+    assert waiting.value.suggested_filename.startswith("two-people-walk-home-seed")
+    assert json.loads(path.read_text())["request"]["prompt"] == "two people walk home"
+    for kind in ("npz", "bvh", "png"):
+        with page.expect_download() as waiting:
+            page.locator(f"#download-{kind}").click()
+        assert Path(waiting.value.path()).stat().st_size > 1000
+
+
+def test_two_sessions_do_not_cancel_each_other(page: Page, phone: Page, server: SimpleNamespace) -> None:
+    server.engine.pause = 0.4
+    try:
+        ask(page, "the first of two")
+        wait_for_line(page, r"step \d+ of")
+        ask(phone, "the second of two")
+        wait_for_line(phone, "Waiting for another run")
+        phone.click("button#cancel")
+        assert status(phone, "warning") == "Cancelled before the first step."
+        server.engine.pause = STEP
+        status(page, "done")
+    finally:
+        server.engine.pause = STEP
+
+
+def test_the_phone_layout_has_the_player_high_and_no_sideways_scroll(phone: Page) -> None:
+    ask(phone, "two people walk")
+    status(phone, "done")
+    assert phone.evaluate("document.documentElement.scrollWidth") <= 390
+    top = {name: phone.locator(name).bounding_box()["y"] for name in ("#prompt", "#player", "#guidance")}
+    assert top["#prompt"] < top["#player"] < top["#guidance"]
+    assert top["#player"] < 400
+
+
+def test_every_control_has_a_name_and_the_focus_is_visible(page: Page) -> None:
+    names = page.evaluate(
+        "[...document.querySelectorAll('.pd-lab button, .pd-lab input, .pd-lab textarea, .pd-lab select')]"
+        ".filter(e => e.offsetParent).map(e => [e.outerHTML.slice(0, 80), e.ariaLabel || e.textContent.trim()"
+        " || e.labels?.[0]?.textContent.trim() || ''])"
+    )
+    assert [html for html, name in names if not name] == []
+    page.focus("button#generate")
+    page.keyboard.press("Tab")
+    page.keyboard.press("Shift+Tab")
+    assert page.evaluate("getComputedStyle(document.activeElement).outlineStyle") != "none"

@@ -1,0 +1,291 @@
+"""What the page's handlers do, without a browser."""
+
+from __future__ import annotations
+
+import json
+import os
+import threading
+import time
+import zipfile
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+os.environ.setdefault("GRADIO_ANALYTICS_ENABLED", "False")
+
+import gradio as gr
+
+from webdemo.inference.cancel import CancelToken
+from webdemo.inference.requests import Cancelled, GenerateRequest, Progress, Result
+from webdemo.ui.context import PageContext
+from webdemo.ui.examples import EXAMPLES
+from webdemo.ui.exports import KINDS, Record, Shelf, file_name, for_download, write_files
+from webdemo.ui.generate_tab import GenerateTab
+from webdemo.ui.page import build_page, watch_loading
+from webdemo.ui.runs import Loader, Runs
+
+from .stub_engine import StubEngine
+
+FIELDS = {"prompt": "two people walk", "seconds": 2.0, "seed": 3, "samples": 1, "guidance": 2.5, "steps": 5,
+          "damping": 0.7}  # fmt: skip
+
+
+@pytest.fixture
+def tab(tmp_path: Path) -> GenerateTab:
+    engine = StubEngine()
+    context = PageContext(engine=engine, runs=Runs(engine), loader=Loader(engine), shelf=Shelf(tmp_path))
+    made = GenerateTab(context)
+    with gr.Blocks() as demo:
+        made.build(demo)
+    return made
+
+
+def named(tab: GenerateTab, updates: tuple[Any, ...]) -> dict[str, Any]:
+    """Updates by the name of their output, without those that change nothing."""
+    pairs = zip(tab.outputs, updates, strict=True)
+    return {name: update for name, update in pairs if update != gr.skip()}
+
+
+def run(tab: GenerateTab, **changed: Any) -> list[dict[str, Any]]:
+    return [named(tab, updates) for updates in tab.run("me", {**FIELDS, **changed})]
+
+
+def result_of(tab: GenerateTab, **changed: Any) -> Record:
+    return run(tab, **changed)[-1]["record"]
+
+
+def test_a_run_ends_with_a_motion_readouts_and_a_record(tab: GenerateTab) -> None:
+    steps = run(tab)
+    assert steps[0]["go"]["interactive"] is False
+    assert steps[0]["stop"]["interactive"] is True
+    last = steps[-1]
+    assert last["player"]["value"]["title"] == "two people walk"
+    assert last["player"]["busy"] == ""
+    assert "Foot skate" in last["readouts"]
+    assert last["go"]["interactive"] is True
+    assert last["record"].result.manifest["request"]["seed"] == 3
+
+
+def test_progress_is_true_and_paced(tab: GenerateTab) -> None:
+    tab.page.engine.pause = 0.03
+    lines = [step["line"] for step in run(tab, steps=20)[1:-1]]
+    assert any("step 1 of 20" in line for line in lines)
+    assert 3 <= len(lines) <= 12, "about ten updates a second"
+
+
+def test_cancel_ends_within_one_step_and_touches_no_result(tab: GenerateTab) -> None:
+    engine = tab.page.engine
+    engine.pause = 0.15
+    updates = tab.run("me", {**FIELDS, "steps": 50})
+    seen = [named(tab, next(updates)) for _ in range(5)]
+    assert tab.page.runs.cancel("me")
+    rest = [named(tab, update) for update in updates]
+    done = engine.steps_done
+    assert done < 10
+    assert "Cancelled at step" in rest[-1]["line"]
+    assert "of 50" in rest[-1]["line"]
+    assert "record" not in rest[-1]
+    assert "readouts" not in rest[-1]
+    assert rest[-1]["go"]["interactive"] is True
+    assert "step" in seen[-1]["line"]
+    assert not tab.page.runs.cancel("me"), "nothing is left to cancel"
+
+
+@pytest.mark.parametrize(
+    ("changed", "sentence"),
+    [
+        ({"prompt": "   "}, "The prompt is empty"),
+        ({"prompt": "x" * 501}, "The prompt has 501 characters"),
+        ({"seconds": 100.0}, "Length must be from 1 to 10 seconds"),
+        ({"steps": 0}, "DDIM steps must be from 1 to 1000"),
+        ({"steps": 2.5}, "DDIM steps must be a whole number"),
+        ({"guidance": float("nan")}, "Guidance scale must be a number"),
+        ({"damping": -0.1}, "Damping threshold must be from 0 to 1"),
+        ({"seed": -1}, "Seed must be from 0"),
+        ({"samples": 99}, "Samples must be from 1 to 8"),
+        ({"prompt": "impossible"}, "The stub cannot do this"),
+        ({"prompt": "crash"}, "Something went wrong inside the program (RuntimeError)"),
+    ],
+)
+def test_errors_are_one_sentence_and_the_next_run_works(
+    tab: GenerateTab, changed: dict[str, Any], sentence: str
+) -> None:
+    last = run(tab, **changed)[-1]
+    assert sentence in last["line"]
+    assert 'role="alert"' in last["line"]
+    assert last["go"]["interactive"] is True
+    assert "record" not in last
+    assert "record" in run(tab)[-1]
+
+
+def test_an_empty_seed_is_drawn_and_told(tab: GenerateTab) -> None:
+    class Visit:
+        session_hash = "me"
+
+    values = [FIELDS[key] for key in ("prompt", "seconds")]
+    seeds = set()
+    for _ in range(2):
+        steps = tab.start(*values, None, 1, 2.5, 2, 0.7, Visit())
+        last = [named(tab, step) for step in steps][-1]
+        seed = last["record"].result.manifest["request"]["seed"]
+        assert f"<dd>{seed}</dd>" in last["readouts"]
+        seeds.add(seed)
+    assert len(seeds) == 2
+
+
+def test_a_second_run_waits_for_the_first_and_can_be_cancelled_in_the_line() -> None:
+    engine = StubEngine(pause=0.05)
+    runs = Runs(engine)
+    request = GenerateRequest(prompt="two people walk", steps=20, seconds=1)
+    first = runs.run("one", request)
+    next(first)
+    second = runs.run("two", request)
+    assert next(second).stage == "queue"
+    runs.cancel("two")
+    with pytest.raises(Cancelled):
+        list(second)
+    assert isinstance(list(first)[-1], Result), "the first was not disturbed"
+    assert isinstance(list(runs.run("two", request))[-1], Result)
+
+
+def test_leaving_the_page_frees_the_place() -> None:
+    runs = Runs(StubEngine())
+    request = GenerateRequest(prompt="two people walk", seconds=1, steps=3)
+    left = runs.run("gone", request)
+    next(left)
+    left.close()
+    assert isinstance(list(runs.run("next", request))[-1], Result)
+
+
+def test_a_new_run_of_a_session_cancels_its_earlier_one() -> None:
+    runs = Runs(StubEngine(pause=0.01), parallel=2)
+    request = GenerateRequest(prompt="two people walk", seconds=1, steps=200)
+    earlier = runs.run("me", request)
+    next(earlier)
+    later = runs.run("me", request)
+    next(later)
+    with pytest.raises(Cancelled):
+        list(earlier)
+    assert next(later).stage == "sample", "the end of the earlier run does not stop the later one"
+
+
+def test_cancel_token_is_seen_in_other_threads() -> None:
+    token = CancelToken()
+    seen = threading.Event()
+
+    def loop() -> None:
+        while not token.cancelled:
+            time.sleep(0.005)
+        seen.set()
+
+    threading.Thread(target=loop, daemon=True).start()
+    token.cancel()
+    assert seen.wait(2)
+    with pytest.raises(Cancelled):
+        token.raise_if_cancelled()
+
+
+def test_loading_is_told_until_it_is_done_or_failed() -> None:
+    marks = list(watch_loading(Loader(StubEngine(load=0.2)), interval=0.02))
+    assert "Loading model" in marks[0]
+    assert "Model ready" in marks[-1]
+
+    class Broken(StubEngine):
+        def warm_up(self) -> None:
+            raise ValueError("The weights file is missing: run the download again.")
+
+    marks = list(watch_loading(Loader(Broken(load=1)), interval=0.02))
+    assert "The weights file is missing" in marks[-1]
+
+
+def test_files_of_one_sample(tab: GenerateTab, tmp_path: Path) -> None:
+    record = result_of(tab)
+    files = write_files(record.result, tab.page.shelf.folder(), prompt=record.prompt)
+    assert {path.name for path in files["bvh"]} == {
+        "two-people-walk-seed3_a.bvh",
+        "two-people-walk-seed3_b.bvh",
+    }
+    assert json.loads(files["json"][0].read_text())["request"]["seed"] == 3
+    found = for_download(files)
+    assert found["npz"].suffix == ".npz"
+    assert zipfile.ZipFile(found["bvh"]).namelist() == [path.name for path in files["bvh"]]
+
+
+def test_files_of_several_samples_are_zipped(tab: GenerateTab) -> None:
+    record = result_of(tab, samples=2)
+    found = for_download(write_files(record.result, tab.page.shelf.folder(), prompt=record.prompt))
+    assert len(zipfile.ZipFile(found["npz"]).namelist()) == 2
+    assert len(zipfile.ZipFile(found["bvh"]).namelist()) == 4
+
+
+def test_export_fills_the_buttons_once(tab: GenerateTab) -> None:
+    record = result_of(tab)
+    first = tab.export(record)
+    offered = {kind.key for kind in KINDS if kind.offered()}
+    filled = {kind.key for kind, update in zip(KINDS, first[1:], strict=True) if update["interactive"]}
+    assert filled == offered
+    assert all(update == gr.skip() for update in tab.export(record))
+    assert all(update == gr.skip() for update in tab.export(None))
+
+
+def test_a_full_disk_is_told_and_leaves_nothing(tab: GenerateTab, monkeypatch: pytest.MonkeyPatch) -> None:
+    def full(*_: Any, **__: Any) -> None:
+        raise OSError(28, "No space left on device")
+
+    monkeypatch.setattr("webdemo.ui.exports.contact_sheet", full)
+    line, *buttons = tab.export(result_of(tab))
+    assert "The disk is full" in line
+    assert not any(button["interactive"] for button in buttons)
+    assert list(tab.page.shelf.root.glob("run-*")) == []
+
+
+def test_old_folders_are_removed(tmp_path: Path) -> None:
+    shelf = Shelf(tmp_path / "runs", max_age=60)
+    old, new = shelf.folder(), shelf.folder()
+    (old / "motion.npz").write_bytes(b"0")
+    os.utime(old, (time.time() - 120,) * 2)
+    shelf.folder()
+    assert not old.exists()
+    assert new.exists()
+
+
+@pytest.mark.parametrize(
+    ("prompt", "expected"),
+    [
+        ("Two people shake hands!", "two-people-shake-hands-seed7"),
+        ("../../etc/passwd", "etc-passwd-seed7"),
+        ("你好 🕺", "motion-seed7"),
+        ("<img onerror=x>", "img-onerror-x-seed7"),
+        ("word " * 100, "word-word-word-word-word-word-word-word-seed7"),
+    ],
+)
+def test_file_names_are_plain(prompt: str, expected: str) -> None:
+    name = file_name(prompt, {"request": {"seed": 7}})
+    assert name == expected or (prompt.startswith("word") and len(name) <= 56 and name.endswith("-seed7"))
+
+
+def test_examples_are_prompts_that_a_request_takes() -> None:
+    for _, sentence in EXAMPLES:
+        assert GenerateRequest(prompt=sentence).prompt == sentence
+
+
+def test_the_page_imports_no_torch() -> None:
+    import subprocess
+    import sys
+
+    code = "import sys, webdemo.ui.page; sys.exit('torch' in sys.modules or 'diffusers' in sys.modules)"
+    root = Path(__file__).resolve().parents[2]
+    assert subprocess.run([sys.executable, "-c", code], cwd=root, timeout=60).returncode == 0
+
+
+def test_progress_events_of_other_stages_have_words(tab: GenerateTab) -> None:
+    from webdemo.ui.words import progress_line
+
+    for stage in ("load", "text", "finish", "queue", "something else"):
+        assert progress_line(Progress(stage=stage)).endswith("…")
+
+
+def test_build_page_offers_one_public_endpoint(tmp_path: Path) -> None:
+    demo = build_page(StubEngine(), files=tmp_path)
+    assert list(demo.get_api_info()["named_endpoints"]) == ["/generate"]

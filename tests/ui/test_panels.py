@@ -1,0 +1,108 @@
+"""The page's pieces of HTML: what they say, and that text in them stays text."""
+
+from __future__ import annotations
+
+import html
+import re
+
+import pytest
+
+from webdemo.inference.requests import GenerateRequest, Progress, Result
+from webdemo.motion import InputError
+from webdemo.ui.panels import model_card, model_state, readout_panel, status
+from webdemo.ui.show import result_payload
+from webdemo.ui.words import cancelled_line, error_line, progress_line, text
+
+from .stub_engine import StubEngine
+
+HOSTILE = "<img src=x onerror=alert(1)> ${alert(2)} {{value}} `x` \"quoted\" 'single'"
+
+
+def result(**changed: object) -> Result:
+    request = GenerateRequest(prompt="unknown " + HOSTILE, seconds=1, steps=2, **changed)
+    return list(StubEngine().run(request))[-1]
+
+
+def test_text_is_escaped_and_comes_back_the_same() -> None:
+    escaped = text(HOSTILE)
+    assert not set("<>${}`\"'") & set(re.sub(r"&#?\w+;", "", escaped))
+    assert html.unescape(escaped) == HOSTILE
+
+
+@pytest.mark.parametrize("made", [
+    status(HOSTILE, tone="error"),
+    model_state("failed", HOSTILE),
+    model_card({"name": HOSTILE, "summary": HOSTILE, HOSTILE: HOSTILE}),
+    readout_panel(Result(duets=result().duets, manifest={}, notes=(HOSTILE,))),
+])  # fmt: skip
+def test_no_panel_lets_markup_or_templates_through(made: str) -> None:
+    assert "<img" not in made
+    assert "${" not in made
+    assert "{{" not in made
+
+
+def test_readouts_show_before_after_and_change() -> None:
+    made = readout_panel(result())
+    for words in ("Before", "After", "Change", "Foot skate", "Jerk", "Penetration", "Bone drift", "Contacts"):
+        assert words in made
+    assert re.search(r"pd-better\">−\d+ %", made)
+    assert "nearest that it knows" in made
+
+
+def test_readouts_without_a_before_show_values_alone() -> None:
+    plain = result()
+    readouts = tuple({**readout, "before": None} for readout in plain.readouts)
+    made = readout_panel(Result(duets=plain.duets, manifest=plain.manifest, readouts=readouts))
+    assert "Before" not in made
+    assert "Value" in made
+
+
+def test_several_samples_are_columns() -> None:
+    made = readout_panel(result(samples=3))
+    assert "Sample 3" in made
+    assert " → " in made
+
+
+def test_no_readouts_is_no_table() -> None:
+    plain = result()
+    assert "<table" not in readout_panel(Result(duets=plain.duets, manifest={}))
+
+
+def test_the_player_gets_the_contacts_of_the_readouts() -> None:
+    made = result()
+    contact = {"start": 3, "stop": 9, "kind": "hands", "label": "hand on hand"}
+    changed = Result(duets=made.duets, manifest={}, readouts=({**made.readouts[0], "contacts": [contact]},))
+    payload = result_payload(changed, title=HOSTILE)
+    assert payload["title"] == HOSTILE, "the player sets it as text"
+    assert payload["samples"][0]["contacts"] == [contact]
+    assert [curve["key"] for curve in payload["samples"][0]["curves"]] == [
+        "pelvis_distance",
+        "wrist_distance",
+    ]
+
+
+def test_the_player_measures_for_itself_without_readouts() -> None:
+    payload = result_payload(Result(duets=result().duets, manifest={}))
+    assert payload["samples"][0]["curves"]
+
+
+def test_progress_and_cancellation_name_the_step() -> None:
+    event = Progress(stage="sample", step=12, total=50)
+    assert progress_line(event) == "Denoising: step 12 of 50"
+    assert cancelled_line(event) == "Cancelled at step 12 of 50."
+    assert cancelled_line(Progress(stage="text")) == "Cancelled before the first step."
+    assert cancelled_line(None) == "Cancelled before the first step."
+
+
+@pytest.mark.parametrize(
+    ("error", "start"),
+    [
+        (InputError("Do this instead."), "Do this instead."),
+        (OSError(28, "No space left on device"), "The disk is full"),
+        (OSError(13, "Permission denied"), "A file could not be read or written (Permission denied)"),
+        (MemoryError(), "There is not enough memory"),
+        (KeyError("x"), "Something went wrong inside the program (KeyError)"),
+    ],
+)
+def test_errors_become_sentences(error: Exception, start: str) -> None:
+    assert error_line(error).startswith(start)
