@@ -23,7 +23,6 @@ export function attach(surface, orbit, { changed, hover, mayScroll }) {
     surface.setPointerCapture(event.pointerId);
     pointers.set(event.pointerId, local(event));
     pinch = pointers.size === 2 ? spread() : null;
-    orbit.turning = true;
     hover(null);
   });
 
@@ -47,7 +46,6 @@ export function attach(surface, orbit, { changed, hover, mayScroll }) {
   const release = (event) => {
     pointers.delete(event.pointerId);
     pinch = pointers.size === 2 ? spread() : null;
-    orbit.turning = pointers.size > 0;
   };
   surface.addEventListener("pointerup", release);
   surface.addEventListener("pointercancel", release);

@@ -5,10 +5,11 @@ import { loops, Player } from "./player.js";
 
 const players = new Set();
 
-/** What tests and curious people look at; always about the player that was made last. */
+/** What tests and curious people look at: the player in view that was made last. */
 const hooks = {
   get player() {
-    return [...players].pop() ?? null;
+    const newest = [...players].reverse();
+    return newest.find((player) => player.stage.clientWidth) ?? newest[0] ?? null;
   },
   get count() {
     return players.size;

@@ -23,7 +23,6 @@ export class Orbit {
     this.glide = null;
     this.following = true;
     this.framing = true; // whether the distance adapts, until the user zooms
-    this.turning = false;
   }
 
   get center() {

@@ -187,7 +187,7 @@ export class Player {
   }
 
   viewOf(name, pose) {
-    const aspect = this.stage.clientWidth / Math.max(this.stage.clientHeight, 1);
+    const aspect = this.stage.clientWidth / this.stage.clientHeight || 1.7; // in a closed tab there is no size yet
     return preset(name, { along: heading(pose, this.skeleton), apart: apart(pose, this.skeleton), aspect });
   }
 

@@ -28,8 +28,6 @@ const find = (names, ...patterns) => {
 
 /** Bones, joint sizes and the joints that the player names, from names and parents. */
 export function describe(names, parents) {
-  const children = new Map();
-  parents.forEach((parent, joint) => parent >= 0 && children.set(parent, [...(children.get(parent) || []), joint]));
   const bones = [];
   parents.forEach((parent, joint) => {
     if (parent >= 0) bones.push({ from: parent, to: joint, side: sideOf(names[joint]), radius: radiusOf(names[joint]) });
@@ -40,11 +38,9 @@ export function describe(names, parents) {
   }));
   const pelvis = Math.max(find(names, /pelvis|hips$/, /base_of_spine/, /torso/), 0);
   const wrists = names.map((n, i) => (/wrist/.test(n.toLowerCase()) ? i : -1)).filter((i) => i >= 0);
-  const ankles = names.map((n, i) => (/ankle|foot/.test(n.toLowerCase()) ? i : -1)).filter((i) => i >= 0);
   return {
-    bones, joints, pelvis, wrists, ankles, headRadius: HEAD_RADIUS,
+    bones, joints, pelvis, wrists, headRadius: HEAD_RADIUS,
     head: find(names, /^head$/, /head/), neck: find(names, /neck/),
     hips: [find(names, /left_?hip|l_?hip/), find(names, /right_?hip|r_?hip/)],
-    leaf: (joint) => !children.has(joint),
   };
 }

@@ -82,7 +82,10 @@ def _hang(body: np.ndarray, side: str, names: list[str]) -> None:
 
 def build() -> gr.Blocks:
     with gr.Blocks(title="Player") as page:
-        player = MotionPlayer(elem_id="player")
+        with gr.Tab("first"):
+            player = MotionPlayer(elem_id="player")
+        with gr.Tab("second"):
+            late = MotionPlayer(elem_id="late")
         with gr.Row():
             load = gr.Button("load")
             several = gr.Button("several")
@@ -90,6 +93,7 @@ def build() -> gr.Blocks:
             predicted = gr.Button("predicted")
             working = gr.Button("busy")
             clear = gr.Button("clear")
+            load_late = gr.Button("load second")
             hide = gr.Button("hide")
             unhide = gr.Button("show")
         duet = walking_duet()
@@ -111,6 +115,7 @@ def build() -> gr.Blocks:
         )
         working.click(lambda: busy("Step 12 of 50 ${1+1}", progress=0.24), None, player)
         clear.click(lambda: show(None), None, player)
+        load_late.click(lambda: show(player_payload(duet)), None, late)
         hide.click(lambda: gr.update(visible=False), None, player)
         unhide.click(lambda: gr.update(visible=True), None, player)
     return page
