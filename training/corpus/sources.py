@@ -9,9 +9,11 @@ from __future__ import annotations
 import hashlib
 import json
 import logging
+import lzma
 import os
 import re
 import tarfile
+import zipfile
 from collections import defaultdict
 from collections.abc import Iterator
 from pathlib import Path, PurePosixPath
@@ -32,7 +34,7 @@ FPS = 30.0
 MAX_FRAMES = 600
 TEST_SHARE = 0.08
 MIN_CLIPS_FOR_TEST = 6
-_CACHE_VERSION = 1  # raise when the reader or the retargeting changes its results
+_CACHE_VERSION = 2  # raise when the reader or the retargeting changes its results
 
 _FOLDERS = ("bandai-namco", "reactidle")
 _ACTIONS = {"byebye": "bye", "dance-short": "dance"}
@@ -68,7 +70,7 @@ def load_sources(data_dir: str | Path, *, cache_dir: str | Path | None = None) -
     if cache.exists():
         try:
             return _load_cache(cache)
-        except (OSError, ValueError, KeyError):
+        except (zipfile.BadZipFile, EOFError, OSError, ValueError, KeyError):
             logger.warning("The cache %s is damaged; the recordings are read again.", cache)
     clips = _read_all(root, found)
     _save_cache(cache, clips)
@@ -113,10 +115,8 @@ def _recordings(files: list[Path]) -> Iterator[tuple[str, bytes]]:
                 for member in archive:
                     if member.isfile() and member.name.endswith(".bvh"):
                         yield member.name, archive.extractfile(member).read()  # type: ignore[union-attr]
-        except (tarfile.TarError, EOFError, OSError, ValueError) as error:
+        except (tarfile.TarError, lzma.LZMAError, EOFError, OSError) as error:
             raise InputError(f"The archive {path} is damaged ({error}): download it again.") from None
-        except Exception as error:  # lzma.LZMAError, on Pythons built with and without lzma
-            raise InputError(f"The archive {path} cannot be unpacked ({error}): download it again.") from None
 
 
 def _read_all(root: Path, files: list[Path]) -> list[SourceClip]:
@@ -127,7 +127,7 @@ def _read_all(root: Path, files: list[Path]) -> list[SourceClip]:
         try:
             positions = retarget(read_bvh(data, name=PurePosixPath(name).name), fps=FPS).positions
             if len(positions) < 2:
-                raise InputError(f"{name} has a single frame.")
+                raise InputError("It has a single frame.")
         except InputError as error:
             dropped[name] = str(error)
             continue
