@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import uuid
+from typing import Any
 
 import gradio as gr
 
@@ -24,34 +25,52 @@ class GenerateEndpoint:
         self.page = page
 
     def publish(self) -> None:
-        """Adds the endpoint to the page that is being built."""
-        gr.api(self.generate, api_name="generate", concurrency_limit=None)
+        """Adds the endpoint to the page that is being built.
+
+        Its components are never shown. They are here because they, unlike ``gr.api``, hand files over to a
+        client on another machine; their limits are the request's, so that every error is its sentence.
+        """
+        start = GenerateRequest(prompt="-")
+        with gr.Row(visible=False):
+            inputs = [
+                gr.Textbox(label="what the two people do, in English, up to 500 characters"),
+                gr.Number(start.seconds, label="length of the motion in seconds, 1 to 10"),
+                gr.Number(start.seed, label="0 to 4294967295; the same seed gives the same motion"),
+                gr.Number(start.samples, label="how many motions to draw, 1 to 8"),
+                gr.Number(start.guidance, label="scale of classifier-free guidance, 0 to 10; 1 is none"),
+                gr.Number(start.steps, label="denoising steps, 1 to 1000"),
+                gr.Number(start.damping, label="damping threshold as a share of T, 0 to 1; 0 is none"),
+                gr.Textbox(start.sampler, label="ddim or dpm++"),
+            ]  # fmt: skip
+            outputs = [
+                gr.JSON(label="result: manifest, readouts, timings, notes, names of files"),
+                gr.File(label="the files", file_count="multiple"),
+            ]
+            trigger = gr.Button()
+        trigger.click(
+            self.generate,
+            inputs=inputs,
+            outputs=outputs,
+            api_name="generate",
+            concurrency_limit=None,  # runs wait in the line that they share with the page's
+        )
 
     def generate(
         self,
         prompt: str,
-        seconds: float = 5.0,
-        seed: int = 0,
-        samples: int = 1,
-        guidance: float = 2.5,
-        steps: int = 50,
-        damping: float = 0.7,
-        sampler: str = "ddim",
-    ) -> tuple[dict, list[gr.FileData]]:
+        seconds: float,
+        seed: float,
+        samples: float,
+        guidance: float,
+        steps: float,
+        damping: float,
+        sampler: str,
+    ) -> tuple[dict[str, Any], list[str]]:
         """Two people from one sentence.
 
-        prompt: what the two people do, in English, up to 500 characters.
-        seconds: length of the motion, 1 to 10.
-        seed: 0 to 4294967295; the same request with the same seed gives the same motion.
-        samples: how many motions to draw, 1 to 8.
-        guidance: scale of classifier-free guidance, 0 to 10; 1 is none.
-        steps: denoising steps, 1 to 1000.
-        damping: threshold as a fraction of the diffusion's T, 0 to 1; 0 is the plain sampler.
-        sampler: "ddim" or "dpm++".
-
-        Returns a dictionary with manifest, readouts, timings, notes and the names of the files by kind; and
-        the files: for every sample a two-person .npz, two .bvh (and .glb where installed), a contact sheet
-        .png, and one manifest .json. Errors are one sentence that says what to change.
+        Returns the manifest, read-outs, timings, notes and file names; and the files: for every sample a
+        two-person .npz, two .bvh (and a .glb where the server writes them), a contact sheet .png, and one
+        manifest .json. An error is one sentence that says what to change.
         """
         try:
             request = GenerateRequest(
@@ -71,7 +90,7 @@ class GenerateEndpoint:
             "notes": list(result.notes),
             "files": {key: [path.name for path in paths] for key, paths in files.items()},
         }
-        return answer, [gr.FileData(path=str(path)) for paths in files.values() for path in paths]
+        return answer, [str(path) for paths in files.values() for path in paths]
 
     def _run(self, request: GenerateRequest) -> Result:
         for event in self.page.runs.run(f"api-{uuid.uuid4().hex}", request):

@@ -227,7 +227,7 @@ class GenerateTab:
             yield self._stopped(error_line(error), "error")
 
     def _shown(self, result: Result, prompt: str) -> dict[str, Any]:
-        total = sum(result.timings.values())
+        total = result.timings.get("total", sum(result.timings.values()))
         count = len(result.duets)
         made = "Done" if count == 1 else f"{count} samples done"
         return {

@@ -174,7 +174,9 @@ def model_card(info: Mapping[str, Any]) -> str:
     facts = "".join(
         f"<div><dt>{text(str(key).replace('_', ' ').capitalize())}</dt><dd>{text(value)}</dd></div>"
         for key, value in info.items()
-        if key not in ("name", "summary") and isinstance(value, (str, int, float))
+        if key not in ("name", "summary")
+        and isinstance(value, (str, int, float))
+        and not isinstance(value, bool)
     )
     paragraphs = "".join(
         f"<p>{text(part)}</p>" for part in str(info.get("summary", "")).split("\n\n") if part.strip()

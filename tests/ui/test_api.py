@@ -1,0 +1,85 @@
+"""The endpoint as a program on another machine meets it."""
+
+from __future__ import annotations
+
+import json
+import os
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+os.environ.setdefault("GRADIO_ANALYTICS_ENABLED", "False")
+
+from gradio_client import Client
+from gradio_client.exceptions import AppError
+
+from webdemo.ui.page import build_page, launch_options
+
+from .stub_engine import StubEngine
+
+pytestmark = pytest.mark.slow
+
+
+@pytest.fixture(scope="module")
+def client(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Client]:
+    page = build_page(StubEngine(), files=tmp_path_factory.mktemp("files"))
+    _, url, _ = page.launch(prevent_thread_lock=True, quiet=True, server_name="127.0.0.1", **launch_options())
+    yield Client(url, verbose=False, download_files=str(tmp_path_factory.mktemp("client")))
+    page.close()
+
+
+def generate(client: Client, **fields: Any) -> Any:
+    return client.predict(api_name="/generate", **fields)
+
+
+def test_generate_gives_a_manifest_and_files_that_can_be_read(client: Client) -> None:
+    answer, files = generate(client, prompt="two people walk", seconds=2, seed=5, steps=3, samples=2)
+    assert answer["manifest"]["request"]["seed"] == 5
+    assert len(answer["readouts"]) == 2
+    by_name = {Path(path).name: Path(path) for path in files}
+    assert set(by_name) == {name for names in answer["files"].values() for name in names}
+    with np.load(by_name["two-people-walk-seed5-2.npz"], allow_pickle=False) as saved:
+        assert saved["positions"].shape == (2, 60, 22, 3)
+    assert json.loads(by_name["two-people-walk-seed5.json"].read_text())["request"]["steps"] == 3
+    assert by_name["two-people-walk-seed5-1_a.bvh"].read_text().startswith("HIERARCHY")
+
+
+def test_only_the_prompt_is_needed(client: Client) -> None:
+    answer, _ = generate(client, prompt="two people walk")
+    assert answer["manifest"]["request"]["steps"] == 50
+
+
+@pytest.mark.parametrize(
+    ("fields", "sentence"),
+    [
+        ({"prompt": ""}, "The prompt is empty: say in a sentence what the two people do."),
+        ({"prompt": "x" * 10_000}, "The prompt has 10,000 characters: shorten it to 500 or fewer."),
+        ({"prompt": "x", "steps": 5000}, "DDIM steps must be from 1 to 1000, not 5000."),
+        ({"prompt": "x", "seconds": 0}, "Length must be from 1 to 10 seconds, not 0."),
+        ({"prompt": "x", "seed": 1.5}, "Seed must be a whole number from 0 to 4294967295, not 1.5."),
+        ({"prompt": "x", "guidance": "much"}, "Guidance scale must be a number from 0 to 10, not 'much'."),
+        ({"prompt": "x", "sampler": "euler"}, "Sampler 'euler' is not known: choose one of ddim, dpm++."),
+        (
+            {"prompt": "crash"},
+            "Something went wrong inside the program (RuntimeError); its log says more. Try again.",
+        ),
+    ],
+)
+def test_errors_are_the_requests_own_sentences(client: Client, fields: dict[str, Any], sentence: str) -> None:
+    with pytest.raises(AppError) as caught:
+        generate(client, **fields)
+    assert str(caught.value) == sentence
+    generate(client, prompt="two people walk", steps=1, seconds=1)
+
+
+def test_the_endpoint_is_documented(client: Client) -> None:
+    endpoint = client.view_api(return_format="dict", print_info=False)["named_endpoints"]["/generate"]
+    parameters = {p["parameter_name"]: p for p in endpoint["parameters"]}
+    assert list(parameters) == [
+        "prompt", "seconds", "seed", "samples", "guidance", "steps", "damping", "sampler"
+    ]  # fmt: skip
+    assert all(p["parameter_has_default"] for name, p in parameters.items() if name != "prompt")
+    assert "two-person .npz" in endpoint["description"]
