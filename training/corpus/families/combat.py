@@ -51,9 +51,9 @@ def pulse(frames: int, start: int, rise: int, fall: int) -> np.ndarray:
 def recoil(rng: Rng, motion: Motion, frame: int, *, strength: float = 1.0) -> Motion:
     """The upper body is thrown back at ``frame`` and comes forward again; the hips give way a little."""
     shape = pulse(len(motion), frame, int(rng.integers(5, 8)), int(rng.integers(16, 26))) * strength
-    motion = lean(motion, -shape * rng.uniform(0.35, 0.6), towards=float(rng.normal(0, 0.4)))
+    motion = lean(motion, -shape * rng.uniform(0.5, 0.85), towards=float(rng.normal(0, 0.4)))
     back = -np.stack([np.sin(motion.headings), np.zeros(len(motion)), np.cos(motion.headings)], axis=-1)
-    return drift(motion, back * shape[:, None] * rng.uniform(0.05, 0.12))
+    return drift(motion, back * shape[:, None] * rng.uniform(0.08, 0.16))
 
 
 def dodge(rng: Rng, motion: Motion, frame: int) -> Motion:

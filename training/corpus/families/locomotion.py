@@ -101,6 +101,16 @@ def meet(rng: Rng, library: Library) -> Scene:
 @register("walk-up", needs=("walk", "idle"), weight=1.8)
 def walk_up(rng: Rng, library: Library) -> Scene:
     """a walks up to b, who waits."""
+    return _approach(rng, library, "walk-up")
+
+
+@register("approach", needs=("walk", "idle"), weight=0.8)
+def approach(rng: Rng, library: Library) -> Scene:
+    """The same in the words of the recorded data sets' class."""
+    return _approach(rng, library, "approach")
+
+
+def _approach(rng: Rng, library: Library, family: str) -> Scene:
     action = "run" if library.has("run") and rng.random() < 0.15 else "walk"
     take = stride(rng, library, action, rng.uniform(1.8, 3.4), style=_styled(rng, library))
     a, _ = act(
@@ -111,7 +121,7 @@ def walk_up(rng: Rng, library: Library) -> Scene:
     return finish(
         rng,
         library,
-        "walk-up",
+        family,
         a,
         b,
         slots={"manner_a": take.style, "speed": word},
@@ -149,15 +159,22 @@ def part(rng: Rng, library: Library) -> Scene:
 
 @register("leave", needs=("walk", "idle"), weight=1.5)
 def leave(rng: Rng, library: Library) -> Scene:
+    """a turns about and walks away from b, who stays."""
+    return _leave(rng, library, "leave")
+
+
+@register("depart", needs=("walk", "idle"), weight=0.8)
+def depart(rng: Rng, library: Library) -> Scene:
+    """The same in the words of the recorded data sets' class."""
+    return _leave(rng, library, "depart")
+
+
+def _leave(rng: Rng, library: Library, family: str) -> Scene:
     style = _styled(rng, library)
-    a, _ = act(
-        rng,
-        library,
-        (seconds(rng, 0.3, 1.2), walk_off(rng, library, style=style, distance=2.4)),
-        idle_after=False,
-    )
+    walk = walk_off(rng, library, style=style, distance=2.4)
+    a, _ = act(rng, library, (seconds(rng, 0.3, 1.2), walk), idle_after=False)
     b = oppose(rng, a, waiting(rng, library, len(a)), rng.uniform(0.9, 1.8))
-    return finish(rng, library, "leave", a, b, slots={"manner_a": style}, events={"distance": "part"})
+    return finish(rng, library, family, a, b, slots={"manner_a": style}, events={"distance": "part"})
 
 
 def _behind(
