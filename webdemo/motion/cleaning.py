@@ -6,7 +6,13 @@ import itertools
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.ndimage import binary_closing, binary_opening, gaussian_filter1d, maximum_filter1d
+from scipy.ndimage import (
+    binary_closing,
+    binary_opening,
+    binary_propagation,
+    gaussian_filter1d,
+    maximum_filter1d,
+)
 
 from .skeleton import SMPL22, Skeleton
 from .transforms import facing
@@ -15,40 +21,49 @@ Array = NDArray[np.floating]
 
 # Heights below which a joint can stand on the floor, as in InterGen's contact features (metres).
 ANKLE_HEIGHT, TOE_HEIGHT = 0.12, 0.05
+# How much faster and higher than a standing joint must be one that has left the floor.
+_LOOSE = 1.5
 _SIDES = ("left", "right")
 # A foot that drifts further than this within one contact was stepping or turning, not standing (metres).
 _MAX_DRIFT = 0.25
+# What a correction may move a joint from frame to frame (metres).
+_MAX_STEP = 0.03
 _REST_ANKLE = (0.03, 0.09)
 
 
 def foot_contacts(positions: Array, fps: float, *, speed: float = 0.4, skeleton: Skeleton = SMPL22) -> Array:
     """Which foot joints stand on the floor.
 
-    A joint stands where it is near the floor and slower than ``speed``; gaps of up to two frames are
-    closed, and contacts shorter than three frames dropped.
+    A joint stands where it is near the floor and slower than ``speed``, and goes on standing until it is
+    clearly faster or higher, so that noise does not cut a contact. Gaps of up to two frames are closed,
+    contacts shorter than three frames dropped.
 
     Args:
         positions: (T, J, 3) metres, floor at 0.
         fps: frames a second.
-        speed: m/s; 0.4 suits recorded and generated motion, whose feet glide a little.
+        speed: m/s; 0.4 suits generated motion, whose standing feet glide.
 
     Returns:
         (T, 4) bool: left ankle, left toe, right ankle, right toe.
     """
     feet = positions[:, _feet(skeleton)]
+    heights = np.array([ANKLE_HEIGHT, TOE_HEIGHT] * 2)
     if len(feet) < 2:
-        return feet[..., 1] < np.array([ANKLE_HEIGHT, TOE_HEIGHT] * 2)
+        return feet[..., 1] < heights
     velocity = np.linalg.norm(np.gradient(feet, axis=0), axis=-1) * fps
-    standing = (velocity < speed) & (feet[..., 1] < np.array([ANKLE_HEIGHT, TOE_HEIGHT] * 2))
+    certain = (velocity < speed) & (feet[..., 1] < heights)
+    possible = (velocity < _LOOSE * speed) & (feet[..., 1] < _LOOSE * heights)
+    in_time = np.ones((3, 1))
+    standing = binary_propagation(certain, in_time, mask=possible)
     standing = np.pad(standing, ((2, 2), (0, 0)), mode="edge")
-    standing = binary_closing(standing, np.ones((3, 1)), iterations=1)
-    return binary_opening(standing, np.ones((3, 1)))[2:-2]
+    standing = binary_closing(standing, in_time)
+    return binary_opening(standing, in_time)[2:-2]
 
 
 def plant_feet(positions: Array, contacts: Array, *, blend: int = 5, skeleton: Skeleton = SMPL22) -> Array:
     """Holds standing feet where they stand and keeps every foot above the floor.
 
-    Through each contact the toe (or the ankle, where only that stands) is pinned to its mean place on the
+    Through each contact the toe (or the ankle, where only that stands) is pinned to its median place on the
     floor; the correction fades in and out over ``blend`` frames. The leg follows by two-bone IK in the
     plane of the given knee. Where a pinned foot is out of reach the body sinks a little, smoothly.
 
@@ -115,10 +130,10 @@ def solve_two_bones(root: Array, middle: Array, end: Array, goal: Array, pole: A
     old_axis = old_axis / np.maximum(np.linalg.norm(old_axis, axis=-1, keepdims=True), 1e-9)
     bend = middle - root
     bend = bend - np.sum(bend * old_axis, axis=-1, keepdims=True) * old_axis
-    # The pole only decides where the limb is straight: its 3 mm vanish beside any visible bend, and a limb
-    # that need not move keeps its own.
-    moved = np.linalg.norm(goal - end, axis=-1, keepdims=True)
-    bend = bend + 0.003 * np.minimum(moved / 0.01, 1.0) * pole
+    # What the limb bends more than before goes towards the pole: the direction in which a nearly straight
+    # limb bends is noise. A limb that need not bend more keeps its own.
+    more = np.maximum(aside - np.linalg.norm(bend, axis=-1, keepdims=True), 0.0)
+    bend = bend + more * pole
     bend = bend - np.sum(bend * axis, axis=-1, keepdims=True) * axis
     bend = bend / np.maximum(np.linalg.norm(bend, axis=-1, keepdims=True), 1e-9)
     return root + along * axis + aside * bend, root + distance * axis
@@ -154,9 +169,9 @@ def _pin(joint: Array, stands: Array, blend: int, heights: tuple[float, float]) 
     runs: list[tuple[int, int]] = []
     for start, stop in _runs(stands):
         runs.extend(_split(joint, start, stop, blend))
-    for start, stop in runs:
-        goal = joint[start:stop].mean(axis=0)
-        goal[1] = np.clip(goal[1], *heights)
+    goals = [_goal(joint[start:stop], heights) for start, stop in runs]
+    runs = _with_room_to_step(joint, runs, goals)
+    for (start, stop), goal in zip(runs, goals, strict=True):
         shift[start:stop] = goal - joint[start:stop]
     edges = [(0, 0), *runs, (len(joint), len(joint))]
     for (_, before), (after, _) in itertools.pairwise(edges):
@@ -170,6 +185,30 @@ def _pin(joint: Array, stands: Array, blend: int, heights: tuple[float, float]) 
         if after < len(joint):
             shift[before:after] += _ease(1 - (gap + 1 - steps) / (reach + 1)) * shift[after]
     return shift
+
+
+def _goal(place: Array, heights: tuple[float, float]) -> Array:
+    """(3,) the place that a standing joint is held at, given where it was (frames, 3)."""
+    goal = np.median(place, axis=0)
+    goal[1] = np.clip(goal[1], *heights)
+    return goal
+
+
+def _with_room_to_step(
+    joint: Array, runs: list[tuple[int, int]], goals: list[Array]
+) -> list[tuple[int, int]]:
+    """Shortens contacts that follow each other so closely that the correction between them would jump."""
+    runs = list(runs)
+    for index in range(len(runs) - 1):
+        (start, stop), (next_start, next_stop) = runs[index : index + 2]
+        change = (goals[index + 1] - joint[next_start]) - (goals[index] - joint[stop - 1])
+        # Smoothstep is one and a half times as steep in its middle as on average.
+        missing = int(np.ceil(1.5 * np.linalg.norm(change) / _MAX_STEP)) - (next_start - stop)
+        if missing > 0:
+            half = (missing + 1) // 2
+            runs[index] = (start, max(stop - half, start + 1))
+            runs[index + 1] = (min(next_start + half, next_stop - 1), next_stop)
+    return runs
 
 
 def _runs(mask: Array) -> list[tuple[int, int]]:

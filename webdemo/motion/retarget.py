@@ -23,6 +23,9 @@ Array = NDArray[np.floating]
 
 _J = {name: index for index, name in enumerate(SMPL22.joint_names)}
 _LEG = float(SMPL22.bone_lengths[_J["left_knee"]] + SMPL22.bone_lengths[_J["left_ankle"]])
+# Recorded feet stand more truly than generated ones: pinning them only while they are slow keeps the
+# moments of landing and leaving as they were.
+_CONTACT_SPEED = 0.25
 # The pitch of SMPL's foot (ankle to toe) when it stands flat, downwards.
 _toe = SMPL22.offsets[_J["left_foot"]]
 _FLAT_FOOT = float(np.arctan2(-_toe[1], np.hypot(_toe[0], _toe[2])))
@@ -95,7 +98,7 @@ def _on_smpl(rig: RigMotion, fps: float, scale: float) -> Array:
 
 def _finished(positions: Array, fps: float, name: str, plant: bool) -> Clip:
     if plant:
-        positions = plant_feet(positions, foot_contacts(positions, fps))
+        positions = plant_feet(positions, foot_contacts(positions, fps, speed=_CONTACT_SPEED))
     rotations = fit_rotations(positions)
     return Clip(forward_kinematics(rotations, positions[:, 0]), fps, SMPL22, rotations, name)
 
@@ -227,7 +230,6 @@ def _transfer(source: dict[str, Array], rest: dict[str, Array] | None, scale: fl
 def _limb_bone(
     source: dict[str, Array], name: str, parent_name: str, joint: int, frames: dict[str, Array]
 ) -> Array:
-    side = name.split("_")[0]
     length = SMPL22.bone_lengths[joint]
     if name.endswith("_shoulder"):
         if "left_collar" not in source:
