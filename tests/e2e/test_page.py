@@ -77,7 +77,7 @@ def _drawn(tab: Page) -> Page:
 
 def ask(page: Page, prompt: str) -> None:
     page.fill("#prompt textarea", prompt)
-    page.click("#generate button, button#generate")
+    page.click("button#generate", timeout=SLOW)  # waits until it is enabled
 
 
 def status(page: Page, tone: str) -> str:
@@ -121,6 +121,7 @@ def test_a_prompt_becomes_two_moving_skeletons(page: Page, server: SimpleNamespa
 
 def test_enter_and_ctrl_enter_generate(page: Page) -> None:
     for keys in ("Enter", "Control+Enter"):
+        expect(page.locator("button#generate")).to_be_enabled(timeout=SLOW)
         page.fill("#prompt textarea", f"two people wave, says {keys}")
         page.press("#prompt textarea", keys)
         expect(page.locator(".pdd-title")).to_have_text(f"two people wave, says {keys}", timeout=SLOW)
@@ -192,7 +193,9 @@ def test_hostile_prompts_are_shown_literally_and_run_nothing(page: Page) -> None
     assert page.locator("img[src='x']").count() == 0
 
 
-def test_the_used_seed_is_shown_and_repeats_the_motion(page: Page, server: SimpleNamespace) -> None:
+def test_the_used_seed_is_shown_and_repeats_the_motion(
+    page: Page, server: SimpleNamespace, slow_steps: None
+) -> None:
     page.locator("#seed input").fill("")
     ask(page, "two people walk")
     status(page, "done")
@@ -204,8 +207,8 @@ def test_the_used_seed_is_shown_and_repeats_the_motion(page: Page, server: Simpl
     page.locator("#seed input").fill(str(seed))
     seen = len(server.engine.requests)
     ask(page, "two people walk")
-    wait_for_line(page, "Done")
-    page.wait_for_function("!document.querySelector('button#generate').disabled")
+    expect(page.locator("button#cancel")).to_be_enabled(timeout=SLOW)
+    expect(page.locator("button#generate")).to_be_enabled(timeout=SLOW)
     assert [request.seed for request in server.engine.requests[seen:]] == [seed]
     assert shown_id(page) == first
 

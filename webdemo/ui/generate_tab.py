@@ -157,6 +157,8 @@ class GenerateTab:
             trigger_mode="once",
             **quiet,
         )  # fmt: skip
+        # Only now would a press be taken: while the event goes on, Gradio drops it.
+        run.then(self.rest, outputs=[self.go, self.stop], queue=False, **quiet)
         run.then(
             self.export,
             inputs=self.record,
@@ -206,13 +208,16 @@ class GenerateTab:
         last: Progress | None = None
         shown_at = 0.0
         yield self._updates(
-            **self._running(True), player=busy("Starting …"), line=status("Starting …", tone="busy")
+            player=busy("Starting …"),
+            line=status("Starting …", tone="busy"),
+            go=gr.update(interactive=False),
+            stop=gr.update(interactive=True),
         )
         try:
             wanted = GenerateRequest(**fields)
             for event in self.page.runs.run(session, wanted):
                 if isinstance(event, Result):
-                    yield self._updates(**self._running(False), **self._shown(event, wanted.prompt))
+                    yield self._updates(**self._shown(event, wanted.prompt))
                     return
                 new_stage = last is None or event.stage != last.stage
                 last = event
@@ -239,10 +244,12 @@ class GenerateTab:
         }
 
     def _stopped(self, line: str, tone: str) -> Updates:
-        return self._updates(**self._running(False), player=busy(""), line=status(line, tone=tone))
+        return self._updates(player=busy(""), line=status(line, tone=tone))
 
-    def _running(self, running: bool) -> dict[str, Any]:
-        return {"go": gr.update(interactive=not running), "stop": gr.update(interactive=running)}
+    @staticmethod
+    def rest() -> Updates:
+        """The buttons once a run is over, however it ended."""
+        return gr.update(interactive=True), gr.update(interactive=False)
 
     def _updates(self, **changed: Any) -> Updates:
         """Updates in the order of the outputs; what is not named stays as it is."""
