@@ -57,7 +57,7 @@ def test_other_skeletons_come_back(skeleton, tmp_path):
         np.random.default_rng(0).normal(size=(2, 4, skeleton.num_joints, 3)), fps=15, skeleton=skeleton
     )
     (path,) = formats.write(duet, tmp_path / "x.npz")
-    assert formats.read(path).skeleton is skeleton
+    assert formats.read(path, keep_skeleton=True).skeleton is skeleton
 
 
 def test_npy_forms():
@@ -179,3 +179,30 @@ def test_damaged_files_never_raise_anything_else(data):
         formats.read(bytes(raw), name=name)
     except InputError as error:
         assert "\n" not in str(error)
+
+
+@pytest.mark.parametrize("layout", ["ntu25", "cmu17"])
+def test_other_layouts_are_brought_onto_smpl(layout):
+    joints = [SMPL22.joint_names.index(name) for name in SKELETONS["cmu17"].joint_names]
+    if layout == "cmu17":
+        people = DUET.positions[:, :, joints]
+    else:
+        names = {"base_of_spine": "pelvis", "middle_of_spine": "spine2", "spine_shoulder": "spine3"}
+        tips = {"hand": "wrist", "hand_tip": "wrist", "thumb": "wrist"}
+
+        def place(name: str) -> int:
+            side, _, part = name.partition("_")
+            return SMPL22.index(names.get(name, f"{side}_{tips[part]}" if part in tips else name))
+
+        people = DUET.positions[:, :, [place(name) for name in SKELETONS[layout].joint_names]]
+    duet = formats.read(
+        _npz(positions=people, fps=30, joint_names=np.array(SKELETONS[layout].joint_names)), name="x.npz"
+    )
+    assert duet.skeleton is SMPL22 and duet.num_frames == 20
+    bones = [
+        np.linalg.norm(duet.positions[:, :, j] - duet.positions[:, :, p], axis=-1) for p, j in SMPL22.bones
+    ]
+    np.testing.assert_allclose(np.ptp(bones, axis=(1, 2)), 0, atol=1e-4)
+    assert duet.positions[..., 1].min() > -0.05
+    wrists = [SMPL22.index("left_wrist"), SMPL22.index("right_wrist")]
+    assert np.linalg.norm(duet.positions - DUET.positions, axis=-1)[:, :, wrists].mean() < 0.12

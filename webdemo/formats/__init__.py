@@ -8,7 +8,7 @@ from importlib.util import find_spec
 from pathlib import Path
 
 from webdemo.motion import SMPL22, Clip, Duet, InputError
-from webdemo.motion.retarget import retarget, retarget_duet
+from webdemo.motion.retarget import retarget, retarget_duet, to_smpl
 from webdemo.motion.rigs import RigMotion
 
 from .bvh import read_bvh
@@ -77,17 +77,24 @@ def can_write(suffix: str) -> bool:
     )
 
 
-def read(path: str | Path | bytes, *, name: str | None = None, fps: float | None = None) -> Clip | Duet:
+def read(
+    path: str | Path | bytes,
+    *,
+    name: str | None = None,
+    fps: float | None = None,
+    keep_skeleton: bool = False,
+) -> Clip | Duet:
     """Reads one motion file.
 
     Args:
         path: the file, or its bytes; then ``name`` must end in its suffix.
         name: what to call the file in messages, if not by its own name.
         fps: the rate to resample other rigs' BVH to, and that of arrays without one; 30 by default.
+        keep_skeleton: leave arrays of other joint layouts (Kinect's, CMU's) as they are.
 
     Returns:
-        a clip, or a duet where the file holds two people, in metres and Y up. Rigs of any kind come back
-        on SMPL22, with the feet on the floor at 0.
+        a clip, or a duet where the file holds two people, in metres and Y up, on SMPL22. Other rigs and
+        layouts are brought onto it with the feet on the floor at 0.
 
     Raises:
         InputError: one sentence saying what is wrong with the file and what to do.
@@ -97,7 +104,8 @@ def read(path: str | Path | bytes, *, name: str | None = None, fps: float | None
     known = FORMATS.get(suffix)
     if known is None or known.reader is None:
         raise InputError(_unknown(suffix, "read", [f.suffix for f in FORMATS.values() if f.reader]))
-    return known.reader(path, name=Path(label).name, fps=fps)
+    motion = known.reader(path, name=Path(label).name, fps=fps)
+    return motion if keep_skeleton else to_smpl(motion)
 
 
 def read_pair(

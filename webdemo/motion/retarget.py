@@ -8,12 +8,15 @@ where that is a standing one. The root's path is scaled by leg length, so that s
 
 from __future__ import annotations
 
+from typing import overload
+
 import numpy as np
 from numpy.typing import NDArray
 
 from .cleaning import foot_contacts, plant_feet
 from .clip import Clip, Duet
 from .errors import InputError
+from .ik import body_scale, fit_skeleton
 from .kinematics import fit_rotations, forward_kinematics
 from .rigs import BodyParts, RigMotion, match_joints
 from .skeleton import SMPL22
@@ -71,6 +74,33 @@ def retarget_duet(
         for person, rig in zip(people, (a, b), strict=True)
     ]
     return Duet(clips[0], clips[1], roles)
+
+
+@overload
+def to_smpl(motion: Clip) -> Clip: ...
+@overload
+def to_smpl(motion: Duet) -> Duet: ...
+def to_smpl(motion: Clip | Duet) -> Clip | Duet:
+    """Brings joints of another known layout (SBU15, K3HI15, NTU25, CMU17) onto SMPL22's constant bones.
+
+    A skeleton is fitted to the whole clip (:func:`~webdemo.motion.ik.fit_skeleton`), then the feet are put
+    on the floor and planted. Two people share one scale and one floor. SMPL22 comes back as it is.
+    """
+    if motion.skeleton.joint_names == SMPL22.joint_names:
+        return motion
+    people = motion.people if isinstance(motion, Duet) else (motion,)
+    lowest = min(float(clip.positions[..., 1].min()) for clip in people)
+    sources = [clip.positions.astype(np.float64) - np.array([0.0, lowest, 0.0]) for clip in people]
+    scale = float(np.mean([body_scale(source, motion.skeleton) for source in sources]))
+    fitted = [
+        fit_skeleton(source, motion.skeleton, fps=motion.fps, scale=scale).positions for source in sources
+    ]
+    floor = min(_floor_height(person) for person in fitted)
+    clips = [
+        _finished(person - np.array([0.0, floor, 0.0]), motion.fps, clip.name, True)
+        for person, clip in zip(fitted, people, strict=True)
+    ]
+    return Duet(clips[0], clips[1], motion.roles, motion.manifest) if isinstance(motion, Duet) else clips[0]
 
 
 def leg_scale(rig: RigMotion) -> float:
