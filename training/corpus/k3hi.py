@@ -12,7 +12,7 @@ import numpy as np
 
 from webdemo.motion.skeleton import K3HI15
 
-from .sbu import KinectPair, _clips
+from .sbu import KinectPair, read_clips
 
 CLASSES = {
     "approaching": "approach", "departing": "depart", "exchanging": "exchange", "kicking": "kick",
@@ -38,7 +38,7 @@ def read_k3hi(data_dir: str | Path) -> list[KinectPair]:
         InputError: if the data are not there.
     """
     pairs = []
-    for actor, reactor, name, split in _clips(data_dir, "k3hi", "skeletons.tar.xz", "Skeletons"):
+    for actor, reactor, name, split in read_clips(data_dir, "k3hi", "skeletons.tar.xz", "Skeletons"):
         both = np.stack([actor, reactor])
         family = CLASSES[name.split("/")[0]]
         pairs.append(KinectPair(both, family, name, split, "k3hi", K3HI15, FPS, CAMERA_PITCH))

@@ -11,6 +11,7 @@ from __future__ import annotations
 import json
 import os
 import tempfile
+import zlib
 from collections import Counter
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -18,29 +19,27 @@ from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.ndimage import binary_closing, binary_opening, gaussian_filter1d
 
-from webdemo.motion.cleaning import foot_contacts, plant_feet, solve_two_bones
-from webdemo.motion.ik import body_scale, fit_skeleton
-from webdemo.motion.kinematics import project_to_skeleton
+from webdemo.motion.cleaning import plant_feet, solve_two_bones
 from webdemo.motion.skeleton import SMPL22
-from webdemo.motion.transforms import canonicalize, facing, resample
+from webdemo.motion.transforms import canonicalize, facing
 
 from .captions import Phrasebook
 from .k3hi import read_k3hi
-from .sbu import KinectPair, exchanged, read_sbu, unswap, upright, without_sideways_lean, without_spikes
+from .kinect import ANKLE, FPS, fit_pair
+from .sbu import KinectPair, read_sbu
 from .scene import Scene
 
 Array = NDArray[np.floating]
 
-FPS = 30.0
 CACHE_VERSION = 1
-_ANKLE = float(-SMPL22.offsets[SMPL22.index("left_foot"), 1])  # height of an ankle over its sole
-_DEPTH_TRUST = 0.4  # a Kinect's depth is about this much less certain than its image plane, as a weight
-_NOISE = 0.02  # metres; the tracker keeps many bones rigid, so bones alone would tell too little
+_ANKLES = [SMPL22.index("left_ankle"), SMPL22.index("right_ankle")]
+_TOES = [SMPL22.index("left_foot"), SMPL22.index("right_foot")]
 _LEFT, _RIGHT = "left", "right"
 # Wrists of hands that touch stay apart by the hands themselves.
-_TOUCH = {"handshake": 0.16, "exchange": 0.24}
-_MEANT_TO_FACE = {"kick", "push", "handshake", "exchange", "punch", "point"}
+_TOUCH = {"handshake": 0.10, "exchange": 0.18}
+_MEANT_TO_FACE = {"kick", "push", "handshake", "exchange", "punch"}
 
 
 @dataclass
@@ -59,7 +58,9 @@ class Report:
         return lines + [f"dropped {count}: {reason}" for reason, count in sorted(self.dropped.items())]
 
 
-def load_pairs(data_dir: str | Path, cache: str | Path | None = None, *, report: Report | None = None) -> list[Scene]:
+def load_pairs(
+    data_dir: str | Path, cache: str | Path | None = None, *, report: Report | None = None
+) -> list[Scene]:
     """All good recorded pairs as scenes, fitted once and then read from a cache.
 
     Args:
@@ -95,134 +96,141 @@ def build_scene(pair: KinectPair, report: Report | None = None) -> Scene | None:
             report.dropped[f"{name}: who acts is not known"] += 1
             return None
         # Whoever walks further is the one who approaches or departs.
-        travel = [np.linalg.norm(np.ptp(person[:, :, [0, 2]].mean(axis=1), axis=0)) for person in pair.positions]
+        travel = [
+            np.linalg.norm(np.ptp(person[:, :, [0, 2]].mean(axis=1), axis=0)) for person in pair.positions
+        ]
         pair = pair.swapped() if travel[1] > travel[0] else pair
     people, error = fit_pair(pair)
-    people = _meet(people, pair.family)
-    people = canonicalize(np.stack([_settle(person) for person in people]))
-    reason = _fault(people, pair.family, error)
+    people = np.stack([_settle(person) for person in _meet(people, pair.family)])
+    family, people = _as_seen(pair.family, people)
+    people = canonicalize(people)
+    reason = _fault(people, family, error)
     if reason:
         report.dropped[f"{name}: {reason}"] += 1
         return None
     report.kept[name] += 1
     report.errors.setdefault(name, []).append(error)
     source = f"{pair.dataset}/{pair.name}"
-    slots, events = describe(people, pair.family)
+    slots, events = describe(people, family)
     split = "benchmark" if pair.split == "benchmark" else "train"
-    captions = Phrasebook(pair.family).sample(np.random.default_rng(_seed(source)), slots, n=8, name_side=False)
-    return Scene(people.astype(np.float32), pair.family, captions, (source,), split, events)
+    captions = _captions(source, family, slots)
+    return Scene(people.astype(np.float32), family, captions, (source,), split, events)
 
 
-def fit_pair(pair: KinectPair) -> tuple[Array, float]:
-    """Two people on SMPL22 from a Kinect's joints: repaired, fitted, at 30 fps, feet at the floor.
+def _captions(source: str, family: str, slots: dict[str, Any]) -> list[str]:
+    rng = np.random.default_rng(zlib.crc32(source.encode()))
+    found = Phrasebook(family).sample(rng, slots, n=12, name_side=False)
+    if family == "push" and slots.get("side_a") != "both":
+        found = [caption for caption in found if "both hands" not in caption]
+    return found[:8]
 
-    Returns:
-        (2, T, 22, 3) metres in a level frame, and the larger of the two fit errors in metres.
+
+def _as_seen(family: str, people: Array) -> tuple[str, Array]:
+    """The family that the motion shows and the people in their roles.
+
+    Some "approaching" and "departing" clips have both walk (meet, part), and some name as the actor the one
+    who stands; a caption must be true of what is seen.
     """
-    repaired, weights = zip(*(_repair(pair, person) for person in (0, 1)), strict=True)
-    sizes = [body_scale(person, pair.skeleton) for person in repaired]
-    scale = float(np.mean(sizes))
-    fits = [
-        fit_skeleton(person, pair.skeleton, weights=weight, fps=pair.fps, noise=_NOISE, scale=scale)
-        for person, weight in zip(repaired, weights, strict=True)
-    ]
-    people = [
-        project_to_skeleton(resample(fit.positions, pair.fps, FPS))[0] if pair.fps != FPS else fit.positions
-        for fit in fits
-    ]
-    return np.stack(people), max(fit.error for fit in fits)
-
-
-def _repair(pair: KinectPair, person: int) -> tuple[Array, Array]:
-    """(T, 15, 3) level positions over the floor with sides and spikes mended, and (T, 15, 3) weights."""
-    skeleton = pair.skeleton
-    level = upright(pair.positions, pair.pitch)
-    own, other = level[person], level[1 - person]
-    for parts in (("shoulder", "elbow", "wrist", "hip", "knee", "foot"), ("knee", "foot"), ("foot",)):
-        own, _ = unswap(own, skeleton, parts, pair.fps)
-    if _back_to_front(own, other, pair):
-        own = exchanged(own, skeleton)
-    own = without_spikes(without_sideways_lean(own, skeleton), pair.fps)
-    feet = own[:, [skeleton.index("left_foot"), skeleton.index("right_foot")]]
-    # Depth noise lifts and sinks feet; the lower fifth of heights is where they stand.
-    own = own - np.array([0.0, np.nanpercentile(feet[..., 1], 20) - _ANKLE, 0.0])
-    weights = np.broadcast_to(np.array([1.0, 1.0, _DEPTH_TRUST]), own.shape)
-    return own, weights
-
-
-def _back_to_front(own: Array, other: Array, pair: KinectPair) -> bool:
-    """Whether the tracker took this person's back for the front.
-
-    Who walks some way walks forwards; otherwise, in everything but a departure, the two face each other.
-    """
-    index = pair.skeleton.index
-    across = (own[:, index("left_hip")] - own[:, index("right_hip")])[:, [0, 2]]
-    forward = np.stack([-across[:, 1], across[:, 0]], axis=-1)
-    middle = own[:, index("torso")][:, [0, 2]]
-    walk = middle[-1] - middle[0]
-    if pair.family in ("approach", "depart"):
-        if np.linalg.norm(walk) < 0.5:
-            return pair.family == "approach" and _mean_cos(forward, other[:, index("torso")][:, [0, 2]] - middle) < -0.3
-        return _mean_cos(forward, walk[None]) < -0.3
-    return _mean_cos(forward, other[:, index("torso")][:, [0, 2]] - middle) < -0.3
-
-
-def _mean_cos(first: Array, second: Array) -> float:
-    product = np.sum(first * second, axis=-1)
-    return float(np.mean(product / np.maximum(np.linalg.norm(first, axis=-1) * np.linalg.norm(second, axis=-1), 1e-9)))
+    if family not in ("approach", "depart"):
+        return family, people
+    path = people[:, :, 0][..., [0, 2]]
+    walked = np.linalg.norm(path[:, -1] - path[:, 0], axis=-1)
+    if walked.min() > 0.4 and walked.min() > 0.45 * walked.max():
+        return ("meet" if family == "approach" else "part"), people
+    return family, people[::-1] if walked[1] > walked[0] else people
 
 
 def _settle(positions: Array) -> Array:
-    """One person's feet on the floor, held where they stand."""
-    feet = positions[:, [SMPL22.index("left_foot"), SMPL22.index("right_foot")], 1]
-    positions = positions - np.array([0.0, np.percentile(feet.min(axis=1), 30), 0.0])
-    return plant_feet(positions, foot_contacts(positions, FPS, speed=0.6))
+    """One person's feet on the floor, held where they stand.
+
+    A Kinect's floor moves up and down by centimetres; nobody here jumps, so the lower foot is put on the
+    floor first, slowly varying, and stands are told by speed.
+    """
+    lowest = positions[:, _TOES, 1].min(axis=1)
+    lowest = np.minimum(lowest, positions[:, _ANKLES, 1].min(axis=1) - ANKLE)
+    positions = positions - gaussian_filter1d(lowest, 4.0, mode="nearest")[:, None, None] * np.array(
+        [0.0, 1.0, 0.0]
+    )
+    return plant_feet(positions, np.repeat(_stands(positions), 2, axis=1))
 
 
-def _wrists(people: Array) -> tuple[Array, Array]:
-    """(T, 3) right wrists of the two."""
-    wrist = SMPL22.index("right_wrist")
-    return people[0, :, wrist], people[1, :, wrist]
+def _stands(positions: Array) -> NDArray[np.bool_]:
+    """(T, 2) whether the left and the right foot stand: slow and not lifted; the slower one, if none is."""
+    ankles = gaussian_filter1d(positions[:, _ANKLES], 1.0, axis=0, mode="nearest")
+    speed = np.linalg.norm(np.gradient(ankles, axis=0)[..., [0, 2]], axis=-1) * FPS
+    low = ankles[..., 1] < ANKLE + 0.15
+    standing = (speed < 0.6) & low
+    none = ~standing.any(axis=1)
+    slower = speed.argmin(axis=1)
+    standing[none, slower[none]] = (speed.min(axis=1) < 1.2)[none]
+    standing = np.pad(standing, ((3, 3), (0, 0)), mode="edge")
+    standing = binary_closing(standing, np.ones((4, 1)))
+    return binary_opening(standing, np.ones((4, 1)))[3:-3]
+
+
+def _hands(people: Array) -> tuple[str, str]:
+    """The sides of the two hands, one of each person, that come nearest to each other."""
+    gaps = {
+        (own, other): np.linalg.norm(np.subtract(*_wrists(people, (own, other))), axis=-1).min()
+        for own in (_RIGHT, _LEFT)
+        for other in (_RIGHT, _LEFT)
+    }
+    return min(gaps, key=lambda sides: gaps[sides])
+
+
+def _wrists(people: Array, sides: tuple[str, str]) -> tuple[Array, Array]:
+    """(T, 3) the wrist of each person on its side."""
+    first, second = (
+        person[:, SMPL22.index(f"{side}_wrist")] for person, side in zip(people, sides, strict=True)
+    )
+    return first, second
 
 
 def _meet(people: Array, family: str) -> Array:
-    """Brings the right hands together where they nearly meet: first the people, then the arms."""
+    """Brings hands together where they nearly meet: first the people, then the arms."""
     if family not in _TOUCH:
         return people
     apart = _TOUCH[family]
-    one, other = _wrists(people)
+    sides = _hands(people)
+    one, other = _wrists(people, sides)
     gap = np.linalg.norm(one - other, axis=-1)
-    near = gap < max(gap.min() + 0.12, apart)
-    if gap.min() > 0.6:
+    if gap.min() > 0.45:
         return people
+    near = gap < max(gap.min() + 0.12, apart)
     between = (other - one)[near].mean(axis=0) * np.array([1.0, 0.0, 1.0])
     distance = float(np.linalg.norm(between))
-    # Kinects and borrowed proportions put two people too near or too far by a hand; move them, half each.
-    shift = between * (1 - apart / max(distance, 1e-6)) / 2 if distance > 1e-3 else between * 0
+    # Depth noise and borrowed proportions put two people too near or too far by a hand; move them, half each.
+    shift = between * (1 - apart / max(distance, 1e-6)) / 2
     shift *= min(1.0, 0.15 / max(float(np.linalg.norm(shift)), 1e-9))
     people = np.stack([people[0] + shift, people[1] - shift])
-    one, other = _wrists(people)
+    one, other = _wrists(people, sides)
     centre, axis = (one + other) / 2, other - one
     axis /= np.maximum(np.linalg.norm(axis, axis=-1, keepdims=True), 1e-9)
-    weight = _fade(near, frames=6)[:, None]
+    weight = _fade(near, frames=10)[:, None]
     goals = (centre - axis * apart / 2, centre + axis * apart / 2)
     return np.stack(
-        [_reach(person, (1 - weight) * wrist + weight * goal) for person, wrist, goal in
-         zip(people, (one, other), goals, strict=True)]
-    )  # fmt: skip
+        [
+            _reach(person, side, (1 - weight) * wrist + weight * goal)
+            for person, side, wrist, goal in zip(people, sides, (one, other), goals, strict=True)
+        ]
+    )
 
 
 def _fade(mask: NDArray[np.bool_], *, frames: int) -> Array:
     """1 inside the mask, falling smoothly to 0 over ``frames`` outside it."""
     index = np.arange(len(mask))
-    distance = np.abs(index[:, None] - index[mask][None]).min(axis=1) if mask.any() else np.full(len(mask), frames)
+    distance = (
+        np.abs(index[:, None] - index[mask][None]).min(axis=1) if mask.any() else np.full(len(mask), frames)
+    )
     return 0.5 + 0.5 * np.cos(np.pi * np.clip(distance / frames, 0, 1))
 
 
-def _reach(positions: Array, goal: Array) -> Array:
-    """One person's right wrist at ``goal`` (T, 3)."""
-    shoulder, elbow, wrist = (SMPL22.index(f"right_{part}") for part in ("shoulder", "elbow", "wrist"))
-    pole = positions[:, elbow] - (positions[:, shoulder] + positions[:, wrist]) / 2 + np.array([0.0, -0.02, 0.0])
+def _reach(positions: Array, side: str, goal: Array) -> Array:
+    """One person's wrist at ``goal`` (T, 3)."""
+    shoulder, elbow, wrist = (SMPL22.index(f"{side}_{part}") for part in ("shoulder", "elbow", "wrist"))
+    pole = (
+        positions[:, elbow] - (positions[:, shoulder] + positions[:, wrist]) / 2 + np.array([0.0, -0.02, 0.0])
+    )
     result = positions.copy()
     result[:, elbow], result[:, wrist] = solve_two_bones(
         positions[:, shoulder], positions[:, elbow], positions[:, wrist], goal, pole
@@ -244,12 +252,35 @@ def _fault(people: Array, family: str, error: float) -> str | None:
     if family in _MEANT_TO_FACE:
         towards = (people[1, :, 0] - people[0, :, 0]) * np.array([1.0, 0.0, 1.0])
         towards /= np.maximum(np.linalg.norm(towards, axis=-1, keepdims=True), 1e-9)
-        cos = [np.mean(np.sum(facing(people[0]) * towards, -1)), np.mean(np.sum(facing(people[1]) * -towards, -1))]
+        cos = [
+            np.mean(np.sum(facing(people[0]) * towards, -1)),
+            np.mean(np.sum(facing(people[1]) * -towards, -1)),
+        ]
         if min(cos) < 0.5:
             return "the two do not face each other"
-    if family in _TOUCH and np.linalg.norm(np.subtract(*_wrists(people)), axis=-1).min() > 0.35:
+    if family in _TOUCH and _hand_gap(people).min() > _TOUCH[family] + 0.05:
         return "the hands do not meet"
+    if family == "handshake" and _hands(people) != (_RIGHT, _RIGHT):
+        return "other hands than the right meet"
+    if family == "point" and _off_target(people) > 40:
+        return "the hand points elsewhere"
     return None
+
+
+def _hand_gap(people: Array) -> Array:
+    """(T,) metres between the two wrists that come nearest."""
+    return np.linalg.norm(np.subtract(*_wrists(people, _hands(people))), axis=-1)
+
+
+def _off_target(people: Array) -> float:
+    """Degrees over the floor between where the raised arm of the actor points and where the other stands."""
+    side = _striking_side(people, "wrist", up=True) or _RIGHT
+    shoulder, wrist = (people[0, :, SMPL22.index(f"{side}_{part}")] for part in ("shoulder", "wrist"))
+    frame = int((wrist - shoulder)[:, 1].argmax())
+    arm = (wrist - shoulder)[frame, [0, 2]]
+    target = (people[1, frame, 0] - shoulder[frame])[[0, 2]]
+    cos = arm @ target / max(float(np.linalg.norm(arm) * np.linalg.norm(target)), 1e-9)
+    return float(np.degrees(np.arccos(np.clip(cos, -1, 1))))
 
 
 def describe(people: Array, family: str) -> tuple[dict[str, Any], dict[str, Any]]:
@@ -262,29 +293,35 @@ def describe(people: Array, family: str) -> tuple[dict[str, Any], dict[str, Any]
     events: dict[str, Any] = {}
     if family in _MEANT_TO_FACE:
         events["facing"] = True
-    if family in ("approach", "depart"):
-        events["distance"] = "approach" if family == "approach" else "part"
+    if family in ("approach", "meet", "depart", "part"):
+        events["distance"] = "approach" if family in ("approach", "meet") else "part"
     if family in ("kick", "punch", "push", "point"):
-        side = _striking_side(people, "foot" if family == "kick" else "wrist")
-        if side is not None and family != "push":
+        side = _striking_side(people, "foot" if family == "kick" else "wrist", up=family == "point")
+        if side is None and family == "push":
+            side = "both"
+        if side is not None:
             slots["side_a"] = side
             events["side"] = {"a": side}
     if family in _TOUCH:
-        touching = np.flatnonzero(np.linalg.norm(np.subtract(*_wrists(people)), axis=-1) < _TOUCH[family] + 0.06)
+        sides = _hands(people)
+        touching = np.flatnonzero(_hand_gap(people) < _TOUCH[family] + 0.05)
         if len(touching):
-            start, end = int(touching[0]), int(touching[-1])
-            events["contact"] = [{"a": "right_wrist", "b": "right_wrist", "start": start, "end": end}]
-        slots["side_a"] = _RIGHT
-        events["side"] = {"a": _RIGHT}
+            joints = {role: f"{side}_wrist" for role, side in zip("ab", sides, strict=True)}
+            events["contact"] = [{**joints, "start": int(touching[0]), "end": int(touching[-1])}]
+        slots["side_a"] = sides[0]
+        events["side"] = {"a": sides[0]}
     return slots, events
 
 
-def _striking_side(people: Array, part: str) -> str | None:
-    """The actor's hand or foot that goes towards the other, where one clearly leads."""
+def _striking_side(people: Array, part: str, *, up: bool = False) -> str | None:
+    """The actor's hand or foot that goes furthest to the other, or highest; ``None`` without a lead."""
     towards = (people[1, :, 0] - people[0, :, 0]) * np.array([1.0, 0.0, 1.0])
     towards /= np.maximum(np.linalg.norm(towards, axis=-1, keepdims=True), 1e-9)
+    direction = np.array([0.0, 1.0, 0.0]) if up else towards
     reach = {
-        side: np.max(np.sum((people[0, :, SMPL22.index(f"{side}_{part}")] - people[0, :, 0]) * towards, axis=-1))
+        side: np.max(
+            np.sum((people[0, :, SMPL22.index(f"{side}_{part}")] - people[0, :, 0]) * direction, axis=-1)
+        )
         for side in (_LEFT, _RIGHT)
     }
     if abs(reach[_LEFT] - reach[_RIGHT]) < 0.12:
@@ -292,18 +329,24 @@ def _striking_side(people: Array, part: str) -> str | None:
     return max(reach, key=lambda side: reach[side])
 
 
-def _seed(text: str) -> int:
-    return int.from_bytes(text.encode()[-8:], "little")
-
-
 def _save(path: Path, scenes: list[Scene], report: Report) -> None:
     meta = [
-        {"family": s.family, "captions": s.captions, "sources": s.sources, "split": s.split, "events": s.events}
+        {
+            "family": s.family,
+            "captions": s.captions,
+            "sources": s.sources,
+            "split": s.split,
+            "events": s.events,
+        }
         for s in scenes
     ]
     summary = {"kept": report.kept, "dropped": report.dropped, "errors": report.errors}
     lengths = np.array([scene.positions.shape[1] for scene in scenes])
-    joined = np.concatenate([s.positions for s in scenes], axis=1) if scenes else np.zeros((2, 0, 22, 3), np.float32)
+    joined = (
+        np.concatenate([s.positions for s in scenes], axis=1)
+        if scenes
+        else np.zeros((2, 0, 22, 3), np.float32)
+    )
     path.parent.mkdir(parents=True, exist_ok=True)
     with tempfile.NamedTemporaryFile(dir=path.parent, suffix=".npz", delete=False) as file:
         np.savez(file, positions=joined, lengths=lengths, meta=json.dumps(meta), report=json.dumps(summary))

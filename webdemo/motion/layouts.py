@@ -27,11 +27,14 @@ class Layout:
         name: what the recording is called in messages.
         joints: for every recorded joint, the index of its SMPL22 joint, or -1 where it has none.
         offsets: (22, 3) rest offsets in metres of an average adult as the recording sees one.
+        variety: how far a bone may differ from the body's size, as a fraction. People differ by a tenth; a
+            depth camera's arms differ more, but that is its error.
     """
 
     name: str
     joints: tuple[int, ...]
     offsets: Array = field(repr=False)
+    variety: float = 0.33
 
     @property
     def columns(self) -> list[int]:
@@ -74,20 +77,23 @@ _KINECT2_NAMES = {"base_of_spine": "pelvis", "middle_of_spine": "spine2"}
 
 
 def _layout(
-    source: Skeleton, names: dict[str, str], offsets: dict[str, tuple[float, float, float]]
+    source: Skeleton,
+    names: dict[str, str],
+    offsets: dict[str, tuple[float, float, float]],
+    variety: float = 0.33,
 ) -> Layout:
     wanted = [names.get(name, name) for name in source.joint_names]
     joints = tuple(SMPL22.joint_names.index(n) if n in SMPL22.joint_names else -1 for n in wanted)
     body = SMPL22.offsets.copy()
     for name, offset in offsets.items():
         body[SMPL22.index(name)] = offset
-    return Layout(source.name, joints, body)
+    return Layout(source.name, joints, body, variety)
 
 
 LAYOUTS: dict[str, Layout] = {
-    "sbu15": _layout(SBU15, _OPENNI_NAMES, _OPENNI),
-    "k3hi15": _layout(K3HI15, _OPENNI_NAMES, _OPENNI),
-    "ntu25": _layout(NTU25, _KINECT2_NAMES, _KINECT2),
+    "sbu15": _layout(SBU15, _OPENNI_NAMES, _OPENNI, 0.1),
+    "k3hi15": _layout(K3HI15, _OPENNI_NAMES, _OPENNI, 0.1),
+    "ntu25": _layout(NTU25, _KINECT2_NAMES, _KINECT2, 0.15),
     "cmu17": _layout(CMU17, {}, {}),
     "smpl22": _layout(SMPL22, {}, {}),
 }

@@ -1,0 +1,174 @@
+"""The whole-clip fit: exact on clean joints, constant bones and less error on noisy ones."""
+
+import time
+
+import numpy as np
+import pytest
+from hypothesis import HealthCheck, given, settings
+from hypothesis import strategies as st
+from scipy.spatial.transform import Rotation
+
+from webdemo.motion.errors import InputError
+from webdemo.motion.ik import body_scale, fit_skeleton
+from webdemo.motion.kinematics import forward_kinematics
+from webdemo.motion.layouts import LAYOUTS, find_layout
+from webdemo.motion.skeleton import CMU17, K3HI15, SBU15, SMPL22, Skeleton
+
+# Without collars, ankles and most of the spine: what cheap trackers give.
+SPARSE = [name for name in SMPL22.joint_names if not name.endswith(("collar", "ankle")) and name not in
+          ("pelvis", "spine1", "spine3")]  # fmt: skip
+
+
+def plausible_motion(seed: int, frames: int = 60) -> tuple[np.ndarray, np.ndarray]:
+    """Rotations (T, 22, 3, 3) and root (T, 3) of someone who walks along and moves all limbs smoothly."""
+    rng = np.random.default_rng(seed)
+    time_ = np.arange(frames) / 30
+
+    def swing(size: float, centre: float = 0.0) -> np.ndarray:
+        return centre + size * np.sin(2 * np.pi * rng.uniform(0.3, 1.2) * time_ + rng.uniform(0, 6))
+
+    def turns(x: np.ndarray, y: np.ndarray, z: np.ndarray) -> np.ndarray:
+        return np.stack([x, y, z], axis=-1)
+
+    vectors = np.zeros((frames, 22, 3))
+    vectors[:, 0] = turns(swing(0.1), swing(0.7, rng.uniform(-3, 3)), swing(0.05))
+    for name in ("spine1", "spine2", "spine3", "neck"):
+        vectors[:, SMPL22.index(name)] = turns(swing(0.1, 0.05), swing(0.05), swing(0.05))
+    for side, sign in (("left", 1.0), ("right", -1.0)):
+        vectors[:, SMPL22.index(f"{side}_shoulder")] = turns(swing(0.2), swing(0.4), swing(0.4, -0.8 * sign))
+        vectors[:, SMPL22.index(f"{side}_elbow"), 1] = -sign * swing(0.6, 0.8)
+        vectors[:, SMPL22.index(f"{side}_hip")] = turns(swing(0.5, -0.3), swing(0.1), swing(0.1))
+        vectors[:, SMPL22.index(f"{side}_knee"), 0] = swing(0.4, 0.5)
+        vectors[:, SMPL22.index(f"{side}_ankle"), 0] = swing(0.1)
+    rotations = Rotation.from_rotvec(vectors.reshape(-1, 3)).as_matrix().reshape(frames, 22, 3, 3)
+    return rotations, turns(swing(0.3), np.full(frames, 0.93), 0.3 * time_)
+
+
+def bone_lengths(positions: np.ndarray) -> np.ndarray:
+    return np.linalg.norm(positions[:, 1:] - positions[:, list(SMPL22.parents[1:])], axis=-1)
+
+
+def recorded(layout_name: str, rotations: np.ndarray, root: np.ndarray) -> np.ndarray:
+    """The joints of a layout on its own body; joints SMPL22 lacks at the root."""
+    layout = LAYOUTS[layout_name]
+    body = Skeleton("body", SMPL22.joint_names, SMPL22.parents, layout.offsets)
+    joints = np.repeat(root[:, None], len(layout.joints), axis=1)
+    joints[:, layout.columns] = forward_kinematics(rotations, root, body)[:, layout.observed]
+    return joints
+
+
+@settings(max_examples=3, deadline=None, suppress_health_check=[HealthCheck.too_slow])
+@given(seed=st.integers(0, 10_000))
+def test_clean_joints_are_recovered(seed: int) -> None:
+    truth = forward_kinematics(*plausible_motion(seed))
+    for names in (SMPL22.joint_names, SPARSE):
+        columns = [SMPL22.index(name) for name in names]
+        fit = fit_skeleton(truth[:, columns], names)
+        assert np.abs(fit.positions - truth)[:, columns].max() < 1e-3
+        assert fit.error < 1e-3
+
+
+@settings(max_examples=3, deadline=None, suppress_health_check=[HealthCheck.too_slow])
+@given(seed=st.integers(0, 10_000))
+def test_noise_leaves_bones_constant_and_gets_smaller(seed: int) -> None:
+    truth = forward_kinematics(*plausible_motion(seed))
+    columns = [SMPL22.index(name) for name in SPARSE]
+    noisy = truth[:, columns] + np.random.default_rng(seed).normal(0, 0.03, (len(truth), len(columns), 3))
+    fit = fit_skeleton(noisy, SPARSE)
+    np.testing.assert_allclose(
+        bone_lengths(fit.positions), np.tile(SMPL22.bone_lengths[1:], (60, 1)), atol=1e-6
+    )
+    raw = np.linalg.norm(noisy - truth[:, columns], axis=-1).mean()
+    assert np.linalg.norm((fit.positions - truth)[:, columns], axis=-1).mean() < 0.7 * raw
+
+
+@pytest.mark.parametrize("name", ["sbu15", "k3hi15", "ntu25", "cmu17"])
+def test_other_layouts_give_the_same_pose(name: str) -> None:
+    rotations, root = plausible_motion(3)
+    fit = fit_skeleton(recorded(name, rotations, root), name, scale=1.0)
+    # Limb directions are the pose; SMPL22's own proportions are what differs.
+    truth = forward_kinematics(rotations, root)
+    for joint in ("left_knee", "right_knee", "left_elbow", "right_wrist"):
+        child, parent = SMPL22.index(joint), SMPL22.parents[SMPL22.index(joint)]
+        expected, found = (p[:, child] - p[:, parent] for p in (truth, fit.positions))
+        cosine = np.sum(expected * found, -1) / SMPL22.bone_lengths[child] ** 2
+        assert cosine.min() > np.cos(np.radians(6))
+
+
+def test_flipped_and_missing_joints_are_outvoted() -> None:
+    truth = forward_kinematics(*plausible_motion(5))
+    spoilt = truth.copy()
+    wrist, foot = SMPL22.index("left_wrist"), SMPL22.index("right_foot")
+    spoilt[20:23, wrist] += [0.0, 0.8, 0.5]
+    spoilt[40:44, foot] = np.nan
+    fit = fit_skeleton(spoilt, SMPL22.joint_names)
+    assert np.linalg.norm(fit.positions - truth, axis=-1).max() < 0.08
+    weights = np.ones((60, 22, 1))
+    weights[20:23, wrist] = 0
+    told = fit_skeleton(spoilt, SMPL22.joint_names, weights=weights)
+    assert np.linalg.norm(told.positions - truth, axis=-1)[:, wrist].max() < 0.03
+
+
+def test_a_knee_that_bends_backwards_is_straightened() -> None:
+    rotations = np.tile(np.eye(3), (20, 22, 1, 1))
+    rotations[:, SMPL22.index("left_knee")] = Rotation.from_rotvec([-0.5, 0, 0]).as_matrix()
+    positions = forward_kinematics(rotations, np.tile([0.0, 0.95, 0.0], (20, 1)))
+    fit = fit_skeleton(positions, SMPL22.joint_names, noise=0.03)
+    bend = Rotation.from_matrix(fit.rotations[:, SMPL22.index("left_knee")]).as_rotvec()[:, 0]
+    assert bend.min() > -0.2
+
+
+def test_large_people_shrink_to_the_skeleton_and_keep_their_path() -> None:
+    truth = forward_kinematics(*plausible_motion(7))
+    assert body_scale(1.2 * truth, SMPL22.joint_names) == pytest.approx(1.2, abs=0.01)
+    fit = fit_skeleton(1.2 * truth, SMPL22.joint_names)
+    assert np.abs(fit.positions - truth).max() < 0.01
+    shared = fit_skeleton(1.2 * truth, SMPL22.joint_names, scale=1.0)
+    np.testing.assert_allclose(shared.positions[:, 0, [0, 2]], 1.2 * truth[:, 0, [0, 2]], atol=0.01)
+
+
+def test_one_and_two_frames() -> None:
+    truth = forward_kinematics(*plausible_motion(2))
+    for frames in (1, 2):
+        assert (
+            np.abs(fit_skeleton(truth[:frames], SMPL22.joint_names).positions - truth[:frames]).max() < 1e-3
+        )
+
+
+@pytest.mark.slow
+def test_ten_seconds_take_about_a_second_of_processor_time() -> None:
+    rotations, root = plausible_motion(1, frames=300)
+    joints = recorded("sbu15", rotations, root)
+    joints += np.random.default_rng(0).normal(0, 0.02, joints.shape)
+    start = time.process_time()
+    fit_skeleton(joints, SBU15)
+    assert time.process_time() - start < 4  # 1 s on an idle core
+
+
+@pytest.mark.parametrize(
+    ("joints", "shape", "message"),
+    [
+        ("kinect9", (5, 15, 3), "No joint layout"),
+        (SBU15, (5, 14, 3), "do not fit"),
+        (K3HI15, (0, 15, 3), "do not fit"),
+        (["pelvis", "nose"], (5, 2, 3), "'nose' is not one of the 22"),
+        (["pelvis", "head"], (5, 2, 3), "both hips and knees"),
+    ],
+)
+def test_unusable_input_is_explained(joints: object, shape: tuple[int, ...], message: str) -> None:
+    with pytest.raises(InputError, match=message):
+        fit_skeleton(np.zeros(shape), joints)  # type: ignore[arg-type]
+
+
+def test_a_joint_missing_throughout_is_explained() -> None:
+    positions = forward_kinematics(*plausible_motion(0))[:5]
+    positions[:, SMPL22.index("head")] = np.nan
+    with pytest.raises(InputError, match="missing in every frame"):
+        fit_skeleton(positions, SMPL22.joint_names)
+
+
+def test_layouts_name_their_joints() -> None:
+    assert find_layout(CMU17) is LAYOUTS["cmu17"]
+    assert find_layout(CMU17).observed[0] == SMPL22.index("pelvis")
+    ntu = LAYOUTS["ntu25"]
+    assert len(ntu.columns) < 25 and ntu.joints[0] == SMPL22.index("pelvis")
