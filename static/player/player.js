@@ -181,14 +181,17 @@ export class Player {
   goTo(name, now = performance.now()) {
     this.camera = this.framed = name;
     const pose = this.poseAt(this.clock.shown);
-    if (!this.orbit.following || now === null) this.orbit.jump(midpoint(pose, this.skeleton));
+    if (!this.orbit.following || now === null) this.orbit.jump(midpoint(pose, this.skeleton, this.aspect));
     this.orbit.goTo(this.viewOf(name, pose), now);
     this.refresh();
   }
 
   viewOf(name, pose) {
-    const aspect = this.stage.clientWidth / this.stage.clientHeight || 1.7; // in a closed tab there is no size yet
-    return preset(name, { along: heading(pose, this.skeleton), apart: apart(pose, this.skeleton), aspect });
+    return preset(name, { along: heading(pose, this.skeleton), apart: apart(pose, this.skeleton), aspect: this.aspect });
+  }
+
+  get aspect() {
+    return this.stage.clientWidth / this.stage.clientHeight || 1.7; // in a closed tab there is no size yet
   }
 
   resetCamera() {
@@ -319,7 +322,7 @@ export class Player {
     this.lastTick = now;
     this.clock.advance(now);
     const pose = this.data && this.poseAt(this.clock.shown);
-    const wanted = pose && { target: midpoint(pose, this.skeleton), distance: this.viewOf(this.framed, pose).distance };
+    const wanted = pose && { target: midpoint(pose, this.skeleton, this.aspect), distance: this.viewOf(this.framed, pose).distance };
     this.orbit.step(now, seconds, wanted);
     const moving = this.clock.playing || !this.orbit.settled(wanted);
     if (moving || this.dirty) {

@@ -4,13 +4,13 @@ import { FIELD_OF_VIEW } from "./orbit.js";
 
 const BODY_HEIGHT = 2.45; // metres that must fit from floor to above the names
 const SIDE_ROOM = 1.5; // metres beside the outermost pelvis
-const LOOK_AT = 0.92;
+const LOOK_AT = { wide: 0.92, tall: 0.74 }; // metres; tall stages keep their tools under the feet
 const WIDEST = 8; // metres; people farther apart than this are not kept in view together
 
 /** The point the camera follows: between the pelvises, at a height that does not bob. */
-export function midpoint(pose, skeleton) {
+export function midpoint(pose, skeleton, aspect) {
   const spots = pose.map((points) => points[skeleton.pelvis]);
-  return [0, 1].map((i) => spots.reduce((sum, p) => sum + p[i], 0) / spots.length).concat(LOOK_AT);
+  return [0, 1].map((i) => spots.reduce((sum, p) => sum + p[i], 0) / spots.length).concat(aspect < 1.1 ? LOOK_AT.tall : LOOK_AT.wide);
 }
 
 /** Angle of the line from A to B on the floor; of the way A faces where there is nobody else. */

@@ -80,16 +80,28 @@ def watch_hosts() -> Iterator[Callable]:
     assert not foreign, f"the page asked other hosts: {sorted(set(foreign))}"
 
 
+@pytest.fixture(scope="session")
+def _shared_context(chromium):
+    """One profile for most pages, so that the browser's cache spares loading the page's scripts anew."""
+    context = chromium.new_context()
+    yield context
+    context.close()
+
+
 @pytest.fixture
-def open_page(chromium, watch_hosts) -> Iterator[Callable]:
-    """``open_page(url, width, height)`` gives a watched page; script errors fail the test."""
+def open_page(chromium, _shared_context, watch_hosts) -> Iterator[Callable]:
+    """``open_page(url, width=…, height=…)`` gives a watched page; script errors fail the test.
+
+    ``before(page)`` runs before the page loads; other options make a browser profile of its own.
+    """
     opened = []
     errors: list[str] = []
 
     def open_(url: str, *, width: int = 1280, height: int = 800, before: Callable | None = None, **options):
-        context = chromium.new_context(viewport={"width": width, "height": height}, **options)
+        context = chromium.new_context(**options) if options else _shared_context
         page = context.new_page()
-        opened.append(context)
+        page.set_viewport_size({"width": width, "height": height})
+        opened.append(context if options else page)
         watch_hosts(page)
         page.on("pageerror", lambda error: errors.append(str(error)))
         if before:
@@ -98,8 +110,8 @@ def open_page(chromium, watch_hosts) -> Iterator[Callable]:
         return page
 
     yield open_
-    for context in opened:
-        context.close()
+    for context_or_page in opened:
+        context_or_page.close()
     assert not errors, f"errors in the page: {errors}"
 
 

@@ -336,6 +336,17 @@ def test_a_closed_tab_gets_its_motion_when_it_opens(player):
     assert hook(page, "loops") == 1
 
 
+def test_full_screen_and_back(player):
+    page = player()
+    height = "document.querySelector('.pdd-stage').clientHeight"
+    before = page.evaluate(height)
+    page.locator("[data-act=fullscreen]").click()
+    until(page, f"{height} > {before} + 40")
+    until(page, "window.__pasdedeux.player.scene.inside.glplot.canvas.clientHeight === " + height)
+    page.locator("[data-act=fullscreen]").click()
+    until(page, f"{height} === {before}")
+
+
 def test_saves_a_picture(player):
     page = player()
     pause(page)
