@@ -108,6 +108,8 @@ class Damping:
         frames: frames that will be shown; what the last token decodes to beyond them is ignored.
         timesteps: T.
         gradient_steps: steps at each timestep.
+        final_timestep: where sampling ends; more steps are taken there, since no network follows them.
+        final_steps: how many.
         step_size: of one gradient step; the largest move of any number is held to ``largest``.
     """
 
@@ -118,7 +120,9 @@ class Damping:
         *,
         frames: int,
         timesteps: int = 1000,
-        gradient_steps: int = 3,
+        gradient_steps: int = 2,
+        final_timestep: int = 0,
+        final_steps: int = 20,
         step_size: float = 0.03,
         largest: float = 0.03,
         weights: DampingWeights | None = None,
@@ -127,6 +131,7 @@ class Damping:
         self.last = threshold * timesteps
         self.off = threshold == 0
         self.gradient_steps, self.step_size, self.largest = gradient_steps, step_size, largest
+        self.final_timestep, self.final_steps = final_timestep, final_steps
         self.weights = weights or DampingWeights()
 
     def __call__(self, x0: Tensor, timestep: int) -> Tensor:
@@ -134,7 +139,8 @@ class Damping:
         if self.off or timestep > self.last:
             return x0
         scale = self.model.std.repeat(self.model.layout.knots_per_token * 2)
-        for _ in range(self.gradient_steps):
+        steps = self.final_steps if timestep == self.final_timestep else self.gradient_steps
+        for _ in range(steps):
             with torch.enable_grad():
                 x = x0.detach().requires_grad_(True)
                 positions, contacts = self.model.positions(x)

@@ -100,8 +100,14 @@ class TextToDuet:
         tokens = layout.num_tokens(frames)
         noise = sample_noise(request.seed, request.samples, (tokens, 2 * layout.token_features))
         condition = condition.expand(request.samples, -1)
-        damping = Damping(self.model, request.damping, frames=frames, timesteps=TRAIN_TIMESTEPS)
         scheduler = make_scheduler(request.sampler, request.steps)
+        damping = Damping(
+            self.model,
+            request.damping,
+            frames=frames,
+            timesteps=TRAIN_TIMESTEPS,
+            final_timestep=int(scheduler.timesteps[-1]),
+        )
         uncorrected = noise
 
         def correct(x0: Tensor, timestep: int) -> Tensor:

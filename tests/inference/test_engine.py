@@ -1,0 +1,172 @@
+"""The engine's promises: true steps, one result, cancel within a step, the same bytes for the same request."""
+
+import shutil
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from webdemo.inference import CancelToken, Cancelled, GenerateRequest, Progress, Result
+from webdemo.inference.engine import Engine
+from webdemo.motion import SMPL22, InputError
+
+REQUEST = GenerateRequest(prompt="Two people shake hands.", seconds=2.0, seed=7, steps=6)
+
+
+def result_of(engine: Engine, request: GenerateRequest) -> Result:
+    return [event for event in engine.run(request) if isinstance(event, Result)][0]
+
+
+def test_progress_counts_every_step_and_ends_in_one_result(engine: Engine) -> None:
+    events = list(engine.run(REQUEST))
+    steps = [(e.step, e.total) for e in events if isinstance(e, Progress) and e.stage == "sample"]
+    assert steps == [(i + 1, 6) for i in range(6)]
+    assert [isinstance(event, Result) for event in events].count(True) == 1
+    assert isinstance(events[-1], Result)
+    elapsed = [event.elapsed for event in events if isinstance(event, Progress)]
+    assert elapsed == sorted(elapsed)
+
+
+def test_the_same_request_gives_the_same_bytes_and_another_seed_does_not(engine: Engine) -> None:
+    first, again = result_of(engine, REQUEST), result_of(engine, REQUEST)
+    other = result_of(engine, replace(REQUEST, seed=8))
+    assert first.duets[0].positions.tobytes() == again.duets[0].positions.tobytes()
+    assert first.manifest == again.manifest
+    assert not np.allclose(first.duets[0].positions, other.duets[0].positions)
+
+
+def test_a_sample_does_not_depend_on_how_many_are_drawn(engine: Engine) -> None:
+    one = result_of(engine, REQUEST)
+    three = result_of(engine, replace(REQUEST, samples=3))
+    assert len(three.duets) == 3
+    np.testing.assert_allclose(one.duets[0].positions, three.duets[0].positions, atol=1e-4)
+    assert not np.allclose(three.duets[0].positions, three.duets[1].positions, atol=1e-3)
+
+
+@pytest.mark.parametrize("seconds", [1.0, 1.37, 5.0, 10.0])
+def test_length_and_joints_are_as_asked(engine: Engine, seconds: float) -> None:
+    duet = result_of(engine, replace(REQUEST, seconds=seconds, steps=2)).duets[0]
+    assert duet.positions.shape == (2, round(seconds * 30), 22, 3)
+    assert duet.fps == 30
+    assert np.isfinite(duet.positions).all()
+
+
+def test_cleanup_ends_on_constant_bones_above_the_floor(engine: Engine) -> None:
+    result = result_of(engine, replace(REQUEST, seconds=3.0))
+    positions = result.duets[0].positions
+    for parent, joint in SMPL22.bones:
+        length = np.linalg.norm(positions[:, :, joint] - positions[:, :, parent], axis=-1)
+        np.testing.assert_allclose(length, SMPL22.bone_lengths[joint], atol=2e-3)
+    assert result.readouts[0]["after"]["bone_drift"] < 0.1
+
+
+def test_damping_zero_is_the_plain_sampler_bit_for_bit(engine: Engine) -> None:
+    import torch
+
+    from models.diffusion import make_scheduler
+    from webdemo.inference.generator import sample_noise
+
+    request = replace(REQUEST, damping=0.0, cleanup=False)
+    ours = result_of(engine, request).duets[0].positions
+
+    generator = engine._generator("intergen")
+    model, layout = generator.model, generator.model.layout
+    condition, _ = generator.condition(request.prompt)
+    x = sample_noise(request.seed, 1, (layout.num_tokens(60), 2 * layout.token_features))
+    scheduler = make_scheduler("ddim", request.steps)
+    with torch.no_grad():
+        for t in scheduler.timesteps:
+            predicted = model.denoiser.guided(x, t.expand(1), condition, scale=request.guidance)
+            x = scheduler.step(predicted, t, x).prev_sample
+        plain = model.positions(x)[0][0, :, :60].numpy()
+    assert ours.tobytes() == plain.tobytes()
+
+
+def test_damping_lowers_what_it_regularises(engine: Engine) -> None:
+    plain = result_of(engine, replace(REQUEST, damping=0.0, cleanup=False, steps=20)).readouts[0]["after"]
+    damped = result_of(engine, replace(REQUEST, damping=0.9, cleanup=False, steps=20)).readouts[0]["after"]
+    assert damped["bone_drift"] < 0.5 * plain["bone_drift"]
+    assert damped["jerk"] <= plain["jerk"]
+
+
+def test_cancel_takes_effect_within_one_step_and_the_next_run_works(engine: Engine) -> None:
+    token, seen = CancelToken(), []
+    with pytest.raises(Cancelled):
+        for event in engine.run(replace(REQUEST, steps=50), cancel=token):
+            if isinstance(event, Progress) and event.stage == "sample":
+                seen.append(event.step)
+                if event.step == 3:
+                    token.cancel()
+    assert seen == [1, 2, 3]
+    assert result_of(engine, REQUEST).duets
+
+
+def test_both_samplers_and_no_guidance_run(engine: Engine) -> None:
+    for change in ({"sampler": "dpm++", "steps": 10}, {"guidance": 1.0}, {"guidance": 0.0}):
+        assert np.isfinite(result_of(engine, replace(REQUEST, **change)).duets[0].positions).all()
+
+
+def test_a_far_prompt_is_told_with_the_nearest_known_caption(engine: Engine) -> None:
+    assert result_of(engine, REQUEST).notes == ()
+    notes = result_of(engine, replace(REQUEST, prompt="quarterly tax law for submarines")).notes
+    assert len(notes) == 1
+    assert "far from anything" in notes[0]
+
+
+def test_strange_prompts_are_only_text(engine: Engine) -> None:
+    for prompt in ("二人が握手する", "🤝🤝", "<img src=x onerror=alert(1)> ${alert(1)}", "a" * 500):
+        assert (
+            result_of(engine, replace(REQUEST, prompt=prompt, steps=1)).manifest["request"]["prompt"]
+            == prompt
+        )
+
+
+@pytest.mark.parametrize(
+    ("change", "says"),
+    [
+        ({"prompt": "  "}, "empty"),
+        ({"prompt": "x" * 10_000}, "10,000 characters"),
+        ({"seconds": 0.1}, "Length"),
+        ({"seconds": float("nan")}, "Length"),
+        ({"seconds": 1e9}, "Length"),
+        ({"steps": 0}, "steps"),
+        ({"steps": 2.5}, "whole number"),
+        ({"seed": -1}, "Seed"),
+        ({"seed": "one"}, "Seed"),
+        ({"samples": 99}, "Samples"),
+        ({"guidance": float("inf")}, "Guidance"),
+        ({"damping": 1.5}, "Damping"),
+        ({"sampler": "euler"}, "Sampler"),
+    ],
+)
+def test_requests_out_of_range_are_refused_with_a_sentence(change: dict, says: str) -> None:
+    with pytest.raises(InputError, match=says) as error:
+        replace(REQUEST, **change)
+    assert str(error.value).endswith(".")
+    assert "\n" not in str(error.value)
+
+
+def test_an_unknown_model_is_refused(engine: Engine) -> None:
+    with pytest.raises(InputError, match="no model"):
+        list(engine.run(replace(REQUEST, model="nonesuch")))
+
+
+@pytest.mark.parametrize("name", ["config.json", "model-1-of-1.safetensors", "captions.safetensors"])
+@pytest.mark.parametrize("damage", ["missing", "altered", "empty"])
+def test_missing_or_altered_weights_are_refused(
+    weights: Path, tmp_path: Path, name: str, damage: str
+) -> None:
+    copy = tmp_path / "weights"
+    shutil.copytree(weights, copy)
+    file = copy / "intergen" / name
+    if damage == "missing":
+        file.unlink()
+    elif damage == "empty":
+        file.write_bytes(b"")
+    else:
+        data = bytearray(file.read_bytes())
+        data[len(data) // 2] ^= 0xFF
+        file.write_bytes(data)
+    with pytest.raises(InputError, match="restore"):
+        list(Engine(copy).run(REQUEST))
