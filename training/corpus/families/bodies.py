@@ -165,13 +165,13 @@ def hand_on_shoulder(rng: Rng, library: Library) -> Scene:
 @register("arm-around", needs=("idle",), weight=1.2, contact=True)
 def arm_around(rng: Rng, library: Library) -> Scene:
     side = pick(rng, ("left", "right"))
-    meet = side_by_side(rng, library, rng.uniform(0.44, 0.5), (2.0, 4.0), side=side)
+    meet = side_by_side(rng, library, rng.uniform(0.42, 0.5), (2.0, 4.0), side=side)
     a, b = meet.bodies(gaze=(rng.uniform(0, 0.5), rng.uniform(0, 0.5)))
     arrive, leave, end = _timing(rng, meet, last=0)
     weight = envelope(len(a), meet.start, arrive, leave, end)
     sign = 1.0 if side == "left" else -1.0  # b's far shoulder is on the side on which b stands
     # Up over the shoulders first, then down on the far one.
-    hand = on_body(b, "spine3", 0.12 * sign, 0.17, -0.1)
+    hand = on_body(b, f"{side}_shoulder", 0.02 * sign, 0.05, -0.04)
     left, _ = axes(a)
     a = lean_to(a, left * sign, weight * rng.uniform(0.04, 0.09))
     a = reach(
@@ -179,7 +179,7 @@ def arm_around(rng: Rng, library: Library) -> Scene:
     )
     return conclude(
         rng, library, "arm-around", meet, a, b,
-        touches=[(f"{side}_wrist", f"{side}_collar", arrive, leave)],
+        touches=[(f"{side}_wrist", f"{side}_shoulder", arrive, leave)],
         side=side if rng.random() < 0.3 else None,
     )  # fmt: skip
 
