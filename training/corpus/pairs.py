@@ -26,6 +26,7 @@ from webdemo.motion.skeleton import SMPL22
 from webdemo.motion.transforms import canonicalize, facing
 
 from .captions import Phrasebook
+from .checks import foot_skate
 from .k3hi import read_k3hi
 from .kinect import ANKLE, FPS, fit_pair
 from .sbu import KinectPair, read_sbu
@@ -246,6 +247,8 @@ def _fault(people: Array, family: str, error: float) -> str | None:
         return "fit further than 90 mm from the joints"
     if (np.abs(np.diff(people, axis=1)) * FPS).max() > 14:
         return "a joint moves faster than 14 m/s"
+    if max(foot_skate(person) for person in people) > 0.4:
+        return "feet slide faster than 0.4 m/s"
     lean = people[:, :, SMPL22.index("neck")] - people[:, :, 0]
     if (lean[..., 1] / np.linalg.norm(lean, axis=-1)).min() < 0.5:
         return "a body leans over by more than 60°"
