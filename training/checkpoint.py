@@ -32,6 +32,35 @@ def save(path: Path, parts: Parts, step: int, settings: str) -> None:
         save_file(_tensors(parts), temporary, metadata={"step": str(step), "settings": settings})
 
 
+def _read(path: Path) -> tuple[dict[str, Tensor], dict[str, str]]:
+    """Tensors and metadata of a checkpoint; raises InputError where it is missing or damaged."""
+    try:
+        with safe_open(path, framework="pt") as file:
+            return {key: file.get_tensor(key) for key in file.keys()}, file.metadata()  # noqa: SIM118
+    except (OSError, SafetensorError) as error:
+        raise InputError(f"{path} is missing or damaged ({error}): delete it to begin anew.") from error
+
+
+def metadata(path: Path) -> dict[str, str]:
+    """``step`` and ``settings`` (JSON text) of a checkpoint."""
+    return _read(path)[1]
+
+
+def restore_part(path: Path, name: str, module: nn.Module) -> None:
+    """Loads one module of a checkpoint, whatever run it is of.
+
+    Raises InputError for a damaged file and for a module of other sizes.
+    """
+    tensors, _ = _read(path)
+    own = {key.removeprefix(f"{name}/"): v for key, v in tensors.items() if key.startswith(f"{name}/")}
+    try:
+        module.load_state_dict(own)
+    except RuntimeError as error:
+        raise InputError(
+            f"{path} holds a network of other sizes: give the settings it was trained with."
+        ) from error
+
+
 def restore(path: Path, parts: Parts, settings: str) -> int:
     """Loads what :func:`save` wrote into ``parts`` and returns its step; 0 where there is no checkpoint.
 
@@ -39,12 +68,7 @@ def restore(path: Path, parts: Parts, settings: str) -> int:
     """
     if not path.exists():
         return 0
-    try:
-        with safe_open(path, framework="pt") as file:
-            metadata = file.metadata()
-            tensors = {key: file.get_tensor(key) for key in file.keys()}  # noqa: SIM118 (no mapping)
-    except (OSError, SafetensorError) as error:
-        raise InputError(f"{path} is damaged ({error}): delete it to begin anew.") from error
+    tensors, metadata = _read(path)
     if metadata.get("settings") != settings:
         raise InputError(
             f"{path} belongs to a run of other settings: give another --out, or the same settings."

@@ -84,14 +84,17 @@ class Batch:
 class Data:
     """Draws batches of similar lengths; batch ``step`` is the same in every run of the same seed."""
 
-    def __init__(self, scenes: Scenes, settings: Settings, cache: Path, device: str) -> None:
+    def __init__(
+        self, scenes: Scenes, settings: Settings, cache: Path, device: str, *, captions: bool = True
+    ) -> None:
         self.scenes, self.settings, self.device = scenes, settings, device
         self.rows = scenes.split("train")
         if len(self.rows) < settings.batch:
             raise InputError(f"{len(self.rows)} training scenes do not fill a batch of {settings.batch}.")
-        captions = {c for row in self.rows for c in row["captions"]}
-        captions |= {mirror_caption(c) for c in captions}
-        self.captions = CaptionFeatures(sorted(captions), cache, device=device)
+        if captions:
+            known = {c for row in self.rows for c in row["captions"]}
+            known |= {mirror_caption(c) for c in known}
+            self.captions = CaptionFeatures(sorted(known), cache, device=device)
         self.mean, self.std = normalizer(scenes, SMPL22.mirror)
         self.tokens = torch.tensor([row["tokens"] for row in self.rows])
         self.batches_an_epoch = len(self.rows) // settings.batch
@@ -152,13 +155,22 @@ def new_model(settings: Settings, data: Data) -> CompactInterGen:
 
 
 class Trainer:
-    """One training run: :meth:`run` goes on from wherever its checkpoint stands."""
+    """One training run: :meth:`run` goes on from wherever its checkpoint stands.
 
-    def __init__(self, scenes: Scenes, settings: Settings, out: Path, *, device: str = "cpu") -> None:
+    Args:
+        init: a checkpoint of another run whose averaged weights and normaliser a new run begins with, such
+            as one on a smaller corpus.
+    """
+
+    def __init__(
+        self, scenes: Scenes, settings: Settings, out: Path, *, init: Path | None = None, device: str = "cpu"
+    ) -> None:
         self.scenes, self.settings, self.out, self.device = scenes, settings, out, device
         torch.manual_seed(settings.seed)
         self.data = Data(scenes, settings, out, device)
         self.model = new_model(settings, self.data).to(device)
+        if init is not None:
+            checkpoint.restore_part(init, "ema", self.model)
         self.ema = new_model(settings, self.data).to(device).requires_grad_(False)
         self.ema.load_state_dict(self.model.state_dict())
         self.optimizer = torch.optim.AdamW(
@@ -170,6 +182,7 @@ class Trainer:
         )
         self.settings_json = json.dumps(asdict(settings), sort_keys=True)
         self.step = checkpoint.restore(self.out / "last.safetensors", self.parts(), self.settings_json)
+        self.data.mean, self.data.std = self.model.mean.cpu(), self.model.std.cpu()
 
     def parts(self) -> dict[str, torch.nn.Module | torch.optim.Optimizer]:
         return {"model": self.model, "ema": self.ema, "optimizer": self.optimizer}
@@ -248,7 +261,9 @@ def main(argv: list[str] | None = None) -> None:
             parser.add_argument(flag, type=kind, default=setting.default)
     options = parser.parse_args(argv)
     chosen = {f.name: getattr(options, f.name) for f in fields(Settings) if f.name != "weights"}
-    trainer = Trainer(load(options.scenes), Settings(**chosen), options.out, device=options.device)
+    trainer = Trainer(
+        load(options.scenes), Settings(**chosen), options.out, init=options.init, device=options.device
+    )
     log, began, first = [], time.monotonic(), trainer.step
     with open(options.out / "log.jsonl", "a") as file:
         for terms in trainer.run(minutes=options.minutes):

@@ -1,0 +1,74 @@
+"""Checkpoint → the folder that is shipped: ``python -m training.export --run DIR --scenes FILE --out DIR``.
+
+Takes the averaged weights, and a bank of training captions by which the demo tells that a prompt is far from
+all of them.
+"""
+
+from __future__ import annotations
+
+import argparse
+import json
+from pathlib import Path
+from typing import Any
+
+import torch
+
+from models.compact import CaptionBank, save_folder
+from models.text import MiniLM
+from training import checkpoint
+from training.intergen import Data, Settings, new_model
+from training.prepare import Scenes, load
+from webdemo.motion import InputError
+
+BANK_PER_FAMILY = 40
+FAR_QUANTILE = 0.02
+
+
+def caption_bank(scenes: Scenes, per_family: int = BANK_PER_FAMILY) -> CaptionBank:
+    """Captions of every family with their sentence vectors.
+
+    ``far`` is set so that of the test split's captions, whose phrasings were not trained on, 2 % would be
+    called far.
+    """
+    encoder = MiniLM()
+    chosen: dict[str, list[str]] = {}
+    for row in scenes.split("train"):
+        known = chosen.setdefault(row["family"], [])
+        known += [c for c in row["captions"][:2] if c not in known and len(known) < per_family]
+    captions = sorted({c for known in chosen.values() for c in known})
+    vectors = encode(encoder, captions)
+    unseen = sorted({c for row in scenes.split("test") for c in row["captions"]})[:2000]
+    nearest = (encode(encoder, unseen) @ vectors.T).amax(1)
+    return CaptionBank(tuple(captions), vectors, round(float(nearest.quantile(FAR_QUANTILE)), 3))
+
+
+def encode(encoder: MiniLM, captions: list[str]) -> torch.Tensor:
+    """Unit sentence vectors (N, 384)."""
+    return torch.cat([encoder(captions[i : i + 128]).pooled() for i in range(0, len(captions), 128)])
+
+
+def main(argv: list[str] | None = None) -> None:
+    parser = argparse.ArgumentParser(description="Turn a training run into the folder that is shipped.")
+    parser.add_argument("--run", type=Path, required=True, help="--out of the training")
+    parser.add_argument("--scenes", type=Path, required=True)
+    parser.add_argument("--out", type=Path, required=True, help="folder under models/weights")
+    parser.add_argument("--card", type=Path, help="JSON with the card's fields")
+    options = parser.parse_args(argv)
+    path = options.run / "last.safetensors"
+    meta = checkpoint.metadata(path)
+    known = json.loads(meta["settings"])
+    known.pop("weights")
+    settings = Settings(**known)
+    scenes = load(options.scenes)
+    model = new_model(settings, Data(scenes, settings, options.run, "cpu", captions=False))
+    checkpoint.restore_part(path, "ema", model)
+    try:
+        card: dict[str, Any] = json.loads(options.card.read_text()) if options.card else {}
+    except (OSError, ValueError) as error:
+        raise InputError(f"{options.card} is no JSON file: {error}.") from error
+    save_folder(options.out, model, caption_bank(scenes), card=card, trained_steps=int(meta["step"]))
+    print(f"{options.out}: {sum(f.stat().st_size for f in options.out.iterdir()) / 1e6:.1f} MB")
+
+
+if __name__ == "__main__":
+    main()
