@@ -81,9 +81,7 @@ def _read_vocabulary(folder: Path) -> Tokenizer:
             tokenizer.no_truncation()
             return tokenizer
         if vocabulary.is_file() and merges.is_file():
-            bpe = models.BPE.from_file(
-                str(vocabulary), str(merges), end_of_word_suffix="</w>", unk_token=END
-            )
+            bpe = models.BPE.from_file(str(vocabulary), str(merges), end_of_word_suffix="</w>", unk_token=END)
             tokenizer = Tokenizer(bpe)
             spaces = normalizers.Replace(Regex(r"\s+"), " ")
             tokenizer.normalizer = normalizers.Sequence([normalizers.NFC(), spaces, normalizers.Lowercase()])
@@ -149,9 +147,7 @@ class ClipTextEncoder(nn.Module):
         self.positional_embedding = nn.Parameter(torch.zeros(context_length, width))
         self.clip_transformer = Tower(width, num_layers)
         self.ln_final = nn.LayerNorm(width)
-        layer = nn.TransformerEncoderLayer(
-            width, ENCODER_HEADS, ff_size, activation="gelu", batch_first=True
-        )
+        layer = nn.TransformerEncoderLayer(width, ENCODER_HEADS, ff_size, activation="gelu", batch_first=True)
         self.clipTransEncoder = nn.TransformerEncoder(layer, encoder_layers, enable_nested_tensor=False)
         self.clip_ln = nn.LayerNorm(width)
 

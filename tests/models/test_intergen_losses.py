@@ -98,9 +98,7 @@ def test_padding_is_not_counted():
     for term in (losses.bone_length_loss, losses.distance_map_loss, losses.relative_orientation_loss):
         assert torch.allclose(term(pred, true, mask), term(pred[:, :4], true[:, :4]), rtol=1e-5)
     per_person = mask[..., None].expand(-1, -1, 2)
-    assert torch.equal(
-        losses.velocity_loss(pred, true, mask), losses.velocity_loss(pred, true, per_person)
-    )
+    assert torch.equal(losses.velocity_loss(pred, true, mask), losses.velocity_loss(pred, true, per_person))
 
 
 def test_bone_lengths_ignore_where_people_stand():

@@ -68,9 +68,7 @@ def test_the_future_changes_no_past_frame_by_a_bit_when_online(name):
 def test_the_stream_gives_the_frames_of_the_whole_motion(name):
     ref, network = load(name)
     noise, actor, action = ref["x"], ref["actor"], ref.arrays.get("action")
-    *_, whole = sample_steps(
-        lambda x, t: network(x, t, actor, action), noise, make_scheduler("ddim", 5)
-    )
+    *_, whole = sample_steps(lambda x, t: network(x, t, actor, action), noise, make_scheduler("ddim", 5))
     stream = network.stream(steps=5, batch=2, action=action, max_frames=18)
     frames = [stream.step(actor[..., i], noise=noise[..., i]) for i in range(18)]
     assert_equal(torch.stack(frames, dim=-1), whole.sample)
