@@ -158,10 +158,12 @@ def pick(rng: np.random.Generator, items):
     return items[int(rng.integers(len(items)))]
 
 
-def higher_hand(positions) -> str:
-    """The hand that a gesture is made with: the one that is higher while raised, or "both"."""
+def higher_hand(positions) -> str | None:
+    """The hand that a gesture is made with: the one that is higher while raised; "both", or None if low."""
     left, right = (positions[:, SMPL22.index(f"{side}_wrist"), 1] for side in ("left", "right"))
     left, right = np.percentile(left, 80), np.percentile(right, 80)
+    if max(left, right) < 1.25:
+        return None
     if abs(left - right) < 0.15:
         return "both"
     return "left" if left > right else "right"

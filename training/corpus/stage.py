@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from typing import Any
 
 import numpy as np
 
 from webdemo.motion.kinematics import forward_kinematics
 from webdemo.motion.skeleton import SMPL22
-from webdemo.motion.transforms import canonicalize
+from webdemo.motion.transforms import canonicalize, facing
 
 from .captions import Phrasebook
 from .compose import FPS, Array, Motion, facing_at, join, look_at, place, realise, time_warp
@@ -210,8 +210,24 @@ def finish(
         write(rng, family, slots or {}, captions, library.split),
         tuple(sorted(set(a.sources + b.sources))),
         library.split,
-        dict(events or {}),
+        verified(positions, events or {}),
     )
+
+
+def verified(positions: Array, events: Mapping[str, Any]) -> dict[str, Any]:
+    """The events without what the scene (2, T, 22, 3) does not show, which would mislead a judge."""
+    kept = dict(events)
+    roots = positions[:, :, 0] * np.array([1.0, 0.0, 1.0])
+    gap = np.linalg.norm(roots[0] - roots[1], axis=-1)
+    change = gap[-1] - gap[0]
+    shown = "approach" if change < -0.4 else "part" if change > 0.4 else "keep" if abs(change) < 0.3 else None
+    if kept.get("distance") != shown:
+        kept.pop("distance", None)
+    middle = len(gap) // 2
+    ahead = (roots[1] - roots[0])[middle] / max(gap[middle], 1e-6)
+    if min(facing(positions[0])[middle] @ ahead, -facing(positions[1])[middle] @ ahead) < 0.7:
+        kept.pop("facing", None)
+    return kept
 
 
 def write(rng: Rng, family: str, slots: Mapping[str, Any], count: int, split: str) -> list[str]:
@@ -238,8 +254,3 @@ def pace_word(speed: float, *, slow: float = 0.75, fast: float = 1.6) -> str | N
 def how_far(distance: float) -> str | None:
     """ "near" or "far" where a distance in metres deserves the word."""
     return "near" if distance < 1.15 else "far" if distance > 2.6 else None
-
-
-def same(values: Sequence[Any]) -> bool:
-    """Whether all values are equal."""
-    return all(value == values[0] for value in values)

@@ -38,7 +38,7 @@ def ordered(rng: Rng, library: Library) -> Scene:
     b = oppose(rng, a, b, gap)
     sides = {}
     for person, name, take in zip("ab", names, (first, second), strict=True):
-        if name in SIDED and rng.random() < 0.6:
+        if name in SIDED and take.side and rng.random() < 0.6:
             sides[person] = take.side
     events = {"order": list(names), "facing": True, "distance": "keep"} | ({"side": sides} if sides else {})
     slots = {
@@ -87,7 +87,7 @@ def together(rng: Rng, library: Library) -> Scene:
     first = gesture(rng, library, names[0], style=_style(rng, library, names[0]))
     side = first.side if names[0] == names[1] and first.side else None
     second = gesture(rng, library, names[1], side=side, style=first.style)
-    sides = {f"side_{p}": t.side for p, n, t in zip("ab", names, (first, second), strict=True) if n in SIDED}
+    sides = {f"side_{p}": t.side for p, n, t in zip("ab", names, (first, second), strict=True) if n in SIDED and t.side}
     if rng.random() < 0.4:
         sides = {}
     return pair(
