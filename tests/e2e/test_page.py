@@ -71,6 +71,7 @@ def phone(server: SimpleNamespace, open_page: Callable[..., Page]) -> Page:
 
 
 def _drawn(tab: Page) -> Page:
+    tab.set_default_timeout(SLOW)
     expect(tab.locator("#prompt textarea")).to_be_visible(timeout=SLOW)
     return tab
 

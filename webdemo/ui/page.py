@@ -15,7 +15,7 @@ from .exports import Shelf
 from .generate_tab import GenerateTab
 from .panels import model_state
 from .runs import EngineLike, Loader, Runs
-from .theme import style_sheet, theme
+from .theme import HEAD, style_sheet, theme
 
 TITLE = "Pas de Deux"
 TABS = (GenerateTab,)
@@ -94,6 +94,7 @@ def launch_options() -> dict[str, Any]:
     return {
         "theme": theme(),
         "css": style_sheet(),
+        "head": HEAD,
         "footer_links": ["api"],
         "run_history": False,
         "ssr_mode": False,

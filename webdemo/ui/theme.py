@@ -20,6 +20,15 @@ _SANS = (
 )
 _MONO = ("ui-monospace", "SFMono-Regular", "Menlo", "Consolas", "DejaVu Sans Mono", "monospace")
 
+HEAD = """<script>
+// Gradio takes Enter in the prompt; this adds Ctrl+Enter and Cmd+Enter.
+document.addEventListener("keydown", (event) => {
+  if (event.key !== "Enter" || !(event.ctrlKey || event.metaKey) || !event.target.closest?.("#prompt")) return;
+  event.preventDefault();
+  document.querySelector("button#generate:enabled")?.click();
+});
+</script>"""
+
 
 def theme() -> gr.themes.Base:
     """Gradio's plain theme in slate and blue, with the system's fonts."""
