@@ -51,6 +51,8 @@ class Settings:
     weight_decay: float = 2e-5
     ema: float = 0.9985
     unconditional: float = 0.1
+    freeze_person: float = 0.12
+    freeze_past: float = 0.08
     t_bar: float = 0.7
     seed: int = 0
     weights: LossWeights = field(
@@ -194,16 +196,34 @@ class Trainer:
         place = min(1.0, self.step / s.steps)
         return s.learning_rate * warm * (0.02 + 0.98 * 0.5 * (1 + math.cos(math.pi * place)))
 
-    def terms(self, batch: Batch, t: Tensor, noise: Tensor, keep: Tensor) -> dict[str, Tensor]:
+    def frozen(self, mask: Tensor, generator: torch.Generator) -> Tensor:
+        """(B, tokens, 2) true where a token is given clean: a whole person, or the past of both.
+
+        InterGen, section 5.4: with the noise of one person masked the network learns to answer a given
+        person; with that of the past, to go on from it.
+        """
+        size, tokens, _ = mask.shape
+        draw, share = torch.rand(size, generator=generator), torch.rand(size, generator=generator)
+        person = torch.randint(2, (size, 1, 1), generator=generator)
+        given_person = (draw < self.settings.freeze_person)[:, None, None] & (torch.arange(2) == person)
+        past = torch.arange(tokens)[None, :, None] < (0.6 * share * mask[:, :, 0].sum(1).cpu())[:, None, None]
+        given_past = (draw > 1 - self.settings.freeze_past)[:, None, None] & past
+        return (given_person | given_past).to(mask.device)
+
+    def terms(
+        self, batch: Batch, t: Tensor, noise: Tensor, keep: Tensor, frozen: Tensor
+    ) -> dict[str, Tensor]:
         """Every loss term of one batch, weighted."""
+        people = (*batch.x0.shape[:2], 2, -1)
         xt = self.schedule.q_sample(batch.x0, t, noise)
+        xt = torch.where(frozen[..., None], batch.x0.view(people), xt.view(people)).view_as(xt)
         # The fused attention kernel's backward pass is slow for sequences this short.
         with torch.autocast(self.device, torch.bfloat16), sdpa_kernel(SDPBackend.MATH):
             cond = self.model.conditioner(batch.text, batch.text_mask) * keep[:, None]
             predicted = self.model.denoiser(xt, t, cond, batch.mask)
         predicted = predicted.float()
-        people = (*batch.x0.shape[:2], 2, -1)
-        terms = {"simple": simple_loss(predicted.view(people), batch.x0.view(people), batch.mask)}
+        asked = batch.mask * ~frozen
+        terms = {"simple": simple_loss(predicted.view(people), batch.x0.view(people), asked)}
         positions = [self.model.positions(x)[0].transpose(1, 2) for x in (predicted, batch.x0)]
         return terms | self.loss.regularizers(*positions, t, batch.frame_mask)
 
@@ -215,9 +235,10 @@ class Trainer:
         t = torch.randint(self.schedule.timesteps, (size,), generator=generator).to(self.device)
         noise = torch.randn(batch.x0.shape, generator=generator).to(self.device)
         keep = (torch.rand(size, generator=generator) >= self.settings.unconditional).float().to(self.device)
+        frozen = self.frozen(batch.mask, generator)
         torch.manual_seed(seeded(self.settings.seed, 4, self.step).initial_seed())  # dropout
         self.model.train()
-        terms = self.terms(batch, t, noise, keep)
+        terms = self.terms(batch, t, noise, keep, frozen)
         total = torch.stack(list(terms.values())).sum()
         for group in self.optimizer.param_groups:
             group["lr"] = self.learning_rate()
