@@ -21,7 +21,7 @@ def main(arguments: list[str] | None = None) -> int:
     parser.add_argument("--hours", type=float, default=5.0, help="hours of composed motion (5)")
     parser.add_argument("--seed", type=int, default=0)
     parser.add_argument("--families", nargs="+", metavar="NAME", help="only these families")
-    parser.add_argument("--report", type=Path, metavar="DIR", help="write report.md there")
+    parser.add_argument("--report", type=Path, metavar="DIR", help="write report.md and contact sheets there")
     options = parser.parse_args(arguments)
     logging.basicConfig(level=logging.WARNING, format="%(message)s")
     began = time.monotonic()

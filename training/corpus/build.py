@@ -12,7 +12,8 @@ from pathlib import Path
 import numpy as np
 
 from training.files import replacing
-from webdemo.motion import InputError
+from webdemo.motion import SMPL22, Clip, Duet, InputError
+from webdemo.view.contact_sheet import contact_sheet
 
 from .checks import fault, measure
 from .compose import FPS
@@ -172,7 +173,7 @@ def _plain(value: object) -> object:
 
 
 def report(scenes: Sequence[Scene], tally: Tally, folder: Path) -> None:
-    """Writes ``report.md``: families, minutes, measures."""
+    """Writes ``report.md`` (families, minutes, measures) and a contact sheet of one scene a family."""
     by_family: dict[str, list[Scene]] = {}
     for scene in scenes:
         by_family.setdefault(scene.family, []).append(scene)
@@ -190,3 +191,7 @@ def report(scenes: Sequence[Scene], tally: Tally, folder: Path) -> None:
     folder.mkdir(parents=True, exist_ok=True)
     with replacing(folder / "report.md") as temporary:
         temporary.write_text("\n".join([*rows, "", *tally.lines(), ""]))
+    for name, group in by_family.items():
+        scene = group[len(group) // 2]
+        people = [Clip(person, FPS, SMPL22) for person in scene.positions]
+        contact_sheet(Duet(*people), folder / f"{name}.png", title=f"{name}: {scene.captions[0]}")

@@ -87,7 +87,11 @@ def together(rng: Rng, library: Library) -> Scene:
     first = gesture(rng, library, names[0], style=_style(rng, library, names[0]))
     side = first.side if names[0] == names[1] and first.side else None
     second = gesture(rng, library, names[1], side=side, style=first.style)
-    sides = {f"side_{p}": t.side for p, n, t in zip("ab", names, (first, second), strict=True) if n in SIDED and t.side}
+    sides = {
+        f"side_{p}": t.side
+        for p, n, t in zip("ab", names, (first, second), strict=True)
+        if n in SIDED and t.side
+    }
     if rng.random() < 0.4:
         sides = {}
     return pair(
