@@ -23,7 +23,8 @@ _MONO = ("ui-monospace", "SFMono-Regular", "Menlo", "Consolas", "DejaVu Sans Mon
 HEAD = """<script>
 // Gradio takes Enter in the prompt; this adds Ctrl+Enter and Cmd+Enter.
 document.addEventListener("keydown", (event) => {
-  if (event.key !== "Enter" || !(event.ctrlKey || event.metaKey) || !event.target.closest?.("#prompt")) return;
+  const held = event.ctrlKey || event.metaKey;
+  if (event.key !== "Enter" || !held || !event.target.closest?.("#prompt")) return;
   event.preventDefault();
   document.querySelector("button#generate:enabled")?.click();
 });
