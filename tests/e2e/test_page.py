@@ -72,7 +72,8 @@ def phone(server: SimpleNamespace, open_page: Callable[..., Page]) -> Page:
 
 def _drawn(tab: Page) -> Page:
     tab.set_default_timeout(SLOW)
-    expect(tab.locator("#prompt textarea")).to_be_visible(timeout=SLOW)
+    # The mark comes from the server when the page is live; before that a press would be lost.
+    expect(tab.locator("#model-state")).to_contain_text("Model ready", timeout=SLOW)
     return tab
 
 

@@ -52,7 +52,7 @@ def build_page(engine: EngineLike, *, loader: Loader | None = None, files: Path 
     with gr.Blocks(title=TITLE, delete_cache=_CACHE, fill_width=True, analytics_enabled=False) as demo:
         with gr.Row(elem_classes="pd-header", equal_height=True):
             gr.HTML(_HEADER)
-            mark = gr.HTML(model_state(page.loader.state), elem_id="model-state")
+            mark = gr.HTML(model_state("loading"), elem_id="model-state")
         tabs = [tab(page) for tab in TABS]
         if len(tabs) == 1:
             tabs[0].build(demo)
