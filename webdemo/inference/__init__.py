@@ -6,12 +6,12 @@ Importing this package imports no torch; :class:`Engine` does when it is first a
 from typing import TYPE_CHECKING, Any
 
 from .cancel import CancelToken
-from .requests import Cancelled, GenerateRequest, Progress, Result
+from .requests import Cancelled, GenerateRequest, Progress, ReactRequest, Result
 
 if TYPE_CHECKING:
     from .engine import Engine
 
-__all__ = ["CancelToken", "Cancelled", "Engine", "GenerateRequest", "Progress", "Result"]
+__all__ = ["CancelToken", "Cancelled", "Engine", "GenerateRequest", "Progress", "ReactRequest", "Result"]
 
 
 def __getattr__(name: str) -> Any:

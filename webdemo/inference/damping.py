@@ -111,6 +111,7 @@ class Damping:
         final_timestep: where sampling ends; more steps are taken there, since no network follows them.
         final_steps: how many.
         step_size: of one gradient step; the largest move of any number is held to ``largest``.
+        frozen: (tokens, 2·token_features) true where a number is given and must not move.
     """
 
     def __init__(
@@ -125,6 +126,7 @@ class Damping:
         final_steps: int = 20,
         step_size: float = 0.03,
         largest: float = 0.03,
+        frozen: Tensor | None = None,
         weights: DampingWeights | None = None,
     ) -> None:
         self.model, self.frames = model, frames
@@ -132,6 +134,7 @@ class Damping:
         self.off = threshold == 0
         self.gradient_steps, self.step_size, self.largest = gradient_steps, step_size, largest
         self.final_timestep, self.final_steps = final_timestep, final_steps
+        self.frozen = frozen
         self.weights = weights or DampingWeights()
 
     def __call__(self, x0: Tensor, timestep: int) -> Tensor:
@@ -150,5 +153,7 @@ class Damping:
                 (gradient,) = torch.autograd.grad(total, x)
             # The step is taken on control points in metres: d/dcontrol = d/dx / std.
             move = (self.step_size * gradient / scale).clamp(-self.largest, self.largest)
+            if self.frozen is not None:
+                move = move.masked_fill(self.frozen, 0.0)
             x0 = x0.detach() - move / scale
         return x0

@@ -21,12 +21,12 @@ from typing import Any
 from webdemo.motion import InputError
 
 from .cancel import CancelToken
-from .generator import Clock, TextToDuet
-from .requests import GenerateRequest, Progress, Result
+from .generator import Clock, DuetGenerator
+from .requests import GenerateRequest, Progress, ReactRequest, Result
 
 WEIGHTS = Path(__file__).resolve().parents[2] / "models" / "weights"
 GENERATORS = {"intergen": "intergen"}
-"""Text generators by name: the folder of their weights."""
+"""Generators by name: the folder of their weights."""
 
 
 class Engine:
@@ -41,7 +41,7 @@ class Engine:
     def __init__(self, weights: Path = WEIGHTS) -> None:
         self.weights = weights
         self._lock = threading.Lock()
-        self._generators: dict[str, TextToDuet] = {}
+        self._generators: dict[str, DuetGenerator] = {}
 
     @property
     def ready(self) -> bool:
@@ -62,7 +62,9 @@ class Engine:
         meta = WeightsFolder(self.weights / GENERATORS["intergen"]).meta
         return {"name": "intergen", "ready": self.ready, **meta.get("card", {})}
 
-    def run(self, request: GenerateRequest, cancel: CancelToken | None = None) -> Iterator[Progress | Result]:
+    def run(
+        self, request: GenerateRequest | ReactRequest, cancel: CancelToken | None = None
+    ) -> Iterator[Progress | Result]:
         """Yields :class:`Progress` events, then exactly one :class:`Result`.
 
         The same request on the same machine gives the same bytes.
@@ -86,16 +88,16 @@ class Engine:
                 event = replace(event, duets=duets, manifest=manifest)
             yield event
 
-    def _generator(self, name: str) -> TextToDuet:
+    def _generator(self, name: str) -> DuetGenerator:
         if name not in GENERATORS:
             raise InputError(f"There is no model {name!r:.40}: choose one of {', '.join(GENERATORS)}.")
         with self._lock:
             if name not in self._generators:
-                self._generators[name] = TextToDuet(self.weights / GENERATORS[name])
+                self._generators[name] = DuetGenerator(self.weights / GENERATORS[name])
             return self._generators[name]
 
 
-def _manifest(request: GenerateRequest, generator: TextToDuet) -> dict[str, Any]:
+def _manifest(request: GenerateRequest | ReactRequest, generator: DuetGenerator) -> dict[str, Any]:
     """Everything that reproduces a result."""
     return {
         "product": "Pas de Deux",

@@ -1,9 +1,9 @@
-"""Two people from one sentence by the compact InterGen."""
+"""Two people from one sentence, or one for a given other, by the compact InterGen."""
 
 from __future__ import annotations
 
 import time
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -20,9 +20,8 @@ from webdemo.motion import Duet, InputError
 from .cancel import CancelToken
 from .cleanup import clean_person
 from .damping import Damping
-from .requests import GenerateRequest, Progress, Result
-
-FPS = 30.0
+from .requests import GenerateRequest, Progress, ReactRequest, Result
+from .scenes import Finish, Scene, scene_of
 
 
 def sample_noise(seed: int, samples: int, shape: tuple[int, ...]) -> Tensor:
@@ -59,7 +58,7 @@ class Clock:
         return now
 
 
-class TextToDuet:
+class DuetGenerator:
     """The compact InterGen with its text encoder, loaded from a weights folder.
 
     Raises WeightsError or TextEncoderError (both InputError) where files are missing or altered.
@@ -88,35 +87,46 @@ class TextToDuet:
             f"The nearest thing it knows: “{near[0][1]}”.",
         )
 
-    def run(self, request: GenerateRequest, cancel: CancelToken, clock: Clock) -> Iterator[Progress | Result]:
+    def run(
+        self, request: GenerateRequest | ReactRequest, cancel: CancelToken, clock: Clock
+    ) -> Iterator[Progress | Result]:
         """Progress events, then one :class:`Result` without a manifest; raises Cancelled within one step."""
         now = time.perf_counter()
         yield clock.progress("text")
-        condition, vector = self.condition(request.prompt)
+        notes: tuple[str, ...] = ()
+        if request.prompt.strip():
+            condition, vector = self.condition(request.prompt)
+            notes, guidance = self.notes(vector), request.guidance
+        else:  # without an intent both halves of the guidance are the same
+            condition, guidance = torch.zeros(1, self.model.config.cond_dim), 1.0
+        condition = condition.expand(request.samples, -1)
+        scene = scene_of(request, self.model)
         now = clock.lap("text", now)
 
-        frames = round(request.seconds * FPS)
-        layout = self.model.layout
-        tokens = layout.num_tokens(frames)
-        noise = sample_noise(request.seed, request.samples, (tokens, 2 * layout.token_features))
-        condition = condition.expand(request.samples, -1)
+        layout, given = self.model.layout, scene.given
+        noise = sample_noise(
+            request.seed, request.samples, (layout.num_tokens(scene.frames), 2 * layout.token_features)
+        )
         scheduler = make_scheduler(request.sampler, request.steps)
         damping = Damping(
             self.model,
             request.damping,
-            frames=frames,
+            frames=scene.frames,
             timesteps=TRAIN_TIMESTEPS,
             final_timestep=int(scheduler.timesteps[-1]),
+            frozen=None if given is None else given.mask,
         )
         uncorrected = noise
 
+        # What is given is clean at every timestep, as in training (InterGen, section 5.4).
         def correct(x0: Tensor, timestep: int) -> Tensor:
             nonlocal uncorrected
-            uncorrected = x0
-            return damping(x0, timestep)
+            uncorrected = x0 if given is None else given.hold(x0)
+            return damping(uncorrected, timestep)
 
         def predict(x: Tensor, t: Tensor) -> Tensor:
-            return self.model.denoiser.guided(x, t, condition, scale=request.guidance)
+            x = x if given is None else given.hold(x)
+            return self.model.denoiser.guided(x, t, condition, scale=guidance)
 
         cancel.raise_if_cancelled()
         sample = noise
@@ -127,8 +137,8 @@ class TextToDuet:
         now = clock.lap("sample", now)
 
         yield clock.progress("finish")
-        before = self._duets(uncorrected, frames, lambda person: person)
-        duets = self._duets(sample, frames, clean_person if request.cleanup else lambda person: person)
+        before = self._duets(uncorrected, scene, _as_is)
+        duets = self._duets(sample, scene, clean_person if request.cleanup else _as_is)
         readouts = tuple(compare(raw, duet) for raw, duet in zip(before, duets, strict=True))
         clock.lap("finish", now)
         yield Result(
@@ -136,17 +146,16 @@ class TextToDuet:
             manifest={},
             readouts=readouts,
             timings={**clock.stages, "total": round(clock.elapsed, 4)},
-            notes=self.notes(vector),
+            notes=notes,
         )
 
-    def _duets(self, x: Tensor, frames: int, finish: Callable[[np.ndarray], np.ndarray]) -> tuple[Duet, ...]:
+    def _duets(self, x: Tensor, scene: Scene, finish: Finish) -> tuple[Duet, ...]:
         with torch.no_grad():
-            positions = self.model.positions(x)[0][:, :, :frames].numpy()
+            positions = self.model.positions(x)[0][:, :, : scene.frames].numpy()
         if not np.isfinite(positions).all():
             raise InputError("The motion ran away to infinity: lower the guidance scale or take more steps.")
-        return tuple(
-            Duet.from_positions(
-                np.stack([finish(person) for person in pair]), fps=FPS, roles=("actor", "reactor")
-            )
-            for pair in positions
-        )
+        return tuple(scene.duet(pair, finish) for pair in positions)
+
+
+def _as_is(person: np.ndarray) -> np.ndarray:
+    return person

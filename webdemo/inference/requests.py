@@ -5,11 +5,16 @@ These dataclasses import no torch, so the page, the shell and the API build them
 
 from __future__ import annotations
 
+import hashlib
 import math
-from dataclasses import asdict, dataclass, field
+from dataclasses import asdict, dataclass, field, fields
 from typing import Any
 
-from webdemo.motion import Duet, InputError
+import numpy as np
+
+from webdemo.motion import Clip, Duet, InputError
+
+from .actor import ROLES, check_actor
 
 MAX_PROMPT = 500
 SECONDS = (1.0, 10.0)
@@ -19,6 +24,7 @@ GUIDANCE = (0.0, 10.0)
 DAMPING = (0.0, 1.0)
 MAX_SEED = 2**32 - 1
 SAMPLERS = ("ddim", "dpm++")
+MODES = ("offline",)
 
 
 def _number(name: str, value: Any, low: float, high: float, unit: str = "") -> float:
@@ -36,13 +42,24 @@ def _whole(name: str, value: Any, low: int, high: int) -> int:
     return int(number)
 
 
+def _words(value: Any, *, needed: bool) -> str:
+    if not isinstance(value, str) or (needed and not value.strip()):
+        raise InputError("The prompt is empty: say in a sentence what the two people do.")
+    if len(value) > MAX_PROMPT:
+        raise InputError(f"The prompt has {len(value):,} characters: shorten it to {MAX_PROMPT} or fewer.")
+    return value
+
+
+def _choice(name: str, value: Any, known: tuple[str, ...]) -> None:
+    if value not in known:
+        raise InputError(f"{name} {value!r:.40} is not known: choose one of {', '.join(known)}.")
+
+
 @dataclass(frozen=True, kw_only=True)
-class GenerateRequest:
-    """Two people from one sentence.
+class SamplingRequest:
+    """What every job that denoises a motion can be told.
 
     Attributes:
-        prompt: what the two people do, in English.
-        seconds: length of the motion.
         seed: the same request with the same seed gives the same motion.
         samples: how many different motions to draw in one pass.
         guidance: scale s of classifier-free guidance, s·conditioned + (1−s)·unconditioned; 1 is none.
@@ -54,8 +71,6 @@ class GenerateRequest:
         cleanup: end in a projection onto constant bones and planted feet.
     """
 
-    prompt: str
-    seconds: float = 5.0
     seed: int = 0
     samples: int = 1
     guidance: float = 2.5
@@ -66,26 +81,74 @@ class GenerateRequest:
     cleanup: bool = True
 
     def __post_init__(self) -> None:
-        if not isinstance(self.prompt, str) or not self.prompt.strip():
-            raise InputError("The prompt is empty: say in a sentence what the two people do.")
-        if len(self.prompt) > MAX_PROMPT:
-            raise InputError(
-                f"The prompt has {len(self.prompt):,} characters: shorten it to {MAX_PROMPT} or fewer."
-            )
         set_ = object.__setattr__
-        set_(self, "seconds", _number("Length", self.seconds, *SECONDS, " seconds"))
         set_(self, "seed", _whole("Seed", self.seed, 0, MAX_SEED))
         set_(self, "samples", _whole("Samples", self.samples, *SAMPLES))
         set_(self, "guidance", _number("Guidance scale", self.guidance, *GUIDANCE))
         set_(self, "steps", _whole("DDIM steps", self.steps, *STEPS))
         set_(self, "damping", _number("Damping threshold", self.damping, *DAMPING))
-        if self.sampler not in SAMPLERS:
-            raise InputError(
-                f"Sampler {self.sampler!r:.40} is not known: choose one of {', '.join(SAMPLERS)}."
-            )
+        _choice("Sampler", self.sampler, SAMPLERS)
+
+
+@dataclass(frozen=True, kw_only=True)
+class GenerateRequest(SamplingRequest):
+    """Two people from one sentence.
+
+    Attributes:
+        prompt: what the two people do, in English.
+        seconds: length of the motion.
+    """
+
+    prompt: str
+    seconds: float = 5.0
+
+    def __post_init__(self) -> None:
+        _words(self.prompt, needed=True)
+        object.__setattr__(self, "seconds", _number("Length", self.seconds, *SECONDS, " seconds"))
+        super().__post_init__()
 
     def to_dict(self) -> dict[str, Any]:
         return {"kind": "generate", **asdict(self)}
+
+
+@dataclass(frozen=True, kw_only=True)
+class ReactRequest(SamplingRequest):
+    """A second person for a given one: person-to-person generation (InterGen, section 5.4).
+
+    Attributes:
+        actor: the given person, 1 to 10 seconds on SMPL22's joints. At 30 fps the result holds these very
+            positions; a clip of another rate is resampled first.
+        prompt: what the two people do, in English; empty for a reaction without a stated intent.
+        role: which of the two the given person is: "a" acts first, "b" reacts to a person who is made.
+        mode: "offline": the other person is made in sight of the whole motion.
+    """
+
+    actor: Clip
+    prompt: str = ""
+    role: str = "a"
+    mode: str = "offline"
+
+    def __post_init__(self) -> None:
+        _words(self.prompt, needed=False)
+        _choice("Role", self.role, ROLES)
+        if self.mode not in MODES:
+            raise InputError(
+                f"Mode {self.mode!r:.40} is not one of this model's: choose {' or '.join(MODES)}."
+            )
+        object.__setattr__(self, "actor", check_actor(self.actor, SECONDS))
+        super().__post_init__()
+
+    def to_dict(self) -> dict[str, Any]:
+        """Everything but the motion, which is named by its SHA-256."""
+        plain = {f.name: getattr(self, f.name) for f in fields(self) if f.name != "actor"}
+        clip = self.actor
+        actor = {
+            "name": clip.name[:100],
+            "frames": clip.num_frames,
+            "fps": clip.fps,
+            "sha256": hashlib.sha256(np.ascontiguousarray(clip.positions).tobytes()).hexdigest(),
+        }
+        return {"kind": "react", "actor": actor, **plain}
 
 
 @dataclass(frozen=True, kw_only=True)

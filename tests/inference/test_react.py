@@ -1,0 +1,234 @@
+"""A reaction's promises: the given person stays as given, and the other lives in their world."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+import torch
+
+from webdemo.inference import Cancelled, CancelToken, Progress, ReactRequest, Result
+from webdemo.inference.actor import APART, Placement, choose_actor
+from webdemo.inference.engine import Engine
+from webdemo.motion import SKELETONS, SMPL22, Clip, Duet, InputError
+from webdemo.motion.kinematics import forward_kinematics
+from webdemo.motion.transforms import heading, heading_matrix
+
+
+def waver(seconds: float = 2.0, fps: float = 30.0) -> Clip:
+    """A person who stands a metre off the origin, turned by 50 degrees, and lifts an arm."""
+    frames = round(seconds * fps)
+    rotations = np.tile(np.eye(3), (frames, 22, 1, 1))
+    rotations[:, 0] = heading_matrix(np.radians(50))
+    lift = np.sin(np.linspace(0, np.pi, frames))
+    c, s = np.cos(lift), np.sin(lift)
+    shoulder = rotations[:, SMPL22.index("right_shoulder")]
+    shoulder[:, 0, 0], shoulder[:, 0, 1], shoulder[:, 1, 0], shoulder[:, 1, 1] = c, s, -s, c
+    root = np.tile([1.0, 0.9562, -0.5], (frames, 1))
+    root[:, 2] += np.linspace(0, 0.4, frames)
+    return Clip(forward_kinematics(rotations, root), fps, name="waver")
+
+
+REQUEST = ReactRequest(actor=waver(), prompt="Two people shake hands.", seed=7, steps=6)
+
+
+def react(engine: Engine, **changed: object) -> Result:
+    return next(event for event in engine.run(replace(REQUEST, **changed)) if isinstance(event, Result))
+
+
+@pytest.mark.parametrize("change", [{}, {"sampler": "dpm++"}, {"prompt": ""}, {"role": "b"}])
+def test_the_given_person_is_kept_bit_for_bit(engine: Engine, change: dict) -> None:
+    result = react(engine, samples=2, **change)
+    actor, place = waver(), 1 if change.get("role") == "b" else 0
+    for duet in result.duets:
+        assert duet.people[place].positions.tobytes() == actor.positions.tobytes()
+        assert np.isfinite(duet.positions).all()
+        assert duet.roles == ("actor", "reactor")
+    assert len(result.readouts) == 2
+
+
+def test_the_reaction_differs_by_seed_by_actor_and_by_words(engine: Engine) -> None:
+    first = react(engine).duets[0].b.positions
+    assert first.tobytes() == react(engine).duets[0].b.positions.tobytes()
+    other = waver()
+    bent = other.positions + np.linspace(0, 0.5, other.num_frames)[:, None, None] * np.array([0, 0, 1.0])
+    other_actor = other.with_positions(bent)
+    # The tiny network hardly heeds what it is told, but it does.
+    for least, change in (
+        (0.1, {"seed": 8}),
+        (1e-3, {"actor": other_actor}),
+        (1e-7, {"prompt": "One person waves."}),
+        (1e-7, {"prompt": ""}),
+    ):
+        moved = np.abs(first - react(engine, **change).duets[0].b.positions).max()
+        assert moved > least, change
+
+
+@pytest.mark.parametrize("role", ["a", "b"])
+@pytest.mark.parametrize(
+    ("angle", "shift"), [(0.0, (3.0, 0.0, -2.0)), (2.1, (-4.0, 0.0, 1.0)), (-0.7, (0.0, 5.0, 0.0))]
+)
+def test_a_moved_actor_moves_the_reaction(
+    engine: Engine, role: str, angle: float, shift: tuple[float, float, float]
+) -> None:
+    actor = waver()
+    # Feet exactly on the floor, so that a shift upwards means a higher floor and nothing else.
+    actor = actor.with_positions(actor.positions - np.array([0, actor.positions[..., 1].min(), 0]))
+    turn = heading_matrix(angle)
+    moved = actor.with_positions(actor.positions.astype(np.float64) @ turn.T + shift)
+    here = react(engine, actor=actor, role=role).duets[0].positions
+    there = react(engine, actor=moved, role=role).duets[0].positions
+    np.testing.assert_allclose(here.astype(np.float64) @ turn.T + shift, there, atol=1e-3)
+
+
+@pytest.mark.parametrize("role", ["a", "b"])
+def test_placement_puts_a_person_where_the_network_expects_one(role: str) -> None:
+    placement = Placement.of(waver(), role)
+    seen = placement.to_network(waver().positions)
+    away, towards = (0.0, 0.0) if role == "a" else (APART, np.pi)
+    np.testing.assert_allclose(seen[0, 0, [0, 2]], [0, away], atol=1e-6)
+    np.testing.assert_allclose(np.cos(heading(seen)[0] - towards), 1, atol=1e-6)
+    np.testing.assert_allclose(placement.to_world(seen), waver().positions, atol=1e-6)
+
+
+def test_the_network_sees_the_given_person_clean_at_every_step(engine: Engine) -> None:
+    """Sampling by hand: the given half is set before each network call, and its prediction overwritten."""
+    from models.diffusion import make_scheduler
+    from webdemo.inference.generator import sample_noise
+    from webdemo.inference.scenes import scene_of
+
+    request = replace(REQUEST, damping=0.0, cleanup=False)
+    generator = engine._generator("intergen")
+    model, layout = generator.model, generator.model.layout
+    scene = scene_of(request, model)
+    half = layout.token_features
+    clean = scene.given.x0[None, :, :half]
+    decoded = model.positions(scene.given.x0[None])[0][0, 0, :60].numpy()
+    expected = scene.placement.to_network(waver().positions)
+    np.testing.assert_allclose(decoded, expected, atol=0.01)
+
+    condition, _ = generator.condition(request.prompt)
+    x = sample_noise(request.seed, 1, (layout.num_tokens(60), 2 * half))
+    scheduler = make_scheduler("ddim", request.steps)
+    with torch.no_grad():
+        for t in scheduler.timesteps:
+            x = torch.cat([clean, x[..., half:]], -1)
+            predicted = model.denoiser.guided(x, t.expand(1), condition, scale=request.guidance)
+            predicted = torch.cat([clean, predicted[..., half:]], -1)
+            x = scheduler.step(predicted, t, x).prev_sample
+        plain = model.positions(x)[0][0, 1, :60].numpy()
+    ours = react(engine, damping=0.0, cleanup=False).duets[0].b.positions
+    np.testing.assert_allclose(scene.placement.to_world(plain), ours, atol=1e-5)
+
+
+def test_damping_and_cleanup_touch_the_reaction_alone(engine: Engine) -> None:
+    plain = react(engine, damping=0.0, cleanup=False, steps=20)
+    damped = react(engine, damping=0.9, cleanup=False, steps=20)
+    assert damped.readouts[0]["after"]["bone_drift"] < plain.readouts[0]["after"]["bone_drift"]
+    assert not np.allclose(plain.duets[0].b.positions, damped.duets[0].b.positions)
+    cleaned = react(engine).duets[0].b.positions
+    for parent, joint in SMPL22.bones:
+        length = np.linalg.norm(cleaned[:, joint] - cleaned[:, parent], axis=-1)
+        np.testing.assert_allclose(length, SMPL22.bone_lengths[joint], atol=2e-3)
+
+
+@pytest.mark.parametrize(("seconds", "frames"), [(1.0, 30), (1.37, 41), (10.0, 300), (301 / 30, 301)])
+def test_lengths_from_one_to_ten_seconds(engine: Engine, seconds: float, frames: int) -> None:
+    assert react(engine, actor=waver(seconds), steps=1).duets[0].num_frames == frames
+
+
+def test_other_frame_rates_are_resampled(engine: Engine) -> None:
+    duet = react(engine, actor=waver(2.0, fps=120), steps=1).duets[0]
+    assert (duet.fps, duet.num_frames) == (30, 60)
+    np.testing.assert_allclose(duet.a.positions[10], waver(2.0, fps=120).positions[40], atol=1e-4)
+
+
+def test_cancel_takes_effect_within_one_step_and_the_next_run_works(engine: Engine) -> None:
+    token, seen = CancelToken(), []
+    with pytest.raises(Cancelled):
+        for event in engine.run(replace(REQUEST, steps=50), cancel=token):
+            if isinstance(event, Progress) and event.stage == "sample":
+                seen.append(event.step)
+                if event.step == 3:
+                    token.cancel()
+    assert seen == [1, 2, 3]
+    assert react(engine, steps=1).duets
+
+
+def test_the_manifest_names_the_actor_without_the_motion(engine: Engine) -> None:
+    import json
+
+    manifest = react(engine, steps=1).manifest
+    told = manifest["request"]
+    assert told["kind"] == "react"
+    assert told["actor"]["name"] == "waver"
+    assert told["actor"]["frames"] == 60
+    assert len(told["actor"]["sha256"]) == 64
+    assert len(json.dumps(manifest)) < 2000
+    assert react(engine, steps=1, actor=waver(3.0)).manifest["request"]["actor"] != told["actor"]
+
+
+def spoiled(value: float) -> Clip:
+    """A clip that went bad after it was made, as arrays can."""
+    clip = waver()
+    clip.positions.setflags(write=True)
+    clip.positions[5, 3, 1] = value
+    return clip
+
+
+@pytest.mark.parametrize(
+    ("change", "says"),
+    [
+        ({"actor": waver(0.9)}, "0.90 s: give 1 s or more"),
+        ({"actor": waver(12.0)}, "12.0 s: trim it to 10 s or less"),
+        ({"actor": spoiled(float("nan"))}, "NaN or infinite"),
+        ({"actor": spoiled(float("inf"))}, "NaN or infinite"),
+        ({"actor": Clip(np.zeros((60, 15, 3)), 30, SKELETONS["sbu15"])}, "joints of sbu15"),
+        ({"actor": waver().with_positions(waver().positions * 100)}, "100 times as long"),
+        ({"actor": waver().with_positions(np.zeros((60, 22, 3)))}, "0 times as long"),
+        ({"actor": waver().with_positions(waver().positions + 5000)}, "1000 m from the origin"),
+        ({"actor": Duet(waver(), waver())}, "one person's clip"),
+        ({"actor": None}, "one person's clip"),
+        ({"mode": "online"}, "choose offline"),
+        ({"role": "c"}, "Role 'c'"),
+        ({"prompt": "x" * 501}, "501 characters"),
+        ({"steps": 0}, "steps"),
+    ],
+)
+def test_what_cannot_be_done_is_refused_with_a_sentence(change: dict, says: str) -> None:
+    with pytest.raises(InputError, match=says) as error:
+        replace(REQUEST, **change)
+    assert str(error.value).endswith(".")
+    assert "\n" not in str(error.value)
+
+
+def test_an_unknown_model_is_refused(engine: Engine) -> None:
+    with pytest.raises(InputError, match="no model"):
+        react(engine, model="nonesuch")
+
+
+def test_one_person_is_chosen_and_trimmed() -> None:
+    clip = waver(4.0, fps=60)
+    cut = choose_actor(clip, start=1.0, end=3.0)
+    assert (cut.fps, cut.num_frames) == (30, 60)
+    np.testing.assert_allclose(cut.positions[0], clip.positions[60], atol=1e-6)
+    duet = Duet(clip, clip.with_positions(clip.positions + 1))
+    np.testing.assert_allclose(choose_actor(duet, person="b").positions[0], duet.b.positions[0], atol=1e-6)
+    at_rate = waver()
+    assert choose_actor(at_rate).positions.tobytes() == at_rate.positions.tobytes()
+
+
+@pytest.mark.parametrize(
+    ("motion", "change", "says"),
+    [
+        (Duet(waver(), waver()), {}, "two people: choose person a or b"),
+        (waver(), {"person": "b"}, "one person only"),
+        (waver(), {"person": "c"}, "choose a or b"),
+        (waver(), {"start": -1.0}, "start < end"),
+        (waver(), {"start": 1.5, "end": 1.0}, "start < end"),
+        (waver(), {"start": 2.5, "end": 4.0}, "behind the motion"),
+        (waver(), {"end": float("nan")}, "start < end"),
+    ],
+)
+def test_choices_that_do_not_fit_are_refused(motion: Clip | Duet, change: dict, says: str) -> None:
+    with pytest.raises(InputError, match=says):
+        choose_actor(motion, **change)
