@@ -1,4 +1,4 @@
-"""The same jobs from a shell: ``python -m webdemo generate|render|info|benchmark|serve``.
+"""The same jobs from a shell: ``python -m webdemo generate|react|render|info|benchmark|serve``.
 
 The last line on stdout is one JSON object. What goes wrong is one line on stderr that says what is wrong and
 what to do, with exit code 2; a cancelled run (Ctrl+C) ends with 130. No file is left half-written.
@@ -15,7 +15,8 @@ from dataclasses import fields
 from pathlib import Path
 from typing import Any, NoReturn
 
-from webdemo.inference.requests import GenerateRequest, Progress, Result
+from webdemo.inference.actor import ROLES, choose_actor
+from webdemo.inference.requests import GenerateRequest, Progress, ReactRequest, Result, SamplingRequest
 from webdemo.motion import InputError
 
 
@@ -26,54 +27,45 @@ class _Parser(argparse.ArgumentParser):
         raise InputError(f"{message[:1].upper()}{message[1:]}: see `{self.prog} --help`.")
 
 
-def _default(name: str) -> Any:
-    return next(field.default for field in fields(GenerateRequest) if field.name == name)
-
-
-def _add_generate(commands: Any) -> None:
-    parser = commands.add_parser("generate", help="two people from one sentence")
-    parser.add_argument("--prompt", required=True, help="what the two people do, in English")
+def _add_sampling(parser: argparse.ArgumentParser) -> None:
+    """The options of a :class:`SamplingRequest`, and where its result goes."""
+    default = {field.name: field.default for field in fields(SamplingRequest)}
     parser.add_argument("--out", type=Path, required=True, help="file to write: .npz, .bvh, .glb …")
-    parser.add_argument("--seconds", type=float, default=_default("seconds"))
-    parser.add_argument("--seed", type=int, default=_default("seed"))
-    parser.add_argument("--samples", type=int, default=_default("samples"), help="how many motions to draw")
-    parser.add_argument("--guidance", type=float, default=_default("guidance"), help="guidance scale s")
-    parser.add_argument("--steps", type=int, default=_default("steps"), help="denoising steps")
-    parser.add_argument(
-        "--damping", type=float, default=_default("damping"), help="damping threshold, 0 to 1"
-    )
-    parser.add_argument("--sampler", default=_default("sampler"), help="ddim or dpm++")
-    parser.add_argument("--model", default=_default("model"))
+    parser.add_argument("--seed", type=int, default=default["seed"])
+    parser.add_argument("--samples", type=int, default=default["samples"], help="how many motions to draw")
+    parser.add_argument("--guidance", type=float, default=default["guidance"], help="guidance scale s")
+    parser.add_argument("--steps", type=int, default=default["steps"], help="denoising steps")
+    parser.add_argument("--damping", type=float, default=default["damping"], help="threshold, 0 to 1")
+    parser.add_argument("--sampler", default=default["sampler"], help="ddim or dpm++")
+    parser.add_argument("--model", default=default["model"])
     parser.add_argument(
         "--no-cleanup", action="store_true", help="leave bones and feet as the network gives them"
     )
-    parser.set_defaults(job=generate)
 
 
-def generate(options: argparse.Namespace) -> dict[str, Any]:
-    """Runs a :class:`GenerateRequest` and writes its duets."""
-    from webdemo.formats import can_write, write
+def _sampling(options: argparse.Namespace) -> dict[str, Any]:
+    """What :func:`_add_sampling` understood, as a request's fields."""
+    names = ("seed", "samples", "guidance", "steps", "damping", "sampler", "model")
+    return {name: getattr(options, name) for name in names} | {"cleanup": not options.no_cleanup}
 
-    if not can_write(options.out.suffix):
-        write_names = "choose another suffix, such as .npz, .bvh or .glb"
-        raise InputError(f"{options.out.name} has a suffix that cannot be written: {write_names}.")
-    request = GenerateRequest(
-        prompt=options.prompt,
-        seconds=options.seconds,
-        seed=options.seed,
-        samples=options.samples,
-        guidance=options.guidance,
-        steps=options.steps,
-        damping=options.damping,
-        sampler=options.sampler,
-        model=options.model,
-        cleanup=not options.no_cleanup,
-    )
-    result = _run(request)
+
+def _check_out(path: Path) -> None:
+    from webdemo.formats import can_write
+
+    if not can_write(path.suffix):
+        raise InputError(
+            f"{path.name} has a suffix that cannot be written: choose another, such as .npz, .bvh or .glb."
+        )
+
+
+def _write(result: Result, out: Path) -> dict[str, Any]:
+    """Writes a result's duets and gives what the last line on stdout says of them."""
+    from webdemo.formats import write
+
     paths: list[Path] = []
     for i, duet in enumerate(result.duets):
         number = f"_{i + 1}" if len(result.duets) > 1 else ""
-        paths += write(duet, options.out.with_stem(options.out.stem + number))
+        paths += write(duet, out.with_stem(out.stem + number))
     for note in result.notes:
         print(note, file=sys.stderr)
     return {
@@ -85,7 +77,47 @@ def generate(options: argparse.Namespace) -> dict[str, Any]:
     }
 
 
-def _run(request: GenerateRequest) -> Result:
+def _add_generate(commands: Any) -> None:
+    parser = commands.add_parser("generate", help="two people from one sentence")
+    parser.add_argument("--prompt", required=True, help="what the two people do, in English")
+    parser.add_argument("--seconds", type=float, default=GenerateRequest.seconds)
+    _add_sampling(parser)
+    parser.set_defaults(job=generate)
+
+
+def generate(options: argparse.Namespace) -> dict[str, Any]:
+    """Runs a :class:`GenerateRequest` and writes its duets."""
+    _check_out(options.out)
+    request = GenerateRequest(prompt=options.prompt, seconds=options.seconds, **_sampling(options))
+    return _write(_run(request), options.out)
+
+
+def _add_react(commands: Any) -> None:
+    parser = commands.add_parser("react", help="a second person for a given one")
+    parser.add_argument("--actor", type=Path, required=True, help="the given person: .bvh, .npz, .npy …")
+    parser.add_argument("--person", choices=ROLES, help="which one, where the file holds two people")
+    parser.add_argument("--start", type=float, default=0.0, help="seconds in the file")
+    parser.add_argument("--end", type=float, help="seconds in the file; to its end by default")
+    parser.add_argument("--prompt", default=ReactRequest.prompt, help="what the two do; may be left out")
+    parser.add_argument("--role", default=ReactRequest.role, help="the given person acts (a) or reacts (b)")
+    parser.add_argument("--mode", default=ReactRequest.mode, help="offline: in sight of the whole motion")
+    _add_sampling(parser)
+    parser.set_defaults(job=react)
+
+
+def react(options: argparse.Namespace) -> dict[str, Any]:
+    """Runs a :class:`ReactRequest` on one person of a motion file and writes the duets."""
+    from webdemo.formats import read
+
+    _check_out(options.out)
+    actor = choose_actor(read(options.actor), person=options.person, start=options.start, end=options.end)
+    request = ReactRequest(
+        actor=actor, prompt=options.prompt, role=options.role, mode=options.mode, **_sampling(options)
+    )
+    return _write(_run(request), options.out)
+
+
+def _run(request: SamplingRequest) -> Result:
     """Runs a request with a step counter on stderr, where that is a terminal."""
     from webdemo.inference.engine import Engine
 
@@ -191,7 +223,7 @@ def main(argv: Sequence[str] | None = None) -> int:
     """Runs one command; returns the exit code."""
     parser = _Parser(prog="python -m webdemo", description="Motion of two people, from a shell.")
     commands = parser.add_subparsers(required=True, metavar="COMMAND", parser_class=_Parser)
-    for add in (_add_generate, _add_render, _add_others):
+    for add in (_add_generate, _add_react, _add_render, _add_others):
         add(commands)
     began = time.perf_counter()
     try:

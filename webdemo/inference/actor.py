@@ -54,11 +54,11 @@ def choose_actor(
         raise InputError(f"{name}holds one person only: leave the choice of a person out.")
     else:
         clip = motion
+    if start >= clip.seconds:
+        raise InputError(f"The start, {start:g} s, lies behind the motion, which lasts {clip.seconds:.1f} s.")
     stop = clip.seconds if end is None else end
     if not (math.isfinite(start) and math.isfinite(stop) and 0 <= start < stop):
         raise InputError(f"Start and end must be seconds with 0 ≤ start < end, not {start:g} and {stop:g}.")
-    if start >= clip.seconds:
-        raise InputError(f"The start, {start:g} s, lies behind the motion, which lasts {clip.seconds:.1f} s.")
     first, last = round(start * clip.fps), round(min(stop, clip.seconds) * clip.fps)
     return at_30_fps(clip.cut(first, max(last, first + 1)))
 

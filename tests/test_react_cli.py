@@ -1,0 +1,114 @@
+"""``python -m webdemo react`` as a shell meets it."""
+
+import json
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+from webdemo import cli
+from webdemo.formats import read, write
+from webdemo.inference.requests import ReactRequest, Result
+from webdemo.motion import SMPL22, Clip, Duet
+from webdemo.motion.kinematics import forward_kinematics
+
+
+def standing(frames: int, x: float = 0.0) -> Clip:
+    """A person who sways a little."""
+    root = np.zeros((frames, 3))
+    root[:, 0] = x + 0.05 * np.sin(np.linspace(0, 6, frames))
+    root[:, 1] = 0.9562
+    return Clip(forward_kinematics(np.tile(np.eye(3), (frames, 22, 1, 1)), root), 30.0, SMPL22)
+
+
+@pytest.fixture
+def asked(monkeypatch: pytest.MonkeyPatch) -> list[ReactRequest]:
+    """What the shell asks of the engine, whose answer is the actor and a copy beside it."""
+    requests: list[ReactRequest] = []
+
+    def run(request: ReactRequest) -> Result:
+        requests.append(request)
+        actor = request.actor
+        other = actor.with_positions(actor.positions + np.float32([0, 0, 1.5]))
+        duet = Duet(actor, other, ("actor", "reactor"))
+        manifest = {"request": request.to_dict()}
+        return Result(duets=(duet,) * request.samples, manifest=manifest)
+
+    monkeypatch.setattr(cli, "_run", run)
+    return requests
+
+
+@pytest.fixture
+def pair(tmp_path: Path) -> Path:
+    """A file of two people, four seconds."""
+    return write(Duet(standing(120), standing(120, x=2.0)), tmp_path / "pair.npz")[0]
+
+
+def react(capsys: pytest.CaptureFixture[str], *words: Any) -> tuple[int, str, str]:
+    code = cli.main(["react", *map(str, words)])
+    said = capsys.readouterr()
+    return code, said.out, said.err
+
+
+def test_one_person_of_a_file_is_trimmed_and_answered(
+    pair: Path, tmp_path: Path, asked: list[ReactRequest], capsys: pytest.CaptureFixture[str]
+) -> None:
+    out = tmp_path / "answer.npz"
+    code, said, _ = react(
+        capsys, "--actor", pair, "--person", "b", "--start", 1, "--end", 3, "--prompt", "They bow.",
+        "--model", "intergen", "--mode", "offline", "--role", "b", "--seed", 5, "--steps", 9, "--guidance", 3,
+        "--damping", 0.5, "--no-cleanup", "--out", out,
+    )  # fmt: skip
+    assert code == 0
+    answer = json.loads(said.splitlines()[-1])
+    assert answer["files"] == [str(out)]
+    told = answer["manifest"]["request"]
+    assert told | {
+        "prompt": "They bow.", "role": "b", "seed": 5, "steps": 9, "guidance": 3, "damping": 0.5,
+        "cleanup": False, "mode": "offline", "model": "intergen",
+    } == told  # fmt: skip
+    duet = read(out)
+    assert duet.roles == ("actor", "reactor")
+    np.testing.assert_array_equal(duet.a.positions, standing(120, x=2.0).positions[30:90])
+
+
+def test_bvh_goes_in_and_comes_out(
+    tmp_path: Path, asked: list[ReactRequest], capsys: pytest.CaptureFixture[str]
+) -> None:
+    actor = write(Duet(standing(60), standing(60)), tmp_path / "one.bvh")[0]
+    code, said, _ = react(capsys, "--actor", actor, "--samples", 2, "--out", tmp_path / "two.bvh")
+    assert code == 0
+    names = [Path(path).name for path in json.loads(said.splitlines()[-1])["files"]]
+    assert names == ["two_1_a.bvh", "two_1_b.bvh", "two_2_a.bvh", "two_2_b.bvh"]
+    assert asked[0].prompt == ""
+    assert asked[0].actor.num_frames == 60
+
+
+@pytest.mark.parametrize(
+    ("words", "says"),
+    [
+        ([], "holds two people: choose person a or b"),
+        (["--person", "c"], "invalid choice"),
+        (["--person", "a", "--end", "0.5"], "0.50 s: give 1 s or more"),
+        (["--person", "a", "--start", "9"], "lies behind the motion"),
+        (["--person", "a", "--mode", "online"], "choose offline"),
+        (["--person", "a", "--role", "x"], "Role 'x'"),
+        (["--person", "a", "--steps", "0"], "DDIM steps"),
+        (["--actor", "none.bvh"], "cannot be read"),
+        (["--actor", "none.mov"], "cannot be read: use"),
+        (["--person", "a", "--out", "answer.xyz"], "cannot be written"),
+    ],
+)
+def test_errors_are_one_line_and_write_nothing(
+    pair: Path, tmp_path: Path, asked: list[ReactRequest], capsys: pytest.CaptureFixture[str],
+    words: list[str], says: str,
+) -> None:  # fmt: skip
+    before = set(tmp_path.iterdir())
+    code, said, error = react(capsys, "--actor", pair, "--out", tmp_path / "answer.npz", *words)
+    assert code == 2
+    assert said == ""
+    assert says in error
+    assert error.count("\n") == 1
+    assert set(tmp_path.iterdir()) == before
+    assert asked == []
