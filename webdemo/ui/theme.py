@@ -21,12 +21,13 @@ _SANS = (
 _MONO = ("ui-monospace", "SFMono-Regular", "Menlo", "Consolas", "DejaVu Sans Mono", "monospace")
 
 HEAD = """<script>
-// Gradio takes Enter in the prompt; this adds Ctrl+Enter and Cmd+Enter.
+// Gradio takes Enter in a prompt; this adds Ctrl+Enter and Cmd+Enter.
 document.addEventListener("keydown", (event) => {
-  const held = event.ctrlKey || event.metaKey;
-  if (event.key !== "Enter" || !held || !event.target.closest?.("#prompt")) return;
+  if (event.key !== "Enter" || !(event.ctrlKey || event.metaKey) || event.target.tagName !== "TEXTAREA") return;
+  const ask = event.target.closest(".pd-ask");
+  if (!ask) return;
   event.preventDefault();
-  document.querySelector("button#generate:enabled")?.click();
+  ask.querySelector("button.pd-run:enabled")?.click();
 });
 </script>"""
 

@@ -1,0 +1,252 @@
+"""What every tab that makes motion has: sliders, a player, a run that can be cancelled, files."""
+
+from __future__ import annotations
+
+import secrets
+import time
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from typing import Any
+
+import gradio as gr
+
+from webdemo.inference.requests import (
+    DAMPING,
+    GUIDANCE,
+    MAX_SEED,
+    SAMPLES,
+    Cancelled,
+    Progress,
+    Result,
+    SamplingRequest,
+)
+
+from .context import PageContext
+from .exports import KINDS, Record, for_download, write_files
+from .panels import readout_panel, status
+from .player import EMPTY_TEXT, MotionPlayer, busy, show
+from .show import result_payload
+from .words import cancelled_line, error_line, progress_line, seconds
+
+STEPS_SHOWN = (5, 100)
+"""What the slider offers; the API takes more."""
+PACE = 0.1
+"""Seconds between two updates of the page while a run goes on."""
+QUIET = {"api_visibility": "private", "show_progress": "hidden"}
+"""Options of events that are the page's own: no endpoint, no spinner over what they change."""
+
+_DAMPING_INFO = (
+    "While t ≤ threshold × T the predicted motion is corrected for foot contact, bone length, smoothness, "
+    "interpenetration, near-contacts and facing; 0 = plain sampler."
+)
+_GUIDANCE_INFO = "How closely the motion follows the words; 1 = unguided."
+_STEPS_INFO = "From noise to motion: fewer are faster, more are finer."
+_SEED_INFO = "Same seed, same motion; empty draws a new one."
+
+Updates = tuple[Any, ...]
+
+
+class JobTab:
+    """A tab that turns its controls into a request, runs it and shows the result.
+
+    A subclass lays out its own controls between these parts and answers :meth:`request` and :meth:`title`.
+
+    Args:
+        page: what the tabs share.
+    """
+
+    label: str
+    prefix = ""
+    """Before the ids of the tab's elements."""
+
+    def __init__(self, page: PageContext) -> None:
+        self.page = page
+
+    def request(self, fields: Mapping[str, Any]) -> SamplingRequest:
+        """The request that the controls' values ask for; raises InputError where they do not fit."""
+        raise NotImplementedError
+
+    def title(self, request: Any) -> str:
+        """What the player shows over the result and its files are called after."""
+        raise NotImplementedError
+
+    # ---- layout ----------------------------------------------------------------------------------
+
+    def _id(self, name: str) -> str:
+        return self.prefix + name
+
+    def _go(self, verb: str) -> None:
+        with gr.Row(elem_classes="pd-go"):
+            self.go = gr.Button(
+                verb, variant="primary", elem_id=self._id("generate"), elem_classes="pd-run", min_width=0
+            )
+            self.stop = gr.Button(
+                "Cancel", elem_id=self._id("cancel"), elem_classes="pd-stop", interactive=False, min_width=0
+            )
+        self.line = gr.HTML(status(), elem_id=self._id("status"), elem_classes="pd-line")
+
+    def _samples(self) -> gr.Slider:
+        return gr.Slider(
+            *SAMPLES, value=SamplingRequest.samples, step=1, label="Samples", elem_id=self._id("samples")
+        )
+
+    def _sampling(self) -> None:
+        """Seed, guidance, steps and damping."""
+        with gr.Row(elem_classes="pd-seed"):
+            self.seed = gr.Number(
+                value=SamplingRequest.seed, precision=0, label="Seed", info=_SEED_INFO,
+                elem_id=self._id("seed"), elem_classes="pd-seed-field", min_width=0,
+            )  # fmt: skip
+            self.dice = gr.Button(
+                "Random", size="sm", elem_id=self._id("dice"), elem_classes="pd-dice", min_width=0
+            )
+        self.guidance = gr.Slider(
+            *GUIDANCE, value=SamplingRequest.guidance, step=0.1, label="Guidance scale", info=_GUIDANCE_INFO,
+            elem_id=self._id("guidance"),
+        )  # fmt: skip
+        self.steps = gr.Slider(
+            *STEPS_SHOWN, value=SamplingRequest.steps, step=1, label="DDIM steps", info=_STEPS_INFO,
+            elem_id=self._id("steps"),
+        )  # fmt: skip
+        self.damping = gr.Slider(
+            *DAMPING, value=SamplingRequest.damping, step=0.05, label="Damping threshold",
+            info=_DAMPING_INFO, elem_id=self._id("damping"),
+        )  # fmt: skip
+
+    def _results(self, empty_text: str = EMPTY_TEXT) -> None:
+        """The player, and under it the files and read-outs of a result."""
+        with gr.Column(elem_classes="pd-results", min_width=0):
+            with gr.Column(elem_classes="pd-panel pd-stage", min_width=0):
+                self.player = MotionPlayer(elem_id=self._id("player"), empty_text=empty_text)
+            with gr.Column(elem_classes="pd-panel pd-under", min_width=0, visible=False) as self.under:
+                with gr.Row(elem_classes="pd-downloads", elem_id=self._id("downloads")):
+                    self.downloads = [
+                        gr.DownloadButton(
+                            kind.label, size="sm", interactive=False, visible=kind.offered(), min_width=0,
+                            elem_id=self._id(f"download-{kind.key}"),
+                        )
+                        for kind in KINDS
+                    ]  # fmt: skip
+                self.readouts = gr.HTML(elem_id=self._id("readouts"))
+
+    # ---- events ----------------------------------------------------------------------------------
+
+    def _wire_run(
+        self,
+        start: Callable[..., Iterator[Updates]],
+        triggers: Sequence[Any],
+        inputs: Sequence[gr.components.Component],
+        record: gr.State | None,
+    ) -> None:
+        """Runs ``start`` with these inputs; ``record`` keeps the result, in a state of its own by default."""
+        self.record = record or gr.State(None, time_to_live=3600)
+        self.outputs = {
+            "player": self.player,
+            "line": self.line,
+            "go": self.go,
+            "stop": self.stop,
+            "under": self.under,
+            "readouts": self.readouts,
+            "record": self.record,
+        }
+        run = gr.on(
+            triggers,
+            start,  # not called "generate": that name is the public endpoint's
+            inputs=list(inputs),
+            outputs=list(self.outputs.values()),
+            concurrency_limit=None,  # runs wait in a line of their own, where they can be cancelled
+            trigger_mode="once",
+            **QUIET,
+        )
+        # Only now would a press be taken: while the event goes on, Gradio drops it.
+        run.then(self.rest, outputs=[self.go, self.stop], queue=False, **QUIET)
+        run.then(
+            self.export,
+            inputs=self.record,
+            outputs=[self.line, *self.downloads],
+            concurrency_limit=2,
+            **QUIET,
+        )
+        self.stop.click(self.cancel, queue=False, **QUIET)
+        self.dice.click(
+            None, outputs=self.seed, js=f"() => Math.floor(Math.random() * {MAX_SEED + 1})", **QUIET
+        )
+
+    def run(self, session: str, fields: Mapping[str, Any]) -> Iterator[Updates]:
+        """The page's updates while a request with these fields runs for a session.
+
+        An empty seed is drawn. Whatever goes wrong ends as one sentence in the status line, with the last
+        result still on show.
+        """
+        last: Progress | None = None
+        shown_at = 0.0
+        yield self._updates(
+            player=busy("Starting …"),
+            line=status("Starting …", tone="busy"),
+            go=gr.update(interactive=False),
+            stop=gr.update(interactive=True),
+        )
+        try:
+            if fields["seed"] is None:
+                fields = {**fields, "seed": secrets.randbelow(MAX_SEED + 1)}
+            wanted = self.request(fields)
+            for event in self.page.runs.run(session, wanted):
+                if isinstance(event, Result):
+                    yield self._updates(**self._shown(event, self.title(wanted)))
+                    return
+                new_stage = last is None or event.stage != last.stage
+                last = event
+                if new_stage or time.monotonic() - shown_at >= PACE:
+                    shown_at = time.monotonic()
+                    line = progress_line(event)
+                    share = event.step / max(event.total, 1) if event.stage == "sample" else None
+                    yield self._updates(player=busy(line, progress=share), line=status(line, tone="busy"))
+        except Cancelled:
+            yield self._stopped(cancelled_line(last), "warning")
+        except Exception as error:
+            yield self._stopped(error_line(error), "error")
+
+    def _shown(self, result: Result, title: str) -> dict[str, Any]:
+        total = result.timings.get("total", sum(result.timings.values()))
+        count = len(result.duets)
+        made = "Done" if count == 1 else f"{count} samples done"
+        return {
+            "player": show(result_payload(result, title=title)),
+            "line": status(f"{made} in {seconds(total)}." if total else f"{made}.", tone="done"),
+            "under": gr.update(visible=True),
+            "readouts": readout_panel(result),
+            "record": Record(result, title),
+        }
+
+    def _stopped(self, line: str, tone: str) -> Updates:
+        return self._updates(player=busy(""), line=status(line, tone=tone))
+
+    @staticmethod
+    def rest() -> Updates:
+        """The buttons once a run is over, however it ended."""
+        return gr.update(interactive=True), gr.update(interactive=False)
+
+    def _updates(self, **changed: Any) -> Updates:
+        """Updates in the order of the outputs; what is not named stays as it is."""
+        return tuple(changed.get(name, gr.skip()) for name in self.outputs)
+
+    def cancel(self, request: gr.Request) -> None:
+        """Stops the session's run within one denoising step."""
+        self.page.runs.cancel(str(request.session_hash))
+
+    def export(self, record: Record | None) -> Updates:
+        """Writes the files of a new result and hands them to the download buttons."""
+        unchanged = (gr.skip(),) * (1 + len(KINDS))
+        if record is None or record.exported:
+            return unchanged
+        record.exported = True
+        try:
+            files = write_files(record.result, self.page.shelf.folder(), prompt=record.prompt)
+            found = for_download(files)
+        except Exception as error:
+            off = gr.update(value=None, interactive=False)
+            return (status(f"The motion is ready, but not its files. {error_line(error)}", tone="error"),
+                    *(off for _ in KINDS))  # fmt: skip
+        return (
+            gr.skip(),
+            *(gr.update(value=found.get(kind.key), interactive=kind.key in found) for kind in KINDS),
+        )
