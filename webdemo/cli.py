@@ -15,7 +15,7 @@ from dataclasses import fields
 from pathlib import Path
 from typing import Any, NoReturn
 
-from webdemo.inference.actor import ROLES, choose_actor
+from webdemo.inference.actor import ROLES, read_actor
 from webdemo.inference.requests import GenerateRequest, Progress, ReactRequest, Result, SamplingRequest
 from webdemo.motion import InputError
 
@@ -107,10 +107,8 @@ def _add_react(commands: Any) -> None:
 
 def react(options: argparse.Namespace) -> dict[str, Any]:
     """Runs a :class:`ReactRequest` on one person of a motion file and writes the duets."""
-    from webdemo.formats import read
-
     _check_out(options.out)
-    actor = choose_actor(read(options.actor), person=options.person, start=options.start, end=options.end)
+    actor = read_actor(options.actor, person=options.person, start=options.start, end=options.end)
     request = ReactRequest(
         actor=actor, prompt=options.prompt, role=options.role, mode=options.mode, **_sampling(options)
     )

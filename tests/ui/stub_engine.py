@@ -8,9 +8,9 @@ from typing import Any
 
 import numpy as np
 
-from webdemo.inference.requests import Cancelled, GenerateRequest, Progress, Result
+from webdemo.inference.requests import Cancelled, GenerateRequest, Progress, ReactRequest, Result
 from webdemo.metrics import compare
-from webdemo.motion import SMPL22, Duet, InputError
+from webdemo.motion import SMPL22, Clip, Duet, InputError
 from webdemo.motion.kinematics import forward_kinematics
 from webdemo.motion.transforms import heading_matrix
 
@@ -44,6 +44,13 @@ def walking(seconds: float, seed: int = 0) -> Duet:
     return Duet.from_positions(positions, fps=FPS)
 
 
+def beside(person: Clip, role: str, seed: int) -> Duet:
+    """A given person and a copy who stands beside them, as far off as the seed says."""
+    other = person.with_positions(person.positions + np.float32([1.0 + 0.1 * seed, 0, 0]))
+    pair = (person, other) if role == "a" else (other, person)
+    return Duet(*pair, ("actor", "reactor"))
+
+
 def _about_x(angle: Any) -> np.ndarray:
     cos, sin = np.cos(np.asarray(angle)), np.sin(np.asarray(angle))
     one, zero = np.ones_like(cos), np.zeros_like(cos)
@@ -67,7 +74,7 @@ class StubEngine:
         self.load = load
         self.ready = load == 0.0
         self.steps_done = 0
-        self.requests: list[GenerateRequest] = []
+        self.requests: list[GenerateRequest | ReactRequest] = []
 
     def warm_up(self) -> None:
         time.sleep(self.load)
@@ -81,7 +88,7 @@ class StubEngine:
             "weights": "none",
         }
 
-    def run(self, request: GenerateRequest, cancel: Any = None) -> Iterator[Progress | Result]:
+    def run(self, request: GenerateRequest | ReactRequest, cancel: Any = None) -> Iterator[Progress | Result]:
         started = time.monotonic()
         self.requests.append(request)
         if "impossible" in request.prompt:
@@ -97,7 +104,11 @@ class StubEngine:
             yield Progress(
                 stage="sample", step=step + 1, total=request.steps, elapsed=time.monotonic() - started
             )
-        after = tuple(walking(request.seconds, request.seed + i) for i in range(request.samples))
+        seeds = range(request.seed, request.seed + request.samples)
+        if isinstance(request, ReactRequest):
+            after = tuple(beside(request.actor, request.role, seed) for seed in seeds)
+        else:
+            after = tuple(walking(request.seconds, seed) for seed in seeds)
         noise = np.random.default_rng(request.seed).normal(0, 0.004, after[0].positions.shape)
         before = [duet.with_positions(duet.positions + noise) for duet in after]
         notes = ()

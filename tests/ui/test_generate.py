@@ -285,6 +285,6 @@ def test_progress_events_of_other_stages_have_words(tab: GenerateTab) -> None:
         assert progress_line(Progress(stage=stage)).endswith("…")
 
 
-def test_build_page_offers_one_public_endpoint(tmp_path: Path) -> None:
+def test_build_page_offers_an_endpoint_a_job(tmp_path: Path) -> None:
     demo = build_page(StubEngine(), files=tmp_path)
-    assert list(demo.get_api_info()["named_endpoints"]) == ["/generate"]
+    assert list(demo.get_api_info()["named_endpoints"]) == ["/generate", "/react"]

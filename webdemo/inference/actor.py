@@ -6,12 +6,14 @@ No torch here: the page and the shell choose and trim before any network loads.
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from pathlib import Path
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
+from webdemo.formats import read
 from webdemo.motion import SMPL22, Clip, Duet, InputError
 from webdemo.motion.transforms import heading, heading_matrix, resample
 
@@ -61,6 +63,14 @@ def choose_actor(
         raise InputError(f"Start and end must be seconds with 0 ≤ start < end, not {start:g} and {stop:g}.")
     first, last = round(start * clip.fps), round(min(stop, clip.seconds) * clip.fps)
     return at_30_fps(clip.cut(first, max(last, first + 1)))
+
+
+def read_actor(
+    path: str | Path, *, person: str | None = None, start: float = 0.0, end: float | None = None
+) -> Clip:
+    """:func:`choose_actor` from a motion file, after which the clip is called."""
+    clip = choose_actor(read(Path(path)), person=person, start=start, end=end)
+    return replace(clip, name=Path(path).name)
 
 
 def at_30_fps(clip: Clip) -> Clip:

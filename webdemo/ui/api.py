@@ -3,19 +3,34 @@
 from __future__ import annotations
 
 import uuid
+from collections.abc import Callable
+from pathlib import Path
 from typing import Any
 
 import gradio as gr
 
-from webdemo.inference.requests import Cancelled, GenerateRequest, Result
+from webdemo.inference.actor import read_actor
+from webdemo.inference.requests import (
+    Cancelled,
+    GenerateRequest,
+    ReactRequest,
+    Result,
+    SamplingRequest,
+)
+from webdemo.motion import InputError
 
 from .context import PageContext
 from .exports import write_files
 from .words import error_line
 
+Answer = tuple[dict[str, Any], list[str]]
 
-class GenerateEndpoint:
-    """``/generate``: text → motion files.
+
+class Endpoint:
+    """A job for programs; a subclass publishes its inputs.
+
+    The components of an endpoint are never shown. They are there because they, unlike ``gr.api``, hand files
+    over to a client on another machine; their limits are the request's, so that every error is its sentence.
 
     Args:
         page: what tabs and endpoints share.
@@ -24,61 +39,39 @@ class GenerateEndpoint:
     def __init__(self, page: PageContext) -> None:
         self.page = page
 
-    def publish(self) -> None:
-        """Adds the endpoint to the page that is being built.
+    @staticmethod
+    def _sampling() -> list[gr.components.Component]:
+        """Inputs for the fields of a :class:`SamplingRequest`, in the order of the jobs' arguments."""
+        return [
+            gr.Number(SamplingRequest.seed, label="0 to 4294967295; the same seed gives the same motion"),
+            gr.Number(SamplingRequest.samples, label="how many motions to draw, 1 to 8"),
+            gr.Number(
+                SamplingRequest.guidance, label="scale of classifier-free guidance, 0 to 10; 1 is none"
+            ),
+            gr.Number(SamplingRequest.steps, label="denoising steps, 1 to 1000"),
+            gr.Number(SamplingRequest.damping, label="damping threshold as a share of T, 0 to 1; 0 is none"),
+            gr.Textbox(SamplingRequest.sampler, label="ddim or dpm++"),
+        ]
 
-        Its components are never shown. They are here because they, unlike ``gr.api``, hand files over to a
-        client on another machine; their limits are the request's, so that every error is its sentence.
-        """
-        start = GenerateRequest(prompt="-")
-        with gr.Row(visible=False):
-            inputs = [
-                gr.Textbox(label="what the two people do, in English, up to 500 characters"),
-                gr.Number(start.seconds, label="length of the motion in seconds, 1 to 10"),
-                gr.Number(start.seed, label="0 to 4294967295; the same seed gives the same motion"),
-                gr.Number(start.samples, label="how many motions to draw, 1 to 8"),
-                gr.Number(start.guidance, label="scale of classifier-free guidance, 0 to 10; 1 is none"),
-                gr.Number(start.steps, label="denoising steps, 1 to 1000"),
-                gr.Number(start.damping, label="damping threshold as a share of T, 0 to 1; 0 is none"),
-                gr.Textbox(start.sampler, label="ddim or dpm++"),
-            ]  # fmt: skip
-            outputs = [
-                gr.JSON(label="result: manifest, readouts, timings, notes, names of files"),
-                gr.File(label="the files", file_count="multiple"),
-            ]
-            trigger = gr.Button()
-        trigger.click(
-            self.generate,
+    @staticmethod
+    def _publish(job: Callable[..., Answer], name: str, inputs: list[gr.components.Component]) -> None:
+        outputs = [
+            gr.JSON(label="result: manifest, readouts, timings, notes, names of files"),
+            gr.File(label="the files", file_count="multiple"),
+        ]
+        gr.Button().click(
+            job,
             inputs=inputs,
             outputs=outputs,
-            api_name="generate",
+            api_name=name,
             concurrency_limit=None,  # runs wait in the line that they share with the page's
         )
 
-    def generate(
-        self,
-        prompt: str,
-        seconds: float,
-        seed: float,
-        samples: float,
-        guidance: float,
-        steps: float,
-        damping: float,
-        sampler: str,
-    ) -> tuple[dict[str, Any], list[str]]:
-        """Two people from one sentence.
-
-        Returns the manifest, read-outs, timings, notes and file names; and the files: for every sample a
-        two-person .npz, two .bvh (and a .glb where the server writes them), a contact sheet .png, and one
-        manifest .json. An error is one sentence that says what to change.
-        """
+    def _answer(self, make: Callable[[], SamplingRequest], title: str) -> Answer:
+        """Runs a request and writes its files, called after ``title``; every error is one sentence."""
         try:
-            request = GenerateRequest(
-                prompt=prompt, seconds=seconds, seed=seed, samples=samples, guidance=guidance, steps=steps,
-                damping=damping, sampler=sampler,
-            )  # fmt: skip
-            result = self._run(request)
-            files = write_files(result, self.page.shelf.folder(), prompt=prompt)
+            result = self._run(make())
+            files = write_files(result, self.page.shelf.folder(), prompt=title)
         except Cancelled:
             raise gr.Error("The run was cancelled: send the request again.", print_exception=False) from None
         except Exception as error:
@@ -92,8 +85,98 @@ class GenerateEndpoint:
         }
         return answer, [str(path) for paths in files.values() for path in paths]
 
-    def _run(self, request: GenerateRequest) -> Result:
+    def _run(self, request: SamplingRequest) -> Result:
         for event in self.page.runs.run(f"api-{uuid.uuid4().hex}", request):
             if isinstance(event, Result):
                 return event
         raise Cancelled("The run ended without a result.")
+
+
+class GenerateEndpoint(Endpoint):
+    """``/generate``: text → motion files."""
+
+    def publish(self) -> None:
+        """Adds the endpoint to the page that is being built."""
+        with gr.Row(visible=False):
+            inputs = [
+                gr.Textbox(label="what the two people do, in English, up to 500 characters"),
+                gr.Number(GenerateRequest.seconds, label="length of the motion in seconds, 1 to 10"),
+                *self._sampling(),
+            ]
+            self._publish(self.generate, "generate", inputs)
+
+    def generate(
+        self,
+        prompt: str,
+        seconds: float,
+        seed: float,
+        samples: float,
+        guidance: float,
+        steps: float,
+        damping: float,
+        sampler: str,
+    ) -> Answer:
+        """Two people from one sentence.
+
+        Returns the manifest, read-outs, timings, notes and file names; and the files: for every sample a
+        two-person .npz, two .bvh (and a .glb where the server writes them), a contact sheet .png, and one
+        manifest .json. An error is one sentence that says what to change.
+        """
+        return self._answer(
+            lambda: GenerateRequest(
+                prompt=prompt, seconds=seconds, seed=seed, samples=samples, guidance=guidance, steps=steps,
+                damping=damping, sampler=sampler,
+            ),
+            prompt,
+        )  # fmt: skip
+
+
+class ReactEndpoint(Endpoint):
+    """``/react``: one person → motion files of two."""
+
+    def publish(self) -> None:
+        """Adds the endpoint to the page that is being built."""
+        with gr.Row(visible=False):
+            inputs = [
+                gr.File(label="the given person: .bvh, .npz or .npy, up to 50 MB"),
+                gr.Textbox("", label="what the two people do, in English; may be empty"),
+                gr.Textbox("", label="a or b, where the file holds two people"),
+                gr.Number(0, label="start of the part that is used, in seconds"),
+                gr.Number(0, label="its end, in seconds; 0 is the end of the file"),
+                gr.Textbox(ReactRequest.role, label="a: the given person acts first; b: they react"),
+                *self._sampling(),
+            ]
+            self._publish(self.react, "react", inputs)
+
+    def react(
+        self,
+        actor: str,
+        prompt: str,
+        person: str,
+        start: float,
+        end: float,
+        role: str,
+        seed: float,
+        samples: float,
+        guidance: float,
+        steps: float,
+        damping: float,
+        sampler: str,
+    ) -> Answer:
+        """A second person for a given one, who stays exactly as they are (at 30 frames a second).
+
+        Returns the manifest, read-outs, timings, notes and file names; and the files: for every sample a
+        two-person .npz, two .bvh (and a .glb where the server writes them), a contact sheet .png, and one
+        manifest .json. An error is one sentence that says what to change.
+        """
+
+        def request() -> ReactRequest:
+            if not actor:
+                raise InputError("There is no actor: send a motion file, such as a .bvh.")
+            clip = read_actor(actor, person=person or None, start=start, end=end or None)
+            return ReactRequest(
+                actor=clip, prompt=prompt, role=role, seed=seed, samples=samples, guidance=guidance,
+                steps=steps, damping=damping, sampler=sampler,
+            )  # fmt: skip
+
+        return self._answer(request, prompt.strip() or f"Reaction to {Path(actor or '').stem}")

@@ -1,4 +1,11 @@
-"""Prompts that the page offers; each is one that the default model does well."""
+"""Prompts and actors that the page offers."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+CLIPS = Path(__file__).resolve().parents[2] / "static" / "examples"
+"""Folder of the example actors: motion files such as ``reach-out.npz``, one person or two each."""
 
 EXAMPLES: tuple[tuple[str, str], ...] = (
     ("Handshake", "Two people walk up to each other and shake hands."),
@@ -12,4 +19,9 @@ EXAMPLES: tuple[tuple[str, str], ...] = (
     ("Hand over", "One person hands an object to the other."),
     ("Dance", "Two people dance facing each other."),
 )
-"""(what the chip says, the prompt it puts into the box)"""
+"""(what the chip says, the prompt it puts into the box); each is one that the default model does well"""
+
+
+def example_clips(folder: Path = CLIPS) -> list[tuple[str, Path]]:
+    """(what the chip says, file) of every example actor, by name; empty where none are shipped."""
+    return [(path.stem.replace("-", " ").capitalize(), path) for path in sorted(folder.glob("*.npz"))]

@@ -9,18 +9,21 @@ from typing import Any
 
 import gradio as gr
 
-from .api import GenerateEndpoint
+from webdemo.formats.files import MAX_BYTES
+
+from .api import GenerateEndpoint, ReactEndpoint
 from .context import PageContext
 from .exports import Shelf
 from .generate_tab import GenerateTab
 from .panels import model_state
+from .react_tab import ReactTab
 from .runs import EngineLike, Loader, Runs
 from .theme import HEAD, style_sheet, theme
 
 TITLE = "Pas de Deux"
-TABS = (GenerateTab,)
-"""A class a job, with a ``label`` and ``build(demo)``; with more than one the page shows tabs."""
-ENDPOINTS = (GenerateEndpoint,)
+TABS = (GenerateTab, ReactTab)
+"""A class a job, with a ``label`` and ``build(demo, record)``."""
+ENDPOINTS = (GenerateEndpoint, ReactEndpoint)
 
 _HEADER = (
     '<div class="pd-brand"><h1>Pas de Deux</h1>'
@@ -53,14 +56,11 @@ def build_page(engine: EngineLike, *, loader: Loader | None = None, files: Path 
         with gr.Row(elem_classes="pd-header", equal_height=True):
             gr.HTML(_HEADER)
             mark = gr.HTML(model_state("loading"), elem_id="model-state")
-        tabs = [tab(page) for tab in TABS]
-        if len(tabs) == 1:
-            tabs[0].build(demo)
-        else:
-            with gr.Tabs():
-                for tab in tabs:
-                    with gr.Tab(tab.label):
-                        tab.build(demo)
+        record = gr.State(None, time_to_live=3600)
+        with gr.Tabs(elem_classes="pd-tabs"):
+            for tab in TABS:
+                with gr.Tab(tab.label, id=tab.label.lower()):
+                    tab(page).build(demo, record)
         for endpoint in ENDPOINTS:
             endpoint(page).publish()
         demo.load(
@@ -99,4 +99,5 @@ def launch_options() -> dict[str, Any]:
         "run_history": False,
         "ssr_mode": False,
         "show_error": True,
+        "max_file_size": MAX_BYTES,
     }

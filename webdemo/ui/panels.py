@@ -61,6 +61,7 @@ def _sides(readout: Mapping[str, Any]) -> tuple[Summary | None, Summary]:
 def _asked(result: Result) -> str:
     request = result.manifest.get("request", result.manifest)
     shown = [
+        ("Actor", request.get("actor", {}).get("name")),
         ("Seed", request.get("seed")),
         ("Length", f"{result.duets[0].seconds:.1f} s" if result.duets else None),
         ("Guidance", _plain(request.get("guidance"))),

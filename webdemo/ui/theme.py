@@ -23,8 +23,8 @@ _MONO = ("ui-monospace", "SFMono-Regular", "Menlo", "Consolas", "DejaVu Sans Mon
 HEAD = """<script>
 // Gradio takes Enter in a prompt; this adds Ctrl+Enter and Cmd+Enter.
 document.addEventListener("keydown", (event) => {
-  if (event.key !== "Enter" || !(event.ctrlKey || event.metaKey) || event.target.tagName !== "TEXTAREA") return;
-  const ask = event.target.closest(".pd-ask");
+  if (event.key !== "Enter" || !(event.ctrlKey || event.metaKey)) return;
+  const ask = event.target.closest?.(".pd-ask:has(textarea:focus)");
   if (!ask) return;
   event.preventDefault();
   ask.querySelector("button.pd-run:enabled")?.click();

@@ -1,0 +1,267 @@
+"""What the handlers of the React tab do, without a browser, and its endpoint."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+os.environ.setdefault("GRADIO_ANALYTICS_ENABLED", "False")
+
+import gradio as gr
+
+from webdemo.formats import read, write
+from webdemo.ui.context import PageContext
+from webdemo.ui.examples import example_clips
+from webdemo.ui.exports import Shelf
+from webdemo.ui.page import build_page, launch_options
+from webdemo.ui.react_tab import ReactTab
+from webdemo.ui.runs import Loader, Runs
+
+from .stub_engine import StubEngine, walking
+
+LOADED = ("source", "line", "player", "trim", "person", "start", "end")
+FIELDS = {"person": "a", "start": 0.0, "end": 10.0, "role": "a", "prompt": "they walk", "seed": 3,
+          "samples": 1, "guidance": 2.5, "steps": 5, "damping": 0.7}  # fmt: skip
+
+
+@pytest.fixture
+def tab(tmp_path: Path) -> ReactTab:
+    engine = StubEngine()
+    page = PageContext(
+        engine=engine, runs=Runs(engine), loader=Loader(engine), shelf=Shelf(tmp_path / "files")
+    )
+    made = ReactTab(page)
+    with gr.Blocks() as demo:
+        made.build(demo)
+    return made
+
+
+@pytest.fixture
+def pair(tmp_path: Path) -> Path:
+    """A file of two people, twelve seconds."""
+    return write(walking(12.0), tmp_path / "walkers.npz")[0]
+
+
+@pytest.fixture
+def bvh(tmp_path: Path) -> Path:
+    """A file of one person, four seconds."""
+    return write(walking(4.0), tmp_path / "walker.bvh")[0]
+
+
+def changes(names: Any, updates: tuple[Any, ...]) -> dict[str, Any]:
+    return {name: update for name, update in zip(names, updates, strict=True) if update != gr.skip()}
+
+
+def upload(tab: ReactTab, path: Path) -> list[dict[str, Any]]:
+    return [changes(LOADED, updates) for updates in tab.upload(str(path))]
+
+
+def run(tab: ReactTab, source: Any, **changed: Any) -> list[dict[str, Any]]:
+    fields = {"source": source, **FIELDS, **changed}
+    return [changes(tab.outputs, updates) for updates in tab.run("me", fields)]
+
+
+def test_an_upload_is_shown_at_once(tab: ReactTab, bvh: Path) -> None:
+    first, last = upload(tab, bvh)
+    assert "Reading" in first["line"]
+    assert last["trim"]["visible"]
+    assert not last["person"]["visible"], "there is one person only"
+    assert last["end"]["maximum"] == last["end"]["value"] == 4.0
+    (sample,) = last["player"]["value"]["samples"]
+    assert sample["roles"] == ["actor"]
+    assert sample["frames"] == 120
+    assert last["player"]["value"]["title"] == "walker_a.bvh"
+
+
+def test_two_people_in_a_file_are_a_choice_and_a_long_file_is_cut(tab: ReactTab, pair: Path) -> None:
+    last = upload(tab, pair)[-1]
+    assert last["person"] == gr.update(visible=True, value="a")
+    assert last["end"] == gr.update(maximum=12.0, value=10.0)
+    assert last["player"]["value"]["samples"][0]["frames"] == 300
+    source = last["source"]
+    line, player = tab.preview(source, "b", 2.0, 5.0)
+    assert "2.0 to 5.0 s of 12.0 s" in line
+    assert player["value"]["title"] == "walkers.npz, person B"
+    assert player["value"]["samples"][0]["frames"] == 90
+    assert "1 s or more" in tab.preview(source, "a", 2.0, 2.5)[0]
+    assert "10 s or less" in tab.preview(source, "a", 0.0, 12.0)[0]
+    assert 'role="alert"' in tab.preview(source, "a", 5.0, 2.0)[0]
+    assert all(update == gr.skip() for update in tab.preview(None, "a", 0, 1))
+
+
+@pytest.mark.parametrize("role", ["a", "b"])
+def test_a_run_keeps_the_trimmed_actor_and_ends_with_both_people(
+    tab: ReactTab, pair: Path, role: str
+) -> None:
+    source = upload(tab, pair)[-1]["source"]
+    steps = run(tab, source, person="b", start=1.0, end=3.0, role=role)
+    assert any("step" in step["line"] for step in steps[1:-1])
+    last = steps[-1]
+    assert last["player"]["value"]["title"] == "they walk"
+    assert len(last["player"]["value"]["samples"][0]["roles"]) == 2
+    assert "walkers.npz" in last["readouts"]
+    duet = last["record"].result.duets[0]
+    given = walking(12.0).b.positions[30:90]
+    assert duet.people[0 if role == "a" else 1].positions.tobytes() == given.tobytes()
+
+
+def test_words_may_be_left_out_and_name_nothing_then(tab: ReactTab, bvh: Path) -> None:
+    record = run(tab, upload(tab, bvh)[-1]["source"], prompt="  ")[-1]["record"]
+    assert record.prompt == "Reaction to walker_a.bvh"
+    _, *buttons = tab.export(record)
+    assert any(button["interactive"] for button in buttons)
+
+
+def test_an_empty_seed_is_drawn(tab: ReactTab, bvh: Path) -> None:
+    source = upload(tab, bvh)[-1]["source"]
+    seeds = {run(tab, source, seed=None)[-1]["record"].result.manifest["request"]["seed"] for _ in range(2)}
+    assert len(seeds) == 2
+
+
+@pytest.mark.parametrize("person", ["a", "b"])
+def test_a_person_of_the_last_result_is_taken(tab: ReactTab, bvh: Path, person: str) -> None:
+    record = run(tab, upload(tab, bvh)[-1]["source"])[-1]["record"]
+    last = [changes(LOADED, updates) for updates in tab.take_result(person, record)][-1]
+    assert last["person"] == gr.update(visible=True, value=person)
+    again = run(tab, last["source"], person=person)[-1]["record"].result.duets[0]
+    given = record.result.duets[0].people["ab".index(person)]
+    assert again.a.positions.tobytes() == given.positions.tobytes()
+
+
+def test_without_a_result_there_is_none_to_take(tab: ReactTab) -> None:
+    last = [changes(LOADED, updates) for updates in tab.take_result("a", None)][-1]
+    assert "There is no result yet" in last["line"]
+    assert set(last) == {"line", "player"}
+
+
+def test_a_cancelled_upload_changes_nothing(tab: ReactTab) -> None:
+    assert list(tab.upload(None)) == []
+
+
+@pytest.mark.parametrize(
+    ("name", "content", "sentence"),
+    [
+        ("broken.bvh", b"HIERARCHY\nROOT hips\n{", "broken.bvh"),
+        ("empty.npz", b"", "empty.npz is empty"),
+        ("words.npz", b"PK\x03\x04 nothing", "not a whole .npz"),
+        ("movie.mov", b"123", "cannot be read: use .npz, .bvh or .npy"),
+    ],
+)
+def test_a_bad_file_is_one_sentence_and_leaves_the_last_actor(
+    tab: ReactTab, tmp_path: Path, name: str, content: bytes, sentence: str
+) -> None:
+    path = tmp_path / name
+    path.write_bytes(content)
+    last = upload(tab, path)[-1]
+    assert sentence in last["line"]
+    assert 'role="alert"' in last["line"]
+    assert last["player"]["busy"] == ""
+    assert set(last) == {"line", "player"}
+
+
+@pytest.mark.parametrize(
+    ("changed", "sentence"),
+    [
+        ({"source": None}, "There is no actor yet"),
+        ({"start": 3.9}, "give 1 s or more"),
+        ({"start": 3.0, "end": 1.0}, "start &lt; end"),
+        ({"prompt": "x" * 501}, "501 characters"),
+        ({"steps": 0}, "DDIM steps"),
+        ({"role": "c"}, "Role"),
+        ({"prompt": "impossible"}, "The stub cannot do this"),
+        ({"prompt": "crash"}, "Something went wrong inside the program (RuntimeError)"),
+    ],
+)
+def test_errors_are_one_sentence_and_the_next_run_works(
+    tab: ReactTab, bvh: Path, changed: dict[str, Any], sentence: str
+) -> None:
+    source = upload(tab, bvh)[-1]["source"]
+    last = run(tab, **{"source": source, **changed})[-1]
+    assert sentence in last["line"]
+    assert 'role="alert"' in last["line"]
+    assert "record" not in last
+    assert "record" in run(tab, source)[-1]
+
+
+def test_cancel_ends_within_one_step(tab: ReactTab, bvh: Path) -> None:
+    source = upload(tab, bvh)[-1]["source"]
+    tab.page.engine.pause = 0.1
+    updates = tab.run("me", {"source": source, **FIELDS, "steps": 50})
+    for _ in range(5):
+        next(updates)
+    assert tab.page.runs.cancel("me")
+    last = [changes(tab.outputs, update) for update in updates][-1]
+    assert "Cancelled at step" in last["line"]
+    assert tab.page.engine.steps_done < 10
+
+
+def test_examples_are_the_files_of_a_folder(tab: ReactTab, tmp_path: Path) -> None:
+    assert example_clips(tmp_path / "none") == []
+    (path,) = write(walking(3.0), tmp_path / "reach-out.npz")
+    examples = example_clips(tmp_path)
+    assert examples == [("Reach out", path)]
+    page = ReactTab(tab.page, examples)
+    with gr.Blocks() as demo:
+        page.build(demo)
+    assert [chip.value for chip in page.chips] == ["Reach out"]
+    click = next(fn for fn in demo.fns.values() if (page.chips[0]._id, "click") in fn.targets)
+    last = changes(LOADED, list(click.fn())[-1])
+    assert last["source"].name == "Reach out"
+
+
+# ---- the endpoint --------------------------------------------------------------------------------
+
+
+@pytest.fixture(scope="module")
+def client(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Any]:
+    from gradio_client import Client
+
+    page = build_page(StubEngine(), files=tmp_path_factory.mktemp("files"))
+    _, url, _ = page.launch(prevent_thread_lock=True, quiet=True, server_name="127.0.0.1", **launch_options())
+    yield Client(url, verbose=False, download_files=str(tmp_path_factory.mktemp("client")))
+    page.close()
+
+
+@pytest.mark.slow
+def test_the_endpoint_takes_a_file_and_gives_files(client: Any, pair: Path) -> None:
+    from gradio_client import handle_file
+
+    answer, files = client.predict(
+        actor=handle_file(pair), person="b", start=1, end=3, steps=2, api_name="/react"
+    )
+    assert answer["manifest"]["request"]["actor"]["name"] == "walkers.npz"
+    motion = next(Path(path) for path in files if path.endswith(".npz"))
+    assert motion.name == "reaction-to-walkers-seed0.npz"
+    np.testing.assert_array_equal(read(motion).a.positions, walking(12.0).b.positions[30:90])
+
+
+@pytest.mark.slow
+def test_the_endpoints_errors_are_sentences(client: Any, pair: Path, bvh: Path) -> None:
+    from gradio_client import handle_file
+    from gradio_client.exceptions import AppError
+
+    for fields, sentence in (
+        ({"actor": handle_file(pair)}, "The file holds two people: choose person a or b."),
+        ({"actor": handle_file(pair), "person": "a"},
+         "The actor's motion lasts 12.0 s: trim it to 10 s or less by its start and end."),
+        ({"actor": handle_file(bvh), "role": "z"}, "Role 'z' is not known: choose one of a, b."),
+    ):  # fmt: skip
+        with pytest.raises(AppError) as caught:
+            client.predict(api_name="/react", **fields)
+        assert str(caught.value) == sentence
+
+
+@pytest.mark.slow
+def test_only_the_actor_is_needed(client: Any, bvh: Path) -> None:
+    from gradio_client import handle_file
+
+    answer, _ = client.predict(handle_file(bvh), api_name="/react")
+    assert answer["manifest"]["request"]["prompt"] == ""
+    endpoint = client.view_api(return_format="dict", print_info=False)["named_endpoints"]["/react"]
+    needed = [p["parameter_name"] for p in endpoint["parameters"] if not p["parameter_has_default"]]
+    assert needed == ["actor"]

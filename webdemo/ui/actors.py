@@ -1,0 +1,79 @@
+"""The given person of a reaction: read from a file or taken from a result, trimmed, shown."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field, replace
+from pathlib import Path
+from typing import Any
+
+from webdemo import formats
+from webdemo.inference.actor import ROLES, at_30_fps, choose_actor
+from webdemo.inference.requests import SECONDS, Result
+from webdemo.motion import Clip, Duet, InputError
+from webdemo.view.payload import Payload, player_payload
+
+
+@dataclass(frozen=True)
+class Source:
+    """What a session chose an actor from.
+
+    Attributes:
+        name: of the file or the result.
+        people: one clip or two, at 30 fps; what is not needed of a file is not kept.
+        chosen: "a" or "b": which one is offered first.
+    """
+
+    name: str
+    people: tuple[Clip, ...] = field(repr=False)
+    chosen: str = "a"
+
+    @property
+    def seconds(self) -> float:
+        return self.people[0].seconds
+
+    @property
+    def end(self) -> float:
+        """Where the trim ends at first: the whole motion, or as much of it as a network takes."""
+        return min(self.seconds, SECONDS[1])
+
+    def actor(self, person: str, start: float, end: float) -> Clip:
+        """The trimmed actor; raises InputError where the times do not lie in the motion."""
+        clip = self.people[ROLES.index(person) if len(self.people) > 1 else 0]
+        return replace(choose_actor(clip, start=start, end=end), name=self.name)
+
+    def preview(self, person: str, start: float, end: float) -> Payload:
+        """The trimmed actor for the player."""
+        actor = self.actor(person, start, end)
+        return player_payload(replace(actor, name="actor"), title=self.describe(person))
+
+    def describe(self, person: str) -> str:
+        """The name, and which person of two."""
+        return f"{self.name}, person {person.upper()}" if len(self.people) > 1 else self.name
+
+
+def read_source(path: str | Path, name: str | None = None) -> Source:
+    """A motion file as a source; raises InputError where it cannot be read."""
+    path = Path(path)
+    motion = formats.read(path)
+    people = motion.people if isinstance(motion, Duet) else (motion,)
+    return Source(name or path.name, tuple(at_30_fps(person) for person in people))
+
+
+def result_source(result: Result, title: str, person: str) -> Source:
+    """A person of a result's first sample, as they were made or given."""
+    return Source(title, result.duets[0].people, person)
+
+
+def chosen_actor(fields: Mapping[str, Any]) -> dict[str, Any]:
+    """A request's fields from those of the page: ``source``, ``person``, ``start``, ``end`` become ``actor``.
+
+    Raises:
+        InputError: where no source is chosen or the times do not fit.
+    """
+    source: Source | None = fields["source"]
+    if source is None:
+        raise InputError("There is no actor yet: drop a motion file, or take an example or a result.")
+    own = ("source", "person", "start", "end")
+    actor = source.actor(fields["person"], fields["start"], fields["end"])
+    return {"actor": actor, **{name: value for name, value in fields.items() if name not in own}}

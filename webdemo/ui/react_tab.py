@@ -1,0 +1,218 @@
+"""Give it one person, get the other: an uploaded actor, a trim, and a second person who reacts."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Mapping
+from functools import partial
+from pathlib import Path
+from typing import Any
+
+import gradio as gr
+
+from webdemo.inference.requests import SECONDS, ReactRequest
+from webdemo.motion import InputError
+
+from .actors import Source, chosen_actor, read_source, result_source
+from .context import PageContext
+from .examples import example_clips
+from .exports import Record
+from .job_tab import QUIET, JobTab, Updates
+from .panels import status
+from .player import busy, show
+from .words import error_line
+
+EMPTY_TEXT = "Drop a motion file, or take an example"
+FILE_TYPES = [".bvh", ".npz", ".npy"]
+_SHORTEST = 0.1
+"""Seconds: the least that the trim's sliders differ in."""
+
+
+class ReactTab(JobTab):
+    """One person → two people.
+
+    Args:
+        page: what the tabs share.
+        examples: (name, file) of the example actors; those that are shipped by default.
+    """
+
+    label = "React"
+    prefix = "react-"
+
+    def __init__(self, page: PageContext, examples: list[tuple[str, Path]] | None = None) -> None:
+        super().__init__(page)
+        self.examples = example_clips() if examples is None else examples
+
+    def request(self, fields: Mapping[str, Any]) -> ReactRequest:
+        return ReactRequest(**chosen_actor(fields))
+
+    def title(self, request: ReactRequest) -> str:
+        return request.prompt.strip() or f"Reaction to {request.actor.name}"
+
+    # ---- layout ----------------------------------------------------------------------------------
+
+    def build(self, demo: gr.Blocks, record: gr.State | None = None) -> None:
+        """Lays out the tab inside ``demo`` and wires its events.
+
+        Args:
+            demo: the page.
+            record: keeps the session's last result, of this tab or another.
+        """
+        with gr.Row(elem_classes="pd-lab", equal_height=False):
+            with gr.Column(elem_classes="pd-controls", min_width=0):
+                self._ask()
+                with gr.Column(elem_classes="pd-panel pd-settings", min_width=0):
+                    self.samples = self._samples()
+                    self._sampling()
+            self._results(EMPTY_TEXT)
+        self.source = gr.State(None, time_to_live=3600)
+        inputs = (
+            self.source, self.person, self.begin, self.end, self.role, self.prompt, self.seed, self.samples,
+            self.guidance, self.steps, self.damping,
+        )  # fmt: skip
+        self._wire_run(self.start, [self.go.click, self.prompt.submit], inputs, record)
+        self._wire_actor()
+
+    def _ask(self) -> None:
+        with gr.Column(elem_classes="pd-panel pd-ask", min_width=0):
+            self.file = gr.File(
+                label="The first person: .bvh, .npz or .npy, up to 50 MB", file_types=FILE_TYPES,
+                height=112, elem_id="react-file", elem_classes="pd-file",
+            )  # fmt: skip
+            with gr.Row(elem_classes="pd-chips"):
+                self.chips = [
+                    gr.Button(name, size="sm", elem_classes="pd-chip", min_width=0)
+                    for name, _ in self.examples
+                ]
+                self.take = {
+                    person: gr.Button(
+                        f"{person.upper()} of the last result", size="sm", elem_classes="pd-chip",
+                        elem_id=f"react-take-{person}", min_width=0,
+                    )
+                    for person in ("a", "b")
+                }  # fmt: skip
+            with gr.Column(visible=False, min_width=0, elem_classes="pd-settings") as self.trim:
+                self.person = gr.Radio(
+                    [("Person A", "a"), ("Person B", "b")], value="a", label="Which of the two",
+                    elem_id="react-person", visible=False,
+                )  # fmt: skip
+                with gr.Row(elem_classes="pd-pair"):
+                    self.begin = gr.Slider(0, SECONDS[1], value=0, step=0.1, label="Start",
+                                           elem_id="react-start")  # fmt: skip
+                    self.end = gr.Slider(0, SECONDS[1], value=SECONDS[1], step=0.1, label="End",
+                                         elem_id="react-end")  # fmt: skip
+                self.role = gr.Radio(
+                    [("acts first", "a"), ("reacts", "b")], value=ReactRequest.role,
+                    label="The given person …", elem_id="react-role",
+                )  # fmt: skip
+            self.prompt = gr.Textbox(
+                label="What do the two people do? (may stay empty)",
+                placeholder="One person waves and the other waves back.",
+                lines=1,  # so that Enter generates; the style sheet gives it the height of three
+                max_lines=6,
+                elem_id="react-prompt",
+            )
+            self._go("React")
+
+    # ---- events ----------------------------------------------------------------------------------
+
+    def _wire_actor(self) -> None:
+        changed = [self.source, self.line, self.player, self.trim, self.person, self.begin, self.end]
+        load = {"outputs": changed, "concurrency_limit": 2, "concurrency_id": "react-read", **QUIET}
+        self.file.upload(self.upload, inputs=self.file, **load)
+        for chip, (name, path) in zip(self.chips, self.examples, strict=True):
+            chip.click(partial(self.load, partial(read_source, path, name)), **load)
+        for person, button in self.take.items():
+            button.click(partial(self.take_result, person), inputs=self.record, **load)
+        trim = [self.source, self.person, self.begin, self.end]
+        gr.on(
+            [self.person.input, self.begin.release, self.end.release],
+            self.preview, inputs=trim, outputs=[self.line, self.player], trigger_mode="always_last", **QUIET,
+        )  # fmt: skip
+
+    def upload(self, path: str | None) -> Iterator[Updates]:
+        """Reads an uploaded file and shows its actor."""
+        if path is not None:
+            yield from self.load(partial(read_source, path))
+
+    def take_result(self, person: str, record: Record | None) -> Iterator[Updates]:
+        """Makes a person of the session's last result the actor."""
+
+        def read() -> Source:
+            if record is None:
+                raise InputError("There is no result yet: generate one first.")
+            return result_source(record.result, record.prompt, person)
+
+        yield from self.load(read)
+
+    def load(self, read: Callable[[], Source]) -> Iterator[Updates]:
+        """Updates of source, line, player, trim, person, start and end while an actor is read."""
+        same = (gr.skip(),) * 4
+        yield gr.skip(), status("Reading the motion …", tone="busy"), busy("Reading the motion …"), *same
+        try:
+            source = read()
+            payload = source.preview(source.chosen, 0.0, source.end)
+        except Exception as error:
+            yield gr.skip(), status(error_line(error), tone="error"), busy(""), *same
+            return
+        last = max(round(source.seconds, 1), _SHORTEST)
+        yield (
+            source,
+            self._told(source, 0.0, source.end),
+            show(payload),
+            gr.update(visible=True),
+            gr.update(visible=len(source.people) > 1, value=source.chosen),
+            gr.update(maximum=last, value=0),
+            gr.update(maximum=last, value=min(round(source.end, 1), last)),
+        )
+
+    def preview(self, source: Source | None, person: str, start: float, end: float) -> Updates:
+        """Shows the actor as trimmed."""
+        if source is None:
+            return gr.skip(), gr.skip()
+        try:
+            payload = source.preview(person, start, end)
+        except Exception as error:
+            return status(error_line(error), tone="error"), busy("")
+        return self._told(source, start, end), show(payload)
+
+    @staticmethod
+    def _told(source: Source, start: float, end: float) -> str:
+        end = min(end, source.seconds)
+        shortest, longest = SECONDS
+        used = f"{source.name}: {start:.1f} to {end:.1f} s of {source.seconds:.1f} s."
+        if end - start < shortest - 1e-6:
+            return status(f"{used} Take {shortest:g} s or more.", tone="warning")
+        if end - start > longest + 0.05:
+            return status(f"{used} Take {longest:g} s or less.", tone="warning")
+        return status(used)
+
+    def start(
+        self,
+        source: Source | None,
+        person: str,
+        begin: float,
+        end: float,
+        role: str,
+        prompt: str,
+        seed: float | None,
+        samples: float,
+        guidance: float,
+        steps: float,
+        damping: float,
+        request: gr.Request,
+    ) -> Iterator[Updates]:
+        """Runs what the controls ask for; yields updates of the page."""
+        fields = {
+            "source": source,
+            "person": person,
+            "start": begin,
+            "end": end,
+            "role": role,
+            "prompt": prompt,
+            "seed": seed,
+            "samples": samples,
+            "guidance": guidance,
+            "steps": steps,
+            "damping": damping,
+        }
+        yield from self.run(str(request.session_hash), fields)
