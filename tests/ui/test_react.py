@@ -139,8 +139,18 @@ def test_without_a_result_there_is_none_to_take(tab: ReactTab) -> None:
     assert set(last) == {"line", "player"}
 
 
-def test_a_cancelled_upload_changes_nothing(tab: ReactTab) -> None:
+def test_a_cancelled_upload_changes_nothing_and_a_cleared_file_leaves_no_actor(tab: ReactTab) -> None:
     assert list(tab.upload(None)) == []
+    left = changes(LOADED, tab.forget())
+    assert left["source"] is None
+    assert left["player"]["value"] is None
+    assert not left["trim"]["visible"]
+
+
+def test_a_result_of_a_result_keeps_the_name_of_the_file(tab: ReactTab, bvh: Path) -> None:
+    record = run(tab, upload(tab, bvh)[-1]["source"], prompt="")[-1]["record"]
+    source = list(tab.take_result("b", record))[-1][0]
+    assert run(tab, source, prompt="")[-1]["record"].prompt == "Reaction to walker_a.bvh"
 
 
 @pytest.mark.parametrize(

@@ -61,8 +61,12 @@ def read_source(path: str | Path, name: str | None = None) -> Source:
 
 
 def result_source(result: Result, title: str, person: str) -> Source:
-    """A person of a result's first sample, as they were made or given."""
-    return Source(title, result.duets[0].people, person)
+    """A person of a result's first sample, as they were made or given.
+
+    It is called after the file that the result began with, or else after its title.
+    """
+    given = result.manifest.get("request", {}).get("actor", {})
+    return Source(given.get("name") or title, result.duets[0].people, person)
 
 
 def chosen_actor(fields: Mapping[str, Any]) -> dict[str, Any]:

@@ -75,7 +75,7 @@ class ReactTab(JobTab):
     def _ask(self) -> None:
         with gr.Column(elem_classes="pd-panel pd-ask", min_width=0):
             self.file = gr.File(
-                label="The first person: .bvh, .npz or .npy, up to 50 MB", file_types=FILE_TYPES,
+                label="The given person: .bvh, .npz or .npy", file_types=FILE_TYPES,
                 height=112, elem_id="react-file", elem_classes="pd-file",
             )  # fmt: skip
             with gr.Row(elem_classes="pd-chips"):
@@ -123,6 +123,9 @@ class ReactTab(JobTab):
             chip.click(partial(self.load, partial(read_source, path, name)), **load)
         for person, button in self.take.items():
             button.click(partial(self.take_result, person), inputs=self.record, **load)
+        for button in (*self.chips, *self.take.values()):  # the file is no longer what is used
+            button.click(None, outputs=self.file, js="() => null", **QUIET)
+        self.file.clear(self.forget, outputs=changed, queue=False, **QUIET)
         trim = [self.source, self.person, self.begin, self.end]
         gr.on(
             [self.person.input, self.begin.release, self.end.release],
@@ -164,6 +167,11 @@ class ReactTab(JobTab):
             gr.update(maximum=last, value=0),
             gr.update(maximum=last, value=min(round(source.end, 1), last)),
         )
+
+    @staticmethod
+    def forget() -> Updates:
+        """The tab without an actor; a result stays in the downloads."""
+        return None, status(), show(None), gr.update(visible=False), *(gr.skip(),) * 3
 
     def preview(self, source: Source | None, person: str, start: float, end: float) -> Updates:
         """Shows the actor as trimmed."""

@@ -1,0 +1,84 @@
+"""The React tab in a real browser, with an engine that needs no networks."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Callable, Iterator
+from pathlib import Path
+
+import pytest
+
+os.environ.setdefault("GRADIO_ANALYTICS_ENABLED", "False")
+
+from playwright.sync_api import Page, expect
+
+from webdemo.formats import write
+from webdemo.ui.page import build_page, launch_options
+
+from ..ui.stub_engine import StubEngine, walking
+
+pytestmark = pytest.mark.e2e
+
+SLOW = 60_000
+"""Milliseconds that a busy machine may take to draw."""
+
+
+@pytest.fixture(scope="module")
+def url(tmp_path_factory: pytest.TempPathFactory) -> Iterator[str]:
+    page = build_page(StubEngine(pause=0.01), files=tmp_path_factory.mktemp("files"))
+    _, address, _ = page.launch(
+        prevent_thread_lock=True, quiet=True, server_name="127.0.0.1", **launch_options()
+    )
+    yield address
+    page.close()
+
+
+@pytest.fixture
+def page(url: str, open_page: Callable[..., Page]) -> Page:
+    tab = open_page(url, accept_downloads=True)
+    tab.set_default_timeout(SLOW)
+    expect(tab.locator("#model-state")).to_contain_text("Model ready", timeout=SLOW)
+    tab.get_by_role("tab", name="React").click()
+    expect(tab.locator("#react-file")).to_be_visible(timeout=SLOW)
+    return tab
+
+
+def people(page: Page, count: int) -> None:
+    page.wait_for_function(f"window.__pasdedeux?.positions?.length === {count}")
+
+
+def test_an_uploaded_person_is_seen_trimmed_and_gets_a_partner(page: Page, tmp_path: Path) -> None:
+    file = write(walking(12.0), tmp_path / "walkers.npz")[0]
+    page.set_input_files("#react-file input[type=file]", file)
+    people(page, 1)
+    expect(page.locator("#react-status")).to_contain_text("0.0 to 10.0 s of 12.0 s", timeout=SLOW)
+    page.fill("#react-end input[type=number]", "3")
+    page.press("#react-end input[type=number]", "Tab")
+    expect(page.locator("#react-status")).to_contain_text("0.0 to 3.0 s", timeout=SLOW)
+
+    page.click("button#react-generate")
+    expect(page.locator("#react-status .pd-done")).to_be_visible(timeout=SLOW)
+    people(page, 2)
+    expect(page.locator("#react-readouts")).to_contain_text("walkers.npz")
+    button = page.locator("#react-download-npz")
+    expect(button).to_be_enabled(timeout=SLOW)
+
+    page.click("button#react-take-b")
+    people(page, 1)
+    expect(page.locator("#react-status")).to_contain_text("0.0 to 3.0 s of 3.0 s", timeout=SLOW)
+    expect(page.locator("#react-person input[value=b]")).to_be_checked(timeout=SLOW)
+
+
+def test_a_result_of_the_other_tab_is_taken_and_bad_files_are_a_sentence(page: Page, tmp_path: Path) -> None:
+    broken = tmp_path / "broken.bvh"
+    broken.write_text("HIERARCHY\nROOT hips\n{")
+    page.set_input_files("#react-file input[type=file]", broken)
+    expect(page.locator("#react-status .pd-error")).to_contain_text("broken.bvh", timeout=SLOW)
+
+    page.get_by_role("tab", name="Generate").click()
+    page.fill("#prompt textarea", "two people walk")
+    page.click("button#generate")
+    expect(page.locator("#status .pd-done")).to_be_visible(timeout=SLOW)
+    page.get_by_role("tab", name="React").click()
+    page.click("button#react-take-a")
+    expect(page.locator("#react-status")).to_contain_text("two people walk: 0.0 to 5.0 s", timeout=SLOW)
