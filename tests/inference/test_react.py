@@ -131,6 +131,18 @@ def test_damping_and_cleanup_touch_the_reaction_alone(engine: Engine) -> None:
         np.testing.assert_allclose(length, SMPL22.bone_lengths[joint], atol=2e-3)
 
 
+def test_damping_moves_no_given_number(engine: Engine) -> None:
+    from webdemo.inference.damping import Damping
+    from webdemo.inference.scenes import scene_of
+
+    model = engine._generator("intergen").model
+    given = scene_of(REQUEST, model).given
+    x0 = given.hold(torch.randn(2, *given.x0.shape, generator=torch.Generator().manual_seed(1)))
+    corrected = Damping(model, 1.0, frames=60, frozen=given.mask)(x0, 0)
+    assert torch.equal(corrected[:, given.mask], x0[:, given.mask])
+    assert (corrected[:, ~given.mask] != x0[:, ~given.mask]).float().mean() > 0.5
+
+
 @pytest.mark.parametrize(("seconds", "frames"), [(1.0, 30), (1.37, 41), (10.0, 300), (301 / 30, 301)])
 def test_lengths_from_one_to_ten_seconds(engine: Engine, seconds: float, frames: int) -> None:
     assert react(engine, actor=waver(seconds), steps=1).duets[0].num_frames == frames
