@@ -271,6 +271,7 @@ def main(argv: list[str] | None = None) -> None:
     parser = argparse.ArgumentParser(description="Train the compact InterGen on prepared scenes.")
     parser.add_argument("--scenes", type=Path, required=True, help="file of `python -m training.prepare`")
     parser.add_argument("--out", type=Path, required=True, help="folder of the checkpoint and the log")
+    parser.add_argument("--init", type=Path, help="begin with the weights of another run's last.safetensors")
     parser.add_argument(
         "--minutes", type=float, default=1e9, help="stop after this long; start again to go on"
     )

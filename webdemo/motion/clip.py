@@ -86,7 +86,7 @@ class Duet:
     def __post_init__(self) -> None:
         if self.a.num_frames != self.b.num_frames or self.a.fps != self.b.fps:
             raise InputError(
-                f"The two people must share one clock: a has {self.a.num_frames} frames at {self.a.fps:g} fps "
+                f"Two people must share one clock: a has {self.a.num_frames} frames at {self.a.fps:g} fps "
                 f"and b {self.b.num_frames} at {self.b.fps:g}. Resample or trim one of them."
             )
         if self.a.skeleton.joint_names != self.b.skeleton.joint_names:
