@@ -1,4 +1,4 @@
-"""The engine's promises: true steps, one result, cancel within a step, the same bytes for the same request."""
+"""The engine's promises: true steps, one result, cancel within a step, same bytes for the same request."""
 
 import shutil
 from dataclasses import replace
@@ -7,7 +7,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from webdemo.inference import CancelToken, Cancelled, GenerateRequest, Progress, Result
+from webdemo.inference import Cancelled, CancelToken, GenerateRequest, Progress, Result
 from webdemo.inference.engine import Engine
 from webdemo.motion import SMPL22, InputError
 
@@ -15,7 +15,7 @@ REQUEST = GenerateRequest(prompt="Two people shake hands.", seconds=2.0, seed=7,
 
 
 def result_of(engine: Engine, request: GenerateRequest) -> Result:
-    return [event for event in engine.run(request) if isinstance(event, Result)][0]
+    return next(event for event in engine.run(request) if isinstance(event, Result))
 
 
 def test_progress_counts_every_step_and_ends_in_one_result(engine: Engine) -> None:

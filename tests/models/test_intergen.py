@@ -181,8 +181,13 @@ def test_the_lightning_file_is_read_by_its_prefix(ref, tmp_path):
 
 
 class Sneaky:
+    """Writes a file when it is unpickled."""
+
+    def __init__(self, path):
+        self.path = path
+
     def __reduce__(self):
-        return (open, ("/tmp/should-not-exist-from-checkpoint", "w"))
+        return (open, (str(self.path), "w"))
 
 
 def test_bad_checkpoints_are_refused(tmp_path):
@@ -191,9 +196,10 @@ def test_bad_checkpoints_are_refused(tmp_path):
     (tmp_path / "text.ckpt").write_text("hello")
     with pytest.raises(WeightsError, match="cannot be read"):
         from_checkpoint(tmp_path / "text.ckpt")
-    torch.save({"state_dict": Sneaky()}, tmp_path / "sneaky.ckpt")
+    torch.save({"state_dict": Sneaky(tmp_path / "written")}, tmp_path / "sneaky.ckpt")
     with pytest.raises(WeightsError, match="cannot be read"):
         from_checkpoint(tmp_path / "sneaky.ckpt")
+    assert not (tmp_path / "written").exists()
     torch.save({"state_dict": {"a": torch.zeros(1)}}, tmp_path / "other.ckpt")
     with pytest.raises(WeightsError, match=r"holds no model\.decoder\.net"):
         from_checkpoint(tmp_path / "other.ckpt")

@@ -1,0 +1,167 @@
+"""The floors of the house: who may import whom, and what no file may say."""
+
+import ast
+import re
+import subprocess
+from collections.abc import Iterator
+from functools import cache
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).resolve().parents[1]
+PACKAGES = ("webdemo", "models", "training")
+TORCH_FREE = ("webdemo.motion", "webdemo.formats", "webdemo.metrics", "webdemo.view", "webdemo.ui")
+"""The page draws before the networks load, so nothing it needs may wait for torch."""
+
+LOW = {"webdemo.motion"}
+MIDDLE = {"webdemo.formats", "webdemo.metrics", "webdemo.view", "models"}
+FLOORS: dict[str, set[str]] = {
+    "webdemo.motion": set(),
+    **dict.fromkeys(MIDDLE, LOW),
+    "webdemo.inference": LOW | {"webdemo.formats", "webdemo.metrics", "models"},
+    "training": LOW | MIDDLE | {"webdemo.inference"},
+}
+"""What the lower floors may import. Those above (ui, server, cli, the scripts) may import all but
+training."""
+
+
+def module_name(path: Path) -> str:
+    parts = path.relative_to(ROOT).with_suffix("").parts
+    return ".".join(parts[:-1] if parts[-1] == "__init__" else parts)
+
+
+FILES = {
+    module_name(path): path
+    for path in sorted([ROOT / "app.py", *(p for name in PACKAGES for p in (ROOT / name).rglob("*.py"))])
+}
+
+
+def package_of(module: str) -> str:
+    """The floor a module stands on: ``webdemo.motion`` for ``webdemo.motion.clip``."""
+    parts = module.split(".")
+    return ".".join(parts[:2]) if parts[0] == "webdemo" else parts[0]
+
+
+def is_type_checking(node: ast.stmt) -> bool:
+    return isinstance(node, ast.If) and "TYPE_CHECKING" in ast.unparse(node.test)
+
+
+def statements(tree: ast.AST, *, at_import: bool) -> Iterator[ast.Import | ast.ImportFrom]:
+    """Import statements; with ``at_import`` only those that run when the module is imported."""
+    for node in ast.iter_child_nodes(tree):
+        if isinstance(node, ast.Import | ast.ImportFrom):
+            yield node
+        elif not at_import or not (
+            isinstance(node, ast.FunctionDef | ast.AsyncFunctionDef | ast.Lambda) or is_type_checking(node)
+        ):
+            yield from statements(node, at_import=at_import)
+
+
+@cache
+def imports(module: str, at_import: bool) -> frozenset[str]:
+    """Absolute names of the modules that a module imports, ours and others'."""
+    path = FILES[module]
+    package = module if path.name == "__init__.py" else module.rpartition(".")[0]
+    found: set[str] = set()
+    for node in statements(ast.parse(path.read_text()), at_import=at_import):
+        if isinstance(node, ast.Import):
+            found |= {alias.name for alias in node.names}
+            continue
+        base = node.module or ""
+        if node.level:
+            above = package.split(".")[: len(package.split(".")) - node.level + 1]
+            base = ".".join([*above, *filter(None, [base])])
+        submodules = {f"{base}.{alias.name}" for alias in node.names} & FILES.keys()
+        found |= submodules or {base}
+    return frozenset(found)
+
+
+def ours(module: str, *, at_import: bool = False) -> set[str]:
+    """Our modules among a module's imports."""
+    return {name for name in imports(module, at_import) if name in FILES}
+
+
+def reached(module: str) -> set[str]:
+    """All modules of ours that importing a module runs, with the packages that hold them."""
+    seen, waiting = set(), {module}
+    while waiting:
+        name = waiting.pop()
+        seen.add(name)
+        parents = {".".join(name.split(".")[:i]) for i in range(1, name.count(".") + 1)} & FILES.keys()
+        waiting |= (ours(name, at_import=True) | parents) - seen
+    return seen
+
+
+def test_imports_are_understood() -> None:
+    """The rules below would hold of nothing, too."""
+    assert "webdemo.motion.errors" in ours("webdemo.formats.files")
+    assert "webdemo.inference.generator" in ours("webdemo.inference.engine")
+    assert "torch" in imports("webdemo.inference.generator", True)
+    assert "torch" not in imports("webdemo.benchmark", True)
+    assert "torch" in imports("webdemo.benchmark", False)
+    assert "webdemo.motion.clip" in reached("webdemo.ui.page")
+
+
+@pytest.mark.parametrize("floor", sorted(FLOORS))
+def test_no_import_runs_upward(floor: str) -> None:
+    allowed = FLOORS[floor] | {floor}
+    upward = {
+        f"{module} imports {name}"
+        for module in FILES
+        if package_of(module) == floor
+        for name in ours(module)
+        if package_of(name) not in allowed
+    }
+    assert not upward
+
+
+def test_what_is_shipped_needs_no_training() -> None:
+    shipped = {module for module in FILES if package_of(module) != "training"}
+    assert not {module for module in shipped if any(package_of(n) == "training" for n in ours(module))}
+
+
+def test_packages_form_no_circle() -> None:
+    below: dict[str, set[str]] = {}
+    for module in FILES:
+        package = package_of(module)
+        below.setdefault(package, set()).update({package_of(name) for name in ours(module)} - {package})
+    while below:
+        settled = {package for package, needs in below.items() if not needs & below.keys()}
+        assert settled, f"these import each other: {below}"
+        below = {package: needs for package, needs in below.items() if package not in settled}
+
+
+def test_modules_form_no_circle_when_imported() -> None:
+    below = {module: ours(module, at_import=True) - {module} for module in FILES}
+    while below:
+        settled = {module for module, needs in below.items() if not needs & below.keys()}
+        assert settled, f"these import each other: {below}"
+        below = {module: needs for module, needs in below.items() if module not in settled}
+
+
+@pytest.mark.parametrize("package", TORCH_FREE)
+def test_page_waits_for_no_torch(package: str) -> None:
+    modules = {module for module in FILES if package_of(module) == package}
+    assert modules
+    heavy = {
+        f"{module}, through {name}"
+        for module in modules
+        for name in reached(module)
+        if any(found.partition(".")[0] == "torch" for found in imports(name, True))
+    }
+    assert not heavy
+
+
+def test_no_file_names_a_place_on_somebodys_machine() -> None:
+    listed = subprocess.run(["git", "ls-files", "-z"], cwd=ROOT, capture_output=True, text=True)
+    if listed.returncode:
+        pytest.skip("not a git checkout")
+    place = re.compile(rb"(?<![\w.~/-])/(?:work|home|root|Users|tmp|mnt|media|srv)/[\w.-]")
+    found = {}
+    for name in filter(None, listed.stdout.split("\0")):
+        path = ROOT / name
+        data = path.read_bytes() if path.is_file() else b""
+        if b"\0" not in data[:8000] and (match := place.search(data)):
+            found[name] = match[0]
+    assert not found
