@@ -26,7 +26,7 @@ from torch.nn.attention import SDPBackend, sdpa_kernel
 from models.compact import CompactConfig, CompactInterGen
 from models.diffusion import NoiseSchedule
 from models.intergen_losses import InterGenLoss, LossWeights, simple_loss
-from models.motion_tokens import mirror_control, pack
+from models.motion_tokens import FEATURES, mirror_control, pack
 from training import checkpoint
 from training.corpus.captions import mirror_caption
 from training.prepare import Scenes, load, normalizer
@@ -53,6 +53,7 @@ class Settings:
     unconditional: float = 0.1
     freeze_person: float = 0.12
     freeze_past: float = 0.08
+    root_weight: float = 4.0
     t_bar: float = 0.7
     seed: int = 0
     weights: LossWeights = field(
@@ -182,6 +183,10 @@ class Trainer:
         self.loss = InterGenLoss(
             settings.weights, t_bar=round(settings.t_bar * self.schedule.timesteps), near_by="truth"
         )
+        # Three of 70 numbers say where a person stands; they count more than their share.
+        self.feature_weights = torch.ones(FEATURES, device=device)
+        self.feature_weights[:3] = settings.root_weight**0.5
+        self.feature_weights = self.feature_weights.repeat(scenes.layout.knots_per_token)
         self.settings_json = json.dumps(asdict(settings), sort_keys=True)
         self.step = checkpoint.restore(self.out / "last.safetensors", self.parts(), self.settings_json)
         self.data.mean, self.data.std = self.model.mean.cpu(), self.model.std.cpu()
@@ -223,7 +228,8 @@ class Trainer:
             predicted = self.model.denoiser(xt, t, cond, batch.mask)
         predicted = predicted.float()
         asked = batch.mask * ~frozen
-        terms = {"simple": simple_loss(predicted.view(people), batch.x0.view(people), asked)}
+        weighted = [x.view(people) * self.feature_weights for x in (predicted, batch.x0)]
+        terms = {"simple": simple_loss(*weighted, asked)}
         positions = [self.model.positions(x)[0].transpose(1, 2) for x in (predicted, batch.x0)]
         return terms | self.loss.regularizers(*positions, t, batch.frame_mask)
 
