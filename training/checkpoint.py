@@ -9,7 +9,7 @@ from safetensors import SafetensorError, safe_open
 from safetensors.torch import save_file
 from torch import Tensor, nn
 
-from training.files import replacing
+from webdemo.formats.files import replacing
 from webdemo.motion import InputError
 
 Parts = dict[str, nn.Module | torch.optim.Optimizer]

@@ -18,6 +18,7 @@ from models.text import MiniLM
 from training import checkpoint
 from training.intergen import Data, Settings, new_model
 from training.prepare import Scenes, load
+from training.shell import exit_code
 from webdemo.motion import InputError
 
 BANK_PER_FAMILY = 40
@@ -36,8 +37,12 @@ def caption_bank(scenes: Scenes, per_family: int = BANK_PER_FAMILY) -> CaptionBa
         known = chosen.setdefault(row["family"], [])
         known += [c for c in row["captions"][:2] if c not in known and len(known) < per_family]
     captions = sorted({c for known in chosen.values() for c in known})
-    vectors = encode(encoder, captions)
     unseen = sorted({c for row in scenes.split("test") for c in row["captions"]})[:2000]
+    if not captions or not unseen:
+        raise InputError(
+            "The scenes hold no training or no test captions: build the corpus with both splits."
+        )
+    vectors = encode(encoder, captions)
     nearest = (encode(encoder, unseen) @ vectors.T).amax(1)
     return CaptionBank(tuple(captions), vectors, round(float(nearest.quantile(FAR_QUANTILE)), 3))
 
@@ -47,13 +52,17 @@ def encode(encoder: MiniLM, captions: list[str]) -> torch.Tensor:
     return torch.cat([encoder(captions[i : i + 128]).pooled() for i in range(0, len(captions), 128)])
 
 
-def main(argv: list[str] | None = None) -> None:
+def main(argv: list[str] | None = None) -> int:
     parser = argparse.ArgumentParser(description="Turn a training run into the folder that is shipped.")
     parser.add_argument("--run", type=Path, required=True, help="--out of the training")
     parser.add_argument("--scenes", type=Path, required=True)
     parser.add_argument("--out", type=Path, required=True, help="folder under models/weights")
     parser.add_argument("--card", type=Path, help="JSON with the card's fields")
     options = parser.parse_args(argv)
+    return exit_code(lambda: _run(options))
+
+
+def _run(options: argparse.Namespace) -> None:
     path = options.run / "last.safetensors"
     meta = checkpoint.metadata(path)
     known = json.loads(meta["settings"])
@@ -71,4 +80,4 @@ def main(argv: list[str] | None = None) -> None:
 
 
 if __name__ == "__main__":
-    main()
+    raise SystemExit(main())

@@ -30,6 +30,7 @@ from models.motion_tokens import FEATURES, mirror_control, pack
 from training import checkpoint
 from training.corpus.captions import mirror_caption
 from training.prepare import Scenes, load, normalizer
+from training.shell import exit_code
 from training.text_features import CaptionFeatures
 from webdemo.motion import SMPL22, InputError
 
@@ -66,6 +67,15 @@ class Settings:
             relative_orientation=0.02,
         )
     )
+
+    def __post_init__(self) -> None:
+        for name in ("latent_dim", "ff_size", "num_layers", "num_heads", "cond_dim", "batch", "warmup"):
+            if getattr(self, name) < 1:
+                raise InputError(f"{name} is {getattr(self, name)}: give 1 or more.")
+        if self.latent_dim % self.num_heads:
+            raise InputError(
+                f"latent_dim {self.latent_dim} cannot be shared by {self.num_heads} heads: give a multiple."
+            )
 
 
 def seeded(*words: int) -> torch.Generator:
@@ -273,7 +283,7 @@ class Trainer:
         self.save()
 
 
-def main(argv: list[str] | None = None) -> None:
+def main(argv: list[str] | None = None) -> int:
     parser = argparse.ArgumentParser(description="Train the compact InterGen on prepared scenes.")
     parser.add_argument("--scenes", type=Path, required=True, help="file of `python -m training.prepare`")
     parser.add_argument("--out", type=Path, required=True, help="folder of the checkpoint and the log")
@@ -288,6 +298,10 @@ def main(argv: list[str] | None = None) -> None:
             flag = "--" + setting.name.replace("_", "-")
             parser.add_argument(flag, type=kind, default=setting.default)
     options = parser.parse_args(argv)
+    return exit_code(lambda: _run(options))
+
+
+def _run(options: argparse.Namespace) -> None:
     chosen = {f.name: getattr(options, f.name) for f in fields(Settings) if f.name != "weights"}
     trainer = Trainer(
         load(options.scenes), Settings(**chosen), options.out, init=options.init, device=options.device
@@ -308,4 +322,4 @@ def main(argv: list[str] | None = None) -> None:
 
 
 if __name__ == "__main__":
-    main()
+    raise SystemExit(main())

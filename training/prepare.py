@@ -20,7 +20,8 @@ from safetensors.torch import save_file
 from torch import Tensor
 
 from models.motion_tokens import TokenLayout, encode
-from training.files import replacing
+from training.shell import exit_code
+from webdemo.formats.files import replacing
 from webdemo.motion import InputError
 from webdemo.motion.skeleton import FEET
 
@@ -70,7 +71,12 @@ def load_corpus(folder: Path) -> tuple[np.ndarray, list[dict[str, Any]]]:
         raise InputError(
             f"{folder} holds no readable corpus ({error}): build one with `python -m training.corpus`."
         ) from error
-    return motions, index["scenes"] if isinstance(index, dict) else index
+    scenes = index.get("scenes") if isinstance(index, dict) else index
+    if motions.shape[1:] != (2, 22, 3) or not isinstance(scenes, list):
+        raise InputError(f"{folder} holds another kind of data: build it with `python -m training.corpus`.")
+    if any(scene["start"] + scene["frames"] > len(motions) for scene in scenes):
+        raise InputError(f"The index in {folder} names more frames than there are: build the corpus again.")
+    return motions, scenes
 
 
 def prepare(folder: Path, layout: TokenLayout, max_seconds: float = 10.0) -> Scenes:
@@ -85,7 +91,7 @@ def prepare(folder: Path, layout: TokenLayout, max_seconds: float = 10.0) -> Sce
         frames = layout.num_frames(tokens)
         if frames < 30:
             continue
-        motion = np.asarray(motions[entry["start"] : entry["start"] + frames], dtype=np.float32)
+        motion = np.array(motions[entry["start"] : entry["start"] + frames], dtype=np.float32)
         positions = torch.from_numpy(motion).transpose(0, 1)
         control = encode(positions, foot_contacts(positions), layout)
         parts.append(control.transpose(0, 1).half())
@@ -139,13 +145,17 @@ def normalizer(scenes: Scenes, joint_mirror: tuple[int, ...]) -> tuple[Tensor, T
     return control.mean(0), scale
 
 
-def main(argv: list[str] | None = None) -> None:
+def main(argv: list[str] | None = None) -> int:
     parser = argparse.ArgumentParser(description="Turn a corpus into the tensors that training reads.")
     parser.add_argument("--corpus", type=Path, required=True, help="folder with motions.npy and index.json")
     parser.add_argument("--out", type=Path, required=True, help="the .safetensors file to write")
     parser.add_argument("--frames-per-knot", type=int, default=4)
     parser.add_argument("--knots-per-token", type=int, default=2)
     options = parser.parse_args(argv)
+    return exit_code(lambda: _run(options))
+
+
+def _run(options: argparse.Namespace) -> None:
     scenes = prepare(options.corpus, TokenLayout(options.frames_per_knot, options.knots_per_token))
     save(scenes, options.out)
     seconds = len(scenes.control) * options.frames_per_knot / 30
@@ -153,4 +163,4 @@ def main(argv: list[str] | None = None) -> None:
 
 
 if __name__ == "__main__":
-    main()
+    raise SystemExit(main())

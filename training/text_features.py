@@ -12,7 +12,7 @@ from safetensors.torch import load_file, save_file
 from torch import Tensor
 
 from models.text import MiniLM
-from training.files import replacing
+from webdemo.formats.files import replacing
 
 
 class CaptionFeatures:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import errno
 import os
+from pathlib import Path
 
 import bvhio
 import numpy as np
@@ -123,20 +124,20 @@ def test_unknown_endings_name_the_known_ones(tmp_path):
 @pytest.mark.parametrize("code", [errno.ENOSPC, errno.EACCES])
 def test_a_failing_disk_leaves_earlier_files_as_they_were(tmp_path, monkeypatch, suffix, code):
     earlier = {path: path.read_bytes() for path in formats.write(DUET, tmp_path / f"x{suffix}")}
-    opened = []
-    original = os.fdopen
+    written = []
+    original = Path.write_bytes
 
-    def failing(descriptor, mode):
-        opened.append(descriptor)
-        file = original(descriptor, mode)
-        if len(opened) == len(earlier):  # the last of the files fails
-            file.close()
+    def failing(path, data):
+        written.append(path)
+        if len(written) == len(earlier):  # the last of the files fails half-way
+            original(path, data[: len(data) // 2])
             raise OSError(code, os.strerror(code))
-        return file
+        return original(path, data)
 
-    monkeypatch.setattr(os, "fdopen", failing)
+    monkeypatch.setattr(Path, "write_bytes", failing)
     with pytest.raises(InputError, match="disk is full" if code == errno.ENOSPC else "another folder"):
         formats.write(DUET.cut(0, 10), tmp_path / f"x{suffix}")
+    assert len(written) == len(earlier)
     assert {path: path.read_bytes() for path in tmp_path.iterdir()} == earlier
 
 

@@ -11,7 +11,7 @@ from pathlib import Path
 
 import numpy as np
 
-from training.files import replacing
+from webdemo.formats.files import replacing
 from webdemo.motion import SMPL22, Clip, Duet, InputError
 from webdemo.view.contact_sheet import contact_sheet
 

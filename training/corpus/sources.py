@@ -20,8 +20,8 @@ from pathlib import Path, PurePosixPath
 
 import numpy as np
 
-from training.files import replacing
 from webdemo.formats.bvh import read_bvh
+from webdemo.formats.files import replacing
 from webdemo.motion import InputError
 from webdemo.motion.retarget import retarget
 from webdemo.motion.transforms import canonicalize

@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
+import contextlib
 import errno
 import os
 import tempfile
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from pathlib import Path
 
 from webdemo.motion.errors import InputError
@@ -49,24 +50,23 @@ def check_duration(frames: int, fps: float, label: str) -> None:
         )
 
 
-def write_files(contents: Mapping[Path, bytes]) -> list[Path]:
-    """Writes all files or none: each to a temporary one beside it first, then all take their places.
+@contextlib.contextmanager
+def replacing(path: Path) -> Iterator[Path]:
+    """Yields an empty temporary file beside ``path`` that takes its place if the block ends well.
 
     Raises:
-        InputError: where the disk is full or a folder cannot be written; earlier files are as before.
+        InputError: where the disk is full or the folder cannot be written; ``path`` is then as before.
     """
-    waiting: dict[Path, Path] = {}
+    temporary: Path | None = None
     try:
-        for path, data in contents.items():
-            path.parent.mkdir(parents=True, exist_ok=True)
-            descriptor, temporary = tempfile.mkstemp(prefix=f".{path.name}.", suffix=".tmp", dir=path.parent)
-            waiting[path] = Path(temporary)
-            with os.fdopen(descriptor, "wb") as file:
-                file.write(data)
-            # mkstemp makes private files; an exported one is as readable as any other.
-            os.chmod(temporary, 0o666 & ~_umask())
-        for path, temporary_path in waiting.items():
-            os.replace(temporary_path, path)
+        path.parent.mkdir(parents=True, exist_ok=True)
+        descriptor, name = tempfile.mkstemp(prefix=f".{path.name}.", suffix=".tmp", dir=path.parent)
+        temporary = Path(name)
+        os.close(descriptor)
+        yield temporary
+        # mkstemp makes private files; a finished one is as readable as any other.
+        os.chmod(temporary, 0o666 & ~_umask())
+        os.replace(temporary, path)
     except OSError as error:
         if error.errno in (errno.ENOSPC, errno.EDQUOT):
             raise InputError(
@@ -76,8 +76,19 @@ def write_files(contents: Mapping[Path, bytes]) -> list[Path]:
             f"{path} could not be written ({error.strerror or error}): choose another folder or name."
         ) from None
     finally:
-        for temporary_path in waiting.values():
-            temporary_path.unlink(missing_ok=True)
+        if temporary is not None:
+            temporary.unlink(missing_ok=True)
+
+
+def write_files(contents: Mapping[Path, bytes]) -> list[Path]:
+    """Writes all files or none: each to a temporary one beside it first, then all take their places.
+
+    Raises:
+        InputError: where the disk is full or a folder cannot be written; earlier files are as before.
+    """
+    with contextlib.ExitStack() as waiting:
+        for path, data in contents.items():
+            waiting.enter_context(replacing(path)).write_bytes(data)
     return list(contents)
 
 

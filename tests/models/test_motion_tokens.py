@@ -1,0 +1,70 @@
+"""Spline tokens: smooth motion survives them, and a mirror seen in a mirror is the scene itself."""
+
+import numpy as np
+import pytest
+import torch
+
+from models.motion_tokens import FEATURES, TokenLayout, decode, encode, mirror_control, pack, unpack
+from webdemo.motion import SMPL22
+
+LAYOUT = TokenLayout()
+
+
+def smooth(tokens: int, *, people: int = 2) -> torch.Tensor:
+    """(people, T, 22, 3) a walk with limbs that swing at up to 1.2 Hz."""
+    rng = np.random.default_rng(3)
+    time = np.arange(LAYOUT.num_frames(tokens))[None, :, None, None] / 30
+    rate = rng.uniform(0.3, 1.2, (people, 1, 22, 3))
+    swing = 0.1 * np.sin(2 * np.pi * rate * time + rng.uniform(0, 6, rate.shape))
+    path = np.concatenate([0 * time, 0 * time, 1.2 * time], axis=-1)
+    return torch.from_numpy(SMPL22.rest_positions() + np.array([0, 0.98, 0]) + path + swing).float()
+
+
+@pytest.mark.parametrize("tokens", [4, 9, 38])
+def test_smooth_motion_comes_back_to_the_millimetre(tokens: int) -> None:
+    positions = smooth(tokens)
+    contacts = torch.ones(2, positions.shape[1], 4)
+    control = encode(positions, contacts, LAYOUT)
+    assert control.shape == (2, tokens * LAYOUT.knots_per_token, FEATURES)
+    back, scores = decode(control, LAYOUT)
+    assert torch.linalg.vector_norm(back - positions, dim=-1).max() < 0.003
+    torch.testing.assert_close(scores, contacts, atol=1e-3, rtol=0)
+
+
+@pytest.mark.parametrize("frames", [2, 30, 31, 45, 119, 300])
+def test_tokens_cover_the_frames_asked_for(frames: int) -> None:
+    tokens = LAYOUT.num_tokens(frames)
+    assert LAYOUT.num_frames(tokens) >= frames
+    assert LAYOUT.num_frames(tokens - 1) < frames
+
+
+def test_a_length_that_fills_no_tokens_is_refused() -> None:
+    with pytest.raises(ValueError, match="pad to num_frames"):
+        encode(smooth(4)[:, :-1], torch.ones(2, LAYOUT.num_frames(4) - 1, 4), LAYOUT)
+
+
+def test_mirror_twice_is_the_same() -> None:
+    control = torch.randn(2, 8, FEATURES)
+    once = mirror_control(control, SMPL22.mirror)
+    assert not torch.equal(once, control)
+    assert torch.equal(mirror_control(once, SMPL22.mirror), control)
+
+
+def test_mirror_is_that_of_positions_and_contacts() -> None:
+    positions = smooth(6)
+    contacts = (
+        torch.rand(2, positions.shape[1], 4, generator=torch.Generator().manual_seed(0)) > 0.5
+    ).float()
+    seen = positions[:, :, list(SMPL22.mirror)] * torch.tensor([-1.0, 1.0, 1.0])
+    expected = encode(seen, contacts[..., [2, 3, 0, 1]], LAYOUT)
+    mirrored = mirror_control(encode(positions, contacts, LAYOUT), SMPL22.mirror)
+    torch.testing.assert_close(mirrored, expected, atol=1e-5, rtol=0)
+
+
+def test_unpack_undoes_pack() -> None:
+    control = torch.randn(3, 2, 10, FEATURES)
+    x = pack(control, LAYOUT)
+    assert x.shape == (3, 5, 2 * LAYOUT.token_features)
+    assert torch.equal(unpack(x, LAYOUT), control)
+    first_person = x[..., : LAYOUT.token_features]
+    assert torch.equal(first_person.reshape(3, 10, FEATURES), control[:, 0])

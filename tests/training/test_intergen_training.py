@@ -1,0 +1,245 @@
+"""Corpus → tensors → checkpoint → shipped folder, on a corpus that takes a moment to make."""
+
+import json
+from collections.abc import Callable
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+import torch
+from safetensors.torch import load_file
+
+from models.motion_tokens import decode
+from training import export, intergen, prepare
+from training.intergen import Settings, Trainer
+from webdemo.inference import GenerateRequest, Result
+from webdemo.inference.engine import Engine
+from webdemo.motion import SMPL22, InputError
+
+SETTINGS = Settings(
+    latent_dim=32, ff_size=32, num_layers=2, num_heads=2, cond_dim=64, batch=4, steps=6, warmup=2, dropout=0.1
+)
+SIZES = [
+    word
+    for name in ("latent_dim", "ff_size", "num_layers", "num_heads", "cond_dim", "batch", "warmup", "dropout")
+    for word in ("--" + name.replace("_", "-"), str(getattr(SETTINGS, name)))
+]
+
+
+def write_corpus(folder: Path, scenes: int = 10) -> Path:
+    """Two people who sway, for one to two seconds a scene."""
+    rng = np.random.default_rng(0)
+    rest = SMPL22.rest_positions() + np.array([0, 0.98, 0])
+    motions, index, start = [], [], 0
+    for i in range(scenes):
+        frames = int(rng.integers(40, 60))
+        time = np.arange(frames) / 30
+        a = rest + 0.05 * np.sin(rng.uniform(2, 6) * time)[:, None, None] * rng.normal(size=(1, 22, 3))
+        b = np.broadcast_to(rest * [-1, 1, -1] + [0, 0, 1.5], a.shape)
+        motions.append(np.stack([a, b], axis=1))
+        captions = ["One person waves the left hand.", "They shake hands."]
+        split = "test" if i == 0 else "train"
+        index.append(
+            {"start": start, "frames": frames, "family": "sway", "captions": captions, "split": split}
+            | {"events": {}, "sources": []}
+        )
+        start += frames
+    folder.mkdir()
+    np.save(folder / "motions.npy", np.concatenate(motions).astype(np.float32))
+    (folder / "index.json").write_text(json.dumps(index))
+    return folder
+
+
+@pytest.fixture(scope="module", autouse=True)
+def one_thread() -> None:
+    torch.set_num_threads(1)
+
+
+@pytest.fixture(scope="module")
+def scenes(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    folder = tmp_path_factory.mktemp("made")
+    out = folder / "scenes.safetensors"
+    assert prepare.main(["--corpus", str(write_corpus(folder / "corpus")), "--out", str(out)]) == 0
+    return out
+
+
+def begin(scenes: Path, out: Path, settings: Settings = SETTINGS, **options: Path) -> Trainer:
+    return Trainer(prepare.load(scenes), settings, out, **options)
+
+
+def take(trainer: Trainer, steps: int) -> Trainer:
+    """Takes some steps, as a run that is stopped then: saved where it stands."""
+    for _ in range(steps):
+        trainer.train_step()
+    trainer.save()
+    return trainer
+
+
+@pytest.fixture(scope="module")
+def trained(scenes: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """The folder of a run of six steps, made by the command."""
+    out = tmp_path_factory.mktemp("run")
+    assert intergen.main(["--scenes", str(scenes), "--out", str(out), *SIZES, "--steps", "6"]) == 0
+    return out
+
+
+def test_a_run_that_stops_goes_on_as_if_it_never_had(scenes: Path, trained: Path, tmp_path: Path) -> None:
+    assert take(begin(scenes, tmp_path), 3).step == 3
+    resumed = begin(scenes, tmp_path)
+    assert resumed.step == 3
+    assert len(list(resumed.run(minutes=10))) == 3
+    straight, stopped = load_file(trained / "last.safetensors"), load_file(tmp_path / "last.safetensors")
+    assert straight.keys() == stopped.keys()
+    assert {key.split("/")[0] for key in straight} == {"model", "ema", "optimizer"}
+    assert [key for key in straight if not torch.equal(straight[key], stopped[key])] == []
+    half = begin(scenes, tmp_path / "half")
+    assert any(not torch.equal(v, straight[f"model/{k}"]) for k, v in half.model.state_dict().items())
+
+
+def test_checkpoint_of_other_settings_is_refused(scenes: Path, trained: Path) -> None:
+    with pytest.raises(InputError, match="run of other settings"):
+        begin(scenes, trained, replace(SETTINGS, learning_rate=1e-3))
+
+
+@pytest.mark.parametrize(
+    "damage", [lambda data: data[: len(data) // 2], lambda data: b"", lambda data: b"x" * 99]
+)
+def test_damaged_checkpoint_is_refused(
+    scenes: Path, trained: Path, tmp_path: Path, damage: Callable[[bytes], bytes]
+) -> None:
+    whole = (trained / "last.safetensors").read_bytes()
+    (tmp_path / "last.safetensors").write_bytes(damage(whole))
+    with pytest.raises(InputError, match="missing or damaged"):
+        begin(scenes, tmp_path)
+    with pytest.raises(InputError, match="missing or damaged"):
+        begin(scenes, tmp_path / "new", init=tmp_path / "last.safetensors")
+
+
+def test_init_begins_with_the_averaged_weights_of_another_run(
+    scenes: Path, trained: Path, tmp_path: Path
+) -> None:
+    other = load_file(trained / "last.safetensors")
+    new = begin(scenes, tmp_path, replace(SETTINGS, learning_rate=1e-3), init=trained / "last.safetensors")
+    assert new.step == 0
+    for module in (new.model, new.ema):
+        assert all(torch.equal(value, other[f"ema/{key}"]) for key, value in module.state_dict().items())
+    with pytest.raises(InputError, match="other sizes"):
+        begin(scenes, tmp_path / "b", replace(SETTINGS, latent_dim=64), init=trained / "last.safetensors")
+
+
+def test_init_is_an_option_of_the_command(scenes: Path, trained: Path, tmp_path: Path) -> None:
+    words = ["--scenes", str(scenes), "--out", str(tmp_path), "--init", str(trained / "last.safetensors")]
+    assert intergen.main([*words, *SIZES, "--steps", "0"]) == 0
+    begun, other = load_file(tmp_path / "last.safetensors"), load_file(trained / "last.safetensors")
+    key = next(key for key in begun if key.startswith("model/denoiser"))
+    assert torch.equal(begun[key], other[key.replace("model/", "ema/")])
+    assert (tmp_path / "log.jsonl").exists()
+
+
+def test_export_ships_what_the_engine_runs(scenes: Path, trained: Path, tmp_path: Path) -> None:
+    card = tmp_path / "card.json"
+    card.write_text(json.dumps({"summary": "a test"}))
+    out = tmp_path / "weights" / "intergen"
+    words = ["--run", str(trained), "--scenes", str(scenes), "--out", str(out), "--card", str(card)]
+    assert export.main(words) == 0
+    engine = Engine(out.parent)
+    assert engine.info()["summary"] == "a test"
+    *_, result = engine.run(GenerateRequest(prompt="They shake hands.", seconds=1.0, steps=2, damping=0.0))
+    assert isinstance(result, Result)
+    assert result.duets[0].positions.shape == (2, 30, 22, 3)
+    assert np.isfinite(result.duets[0].positions).all()
+    meta = json.loads((out / "config.json").read_text())
+    assert meta["trained_steps"] == 6
+    assert json.loads((out / "captions.json").read_text()) == [
+        "One person waves the left hand.",
+        "They shake hands.",
+    ]
+
+
+def test_a_scene_comes_back_from_its_control_points(scenes: Path) -> None:
+    made, corpus = prepare.load(scenes), np.load(scenes.parent / "corpus" / "motions.npy")
+    positions, _ = decode(made.scene(made.rows[0]), made.layout)
+    error = np.abs(positions.numpy() - corpus[: positions.shape[1]].swapaxes(0, 1)).max()
+    assert error < 0.005, f"{1000 * error:.1f} mm"
+
+
+def corpus_without_scenes(folder: Path) -> None:
+    write_corpus(folder)
+    (folder / "index.json").write_text("[]")
+
+
+def corpus_cut_short(folder: Path) -> None:
+    write_corpus(folder)
+    motions = np.load(folder / "motions.npy")
+    np.save(folder / "motions.npy", motions[:50])
+
+
+def corpus_of_one_person(folder: Path) -> None:
+    write_corpus(folder)
+    motions = np.load(folder / "motions.npy")
+    np.save(folder / "motions.npy", motions[:, 0])
+
+
+def corpus_with_a_broken_index(folder: Path) -> None:
+    write_corpus(folder)
+    (folder / "index.json").write_text('[{"start": 0,')
+
+
+@pytest.mark.parametrize(
+    ("make", "says"),
+    [
+        (lambda folder: None, "holds no readable corpus"),
+        (corpus_without_scenes, "no scene of a second or more"),
+        (corpus_cut_short, "more frames than there are"),
+        (corpus_of_one_person, "another kind of data"),
+        (corpus_with_a_broken_index, "holds no readable corpus"),
+    ],
+)
+def test_bad_corpus_is_refused_in_one_line(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str], make: Callable[[Path], None], says: str
+) -> None:
+    make(tmp_path / "corpus")
+    out = tmp_path / "scenes.safetensors"
+    assert prepare.main(["--corpus", str(tmp_path / "corpus"), "--out", str(out)]) == 2
+    said = capsys.readouterr().err
+    assert says in said
+    assert said.count("\n") == 1
+    assert not out.exists()
+
+
+@pytest.mark.parametrize(
+    ("words", "says"),
+    [
+        (["--batch", "50"], "do not fill a batch of 50"),
+        (["--batch", "0"], "batch is 0"),
+        (["--num-heads", "5"], "give a multiple"),
+        (["--scenes", "none.safetensors"], "no prepared scenes"),
+        (["--init", "none.safetensors"], "missing or damaged"),
+    ],
+)
+def test_bad_training_is_refused_in_one_line(
+    scenes: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str], words: list[str], says: str
+) -> None:
+    assert intergen.main(["--scenes", str(scenes), "--out", str(tmp_path), *SIZES, *words]) == 2
+    said = capsys.readouterr().err
+    assert says in said
+    assert said.count("\n") == 1
+    assert not (tmp_path / "last.safetensors").exists()
+
+
+def test_export_without_a_run_is_refused_in_one_line(
+    scenes: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    out = tmp_path / "weights"
+    assert export.main(["--run", str(tmp_path), "--scenes", str(scenes), "--out", str(out)]) == 2
+    assert "missing or damaged" in capsys.readouterr().err
+    assert not out.exists()
+
+
+@pytest.mark.parametrize("main", [prepare.main, intergen.main, export.main])
+def test_help_is_told(main: Callable[[list[str]], int], capsys: pytest.CaptureFixture[str]) -> None:
+    with pytest.raises(SystemExit) as ended:
+        main(["--help"])
+    assert ended.value.code == 0
+    assert "--out" in capsys.readouterr().out
