@@ -1,0 +1,113 @@
+"""How good a generator is: ``python -m training.evaluate --scenes FILE --out scores.json --table scores.md``.
+
+Sentences of the test split, generated and judged by the rules of :mod:`training.judge`. Beside the scores
+stand those of the recorded motion of the same sentences (what the rules allow at best) and those of recorded
+motion that belongs to other sentences (what they allow to chance). ``--real-only`` needs no weights.
+"""
+
+from __future__ import annotations
+
+import argparse
+import json
+import sys
+import time
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Any
+
+from training.judge.prompts import choose, real_duet
+from training.judge.report import score, table
+from training.judge.rules import Task
+from training.prepare import load
+from webdemo.formats.files import replacing
+from webdemo.inference.engine import GENERATORS, WEIGHTS
+from webdemo.motion import Duet, InputError
+
+
+def evaluate(options: argparse.Namespace) -> dict[str, Any]:
+    """Scores as :func:`training.judge.report.table` takes them."""
+    scenes = load(options.scenes)
+    chosen = choose(scenes, options.prompts, seed=options.seed)
+    tasks = [task for task, _ in chosen]
+    drawn: dict[int, Duet] = {}
+    about: dict[str, Any] = {"prompts": len(tasks), "seed": options.seed}
+    if not options.real_only:
+        drawn, drawing = _generate(tasks, options)
+        about |= drawing
+    judged = sorted(drawn) if drawn else list(range(len(tasks)))
+    tasks = [tasks[i] for i in judged]
+    real = [real_duet(scenes, chosen[i][1]) for i in judged]
+    families = len({task.family for task in tasks})
+    scores: dict[str, Any] = {"real": score(real, tasks), "other": score(_shifted(real), tasks)}
+    text = f"{len(tasks)} test captions of {families} families, seed {options.seed}"
+    if drawn:
+        scores["generated"] = score([drawn[i] for i in judged], tasks)
+        text += (
+            f"; DDIM-{options.steps}, guidance {options.guidance:g}, damping {options.damping:g}, weights "
+            f"{about['weights_sha256'][:12]}, {about['seconds']:.0f} s"
+        )
+        if len(tasks) < about["prompts"]:
+            text += f"; stopped by --minutes before {about['prompts']} captions"
+    return scores | {"about": text + ".", "settings": about}
+
+
+def _shifted(duets: Sequence[Duet]) -> list[Duet]:
+    """Every sentence gets the motion of another, half the list away."""
+    half = len(duets) // 2
+    return [*duets[half:], *duets[:half]]
+
+
+def _generate(tasks: Sequence[Task], options: argparse.Namespace) -> tuple[dict[int, Duet], dict[str, Any]]:
+    from training.judge.draw import Sampling, draw
+    from webdemo.inference.generator import DuetGenerator
+
+    generator = DuetGenerator(options.weights)
+    sampling = Sampling(
+        seed=options.seed, steps=options.steps, guidance=options.guidance, damping=options.damping
+    )
+    began, drawn = time.perf_counter(), {}
+    for index, duet in draw(generator, tasks, sampling):
+        drawn[index] = duet
+        seconds = time.perf_counter() - began
+        print(f"\r{len(drawn)} of {len(tasks)} drawn, {seconds:.0f} s", end="", file=sys.stderr, flush=True)
+        if options.minutes and seconds > 60 * options.minutes:
+            break
+    print(file=sys.stderr)
+    settings = {key: getattr(options, key) for key in ("steps", "guidance", "damping")}
+    seconds = round(time.perf_counter() - began, 1)
+    return drawn, settings | {"weights_sha256": generator.digest, "seconds": seconds}
+
+
+def main(argv: list[str] | None = None) -> None:
+    parser = argparse.ArgumentParser(description="Judge a generator on captions of the test split.")
+    parser.add_argument("--scenes", type=Path, required=True, help="what training.prepare wrote")
+    parser.add_argument("--out", type=Path, required=True, help="JSON file for all verdicts")
+    parser.add_argument("--table", type=Path, help="Markdown file for the table, which is printed too")
+    parser.add_argument("--weights", type=Path, default=WEIGHTS / GENERATORS["intergen"], help="its folder")
+    parser.add_argument("--prompts", type=int, default=200, help="how many captions (200)")
+    parser.add_argument("--seed", type=int, default=0)
+    parser.add_argument("--steps", type=int, default=25, help="DDIM steps (25)")
+    parser.add_argument("--guidance", type=float, default=2.5)
+    parser.add_argument("--damping", type=float, default=0.7)
+    parser.add_argument(
+        "--minutes", type=float, default=0.0, help="draw no more after this time; 0: no limit"
+    )
+    parser.add_argument("--real-only", action="store_true", help="only the recorded motion; needs no weights")
+    options = parser.parse_args(argv)
+    if options.prompts < 1:
+        parser.error("--prompts must be at least 1.")
+    try:
+        scores = evaluate(options)
+        shown = table(scores)
+        with replacing(options.out) as temporary:
+            temporary.write_text(json.dumps(scores, indent=1, ensure_ascii=False) + "\n")
+        if options.table:
+            with replacing(options.table) as temporary:
+                temporary.write_text(shown)
+    except InputError as error:
+        parser.exit(2, f"{error}\n")
+    print(shown)
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,5 @@
+"""The judge: does a duet do what its sentence says, and is it as clean as recorded motion?
+
+:mod:`.rules` checks a motion the way a person would, :mod:`.prompts` picks the sentences,
+:mod:`.draw` generates them and :mod:`.report` counts. ``python -m training.evaluate`` runs all four.
+"""
