@@ -142,6 +142,7 @@ def _add_render(commands: Any) -> None:
 def render(options: argparse.Namespace) -> dict[str, Any]:
     """Draws the contact sheet of a motion file; a BVH pair may be given as two files, or by its first."""
     from webdemo.formats import read, read_pair
+    from webdemo.formats.files import replacing
     from webdemo.view.contact_sheet import contact_sheet
 
     if not 2 <= options.frames <= 24:
@@ -154,12 +155,8 @@ def render(options: argparse.Namespace) -> dict[str, Any]:
     out = options.out or options.file.with_suffix(".png")
     if out.suffix.lower() != ".png":
         raise InputError(f"A contact sheet is a PNG: give --out a name that ends in .png, not {out.name}.")
-    try:
-        contact_sheet(motion, out, frames=options.frames, title=options.file.stem)
-    except OSError as error:
-        raise InputError(
-            f"{out} could not be written ({error.strerror or error}): choose another place."
-        ) from error
+    with replacing(out) as temporary:
+        contact_sheet(motion, temporary, frames=options.frames, title=options.file.stem)
     return {"files": [str(out)], "frames": motion.num_frames, "fps": motion.fps, "seconds": motion.seconds}
 
 

@@ -1,0 +1,204 @@
+"""``python -m webdemo`` as a shell meets it: files, one JSON line, and one line where something is wrong."""
+
+import errno
+import json
+import os
+from collections.abc import Callable
+from functools import partial
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from PIL import Image
+
+from tests.inference import conftest as tiny
+from webdemo import cli
+from webdemo.formats import read, read_pair
+from webdemo.inference import engine
+
+weights = tiny.weights
+PROMPT = "Two people shake hands."
+QUICK = ("--seconds", 1, "--steps", 2, "--damping", 0)
+
+Run = Callable[..., tuple[int, str, str]]
+
+
+@pytest.fixture
+def run(weights: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> Run:
+    """``run(word, …)`` gives exit code, stdout and stderr of a command with a tiny untrained model."""
+    monkeypatch.setattr(engine, "Engine", partial(engine.Engine, weights))
+
+    def call(*words: Any) -> tuple[int, str, str]:
+        code = cli.main([str(word) for word in words])
+        said = capsys.readouterr()
+        return code, said.out, said.err
+
+    return call
+
+
+def generate(run: Run, out: Path, *words: Any) -> tuple[int, str, str]:
+    return run("generate", "--prompt", PROMPT, *QUICK, "--out", out, *words)
+
+
+def answer(said: str) -> dict[str, Any]:
+    return json.loads(said.splitlines()[-1])
+
+
+def refused(outcome: tuple[int, str, str]) -> str:
+    """The one line on stderr of a command that must fail."""
+    code, said, error = outcome
+    assert code == 2
+    assert said == ""
+    assert error.count("\n") == 1
+    assert "Traceback" not in error
+    return error
+
+
+@pytest.mark.parametrize("command", ["generate", "react", "render", "info", "benchmark", "serve"])
+def test_every_command_has_help(run: Run, capsys: pytest.CaptureFixture[str], command: str) -> None:
+    with pytest.raises(SystemExit) as ended:
+        run(command, "--help")
+    assert ended.value.code == 0
+    assert f"webdemo {command}" in capsys.readouterr().out
+
+
+@pytest.mark.parametrize("suffix", [".npz", ".bvh", ".glb"])
+def test_generate_writes_a_file_and_one_json_line(run: Run, tmp_path: Path, suffix: str) -> None:
+    code, said, _ = generate(run, tmp_path / f"duet{suffix}", "--seed", 3)
+    assert code == 0
+    told = answer(said)
+    files = [Path(name) for name in told["files"]]
+    assert set(files) == set(tmp_path.iterdir())
+    assert told["manifest"]["request"]["seed"] == 3
+    assert told["manifest"]["weights_sha256"]
+    assert told["wall_seconds"] > 0
+    if suffix == ".glb":
+        assert files[0].read_bytes()[:4] == b"glTF"
+        return
+    duet = read_pair(*files) if suffix == ".bvh" else read(files[0])
+    assert duet.num_frames == 30
+    assert np.isfinite(duet.positions).all()
+
+
+def test_the_same_command_gives_the_same_bytes(run: Run, tmp_path: Path) -> None:
+    for name in ("x.npz", "y.npz"):
+        assert generate(run, tmp_path / name)[0] == 0
+    assert generate(run, tmp_path / "z.npz", "--seed", 99)[0] == 0
+    one, same, other = (read(tmp_path / name).positions for name in ("x.npz", "y.npz", "z.npz"))
+    np.testing.assert_array_equal(one, same)
+    assert not np.array_equal(one, other)
+
+
+@pytest.mark.parametrize(
+    ("words", "says"),
+    [
+        (["--prompt", ""], "prompt is empty"),
+        (["--seconds", "0"], "seconds"),
+        (["--seconds", "soon"], "invalid float"),
+        (["--seconds", "nan"], "seconds"),
+        (["--steps", "0"], "steps"),
+        (["--samples", "0"], "sample"),
+        (["--guidance", "inf"], "uidance"),
+        (["--damping", "2"], "amping"),
+        (["--sampler", "magic"], "sampler"),
+        (["--model", "magic"], "model"),
+        (["--out", "duet.xyz"], "cannot be written"),
+        (["--out", "duet"], "cannot be written"),
+        (["--colour", "red"], "see `python -m webdemo"),
+    ],
+)
+def test_bad_values_are_one_line_and_leave_no_file(
+    run: Run, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, words: list[str], says: str
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    assert says.lower() in refused(generate(run, tmp_path / "duet.npz", *words)).lower()
+    assert list(tmp_path.iterdir()) == []
+
+
+@pytest.mark.parametrize("words", [[], ["dance"], ["generate"], ["render"], ["react", "--out", "x.npz"]])
+def test_an_incomplete_command_is_one_line(run: Run, words: list[str]) -> None:
+    assert "--help" in refused(run(*words))
+
+
+@pytest.mark.parametrize("suffix", [".npz", ".bvh", ".glb"])
+def test_a_full_disk_is_one_line_and_leaves_no_file(
+    run: Run, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, suffix: str
+) -> None:
+    def full(path: Path, data: bytes) -> int:
+        path.open("wb").write(data[:10])
+        raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
+
+    monkeypatch.setattr(Path, "write_bytes", full)
+    assert "the disk is full" in refused(generate(run, tmp_path / f"duet{suffix}"))
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_a_place_that_cannot_be_written_is_one_line(
+    run: Run, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    (tmp_path / "file").write_text("in the way")
+    assert "could not be written" in refused(generate(run, tmp_path / "file" / "duet.npz"))
+
+    def denied(*_: Any) -> None:
+        raise PermissionError(errno.EACCES, os.strerror(errno.EACCES))
+
+    monkeypatch.setattr(os, "replace", denied)
+    assert "choose another folder" in refused(generate(run, tmp_path / "duet.npz"))
+    assert [path.name for path in tmp_path.iterdir()] == ["file"]
+
+
+@pytest.mark.parametrize("suffix", [".npz", ".bvh"])
+def test_render_draws_what_generate_wrote(run: Run, tmp_path: Path, suffix: str) -> None:
+    files = answer(generate(run, tmp_path / f"duet{suffix}")[1])["files"]
+    code, said, _ = run("render", files[0], "--out", tmp_path / "sheet.png", "--frames", 4)
+    assert code == 0
+    told = answer(said)
+    assert told["files"] == [str(tmp_path / "sheet.png")]
+    assert told["frames"] == 30
+    with Image.open(tmp_path / "sheet.png") as picture:
+        picture.load()
+        assert picture.format == "PNG"
+        assert picture.width == 4 * 200
+        assert len(picture.getcolors(1 << 20)) > 10
+
+
+def test_render_refuses_in_one_line(run: Run, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    motion = answer(generate(run, tmp_path / "duet.npz")[1])["files"][0]
+    assert "from 2 to 24" in refused(run("render", motion, "--frames", 1))
+    assert "ends in .png" in refused(run("render", motion, "--out", tmp_path / "sheet.jpg"))
+    assert "cannot be read" in refused(run("render", tmp_path / "none.npz"))
+    (tmp_path / "broken.npz").write_bytes(b"PK no motion")
+    refused(run("render", tmp_path / "broken.npz"))
+
+    def full(picture: Image.Image, path: Path, **_: Any) -> None:
+        path.write_bytes(b"half")
+        raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
+
+    monkeypatch.setattr(Image.Image, "save", full)
+    assert "the disk is full" in refused(run("render", motion))
+    assert {path.name for path in tmp_path.iterdir()} == {"duet.npz", "broken.npz"}
+
+
+def test_info_tells_the_model_and_the_formats(run: Run) -> None:
+    code, said, _ = run("info")
+    assert code == 0
+    told = answer(said)
+    assert told["model"]["summary"] == "a tiny untrained model"
+    assert told["formats"][".npz"] == {"read": True, "write": True}
+    assert told["versions"]["torch"]
+
+
+def test_benchmark_reports_figures(run: Run) -> None:
+    code, said, _ = run("benchmark", "--seconds", 1, "--steps", 2, "--repeats", 1)
+    assert code == 0
+    told = answer(said)
+    assert told["frames"] == 30
+    assert told["request_seconds"] > 0
+    assert told["plain_over_request"] > 0
+
+
+def test_missing_weights_are_one_line(run: Run, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(engine, "Engine", partial(engine.Engine.func, tmp_path / "nowhere"))
+    assert "restore" in refused(generate(run, tmp_path / "duet.npz"))
+    assert list(tmp_path.iterdir()) == []
