@@ -30,6 +30,7 @@ from models.motion_tokens import FEATURES, mirror_control, pack
 from training import checkpoint
 from training.corpus.captions import mirror_caption
 from training.prepare import Scenes, load, normalizer
+from training.reading import CaptionReader
 from training.shell import exit_code
 from training.text_features import CaptionFeatures
 from webdemo.motion import SMPL22, InputError
@@ -55,6 +56,7 @@ class Settings:
     freeze_person: float = 0.12
     freeze_past: float = 0.08
     root_weight: float = 4.0
+    reading_weight: float = 0.1
     t_bar: float = 0.7
     seed: int = 0
     weights: LossWeights = field(
@@ -85,13 +87,15 @@ def seeded(*words: int) -> torch.Generator:
 
 @dataclass
 class Batch:
-    """x0 (B, tokens, 2·F) normalised, mask (B, tokens, 2), frame_mask (B, T), text features and mask."""
+    """x0 (B, tokens, 2·F) normalised, mask (B, tokens, 2), frame_mask (B, T), text features and mask, and
+    what the captions say (B, 5), see :mod:`training.reading`."""
 
     x0: Tensor
     mask: Tensor
     frame_mask: Tensor
     text: Tensor
     text_mask: Tensor
+    labels: Tensor
 
 
 class Data:
@@ -110,6 +114,7 @@ class Data:
             self.captions = CaptionFeatures(sorted(known), cache, device=device)
         self.mean, self.std = normalizer(scenes, SMPL22.mirror)
         self.tokens = torch.tensor([row["tokens"] for row in self.rows])
+        self.reader = CaptionReader(scenes.rows, settings.cond_dim)
         self.batches_an_epoch = len(self.rows) // settings.batch
         self._epoch, self._order = -1, torch.empty(0)
 
@@ -135,10 +140,12 @@ class Data:
         control = self.mean.expand(len(rows), 2, tokens * layout.knots_per_token, -1).clone()
         mask = torch.zeros(len(rows), tokens, 2)
         frame_mask = torch.zeros(len(rows), layout.num_frames(tokens))
-        captions = []
+        captions, labels = [], []
         for i, row in enumerate(rows):
             one, caption = self.scenes.scene(row), row["captions"][int(draw[i, 0] * len(row["captions"]))]
-            if draw[i, 1] < 0.5:
+            mirror = bool(draw[i, 1] < 0.5)
+            labels.append(self.reader.labels(row, mirror=mirror))
+            if mirror:
                 one, caption = mirror_control(one, SMPL22.mirror), mirror_caption(caption)
             control[i, :, : one.shape[1]] = one
             mask[i, : row["tokens"]] = 1
@@ -146,7 +153,9 @@ class Data:
             captions.append(caption)
         text, text_mask = self.captions.batch(captions)
         x0 = pack((control - self.mean) / self.std, layout)
-        return Batch(*(x.to(self.device) for x in (x0, mask, frame_mask, text, text_mask)))
+        return Batch(
+            *(x.to(self.device) for x in (x0, mask, frame_mask, text, text_mask, torch.stack(labels)))
+        )
 
 
 def new_model(settings: Settings, data: Data) -> CompactInterGen:
@@ -186,8 +195,12 @@ class Trainer:
             checkpoint.restore_part(init, "ema", self.model)
         self.ema = new_model(settings, self.data).to(device).requires_grad_(False)
         self.ema.load_state_dict(self.model.state_dict())
+        self.reader = self.data.reader.to(device)
         self.optimizer = torch.optim.AdamW(
-            self.model.parameters(), lr=settings.learning_rate, weight_decay=settings.weight_decay, fused=True
+            [*self.model.parameters(), *self.reader.parameters()],
+            lr=settings.learning_rate,
+            weight_decay=settings.weight_decay,
+            fused=True,
         )
         self.schedule = NoiseSchedule(device=device)
         self.loss = InterGenLoss(
@@ -202,7 +215,7 @@ class Trainer:
         self.data.mean, self.data.std = self.model.mean.cpu(), self.model.std.cpu()
 
     def parts(self) -> dict[str, torch.nn.Module | torch.optim.Optimizer]:
-        return {"model": self.model, "ema": self.ema, "optimizer": self.optimizer}
+        return {"model": self.model, "ema": self.ema, "reader": self.reader, "optimizer": self.optimizer}
 
     def learning_rate(self) -> float:
         """Linear warm-up, then a cosine to 2 % of the peak."""
@@ -234,12 +247,15 @@ class Trainer:
         xt = torch.where(frozen[..., None], batch.x0.view(people), xt.view(people)).view_as(xt)
         # The fused attention kernel's backward pass is slow for sequences this short.
         with torch.autocast(self.device, torch.bfloat16), sdpa_kernel(SDPBackend.MATH):
-            cond = self.model.conditioner(batch.text, batch.text_mask) * keep[:, None]
-            predicted = self.model.denoiser(xt, t, cond, batch.mask)
+            cond = self.model.conditioner(batch.text, batch.text_mask)
+            predicted = self.model.denoiser(xt, t, cond * keep[:, None], batch.mask)
         predicted = predicted.float()
         asked = batch.mask * ~frozen
         weighted = [x.view(people) * self.feature_weights for x in (predicted, batch.x0)]
-        terms = {"simple": simple_loss(*weighted, asked)}
+        terms = {
+            "simple": simple_loss(*weighted, asked),
+            "reading": self.settings.reading_weight * self.reader(cond, batch.labels),
+        }
         positions = [self.model.positions(x)[0].transpose(1, 2) for x in (predicted, batch.x0)]
         return terms | self.loss.regularizers(*positions, t, batch.frame_mask)
 
