@@ -1,0 +1,54 @@
+"""The figures of ``benchmark --browser``, of the page with an engine that needs no networks."""
+
+import shutil
+from concurrent.futures import ThreadPoolExecutor
+from pathlib import Path
+
+import pytest
+
+from webdemo import benchmark_browser
+from webdemo.motion import InputError
+
+pytestmark = pytest.mark.e2e
+
+REPOSITORY = Path(__file__).resolve().parents[2]
+STUB_APP = f"""
+import os, sys, tempfile
+from pathlib import Path
+sys.path.insert(0, {str(REPOSITORY)!r})
+from tests.ui.stub_engine import StubEngine
+from webdemo.ui.page import build_page, launch_options
+page = build_page(StubEngine(pause=0.01), files=Path(tempfile.mkdtemp(dir=Path(__file__).parent)))
+page.launch(server_name="127.0.0.1", server_port=int(os.environ["PASDEDEUX_PORT"]), **launch_options())
+"""
+
+
+def test_page_and_player_are_measured(
+    chromium: object, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """``chromium`` says whether there is a browser; the benchmark starts one of its own."""
+    (tmp_path / "app.py").write_text(STUB_APP)
+    monkeypatch.setattr(benchmark_browser, "ROOT", tmp_path)
+    with ThreadPoolExecutor(1) as thread:  # Playwright takes one browser a thread, and the fixture has one
+        figures = thread.submit(benchmark_browser.measure_browser).result()
+    print(f"\n{figures}")
+    assert 0 < figures["page_first_answer_seconds"] < figures["page_prompt_seconds"]
+    assert figures["page_prompt_seconds"] <= figures["page_model_ready_seconds"]
+    assert figures["page_request_seconds"] > 0.1
+    assert 0 <= figures["page_result_to_motion_seconds"] < 30
+    assert figures["player_pixels"] == "960x640"
+    assert figures["player_fps_still"] > 1
+    assert figures["player_fps_turning"] > 1
+
+
+def test_a_page_that_does_not_start_is_one_sentence(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    (tmp_path / "app.py").write_text("raise SystemExit(1)")
+    monkeypatch.setattr(benchmark_browser, "ROOT", tmp_path)
+    with pytest.raises(InputError, match="did not start"), benchmark_browser._served():
+        raise AssertionError("it answered")
+
+
+def test_no_chromium_is_one_sentence(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(shutil, "which", lambda name: None)
+    with pytest.raises(InputError, match="install the package chromium"), benchmark_browser._chromium():
+        raise AssertionError("a browser was found")
