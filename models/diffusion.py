@@ -12,6 +12,7 @@ Words: ``betas`` (T,) are the noise variances, ``alphas_cumprod`` (T,) is ᾱ, `
 from __future__ import annotations
 
 import math
+import threading
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Literal
@@ -28,6 +29,7 @@ if TYPE_CHECKING:
     Scheduler = DDIMScheduler | DDPMScheduler | DPMSolverMultistepScheduler
 
 TRAIN_TIMESTEPS = 1000
+_IMPORTING = threading.Lock()
 SamplerName = Literal["ddim", "dpm++", "ddpm"]
 
 
@@ -84,8 +86,10 @@ def make_scheduler(
 
     Raises SamplerError for an unknown name, or a number of steps that the sampler cannot spread over T.
     """
-    # diffusers takes 2 s to import, so it is loaded with the first sampling and not with the page.
-    from diffusers import DDIMScheduler, DDPMScheduler, DPMSolverMultistepScheduler
+    # diffusers takes 2 s to import, so it is loaded with the first sampling and not with the page; its lazy
+    # modules cannot be imported by two threads at once.
+    with _IMPORTING:
+        from diffusers import DDIMScheduler, DDPMScheduler, DPMSolverMultistepScheduler
 
     betas = cosine_betas() if betas is None else np.asarray(betas)
     total = len(betas)
