@@ -38,7 +38,7 @@ def evaluate(options: argparse.Namespace) -> dict[str, Any]:
     tasks = [tasks[i] for i in judged]
     real = [real_duet(scenes, chosen[i][1]) for i in judged]
     families = len({task.family for task in tasks})
-    scores: dict[str, Any] = {"real": score(real, tasks), "other": score(_shifted(real), tasks)}
+    scores: dict[str, Any] = {"real": score(real, tasks), "other": score(_of_other_words(real, tasks), tasks)}
     text = f"{len(tasks)} test captions of {families} families, seed {options.seed}"
     if drawn:
         scores["generated"] = score([drawn[i] for i in judged], tasks)
@@ -51,10 +51,14 @@ def evaluate(options: argparse.Namespace) -> dict[str, Any]:
     return scores | {"about": text + ".", "settings": about}
 
 
-def _shifted(duets: Sequence[Duet]) -> list[Duet]:
-    """Every sentence gets the motion of another, half the list away."""
-    half = len(duets) // 2
-    return [*duets[half:], *duets[:half]]
+def _of_other_words(duets: Sequence[Duet], tasks: Sequence[Task]) -> list[Duet]:
+    """Every sentence gets the motion of another family, from half the list away."""
+    count = len(tasks)
+    found = []
+    for i, task in enumerate(tasks):
+        places = [(i + count // 2 + k) % count for k in range(count)]
+        found.append(duets[next((j for j in places if tasks[j].family != task.family), places[0])])
+    return found
 
 
 def _generate(tasks: Sequence[Task], options: argparse.Namespace) -> tuple[dict[int, Duet], dict[str, Any]]:
