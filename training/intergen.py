@@ -23,7 +23,7 @@ import torch
 from torch import Tensor
 from torch.nn.attention import SDPBackend, sdpa_kernel
 
-from models.compact import CompactConfig, CompactInterGen
+from models.compact import CompactConfig, CompactInterGen, WeightsFolder
 from models.diffusion import NoiseSchedule
 from models.intergen_losses import InterGenLoss, LossWeights, simple_loss
 from models.motion_tokens import FEATURES, mirror_control, pack
@@ -180,8 +180,8 @@ class Trainer:
     """One training run: :meth:`run` goes on from wherever its checkpoint stands.
 
     Args:
-        init: a checkpoint of another run whose averaged weights and normaliser a new run begins with, such
-            as one on a smaller corpus.
+        init: whose weights and normaliser a new run begins with: a checkpoint of another run (its average),
+            or a folder that was shipped.
     """
 
     def __init__(
@@ -192,7 +192,10 @@ class Trainer:
         self.data = Data(scenes, settings, out, device)
         self.model = new_model(settings, self.data).to(device)
         if init is not None:
-            checkpoint.restore_part(init, "ema", self.model)
+            if init.is_dir():
+                self.model.load_state_dict(WeightsFolder(init).model().state_dict())
+            else:
+                checkpoint.restore_part(init, "ema", self.model)
         self.ema = new_model(settings, self.data).to(device).requires_grad_(False)
         self.ema.load_state_dict(self.model.state_dict())
         self.reader = self.data.reader.to(device)
@@ -303,7 +306,9 @@ def main(argv: list[str] | None = None) -> int:
     parser = argparse.ArgumentParser(description="Train the compact InterGen on prepared scenes.")
     parser.add_argument("--scenes", type=Path, required=True, help="file of `python -m training.prepare`")
     parser.add_argument("--out", type=Path, required=True, help="folder of the checkpoint and the log")
-    parser.add_argument("--init", type=Path, help="begin with the weights of another run's last.safetensors")
+    parser.add_argument(
+        "--init", type=Path, help="begin with another run's last.safetensors, or a shipped folder"
+    )
     parser.add_argument(
         "--minutes", type=float, default=1e9, help="stop after this long; start again to go on"
     )
