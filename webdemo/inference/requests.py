@@ -73,7 +73,7 @@ class SamplingRequest:
 
     seed: int = 0
     samples: int = 1
-    guidance: float = 2.5
+    guidance: float = 3.0
     steps: int = 50
     damping: float = 0.7
     sampler: str = "ddim"
