@@ -9,15 +9,15 @@ CLIPS = Path(__file__).resolve().parents[2] / "static" / "examples"
 
 EXAMPLES: tuple[tuple[str, str], ...] = (
     ("Handshake", "Two people walk up to each other and shake hands."),
-    ("Bow", "Two people bow to each other."),
+    ("Cheer", "Two people cheer together."),
     ("High five", "Two people give each other a high five."),
     ("Hug", "One person walks up to the other and they hug."),
     ("Punch", "One person punches and the other steps back."),
-    ("Kick", "One person kicks and the other dodges the kick."),
+    ("Kick", "One person kicks and the other steps back."),
     ("Push", "One person pushes the other, who stumbles back."),
     ("Wave", "One person waves and the other waves back."),
-    ("Hand over", "One person hands an object to the other."),
-    ("Dance", "Two people dance facing each other."),
+    ("Hand over", "One person hands a book to the other."),
+    ("Dance", "Two people dance together."),
 )
 """(what the chip says, the prompt it puts into the box); each is one that the default model does well"""
 
