@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import secrets
 import time
+from abc import ABC, abstractmethod
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from typing import Any
 
@@ -45,7 +46,7 @@ _SEED_INFO = "Same seed, same motion; empty draws a new one."
 Updates = tuple[Any, ...]
 
 
-class JobTab:
+class JobTab(ABC):
     """A tab that turns its controls into a request, runs it and shows the result.
 
     A subclass lays out its own controls between these parts and answers :meth:`request` and :meth:`title`.
@@ -61,13 +62,13 @@ class JobTab:
     def __init__(self, page: PageContext) -> None:
         self.page = page
 
+    @abstractmethod
     def request(self, fields: Mapping[str, Any]) -> SamplingRequest:
         """The request that the controls' values ask for; raises InputError where they do not fit."""
-        raise NotImplementedError
 
+    @abstractmethod
     def title(self, request: Any) -> str:
         """What the player shows over the result and its files are called after."""
-        raise NotImplementedError
 
     # ---- layout ----------------------------------------------------------------------------------
 
