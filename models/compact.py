@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import hashlib
 import json
+from collections.abc import Sequence
 from dataclasses import asdict, dataclass, field
 from functools import cached_property
 from pathlib import Path
@@ -24,10 +25,13 @@ from models.intergen import InterGenConfig, InterGenDenoiser
 from models.motion_tokens import FEATURES, TokenLayout, decode, unpack
 from models.text import TextConditioner, TextConditionerConfig
 
+Touch = tuple[tuple[str, str], ...]
+"""Which joints of the two people come together: (joint of a, joint of b), …"""
+
 
 @dataclass(frozen=True)
 class CompactConfig:
-    """Sizes of a :class:`CompactInterGen`."""
+    """Sizes of a :class:`CompactInterGen`, and the touches that it reads from a sentence."""
 
     latent_dim: int = 320
     ff_size: int = 1024
@@ -37,10 +41,37 @@ class CompactConfig:
     text_layers: int = 2
     dropout: float = 0.0
     layout: TokenLayout = field(default_factory=TokenLayout)
+    touches: tuple[Touch, ...] = ()
 
     @classmethod
     def from_dict(cls, values: dict[str, Any]) -> CompactConfig:
-        return cls(**(values | {"layout": TokenLayout(**values["layout"])}))
+        known = tuple(tuple((a, b) for a, b in touch) for touch in values.get("touches", ()))
+        return cls(**(values | {"layout": TokenLayout(**values["layout"]), "touches": known}))
+
+
+class TouchReader(nn.Module):
+    """Says from the condition vector which joints the sentence wants to meet.
+
+    The network's own motion brings hands near each other; what they should do there is in the words. This
+    small classifier is fitted after the network, on its frozen condition vectors (:mod:`training.touch`).
+    """
+
+    def __init__(self, cond_dim: int, touches: Sequence[Touch], width: int = 128) -> None:
+        super().__init__()
+        self.touches: tuple[Touch, ...] = ((), *touches)
+        self.net = nn.Sequential(nn.Linear(cond_dim, width), nn.GELU(), nn.Linear(width, len(self.touches)))
+
+    def forward(self, condition: Tensor) -> Tensor:
+        """Condition (B, cond_dim) → logits (B, 1 + touches); the first says that nothing touches."""
+        return self.net(condition)
+
+    @torch.no_grad()
+    def read(self, condition: Tensor, sure: float = 0.5) -> list[Touch]:
+        """The likeliest touch of each sentence, () where all touches together are less than ``sure``."""
+        probability = self(condition).softmax(-1)
+        due = 1 - probability[:, 0] >= sure
+        best = probability[:, 1:].argmax(-1) + 1
+        return [self.touches[int(i)] if d else () for d, i in zip(due, best, strict=True)]
 
 
 class CompactInterGen(nn.Module):
@@ -70,12 +101,19 @@ class CompactInterGen(nn.Module):
         self.conditioner = TextConditioner(
             TextConditionerConfig(latent_dim=config.cond_dim, num_layers=config.text_layers, dropout=0.05)
         )
+        self.touch_reader = TouchReader(config.cond_dim, config.touches) if config.touches else None
         self.register_buffer("mean", torch.zeros(FEATURES))
         self.register_buffer("std", torch.ones(FEATURES))
 
     @property
     def layout(self) -> TokenLayout:
         return self.config.layout
+
+    def touches(self, condition: Tensor) -> list[Touch]:
+        """What should touch, for each condition vector (B, cond_dim); () where nothing should."""
+        if self.touch_reader is None:
+            return [()] * len(condition)
+        return self.touch_reader.read(condition)
 
     def control(self, x: Tensor) -> Tensor:
         """Network space (B, tokens, 2·token_features) → control points (B, 2, knots, 70) in metres."""

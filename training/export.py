@@ -19,6 +19,7 @@ from training import checkpoint
 from training.intergen import Data, Settings, new_model
 from training.prepare import Scenes, load
 from training.shell import exit_code
+from training.touch import with_touches
 from webdemo.motion import InputError
 
 BANK_PER_FAMILY = 40
@@ -75,6 +76,8 @@ def _run(options: argparse.Namespace) -> None:
         card: dict[str, Any] = json.loads(options.card.read_text()) if options.card else {}
     except (OSError, ValueError) as error:
         raise InputError(f"{options.card} is no JSON file: {error}.") from error
+    model, reads = with_touches(model, scenes)
+    print(f"touches read from test captions: {reads:.1%}")
     save_folder(options.out, model, caption_bank(scenes), card=card, trained_steps=int(meta["step"]))
     print(f"{options.out}: {sum(f.stat().st_size for f in options.out.iterdir()) / 1e6:.1f} MB")
 

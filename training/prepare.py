@@ -20,6 +20,7 @@ from safetensors.torch import save_file
 from torch import Tensor
 
 from models.motion_tokens import TokenLayout, encode
+from training.handedness import leading_hand
 from training.shell import exit_code
 from webdemo.formats.files import replacing
 from webdemo.motion import InputError
@@ -45,7 +46,8 @@ class Scenes:
 
     Attributes:
         control: (total knots, 2, 70) float16, the scenes one after the other.
-        rows: for each scene {"start", "tokens", "family", "captions", "split", "events", "sources"}.
+        rows: for each scene {"start", "tokens", "family", "captions", "split", "events", "sources",
+            "hand"}, see :func:`training.handedness.leading_hand`.
         layout: frames a knot and knots a token.
     """
 
@@ -96,7 +98,8 @@ def prepare(folder: Path, layout: TokenLayout, max_seconds: float = 10.0) -> Sce
         control = encode(positions, foot_contacts(positions), layout)
         parts.append(control.transpose(0, 1).half())
         kept = ("family", "captions", "split", "events", "sources")
-        rows.append({"start": start, "tokens": tokens} | {key: entry.get(key) for key in kept})
+        hand = leading_hand(motion.swapaxes(0, 1), entry.get("events"))
+        rows.append({"start": start, "tokens": tokens, "hand": hand} | {key: entry.get(key) for key in kept})
         start += tokens * layout.knots_per_token
     if not rows:
         raise InputError(f"The corpus in {folder} has no scene of a second or more.")

@@ -25,6 +25,7 @@ SIZES = [
     for name in ("latent_dim", "ff_size", "num_layers", "num_heads", "cond_dim", "batch", "warmup", "dropout")
     for word in ("--" + name.replace("_", "-"), str(getattr(SETTINGS, name)))
 ]
+HANDS_MEET = [{"a": "right_wrist", "b": "right_wrist", "start": 10, "end": 20}]
 
 
 def write_corpus(folder: Path, scenes: int = 10) -> Path:
@@ -38,11 +39,11 @@ def write_corpus(folder: Path, scenes: int = 10) -> Path:
         a = rest + 0.05 * np.sin(rng.uniform(2, 6) * time)[:, None, None] * rng.normal(size=(1, 22, 3))
         b = np.broadcast_to(rest * [-1, 1, -1] + [0, 0, 1.5], a.shape)
         motions.append(np.stack([a, b], axis=1))
-        captions = ["One person waves the left hand.", "They shake hands."]
+        captions = ["They shake hands." if i % 2 else "One person waves the left hand."] * 2
         split = "test" if i == 0 else "train"
         index.append(
             {"start": start, "frames": frames, "family": "sway", "captions": captions, "split": split}
-            | {"events": {}, "sources": []}
+            | {"events": {"contact": HANDS_MEET} if i % 2 else {}, "sources": []}
         )
         start += frames
     folder.mkdir()

@@ -67,6 +67,7 @@ def draw(generator: DuetGenerator, tasks: Sequence[Task], sampling: Sampling) ->
             frames=frames,
             timesteps=TRAIN_TIMESTEPS,
             final_timestep=int(scheduler.timesteps[-1]),
+            touches=model.touches(condition),
         )
 
         def predict(x: torch.Tensor, t: torch.Tensor, condition: torch.Tensor = condition) -> torch.Tensor:

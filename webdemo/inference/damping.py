@@ -5,17 +5,20 @@ compare with the true motion; at inference there is none, so the terms here are 
 of constant length, feet that stand still and stay above the floor, smooth joints, bodies that do not pass
 through each other, hands that meet where they nearly meet, people who turn fully towards each other where
 they nearly do. While t ≤ t̄·T the predicted clean motion takes a few gradient steps on them, in the network's
-own space of spline control points. At t̄ = 0 nothing is done and the sampler is the plain one, bit for bit.
+own space of spline control points. Where the sentence asks for a touch
+(:meth:`models.compact.CompactInterGen.touches`), the joints that it names are drawn together at the moment at
+which they come nearest. At t̄ = 0 nothing is done and the sampler is the plain one, bit for bit.
 """
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import torch
 from torch import Tensor
 
-from models.compact import CompactInterGen
+from models.compact import CompactInterGen, Touch
 from webdemo.motion import SMPL22
 from webdemo.motion.skeleton import FEET
 
@@ -27,7 +30,12 @@ _HIPS = [SMPL22.index("left_hip"), SMPL22.index("right_hip")]
 
 @dataclass(frozen=True)
 class DampingWeights:
-    """λ of each term; lengths are in metres, times in frames at 30 a second."""
+    """λ of each term; lengths are in metres, times in frames at 30 a second.
+
+    touch: wrists that meet are this far apart; nearly: from where they are drawn together unasked.
+    asked: λ of a touch that the sentence asks for; body: a wrist's distance from a joint inside the body that
+        it touches; reach: from where an asked touch is drawn together.
+    """
 
     bone: float = 1.0
     foot: float = 2.0
@@ -39,6 +47,9 @@ class DampingWeights:
     trunk_radius: float = 0.28
     touch: float = 0.08
     nearly: float = 0.20
+    asked: float = 5.0
+    body: float = 0.13
+    reach: float = 0.9
 
 
 def energy(positions: Tensor, contacts: Tensor, weights: DampingWeights) -> Tensor:
@@ -87,6 +98,26 @@ def energy(positions: Tensor, contacts: Tensor, weights: DampingWeights) -> Tens
     return torch.stack([factor * term for factor, term in zip(factors, terms, strict=True)]).sum(0)
 
 
+def asked_energy(positions: Tensor, touches: Sequence[Touch], weights: DampingWeights) -> Tensor:
+    """(B,) how far the joints that the sentences want to meet are apart where they come nearest, in m².
+
+    Args:
+        positions: (B, 2, T, 22, 3) metres.
+        touches: for each of the B.
+    """
+    totals = []
+    for (a, b), touch in zip(positions, touches, strict=True):
+        total = positions.new_zeros(())
+        for own, other in touch:
+            gap = torch.linalg.vector_norm(a[:, SMPL22.index(own)] - b[:, SMPL22.index(other)] + 1e-6, dim=-1)
+            limbs = ("wrist", "elbow")
+            apart = weights.touch if own.endswith(limbs) and other.endswith(limbs) else weights.body
+            due = (gap < gap.min() + 0.05) & (gap.min() < weights.reach)
+            total = total + ((gap - apart).clamp_min(0).square() * due).sum()
+        totals.append(weights.asked * total)
+    return torch.stack(totals)
+
+
 def _turned_away(person: Tensor, other: Tensor) -> Tensor:
     """(B,) how far from straight a person faces a near partner whom they nearly face; (B, T, 22, 3) each."""
     across = person[:, :, _HIPS[0]] - person[:, :, _HIPS[1]]
@@ -112,6 +143,7 @@ class Damping:
         final_steps: how many.
         step_size: of one gradient step; the largest move of any number is held to ``largest``.
         frozen: (tokens, 2·token_features) true where a number is given and must not move.
+        touches: what the sentence of each motion wants to touch; none by default.
     """
 
     def __init__(
@@ -127,6 +159,7 @@ class Damping:
         step_size: float = 0.03,
         largest: float = 0.03,
         frozen: Tensor | None = None,
+        touches: Sequence[Touch] = (),
         weights: DampingWeights | None = None,
     ) -> None:
         self.model, self.frames = model, frames
@@ -134,7 +167,7 @@ class Damping:
         self.off = threshold == 0
         self.gradient_steps, self.step_size, self.largest = gradient_steps, step_size, largest
         self.final_timestep, self.final_steps = final_timestep, final_steps
-        self.frozen = frozen
+        self.frozen, self.touches = frozen, touches
         self.weights = weights or DampingWeights()
 
     def __call__(self, x0: Tensor, timestep: int) -> Tensor:
@@ -147,9 +180,10 @@ class Damping:
             with torch.enable_grad():
                 x = x0.detach().requires_grad_(True)
                 positions, contacts = self.model.positions(x)
-                total = energy(
-                    positions[:, :, : self.frames], contacts[:, :, : self.frames], self.weights
-                ).sum()
+                positions, contacts = positions[:, :, : self.frames], contacts[:, :, : self.frames]
+                total = energy(positions, contacts, self.weights).sum()
+                if any(self.touches):
+                    total = total + asked_energy(positions, self.touches, self.weights).sum()
                 (gradient,) = torch.autograd.grad(total, x)
             # The step is taken on control points in metres: d/dcontrol = d/dx / std.
             move = (self.step_size * gradient / scale).clamp(-self.largest, self.largest)

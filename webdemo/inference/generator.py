@@ -115,6 +115,7 @@ class DuetGenerator:
             timesteps=TRAIN_TIMESTEPS,
             final_timestep=int(scheduler.timesteps[-1]),
             frozen=None if given is None else given.mask,
+            touches=self.model.touches(condition) if request.prompt.strip() else (),
         )
         uncorrected = noise
 

@@ -1,0 +1,67 @@
+"""The regularisers of sampling, on control points of two people who stand still."""
+
+import numpy as np
+import pytest
+import torch
+
+from models.compact import CompactConfig, CompactInterGen, TouchReader
+from models.motion_tokens import encode, pack
+from webdemo.inference.damping import Damping, DampingWeights, asked_energy
+from webdemo.motion import SMPL22
+
+HANDS = (("right_wrist", "right_wrist"),)
+
+
+@pytest.fixture(scope="module")
+def model() -> CompactInterGen:
+    return CompactInterGen(CompactConfig(latent_dim=32, ff_size=32, num_layers=1, num_heads=2, cond_dim=16))
+
+
+def standing(model: CompactInterGen, apart: float) -> torch.Tensor:
+    """Two people who hold a right hand out, with ``apart`` metres between the wrists."""
+    rest = SMPL22.rest_positions() + np.array([0, 0.98, 0])
+    wrist = SMPL22.index("right_wrist")
+    a = rest.copy()
+    a[wrist] = a[SMPL22.index("right_shoulder")] + [0, -0.1, 0.45]
+    b = a * [-1, 1, -1]
+    b += a[wrist] - b[wrist] + [0, 0, apart]
+    positions = torch.tensor(np.stack([a, b]), dtype=torch.float32)[:, None].expand(2, 61, 22, 3)
+    return pack(encode(positions, torch.ones(2, 61, 4), model.layout)[None], model.layout)
+
+
+def gap(model: CompactInterGen, x: torch.Tensor) -> float:
+    a, b = model.positions(x)[0][0, :, :61, SMPL22.index("right_wrist")]
+    return float((a - b).norm(dim=-1).min())
+
+
+@pytest.mark.parametrize("apart", [0.15, 0.4, 0.7])
+def test_an_asked_touch_brings_the_hands_together(model, apart):
+    x = standing(model, apart)
+    assert gap(model, x) == pytest.approx(apart, abs=0.02)
+    met = Damping(model, 1.0, frames=61, final_steps=60, touches=[HANDS])(x, 0)
+    assert gap(model, met) < 0.12
+
+
+def test_hands_that_are_not_asked_for_stay_apart(model):
+    x = standing(model, 0.4)
+    for touches in ((), [()]):
+        assert gap(model, Damping(model, 1.0, frames=61, touches=touches)(x, 0)) > 0.35
+
+
+def test_a_touch_out_of_reach_is_left_alone(model):
+    positions = model.positions(standing(model, 2.0))[0]
+    assert asked_energy(positions, [HANDS], DampingWeights()).tolist() == [0.0]
+
+
+def test_without_damping_nothing_is_corrected(model):
+    x = standing(model, 0.4)
+    assert Damping(model, 0.0, frames=61, touches=[HANDS])(x, 0) is x
+    assert Damping(model, 0.5, frames=61, touches=[HANDS])(x, 501) is x
+
+
+def test_a_reader_answers_only_where_it_is_sure():
+    reader = TouchReader(4, [HANDS, (("left_wrist", "spine3"),)])
+    logits = torch.tensor([[3.0, 0, 0], [0, 3.0, 0], [0.1, 0.2, 0.3]])
+    reader.net = torch.nn.Identity()
+    assert reader.read(logits) == [(), HANDS, (("left_wrist", "spine3"),)]
+    assert reader.read(logits, sure=0.9) == [(), HANDS, ()]
