@@ -14,9 +14,11 @@ import argparse
 import json
 import math
 import time
+from collections import Counter
 from collections.abc import Iterator
 from dataclasses import asdict, dataclass, field, fields
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import torch
@@ -29,6 +31,7 @@ from models.intergen_losses import InterGenLoss, LossWeights, simple_loss
 from models.motion_tokens import FEATURES, mirror_control, pack
 from training import checkpoint
 from training.corpus.captions import mirror_caption
+from training.handedness import mirrored
 from training.prepare import Scenes, load, normalizer
 from training.reading import CaptionReader
 from training.shell import exit_code
@@ -98,6 +101,13 @@ class Batch:
     labels: Tensor
 
 
+def balanced(rows: list[dict[str, Any]]) -> list[dict[str, Any]]:
+    """The rows, those of rare families up to three times, so that long scenes do not make a family rare."""
+    counts = Counter(row["family"] for row in rows)
+    usual = float(np.quantile(list(counts.values()), 0.75))
+    return [row for row in rows for _ in range(min(max(round(usual / counts[row["family"]]), 1), 3))]
+
+
 class Data:
     """Draws batches of similar lengths; batch ``step`` is the same in every run of the same seed."""
 
@@ -105,7 +115,7 @@ class Data:
         self, scenes: Scenes, settings: Settings, cache: Path, device: str, *, captions: bool = True
     ) -> None:
         self.scenes, self.settings, self.device = scenes, settings, device
-        self.rows = scenes.split("train")
+        self.rows = balanced(scenes.split("train"))
         if len(self.rows) < settings.batch:
             raise InputError(f"{len(self.rows)} training scenes do not fill a batch of {settings.batch}.")
         if captions:
@@ -143,7 +153,7 @@ class Data:
         captions, labels = [], []
         for i, row in enumerate(rows):
             one, caption = self.scenes.scene(row), row["captions"][int(draw[i, 0] * len(row["captions"]))]
-            mirror = bool(draw[i, 1] < 0.5)
+            mirror = mirrored(caption, row.get("hand"), float(draw[i, 1]))
             labels.append(self.reader.labels(row, mirror=mirror))
             if mirror:
                 one, caption = mirror_control(one, SMPL22.mirror), mirror_caption(caption)
