@@ -63,7 +63,7 @@ def conjugate(verb: str, form: str) -> str:
 
 
 _SWAP = {"left": "right", "clockwise": "counterclockwise", "leftwards": "rightwards"}
-_SWAP.update({value: key for key, value in _SWAP.items()})
+_SWAP.update({value: key for key, value in _SWAP.items()} | {"anticlockwise": "clockwise"})
 
 
 def mirror_caption(text: str) -> str:

@@ -83,7 +83,7 @@ def act(
             )
             turned_by = 0.0
         blend = min(blend_for(done, motion), len(motion) // 2)
-        starts.append(len(done) - blend // 2)
+        starts.append(len(done) - blend)
         done = join(done, motion, blend=blend, turn=-aim - turned_by)
         turned_by = -aim
         cursor = min(len(done), len(base) - tail - 30)

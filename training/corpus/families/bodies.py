@@ -180,7 +180,7 @@ def arm_around(rng: Rng, library: Library) -> Scene:
     return conclude(
         rng, library, "arm-around", meet, a, b,
         touches=[(f"{side}_wrist", f"{side}_shoulder", arrive, leave)],
-        side=side if rng.random() < 0.3 else None,
+        side=side if rng.random() < 0.6 else None,
     )  # fmt: skip
 
 
@@ -390,7 +390,7 @@ def _strike(rng: Rng, library: Library, family: str) -> Scene:
     pb = shift_hips(pb, line * (give * rng.uniform(0.04, 0.08))[:, None])
     pb = lean_to(pb, line * sign, give * rng.uniform(0.3, 0.5))
     pb = nod(pb, give * rng.uniform(0.1, 0.3))
-    named = take.side if rng.random() < 0.5 else None
+    named = take.side if rng.random() < 0.65 else None
     return conclude(
         rng,
         library,

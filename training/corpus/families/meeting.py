@@ -131,7 +131,7 @@ def abreast(rng: Rng, library: Library, ahead: float, left: float, frames: int) 
 
 def chosen_side(rng: Rng) -> tuple[str, bool]:
     """The hand that acts, mostly the right one, and whether the captions name it."""
-    return ("right" if rng.random() < 0.75 else "left"), bool(rng.random() < 0.3)
+    return ("right" if rng.random() < 0.75 else "left"), bool(rng.random() < 0.6)
 
 
 def opposite(side: str) -> str:
