@@ -13,7 +13,7 @@ encoder that sees all frames.
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 
 import torch
@@ -37,11 +37,13 @@ class StreamError(InputError):
 class ReGenNetConfig:
     """The sizes of a `ReGenNet`; the defaults are the released ones.
 
-    rows: rows of 6 numbers a frame. num_actions: action labels, 0 for a network without them.
+    rows: rows of 6 numbers a frame; actor_rows: those of the actor's frame, as many by default.
+    num_actions: action labels, 0 for a network without them.
     online: causal decoder (true) or encoder over all frames (false).
     """
 
     rows: int = 56
+    actor_rows: int | None = None
     latent_dim: int = 512
     ff_size: int = 1024
     num_layers: int = 8
@@ -93,7 +95,7 @@ class ReGenNet(nn.Module):
         self.config = config = config or ReGenNetConfig()
         features, d = config.rows * ROW_WIDTH, config.latent_dim
         self.input_process = PoseEmbedding(features, d)
-        self.cmo_process = PoseEmbedding(features, d)
+        self.cmo_process = PoseEmbedding((config.actor_rows or config.rows) * ROW_WIDTH, d)
         self.fuse_process = nn.Linear(2 * d, d)
         sizes = {"dropout": config.dropout, "activation": "gelu", "batch_first": True}
         if config.online:
@@ -176,43 +178,69 @@ class ReGenNet(nn.Module):
         return ReactionStream(self, steps=steps, batch=batch, action=action, max_frames=max_frames)
 
 
+Attend = Callable[[Tensor, Tensor, Tensor], Tensor]
+"""Queries, keys and values (B, heads, T, d / heads) → what the queries see, in the shape of the queries."""
+
+
+def decoder_layer(layer: nn.TransformerDecoderLayer, h: Tensor, memory: Tensor, attend: Attend) -> Tensor:
+    """One layer of the online network, without dropout: h (B, T, d) → (B, T, d).
+
+    The memory is a single token, so attention to it is the same vector for every frame: ``memory`` (B, 1, d),
+    see :func:`attend_to_one`.
+    """
+    attention = layer.self_attn
+    parts = F.linear(h, attention.in_proj_weight, attention.in_proj_bias).chunk(3, dim=-1)
+    q, k, v = (part.unflatten(-1, (attention.num_heads, -1)).transpose(1, 2) for part in parts)
+    seen = attend(q, k, v).transpose(1, 2).flatten(2)
+    h = layer.norm1(h + attention.out_proj(seen))
+    h = layer.norm2(h + memory)
+    return layer.norm3(h + layer.linear2(F.gelu(layer.linear1(h))))
+
+
 class CausalPass:
     """One denoising pass of an online network at a fixed timestep, a frame at a time.
 
     Keys and values of past frames are kept, so a frame costs one token through the layers, plus attention
-    over the frames so far. The memory is a single token, so its attention is the same vector for every frame
-    and is worked out once.
+    over the frames so far, or over the last ``window`` of them.
+
+    Args:
+        network: an online network.
+        emb: (B, d) the condition of the pass, as :meth:`ReGenNet.embed` gives it.
+        max_frames: how many frames there can be.
+        window: how many frames a frame sees, itself among them; all of the past by default.
     """
 
-    def __init__(self, network: ReGenNet, emb: Tensor, max_frames: int) -> None:
+    def __init__(self, network: ReGenNet, emb: Tensor, max_frames: int, *, window: int | None = None) -> None:
         config, b = network.config, emb.shape[0]
         self.network, self.length, self.max_frames = network, 0, max_frames
+        self.window = window or max_frames
         self.layers = network.seqTransDecoder.layers
         heads, width = config.num_heads, config.latent_dim // config.num_heads
         self.cache = emb.new_zeros(len(self.layers), 2, b, heads, max_frames, width)
         self.positions = sinusoids(max_frames, config.latent_dim, device=emb.device)
-        self.from_memory = [_attend_to_one(layer.multihead_attn, emb)[:, None] for layer in self.layers]
+        self.from_memory = [attend_to_one(layer.multihead_attn, emb)[:, None] for layer in self.layers]
 
     @torch.no_grad()
     def step(self, x: Tensor, actor: Tensor) -> Tensor:
         """The next noised and actor frame (B, 6R) → the predicted clean frame (B, 6R)."""
         i = self.length
+        first = max(0, i + 1 - self.window)
         h = self.network.fuse(x, actor)[:, None] + self.positions[i]
         for layer, cache, memory in zip(self.layers, self.cache, self.from_memory, strict=True):
-            attention = layer.self_attn
-            q, k, v = F.linear(h, attention.in_proj_weight, attention.in_proj_bias).chunk(3, dim=-1)
-            q, k, v = (part.view(h.shape[0], attention.num_heads, 1, -1) for part in (q, k, v))
-            keys, values = cache
-            keys[:, :, i : i + 1], values[:, :, i : i + 1] = k, v
-            attended = F.scaled_dot_product_attention(q, keys[:, :, : i + 1], values[:, :, : i + 1])
-            h = layer.norm1(h + attention.out_proj(attended.transpose(1, 2).reshape_as(h)))
-            h = layer.norm2(h + memory)
-            h = layer.norm3(h + layer.linear2(F.gelu(layer.linear1(h))))
+
+            def attend(q: Tensor, k: Tensor, v: Tensor, cache: Tensor = cache) -> Tensor:
+                keys, values = cache
+                keys[:, :, i : i + 1], values[:, :, i : i + 1] = k, v
+                return F.scaled_dot_product_attention(
+                    q, keys[:, :, first : i + 1], values[:, :, first : i + 1]
+                )
+
+            h = decoder_layer(layer, h, memory, attend)
         self.length += 1
         return self.network.output_process(h[:, 0])
 
 
-def _attend_to_one(attention: nn.MultiheadAttention, token: Tensor) -> Tensor:
+def attend_to_one(attention: nn.MultiheadAttention, token: Tensor) -> Tensor:
     """Attention to a single key is its value: (B, d) → (B, d)."""
     d = token.shape[-1]
     value = F.linear(token, attention.in_proj_weight[2 * d :], attention.in_proj_bias[2 * d :])

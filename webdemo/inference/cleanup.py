@@ -32,6 +32,12 @@ def clean_person(positions: Array, fps: float = 30.0) -> Array:
     Returns:
         (T, 22, 3) metres.
     """
+    result = on_constant_bones(positions)
+    return plant_feet(result, foot_contacts(result, fps))
+
+
+def on_constant_bones(positions: Array) -> Array:
+    """One person (T, 22, 3) on SMPL22's constant bones, each frame by itself; see :func:`clean_person`."""
     target = np.asarray(positions, dtype=np.float64)
     result, _ = project_to_skeleton(target)
     forward = facing(result)
@@ -46,4 +52,4 @@ def clean_person(positions: Array, fps: float = 30.0) -> Array:
             result[:, hip], result[:, knee], result[:, ankle], target[:, ankle], forward
         )
         result[:, toe] = result[:, ankle] + foot
-    return plant_feet(result, foot_contacts(result, fps))
+    return result

@@ -12,7 +12,7 @@ from __future__ import annotations
 
 import platform
 import threading
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from dataclasses import replace
 from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
@@ -22,11 +22,15 @@ from webdemo.motion import InputError
 
 from .cancel import CancelToken
 from .generator import Clock, DuetGenerator
+from .reactor import LiveFrame, Reactor
 from .requests import GenerateRequest, Progress, ReactRequest, Result
 
 WEIGHTS = Path(__file__).resolve().parents[2] / "models" / "weights"
-GENERATORS = {"intergen": "intergen"}
-"""Generators by name: the folder of their weights."""
+GENERATORS: dict[str, Callable[[Path], DuetGenerator | Reactor]] = {
+    "intergen": DuetGenerator,
+    "regennet": Reactor,
+}
+"""What runs requests, by name; the folder of its weights has the same name."""
 
 
 class Engine:
@@ -41,7 +45,7 @@ class Engine:
     def __init__(self, weights: Path = WEIGHTS) -> None:
         self.weights = weights
         self._lock = threading.Lock()
-        self._generators: dict[str, DuetGenerator] = {}
+        self._generators: dict[str, DuetGenerator | Reactor] = {}
 
     @property
     def ready(self) -> bool:
@@ -59,7 +63,7 @@ class Engine:
         """Name, summary and figures of the default model, as its folder tells them; loads no network."""
         from models.compact import WeightsFolder
 
-        meta = WeightsFolder(self.weights / GENERATORS["intergen"]).meta
+        meta = WeightsFolder(self.weights / "intergen").meta
         return {"name": "intergen", "ready": self.ready, **meta.get("card", {})}
 
     def run(
@@ -88,16 +92,28 @@ class Engine:
                 event = replace(event, duets=duets, manifest=manifest)
             yield event
 
-    def _generator(self, name: str) -> DuetGenerator:
+    def live(self, request: ReactRequest) -> Iterator[LiveFrame]:
+        """The frames of an online reaction, each given as soon as the actor's frame has come.
+
+        Raises:
+            InputError: for a request that is not online.
+        """
+        if request.mode != "online":
+            raise InputError("Only an online reaction can be streamed: choose model regennet, mode online.")
+        reactor = self._generator(request.model)
+        assert isinstance(reactor, Reactor)  # no other model has the mode
+        return reactor.live(request)
+
+    def _generator(self, name: str) -> DuetGenerator | Reactor:
         if name not in GENERATORS:
             raise InputError(f"There is no model {name!r:.40}: choose one of {', '.join(GENERATORS)}.")
         with self._lock:
             if name not in self._generators:
-                self._generators[name] = DuetGenerator(self.weights / GENERATORS[name])
+                self._generators[name] = GENERATORS[name](self.weights / name)
             return self._generators[name]
 
 
-def _manifest(request: GenerateRequest | ReactRequest, generator: DuetGenerator) -> dict[str, Any]:
+def _manifest(request: GenerateRequest | ReactRequest, generator: DuetGenerator | Reactor) -> dict[str, Any]:
     """Everything that reproduces a result."""
     return {
         "product": "Pas de Deux",

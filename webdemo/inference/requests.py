@@ -24,7 +24,10 @@ GUIDANCE = (0.0, 10.0)
 DAMPING = (0.0, 1.0)
 MAX_SEED = 2**32 - 1
 SAMPLERS = ("ddim", "dpm++")
-MODES = ("offline",)
+MODES: dict[str, tuple[str, ...]] = {"intergen": ("offline",), "regennet": ("offline", "online")}
+"""How each model can react: in sight of the whole given motion, or of its past alone."""
+DEFAULT_STEPS = {"intergen": 50, "regennet": 5}
+"""Denoising steps that each model is meant for."""
 
 
 def _number(name: str, value: Any, low: float, high: float, unit: str = "") -> float:
@@ -113,14 +116,18 @@ class GenerateRequest(SamplingRequest):
 
 @dataclass(frozen=True, kw_only=True)
 class ReactRequest(SamplingRequest):
-    """A second person for a given one: person-to-person generation (InterGen, section 5.4).
+    """A second person for a given one: InterGen person to person (section 5.4), or ReGenNet.
+
+    ReGenNet samples with DDIM alone and has no regularisers: its ``damping`` is 0 whatever was given.
 
     Attributes:
         actor: the given person, 1 to 10 seconds on SMPL22's joints. At 30 fps the result holds these very
             positions; a clip of another rate is resampled first.
         prompt: what the two people do, in English; empty for a reaction without a stated intent.
         role: which of the two the given person is: "a" acts first, "b" reacts to a person who is made.
-        mode: "offline": the other person is made in sight of the whole motion.
+            ReGenNet's given person always acts first.
+        mode: "offline": the other person is made in sight of the whole motion; "online" (ReGenNet): each of
+            their frames in sight of the given person's frames so far.
     """
 
     actor: Clip
@@ -131,12 +138,23 @@ class ReactRequest(SamplingRequest):
     def __post_init__(self) -> None:
         _words(self.prompt, needed=False)
         _choice("Role", self.role, ROLES)
-        if self.mode not in MODES:
+        _choice("Model", self.model, tuple(MODES))
+        if self.mode not in MODES[self.model]:
             raise InputError(
-                f"Mode {self.mode!r:.40} is not one of this model's: choose {' or '.join(MODES)}."
+                f"Mode {self.mode!r:.40} is none of {self.model}'s: choose {' or '.join(MODES[self.model])}."
             )
+        if self.model == "regennet":
+            self._check_regennet()
         object.__setattr__(self, "actor", check_actor(self.actor, SECONDS))
         super().__post_init__()
+
+    def _check_regennet(self) -> None:
+        if self.role != "a":
+            raise InputError("ReGenNet makes the one who reacts: choose role a, or the model intergen.")
+        if self.sampler != "ddim":
+            raise InputError(f"ReGenNet samples with ddim, not with {self.sampler!r:.40}: choose ddim.")
+        _number("Damping threshold", self.damping, *DAMPING)
+        object.__setattr__(self, "damping", 0.0)
 
     def to_dict(self) -> dict[str, Any]:
         """Everything but the motion, which is named by its SHA-256."""

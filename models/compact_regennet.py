@@ -1,0 +1,298 @@
+"""The compact ReGenNet: the online network over spline control points, in sight of the future or not.
+
+ReGenNet (Xu et al., section 4.2) denoises one row a frame. Here a row is a control point of a cubic
+B-spline in time, as in :mod:`models.motion_tokens`: four times fewer rows, and no jitter by construction.
+
+*Online.* A frame needs the control points up to three beyond its interval's first, so those are predicted
+ahead: row j sees the actor up to frame ``frames_per_knot · (j − 3)`` and the rows up to j. When that frame
+has come, the reaction's next ``frames_per_knot`` frames are known; none of them depends on a later one of
+the actor's. *Offline* is the same network without the causal mask, told so by a learned vector.
+
+Shapes: B batch, K rows, T frames, d latent width.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import json
+from collections.abc import Iterator
+from dataclasses import asdict, dataclass
+from functools import partial
+from pathlib import Path
+from typing import Any
+
+import torch
+import torch.nn.functional as F
+from torch import Tensor, nn
+
+from models.compact import WeightsFolder
+from models.diffusion import make_scheduler
+from models.errors import WeightsError
+from models.layers import sinusoids_at
+from models.motion_tokens import FEATURES, NUM_JOINTS, TokenLayout, decode
+from models.regennet import (
+    ROW_WIDTH,
+    CausalPass,
+    ReGenNet,
+    ReGenNetConfig,
+    StreamError,
+    attend_to_one,
+    decoder_layer,
+)
+from models.text import TextConditioner, TextConditionerConfig
+
+LEAD = 3
+"""Control points beyond an interval's first that its frames depend on."""
+POSE = 3 * NUM_JOINTS
+ACTOR_FEATURES = 2 * POSE
+
+
+@dataclass(frozen=True)
+class CompactReGenNetConfig:
+    """Sizes of a :class:`CompactReGenNet`; ``window``: how many rows an online row sees, itself included."""
+
+    latent_dim: int = 192
+    ff_size: int = 512
+    num_layers: int = 6
+    num_heads: int = 4
+    cond_dim: int = 256
+    text_layers: int = 2
+    window: int = 40
+    frames_per_knot: int = 4
+
+
+class CompactReGenNet(nn.Module):
+    """Denoiser, text conditioner and normalisers.
+
+    ``mean`` and ``std`` (70,) are those of the reactor's control point, ``actor_mean`` and ``actor_std``
+    (132,) those of :meth:`actor_rows`.
+    """
+
+    mean: Tensor
+    std: Tensor
+    actor_mean: Tensor
+    actor_std: Tensor
+
+    def __init__(self, config: CompactReGenNetConfig) -> None:
+        super().__init__()
+        self.config = config
+        self.layout = TokenLayout(config.frames_per_knot, 1)
+        self.network = ReGenNet(
+            ReGenNetConfig(
+                rows=-(-FEATURES // ROW_WIDTH),
+                actor_rows=ACTOR_FEATURES // ROW_WIDTH,
+                latent_dim=config.latent_dim,
+                ff_size=config.ff_size,
+                num_layers=config.num_layers,
+                num_heads=config.num_heads,
+                online=True,
+                dropout=0.0,
+            )
+        )
+        self.condition = nn.Linear(config.cond_dim, config.latent_dim, bias=False)
+        self.offline = nn.Parameter(torch.zeros(config.latent_dim))
+        self.conditioner = TextConditioner(
+            TextConditionerConfig(latent_dim=config.cond_dim, num_layers=config.text_layers, dropout=0.0)
+        )
+        for name, width in (("mean", FEATURES), ("actor_mean", ACTOR_FEATURES)):
+            self.register_buffer(name, torch.zeros(width))
+        for name, width in (("std", FEATURES), ("actor_std", ACTOR_FEATURES)):
+            self.register_buffer(name, torch.ones(width))
+
+    # ---- motion ----------------------------------------------------------------------------------
+
+    def num_rows(self, frames: int) -> int:
+        """Control points that ``frames`` frames need."""
+        return self.layout.num_tokens(frames)
+
+    def actor_rows(self, positions: Tensor) -> Tensor:
+        """What each row sees of the actor, normalised: positions (B, T, 22, 3) metres → (B, K, 132).
+
+        The pose at the row's frame, and how it differs from the pose a knot earlier.
+        """
+        step = self.config.frames_per_knot
+        knots = torch.arange(self.num_rows(positions.shape[1]), device=positions.device) - LEAD
+        now = pose_rows(positions[:, step * knots.clamp_min(0)])
+        before = pose_rows(positions[:, step * (knots - 1).clamp_min(0)])
+        return (torch.cat([now, now - before], dim=-1) - self.actor_mean) / self.actor_std
+
+    def positions(self, x: Tensor, frames: int) -> tuple[Tensor, Tensor]:
+        """Network space (B, K, 70) → positions (B, T, 22, 3) in metres and foot contacts (B, T, 4)."""
+        decoded, contacts = decode(x * self.std + self.mean, self.layout)
+        return decoded[:, :frames], contacts[:, :frames]
+
+    # ---- network ---------------------------------------------------------------------------------
+
+    def embed(self, t: Tensor, condition: Tensor, *, causal: bool) -> Tensor:
+        """The token that all rows attend to, (B, d): timestep, words (zeros for none), and the mode."""
+        emb = self.network.embed_timestep(t) + self.condition(condition)
+        return emb if causal else emb + self.offline
+
+    def forward(
+        self,
+        x: Tensor,
+        t: Tensor,
+        actor: Tensor,
+        condition: Tensor,
+        *,
+        causal: bool,
+        start: Tensor | None = None,
+    ) -> Tensor:
+        """The predicted clean reaction.
+
+        Args:
+            x: (B, K, 70) noised reaction in network space.
+            t: (B,) int64 timesteps.
+            actor: (B, K, 132) of :meth:`actor_rows`.
+            condition: (B, cond_dim) of the conditioner; zeros leave the words out.
+            causal: online; else every row sees all.
+            start: (B,) int64, the place of the first row, 0 by default; training draws it, so that long
+                streams meet no place that is new.
+
+        Returns:
+            (B, K, 70)
+        """
+        rows, d = x.shape[1], self.config.latent_dim
+        emb = self.embed(t, condition, causal=causal)
+        place = torch.arange(rows, device=x.device)
+        places = place if start is None else place + start[:, None]
+        h = self.network.fuse(widen(x), actor)
+        h = h + sinusoids_at(places.flatten(), d).view(*places.shape, d)
+        mask = None
+        if causal:
+            behind = place[:, None] - place[None]
+            mask = (behind >= 0) & (behind < self.config.window)
+        attend = partial(F.scaled_dot_product_attention, attn_mask=mask)
+        for layer in self.network.seqTransDecoder.layers:
+            memory = attend_to_one(layer.multihead_attn, emb)[:, None]
+            h = decoder_layer(layer, h, memory, attend)
+        return self.network.output_process(h)[..., :FEATURES]
+
+    def guided(self, x: Tensor, t: Tensor, actor: Tensor, condition: Tensor, *, scale: float) -> Tensor:
+        """Offline prediction with classifier-free guidance, both halves in one batch; as in `forward`."""
+        if scale == 1 or not condition.any():
+            return self(x, t, actor, condition, causal=False)
+        both = torch.cat([condition, torch.zeros_like(condition)])
+        doubled = (torch.cat([v, v]) for v in (x, t, actor))
+        conditional, plain = self(*doubled, both, causal=False).chunk(2)
+        return plain + scale * (conditional - plain)
+
+    def stream(
+        self, condition: Tensor, *, steps: int = 5, scale: float = 1.0, max_frames: int = 900
+    ) -> CompactStream:
+        """Open a stream that reacts to an actor frame by frame; condition (B, cond_dim), B samples."""
+        return CompactStream(self, condition, steps=steps, scale=scale, max_frames=max_frames)
+
+
+def pose_rows(positions: Tensor) -> Tensor:
+    """(…, 22, 3) → (…, 66): the pelvis, and the other joints relative to it."""
+    root = positions[..., :1, :]
+    return torch.cat([root, positions[..., 1:, :] - root], dim=-2).flatten(-2)
+
+
+def widen(x: Tensor) -> Tensor:
+    """(…, 70) → (…, 72): whole rows of six."""
+    return F.pad(x, (0, -FEATURES % ROW_WIDTH))
+
+
+class CompactStream:
+    """DDIM sampling of a reaction while the actor moves: one actor frame in, one reaction frame out.
+
+    Rows are denoised at every ``frames_per_knot``-th frame, the frames between are read off the spline, so
+    most frames cost next to nothing and the others the same whatever came before: attention reaches back
+    over a fixed window.
+    """
+
+    def __init__(
+        self, model: CompactReGenNet, condition: Tensor, *, steps: int, scale: float, max_frames: int
+    ) -> None:
+        if max_frames < 1:
+            raise StreamError("A stream needs at least one frame: give max_frames 1 or more.")
+        self.model, self.scale, self.max_frames = model, scale, max_frames
+        self.samples = condition.shape[0]
+        self.guided = scale != 1 and bool(condition.any())
+        if self.guided:
+            condition = torch.cat([condition, torch.zeros_like(condition)])
+        self.scheduler = make_scheduler("ddim", steps)
+        rows = model.num_rows(max_frames) + 1
+        with torch.no_grad():
+            self.passes = [
+                CausalPass(
+                    model.network,
+                    model.embed(t.expand(len(condition)), condition, causal=True),
+                    rows,
+                    window=model.config.window,
+                )
+                for t in self.scheduler.timesteps
+            ]
+        self.length = 0
+        self._last: Tensor | None = None
+        self._recent: list[Tensor] = []
+
+    @torch.no_grad()
+    def step(self, actor: Tensor, *, noise: Iterator[Tensor]) -> tuple[Tensor, Tensor]:
+        """The reaction's next frame.
+
+        Args:
+            actor: (22, 3) metres, the actor's frame in the network's frame of reference.
+            noise: gives a (B, 70) tensor for each row; four rows are taken at the first frame and one at
+                every ``frames_per_knot``-th.
+
+        Returns:
+            Positions (B, 22, 3) in metres and contact scores (B, 4) of the feet. Raises StreamError after
+            ``max_frames`` frames.
+        """
+        if self.length == self.max_frames:
+            raise StreamError(f"The stream was opened for {self.max_frames} frames: open another.")
+        interval, within = divmod(self.length, self.model.config.frames_per_knot)
+        if within == 0:
+            pose = pose_rows(actor)
+            last = pose if self._last is None else self._last
+            seen = torch.cat([pose, pose - last])
+            seen = (seen - self.model.actor_mean) / self.model.actor_std
+            for _ in range(1 if interval else 1 + LEAD):
+                self._recent.append(self._denoise(seen, next(noise)))
+            self._recent = self._recent[-1 - LEAD :]
+            self._last = pose
+        self.length += 1
+        control = torch.stack(self._recent, dim=1) * self.model.std + self.model.mean
+        positions, contacts = decode(control, self.model.layout)
+        return positions[:, within], contacts[:, within]
+
+    def _denoise(self, seen: Tensor, x: Tensor) -> Tensor:
+        """The next row (B, 70) from its noise."""
+        for t, causal_pass in zip(self.scheduler.timesteps, self.passes, strict=True):
+            doubled = torch.cat([x, x]) if self.guided else x
+            rows = causal_pass.step(widen(doubled), seen.expand(len(doubled), -1))[..., :FEATURES]
+            if self.guided:
+                conditional, plain = rows.chunk(2)
+                rows = plain + self.scale * (conditional - plain)
+            x = self.scheduler.step(rows, t, x).prev_sample
+        return x
+
+
+def load_folder(folder: Path) -> tuple[CompactReGenNet, WeightsFolder]:
+    """The network of a weights folder in float32, eval mode, and the folder.
+
+    Raises WeightsError where a file is missing, altered or of other sizes.
+    """
+    source = WeightsFolder(folder)
+    try:
+        model = CompactReGenNet(CompactReGenNetConfig(**source.meta["model"]))
+        weights = source.tensors("model.safetensors")
+        model.load_state_dict({name: tensor.float() for name, tensor in weights.items()})
+    except (RuntimeError, TypeError, KeyError) as error:
+        raise WeightsError(f"The weights in {folder.name} do not fit their config: restore them.") from error
+    return model.eval().requires_grad_(False), source
+
+
+def save_folder(folder: Path, model: CompactReGenNet, **meta: Any) -> None:
+    """Writes ``model.safetensors`` in float16, then ``config.json`` with its SHA-256."""
+    from safetensors.torch import save
+
+    folder.mkdir(parents=True, exist_ok=True)
+    data = save({name: v.detach().cpu().half().contiguous() for name, v in model.state_dict().items()})
+    (folder / "model.safetensors").write_bytes(data)
+    files = {"model.safetensors": hashlib.sha256(data).hexdigest()}
+    config = {"model": asdict(model.config), "files": files} | meta
+    (folder / "config.json").write_text(json.dumps(config, indent=1) + "\n")

@@ -1,0 +1,200 @@
+"""ReGenNet in the engine: what *online* promises, from the clip to the picture."""
+
+import json
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+import torch
+
+from models.compact_regennet import CompactReGenNet, CompactReGenNetConfig, load_folder, save_folder
+from models.errors import WeightsError
+from models.motion_tokens import FEATURES, encode
+from webdemo.inference import Cancelled, CancelToken, GenerateRequest, Progress, ReactRequest, Result
+from webdemo.inference.engine import Engine
+from webdemo.motion import SMPL22, Clip, InputError
+from webdemo.motion.kinematics import forward_kinematics
+from webdemo.motion.transforms import heading_matrix
+from webdemo.view.payload import player_payload
+
+
+def waver(frames: int = 75) -> Clip:
+    """A person off the origin, turned, who walks a little and lifts an arm."""
+    rotations = np.tile(np.eye(3), (frames, 22, 1, 1))
+    rotations[:, 0] = heading_matrix(np.radians(50))
+    lift = np.sin(np.linspace(0, np.pi, frames))
+    c, s = np.cos(lift), np.sin(lift)
+    shoulder = rotations[:, SMPL22.index("right_shoulder")]
+    shoulder[:, 0, 0], shoulder[:, 0, 1], shoulder[:, 1, 0], shoulder[:, 1, 1] = c, s, -s, c
+    root = np.tile([1.0, 0.9562, -0.5], (frames, 1))
+    root[:, 2] += np.linspace(0, 0.4, frames)
+    return Clip(forward_kinematics(rotations, root), 30.0, name="waver")
+
+
+@pytest.fixture(scope="module")
+def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    torch.manual_seed(0)
+    model = CompactReGenNet(
+        CompactReGenNetConfig(
+            latent_dim=32, ff_size=32, num_layers=2, num_heads=2, cond_dim=32, text_layers=1, window=8
+        )
+    )
+    torch.nn.init.normal_(model.offline)
+    rest = torch.tensor(SMPL22.rest_positions()).float() + torch.tensor([0.0, 0.98, 0.0])
+    control = encode(rest.expand(41, -1, -1), torch.ones(41, 4), model.layout)
+    model.mean.copy_(control.mean(0))
+    model.std.fill_(0.1)
+    folder = tmp_path_factory.mktemp("weights")
+    save_folder(folder / "regennet", model, card={"summary": "a tiny untrained model"})
+    return folder
+
+
+@pytest.fixture(scope="module")
+def engine(folder: Path) -> Engine:
+    return Engine(folder)
+
+
+@pytest.fixture(scope="module")
+def network(folder: Path) -> CompactReGenNet:
+    return load_folder(folder / "regennet")[0]
+
+
+REQUEST = ReactRequest(actor=waver(), model="regennet", mode="online", steps=3, seed=4)
+
+
+def react(engine: Engine, **changed: object) -> Result:
+    return next(e for e in engine.run(replace(REQUEST, **changed)) if isinstance(e, Result))
+
+
+@pytest.mark.parametrize("changed", [{}, {"prompt": "Two people wave.", "guidance": 2.0}, {"samples": 2}])
+@pytest.mark.parametrize("until", [1, 30, 43])
+def test_online_the_future_changes_no_frame_by_a_bit(engine: Engine, until: int, changed: dict) -> None:
+    """From the clip to the picture: what the player is sent of the reaction is the same up to that frame."""
+    positions = waver().positions.copy()
+    positions[until:] = positions[until:, ::1] + np.float32([3.0, 0.4, -2.0])
+    one = react(engine, **changed).duets
+    other = react(engine, actor=waver().with_positions(positions), **changed).duets
+    for a, b in zip(one, other, strict=True):
+        assert a.b.positions[:until].tobytes() == b.b.positions[:until].tobytes()
+        assert a.b.positions[until + 8 :].tobytes() != b.b.positions[until + 8 :].tobytes()
+        shown = [json.dumps(player_payload(d.b.cut(0, until)), sort_keys=True) for d in (a, b)]
+        assert shown[0] == shown[1]
+
+
+def test_offline_sees_the_future(engine: Engine) -> None:
+    positions = waver().positions.copy()
+    positions[60:] += np.float32([1.0, 0, 0])
+    one = react(engine, mode="offline").duets[0].b.positions
+    other = react(engine, mode="offline", actor=waver().with_positions(positions)).duets[0].b.positions
+    assert np.abs(one[:30] - other[:30]).max() > 1e-4
+
+
+def test_the_stream_is_the_sampling_of_the_whole_at_once(network: CompactReGenNet) -> None:
+    """Cached keys, the window and the one row at a time change nothing but the order of the sums."""
+    from models.diffusion import make_scheduler, sample_steps
+
+    frames, actor = 90, torch.from_numpy(np.asarray(waver(90).positions)).float()
+    rows = network.num_rows(frames)
+    noise = torch.randn(rows, 1, FEATURES, generator=torch.Generator().manual_seed(1))
+    condition = torch.randn(1, 32, generator=torch.Generator().manual_seed(2))
+    stream = network.stream(condition, steps=3, max_frames=frames)
+    left = iter(noise)
+    streamed = torch.stack([stream.step(frame, noise=left)[0][0] for frame in actor])
+    seen = network.actor_rows(actor[None])
+
+    def predict(x: torch.Tensor, t: torch.Tensor) -> torch.Tensor:
+        return network(x, t, seen, condition, causal=True)
+
+    *_, last = sample_steps(predict, noise.transpose(0, 1), make_scheduler("ddim", 3))
+    whole = network.positions(last.sample, frames)[0][0]
+    torch.testing.assert_close(streamed, whole, atol=1e-4, rtol=0)
+
+
+def test_frames_come_one_by_one_as_the_result_has_them(engine: Engine) -> None:
+    live = list(engine.live(REQUEST))
+    assert [frame.index for frame in live] == list(range(75))
+    assert all(frame.seconds > 0 for frame in live)
+    shown = np.stack([frame.positions[0] for frame in live]).astype(np.float32)
+    assert shown.tobytes() == react(engine).duets[0].b.positions.astype(np.float32).tobytes()
+
+
+@pytest.mark.parametrize("mode", ["online", "offline"])
+def test_the_given_person_stays_and_the_reaction_differs_by_seed_and_words(engine: Engine, mode: str) -> None:
+    result = react(engine, mode=mode, samples=2)
+    for duet in result.duets:
+        assert duet.a.positions.tobytes() == waver().positions.tobytes()
+    one, two = (duet.b.positions for duet in result.duets)
+    assert np.abs(one - two).max() > 1e-3
+    first = react(engine, mode=mode).duets[0].b.positions
+    assert first.tobytes() == react(engine, mode=mode).duets[0].b.positions.tobytes()
+    assert np.abs(first - react(engine, mode=mode, seed=5).duets[0].b.positions).max() > 1e-3
+    assert np.abs(first - react(engine, mode=mode, prompt="They bow.").duets[0].b.positions).max() > 1e-6
+
+
+@pytest.mark.parametrize("mode", ["online", "offline"])
+def test_a_moved_actor_moves_the_reaction(engine: Engine, mode: str) -> None:
+    actor = waver()
+    actor = actor.with_positions(actor.positions - np.array([0, actor.positions[0, :, 1].min(), 0]))
+    turn, shift = heading_matrix(2.1), np.array([-4.0, 0.0, 1.0])
+    moved = actor.with_positions(actor.positions.astype(np.float64) @ turn.T + shift)
+    here = react(engine, mode=mode, actor=actor).duets[0].b.positions
+    there = react(engine, mode=mode, actor=moved).duets[0].b.positions
+    np.testing.assert_allclose(here.astype(np.float64) @ turn.T + shift, there, atol=2e-3)
+
+
+@pytest.mark.parametrize("mode", ["online", "offline"])
+def test_bones_are_constant_and_feet_above_the_floor(engine: Engine, mode: str) -> None:
+    made = react(engine, mode=mode).duets[0].b
+    parents, children = (list(side) for side in zip(*SMPL22.bones, strict=True))
+    lengths = np.linalg.norm(made.positions[:, children] - made.positions[:, parents], axis=-1)
+    np.testing.assert_allclose(lengths, np.tile(SMPL22.bone_lengths[children], (75, 1)), atol=2e-3)
+
+
+@pytest.mark.parametrize("mode", ["online", "offline"])
+def test_a_run_can_be_cancelled(engine: Engine, mode: str) -> None:
+    cancel, seen = CancelToken(), 0
+    with pytest.raises(Cancelled):
+        for event in engine.run(replace(REQUEST, mode=mode), cancel):
+            seen += isinstance(event, Progress) and event.stage == "sample"
+            if seen == 2:
+                cancel.cancel()
+    assert seen == 2
+
+
+@pytest.mark.parametrize(
+    ("changed", "says"),
+    [
+        ({"role": "b"}, "makes the one who reacts"),
+        ({"sampler": "dpm++"}, "samples with ddim"),
+        ({"mode": "backwards"}, "choose offline or online"),
+        ({"model": "intergen"}, "choose offline"),
+        ({"model": "nobody"}, "not known"),
+        ({"damping": 3.0}, "Damping"),
+    ],
+)
+def test_what_regennet_cannot_do_is_said_in_one_sentence(changed: dict, says: str) -> None:
+    with pytest.raises(InputError, match=says) as error:
+        replace(REQUEST, **changed)
+    assert "\n" not in str(error.value)
+
+
+def test_damping_is_told_as_it_is_used(engine: Engine) -> None:
+    assert react(engine).manifest["request"]["damping"] == 0.0
+
+
+def test_text_alone_is_not_for_regennet(engine: Engine) -> None:
+    with pytest.raises(InputError, match="give it an actor"):
+        list(engine.run(GenerateRequest(prompt="They bow.", model="regennet")))
+    with pytest.raises(InputError, match="online"):
+        engine.live(replace(REQUEST, mode="offline"))
+
+
+def test_damaged_weights_are_told(folder: Path, tmp_path: Path) -> None:
+    meta = json.loads((folder / "regennet" / "config.json").read_text())
+    broken = tmp_path / "regennet"
+    broken.mkdir()
+    (broken / "model.safetensors").write_bytes((folder / "regennet" / "model.safetensors").read_bytes())
+    (broken / "config.json").write_text(json.dumps(meta | {"model": meta["model"] | {"latent_dim": 64}}))
+    with pytest.raises(WeightsError, match="do not fit"):
+        load_folder(broken)

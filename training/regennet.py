@@ -1,0 +1,407 @@
+"""Trains the compact ReGenNet: ``python -m training.regennet --scenes FILE --out DIR``.
+
+ReGenNet (Xu et al., section 4.2): the reactor's clean motion from its noised motion, the actor's, the
+timestep and words; x0 prediction and the interaction loss of eq. 3–4. One network learns both settings: most
+batches are masked causally (online), the others see all of the actor (offline), see
+:mod:`models.compact_regennet`. The words' conditioner is that of a shipped InterGen and stays as it is.
+
+Everything random is drawn from the seed and the step number, so a run that stops goes on as if it had not.
+"""
+
+from __future__ import annotations
+
+import argparse
+import json
+import math
+import time
+from collections.abc import Iterator
+from dataclasses import asdict, dataclass, fields
+from pathlib import Path
+from typing import Any
+
+import torch
+from safetensors import SafetensorError
+from safetensors.torch import load_file, save_file
+from torch import Tensor
+from torch.nn.attention import SDPBackend, sdpa_kernel
+
+from models.compact import WeightsFolder
+from models.compact_regennet import (
+    LEAD,
+    CompactReGenNet,
+    CompactReGenNetConfig,
+    save_folder,
+)
+from models.diffusion import NoiseSchedule
+from models.intergen_losses import bone_lengths, facing
+from models.motion_tokens import FEATURES, NUM_CONTACTS, mirror_control
+from training import checkpoint
+from training.corpus.captions import mirror_caption
+from training.intergen import balanced, seeded
+from training.prepare import ROOT_SCALE, Scenes, load
+from training.shell import exit_code
+from training.text_features import CaptionFeatures
+from webdemo.formats.files import replacing
+from webdemo.motion import SMPL22, InputError
+from webdemo.motion.skeleton import FEET
+
+NEAR = 1.0
+"""Metres: joints of the two people that are nearer than this count in the loss on their distance."""
+
+
+@dataclass(frozen=True)
+class Settings:
+    """What a run depends on; a checkpoint of other settings is refused.
+
+    offline: share of batches that see the whole actor. unconditional: share of scenes without words.
+    jitter: metres of noise on the actor's joints, so that recordings with noise are no surprise.
+    """
+
+    latent_dim: int = 192
+    ff_size: int = 512
+    num_layers: int = 6
+    num_heads: int = 4
+    window: int = 40
+    batch: int = 32
+    steps: int = 5000
+    learning_rate: float = 6e-4
+    warmup: int = 150
+    weight_decay: float = 1e-3
+    ema: float = 0.998
+    unconditional: float = 0.25
+    offline: float = 0.3
+    jitter: float = 0.005
+    root_weight: float = 4.0
+    velocity: float = 30.0
+    bone_length: float = 30.0
+    foot_contact: float = 30.0
+    interaction: float = 1.0
+    distance: float = 5.0
+    t_bar: float = 0.7
+    seed: int = 0
+
+    def __post_init__(self) -> None:
+        for name in ("latent_dim", "ff_size", "num_layers", "num_heads", "window", "batch", "warmup"):
+            if getattr(self, name) < 1:
+                raise InputError(f"{name} is {getattr(self, name)}: give 1 or more.")
+        if self.latent_dim % self.num_heads:
+            raise InputError(
+                f"latent_dim {self.latent_dim} cannot be shared by {self.num_heads} heads: give a multiple."
+            )
+
+
+@dataclass
+class Batch:
+    """One batch: control points of reactor and actor (B, K, 70) in metres, mask (B, K), words (B, C)."""
+
+    reactor: Tensor
+    actor: Tensor
+    mask: Tensor
+    words: Tensor
+
+
+class Conditions:
+    """The condition vector of every caption, worked out once and kept beside the run.
+
+    Args:
+        captions: unique sentences.
+        conditioner: the frozen conditioner.
+        cache: the run's folder.
+        digest: names the conditioner's weights.
+    """
+
+    def __init__(self, captions: list[str], conditioner: torch.nn.Module, cache: Path, digest: str) -> None:
+        self.index = {caption: row for row, caption in enumerate(captions)}
+        path = cache / f"conditions_{len(captions)}_{digest[:12]}.safetensors"
+        try:
+            self.vectors = load_file(path)["conditions"]
+        except (OSError, SafetensorError):
+            features = CaptionFeatures(captions, cache)
+            order = sorted(range(len(captions)), key=lambda row: int(features.lengths[row]))
+            self.vectors = torch.zeros(len(captions), conditioner.config.latent_dim, dtype=torch.half)
+            with torch.no_grad(), torch.autocast("cpu", torch.bfloat16):
+                for start in range(0, len(order), 256):
+                    rows = order[start : start + 256]
+                    self.vectors[rows] = conditioner(*features.batch([captions[r] for r in rows])).half()
+            with replacing(path) as temporary:
+                save_file({"conditions": self.vectors}, temporary)
+
+    def batch(self, captions: list[str]) -> Tensor:
+        """(B, C) float32."""
+        return self.vectors[[self.index[caption] for caption in captions]].float()
+
+
+def knot_positions(control: Tensor) -> Tensor:
+    """Control points (B, K, 70) → positions at the knots (B, K − 2, 22, 3)."""
+    knots = (control[:, :-2] + 4 * control[:, 1:-1] + control[:, 2:]) / 6
+    root, others, _ = knots.split([3, FEATURES - 3 - NUM_CONTACTS, NUM_CONTACTS], dim=-1)
+    others = others.unflatten(-1, (-1, 3)) + root[..., None, :]
+    return torch.cat([root[..., None, :], others], dim=-2)
+
+
+def seen_rows(control: Tensor) -> Tensor:
+    """What each row sees of an actor given by control points (B, K, 70), not normalised: (B, K, 132)."""
+    knots = (control[:, :-2] + 4 * control[:, 1:-1] + control[:, 2:]) / 6
+    pose = knots[..., : FEATURES - NUM_CONTACTS]
+    place = torch.arange(control.shape[1]) - LEAD
+    now, before = pose[:, place.clamp_min(0)], pose[:, (place - 1).clamp_min(0)]
+    return torch.cat([now, now - before], dim=-1)
+
+
+class Data:
+    """Draws batches of similar lengths; batch ``step`` is the same in every run of the same seed."""
+
+    def __init__(self, scenes: Scenes, settings: Settings) -> None:
+        self.scenes, self.settings = scenes, settings
+        self.rows: list[dict[str, Any]] = balanced(scenes.split("train"))
+        if len(self.rows) < settings.batch:
+            raise InputError(f"{len(self.rows)} training scenes do not fill a batch of {settings.batch}.")
+        self.knots = torch.tensor([row["tokens"] for row in self.rows]) * scenes.layout.knots_per_token
+        self.batches_an_epoch = len(self.rows) // settings.batch
+        self._epoch, self._order = -1, torch.empty(0)
+
+    def captions(self) -> list[str]:
+        known = {c for row in self.rows for c in row["captions"]}
+        return sorted(known | {mirror_caption(c) for c in known})
+
+    def normalize(self, model: CompactReGenNet) -> None:
+        """Sets a model's normalisers to those of the training scenes and their mirror images."""
+        reactor, actor = [], []
+        for row in self.scenes.split("train"):
+            a, b = self.scenes.scene(row)
+            for one in (a, mirror_control(a, SMPL22.mirror)):
+                actor.append(seen_rows(one[None])[0])
+            reactor += [b, mirror_control(b, SMPL22.mirror)]
+        for name, values in (("", torch.cat(reactor)), ("actor_", torch.cat(actor))):
+            scale = values.std(0).clamp_min(0.01)
+            scale[[0, 2]] = scale[[0, 2]].clamp_max(ROOT_SCALE)
+            getattr(model, f"{name}mean").copy_(values.mean(0))
+            getattr(model, f"{name}std").copy_(scale)
+
+    def _rows_of(self, step: int) -> Tensor:
+        epoch, place = divmod(step, self.batches_an_epoch)
+        if epoch != self._epoch:
+            generator = seeded(self.settings.seed, 1, epoch)
+            by_length = (self.knots + torch.rand(len(self.rows), generator=generator) * 8).argsort()
+            spare = len(by_length) % self.settings.batch
+            keep = torch.randperm(len(by_length), generator=generator)[spare:].sort().values
+            groups = by_length[keep].view(self.batches_an_epoch, -1)
+            self._order = groups[torch.randperm(len(groups), generator=generator)]
+            self._epoch = epoch
+        return self._order[place]
+
+    def batch(self, step: int, conditions: Conditions) -> Batch:
+        rows = [self.rows[i] for i in self._rows_of(step)]
+        draw = torch.rand(len(rows), 2, generator=seeded(self.settings.seed, 2, step))
+        longest = max(row["tokens"] for row in rows) * self.scenes.layout.knots_per_token
+        longest = -8 * (-longest // 8)  # few shapes: kernels are made for each
+        people = torch.zeros(2, len(rows), longest, FEATURES)
+        mask = torch.zeros(len(rows), longest)
+        captions = []
+        for i, row in enumerate(rows):
+            one, caption = self.scenes.scene(row), row["captions"][int(draw[i, 0] * len(row["captions"]))]
+            if draw[i, 1] < 0.5:
+                one, caption = mirror_control(one, SMPL22.mirror), mirror_caption(caption)
+            people[:, i, : one.shape[1]] = one
+            people[:, i, one.shape[1] :] = one[:, -1:]
+            mask[i, : one.shape[1]] = 1
+            captions.append(caption)
+        actor, reactor = people
+        return Batch(reactor, actor, mask, conditions.batch(captions))
+
+
+def masked_mean(values: Tensor, mask: Tensor) -> Tensor:
+    """Mean over the real rows of each sample: values and mask (B, K) → (B,)."""
+    return (values * mask).sum(1) / mask.sum(1).clamp_min(1)
+
+
+def interaction_loss(predicted: Tensor, reactor: Tensor, actor: Tensor, mask: Tensor) -> Tensor:
+    """ReGenNet's interaction loss (eq. 3–4): relative pose, orientation and translation → (B,).
+
+    Positions (B, K, 22, 3); the actor is the true one on both sides, so its part falls away in pose and
+    translation; orientation is the turn from its facing to the reactor's, as (cos, sin).
+    """
+
+    def turned(person: Tensor) -> Tensor:
+        a, b = facing(actor), facing(person)
+        cos = (a * b).sum(-1)
+        return torch.stack([cos, a[..., 2] * b[..., 0] - a[..., 0] * b[..., 2]], dim=-1)
+
+    pose = (predicted - predicted[..., :1, :] - reactor + reactor[..., :1, :]).square().sum((-1, -2))
+    orientation = (turned(predicted) - turned(reactor)).square().sum(-1)
+    translation = (predicted[..., 0, :] - reactor[..., 0, :]).square().sum(-1)
+    return masked_mean(pose + orientation + translation, mask)
+
+
+def distance_loss(predicted: Tensor, reactor: Tensor, actor: Tensor, mask: Tensor) -> Tensor:
+    """Squared error of the distances of the two people's joints that are truly near, m² → (B,)."""
+    mode = "donot_use_mm_for_euclid_dist"
+    true = torch.cdist(actor, reactor, compute_mode=mode)
+    error = (torch.cdist(actor, predicted, compute_mode=mode) - true).square() * (true < NEAR)
+    return masked_mean(error.sum((-1, -2)) / (true < NEAR).sum((-1, -2)).clamp_min(1), mask)
+
+
+class Trainer:
+    """One training run: :meth:`run` goes on from wherever its checkpoint stands.
+
+    Args:
+        words: a shipped InterGen's folder, whose text conditioner is taken over.
+    """
+
+    def __init__(self, scenes: Scenes, settings: Settings, out: Path, *, words: Path) -> None:
+        self.settings, self.out = settings, out
+        out.mkdir(parents=True, exist_ok=True)
+        torch.manual_seed(settings.seed)
+        source = WeightsFolder(words)
+        conditioner = source.model().conditioner
+        sizes = ("latent_dim", "ff_size", "num_layers", "num_heads", "window")
+        self.config = CompactReGenNetConfig(
+            **{name: getattr(settings, name) for name in sizes},
+            cond_dim=conditioner.config.latent_dim,
+            text_layers=conditioner.config.num_layers,
+            frames_per_knot=scenes.layout.frames_per_knot,
+        )
+        self.data = Data(scenes, settings)
+        self.conditions = Conditions(self.data.captions(), conditioner, out, source.digest)
+        self.model = CompactReGenNet(self.config)
+        self.model.conditioner.load_state_dict(conditioner.state_dict())
+        self.model.conditioner.requires_grad_(False)
+        self.data.normalize(self.model)
+        self.ema = CompactReGenNet(self.config).requires_grad_(False)
+        self.ema.load_state_dict(self.model.state_dict())
+        self.trained = [p for p in self.model.parameters() if p.requires_grad]
+        self.averaged = [
+            p for p, q in zip(self.ema.parameters(), self.model.parameters(), strict=True) if q.requires_grad
+        ]
+        self.optimizer = torch.optim.AdamW(
+            self.trained, lr=settings.learning_rate, weight_decay=settings.weight_decay, fused=True
+        )
+        self.schedule = NoiseSchedule()
+        self.weights = torch.ones(FEATURES)
+        self.weights[:3] = settings.root_weight
+        self.settings_json = json.dumps(asdict(settings), sort_keys=True)
+        self.step = checkpoint.restore(out / "last.safetensors", self.parts(), self.settings_json)
+
+    def parts(self) -> dict[str, torch.nn.Module | torch.optim.Optimizer]:
+        return {"model": self.model, "ema": self.ema, "optimizer": self.optimizer}
+
+    def learning_rate(self) -> float:
+        """Linear warm-up, then a cosine to 2 % of the peak."""
+        s = self.settings
+        warm = min(1.0, (self.step + 1) / s.warmup)
+        return s.learning_rate * warm * (0.51 + 0.49 * math.cos(math.pi * min(1.0, self.step / s.steps)))
+
+    def terms(self, batch: Batch, generator: torch.Generator) -> dict[str, Tensor]:
+        """Every loss term of one batch, weighted."""
+        s, model = self.settings, self.model
+        size = len(batch.mask)
+        t = torch.randint(self.schedule.timesteps, (size,), generator=generator)
+        x0 = (batch.reactor - model.mean) / model.std
+        xt = self.schedule.q_sample(x0, t, torch.randn(x0.shape, generator=generator))
+        keep = torch.rand(size, 1, generator=generator) >= s.unconditional
+        causal = bool(torch.rand(1, generator=generator) >= s.offline)
+        start = torch.randint(150, (size,), generator=generator)
+        start = start * (torch.rand(size, generator=generator) < 0.5)
+        seen = seen_rows(batch.actor)
+        seen = seen + s.jitter * torch.randn(seen.shape, generator=generator)
+        seen = (seen - model.actor_mean) / model.actor_std
+        with torch.autocast("cpu", torch.bfloat16), sdpa_kernel(SDPBackend.MATH):
+            predicted = model(xt, t, seen, batch.words * keep, causal=causal, start=start)
+        predicted = predicted.float()
+        error = ((predicted - x0).square() * self.weights).mean(-1)
+        terms = {"simple": masked_mean(error, batch.mask).mean()}
+
+        reactor, actor = knot_positions(batch.reactor), knot_positions(batch.actor)
+        moved = predicted * model.std + model.mean
+        made = knot_positions(moved)
+        mask = batch.mask[:, 2:]
+        early = t <= s.t_bar * self.schedule.timesteps
+        stands = batch.reactor[:, 2:, -NUM_CONTACTS:] > 0.5
+        step = made[:, 1:, list(FEET)] - made[:, :-1, list(FEET)]
+        between = mask[:, 1:]
+        losses = {
+            "velocity": masked_mean(
+                (made.diff(dim=1) - reactor.diff(dim=1)).square().mean((-1, -2)), between
+            ),
+            "bone_length": masked_mean((bone_lengths(made) - bone_lengths(reactor)).square().mean(-1), mask),
+            "foot_contact": masked_mean((step.square().sum(-1) * stands[:, 1:]).mean(-1), between),
+            "interaction": interaction_loss(made, reactor, actor, mask),
+            "distance": distance_loss(made, reactor, actor, mask),
+        }
+        return terms | {
+            name: getattr(s, name) * (value * early).sum() / early.sum().clamp_min(1)
+            for name, value in losses.items()
+        }
+
+    def train_step(self) -> dict[str, float]:
+        """One optimiser step; returns the loss terms."""
+        batch = self.data.batch(self.step, self.conditions)
+        self.model.train()
+        terms = self.terms(batch, seeded(self.settings.seed, 3, self.step))
+        total = torch.stack(list(terms.values())).sum()
+        for group in self.optimizer.param_groups:
+            group["lr"] = self.learning_rate()
+        self.optimizer.zero_grad(set_to_none=True)
+        total.backward()
+        torch.nn.utils.clip_grad_norm_(self.trained, 1.0)
+        self.optimizer.step()
+        self.step += 1
+        decay = min(self.settings.ema, (self.step + 1) / (self.step + 10))
+        with torch.no_grad():
+            torch._foreach_lerp_(self.averaged, self.trained, 1 - decay)
+        return {name: value.item() for name, value in terms.items()} | {"total": total.item()}
+
+    def save(self) -> None:
+        checkpoint.save(self.out / "last.safetensors", self.parts(), self.step, self.settings_json)
+
+    def run(self, *, minutes: float, save_every: float = 5.0) -> Iterator[dict[str, float]]:
+        """Trains until the steps or the minutes are over; yields each step's terms; saves as it goes."""
+        began = saved = time.monotonic()
+        while self.step < self.settings.steps and time.monotonic() - began < minutes * 60:
+            yield self.train_step()
+            if time.monotonic() - saved > save_every * 60:
+                self.save()
+                saved = time.monotonic()
+        self.save()
+
+
+def main(argv: list[str] | None = None) -> int:
+    parser = argparse.ArgumentParser(description="Train the compact ReGenNet on prepared scenes.")
+    parser.add_argument("--scenes", type=Path, required=True, help="file of `python -m training.prepare`")
+    parser.add_argument("--out", type=Path, required=True, help="folder of the checkpoint and the log")
+    parser.add_argument(
+        "--words", type=Path, default=Path("models/weights/intergen"),
+        help="a shipped InterGen, whose text conditioner is taken over",
+    )  # fmt: skip
+    parser.add_argument(
+        "--minutes", type=float, default=1e9, help="stop after this long; start again to go on"
+    )
+    parser.add_argument("--export", type=Path, help="after that, write the averaged weights to this folder")
+    for setting in fields(Settings):
+        flag = "--" + setting.name.replace("_", "-")
+        parser.add_argument(flag, type=type(setting.default), default=setting.default)
+    options = parser.parse_args(argv)
+    return exit_code(lambda: _run(options))
+
+
+def _run(options: argparse.Namespace) -> None:
+    settings = Settings(**{f.name: getattr(options, f.name) for f in fields(Settings)})
+    trainer = Trainer(load(options.scenes), settings, options.out, words=options.words)
+    log, began, first = [], time.monotonic(), trainer.step
+    with open(options.out / "log.jsonl", "a") as file:
+        for terms in trainer.run(minutes=options.minutes):
+            log.append(terms)
+            if trainer.step % 50 == 0:
+                pace = (time.monotonic() - began) / (trainer.step - first)
+                line = {"step": trainer.step, "pace": round(pace, 3)} | {
+                    name: round(sum(t[name] for t in log) / len(log), 5) for name in terms
+                }
+                print(json.dumps(line), file=file, flush=True)
+                print(json.dumps(line), flush=True)
+                log = []
+    if options.export:
+        save_folder(options.export, trainer.ema, trained_steps=trainer.step)
+
+
+if __name__ == "__main__":
+    raise SystemExit(main())
