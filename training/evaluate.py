@@ -2,7 +2,8 @@
 
 Sentences of the test split, generated and judged by the rules of :mod:`training.judge`. Beside the scores
 stand those of the recorded motion of the same sentences (what the rules allow at best) and those of recorded
-motion that belongs to other sentences (what they allow to chance). ``--real-only`` needs no weights.
+motion that belongs to other sentences (what they allow to chance). ``--real-only`` needs no weights. With
+``--extractor`` come InterGen's measures, R-precision to multimodality (:mod:`training.judge.retrieval`).
 """
 
 from __future__ import annotations
@@ -11,16 +12,17 @@ import argparse
 import json
 import sys
 import time
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from pathlib import Path
 from typing import Any
 
+from training.judge import retrieval
 from training.judge.prompts import choose, real_duet
 from training.judge.report import score, table
 from training.judge.rules import Task
-from training.prepare import load
+from training.prepare import Scenes, load
 from webdemo.formats.files import replacing
-from webdemo.inference.engine import GENERATORS, WEIGHTS
+from webdemo.inference.engine import WEIGHTS
 from webdemo.motion import Duet, InputError
 
 
@@ -48,7 +50,32 @@ def evaluate(options: argparse.Namespace) -> dict[str, Any]:
         )
         if len(tasks) < about["prompts"]:
             text += f"; stopped by --minutes before {about['prompts']} captions"
+    if options.extractor:
+        scores["features"] = _measure(scenes, options)
     return scores | {"about": text + ".", "settings": about}
+
+
+def _measure(scenes: Scenes, options: argparse.Namespace) -> dict[str, Any]:
+    from training.extractor import load_extractor
+    from training.judge.draw import Sampling, draw
+    from webdemo.inference.generator import DuetGenerator
+
+    extractor = load_extractor(options.extractor)
+    generator = None if options.real_only else DuetGenerator(options.weights)
+    chosen = {key: getattr(options, key) for key in ("steps", "guidance", "damping")}
+
+    def drawn(tasks: Sequence[Task], seed: int) -> Iterator[tuple[int, Duet]]:
+        assert generator is not None
+        return draw(generator, tasks, Sampling(seed=seed, **chosen))
+
+    return retrieval.measure(
+        scenes,
+        extractor,
+        drawn if generator else None,
+        prompts=options.retrieval_prompts,
+        repeats=options.repeats,
+        seed=options.seed,
+    )
 
 
 def _of_other_words(duets: Sequence[Duet], tasks: Sequence[Task]) -> list[Duet]:
@@ -87,14 +114,19 @@ def main(argv: list[str] | None = None) -> None:
     parser.add_argument("--scenes", type=Path, required=True, help="what training.prepare wrote")
     parser.add_argument("--out", type=Path, required=True, help="JSON file for all verdicts")
     parser.add_argument("--table", type=Path, help="Markdown file for the table, which is printed too")
-    parser.add_argument("--weights", type=Path, default=WEIGHTS / GENERATORS["intergen"], help="its folder")
+    parser.add_argument("--weights", type=Path, default=WEIGHTS / "intergen", help="its folder")
     parser.add_argument("--prompts", type=int, default=200, help="how many captions (200)")
     parser.add_argument("--seed", type=int, default=0)
     parser.add_argument("--steps", type=int, default=25, help="DDIM steps (25)")
-    parser.add_argument("--guidance", type=float, default=2.5)
+    parser.add_argument("--guidance", type=float, default=3.0)
     parser.add_argument("--damping", type=float, default=0.7)
     parser.add_argument(
         "--minutes", type=float, default=0.0, help="draw no more after this time; 0: no limit"
+    )
+    parser.add_argument("--extractor", type=Path, help="what training.extractor wrote: measures by features")
+    parser.add_argument("--repeats", type=int, default=20, help="of the measures by features (20)")
+    parser.add_argument(
+        "--retrieval-prompts", type=int, default=256, help="test scenes in a repeat, at most (256)"
     )
     parser.add_argument("--real-only", action="store_true", help="only the recorded motion; needs no weights")
     options = parser.parse_args(argv)
@@ -103,6 +135,8 @@ def main(argv: list[str] | None = None) -> None:
     try:
         scores = evaluate(options)
         shown = table(scores)
+        if "features" in scores:
+            shown += "\n" + retrieval.table(scores["features"])
         with replacing(options.out) as temporary:
             temporary.write_text(json.dumps(scores, indent=1, ensure_ascii=False) + "\n")
         if options.table:

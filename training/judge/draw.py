@@ -27,7 +27,7 @@ class Sampling:
 
     seed: int = 0
     steps: int = 25
-    guidance: float = 2.5
+    guidance: float = 3.0
     damping: float = 0.7
 
 
