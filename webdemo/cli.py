@@ -1,4 +1,4 @@
-"""The same jobs from a shell: ``python -m webdemo generate|react|render|info|benchmark|serve``.
+"""The same jobs from a shell: ``python -m webdemo generate|react|render|info|benchmark|serve|user``.
 
 The last line on stdout is one JSON object. What goes wrong is one line on stderr that says what is wrong and
 what to do, with exit code 2; a cancelled run (Ctrl+C) ends with 130. No file is left half-written.
@@ -172,7 +172,13 @@ def _add_others(commands: Any) -> None:
     serve_parser = commands.add_parser("serve", help="the page, as `python app.py`")
     serve_parser.add_argument("--host")
     serve_parser.add_argument("--port", type=int)
+    serve_parser.add_argument("--print-settings", action="store_true", help="say what is set, and end")
     serve_parser.set_defaults(job=serve)
+    user_parser = commands.add_parser("user", help="accounts: add, remove, list")
+    user_parser.add_argument("action", choices=("add", "remove", "list"))
+    user_parser.add_argument("name", nargs="?", help="whom; not for list")
+    user_parser.add_argument("--users", type=Path, help="the file; PASDEDEUX_USERS by default")
+    user_parser.set_defaults(job=user)
 
 
 def info(options: argparse.Namespace) -> dict[str, Any]:
@@ -202,16 +208,43 @@ def benchmark(options: argparse.Namespace) -> dict[str, Any]:
 
 
 def serve(options: argparse.Namespace) -> dict[str, Any]:
-    """Serves the page until it is stopped."""
-    import os
+    """Serves the page until it is stopped, or prints what is set."""
+    from webdemo.server.settings import Settings, read_settings
 
-    for name in ("host", "port"):
-        if (value := getattr(options, name)) is not None:
-            os.environ[f"PASDEDEUX_{name.upper()}"] = str(value)
-    import app
+    settings = read_settings(host=options.host, port=options.port)
+    if options.print_settings:
+        for name, value in settings.shown().items():
+            print(f"{name} = {json.dumps(value)}  # {Settings.model_fields[name].description}")
+        return settings.shown()
+    from webdemo.server.serve import serve as run
 
-    app.main()
+    run(settings)
     return {"served": True}
+
+
+def user(options: argparse.Namespace) -> dict[str, Any]:
+    """Adds, removes or lists accounts; a password is asked for, or read from a pipe."""
+    import getpass
+
+    from webdemo.server.accounts import Users
+    from webdemo.server.settings import read_settings
+
+    path = options.users or read_settings().users
+    if path is None:
+        raise InputError("Say which file holds the accounts: --users FILE, or set PASDEDEUX_USERS.")
+    users = Users(path)
+    if options.action == "list":
+        return {"users": users.names}
+    if not options.name:
+        raise InputError(f"Say whom: `user {options.action} NAME`.")
+    if options.action == "remove":
+        users.remove(options.name)
+        return {"removed": options.name}
+    terminal = sys.stdin.isatty()
+    password = getpass.getpass("Password: ") if terminal else sys.stdin.readline().rstrip("\n")
+    if terminal and getpass.getpass("Once more: ") != password:
+        raise InputError("The two passwords differ: try again.")
+    return {"added" if users.add(options.name, password) else "changed": options.name}
 
 
 def main(argv: Sequence[str] | None = None) -> int:

@@ -5,7 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from .exports import Shelf
-from .runs import EngineLike, Loader, Runs
+from .history import HistoryLike
+from .runs import EngineLike, Loader, RunsLike
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -17,9 +18,11 @@ class PageContext:
         runs: every session's run, and the line they wait in.
         loader: loads the networks in the background.
         shelf: where files for downloads are put.
+        history: runs that can be found again; None where nothing is kept.
     """
 
     engine: EngineLike
-    runs: Runs
+    runs: RunsLike
     loader: Loader
     shelf: Shelf
+    history: HistoryLike | None = None

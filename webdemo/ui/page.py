@@ -15,9 +15,13 @@ from .api import GenerateEndpoint, ReactEndpoint
 from .context import PageContext
 from .exports import Shelf
 from .generate_tab import GenerateTab
+from .history import HistoryLike
+from .history_tab import LABEL as HISTORY
+from .history_tab import HistoryTab
+from .job_tab import JobTab
 from .panels import model_state
 from .react_tab import ReactTab
-from .runs import EngineLike, Loader, Runs
+from .runs import EngineLike, Loader, Runs, RunsLike
 from .theme import HEAD, style_sheet, theme
 
 TITLE = "Pas de Deux"
@@ -33,18 +37,33 @@ _CACHE = (1800, 7200)
 """Seconds: how often Gradio's copies of downloads are looked through, and how old they may get."""
 
 
-def build_page(engine: EngineLike, *, loader: Loader | None = None, files: Path | None = None) -> gr.Blocks:
+def build_page(
+    engine: EngineLike,
+    *,
+    loader: Loader | None = None,
+    files: Path | None = None,
+    runs: RunsLike | None = None,
+    history: HistoryLike | None = None,
+) -> gr.Blocks:
     """Builds the page for an engine.
 
     Args:
         engine: answers the page's requests; nothing of it is loaded before the page is up.
         loader: loads the engine's networks; by default the first visit starts one.
         files: folder for the files that users take home; by default in the system's temporary folder.
+        runs: the line that requests wait in; by default one of the page's own, one run at a time.
+        history: runs that can be found again, in a tab of its own; none by default.
 
     Returns:
         the page; launch it with :func:`launch_options`.
     """
-    page = PageContext(engine=engine, runs=Runs(engine), loader=loader or Loader(engine), shelf=Shelf(files))
+    page = PageContext(
+        engine=engine,
+        runs=runs or Runs(engine),
+        loader=loader or Loader(engine),
+        shelf=Shelf(files),
+        history=history,
+    )
 
     def leave(request: gr.Request) -> None:
         page.runs.cancel(str(request.session_hash))
@@ -57,10 +76,15 @@ def build_page(engine: EngineLike, *, loader: Loader | None = None, files: Path 
             gr.HTML(_HEADER)
             mark = gr.HTML(model_state("loading"), elem_id="model-state")
         record = gr.State(None, time_to_live=3600)
-        with gr.Tabs(elem_classes="pd-tabs"):
+        jobs: dict[str, JobTab] = {}
+        with gr.Tabs(elem_classes="pd-tabs") as tabs:
             for tab in TABS:
                 with gr.Tab(tab.label, id=tab.label.lower()):
-                    tab(page).build(demo, record)
+                    jobs[tab.label.lower()] = tab(page)
+                    jobs[tab.label.lower()].build(demo, record)
+            if history is not None:
+                with gr.Tab(HISTORY, id=HISTORY.lower()) as past:
+                    HistoryTab(page, jobs, tabs).build(demo, past, record)
         for endpoint in ENDPOINTS:
             endpoint(page).publish()
         demo.load(

@@ -6,6 +6,7 @@ import logging
 import threading
 import time
 from collections.abc import Iterator
+from dataclasses import dataclass
 from typing import Any, Protocol
 
 from webdemo.inference.cancel import CancelToken
@@ -29,6 +30,27 @@ class EngineLike(Protocol):
 
     def run(self, request: Any, cancel: CancelToken | None = None) -> Iterator[Progress | Result]:
         """Progress, then one result; raises ``Cancelled`` within one step of a cancellation."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class Waiting(Progress):
+    """A run in a line whose places are known: ``step`` is its place from 1, ``total`` how many wait.
+
+    Attributes:
+        seconds_left: until it starts, as far as can be told; None where that is not known.
+    """
+
+    seconds_left: float | None = None
+
+
+class RunsLike(Protocol):
+    """What tabs and endpoints need to run a request, see :class:`Runs`."""
+
+    def cancel(self, session: str) -> bool:
+        """Stops the session's run within one step; False where it has none."""
+
+    def run(self, session: str, request: Any) -> Iterator[Progress | Result]:
+        """Runs a request: its progress, then its result."""
 
 
 class Runs:

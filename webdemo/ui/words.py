@@ -9,6 +9,9 @@ import logging
 from webdemo.inference.requests import Progress
 from webdemo.motion import InputError
 
+from .runs import Waiting
+from .visitor import visitor
+
 log = logging.getLogger(__name__)
 
 _STAGES = {
@@ -28,10 +31,19 @@ def text(value: object) -> str:
 
 def progress_line(progress: Progress) -> str:
     """One line for a progress event, such as "Denoising: step 12 of 50"."""
+    if isinstance(progress, Waiting):
+        left = progress.seconds_left
+        soon = "" if left is None else f", about {_about(left)} until it starts"
+        return f"Waiting in line: place {progress.step} of {progress.total}{soon} …"
     stage = _STAGES.get(progress.stage, progress.stage.capitalize())
     if progress.stage == "sample":
         return f"{stage}: step {progress.step} of {progress.total}"
     return f"{stage} …"
+
+
+def _about(duration: float) -> str:
+    """A duration as rough as it is known: "5 s", "40 s", "3 min"."""
+    return f"{max(5, round(duration / 5) * 5)} s" if duration < 100 else f"{round(duration / 60)} min"
 
 
 def cancelled_line(progress: Progress | None) -> str:
@@ -45,14 +57,16 @@ def error_line(error: Exception) -> str:
     """The sentence for an error; what is not the user's doing goes to the log with its traceback."""
     if isinstance(error, InputError):
         return str(error)
-    log.error("A request failed.", exc_info=error)
+    log.error("A request failed.", exc_info=error, extra={"request": visitor().reference})
     if isinstance(error, OSError) and error.errno == errno.ENOSPC:
         return "The disk is full: free some space and try again."
     if isinstance(error, OSError):
         return f"A file could not be read or written ({error.strerror or error}): try again."
     if isinstance(error, MemoryError):
         return "There is not enough memory for this: ask for a shorter motion or fewer samples."
-    return f"Something went wrong inside the program ({type(error).__name__}); its log says more. Try again."
+    reference = visitor().reference
+    where = f"its log says more under {reference}" if reference else "its log says more"
+    return f"Something went wrong inside the program ({type(error).__name__}); {where}. Try again."
 
 
 def number(value: float, digits: int) -> str:

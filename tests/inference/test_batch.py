@@ -1,0 +1,106 @@
+"""Requests that share passes come out as they do alone."""
+
+import numpy as np
+import pytest
+import torch
+
+from webdemo.inference import Engine, GenerateRequest, Result
+from webdemo.inference.batch import Meeting, _Question, answer_together, run_batch
+from webdemo.inference.cancel import CancelToken
+from webdemo.inference.requests import Cancelled, Progress, ReactRequest
+from webdemo.motion import SMPL22, Clip
+
+
+def request(prompt: str = "Two people shake hands.", **fields) -> GenerateRequest:
+    return GenerateRequest(prompt=prompt, **({"seconds": 1.0, "steps": 4} | fields))
+
+
+def standing(frames: int = 36) -> Clip:
+    rest = SMPL22.rest_positions() + np.array([0.0, 0.98, 0.0])
+    sway = 0.05 * np.sin(np.arange(frames) / 5)[:, None, None]
+    return Clip((rest[None] + sway).astype(np.float32), 30.0)
+
+
+def ends(engine: Engine, requests: list) -> dict[int, Result | Exception]:
+    found: dict[int, Result | Exception] = {}
+    for i, event in run_batch(engine, [(r, CancelToken()) for r in requests]):
+        if not isinstance(event, Progress):
+            assert i not in found
+            found[i] = event
+    return found
+
+
+def test_results_are_those_of_running_alone(engine: Engine) -> None:
+    requests = [
+        request(seed=1),
+        request("One person waves.", seed=2, samples=2, guidance=1.0),
+        request("They walk away from each other.", seed=3, seconds=1.2, damping=0.0, guidance=5.0),
+        ReactRequest(actor=standing(), prompt="One person waves.", steps=4, seed=4),
+    ]
+    together = ends(engine, requests)
+    for i, wanted in enumerate(requests):
+        *_, alone = engine.run(wanted)
+        got = together[i]
+        assert isinstance(got, Result) and len(got.duets) == wanted.samples
+        assert got.manifest == alone.manifest
+        for duet, other in zip(got.duets, alone.duets, strict=True):
+            np.testing.assert_allclose(duet.positions, other.positions, atol=2e-4)
+    assert not np.allclose(together[0].duets[0].positions, together[1].duets[0].positions[:30], atol=0.05)
+
+
+def test_one_pass_answers_all(engine: Engine) -> None:
+    counted: list[int] = []
+    denoiser = engine._generator("intergen").model.denoiser
+    handle = denoiser.register_forward_hook(lambda module, args, out: counted.append(len(args[0])))
+    try:
+        ends(engine, [request(seed=i, steps=3) for i in range(3)])
+    finally:
+        handle.remove()
+    assert counted == [6, 6, 6]  # three requests, both halves of the guidance
+
+
+def test_a_cancelled_request_leaves_the_others(engine: Engine) -> None:
+    tokens = [CancelToken(), CancelToken()]
+    wanted = [request(seed=1, steps=6), request(seed=2, steps=6)]
+    found = {}
+    for i, event in run_batch(engine, list(zip(wanted, tokens, strict=True))):
+        if i == 0 and isinstance(event, Progress) and event.stage == "sample":
+            tokens[0].cancel()
+        if not isinstance(event, Progress):
+            found[i] = event
+    *_, alone = engine.run(wanted[1])
+    assert isinstance(found[0], Cancelled)
+    np.testing.assert_allclose(found[1].duets[0].positions, alone.duets[0].positions, atol=2e-4)
+
+
+class Broken:
+    """A denoiser without memory."""
+
+    def guided(self, *args, **options):
+        raise RuntimeError("no memory")
+
+
+def test_an_error_of_the_pass_reaches_everybody() -> None:
+    meeting = Meeting(Broken(), 1)  # type: ignore[arg-type]
+    question = _Question(torch.zeros(1, 2, 4), torch.tensor([5]), torch.zeros(1, 3), None, 1.0)
+    with pytest.raises(RuntimeError, match="no memory"):
+        meeting.predict(0, question)
+    meeting.leave(0)
+
+
+@pytest.mark.parametrize("lengths", [(4, 4), (3, 5)])
+def test_padding_is_not_attended_to(engine: Engine, lengths: tuple[int, int]) -> None:
+    model = engine._generator("intergen").model
+    generator = torch.Generator().manual_seed(0)
+    questions = [
+        _Question(
+            torch.randn(1, n, 2 * model.layout.token_features, generator=generator),
+            torch.tensor([500]), torch.randn(1, 64, generator=generator), None, scale,
+        )
+        for n, scale in zip(lengths, (3.0, 1.0), strict=True)
+    ]  # fmt: skip
+    with torch.no_grad():
+        together = answer_together(model.denoiser, questions)
+        for q, answer in zip(questions, together, strict=True):
+            alone = model.denoiser.guided(q.x, q.t, q.cond, scale=q.scale)
+            torch.testing.assert_close(answer, alone, atol=1e-5, rtol=1e-5)

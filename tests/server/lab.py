@@ -1,0 +1,35 @@
+"""A server with the stub engine, for tests and for looking at it: ``python tests/server/lab.py PORT DATA``.
+
+Settings come from the environment as always; ``STUB_PAUSE`` is the stub's seconds a step.
+"""
+
+from __future__ import annotations
+
+import importlib.util
+import os
+import sys
+from pathlib import Path
+from types import ModuleType
+
+ROOT = Path(__file__).resolve().parents[2]
+if str(ROOT) not in sys.path:
+    sys.path.insert(0, str(ROOT))
+
+
+def stub_module() -> ModuleType:
+    """The page tests' engine without networks."""
+    name = "stub_engine_of_the_page_tests"
+    if name not in sys.modules:
+        spec = importlib.util.spec_from_file_location(name, ROOT / "tests" / "ui" / "stub_engine.py")
+        sys.modules[name] = module = importlib.util.module_from_spec(spec)
+        spec.loader.exec_module(module)
+    return sys.modules[name]
+
+
+if __name__ == "__main__":
+    from webdemo.server.serve import make_server
+    from webdemo.server.settings import read_settings
+
+    engine = stub_module().StubEngine(pause=float(os.environ.get("STUB_PAUSE", "0.02")))
+    settings = read_settings(port=int(sys.argv[1]), data=sys.argv[2])
+    make_server(settings, engine=engine).run()

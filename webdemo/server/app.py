@@ -1,0 +1,164 @@
+"""The page and everything around it as one ASGI application."""
+
+from __future__ import annotations
+
+import asyncio
+import contextlib
+import logging
+import os
+from collections.abc import AsyncIterator, Callable
+from dataclasses import dataclass
+from typing import Any
+
+os.environ.setdefault("GRADIO_ANALYTICS_ENABLED", "False")  # before Gradio is imported: it asks no other host
+
+import gradio as gr
+from fastapi import FastAPI, Request
+from starlette.concurrency import run_in_threadpool
+from starlette.responses import JSONResponse, PlainTextResponse, Response
+
+from webdemo.ui.page import build_page, launch_options
+from webdemo.ui.runs import EngineLike, Loader
+
+from .accounts import SignIns, Users
+from .database import Database
+from .engine import SharedEngine
+from .figures import Figures
+from .guard import Guard, may_read_figures
+from .health import Health
+from .history import History
+from .login import login_routes
+from .queue import Batcher, FairQueue, QueueLimits
+from .recorder import Recorder
+from .settings import Settings
+from .visitors import Visitors
+
+log = logging.getLogger(__name__)
+
+CLEAN_EVERY = 900.0
+"""Seconds between two looks at what is too old or too much."""
+WARM_UP_AFTER = 2.0
+"""Seconds between the start and the loading of the networks, which would slow the first page."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class Lab:
+    """The parts of a running server; ``app.state.lab``."""
+
+    settings: Settings
+    database: Database
+    history: History
+    queue: FairQueue
+    health: Health
+    figures: Figures
+
+    def stop(self) -> None:
+        """Takes no more runs and lets those that run end; blocks for the grace that the settings give."""
+        self.health.stopping = True
+        left = self.queue.close(self.settings.grace_seconds)
+        if left:
+            log.warning("%d runs were stopped before their end.", left)
+
+
+def create_app(
+    settings: Settings, *, engine: EngineLike | None = None, batcher: Batcher | None = None
+) -> FastAPI:
+    """Builds the application.
+
+    Args:
+        settings: all of them.
+        engine: what generates; by default the shipped networks, which also share passes.
+        batcher: runs several requests of ``engine`` at once.
+
+    Raises:
+        InputError: where the settings would leave the server open unsaid, or what they name cannot be used.
+    """
+    settings.check()
+    if engine is None:
+        engine = batcher = SharedEngine()
+    users = Users(settings.users) if settings.users is not None else None
+    if users is not None:
+        _ = users.names  # a file that cannot be read is told now
+    database = Database(settings.database_url)
+    history = History(
+        database, settings.motions, node=settings.node, keep_days=settings.keep_days,
+        keep_bytes=settings.keep_megabytes * 2**20, keep_favourites=settings.keep_favourites,
+        link_days=settings.link_days, free_bytes=settings.free_megabytes * 2**20,
+    )  # fmt: skip
+    figures = Figures()
+    health = Health(engine, {"database": database.check})
+    limits = QueueLimits(
+        running=settings.running, waiting=settings.waiting, queue=settings.queue, batch=settings.batch
+    )
+    queue = FairQueue(engine, limits, batcher=batcher, figures=figures, broken=health.broken)
+    figures.watch(waiting=lambda: queue.waiting, running=lambda: queue.running, ready=lambda: health.ready)
+    lab = Lab(
+        settings=settings, database=database, history=history, queue=queue, health=health, figures=figures
+    )
+    sign_ins = SignIns(database, users, settings.session_hours) if users is not None else None
+    visitors = Visitors(settings, sign_ins)
+
+    app = FastAPI(title="Pas de Deux", docs_url=None, redoc_url=None, openapi_url=None, lifespan=_lifespan)
+    app.state.lab = lab
+    _add_routes(app, lab)
+    if sign_ins is not None:
+        app.include_router(login_routes(settings, sign_ins, visitors))
+    app.add_middleware(Guard, settings=settings, visitors=visitors, figures=figures)
+    page = build_page(engine, loader=Loader(engine), runs=Recorder(queue, history), history=history)
+    # Whoever waits in line holds a thread.
+    page.queue(default_concurrency_limit=4, max_size=2 * settings.queue + 64)
+    page.max_threads = settings.queue + 64
+    options: dict[str, Any] = {
+        "allowed_paths": [],
+        "server_name": settings.host,
+        "server_port": settings.port,
+    }
+    return gr.mount_gradio_app(app, page, path="/", root_path=settings.root_path or None,
+                               **options, **launch_options())  # fmt: skip
+
+
+def _add_routes(app: FastAPI, lab: Lab) -> None:
+    @app.get("/healthz")
+    def healthz() -> Response:
+        whole, report = lab.health.report()
+        return JSONResponse(report, status_code=200 if whole else 503, headers={"Cache-Control": "no-store"})
+
+    @app.get("/metrics")
+    def metrics(request: Request) -> Response:
+        address = request.client.host if request.client else ""
+        if not may_read_figures(lab.settings, address, request.headers.get("authorization", "")):
+            return JSONResponse({"detail": "The figures are not for everybody."}, status_code=403)
+        return PlainTextResponse(lab.figures.text(), media_type="text/plain; version=0.0.4; charset=utf-8")
+
+
+@contextlib.asynccontextmanager
+async def _lifespan(app: FastAPI) -> AsyncIterator[None]:
+    lab: Lab = app.state.lab
+    lost = await run_in_threadpool(lab.history.recover)
+    if lost:
+        log.warning("%d runs of the last time were interrupted.", lost)
+    tasks = [
+        asyncio.create_task(_later(WARM_UP_AFTER, lab.health.probe)),
+        asyncio.create_task(_every(CLEAN_EVERY, lab.history.clean)),
+    ]
+    try:
+        yield
+    finally:
+        for task in tasks:
+            task.cancel()
+        await run_in_threadpool(lab.stop)
+        lab.database.close()
+
+
+async def _later(seconds: float, job: Callable[[], Any]) -> None:
+    await asyncio.sleep(seconds)
+    await run_in_threadpool(job)
+
+
+async def _every(seconds: float, job: Callable[[], Any]) -> None:
+    while True:
+        try:
+            await run_in_threadpool(job)
+        except Exception:
+            log.exception("Cleaning up failed.")
+        await asyncio.sleep(seconds)

@@ -1,0 +1,40 @@
+"""The engine behind the queue: imported when first needed, several requests in one pass."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from typing import Any
+
+from webdemo.inference.cancel import CancelToken
+from webdemo.inference.requests import GenerateRequest, Progress, ReactRequest, Result, SamplingRequest
+from webdemo.ui.lazy import LazyEngine
+
+NEARBY = 1.25
+"""The longest motion of a pass is at most this many times as long as the shortest: the rest is padding."""
+
+
+class SharedEngine(LazyEngine):
+    """A :class:`LazyEngine` that runs requests together; also the queue's batcher."""
+
+    def key(self, request: Any) -> tuple[Any, ...] | None:
+        """Requests of one model, sampler and number of steps may share a pass; others run alone."""
+        if type(request) not in (GenerateRequest, ReactRequest) or request.model != SamplingRequest.model:
+            return None
+        return request.model, request.sampler, request.steps
+
+    def fits(self, requests: Sequence[Any], other: Any) -> bool:
+        """Whether the lengths are near each other."""
+        lengths = [_seconds(request) for request in (*requests, other)]
+        return max(lengths) <= NEARBY * min(lengths)
+
+    def run_together(
+        self, items: Sequence[tuple[Any, CancelToken]]
+    ) -> Iterator[tuple[int, Progress | Result | Exception]]:
+        """(which request, what happened to it); each ends in a Result or an Exception."""
+        from webdemo.inference.batch import run_batch
+
+        yield from run_batch(self._made(), items)
+
+
+def _seconds(request: GenerateRequest | ReactRequest) -> float:
+    return request.seconds if isinstance(request, GenerateRequest) else request.actor.seconds

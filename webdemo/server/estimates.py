@@ -1,0 +1,85 @@
+"""How long a run will wait: the line is played through ahead, at the pace of the runs before it."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+
+def units(request: Any) -> float:
+    """The work of a request: samples × denoising steps × seconds of motion, and a little for the rest."""
+    seconds = getattr(request, "seconds", None)
+    if seconds is None:
+        actor = getattr(request, "actor", None)
+        seconds = actor.seconds if actor is not None else 5.0
+    return float(request.samples) * (float(seconds) * float(request.steps) + 10.0)
+
+
+@dataclass
+class GroupPace:
+    """Seconds a unit of work, learned from what was run; None until something was."""
+
+    seconds_a_unit: float | None = None
+
+    def learn(self, work: float, seconds: float) -> None:
+        """A batch of ``work`` units took so long; later ones count for more."""
+        new = seconds / max(work, 1e-9)
+        old = self.seconds_a_unit
+        self.seconds_a_unit = new if old is None else 0.7 * old + 0.3 * new
+
+
+class Pace:
+    """The pace of each model group."""
+
+    def __init__(self) -> None:
+        self._groups: dict[str, GroupPace] = {}
+
+    def of(self, group: str) -> GroupPace:
+        return self._groups.setdefault(group, GroupPace())
+
+
+@dataclass
+class Line:
+    """One group's line at one moment.
+
+    Attributes:
+        waiting: in the order in which they came.
+        running: what the worker does now.
+        served: each person's account.
+        pick: chooses the next batch from (waiting, accounts, running).
+        pace: how fast the worker is.
+    """
+
+    waiting: Sequence[Any]
+    running: Sequence[Any]
+    served: dict[str, float]
+    pick: Callable[[list[Any], dict[str, float], Sequence[Any]], list[Any]]
+    pace: GroupPace
+
+    def place(self, job: Any) -> tuple[int, float | None]:
+        """(place in the line from 1, seconds until it starts; None while the pace is not known)."""
+        waiting, served = list(self.waiting), dict(self.served)
+        ahead, work = 0, 0.0
+        while waiting:
+            batch = self.pick(waiting, served, ())
+            if job in batch:
+                place = ahead + batch.index(job) + 1
+                return place, self._seconds(work)
+            for other in batch:
+                waiting.remove(other)
+                served[other.person] = served.get(other.person, 0.0) + other.cost
+            ahead += len(batch)
+            work += sum(other.cost for other in batch)
+        return ahead + 1, self._seconds(work)
+
+    def _seconds(self, work: float) -> float | None:
+        if self.pace.seconds_a_unit is None:
+            return None
+        now = time.monotonic()
+        whole = sum(job.cost for job in self.running) * self.pace.seconds_a_unit
+        spent = max((now - job.started for job in self.running), default=0.0)
+        # A batch that is late is taken to need a tenth of its time yet.
+        left = max(whole - spent, 0.1 * whole)
+        return left + work * self.pace.seconds_a_unit

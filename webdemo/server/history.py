@@ -1,0 +1,282 @@
+"""Runs that can be found again: rows in the database, motion files in a folder beside it."""
+
+from __future__ import annotations
+
+import errno
+import json
+import logging
+import os
+import re
+import secrets
+import shutil
+import time
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Any
+
+from sqlalchemy import delete, func, select, update
+from sqlalchemy.orm import Session, selectinload
+
+from webdemo import formats
+from webdemo.inference.requests import Result
+from webdemo.motion import Duet, InputError
+from webdemo.ui.history import Entry, Opened
+
+from .database import Database, Link, Run
+
+log = logging.getLogger(__name__)
+
+SHOWN = 200
+"""Runs that a list holds at most."""
+DAY = 86_400.0
+_KEY = re.compile(r"[A-Za-z0-9_-]{16,64}\Z")
+_MISSING = "There is no such run, or its link has ended: ask whoever sent it for a new one."
+
+
+class History:
+    """Keeps runs.
+
+    Args:
+        database: where their rows are.
+        folder: holds a folder a run.
+        node: this process's name; its unfinished runs of an earlier life are marked as interrupted.
+        keep_days: age at which a run that is no favourite is removed.
+        keep_bytes: size of all runs' files above which the oldest that are no favourites are removed.
+        keep_favourites: favourites that one owner may have.
+        link_days: how long a link lasts.
+        free_bytes: free disk space below which nothing is begun.
+    """
+
+    def __init__(
+        self,
+        database: Database,
+        folder: Path,
+        *,
+        node: str = "",
+        keep_days: float = 30,
+        keep_bytes: float = 2e9,
+        keep_favourites: int = 200,
+        link_days: float = 30,
+        free_bytes: float = 0,
+    ) -> None:
+        self.database, self.folder, self.node = database, folder, node
+        self.keep_days, self.keep_bytes, self.keep_favourites = keep_days, keep_bytes, keep_favourites
+        self.link_days, self.free_bytes = link_days, free_bytes
+        try:
+            folder.mkdir(mode=0o700, parents=True, exist_ok=True)
+        except OSError as error:
+            raise InputError(
+                f"The folder {folder} cannot be made ({error.strerror}): choose another with PASDEDEUX_DATA."
+            ) from None
+
+    # ---- while a run goes on ---------------------------------------------------------------------
+
+    def begin(self, owner: str, request: Any, title: str) -> str:
+        """Writes down that a run was asked for; returns its id.
+
+        Raises:
+            InputError: where the disk is nearly full.
+        """
+        if shutil.disk_usage(self.folder).free < self.free_bytes:
+            raise InputError(
+                "The server's disk is nearly full, so nothing new can be kept: tell the person who runs it."
+            )
+        asked = request.to_dict()
+        run = Run(
+            id=secrets.token_urlsafe(18), owner=owner, kind=asked.get("kind", "generate"), title=title,
+            request=json.dumps(asked), node=self.node,
+        )  # fmt: skip
+        with self.database.session.begin() as session:
+            session.add(run)
+        return run.id
+
+    def finish(self, run: str, result: Result) -> None:
+        """Keeps a run's result: first its files, then its row, so that a row that says done has them.
+
+        Raises:
+            InputError: where they cannot be written; the run is then marked as failed.
+        """
+        try:
+            size = self._write(run, result)
+        except (OSError, InputError) as error:
+            full = getattr(error, "errno", None) in (errno.ENOSPC, errno.EDQUOT) or "full" in str(error)
+            sentence = (
+                "The result could not be kept in the history, the server's disk is full: "
+                "take its files home now."
+                if full
+                else "The result could not be kept in the history: take its files home now."
+            )
+            self.end(run, "failed", sentence)
+            raise InputError(sentence) from None
+        outcome = {"manifest": result.manifest, "timings": result.timings, "notes": list(result.notes)}
+        with self.database.session.begin() as session:
+            session.execute(
+                update(Run).where(Run.id == run).values(state="done", outcome=json.dumps(outcome), size=size)
+            )
+
+    def end(self, run: str, state: str, message: str = "") -> None:
+        """Marks a run that has no result."""
+        with self.database.session.begin() as session:
+            session.execute(update(Run).where(Run.id == run).values(state=state, message=message))
+
+    def recover(self) -> int:
+        """Marks the runs that this node's last life left unfinished; returns how many.
+
+        What a killed process left half-written is removed.
+        """
+        unfinished = (Run.state == "running", Run.node == self.node)
+        with self.database.session.begin() as session:
+            lost = list(session.scalars(select(Run.id).where(*unfinished)))
+            session.execute(
+                update(Run)
+                .where(*unfinished)
+                .values(state="interrupted", message="The server stopped while this ran: run it again.")
+            )
+        for run in lost:
+            shutil.rmtree(self.folder / run, ignore_errors=True)
+            shutil.rmtree(self.folder / f".{run}", ignore_errors=True)
+        return len(lost)
+
+    # ---- finding them again ----------------------------------------------------------------------
+
+    def entries(self, owner: str) -> Sequence[Entry]:
+        """The owner's runs, newest first."""
+        if not owner:
+            return []
+        query = (
+            select(Run)
+            .where(Run.owner == owner)
+            .options(selectinload(Run.links))
+            .order_by(Run.created.desc())
+            .limit(SHOWN)
+        )
+        with self.database.session() as session:
+            return [_entry(run) for run in session.scalars(query)]
+
+    def open(self, key: str, owner: str) -> Opened:
+        """A run by its id, for its owner, or by a link, for anybody.
+
+        Raises:
+            InputError: the same sentence for a run that never was, one of somebody else and a link that has
+                ended, so that nobody learns which; another one for an own run that has no result.
+        """
+        if not _KEY.match(key):
+            raise InputError(_MISSING)
+        with self.database.session() as session:
+            run = session.get(Run, key)
+            if run is None or not owner or run.owner != owner:
+                link = session.get(Link, key)
+                run = link.run if link is not None and link.until > time.time() else None
+            if run is None:
+                raise InputError(_MISSING)
+            entry = _entry(run)
+            outcome = json.loads(run.outcome or "{}")
+        if entry.state != "done":
+            raise InputError(entry.message or f"This run has no result: it is {entry.state}.")
+        return Opened(entry=entry, result=self._read(entry.id, outcome))
+
+    def favour(self, run: str, owner: str, *, favourite: bool) -> None:
+        """Marks a run as one to keep, or no longer; raises InputError where there are too many."""
+        with self.database.session.begin() as session:
+            found = self._own(session, run, owner)
+            if favourite and not found.favourite:
+                count = session.scalar(
+                    select(func.count()).select_from(Run).where(Run.owner == owner, Run.favourite)
+                )
+                if (count or 0) >= self.keep_favourites:
+                    raise InputError(f"You keep {count} favourites already: let one go first.")
+            found.favourite = favourite
+
+    def remove(self, run: str, owner: str) -> None:
+        """Deletes a run, its files and its links."""
+        with self.database.session.begin() as session:
+            session.delete(self._own(session, run, owner))
+        shutil.rmtree(self.folder / run, ignore_errors=True)
+
+    def link(self, run: str, owner: str) -> tuple[str, float]:
+        """A new link to a run: its key, and when it ends."""
+        token, until = secrets.token_urlsafe(18), time.time() + self.link_days * DAY
+        with self.database.session.begin() as session:
+            found = self._own(session, run, owner)
+            if found.state != "done":
+                raise InputError(f"This run has no result to show: it is {found.state}.")
+            session.add(Link(token=token, run_id=found.id, until=until))
+        return token, until
+
+    def revoke(self, run: str, owner: str) -> int:
+        """Ends all links to a run; returns how many there were."""
+        with self.database.session.begin() as session:
+            found = self._own(session, run, owner)
+            return session.execute(delete(Link).where(Link.run_id == found.id)).rowcount
+
+    # ---- expiry ----------------------------------------------------------------------------------
+
+    def clean(self) -> int:
+        """Removes runs by age, then the oldest by size; favourites stay. Returns how many."""
+        now = time.time()
+        with self.database.session.begin() as session:
+            session.execute(delete(Link).where(Link.until < now))
+            old = select(Run.id, Run.size).where(~Run.favourite, Run.state != "running")
+            outlived = session.execute(old.where(Run.created < now - self.keep_days * DAY))
+            gone: dict[str, int] = dict(outlived.tuples().all())
+            total = (session.scalar(select(func.sum(Run.size))) or 0) - sum(gone.values())
+            if total > self.keep_bytes:
+                for run, size in session.execute(old.order_by(Run.created)):
+                    if total <= self.keep_bytes:
+                        break
+                    if run not in gone:
+                        gone[run] = size
+                        total -= size
+            for run in gone:
+                session.execute(delete(Link).where(Link.run_id == run))
+                session.execute(delete(Run).where(Run.id == run))
+        for run in gone:
+            shutil.rmtree(self.folder / run, ignore_errors=True)
+        return len(gone)
+
+    # ---- files -----------------------------------------------------------------------------------
+
+    def _own(self, session: Session, run: str, owner: str) -> Run:
+        found = session.get(Run, run) if _KEY.match(run) else None
+        if found is None or not owner or found.owner != owner:
+            raise InputError("There is no such run in your history: reload the page.")
+        return found
+
+    def _write(self, run: str, result: Result) -> int:
+        """Writes a result's files into a folder that takes its name when it is whole; returns their bytes."""
+        half = self.folder / f".{run}"
+        try:
+            half.mkdir(mode=0o700)
+            for i, duet in enumerate(result.duets):
+                formats.write(duet, half / f"{i + 1}.npz")
+            (half / "readouts.json").write_text(json.dumps(list(result.readouts)), encoding="utf-8")
+            size = sum(path.stat().st_size for path in half.iterdir())
+            os.replace(half, self.folder / run)
+        except BaseException:
+            shutil.rmtree(half, ignore_errors=True)
+            raise
+        return size
+
+    def _read(self, run: str, outcome: dict[str, Any]) -> Result:
+        folder = self.folder / run
+        files = sorted(folder.glob("*.npz"), key=lambda path: int(path.stem))
+        try:
+            duets = tuple(duet for duet in map(formats.read, files) if isinstance(duet, Duet))
+            readouts = tuple(json.loads((folder / "readouts.json").read_text(encoding="utf-8")))
+        except (OSError, ValueError):
+            duets = ()
+        if not duets:
+            raise InputError("The files of this run are gone or damaged: run it again.")
+        return Result(
+            duets=duets, manifest=outcome["manifest"], readouts=readouts, timings=outcome["timings"],
+            notes=tuple(outcome["notes"]),
+        )  # fmt: skip
+
+
+def _entry(run: Run) -> Entry:
+    now = time.time()
+    return Entry(
+        id=run.id, kind=run.kind, title=run.title, state=run.state, message=run.message, created=run.created,
+        request=json.loads(run.request), favourite=run.favourite,
+        links=sum(link.until > now for link in run.links),
+    )  # fmt: skip

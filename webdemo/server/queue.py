@@ -1,0 +1,386 @@
+"""The line that runs wait in: who has had least goes first, and runs that fit together share a pass.
+
+Each person has an account of the work done for them, in units of motion times denoising steps; the next run
+is that of the waiting person who has had least (start-time fair queueing). Nobody gains by asking more often,
+and a long run costs its owner later turns. Runs of one model group go to one worker.
+"""
+
+from __future__ import annotations
+
+import itertools
+import logging
+import queue
+import threading
+import time
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass, field
+from typing import Any, Protocol
+
+from webdemo.inference.cancel import CancelToken
+from webdemo.inference.requests import Cancelled, Progress, Result
+from webdemo.motion import InputError
+from webdemo.ui.runs import EngineLike, Waiting
+from webdemo.ui.visitor import visitor
+
+from .estimates import Line, Pace, units
+from .figures import Figures
+
+log = logging.getLogger(__name__)
+
+TICK = 0.5
+"""Seconds between two looks at the place in the line."""
+MAX_GROUPS = 8
+"""Workers at most; further groups share them."""
+MAX_ACCOUNTS = 1000
+"""Accounts of people who are no longer here are dropped above this."""
+
+
+class Batcher(Protocol):
+    """Runs several requests in one pass."""
+
+    def key(self, request: Any) -> tuple[Any, ...] | None:
+        """Requests of equal keys may share a pass; None for one that must run alone."""
+
+    def fits(self, requests: Sequence[Any], other: Any) -> bool:
+        """Whether another request of the same key may join these."""
+
+    def run_together(
+        self, items: Sequence[tuple[Any, CancelToken]]
+    ) -> Iterator[tuple[int, Progress | Result | Exception]]:
+        """(which request, what happened to it); each ends in a Result or an Exception."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class QueueLimits:
+    """How much may run and wait: of one person, of all, and how many motions in one pass."""
+
+    running: int = 2
+    waiting: int = 4
+    queue: int = 64
+    batch: int = 8
+
+
+@dataclass(eq=False)
+class Job:
+    """One run in the line.
+
+    Attributes:
+        person: who waits for it.
+        group: which worker does it.
+        cost: its work, in units.
+        events: progress, then a result or an error; read by whoever asked.
+        told: seconds that were foretold when it came.
+        batch: how many shared its pass.
+    """
+
+    person: str
+    request: Any
+    group: str
+    cost: float
+    key: tuple[Any, ...] | None
+    token: CancelToken = field(default_factory=CancelToken)
+    events: queue.SimpleQueue[Any] = field(default_factory=queue.SimpleQueue)
+    came: float = field(default_factory=time.monotonic)
+    started: float = 0.0
+    told: float | None = None
+    batch: int = 1
+
+
+class FairQueue:
+    """Runs for all sessions; the same use as :class:`webdemo.ui.runs.Runs`.
+
+    Args:
+        engine: what runs them.
+        limits: caps.
+        batcher: runs several at once; without it each runs alone.
+        figures: what is counted.
+        broken: told of errors that are no user's.
+    """
+
+    def __init__(
+        self,
+        engine: EngineLike,
+        limits: QueueLimits | None = None,
+        *,
+        batcher: Batcher | None = None,
+        figures: Figures | None = None,
+        broken: Callable[[BaseException], None] = lambda error: None,
+    ) -> None:
+        self.engine = engine
+        self.limits = limits or QueueLimits()
+        self.batcher = batcher
+        self.figures = figures or Figures()
+        self.broken = broken
+        self.pace = Pace()
+        self._change = threading.Condition()
+        self._waiting: list[Job] = []
+        self._running: list[Job] = []
+        self._served: dict[str, float] = {}
+        self._sessions: dict[str, CancelToken] = {}
+        self._workers: dict[str, threading.Thread] = {}
+        self._stopping = False
+
+    # ---- for those who ask -----------------------------------------------------------------------
+
+    @property
+    def waiting(self) -> int:
+        return len(self._waiting)
+
+    @property
+    def running(self) -> int:
+        return len(self._running)
+
+    def cancel(self, session: str) -> bool:
+        """Stops the session's run, waiting or running; False where it has none."""
+        with self._change:
+            token = self._sessions.get(session)
+            if token is not None:
+                token.cancel()
+                self._change.notify_all()
+        return token is not None
+
+    def run(self, session: str, request: Any) -> Iterator[Progress | Result]:
+        """Runs a request: its place in the line, its progress, its result.
+
+        An earlier run of the same session is cancelled. Closing the iterator cancels the run.
+
+        Raises:
+            InputError: where the line or the person's share of it is full, the server stops, or the engine
+                cannot do what is asked.
+            Cancelled: where the run was cancelled.
+        """
+        job = self._enter(session, request, visitor().person)
+        try:
+            yield from self._watch(job)
+        finally:
+            with self._change:
+                job.token.cancel()
+                if job in self._waiting:
+                    self._waiting.remove(job)
+                if self._sessions.get(session) is job.token:
+                    del self._sessions[session]
+                self._change.notify_all()
+
+    def close(self, grace: float) -> int:
+        """Takes no more runs, tells those that wait, and lets the others end within ``grace`` seconds.
+
+        Returns:
+            how many were still running and had to be stopped.
+        """
+        until = time.monotonic() + grace
+        with self._change:
+            self._stopping = True
+            for job in self._waiting:
+                job.events.put(InputError("The server is stopping: send this again in a minute."))
+            self._waiting.clear()
+            self._change.notify_all()
+            while self._running and time.monotonic() < until:
+                self._change.wait(max(0.0, min(0.2, until - time.monotonic())))
+            left = list(self._running)
+            for job in left:
+                job.token.cancel()
+                job.events.put(
+                    InputError("The server stopped before this was finished: send it again in a minute.")
+                )
+        return len(left)
+
+    # ---- the line --------------------------------------------------------------------------------
+
+    def _enter(self, session: str, request: Any, person: str) -> Job:
+        key = self.batcher.key(request) if self.batcher else None
+        job = Job(person=person, request=request, group="", cost=units(request), key=key)
+        with self._change:
+            if self._stopping:
+                raise InputError("The server is stopping: send this again in a minute.")
+            if (earlier := self._sessions.get(session)) is not None:
+                earlier.cancel()
+            self._waiting = [other for other in self._waiting if not other.token.cancelled]
+            mine = sum(other.person == person for other in self._waiting)
+            if mine >= self.limits.waiting:
+                self.figures.refused.labels("person's share of the queue").inc()
+                raise InputError(
+                    f"You have {mine} runs waiting already: wait for one or cancel it, then try again."
+                )
+            if len(self._waiting) >= self.limits.queue:
+                self.figures.refused.labels("queue full").inc()
+                raise InputError(
+                    f"The queue is full ({len(self._waiting)} runs wait): try again in a few minutes."
+                )
+            job.group = self._group(request)
+            self._meet(person)
+            self._sessions[session] = job.token
+            self._waiting.append(job)
+            job.told = self._line(job.group).place(job)[1]
+            self._change.notify_all()
+        return job
+
+    def _meet(self, person: str) -> None:
+        """Opens an account: whoever comes anew has had as much as the least served who are here."""
+        here = {job.person for job in itertools.chain(self._waiting, self._running)}
+        least = min((self._served[name] for name in here), default=0.0)
+        if person not in here:
+            self._served[person] = max(self._served.get(person, 0.0), least)
+        if not here:  # an idle server forgets
+            self._served = {person: 0.0}
+        elif len(self._served) > MAX_ACCOUNTS:
+            self._served = {name: self._served[name] for name in {*here, person}}
+
+    def _group(self, request: Any) -> str:
+        """The model group of a request, with its worker started."""
+        name = str(getattr(request, "model", "default"))
+        if name not in self._workers and len(self._workers) >= MAX_GROUPS:
+            name = next(iter(self._workers))
+        if name not in self._workers:
+            worker = threading.Thread(target=self._work, args=(name,), name=f"worker {name}", daemon=True)
+            self._workers[name] = worker
+            worker.start()
+        return name
+
+    def _watch(self, job: Job) -> Iterator[Progress | Result]:
+        while True:
+            try:
+                event = job.events.get(timeout=TICK)
+            except queue.Empty:
+                event = None
+            if isinstance(event, Exception):
+                raise event
+            job.token.raise_if_cancelled()
+            if event is None:
+                with self._change:
+                    if job not in self._waiting:
+                        continue
+                    place, left = self._line(job.group).place(job)
+                    count = len(self._waiting)
+                elapsed = time.monotonic() - job.came
+                yield Waiting(stage="queue", step=place, total=count, elapsed=elapsed, seconds_left=left)
+                continue
+            yield event
+            if isinstance(event, Result):
+                return
+
+    def _line(self, group: str) -> Line:
+        """The group's line as it stands; the lock is held."""
+        return Line(
+            waiting=[job for job in self._waiting if job.group == group],
+            running=[job for job in self._running if job.group == group],
+            served=self._served,
+            pick=self._pick,
+            pace=self.pace.of(group),
+        )
+
+    def _pick(self, waiting: list[Job], served: dict[str, float], running: Sequence[Job]) -> list[Job]:
+        """The next batch: the least served person's first run, and whatever may share its pass."""
+        count: dict[str, int] = {}
+        for job in running:
+            count[job.person] = count.get(job.person, 0) + 1
+        batch: list[Job] = []
+        rest = list(waiting)
+        extra: dict[str, float] = {}
+        while rest:
+            able = [
+                job
+                for job in rest
+                if count.get(job.person, 0) < self.limits.running and self._joins(batch, job)
+            ]
+            if not able:
+                break
+            job = min(
+                able, key=lambda j: (served.get(j.person, 0.0) + extra.get(j.person, 0.0), waiting.index(j))
+            )
+            batch.append(job)
+            rest.remove(job)
+            count[job.person] = count.get(job.person, 0) + 1
+            extra[job.person] = extra.get(job.person, 0.0) + job.cost
+            if job.key is None:
+                break
+        return batch
+
+    def _joins(self, batch: Sequence[Job], job: Job) -> bool:
+        if not batch:
+            return True
+        if self.batcher is None or job.key is None or job.key != batch[0].key:
+            return False
+        motions = sum(other.request.samples for other in batch) + job.request.samples
+        return motions <= self.limits.batch and self.batcher.fits([o.request for o in batch], job.request)
+
+    # ---- the workers -----------------------------------------------------------------------------
+
+    def _work(self, group: str) -> None:
+        while True:
+            with self._change:
+                while not (batch := self._next(group)):
+                    if self._stopping:
+                        return
+                    self._change.wait()
+                for job in batch:
+                    self._waiting.remove(job)
+                    self._served[job.person] = self._served.get(job.person, 0.0) + job.cost
+                    job.batch = len(batch)
+                    job.started = time.monotonic()
+                    self._running.append(job)
+            began = time.monotonic()
+            try:
+                whole = self._run_batch(batch)
+            finally:
+                with self._change:
+                    for job in batch:
+                        self._running.remove(job)
+                    self._change.notify_all()
+            if whole:
+                self.pace.of(group).learn(sum(job.cost for job in batch), time.monotonic() - began)
+            self._count(group, batch, began)
+
+    def _next(self, group: str) -> list[Job]:
+        self._waiting = [job for job in self._waiting if not job.token.cancelled]
+        mine = [job for job in self._waiting if job.group == group]
+        return self._pick(mine, self._served, self._running) if mine else []
+
+    def _run_batch(self, batch: list[Job]) -> bool:
+        """Runs a batch; whether all of it came to its end, so that its time says how long such work takes."""
+        ended: set[int] = set()
+        whole = True
+        try:
+            for i, event in self._events(batch):
+                batch[i].events.put(event)
+                if isinstance(event, Result):
+                    ended.add(i)
+                elif isinstance(event, Exception):
+                    ended.add(i)
+                    whole = False
+                    self._note(batch[i], event)
+        except Exception as error:  # of the whole batch
+            whole = False
+            for i in set(range(len(batch))) - ended:
+                batch[i].events.put(error)
+                self._note(batch[i], error)
+            return whole
+        for i in set(range(len(batch))) - ended:  # an engine that stops without a result was told to
+            whole = False
+            batch[i].events.put(Cancelled("The run ended without a result."))
+        return whole
+
+    def _events(self, batch: list[Job]) -> Iterator[tuple[int, Progress | Result | Exception]]:
+        if len(batch) > 1 and self.batcher is not None:
+            yield from self.batcher.run_together([(job.request, job.token) for job in batch])
+            return
+        for event in self.engine.run(batch[0].request, cancel=batch[0].token):
+            yield 0, event
+            if isinstance(event, Result):
+                return
+
+    def _note(self, job: Job, error: Exception) -> None:
+        kind = type(error).__name__
+        ours = not isinstance(error, (InputError, Cancelled))
+        outcome = "failed" if ours else "cancelled" if isinstance(error, Cancelled) else "refused"
+        self.figures.runs.labels(job.group, outcome).inc()
+        if ours:
+            self.figures.errors.labels(kind).inc()
+            self.broken(error)
+
+    def _count(self, group: str, batch: list[Job], began: float) -> None:
+        self.figures.batch_size.labels(group).observe(len(batch))
+        for job in batch:
+            waited = began - job.came
+            self.figures.stage_seconds.labels(group, "queue").observe(waited)
+            if job.told and job.told > 1:
+                self.figures.estimate_ratio.observe(waited / job.told)

@@ -1,0 +1,96 @@
+"""Runs that are written down: the queue, with the history beside it."""
+
+from __future__ import annotations
+
+import logging
+from collections.abc import Iterator
+from contextlib import suppress
+from dataclasses import replace
+from typing import Any
+
+from sqlalchemy.exc import SQLAlchemyError
+
+from webdemo.inference.requests import Cancelled, Progress, Result
+from webdemo.motion import InputError
+from webdemo.ui.visitor import visitor
+
+from .history import History
+from .queue import FairQueue
+
+log = logging.getLogger(__name__)
+
+
+class Recorder:
+    """Runs requests in a queue and keeps every one of them; the same use as :class:`webdemo.ui.runs.Runs`."""
+
+    def __init__(self, queue: FairQueue, history: History) -> None:
+        self.queue, self.history = queue, history
+
+    def cancel(self, session: str) -> bool:
+        """Stops the session's run, waiting or running; False where it has none."""
+        return self.queue.cancel(session)
+
+    def run(self, session: str, request: Any) -> Iterator[Progress | Result]:
+        """As :meth:`FairQueue.run`; the result comes when it is kept, or with a note that it could not be."""
+        who = visitor()
+        title = request.prompt.strip() or f"Reaction to {request.actor.name}"
+        run = self._begin(who.owner, request, title) if who.owner else ""
+        state, message = "refused", ""
+        try:
+            for event in self.queue.run(session, request):
+                if isinstance(event, Result):
+                    state, event = "done", self._kept(run, event)
+                    self._count(event)
+                elif state == "refused":
+                    state, message = "cancelled", "This run was cancelled."
+                yield event
+        except InputError as error:
+            if state != "refused":
+                state, message = "failed", str(error)
+            raise
+        except (Cancelled, GeneratorExit):
+            raise
+        except BaseException as error:
+            state, message = "failed", f"Something went wrong inside the program ({type(error).__name__})."
+            raise
+        finally:
+            if run and state != "done":
+                with suppress(SQLAlchemyError, InputError):  # what went wrong before is what is told
+                    self._end(run, who.owner, state, message)
+
+    def _begin(self, owner: str, request: Any, title: str) -> str:
+        try:
+            return self.history.begin(owner, request, title)
+        except SQLAlchemyError as error:
+            log.exception("A run could not be written down.")
+            full = "full" in str(getattr(error, "orig", ""))
+            raise InputError(
+                "The server's disk is full, so nothing new can be kept: tell the person who runs it."
+                if full
+                else "The server's history cannot be written: tell the person who runs it."
+            ) from None
+
+    def _end(self, run: str, owner: str, state: str, message: str) -> None:
+        if state == "refused":  # it never was in the line
+            self.history.remove(run, owner)
+        else:
+            self.history.end(run, state, message)
+
+    def _kept(self, run: str, result: Result) -> Result:
+        if not run:
+            return result
+        try:
+            self.history.finish(run, result)
+        except InputError as error:
+            return replace(result, notes=(*result.notes, str(error)))
+        except SQLAlchemyError:
+            log.exception("A result could not be kept.")
+            sentence = "The result could not be kept in the history: take its files home now."
+            return replace(result, notes=(*result.notes, sentence))
+        return result
+
+    def _count(self, result: Result) -> None:
+        model = str(result.manifest.get("model", "unknown"))
+        self.queue.figures.runs.labels(model, "done").inc()
+        for stage, seconds in result.timings.items():
+            self.queue.figures.stage_seconds.labels(model, stage).observe(seconds)

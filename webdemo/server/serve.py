@@ -1,0 +1,109 @@
+"""One process that serves the application, and ends well."""
+
+from __future__ import annotations
+
+import asyncio
+import resource
+import socket
+from typing import Any
+
+import uvicorn
+from starlette.concurrency import run_in_threadpool
+from uvicorn.protocols.http.h11_impl import H11Protocol
+
+from webdemo.motion import InputError
+
+from .app import Lab, create_app
+from .logs import set_up_logs
+from .settings import Settings
+
+CLOSING_SECONDS = 3
+"""How long open connections may take once all runs have ended."""
+
+
+def bounded_protocol(settings: Settings) -> type[H11Protocol]:
+    """HTTP that closes connections which are too many, or whose head does not come."""
+    open_by_address: dict[str, int] = {}
+
+    class Bounded(H11Protocol):
+        address = ""
+        waiting: asyncio.TimerHandle | None = None
+
+        def connection_made(self, transport: Any) -> None:
+            super().connection_made(transport)
+            self.address = self.client[0] if self.client else ""
+            count = open_by_address[self.address] = open_by_address.get(self.address, 0) + 1
+            if len(self.connections) > settings.connections or count > settings.address_connections:
+                transport.close()
+                return
+            self.waiting = self.loop.call_later(settings.header_seconds, self._head_is_late)
+
+        def connection_lost(self, exc: Exception | None) -> None:
+            super().connection_lost(exc)
+            if self.waiting is not None:
+                self.waiting.cancel()
+            left = open_by_address.get(self.address, 1) - 1
+            if left > 0:
+                open_by_address[self.address] = left
+            else:
+                open_by_address.pop(self.address, None)
+
+        def _head_is_late(self) -> None:
+            if self.cycle is None:
+                self.transport.close()
+
+    return Bounded
+
+
+class Server(uvicorn.Server):
+    """A uvicorn that waits for the runs before it closes the connections which carry them."""
+
+    def __init__(self, config: uvicorn.Config, lab: Lab) -> None:
+        super().__init__(config)
+        self.lab = lab
+
+    async def shutdown(self, sockets: list[socket.socket] | None = None) -> None:
+        if not self.force_exit:
+            await run_in_threadpool(self.lab.stop)
+        await super().shutdown(sockets)
+
+
+def make_server(settings: Settings, **parts: Any) -> Server:
+    """The server for the settings; ``parts`` go to :func:`create_app`."""
+    app = create_app(settings, **parts)
+    config = uvicorn.Config(
+        app, host=settings.host, port=settings.port, http=bounded_protocol(settings), ws="none",
+        proxy_headers=True, forwarded_allow_ips=settings.proxies, access_log=False, log_config=None,
+        server_header=False, timeout_graceful_shutdown=CLOSING_SECONDS, timeout_keep_alive=30,
+        h11_max_incomplete_event_size=32 * 1024, backlog=512,
+    )  # fmt: skip
+    return Server(config, app.state.lab)
+
+
+def serve(settings: Settings) -> None:
+    """Serves until SIGTERM or Ctrl+C.
+
+    Raises:
+        InputError: where the settings do not fit or the address is taken.
+    """
+    settings.check()
+    _raise_file_limit(settings.connections + 512)
+    with socket.socket(socket.AF_INET6 if ":" in settings.host else socket.AF_INET) as probe:
+        probe.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
+        try:
+            probe.bind((settings.host, settings.port))
+        except OSError as error:
+            raise InputError(
+                f"The page cannot be served on {settings.host}:{settings.port} ({error.strerror or error}): "
+                "set PASDEDEUX_PORT to a free port."
+            ) from None
+    set_up_logs(settings.log_level, content=settings.log_content)
+    server = make_server(settings)
+    print(f"Pas de Deux is on {settings.url}", flush=True)
+    server.run()
+
+
+def _raise_file_limit(wanted: int) -> None:
+    soft, hard = resource.getrlimit(resource.RLIMIT_NOFILE)
+    if soft < wanted:
+        resource.setrlimit(resource.RLIMIT_NOFILE, (min(wanted, hard), hard))

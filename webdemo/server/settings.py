@@ -1,0 +1,208 @@
+"""Everything that can be set, in one typed place: the environment first, then a file, then the defaults.
+
+``PASDEDEUX_PORT=8000`` sets ``port``; the file is TOML with the same names, ``pasdedeux.toml`` in the working
+folder or what ``PASDEDEUX_SETTINGS`` names. ``python -m webdemo serve --print-settings`` shows what holds.
+"""
+
+from __future__ import annotations
+
+import ipaddress
+import os
+import socket
+import sys
+import tempfile
+from pathlib import Path
+from typing import Any
+
+from pydantic import Field, ValidationError
+from pydantic_settings import (
+    BaseSettings,
+    PydanticBaseSettingsSource,
+    SettingsConfigDict,
+    SettingsError,
+    TomlConfigSettingsSource,
+)
+
+from webdemo.motion import InputError
+
+PREFIX = "PASDEDEUX_"
+FILE = "pasdedeux.toml"
+
+
+def on_a_space() -> bool:
+    """Whether this is a Hugging Face Space, which is public by its nature."""
+    return "SPACE_ID" in os.environ
+
+
+def _data_folder() -> Path:
+    """Where a program of this user keeps its data; a folder of their own where they have no home."""
+    base = os.environ.get("XDG_DATA_HOME")
+    try:
+        return (Path(base) if base else Path.home() / ".local" / "share") / "pas-de-deux"
+    except RuntimeError:
+        return Path(tempfile.gettempdir()) / f"pas-de-deux-{os.getuid()}" / "data"
+
+
+class Settings(BaseSettings):
+    """What a server is told; every field says what it is for and in which unit."""
+
+    model_config = SettingsConfigDict(
+        env_prefix=PREFIX, extra="forbid", frozen=True, validate_default=True, env_ignore_empty=True
+    )
+
+    # ---- where it listens
+    host: str = Field(
+        default_factory=lambda: "0.0.0.0" if on_a_space() else "127.0.0.1", description="address to listen on"
+    )
+    port: int = Field(7860, ge=1, le=65535, description="port to listen on")
+    root_path: str = Field(
+        "", pattern=r"^(/[\w.~-]+)*$", description="path under which a proxy shows the page"
+    )
+    proxies: list[str] = Field(
+        ["127.0.0.1", "::1"], description="addresses whose X-Forwarded headers are believed"
+    )
+    hosts: list[str] = Field(
+        [], description="names by which browsers may call; on loopback its own, otherwise any, by default"
+    )
+
+    # ---- who may use it
+    users: Path | None = Field(None, description="file of accounts; none: no accounts")
+    open: bool = Field(
+        default_factory=on_a_space, description="serve others than this machine without accounts"
+    )
+    session_hours: float = Field(24 * 14, gt=0, le=24 * 365, description="how long a sign-in lasts")
+    metrics_token: str = Field("", description="bearer of /metrics from elsewhere; empty: this machine alone")
+
+    # ---- what is kept
+    data: Path = Field(default_factory=_data_folder, description="folder of the history")
+    database: str = Field("", description="SQLAlchemy URL; empty: SQLite in the data folder")
+    node: str = Field(default_factory=socket.gethostname, description="name of this process among several")
+    keep_days: float = Field(30, gt=0, description="age at which a run that is no favourite is removed")
+    keep_megabytes: float = Field(2000, gt=0, description="size of all runs above which the oldest go")
+    keep_favourites: int = Field(200, ge=0, description="favourites a person")
+    link_days: float = Field(30, gt=0, le=3650, description="how long a link opens a run for others")
+    free_megabytes: float = Field(100, ge=0, description="free disk below which no run is taken")
+
+    # ---- the queue
+    running: int = Field(2, ge=1, description="runs of one person at a time")
+    waiting: int = Field(4, ge=1, description="runs of one person that may wait")
+    queue: int = Field(64, ge=1, le=1000, description="runs of all people that may wait")
+    batch: int = Field(8, ge=1, le=64, description="motions in one pass through the network")
+    grace_seconds: float = Field(60, ge=0, description="how long what runs may take to end at a shutdown")
+
+    # ---- limits
+    rate: int = Field(240, ge=1, description="changing requests of one person a minute")
+    upload_megabytes: float = Field(50, gt=0, le=50, description="largest upload")
+    body_megabytes: float = Field(2, gt=0, description="largest body of any other request")
+    body_seconds: float = Field(60, gt=0, description="time for a request's body to arrive")
+    header_seconds: float = Field(10, gt=0, description="time for a request's head to arrive")
+    connections: int = Field(1000, ge=1, description="open connections")
+    address_connections: int = Field(400, ge=1, description="open connections of one address")
+
+    # ---- logs
+    log_level: str = Field("info", pattern="^(debug|info|warning|error)$", description="least severe line")
+    log_content: bool = Field(False, description="let logs hold prompts and what an error says of them")
+
+    @classmethod
+    def settings_customise_sources(
+        cls,
+        settings_cls: type[BaseSettings],
+        init_settings: PydanticBaseSettingsSource,
+        env_settings: PydanticBaseSettingsSource,
+        dotenv_settings: PydanticBaseSettingsSource,
+        file_secret_settings: PydanticBaseSettingsSource,
+    ) -> tuple[PydanticBaseSettingsSource, ...]:
+        file = Path(os.environ.get(f"{PREFIX}SETTINGS") or FILE)
+        return init_settings, env_settings, TomlConfigSettingsSource(settings_cls, file)
+
+    @property
+    def local(self) -> bool:
+        """Whether only this machine can reach the server."""
+        return is_loopback(self.host)
+
+    @property
+    def accounts(self) -> bool:
+        """Whether people sign in."""
+        return self.users is not None
+
+    @property
+    def url(self) -> str:
+        """Where the page is, for the person who started it."""
+        host = "127.0.0.1" if self.host in ("0.0.0.0", "::") else self.host
+        return f"http://{f'[{host}]' if ':' in host else host}:{self.port}{self.root_path}/"
+
+    @property
+    def database_url(self) -> str:
+        return self.database or f"sqlite:///{self.data / 'history.db'}"
+
+    @property
+    def motions(self) -> Path:
+        """Folder of the runs' motion files."""
+        return self.data / "motions"
+
+    def check(self) -> None:
+        """Raises InputError where the server would be open to others without anybody having said so."""
+        if not self.local and not self.accounts and not self.open:
+            raise InputError(
+                f"{self.host} can be reached from other machines and there are no accounts: make some with "
+                f"`python -m webdemo user add NAME` and set {PREFIX}USERS, or let anyone in, {PREFIX}OPEN=1."
+            )
+
+    def shown(self) -> dict[str, Any]:
+        """The settings as plain values, secrets left out."""
+        plain = self.model_dump(mode="json")
+        plain["database"] = _without_password(self.database_url)
+        plain["metrics_token"] = "set" if self.metrics_token else ""
+        return plain
+
+
+def is_loopback(host: str) -> bool:
+    """Whether an address or name means this machine alone."""
+    if host == "localhost":
+        return True
+    try:
+        return ipaddress.ip_address(host).is_loopback
+    except ValueError:
+        return False
+
+
+def read_settings(**given: Any) -> Settings:
+    """The settings in force; what is given here (and is not None) goes before environment and file.
+
+    Raises:
+        InputError: one sentence naming the setting that does not fit, and the reason.
+    """
+    named = os.environ.get(f"{PREFIX}SETTINGS")
+    if named and not Path(named).is_file():
+        raise InputError(f"There is no settings file {named}: correct {PREFIX}SETTINGS or make the file.")
+    if sys.version_info < (3, 11) and Path(named or FILE).is_file():  # its reader came with Python 3.11
+        raise InputError(
+            "A settings file needs Python 3.11 or newer: use the environment, or a newer Python."
+        )
+    try:
+        return Settings(**{name: value for name, value in given.items() if value is not None})
+    except ValidationError as error:
+        first = error.errors()[0]
+        name = ".".join(str(part) for part in first["loc"]) or "the settings"
+        if first["type"] == "extra_forbidden":
+            raise InputError(
+                f"There is no setting {name!r}: see `python -m webdemo serve --print-settings`."
+            ) from None
+        raise InputError(
+            f"The setting {name} ({PREFIX}{name.upper()}) cannot be {first['input']!r:.60}: "
+            f"{first['msg'][:1].lower()}{first['msg'][1:]}."
+        ) from None
+    except SettingsError as error:
+        raise InputError(f"The settings cannot be read ({error}): lists are written as JSON.") from None
+    except ValueError as error:  # the file is not TOML
+        raise InputError(f"The settings file {named or FILE} cannot be read: {error}.") from None
+
+
+def _without_password(url: str) -> str:
+    from sqlalchemy.engine import make_url
+    from sqlalchemy.exc import ArgumentError
+
+    try:
+        return make_url(url).render_as_string(hide_password=True)
+    except ArgumentError:
+        return "(not a database URL)"

@@ -1,0 +1,81 @@
+"""Runs of a history once more, and whether they came out the same."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Mapping
+from dataclasses import fields
+from typing import Any
+
+import numpy as np
+
+from webdemo.inference.actor import ROLES
+from webdemo.inference.requests import GenerateRequest, ReactRequest, Result, SamplingRequest
+from webdemo.motion import InputError
+
+from .actors import Source
+from .history import Opened
+
+_KINDS: dict[str, type[SamplingRequest]] = {"generate": GenerateRequest, "react": ReactRequest}
+
+
+def request_of(opened: Opened) -> SamplingRequest:
+    """The request that a kept run was made from.
+
+    Raises:
+        InputError: for a kind that keeps too little of what it was made from, or fields that no longer fit.
+    """
+    asked = opened.entry.request
+    kind = _KINDS.get(opened.entry.kind)
+    if kind is None:
+        raise InputError(f"A run of the kind {opened.entry.kind!r} is not run again from here: use its tab.")
+    given: dict[str, Any] = {f.name: asked[f.name] for f in fields(kind) if f.name in asked}
+    if kind is ReactRequest:
+        given["actor"] = actor_source(opened).people[0]
+    return kind(**given)
+
+
+def actor_source(opened: Opened) -> Source:
+    """The given person of a kept reaction, whom its result holds unchanged."""
+    asked = opened.entry.request
+    place = ROLES.index(asked.get("role", ROLES[0]))
+    return Source(asked.get("actor", {}).get("name") or opened.entry.title,
+                  (opened.result.duets[0].people[place],))  # fmt: skip
+
+
+def verdict(old: Result, new: Result) -> str:
+    """One sentence: the same bytes, or which part differs and by how much."""
+    pairs = list(zip(old.duets, new.duets, strict=False))
+    if len(old.duets) == len(new.duets) and all(np.array_equal(a.positions, b.positions) for a, b in pairs):
+        return "Run again: the same motion, bit for bit."
+    changed = _changed(old.manifest, new.manifest)
+    if any(a.positions.shape != b.positions.shape for a, b in pairs):
+        apart = "the motions are not of one length"
+    else:
+        largest = max(float(np.abs(a.positions - b.positions).max()) for a, b in pairs)
+        apart = f"joints differ by up to {1000 * largest:.3g} mm"
+    if changed:
+        return f"Run again: another motion ({apart}), because of {'; '.join(changed)}."
+    return (
+        f"Run again: {apart}, with the same weights and versions; runs that share a pass with others' "
+        "differ by rounding."
+    )
+
+
+def _changed(old: Mapping[str, Any], new: Mapping[str, Any]) -> list[str]:
+    """What differs between two manifests, in words."""
+    found = []
+    if old.get("model") != new.get("model"):
+        found.append(f"the model ({old.get('model')} → {new.get('model')})")
+    if old.get("weights_sha256") != new.get("weights_sha256"):
+        before, after = (str(m.get("weights_sha256", "unknown"))[:8] for m in (old, new))
+        found.append(f"the weights ({before} → {after})")
+    before, after = old.get("versions", {}), new.get("versions", {})
+    found += [
+        f"{name} ({before.get(name, 'none')} → {after.get(name, 'none')})"
+        for name in sorted({*before, *after})
+        if before.get(name) != after.get(name)
+    ]
+    if json.dumps(old.get("request"), sort_keys=True) != json.dumps(new.get("request"), sort_keys=True):
+        found.append("the request")
+    return found

@@ -1,0 +1,272 @@
+"""Runs of the past: open one with all its controls, keep it, link to it, run it again, remove it."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Iterator, Mapping, Sequence
+from typing import Any
+
+import gradio as gr
+
+from webdemo.inference.requests import Cancelled, Progress, Result
+from webdemo.motion import InputError
+
+from .again import actor_source, request_of, verdict
+from .context import PageContext
+from .exports import KINDS, Record
+from .history import Entry, HistoryLike, Opened
+from .job_tab import QUIET, JobTab, Updates
+from .panels import readout_panel, status
+from .player import show
+from .show import result_payload
+from .visitor import visitor
+from .words import cancelled_line, error_line, progress_line
+
+LABEL = "History"
+_EMPTY = "Nothing yet: what you make is kept here."
+_CONTROLS = ("prompt", "seconds", "seed", "samples", "guidance", "steps", "damping", "role")
+"""Fields of a request that a tab may have a control of the same name for."""
+_NAMED = "() => new URLSearchParams(window.location.search).get('run') || ''"
+"""The run that the page's address names."""
+_MARKS = {"running": "⏳", "failed": "✕", "cancelled": "✕", "interrupted": "✕"}
+
+
+class HistoryTab:
+    """The list of a person's runs.
+
+    Args:
+        page: what the tabs share; its history is there.
+        jobs: the tabs that a run can be opened in, by the kind of its request.
+        tabs: shows one of them.
+    """
+
+    def __init__(self, page: PageContext, jobs: Mapping[str, JobTab], tabs: gr.Tabs) -> None:
+        if page.history is None:
+            raise ValueError("The page has no history.")
+        self.page, self.jobs, self.tabs = page, jobs, tabs
+        self.history: HistoryLike = page.history
+
+    # ---- layout ----------------------------------------------------------------------------------
+
+    def build(self, demo: gr.Blocks, tab: gr.Tab, record: gr.State) -> None:
+        """Lays out the tab and wires its events.
+
+        Args:
+            demo: the page; where its address names a run, that is opened.
+            tab: this tab; its list is read anew whenever it is chosen.
+            record: keeps the session's last result.
+        """
+        with gr.Column(elem_classes="pd-panel pd-history", min_width=0):
+            self.list = gr.Radio([], show_label=False, container=False, elem_id="history-list",
+                                 elem_classes="pd-runs")  # fmt: skip
+            self.empty = gr.HTML(status(_EMPTY), elem_id="history-empty")
+            with gr.Row(elem_classes="pd-go pd-history-buttons"):
+                self.buttons = {
+                    name: gr.Button(label, elem_id=f"history-{name}", size="sm", min_width=0,
+                                    variant="primary" if name == "open" else "secondary")
+                    for name, label in (
+                        ("open", "Open"), ("favour", "Keep / let go"), ("link", "Make a link"),
+                        ("revoke", "End its links"), ("again", "Run again"), ("stop", "Cancel"),
+                        ("remove", "Remove"),
+                    )
+                }  # fmt: skip
+            self.line = gr.HTML(status(), elem_id="history-status", elem_classes="pd-line")
+            self.address = gr.Textbox(label="Link", interactive=False, visible=False, buttons=["copy"],
+                                      elem_id="history-address")  # fmt: skip
+        self._wire(demo, tab, record)
+
+    def _wire(self, demo: gr.Blocks, tab: gr.Tab, record: gr.State) -> None:
+        self.record = record
+        seen = [self.list, self.empty]
+        quick = {"concurrency_limit": 8, "concurrency_id": "history", **QUIET}
+        tab.select(self.refresh, inputs=self.list, outputs=seen, **quick)
+        for name, act in (("favour", self.favour), ("revoke", self.revoke), ("remove", self.remove)):
+            done = self.buttons[name].click(act, inputs=self.list, outputs=self.line, **quick)
+            done.then(self.refresh, inputs=self.list, outputs=seen, **quick)
+        self.buttons["link"].click(self.link, inputs=self.list, outputs=[self.line, self.address], **quick)
+        again = self.buttons["again"].click(
+            self.again, inputs=self.list, outputs=self.line, concurrency_limit=None, trigger_mode="once",
+            **QUIET,
+        )  # fmt: skip
+        again.then(self.refresh, inputs=self.list, outputs=seen, **quick)
+        self.buttons["stop"].click(self.cancel, queue=False, **QUIET)
+        self.opened = [self.tabs, record, self.line, *(c for job in self.jobs.values() for c in _parts(job))]
+        named = gr.Textbox(visible=False)
+        chosen = self.buttons["open"].click(self.open, inputs=self.list, outputs=self.opened, **quick)
+        address = demo.load(self.open_address, inputs=named, outputs=self.opened, js=_NAMED, **quick)
+        for chain in (chosen, address):
+            for kind, job in self.jobs.items():
+                chain = chain.then(
+                    self._exporter(kind, job), inputs=record, outputs=[job.line, *job.downloads], **quick
+                )
+
+    def _exporter(self, kind: str, job: JobTab) -> Any:
+        def export(record: Record | None) -> Updates:
+            """Writes the files of an opened run for the tab that shows it."""
+            if record is None or record.result.manifest.get("request", {}).get("kind", "generate") != kind:
+                return (gr.skip(),) * (1 + len(KINDS))
+            return job.export(record)
+
+        return export
+
+    # ---- events ----------------------------------------------------------------------------------
+
+    def refresh(self, chosen: str | None) -> Updates:
+        """The list as it is now, with the same run chosen where it is still there."""
+        entries = self.history.entries(visitor().owner)
+        choices = [(_label(entry), entry.id) for entry in entries]
+        kept = chosen if any(entry.id == chosen for entry in entries) else None
+        return (
+            gr.update(choices=choices, value=kept or (entries[0].id if entries else None)),
+            gr.update(visible=not entries),
+        )
+
+    def favour(self, run: str | None) -> str:
+        """Keeps a run from being removed for its age, or lets it go."""
+
+        def act(run: str, owner: str) -> str:
+            entry = next((e for e in self.history.entries(owner) if e.id == run), None)
+            wanted = entry is None or not entry.favourite
+            self.history.favour(run, owner, favourite=wanted)
+            return "Kept: it will not be removed for its age." if wanted else "No longer kept."
+
+        return self._act(run, act)
+
+    def revoke(self, run: str | None) -> str:
+        """Ends a run's links."""
+        return self._act(
+            run, lambda run, owner: f"{self.history.revoke(run, owner)} links to it no longer work."
+        )
+
+    def remove(self, run: str | None) -> str:
+        """Deletes a run."""
+
+        def act(run: str, owner: str) -> str:
+            self.history.remove(run, owner)
+            return "Removed, with its files and links."
+
+        return self._act(run, act)
+
+    def link(self, run: str | None) -> Updates:
+        """Makes a link to a run and shows it."""
+        made: list[str] = []
+
+        def act(run: str, owner: str) -> str:
+            key, until = self.history.link(run, owner)
+            made.append(f"{visitor().base}?run={key}")
+            last = time.strftime("%Y-%m-%d", time.gmtime(until))
+            return f"Whoever has this link sees the motion until {last}."
+
+        line = self._act(run, act)
+        return line, gr.update(value=made[0] if made else "", visible=bool(made))
+
+    def _act(self, run: str | None, act: Any) -> str:
+        try:
+            if not run:
+                raise InputError("Choose a run first.")
+            return status(act(run, visitor().owner), tone="done")
+        except Exception as error:
+            return status(error_line(error), tone="error")
+
+    def again(self, run: str | None, request: gr.Request) -> Iterator[str]:
+        """Runs a kept request once more and says whether it came out the same."""
+        last: Progress | None = None
+        try:
+            if not run:
+                raise InputError("Choose a run first.")
+            opened = self.history.open(run, visitor().owner)
+            for event in self.page.runs.run(_session(request), request_of(opened)):
+                if isinstance(event, Result):
+                    yield status(verdict(opened.result, event), tone="done")
+                    return
+                last = event
+                yield status(progress_line(event), tone="busy")
+        except Cancelled:
+            yield status(cancelled_line(last), tone="warning")
+        except Exception as error:
+            yield status(error_line(error), tone="error")
+
+    def cancel(self, request: gr.Request) -> None:
+        """Stops what runs again."""
+        self.page.runs.cancel(_session(request))
+
+    def open(self, run: str | None) -> Updates:
+        """Shows a run in its tab, with all controls as they were."""
+        try:
+            if not run:
+                raise InputError("Choose a run first.")
+            return self._shown(self.history.open(run, visitor().owner))
+        except Exception as error:
+            return self._not_shown(error_line(error))
+
+    def open_address(self, run: str | None) -> Updates:
+        """Opens the run that the page's address names, if it names one."""
+        if not run:
+            return (gr.skip(),) * len(self.opened)
+        try:
+            return self._shown(self.history.open(run, visitor().owner))
+        except Exception as error:
+            return self._not_shown(error_line(error), first=True)
+
+    # ---- what an opened run shows ----------------------------------------------------------------
+
+    def _not_shown(self, sentence: str, *, first: bool = False) -> Updates:
+        """The sentence under the list, and under the first tab's button where the page began with it."""
+        line = status(sentence, tone="error")
+        changes: dict[int, Any] = {self.line._id: line}
+        if first:
+            changes[next(iter(self.jobs.values())).line._id] = line
+        return tuple(changes.get(part._id, gr.skip()) for part in self.opened)
+
+    def _shown(self, opened: Opened) -> Updates:
+        entry, result = opened.entry, opened.result
+        job = self.jobs.get(entry.kind)
+        if job is None:
+            raise InputError(f"There is no tab for a run of the kind {entry.kind!r} here.")
+        made = time.strftime("%Y-%m-%d %H:%M", time.gmtime(entry.created))
+        changes: dict[int, Any] = {
+            self.tabs._id: gr.update(selected=entry.kind),
+            self.line._id: status(),
+            job.line._id: status(f"Made on {made} UTC.", tone="done"),
+            job.player._id: show(result_payload(result, title=entry.title)),
+            job.under._id: gr.update(visible=True),
+            job.readouts._id: readout_panel(result),
+            **{
+                getattr(job, name)._id: gr.update(value=entry.request[name])
+                for name in _CONTROLS
+                if name in entry.request and hasattr(job, name)
+            },
+        }
+        if "actor" in entry.request and hasattr(job, "source"):
+            source = actor_source(opened)
+            last = round(source.seconds, 1)
+            changes[job.source._id] = source
+            changes[job.trim._id] = gr.update(visible=True)
+            changes[job.begin._id] = gr.update(maximum=last, value=0)
+            changes[job.end._id] = gr.update(maximum=last, value=last)
+        changes[self.record._id] = Record(result, entry.title)
+        return tuple(changes.get(part._id, gr.skip()) for part in self.opened)
+
+
+def _parts(job: JobTab) -> Sequence[gr.components.Component]:
+    """Everything of a tab that an opened run may set."""
+    names = ("line", "player", "under", "readouts", *_CONTROLS, "source", "trim", "begin", "end")
+    return [getattr(job, name) for name in names if hasattr(job, name)]
+
+
+def _session(request: gr.Request) -> str:
+    """The session of this panel's own runs, which do not cancel those of the other tabs."""
+    return f"again-{request.session_hash}"
+
+
+def _label(entry: Entry) -> str:
+    """One line for a run: when, what, how long, its seed, and marks."""
+    when = time.strftime("%d %b %H:%M", time.gmtime(entry.created))
+    asked = entry.request
+    facts = [f"{asked['seconds']:g} s"] if "seconds" in asked else []
+    facts += [f"seed {asked['seed']}"] if "seed" in asked else []
+    marks = ("★ " if entry.favourite else "") + (f"{_MARKS[entry.state]} " if entry.state in _MARKS else "")
+    title = entry.title if len(entry.title) <= 80 else f"{entry.title[:79]}…"
+    told = f" · {entry.state}" if entry.state != "done" else ""
+    links = f" · {entry.links} link{'s' if entry.links > 1 else ''}" if entry.links else ""
+    return f"{marks}{title} · {' · '.join([*facts, when])}{told}{links}"

@@ -1,0 +1,38 @@
+"""Who asks: told by the server around the page, to the code that answers an event."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from gradio.context import LocalContext
+
+
+@dataclass(frozen=True)
+class Visitor:
+    """The person behind a request.
+
+    Attributes:
+        person: whose turn it is in the queue; people without a name are told apart by their address.
+        owner: whose history a run goes to; empty where nobody could find it again.
+        reference: the request's id in the server's log; empty where the page is served alone.
+        base: where the page is, such as "https://lab.example/motion/"; empty where that is not known.
+    """
+
+    person: str = "local"
+    owner: str = "local"
+    reference: str = ""
+    base: str = ""
+
+
+LOCAL = Visitor()
+"""Whoever uses a page that no server of ours stands around."""
+
+
+def visitor() -> Visitor:
+    """The visitor whose event is being answered in this thread."""
+    event = LocalContext.request.get(None)
+    request = getattr(event, "request", None)
+    if request is None:
+        return LOCAL
+    found = request.scope.get("state", {}).get("visitor")
+    return found if isinstance(found, Visitor) else LOCAL
