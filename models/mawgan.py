@@ -1,0 +1,229 @@
+"""PredictiveMA-WGAN: future motion as a point of a hypersphere, predicted from that of the past.
+
+Chopin's thesis, chapter 2: the past becomes a square-root velocity function (:mod:`models.srvf`), its tangent
+vector at the mean of the training data goes through an upsampling convolutional network over the image of
+coordinates × frames, and what comes out is mapped back to the sphere and integrated from the last pose.
+
+What the thesis leaves open is settled so. The past's curve has the given frames as its points; the future's
+begins with the last given pose, so it has one point more, and each has a mean of its own. A predicted curve
+is as long, frame for frame, as the past's. The first feature map is the smallest that five doublings grow
+over the image, which is then cut.
+"""
+
+from __future__ import annotations
+
+from dataclasses import asdict, dataclass
+from math import ceil
+from typing import Any
+
+import torch
+from torch import Tensor, nn
+
+from models.srvf import exp_map, log_map, norm, to_curve, to_srvf, to_tangent
+
+_DOUBLINGS = 5
+_STILL = 1e-6
+
+
+@dataclass(frozen=True)
+class MAWGANConfig:
+    """Sizes of predictor and critic; the defaults are the thesis' (section 2.4.1), for 17 joints.
+
+    Attributes:
+        joints, past, future: of a window.
+        fc: outputs of the predictor's first layer.
+        channels: of its first four upsampling blocks; the fifth has one.
+        critic: channels of the critic's convolutions.
+        critic_fc: outputs of its first full layer.
+    """
+
+    joints: int = 17
+    past: int = 25
+    future: int = 25
+    fc: int = 36_864
+    channels: tuple[int, ...] = (512, 256, 128, 64)
+    critic: tuple[int, ...] = (64, 32, 16)
+    critic_fc: int = 1024
+
+    @classmethod
+    def from_dict(cls, values: dict[str, Any]) -> MAWGANConfig:
+        return cls(**values | {key: tuple(values[key]) for key in ("channels", "critic")})
+
+    @property
+    def image(self) -> tuple[int, int]:
+        """Coordinates and points of a future curve."""
+        return 3 * self.joints, self.future + 1
+
+    @property
+    def grid(self) -> tuple[int, int]:
+        """Size of the first feature map."""
+        high, wide = (ceil(size / 2**_DOUBLINGS) for size in self.image)
+        return high, wide
+
+
+class Generator(nn.Module):
+    """Tangent vectors of the past (B, past, D) → raw vectors of the future (B, future + 1, D)."""
+
+    def __init__(self, config: MAWGANConfig) -> None:
+        super().__init__()
+        self.config = config
+        high, wide = config.grid
+        first = config.fc // (high * wide)
+        self.fc = nn.Linear(config.past * 3 * config.joints, first * high * wide)
+        layers: list[nn.Module] = []
+        for i, (inputs, outputs) in enumerate(
+            zip((first, *config.channels), (*config.channels, 1), strict=True)
+        ):
+            layers += [nn.Upsample(scale_factor=2.0), nn.Conv2d(inputs, outputs, 3, padding=1)]
+            if i < _DOUBLINGS - 1:
+                layers.append(nn.ReLU())
+        self.up = nn.Sequential(*layers)
+
+    def forward(self, s: Tensor) -> Tensor:
+        coordinates, points = self.config.image
+        x = torch.relu(self.fc(s.flatten(1))).unflatten(1, (-1, *self.config.grid))
+        return self.up(x)[:, 0, :coordinates, :points].transpose(1, 2)
+
+
+class Critic(nn.Module):
+    """Tangent vectors of a future (B, future + 1, D) → a score (B,)."""
+
+    def __init__(self, config: MAWGANConfig) -> None:
+        super().__init__()
+        layers: list[nn.Module] = []
+        high, wide = config.image
+        for inputs, outputs in zip((1, *config.critic), config.critic, strict=False):
+            layers += [nn.Conv2d(inputs, outputs, 3, stride=2, padding=1), nn.BatchNorm2d(outputs), nn.ReLU()]
+            high, wide = ceil(high / 2), ceil(wide / 2)
+        self.down = nn.Sequential(*layers, nn.Flatten())
+        self.score = nn.Sequential(
+            nn.Linear(config.critic[-1] * high * wide, config.critic_fc),
+            nn.BatchNorm1d(config.critic_fc),
+            nn.LeakyReLU(0.2),
+            nn.Linear(config.critic_fc, 1),
+        )
+
+    def forward(self, s: Tensor) -> Tensor:
+        return self.score(self.down(s.transpose(1, 2)[:, None]))[:, 0]
+
+
+class PredictiveMAWGAN(nn.Module):
+    """The predictor with its two means on the sphere; the critic is needed in training only.
+
+    ``past_mean`` (past, D) and ``future_mean`` (future + 1, D) are Karcher means of training curves.
+    """
+
+    past_mean: Tensor
+    future_mean: Tensor
+
+    def __init__(self, config: MAWGANConfig) -> None:
+        super().__init__()
+        self.config = config
+        self.generator = Generator(config)
+        coordinates, points = config.image
+        for name, count in (("past_mean", config.past), ("future_mean", points)):
+            mean = torch.ones(count, coordinates)
+            self.register_buffer(name, mean / norm(mean))
+
+    def tangent(self, past: Tensor) -> Tensor:
+        """What the generator makes of past curves (B, past, D), as tangent vectors at ``future_mean``."""
+        q, _ = to_srvf(past)
+        return to_tangent(self.future_mean, self.generator(log_map(self.past_mean, q)))
+
+    def decode(self, s: Tensor, past: Tensor) -> Tensor:
+        """Tangent vectors (B, future + 1, D) → curves (B, future, D) that go on from the past."""
+        _, length = to_srvf(past)
+        steps = self.config.future / (self.config.past - 1)
+        curve = to_curve(exp_map(self.future_mean, s), length * steps, past[:, -1])
+        return torch.where((length > _STILL)[:, None, None], curve, past[:, -1:])[:, 1:]
+
+    def forward(self, past: Tensor) -> Tensor:
+        """(B, past, J, 3) metres → (B, future, J, 3); a past that does not move stays as it is."""
+        curve = to_curves(past)
+        return to_positions(self.decode(self.tangent(curve), curve))
+
+
+def to_curves(positions: Tensor) -> Tensor:
+    """(B, T, J, 3) → (B, T, 3J), coordinate-major: all x, then all y, then all z."""
+    return positions.transpose(2, 3).flatten(2)
+
+
+def to_positions(curves: Tensor) -> Tensor:
+    """Inverse of :func:`to_curves`."""
+    return curves.unflatten(2, (3, -1)).transpose(2, 3)
+
+
+# ---- losses ------------------------------------------------------------------------------------------
+
+
+@dataclass(frozen=True)
+class MAWGANLossWeights:
+    """β₁ to β₄ of eq. 2.11 and λ of eq. 2.5 (section 2.5.2)."""
+
+    adversarial: float = 1.0
+    reconstruction: float = 1.0
+    skeleton: float = 10.0
+    bone: float = 10.0
+    gradient_penalty: float = 10.0
+
+    def to_dict(self) -> dict[str, float]:
+        return asdict(self)
+
+
+def gradient_penalty(critic: nn.Module, real: Tensor, made: Tensor, share: Tensor) -> Tensor:
+    """(‖∇D(q̃)‖ − 1)² at q̃ = (1 − a) real + a made, averaged (eq. 2.5).
+
+    Args:
+        critic: (B, …) → (B,).
+        real, made: (B, …) tangent vectors.
+        share: (B,) a, from 0 to 1.
+    """
+    a = share.view(-1, *[1] * (real.dim() - 1))
+    between = ((1 - a) * real + a * made).detach().requires_grad_(True)
+    (gradient,) = torch.autograd.grad(critic(between).sum(), between, create_graph=True)
+    return ((gradient.flatten(1).square().sum(1) + 1e-12).sqrt() - 1).square().mean()
+
+
+def critic_loss(
+    critic: nn.Module, real: Tensor, made: Tensor, share: Tensor, *, penalty: float = 10.0
+) -> Tensor:
+    """What the critic minimises: the Wasserstein distance of eq. 2.5, negated, and the penalty."""
+    distance = critic(real).mean() - critic(made).mean()
+    return -distance + penalty * gradient_penalty(critic, real, made, share)
+
+
+def reconstruction_loss(made: Tensor, real: Tensor) -> Tensor:
+    """L1 norm of the difference of tangent vectors (B, N, D) (eq. 2.7): ∫ Σ |·| dt, averaged over B."""
+    return (made - real).abs().sum(-1).mean()
+
+
+def gram_distance(p: Tensor, q: Tensor) -> Tensor:
+    """Distance of the Gram matrices of poses (eq. 2.8): tr(PPᵀ) + tr(QQᵀ) − 2 Σ σ(QᵀP).
+
+    It is the squared distance of the poses after the best rotation or reflection about the origin.
+
+    Args:
+        p, q: (…, J, 3) metres.
+
+    Returns:
+        (…) square metres.
+    """
+    singular = torch.linalg.svdvals(q.transpose(-1, -2) @ p)
+    return p.square().sum((-1, -2)) + q.square().sum((-1, -2)) - 2 * singular.sum(-1)
+
+
+def skeleton_loss(made: Tensor, real: Tensor) -> Tensor:
+    """Mean Gram distance of predicted and true poses (B, T, J, 3) (eq. 2.9)."""
+    return gram_distance(made, real).mean()
+
+
+def bone_loss(made: Tensor, real: Tensor, bones: list[tuple[int, int]]) -> Tensor:
+    """Mean difference of bone lengths in metres (eq. 2.10).
+
+    Args:
+        made, real: (B, T, J, 3) metres.
+        bones: (parent, child) places among the joints.
+    """
+    parents, children = (list(side) for side in zip(*bones, strict=True))
+    lengths = [(x[..., children, :] - x[..., parents, :]).norm(dim=-1) for x in (made, real)]
+    return (lengths[0] - lengths[1]).abs().mean()

@@ -1,0 +1,104 @@
+"""Trained predictors as folders: ``config.json`` and float16 ``model.safetensors``, checked by SHA-256."""
+
+from __future__ import annotations
+
+import hashlib
+import json
+from dataclasses import asdict, dataclass
+from pathlib import Path
+from typing import Any
+
+import torch
+from safetensors.torch import save
+from torch import Tensor, nn
+
+from models.compact import WeightsFolder
+from models.errors import WeightsError
+from models.mawgan import MAWGANConfig, PredictiveMAWGAN
+from models.motion_mlp import MotionMLP, MotionMLPConfig
+
+_FILE = "model.safetensors"
+
+
+@dataclass(frozen=True)
+class Predictor:
+    """A network that continues positions, and what it was made for.
+
+    Attributes:
+        network: (B, past, J, 3) metres → (B, future, J, 3).
+        past, future: frames that it takes and gives.
+        fps: of its frames.
+        joints: J.
+        name: of its folder.
+        digest: SHA-256 of its weights.
+        training: the settings it was trained with.
+    """
+
+    network: nn.Module
+    past: int
+    future: int
+    fps: float
+    joints: int
+    name: str = ""
+    digest: str = ""
+    training: dict[str, Any] | None = None
+
+    @torch.no_grad()
+    def __call__(self, past: Tensor) -> Tensor:
+        """(B, past or more, J, 3) metres, of which the last frames are used → (B, future, J, 3)."""
+        return self.network(past[:, -self.past :])
+
+    def recursive(self, past: Tensor, frames: int) -> Tensor:
+        """As many future frames as asked for: each prediction is the past of the next (thesis, 2.5.9)."""
+        whole = past
+        while whole.shape[1] - past.shape[1] < frames:
+            whole = torch.cat([whole, self(whole)], dim=1)
+        return whole[:, past.shape[1] :][:, :frames]
+
+
+def save_predictor(
+    folder: Path, network: MotionMLP | PredictiveMAWGAN, *, kind: str, fps: float, **meta: Any
+) -> None:
+    """Writes a folder that :func:`load_predictor` reads; ``config.json`` comes last.
+
+    Args:
+        folder: made where it is missing.
+        network: what was trained.
+        kind: "mlp" or "mawgan".
+        fps: of the frames it was trained on.
+        meta: more for ``config.json``.
+    """
+    folder.mkdir(parents=True, exist_ok=True)
+    data = save({k: v.detach().cpu().half().contiguous() for k, v in network.state_dict().items()})
+    (folder / _FILE).write_bytes(data)
+    config = {
+        "kind": kind,
+        "model": asdict(network.config),
+        "fps": fps,
+        "files": {_FILE: hashlib.sha256(data).hexdigest()},
+    } | meta
+    (folder / "config.json").write_text(json.dumps(config, indent=1) + "\n")
+
+
+def load_predictor(folder: Path) -> Predictor:
+    """A predictor in float32, eval mode.
+
+    Raises:
+        WeightsError: where a file is missing, altered or of another network.
+    """
+    source = WeightsFolder(folder)
+    network: MotionMLP | PredictiveMAWGAN
+    try:
+        if source.meta["kind"] == "mlp":
+            network = MotionMLP(MotionMLPConfig.from_dict(source.meta["model"]))
+        else:
+            network = PredictiveMAWGAN(MAWGANConfig.from_dict(source.meta["model"]))
+        network.load_state_dict({name: t.float() for name, t in source.tensors(_FILE).items()})
+    except (KeyError, TypeError, RuntimeError) as error:
+        raise WeightsError(f"The weights in {folder.name} do not fit their config: restore them.") from error
+    config = network.config
+    return Predictor(
+        network.eval().requires_grad_(False),
+        config.past, config.future, float(source.meta["fps"]), config.joints,
+        folder.name, source.digest, source.meta.get("training"),
+    )  # fmt: skip

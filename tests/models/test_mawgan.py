@@ -1,0 +1,116 @@
+"""PredictiveMA-WGAN: sizes of the thesis, the losses by hand, predictions that hang together."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+import torch
+from scipy.spatial.transform import Rotation
+from torch import nn
+
+from models.mawgan import (
+    Critic,
+    MAWGANConfig,
+    MAWGANLossWeights,
+    PredictiveMAWGAN,
+    bone_loss,
+    critic_loss,
+    gradient_penalty,
+    gram_distance,
+    reconstruction_loss,
+    skeleton_loss,
+    to_curves,
+    to_positions,
+)
+from models.srvf import exp_map, inner, norm
+
+SMALL = MAWGANConfig(
+    joints=5, past=8, future=12, fc=64, channels=(16, 8, 8, 4), critic=(4, 4, 4), critic_fc=8
+)
+
+
+def poses(seed: int, *size: int) -> torch.Tensor:
+    return torch.from_numpy(np.random.default_rng(seed).normal(size=size)).float()
+
+
+def motion(seed: int, count: int = 3) -> torch.Tensor:
+    return 0.02 * poses(seed, count, SMALL.past, SMALL.joints, 3).cumsum(1) + 1
+
+
+@pytest.fixture
+def network() -> PredictiveMAWGAN:
+    torch.manual_seed(0)
+    return PredictiveMAWGAN(SMALL).eval()
+
+
+def test_defaults_are_the_thesis_sizes() -> None:
+    config = MAWGANConfig()
+    with torch.device("meta"):
+        generator, critic = PredictiveMAWGAN(config).generator, Critic(config)
+    convolutions = [m.out_channels for m in generator.up if isinstance(m, nn.Conv2d)]
+    assert generator.fc.out_features == 36_864 and convolutions == [512, 256, 128, 64, 1]
+    assert sum(isinstance(m, nn.Upsample) for m in generator.up) == 5
+    assert [m.out_channels for m in critic.down if isinstance(m, nn.Conv2d)] == [64, 32, 16]
+    assert [m.out_features for m in critic.score if isinstance(m, nn.Linear)] == [1024, 1]
+    weights = MAWGANLossWeights()
+    assert tuple(weights.to_dict().values()) == (1, 1, 10, 10, 10)
+
+
+def test_curves_are_coordinate_major() -> None:
+    positions = poses(0, 2, 8, 5, 3)
+    curves = to_curves(positions)
+    assert torch.equal(curves[..., :5], positions[..., 0])
+    assert torch.equal(curves[..., 10:], positions[..., 2])
+    assert torch.equal(to_positions(curves), positions)
+
+
+def test_prediction_stays_on_the_sphere_and_goes_on_from_the_past(network: PredictiveMAWGAN) -> None:
+    past = motion(1)
+    s = network.tangent(to_curves(past))
+    assert inner(s, network.future_mean).abs().max() < 1e-5
+    assert torch.allclose(norm(exp_map(network.future_mean, s)), torch.ones(3), atol=1e-5)
+    future = network(past)
+    assert future.shape == (3, 12, 5, 3)
+    path = to_curves(torch.cat([past[:, -1:], future], 1))
+    travelled = torch.gradient(path, dim=1)[0].norm(dim=-1).mean(1)
+    before = torch.gradient(to_curves(past), dim=1)[0].norm(dim=-1).mean(1)
+    # As long a way a frame as before: the network foretells directions, not the length.
+    assert torch.all(travelled / before < 1.5) and torch.all(travelled / before > 0.2)
+
+
+def test_what_stands_still_stays_as_it_is(network: PredictiveMAWGAN) -> None:
+    still = poses(2, 1, 1, 5, 3).expand(1, 8, 5, 3)
+    assert torch.equal(network(still), still[:, :1].expand(1, 12, 5, 3))
+
+
+def test_gram_distance_knows_no_rotation() -> None:
+    p = poses(3, 4, 17, 3).double()
+    turned = p @ torch.from_numpy(Rotation.random(random_state=0).as_matrix())
+    assert gram_distance(p, turned).abs().max() < 1e-9
+    other = poses(4, 4, 17, 3).double()
+    assert torch.all(gram_distance(p, other) <= (p - other).square().sum((-1, -2)) + 1e-9)
+    assert torch.all(gram_distance(p, other) > 0.1)
+    assert float(skeleton_loss(p, other)) == pytest.approx(float(gram_distance(p, other).mean()))
+
+
+def test_losses_by_hand() -> None:
+    made, real = torch.zeros(2, 4, 3), torch.full((2, 4, 3), 0.5)
+    assert float(reconstruction_loss(made, real)) == pytest.approx(1.5)
+    pose = torch.tensor([[0.0, 0, 0], [0, 2, 0], [0, 2, 1]]).expand(2, 4, 3, 3)
+    assert float(bone_loss(pose * 1.1, pose, [(0, 1), (1, 2)])) == pytest.approx(0.15)
+    assert float(bone_loss(pose.flip(-1), pose, [(0, 1), (1, 2)])) == pytest.approx(0, abs=1e-6)
+
+
+def test_gradient_penalty_and_critic_loss_by_hand() -> None:
+    class Slope(nn.Module):
+        def forward(self, x: torch.Tensor) -> torch.Tensor:
+            return 3 * x[:, 0, 0]  # its gradient has norm 3 everywhere
+
+    real, made, share = torch.ones(4, 2, 2), torch.zeros(4, 2, 2), torch.rand(4)
+    assert float(gradient_penalty(Slope(), real, made, share)) == pytest.approx(4, abs=1e-4)
+    assert float(critic_loss(Slope(), real, made, share, penalty=10)) == pytest.approx(-3 + 40, abs=1e-3)
+
+
+def test_critic_scores_a_batch() -> None:
+    scores = Critic(SMALL)(poses(5, 6, 13, 15))
+    assert scores.shape == (6,) and scores.requires_grad

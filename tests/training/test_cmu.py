@@ -1,0 +1,84 @@
+"""CMU MoCap: kinematics against reference positions, windows, and the table's arithmetic."""
+
+from __future__ import annotations
+
+import shutil
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from training import cmu
+from training.evaluate_prediction import BEGIN, END, evaluate, main, markdown, put_into
+from training.prediction.scores import score, zero_velocity
+from webdemo.motion import InputError
+
+REFERENCE = Path(__file__).parents[1] / "data" / "reference"
+SKELETON = REFERENCE / "cmu_skeleton.json"
+
+
+@pytest.fixture
+def folder(tmp_path: Path) -> Path:
+    """A data set of one test action: 160 frames of a person who moves arms and legs."""
+    shutil.copy(SKELETON, tmp_path / "skeleton.json")
+    rng = np.random.default_rng(0)
+    frames = np.cumsum(rng.normal(scale=0.01, size=(161, cmu.CHANNELS)), axis=0)
+    path = tmp_path / "test" / "walking" / "walking_1.txt"
+    path.parent.mkdir(parents=True)
+    np.savetxt(path, frames, delimiter=",")
+    return tmp_path
+
+
+def test_forward_kinematics_equal_the_reference() -> None:
+    with np.load(REFERENCE / "cmu_forward_kinematics.npz", allow_pickle=False) as arrays:
+        expmap, expected = arrays["expmap"].astype(np.float64), arrays["positions_mm"]
+    found = cmu.CmuSkeleton.read(SKELETON).forward_kinematics(expmap)
+    assert np.abs(found - expected / 1000).max() < 1e-6
+
+
+def test_bones_join_the_17_joints_and_mirror() -> None:
+    skeleton = cmu.CmuSkeleton.read(SKELETON)
+    assert len(skeleton.bones) == 16 and {child for _, child in skeleton.bones} == set(range(1, 17))
+    pose = np.random.default_rng(0).normal(size=(2, 17, 3))
+    assert np.allclose(cmu.mirrored(cmu.mirrored(pose)), pose)
+    rest = skeleton.forward_kinematics(np.zeros((1, cmu.CHANNELS)))[:, skeleton.kept]
+    # The recorded person is not quite symmetric: legs and arms differ by up to 12 mm.
+    assert np.abs(cmu.mirrored(rest) - rest).max() < 0.04
+
+
+def test_every_second_frame_is_kept(folder: Path) -> None:
+    (clip,) = cmu.read_actions(folder, "test")["walking"]
+    both = cmu.read_actions(folder, "test", phases=True)["walking"]
+    assert clip.shape == (80, 17, 3)
+    assert [len(c) for c in both] == [80, 80] and np.array_equal(both[0], clip)
+    assert not np.array_equal(both[1], clip)
+    windows = cmu.windows([clip, clip[:74]])
+    assert windows.shape == (6, 75, 17, 3) and np.array_equal(windows[3], clip[3:78])
+
+
+def test_zero_velocity_is_the_distance_from_the_last_pose(folder: Path) -> None:
+    (clip,) = cmu.read_actions(folder, "test")["walking"]
+    scores = score(zero_velocity(cmu.FUTURE), cmu.windows([clip]), cmu.PAST, batch=4)
+    expected = [np.linalg.norm(clip[i + 59] - clip[i + 49], axis=-1).mean() for i in range(6)]
+    assert scores.error[9] == pytest.approx(1000 * np.mean(expected), rel=1e-5)
+    assert scores.seam == 1.0 and scores.speed.max() == 0.0 and scores.true_speed.min() > 0
+
+
+def test_table_goes_between_the_marks(folder: Path, tmp_path: Path) -> None:
+    page = tmp_path / "page.md"
+    page.write_text(f"Before\n{BEGIN}old\n{END}After\n")
+    table = markdown(evaluate(folder, []))
+    put_into(page, table)
+    assert page.read_text() == f"Before\n{BEGIN}\n{table}\n{END}After\n"
+    assert "| walking (6) | zero velocity |" in table and "1.00" in table
+    (tmp_path / "bare.md").write_text("no marks")
+    with pytest.raises(InputError, match="lacks the lines"):
+        put_into(tmp_path / "bare.md", table)
+
+
+def test_bad_data_is_one_sentence(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    (folder / "test" / "walking" / "walking_2.txt").write_text("1,2,3\n")
+    assert main(["--data", str(folder)]) == 2
+    told = capsys.readouterr().err
+    assert "walking_2.txt does not hold 117 finite numbers a line" in told and told.count("\n") == 1
+    assert main(["--data", str(folder / "nowhere")]) == 2

@@ -1,0 +1,126 @@
+"""The table of prediction: ``python -m training.evaluate_prediction --data DIR --table docs/prediction.md``.
+
+CMU MoCap as the papers cut it (:mod:`training.cmu`), on *every* window of the test clips: zero velocity, and
+each folder of a trained predictor that is named with ``--predictor``.
+"""
+
+from __future__ import annotations
+
+import argparse
+from pathlib import Path
+
+import numpy as np
+import torch
+
+from models.predictors import Predictor, load_predictor
+from training import cmu
+from training.prediction.scores import Predict, Scores, average, score, zero_velocity
+from training.shell import exit_code
+from webdemo.formats.files import replacing
+from webdemo.motion import InputError
+
+ZERO = "zero velocity"
+Table = dict[str, dict[str, Scores]]
+"""Scores by method, then by action."""
+
+
+def of_predictor(predictor: Predictor) -> Predict:
+    """A predictor as a function of arrays; beyond its own length it goes on recursively."""
+
+    def predict(past: cmu.Array) -> cmu.Array:
+        tensor = torch.from_numpy(np.ascontiguousarray(past, dtype=np.float32))
+        return predictor.recursive(tensor, cmu.FUTURE).numpy()
+
+    return predict
+
+
+def evaluate(data: Path, predictors: list[Path]) -> Table:
+    """Scores of zero velocity and every predictor on all test windows.
+
+    Raises:
+        InputError: where data or weights are missing, or a predictor is for another skeleton.
+    """
+    methods = {ZERO: zero_velocity(cmu.FUTURE)}
+    for folder in predictors:
+        predictor = load_predictor(folder)
+        if predictor.joints != 17 or predictor.past > cmu.PAST:
+            raise InputError(
+                f"{folder.name} takes {predictor.past} frames of {predictor.joints} joints: name a predictor "
+                f"of CMU's 17 joints and at most {cmu.PAST} frames."
+            )
+        methods[folder.name] = of_predictor(predictor)
+    found: Table = {name: {} for name in methods}
+    for action, clips in cmu.read_actions(data, "test").items():
+        windows = cmu.windows(clips)
+        for name, predict in methods.items():
+            found[name][action] = score(predict, windows, cmu.PAST)
+    return found
+
+
+def markdown(found: Table) -> str:
+    """The scores as a page of tables."""
+    actions = list(found[ZERO])
+    benchmark = [action for action in actions if action in cmu.ACTIONS]
+    means = {name: average([scores[a] for a in benchmark]) for name, scores in found.items()}
+    head = " | ".join(f"{h}" for h in cmu.HORIZONS)
+    lines = [
+        f"| action (windows) | method | {head} |",
+        "|---|---|" + "---:|" * len(cmu.HORIZONS),
+    ]
+    for action in actions:
+        for i, (name, scores) in enumerate(found.items()):
+            label = f"{action} ({scores[action].windows})" if i == 0 else ""
+            lines.append(f"| {label} | {name} | {_errors(scores[action])} |")
+    for i, (name, mean) in enumerate(means.items()):
+        label = f"**average of {len(benchmark)}** ({mean.windows})" if i == 0 else ""
+        lines.append(f"| {label} | {name} | {_errors(mean)} |")
+    lines += ["", f"| on average | {' | '.join(found)} |", "|---|" + "---:|" * len(found)]
+    zero = means[ZERO]
+    for h in (10, 25):
+        ratios = [f"{m.error[h - 1] / zero.error[h - 1]:.2f}" for m in means.values()]
+        lines.append(f"| error at {h} frames over that of zero velocity | {' | '.join(ratios)} |")
+    share = [m.speed / m.true_speed for m in means.values()]
+    for label, place in (("first", 0), ("10th", 9), ("25th", 24)):
+        values = " | ".join(f"{s[place]:.2f}" for s in share)
+        lines.append(f"| speed over the truth's, {label} step | {values} |")
+    seams = " | ".join(f"{m.seam:.1%}" for m in means.values())
+    lines.append(f"| windows whose first step is within the past's largest | {seams} |")
+    return "\n".join(lines) + "\n"
+
+
+def _errors(scores: Scores) -> str:
+    return " | ".join(f"{scores.error[h - 1]:.1f}" for h in cmu.HORIZONS)
+
+
+BEGIN, END = "<!-- table -->\n", "<!-- end of table -->\n"
+
+
+def put_into(page: Path, table: str) -> None:
+    """Writes the table between the marks of a page, or a page of its own where there is none."""
+    text = page.read_text() if page.exists() else BEGIN + END
+    before, mark, rest = text.partition(BEGIN)
+    _, end, after = rest.partition(END)
+    if not (mark and end):
+        raise InputError(f"{page} lacks the lines {BEGIN.strip()} and {END.strip()}: add them.")
+    with replacing(page) as temporary:
+        temporary.write_text(before + BEGIN + "\n" + table + "\n" + END + after)
+
+
+def main(argv: list[str] | None = None) -> int:
+    parser = argparse.ArgumentParser(description="Score predictors on CMU MoCap.")
+    parser.add_argument("--data", type=Path, required=True, help="folder of skeleton.json, train and test")
+    parser.add_argument("--predictor", type=Path, action="append", default=[], help="a predictor's folder")
+    parser.add_argument("--table", type=Path, help="Markdown page that the table is put into")
+    options = parser.parse_args(argv)
+
+    def job() -> None:
+        table = markdown(evaluate(options.data, options.predictor))
+        if options.table:
+            put_into(options.table, table)
+        print(table)
+
+    return exit_code(job)
+
+
+if __name__ == "__main__":
+    raise SystemExit(main())

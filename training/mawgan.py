@@ -1,0 +1,200 @@
+"""Trains PredictiveMA-WGAN: ``python -m training.mawgan --windows cmu --data DIR --out RUN``.
+
+Chopin's thesis, Algorithm 2 and section 2.5.2: four critic steps a predictor step, Adam at 1e-4, batches of
+64, β = (1, 1, 10, 10), gradient penalty 10. ``--fc`` and ``--width`` make the network smaller than
+the thesis' one, which a CPU cannot train.
+"""
+
+from __future__ import annotations
+
+import argparse
+from collections.abc import Iterator
+from dataclasses import asdict, dataclass
+from pathlib import Path
+
+import numpy as np
+import torch
+from torch import Tensor, nn
+
+from models.mawgan import (
+    Critic,
+    MAWGANConfig,
+    MAWGANLossWeights,
+    PredictiveMAWGAN,
+    bone_loss,
+    critic_loss,
+    reconstruction_loss,
+    skeleton_loss,
+    to_curves,
+    to_positions,
+)
+from models.predictors import save_predictor
+from models.srvf import exp_map, karcher_mean, log_map, to_srvf
+from training.prediction.mlp import add_run_options, train
+from training.prediction.trainer import PredictionTrainer
+from training.shell import exit_code
+from webdemo.motion import InputError
+
+
+@dataclass(frozen=True)
+class Settings:
+    """What a run depends on; a checkpoint of other settings is refused.
+
+    ``width`` is the channels of the predictor's first block (thesis: 512), each further one has half; the
+    critic's are an eighth of it, and halved likewise.
+    """
+
+    windows: str = "cmu"
+    past: int = 25
+    future: int = 25
+    fc: int = 36_864
+    width: int = 512
+    critic_fc: int = 1024
+    critic_steps: int = 4
+    batch: int = 64
+    steps: int = 20_000
+    learning_rate: float = 1e-4
+    ema: float = 0.99
+    adversarial: float = 1.0
+    reconstruction: float = 1.0
+    skeleton: float = 10.0
+    bone: float = 10.0
+    gradient_penalty: float = 10.0
+    seed: int = 0
+
+    def __post_init__(self) -> None:
+        if self.width % 8 or self.width < 32:
+            raise InputError(f"width is {self.width}: give a multiple of 8, 32 or more.")
+        for name in ("past", "future", "fc", "batch", "critic_steps"):
+            if getattr(self, name) < 2:
+                raise InputError(f"{name} is {getattr(self, name)}: give 2 or more.")
+
+    def network(self, joints: int) -> MAWGANConfig:
+        """The sizes of predictor and critic."""
+        return MAWGANConfig(
+            joints, self.past, self.future, self.fc,
+            channels=tuple(self.width >> i for i in range(4)),
+            critic=tuple(self.width // 8 >> i for i in range(3)),
+            critic_fc=self.critic_fc,
+        )  # fmt: skip
+
+    def weights(self) -> MAWGANLossWeights:
+        return MAWGANLossWeights(
+            self.adversarial, self.reconstruction, self.skeleton, self.bone, self.gradient_penalty
+        )
+
+
+class Trainer(PredictionTrainer):
+    """Trains predictor and critic against each other."""
+
+    settings: Settings
+    model: PredictiveMAWGAN
+    ema: PredictiveMAWGAN
+
+    def build(self) -> None:
+        s = self.settings
+        config = s.network(self.windows.joints)
+        self.model, self.ema = (PredictiveMAWGAN(config).to(self.device) for _ in range(2))
+        self.critic = Critic(config).to(self.device)
+        sample = self.windows.batch(512, (s.seed, 0, 1))
+        past, future = self.curves(sample)
+        self.model.past_mean.copy_(karcher_mean(moving(past)))
+        self.model.future_mean.copy_(karcher_mean(moving(future)))
+        self.ema.load_state_dict(self.model.state_dict())
+        self.ema.requires_grad_(False)
+        self.optimizer = torch.optim.Adam(self.model.parameters(), lr=s.learning_rate, betas=(0.5, 0.9))
+        self.critic_optimizer = torch.optim.Adam(
+            self.critic.parameters(), lr=s.learning_rate, betas=(0.5, 0.9)
+        )
+
+    def parts(self) -> dict[str, nn.Module | torch.optim.Optimizer]:
+        return {
+            "model": self.model, "ema": self.ema, "critic": self.critic,
+            "optimizer": self.optimizer, "critic_optimizer": self.critic_optimizer,
+        }  # fmt: skip
+
+    def curves(self, windows: Tensor) -> tuple[Tensor, Tensor]:
+        """Past (B, past, D), and the future with the last pose before it (B, future + 1, D)."""
+        curves = to_curves(windows)
+        return curves[:, : self.settings.past], curves[:, self.settings.past - 1 :]
+
+    def pairs(self, part: int) -> tuple[Tensor, Tensor, Tensor]:
+        """Windows that move, their past curves, and their real futures' tangent vectors."""
+        windows = self.batch(part)
+        past, future = self.curves(windows)
+        moves = (to_srvf(past)[1] > _STILL) & (to_srvf(future)[1] > _STILL)
+        real = log_map(self.model.future_mean, to_srvf(future[moves])[0])
+        return windows[moves], past[moves], real
+
+    def made(self, past: Tensor) -> tuple[Tensor, Tensor]:
+        """The generator's tangent vectors as they are, and taken to the sphere and back (eq. 2.5, 2.7)."""
+        s = self.model.tangent(past)
+        mean = self.model.future_mean
+        return s, log_map(mean, exp_map(mean, s))
+
+    def critic_steps(self) -> Iterator[float]:
+        """Trains the critic; yields its losses."""
+        for i in range(self.settings.critic_steps):
+            _, past, real = self.pairs(1 + i)
+            with torch.no_grad():
+                _, made = self.made(past)
+            rng = np.random.default_rng((self.settings.seed, self.step, 100 + i))
+            share = torch.from_numpy(rng.random(len(past), dtype=np.float32)).to(real)
+            loss = critic_loss(self.critic, real, made, share, penalty=self.settings.gradient_penalty)
+            self.critic_optimizer.zero_grad(set_to_none=True)
+            loss.backward()
+            self.critic_optimizer.step()
+            yield loss.item()
+
+    def train_step(self) -> dict[str, float]:
+        weights = self.settings.weights()
+        critic = list(self.critic_steps()) if weights.adversarial else [0.0]
+        windows, past, real = self.pairs(0)
+        s, made = self.made(past)
+        positions = to_positions(self.model.decode(s, past))
+        truth = windows[:, self.settings.past :]
+        terms = {
+            "reconstruction": weights.reconstruction * reconstruction_loss(made, real),
+            "skeleton": weights.skeleton * skeleton_loss(positions, truth),
+            "bone": weights.bone * bone_loss(positions, truth, self.windows.bones),
+        }
+        if weights.adversarial:
+            terms["adversarial"] = -weights.adversarial * self.critic(made).mean()
+        total = torch.stack(list(terms.values())).sum()
+        self.optimizer.zero_grad(set_to_none=True)
+        total.backward()
+        nn.utils.clip_grad_norm_(self.model.parameters(), 10.0)
+        self.optimizer.step()
+        self.step += 1
+        self.average()
+        told = {name: value.item() for name, value in terms.items()}
+        error = (positions - truth).norm(dim=-1).mean().item()
+        return told | {"critic": sum(critic) / len(critic), "mm": 1000 * error}
+
+    def export(self, folder: Path) -> None:
+        """Writes the averaged predictor as a predictor's folder."""
+        save_predictor(
+            folder, self.ema, kind="mawgan", fps=self.windows.fps, bones=self.windows.bones,
+            training={"steps": self.step, **asdict(self.settings)},
+        )  # fmt: skip
+
+
+_STILL = 1e-3
+"""Metres that all joints together move in a window that stands still."""
+
+
+def moving(curves: Tensor) -> Tensor:
+    """SRVFs of the curves that move."""
+    q, length = to_srvf(curves)
+    return q[length > _STILL]
+
+
+def main(argv: list[str] | None = None) -> int:
+    parser = argparse.ArgumentParser(description="Train PredictiveMA-WGAN.")
+    add_run_options(parser, Settings)
+    options = parser.parse_args(argv)
+    return exit_code(lambda: train(Trainer, Settings, options))
+
+
+if __name__ == "__main__":
+    raise SystemExit(main())

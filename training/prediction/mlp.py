@@ -1,0 +1,166 @@
+"""Trains the default predictor: ``python -m training.prediction.mlp --windows corpus --data DIR --out RUN``.
+
+Loss: mean distance of joints (what MPJPE measures), the same of their velocities, and how far the mean speed
+of each predicted frame lies from the truth's. Without the last a network that is unsure slows down (thesis,
+section 2.5.4), because half a step is never far off.
+"""
+
+from __future__ import annotations
+
+import argparse
+import math
+from dataclasses import asdict, dataclass, fields
+from pathlib import Path
+
+import torch
+from torch import Tensor, nn
+
+from models.motion_mlp import MotionMLP, MotionMLPConfig
+from models.predictors import save_predictor
+from training.prediction.trainer import PredictionTrainer
+from training.prediction.windows import open_windows
+from training.shell import exit_code
+from webdemo.motion import InputError
+
+
+@dataclass(frozen=True)
+class Settings:
+    """What a run depends on; a checkpoint of other settings is refused."""
+
+    windows: str = "corpus"
+    past: int = 30
+    future: int = 30
+    past_coefficients: int = 12
+    future_coefficients: int = 12
+    width: int = 512
+    blocks: int = 2
+    dropout: float = 0.1
+    fit: int = 20_000
+    batch: int = 128
+    steps: int = 3000
+    learning_rate: float = 5e-4
+    weight_decay: float = 1e-2
+    warmup: int = 100
+    ema: float = 0.995
+    velocity_weight: float = 2.0
+    speed_weight: float = 1.0
+    bone_weight: float = 0.5
+    noise: float = 0.002
+    seed: int = 0
+
+    def __post_init__(self) -> None:
+        for name in ("past", "future", "width", "blocks", "batch", "warmup"):
+            if getattr(self, name) < 1:
+                raise InputError(f"{name} is {getattr(self, name)}: give 1 or more.")
+
+
+def lengths(vectors: Tensor) -> Tensor:
+    """(…, 3) → (…), with a gradient at 0."""
+    return (vectors.square().sum(-1) + 1e-10).sqrt()
+
+
+class Trainer(PredictionTrainer):
+    """Trains a :class:`~models.motion_mlp.MotionMLP`."""
+
+    settings: Settings
+    model: MotionMLP
+    ema: MotionMLP
+
+    def build(self) -> None:
+        s = self.settings
+        config = MotionMLPConfig(
+            self.windows.joints, s.past, s.future, s.past_coefficients, s.future_coefficients, s.width,
+            s.blocks, s.dropout,
+        )  # fmt: skip
+        self.model, self.ema = (MotionMLP(config).to(self.device) for _ in range(2))
+        self.ema.eval()
+        if not self.checkpoint.exists():
+            self.model.fit_linear(self.windows.batch(s.fit, (s.seed, 0, 1)).to(self.device))
+        self.ema.load_state_dict(self.model.state_dict())
+        self.ema.requires_grad_(False)
+        self.optimizer = torch.optim.AdamW(
+            self.model.parameters(), lr=s.learning_rate, weight_decay=s.weight_decay, fused=True
+        )
+        parents, children = zip(*self.windows.bones, strict=True)
+        self.bones = list(parents), list(children)
+
+    def parts(self) -> dict[str, nn.Module | torch.optim.Optimizer]:
+        return {"model": self.model, "ema": self.ema, "optimizer": self.optimizer}
+
+    def learning_rate(self) -> float:
+        """Linear warm-up, then a cosine to 2 % of the peak."""
+        s = self.settings
+        warm, place = min(1.0, (self.step + 1) / s.warmup), min(1.0, self.step / s.steps)
+        return s.learning_rate * warm * (0.02 + 0.98 * 0.5 * (1 + math.cos(math.pi * place)))
+
+    def terms(self, window: Tensor) -> dict[str, Tensor]:
+        """Weighted loss terms of windows (B, T, J, 3), in centimetres."""
+        s = self.settings
+        past, truth = window.split([s.past, s.future], dim=1)
+        noise = torch.randn(past.shape, generator=torch.Generator().manual_seed(self.step)).to(past)
+        predicted = 100 * self.model(past + s.noise * noise)
+        truth, last = 100 * truth, 100 * past[:, -1:]
+        velocities = [torch.cat([last, x], dim=1).diff(dim=1) for x in (predicted, truth)]
+        speeds = [lengths(v).mean((0, 2)) for v in velocities]
+        parents, children = self.bones
+        bones = [lengths(x[..., children, :] - x[..., parents, :]) for x in (predicted, truth)]
+        return {
+            "position": lengths(predicted - truth).mean(),
+            "velocity": s.velocity_weight * lengths(velocities[0] - velocities[1]).mean(),
+            "speed": s.speed_weight * (speeds[0] - speeds[1]).abs().mean(),
+            "bone": s.bone_weight * (bones[0] - bones[1]).abs().mean(),
+        }
+
+    def train_step(self) -> dict[str, float]:
+        torch.manual_seed(self.settings.seed + self.step)  # dropout
+        terms = self.terms(self.batch())
+        total = torch.stack(list(terms.values())).sum()
+        for group in self.optimizer.param_groups:
+            group["lr"] = self.learning_rate()
+        self.optimizer.zero_grad(set_to_none=True)
+        total.backward()
+        nn.utils.clip_grad_norm_(self.model.parameters(), 5.0)
+        self.optimizer.step()
+        self.step += 1
+        self.average()
+        return {name: value.item() for name, value in terms.items()} | {"total": total.item()}
+
+    def export(self, folder: Path) -> None:
+        """Writes the averaged network as a predictor's folder."""
+        save_predictor(
+            folder, self.ema, kind="mlp", fps=self.windows.fps, bones=self.windows.bones,
+            training={"steps": self.step, **asdict(self.settings)},
+        )  # fmt: skip
+
+
+def add_run_options(parser: argparse.ArgumentParser, settings: type) -> None:
+    """Options that every training of a predictor takes: data, folders, minutes and each setting."""
+    parser.add_argument("--data", type=Path, required=True, help="folder of the data set")
+    parser.add_argument("--out", type=Path, required=True, help="folder of the checkpoint and the log")
+    parser.add_argument("--export", type=Path, help="also write the trained predictor to this folder")
+    parser.add_argument("--minutes", type=float, default=1e9, help="stop after this; start again to go on")
+    parser.add_argument("--device", default="cuda" if torch.cuda.is_available() else "cpu")
+    for setting in fields(settings):
+        flag = "--" + setting.name.replace("_", "-")
+        parser.add_argument(flag, type=type(setting.default), default=setting.default)
+
+
+def train(trainer: type, settings: type, options: argparse.Namespace) -> None:
+    """Runs what :func:`add_run_options` understood."""
+    chosen = settings(**{f.name: getattr(options, f.name) for f in fields(settings)})
+    windows = open_windows(chosen.windows, options.data, chosen.past, chosen.future)
+    run = trainer(windows, chosen, options.out, device=options.device)
+    run.run_logged(minutes=options.minutes)
+    if options.export:
+        run.export(options.export)
+
+
+def main(argv: list[str] | None = None) -> int:
+    parser = argparse.ArgumentParser(description="Train the default predictor.")
+    add_run_options(parser, Settings)
+    options = parser.parse_args(argv)
+    return exit_code(lambda: train(Trainer, Settings, options))
+
+
+if __name__ == "__main__":
+    raise SystemExit(main())

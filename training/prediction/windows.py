@@ -1,0 +1,126 @@
+"""Windows of recorded motion, past and future in one, as the networks of prediction take them."""
+
+from __future__ import annotations
+
+import json
+from abc import ABC, abstractmethod
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import torch
+from numpy.typing import NDArray
+from torch import Tensor
+
+from training import cmu
+from webdemo.inference.predict_frame import to_last_pose
+from webdemo.motion import SMPL22, InputError
+from webdemo.motion.transforms import mirrored
+
+Array = NDArray[np.floating]
+
+
+class Windows(ABC):
+    """Windows of one data set.
+
+    Args:
+        past: frames that are given.
+        future: frames that follow.
+
+    Attributes:
+        bones: (parent, child) places among the joints.
+        joints: how many.
+        fps: frames a second, as the data set's users call it.
+    """
+
+    bones: list[tuple[int, int]]
+    joints: int
+    fps: float
+
+    def __init__(self, past: int, future: int) -> None:
+        self.past, self.future = past, future
+        self.length = past + future
+
+    @abstractmethod
+    def draw(self, count: int, rng: np.random.Generator) -> Array:
+        """Windows (count, past + future, joints, 3) in metres, drawn at random."""
+
+    def batch(self, size: int, seed: tuple[int, ...]) -> Tensor:
+        """:meth:`draw` as float32; the same seed gives the same windows."""
+        return torch.from_numpy(self.draw(size, np.random.default_rng(seed)).astype(np.float32))
+
+
+class CmuWindows(Windows):
+    """CMU's training clips, both phases of every second frame, half of the windows mirrored.
+
+    Args:
+        folder: see :mod:`training.cmu`.
+    """
+
+    fps = 25.0
+    joints = 17
+
+    def __init__(self, folder: Path, past: int = 25, future: int = 25) -> None:
+        super().__init__(past, future)
+        self.bones = cmu.CmuSkeleton.read(folder / "skeleton.json").bones
+        actions = cmu.read_actions(folder, "train", phases=True)
+        clips = [c for clips in actions.values() for c in clips if len(c) >= self.length]
+        self.frames = np.concatenate(clips)
+        ends = np.cumsum([len(c) for c in clips])
+        self.starts = np.concatenate(
+            [np.arange(e - len(c), e - self.length + 1) for e, c in zip(ends, clips, strict=True)]
+        )
+
+    def draw(self, count: int, rng: np.random.Generator) -> Array:
+        starts = self.starts[rng.integers(len(self.starts), size=count)]
+        found = self.frames[starts[:, None] + np.arange(self.length)]
+        mirror = rng.random(count) < 0.5
+        found[mirror] = cmu.mirrored(found[mirror])
+        return found
+
+
+class CorpusWindows(Windows):
+    """People of a corpus of two-person scenes, in the frame of the last pose of their past.
+
+    Args:
+        folder: of ``python -m training.corpus``: ``motions.npy`` (frames, 2, 22, 3) metres at 30 fps, and
+            ``index.json`` with ``start``, ``frames`` and ``split`` of every scene.
+        split: only scenes of this split are seen.
+
+    Raises:
+        InputError: where the folder is no such corpus.
+    """
+
+    fps = 30.0
+    joints = 22
+
+    def __init__(self, folder: Path, past: int = 30, future: int = 30, *, split: str = "train") -> None:
+        super().__init__(past, future)
+        self.bones = [(int(a), int(b)) for a, b in SMPL22.bones]
+        try:
+            rows: list[dict[str, Any]] = json.loads((folder / "index.json").read_text())
+            self.motions = np.load(folder / "motions.npy", mmap_mode="r", allow_pickle=False)
+        except (OSError, ValueError) as error:
+            raise InputError(f"{folder} is no corpus of `python -m training.corpus` ({error}).") from error
+        kept = [row for row in rows if row["split"] == split and row["frames"] >= self.length]
+        if not kept:
+            raise InputError(f"{folder} has no scenes of the {split} split with {self.length} frames.")
+        self.starts = np.concatenate(
+            [row["start"] + np.arange(row["frames"] - self.length + 1) for row in kept]
+        )
+
+    def draw(self, count: int, rng: np.random.Generator) -> Array:
+        starts = np.sort(rng.choice(self.starts, size=count))  # in the file's order, which is faster
+        people = rng.integers(2, size=count)
+        found = self.motions[starts[:, None] + np.arange(self.length), people[:, None]]
+        mirror = rng.random(count) < 0.5
+        found[mirror] = mirrored(found[mirror])
+        return to_last_pose(found, self.past - 1)[0]
+
+
+def open_windows(kind: str, folder: Path, past: int, future: int) -> Windows:
+    """Windows by the name of their data set: "cmu" or "corpus"."""
+    kinds = {"cmu": CmuWindows, "corpus": CorpusWindows}
+    if kind not in kinds:
+        raise InputError(f"Windows {kind!r} are not known: choose one of {', '.join(kinds)}.")
+    return kinds[kind](folder, past, future)
