@@ -275,3 +275,29 @@ def test_only_the_actor_is_needed(client: Any, bvh: Path) -> None:
     endpoint = client.view_api(return_format="dict", print_info=False)["named_endpoints"]["/react"]
     needed = [p["parameter_name"] for p in endpoint["parameters"] if not p["parameter_has_default"]]
     assert needed == ["actor"]
+
+
+@pytest.mark.parametrize(
+    ("method", "model", "mode", "steps"),
+    [
+        ("intergen", "intergen", "offline", 50),
+        ("regennet", "regennet", "offline", 5),
+        ("regennet-online", "regennet", "online", 5),
+    ],
+)
+def test_a_method_is_a_model_and_a_mode(
+    tab: ReactTab, bvh: Path, method: str, model: str, mode: str, steps: int
+) -> None:
+    source = upload(tab, bvh)[-1]["source"]
+    run(tab, source, method=method)
+    asked = tab.page.engine.requests[-1]
+    assert (asked.model, asked.mode) == (model, mode)
+    role, steps_slider, damping = tab.fit_method(method)
+    assert steps_slider["value"] == steps
+    assert role["interactive"] is damping["interactive"] is (model == "intergen")
+
+
+def test_what_a_method_cannot_do_is_told(tab: ReactTab, bvh: Path) -> None:
+    source = upload(tab, bvh)[-1]["source"]
+    *_, last = run(tab, source, method="regennet", role="b")
+    assert "choose role a" in last["line"]

@@ -13,6 +13,13 @@ from webdemo.inference.requests import SECONDS, Result
 from webdemo.motion import Clip, Duet, InputError
 from webdemo.view.payload import Payload, player_payload
 
+METHODS = {
+    "intergen": ("InterGen, person to person", "intergen", "offline"),
+    "regennet": ("ReGenNet, offline", "regennet", "offline"),
+    "regennet-online": ("ReGenNet, online", "regennet", "online"),
+}
+"""By key: what the page calls a method, its model and its mode."""
+
 
 @dataclass(frozen=True)
 class Source:
@@ -66,11 +73,15 @@ def result_source(result: Result, title: str, person: str) -> Source:
     It is called after the file that the result began with, or else after its title.
     """
     given = result.manifest.get("request", {}).get("actor", {})
-    return Source(given.get("name") or title, result.duets[0].people, person)
+    motion = result.duets[0]
+    people = motion.people if isinstance(motion, Duet) else (motion,)
+    return Source(given.get("name") or title, people, person if len(people) > 1 else "a")
 
 
 def chosen_actor(fields: Mapping[str, Any]) -> dict[str, Any]:
-    """A request's fields from those of the page: ``source``, ``person``, ``start``, ``end`` become ``actor``.
+    """A request's fields from those of the page.
+
+    ``source``, ``person``, ``start`` and ``end`` become ``actor``, ``method`` becomes ``model`` and ``mode``.
 
     Raises:
         InputError: where no source is chosen or the times do not fit.
@@ -78,6 +89,8 @@ def chosen_actor(fields: Mapping[str, Any]) -> dict[str, Any]:
     source: Source | None = fields["source"]
     if source is None:
         raise InputError("There is no actor yet: drop a motion file, or take an example or a result.")
-    own = ("source", "person", "start", "end")
+    own = ("source", "person", "start", "end", "method")
     actor = source.actor(fields["person"], fields["start"], fields["end"])
-    return {"actor": actor, **{name: value for name, value in fields.items() if name not in own}}
+    _, model, mode = METHODS[fields.get("method") or "intergen"]
+    kept = {name: value for name, value in fields.items() if name not in own}
+    return {"actor": actor, "model": model, "mode": mode, **kept}

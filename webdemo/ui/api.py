@@ -9,7 +9,9 @@ from typing import Any
 
 import gradio as gr
 
+from webdemo.formats import read
 from webdemo.inference.actor import read_actor
+from webdemo.inference.predict_request import PredictRequest, PredictResult
 from webdemo.inference.requests import (
     Cancelled,
     GenerateRequest,
@@ -67,7 +69,7 @@ class Endpoint:
             concurrency_limit=None,  # runs wait in the line that they share with the page's
         )
 
-    def _answer(self, make: Callable[[], SamplingRequest], title: str) -> Answer:
+    def _answer(self, make: Callable[[], SamplingRequest | PredictRequest], title: str) -> Answer:
         """Runs a request and writes its files, called after ``title``; every error is one sentence."""
         try:
             result = self._run(make())
@@ -76,16 +78,20 @@ class Endpoint:
             raise gr.Error("The run was cancelled: send the request again.", print_exception=False) from None
         except Exception as error:
             raise gr.Error(error_line(error), print_exception=False) from None
-        answer = {
+        answer: dict[str, Any] = {
             "manifest": result.manifest,
             "readouts": list(result.readouts),
             "timings": result.timings,
             "notes": list(result.notes),
             "files": {key: [path.name for path in paths] for key, paths in files.items()},
         }
+        if isinstance(result, PredictResult):
+            answer["prediction"] = {
+                key: list(getattr(result, key)) for key in ("error", "speed", "true_speed")
+            } | {"past_frames": result.past_frames}
         return answer, [str(path) for paths in files.values() for path in paths]
 
-    def _run(self, request: SamplingRequest) -> Result:
+    def _run(self, request: SamplingRequest | PredictRequest) -> Result:
         for event in self.page.runs.run(f"api-{uuid.uuid4().hex}", request):
             if isinstance(event, Result):
                 return event
@@ -145,6 +151,8 @@ class ReactEndpoint(Endpoint):
                 gr.Number(0, label="its end, in seconds; 0 is the end of the file"),
                 gr.Textbox(ReactRequest.role, label="a: the given person acts first; b: they react"),
                 *self._sampling(),
+                gr.Textbox(ReactRequest.model, label="intergen, or regennet (for which 5 steps are enough)"),
+                gr.Textbox(ReactRequest.mode, label="offline, or with regennet online"),
             ]
             self._publish(self.react, "react", inputs)
 
@@ -162,6 +170,8 @@ class ReactEndpoint(Endpoint):
         steps: float,
         damping: float,
         sampler: str,
+        model: str,
+        mode: str,
     ) -> Answer:
         """A second person for a given one, who stays exactly as they are (at 30 frames a second).
 
@@ -176,7 +186,39 @@ class ReactEndpoint(Endpoint):
             clip = read_actor(actor, person=person or None, start=start, end=end or None)
             return ReactRequest(
                 actor=clip, prompt=prompt, role=role, seed=seed, samples=samples, guidance=guidance,
-                steps=steps, damping=damping, sampler=sampler,
+                steps=steps, damping=damping, sampler=sampler, model=model, mode=mode,
             )  # fmt: skip
 
         return self._answer(request, prompt.strip() or f"Reaction to {Path(actor or '').stem}")
+
+
+class PredictEndpoint(Endpoint):
+    """``/predict``: a past → motion files that go on."""
+
+    def publish(self) -> None:
+        """Adds the endpoint to the page that is being built."""
+        with gr.Row(visible=False):
+            inputs = [
+                gr.File(label="the motion of one person or two: .bvh, .npz or .npy, up to 50 MB"),
+                gr.Number(0, label="the second at which the past ends; 0 is the end of the file"),
+                gr.Number(PredictRequest.seconds, label="how much to predict in seconds, 0.5 to 4"),
+                gr.Textbox(PredictRequest.model, label="motion-mlp, or still for the last pose, held"),
+            ]
+            self._publish(self.predict, "predict", inputs)
+
+    def predict(self, past: str, marker: float, seconds: float, model: str) -> Answer:
+        """What may come after the past of a motion, for one person or two.
+
+        Returns the manifest, timings, notes and file names, and under "prediction" the error (mm) and speed
+        (mm a frame) of every predicted frame; and the files, which hold the past and what is predicted. An
+        error is one sentence that says what to change.
+        """
+
+        def request() -> PredictRequest:
+            if not past:
+                raise InputError("There is no past: send a motion file, such as a .bvh.")
+            return PredictRequest(
+                motion=read(Path(past)), marker=marker or None, seconds=seconds, model=model
+            )
+
+        return self._answer(request, f"After {Path(past or '').stem}")

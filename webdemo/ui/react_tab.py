@@ -9,10 +9,10 @@ from typing import Any
 
 import gradio as gr
 
-from webdemo.inference.requests import SECONDS, ReactRequest
+from webdemo.inference.requests import DEFAULT_STEPS, SECONDS, ReactRequest
 from webdemo.motion import InputError
 
-from .actors import Source, chosen_actor, read_source, result_source
+from .actors import METHODS, Source, chosen_actor, read_source, result_source
 from .context import PageContext
 from .examples import example_clips
 from .exports import Record
@@ -23,6 +23,7 @@ from .words import error_line
 
 EMPTY_TEXT = "Drop a motion file, or take an example"
 FILE_TYPES = [".bvh", ".npz", ".npy"]
+_METHOD_INFO = "Online, each frame answers the actor's frames so far; the others see the whole motion."
 _SHORTEST = 0.1
 """Seconds: the least that the trim's sliders differ in."""
 
@@ -67,10 +68,14 @@ class ReactTab(JobTab):
         self.source = gr.State(None, time_to_live=3600)
         inputs = (
             self.source, self.person, self.begin, self.end, self.role, self.prompt, self.seed, self.samples,
-            self.guidance, self.steps, self.damping,
+            self.guidance, self.steps, self.damping, self.method,
         )  # fmt: skip
         self._wire_run(self.start, [self.go.click, self.prompt.submit], inputs, record)
         self._wire_actor()
+        self.method.change(
+            self.fit_method, inputs=self.method, outputs=[self.role, self.steps, self.damping],
+            queue=False, **QUIET,
+        )  # fmt: skip
 
     def _ask(self) -> None:
         with gr.Column(elem_classes="pd-panel pd-ask", min_width=0):
@@ -104,6 +109,10 @@ class ReactTab(JobTab):
                     [("acts first", "a"), ("reacts", "b")], value=ReactRequest.role,
                     label="The given person …", elem_id="react-role",
                 )  # fmt: skip
+            self.method = gr.Radio(
+                [(label, key) for key, (label, _, _) in METHODS.items()], value=next(iter(METHODS)),
+                label="Method", elem_id="react-method", info=_METHOD_INFO,
+            )  # fmt: skip
             self.prompt = gr.Textbox(
                 label="What do the two people do? (may stay empty)",
                 placeholder="One person waves and the other waves back.",
@@ -131,6 +140,14 @@ class ReactTab(JobTab):
             [self.person.input, self.begin.release, self.end.release],
             self.preview, inputs=trim, outputs=[self.line, self.player], trigger_mode="always_last", **QUIET,
         )  # fmt: skip
+
+    @staticmethod
+    def fit_method(method: str) -> Updates:
+        """Updates of role, steps and damping: what a method does not have cannot be set."""
+        model = METHODS[method][1]
+        regularised = model == "intergen"
+        role = gr.update(interactive=regularised, **({} if regularised else {"value": "a"}))
+        return role, gr.update(value=DEFAULT_STEPS[model]), gr.update(interactive=regularised)
 
     def upload(self, path: str | None) -> Iterator[Updates]:
         """Reads an uploaded file and shows its actor."""
@@ -207,6 +224,7 @@ class ReactTab(JobTab):
         guidance: float,
         steps: float,
         damping: float,
+        method: str,
         request: gr.Request,
     ) -> Iterator[Updates]:
         """Runs what the controls ask for; yields updates of the page."""
@@ -222,5 +240,6 @@ class ReactTab(JobTab):
             "guidance": guidance,
             "steps": steps,
             "damping": damping,
+            "method": method,
         }
         yield from self.run(str(request.session_hash), fields)
