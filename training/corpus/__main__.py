@@ -10,7 +10,7 @@ from pathlib import Path
 
 from webdemo.motion import InputError
 
-from .build import build, report, save
+from .build import build, save
 from .compose import FPS
 
 
@@ -21,15 +21,12 @@ def main(arguments: list[str] | None = None) -> int:
     parser.add_argument("--hours", type=float, default=5.0, help="hours of composed motion (5)")
     parser.add_argument("--seed", type=int, default=0)
     parser.add_argument("--families", nargs="+", metavar="NAME", help="only these families")
-    parser.add_argument("--report", type=Path, metavar="DIR", help="write report.md and contact sheets there")
     options = parser.parse_args(arguments)
     logging.basicConfig(level=logging.WARNING, format="%(message)s")
     began = time.monotonic()
     try:
         scenes, tally = build(options.data, hours=options.hours, seed=options.seed, only=options.families)
         save(scenes, options.out)
-        if options.report:
-            report(scenes, tally, options.report)
     except InputError as error:
         print(error, file=sys.stderr)
         return 2

@@ -12,10 +12,9 @@ from pathlib import Path
 import numpy as np
 
 from webdemo.formats.files import replacing
-from webdemo.motion import SMPL22, Clip, Duet, InputError
-from webdemo.view.contact_sheet import contact_sheet
+from webdemo.motion import InputError
 
-from .checks import fault, measure
+from .checks import fault
 from .compose import FPS
 from .families import Family, load_families
 from .library import Library
@@ -170,28 +169,3 @@ def _plain(value: object) -> object:
     if isinstance(value, np.generic):
         return value.item()
     raise TypeError(f"{type(value).__name__} cannot be written to the index.")
-
-
-def report(scenes: Sequence[Scene], tally: Tally, folder: Path) -> None:
-    """Writes ``report.md`` (families, minutes, measures) and a contact sheet of one scene a family."""
-    by_family: dict[str, list[Scene]] = {}
-    for scene in scenes:
-        by_family.setdefault(scene.family, []).append(scene)
-    rows = [
-        "| family | scenes | minutes | foot skate m/s | acceleration m/s² | least trunk gap m |",
-        "|---|---|---|---|---|---|",
-    ]
-    for name, group in sorted(by_family.items()):
-        found = [measure(scene.positions) for scene in group[:40]]
-        minutes = sum(scene.positions.shape[1] for scene in group) / FPS / 60
-        rows.append(
-            f"| {name} | {len(group)} | {minutes:.1f} | {np.mean([m.skate for m in found]):.3f} | "
-            f"{np.median([m.acceleration for m in found]):.0f} | {min(m.trunk_gap for m in found):.2f} |"
-        )
-    folder.mkdir(parents=True, exist_ok=True)
-    with replacing(folder / "report.md") as temporary:
-        temporary.write_text("\n".join([*rows, "", *tally.lines(), ""]))
-    for name, group in by_family.items():
-        scene = group[len(group) // 2]
-        people = [Clip(person, FPS, SMPL22) for person in scene.positions]
-        contact_sheet(Duet(*people), folder / f"{name}.png", title=f"{name}: {scene.captions[0]}")

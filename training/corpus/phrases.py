@@ -72,10 +72,10 @@ ACTIONS: dict[str, tuple[tuple[str, ...], tuple[str, ...]]] = {
     "run": (("*run", "*run along", "*jog", "*go running"), ("a run", "running")),
     "dash": (("*dash", "*rush forward", "*stride in a hurry", "*hurry along"), ("a dash", "rushing")),
     "walk-back": (("*walk backwards", "*back away", "*step back", "*walk back"), ("a step back", "backing away")),
-    "walk-left": (("*step to the left", "*sidestep to the left", "*walk sideways to the left"),
-                  ("a step to the left",)),
-    "walk-right": (("*step to the right", "*sidestep to the right", "*walk sideways to the right"),
-                   ("a step to the right",)),
+    "walk-left": (("*walk to the left", "*walk off to the left", "*go to the left"),
+                  ("a walk to the left",)),
+    "walk-right": (("*walk to the right", "*walk off to the right", "*go to the right"),
+                   ("a walk to the right",)),
     "idle": (("*stand still", "*wait", "*stand idle", "*watch"), ("standing still", "waiting")),
     "talk": (("*talk with (lively |)gestures", "*talk and *gesture", "*explain something with {their} hands"),
              ("talking", "a talk")),
@@ -297,12 +297,12 @@ ENTRIES: dict[str, Entry] = {
         (),
         ("stepping back from someone who comes closer", "approach and retreat", "backing away"),
     ),
-    "sidestep": Entry(
+    "make-way": Entry(
         "reply",
         ("*walk towards {other}", "*walk straight at {other}", "*come closer", "*approach( {other}|)"),
-        ("*step aside{to_side}", "*sidestep{to_side}", "*move out of the way{to_side}", "*make way{to_side}"),
+        ("*walk off{to_side}", "*walk out of the way{to_side}", "*move out of the way{to_side}", "*make way{to_side}"),
         (),
-        ("stepping aside", "making way for someone", "a sidestep"),
+        ("walking out of the way", "making way for someone", "giving way to someone"),
     ),
     # ---- combat --------------------------------------------------------------------------------------
     "punch-dodge": Entry(

@@ -119,5 +119,5 @@ ONE = ("{A} {VA}.", "{A} *is {VA.ing}.")
 IRREGULAR = {"is": ("is", "are", "being", "be"), "has": ("has", "have", "having", "have"),
               "do": ("does", "do", "doing", "do"), "go": ("goes", "go", "going", "go"),
               "lie": ("lies", "lie", "lying", "lie")}  # fmt: skip
-DOUBLED = {"put", "pat", "stop", "hit", "get", "let", "step", "sidestep", "run", "clap", "slap", "jog", "chat", "hug",
+DOUBLED = {"put", "pat", "stop", "hit", "get", "let", "step", "run", "clap", "slap", "jog", "chat", "hug",
             "wrap", "tap", "spar", "sit", "cut", "bid"}  # fmt: skip

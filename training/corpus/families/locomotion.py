@@ -370,6 +370,6 @@ def step_back(rng: Rng, library: Library) -> Scene:
     return _advance(rng, library, "step-back", "walk-back", rng.uniform(0.6, 1.0))
 
 
-@register("sidestep", needs=("walk", "walk-left", "walk-right"), weight=1.2)
-def sidestep(rng: Rng, library: Library) -> Scene:
-    return _advance(rng, library, "sidestep", pick(rng, ("walk-left", "walk-right")), rng.uniform(0.3, 0.8))
+@register("make-way", needs=("walk", "walk-left", "walk-right"), weight=1.2)
+def make_way(rng: Rng, library: Library) -> Scene:
+    return _advance(rng, library, "make-way", pick(rng, ("walk-left", "walk-right")), rng.uniform(0.3, 0.8))

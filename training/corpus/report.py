@@ -1,0 +1,116 @@
+"""What a corpus holds, in numbers and pictures: ``python -m training.corpus.report --corpus DIR --out DIR``.
+
+Writes ``corpus.md``, one row a family, and ``corpus/FAMILY.webp``, a contact sheet of one scene a family.
+"""
+
+from __future__ import annotations
+
+import argparse
+from collections import defaultdict
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from training.prepare import load_corpus
+from training.shell import exit_code
+from webdemo.formats.files import replacing
+from webdemo.metrics import bone_drift, foot_skate, penetration
+from webdemo.motion import SMPL22, Duet
+from webdemo.view.contact_sheet import contact_sheet
+
+FPS = 30.0
+MEASURED = 15
+"""Scenes of a family that are measured."""
+PICTURE_WIDTH = 960
+
+
+def touch_gap(duet: Duet, contacts: Sequence[dict[str, Any]]) -> float:
+    """Metres between joints that touch where they are nearest, the largest over the contacts."""
+    gaps = []
+    for contact in contacts:
+        between = slice(contact["start"], contact["end"] + 1)
+        own, other = (
+            person.positions[between, SMPL22.index(contact[role])]
+            for person, role in zip((duet.a, duet.b), "ab", strict=True)
+        )
+        gaps.append(float(np.linalg.norm(own - other, axis=-1).min(initial=np.inf)))
+    return max(gaps)
+
+
+def report(motions: NDArray[np.floating], index: list[dict[str, Any]], out: Path) -> str:
+    """Writes the report of a corpus (see :func:`training.prepare.load_corpus`) and returns its Markdown."""
+    families: dict[str, list[dict[str, Any]]] = defaultdict(list)
+    for scene in index:
+        families[scene["family"]].append(scene)
+    pictures = out / "corpus"
+    pictures.mkdir(parents=True, exist_ok=True)
+    lines = [
+        "| Family | Scenes (test) | Minutes | Captions | Bone drift, % | Foot skate, cm/s | Penetration, cm "
+        "| Touching joints, cm | Scene |",
+        "|---|---|---|---|---|---|---|---|---|",
+    ]
+    rows = []
+    for name, scenes in sorted(families.items()):
+        chosen = scenes[:: max(len(scenes) // MEASURED, 1)][:MEASURED]
+        duets = [_duet(motions, scene) for scene in chosen]
+        contacts = [(scene.get("events") or {}).get("contact") for scene in chosen]
+        gaps = [100 * touch_gap(d, c) for d, c in zip(duets, contacts, strict=True) if c]
+        found = [(bone_drift(d), foot_skate(d).speed, penetration(d).mean) for d in duets]
+        drift, skate, overlap = np.mean(found, axis=0)
+        minutes = sum(scene["frames"] for scene in scenes) / FPS / 60
+        test = sum(scene["split"] == "test" for scene in scenes)
+        captions = len({caption for scene in scenes for caption in scene["captions"]})
+        touching = f"{np.median(gaps):.0f}" if gaps else "–"
+        rows.append((minutes, len(scenes), drift, skate, overlap))
+        lines.append(
+            f"| {name} | {len(scenes)} ({test}) | {minutes:.1f} | {captions} | {drift:.2f} | {skate:.1f} "
+            f"| {overlap:.2f} | {touching} | [sheet](corpus/{name}.webp) |"
+        )
+        sheet = contact_sheet(duets[-1], title=f"{name}: {chosen[-1]['captions'][0]}", frames=6)
+        sheet = sheet.resize((PICTURE_WIDTH, round(sheet.height * PICTURE_WIDTH / sheet.width)))
+        with replacing(pictures / f"{name}.webp") as temporary:
+            sheet.save(temporary, "webp", quality=60)
+    minutes, count, *measures = np.array(rows).T
+    drift, skate, overlap = (np.average(column, weights=minutes) for column in measures)
+    recorded = [s for s in index if str((s.get("sources") or [""])[0]).startswith(("sbu", "k3hi"))]
+    captions = {caption for scene in index for caption in scene["captions"]}
+    head = [
+        "# The corpus",
+        "",
+        f"{int(count.sum()):,} scenes of {len(families)} families, {minutes.sum() / 60:.1f} hours at 30 fps, "
+        f"{len(captions):,} different captions; {len(recorded)} scenes "
+        f"({sum(s['frames'] for s in recorded) / FPS / 60:.0f} minutes) are recorded pairs, the others are "
+        "composed of single recordings. Over all: bone drift "
+        f"{drift:.2f} %, foot skate {skate:.1f} cm/s, penetration {overlap:.2f} cm.",
+        "",
+        f"Measured on up to {MEASURED} scenes a family. Touching joints: median distance, at the nearest "
+        "moment of a touch, of the joints that touch; wrists that meet are 6 to 9 cm apart, and a joint of "
+        "the trunk lies inside the body. Rebuilt by `python -m training.corpus.report`.",
+        "",
+    ]
+    text = "\n".join([*head, *lines, ""])
+    with replacing(out / "corpus.md") as temporary:
+        temporary.write_text(text)
+    return text
+
+
+def _duet(motions: NDArray[np.floating], scene: dict[str, Any]) -> Duet:
+    part = np.array(motions[scene["start"] : scene["start"] + scene["frames"]], dtype=np.float32)
+    return Duet.from_positions(part.swapaxes(0, 1), fps=FPS, roles=("actor", "reactor"))
+
+
+def main(argv: list[str] | None = None) -> int:
+    parser = argparse.ArgumentParser(
+        description="Report what a corpus holds, with a picture of every family."
+    )
+    parser.add_argument("--corpus", type=Path, required=True, help="what `python -m training.corpus` wrote")
+    parser.add_argument("--out", type=Path, required=True, help="folder for corpus.md and corpus/")
+    options = parser.parse_args(argv)
+    return exit_code(lambda: print(report(*load_corpus(options.corpus), options.out)))
+
+
+if __name__ == "__main__":
+    raise SystemExit(main())
