@@ -1,4 +1,4 @@
-"""The same jobs from a shell: ``python -m webdemo generate|react|render|info|benchmark|serve|user``.
+"""The same jobs from a shell: ``python -m webdemo generate|react|predict|render|info|benchmark|serve|user``.
 
 The last line on stdout is one JSON object. What goes wrong is one line on stderr that says what is wrong and
 what to do, with exit code 2; a cancelled run (Ctrl+C) ends with 130. No file is left half-written.
@@ -15,9 +15,19 @@ from dataclasses import fields
 from pathlib import Path
 from typing import Any, NoReturn
 
-from webdemo.inference.actor import ROLES, read_actor
-from webdemo.inference.requests import GenerateRequest, Progress, ReactRequest, Result, SamplingRequest
-from webdemo.motion import InputError
+import numpy as np
+
+from webdemo.inference.actor import FPS, ROLES, read_actor
+from webdemo.inference.predict_request import METHODS, PredictRequest, PredictResult
+from webdemo.inference.requests import (
+    DEFAULT_STEPS,
+    GenerateRequest,
+    Progress,
+    ReactRequest,
+    Result,
+    SamplingRequest,
+)
+from webdemo.motion import Clip, InputError
 
 
 class _Parser(argparse.ArgumentParser):
@@ -61,11 +71,13 @@ def _check_out(path: Path) -> None:
 def _write(result: Result, out: Path) -> dict[str, Any]:
     """Writes a result's duets and gives what the last line on stdout says of them."""
     from webdemo.formats import write
+    from webdemo.formats.one_person import write_clip
 
     paths: list[Path] = []
     for i, duet in enumerate(result.duets):
         number = f"_{i + 1}" if len(result.duets) > 1 else ""
-        paths += write(duet, out.with_stem(out.stem + number))
+        path = out.with_stem(out.stem + number)
+        paths += write_clip(duet, path) if isinstance(duet, Clip) else write(duet, path)
     for note in result.notes:
         print(note, file=sys.stderr)
     return {
@@ -100,22 +112,75 @@ def _add_react(commands: Any) -> None:
     parser.add_argument("--end", type=float, help="seconds in the file; to its end by default")
     parser.add_argument("--prompt", default=ReactRequest.prompt, help="what the two do; may be left out")
     parser.add_argument("--role", default=ReactRequest.role, help="the given person acts (a) or reacts (b)")
-    parser.add_argument("--mode", default=ReactRequest.mode, help="offline: in sight of the whole motion")
+    parser.add_argument(
+        "--mode", help="offline: in sight of the whole motion; online (regennet): of the frames so far"
+    )
+    parser.add_argument(
+        "--stream", action="store_true",
+        help="online, at the actor's pace: each frame is a line of JSON as soon as it is made",
+    )  # fmt: skip
     _add_sampling(parser)
-    parser.set_defaults(job=react)
+    parser.set_defaults(job=react, steps=None)
 
 
 def react(options: argparse.Namespace) -> dict[str, Any]:
     """Runs a :class:`ReactRequest` on one person of a motion file and writes the duets."""
     _check_out(options.out)
     actor = read_actor(options.actor, person=options.person, start=options.start, end=options.end)
-    request = ReactRequest(
-        actor=actor, prompt=options.prompt, role=options.role, mode=options.mode, **_sampling(options)
-    )
+    fields = _sampling(options)
+    if fields["steps"] is None:
+        fields["steps"] = DEFAULT_STEPS.get(options.model, SamplingRequest.steps)
+    mode = options.mode or ("online" if options.stream else ReactRequest.mode)
+    request = ReactRequest(actor=actor, prompt=options.prompt, role=options.role, mode=mode, **fields)
+    if options.stream:
+        _stream(request)
     return _write(_run(request), options.out)
 
 
-def _run(request: SamplingRequest) -> Result:
+def _stream(request: ReactRequest) -> None:
+    """Plays the actor at 30 frames a second and prints each frame of the reaction as it is made.
+
+    A line is ``{"frame", "milliseconds", "positions": [22 × [x, y, z]]}``, the first sample's, in metres.
+    """
+    from webdemo.inference.engine import Engine
+
+    frames = Engine().live(request)
+    began = time.perf_counter()
+    for frame in frames:
+        line = {
+            "frame": frame.index,
+            "milliseconds": round(1000 * frame.seconds, 2),
+            "positions": np.round(frame.positions[0], 4).tolist(),
+        }
+        print(json.dumps(line), flush=True)
+        time.sleep(max(0.0, began + (frame.index + 1) / FPS - time.perf_counter()))
+
+
+def _add_predict(commands: Any) -> None:
+    parser = commands.add_parser("predict", help="what comes after a motion, of one person or two")
+    parser.add_argument("--past", type=Path, required=True, help="the motion: .bvh, .npz, .npy …")
+    parser.add_argument("--marker", type=float, help="second at which the past ends; its end by default")
+    parser.add_argument("--seconds", type=float, default=PredictRequest.seconds, help="how much to predict")
+    parser.add_argument("--model", default=PredictRequest.model, help=" or ".join(METHODS))
+    parser.add_argument("--out", type=Path, required=True, help="file to write: .npz, .bvh …")
+    parser.set_defaults(job=predict)
+
+
+def predict(options: argparse.Namespace) -> dict[str, Any]:
+    """Runs a :class:`PredictRequest` and writes the past with what is predicted."""
+    from webdemo.formats import read
+
+    _check_out(options.out)
+    request = PredictRequest(
+        motion=read(options.past), marker=options.marker, seconds=options.seconds, model=options.model
+    )
+    result = _run(request)
+    assert isinstance(result, PredictResult)
+    told = {name: getattr(result, name) for name in ("past_frames", "error", "speed", "true_speed")}
+    return _write(result, options.out) | told
+
+
+def _run(request: SamplingRequest | PredictRequest) -> Result:
     """Runs a request with a step counter on stderr, where that is a terminal."""
     from webdemo.inference.engine import Engine
 
@@ -251,7 +316,7 @@ def main(argv: Sequence[str] | None = None) -> int:
     """Runs one command; returns the exit code."""
     parser = _Parser(prog="python -m webdemo", description="Motion of two people, from a shell.")
     commands = parser.add_subparsers(required=True, metavar="COMMAND", parser_class=_Parser)
-    for add in (_add_generate, _add_react, _add_render, _add_others):
+    for add in (_add_generate, _add_react, _add_predict, _add_render, _add_others):
         add(commands)
     began = time.perf_counter()
     try:
