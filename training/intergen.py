@@ -34,6 +34,7 @@ from training.corpus.captions import mirror_caption
 from training.handedness import mirrored
 from training.prepare import Scenes, load, normalizer
 from training.reading import CaptionReader
+from training.samples import write_sheet
 from training.shell import exit_code
 from training.text_features import CaptionFeatures
 from webdemo.motion import SMPL22, InputError
@@ -322,6 +323,9 @@ def main(argv: list[str] | None = None) -> int:
     parser.add_argument(
         "--minutes", type=float, default=1e9, help="stop after this long; start again to go on"
     )
+    parser.add_argument(
+        "--sheets", type=float, default=20.0, help="minutes between contact sheets of samples; 0: none (20)"
+    )
     parser.add_argument("--device", default="cuda" if torch.cuda.is_available() else "cpu")
     for setting in fields(Settings):
         if setting.name != "weights":
@@ -338,6 +342,7 @@ def _run(options: argparse.Namespace) -> None:
         load(options.scenes), Settings(**chosen), options.out, init=options.init, device=options.device
     )
     log, began, first = [], time.monotonic(), trainer.step
+    drawn = began
     with open(options.out / "log.jsonl", "a") as file:
         for terms in trainer.run(minutes=options.minutes):
             log.append(terms)
@@ -350,6 +355,9 @@ def _run(options: argparse.Namespace) -> None:
                 print(json.dumps(line), file=file, flush=True)
                 print(json.dumps(line), flush=True)
                 log = []
+            if options.sheets and time.monotonic() - drawn > options.sheets * 60:
+                write_sheet(trainer.ema.eval(), options.out / "samples" / f"{trainer.step:07d}.png")
+                drawn = time.monotonic()
 
 
 if __name__ == "__main__":

@@ -8,10 +8,12 @@ from pathlib import Path
 import numpy as np
 import pytest
 import torch
+from PIL import Image
+from safetensors import SafetensorError
 from safetensors.torch import load_file
 
 from models.motion_tokens import decode
-from training import export, intergen, prepare
+from training import checkpoint, export, intergen, prepare
 from training.intergen import Settings, Trainer
 from webdemo.inference import GenerateRequest, Result
 from webdemo.inference.engine import Engine
@@ -227,6 +229,35 @@ def test_bad_training_is_refused_in_one_line(
     assert says in said
     assert said.count("\n") == 1
     assert not (tmp_path / "last.safetensors").exists()
+
+
+def test_a_full_disk_leaves_the_last_checkpoint(
+    scenes: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    words = ["--scenes", str(scenes), "--out", str(tmp_path), *SIZES, "--steps", "4"]
+    assert intergen.main([*words, "--minutes", "0"]) == 0
+    before = (tmp_path / "last.safetensors").read_bytes()
+
+    def fill(tensors: object, path: Path, metadata: object) -> None:
+        Path(path).write_bytes(b"half")
+        raise SafetensorError("I/O error: No space left on device (os error 28)")
+
+    monkeypatch.setattr(checkpoint, "save_file", fill)
+    assert intergen.main(words) == 2
+    assert "free disk space" in capsys.readouterr().err
+    assert (tmp_path / "last.safetensors").read_bytes() == before
+    assert not list(tmp_path.glob(".last*"))
+
+
+def test_contact_sheets_are_written_as_it_goes(
+    scenes: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr("training.samples.PROMPTS", ("Two people wave.",))
+    words = ["--scenes", str(scenes), "--out", str(tmp_path), *SIZES, "--steps", "2", "--sheets", "1e-9"]
+    assert intergen.main(words) == 0
+    sheets = sorted((tmp_path / "samples").iterdir())
+    assert [sheet.name for sheet in sheets] == ["0000001.png", "0000002.png"]
+    assert Image.open(sheets[0]).size[0] > 800
 
 
 def test_export_without_a_run_is_refused_in_one_line(

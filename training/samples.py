@@ -1,0 +1,59 @@
+"""What a network in training does with a few sentences: contact sheets, as the training goes."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import torch
+from PIL import Image
+
+from models.compact import CompactInterGen
+from models.diffusion import make_scheduler, sample_steps
+from models.text import MiniLM
+from webdemo.formats.files import replacing
+from webdemo.motion import Duet
+from webdemo.view.contact_sheet import contact_sheet
+
+PROMPTS = (
+    "Two people shake hands.",
+    "One person waves with the left hand, and the other waves back.",
+    "One person pushes the other, who stumbles back.",
+    "Two people walk side by side.",
+)
+
+
+@torch.no_grad()
+def write_sheet(
+    model: CompactInterGen, path: Path, *, frames: int = 120, steps: int = 20, guidance: float = 3.0
+) -> None:
+    """Draws :data:`PROMPTS` with a network in eval mode, one sheet under the other, as a PNG.
+
+    The sampler is the plain one, without damping or clean-up: it shows what the network has learned.
+    """
+    device = model.mean.device
+    tokens = MiniLM().to(device)(PROMPTS)
+    condition = model.conditioner(tokens.features, tokens.mask)
+    layout = model.layout
+    generator = torch.Generator().manual_seed(0)
+    noise = torch.randn(
+        len(PROMPTS), layout.num_tokens(frames), 2 * layout.token_features, generator=generator
+    ).to(device)
+    x = noise
+    for step in sample_steps(
+        lambda x, t: model.denoiser.guided(x, t, condition, scale=guidance),
+        noise,
+        make_scheduler("ddim", steps),
+    ):
+        x = step.sample
+    positions = model.positions(x)[0][:, :, :frames].float().cpu().numpy()
+    sheets = [
+        contact_sheet(Duet.from_positions(pair, fps=30.0), title=prompt, tile=140)
+        for pair, prompt in zip(positions, PROMPTS, strict=True)
+    ]
+    page = Image.new("RGB", (sheets[0].width, sum(sheet.height for sheet in sheets)))
+    top = 0
+    for sheet in sheets:
+        page.paste(sheet, (0, top))
+        top += sheet.height
+    with replacing(path) as temporary:
+        page.save(temporary, "png")
