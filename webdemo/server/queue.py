@@ -215,9 +215,15 @@ class FairQueue:
         return job
 
     def _meet(self, person: str) -> None:
-        """Opens an account: whoever comes anew has had as much as the least served who are here."""
+        """Opens an account: whoever comes anew has had as much as the least served who are here.
+
+        What runs now does not count for that, or its owner's next run would be level with the newcomer's.
+        """
         here = {job.person for job in itertools.chain(self._waiting, self._running)}
-        least = min((self._served[name] for name in here), default=0.0)
+        before = {name: self._served[name] for name in here}
+        for job in self._running:
+            before[job.person] -= job.cost
+        least = min(before.values(), default=0.0)
         if person not in here:
             self._served[person] = max(self._served.get(person, 0.0), least)
         if not here:  # an idle server forgets

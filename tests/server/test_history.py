@@ -1,0 +1,191 @@
+"""Runs that are found again, by whom, for how long, and what a full disk or a killed process leaves."""
+
+from __future__ import annotations
+
+import errno
+import time
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from sqlalchemy import update
+
+from webdemo import formats
+from webdemo.inference.requests import GenerateRequest, ReactRequest, Result
+from webdemo.motion import InputError
+from webdemo.server.database import Database, Link, Run
+from webdemo.server.history import DAY, History
+from webdemo.ui.again import request_of, verdict
+
+from .lab import stub_module
+
+ME, OTHER = "user ada", "user eve"
+
+
+@pytest.fixture
+def history(tmp_path: Path) -> History:
+    return History(Database(f"sqlite:///{tmp_path / 'h.db'}"), tmp_path / "motions", node="n")
+
+
+def made(request: Any) -> Result:
+    *_, result = stub_module().StubEngine().run(request)
+    return result
+
+
+def kept(history: History, prompt: str = "Two people walk.", *, owner: str = ME, **fields: Any) -> str:
+    request = GenerateRequest(prompt=prompt, **({"seconds": 1.0, "steps": 1, "samples": 2} | fields))
+    run = history.begin(owner, request, prompt)
+    history.finish(run, made(request))
+    return run
+
+
+def test_a_run_is_found_again_as_it_was(history: History) -> None:
+    run = kept(history, seed=9)
+    opened = history.open(run, ME)
+    assert (opened.entry.title, opened.entry.state) == ("Two people walk.", "done")
+    again = made(request_of(opened))
+    assert verdict(opened.result, again) == "Run again: the same motion, bit for bit."
+    assert opened.result.readouts[0]["after"] == again.readouts[0]["after"]
+    assert [entry.id for entry in history.entries(ME)] == [run]
+
+
+def test_a_reaction_is_run_again_from_its_result(history: History) -> None:
+    actor = stub_module().walking(1.0).a
+    request = ReactRequest(actor=actor, role="b", steps=1, seed=3)
+    run = history.begin(ME, request, "Reaction")
+    history.finish(run, made(request))
+    asked = request_of(history.open(run, ME))
+    assert isinstance(asked, ReactRequest) and asked.role == "b"
+    np.testing.assert_array_equal(asked.actor.positions, actor.positions)
+
+
+def test_the_verdict_names_what_differs(history: History) -> None:
+    old = history.open(kept(history), ME).result
+    new = Result(
+        duets=tuple(duet.with_positions(duet.positions + np.float32(0.002)) for duet in old.duets),
+        manifest=old.manifest | {"weights_sha256": "f" * 64, "versions": {"torch": "9"}},
+    )
+    told = verdict(old, new)
+    assert "up to 2 mm" in told and "the weights (unknown → ffffffff)" in told and "torch (none → 9)" in told
+
+
+def test_others_see_nothing_but_by_a_link_that_lasts(history: History) -> None:
+    run = kept(history)
+    assert history.entries(OTHER) == []
+    for act in (history.open, history.remove, history.link, history.revoke):
+        with pytest.raises(InputError, match="There is no such run"):
+            act(run, OTHER)
+    with pytest.raises(InputError):
+        history.favour(run, OTHER, favourite=True)
+    key, until = history.link(run, ME)
+    assert until == pytest.approx(time.time() + 30 * DAY, abs=60)
+    assert history.open(key, OTHER).entry.id == run
+    assert history.open(key, "").entry.id == run
+    assert history.entries(ME)[0].links == 1
+    with pytest.raises(InputError):
+        history.remove(key, OTHER)  # a link shows; it gives no power
+    assert history.revoke(run, ME) == 1
+    with pytest.raises(InputError):
+        history.open(key, OTHER)
+
+
+def test_a_link_ends(history: History) -> None:
+    key, _ = history.link(kept(history), ME)
+    with history.database.session.begin() as session:
+        session.execute(update(Link).values(until=time.time() - 1))
+    with pytest.raises(InputError, match="its link has ended"):
+        history.open(key, OTHER)
+
+
+@pytest.mark.parametrize(
+    "key", ["", "x", "../../etc/passwd", "a" * 24, "' OR 1=1 --" + "a" * 20, "%00" * 10, "é" * 20, "a" * 5000]
+)
+def test_forged_keys_say_nothing(history: History, key: str) -> None:
+    kept(history)
+    with pytest.raises(InputError, match="There is no such run, or its link has ended"):
+        history.open(key, ME)
+    with pytest.raises(InputError):
+        history.remove(key, ME)
+
+
+def test_keys_are_unguessable(history: History) -> None:
+    run = kept(history)
+    keys = {run, *(history.link(run, ME)[0] for _ in range(20))}
+    assert len(keys) == 21 and all(len(key) == 24 for key in keys)
+
+
+def test_age_and_size_remove_the_oldest_but_no_favourites(history: History) -> None:
+    runs = [kept(history, seed=i) for i in range(5)]
+    with history.database.session.begin() as session:
+        for i, run in enumerate(runs):
+            session.execute(update(Run).where(Run.id == run).values(created=time.time() - (40 - 8 * i) * DAY))
+    history.favour(runs[0], ME, favourite=True)
+    assert history.clean() == 1  # 32 days old; the one of 40 days is a favourite
+    size = sum(path.stat().st_size for path in (history.folder / runs[4]).iterdir())
+    history.keep_bytes = 2.5 * size
+    assert history.clean() == 2
+    assert {entry.id for entry in history.entries(ME)} == {runs[0], runs[4]}
+    assert {path.name for path in history.folder.iterdir()} == {runs[0], runs[4]}
+
+
+def test_favourites_are_counted(history: History) -> None:
+    history.keep_favourites = 1
+    first, second = kept(history), kept(history)
+    history.favour(first, ME, favourite=True)
+    with pytest.raises(InputError, match="let one go first"):
+        history.favour(second, ME, favourite=True)
+
+
+def test_what_a_killed_process_left_is_marked(history: History) -> None:
+    whole = kept(history)
+    request = GenerateRequest(prompt="Two people walk.", seconds=1.0)
+    lost = history.begin(ME, request, "lost")
+    half = history.folder / f".{lost}"
+    half.mkdir()
+    (half / "1.npz").write_bytes(b"half")
+    elsewhere = History(history.database, history.folder, node="another").begin(ME, request, "elsewhere")
+    assert history.recover() == 1
+    states = {entry.id: entry.state for entry in history.entries(ME)}
+    assert states == {whole: "done", lost: "interrupted", elsewhere: "running"}
+    assert not half.exists()
+    with pytest.raises(InputError, match="run it again"):
+        history.open(lost, ME)
+    history.open(whole, ME)
+
+
+def test_a_full_disk_is_a_sentence_and_leaves_nothing(
+    history: History, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    before = kept(history)
+    request = GenerateRequest(prompt="Two people walk.", seconds=1.0, steps=1, samples=2)
+    run = history.begin(ME, request, "full")
+
+    def full(duet: Any, path: Path) -> None:
+        Path(path).write_bytes(b"half a file")
+        raise OSError(errno.ENOSPC, "No space left on device")
+
+    with monkeypatch.context() as patch:
+        patch.setattr(formats, "write", full)
+        with pytest.raises(InputError, match="disk is full"):
+            history.finish(run, made(request))
+    assert {path.name for path in history.folder.iterdir()} == {before}
+    assert history.entries(ME)[0].state == "failed"
+    history.free_bytes = 1e18
+    with pytest.raises(InputError, match="disk is nearly full"):
+        history.begin(ME, request, "more")
+    history.open(before, ME)
+
+
+def test_damaged_files_are_a_sentence(history: History) -> None:
+    run = kept(history)
+    (history.folder / run / "1.npz").write_bytes(b"PK\x03\x04 nothing")
+    with pytest.raises(InputError, match="gone or damaged"):
+        history.open(run, ME)
+
+
+def test_a_database_that_is_none(tmp_path: Path) -> None:
+    (tmp_path / "h.db").write_bytes(b"this is no database at all" * 100)
+    for url in (f"sqlite:///{tmp_path / 'h.db'}", "nonsense", "nosuch://x/y"):
+        with pytest.raises(InputError, match="database"):
+            Database(url)
