@@ -19,6 +19,7 @@ MIDDLE = {"webdemo.formats", "webdemo.metrics", "webdemo.view", "models"}
 FLOORS: dict[str, set[str]] = {
     "webdemo.motion": set(),
     **dict.fromkeys(MIDDLE, LOW),
+    "webdemo.view": LOW | {"webdemo.metrics"},
     "webdemo.inference": LOW | {"webdemo.formats", "webdemo.metrics", "models"},
     "training": LOW | MIDDLE | {"webdemo.inference"},
 }

@@ -9,11 +9,12 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from webdemo.metrics import Contact, contact_events
 from webdemo.motion import SKELETONS, SMPL22, Clip, Duet, InputError
-from webdemo.view.curves import Contact, Curve, find_contacts, interaction_curves
+from webdemo.view.curves import Curve, distance_curves
 from webdemo.view.payload import pack_positions, player_payload, sample_payload, unpack_positions
 
-PARENTS, NAMES = SMPL22.parents, SMPL22.joint_names
+NAMES = SMPL22.joint_names
 
 
 def standing(frames: int = 30, apart: float = 2.0) -> np.ndarray:
@@ -77,7 +78,7 @@ def test_several_samples_and_one_person():
 
 
 def test_curves_measure_metres():
-    curves = {c.key: c.values for c in interaction_curves(standing(apart=2.0), NAMES)}
+    curves = {c.key: c.values for c in distance_curves(duet(apart=2.0))}
     assert np.allclose(curves["pelvis_distance"], 2.0)
     assert np.allclose(curves["wrist_distance"], 2.0)
 
@@ -90,32 +91,14 @@ def test_own_curves_and_contacts_are_kept():
     assert sample["contacts"] == [{"start": 1, "stop": 3, "kind": "hands", "label": "x"}]
 
 
-def test_contacts_find_when_hands_meet():
+def test_contacts_are_those_of_the_metrics():
     positions = standing(60)
     wrist = NAMES.index("right_wrist")
     positions[1, 20:40, wrist] = positions[0, 20:40, wrist] + [0.05, 0, 0]
-    found = find_contacts(positions, NAMES, PARENTS, fps=30.0)
-    assert [(c.start, c.stop, c.kind) for c in found] == [(20, 40, "hands")]
-
-
-def test_contacts_tell_a_touch_and_a_kick_apart():
-    positions = standing(60)
-    positions[0, 10:30, NAMES.index("left_wrist")] = positions[1, 10:30, NAMES.index("spine3")]
-    positions[1, 30:50, NAMES.index("right_foot")] = positions[0, 30:50, NAMES.index("left_knee")]
-    found = find_contacts(positions, NAMES, PARENTS, fps=30.0)
-    assert [(c.start, c.stop, c.kind, c.label) for c in found] == [
-        (10, 30, "touch", "hand of A on B"),
-        (30, 50, "foot", "foot of B on A"),
-    ]
-
-
-def test_short_gaps_are_joined_and_blinks_dropped():
-    positions = standing(60)
-    wrist = NAMES.index("right_wrist")
-    for frames in (slice(10, 20), slice(22, 30), slice(50, 51)):
-        positions[1, frames, wrist] = positions[0, frames, wrist]
-    found = find_contacts(positions, NAMES, PARENTS, fps=30.0)
-    assert [(c.start, c.stop) for c in found] == [(10, 30)]
+    shaking = Duet.from_positions(positions, fps=30.0)
+    found = sample_payload(shaking)["contacts"]
+    assert found == [contact.to_dict() for contact in contact_events(shaking)]
+    assert [(c["start"], c["stop"]) for c in found] == [(20, 40)]
 
 
 def test_ghost_and_past():

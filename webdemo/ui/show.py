@@ -8,8 +8,9 @@ from typing import Any
 import numpy as np
 
 from webdemo.inference.requests import Result
+from webdemo.metrics import Contact
 from webdemo.motion import Duet
-from webdemo.view.curves import Contact, Curve
+from webdemo.view.curves import Curve
 from webdemo.view.payload import Payload, build_payload, sample_payload
 
 _CURVES = (("pelvis_distance", "Apart", "m"), ("wrist_distance", "Hands", "m"))

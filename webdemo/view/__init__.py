@@ -1,14 +1,12 @@
 """Turns results into pictures; knows no network."""
 
-from .curves import Contact, Curve, find_contacts, interaction_curves
+from .curves import Curve, distance_curves
 from .payload import Payload, player_payload, sample_payload
 
 __all__ = [
-    "Contact",
     "Curve",
     "Payload",
-    "find_contacts",
-    "interaction_curves",
+    "distance_curves",
     "player_payload",
     "sample_payload",
 ]

@@ -15,10 +15,11 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from webdemo.metrics import Contact, contact_events
 from webdemo.motion.clip import Clip, Duet
 from webdemo.motion.errors import InputError
 
-from .curves import Contact, Curve, find_contacts, interaction_curves
+from .curves import Curve, distance_curves
 
 Array = NDArray[np.floating]
 Payload = dict[str, Any]
@@ -70,7 +71,7 @@ def sample_payload(
     label: str = "",
     curves: Sequence[Curve] | None = None,
     contacts: Sequence[Contact] | None = None,
-    ghost: Duet | None = None,
+    ghost: Duet | Clip | None = None,
     past_until: int | None = None,
 ) -> dict[str, Any]:
     """One motion as the player takes it.
@@ -78,8 +79,8 @@ def sample_payload(
     Args:
         motion: two people, or one.
         label: names the sample in the player's tabs.
-        curves: read-outs under the scene; by default the distances of :func:`interaction_curves`.
-        contacts: marks on the timeline; by default those of :func:`find_contacts`.
+        curves: read-outs under the scene; by default those of :func:`distance_curves`.
+        contacts: marks on the timeline; by default those of :func:`~webdemo.metrics.contact_events`.
         ghost: a second motion with the same joints drawn pale beside the first, such as what really
             happened beside a prediction.
         past_until: the first frame that was predicted; the player marks what came before as given.
@@ -90,12 +91,12 @@ def sample_payload(
     people = motion.people if isinstance(motion, Duet) else (motion,)
     roles = motion.roles if isinstance(motion, Duet) else (motion.name or "a",)
     positions = np.stack([person.positions for person in people])
-    names, parents = people[0].skeleton.joint_names, people[0].skeleton.parents
+    names = people[0].skeleton.joint_names
     frames = motion.num_frames
     if curves is None:
-        curves = interaction_curves(positions, names)
+        curves = distance_curves(motion) if isinstance(motion, Duet) else ()
     if contacts is None:
-        contacts = find_contacts(positions, names, parents, fps=motion.fps)
+        contacts = contact_events(motion) if isinstance(motion, Duet) else ()
     for curve in curves:
         if np.shape(curve.values) != (frames,):
             raise InputError(
@@ -119,9 +120,14 @@ def sample_payload(
             for c in curves
         ],
         "contacts": [{"start": c.start, "stop": c.stop, "kind": c.kind, "label": c.label} for c in contacts],
-        "ghost": None if ghost is None else pack_positions(ghost.positions),
+        "ghost": None if ghost is None else pack_positions(_people(ghost)),
         "past_until": past_until,
     }
+
+
+def _people(motion: Duet | Clip) -> Array:
+    """(people, T, J, 3)."""
+    return motion.positions if isinstance(motion, Duet) else motion.positions[None]
 
 
 def build_payload(samples: Sequence[dict[str, Any]], *, skeleton: Any, title: str = "") -> Payload:
