@@ -24,7 +24,7 @@ from webdemo.ui.runs import Loader, Runs
 
 from .stub_engine import StubEngine, walking
 
-LOADED = ("source", "line", "player", "trim", "person", "start", "end")
+LOADED = ("source", "line", "player", "trim", "person", "start", "end", "found")
 FIELDS = {"person": "a", "start": 0.0, "end": 10.0, "role": "a", "prompt": "they walk", "seed": 3,
           "samples": 1, "guidance": 2.5, "steps": 5, "damping": 0.7}  # fmt: skip
 
@@ -295,6 +295,17 @@ def test_a_method_is_a_model_and_a_mode(
     role, steps_slider, damping = tab.fit_method(method)
     assert steps_slider["value"] == steps
     assert role["interactive"] is damping["interactive"] is (model == "intergen")
+
+
+def test_how_a_file_was_read_is_shown_and_can_be_changed(tab: ReactTab, bvh: Path) -> None:
+    last = upload(tab, bvh)[-1]
+    assert "22 joints matched, m, Y up, 30 frames a second" in last["found"]
+    assert "left_wrist" in last["found"]
+    *_, again = [changes(LOADED, u) for u in tab.read_again(last["source"], "auto", "auto", 60)]
+    assert "60 frames a second" in again["found"]
+    assert again["source"].seconds == pytest.approx(2.0, abs=0.1)
+    *_, wrong = [changes(LOADED, u) for u in tab.read_again(last["source"], "auto", "auto", 5000)]
+    assert "not possible" in wrong["line"]
 
 
 def test_what_a_method_cannot_do_is_told(tab: ReactTab, bvh: Path) -> None:

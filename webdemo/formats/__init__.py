@@ -14,6 +14,7 @@ from webdemo.motion.rigs import RigMotion
 from .bvh import read_bvh
 from .bvh_writer import write_bvh
 from .glb import write_glb
+from .kinect import read_kinect
 from .npz import read_npy, read_npz, write_npy, write_npz
 
 __all__ = ["FORMATS", "Format", "can_read", "can_write", "read", "read_pair", "write"]
@@ -40,10 +41,10 @@ class Format:
 
 def _read_bvh_clip(source: str | Path | bytes, *, name: str | None = None, fps: float | None = None) -> Clip:
     rig = read_bvh(source, name=name)
-    return _own_clip(rig) or retarget(rig, fps=fps or 30.0)
+    return own_clip(rig) or retarget(rig, fps=fps or 30.0)
 
 
-def _own_clip(rig: RigMotion) -> Clip | None:
+def own_clip(rig: RigMotion) -> Clip | None:
     """A file whose joints are SMPL22's needs no retargeting: it keeps its frame rate, bones and place."""
     if not set(SMPL22.joint_names) <= set(rig.joint_names) or rig.metres_per_unit != 1.0:
         return None
@@ -57,6 +58,8 @@ FORMATS: dict[str, Format] = {
         Format(".npz", "NumPy archive", read_npz, write_npz),
         Format(".bvh", "Biovision BVH", _read_bvh_clip, write_bvh),
         Format(".npy", "NumPy array", read_npy, write_npy),
+        Format(".skeleton", "Kinect v2 text", read_kinect),
+        Format(".txt", "Kinect text", read_kinect),
         Format(".glb", "glTF binary", None, write_glb, needs="pygltflib"),
     )
 }
@@ -121,7 +124,7 @@ def read_pair(
     paths = (Path(a), Path(b))
     if all(path.suffix.lower() == ".bvh" for path in paths):
         rigs = [read_bvh(path) for path in paths]
-        own = [_own_clip(rig) for rig in rigs]
+        own = [own_clip(rig) for rig in rigs]
         if own[0] is None or own[1] is None:
             return retarget_duet(rigs[0], rigs[1], fps=fps or 30.0, roles=roles)
         clips = [clip for clip in own if clip is not None]

@@ -29,6 +29,8 @@ from .files import check_duration, read_bytes, write_files
 Array = NDArray[Any]
 
 MAX_UNPACKED = 256 * 2**20
+_SMPL24 = 24
+_JOINT_COUNTS = "15 (Kinect v1), 17 (CMU), 22 or 24 (SMPL) or 25 (Kinect v2) joints"
 _MAX_HEADER = 4096
 # What zipfile raises over damaged files, from wrong sums to sizes below zero.
 _ZIP_ERRORS = (
@@ -108,8 +110,17 @@ def read_npy(source: str | Path | bytes, *, name: str | None = None, fps: float 
         raise InputError(
             f"{label} has the shape {array.shape}: give positions (2, frames, 22, 3) or (frames, 22, 3)."
         )
-    skeleton = next((s for s in SKELETONS.values() if s.num_joints == array.shape[-2]), SMPL22)
-    return _motion(_numbers(array, label), rate, skeleton, ("a", "b"), None, label)
+    array = _numbers(_body(array), label)
+    skeleton = next((s for s in SKELETONS.values() if s.num_joints == array.shape[-2]), None)
+    if skeleton is None:
+        raise InputError(f"{label} has {array.shape[-2]} joints a frame: give {_JOINT_COUNTS}.")
+    return _motion(array, rate, skeleton, ("a", "b"), None, label)
+
+
+def _body(positions: Array) -> Array:
+    """SMPL's 24 joints without its hands, which are the last two; any other count as it is."""
+    is_smpl = positions.ndim in (3, 4) and positions.shape[-2] == _SMPL24
+    return positions[..., : SMPL22.num_joints, :] if is_smpl else positions
 
 
 def _load_members(data: bytes, label: str) -> dict[str, Array]:
@@ -159,6 +170,8 @@ def _load_array(stream: io.BytesIO, size: int, label: str) -> Array:
 
 def _from_arrays(arrays: dict[str, Array], label: str, fps: float | None) -> Clip | Duet:
     positions = _numbers(arrays["positions"], label)
+    if "joint_names" not in arrays:
+        positions = _body(positions)
     rate = _rate(arrays.get("fps"), fps, label)
     skeleton = _skeleton(arrays, positions, label)
     roles = tuple(str(role)[:40] for role in np.atleast_1d(arrays.get("roles", ("a", "b")))[:2])
@@ -249,7 +262,5 @@ def _skeleton(arrays: dict[str, Array], positions: Array, label: str) -> Skeleto
         )
     found = next((skeleton for skeleton in SKELETONS.values() if skeleton.num_joints == joints), None)
     if found is None:
-        raise InputError(
-            f"{label} has {joints} joints a frame and no joint_names: save the 22 joints of SMPL."
-        )
+        raise InputError(f"{label} has {joints} joints a frame and no joint_names: give {_JOINT_COUNTS}.")
     return found

@@ -137,18 +137,27 @@ def up_rotation(rig: RigMotion, parts: BodyParts | None = None) -> Array:
     """(3, 3) rotation that turns the file's up axis to Y.
 
     People stand most of the time: up is the axis along which ankles and head are furthest apart; where
-    that is not clear from the motion (someone lying), the rest pose decides.
+    that is not clear from the motion (someone lying), the rest pose decides. A rig that says its axis is
+    believed; which end of it is up is seen from the body.
     """
     parts = parts or match_joints(rig)
     heads = [joint for joint in (parts.head, parts.neck, parts.spine[-1]) if joint is not None]
     ankles = [parts.left["ankle"], parts.right["ankle"]]
     tall = np.median(rig.positions[:, heads[0]] - rig.positions[:, ankles].mean(axis=1), axis=0)
     tall_rest = _rest_positions(rig)[heads[0]] - _rest_positions(rig)[ankles].mean(axis=0)
+    if rig.up is not None:
+        axis = "xyz".index(rig.up)
+        return _to_y(axis, -1.0 if tall[axis] < -0.5 * np.linalg.norm(tall) else 1.0)
     for vector in (tall, tall_rest):
         axis = int(np.argmax(np.abs(vector)))
         if abs(vector[axis]) > 0.8 * np.linalg.norm(vector) and np.linalg.norm(vector) > 0.7:
             return _to_y(axis, float(np.sign(vector[axis])))
     return np.eye(3)
+
+
+def up_axis(rig: RigMotion) -> str:
+    """The file's axis that is taken to be up: "x", "y" or "z"."""
+    return "xyz"[int(np.argmax(np.abs(up_rotation(rig)[1])))]
 
 
 def _to_y(axis: int, sign: float) -> Array:

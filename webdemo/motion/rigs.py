@@ -32,6 +32,7 @@ class RigMotion:
         fps: frames a second.
         metres_per_unit: what the file's lengths were multiplied by.
         name: the file's name, for messages.
+        up: the axis that points up ("x", "y" or "z"), where it is known; it is found from the body otherwise.
     """
 
     joint_names: tuple[str, ...]
@@ -42,6 +43,7 @@ class RigMotion:
     fps: float
     metres_per_unit: float = 1.0
     name: str = ""
+    up: str | None = None
 
     @property
     def num_frames(self) -> int:
@@ -102,7 +104,24 @@ _LIMB_NAMES = {
     "hip": ("upleg", "upperleg", "thigh", "femur", "hip", "leg"),
 }
 _ALL_LIMB_NAMES = {name for names in _LIMB_NAMES.values() for name in names}
+_SPINE_NAMES = ("spine1", "spine2", "spine3")
 _REQUIRED = ("shoulder", "elbow", "wrist", "hip", "knee", "ankle")
+
+
+def matched_names(rig: RigMotion) -> list[tuple[str, str]]:
+    """(joint of the rig, joint of SMPL22) of every part that :func:`match_joints` finds, pelvis first.
+
+    Raises:
+        InputError: as :func:`match_joints`.
+    """
+    parts = match_joints(rig)
+    pairs: list[tuple[int | None, str]] = [(parts.pelvis, "pelvis")]
+    # The spine's joints are spread over SMPL22's three; a shorter spine names those it has.
+    pairs += list(zip(parts.spine[1:], _SPINE_NAMES, strict=False))
+    pairs += [(parts.neck, "neck"), (parts.head, "head")]
+    for side, limb in (("left", parts.left), ("right", parts.right)):
+        pairs += [(joint, f"{side}_{'foot' if part == 'toe' else part}") for part, joint in limb.items()]
+    return [(rig.joint_names[joint], name) for joint, name in pairs if joint is not None]
 
 
 def match_joints(rig: RigMotion) -> BodyParts:

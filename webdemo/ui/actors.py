@@ -7,18 +7,30 @@ from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any
 
-from webdemo import formats
+from webdemo.formats.importing import ImportChoices, import_motion
 from webdemo.inference.actor import ROLES, at_30_fps, choose_actor
 from webdemo.inference.requests import SECONDS, Result
 from webdemo.motion import Clip, Duet, InputError
 from webdemo.view.payload import Payload, player_payload
 
+AUTO = "auto"
 METHODS = {
     "intergen": ("InterGen, person to person", "intergen", "offline"),
     "regennet": ("ReGenNet, offline", "regennet", "offline"),
     "regennet-online": ("ReGenNet, online", "regennet", "online"),
 }
 """By key: what the page calls a method, its model and its mode."""
+_WEIGHTS = Path(__file__).resolve().parents[2] / "models" / "weights"
+
+
+def installed_methods(weights: Path = _WEIGHTS) -> list[tuple[str, str]]:
+    """(label, key) of the methods whose weights are there; the first is always offered."""
+    first = next(iter(METHODS))
+    return [
+        (label, key)
+        for key, (label, model, _) in METHODS.items()
+        if key == first or (weights / model / "config.json").is_file()
+    ]
 
 
 @dataclass(frozen=True)
@@ -29,11 +41,15 @@ class Source:
         name: of the file or the result.
         people: one clip or two, at 30 fps; what is not needed of a file is not kept.
         chosen: "a" or "b": which one is offered first.
+        path: the file, so that it can be read anew with other choices; None for a result.
+        found: how the file was read, None for a result.
     """
 
     name: str
     people: tuple[Clip, ...] = field(repr=False)
     chosen: str = "a"
+    path: Path | None = None
+    found: Found | None = None
 
     @property
     def seconds(self) -> float:
@@ -59,12 +75,32 @@ class Source:
         return f"{self.name}, person {person.upper()}" if len(self.people) > 1 else self.name
 
 
-def read_source(path: str | Path, name: str | None = None) -> Source:
+@dataclass(frozen=True)
+class Found:
+    """How a file was read: one line, and its joints beside SMPL's."""
+
+    line: str
+    joints: tuple[tuple[str, str], ...] = field(repr=False)
+
+
+def read_source(path: str | Path, name: str | None = None, choices: ImportChoices | None = None) -> Source:
     """A motion file as a source; raises InputError where it cannot be read."""
     path = Path(path)
-    motion = formats.read(path)
-    people = motion.people if isinstance(motion, Duet) else (motion,)
-    return Source(name or path.name, tuple(at_30_fps(person) for person in people))
+    found = import_motion(path, choices=choices)
+    people = found.motion.people if isinstance(found.motion, Duet) else (found.motion,)
+    return Source(
+        name or path.name,
+        tuple(at_30_fps(person) for person in people),
+        path=path,
+        found=Found(found.describe(), found.joints),
+    )
+
+
+def import_choices(up: str, unit: str, fps: float | None) -> ImportChoices:
+    """The page's import controls as choices; "auto" and an empty or zero rate leave a thing to be found."""
+    return ImportChoices(
+        up=None if up == AUTO else up, unit=None if unit == AUTO else unit, fps=float(fps) if fps else None
+    )
 
 
 def result_source(result: Result, title: str, person: str) -> Source:

@@ -9,20 +9,30 @@ from typing import Any
 
 import gradio as gr
 
+from webdemo.formats.importing import AXES, UNITS
 from webdemo.inference.requests import DEFAULT_STEPS, SECONDS, ReactRequest
 from webdemo.motion import InputError
 
-from .actors import METHODS, Source, chosen_actor, read_source, result_source
+from .actors import (
+    AUTO,
+    METHODS,
+    Source,
+    chosen_actor,
+    import_choices,
+    installed_methods,
+    read_source,
+    result_source,
+)
 from .context import PageContext
 from .examples import example_clips
 from .exports import Record
 from .job_tab import QUIET, JobTab, Updates
 from .panels import status
 from .player import busy, show
-from .words import error_line
+from .words import error_line, text
 
 EMPTY_TEXT = "Drop a motion file, or take an example"
-FILE_TYPES = [".bvh", ".npz", ".npy"]
+FILE_TYPES = [".bvh", ".npz", ".npy", ".skeleton", ".txt"]
 _METHOD_INFO = "Online, each frame answers the actor's frames so far; the others see the whole motion."
 _SHORTEST = 0.1
 """Seconds: the least that the trim's sliders differ in."""
@@ -80,7 +90,7 @@ class ReactTab(JobTab):
     def _ask(self) -> None:
         with gr.Column(elem_classes="pd-panel pd-ask", min_width=0):
             self.file = gr.File(
-                label="The given person: .bvh, .npz or .npy", file_types=FILE_TYPES,
+                label="The given person: .bvh, .npz, .npy or Kinect text", file_types=FILE_TYPES,
                 height=112, elem_id="react-file", elem_classes="pd-file",
             )  # fmt: skip
             with gr.Row(elem_classes="pd-chips"):
@@ -105,12 +115,27 @@ class ReactTab(JobTab):
                                            elem_id="react-start")  # fmt: skip
                     self.end = gr.Slider(0, SECONDS[1], value=SECONDS[1], step=0.1, label="End",
                                          elem_id="react-end")  # fmt: skip
+                with gr.Accordion("How the file was read", open=False, elem_id="react-import"):
+                    self.found = gr.HTML(elem_id="react-found")
+                    with gr.Row(elem_classes="pd-pair"):
+                        self.up = gr.Dropdown(
+                            [("found", AUTO), *AXES], value=AUTO, label="Up axis", elem_id="react-up",
+                            min_width=0,
+                        )  # fmt: skip
+                        self.unit = gr.Dropdown(
+                            [("found", AUTO), *UNITS], value=AUTO, label="Unit", elem_id="react-unit",
+                            min_width=0,
+                        )  # fmt: skip
+                        self.fps = gr.Number(
+                            value=None, label="Frames a second", placeholder="found", elem_id="react-fps",
+                            min_width=0,
+                        )  # fmt: skip
                 self.role = gr.Radio(
                     [("acts first", "a"), ("reacts", "b")], value=ReactRequest.role,
                     label="The given person …", elem_id="react-role",
                 )  # fmt: skip
             self.method = gr.Radio(
-                [(label, key) for key, (label, _, _) in METHODS.items()], value=next(iter(METHODS)),
+                installed_methods(), value=next(iter(METHODS)),
                 label="Method", elem_id="react-method", info=_METHOD_INFO,
             )  # fmt: skip
             self.prompt = gr.Textbox(
@@ -125,9 +150,17 @@ class ReactTab(JobTab):
     # ---- events ----------------------------------------------------------------------------------
 
     def _wire_actor(self) -> None:
-        changed = [self.source, self.line, self.player, self.trim, self.person, self.begin, self.end]
+        changed = [
+            self.source, self.line, self.player, self.trim, self.person, self.begin, self.end, self.found,
+        ]  # fmt: skip
         load = {"outputs": changed, "concurrency_limit": 2, "concurrency_id": "react-read", **QUIET}
         self.file.upload(self.upload, inputs=self.file, **load)
+        choices = [self.up, self.unit, self.fps]
+        self.file.upload(lambda: (AUTO, AUTO, None), outputs=choices, queue=False, **QUIET)
+        gr.on(
+            [self.up.input, self.unit.input, self.fps.submit, self.fps.blur],
+            self.read_again, inputs=[self.source, *choices], trigger_mode="always_last", **load,
+        )  # fmt: skip
         for chip, (name, path) in zip(self.chips, self.examples, strict=True):
             chip.click(partial(self.load, partial(read_source, path, name)), **load)
         for person, button in self.take.items():
@@ -154,6 +187,12 @@ class ReactTab(JobTab):
         if path is not None:
             yield from self.load(partial(read_source, path))
 
+    def read_again(self, source: Source | None, up: str, unit: str, fps: float | None) -> Iterator[Updates]:
+        """Reads the source's file anew with what the visitor knows of it."""
+        if source is not None and source.path is not None:
+            path, name = source.path, source.name
+            yield from self.load(lambda: read_source(path, name, import_choices(up, unit, fps)))
+
     def take_result(self, person: str, record: Record | None) -> Iterator[Updates]:
         """Makes a person of the session's last result the actor."""
 
@@ -165,8 +204,8 @@ class ReactTab(JobTab):
         yield from self.load(read)
 
     def load(self, read: Callable[[], Source]) -> Iterator[Updates]:
-        """Updates of source, line, player, trim, person, start and end while an actor is read."""
-        same = (gr.skip(),) * 4
+        """Updates of source, line, player, trim, person, start, end and found while an actor is read."""
+        same = (gr.skip(),) * 5
         yield gr.skip(), status("Reading the motion …", tone="busy"), busy("Reading the motion …"), *same
         try:
             source = read()
@@ -183,12 +222,13 @@ class ReactTab(JobTab):
             gr.update(visible=len(source.people) > 1, value=source.chosen),
             gr.update(maximum=last, value=0),
             gr.update(maximum=last, value=min(round(source.end, 1), last)),
+            _found(source),
         )
 
     @staticmethod
     def forget() -> Updates:
         """The tab without an actor; a result stays in the downloads."""
-        return None, status(), show(None), gr.update(visible=False), *(gr.skip(),) * 3
+        return None, status(), show(None), gr.update(visible=False), *(gr.skip(),) * 4
 
     def preview(self, source: Source | None, person: str, start: float, end: float) -> Updates:
         """Shows the actor as trimmed."""
@@ -243,3 +283,16 @@ class ReactTab(JobTab):
             "method": method,
         }
         yield from self.run(str(request.session_hash), fields)
+
+
+def _found(source: Source) -> str:
+    """How a source's file was read, as HTML: one line, then its joints beside SMPL's."""
+    if source.found is None:
+        return status("Taken from a result: nothing had to be found.")
+    rows = "".join(
+        f"<tr><td>{text(theirs)}</td><td>{text(ours)}</td></tr>" for theirs, ours in source.found.joints
+    )
+    head = '<thead><tr><th scope="col">In the file</th><th scope="col">SMPL</th></tr></thead>'
+    return (
+        f'{status(source.found.line)}<div class="pd-table"><table>{head}<tbody>{rows}</tbody></table></div>'
+    )

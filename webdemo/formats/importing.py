@@ -1,0 +1,173 @@
+"""A motion file with what was found in it: joints, up axis, unit and frame rate, each of which can be set.
+
+:func:`webdemo.formats.read` decides these by itself; here they are told, and taken where they are given.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field, replace
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+
+from webdemo.motion import SMPL22, Clip, Duet, InputError
+from webdemo.motion.layouts import LAYOUTS
+from webdemo.motion.retarget import retarget, to_smpl, up_axis
+from webdemo.motion.rigs import RigMotion, matched_names
+
+from . import own_clip, read
+from .bvh import read_bvh
+from .files import MAX_SECONDS
+
+Array = NDArray[np.floating]
+
+UNITS = {"m": 1.0, "cm": 0.01, "mm": 0.001, "inch": 0.0254}
+"""Metres of each unit."""
+AXES = ("x", "y", "z")
+RATES = (1.0, 1000.0)
+# Metres from ankles to head of the smallest and the tallest person.
+_TALL = (0.9, 2.0)
+
+
+@dataclass(frozen=True)
+class ImportChoices:
+    """What is known of a file; None is found from its contents.
+
+    Attributes:
+        up: the axis that points up: "x", "y" or "z".
+        unit: "m", "cm", "mm" or "inch".
+        fps: frames a second, whatever the file says.
+    """
+
+    up: str | None = None
+    unit: str | None = None
+    fps: float | None = None
+
+    def __post_init__(self) -> None:
+        if self.up is not None and self.up not in AXES:
+            raise InputError(f"Up axis {self.up!r:.20} is not known: choose x, y or z.")
+        if self.unit is not None and self.unit not in UNITS:
+            raise InputError(f"Unit {self.unit!r:.20} is not known: choose one of {', '.join(UNITS)}.")
+        if self.fps is not None and not RATES[0] <= self.fps <= RATES[1]:
+            raise InputError(f"A frame rate of {self.fps:g} is not possible: give {RATES[0]:g} to 1,000.")
+
+
+@dataclass(frozen=True)
+class Imported:
+    """A motion on SMPL22 and how it was read.
+
+    Attributes:
+        motion: one person or two, metres, Y up.
+        up: the file's axis that points up.
+        unit: its unit; "none" where its lengths are scaled to an average person.
+        fps: its frames a second.
+        joints: (joint of the file, joint of SMPL22).
+    """
+
+    motion: Clip | Duet
+    up: str
+    unit: str
+    fps: float
+    joints: tuple[tuple[str, str], ...] = field(repr=False)
+
+    def describe(self) -> str:
+        """One line, such as "22 joints matched, cm, Z up, 120 frames a second"."""
+        unit = "no unit (scaled to a person)" if self.unit == "none" else self.unit
+        return (
+            f"{len(self.joints)} joints matched, {unit}, {self.up.upper()} up, {self.fps:g} frames a second"
+        )
+
+
+def import_motion(
+    source: str | Path | bytes, *, name: str | None = None, choices: ImportChoices | None = None
+) -> Imported:
+    """Reads a motion file as :func:`webdemo.formats.read` does, and says how.
+
+    Args:
+        source: the file, or its bytes; then ``name`` must end in its suffix.
+        name: what to call it in messages.
+        choices: what is known of the file.
+
+    Raises:
+        InputError: one sentence saying what is wrong with the file or with a choice.
+    """
+    choices = choices or ImportChoices()
+    label = name or Path(str(source)).name
+    if Path(label).suffix.lower() == ".bvh":
+        return _import_rig(read_bvh(source, name=name), choices)
+    motion = read(source, name=name, keep_skeleton=True)
+    people = motion.people if isinstance(motion, Duet) else (motion,)
+    up = choices.up or _up_of(people[0])
+    unit = choices.unit or _unit_of(people[0], "xyz".index(up))
+    people = tuple(_upright(clip, up, UNITS[unit], choices.fps or clip.fps) for clip in people)
+    upright = replace(motion, a=people[0], b=people[1]) if isinstance(motion, Duet) else people[0]
+    _check_length(upright, label)
+    skeleton = people[0].skeleton
+    layout = LAYOUTS[skeleton.name]
+    joints = tuple(
+        (theirs, SMPL22.joint_names[ours])
+        for theirs, ours in zip(skeleton.joint_names, layout.joints, strict=True)
+        if ours >= 0
+    )
+    return Imported(to_smpl(upright), up, unit, upright.fps, joints)
+
+
+def _import_rig(rig: RigMotion, choices: ImportChoices) -> Imported:
+    own = own_clip(rig)
+    if choices.unit is not None:
+        scale = UNITS[choices.unit] / rig.metres_per_unit
+        rig = replace(
+            rig,
+            positions=rig.positions * scale,
+            offsets=rig.offsets * scale,
+            metres_per_unit=UNITS[choices.unit],
+        )
+    rig = replace(rig, up=choices.up, fps=choices.fps or rig.fps)
+    _check_length(rig, rig.name)
+    joints = tuple(matched_names(rig))
+    unit = next((n for n, metres in UNITS.items() if np.isclose(metres, rig.metres_per_unit)), "none")
+    keep = own is not None and choices == ImportChoices()
+    return Imported(own if keep and own else retarget(rig), up_axis(rig), unit, rig.fps, joints)
+
+
+def _check_length(motion: Clip | Duet | RigMotion, label: str) -> None:
+    seconds = motion.num_frames / motion.fps
+    if seconds > MAX_SECONDS:
+        raise InputError(
+            f"At {motion.fps:g} frames a second {label} lasts {seconds:.0f} s, more than {MAX_SECONDS:.0f} s "
+            "allowed: cut it or give its true rate."
+        )
+
+
+def _tall(clip: Clip) -> Array:
+    """(3,) the median way from the ankles to the head, in the file's axes and unit."""
+    layout = LAYOUTS[clip.skeleton.name]
+    column = {SMPL22.joint_names[ours]: theirs for theirs, ours in enumerate(layout.joints) if ours >= 0}
+    ankles = [column["left_ankle"], column["right_ankle"]]
+    return np.median(clip.positions[:, column["head"]] - clip.positions[:, ankles].mean(axis=1), axis=0)
+
+
+def _up_of(clip: Clip) -> str:
+    """The axis along which people are tall, if it is clear; arrays are Y up by our own contract."""
+    tall = np.abs(_tall(clip))
+    axis = int(np.argmax(tall))
+    return "xyz"[axis] if tall[axis] > 0.9 * np.linalg.norm(tall) else "y"
+
+
+def _unit_of(clip: Clip, axis: int) -> str:
+    """The unit in which a standing person is as tall as people are; metres where none fits."""
+    tall = abs(float(_tall(clip)[axis]))
+    return next((unit for unit, metres in UNITS.items() if _TALL[0] <= tall * metres <= _TALL[1]), "m")
+
+
+def _upright(clip: Clip, up: str, metres: float, fps: float) -> Clip:
+    """The clip in metres, Y up; the very same positions where nothing is to be changed."""
+    if up == "y" and metres == 1.0:
+        return clip if fps == clip.fps else replace(clip, fps=fps)
+    positions = clip.positions.astype(np.float64) * metres
+    if up == "z":
+        positions = positions[..., [0, 2, 1]] * np.array([1.0, 1.0, -1.0])
+    elif up == "x":
+        positions = positions[..., [1, 0, 2]] * np.array([-1.0, 1.0, 1.0])
+    return Clip(positions.astype(np.float32), fps, clip.skeleton, name=clip.name)

@@ -1,0 +1,185 @@
+"""Kinect recordings as text: NTU RGB+D's ``.skeleton`` (25 joints), SBU's ``skeleton_pos.txt`` (15 joints).
+
+``.skeleton`` (Shahroudy et al. 2016) holds a count of frames; for every frame a count of bodies; for every
+body a line that begins with its id, a count of joints, and a line a joint that begins with x, y, z in metres
+of the camera's frame. SBU's text (Yun et al. 2012) holds a line a frame: its number, then 15 joints of each
+of two people as x, y, z between 0 and 1, separated by commas.
+"""
+
+from __future__ import annotations
+
+import re
+from collections import defaultdict
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+
+from webdemo.motion.clip import Clip, Duet
+from webdemo.motion.errors import InputError
+from webdemo.motion.skeleton import NTU25, SBU15, Skeleton
+
+from .files import check_duration, read_bytes
+
+Array = NDArray[np.floating]
+
+SKELETON_FPS = 30.0
+SBU_FPS = 15.0
+_MAX_BODIES = 6
+"""As many as a Kinect v2 tracks."""
+_LONGEST_LINE = 4000
+_FARTHEST = 100.0  # metres
+
+
+def read_kinect(
+    source: str | Path | bytes, *, name: str | None = None, fps: float | None = None
+) -> Clip | Duet:
+    """Reads Kinect text of either kind, told by what it holds.
+
+    Args:
+        source: a path, or the file's bytes.
+        name: what to call it in messages.
+        fps: frames a second; 30 for ``.skeleton`` and 15 for SBU's text by default, as the files have none.
+
+    Returns:
+        the person, or the two who are seen longest, in metres and Y up; frames in which one of them is not
+        seen are interpolated.
+
+    Raises:
+        InputError: one sentence with the line where the file is wrong.
+    """
+    data, label = read_bytes(source, name)
+    if b"\0" in data[:4096]:
+        raise InputError(f"{label} is not Kinect text: it holds binary data.")
+    lines = data.decode("utf-8", errors="replace").lstrip("\ufeff").splitlines()
+    first = next((line for line in lines if line.strip()), "")
+    if "," in first:
+        positions = _read_sbu(lines, label)
+        return _motion(positions, fps or SBU_FPS, SBU15, label)
+    if re.fullmatch(r"\s*\d{1,9}\s*", first):
+        positions = _read_skeleton(lines, label, fps or SKELETON_FPS)
+        return _motion(positions, fps or SKELETON_FPS, NTU25, label)
+    raise InputError(
+        f"{label} is not Kinect text: it begins neither with a count of frames (.skeleton) nor with SBU's "
+        "numbers between commas."
+    )
+
+
+def _motion(people: list[Array], fps: float, skeleton: Skeleton, label: str) -> Clip | Duet:
+    frames = len(people[0])
+    check_duration(frames, fps, label)
+    if any(np.abs(person).max() > _FARTHEST for person in people):
+        raise InputError(f"{label} holds joints more than {_FARTHEST:g} m away: is it of another kind?")
+    try:
+        clips = [Clip(person, fps, skeleton, name=label) for person in people]
+    except InputError as error:
+        raise InputError(f"{label}: {error}") from None
+    return clips[0] if len(clips) == 1 else Duet(clips[0], clips[1])
+
+
+# ---- SBU ---------------------------------------------------------------------------------------------
+
+
+def _read_sbu(lines: list[str], label: str) -> list[Array]:
+    rows = []
+    for number, line in enumerate(lines, 1):
+        if not line.strip():
+            continue
+        words = line.split(",")
+        if len(words) not in (90, 91):
+            raise InputError(
+                f"{label}, line {number}: {len(words)} numbers where a frame's number and 90 are needed."
+            )
+        rows.append(_numbers(words[-90:], f"{label}, line {number}"))
+    x, y, z = np.array(rows).reshape(-1, 2, 15, 3).transpose(3, 1, 0, 2)
+    metres = np.stack([(1280 - 2560 * x) / 1000, (960 - 1920 * y) / 1000, 10 * z / 7.8125], axis=-1)
+    # A body that is not tracked is all zeros in the file.
+    return [person for person, seen in zip(metres, (x != 0).any((1, 2)), strict=True) if seen] or [metres[0]]
+
+
+def _numbers(words: list[str], where: str) -> Array:
+    try:
+        values = np.array([float(word) for word in words])
+    except ValueError:
+        wrong = next(word for word in words if not _is_number(word))
+        raise InputError(f"{where}: {wrong.strip()[:20]!r} is not a number: export it again.") from None
+    if not np.isfinite(values).all():
+        raise InputError(f"{where} holds NaN or an infinite number: remove that frame.")
+    return values
+
+
+def _is_number(word: str) -> bool:
+    try:
+        float(word)
+    except ValueError:
+        return False
+    return True
+
+
+# ---- NTU RGB+D ---------------------------------------------------------------------------------------
+
+
+class _Lines:
+    """The lines of a file one after the other, with their numbers for messages."""
+
+    def __init__(self, lines: list[str], label: str) -> None:
+        self.lines, self.label, self.next = lines, label, 0
+
+    @property
+    def where(self) -> str:
+        return f"{self.label}, line {self.next}"
+
+    def words(self) -> list[str]:
+        """The next line's words; raises InputError at the end."""
+        if self.next >= len(self.lines):
+            raise InputError(f"{self.label} is cut short at line {self.next}: export it again.")
+        line = self.lines[self.next]
+        self.next += 1
+        if len(line) > _LONGEST_LINE:
+            raise InputError(f"{self.where} is too long for a Kinect's text: is it of another kind?")
+        return line.split()
+
+    def count(self, what: str, largest: int) -> int:
+        """A line that holds one whole number."""
+        words = self.words()
+        if len(words) != 1 or not re.fullmatch(r"\d{1,9}", words[0]) or int(words[0]) > largest:
+            raise InputError(
+                f"{self.where}: the number of {what} must stand here, from 0 to {largest}, "
+                f"not {' '.join(words)[:30]!r}."
+            )
+        return int(words[0])
+
+
+def _read_skeleton(lines: list[str], label: str, fps: float) -> list[Array]:
+    reader = _Lines([line for line in lines if line.strip()], label)
+    frames = reader.count("frames", 999_999_999)
+    if frames < 1:
+        raise InputError(f"{label} holds no frames: export it again.")
+    check_duration(frames, fps, label)
+    bodies: dict[str, dict[int, Array]] = defaultdict(dict)
+    for frame in range(frames):
+        for _ in range(reader.count("bodies", _MAX_BODIES)):
+            identity = (reader.words() or [""])[0]
+            if reader.count("joints", 25) != 25:
+                raise InputError(f"{reader.where}: a body of {label} must have 25 joints.")
+            joints = []
+            for _ in range(25):
+                words = reader.words()
+                if len(words) < 3:
+                    raise InputError(f"{reader.where}: a joint needs x, y and z.")
+                joints.append(_numbers(words[:3], reader.where))
+            bodies[identity][frame] = np.array(joints)
+    if not bodies:
+        raise InputError(f"{label} holds no body in any of its frames: record it again.")
+    longest = sorted(bodies.values(), key=len, reverse=True)[:2]
+    # A second body that is seen for a moment is a chair or a ghost.
+    kept = [body for body in longest if len(body) >= 0.5 * len(longest[0])]
+    return [_filled(body, frames) for body in kept]
+
+
+def _filled(body: dict[int, Array], frames: int) -> Array:
+    """(frames, 25, 3) with frames that lack the body interpolated, and held at the ends."""
+    seen = np.array(sorted(body))
+    known = np.stack([body[frame] for frame in seen]).reshape(len(seen), -1)
+    columns = [np.interp(np.arange(frames), seen, column) for column in known.T]
+    return np.stack(columns, axis=1).reshape(frames, 25, 3)
