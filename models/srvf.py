@@ -42,7 +42,7 @@ def inner(p: Tensor, q: Tensor) -> Tensor:
 
 def norm(q: Tensor) -> Tensor:
     """(…) norm of functions (…, N, D); its gradient at 0 is 0."""
-    return (inner(q, q) + _TINY).sqrt()
+    return inner(q, q).clamp_min(_TINY**2).sqrt()
 
 
 def to_srvf(curve: Tensor) -> tuple[Tensor, Tensor]:

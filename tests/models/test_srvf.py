@@ -23,7 +23,7 @@ from models.srvf import (
     to_tangent,
 )
 
-settings.register_profile("few", max_examples=25, deadline=None)
+settings.register_profile("few", max_examples=20, deadline=None)
 settings.load_profile("few")
 SEEDS = st.integers(0, 2**31 - 1)
 SIZES = st.tuples(st.integers(2, 40), st.integers(1, 60))
@@ -95,11 +95,11 @@ def test_distance_is_a_metric(seed: int) -> None:
     assert float(geodesic_distance(p, -p)) == pytest.approx(math.pi)
 
 
-@settings(max_examples=8)
+@settings(max_examples=4)
 @given(SEEDS)
 def test_karcher_mean_is_least(seed: int) -> None:
     middle = point(seed, (12, 6))
-    tangents = to_tangent(middle, torch.from_numpy(np.random.default_rng(seed).normal(size=(9, 12, 6))))
+    tangents = to_tangent(middle, torch.from_numpy(np.random.default_rng(seed).normal(size=(6, 12, 6))))
     q = exp_map(middle, 0.8 * tangents / norm(tangents)[:, None, None])
     mean = karcher_mean(q, tolerance=1e-8)
 

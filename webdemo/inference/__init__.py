@@ -6,12 +6,16 @@ Importing this package imports no torch; :class:`Engine` does when it is first a
 from typing import TYPE_CHECKING, Any
 
 from .cancel import CancelToken
+from .predict_request import PredictRequest, PredictResult
 from .requests import Cancelled, GenerateRequest, Progress, ReactRequest, Result
 
 if TYPE_CHECKING:
     from .engine import Engine
 
-__all__ = ["CancelToken", "Cancelled", "Engine", "GenerateRequest", "Progress", "ReactRequest", "Result"]
+__all__ = [
+    "CancelToken", "Cancelled", "Engine", "GenerateRequest", "PredictRequest", "PredictResult", "Progress",
+    "ReactRequest", "Result",
+]  # fmt: skip
 
 
 def __getattr__(name: str) -> Any:

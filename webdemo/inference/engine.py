@@ -18,17 +18,22 @@ from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
 from typing import Any
 
-from webdemo.motion import InputError
+from webdemo.motion import Duet, InputError
 
 from .cancel import CancelToken
 from .generator import Clock, DuetGenerator
+from .predict import MotionPredictor
+from .predict_request import PredictRequest
 from .reactor import LiveFrame, Reactor
 from .requests import GenerateRequest, Progress, ReactRequest, Result
 
 WEIGHTS = Path(__file__).resolve().parents[2] / "models" / "weights"
-GENERATORS: dict[str, Callable[[Path], DuetGenerator | Reactor]] = {
+Runner = DuetGenerator | Reactor | MotionPredictor
+GENERATORS: dict[str, Callable[[Path], Runner]] = {
     "intergen": DuetGenerator,
     "regennet": Reactor,
+    "motion-mlp": MotionPredictor,
+    "still": lambda _: MotionPredictor(None),
 }
 """What runs requests, by name; the folder of its weights has the same name."""
 
@@ -45,7 +50,7 @@ class Engine:
     def __init__(self, weights: Path = WEIGHTS) -> None:
         self.weights = weights
         self._lock = threading.Lock()
-        self._generators: dict[str, DuetGenerator | Reactor] = {}
+        self._generators: dict[str, Runner] = {}
 
     @property
     def ready(self) -> bool:
@@ -67,7 +72,7 @@ class Engine:
         return {"name": "intergen", "ready": self.ready, **meta.get("card", {})}
 
     def run(
-        self, request: GenerateRequest | ReactRequest, cancel: CancelToken | None = None
+        self, request: GenerateRequest | ReactRequest | PredictRequest, cancel: CancelToken | None = None
     ) -> Iterator[Progress | Result]:
         """Yields :class:`Progress` events, then exactly one :class:`Result`.
 
@@ -87,7 +92,8 @@ class Engine:
             if isinstance(event, Result):
                 manifest = _manifest(request, generator)
                 duets = tuple(
-                    replace(duet, manifest=manifest | {"sample": i}) for i, duet in enumerate(event.duets)
+                    replace(duet, manifest=manifest | {"sample": i}) if isinstance(duet, Duet) else duet
+                    for i, duet in enumerate(event.duets)
                 )
                 event = replace(event, duets=duets, manifest=manifest)
             yield event
@@ -104,7 +110,7 @@ class Engine:
         assert isinstance(reactor, Reactor)  # no other model has the mode
         return reactor.live(request)
 
-    def _generator(self, name: str) -> DuetGenerator | Reactor:
+    def _generator(self, name: str) -> Any:
         if name not in GENERATORS:
             raise InputError(f"There is no model {name!r:.40}: choose one of {', '.join(GENERATORS)}.")
         with self._lock:
@@ -113,7 +119,7 @@ class Engine:
             return self._generators[name]
 
 
-def _manifest(request: GenerateRequest | ReactRequest, generator: DuetGenerator | Reactor) -> dict[str, Any]:
+def _manifest(request: Any, generator: Runner) -> dict[str, Any]:
     """Everything that reproduces a result."""
     return {
         "product": "Pas de Deux",

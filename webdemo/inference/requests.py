@@ -191,7 +191,7 @@ class Result:
     """What a request gave.
 
     Attributes:
-        duets: one a sample.
+        duets: one a sample; a prediction for one person is that person's clip.
         manifest: request, model, weights hash, versions: all that reproduces the result.
         readouts: one dictionary of interaction measures a sample (see :mod:`webdemo.metrics`), each
             measure with its value ``before`` and ``after`` the damping and clean-up where both exist.
@@ -199,7 +199,7 @@ class Result:
         notes: sentences the user should read, such as a prompt far from all training captions.
     """
 
-    duets: tuple[Duet, ...]
+    duets: tuple[Duet | Clip, ...]
     manifest: dict[str, Any]
     readouts: tuple[dict[str, Any], ...] = ()
     timings: dict[str, float] = field(default_factory=dict)

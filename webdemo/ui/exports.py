@@ -16,8 +16,9 @@ from dataclasses import dataclass, field
 from pathlib import Path
 
 from webdemo import formats
+from webdemo.formats.one_person import SUFFIXES, write_clip
 from webdemo.inference.requests import Result
-from webdemo.motion import Duet
+from webdemo.motion import Clip, Duet
 from webdemo.view.contact_sheet import contact_sheet
 
 log = logging.getLogger(__name__)
@@ -108,7 +109,9 @@ def write_files(result: Result, folder: Path, *, prompt: str) -> dict[str, list[
     name = file_name(prompt, result.manifest)
     try:
         files = {
-            kind.key: _write_kind(kind, result, folder, name, prompt) for kind in KINDS if kind.offered()
+            kind.key: _write_kind(kind, result, folder, name, prompt)
+            for kind in KINDS
+            if kind.offered() and _holds(kind, result)
         }
     except BaseException:
         shutil.rmtree(folder, ignore_errors=True)
@@ -129,10 +132,18 @@ def _write_kind(kind: Kind, result: Result, folder: Path, name: str, prompt: str
     return files
 
 
-def _write_motion(duet: Duet, path: Path, *, title: str) -> list[Path]:
+def _holds(kind: Kind, result: Result) -> bool:
+    """Whether files of a kind can hold the people of a result."""
+    one = isinstance(result.duets[0], Clip)
+    return not one or kind.key in ("png", "json") or f".{kind.key}" in SUFFIXES
+
+
+def _write_motion(duet: Duet | Clip, path: Path, *, title: str) -> list[Path]:
     if path.suffix == ".png":
         contact_sheet(duet, path, title=title)
         return [path]
+    if isinstance(duet, Clip):
+        return write_clip(duet, path)
     return [Path(written) for written in formats.write(duet, path)]
 
 

@@ -58,6 +58,8 @@ class JobTab(ABC):
     label: str
     prefix = ""
     """Before the ids of the tab's elements."""
+    dice: gr.Button | None = None
+    """Draws a seed, where the tab's motion is random."""
 
     def __init__(self, page: PageContext) -> None:
         self.page = page
@@ -148,6 +150,7 @@ class JobTab(ABC):
             "under": self.under,
             "readouts": self.readouts,
             "record": self.record,
+            **self.more_outputs(),
         }
         run = gr.on(
             triggers,
@@ -168,9 +171,14 @@ class JobTab(ABC):
             **QUIET,
         )
         self.stop.click(self.cancel, queue=False, **QUIET)
-        self.dice.click(
-            None, outputs=self.seed, js=f"() => Math.floor(Math.random() * {MAX_SEED + 1})", **QUIET
-        )
+        if self.dice is not None:
+            self.dice.click(
+                None, outputs=self.seed, js=f"() => Math.floor(Math.random() * {MAX_SEED + 1})", **QUIET
+            )
+
+    def more_outputs(self) -> dict[str, Any]:
+        """What else :meth:`run` updates, by the names that :meth:`_shown` gives."""
+        return {}
 
     def run(self, session: str, fields: Mapping[str, Any]) -> Iterator[Updates]:
         """The page's updates while a request with these fields runs for a session.

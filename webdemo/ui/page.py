@@ -11,7 +11,7 @@ import gradio as gr
 
 from webdemo.formats.files import MAX_BYTES
 
-from .api import GenerateEndpoint, ReactEndpoint
+from .api import GenerateEndpoint, PredictEndpoint, ReactEndpoint
 from .context import PageContext
 from .exports import Shelf
 from .generate_tab import GenerateTab
@@ -20,14 +20,15 @@ from .history_tab import LABEL as HISTORY
 from .history_tab import HistoryTab
 from .job_tab import JobTab
 from .panels import model_state
+from .predict_tab import PredictTab
 from .react_tab import ReactTab
 from .runs import EngineLike, Loader, Runs, RunsLike
 from .theme import HEAD, style_sheet, theme
 
 TITLE = "Pas de Deux"
-TABS = (GenerateTab, ReactTab)
+TABS = (GenerateTab, ReactTab, PredictTab)
 """A class a job, with a ``label`` and ``build(demo, record)``."""
-ENDPOINTS = (GenerateEndpoint, ReactEndpoint)
+ENDPOINTS = (GenerateEndpoint, ReactEndpoint, PredictEndpoint)
 
 _HEADER = (
     '<div class="pd-brand"><h1>Pas de Deux</h1>'

@@ -1,0 +1,193 @@
+"""A prediction's promises: the past stays, the seam does not jump, bones keep, who stands still stays."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+import numpy as np
+import pytest
+import torch
+
+from models.motion_mlp import MotionMLP, MotionMLPConfig
+from models.predictors import save_predictor
+from webdemo import cli
+from webdemo.formats import read
+from webdemo.formats.one_person import write_clip
+from webdemo.inference import PredictRequest, PredictResult
+from webdemo.inference.engine import Engine
+from webdemo.inference.predict import above_floor, joined, mean_steps, without_jump
+from webdemo.inference.predict_frame import to_last_pose, to_world
+from webdemo.motion import SMPL22, Clip, Duet, InputError
+from webdemo.motion.kinematics import forward_kinematics
+from webdemo.motion.skeleton import SBU15
+from webdemo.motion.transforms import heading, heading_matrix
+
+
+def walker(seconds: float = 3.0, fps: float = 30.0, turn: float = 0.7) -> Clip:
+    """A person who glides along and swings an arm."""
+    times = np.arange(round(seconds * fps)) / fps
+    rotations = np.tile(np.eye(3), (len(times), 22, 1, 1))
+    rotations[:, 0] = heading_matrix(turn)
+    swing = np.sin(4 * times)
+    c, s = np.cos(swing), np.sin(swing)
+    shoulder = rotations[:, SMPL22.index("right_shoulder")]
+    shoulder[:, 0, 0], shoulder[:, 0, 1], shoulder[:, 1, 0], shoulder[:, 1, 1] = c, s, -s, c
+    root = np.stack([np.sin(turn) * times, np.full_like(times, 0.96), np.cos(turn) * times], axis=1)
+    return Clip(forward_kinematics(rotations, root) * 1.1, fps, name="walker")
+
+
+@pytest.fixture(scope="session")
+def predicting(tmp_path_factory: pytest.TempPathFactory) -> Engine:
+    """An engine whose predictor has weights drawn at random, large enough to jump if it could."""
+    torch.manual_seed(0)
+    network = MotionMLP(MotionMLPConfig(width=32, blocks=1))
+    with torch.no_grad():
+        for parameter in network.parameters():
+            parameter.normal_(std=0.05)
+    folder = tmp_path_factory.mktemp("predictors")
+    save_predictor(folder / "motion-mlp", network, kind="mlp", fps=30.0)
+    return Engine(folder)
+
+
+def predict(engine: Engine, **asked: object) -> PredictResult:
+    (result,) = (e for e in engine.run(PredictRequest(**asked)) if isinstance(e, PredictResult))
+    return result
+
+
+def bones(positions: np.ndarray) -> np.ndarray:
+    parents, children = (list(side) for side in zip(*SMPL22.bones, strict=True))
+    return np.linalg.norm(positions[..., children, :] - positions[..., parents, :], axis=-1)
+
+
+@pytest.mark.parametrize("seconds", [0.5, 1.0, 4.0])
+def test_one_person_goes_on(predicting: Engine, seconds: float) -> None:
+    clip = walker()
+    result = predict(predicting, motion=clip, marker=1.5, seconds=seconds)
+    (motion,) = result.duets
+    assert isinstance(motion, Clip) and motion.num_frames == 45 + round(30 * seconds)
+    assert motion.positions[:45].tobytes() == clip.positions[:45].tobytes()
+    assert result.past_frames == 45 and np.isfinite(motion.positions).all()
+    assert np.allclose(bones(motion.positions[45:]), bones(motion.positions[44]), atol=1e-4)
+    steps = mean_steps(motion.positions)
+    assert steps[44] <= steps[15:44].max() + 1e-6
+    # Every second of a recursion begins as smoothly as the first.
+    seams = steps[[frame for frame in (74, 104, 134) if frame < len(steps)]]
+    assert np.all(seams <= steps.max() + 1e-6)
+    known = min(45, round(30 * seconds))
+    assert len(result.error) == len(result.true_speed) == known and len(result.speed) == round(30 * seconds)
+    real = clip.positions[45 : 45 + known].astype(np.float64)
+    expected = 1000 * np.linalg.norm(motion.positions[45 : 45 + known] - real, axis=-1).mean(-1)
+    assert np.allclose(result.error, expected, atol=0.1)
+
+
+def test_two_people_go_on_as_each_would_alone(predicting: Engine) -> None:
+    a, b = walker(), walker(turn=-2.0)
+    result = predict(predicting, motion=Duet(a, b), marker=2.0, seconds=1.0)
+    assert isinstance(result.duets[0], Duet) and result.manifest["request"]["motion"]["people"] == 2
+    assert result.duets[0].manifest is not None
+    for person, alone in zip(result.duets[0].people, (a, b), strict=True):
+        single = predict(predicting, motion=alone, marker=2.0, seconds=1.0).duets[0]
+        assert np.allclose(person.positions, single.positions, atol=1e-4)
+
+
+def test_where_a_motion_lies_changes_nothing(predicting: Engine) -> None:
+    clip = walker()
+    matrix, shift = heading_matrix(1.2), np.array([3.0, 0.0, -2.0])
+    moved = clip.with_positions(clip.positions @ matrix.T + shift)
+    here = predict(predicting, motion=clip, seconds=1.0).duets[0].positions
+    there = predict(predicting, motion=moved, seconds=1.0).duets[0].positions
+    assert np.allclose(here @ matrix.T + shift, there, atol=1e-3)
+
+
+def test_who_stands_still_stays(predicting: Engine) -> None:
+    still = walker().with_positions(np.repeat(walker().positions[:1], 60, axis=0))
+    motion = predict(predicting, motion=still, seconds=4.0).duets[0]
+    assert np.array_equal(motion.positions[60:], np.repeat(still.positions[:1], 120, axis=0))
+
+
+def test_zero_velocity_holds_the_last_pose(predicting: Engine) -> None:
+    clip = walker()
+    result = predict(predicting, motion=clip, marker=1.0, seconds=1.0, model="still")
+    assert np.array_equal(result.duets[0].positions[30:], np.repeat(clip.positions[29:30], 30, axis=0))
+    assert result.speed == (0.0,) * 30 and result.error[-1] > result.error[0] > 0
+
+
+def test_other_frame_rates_are_resampled(predicting: Engine) -> None:
+    result = predict(predicting, motion=walker(fps=60.0), marker=1.5, seconds=1.0)
+    assert result.duets[0].fps == 30.0 and result.past_frames == 45
+
+
+@pytest.mark.parametrize(
+    ("asked", "told"),
+    [
+        ({"marker": 0.4}, "The past is 0.40 s long, and 1 s or more is needed: move the marker"),
+        ({"marker": 5.0}, "The marker, 5 s, lies behind the motion, which lasts 3.00 s."),
+        ({"marker": float("nan")}, "Marker must be a number"),
+        (
+            {"motion": walker(0.5)},
+            "The past is 0.50 s long, and 1 s or more is needed: give a longer motion.",
+        ),
+        ({"motion": walker(61.0)}, "The motion lasts 61 s: cut it to 60 s or less."),
+        ({"seconds": 9.0}, "Length must be from 0.5 to 4 seconds, not 9."),
+        ({"model": "oracle"}, "Model 'oracle' is not known: choose one of"),
+        ({"motion": None}, "Give the motion of one person or of two to predict from."),
+        ({"motion": Clip(np.zeros((60, 15, 3)), 30.0, SBU15)}, "not SMPL's 22"),
+    ],
+)
+def test_what_cannot_be_predicted_is_one_sentence(asked: dict, told: str) -> None:
+    with pytest.raises(InputError) as error:
+        PredictRequest(**{"motion": walker()} | asked)
+    assert told in str(error.value) and "\n" not in str(error.value)
+
+
+def test_teleporting_joints_are_refused_where_they_are_looked_at() -> None:
+    positions = walker().positions.copy()
+    positions[50, 20] += 2.0
+    broken = walker().with_positions(positions)
+    with pytest.raises(
+        InputError, match=r"The left wrist jumps 3\.\d m from one frame to the next at 1\.\d\d s"
+    ):
+        PredictRequest(motion=broken, marker=2.0)
+    assert PredictRequest(motion=broken, marker=1.5).past_frames == 45
+    with pytest.raises(InputError, match="NaN"):
+        walker().with_positions(np.full_like(positions, np.nan))
+
+
+def test_frames_of_reference_are_undone() -> None:
+    positions = np.stack([walker().positions, walker(turn=2.5).positions])
+    local, turn, shift = to_last_pose(positions)
+    assert np.allclose(local[:, -1, 0, [0, 2]], 0, atol=1e-6)
+    assert np.allclose(heading(local[:, -1]), 0, atol=1e-6)
+    assert np.allclose(to_world(local, turn, shift), positions, atol=1e-5)
+
+
+def test_corrections_leave_good_motion_alone() -> None:
+    past, future = np.split(walker().positions[None].astype(np.float64), [60], axis=1)
+    largest = mean_steps(past).max(axis=1)
+    assert np.allclose(without_jump(past, future, largest), future, atol=2e-3)
+    assert np.allclose(joined(past, future), future, atol=2e-3)
+    up = np.array([0.0, 1.0, 0.0])
+    assert np.array_equal(above_floor(past, future + up), future + up)
+    sunk = above_floor(past, future - 0.2 * up)
+    assert np.allclose(sunk[..., 1].min(), past[..., 1].min())
+    assert mean_steps(np.concatenate([past[:, -1:], without_jump(past, future + 0.5, largest)], 1))[0, 0] <= (
+        mean_steps(past).max() + 1e-9
+    )
+
+
+def test_the_shell_writes_one_person(
+    predicting: Engine, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.setattr("webdemo.inference.engine.Engine", lambda: predicting)
+    (past,) = write_clip(walker(), tmp_path / "past.npz")
+    out = tmp_path / "future.bvh"
+    ask = ["predict", "--past", str(past)]
+    assert cli.main([*ask, "--marker", "2", "--seconds", "1", "--out", str(out)]) == 0
+    told = json.loads(capsys.readouterr().out.splitlines()[-1])
+    assert told["files"] == [str(out)] and told["past_frames"] == 60 and len(told["error"]) == 30
+    motion = read(out)
+    assert isinstance(motion, Clip) and motion.num_frames == 90
+    glb = out.with_suffix(".glb")
+    assert cli.main([*ask, "--out", str(glb)]) == 2
+    assert "one person is written as" in capsys.readouterr().err and not glb.exists()

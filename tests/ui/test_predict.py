@@ -1,0 +1,155 @@
+"""What the handlers of the Predict tab do, without a browser, and what its pictures hold."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+os.environ.setdefault("GRADIO_ANALYTICS_ENABLED", "False")
+
+import gradio as gr
+
+from webdemo.formats import read, write
+from webdemo.inference.predict_request import PredictRequest, PredictResult, people_of, with_people
+from webdemo.inference.requests import Progress, Result
+from webdemo.ui.context import PageContext
+from webdemo.ui.exports import Record, Shelf, write_files
+from webdemo.ui.predict_tab import PredictTab
+from webdemo.ui.prediction_view import curves_figure, prediction_payload, still_error
+from webdemo.ui.runs import Loader, Runs
+from webdemo.view.payload import unpack_positions
+
+from .stub_engine import StubEngine, walking
+
+LOADED = ("source", "line", "player", "marker")
+
+
+def drift(request: PredictRequest) -> PredictResult:
+    """Everyone rises by a centimetre a frame."""
+    past, frames = people_of(request.past), round(request.seconds * 30)
+    rise = 0.01 * np.arange(1, frames + 1)[:, None, None] * np.array([0, 1.0, 0])
+    whole = np.concatenate([past, past[:, -1:] + rise], axis=1)
+    known = 0 if request.truth is None else request.truth.num_frames
+    return PredictResult(
+        duets=(with_people(request.motion, whole),),
+        manifest={"model": "motion-mlp", "request": request.to_dict()},
+        past_frames=request.past_frames,
+        truth=request.truth,
+        error=tuple(10.0 * (i + 1) for i in range(known)),
+        speed=(10.0,) * frames,
+        true_speed=(12.0,) * known,
+    )
+
+
+class DriftEngine(StubEngine):
+    """Answers predictions by :func:`drift`."""
+
+    def run(self, request: Any, cancel: Any = None) -> Iterator[Progress | Result]:
+        self.requests.append(request)
+        yield Progress(stage="sample", step=1, total=1)
+        yield drift(request)
+
+
+@pytest.fixture
+def tab(tmp_path: Path) -> PredictTab:
+    engine = DriftEngine()
+    page = PageContext(
+        engine=engine, runs=Runs(engine), loader=Loader(engine), shelf=Shelf(tmp_path / "files")
+    )
+    made = PredictTab(page)
+    with gr.Blocks() as demo:
+        made.build(demo)
+    return made
+
+
+@pytest.fixture
+def pair(tmp_path: Path) -> Path:
+    return write(walking(4.0), tmp_path / "walkers.npz")[0]
+
+
+def changes(names: Any, updates: tuple[Any, ...]) -> dict[str, Any]:
+    return {name: update for name, update in zip(names, updates, strict=True) if update != gr.skip()}
+
+
+def loaded(tab: PredictTab, path: Path) -> dict[str, Any]:
+    return [changes(LOADED, updates) for updates in tab.upload(str(path))][-1]
+
+
+def run(tab: PredictTab, fields: dict[str, Any]) -> dict[str, Any]:
+    return [changes(tab.outputs, updates) for updates in tab.run("me", {"seed": 0, **fields})][-1]
+
+
+def test_a_motion_is_shown_and_the_marker_stands_in_its_middle(tab: PredictTab, pair: Path) -> None:
+    found = loaded(tab, pair)
+    assert "two people, 4.0 s" in found["line"]
+    assert (found["marker"]["maximum"], found["marker"]["value"]) == (4.0, 2.0)
+    assert len(found["source"].people) == 2 and found["player"]["value"]["samples"][0]["frames"] == 120
+
+
+def test_a_prediction_marks_the_past_and_shows_the_truth_as_a_ghost(tab: PredictTab, pair: Path) -> None:
+    source = loaded(tab, pair)["source"]
+    done = run(tab, {"source": source, "marker": 3.0, "seconds": 2.0, "model": "motion-mlp"})
+    (sample,) = done["player"]["value"]["samples"]
+    assert (sample["past_until"], sample["frames"]) == (90, 150)
+    ghost, shown = unpack_positions(sample["ghost"]), unpack_positions(sample["positions"])
+    assert ghost.shape == shown.shape == (2, 150, 22, 3)
+    truth = walking(4.0).positions
+    assert np.allclose(ghost[:, :120], truth, atol=2e-3)
+    assert np.allclose(ghost[:, 120:], truth[:, -1:], atol=2e-3)
+    assert [curve["key"] for curve in sample["curves"]] == ["error", "speed"]
+    assert sample["curves"][0]["values"][89:92] == [0.0, 0.01, 0.02]
+    assert done["curves"]["visible"] and len(done["plot"].data) == 4
+    assert "Done" in done["line"] and isinstance(done["record"], Record)
+
+
+def test_the_last_result_is_continued_from_its_end(tab: PredictTab, pair: Path) -> None:
+    source = loaded(tab, pair)["source"]
+    done = run(tab, {"source": source, "marker": 2.0, "seconds": 1.0, "model": "motion-mlp"})
+    taken = [changes(LOADED, updates) for updates in tab.take_result(done["record"])][-1]
+    assert taken["marker"]["value"] == 3.0 and taken["source"].seconds == 3.0
+    again = run(tab, {"source": taken["source"], "marker": 3.0, "seconds": 1.0, "model": "motion-mlp"})
+    (sample,) = again["player"]["value"]["samples"]
+    assert (sample["past_until"], sample["frames"], sample["ghost"]) == (90, 120, None)
+    assert [curve["key"] for curve in sample["curves"]] == ["speed"]
+    (told,) = ([changes(LOADED, u) for u in tab.take_result(None)][-1],)
+    assert "There is no result yet" in told["line"]
+
+
+@pytest.mark.parametrize(
+    ("fields", "told"),
+    [
+        ({"source": None}, "There is no motion yet"),
+        ({"marker": 0.2}, "1 s or more is needed"),
+        ({"marker": None, "seconds": 99.0}, "Length must be from 0.5 to 4 seconds"),
+    ],
+)
+def test_errors_are_one_sentence(tab: PredictTab, pair: Path, fields: dict[str, Any], told: str) -> None:
+    source = loaded(tab, pair)["source"]
+    asked = {"source": source, "marker": 2.0, "seconds": 1.0, "model": "motion-mlp"} | fields
+    assert told in run(tab, asked)["line"]
+
+
+def test_one_person_is_predicted_and_written(tab: PredictTab, tmp_path: Path) -> None:
+    request = PredictRequest(motion=walking(4.0).a, marker=2.0, seconds=1.0)
+    result = drift(request)
+    assert prediction_payload(result)["samples"][0]["ghost"]["shape"] == [1, 90, 22, 3]
+    files = write_files(result, tmp_path, prompt="after a walk")
+    assert set(files) == {"npz", "bvh", "png", "json"}
+    for kind in ("npz", "bvh"):
+        assert np.allclose(read(files[kind][0]).positions, result.duets[0].positions, atol=2e-3)
+
+
+def test_curves_compare_with_the_last_pose() -> None:
+    result = drift(PredictRequest(motion=walking(4.0), marker=2.0, seconds=1.0))
+    truth = walking(4.0).positions.astype(float)
+    expected = 1000 * np.linalg.norm(truth[:, 89] - truth[:, 59], axis=-1).mean()
+    assert still_error(result)[-1] == pytest.approx(expected, rel=1e-4)
+    names = [trace.name for trace in curves_figure(result).data]
+    assert names == ["Motion MLP", "Last pose held", "Motion MLP, speed", "What really followed"]
+    alone = drift(PredictRequest(motion=walking(4.0), seconds=1.0))
+    assert len(curves_figure(alone).data) == 1 and "Nothing follows" in str(curves_figure(alone).layout)

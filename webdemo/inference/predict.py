@@ -1,0 +1,161 @@
+"""The future of one person or two: a trained predictor, applied again to what it gave (thesis, 2.5.9)."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Iterator
+from pathlib import Path
+
+import numpy as np
+import torch
+
+from models.predictors import Predictor, load_predictor
+from webdemo.motion import SMPL22
+
+from .actor import FPS
+from .cancel import CancelToken
+from .generator import Clock
+from .predict_frame import Array, to_last_pose, to_world
+from .predict_request import PredictRequest, PredictResult, people_of, with_people
+from .requests import Progress, Result
+
+_STILL = 1e-3
+"""Metres: a past in which no joint moves farther stands still."""
+_SEAM_TRIES = 8
+_SEAM_FADE = 0.7
+"""Share of a correction at the seam that is left a frame later."""
+
+
+def mean_steps(positions: Array) -> Array:
+    """(…, T, J, 3) → (…, T − 1) mean distance per joint from frame to frame."""
+    return np.linalg.norm(np.diff(positions, axis=-3), axis=-1).mean(-1)
+
+
+def without_jump(past: Array, future: Array, largest: Array) -> Array:
+    """A future whose first step is no larger than a given mean distance per joint; the rest follows smoothly.
+
+    Args:
+        past: (P, T, J, 3) metres.
+        future: (P, F, J, 3) metres.
+        largest: (P,) metres.
+    """
+    step = future[:, 0] - past[:, -1]
+    size = np.linalg.norm(step, axis=-1).mean(-1)
+    excess = np.maximum(1 - largest / np.maximum(size, 1e-9), 0.0)[:, None, None] * step
+    fade = _SEAM_FADE ** np.arange(future.shape[1])
+    return future - fade[:, None, None] * excess[:, None]
+
+
+def joined(past: Array, future: Array) -> Array:
+    """A future (P, F, 22, 3) that goes with its past.
+
+    It keeps the bone lengths of the last pose, its first step is no larger than the largest of the past, and
+    it does not sink below where the past was.
+    """
+    largest = mean_steps(past).max(axis=1)
+    asked = largest
+    for _ in range(_SEAM_TRIES):
+        made = above_floor(past, with_bones_of(past[:, -1], without_jump(past, future, asked)))
+        step = np.linalg.norm(made[:, 0] - past[:, -1], axis=-1).mean(-1)
+        if np.all(step <= largest):
+            break
+        # Bones and floor lengthened the step again, so that less has to be asked for.
+        asked = asked * np.where(step > largest, 0.98 * largest / np.maximum(step, 1e-9), 1.0)
+    return made
+
+
+def with_bones_of(pose: Array, positions: Array) -> Array:
+    """Positions (P, T, 22, 3) with the bone lengths of a pose (P, 22, 3): same root, same directions."""
+    result = np.array(positions, dtype=np.float64)
+    for parent, child in SMPL22.bones:
+        length = np.linalg.norm(pose[:, child] - pose[:, parent], axis=-1)[:, None, None]
+        bone = positions[:, :, child] - positions[:, :, parent]
+        unit = bone / np.maximum(np.linalg.norm(bone, axis=-1, keepdims=True), 1e-9)
+        result[:, :, child] = result[:, :, parent] + length * unit
+    return result
+
+
+def above_floor(past: Array, future: Array) -> Array:
+    """The future raised where it would sink below the lowest that the past was."""
+    floor = past[..., 1].min(axis=(1, 2))[:, None]
+    lift = np.maximum(floor - future[..., 1].min(axis=-1), 0.0)
+    raised = future.copy()
+    raised[..., 1] += lift[..., None]
+    return raised
+
+
+class MotionPredictor:
+    """Continues motions by the predictor of a weights folder; without one, by holding the last pose.
+
+    Raises WeightsError (an InputError) where files are missing or altered.
+    """
+
+    def __init__(self, folder: Path | None) -> None:
+        self.predictor: Predictor | None = None if folder is None else load_predictor(folder)
+        self.name = folder.name if folder else "still"
+        self.digest = self.predictor.digest if self.predictor else ""
+
+    def predict(self, past: Array, frames: int) -> Array:
+        """What may follow.
+
+        Args:
+            past: (people, T, 22, 3) metres at 30 fps, a second or more.
+            frames: how many are predicted.
+
+        Returns:
+            (people, frames, 22, 3) metres in the world of the past. Bones keep the lengths of the last pose;
+            the first step is no larger than the largest of the past's last second; who stands still, stays.
+        """
+        *_, whole = self.passes(past.astype(np.float64), frames)
+        return whole[:, past.shape[1] :][:, :frames]
+
+    def passes(self, past: Array, frames: int) -> Iterator[Array]:
+        """The motion (people, T + …, 22, 3) after each pass of the network, until all frames are there."""
+        whole, seen = past, past[:, -round(FPS) :]
+        still = np.abs(seen - seen[:, -1:]).max(axis=(1, 2, 3)) < _STILL
+        while whole.shape[1] - past.shape[1] < frames:
+            future = np.repeat(whole[:, -1:], round(FPS), axis=1)
+            if self.predictor is not None and not still.all():
+                future = np.where(still[:, None, None, None], future, self._next(whole))
+            whole = np.concatenate([whole, future], axis=1)
+            yield whole
+
+    def _next(self, whole: Array) -> Array:
+        assert self.predictor is not None
+        past = whole[:, -self.predictor.past :]
+        local, turn, shift = to_last_pose(past)
+        made = self.predictor(torch.from_numpy(local.astype(np.float32))).numpy()
+        future = to_world(made.astype(np.float64), turn, shift)
+        return joined(past, future)
+
+    def run(self, request: PredictRequest, cancel: CancelToken, clock: Clock) -> Iterator[Progress | Result]:
+        """Progress events, then one :class:`PredictResult` without a manifest."""
+        now = time.perf_counter()
+        past, frames = people_of(request.past).astype(np.float64), round(request.seconds * FPS)
+        whole, total = past, -(-frames // round(FPS))
+        for step, longer in enumerate(self.passes(past, frames), start=1):
+            whole = longer
+            yield clock.progress("sample", step, total)
+            cancel.raise_if_cancelled()
+        future = whole[:, past.shape[1] :][:, :frames]
+        now = clock.lap("sample", now)
+        shown = np.concatenate([past, future], axis=1)
+        truth = request.truth
+        error: Array = np.empty(0)
+        true_speed: Array = np.empty(0)
+        if truth is not None:
+            real = people_of(truth).astype(np.float64)
+            error = np.linalg.norm(future[:, : real.shape[1]] - real, axis=-1).mean(axis=(0, 2))
+            true_speed = mean_steps(np.concatenate([past[:, -1:], real], axis=1)).mean(0)
+        speed = mean_steps(shown[:, past.shape[1] - 1 :]).mean(0)
+        clock.lap("finish", now)
+        yield PredictResult(
+            duets=(with_people(request.motion, shown),),  # type: ignore[arg-type]
+            manifest={},
+            timings={**clock.stages, "total": round(clock.elapsed, 4)},
+            past_frames=past.shape[1],
+            truth=truth,
+            error=tuple((1000 * error).round(2).tolist()),
+            speed=tuple((1000 * speed).round(3).tolist()),
+            true_speed=tuple((1000 * true_speed).round(3).tolist()),
+        )
