@@ -12,6 +12,7 @@ import socket
 import statistics
 import subprocess
 import sys
+import tempfile
 import time
 import urllib.request
 from collections.abc import Iterator
@@ -99,7 +100,13 @@ def _served() -> Iterator[str]:
     with socket.socket() as probe:
         probe.bind(("127.0.0.1", 0))
         port = probe.getsockname()[1]
-    environment = {**os.environ, "PASDEDEUX_HOST": "127.0.0.1", "PASDEDEUX_PORT": str(port)}
+    data = tempfile.TemporaryDirectory(prefix="pas-de-deux-benchmark-")
+    environment = {
+        **os.environ,
+        "PASDEDEUX_HOST": "127.0.0.1",
+        "PASDEDEUX_PORT": str(port),
+        "PASDEDEUX_DATA": data.name,
+    }
     server = subprocess.Popen(
         [sys.executable, "app.py"],
         cwd=ROOT,
@@ -122,6 +129,7 @@ def _served() -> Iterator[str]:
         except subprocess.TimeoutExpired:
             server.kill()
             server.wait()
+        data.cleanup()
 
 
 def _answers(url: str) -> bool:

