@@ -70,6 +70,7 @@ def run_benchmark(*, seconds: float, steps: int, repeats: int, browser: bool = F
         "plain_over_undamped": statistics.median(plainly) / statistics.median(undamped),
         "four_samples_over_one": eight / statistics.median(undamped),
     }
+    figures |= measure_prediction(engine, max(repeats, 5))
     if browser:
         from webdemo.benchmark_browser import measure_browser
 
@@ -78,6 +79,22 @@ def run_benchmark(*, seconds: float, steps: int, repeats: int, browser: bool = F
     for name, value in figures.items():
         print(f"{name:28} {value}")
     return figures
+
+
+def measure_prediction(engine: Any, repeats: int) -> dict[str, float]:
+    """Milliseconds that two people's next 25 frames take, and seconds for four seconds by recursion."""
+    import numpy as np
+
+    from webdemo.motion import SMPL22
+
+    predictor = engine._generator("motion-mlp")
+    sway = 0.05 * np.sin(np.arange(30) / 5)[:, None, None] * SMPL22.rest_positions()
+    past = np.stack([SMPL22.rest_positions() + sway] * 2)
+    predictor.predict(past, 25)
+    return {
+        "predict_25_frames_ms": 1000 * statistics.median(timed(lambda: predictor.predict(past, 25), repeats)),
+        "predict_four_seconds": statistics.median(timed(lambda: predictor.predict(past, 120), repeats)),
+    }
 
 
 def _replace(request: Any, **changes: Any) -> Any:
