@@ -15,7 +15,7 @@ import json
 import math
 import time
 from collections import Counter
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from dataclasses import asdict, dataclass, field, fields
 from pathlib import Path
 from typing import Any
@@ -193,21 +193,31 @@ class Trainer:
     Args:
         init: whose weights and normaliser a new run begins with: a checkpoint of another run (its average),
             or a folder that was shipped.
+        cache: where features of captions are kept, ``out`` by default; runs on the same scenes can share it.
+        build: makes the untrained network.
     """
 
     def __init__(
-        self, scenes: Scenes, settings: Settings, out: Path, *, init: Path | None = None, device: str = "cpu"
+        self,
+        scenes: Scenes,
+        settings: Settings,
+        out: Path,
+        *,
+        init: Path | None = None,
+        device: str = "cpu",
+        cache: Path | None = None,
+        build: Callable[[Settings, Data], CompactInterGen] = new_model,
     ) -> None:
         self.scenes, self.settings, self.out, self.device = scenes, settings, out, device
         torch.manual_seed(settings.seed)
-        self.data = Data(scenes, settings, out, device)
-        self.model = new_model(settings, self.data).to(device)
+        self.data = Data(scenes, settings, cache or out, device)
+        self.model = build(settings, self.data).to(device)
         if init is not None:
             if init.is_dir():
                 self.model.load_state_dict(WeightsFolder(init).model().state_dict())
             else:
                 checkpoint.restore_part(init, "ema", self.model)
-        self.ema = new_model(settings, self.data).to(device).requires_grad_(False)
+        self.ema = build(settings, self.data).to(device).requires_grad_(False)
         self.ema.load_state_dict(self.model.state_dict())
         self.reader = self.data.reader.to(device)
         self.optimizer = torch.optim.AdamW(

@@ -5,14 +5,16 @@ from __future__ import annotations
 from collections import defaultdict
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
+from typing import Protocol
 
 import numpy as np
 import torch
 
+from models.compact import CompactInterGen
 from models.diffusion import TRAIN_TIMESTEPS, make_scheduler, sample_steps
 from webdemo.inference.cleanup import clean_person
 from webdemo.inference.damping import Damping
-from webdemo.inference.generator import DuetGenerator, sample_noise
+from webdemo.inference.generator import sample_noise
 from webdemo.motion import Duet, InputError
 
 from .rules import Task
@@ -48,7 +50,17 @@ def _frames(task: Task) -> int:
     return int(np.clip(LENGTH_STEP * round(task.frames / LENGTH_STEP), LENGTH_STEP, 300))
 
 
-def draw(generator: DuetGenerator, tasks: Sequence[Task], sampling: Sampling) -> Iterator[tuple[int, Duet]]:
+class Generator(Protocol):
+    """What is needed of :class:`webdemo.inference.generator.DuetGenerator`."""
+
+    model: CompactInterGen
+
+    def condition(self, prompt: str) -> tuple[torch.Tensor, torch.Tensor]:
+        """The condition vector (1, C) and the sentence vector of a prompt."""
+        ...
+
+
+def draw(generator: Generator, tasks: Sequence[Task], sampling: Sampling) -> Iterator[tuple[int, Duet]]:
     """(index of the task, its duet) batch by batch.
 
     Each duet is the one that the Engine gives for that sentence with the seed ``sampling.seed`` + index,
