@@ -159,7 +159,7 @@ def test_a_result_of_a_result_keeps_the_name_of_the_file(tab: ReactTab, bvh: Pat
         ("broken.bvh", b"HIERARCHY\nROOT hips\n{", "broken.bvh"),
         ("empty.npz", b"", "empty.npz is empty"),
         ("words.npz", b"PK\x03\x04 nothing", "not a whole .npz"),
-        ("movie.mov", b"123", "cannot be read: use .npz, .bvh or .npy"),
+        ("movie.mov", b"123", "cannot be read: use .npz, .bvh, .npy, .skeleton or .txt"),
     ],
 )
 def test_a_bad_file_is_one_sentence_and_leaves_the_last_actor(
