@@ -51,29 +51,47 @@ class Windows(ABC):
 
 
 class CmuWindows(Windows):
-    """CMU's training clips, both phases of every second frame, half of the windows mirrored.
+    """CMU's training clips, both phases of every second frame, half of the windows mirrored, all at a pace of
+    their own. Actions with few clips are drawn more often than their share.
 
     Args:
         folder: see :mod:`training.cmu`.
+        paces: slowest and fastest, as multiples of the recorded one.
     """
 
     fps = 25.0
     joints = 17
 
-    def __init__(self, folder: Path, past: int = 25, future: int = 25) -> None:
+    def __init__(
+        self, folder: Path, past: int = 25, future: int = 25, *, paces: tuple[float, float] = (0.8, 1.25)
+    ) -> None:
         super().__init__(past, future)
+        self.paces = paces
         self.bones = cmu.CmuSkeleton.read(folder / "skeleton.json").bones
-        actions = cmu.read_actions(folder, "train", phases=True)
-        clips = [c for clips in actions.values() for c in clips if len(c) >= self.length]
-        self.frames = np.concatenate(clips)
-        ends = np.cumsum([len(c) for c in clips])
-        self.starts = np.concatenate(
-            [np.arange(e - len(c), e - self.length + 1) for e, c in zip(ends, clips, strict=True)]
-        )
+        clips, starts, room, chances = [], [], [], []
+        end = 0
+        for found in cmu.read_actions(folder, "train", phases=True).values():
+            kept = [clip for clip in found if len(clip) >= self.length]
+            places = [np.arange(len(clip) - self.length + 1) for clip in kept]
+            for clip, place in zip(kept, places, strict=True):
+                starts.append(end + place)
+                room.append(len(clip) - 1 - place)
+                chances.append(np.full(len(place), sum(map(len, places)) ** -0.5))
+                clips.append(clip)
+                end += len(clip)
+        if not clips:
+            raise InputError(f"{folder} has no training clip of {self.length} frames.")
+        self.frames, self.starts, self.room = (np.concatenate(x) for x in (clips, starts, room))
+        self.chances = np.cumsum(np.concatenate(chances))
 
     def draw(self, count: int, rng: np.random.Generator) -> Array:
-        starts = self.starts[rng.integers(len(self.starts), size=count)]
-        found = self.frames[starts[:, None] + np.arange(self.length)]
+        drawn = np.searchsorted(self.chances, rng.random(count) * self.chances[-1])
+        pace = np.minimum(rng.uniform(*self.paces, size=count), self.room[drawn] / (self.length - 1))
+        offsets = pace[:, None] * np.arange(self.length)
+        whole = np.minimum(offsets.astype(int), self.room[drawn][:, None] - 1)
+        places = self.starts[drawn][:, None] + whole
+        share = (offsets - whole)[..., None, None].astype(np.float32)
+        found = (1 - share) * self.frames[places] + share * self.frames[places + 1]
         mirror = rng.random(count) < 0.5
         found[mirror] = cmu.mirrored(found[mirror])
         return found

@@ -1,0 +1,89 @@
+"""Trainings of predictors: they learn, stop and resume exactly, and write what the engine reads."""
+
+from __future__ import annotations
+
+import json
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+import torch
+
+from models.predictors import load_predictor
+from training import mawgan
+from training.prediction import mlp
+from training.prediction.trainer import PredictionTrainer
+from training.prediction.windows import CorpusWindows, open_windows
+from webdemo.motion import SMPL22, InputError
+from webdemo.motion.transforms import heading
+
+MLP = mlp.Settings(past=10, future=8, past_coefficients=6, future_coefficients=4, width=16, blocks=1,
+                   fit=64, batch=8, steps=6, warmup=1)  # fmt: skip
+GAN = mawgan.Settings(windows="corpus", past=10, future=8, fc=36, width=32, critic_fc=8, critic_steps=2,
+                      batch=4, steps=3)  # fmt: skip
+
+
+@pytest.fixture(scope="module")
+def corpus(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """Two scenes of two people who sway; the second is of the test split."""
+    folder = tmp_path_factory.mktemp("corpus")
+    times = np.arange(120)[:, None, None, None] / 30
+    phase = np.array([0.0, 1.0])[:, None, None]
+    sway = 0.1 * np.sin(5 * times + phase) * np.linspace(0, 1, 22)[:, None]
+    place = np.array([[0.0, 1.0, 0.0], [1.0, 1.0, 2.0]])[:, None]
+    np.save(folder / "motions.npy", (SMPL22.rest_positions() + place + sway).astype(np.float32))
+    rows = [{"start": 60 * i, "frames": 60, "split": split} for i, split in enumerate(("train", "test"))]
+    (folder / "index.json").write_text(json.dumps(rows))
+    return folder
+
+
+def start(kind: str, corpus: Path, out: Path, **changed: int) -> PredictionTrainer:
+    windows = open_windows("corpus", corpus, 10, 8)
+    if kind == "mlp":
+        return mlp.Trainer(windows, replace(MLP, **changed), out)
+    return mawgan.Trainer(windows, replace(GAN, **changed), out)
+
+
+def test_windows_are_of_one_split_in_the_frame_of_their_last_pose(corpus: Path) -> None:
+    windows = CorpusWindows(corpus, 10, 8)
+    assert windows.starts.min() == 0 and windows.starts.max() == 42
+    batch = windows.batch(6, (0, 1))
+    assert batch.shape == (6, 18, 22, 3) and torch.equal(batch, windows.batch(6, (0, 1)))
+    assert not torch.equal(batch, windows.batch(6, (0, 2)))
+    assert np.allclose(batch[:, 9, 0, [0, 2]], 0, atol=1e-6)
+    assert np.allclose(heading(batch[:, 9].numpy().astype(float)), 0, atol=1e-5)
+
+
+@pytest.mark.parametrize("kind", ["mlp", "mawgan"])
+def test_a_run_that_stops_goes_on_as_if_it_had_not(kind: str, corpus: Path, tmp_path: Path) -> None:
+    whole, cut = start(kind, corpus, tmp_path / "whole"), start(kind, corpus, tmp_path / "cut")
+    terms = list(whole.run(minutes=5))
+    before = [next(cut.run(minutes=5))]
+    cut.save()
+    resumed = start(kind, corpus, tmp_path / "cut")
+    assert resumed.step == 1
+    after = list(resumed.run(minutes=5))
+    assert [*before, *after] == terms
+    for a, b in zip(whole.ema.parameters(), resumed.ema.parameters(), strict=True):
+        assert torch.equal(a, b)
+    with pytest.raises(InputError, match="other settings"):
+        start(kind, corpus, tmp_path / "cut", seed=1)
+
+
+def test_training_makes_it_better_than_its_linear_part(corpus: Path, tmp_path: Path) -> None:
+    trainer = start("mlp", corpus, tmp_path, steps=60)
+    totals = [terms["total"] for terms in trainer.run(minutes=5)]
+    assert np.mean(totals[-10:]) < 0.8 * np.mean(totals[:5])
+
+
+@pytest.mark.parametrize("kind", ["mlp", "mawgan"])
+def test_the_shell_writes_a_predictor(kind: str, corpus: Path, tmp_path: Path) -> None:
+    settings, main = (MLP, mlp.main) if kind == "mlp" else (GAN, mawgan.main)
+    asked = [f"--{key.replace('_', '-')}={value}" for key, value in vars(settings).items()]
+    folders = ["--data", str(corpus), "--out", str(tmp_path / "run"), "--export", str(tmp_path / "folder")]
+    assert main([*asked, *folders]) == 0
+    predictor = load_predictor(tmp_path / "folder")
+    assert (predictor.past, predictor.future, predictor.joints) == (10, 8, 22)
+    assert predictor.training is not None and predictor.training["steps"] == settings.steps
+    assert main([*asked, *folders, "--data", str(tmp_path)]) == 2
