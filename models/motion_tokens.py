@@ -20,9 +20,15 @@ import numpy as np
 import torch
 from torch import Tensor
 
+from webdemo.motion.skeleton import FEET
+
 NUM_JOINTS = 22
 NUM_CONTACTS = 4
 FEATURES = 3 + 3 * (NUM_JOINTS - 1) + NUM_CONTACTS
+CONTACT_HEIGHTS = (0.12, 0.08, 0.12, 0.08)
+"""Metres under which left ankle, left toe, right ankle and right toe can stand."""
+CONTACT_SPEED = 0.35
+"""Metres a second under which they do."""
 _SPLINE_SPAN = 3  # a cubic spline over n intervals has n + 3 control points
 
 
@@ -76,6 +82,19 @@ def _fit(frames: int, frames_per_knot: int) -> Tensor:
     curvature = np.diff(np.eye(basis.shape[1]), n=2, axis=0)
     normal = basis.T @ basis + 1e-3 * curvature.T @ curvature
     return torch.from_numpy(np.linalg.solve(normal, basis.T)).float()
+
+
+def foot_contacts(positions: Tensor, fps: float = 30.0) -> Tensor:
+    """(…, T, 4) 1 where an ankle or toe is low and slow: the contact of a control point.
+
+    Args:
+        positions: (…, T, 22, 3) metres.
+    """
+    feet = positions[..., list(FEET), :]
+    velocity = torch.linalg.vector_norm(feet.diff(dim=-3), dim=-1) * fps
+    speed = torch.cat([velocity[..., :1, :], velocity], dim=-2)
+    low = feet[..., 1] < positions.new_tensor(CONTACT_HEIGHTS)
+    return (low & (speed < CONTACT_SPEED)).to(positions.dtype)
 
 
 def encode(positions: Tensor, contacts: Tensor, layout: TokenLayout) -> Tensor:

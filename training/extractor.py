@@ -21,11 +21,11 @@ from safetensors.torch import save_file
 from torch import Tensor, nn
 
 from models.layers import sinusoids
-from models.motion_tokens import FEATURES, TokenLayout, encode, pack
+from models.motion_tokens import FEATURES, TokenLayout, encode, foot_contacts, pack
 from models.text import TextConditioner, TextConditionerConfig, TokenFeatures
 from training.intergen import Data
 from training.intergen import Settings as DataSettings
-from training.prepare import Scenes, foot_contacts, load
+from training.prepare import Scenes, load
 from training.shell import exit_code
 from webdemo.formats.files import replacing
 from webdemo.motion import InputError

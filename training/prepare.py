@@ -19,25 +19,13 @@ from safetensors import SafetensorError, safe_open
 from safetensors.torch import save_file
 from torch import Tensor
 
-from models.motion_tokens import TokenLayout, encode
+from models.motion_tokens import TokenLayout, encode, foot_contacts
 from training.handedness import leading_hand
 from training.shell import exit_code
 from webdemo.formats.files import replacing
 from webdemo.motion import InputError
-from webdemo.motion.skeleton import FEET
 
-CONTACT_HEIGHTS = (0.12, 0.08, 0.12, 0.08)
-CONTACT_SPEED = 0.35  # m/s
 ROOT_SCALE = 0.5  # metres
-
-
-def foot_contacts(positions: Tensor, fps: float = 30.0) -> Tensor:
-    """(…, T, 4) 1 where an ankle or toe is low and slow; positions (…, T, 22, 3) in metres."""
-    feet = positions[..., list(FEET), :]
-    velocity = torch.linalg.vector_norm(feet.diff(dim=-3), dim=-1) * fps
-    speed = torch.cat([velocity[..., :1, :], velocity], dim=-2)
-    low = feet[..., 1] < positions.new_tensor(CONTACT_HEIGHTS)
-    return (low & (speed < CONTACT_SPEED)).to(positions.dtype)
 
 
 @dataclass

@@ -10,13 +10,13 @@ import pytest
 import torch
 
 from models.intergen import InterGenConfig, InterGenDenoiser
-from models.motion_tokens import TokenLayout, encode
+from models.motion_tokens import TokenLayout, encode, foot_contacts
 from training import ablations
 from training.ablations import SMALL, VARIANTS, ConcatDenoiser, UnsharedDenoiser
 from training.extractor import Extractor, save
 from training.extractor import Settings as ExtractorSettings
 from training.judge import retrieval
-from training.prepare import Scenes, foot_contacts
+from training.prepare import Scenes
 from training.prepare import save as save_scenes
 from webdemo.motion import SMPL22, InputError
 

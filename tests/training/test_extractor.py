@@ -6,13 +6,13 @@ import numpy as np
 import pytest
 import torch
 
-from models.motion_tokens import TokenLayout, encode
+from models.motion_tokens import TokenLayout, encode, foot_contacts
 from training import extractor
 from training.extractor import Settings, contrast, fit, load_extractor
 from training.judge import retrieval
 from training.judge.draw import Sampling
 from training.judge.prompts import real_duet
-from training.prepare import Scenes, foot_contacts, save
+from training.prepare import Scenes, save
 from webdemo.motion import SMPL22, InputError
 
 SETTINGS = Settings(

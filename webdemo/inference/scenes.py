@@ -11,9 +11,8 @@ from numpy.typing import NDArray
 from torch import Tensor
 
 from models.compact import CompactInterGen
-from models.motion_tokens import encode, pack
+from models.motion_tokens import encode, foot_contacts, pack
 from webdemo.motion import Clip, Duet
-from webdemo.motion.cleaning import foot_contacts
 
 from .actor import FPS, ROLES, Placement
 from .requests import GenerateRequest, ReactRequest
@@ -95,8 +94,8 @@ def _given_person(model: CompactInterGen, positions: Array, place: int) -> Given
     # The last token reaches up to seven frames beyond the motion: there the person keeps still.
     missing = layout.num_frames(tokens) - len(positions)
     whole = np.pad(positions, ((0, missing), (0, 0), (0, 0)), mode="edge")
-    contacts = torch.from_numpy(foot_contacts(whole, FPS)).float()
-    control = encode(torch.from_numpy(whole).float(), contacts, layout)
+    motion = torch.from_numpy(whole).float()
+    control = encode(motion, foot_contacts(motion, FPS), layout)
     normalised = ((control - model.mean) / model.std).expand(1, 2, -1, -1)
     mask = torch.zeros(tokens, 2, layout.token_features, dtype=torch.bool)
     mask[:, place] = True
