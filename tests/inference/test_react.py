@@ -214,7 +214,7 @@ def test_what_cannot_be_done_is_refused_with_a_sentence(change: dict, says: str)
 
 
 def test_an_unknown_model_is_refused(engine: Engine) -> None:
-    with pytest.raises(InputError, match="no model"):
+    with pytest.raises(InputError, match="is not known"):
         react(engine, model="nonesuch")
 
 
