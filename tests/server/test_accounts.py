@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import io
+import json
 import stat
 import time
 from pathlib import Path
@@ -10,6 +12,7 @@ from typing import Any
 import pytest
 from sqlalchemy import update
 
+from webdemo.cli import main
 from webdemo.motion import InputError
 from webdemo.server import accounts
 from webdemo.server.accounts import SignIns, Users
@@ -154,3 +157,29 @@ def test_it_is_never_open_unsaid(fields: dict[str, Any], allowed: bool) -> None:
 def test_secrets_are_not_printed() -> None:
     shown = Settings(metrics_token="s3cret", database="postgresql://lab:s3cret@db/x").shown()
     assert "s3cret" not in str(shown)
+
+
+# ---- from a shell --------------------------------------------------------------------------------
+
+
+def test_accounts_from_a_shell(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.setattr("sys.stdin", io.StringIO("correct horse\n"))
+    file = str(tmp_path / "users")
+    assert main(["user", "add", "ada", "--users", file]) == 0
+    assert main(["user", "list", "--users", file]) == 0
+    assert json.loads(capsys.readouterr().out.splitlines()[-1])["users"] == ["ada"]
+    assert Users(Path(file)).knows("ada", "correct horse")
+    assert main(["user", "remove", "eve", "--users", file]) == 2
+    assert main(["user", "remove", "ada", "--users", file]) == 0
+    assert Users(Path(file)).names == []
+
+
+def test_settings_from_a_shell(monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> None:
+    monkeypatch.setenv("PASDEDEUX_METRICS_TOKEN", "s3cret")
+    assert main(["serve", "--port", "8123", "--print-settings"]) == 0
+    said = capsys.readouterr().out
+    assert "port = 8123  # port to listen on" in said and "s3cret" not in said
+    assert main(["serve", "--host", "0.0.0.0"]) == 2
+    assert "there are no accounts" in capsys.readouterr().err

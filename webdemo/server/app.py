@@ -6,6 +6,7 @@ import asyncio
 import contextlib
 import logging
 import os
+import time
 from collections.abc import AsyncIterator, Callable
 from dataclasses import dataclass
 from typing import Any
@@ -24,7 +25,7 @@ from .accounts import SignIns, Users
 from .database import Database
 from .engine import SharedEngine
 from .figures import Figures
-from .guard import Guard, may_read_figures
+from .guard import Guard, OpenAnswers, may_read_figures
 from .health import Health
 from .history import History
 from .login import login_routes
@@ -37,6 +38,8 @@ log = logging.getLogger(__name__)
 
 CLEAN_EVERY = 900.0
 """Seconds between two looks at what is too old or too much."""
+ANSWER_SECONDS = 5.0
+"""How long the answers of runs that ended may take to be sent at least, however short the grace."""
 WARM_UP_AFTER = 2.0
 """Seconds between the start and the loading of the networks, which would slow the first page."""
 
@@ -51,11 +54,16 @@ class Lab:
     queue: FairQueue
     health: Health
     figures: Figures
+    answers: OpenAnswers
 
     def stop(self) -> None:
-        """Takes no more runs and lets those that run end; blocks for the grace that the settings give."""
+        """Takes no more runs and lets those that run end, up to the grace that the settings give; blocks."""
+        until = time.monotonic() + self.settings.grace_seconds
         self.health.stopping = True
         left = self.queue.close(self.settings.grace_seconds)
+        until = max(until, time.monotonic() + ANSWER_SECONDS)
+        while self.answers.count and time.monotonic() < until:  # results are still written and sent
+            time.sleep(0.05)
         if left:
             log.warning("%d runs were stopped before their end.", left)
 
@@ -93,8 +101,9 @@ def create_app(
     queue = FairQueue(engine, limits, batcher=batcher, figures=figures, broken=health.broken)
     figures.watch(waiting=lambda: queue.waiting, running=lambda: queue.running, ready=lambda: health.ready)
     lab = Lab(
-        settings=settings, database=database, history=history, queue=queue, health=health, figures=figures
-    )
+        settings=settings, database=database, history=history, queue=queue, health=health,
+        figures=figures, answers=OpenAnswers(),
+    )  # fmt: skip
     sign_ins = SignIns(database, users, settings.session_hours) if users is not None else None
     visitors = Visitors(settings, sign_ins)
 
@@ -103,7 +112,7 @@ def create_app(
     _add_routes(app, lab)
     if sign_ins is not None:
         app.include_router(login_routes(settings, sign_ins, visitors))
-    app.add_middleware(Guard, settings=settings, visitors=visitors, figures=figures)
+    app.add_middleware(Guard, settings=settings, visitors=visitors, figures=figures, answers=lab.answers)
     page = build_page(engine, loader=Loader(engine), runs=Recorder(queue, history), history=history)
     # Whoever waits in line holds a thread.
     page.queue(default_concurrency_limit=4, max_size=2 * settings.queue + 64)

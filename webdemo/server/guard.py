@@ -31,8 +31,8 @@ PUBLIC = ("/login", "/logout", "/healthz", "/metrics")
 """Paths that need no sign-in; /metrics has a rule of its own."""
 API = "/gradio_api/"
 _CLOSED = re.compile(
-    r"/(monitoring|docs|redoc|openapi\.json|gradio_api/(proxy=|vibe|undo-vibe|run-history|runs|deep_link|dev/|stream/|process_recording"
-    r"|custom_component|file=\w+:|file/\w+:))",
+    r"/(monitoring|docs|redoc|openapi\.json|gradio_api/(proxy=|vibe|undo-vibe|run-history|runs|deep_link|dev/"
+    r"|stream/|process_recording|custom_component|file=\w+:|file/\w+:))",
     re.IGNORECASE,
 )
 """What Gradio offers and this page does not use: proxies, code editing, monitoring, other hosts' files."""
@@ -58,6 +58,16 @@ _API_ROUTES = frozenset(
 )  # fmt: skip
 
 
+_ANSWERS = frozenset(f"{API}{name}" for name in ("queue/data", "call", "run", "api"))
+"""Where the results of runs are sent."""
+
+
+class OpenAnswers:
+    """How many answers of runs are being sent; used by the server's one thread."""
+
+    count = 0
+
+
 class Guard:
     """An ASGI middleware around everything.
 
@@ -66,10 +76,14 @@ class Guard:
         settings: limits and names.
         visitors: who is who.
         figures: what is counted.
+        answers: counts those that are being sent.
     """
 
-    def __init__(self, app: ASGIApp, settings: Settings, visitors: Visitors, figures: Figures) -> None:
+    def __init__(
+        self, app: ASGIApp, settings: Settings, visitors: Visitors, figures: Figures, answers: OpenAnswers
+    ) -> None:
         self.app, self.settings, self.visitors, self.figures = app, settings, visitors, figures
+        self.answers = answers
         self.bindings = Bindings()
         self.rates = Rates(settings.rate)
         names = settings.hosts or (["localhost", "127.0.0.1", "::1"] if settings.local else [])
@@ -112,9 +126,11 @@ class Guard:
                 if path == "/" and VISITOR_COOKIE.encode() not in headers.get(b"cookie", b""):
                     cookie = self._visitor_cookie(scope)
                 scope["state"] = {**scope.get("state", {}), "visitor": visitor, "reference": reference}
+                self.answers.count += route in _ANSWERS
                 try:
                     await self.app(scope, body or receive, answer)
                 finally:
+                    self.answers.count -= route in _ANSWERS
                     refused, body = body.refused if body else None, None
                     if refused is not None:
                         raise refused

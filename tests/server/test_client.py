@@ -1,0 +1,59 @@
+"""The documented way to call a lab from a notebook."""
+
+from __future__ import annotations
+
+import socket
+import threading
+import time
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+from gradio_client import Client
+from gradio_client.exceptions import AppError, AuthenticationError
+
+from webdemo.server.accounts import Users
+from webdemo.server.serve import make_server
+from webdemo.server.settings import Settings
+
+from .lab import stub_module
+
+pytestmark = pytest.mark.slow
+
+
+@pytest.fixture(scope="module")
+def url(tmp_path_factory: pytest.TempPathFactory) -> Iterator[str]:
+    folder = tmp_path_factory.mktemp("lab")
+    Users(folder / "users").add("ada", "correct horse")
+    with socket.socket() as probe:
+        probe.bind(("127.0.0.1", 0))
+        port = probe.getsockname()[1]
+    settings = Settings(port=port, data=folder / "data", users=folder / "users", free_megabytes=0)
+    server = make_server(settings, engine=stub_module().StubEngine())
+    thread = threading.Thread(target=server.run, daemon=True)
+    thread.start()
+    until = time.monotonic() + 120
+    while not server.started:
+        assert time.monotonic() < until
+        time.sleep(0.05)
+    yield settings.url
+    server.should_exit = True
+    thread.join(timeout=60)
+
+
+def test_generate_from_a_notebook(url: str, tmp_path: Path) -> None:
+    lab = Client(url, auth=("ada", "correct horse"), verbose=False, download_files=str(tmp_path))
+    answer, files = lab.predict(prompt="Two people walk.", seconds=1, seed=4, steps=2, api_name="/generate")
+    assert answer["manifest"]["request"]["seed"] == 4
+    assert {Path(file).suffix for file in files} >= {".npz", ".bvh", ".json"}
+    with pytest.raises(AppError) as caught:
+        lab.predict(prompt="impossible", api_name="/generate")
+    assert str(caught.value) == "The stub cannot do this: ask for something possible."
+    with pytest.raises(AppError) as caught:
+        lab.predict(prompt="crash", steps=3, api_name="/generate")
+    assert "(RuntimeError); its log says more under " in str(caught.value)
+
+
+def test_nobody_else_gets_in(url: str) -> None:
+    with pytest.raises(AuthenticationError):
+        Client(url, auth=("ada", "wrong horse"), verbose=False)
