@@ -1,5 +1,6 @@
 // Colours of both themes. A is blue and B orange, a pair that all common kinds of colour-blindness
-// keep apart; left limbs are a lighter tint and right limbs a deeper shade of the same hue.
+// keep apart; left limbs are a lighter tint and right limbs a deeper shade of the same hue. Both are
+// greyer while a motion is given, before what was predicted.
 
 const hex = (text) => [1, 3, 5].map((i) => parseInt(text.slice(i, i + 2), 16) / 255);
 const person = (middle, left, right) => ({ middle: hex(middle), left: hex(left), right: hex(right) });
@@ -14,6 +15,7 @@ export const THEMES = {
     outline: hex("#ffffff"),
     ghost: hex("#8e99aa"),
     people: [person("#2468d8", "#5c9cf5", "#17479e"), person("#e07a10", "#f7a944", "#b25606")],
+    given: [person("#7186ab", "#9fb2d2", "#566a8c"), person("#b09070", "#cdb498", "#8c7053")],
     curve: ["#475569", "#94a3b8"],
   },
   dark: {
@@ -25,6 +27,7 @@ export const THEMES = {
     outline: hex("#0c1017"),
     ghost: hex("#667389"),
     people: [person("#4f94f7", "#8fc0ff", "#2f6bd0"), person("#f2933a", "#ffc27a", "#c96a14")],
+    given: [person("#7f92b5", "#a9bad6", "#64769a"), person("#b59a7d", "#d0bba2", "#93795e")],
     curve: ["#cbd5e1", "#64748b"],
   },
 };

@@ -353,9 +353,11 @@ export class Player {
       const lens = new figure.Lens(orbit, height);
       put("shadow", figure.shadow(pose, skeleton, theme, lens));
       put("outline", figure.outline(pose, skeleton, theme.outline, lens));
+      const given = clock.shown < (this.sample?.past_until ?? 0);
+      const colors = given ? theme.given : theme.people;
       pose.forEach((points, person) => {
-        put(`bones${"AB"[person]}`, figure.bones(points, skeleton, theme.people[person], lens));
-        put(`joints${"AB"[person]}`, figure.joints(points, skeleton, theme.people[person], lens));
+        put(`bones${"AB"[person]}`, figure.bones(points, skeleton, colors[person], lens));
+        put(`joints${"AB"[person]}`, figure.joints(points, skeleton, colors[person], lens));
       });
       this.paintExtras(put, lens);
       this.spots = pose.map((points) => points.map((p) => project(p, this.matrix, width, height, FIELD_OF_VIEW)));

@@ -79,7 +79,7 @@ class PredictRequest:
         """Everything but the motion, which is named by its SHA-256."""
         positions = np.ascontiguousarray(people_of(self.motion))
         motion = {
-            "name": (self.motion.name if isinstance(self.motion, Clip) else "")[:100],
+            "name": (self.motion.name if isinstance(self.motion, Clip) else self.motion.a.name)[:100],
             "people": len(positions),
             "frames": self.motion.num_frames,
             "fps": self.motion.fps,

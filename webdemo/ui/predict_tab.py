@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping
+from dataclasses import replace
 from functools import partial
 from pathlib import Path
 from typing import Any
@@ -28,7 +29,7 @@ from .exports import Record
 from .job_tab import QUIET, JobTab, Updates
 from .panels import status
 from .player import busy, show
-from .prediction_view import curves_figure, prediction_payload
+from .prediction_view import curves_figure, prediction_payload, without_name
 from .react_tab import FILE_TYPES
 from .words import error_line
 
@@ -36,8 +37,9 @@ EMPTY_TEXT = "Drop a motion file, or take an example"
 
 
 def motion_of(source: Source) -> Clip | Duet:
-    """All people of a source."""
-    return Duet(*source.people) if len(source.people) > 1 else source.people[0]
+    """All people of a source, the first called after it."""
+    first = replace(source.people[0], name=source.name)
+    return Duet(first, source.people[1]) if len(source.people) > 1 else first
 
 
 class PredictTab(JobTab):
@@ -158,7 +160,7 @@ class PredictTab(JobTab):
         yield gr.skip(), status("Reading the motion …", tone="busy"), busy("Reading the motion …"), gr.skip()
         try:
             source = read()
-            payload = player_payload(motion_of(source), title=source.name)
+            payload = player_payload(without_name(motion_of(source)), title=source.name)
         except Exception as error:
             yield gr.skip(), status(error_line(error), tone="error"), busy(""), gr.skip()
             return

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import plotly.graph_objects as go
 from plotly.subplots import make_subplots
@@ -16,7 +18,7 @@ _BLUE, _GREY, _ORANGE = "#2468d8", "#8e99aa", "#e07a10"
 
 def prediction_payload(result: PredictResult, *, title: str = "") -> Payload:
     """The player's value: the past marked as given, what really followed as a ghost, the error below."""
-    motion = result.duets[0]
+    motion = without_name(result.duets[0])
     ghost = _ghost(motion, result)
     curves = [
         Curve("error", "Error", "m", _padded(result.error, motion.num_frames, result.past_frames)),
@@ -27,6 +29,11 @@ def prediction_payload(result: PredictResult, *, title: str = "") -> Payload:
         past_until=result.past_frames,
     )  # fmt: skip
     return build_payload([sample], skeleton=motion.skeleton, title=title)
+
+
+def without_name(motion: Clip | Duet) -> Clip | Duet:
+    """The motion as the player's legend shows it: one person as "a", not by the name of a file."""
+    return replace(motion, name="a") if isinstance(motion, Clip) else motion
 
 
 def _padded(values: tuple[float, ...], frames: int, start: int) -> np.ndarray:
