@@ -85,6 +85,42 @@ def test_bvh_goes_in_and_comes_out(
     assert asked[0].actor.num_frames == 60
 
 
+def test_a_model_comes_with_its_own_number_of_steps(
+    pair: Path, tmp_path: Path, asked: list[ReactRequest], capsys: pytest.CaptureFixture[str]
+) -> None:
+    words = ["--actor", pair, "--person", "a", "--out", tmp_path / "x.npz"]
+    for more, expected in (
+        ([], ("intergen", "offline", 50)),
+        (["--model", "regennet"], ("regennet", "offline", 5)),
+        (["--model", "regennet", "--mode", "online", "--steps", 7], ("regennet", "online", 7)),
+    ):
+        code, _, _ = react(capsys, *words, *more)
+        assert code == 0
+        assert (asked[-1].model, asked[-1].mode, asked[-1].steps) == expected
+
+
+def test_a_stream_prints_every_frame_before_the_answer(
+    pair: Path, tmp_path: Path, asked: list[ReactRequest], capsys: pytest.CaptureFixture[str],
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:  # fmt: skip
+    from webdemo.inference.engine import Engine
+    from webdemo.inference.reactor import LiveFrame
+
+    def live(self: Engine, request: ReactRequest) -> Any:
+        for index, frame in enumerate(request.actor.positions):
+            yield LiveFrame(index, frame[None], frame[None] + 1, 0.004)
+
+    monkeypatch.setattr(Engine, "live", live)
+    words = ["--actor", pair, "--person", "a", "--end", 1, "--model", "regennet", "--stream"]
+    code, said, _ = react(capsys, *words, "--out", tmp_path / "x.npz")
+    assert code == 0
+    *frames, answer = map(json.loads, said.splitlines())
+    assert [frame["frame"] for frame in frames] == list(range(30))
+    assert frames[3]["milliseconds"] == 4.0
+    np.testing.assert_allclose(frames[3]["positions"], standing(120).positions[3] + 1, atol=1e-4)
+    assert answer["manifest"]["request"]["mode"] == "online"
+
+
 @pytest.mark.parametrize(
     ("words", "says"),
     [
@@ -93,6 +129,8 @@ def test_bvh_goes_in_and_comes_out(
         (["--person", "a", "--end", "0.5"], "0.50 s: give 1 s or more"),
         (["--person", "a", "--start", "9"], "lies behind the motion"),
         (["--person", "a", "--mode", "online"], "choose offline"),
+        (["--person", "a", "--stream"], "choose offline"),
+        (["--person", "a", "--model", "regennet", "--sampler", "dpm++"], "samples with ddim"),
         (["--person", "a", "--role", "x"], "Role 'x'"),
         (["--person", "a", "--steps", "0"], "DDIM steps"),
         (["--actor", "none.bvh"], "cannot be read"),

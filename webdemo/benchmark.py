@@ -35,6 +35,7 @@ def run_benchmark(*, seconds: float, steps: int, repeats: int, browser: bool = F
     """
     import torch
 
+    from webdemo.benchmark_reactions import measure_reactions
     from webdemo.inference.engine import Engine
     from webdemo.inference.requests import GenerateRequest
 
@@ -71,6 +72,7 @@ def run_benchmark(*, seconds: float, steps: int, repeats: int, browser: bool = F
         "four_samples_over_one": eight / statistics.median(undamped),
     }
     figures |= measure_prediction(engine, max(repeats, 5))
+    figures |= measure_reactions(repeats)
     if browser:
         from webdemo.benchmark_browser import measure_browser
 
