@@ -27,7 +27,7 @@ from webdemo.inference.requests import (
     Result,
     SamplingRequest,
 )
-from webdemo.motion import Clip, InputError
+from webdemo.motion import InputError
 
 
 class _Parser(argparse.ArgumentParser):
@@ -71,13 +71,11 @@ def _check_out(path: Path) -> None:
 def _write(result: Result, out: Path) -> dict[str, Any]:
     """Writes a result's duets and gives what the last line on stdout says of them."""
     from webdemo.formats import write
-    from webdemo.formats.one_person import write_clip
 
     paths: list[Path] = []
     for i, duet in enumerate(result.duets):
         number = f"_{i + 1}" if len(result.duets) > 1 else ""
-        path = out.with_stem(out.stem + number)
-        paths += write_clip(duet, path) if isinstance(duet, Clip) else write(duet, path)
+        paths += write(duet, out.with_stem(out.stem + number))
     for note in result.notes:
         print(note, file=sys.stderr)
     return {

@@ -44,7 +44,7 @@ def predicting(tmp_path_factory: pytest.TempPathFactory) -> Engine:
     network = MotionMLP(MotionMLPConfig(width=32, blocks=1))
     with torch.no_grad():
         for parameter in network.parameters():
-            parameter.normal_(std=0.05)
+            parameter.normal_(std=0.02)
     folder = tmp_path_factory.mktemp("predictors")
     save_predictor(folder / "motion-mlp", network, kind="mlp", fps=30.0)
     return Engine(folder)

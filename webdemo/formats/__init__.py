@@ -16,6 +16,7 @@ from .bvh_writer import write_bvh
 from .glb import write_glb
 from .kinect import read_kinect
 from .npz import read_npy, read_npz, write_npy, write_npz
+from .one_person import write_clip
 
 __all__ = ["FORMATS", "Format", "can_read", "can_write", "read", "read_pair", "write"]
 
@@ -139,8 +140,8 @@ def read_pair(
     return Duet(clips[0].cut(0, frames), clips[1].cut(0, frames), roles)
 
 
-def write(duet: Duet, path: str | Path) -> list[Path]:
-    """Writes a duet in the format of the path's suffix.
+def write(duet: Duet | Clip, path: str | Path) -> list[Path]:
+    """Writes two people, or one, in the format of the path's suffix.
 
     Returns:
         the files written; BVH gives two, ``NAME_a.bvh`` and ``NAME_b.bvh``.
@@ -154,7 +155,7 @@ def write(duet: Duet, path: str | Path) -> list[Path]:
         raise InputError(_unknown(path.suffix, "written", [f.suffix for f in FORMATS.values() if f.writer]))
     if not can_write(path.suffix):
         raise InputError(f"{known.label} files need the package {known.needs}: install it with pip.")
-    return known.writer(duet, path)
+    return write_clip(duet, path) if isinstance(duet, Clip) else known.writer(duet, path)
 
 
 def _unknown(suffix: str, verb: str, known: list[str]) -> str:

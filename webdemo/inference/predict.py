@@ -21,6 +21,8 @@ from .requests import Progress, Result
 
 _STILL = 1e-3
 """Metres: a past in which no joint moves farther stands still."""
+_OVERLAP = 10
+"""Frames that a pass of the recursion shares with the one before; they fade from one to the other."""
 _SEAM_TRIES = 8
 _SEAM_FADE = 0.7
 """Share of a correction at the seam that is left a frame later."""
@@ -113,11 +115,20 @@ class MotionPredictor:
         """The motion (people, T + …, 22, 3) after each pass of the network, until all frames are there."""
         whole, seen = past, past[:, -round(FPS) :]
         still = np.abs(seen - seen[:, -1:]).max(axis=(1, 2, 3)) < _STILL
+        if self.predictor is None:
+            still[:] = True
+        kept = past.shape[1]  # frames that a pass goes on from; those behind them are predicted again
         while whole.shape[1] - past.shape[1] < frames:
-            future = np.repeat(whole[:, -1:], round(FPS), axis=1)
-            if self.predictor is not None and not still.all():
-                future = np.where(still[:, None, None, None], future, self._next(whole))
-            whole = np.concatenate([whole, future], axis=1)
+            future = held = np.repeat(whole[:, kept - 1 : kept], round(FPS), axis=1)
+            if not still.all():
+                future = self._next(whole[:, :kept])
+                if again := whole.shape[1] - kept:
+                    share = (np.arange(again) + 1)[:, None, None] / (again + 1)
+                    future[:, :again] = (1 - share) * whole[:, kept:] + share * future[:, :again]
+                    future = with_bones_of(past[:, -1], future)
+            future = np.where(still[:, None, None, None], held, future)
+            whole = np.concatenate([whole[:, :kept], future], axis=1)
+            kept = whole.shape[1] - _OVERLAP
             yield whole
 
     def _next(self, whole: Array) -> Array:
@@ -132,7 +143,7 @@ class MotionPredictor:
         """Progress events, then one :class:`PredictResult` without a manifest."""
         now = time.perf_counter()
         past, frames = people_of(request.past).astype(np.float64), round(request.seconds * FPS)
-        whole, total = past, -(-frames // round(FPS))
+        whole, total = past, 1 + max(0, -(-(frames - round(FPS)) // (round(FPS) - _OVERLAP)))
         for step, longer in enumerate(self.passes(past, frames), start=1):
             whole = longer
             yield clock.progress("sample", step, total)

@@ -19,7 +19,7 @@ from sqlalchemy.orm import Session, selectinload
 
 from webdemo import formats
 from webdemo.inference.requests import Result
-from webdemo.motion import Duet, InputError
+from webdemo.motion import InputError
 from webdemo.ui.history import Entry, Opened
 
 from .database import Database, Link, Run
@@ -249,7 +249,9 @@ class History:
             half.mkdir(mode=0o700)
             for i, duet in enumerate(result.duets):
                 formats.write(duet, half / f"{i + 1}.npz")
-            (half / "readouts.json").write_text(json.dumps(list(result.readouts)), encoding="utf-8")
+            (half / "readouts.json").write_text(
+                json.dumps(list(result.readouts), default=float), encoding="utf-8"
+            )
             size = sum(path.stat().st_size for path in half.iterdir())
             os.replace(half, self.folder / run)
         except BaseException:
@@ -261,7 +263,7 @@ class History:
         folder = self.folder / run
         files = sorted(folder.glob("*.npz"), key=lambda path: int(path.stem))
         try:
-            duets = tuple(duet for duet in map(formats.read, files) if isinstance(duet, Duet))
+            duets = tuple(map(formats.read, files))
             readouts = tuple(json.loads((folder / "readouts.json").read_text(encoding="utf-8")))
         except (OSError, ValueError):
             duets = ()

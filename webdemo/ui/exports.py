@@ -16,7 +16,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 
 from webdemo import formats
-from webdemo.formats.one_person import SUFFIXES, write_clip
+from webdemo.formats.one_person import SUFFIXES
 from webdemo.inference.requests import Result
 from webdemo.motion import Clip, Duet
 from webdemo.view.contact_sheet import contact_sheet
@@ -142,8 +142,6 @@ def _write_motion(duet: Duet | Clip, path: Path, *, title: str) -> list[Path]:
     if path.suffix == ".png":
         contact_sheet(duet, path, title=title)
         return [path]
-    if isinstance(duet, Clip):
-        return write_clip(duet, path)
     return [Path(written) for written in formats.write(duet, path)]
 
 
