@@ -204,6 +204,17 @@ def test_too_many_requests() -> None:
     rates.take("b")
 
 
+def test_below_a_path(tmp_path: Path) -> None:
+    """A proxy may cut the base path off, or leave it; the page's own addresses hold it."""
+    settings = settings_for(tmp_path, root_path="/motion", proxies=["127.0.0.1"])
+    client = client_of(settings)
+    for path in ("/motion/config", "/config"):
+        assert client.get(path).json()["root"] == f"{HERE}/motion"
+    answer = client.get("/motion")
+    assert answer.status_code == 200 and "Path=/motion;" in answer.headers["set-cookie"]
+    assert client.get("/motionx").status_code == 404
+
+
 # ---- accounts ------------------------------------------------------------------------------------
 
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import errno
 import time
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -12,10 +13,13 @@ import pytest
 from sqlalchemy import update
 
 from webdemo import formats
+from webdemo.inference.predict_request import PredictRequest
 from webdemo.inference.requests import GenerateRequest, ReactRequest, Result
 from webdemo.motion import InputError
 from webdemo.server.database import Database, Link, Run
+from webdemo.server.estimates import units
 from webdemo.server.history import DAY, History
+from webdemo.server.recorder import title_of
 from webdemo.ui.again import request_of, verdict
 
 from .lab import stub_module
@@ -189,3 +193,27 @@ def test_a_database_that_is_none(tmp_path: Path) -> None:
     for url in (f"sqlite:///{tmp_path / 'h.db'}", "nonsense", "nosuch://x/y"):
         with pytest.raises(InputError, match="database"):
             Database(url)
+
+
+def test_what_a_run_is_called() -> None:
+    actor = stub_module().walking(3.0).a
+    assert title_of(GenerateRequest(prompt=" They hug. ").to_dict()) == "They hug."
+    assert title_of(ReactRequest(actor=replace(actor, name="wave.bvh")).to_dict()) == "Reaction to wave.bvh"
+    assert title_of(PredictRequest(motion=replace(actor, name="walk")).to_dict()) == "After walk"
+
+
+def test_every_kind_of_request_has_a_cost() -> None:
+    actor = stub_module().walking(3.0).a
+    one = units(GenerateRequest(prompt="x", seconds=2.0, steps=10))
+    assert units(GenerateRequest(prompt="x", seconds=2.0, steps=10, samples=3)) == pytest.approx(3 * one)
+    assert 0 < units(PredictRequest(motion=actor, seconds=2.0)) < one < units(ReactRequest(actor=actor))
+
+
+def test_a_prediction_of_one_person_is_kept(history: History) -> None:
+    actor = replace(stub_module().walking(3.0).a, name="walk")
+    run = history.begin(ME, PredictRequest(motion=actor), "After walk")
+    history.finish(run, Result(duets=(actor,), manifest={"model": "m"}))
+    opened = history.open(run, ME)
+    np.testing.assert_array_equal(opened.result.duets[0].positions, actor.positions)
+    with pytest.raises(InputError, match="use its tab"):
+        request_of(opened)

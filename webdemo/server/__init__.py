@@ -1,1 +1,5 @@
 """The page for a lab: settings, accounts, a fair queue, history, limits, health and figures."""
+
+import os
+
+os.environ.setdefault("GRADIO_ANALYTICS_ENABLED", "False")  # before Gradio is imported: it asks no other host

@@ -5,13 +5,10 @@ from __future__ import annotations
 import asyncio
 import contextlib
 import logging
-import os
 import time
 from collections.abc import AsyncIterator, Callable
 from dataclasses import dataclass
 from typing import Any
-
-os.environ.setdefault("GRADIO_ANALYTICS_ENABLED", "False")  # before Gradio is imported: it asks no other host
 
 import gradio as gr
 from fastapi import FastAPI, Request
@@ -114,9 +111,8 @@ def create_app(
         app.include_router(login_routes(settings, sign_ins, visitors))
     app.add_middleware(Guard, settings=settings, visitors=visitors, figures=figures, answers=lab.answers)
     page = build_page(engine, loader=Loader(engine), runs=Recorder(queue, history), history=history)
-    # Whoever waits in line holds a thread.
+    page.max_threads = settings.queue + 64  # whoever waits in line holds a thread
     page.queue(default_concurrency_limit=4, max_size=2 * settings.queue + 64)
-    page.max_threads = settings.queue + 64
     options: dict[str, Any] = {
         "allowed_paths": [],
         "server_name": settings.host,

@@ -9,12 +9,17 @@ from typing import Any
 
 
 def units(request: Any) -> float:
-    """The work of a request: samples × denoising steps × seconds of motion, and a little for the rest."""
+    """The work of a request: samples × denoising steps × seconds of motion, and a little for the rest.
+
+    What a kind of request does not have counts once.
+    """
     seconds = getattr(request, "seconds", None)
     if seconds is None:
         actor = getattr(request, "actor", None)
         seconds = actor.seconds if actor is not None else 5.0
-    return float(request.samples) * (float(seconds) * float(request.steps) + 10.0)
+    return float(getattr(request, "samples", 1)) * (
+        float(seconds) * float(getattr(request, "steps", 1)) + 10.0
+    )
 
 
 @dataclass

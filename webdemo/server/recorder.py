@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import logging
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from contextlib import suppress
 from dataclasses import replace
 from typing import Any
@@ -33,8 +33,7 @@ class Recorder:
     def run(self, session: str, request: Any) -> Iterator[Progress | Result]:
         """As :meth:`FairQueue.run`; the result comes when it is kept, or with a note that it could not be."""
         who = visitor()
-        title = request.prompt.strip() or f"Reaction to {request.actor.name}"
-        run = self._begin(who.owner, request, title) if who.owner else ""
+        run = self._begin(who.owner, request) if who.owner else ""
         state, message = "refused", ""
         try:
             for event in self.queue.run(session, request):
@@ -58,9 +57,9 @@ class Recorder:
                 with suppress(SQLAlchemyError, InputError):  # what went wrong before is what is told
                     self._end(run, who.owner, state, message)
 
-    def _begin(self, owner: str, request: Any, title: str) -> str:
+    def _begin(self, owner: str, request: Any) -> str:
         try:
-            return self.history.begin(owner, request, title)
+            return self.history.begin(owner, request, title_of(request.to_dict()))
         except SQLAlchemyError as error:
             log.exception("A run could not be written down.")
             full = "full" in str(getattr(error, "orig", ""))
@@ -83,7 +82,7 @@ class Recorder:
             self.history.finish(run, result)
         except InputError as error:
             return replace(result, notes=(*result.notes, str(error)))
-        except SQLAlchemyError:
+        except Exception:  # whatever it is, the result itself is there
             log.exception("A result could not be kept.")
             sentence = "The result could not be kept in the history: take its files home now."
             return replace(result, notes=(*result.notes, sentence))
@@ -94,3 +93,11 @@ class Recorder:
         self.queue.figures.runs.labels(model, "done").inc()
         for stage, seconds in result.timings.items():
             self.queue.figures.stage_seconds.labels(model, stage).observe(seconds)
+
+
+def title_of(asked: Mapping[str, Any]) -> str:
+    """What a run is called, from its request's dictionary: its prompt, or what it was made from."""
+    if words := str(asked.get("prompt", "")).strip():
+        return words
+    given = asked.get("actor") or asked.get("motion") or {}
+    return f"{'Reaction to' if 'actor' in asked else 'After'} {given.get('name') or 'a motion'}"

@@ -44,7 +44,7 @@ class Visitors:
         if self.sign_ins is not None:
             person = self._signed_in(cookies.get(SESSION_COOKIE, ""))
             name = f"user {person}"
-            return None if person is None else Visitor(name, name, reference, base)
+            return None if person is None else Visitor(name, name, reference, base, person)
         local = is_loopback(address)
         if not local and not self.settings.open:
             raise Refused(

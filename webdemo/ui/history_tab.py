@@ -19,12 +19,12 @@ from .job_tab import QUIET, JobTab, Updates
 from .panels import readout_panel, status
 from .player import show
 from .show import result_payload
-from .visitor import visitor
-from .words import cancelled_line, error_line, progress_line
+from .visitor import Visitor, visitor
+from .words import cancelled_line, error_line, progress_line, text
 
 LABEL = "History"
 _EMPTY = "Nothing yet: what you make is kept here."
-_CONTROLS = ("prompt", "seconds", "seed", "samples", "guidance", "steps", "damping", "role")
+_CONTROLS = ("prompt", "seconds", "seed", "samples", "guidance", "steps", "damping", "role", "model", "mode")
 """Fields of a request that a tab may have a control of the same name for."""
 _NAMED = "() => new URLSearchParams(window.location.search).get('run') || ''"
 """The run that the page's address names."""
@@ -60,6 +60,7 @@ class HistoryTab:
             self.list = gr.Radio([], show_label=False, container=False, elem_id="history-list",
                                  elem_classes="pd-runs")  # fmt: skip
             self.empty = gr.HTML(status(_EMPTY), elem_id="history-empty")
+            self.who = gr.HTML(elem_id="history-who")
             with gr.Row(elem_classes="pd-go pd-history-buttons"):
                 self.buttons = {
                     name: gr.Button(label, elem_id=f"history-{name}", size="sm", min_width=0,
@@ -77,7 +78,7 @@ class HistoryTab:
 
     def _wire(self, demo: gr.Blocks, tab: gr.Tab, record: gr.State) -> None:
         self.record = record
-        seen = [self.list, self.empty]
+        seen = [self.list, self.empty, self.who]
         quick = {"concurrency_limit": 8, "concurrency_id": "history", **QUIET}
         tab.select(self.refresh, inputs=self.list, outputs=seen, **quick)
         for name, act in (("favour", self.favour), ("revoke", self.revoke), ("remove", self.remove)):
@@ -113,12 +114,14 @@ class HistoryTab:
 
     def refresh(self, chosen: str | None) -> Updates:
         """The list as it is now, with the same run chosen where it is still there."""
-        entries = self.history.entries(visitor().owner)
+        who = visitor()
+        entries = self.history.entries(who.owner)
         choices = [(_label(entry), entry.id) for entry in entries]
         kept = chosen if any(entry.id == chosen for entry in entries) else None
         return (
             gr.update(choices=choices, value=kept or (entries[0].id if entries else None)),
             gr.update(visible=not entries),
+            _signed_in(who),
         )
 
     def favour(self, run: str | None) -> str:
@@ -252,6 +255,16 @@ def _parts(job: JobTab) -> Sequence[gr.components.Component]:
     """Everything of a tab that an opened run may set."""
     names = ("line", "player", "under", "readouts", *_CONTROLS, "source", "trim", "begin", "end")
     return [getattr(job, name) for name in names if hasattr(job, name)]
+
+
+def _signed_in(who: Visitor) -> str:
+    """Whose history this is, with a way out; nothing without accounts."""
+    if not who.account:
+        return ""
+    return (
+        f'<p class="pd-status">Signed in as {text(who.account)} · '
+        f'<a href="{text(who.base)}logout">Sign out</a></p>'
+    )
 
 
 def _session(request: gr.Request) -> str:

@@ -16,12 +16,14 @@ class Visitor:
         owner: whose history a run goes to; empty where nobody could find it again.
         reference: the request's id in the server's log; empty where the page is served alone.
         base: where the page is, such as "https://lab.example/motion/"; empty where that is not known.
+        account: the name they signed in by; empty without accounts.
     """
 
     person: str = "local"
     owner: str = "local"
     reference: str = ""
     base: str = ""
+    account: str = ""
 
 
 LOCAL = Visitor()
