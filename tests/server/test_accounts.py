@@ -17,6 +17,7 @@ from webdemo.motion import InputError
 from webdemo.server import accounts
 from webdemo.server.accounts import SignIns, Users
 from webdemo.server.database import Database, SignIn
+from webdemo.server.guard import cookie_header
 from webdemo.server.settings import Settings, read_settings
 
 
@@ -152,6 +153,14 @@ def test_it_is_never_open_unsaid(fields: dict[str, Any], allowed: bool) -> None:
     else:
         with pytest.raises(InputError, match="there are no accounts"):
             settings.check()
+
+
+def test_a_space_is_open_and_behind_its_own_proxy(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("SPACE_ID", "lab/pas-de-deux")
+    settings = Settings()
+    settings.check()
+    assert (settings.host, settings.open, settings.proxies) == ("0.0.0.0", True, ["*"])
+    assert "SameSite=None; Secure" in cookie_header("a", "b", seconds=1, root="", secure=False)
 
 
 def test_secrets_are_not_printed() -> None:

@@ -5,14 +5,16 @@ from __future__ import annotations
 import threading
 import time
 from collections.abc import Iterator
+from dataclasses import replace
 from types import SimpleNamespace
 from typing import Any
 
 import pytest
 
-from webdemo.inference.requests import Cancelled, Progress, Result
+from webdemo.inference.requests import Cancelled, GenerateRequest, Progress, Result
 from webdemo.motion import InputError
 from webdemo.server import queue as line
+from webdemo.server.engine import SharedEngine
 from webdemo.server.queue import FairQueue, QueueLimits
 from webdemo.ui.runs import Waiting
 from webdemo.ui.visitor import Visitor
@@ -228,3 +230,16 @@ def test_stopping_does_not_wait_for_ever(monkeypatch: pytest.MonkeyPatch) -> Non
     assert people.queue.close(0.05) == 1
     people.end()
     assert isinstance(people.ends["a"], (InputError, Cancelled))
+
+
+def test_what_may_share_a_pass() -> None:
+    engine = SharedEngine()
+    one = GenerateRequest(prompt="They wave.", seconds=4.0, steps=20)
+    key = engine.key(one)
+    assert key == engine.key(replace(one, prompt="They hug.", seconds=5.0, guidance=1.0, damping=0.0, seed=4))
+    assert key != engine.key(replace(one, steps=21)) and key != engine.key(replace(one, sampler="dpm++"))
+    assert engine.key(request("of another kind")) is None
+    assert engine.fits([one], replace(one, seconds=5.0))
+    assert not engine.fits([one], replace(one, seconds=5.1))
+    assert not engine.fits([one, replace(one, seconds=5.0)], replace(one, seconds=3.9))
+    assert not engine.ready  # nothing of this loads a network

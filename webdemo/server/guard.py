@@ -250,7 +250,9 @@ class Guard:
 
 def cookie_header(name: str, value: str, *, seconds: float, root: str, secure: bool) -> str:
     """A Set-Cookie that scripts cannot read and other sites' forms do not send."""
-    parts = [f"{name}={value}", f"Max-Age={int(seconds)}", f"Path={root or '/'}", "HttpOnly", "SameSite=Lax"]
+    secure, same_site = (True, "None") if on_a_space() else (secure, "Lax")  # a Space's page is in a frame
+    parts = [f"{name}={value}", f"Max-Age={int(seconds)}", f"Path={root or '/'}"]
+    parts += ["HttpOnly", f"SameSite={same_site}"]
     return "; ".join([*parts, "Secure"] if secure else parts)
 
 

@@ -59,7 +59,8 @@ class Settings(BaseSettings):
         "", pattern=r"^(/[\w.~-]+)*$", description="path under which a proxy shows the page"
     )
     proxies: list[str] = Field(
-        ["127.0.0.1", "::1"], description="addresses whose X-Forwarded headers are believed"
+        default_factory=lambda: ["*"] if on_a_space() else ["127.0.0.1", "::1"],
+        description="addresses whose X-Forwarded headers are believed",
     )
     hosts: list[str] = Field(
         [], description="names by which browsers may call; on loopback its own, otherwise any, by default"
