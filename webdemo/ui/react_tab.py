@@ -116,7 +116,6 @@ class ReactTab(JobTab):
                     self.end = gr.Slider(0, SECONDS[1], value=SECONDS[1], step=0.1, label="End",
                                          elem_id="react-end")  # fmt: skip
                 with gr.Accordion("How the file was read", open=False, elem_id="react-import"):
-                    self.found = gr.HTML(elem_id="react-found")
                     with gr.Row(elem_classes="pd-pair"):
                         self.up = gr.Dropdown(
                             [("found", AUTO), *AXES], value=AUTO, label="Up axis", elem_id="react-up",
@@ -130,6 +129,7 @@ class ReactTab(JobTab):
                             value=None, label="Frames a second", placeholder="found", elem_id="react-fps",
                             min_width=0,
                         )  # fmt: skip
+                    self.found = gr.HTML(elem_id="react-found")
                 self.role = gr.Radio(
                     [("acts first", "a"), ("reacts", "b")], value=ReactRequest.role,
                     label="The given person …", elem_id="react-role",
@@ -286,13 +286,8 @@ class ReactTab(JobTab):
 
 
 def _found(source: Source) -> str:
-    """How a source's file was read, as HTML: one line, then its joints beside SMPL's."""
+    """How a source's file was read, as HTML: one line, then which of its joints is which of SMPL's."""
     if source.found is None:
         return status("Taken from a result: nothing had to be found.")
-    rows = "".join(
-        f"<tr><td>{text(theirs)}</td><td>{text(ours)}</td></tr>" for theirs, ours in source.found.joints
-    )
-    head = '<thead><tr><th scope="col">In the file</th><th scope="col">SMPL</th></tr></thead>'
-    return (
-        f'{status(source.found.line)}<div class="pd-table"><table>{head}<tbody>{rows}</tbody></table></div>'
-    )
+    pairs = " · ".join(f"{text(theirs)} → {text(ours)}" for theirs, ours in source.found.joints)
+    return f'{status(source.found.line)}<p class="pd-timings">{pairs}</p>'
