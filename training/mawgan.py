@@ -175,7 +175,7 @@ class Trainer(PredictionTrainer):
         """Writes the averaged predictor as a predictor's folder."""
         save_predictor(
             folder, self.ema, kind="mawgan", fps=self.windows.fps, bones=self.windows.bones,
-            training={"steps": self.step, **asdict(self.settings)},
+            training={**asdict(self.settings), "steps": self.step},
         )  # fmt: skip
 
 

@@ -129,7 +129,7 @@ class Trainer(PredictionTrainer):
         """Writes the averaged network as a predictor's folder."""
         save_predictor(
             folder, self.ema, kind="mlp", fps=self.windows.fps, bones=self.windows.bones,
-            training={"steps": self.step, **asdict(self.settings)},
+            training={**asdict(self.settings), "steps": self.step},
         )  # fmt: skip
 
 
