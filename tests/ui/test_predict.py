@@ -17,6 +17,7 @@ import gradio as gr
 from webdemo.formats import read, write
 from webdemo.inference.predict_request import PredictRequest, PredictResult, people_of, with_people
 from webdemo.inference.requests import Progress, Result
+from webdemo.ui.api import PredictEndpoint
 from webdemo.ui.context import PageContext
 from webdemo.ui.exports import Record, Shelf, write_files
 from webdemo.ui.predict_tab import PredictTab
@@ -153,3 +154,15 @@ def test_curves_compare_with_the_last_pose() -> None:
     assert names == ["Motion MLP", "Last pose held", "Motion MLP, speed", "What really followed"]
     alone = drift(PredictRequest(motion=walking(4.0), seconds=1.0))
     assert len(curves_figure(alone).data) == 1 and "Nothing follows" in str(curves_figure(alone).layout)
+
+
+def test_programs_get_the_files_and_the_curves(tab: PredictTab, pair: Path) -> None:
+    endpoint = PredictEndpoint(tab.page)
+    answer, files = endpoint.predict(str(pair), 2.0, 1.0, "motion-mlp")
+    assert answer["prediction"]["past_frames"] == 60 and len(answer["prediction"]["error"]) == 30
+    assert answer["manifest"]["request"]["kind"] == "predict"
+    (motion,) = (read(file) for file in files if file.endswith(".npz"))
+    assert motion.num_frames == 90
+    for past, marker, told in ((str(pair), 0.3, "1 s or more is needed"), ("", 0, "There is no past")):
+        with pytest.raises(gr.Error, match=told):
+            endpoint.predict(past, marker, 1.0, "motion-mlp")
