@@ -111,6 +111,12 @@ def test_the_stream_is_the_sampling_of_the_whole_at_once(network: CompactReGenNe
     torch.testing.assert_close(streamed, whole, atol=1e-4, rtol=0)
 
 
+@pytest.mark.parametrize("mode", ["online", "offline"])
+@pytest.mark.parametrize("frames", [30, 31, 32, 33, 34])
+def test_any_number_of_frames_is_answered(engine: Engine, mode: str, frames: int) -> None:
+    assert react(engine, mode=mode, actor=waver(frames), steps=1).duets[0].num_frames == frames
+
+
 def test_frames_come_one_by_one_as_the_result_has_them(engine: Engine) -> None:
     live = list(engine.live(REQUEST))
     assert [frame.index for frame in live] == list(range(75))

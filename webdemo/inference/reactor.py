@@ -150,8 +150,9 @@ class Reactor:
 
     def _live(self, request: ReactRequest, condition: Tensor) -> Iterator[LiveFrame]:
         frames, model = request.actor.num_frames, self.model
-        rows = sample_noise(request.seed, request.samples, (model.num_rows(frames), FEATURES)).transpose(0, 1)
-        noise = iter(rows)
+        # A last frame on a knot begins an interval that sampling the whole at once does not need.
+        rows = model.num_rows(frames) + 1
+        noise = iter(sample_noise(request.seed, request.samples, (rows, FEATURES)).transpose(0, 1))
         stream = model.stream(condition, steps=request.steps, scale=request.guidance, max_frames=frames)
         finish = [FollowingCleanup() for _ in range(request.samples)]
         placement: Placement | None = None
