@@ -17,7 +17,7 @@ from sqlalchemy import update
 
 from webdemo.server import accounts
 from webdemo.server.accounts import Users
-from webdemo.server.app import Lab, create_app
+from webdemo.server.app import PAGES, Lab, create_app
 from webdemo.server.bodies import Refused
 from webdemo.server.database import SignIn
 from webdemo.server.logs import JsonLines
@@ -213,6 +213,13 @@ def test_below_a_path(tmp_path: Path) -> None:
     answer = client.get("/motion")
     assert answer.status_code == 200 and "Path=/motion;" in answer.headers["set-cookie"]
     assert client.get("/motionx").status_code == 404
+
+
+def test_what_pages_leave_behind_is_bounded(local: TestClient) -> None:
+    mounted = next(
+        route.app for route in local.app.routes if hasattr(getattr(route, "app", None), "state_holder")
+    )
+    assert mounted.state_holder.capacity == PAGES
 
 
 # ---- accounts ------------------------------------------------------------------------------------

@@ -37,6 +37,8 @@ CLEAN_EVERY = 900.0
 """Seconds between two looks at what is too old or too much."""
 ANSWER_SECONDS = 5.0
 """How long the answers of runs that ended may take to be sent at least, however short the grace."""
+PAGES = 256
+"""Pages and programs whose last values are kept; Gradio's own 10,000 would be gigabytes of results."""
 WARM_UP_AFTER = 2.0
 """Seconds between the start and the loading of the networks, which would slow the first page."""
 
@@ -111,6 +113,7 @@ def create_app(
         app.include_router(login_routes(settings, sign_ins, visitors))
     app.add_middleware(Guard, settings=settings, visitors=visitors, figures=figures, answers=lab.answers)
     page = build_page(engine, loader=Loader(engine), runs=Recorder(queue, history), history=history)
+    page.state_session_capacity = PAGES
     page.max_threads = settings.queue + 64  # whoever waits in line holds a thread
     page.queue(default_concurrency_limit=4, max_size=2 * settings.queue + 64)
     options: dict[str, Any] = {
