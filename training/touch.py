@@ -59,7 +59,7 @@ def conditions(model: CompactInterGen, captions: list[str]) -> Tensor:
 
 
 def with_touches(
-    model: CompactInterGen, scenes: Scenes, *, most: int = 12_000, steps: int = 1500, seed: int = 0
+    model: CompactInterGen, scenes: Scenes, *, most: int = 8_000, steps: int = 1500, seed: int = 0
 ) -> tuple[CompactInterGen, float]:
     """The same network with a fitted touch reader, and its accuracy on test captions.
 
