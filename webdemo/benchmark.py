@@ -71,7 +71,7 @@ def run_benchmark(*, seconds: float, steps: int, repeats: int, browser: bool = F
         "plain_over_undamped": statistics.median(plainly) / statistics.median(undamped),
         "four_samples_over_one": eight / statistics.median(undamped),
     }
-    figures |= measure_prediction(engine, max(repeats, 5))
+    figures |= measure_prediction(max(repeats, 5))
     figures |= measure_reactions(repeats)
     if browser:
         from webdemo.benchmark_browser import measure_browser
@@ -83,13 +83,14 @@ def run_benchmark(*, seconds: float, steps: int, repeats: int, browser: bool = F
     return figures
 
 
-def measure_prediction(engine: Any, repeats: int) -> dict[str, float]:
+def measure_prediction(repeats: int) -> dict[str, float]:
     """Milliseconds that two people's next 25 frames take, and seconds for four seconds by recursion."""
     import numpy as np
 
+    from webdemo.inference.engine import GENERATORS, WEIGHTS
     from webdemo.motion import SMPL22
 
-    predictor = engine._generator("motion-mlp")
+    predictor: Any = GENERATORS["motion-mlp"](WEIGHTS / "motion-mlp")
     sway = 0.05 * np.sin(np.arange(30) / 5)[:, None, None] * SMPL22.rest_positions()
     past = np.stack([SMPL22.rest_positions() + sway] * 2)
     predictor.predict(past, 25)

@@ -112,8 +112,8 @@ def test_nothing_but_smpl_is_posed(tmp_path):
 def test_unknown_endings_name_the_known_ones(tmp_path):
     with pytest.raises(InputError, match=r"'.fbx' cannot be written: use .npz, .bvh, .npy or .glb"):
         formats.write(DUET, tmp_path / "x.fbx")
-    with pytest.raises(InputError, match=r"'.txt' cannot be read: use .npz, .bvh or .npy"):
-        formats.read(tmp_path / "x.txt")
+    with pytest.raises(InputError, match=r"'.fbx' cannot be read: use "):
+        formats.read(tmp_path / "x.fbx")
     with pytest.raises(InputError, match="without an ending"):
         formats.read(b"123")
     assert formats.can_read(".BVH") and formats.can_write(".npz")

@@ -315,9 +315,6 @@ def test_written_corpus_reads_back(tmp_path, library: Library) -> None:
         np.testing.assert_array_equal(part.swapaxes(0, 1), scene.positions.astype(np.float32))
         assert entry["captions"] == scene.captions
     assert sorted(path.name for path in tmp_path.iterdir()) == ["index.json", "motions.npy"]
-    build.report(scenes, tally, tmp_path / "report")
-    assert {path.stem for path in (tmp_path / "report").glob("*.png")} == set(families)
-    assert "| ordered |" in (tmp_path / "report" / "report.md").read_text()
 
 
 def test_a_family_that_never_passes_is_left_out(library: Library, monkeypatch, caplog) -> None:
