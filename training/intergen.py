@@ -15,7 +15,7 @@ import json
 import math
 import time
 from collections import Counter
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 from dataclasses import asdict, dataclass, field, fields
 from pathlib import Path
 from typing import Any
@@ -32,6 +32,7 @@ from models.motion_tokens import FEATURES, mirror_control, pack
 from training import checkpoint
 from training.corpus.captions import mirror_caption
 from training.handedness import mirrored
+from training.loop import Loop
 from training.prepare import Scenes, load, normalizer
 from training.reading import CaptionReader
 from training.samples import write_sheet
@@ -187,7 +188,7 @@ def new_model(settings: Settings, data: Data) -> CompactInterGen:
     return model
 
 
-class Trainer:
+class Trainer(Loop):
     """One training run: :meth:`run` goes on from wherever its checkpoint stands.
 
     Args:
@@ -312,16 +313,6 @@ class Trainer:
     def save(self) -> None:
         checkpoint.save(self.out / "last.safetensors", self.parts(), self.step, self.settings_json)
 
-    def run(self, *, minutes: float, save_every: float = 5.0) -> Iterator[dict[str, float]]:
-        """Trains until the steps or the minutes are over; yields each step's terms; saves as it goes."""
-        began = saved = time.monotonic()
-        while self.step < self.settings.steps and time.monotonic() - began < minutes * 60:
-            yield self.train_step()
-            if time.monotonic() - saved > save_every * 60:
-                self.save()
-                saved = time.monotonic()
-        self.save()
-
 
 def main(argv: list[str] | None = None) -> int:
     parser = argparse.ArgumentParser(description="Train the compact InterGen on prepared scenes.")
@@ -351,23 +342,15 @@ def _run(options: argparse.Namespace) -> None:
     trainer = Trainer(
         load(options.scenes), Settings(**chosen), options.out, init=options.init, device=options.device
     )
-    log, began, first = [], time.monotonic(), trainer.step
-    drawn = began
-    with open(options.out / "log.jsonl", "a") as file:
-        for terms in trainer.run(minutes=options.minutes):
-            log.append(terms)
-            if trainer.step % 50 == 0:
-                mean = {name: sum(t[name] for t in log) / len(log) for name in terms}
-                pace = (time.monotonic() - began) / (trainer.step - first)
-                line = {"step": trainer.step, "pace": round(pace, 3)} | {
-                    k: round(v, 5) for k, v in mean.items()
-                }
-                print(json.dumps(line), file=file, flush=True)
-                print(json.dumps(line), flush=True)
-                log = []
-            if options.sheets and time.monotonic() - drawn > options.sheets * 60:
-                write_sheet(trainer.ema.eval(), options.out / "samples" / f"{trainer.step:07d}.png")
-                drawn = time.monotonic()
+    drawn = time.monotonic()
+
+    def draw() -> None:
+        nonlocal drawn
+        if options.sheets and time.monotonic() - drawn > options.sheets * 60:
+            write_sheet(trainer.ema.eval(), options.out / "samples" / f"{trainer.step:07d}.png")
+            drawn = time.monotonic()
+
+    trainer.run_logged(minutes=options.minutes, after=draw)
 
 
 if __name__ == "__main__":

@@ -13,8 +13,6 @@ from __future__ import annotations
 import argparse
 import json
 import math
-import time
-from collections.abc import Iterator
 from dataclasses import asdict, dataclass, fields
 from pathlib import Path
 from typing import Any
@@ -38,6 +36,7 @@ from models.motion_tokens import FEATURES, NUM_CONTACTS, mirror_control
 from training import checkpoint
 from training.corpus.captions import mirror_caption
 from training.intergen import balanced, seeded
+from training.loop import Loop
 from training.prepare import ROOT_SCALE, Scenes, load
 from training.shell import exit_code
 from training.text_features import CaptionFeatures
@@ -241,7 +240,7 @@ def distance_loss(predicted: Tensor, reactor: Tensor, actor: Tensor, mask: Tenso
     return masked_mean(error.sum((-1, -2)) / (true < NEAR).sum((-1, -2)).clamp_min(1), mask)
 
 
-class Trainer:
+class Trainer(Loop):
     """One training run: :meth:`run` goes on from wherever its checkpoint stands.
 
     Args:
@@ -354,16 +353,6 @@ class Trainer:
     def save(self) -> None:
         checkpoint.save(self.out / "last.safetensors", self.parts(), self.step, self.settings_json)
 
-    def run(self, *, minutes: float, save_every: float = 5.0) -> Iterator[dict[str, float]]:
-        """Trains until the steps or the minutes are over; yields each step's terms; saves as it goes."""
-        began = saved = time.monotonic()
-        while self.step < self.settings.steps and time.monotonic() - began < minutes * 60:
-            yield self.train_step()
-            if time.monotonic() - saved > save_every * 60:
-                self.save()
-                saved = time.monotonic()
-        self.save()
-
 
 def main(argv: list[str] | None = None) -> int:
     parser = argparse.ArgumentParser(description="Train the compact ReGenNet on prepared scenes.")
@@ -387,18 +376,7 @@ def main(argv: list[str] | None = None) -> int:
 def _run(options: argparse.Namespace) -> None:
     settings = Settings(**{f.name: getattr(options, f.name) for f in fields(Settings)})
     trainer = Trainer(load(options.scenes), settings, options.out, words=options.words)
-    log, began, first = [], time.monotonic(), trainer.step
-    with open(options.out / "log.jsonl", "a") as file:
-        for terms in trainer.run(minutes=options.minutes):
-            log.append(terms)
-            if trainer.step % 50 == 0:
-                pace = (time.monotonic() - began) / (trainer.step - first)
-                line = {"step": trainer.step, "pace": round(pace, 3)} | {
-                    name: round(sum(t[name] for t in log) / len(log), 5) for name in terms
-                }
-                print(json.dumps(line), file=file, flush=True)
-                print(json.dumps(line), flush=True)
-                log = []
+    trainer.run_logged(minutes=options.minutes)
     if options.export:
         save_folder(options.export, trainer.ema, trained_steps=trainer.step)
 

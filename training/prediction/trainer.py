@@ -1,11 +1,9 @@
-"""What the trainings of all predictors share: seeds, checkpoints, minutes, a log."""
+"""What the trainings of all predictors share: seeds, checkpoints, windows, an average."""
 
 from __future__ import annotations
 
 import json
-import time
-from abc import ABC, abstractmethod
-from collections.abc import Iterator
+from abc import abstractmethod
 from dataclasses import asdict
 from pathlib import Path
 from typing import Any
@@ -14,10 +12,11 @@ import torch
 from torch import Tensor, nn
 
 from training import checkpoint
+from training.loop import Loop
 from training.prediction.windows import Windows
 
 
-class PredictionTrainer(ABC):
+class PredictionTrainer(Loop):
     """One training run, which goes on from wherever its checkpoint stands.
 
     Everything random is drawn from the seed and the step number, so a run that stops and is started again
@@ -54,10 +53,6 @@ class PredictionTrainer(ABC):
     def parts(self) -> dict[str, nn.Module | torch.optim.Optimizer]:
         """What a checkpoint holds; ``ema`` is the network that is kept in the end."""
 
-    @abstractmethod
-    def train_step(self) -> dict[str, float]:
-        """One optimiser step; returns the loss terms and counts :attr:`step` up."""
-
     def batch(self, part: int = 0) -> Tensor:
         """The windows (B, T, J, 3) of this step."""
         return self.windows.batch(self.settings.batch, (self.settings.seed, self.step, part)).to(self.device)
@@ -70,29 +65,3 @@ class PredictionTrainer(ABC):
 
     def save(self) -> None:
         checkpoint.save(self.checkpoint, self.parts(), self.step, self.settings_json)
-
-    def run(self, *, minutes: float, save_every: float = 2.0) -> Iterator[dict[str, float]]:
-        """Trains until the steps or the minutes are over; yields each step's terms; saves as it goes."""
-        began = saved = time.monotonic()
-        while self.step < self.settings.steps and time.monotonic() - began < minutes * 60:
-            yield self.train_step()
-            if time.monotonic() - saved > save_every * 60:
-                self.save()
-                saved = time.monotonic()
-        self.save()
-
-    def run_logged(self, *, minutes: float, every: int = 50) -> None:
-        """:meth:`run`, with the mean of every so many steps printed and kept in ``log.jsonl``."""
-        terms: list[dict[str, float]] = []
-        began, first = time.monotonic(), self.step
-        with open(self.out / "log.jsonl", "a") as file:
-            for one in self.run(minutes=minutes):
-                terms.append(one)
-                if self.step % every and self.step < self.settings.steps:
-                    continue
-                pace = (time.monotonic() - began) / (self.step - first)
-                mean = {name: round(sum(t[name] for t in terms) / len(terms), 5) for name in one}
-                line = json.dumps({"step": self.step, "pace": round(pace, 3)} | mean)
-                print(line, file=file, flush=True)
-                print(line, flush=True)
-                terms = []
