@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import argparse
 import json
+import random
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -69,8 +70,14 @@ def load_corpus(folder: Path) -> tuple[np.ndarray, list[dict[str, Any]]]:
     return motions, scenes
 
 
-def prepare(folder: Path, layout: TokenLayout, max_seconds: float = 10.0) -> Scenes:
-    """Fits control points to every scene of a corpus; scenes are cut to whole tokens."""
+def prepare(
+    folder: Path, layout: TokenLayout, max_seconds: float = 10.0, captions: int | None = None
+) -> Scenes:
+    """Fits control points to every scene of a corpus; scenes are cut to whole tokens.
+
+    ``captions`` keeps that many of a training scene's sentences, drawn at random.
+    """
+    rng = random.Random(0)
     motions, index = load_corpus(folder)
     parts, rows, start = [], [], 0
     for entry in index:
@@ -87,7 +94,10 @@ def prepare(folder: Path, layout: TokenLayout, max_seconds: float = 10.0) -> Sce
         parts.append(control.transpose(0, 1).half())
         kept = ("family", "captions", "split", "events", "sources")
         hand = leading_hand(motion.swapaxes(0, 1), entry.get("events"))
-        rows.append({"start": start, "tokens": tokens, "hand": hand} | {key: entry.get(key) for key in kept})
+        row = {"start": start, "tokens": tokens, "hand": hand} | {key: entry.get(key) for key in kept}
+        if captions and row["split"] == "train" and len(row["captions"]) > captions:
+            row["captions"] = rng.sample(row["captions"], captions)
+        rows.append(row)
         start += tokens * layout.knots_per_token
     if not rows:
         raise InputError(f"The corpus in {folder} has no scene of a second or more.")
@@ -142,12 +152,16 @@ def main(argv: list[str] | None = None) -> int:
     parser.add_argument("--out", type=Path, required=True, help="the .safetensors file to write")
     parser.add_argument("--frames-per-knot", type=int, default=4)
     parser.add_argument("--knots-per-token", type=int, default=2)
+    parser.add_argument(
+        "--captions", type=int, help="sentences to keep a training scene (all); fewer are sooner encoded"
+    )
     options = parser.parse_args(argv)
     return exit_code(lambda: _run(options))
 
 
 def _run(options: argparse.Namespace) -> None:
-    scenes = prepare(options.corpus, TokenLayout(options.frames_per_knot, options.knots_per_token))
+    layout = TokenLayout(options.frames_per_knot, options.knots_per_token)
+    scenes = prepare(options.corpus, layout, captions=options.captions)
     save(scenes, options.out)
     seconds = len(scenes.control) * options.frames_per_knot / 30
     print(f"{len(scenes.rows)} scenes, {seconds / 3600:.2f} hours, {options.out.stat().st_size / 1e6:.1f} MB")

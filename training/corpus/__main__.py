@@ -21,11 +21,14 @@ def main(arguments: list[str] | None = None) -> int:
     parser.add_argument("--hours", type=float, default=5.0, help="hours of composed motion (5)")
     parser.add_argument("--seed", type=int, default=0)
     parser.add_argument("--families", nargs="+", metavar="NAME", help="only these families")
+    parser.add_argument("--cache", type=Path, help="folder that keeps the fitted pairs for the next build")
     options = parser.parse_args(arguments)
     logging.basicConfig(level=logging.WARNING, format="%(message)s")
     began = time.monotonic()
     try:
-        scenes, tally = build(options.data, hours=options.hours, seed=options.seed, only=options.families)
+        scenes, tally = build(
+            options.data, hours=options.hours, seed=options.seed, only=options.families, cache=options.cache
+        )
         save(scenes, options.out)
     except InputError as error:
         print(error, file=sys.stderr)

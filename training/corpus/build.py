@@ -86,6 +86,7 @@ def build(
     seed: int = 0,
     only: Sequence[str] | None = None,
     recorded: bool = True,
+    cache: Path | None = None,
 ) -> tuple[list[Scene], Tally]:
     """All scenes of a corpus.
 
@@ -95,6 +96,7 @@ def build(
         seed: the same seed, data and code give the same corpus.
         only: names of families; all by default.
         recorded: whether the recorded pairs join where their data are there.
+        cache: where the skeletons fitted to the recorded pairs are kept from one build to the next.
 
     Raises:
         InputError: where the data or a family's name are unknown.
@@ -114,16 +116,16 @@ def build(
         frames = int(hours * share * 3600 * FPS)
         scenes += draw(rng, Library(clips, split), families, frames, tally)
     if recorded and not only:
-        scenes += _recorded(data_dir, tally)
+        scenes += _recorded(data_dir, tally, cache)
     return scenes, tally
 
 
-def _recorded(data_dir: str | Path, tally: Tally) -> list[Scene]:
+def _recorded(data_dir: str | Path, tally: Tally, cache: Path | None) -> list[Scene]:
     """The recorded pairs, without the benchmark's test sets."""
     from .pairs import load_pairs
 
     try:
-        pairs = load_pairs(data_dir)
+        pairs = load_pairs(data_dir, cache)
     except InputError as error:
         logger.warning("No recorded pairs: %s", error)
         return []

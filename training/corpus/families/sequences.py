@@ -13,17 +13,17 @@ SIDED = ("wave", "raise-hand", "bye")
 
 
 def _two(rng: Rng) -> tuple[str, str]:
-    first = pick(rng, GESTURES)
-    return first, pick(
-        rng, [name for name in GESTURES if name[:5] != first[:5] and {name, first} != {"wave", "bye"}]
-    )
+    """Two gestures that can be told apart; bows twice as often, the only one that is not of the arms."""
+    first = pick(rng, ("bow", *GESTURES))
+    others = [name for name in GESTURES if name[:5] != first[:5] and {name, first} != {"wave", "bye"}]
+    return first, pick(rng, ["bow", *others] if "bow" in others else others)
 
 
 def _style(rng: Rng, library: Library, name: str) -> str | None:
     return manner(rng, library, {"raise-hands": "raise-hand"}.get(name, name))
 
 
-@register("ordered", needs=("bow", "wave", "raise-hand", "bye"), weight=4.0)
+@register("ordered", needs=("bow", "wave", "raise-hand", "bye"), weight=12.0)
 def ordered(rng: Rng, library: Library) -> Scene:
     """a does one thing; when it is over, b does another."""
     names = _two(rng) if rng.random() < 0.8 else (pick(rng, GESTURES),) * 2
@@ -51,7 +51,7 @@ def ordered(rng: Rng, library: Library) -> Scene:
     return finish(rng, library, "ordered", a, b, slots=slots, events=events, most=285)
 
 
-@register("sequence", needs=("bow", "wave", "raise-hand", "bye"), weight=3.0)
+@register("sequence", needs=("bow", "wave", "raise-hand", "bye"), weight=12.0)
 def sequence(rng: Rng, library: Library) -> Scene:
     """a does two things one after the other while b watches."""
     names = _two(rng)
