@@ -45,6 +45,7 @@ LEAD = 3
 """Control points beyond an interval's first that its frames depend on."""
 POSE = 3 * NUM_JOINTS
 ACTOR_FEATURES = 2 * POSE
+BEGIN_FEATURES = POSE + 1
 
 
 @dataclass(frozen=True)
@@ -90,6 +91,7 @@ class CompactReGenNet(nn.Module):
             )
         )
         self.condition = nn.Linear(config.cond_dim, config.latent_dim, bias=False)
+        self.begin = nn.Linear(BEGIN_FEATURES, config.latent_dim, bias=False)
         self.offline = nn.Parameter(torch.zeros(config.latent_dim))
         self.conditioner = TextConditioner(
             TextConditionerConfig(latent_dim=config.cond_dim, num_layers=config.text_layers, dropout=0.0)
@@ -116,6 +118,14 @@ class CompactReGenNet(nn.Module):
         before = pose_rows(positions[:, step * (knots - 1).clamp_min(0)])
         return (torch.cat([now, now - before], dim=-1) - self.actor_mean) / self.actor_std
 
+    def begin_row(self, pose: Tensor) -> Tensor:
+        """How the reactor stands at the first frame, as :meth:`embed` takes it: (…, 22, 3) metres → (…, 67).
+
+        The pose, normalised, and a 1 that says it is given; zeros say that it is not.
+        """
+        row = (pose_rows(pose) - self.mean[:POSE]) / self.std[:POSE]
+        return torch.cat([row, torch.ones_like(row[..., :1])], dim=-1)
+
     def positions(self, x: Tensor, frames: int) -> tuple[Tensor, Tensor]:
         """Network space (B, K, 70) → positions (B, T, 22, 3) in metres and foot contacts (B, T, 4)."""
         decoded, contacts = decode(x * self.std + self.mean, self.layout)
@@ -123,9 +133,12 @@ class CompactReGenNet(nn.Module):
 
     # ---- network ---------------------------------------------------------------------------------
 
-    def embed(self, t: Tensor, condition: Tensor, *, causal: bool) -> Tensor:
-        """The token that all rows attend to, (B, d): timestep, words (zeros for none), and the mode."""
+    def embed(self, t: Tensor, condition: Tensor, begin: Tensor | None, *, causal: bool) -> Tensor:
+        """The token that all rows attend to, (B, d): timestep, words (zeros for none), the reactor's first
+        pose (:meth:`begin_row`; None or zeros where it is open), and the mode."""
         emb = self.network.embed_timestep(t) + self.condition(condition)
+        if begin is not None:
+            emb = emb + self.begin(begin)
         return emb if causal else emb + self.offline
 
     def forward(
@@ -137,6 +150,7 @@ class CompactReGenNet(nn.Module):
         *,
         causal: bool,
         start: Tensor | None = None,
+        begin: Tensor | None = None,
     ) -> Tensor:
         """The predicted clean reaction.
 
@@ -148,12 +162,13 @@ class CompactReGenNet(nn.Module):
             causal: online; else every row sees all.
             start: (B,) int64, the place of the first row, 0 by default; training draws it, so that long
                 streams meet no place that is new.
+            begin: (B, 67) of :meth:`begin_row`, where the reactor's first pose is given.
 
         Returns:
             (B, K, 70)
         """
         rows, d = x.shape[1], self.config.latent_dim
-        emb = self.embed(t, condition, causal=causal)
+        emb = self.embed(t, condition, begin, causal=causal)
         place = torch.arange(rows, device=x.device)
         places = place if start is None else place + start[:, None]
         h = self.network.fuse(widen(x), actor)
@@ -168,20 +183,37 @@ class CompactReGenNet(nn.Module):
             h = decoder_layer(layer, h, memory, attend)
         return self.network.output_process(h)[..., :FEATURES]
 
-    def guided(self, x: Tensor, t: Tensor, actor: Tensor, condition: Tensor, *, scale: float) -> Tensor:
+    def guided(
+        self,
+        x: Tensor,
+        t: Tensor,
+        actor: Tensor,
+        condition: Tensor,
+        *,
+        scale: float,
+        begin: Tensor | None = None,
+    ) -> Tensor:
         """Offline prediction with classifier-free guidance, both halves in one batch; as in `forward`."""
         if scale == 1 or not condition.any():
-            return self(x, t, actor, condition, causal=False)
+            return self(x, t, actor, condition, causal=False, begin=begin)
         both = torch.cat([condition, torch.zeros_like(condition)])
         doubled = (torch.cat([v, v]) for v in (x, t, actor))
-        conditional, plain = self(*doubled, both, causal=False).chunk(2)
+        begin = None if begin is None else torch.cat([begin, begin])
+        conditional, plain = self(*doubled, both, causal=False, begin=begin).chunk(2)
         return plain + scale * (conditional - plain)
 
     def stream(
-        self, condition: Tensor, *, steps: int = 5, scale: float = 1.0, max_frames: int = 900
+        self,
+        condition: Tensor,
+        *,
+        steps: int = 5,
+        scale: float = 1.0,
+        max_frames: int = 900,
+        begin: Tensor | None = None,
     ) -> CompactStream:
-        """Open a stream that reacts to an actor frame by frame; condition (B, cond_dim), B samples."""
-        return CompactStream(self, condition, steps=steps, scale=scale, max_frames=max_frames)
+        """Open a stream that reacts to an actor frame by frame; condition (B, cond_dim), B samples, and
+        begin (B, 67) of :meth:`begin_row` where the reactor's first pose is given."""
+        return CompactStream(self, condition, steps=steps, scale=scale, max_frames=max_frames, begin=begin)
 
 
 def pose_rows(positions: Tensor) -> Tensor:
@@ -204,7 +236,14 @@ class CompactStream:
     """
 
     def __init__(
-        self, model: CompactReGenNet, condition: Tensor, *, steps: int, scale: float, max_frames: int
+        self,
+        model: CompactReGenNet,
+        condition: Tensor,
+        *,
+        steps: int,
+        scale: float,
+        max_frames: int,
+        begin: Tensor | None = None,
     ) -> None:
         if max_frames < 1:
             raise StreamError("A stream needs at least one frame: give max_frames 1 or more.")
@@ -213,13 +252,14 @@ class CompactStream:
         self.guided = scale != 1 and bool(condition.any())
         if self.guided:
             condition = torch.cat([condition, torch.zeros_like(condition)])
+            begin = None if begin is None else torch.cat([begin, begin])
         self.scheduler = make_scheduler("ddim", steps)
         rows = model.num_rows(max_frames) + 1
         with torch.no_grad():
             self.passes = [
                 CausalPass(
                     model.network,
-                    model.embed(t.expand(len(condition)), condition, causal=True),
+                    model.embed(t.expand(len(condition)), condition, begin, causal=True),
                     rows,
                     window=model.config.window,
                 )

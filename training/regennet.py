@@ -54,6 +54,9 @@ class Settings:
 
     offline: share of batches that see the whole actor. unconditional: share of scenes without words.
     jitter: metres of noise on the actor's joints, so that recordings with noise are no surprise.
+    begin: share of scenes where the network is told how the reactor stands at first.
+    crop: share of scenes that begin somewhere in their first half, all of them told so.
+    recorded: how often a recorded pair counts; there are minutes of them beside hours of composed ones.
     """
 
     latent_dim: int = 192
@@ -70,6 +73,9 @@ class Settings:
     unconditional: float = 0.25
     offline: float = 0.3
     jitter: float = 0.005
+    begin: float = 0.5
+    crop: float = 0.25
+    recorded: int = 8
     root_weight: float = 4.0
     velocity: float = 30.0
     bone_length: float = 30.0
@@ -91,12 +97,14 @@ class Settings:
 
 @dataclass
 class Batch:
-    """One batch: control points of reactor and actor (B, K, 70) in metres, mask (B, K), words (B, C)."""
+    """One batch: control points of reactor and actor (B, K, 70) in metres, mask (B, K), words (B, C), and
+    whether the scene was cropped (B,)."""
 
     reactor: Tensor
     actor: Tensor
     mask: Tensor
     words: Tensor
+    cropped: Tensor
 
 
 class Conditions:
@@ -147,12 +155,38 @@ def seen_rows(control: Tensor) -> Tensor:
     return torch.cat([now, now - before], dim=-1)
 
 
+def is_recorded(row: dict[str, Any]) -> bool:
+    """Whether a scene was recorded with both people, and not composed of two recordings."""
+    return any(str(source).startswith(("sbu", "k3hi")) for source in row["sources"])
+
+
+def cropped(people: Tensor, knots: int) -> Tensor:
+    """Control points (2, K, 70) without their first ``knots``, in the frame of the actor's new first pose.
+
+    The actor, person 0, stands at the origin of the floor and faces +Z at the first frame.
+    """
+    people = people[:, knots:]
+    first = knot_positions(people[:1, :3])[0, 0]
+    ahead = facing(first[None])[0]
+    x, z = (ahead / ahead.norm().clamp_min(1e-6))[[0, 2]]
+    zero, one = torch.zeros_like(x), torch.ones_like(x)
+    turn = torch.stack([z, zero, -x, zero, one, zero, x, zero, z]).view(3, 3)
+    pose, contacts = people.split([FEATURES - NUM_CONTACTS, NUM_CONTACTS], dim=-1)
+    pose = pose.unflatten(-1, (-1, 3)).clone()
+    pose[..., 0, :] -= first[0] * torch.tensor([1.0, 0.0, 1.0])
+    return torch.cat([(pose @ turn.T).flatten(-2), contacts], dim=-1)
+
+
 class Data:
     """Draws batches of similar lengths; batch ``step`` is the same in every run of the same seed."""
 
     def __init__(self, scenes: Scenes, settings: Settings) -> None:
         self.scenes, self.settings = scenes, settings
-        self.rows: list[dict[str, Any]] = balanced(scenes.split("train"))
+        self.rows: list[dict[str, Any]] = [
+            row
+            for row in balanced(scenes.split("train"))
+            for _ in range(settings.recorded if is_recorded(row) else 1)
+        ]
         if len(self.rows) < settings.batch:
             raise InputError(f"{len(self.rows)} training scenes do not fill a batch of {settings.batch}.")
         self.knots = torch.tensor([row["tokens"] for row in self.rows]) * scenes.layout.knots_per_token
@@ -191,7 +225,7 @@ class Data:
 
     def batch(self, step: int, conditions: Conditions) -> Batch:
         rows = [self.rows[i] for i in self._rows_of(step)]
-        draw = torch.rand(len(rows), 2, generator=seeded(self.settings.seed, 2, step))
+        draw = torch.rand(len(rows), 4, generator=seeded(self.settings.seed, 2, step))
         longest = max(row["tokens"] for row in rows) * self.scenes.layout.knots_per_token
         longest = -8 * (-longest // 8)  # few shapes: kernels are made for each
         people = torch.zeros(2, len(rows), longest, FEATURES)
@@ -201,12 +235,15 @@ class Data:
             one, caption = self.scenes.scene(row), row["captions"][int(draw[i, 0] * len(row["captions"]))]
             if draw[i, 1] < 0.5:
                 one, caption = mirror_control(one, SMPL22.mirror), mirror_caption(caption)
+            if draw[i, 2] < self.settings.crop:
+                one = cropped(one, 1 + int(draw[i, 3] * one.shape[1] / 2))
             people[:, i, : one.shape[1]] = one
             people[:, i, one.shape[1] :] = one[:, -1:]
             mask[i, : one.shape[1]] = 1
             captions.append(caption)
         actor, reactor = people
-        return Batch(reactor, actor, mask, conditions.batch(captions))
+        crop = draw[:, 2] < self.settings.crop
+        return Batch(reactor, actor, mask, conditions.batch(captions), crop)
 
 
 def masked_mean(values: Tensor, mask: Tensor) -> Tensor:
@@ -304,8 +341,10 @@ class Trainer(Loop):
         seen = seen_rows(batch.actor)
         seen = seen + s.jitter * torch.randn(seen.shape, generator=generator)
         seen = (seen - model.actor_mean) / model.actor_std
+        told = (torch.rand(size, generator=generator) < s.begin) | batch.cropped
+        begin = model.begin_row(knot_positions(batch.reactor[:, :3])[:, 0]) * told[:, None]
         with torch.autocast("cpu", torch.bfloat16), sdpa_kernel(SDPBackend.MATH):
-            predicted = model(xt, t, seen, batch.words * keep, causal=causal, start=start)
+            predicted = model(xt, t, seen, batch.words * keep, causal=causal, start=start, begin=begin)
         predicted = predicted.float()
         error = ((predicted - x0).square() * self.weights).mean(-1)
         terms = {"simple": masked_mean(error, batch.mask).mean()}

@@ -82,6 +82,46 @@ def test_online_the_future_changes_no_frame_by_a_bit(engine: Engine, until: int,
         assert shown[0] == shown[1]
 
 
+@pytest.mark.parametrize("mode", ["online", "offline"])
+def test_a_given_start_is_where_the_reaction_begins(engine: Engine, mode: str) -> None:
+    start = waver().positions[0] + np.array([0.3, 0.0, 1.2])
+    free = react(engine, mode=mode, cleanup=False).duets[0].b.positions
+    held = react(engine, mode=mode, cleanup=False, start=start).duets[0].b.positions
+    assert np.abs(free[0] - start).max() > 0.1
+    assert np.abs(held[0] - start).max() < 1e-4
+    steps = np.linalg.norm(np.diff(held, axis=0), axis=-1).max()
+    assert steps < np.linalg.norm(np.diff(free, axis=0), axis=-1).max() + 0.5  # no jump: it settles
+
+
+def test_a_start_is_told_to_the_network(network: CompactReGenNet) -> None:
+    """Beyond the half second of settling, too, the reaction is another one."""
+    poses = torch.tensor(SMPL22.rest_positions()).float() + torch.tensor(
+        [[[0.0, 1.0, 1.5]], [[0.0, 1.0, 3.0]]]
+    )
+    rows = network.begin_row(poses)
+    assert rows.shape == (2, 67) and (rows[:, -1] == 1).all()
+    x, seen = torch.zeros(2, 20, FEATURES), torch.zeros(2, 20, 132)
+    made = network(x, torch.zeros(2).long(), seen, torch.zeros(2, 32), causal=True, begin=rows)
+    assert (made[0] - made[1]).abs().max() > 1e-3
+    open_ = network(x, torch.zeros(2).long(), seen, torch.zeros(2, 32), causal=True)
+    none = network(x, torch.zeros(2).long(), seen, torch.zeros(2, 32), causal=True, begin=torch.zeros(2, 67))
+    torch.testing.assert_close(open_, none)
+
+
+@pytest.mark.parametrize(
+    ("start", "model", "why"),
+    [
+        (np.zeros((21, 3)), "regennet", "22 joints"),
+        (np.full((22, 3), np.nan), "regennet", "finite|NaN"),
+        (np.zeros((22, 3)), "regennet", "bones"),
+        (waver().positions[0], "intergen", "no start pose"),
+    ],
+)
+def test_bad_starts_are_told(start: np.ndarray, model: str, why: str) -> None:
+    with pytest.raises(InputError, match=why):
+        ReactRequest(actor=waver(), model=model, start=start)
+
+
 def test_offline_sees_the_future(engine: Engine) -> None:
     positions = waver().positions.copy()
     positions[60:] += np.float32([1.0, 0, 0])

@@ -10,12 +10,14 @@ from safetensors.torch import load_file
 from models.compact import CaptionBank, CompactConfig, CompactInterGen
 from models.compact import save_folder as save_intergen
 from models.compact_regennet import load_folder
+from models.intergen_losses import facing
 from models.motion_tokens import FEATURES, TokenLayout, decode, encode
 from training import prepare, regennet
 from training.prepare import Scenes
 from training.regennet import (
     Settings,
     Trainer,
+    cropped,
     distance_loss,
     interaction_loss,
     knot_positions,
@@ -68,6 +70,17 @@ def words(tmp_path_factory: pytest.TempPathFactory) -> Path:
     )
     save_intergen(folder, model, CaptionBank(("They wave.",), torch.ones(1, 384), far=0.5))
     return folder
+
+
+def test_a_cropped_scene_begins_with_the_actor_at_the_origin(scenes: Scenes) -> None:
+    whole = scenes.scene(scenes.rows[2])
+    late = cropped(whole, 4)
+    before, after = knot_positions(whole[:, 4:]), knot_positions(late)
+    pelvis, ahead = after[0, 0, 0], facing(after[0, :1])
+    torch.testing.assert_close(pelvis[[0, 2]], torch.zeros(2), atol=1e-5, rtol=0)
+    torch.testing.assert_close(ahead, torch.tensor([[0.0, 0.0, 1.0]]), atol=1e-5, rtol=0)
+    torch.testing.assert_close(torch.cdist(after[0], after[1]), torch.cdist(before[0], before[1]))
+    torch.testing.assert_close(late[..., -4:], whole[:, 4:, -4:])
 
 
 def take(trainer: Trainer, steps: int) -> Trainer:

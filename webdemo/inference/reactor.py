@@ -33,6 +33,8 @@ from .generator import Clock, sample_noise
 from .requests import GenerateRequest, Progress, ReactRequest, Result
 
 Array = NDArray[np.floating]
+SETTLE = 0.5
+"""Seconds over which the difference between a given first pose and the network's dies away."""
 NAMES = ("actor", "reactor")
 
 
@@ -113,6 +115,13 @@ class Reactor:
             timings={**clock.stages, "total": round(clock.elapsed, 4)},
         )
 
+    def _begin(self, request: ReactRequest, placement: Placement) -> Tensor | None:
+        """(samples, 67) what the network is told of the reactor's first pose, if one is given."""
+        if request.start is None:
+            return None
+        pose = torch.from_numpy(placement.to_network(request.start)).float()
+        return self.model.begin_row(pose).expand(request.samples, -1)
+
     # ---- offline ---------------------------------------------------------------------------------
 
     def _offline(
@@ -124,10 +133,11 @@ class Reactor:
         given = torch.from_numpy(placement.to_network(request.actor.positions)).float()
         with torch.no_grad():
             seen = model.actor_rows(given[None]).expand(request.samples, -1, -1)
+        begin = self._begin(request, placement)
         noise = sample_noise(request.seed, request.samples, (model.num_rows(frames), FEATURES))
 
         def predict(x: Tensor, t: Tensor) -> Tensor:
-            return model.guided(x, t, seen, condition, scale=request.guidance)
+            return model.guided(x, t, seen, condition, scale=request.guidance, begin=begin)
 
         x = noise
         for step in sample_steps(predict, noise, make_scheduler("ddim", request.steps)):
@@ -138,6 +148,8 @@ class Reactor:
             raw = model.positions(x, frames)[0].double().numpy()
         if not np.isfinite(raw).all():
             return raw, raw
+        if request.start is not None:
+            raw = raw + settle(placement.to_network(request.start) - raw[:, :1], np.arange(frames))
         finish = clean_person if request.cleanup else np.asarray
         return placement.to_world(raw), placement.to_world(np.stack([finish(person) for person in raw]))
 
@@ -153,16 +165,28 @@ class Reactor:
         # A last frame on a knot begins an interval that sampling the whole at once does not need.
         rows = model.num_rows(frames) + 1
         noise = iter(sample_noise(request.seed, request.samples, (rows, FEATURES)).transpose(0, 1))
-        stream = model.stream(condition, steps=request.steps, scale=request.guidance, max_frames=frames)
+        stream, off = None, 0.0
         finish = [FollowingCleanup() for _ in range(request.samples)]
         placement: Placement | None = None
         for index, frame in enumerate(request.actor.positions):
             began = time.perf_counter()
             if placement is None:  # from the first frame alone
                 placement = Placement.of(Clip(frame[None], FPS, request.actor.skeleton), "a")
+                stream = model.stream(
+                    condition,
+                    steps=request.steps,
+                    scale=request.guidance,
+                    max_frames=frames,
+                    begin=self._begin(request, placement),
+                )
+            assert stream is not None  # opened with the first frame
             given = torch.from_numpy(placement.to_network(frame)).float()
             made, contacts = stream.step(given, noise=noise)
             raw = made.double().numpy()
+            if request.start is not None:
+                if index == 0:
+                    off = placement.to_network(request.start) - raw
+                raw = raw + settle(off, np.array([index]))[:, 0]
             shown = raw
             if request.cleanup and np.isfinite(raw).all():
                 people = zip(finish, raw, contacts.numpy(), strict=True)
@@ -185,6 +209,20 @@ class Reactor:
         clock.stages["delay of a frame, longest"] = round(max(delays), 4)
         raw, shown = (np.stack([getattr(f, name) for f in live], axis=1) for name in ("raw", "positions"))
         return raw, shown
+
+
+def settle(off: Array, frames: Array) -> Array:
+    """What is left of a difference at the first frame, so that a motion begins where it should.
+
+    Args:
+        off: (samples, 1, 22, 3) or (samples, 22, 3) metres.
+        frames: (T,) numbers of frames.
+
+    Returns:
+        (samples, T, 22, 3), all of ``off`` at frame 0 and nothing from :data:`SETTLE` seconds on.
+    """
+    share = np.clip(1 - frames / (SETTLE * FPS), 0, 1)
+    return off.reshape(-1, 1, *off.shape[-2:]) * (share**2 * (3 - 2 * share))[:, None, None]
 
 
 def _duet(request: ReactRequest, person: Array) -> Duet:

@@ -11,6 +11,7 @@ from dataclasses import asdict, dataclass, field, fields
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from webdemo.motion import Clip, Duet, InputError
 
@@ -128,12 +129,15 @@ class ReactRequest(SamplingRequest):
             ReGenNet's given person always acts first.
         mode: "offline": the other person is made in sight of the whole motion; "online" (ReGenNet): each of
             their frames in sight of the given person's frames so far.
+        start: (22, 3) metres, how the person who is made stands at the first frame, in the actor's world;
+            open by default. Not for InterGen.
     """
 
     actor: Clip
     prompt: str = ""
     role: str = "a"
     mode: str = "offline"
+    start: NDArray[np.floating] | None = field(default=None, compare=False)
 
     def __post_init__(self) -> None:
         _words(self.prompt, needed=False)
@@ -146,7 +150,21 @@ class ReactRequest(SamplingRequest):
         if self.model == "regennet":
             self._check_regennet()
         object.__setattr__(self, "actor", check_actor(self.actor, SECONDS))
+        if self.start is not None:
+            self._check_start()
         super().__post_init__()
+
+    def _check_start(self) -> None:
+        if self.model == "intergen":
+            raise InputError("InterGen takes no start pose: leave it out, or choose the model regennet.")
+        start = np.asarray(self.start, dtype=np.float64)
+        if start.shape != (22, 3) or not np.isfinite(start).all():
+            raise InputError(
+                "The start pose must be finite and of 22 joints, in metres of the actor's world."
+            )
+        # One person in one place, checked as an actor of a second would be.
+        check_actor(Clip(np.repeat(start[None], 30, axis=0), 30.0), (0.0, 2.0))
+        object.__setattr__(self, "start", start.round(5))  # as the manifest keeps it
 
     def _check_regennet(self) -> None:
         if self.role != "a":
@@ -158,7 +176,9 @@ class ReactRequest(SamplingRequest):
 
     def to_dict(self) -> dict[str, Any]:
         """Everything but the motion, which is named by its SHA-256."""
-        plain = {f.name: getattr(self, f.name) for f in fields(self) if f.name != "actor"}
+        plain = {f.name: getattr(self, f.name) for f in fields(self) if f.name not in ("actor", "start")}
+        if self.start is not None:
+            plain["start"] = np.asarray(self.start).tolist()
         clip = self.actor
         actor = {
             "name": clip.name[:100],
