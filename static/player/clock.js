@@ -4,12 +4,13 @@ const LONGEST_STEP = 0.5; // seconds; a stalled tab goes on from where it stood
 
 export class Clock {
   constructor() {
-    Object.assign(this, { frames: 1, fps: 30, speed: 1, loop: true, playing: false, frame: 0, last: null });
+    Object.assign(this, { frames: 1, fps: 30, speed: 1, loop: true, playing: false, frame: 0, last: null, limit: null });
   }
 
   load({ frames, fps }) {
     this.frames = frames;
     this.fps = fps;
+    this.limit = null;
     this.seek(this.frame);
   }
 
@@ -32,17 +33,18 @@ export class Clock {
   }
 
   seek(frame) {
-    this.frame = Math.min(Math.max(frame, 0), this.frames - 1);
+    this.frame = Math.min(Math.max(frame, 0), this.limit ?? this.frames - 1);
     this.last = null;
   }
 
-  /** Moves on to `now` (ms). Without loop, stops on the last frame. */
+  /** Moves on to `now` (ms). Without loop, stops on the last frame; waits at `limit`, where there is no more yet. */
   advance(now) {
     if (!this.playing) return;
     const step = this.last === null ? 0 : Math.min((now - this.last) / 1000, LONGEST_STEP);
     this.last = now;
     const next = this.frame + step * this.speed * this.fps;
-    if (next < this.frames - 1) this.frame = next;
+    if (this.limit !== null) this.frame = Math.min(next, this.limit);
+    else if (next < this.frames - 1) this.frame = next;
     else if (this.loop) this.frame = next % this.frames; // [frames - 1, frames) holds the last frame
     else {
       this.frame = this.frames - 1;

@@ -45,12 +45,15 @@ export function poseAt(motion, frame) {
   return pose;
 }
 
+const unpackSample = (sample) => ({
+  ...sample,
+  motion: unpackPositions(sample.positions),
+  ghostMotion: sample.ghost ? unpackPositions(sample.ghost) : null,
+  beside: sample.beside ? unpackSample(sample.beside) : null,
+});
+
 /** A payload as the player keeps it. */
 export function decode(payload) {
-  const samples = payload.samples.map((sample) => ({
-    ...sample,
-    motion: unpackPositions(sample.positions),
-    ghostMotion: sample.ghost ? unpackPositions(sample.ghost) : null,
-  }));
-  return { id: payload.id, title: payload.title || "", names: payload.joint_names, parents: payload.parents, samples };
+  const { id, title, joint_names: names, parents, live, samples } = payload;
+  return { id, title: title || "", names, parents, live: Boolean(live), samples: samples.map(unpackSample) };
 }

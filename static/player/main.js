@@ -49,6 +49,7 @@ export async function mount(element, props, watch, plotlyUrl) {
   const root = element.querySelector(".pdd");
   const player = new Player(root);
   let shown;
+  let heard = null;
   const sync = () => {
     player.setBusy(props.busy, props.progress);
     player.setEmptyText(props.empty_text);
@@ -57,9 +58,15 @@ export async function mount(element, props, watch, plotlyUrl) {
       shown = id;
       player.load(props.value || null);
     }
+    const message = props.live ?? null;
+    const key = message && `${message.id} ${message.start} ${message.stop}`;
+    if (player.scene && key !== heard) {
+      heard = key;
+      if (message) player.arrive(message);
+    }
   };
   sync();
-  watch(["value", "busy", "progress", "empty_text"], sync);
+  watch(["value", "busy", "progress", "empty_text", "live"], sync);
   try {
     const [Plotly] = await Promise.all([loadPlotly(plotlyUrl), loadStyles(new URL("player.css", import.meta.url).href)]);
     root.classList.add("pdd-styled");

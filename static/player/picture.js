@@ -2,22 +2,22 @@
 
 import { css } from "./palette.js";
 
-export async function savePicture({ scene, stage, labels, theme, caption, name }) {
-  const image = await scene.picture();
-  const ratio = image.width / stage.clientWidth;
+export async function savePicture({ panes, stage, theme, caption, name }) {
+  const images = await Promise.all(panes.map((pane) => pane.scene.picture()));
+  const ratio = images[0].width / panes[0].host.clientWidth;
   const canvas = document.createElement("canvas");
-  [canvas.width, canvas.height] = [image.width, image.height];
+  [canvas.width, canvas.height] = [Math.round(ratio * stage.clientWidth), images[0].height];
   const context = canvas.getContext("2d");
   context.fillStyle = css(theme.background);
   context.fillRect(0, 0, canvas.width, canvas.height);
-  context.drawImage(image, 0, 0);
+  images.forEach((image, i) => context.drawImage(image, ratio * panes[i].host.offsetLeft, 0));
   context.scale(ratio, ratio);
   const family = getComputedStyle(stage).fontFamily;
   const from = stage.getBoundingClientRect();
   context.textBaseline = "middle";
   context.textAlign = "center";
   context.font = `600 12px ${family}`;
-  for (const label of labels) {
+  for (const label of panes.flatMap((pane) => pane.labels.labels)) {
     const box = label.getBoundingClientRect();
     context.fillStyle = getComputedStyle(label).backgroundColor;
     context.beginPath();

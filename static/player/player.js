@@ -1,15 +1,15 @@
 // The player: one element, one scene, one clock. main.js makes these; everything else is a part of it.
 
 import { Clock } from "./clock.js";
-import { decode, poseAt } from "./decode.js";
-import * as figure from "./figure.js";
+import { decode } from "./decode.js";
 import { attach } from "./input.js";
 import { actionFor, belongsToControl } from "./keys.js";
-import { FIELD_OF_VIEW, Orbit } from "./orbit.js";
-import { Labels, Tip, project, roleText } from "./overlay.js";
+import * as live from "./live.js";
+import { Orbit } from "./orbit.js";
+import { Tip, roleText } from "./overlay.js";
 import { THEMES, themeName } from "./palette.js";
+import { Pane } from "./pane.js";
 import { savePicture } from "./picture.js";
-import { Scene } from "./scene.js";
 import { describe } from "./skeleton.js";
 import { Strip } from "./strip.js";
 import { apart, heading, midpoint, preset } from "./views.js";
@@ -26,13 +26,13 @@ export class Player {
     this.stage = this.find(".pdd-stage");
     this.clock = new Clock();
     this.orbit = new Orbit();
-    this.labels = new Labels(this.find(".pdd-labels"));
+    this.panes = [];
+    this.addPane();
     this.tip = new Tip(this.find(".pdd-tip"));
     this.strip = new Strip(root, { onSeek: (frame) => this.seek(frame) });
     this.show = { trails: false, ghosts: false };
     this.data = null;
     this.sampleIndex = 0;
-    this.painted = { floor: "", trails: false, ghosts: false };
     this.times = [];
     this.dirty = true;
     this.handle = 0;
@@ -42,10 +42,19 @@ export class Player {
   async open(Plotly) {
     this.themeName = themeName();
     this.root.dataset.theme = this.themeName;
-    this.scene = await new Scene(this.find(".pdd-gl"), Plotly).open(this.theme.background);
+    this.Plotly = Plotly;
+    await this.panes[0].open(this.theme.background, Plotly);
+    this.scene = this.panes[0].scene;
     this.listen();
     this.wake();
     return this;
+  }
+
+  addPane() {
+    const panes = this.find(".pdd-panes");
+    panes.append(panes.querySelector("template").content.cloneNode(true));
+    this.panes.push(new Pane(panes.lastElementChild));
+    return this.panes[this.panes.length - 1];
   }
 
   get theme() {
@@ -56,8 +65,14 @@ export class Player {
     return this.data?.samples[this.sampleIndex] ?? null;
   }
 
-  poseAt(frame) {
-    return poseAt(this.sample.motion, frame);
+  /** The panes that show something, the first always: a second one while motions stand side by side. */
+  get shown() {
+    return this.sample?.beside && this.panes[1]?.scene ? this.panes : this.panes.slice(0, 1);
+  }
+
+  /** Everybody in view, pane after pane: an array a person of [x, y, z] a joint. */
+  everybody(frame) {
+    return this.shown.flatMap((pane) => pane.poseAt(frame));
   }
 
   // ---- content -------------------------------------------------------------------------------
@@ -69,24 +84,58 @@ export class Player {
       this.clock.pause();
       this.root.dataset.state = "empty";
       this.strip.load(null);
-      this.labels.load([]);
-      for (const name of this.scene.names) if (name !== "floor") this.scene.hide(name);
+      this.split(false);
+      this.panes[0].load(null);
       this.refresh();
       return;
     }
+    const goesOn = Boolean(payload.continues) && payload.continues === this.data?.id;
     this.data = decode(payload);
+    if (this.data.live) live.begin(this.data.samples[0]);
     this.skeleton = describe(this.data.names, this.data.parents);
     this.root.dataset.state = "ready";
     const title = this.find(".pdd-title");
     title.textContent = this.data.title;
     title.title = this.data.title;
     title.hidden = !this.data.title;
-    this.clock.frame = 0;
+    if (!goesOn) this.clock.frame = 0;
     this.buildTabs();
     this.select(0);
-    this.resetCamera();
-    this.clock.play();
+    if (!goesOn) this.resetCamera();
+    if (this.sample.live) this.clock.pause();
+    else if (!goesOn) this.clock.play();
     this.refresh();
+  }
+
+  /** A part of a motion that is still being made, see live.js. */
+  arrive(message) {
+    const { sample } = this;
+    if (!sample?.live || message.id !== this.data.id) return;
+    if (message.stop) live.end(sample);
+    if (message.stop || live.arrive(sample, message)) this.select(this.sampleIndex);
+    const reach = sample.live && live.reach(sample);
+    this.clock.limit = sample.live ? reach ?? 0 : null;
+    if (reach && !sample.live.started) {
+      sample.live.started = true;
+      this.clock.play();
+    }
+    this.refresh();
+  }
+
+  /** Makes room for a second view of equal size, or takes it away. */
+  async split(wanted) {
+    const second = this.panes[1];
+    if (wanted === Boolean(second && !second.host.hidden)) return;
+    if (second) second.host.hidden = !wanted;
+    else {
+      const pane = this.addPane();
+      this.resize();
+      await pane.open(this.theme.background, this.Plotly);
+      if (this.closed) return pane.close();
+      pane.load(this.sample?.beside ?? null, this.sample?.beside?.caption);
+    }
+    this.resize();
+    if (this.data) this.resetCamera();
   }
 
   buildTabs() {
@@ -113,7 +162,9 @@ export class Player {
     const { sample } = this;
     this.clock.load(sample);
     this.find(".pdd-range").max = String(sample.frames - 1);
-    this.labels.load(sample.roles);
+    this.panes[0].load(sample, sample.caption);
+    this.panes[1]?.load(sample.beside ?? null, sample.beside?.caption);
+    this.split(Boolean(sample.beside));
     this.strip.load(sample, this.theme.curve);
     for (const [person, key] of ["a", "b"].entries()) {
       const text = this.find(`[data-key=${key}]`);
@@ -124,7 +175,6 @@ export class Player {
       tab.setAttribute("aria-selected", String(i === this.sampleIndex));
       tab.tabIndex = i === this.sampleIndex ? 0 : -1;
     });
-    for (const name of ["bonesB", "jointsB"]) if (sample.motion.people < 2) this.scene.hide(name);
     this.refresh();
   }
 
@@ -180,7 +230,7 @@ export class Player {
   /** Glides to a preset; at once where `now` is null. */
   goTo(name, now = performance.now()) {
     this.camera = this.framed = name;
-    const pose = this.poseAt(this.clock.shown);
+    const pose = this.everybody(this.clock.shown);
     if (!this.orbit.following || now === null) this.orbit.jump(midpoint(pose, this.skeleton, this.aspect));
     this.orbit.goTo(this.viewOf(name, pose), now);
     this.refresh();
@@ -191,7 +241,7 @@ export class Player {
   }
 
   get aspect() {
-    return this.stage.clientWidth / this.stage.clientHeight || 1.7; // in a closed tab there is no size yet
+    return this.panes[0].host.clientWidth / this.stage.clientHeight || 1.7; // in a closed tab there is no size yet
   }
 
   resetCamera() {
@@ -218,7 +268,7 @@ export class Player {
     const frame = Math.round(this.clock.shown);
     const caption = [this.data.title, `${(frame / this.clock.fps).toFixed(2)} s`].filter(Boolean).join("  ·  ");
     return savePicture({
-      scene: this.scene, stage: this.stage, labels: this.labels.labels, theme: this.theme, caption,
+      panes: this.shown, stage: this.stage, theme: this.theme, caption,
       name: `pas-de-deux-${this.sampleIndex + 1}-frame-${frame}.png`,
     });
   }
@@ -280,20 +330,20 @@ export class Player {
     if (name === this.themeName) return;
     this.themeName = name;
     this.root.dataset.theme = name;
-    this.scene.setBackground(this.theme.background);
+    for (const pane of this.panes) pane.scene?.setBackground(this.theme.background);
     this.strip.load(this.sample, this.theme.curve);
     this.refresh();
   }
 
   resize() {
-    this.scene.resize();
+    for (const pane of this.panes) pane.scene?.resize();
     this.strip.paint();
     this.refresh();
   }
 
   /** Everything is drawn anew at the next frame. */
   refresh() {
-    this.painted.floor = "";
+    for (const pane of this.panes) pane.refresh();
     this.wake();
   }
 
@@ -303,7 +353,7 @@ export class Player {
   wake(still = false) {
     this.dirty = true;
     clearTimeout(this.stillTimer);
-    if (!still) this.scene?.setStill(false);
+    if (!still) this.setStill(false);
     if (this.handle || this.closed || !this.scene) return;
     loops.running++;
     this.handle = requestAnimationFrame((now) => this.tick(now));
@@ -321,7 +371,7 @@ export class Player {
     const seconds = this.lastTick ? Math.min((now - this.lastTick) / 1000, 0.5) : 0;
     this.lastTick = now;
     this.clock.advance(now);
-    const pose = this.data && this.poseAt(this.clock.shown);
+    const pose = this.data && this.everybody(this.clock.shown);
     const wanted = pose && { target: midpoint(pose, this.skeleton, this.aspect), distance: this.viewOf(this.framed, pose).distance };
     this.orbit.step(now, seconds, wanted);
     const moving = this.clock.playing || !this.orbit.settled(wanted);
@@ -336,54 +386,22 @@ export class Player {
       this.dirty = asked;
     } else {
       this.lastTick = null;
-      this.stillTimer = setTimeout(() => this.scene.setStill(true) && this.wake(true), STILL_AFTER);
+      this.stillTimer = setTimeout(() => this.setStill(true) && this.wake(true), STILL_AFTER);
     }
   }
 
   paint(pose) {
-    const { scene, orbit, theme, clock, skeleton } = this;
-    const [width, height] = [this.stage.clientWidth, this.stage.clientHeight];
-    this.matrix = orbit.matrix();
-    scene.setView(this.matrix, orbit.eye, orbit.center);
-    const put = (name, layer) => scene.set(name, layer);
-    const floorKey = `${this.themeName} ${orbit.target.map(Math.round)}`;
-    if (this.painted.floor !== floorKey) put("floor", figure.floor(orbit.target, 9, theme));
-    this.painted.floor = floorKey;
-    if (pose) {
-      const lens = new figure.Lens(orbit, height);
-      put("shadow", figure.shadow(pose, skeleton, theme, lens));
-      put("outline", figure.outline(pose, skeleton, theme.outline, lens));
-      const given = clock.shown < (this.sample?.past_until ?? 0);
-      const colors = given ? theme.given : theme.people;
-      pose.forEach((points, person) => {
-        put(`bones${"AB"[person]}`, figure.bones(points, skeleton, colors[person], lens));
-        put(`joints${"AB"[person]}`, figure.joints(points, skeleton, colors[person], lens));
-      });
-      this.paintExtras(put, lens);
-      this.spots = pose.map((points) => points.map((p) => project(p, this.matrix, width, height, FIELD_OF_VIEW)));
-      this.labels.place(pose.map((points) => {
-        const above = figure.headCenter(points, skeleton);
-        return project([above[0], above[1], above[2] + 0.17], this.matrix, width, height, FIELD_OF_VIEW);
-      }));
-      this.showTip();
-    }
-    scene.draw();
+    const { orbit, theme, themeName, clock, skeleton, show } = this;
+    const matrix = orbit.matrix();
+    for (const pane of this.shown) pane.paint(pose && pane.poseAt(clock.shown), { orbit, matrix, theme, themeName, clock, skeleton, show });
+    if (pose) this.showTip();
     this.showState();
     this.pose = pose;
     this.frameShown = clock.shown;
   }
 
-  paintExtras(put, lens) {
-    const { scene, theme, clock, skeleton, sample, show } = this;
-    if (show.trails) put("trails", figure.trails((f) => this.poseAt(f), clock.shown, clock.fps, skeleton, theme));
-    else if (this.painted.trails) scene.hide("trails");
-    this.painted.trails = show.trails;
-    const other = sample.ghostMotion ? poseAt(sample.ghostMotion, clock.shown) : [];
-    const moments = show.ghosts ? figure.ghostFrames(clock.frames).map((f) => this.poseAt(f)) : [];
-    const pale = moments.length + other.length > 0;
-    if (pale) put("ghosts", figure.ghosts(moments, other, skeleton, theme, lens));
-    else if (this.painted.ghosts) scene.hide("ghosts");
-    this.painted.ghosts = pale;
+  setStill(still) {
+    return this.shown.map((pane) => pane.scene?.setStill(still)).some(Boolean);
   }
 
   /** Brings the controls to what is true now. */
@@ -408,8 +426,11 @@ export class Player {
     for (const button of root.querySelectorAll("[data-camera]")) button.setAttribute("aria-pressed", String(button.dataset.camera === this.camera));
     const chip = this.find(".pdd-chip");
     const given = sample?.past_until;
-    chip.hidden = !given;
-    if (given) {
+    chip.hidden = !given && !sample?.live;
+    if (sample?.live) {
+      chip.dataset.part = "live";
+      chip.textContent = ["live", sample.live.text].filter(Boolean).join(" · ");
+    } else if (given) {
       chip.dataset.part = frame < given ? "given" : "predicted";
       chip.textContent = frame < given ? "given" : "predicted";
     }
@@ -417,12 +438,13 @@ export class Player {
   }
 
   showTip() {
-    if (!this.pointer || !this.spots || !this.data) return this.tip.hide();
-    this.tip.show(this.pointer, this.spots, (person, joint) => {
+    if (!this.pointer || !this.data) return this.tip.hide();
+    const shifted = ({ host, spots }) => spots.map((points) => points.map(([x, y, depth]) => [x + host.offsetLeft, y, depth]));
+    this.tip.show(this.pointer, this.shown.flatMap(shifted), (person, joint) => {
       const frame = this.clock.shown;
-      const [now, soon] = [this.poseAt(frame), this.poseAt(Math.min(frame + 1, this.clock.frames - 1))].map((p) => p[person][joint]);
+      const [now, soon] = [frame, Math.min(frame + 1, this.clock.frames - 1)].map((f) => this.everybody(f)[person][joint]);
       const speed = Math.hypot(...now.map((v, i) => soon[i] - v)) * this.clock.fps;
-      return `${"AB"[person]} · ${this.data.names[joint].replaceAll("_", " ")} — ${now[2].toFixed(2)} m high, ${speed.toFixed(1)} m/s`;
+      return `${"AB"[person % 2]} · ${this.data.names[joint].replaceAll("_", " ")} — ${now[2].toFixed(2)} m high, ${speed.toFixed(1)} m/s`;
     });
   }
 
@@ -449,7 +471,7 @@ export class Player {
     this.abort?.abort();
     this.themeWatch?.disconnect();
     this.sizeWatch?.disconnect();
-    this.scene?.close();
+    for (const pane of this.panes) pane.close();
     this.onclose?.();
   }
 }

@@ -23,10 +23,11 @@ export function heading(pose, skeleton) {
   return Math.atan2(left[1] - right[1], left[0] - right[0]) - Math.PI / 2;
 }
 
-/** How far apart the pelvises stand on the floor, metres; 0 for one person. */
+/** How far apart the pelvises of a pair stand on the floor, the widest of several; metres, 0 for one person. */
 export function apart(pose, skeleton) {
-  const [a, b] = pose.map((points) => points[skeleton.pelvis]);
-  return b ? Math.min(Math.hypot(b[0] - a[0], b[1] - a[1]), WIDEST) : 0;
+  const spots = pose.map((points) => points[skeleton.pelvis]);
+  const gaps = spots.map((b, i) => (i % 2 ? Math.hypot(b[0] - spots[i - 1][0], b[1] - spots[i - 1][1]) : 0));
+  return Math.min(Math.max(...gaps), WIDEST);
 }
 
 /** Yaw, elevation and distance of a preset. */

@@ -82,3 +82,29 @@ def test_a_result_of_the_other_tab_is_taken_and_bad_files_are_a_sentence(page: P
     page.get_by_role("tab", name="React").click()
     page.click("button#react-take-a")
     expect(page.locator("#react-status")).to_contain_text("two people walk: 0.0 to 5.0 s", timeout=SLOW)
+
+
+def test_a_live_reaction_comes_while_the_actor_plays_and_can_be_cancelled(page: Page, tmp_path: Path) -> None:
+    (file, _) = write(walking(4.0), tmp_path / "walker.bvh")
+    page.set_input_files("#react-file input[type=file]", file)
+    people(page, 1)
+    page.click("button#react-live")
+    expect(page.locator("#react-player .pdd-chip")).to_contain_text("live · delay", timeout=SLOW)
+    people(page, 2)
+    known = "(window.__pasdedeux.player.sample.live?.known ?? null)"
+    page.wait_for_function(f"{known} >= 60 && window.__pasdedeux.frame > 20")
+    assert page.evaluate(f"{known} < 120 && window.__pasdedeux.frame < {known}"), "it is not there yet"
+    other = "window.__pasdedeux.player.everybody(15)"
+    apart = page.evaluate(f"(([a, b]) => b[0][1] - a[0][1])({other})")
+    assert abs(apart - 1.0) < 0.01, "the stub's reactor stands a metre aside"
+    expect(page.locator("button#react-generate")).to_be_disabled()
+    expect(page.locator("#react-status .pd-done")).to_contain_text("longest", timeout=SLOW)
+    page.wait_for_function(f"{known} === null && window.__pasdedeux.player.sample.frames === 120")
+    expect(page.locator("#react-download-npz")).to_be_enabled(timeout=SLOW)
+
+    page.click("button#react-live")
+    page.wait_for_function(f"{known} >= 18")
+    page.click("button#react-cancel")
+    expect(page.locator("#react-status .pd-warning")).to_contain_text("Cancelled at step", timeout=SLOW)
+    page.wait_for_function(f"{known} === null && window.__pasdedeux.player.sample.frames < 120")
+    people(page, 2)

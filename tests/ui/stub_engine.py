@@ -8,6 +8,7 @@ from typing import Any
 
 import numpy as np
 
+from webdemo.inference.live import LiveFrame, LiveProgress, LiveRequest, paced
 from webdemo.inference.requests import Cancelled, GenerateRequest, Progress, ReactRequest, Result
 from webdemo.metrics import compare
 from webdemo.motion import SMPL22, Clip, Duet, InputError
@@ -94,7 +95,9 @@ class StubEngine:
         if "impossible" in request.prompt:
             raise InputError("The stub cannot do this: ask for something possible.")
         yield Progress(stage="text")
-        for step in range(request.steps):
+        if isinstance(request, LiveRequest):
+            yield from self._live(request, cancel)
+        for step in range(0 if isinstance(request, LiveRequest) else request.steps):
             if cancel is not None and cancel.cancelled:
                 raise Cancelled("The run was cancelled.")
             if "crash" in request.prompt and step == 1:
@@ -124,3 +127,11 @@ class StubEngine:
             timings={"text": 0.01, "sampling": time.monotonic() - started, "finish": 0.05},
             notes=notes,
         )
+
+    def _live(self, request: LiveRequest, cancel: Any) -> Iterator[LiveProgress]:
+        other = beside(request.actor, "a", request.seed).b.positions
+        frames = (LiveFrame(i, frame[None], frame[None], 0.0) for i, frame in enumerate(other))
+        for frame in paced(frames):
+            if cancel is not None and cancel.cancelled:
+                raise Cancelled("The run was cancelled.")
+            yield LiveProgress(stage="sample", step=frame.index + 1, total=len(other), frame=frame)

@@ -22,9 +22,10 @@ from webdemo.motion import Duet, InputError
 
 from .cancel import CancelToken
 from .generator import Clock, DuetGenerator
+from .live import LiveFrame
 from .predict import MotionPredictor
 from .predict_request import PredictRequest
-from .reactor import LiveFrame, Reactor
+from .reactor import Reactor
 from .requests import GenerateRequest, Progress, ReactRequest, Result
 
 WEIGHTS = Path(__file__).resolve().parents[2] / "models" / "weights"

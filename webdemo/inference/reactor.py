@@ -9,7 +9,6 @@ from __future__ import annotations
 
 import time
 from collections.abc import Generator, Iterator
-from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
 
@@ -30,29 +29,13 @@ from .cancel import CancelToken
 from .cleanup import clean_person
 from .following import FollowingCleanup
 from .generator import Clock, sample_noise
+from .live import LiveFrame, LiveProgress, LiveRequest, paced
 from .requests import GenerateRequest, Progress, ReactRequest, Result
 
 Array = NDArray[np.floating]
 SETTLE = 0.5
 """Seconds over which the difference between a given first pose and the network's dies away."""
 NAMES = ("actor", "reactor")
-
-
-@dataclass(frozen=True)
-class LiveFrame:
-    """One frame of a reaction as it came.
-
-    Attributes:
-        index: its number from 0.
-        raw: (samples, 22, 3) metres as the network gave it, in the actor's world.
-        positions: (samples, 22, 3) metres as it is shown.
-        seconds: from the actor's frame to this one.
-    """
-
-    index: int
-    raw: Array
-    positions: Array
-    seconds: float
 
 
 class Reactor:
@@ -200,9 +183,12 @@ class Reactor:
         """Returns (raw, shown), each (samples, T, 22, 3) in the actor's world."""
         total = request.actor.num_frames
         live = []
-        for frame in self._live(request, condition):
+        plays = isinstance(request, LiveRequest)
+        frames = self._live(request, condition)
+        for frame in paced(frames) if plays else frames:
             live.append(frame)
-            yield clock.progress("sample", frame.index + 1, total)
+            done = {"stage": "sample", "step": frame.index + 1, "total": total, "elapsed": clock.elapsed}
+            yield LiveProgress(frame=frame, **done) if plays else Progress(**done)
             cancel.raise_if_cancelled()
         delays = [frame.seconds for frame in live]
         clock.stages["delay of a frame, median"] = round(float(np.median(delays)), 4)

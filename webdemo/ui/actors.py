@@ -9,7 +9,7 @@ from typing import Any
 
 from webdemo.formats.importing import ImportChoices, import_motion
 from webdemo.inference.actor import ROLES, at_30_fps, choose_actor
-from webdemo.inference.requests import SECONDS, Result
+from webdemo.inference.requests import DEFAULT_STEPS, SECONDS, Result
 from webdemo.motion import Clip, Duet, InputError
 from webdemo.view.payload import Payload, player_payload
 
@@ -20,6 +20,8 @@ METHODS = {
     "regennet-online": ("ReGenNet, online", "regennet", "online"),
 }
 """By key: what the page calls a method, its model and its mode."""
+LIVE = "regennet-online"
+"""The method that can stream."""
 _WEIGHTS = Path(__file__).resolve().parents[2] / "models" / "weights"
 
 
@@ -114,6 +116,14 @@ def result_source(result: Result, title: str, person: str) -> Source:
     return Source(given.get("name") or title, people, person if len(people) > 1 else "a")
 
 
+def with_method(fields: Mapping[str, Any], key: str) -> dict[str, Any]:
+    """The page's fields for another method, with the steps it is meant for where the model is another."""
+    asked = METHODS[fields.get("method") or next(iter(METHODS))][1]
+    model = METHODS[key][1]
+    steps = fields["steps"] if model == asked else DEFAULT_STEPS[model]
+    return {**fields, "method": key, "steps": steps}
+
+
 def chosen_actor(fields: Mapping[str, Any]) -> dict[str, Any]:
     """A request's fields from those of the page.
 
@@ -125,7 +135,7 @@ def chosen_actor(fields: Mapping[str, Any]) -> dict[str, Any]:
     source: Source | None = fields["source"]
     if source is None:
         raise InputError("There is no actor yet: drop a motion file, or take an example or a result.")
-    own = ("source", "person", "start", "end", "method")
+    own = ("source", "person", "start", "end", "method", "live", "other")
     actor = source.actor(fields["person"], fields["start"], fields["end"])
     _, model, mode = METHODS[fields.get("method") or "intergen"]
     kept = {name: value for name, value in fields.items() if name not in own}

@@ -5,7 +5,7 @@ from __future__ import annotations
 import secrets
 import time
 from abc import ABC, abstractmethod
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Collection, Generator, Iterator, Mapping, Sequence
 from typing import Any
 
 import gradio as gr
@@ -44,6 +44,7 @@ _STEPS_INFO = "From noise to motion: fewer are faster, more are finer."
 _SEED_INFO = "Same seed, same motion; empty draws a new one."
 
 Updates = tuple[Any, ...]
+Watch = Callable[[Progress], dict[str, Any] | None]
 
 
 class JobTab(ABC):
@@ -77,11 +78,13 @@ class JobTab(ABC):
     def _id(self, name: str) -> str:
         return self.prefix + name
 
-    def _go(self, verb: str) -> None:
+    def _go(self, verb: str, beside: Callable[[], None] = lambda: None) -> None:
+        """The buttons that start a run and cancel it, with what ``beside`` lays out between them."""
         with gr.Row(elem_classes="pd-go"):
             self.go = gr.Button(
                 verb, variant="primary", elem_id=self._id("generate"), elem_classes="pd-run", min_width=0
             )
+            beside()
             self.stop = gr.Button(
                 "Cancel", elem_id=self._id("cancel"), elem_classes="pd-stop", interactive=False, min_width=0
             )
@@ -137,32 +140,48 @@ class JobTab(ABC):
         self,
         start: Callable[..., Iterator[Updates]],
         triggers: Sequence[Any],
-        inputs: Sequence[gr.components.Component],
+        inputs: Collection[gr.components.Component],
         record: gr.State | None,
     ) -> None:
-        """Runs ``start`` with these inputs; ``record`` keeps the result, in a state of its own by default."""
+        """Runs ``start`` with these inputs, or with one dictionary of them where they are a set.
+
+        ``record`` keeps the result, in a state of its own by default.
+        """
         self.record = record or gr.State(None, time_to_live=3600)
         self.outputs = {
             "player": self.player,
             "line": self.line,
-            "go": self.go,
+            **self.starts(),
             "stop": self.stop,
             "under": self.under,
             "readouts": self.readouts,
             "record": self.record,
             **self.more_outputs(),
         }
+        self._wire_start(start, triggers, inputs)
+        self.stop.click(self.cancel, queue=False, **QUIET)
+        if self.dice is not None:
+            self.dice.click(
+                None, outputs=self.seed, js=f"() => Math.floor(Math.random() * {MAX_SEED + 1})", **QUIET
+            )
+
+    def _wire_start(
+        self,
+        start: Callable[..., Iterator[Updates]],
+        triggers: Sequence[Any],
+        inputs: Collection[gr.components.Component],
+    ) -> None:
         run = gr.on(
             triggers,
             start,  # not called "generate": that name is the public endpoint's
-            inputs=list(inputs),
+            inputs=inputs if isinstance(inputs, set) else list(inputs),
             outputs=list(self.outputs.values()),
             concurrency_limit=None,  # runs wait in a line of their own, where they can be cancelled
             trigger_mode="once",
             **QUIET,
         )
         # Only now would a press be taken: while the event goes on, Gradio drops it.
-        run.then(self.rest, outputs=[self.go, self.stop], queue=False, **QUIET)
+        run.then(self.rest, outputs=[*self.starts().values(), self.stop], queue=False, **QUIET)
         run.then(
             self.export,
             inputs=self.record,
@@ -170,11 +189,10 @@ class JobTab(ABC):
             concurrency_limit=2,
             **QUIET,
         )
-        self.stop.click(self.cancel, queue=False, **QUIET)
-        if self.dice is not None:
-            self.dice.click(
-                None, outputs=self.seed, js=f"() => Math.floor(Math.random() * {MAX_SEED + 1})", **QUIET
-            )
+
+    def starts(self) -> dict[str, gr.Button]:
+        """The buttons that start a run, by name: none of them can be pressed while one goes on."""
+        return {"go": self.go}
 
     def more_outputs(self) -> dict[str, Any]:
         """What else :meth:`run` updates, by the names that :meth:`_shown` gives."""
@@ -186,33 +204,63 @@ class JobTab(ABC):
         An empty seed is drawn. Whatever goes wrong ends as one sentence in the status line, with the last
         result still on show.
         """
-        last: Progress | None = None
-        shown_at = 0.0
         yield self._updates(
             player=busy("Starting …"),
             line=status("Starting …", tone="busy"),
-            go=gr.update(interactive=False),
             stop=gr.update(interactive=True),
+            **{name: gr.update(interactive=False) for name in self.starts()},
         )
         try:
             if fields["seed"] is None:
                 fields = {**fields, "seed": secrets.randbelow(MAX_SEED + 1)}
-            wanted = self.request(fields)
+            yield from self.answer(session, fields)
+        except Cancelled as stopped:
+            yield self._stopped(str(stopped), "warning")
+        except Exception as error:
+            yield self._stopped(error_line(error), "error")
+
+    def answer(self, session: str, fields: Mapping[str, Any]) -> Iterator[Updates]:
+        """Runs what the fields ask for and shows it."""
+        wanted = self.request(fields)
+        result = yield from self.made(session, wanted)
+        yield self._updates(**self._shown(result, self.title(wanted)))
+
+    def made(
+        self, session: str, wanted: Any, *, label: str = "", watch: Watch | None = None
+    ) -> Generator[Updates, None, Result]:
+        """Runs one request, yields the page's updates meanwhile and returns its result.
+
+        Args:
+            session: whose run it is.
+            wanted: the request.
+            label: stands before the progress, where several requests are run.
+            watch: sees each event first, and gives what is to change on the page or None for the progress
+                line.
+
+        Raises:
+            InputError: for what the engine cannot do.
+            Cancelled: with a sentence on how far it was.
+        """
+        last: Progress | None = None
+        shown_at = 0.0
+        try:
             for event in self.page.runs.run(session, wanted):
                 if isinstance(event, Result):
-                    yield self._updates(**self._shown(event, self.title(wanted)))
-                    return
+                    return event
                 new_stage = last is None or event.stage != last.stage
                 last = event
+                if watch is not None and (seen := watch(event)) is not None:
+                    if seen:
+                        yield self._updates(**seen)
+                    continue
                 if new_stage or time.monotonic() - shown_at >= PACE:
                     shown_at = time.monotonic()
-                    line = progress_line(event)
+                    line = label + progress_line(event)
                     share = event.step / max(event.total, 1) if event.stage == "sample" else None
                     yield self._updates(player=busy(line, progress=share), line=status(line, tone="busy"))
         except Cancelled:
-            yield self._stopped(cancelled_line(last), "warning")
-        except Exception as error:
-            yield self._stopped(error_line(error), "error")
+            raise Cancelled(cancelled_line(last)) from None
+        raise Cancelled(cancelled_line(last))
 
     def _shown(self, result: Result, title: str) -> dict[str, Any]:
         total = result.timings.get("total", sum(result.timings.values()))
@@ -229,10 +277,9 @@ class JobTab(ABC):
     def _stopped(self, line: str, tone: str) -> Updates:
         return self._updates(player=busy(""), line=status(line, tone=tone))
 
-    @staticmethod
-    def rest() -> Updates:
+    def rest(self) -> Updates:
         """The buttons once a run is over, however it ended."""
-        return gr.update(interactive=True), gr.update(interactive=False)
+        return *(gr.update(interactive=True) for _ in self.starts()), gr.update(interactive=False)
 
     def _updates(self, **changed: Any) -> Updates:
         """Updates in the order of the outputs; what is not named stays as it is."""

@@ -64,6 +64,7 @@ class MotionPlayer(gr.HTML):
             "apply_default_css": False,
             "busy": "",
             "progress": None,
+            "live": None,
             **kwargs,
         }
         super().__init__(value, elem_id=elem_id, empty_text=empty_text, **kwargs)
@@ -104,4 +105,9 @@ def show(payload: Payload | None) -> dict[str, Any]:
     return gr.update(value=payload, busy="", progress=None)
 
 
-__all__ = ["EMPTY_TEXT", "MotionPlayer", "busy", "player_payload", "show"]
+def stream(message: dict[str, Any]) -> dict[str, Any]:
+    """An update that hands a live payload more of its motion, see :mod:`webdemo.ui.live`."""
+    return gr.update(live=message)
+
+
+__all__ = ["EMPTY_TEXT", "MotionPlayer", "busy", "player_payload", "show", "stream"]

@@ -10,11 +10,13 @@ from typing import Any
 import gradio as gr
 
 from webdemo.formats.importing import AXES, UNITS
+from webdemo.inference.live import LiveRequest
 from webdemo.inference.requests import DEFAULT_STEPS, SECONDS, ReactRequest
 from webdemo.motion import InputError
 
 from .actors import (
     AUTO,
+    LIVE,
     METHODS,
     Source,
     chosen_actor,
@@ -22,13 +24,16 @@ from .actors import (
     installed_methods,
     read_source,
     result_source,
+    with_method,
 )
 from .context import PageContext
 from .examples import example_clips
 from .exports import Record
 from .job_tab import QUIET, JobTab, Updates
+from .live import LiveView
 from .panels import status
 from .player import busy, show
+from .show import result_payload
 from .words import error_line, text
 
 EMPTY_TEXT = "Drop a motion file, or take an example"
@@ -76,11 +81,14 @@ class ReactTab(JobTab):
                     self._sampling()
             self._results(EMPTY_TEXT)
         self.source = gr.State(None, time_to_live=3600)
-        inputs = (
-            self.source, self.person, self.begin, self.end, self.role, self.prompt, self.seed, self.samples,
-            self.guidance, self.steps, self.damping, self.method,
-        )  # fmt: skip
+        self.controls = {
+            "source": self.source, "person": self.person, "start": self.begin, "end": self.end,
+            "role": self.role, "prompt": self.prompt, "seed": self.seed, "samples": self.samples,
+            "guidance": self.guidance, "steps": self.steps, "damping": self.damping, "method": self.method,
+        }  # fmt: skip
+        inputs = set(self.controls.values())
         self._wire_run(self.start, [self.go.click, self.prompt.submit], inputs, record)
+        self._wire_start(self.start_live, [self.live.click], inputs)
         self._wire_actor()
         self.method.change(
             self.fit_method, inputs=self.method, outputs=[self.role, self.steps, self.damping],
@@ -145,7 +153,16 @@ class ReactTab(JobTab):
                 max_lines=6,
                 elem_id="react-prompt",
             )
-            self._go("React")
+            self._go("React", self._live_button)
+
+    def _live_button(self) -> None:
+        self.live = gr.Button(
+            "Live", elem_id="react-live", elem_classes="pd-live", min_width=0,
+            visible=LIVE in (key for _, key in installed_methods()),
+        )  # fmt: skip
+
+    def starts(self) -> dict[str, gr.Button]:
+        return {**super().starts(), "live": self.live}
 
     # ---- events ----------------------------------------------------------------------------------
 
@@ -251,38 +268,39 @@ class ReactTab(JobTab):
             return status(f"{used} Take {longest:g} s or less.", tone="warning")
         return status(used)
 
-    def start(
-        self,
-        source: Source | None,
-        person: str,
-        begin: float,
-        end: float,
-        role: str,
-        prompt: str,
-        seed: float | None,
-        samples: float,
-        guidance: float,
-        steps: float,
-        damping: float,
-        method: str,
-        request: gr.Request,
-    ) -> Iterator[Updates]:
+    def start(self, values: dict[gr.components.Component, Any], request: gr.Request) -> Iterator[Updates]:
         """Runs what the controls ask for; yields updates of the page."""
-        fields = {
-            "source": source,
-            "person": person,
-            "start": begin,
-            "end": end,
-            "role": role,
-            "prompt": prompt,
-            "seed": seed,
-            "samples": samples,
-            "guidance": guidance,
-            "steps": steps,
-            "damping": damping,
-            "method": method,
-        }
-        yield from self.run(str(request.session_hash), fields)
+        yield from self.run(str(request.session_hash), self._fields(values))
+
+    def start_live(
+        self, values: dict[gr.components.Component, Any], request: gr.Request
+    ) -> Iterator[Updates]:
+        """Streams an online reaction while the actor plays; yields updates of the page."""
+        yield from self.run(str(request.session_hash), {**self._fields(values), "live": True})
+
+    def _fields(self, values: Mapping[gr.components.Component, Any]) -> dict[str, Any]:
+        return {name: values[component] for name, component in self.controls.items()}
+
+    def answer(self, session: str, fields: Mapping[str, Any]) -> Iterator[Updates]:
+        if fields.get("live"):
+            yield from self._answer_live(session, fields)
+        else:
+            yield from super().answer(session, fields)
+
+    def _answer_live(self, session: str, fields: Mapping[str, Any]) -> Iterator[Updates]:
+        """Streams one sample of the online method, whatever method is chosen."""
+        wanted = LiveRequest(**chosen_actor({**with_method(fields, LIVE), "samples": 1}))
+        title = self.title(wanted)
+        view = LiveView(wanted.actor, title)
+        try:
+            result = yield from self.made(session, wanted, watch=view)
+        except Exception:
+            yield self._updates(player=view.stopped())
+            raise
+        shown = self._shown(result, title)
+        payload = {**result_payload(result, title=title), "continues": view.id}
+        line = status(f"Live reaction done: {view.delay}.", tone="done")
+        yield self._updates(**{**shown, "player": show(payload), "line": line})
 
 
 def _found(source: Source) -> str:
