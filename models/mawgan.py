@@ -5,9 +5,13 @@ vector at the mean of the training data goes through an upsampling convolutional
 coordinates × frames, and what comes out is mapped back to the sphere and integrated from the last pose.
 
 What the thesis leaves open is settled so. The past's curve has the given frames as its points; the future's
-begins with the last given pose, so it has one point more, and each has a mean of its own. A predicted curve
-is as long, frame for frame, as the past's. The first feature map is the smallest that five doublings grow
-over the image, which is then cut.
+begins with the last given pose, so it has one point more, and each has a mean of its own. The first feature
+map is the smallest that five doublings grow over the image, which is then cut.
+
+A point of the sphere has lost where its curve begins and how long it is. The start is the last given pose.
+The length, frame for frame, is the past's, or (``length``) the network foretells how it changes: the part of
+its output along the mean, which is no direction on the sphere and of no use there, is the logarithm of the
+ratio.
 """
 
 from __future__ import annotations
@@ -19,10 +23,12 @@ from typing import Any
 import torch
 from torch import Tensor, nn
 
-from models.srvf import exp_map, log_map, norm, to_curve, to_srvf, to_tangent
+from models.srvf import exp_map, inner, log_map, norm, to_curve, to_srvf, to_tangent
 
 _DOUBLINGS = 5
 _STILL = 1e-6
+_LONGER = 2.0
+"""Bound of the logarithm by which a future's curve may be longer or shorter, frame for frame."""
 
 
 @dataclass(frozen=True)
@@ -35,6 +41,9 @@ class MAWGANConfig:
         channels: of its first four upsampling blocks; the fifth has one.
         critic: channels of the critic's convolutions.
         critic_fc: outputs of its first full layer.
+        linear: a linear map from past to future beside the convolutions, which then correct it. The thesis
+            has none; it makes up for a long training, since neighbours in the image are strangers.
+        length: the length of the future's curve is foretold too; else it is as long as the past's.
     """
 
     joints: int = 17
@@ -44,6 +53,8 @@ class MAWGANConfig:
     channels: tuple[int, ...] = (512, 256, 128, 64)
     critic: tuple[int, ...] = (64, 32, 16)
     critic_fc: int = 1024
+    linear: bool = False
+    length: bool = False
 
     @classmethod
     def from_dict(cls, values: dict[str, Any]) -> MAWGANConfig:
@@ -78,11 +89,17 @@ class Generator(nn.Module):
             if i < _DOUBLINGS - 1:
                 layers.append(nn.ReLU())
         self.up = nn.Sequential(*layers)
+        coordinates, points = config.image
+        self.linear = nn.Linear(config.past * coordinates, points * coordinates) if config.linear else None
+        if self.linear is not None:
+            nn.init.zeros_(self.linear.weight)
+            nn.init.zeros_(self.linear.bias)
 
     def forward(self, s: Tensor) -> Tensor:
         coordinates, points = self.config.image
         x = torch.relu(self.fc(s.flatten(1))).unflatten(1, (-1, *self.config.grid))
-        return self.up(x)[:, 0, :coordinates, :points].transpose(1, 2)
+        made = self.up(x)[:, 0, :coordinates, :points].transpose(1, 2)
+        return made if self.linear is None else made + self.linear(s.flatten(1)).view_as(made)
 
 
 class Critic(nn.Module):
@@ -125,22 +142,33 @@ class PredictiveMAWGAN(nn.Module):
             mean = torch.ones(count, coordinates)
             self.register_buffer(name, mean / norm(mean))
 
-    def tangent(self, past: Tensor) -> Tensor:
-        """What the generator makes of past curves (B, past, D), as tangent vectors at ``future_mean``."""
-        q, _ = to_srvf(past)
-        return to_tangent(self.future_mean, self.generator(log_map(self.past_mean, q)))
+    def generate(self, past: Tensor) -> tuple[Tensor, Tensor]:
+        """What the generator makes of past curves.
 
-    def decode(self, s: Tensor, past: Tensor) -> Tensor:
-        """Tangent vectors (B, future + 1, D) → curves (B, future, D) that go on from the past."""
+        Args:
+            past: (B, past, D).
+
+        Returns:
+            Tangent vectors at ``future_mean`` (B, future + 1, D), and the logarithm (B,) of how much longer
+            the future's curve is, frame for frame, than the past's.
+        """
+        q, _ = to_srvf(past)
+        made = self.generator(log_map(self.past_mean, q))
+        along = inner(self.future_mean, made).clamp(-_LONGER, _LONGER)
+        return to_tangent(self.future_mean, made), along if self.config.length else torch.zeros_like(along)
+
+    def decode(self, s: Tensor, longer: Tensor, past: Tensor) -> Tensor:
+        """What :meth:`generate` gives → curves (B, future, D) that go on from the past (B, past, D)."""
         _, length = to_srvf(past)
-        steps = self.config.future / (self.config.past - 1)
-        curve = to_curve(exp_map(self.future_mean, s), length * steps, past[:, -1])
+        # Time runs from 0 to 1 over the points of either curve, and the future has others than the past.
+        steps = (self.config.future + 1) / self.config.past
+        curve = to_curve(exp_map(self.future_mean, s), length * steps * longer.exp(), past[:, -1])
         return torch.where((length > _STILL)[:, None, None], curve, past[:, -1:])[:, 1:]
 
     def forward(self, past: Tensor) -> Tensor:
         """(B, past, J, 3) metres → (B, future, J, 3); a past that does not move stays as it is."""
         curve = to_curves(past)
-        return to_positions(self.decode(self.tangent(curve), curve))
+        return to_positions(self.decode(*self.generate(curve), curve))
 
 
 def to_curves(positions: Tensor) -> Tensor:
@@ -158,13 +186,18 @@ def to_positions(curves: Tensor) -> Tensor:
 
 @dataclass(frozen=True)
 class MAWGANLossWeights:
-    """β₁ to β₄ of eq. 2.11 and λ of eq. 2.5 (section 2.5.2)."""
+    """β₁ to β₄ of eq. 2.11 and λ of eq. 2.5 (section 2.5.2).
+
+    ``position`` weighs the mean distance of joints in metres, which the thesis has no loss for: eq. 2.9 is
+    blind to a pose that is turned as a whole.
+    """
 
     adversarial: float = 1.0
     reconstruction: float = 1.0
     skeleton: float = 10.0
     bone: float = 10.0
     gradient_penalty: float = 10.0
+    position: float = 0.0
 
     def to_dict(self) -> dict[str, float]:
         return asdict(self)
@@ -195,6 +228,11 @@ def critic_loss(
 def reconstruction_loss(made: Tensor, real: Tensor) -> Tensor:
     """L1 norm of the difference of tangent vectors (B, N, D) (eq. 2.7): ∫ Σ |·| dt, averaged over B."""
     return (made - real).abs().sum(-1).mean()
+
+
+def position_loss(made: Tensor, real: Tensor) -> Tensor:
+    """Mean distance of joints (B, T, J, 3) in metres, which is what MPJPE measures."""
+    return ((made - real).square().sum(-1) + 1e-10).sqrt().mean()
 
 
 def gram_distance(p: Tensor, q: Tensor) -> Tensor:

@@ -1,13 +1,15 @@
 """Trains PredictiveMA-WGAN: ``python -m training.mawgan --windows cmu --data DIR --out RUN``.
 
 Chopin's thesis, Algorithm 2 and section 2.5.2: four critic steps a predictor step, Adam at 1e-4, batches of
-64, β = (1, 1, 10, 10), gradient penalty 10. ``--fc`` and ``--width`` make the network smaller than
-the thesis' one, which a CPU cannot train.
+64, β = (1, 1, 10, 10), gradient penalty 10. ``--fc`` and ``--width`` make the network smaller than the
+thesis' one, which a CPU cannot train. ``--lean`` is what a CPU trains in an hour: ``LEAN`` below says what it
+changes.
 """
 
 from __future__ import annotations
 
 import argparse
+import math
 from collections.abc import Iterator
 from dataclasses import asdict, dataclass
 from pathlib import Path
@@ -23,6 +25,7 @@ from models.mawgan import (
     PredictiveMAWGAN,
     bone_loss,
     critic_loss,
+    position_loss,
     reconstruction_loss,
     skeleton_loss,
     to_curves,
@@ -41,7 +44,9 @@ class Settings:
     """What a run depends on; a checkpoint of other settings is refused.
 
     ``width`` is the channels of the predictor's first block (thesis: 512), each further one has half; the
-    critic's are an eighth of it, and halved likewise.
+    critic's are an eighth of it, and halved likewise. ``linear`` and ``length`` are those of
+    :class:`~models.mawgan.MAWGANConfig`. ``final_rate`` is the share of the learning rate at which its cosine
+    ends; 1 keeps it as it is, like the thesis.
     """
 
     windows: str = "cmu"
@@ -54,20 +59,24 @@ class Settings:
     batch: int = 64
     steps: int = 20_000
     learning_rate: float = 1e-4
+    final_rate: float = 1.0
     ema: float = 0.99
     adversarial: float = 1.0
     reconstruction: float = 1.0
     skeleton: float = 10.0
     bone: float = 10.0
     gradient_penalty: float = 10.0
+    position: float = 0.0
+    linear: bool = False
+    length: bool = False
     seed: int = 0
 
     def __post_init__(self) -> None:
         if self.width % 8 or self.width < 32:
             raise InputError(f"width is {self.width}: give a multiple of 8, 32 or more.")
-        for name in ("past", "future", "fc", "batch", "critic_steps"):
-            if getattr(self, name) < 2:
-                raise InputError(f"{name} is {getattr(self, name)}: give 2 or more.")
+        for name, least in (("past", 2), ("future", 2), ("fc", 2), ("batch", 2), ("critic_steps", 1)):
+            if getattr(self, name) < least:
+                raise InputError(f"{name} is {getattr(self, name)}: give {least} or more.")
 
     def network(self, joints: int) -> MAWGANConfig:
         """The sizes of predictor and critic."""
@@ -75,13 +84,21 @@ class Settings:
             joints, self.past, self.future, self.fc,
             channels=tuple(self.width >> i for i in range(4)),
             critic=tuple(self.width // 8 >> i for i in range(3)),
-            critic_fc=self.critic_fc,
+            critic_fc=self.critic_fc, linear=self.linear, length=self.length,
         )  # fmt: skip
 
     def weights(self) -> MAWGANLossWeights:
         return MAWGANLossWeights(
-            self.adversarial, self.reconstruction, self.skeleton, self.bone, self.gradient_penalty
-        )
+            self.adversarial, self.reconstruction, self.skeleton, self.bone, self.gradient_penalty,
+            self.position,
+        )  # fmt: skip
+
+
+LEAN = {
+    "fc": 1024, "width": 64, "critic_fc": 128, "critic_steps": 1, "learning_rate": 1e-3, "final_rate": 0.02,
+    "ema": 0.995, "position": 100.0, "linear": True, "length": True,
+}  # fmt: skip
+"""Settings of a run that one CPU core finishes in an hour."""
 
 
 class Trainer(PredictionTrainer):
@@ -126,18 +143,22 @@ class Trainer(PredictionTrainer):
         real = log_map(self.model.future_mean, to_srvf(future[moves])[0])
         return windows[moves], past[moves], real
 
-    def made(self, past: Tensor) -> tuple[Tensor, Tensor]:
-        """The generator's tangent vectors as they are, and taken to the sphere and back (eq. 2.5, 2.7)."""
-        s = self.model.tangent(past)
+    def seen(self, s: Tensor) -> Tensor:
+        """Tangent vectors as the critic sees them: taken to the sphere and back (eq. 2.5, 2.7)."""
         mean = self.model.future_mean
-        return s, log_map(mean, exp_map(mean, s))
+        return log_map(mean, exp_map(mean, s))
+
+    def rate(self) -> float:
+        """Share of the learning rate: a cosine from 1 to ``final_rate``."""
+        s = self.settings
+        return s.final_rate + (1 - s.final_rate) * 0.5 * (1 + math.cos(math.pi * min(1, self.step / s.steps)))
 
     def critic_steps(self) -> Iterator[float]:
         """Trains the critic; yields its losses."""
         for i in range(self.settings.critic_steps):
             _, past, real = self.pairs(1 + i)
             with torch.no_grad():
-                _, made = self.made(past)
+                made = self.seen(self.model.generate(past)[0])
             rng = np.random.default_rng((self.settings.seed, self.step, 100 + i))
             share = torch.from_numpy(rng.random(len(past), dtype=np.float32)).to(real)
             loss = critic_loss(self.critic, real, made, share, penalty=self.settings.gradient_penalty)
@@ -148,16 +169,22 @@ class Trainer(PredictionTrainer):
 
     def train_step(self) -> dict[str, float]:
         weights = self.settings.weights()
+        for optimizer in (self.optimizer, self.critic_optimizer):
+            for group in optimizer.param_groups:
+                group["lr"] = self.settings.learning_rate * self.rate()
         critic = list(self.critic_steps()) if weights.adversarial else [0.0]
         windows, past, real = self.pairs(0)
-        s, made = self.made(past)
-        positions = to_positions(self.model.decode(s, past))
+        s, longer = self.model.generate(past)
+        made = self.seen(s)
+        positions = to_positions(self.model.decode(s, longer, past))
         truth = windows[:, self.settings.past :]
         terms = {
             "reconstruction": weights.reconstruction * reconstruction_loss(made, real),
             "skeleton": weights.skeleton * skeleton_loss(positions, truth),
             "bone": weights.bone * bone_loss(positions, truth, self.windows.bones),
         }
+        if weights.position:
+            terms["position"] = weights.position * position_loss(positions, truth)
         if weights.adversarial:
             terms["adversarial"] = -weights.adversarial * self.critic(made).mean()
         total = torch.stack(list(terms.values())).sum()
@@ -192,7 +219,11 @@ def moving(curves: Tensor) -> Tensor:
 def main(argv: list[str] | None = None) -> int:
     parser = argparse.ArgumentParser(description="Train PredictiveMA-WGAN.")
     add_run_options(parser, Settings)
+    parser.add_argument("--lean", action="store_true", help="settings that one CPU core trains in an hour")
     options = parser.parse_args(argv)
+    if options.lean:  # what is asked for besides still counts
+        parser.set_defaults(**LEAN)
+        options = parser.parse_args(argv)
     return exit_code(lambda: train(Trainer, Settings, options))
 
 

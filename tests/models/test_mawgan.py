@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 import torch
@@ -17,12 +19,13 @@ from models.mawgan import (
     critic_loss,
     gradient_penalty,
     gram_distance,
+    position_loss,
     reconstruction_loss,
     skeleton_loss,
     to_curves,
     to_positions,
 )
-from models.srvf import exp_map, inner, norm
+from models.srvf import exp_map, inner, log_map, norm, to_srvf
 
 SMALL = MAWGANConfig(
     joints=5, past=8, future=12, fc=64, channels=(16, 8, 8, 4), critic=(4, 4, 4), critic_fc=8
@@ -53,7 +56,8 @@ def test_defaults_are_the_thesis_sizes() -> None:
     assert [m.out_channels for m in critic.down if isinstance(m, nn.Conv2d)] == [64, 32, 16]
     assert [m.out_features for m in critic.score if isinstance(m, nn.Linear)] == [1024, 1]
     weights = MAWGANLossWeights()
-    assert tuple(weights.to_dict().values()) == (1, 1, 10, 10, 10)
+    assert tuple(weights.to_dict().values()) == (1, 1, 10, 10, 10, 0)
+    assert not (config.linear or config.length)
 
 
 def test_curves_are_coordinate_major() -> None:
@@ -66,7 +70,8 @@ def test_curves_are_coordinate_major() -> None:
 
 def test_prediction_stays_on_the_sphere_and_goes_on_from_the_past(network: PredictiveMAWGAN) -> None:
     past = motion(1)
-    s = network.tangent(to_curves(past))
+    s, longer = network.generate(to_curves(past))
+    assert torch.equal(longer, torch.zeros(3))
     assert inner(s, network.future_mean).abs().max() < 1e-5
     assert torch.allclose(norm(exp_map(network.future_mean, s)), torch.ones(3), atol=1e-5)
     future = network(past)
@@ -76,6 +81,38 @@ def test_prediction_stays_on_the_sphere_and_goes_on_from_the_past(network: Predi
     before = torch.gradient(to_curves(past), dim=1)[0].norm(dim=-1).mean(1)
     # As long a way a frame as before: the network foretells directions, not the length.
     assert torch.all(travelled / before < 1.5) and torch.all(travelled / before > 0.2)
+
+
+@pytest.mark.parametrize(("past", "future"), [(25, 25), (5, 25), (10, 30)])
+def test_the_true_point_of_the_sphere_gives_the_true_future_back(past: int, future: int) -> None:
+    """A start and a length are all that the sphere has lost; both come back exactly."""
+    network = PredictiveMAWGAN(replace(SMALL, past=past, future=future))
+    times = torch.arange(past + future)[:, None] / 25
+    curve = torch.cat([times, 2 * times, torch.zeros(past + future, 13)], 1)[None] + 1  # at one speed
+    q, _ = to_srvf(curve[:, past - 1 :])
+    network.future_mean.copy_(to_srvf(poses(8, 1, future + 1, 15))[0][0])
+    seen = curve[:, :past]
+    made = network.decode(log_map(network.future_mean, q), torch.zeros(1), seen)
+    assert torch.allclose(made, curve[:, past:], atol=1e-5)
+    longer = network.decode(log_map(network.future_mean, q), torch.full((1,), 0.3), seen)
+    ratio = (longer - seen[:, -1:]).norm(dim=-1) / (made - seen[:, -1:]).norm(dim=-1)
+    assert torch.allclose(ratio, torch.tensor(0.3).exp().expand_as(ratio), atol=1e-4)
+
+
+def test_a_foretold_length_is_the_part_along_the_mean() -> None:
+    torch.manual_seed(0)
+    network = PredictiveMAWGAN(replace(SMALL, length=True, linear=True)).eval()
+    assert network.generator.linear is not None
+    with torch.no_grad():
+        network.generator.linear.bias.copy_(0.5 * network.future_mean.flatten())
+    plain = PredictiveMAWGAN(replace(SMALL, linear=True)).eval()
+    plain.load_state_dict(network.state_dict())
+    curves = to_curves(motion(1))
+    (s, longer), (same, none) = network.generate(curves), plain.generate(curves)
+    assert torch.allclose(s, same) and torch.equal(none, torch.zeros(3))
+    untouched = PredictiveMAWGAN(replace(SMALL, length=True)).eval()
+    untouched.generator.load_state_dict(network.generator.state_dict(), strict=False)
+    assert torch.allclose(longer, untouched.generate(curves)[1] + 0.5, atol=1e-5)
 
 
 def test_what_stands_still_stays_as_it_is(network: PredictiveMAWGAN) -> None:
@@ -96,6 +133,8 @@ def test_gram_distance_knows_no_rotation() -> None:
 def test_losses_by_hand() -> None:
     made, real = torch.zeros(2, 4, 3), torch.full((2, 4, 3), 0.5)
     assert float(reconstruction_loss(made, real)) == pytest.approx(1.5)
+    apart = torch.tensor([0.0, 0.3, 0.4]).expand(2, 4, 5, 3)
+    assert float(position_loss(apart, torch.zeros_like(apart))) == pytest.approx(0.5, abs=1e-5)
     pose = torch.tensor([[0.0, 0, 0], [0, 2, 0], [0, 2, 1]]).expand(2, 4, 3, 3)
     assert float(bone_loss(pose * 1.1, pose, [(0, 1), (1, 2)])) == pytest.approx(0.15)
     assert float(bone_loss(pose.flip(-1), pose, [(0, 1), (1, 2)])) == pytest.approx(0, abs=1e-6)

@@ -22,6 +22,7 @@ MLP = mlp.Settings(past=10, future=8, past_coefficients=6, future_coefficients=4
                    fit=64, batch=8, steps=6, warmup=1)  # fmt: skip
 GAN = mawgan.Settings(windows="corpus", past=10, future=8, fc=36, width=32, critic_fc=8, critic_steps=2,
                       batch=4, steps=3)  # fmt: skip
+LEAN_GAN = replace(GAN, critic_steps=1, final_rate=0.1, position=100.0, linear=True, length=True)
 
 
 @pytest.fixture(scope="module")
@@ -42,7 +43,7 @@ def start(kind: str, corpus: Path, out: Path, **changed: int) -> PredictionTrain
     windows = open_windows("corpus", corpus, 10, 8)
     if kind == "mlp":
         return mlp.Trainer(windows, replace(MLP, **changed), out)
-    return mawgan.Trainer(windows, replace(GAN, **changed), out)
+    return mawgan.Trainer(windows, replace(LEAN_GAN if kind == "lean" else GAN, **changed), out)
 
 
 def test_windows_are_of_one_split_in_the_frame_of_their_last_pose(corpus: Path) -> None:
@@ -55,7 +56,7 @@ def test_windows_are_of_one_split_in_the_frame_of_their_last_pose(corpus: Path) 
     assert np.allclose(heading(batch[:, 9].numpy().astype(float)), 0, atol=1e-5)
 
 
-@pytest.mark.parametrize("kind", ["mlp", "mawgan"])
+@pytest.mark.parametrize("kind", ["mlp", "mawgan", "lean"])
 def test_a_run_that_stops_goes_on_as_if_it_had_not(kind: str, corpus: Path, tmp_path: Path) -> None:
     whole, cut = start(kind, corpus, tmp_path / "whole"), start(kind, corpus, tmp_path / "cut")
     terms = list(whole.run(minutes=5))
@@ -80,10 +81,32 @@ def test_training_makes_it_better_than_its_linear_part(corpus: Path, tmp_path: P
 @pytest.mark.parametrize("kind", ["mlp", "mawgan"])
 def test_the_shell_writes_a_predictor(kind: str, corpus: Path, tmp_path: Path) -> None:
     settings, main = (MLP, mlp.main) if kind == "mlp" else (GAN, mawgan.main)
-    asked = [f"--{key.replace('_', '-')}={value}" for key, value in vars(settings).items()]
+    asked = [
+        f"--{key.replace('_', '-')}={value}"
+        for key, value in vars(settings).items()
+        if not isinstance(value, bool)
+    ]
     folders = ["--data", str(corpus), "--out", str(tmp_path / "run"), "--export", str(tmp_path / "folder")]
     assert main([*asked, *folders]) == 0
     predictor = load_predictor(tmp_path / "folder")
     assert (predictor.past, predictor.future, predictor.joints) == (10, 8, 22)
     assert predictor.training is not None and predictor.training["steps"] == settings.steps
     assert main([*asked, *folders, "--data", str(tmp_path)]) == 2
+
+
+def test_lean_settings_are_those_of_the_module_and_can_be_changed(corpus: Path, tmp_path: Path) -> None:
+    asked = [
+        "--windows=corpus",
+        "--past=10",
+        "--future=8",
+        "--fc=36",
+        "--batch=4",
+        "--steps=1",
+        "--no-length",
+    ]
+    folders = ["--data", str(corpus), "--out", str(tmp_path / "run"), "--export", str(tmp_path / "folder")]
+    assert mawgan.main(["--lean", "--no-length", *asked, *folders]) == 0
+    training = load_predictor(tmp_path / "folder").training
+    assert training is not None
+    changed = {"fc": 36, "length": False}
+    assert {name: training[name] for name in mawgan.LEAN} == mawgan.LEAN | changed

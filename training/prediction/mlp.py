@@ -142,7 +142,10 @@ def add_run_options(parser: argparse.ArgumentParser, settings: type) -> None:
     parser.add_argument("--device", default="cuda" if torch.cuda.is_available() else "cpu")
     for setting in fields(settings):
         flag = "--" + setting.name.replace("_", "-")
-        parser.add_argument(flag, type=type(setting.default), default=setting.default)
+        if isinstance(setting.default, bool):
+            parser.add_argument(flag, action=argparse.BooleanOptionalAction, default=setting.default)
+        else:
+            parser.add_argument(flag, type=type(setting.default), default=setting.default)
 
 
 def train(trainer: type, settings: type, options: argparse.Namespace) -> None:
