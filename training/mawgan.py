@@ -119,9 +119,9 @@ class Trainer(PredictionTrainer):
         self.model.future_mean.copy_(karcher_mean(moving(future)))
         self.ema.load_state_dict(self.model.state_dict())
         self.ema.requires_grad_(False)
-        self.optimizer = torch.optim.Adam(self.model.parameters(), lr=s.learning_rate, betas=(0.5, 0.9))
-        self.critic_optimizer = torch.optim.Adam(
-            self.critic.parameters(), lr=s.learning_rate, betas=(0.5, 0.9)
+        self.optimizer, self.critic_optimizer = (
+            torch.optim.Adam(part.parameters(), lr=s.learning_rate, betas=(0.5, 0.9), fused=True)
+            for part in (self.model, self.critic)
         )
 
     def parts(self) -> dict[str, nn.Module | torch.optim.Optimizer]:
