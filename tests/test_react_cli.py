@@ -99,6 +99,21 @@ def test_a_model_comes_with_its_own_number_of_steps(
         assert (asked[-1].model, asked[-1].mode, asked[-1].steps) == expected
 
 
+def test_the_other_person_of_a_file_says_where_to_begin(
+    pair: Path, tmp_path: Path, asked: list[ReactRequest], capsys: pytest.CaptureFixture[str]
+) -> None:
+    words = ["--actor", pair, "--person", "b", "--start", 1, "--keep-start", "--out", tmp_path / "x.npz"]
+    code, said, _ = react(capsys, *words, "--model", "regennet")
+    assert code == 0
+    np.testing.assert_allclose(asked[-1].start, standing(120).positions[30], atol=1e-5)
+    assert json.loads(said.splitlines()[-1])["manifest"]["request"]["start"] == asked[-1].start.tolist()
+    code, _, said = react(capsys, *words)
+    assert code == 2 and "InterGen takes no start pose" in said
+    one = write(standing(120), tmp_path / "one.npz")[0]
+    code, _, said = react(capsys, "--actor", one, "--keep-start", "--model", "regennet", "--out", words[-1])
+    assert code == 2 and "one person only" in said
+
+
 def test_a_stream_prints_every_frame_before_the_answer(
     pair: Path, tmp_path: Path, asked: list[ReactRequest], capsys: pytest.CaptureFixture[str],
     monkeypatch: pytest.MonkeyPatch,

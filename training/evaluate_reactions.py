@@ -37,6 +37,13 @@ SHORTEST = 31
 METHODS: dict[str, dict[str, Any]] = {
     "ReGenNet, online": {"model": "regennet", "mode": "online", "steps": 5},
     "ReGenNet, offline": {"model": "regennet", "mode": "offline", "steps": 5},
+    "ReGenNet, online, first pose given": {"model": "regennet", "mode": "online", "steps": 5, "start": True},
+    "ReGenNet, offline, first pose given": {
+        "model": "regennet",
+        "mode": "offline",
+        "steps": 5,
+        "start": True,
+    },
     "InterGen, person to person": {"model": "intergen", "mode": "offline", "steps": 20, "guidance": 1.0},
 }
 READOUTS = ("facing", "distance", "contact_seconds", "foot_skate", "penetration")
@@ -86,7 +93,11 @@ def zero_velocity(reaction: Reaction, _: int) -> Array:
 
 def react(engine: Engine, reaction: Reaction, seed: int, chosen: dict[str, Any]) -> Array:
     """Person b as a model makes them for person a, without words."""
-    request = ReactRequest(actor=Clip(reaction.people[0], 30.0), seed=seed, damping=0.0, **chosen)
+    chosen = dict(chosen)
+    start = reaction.people[1, 0] if chosen.pop("start", False) else None
+    request = ReactRequest(
+        actor=Clip(reaction.people[0], 30.0), seed=seed, damping=0.0, start=start, **chosen
+    )
     result = next(event for event in engine.run(request) if isinstance(event, Result))
     return np.asarray(result.duets[0].b.positions)
 

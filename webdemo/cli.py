@@ -17,7 +17,7 @@ from typing import Any, NoReturn
 
 import numpy as np
 
-from webdemo.inference.actor import FPS, ROLES, read_actor
+from webdemo.inference.actor import FPS, ROLES, other_pose, read_actor
 from webdemo.inference.predict_request import METHODS, PredictRequest, PredictResult
 from webdemo.inference.requests import (
     DEFAULT_STEPS,
@@ -109,6 +109,10 @@ def _add_react(commands: Any) -> None:
     parser.add_argument("--start", type=float, default=0.0, help="seconds in the file")
     parser.add_argument("--end", type=float, help="seconds in the file; to its end by default")
     parser.add_argument("--prompt", default=ReactRequest.prompt, help="what the two do; may be left out")
+    parser.add_argument(
+        "--keep-start", action="store_true",
+        help="of a file with two people: the one who is made begins as the other stands there (not intergen)",
+    )  # fmt: skip
     parser.add_argument("--role", default=ReactRequest.role, help="the given person acts (a) or reacts (b)")
     parser.add_argument(
         "--mode", help="offline: in sight of the whole motion; online (regennet): of the frames so far"
@@ -126,6 +130,10 @@ def react(options: argparse.Namespace) -> dict[str, Any]:
     _check_out(options.out)
     actor = read_actor(options.actor, person=options.person, start=options.start, end=options.end)
     fields = _sampling(options)
+    if options.keep_start:
+        from webdemo.formats import read
+
+        fields["start"] = other_pose(read(options.actor), person=options.person, start=options.start)
     if fields["steps"] is None:
         fields["steps"] = DEFAULT_STEPS.get(options.model, SamplingRequest.steps)
     mode = options.mode or ("online" if options.stream else ReactRequest.mode)

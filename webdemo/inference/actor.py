@@ -65,6 +65,23 @@ def choose_actor(
     return at_30_fps(clip.cut(first, max(last, first + 1)))
 
 
+def other_pose(motion: Clip | Duet, *, person: str | None, start: float = 0.0) -> Array:
+    """How the one who is not the actor stands where the actor's part begins: (22, 3) metres.
+
+    Args:
+        motion: what a file held.
+        person: the actor, "a" or "b".
+        start: seconds in the file.
+
+    Raises:
+        InputError: where the file holds nobody else, or the start lies behind its end.
+    """
+    if not isinstance(motion, Duet):
+        raise InputError("The file holds one person only: nobody else's start can be taken from it.")
+    other = ROLES[1 - ROLES.index(person)] if person in ROLES else person
+    return np.asarray(choose_actor(motion, person=other, start=start).positions[0])
+
+
 def read_actor(
     path: str | Path, *, person: str | None = None, start: float = 0.0, end: float | None = None
 ) -> Clip:

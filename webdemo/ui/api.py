@@ -10,7 +10,7 @@ from typing import Any
 import gradio as gr
 
 from webdemo.formats import read
-from webdemo.inference.actor import read_actor
+from webdemo.inference.actor import other_pose, read_actor
 from webdemo.inference.predict_request import PredictRequest, PredictResult
 from webdemo.inference.requests import (
     Cancelled,
@@ -153,6 +153,9 @@ class ReactEndpoint(Endpoint):
                 *self._sampling(),
                 gr.Textbox(ReactRequest.model, label="intergen, or regennet (for which 5 steps are enough)"),
                 gr.Textbox(ReactRequest.mode, label="offline, or with regennet online"),
+                gr.Checkbox(
+                    False, label="of a file with two: begin as the other stands there (not intergen)"
+                ),
             ]
             self._publish(self.react, "react", inputs)
 
@@ -172,6 +175,7 @@ class ReactEndpoint(Endpoint):
         sampler: str,
         model: str,
         mode: str,
+        keep_start: bool = False,
     ) -> Answer:
         """A second person for a given one, who stays exactly as they are (at 30 frames a second).
 
@@ -184,9 +188,10 @@ class ReactEndpoint(Endpoint):
             if not actor:
                 raise InputError("There is no actor: send a motion file, such as a .bvh.")
             clip = read_actor(actor, person=person or None, start=start, end=end or None)
+            pose = other_pose(read(Path(actor)), person=person or None, start=start) if keep_start else None
             return ReactRequest(
                 actor=clip, prompt=prompt, role=role, seed=seed, samples=samples, guidance=guidance,
-                steps=steps, damping=damping, sampler=sampler, model=model, mode=mode,
+                steps=steps, damping=damping, sampler=sampler, model=model, mode=mode, start=pose,
             )  # fmt: skip
 
         return self._answer(request, prompt.strip() or f"Reaction to {Path(actor or '').stem}")
