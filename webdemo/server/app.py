@@ -82,7 +82,7 @@ def create_app(
     """
     settings.check()
     if engine is None:
-        engine = batcher = SharedEngine()
+        engine, batcher = engine_of(settings)
     users = Users(settings.users) if settings.users is not None else None
     if users is not None:
         _ = users.names  # a file that cannot be read is told now
@@ -95,8 +95,9 @@ def create_app(
     figures = Figures()
     health = Health(engine, {"database": database.check})
     limits = QueueLimits(
-        running=settings.running, waiting=settings.waiting, queue=settings.queue, batch=settings.batch
-    )
+        running=settings.running, waiting=settings.waiting, queue=settings.queue, batch=settings.batch,
+        workers=getattr(engine, "parallel", 1),
+    )  # fmt: skip
     queue = FairQueue(engine, limits, batcher=batcher, figures=figures, broken=health.broken)
     figures.watch(waiting=lambda: queue.waiting, running=lambda: queue.running, ready=lambda: health.ready)
     lab = Lab(
@@ -123,6 +124,23 @@ def create_app(
     }
     return gr.mount_gradio_app(app, page, path="/", root_path=settings.root_path or None,
                                **options, **launch_options())  # fmt: skip
+
+
+def engine_of(settings: Settings) -> tuple[EngineLike, Batcher | None]:
+    """The engine that the settings name, and what shares its passes where that is done in this process.
+
+    Raises:
+        InputError: where it is Ray and Ray is not installed.
+    """
+    if settings.engine == "ray":
+        from .ray_engine import RayEngine
+
+        return RayEngine(
+            address=settings.ray_address, replicas=(1, settings.ray_replicas), cores=settings.ray_cores,
+            batch=settings.batch,
+        ), None  # fmt: skip
+    shared = SharedEngine()
+    return shared, shared
 
 
 def _add_routes(app: FastAPI, lab: Lab) -> None:
@@ -155,6 +173,8 @@ async def _lifespan(app: FastAPI) -> AsyncIterator[None]:
         for task in tasks:
             task.cancel()
         await run_in_threadpool(lab.stop)
+        if close := getattr(lab.queue.engine, "close", None):
+            await run_in_threadpool(close)
         lab.database.close()
 
 

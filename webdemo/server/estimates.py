@@ -54,7 +54,8 @@ class Line:
         running: what the worker does now.
         served: each person's account.
         pick: chooses the next batch from (waiting, accounts, running).
-        pace: how fast the worker is.
+        pace: how fast a worker is.
+        workers: how many batches are run at a time.
     """
 
     waiting: Sequence[Any]
@@ -62,6 +63,7 @@ class Line:
     served: dict[str, float]
     pick: Callable[[list[Any], dict[str, float], Sequence[Any]], list[Any]]
     pace: GroupPace
+    workers: int = 1
 
     def place(self, job: Any) -> tuple[int, float | None]:
         """(place in the line from 1, seconds until it starts; None while the pace is not known)."""
@@ -83,8 +85,10 @@ class Line:
         if self.pace.seconds_a_unit is None:
             return None
         now = time.monotonic()
-        whole = sum(job.cost for job in self.running) * self.pace.seconds_a_unit
-        spent = max((now - job.started for job in self.running), default=0.0)
+        batches: dict[float, float] = {}
+        for job in self.running:  # those of a batch have started together
+            batches[job.started] = batches.get(job.started, 0.0) + job.cost * self.pace.seconds_a_unit
         # A batch that is late is taken to need a tenth of its time yet.
-        left = max(whole - spent, 0.1 * whole)
-        return left + work * self.pace.seconds_a_unit
+        left = [max(whole - (now - started), 0.1 * whole) for started, whole in batches.items()]
+        busy = sum(left) if len(left) >= self.workers else 0.0
+        return (busy + work * self.pace.seconds_a_unit) / self.workers

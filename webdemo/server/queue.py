@@ -30,7 +30,7 @@ log = logging.getLogger(__name__)
 TICK = 0.5
 """Seconds between two looks at the place in the line."""
 MAX_GROUPS = 8
-"""Workers at most; further groups share them."""
+"""Model groups with workers of their own; further ones share them."""
 MAX_ACCOUNTS = 1000
 """Accounts of people who are no longer here are dropped above this."""
 
@@ -52,12 +52,14 @@ class Batcher(Protocol):
 
 @dataclass(frozen=True, kw_only=True)
 class QueueLimits:
-    """How much may run and wait: of one person, of all, and how many motions in one pass."""
+    """How much may run and wait: of one person, of all, how many motions in one pass, and how many batches
+    of a model at a time."""
 
     running: int = 2
     waiting: int = 4
     queue: int = 64
     batch: int = 8
+    workers: int = 1
 
 
 @dataclass(eq=False)
@@ -117,7 +119,7 @@ class FairQueue:
         self._running: list[Job] = []
         self._served: dict[str, float] = {}
         self._sessions: dict[str, CancelToken] = {}
-        self._workers: dict[str, threading.Thread] = {}
+        self._workers: set[str] = set()
         self._stopping = False
 
     # ---- for those who ask -----------------------------------------------------------------------
@@ -232,14 +234,14 @@ class FairQueue:
             self._served = {name: self._served[name] for name in {*here, person}}
 
     def _group(self, request: Any) -> str:
-        """The model group of a request, with its worker started."""
+        """The model group of a request, with its workers started."""
         name = str(getattr(request, "model", "default"))
         if name not in self._workers and len(self._workers) >= MAX_GROUPS:
-            name = next(iter(self._workers))
+            name = min(self._workers)
         if name not in self._workers:
-            worker = threading.Thread(target=self._work, args=(name,), name=f"worker {name}", daemon=True)
-            self._workers[name] = worker
-            worker.start()
+            self._workers.add(name)
+            for _ in range(self.limits.workers):
+                threading.Thread(target=self._work, args=(name,), name=f"worker {name}", daemon=True).start()
         return name
 
     def _watch(self, job: Job) -> Iterator[Progress | Result]:
@@ -272,6 +274,7 @@ class FairQueue:
             served=self._served,
             pick=self._pick,
             pace=self.pace.of(group),
+            workers=self.limits.workers,
         )
 
     def _pick(self, waiting: list[Job], served: dict[str, float], running: Sequence[Job]) -> list[Job]:
@@ -318,13 +321,13 @@ class FairQueue:
                     if self._stopping:
                         return
                     self._change.wait()
+                began = time.monotonic()
                 for job in batch:
                     self._waiting.remove(job)
                     self._served[job.person] = self._served.get(job.person, 0.0) + job.cost
                     job.batch = len(batch)
-                    job.started = time.monotonic()
+                    job.started = began
                     self._running.append(job)
-            began = time.monotonic()
             try:
                 whole = self._run_batch(batch)
             finally:

@@ -12,7 +12,7 @@ import socket
 import sys
 import tempfile
 from pathlib import Path
-from typing import Any
+from typing import Any, Literal
 
 from pydantic import Field, ValidationError
 from pydantic_settings import (
@@ -90,6 +90,14 @@ class Settings(BaseSettings):
     queue: int = Field(64, ge=1, le=1000, description="runs of all people that may wait")
     batch: int = Field(8, ge=1, le=64, description="motions in one pass through the network")
     grace_seconds: float = Field(60, ge=0, description="how long what runs may take to end at a shutdown")
+
+    # ---- where the networks run
+    engine: Literal["local", "ray"] = Field(
+        "local", description="local: in this process; ray: in replicas of Ray Serve"
+    )
+    ray_address: str = Field("", description="Ray cluster to join; empty: one of this machine's own")
+    ray_replicas: int = Field(2, ge=1, le=64, description="most replicas of the default model")
+    ray_cores: float = Field(1, gt=0, le=256, description="cores of one replica")
 
     # ---- limits
     rate: int = Field(240, ge=1, description="changing requests of one person a minute")

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import threading
 from collections.abc import Iterator
+from pathlib import Path
 from typing import Any
 
 from webdemo.inference.cancel import CancelToken
@@ -11,9 +12,14 @@ from webdemo.inference.requests import Progress, Result
 
 
 class LazyEngine:
-    """Stands for :class:`webdemo.inference.engine.Engine` and makes it on first use, in any thread."""
+    """Stands for :class:`webdemo.inference.engine.Engine` and makes it on first use, in any thread.
 
-    def __init__(self) -> None:
+    Args:
+        weights: as the engine takes them; None for the shipped ones.
+    """
+
+    def __init__(self, weights: Path | None = None) -> None:
+        self.weights = weights
         self._lock = threading.Lock()
         self._engine: Any = None
 
@@ -22,7 +28,7 @@ class LazyEngine:
             if self._engine is None:
                 from webdemo.inference.engine import Engine
 
-                self._engine = Engine()
+                self._engine = Engine() if self.weights is None else Engine(self.weights)
             return self._engine
 
     @property
