@@ -95,10 +95,10 @@ class Settings:
 
 
 LEAN = {
-    "fc": 1024, "width": 64, "critic_fc": 128, "critic_steps": 1, "learning_rate": 1e-3, "final_rate": 0.02,
+    "fc": 1024, "width": 32, "critic_fc": 128, "critic_steps": 1, "learning_rate": 1e-3, "final_rate": 0.02,
     "ema": 0.995, "position": 100.0, "linear": True, "length": True,
 }  # fmt: skip
-"""Settings of a run that one CPU core finishes in an hour."""
+"""Settings of a run that a share of one CPU core finishes in an hour."""
 
 
 class Trainer(PredictionTrainer):
@@ -153,15 +153,23 @@ class Trainer(PredictionTrainer):
         s = self.settings
         return s.final_rate + (1 - s.final_rate) * 0.5 * (1 + math.cos(math.pi * min(1, self.step / s.steps)))
 
-    def critic_steps(self) -> Iterator[float]:
-        """Trains the critic; yields its losses."""
-        for i in range(self.settings.critic_steps):
-            _, past, real = self.pairs(1 + i)
-            with torch.no_grad():
-                made = self.seen(self.model.generate(past)[0])
+    def critic_steps(self, real: Tensor, made: Tensor) -> Iterator[float]:
+        """Trains the critic; yields its losses.
+
+        Args:
+            real, made: (B, future + 1, D) tangent vectors of the predictor's own batch, which the last critic
+                step shares with it; the steps before it draw theirs.
+        """
+        for i in reversed(range(self.settings.critic_steps)):
+            if i:
+                _, past, own = self.pairs(i)
+                with torch.no_grad():
+                    pair = own, self.seen(self.model.generate(past)[0])
+            else:
+                pair = real, made
             rng = np.random.default_rng((self.settings.seed, self.step, 100 + i))
-            share = torch.from_numpy(rng.random(len(past), dtype=np.float32)).to(real)
-            loss = critic_loss(self.critic, real, made, share, penalty=self.settings.gradient_penalty)
+            share = torch.from_numpy(rng.random(len(pair[0]), dtype=np.float32)).to(real)
+            loss = critic_loss(self.critic, *pair, share, penalty=self.settings.gradient_penalty)
             self.critic_optimizer.zero_grad(set_to_none=True)
             loss.backward()
             self.critic_optimizer.step()
@@ -172,10 +180,10 @@ class Trainer(PredictionTrainer):
         for optimizer in (self.optimizer, self.critic_optimizer):
             for group in optimizer.param_groups:
                 group["lr"] = self.settings.learning_rate * self.rate()
-        critic = list(self.critic_steps()) if weights.adversarial else [0.0]
         windows, past, real = self.pairs(0)
         s, longer = self.model.generate(past)
         made = self.seen(s)
+        critic = list(self.critic_steps(real, made.detach())) if weights.adversarial else [0.0]
         positions = to_positions(self.model.decode(s, longer, past))
         truth = windows[:, self.settings.past :]
         terms = {

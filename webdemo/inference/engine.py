@@ -34,6 +34,7 @@ GENERATORS: dict[str, Callable[[Path], Runner]] = {
     "intergen": DuetGenerator,
     "regennet": Reactor,
     "motion-mlp": MotionPredictor,
+    "mawgan": MotionPredictor,
     "still": lambda _: MotionPredictor(None),
 }
 """What runs requests, by name; the folder of its weights has the same name."""

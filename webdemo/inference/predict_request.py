@@ -19,7 +19,11 @@ Array = NDArray[np.floating]
 PREDICT_SECONDS = (0.5, 4.0)
 PAST_SECONDS = 1.0
 """The least past that a prediction needs; no more of it is looked at."""
-METHODS = {"motion-mlp": "Motion MLP", "still": "Zero velocity (the last pose, held)"}
+METHODS = {
+    "motion-mlp": "Motion MLP",
+    "mawgan": "PredictiveMA-WGAN",
+    "still": "Zero velocity (the last pose, held)",
+}
 """By name: what the page calls a method."""
 LONGEST = 60.0
 _MAX_STEP = 0.5
