@@ -12,6 +12,7 @@ import math
 import os
 import queue
 import threading
+import time
 from collections.abc import Iterator
 from dataclasses import dataclass
 from importlib.util import find_spec
@@ -34,6 +35,8 @@ TRIES = 4
 """How often a request is begun, where replicas die under it."""
 TICK = 0.2
 """Seconds between two looks at whether a run was cancelled."""
+AGAIN_AFTER = 0.5
+"""Seconds between a replica's death and the next try."""
 STORE_BYTES = 128 * 2**20
 """Shared memory of a cluster that is started here; a result is 1 MB."""
 MOST_PARALLEL = 128
@@ -84,8 +87,9 @@ class RayEngine:
         self.at_work: dict[int, int] = {}
         """How many runs of this process each replica has, by its process id."""
         self._handles: dict[str, DeploymentHandle] = {}
-        self._lock = threading.Lock()
-        self._ours = False
+        self._lock, self._counting = threading.Lock(), threading.Lock()
+        self._cluster: threading.Thread | None = None
+        self._closing = threading.Event()
 
     # ---- as the page knows an engine -------------------------------------------------------------
 
@@ -113,13 +117,13 @@ class RayEngine:
 
     def run(self, request: Any, cancel: CancelToken | None = None) -> Iterator[Progress | Result]:
         """As :meth:`webdemo.inference.engine.Engine.run`, on a replica; begun anew where that dies."""
-        from ray.exceptions import RayActorError
-        from ray.serve.exceptions import DeploymentUnavailableError
-
         cancel = cancel or CancelToken()
         if not self.ready:
             yield Progress(stage="load")
         handle = self._handle(request.model if request.model in MODELS else SamplingRequest.model)
+        from ray.exceptions import RayActorError
+        from ray.serve.exceptions import DeploymentUnavailableError
+
         for left in reversed(range(TRIES)):
             try:
                 yield from self._once(handle, request, cancel)
@@ -129,18 +133,15 @@ class RayEngine:
                     raise
                 log.warning("A replica was lost (%s): its run begins again.", type(error).__name__)
                 yield Progress(stage="load")
+                time.sleep(AGAIN_AFTER)
 
     def close(self) -> None:
         """Ends the cluster where it was started here; another's goes on."""
         with self._lock:
             self._handles.clear()
-            if self._ours:
-                import ray
-                from ray import serve
-
-                serve.shutdown()
-                ray.shutdown()
-                self._ours = False
+            self._closing.set()
+            if self._cluster is not None:
+                self._cluster.join()
 
     # ---- a request on its way --------------------------------------------------------------------
 
@@ -183,7 +184,7 @@ class RayEngine:
                 self._count(pid, -1)
 
     def _count(self, pid: int, change: int) -> None:
-        with self._lock:
+        with self._counting:
             self.at_work[pid] = self.at_work.get(pid, 0) + change
             if not self.at_work[pid]:
                 del self.at_work[pid]
@@ -191,6 +192,8 @@ class RayEngine:
     # ---- the cluster -----------------------------------------------------------------------------
 
     def _handle(self, model: str) -> DeploymentHandle:
+        if (known := self._handles.get(model)) is not None:  # not behind another model's first start
+            return known
         with self._lock:
             if model not in self._handles:
                 self._connect()
@@ -198,39 +201,57 @@ class RayEngine:
             return self._handles[model]
 
     def _connect(self) -> None:
-        os.environ.setdefault("RAY_USAGE_STATS_ENABLED", "0")
-        if not self.address:
-            # Ray's name for "one machine": its processes then listen on loopback alone. Read at the import.
-            os.environ.setdefault("RAY_ENABLE_WINDOWS_OR_OSX_CLUSTER", "0")
-        import ray
-        from ray import serve
+        """Joins or starts the cluster, in a thread that lives as long as it.
 
-        if ray.is_initialized():
+        Ray lets its processes be killed by the system when the thread ends that has started them.
+        """
+        if self._cluster is not None and self._cluster.is_alive():
             return
-        quiet: dict[str, Any] = {
-            "namespace": NAMESPACE, "configure_logging": False, "log_to_driver": False,
-        }  # fmt: skip
-        try:
-            if self.address:
-                ray.init(address=self.address, **quiet)
-            else:
-                cores = self.replicas[1] * self.cores + (len(MODELS) - 1) * self._cores(MODELS[-1])
-                ray.init(
-                    address="local", include_dashboard=False, _node_ip_address=LOOPBACK,
-                    object_store_memory=STORE_BYTES, num_cpus=max(os.cpu_count() or 1, math.ceil(cores)),
-                    **quiet,
-                )  # fmt: skip
-                self._ours = True
-        except (ConnectionError, RuntimeError, ValueError, OSError) as error:
+        told: queue.SimpleQueue[Exception | None] = queue.SimpleQueue()
+        self._closing.clear()
+        self._cluster = threading.Thread(target=self._hold, args=(told,), name="ray cluster", daemon=True)
+        self._cluster.start()
+        error = told.get()
+        if error is not None:
+            log.error("Ray did not start.", exc_info=error)
             reason = str(error).partition("\n")[0][:200]
             raise InputError(
                 f"There is no Ray cluster to be had at {self.address or 'this machine'} ({reason}): "
                 "correct PASDEDEUX_RAY_ADDRESS, or set PASDEDEUX_ENGINE=local."
-            ) from None
-        serve.start(proxy_location="Disabled")
-        for name in ("ray", "ray.serve"):  # what they say goes into the server's own log
-            logging.getLogger(name).handlers.clear()
-            logging.getLogger(name).propagate = True
+            )
+
+    def _hold(self, told: queue.SimpleQueue[Exception | None]) -> None:
+        """Starts or joins the cluster, says so, and ends it when the engine is closed."""
+        os.environ.setdefault("RAY_USAGE_STATS_ENABLED", "0")
+        if not self.address:
+            # Ray's name for "one machine": its processes then listen on loopback alone. Read at the import.
+            os.environ.setdefault("RAY_ENABLE_WINDOWS_OR_OSX_CLUSTER", "0")
+        try:
+            import ray
+            from ray import serve
+
+            where: dict[str, Any] = {"address": self.address}
+            if not self.address:
+                cores = self.replicas[1] * self.cores + (len(MODELS) - 1) * self._cores(MODELS[-1])
+                where = {
+                    "address": "local", "include_dashboard": False, "_node_ip_address": LOOPBACK,
+                    "object_store_memory": STORE_BYTES,
+                    "num_cpus": max(os.cpu_count() or 1, math.ceil(cores)),
+                }  # fmt: skip
+            ray.init(namespace=NAMESPACE, configure_logging=False, log_to_driver=False, **where)
+            serve.start(proxy_location="Disabled")
+            logger = logging.getLogger("ray.serve")  # what it says goes into the server's own log
+            logger.handlers.clear()
+            logger.propagate = True
+            logger.setLevel(logging.WARNING)
+        except Exception as error:
+            told.put(error)
+            return
+        told.put(None)
+        self._closing.wait()
+        if not self.address:
+            serve.shutdown()
+        ray.shutdown()
 
     def _deployed(self, model: str) -> DeploymentHandle:
         """The model's application, deployed unless another page's process did."""
