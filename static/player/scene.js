@@ -29,6 +29,7 @@ export class Scene {
     this.Plotly = Plotly;
     this.mode = "restyle";
     this.pending = new Map();
+    this.layers = new Map();
     this.names = Object.keys(KINDS);
     this.software = softwareGl();
     this.ratio = this.software ? MOVING_RATIO : Math.min(window.devicePixelRatio || 1, 2);
@@ -128,7 +129,9 @@ export class Scene {
    * a point; `sizes` in CSS pixels, one or one a point (lines: the width of the segment that starts
    * there); `cells` the triangles of a mesh, indices of points.
    */
-  set(name, { points, colors = [0, 0, 0], sizes = 1, cells = [[0, 1, 2]] }) {
+  set(name, layer) {
+    const { points, colors = [0, 0, 0], sizes = 1, cells = [[0, 1, 2]] } = layer;
+    this.layers.set(name, layer);
     if (this.mode !== "fast") {
       this.pending.set(name, { points, colors, sizes, cells });
       return;
@@ -197,9 +200,12 @@ export class Scene {
     } else this.Plotly.relayout(this.host, { "scene.bgcolor": css(color) });
   }
 
-  /** After the box changed its size. */
-  resize() {
-    this.Plotly.Plots.resize(this.host);
+  /** After the box changed its size: plotly draws its own traces anew, so every layer is given again. */
+  async resize() {
+    await this.Plotly.Plots.resize(this.host);
+    if (this.mode !== "fast" || !this.objects) return;
+    for (const [name, layer] of this.layers) this.set(name, layer);
+    this.draw();
   }
 
   /**

@@ -108,3 +108,31 @@ def test_a_live_reaction_comes_while_the_actor_plays_and_can_be_cancelled(page: 
     expect(page.locator("#react-status .pd-warning")).to_contain_text("Cancelled at step", timeout=SLOW)
     page.wait_for_function(f"{known} === null && window.__pasdedeux.player.sample.frames < 120")
     people(page, 2)
+
+
+def choose(page: Page, box: str, option: str) -> None:
+    page.click(f"{box} input")
+    page.get_by_role("option", name=option).click()
+
+
+def test_two_methods_are_seen_side_by_side_on_one_clock(page: Page, tmp_path: Path) -> None:
+    (file, _) = write(walking(3.0), tmp_path / "walker.bvh")
+    page.set_input_files("#react-file input[type=file]", file)
+    people(page, 1)
+    choose(page, "#react-other", "ReGenNet, online")
+    page.click("button#react-generate")
+    expect(page.locator("#react-status .pd-done")).to_contain_text("Both done", timeout=SLOW)
+    people(page, 4)
+    captions = page.locator("#react-player .pdd-caption")
+    expect(captions).to_have_text(["InterGen, person to person", "ReGenNet, online"])
+    left, right = (captions.nth(i).locator("..").bounding_box() for i in (0, 1))
+    assert left and right and abs(left["width"] - right["width"]) < 2 and left["x"] < right["x"]
+    expect(page.locator("#react-readouts thead").first).to_contain_text("ReGenNet, online")
+    with page.expect_download(timeout=SLOW) as download:
+        page.click("#react-download-npz")
+    assert download.value.suggested_filename.endswith(".zip")
+
+    page.click("button#react-take-a")
+    people(page, 1)
+    expect(captions).to_have_count(2)
+    expect(captions.nth(1)).to_be_hidden()

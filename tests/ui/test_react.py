@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import os
+import time
+import zipfile
 from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
@@ -15,12 +17,17 @@ os.environ.setdefault("GRADIO_ANALYTICS_ENABLED", "False")
 import gradio as gr
 
 from webdemo.formats import read, write
+from webdemo.inference.live import LiveRequest
+from webdemo.inference.requests import ReactRequest
+from webdemo.motion import InputError
 from webdemo.ui.context import PageContext
 from webdemo.ui.examples import example_clips
 from webdemo.ui.exports import Shelf
+from webdemo.ui.live import BATCH, REPEATED
 from webdemo.ui.page import build_page, launch_options
 from webdemo.ui.react_tab import ReactTab
 from webdemo.ui.runs import Loader, Runs
+from webdemo.view.payload import unpack_positions
 
 from .stub_engine import StubEngine, walking
 
@@ -312,3 +319,84 @@ def test_what_a_method_cannot_do_is_told(tab: ReactTab, bvh: Path) -> None:
     source = upload(tab, bvh)[-1]["source"]
     *_, last = run(tab, source, method="regennet", role="b")
     assert "choose role a" in last["line"]
+
+
+def test_two_methods_stand_side_by_side(tab: ReactTab, bvh: Path) -> None:
+    source = upload(tab, bvh)[-1]["source"]
+    steps = run(tab, source, method="intergen", other="regennet-online", steps=20, samples=2, prompt="")
+    assert any("ReGenNet, online. Denoising: step" in step.get("line", "") for step in steps)
+    first, second = tab.page.engine.requests[-2:]
+    assert (first.model, first.steps, second.model, second.mode, second.steps) == (
+        "intergen", 20, "regennet", "online", 5,
+    )  # fmt: skip
+    assert first.seed == second.seed
+    assert first.actor.positions.tobytes() == second.actor.positions.tobytes()
+    last = steps[-1]
+    samples = last["player"]["value"]["samples"]
+    assert [(s["caption"], s["beside"]["caption"]) for s in samples] == [
+        ("InterGen, person to person", "ReGenNet, online")
+    ] * 2
+    assert [curve["label"] for curve in samples[0]["curves"]] == ["Apart, left", "Apart, right"]
+    for head in ("InterGen, person to person, 2", "ReGenNet, online, 1"):
+        assert head in last["readouts"]
+    _, *buttons = tab.export(last["record"])
+    with zipfile.ZipFile(buttons[0]["value"]) as archive:
+        assert sorted(archive.namelist()) == [
+            f"{method}-reaction-to-walker-a-bvh-seed3-{i}.npz"
+            for method in ("intergen", "regennet-online")
+            for i in (1, 2)
+        ]
+
+
+def test_a_method_is_not_compared_with_itself_and_roles_fit_both(tab: ReactTab, bvh: Path) -> None:
+    source = upload(tab, bvh)[-1]["source"]
+    last = run(tab, source, method="intergen", other="intergen")[-1]
+    assert "choose another one" in last["line"]
+    assert tab.fit_method("intergen", "regennet")[0]["interactive"] is False
+    assert tab.fit_method("intergen", "")[0]["interactive"] is True
+
+
+def test_live_frames_come_in_small_messages_and_end_in_a_result(tab: ReactTab, bvh: Path) -> None:
+    source = upload(tab, bvh)[-1]["source"]
+    began = time.monotonic()
+    steps = run(tab, source, live=True, end=2.0, samples=4, prompt="")
+    assert time.monotonic() - began > 1.9, "the actor plays in real time"
+    opening = next(step["player"]["value"] for step in steps if "value" in step.get("player", {}))
+    assert opening["live"]
+    assert opening["samples"][0]["positions"]["shape"] == [1, 60, 22, 3]
+    messages = [step["player"]["live"] for step in steps if step.get("player", {}).get("live")]
+    assert len(messages) == 10
+    seen = np.full((60, 22, 3), np.nan)
+    for message in messages:
+        assert message["id"] == opening["id"]
+        part = unpack_positions(message["frames"])[0]
+        assert len(part) <= BATCH + REPEATED
+        seen[message["start"] : message["start"] + len(part)] = part
+    result = steps[-1]["record"].result
+    np.testing.assert_allclose(seen, result.duets[0].b.positions, atol=1e-3)
+    assert steps[-1]["player"]["value"]["continues"] == opening["id"]
+    assert "longest" in steps[-1]["line"]
+    asked = tab.page.engine.requests[-1]
+    assert (asked.model, asked.mode, asked.samples, asked.steps) == ("regennet", "online", 1, 5)
+
+
+def test_a_live_reaction_that_is_cancelled_tells_the_player(tab: ReactTab, bvh: Path) -> None:
+    source = upload(tab, bvh)[-1]["source"]
+    fields = {"source": source, **FIELDS, "live": True}
+    seen: list[dict[str, Any]] = []
+    for updates in tab.run("me", fields):
+        seen.append(changes(tab.outputs, updates))
+        if len(seen) == 5:
+            tab.page.runs.cancel("me")
+    assert seen[-2]["player"]["live"]["stop"]
+    assert "Cancelled at step" in seen[-1]["line"]
+    assert "record" not in seen[-1]
+
+
+def test_a_live_request_is_online() -> None:
+    actor = walking(2.0).a
+    with pytest.raises(InputError, match="online"):
+        LiveRequest(actor=actor, model="regennet", mode="offline")
+    live = LiveRequest(actor=actor, model="regennet", steps=5)
+    plain = ReactRequest(actor=actor, model="regennet", steps=5, mode="online")
+    assert live.to_dict() == plain.to_dict(), "its manifest reproduces the same motion"

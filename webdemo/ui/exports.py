@@ -61,11 +61,13 @@ class Record:
         result: what the engine gave.
         prompt: names the files.
         exported: whether its files were written.
+        compared: the results that stand side by side, by method; ``result`` is the first of them.
     """
 
     result: Result = field(repr=False)
     prompt: str
     exported: bool = False
+    compared: Mapping[str, Result] = field(default_factory=dict, repr=False)
 
 
 class Shelf:
@@ -95,6 +97,17 @@ class Shelf:
                     shutil.rmtree(folder)
             except OSError as error:  # another process may be quicker
                 log.info("Could not remove %s: %s", folder, error)
+
+
+def write_record(record: Record, folder: Path) -> dict[str, list[Path]]:
+    """:func:`write_files` for all results of a record; names of compared ones begin with their method."""
+    if not record.compared:
+        return write_files(record.result, folder, prompt=record.prompt)
+    files: dict[str, list[Path]] = {}
+    for method, result in record.compared.items():
+        for key, paths in write_files(result, folder, prompt=f"{method} {record.prompt}").items():
+            files.setdefault(key, []).extend(paths)
+    return files
 
 
 def write_files(result: Result, folder: Path, *, prompt: str) -> dict[str, list[Path]]:
@@ -145,9 +158,9 @@ def _write_motion(duet: Duet | Clip, path: Path, *, title: str) -> list[Path]:
     return [Path(written) for written in formats.write(duet, path)]
 
 
-def for_download(files: Mapping[str, list[Path]]) -> dict[str, Path]:
-    """One file a kind: the file itself, or a .zip of several."""
-    name = files["json"][0].stem
+def for_download(files: Mapping[str, list[Path]], name: str | None = None) -> dict[str, Path]:
+    """One file a kind: the file itself, or a .zip of several, called after the first or ``name``."""
+    name = name or files["json"][0].stem
     return {
         key: paths[0] if len(paths) == 1 else _zipped(paths, paths[0].with_name(f"{name}-{key}.zip"))
         for key, paths in files.items()

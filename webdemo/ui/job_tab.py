@@ -22,7 +22,8 @@ from webdemo.inference.requests import (
 )
 
 from .context import PageContext
-from .exports import KINDS, Record, for_download, write_files
+from .exports import KINDS, Record, file_name, for_download, write_record
+from .history import Opened
 from .panels import readout_panel, status
 from .player import EMPTY_TEXT, MotionPlayer, busy, show
 from .show import result_payload
@@ -45,6 +46,11 @@ _SEED_INFO = "Same seed, same motion; empty draws a new one."
 
 Updates = tuple[Any, ...]
 Watch = Callable[[Progress], dict[str, Any] | None]
+
+
+def total(result: Result) -> float:
+    """Seconds that a result took."""
+    return result.timings.get("total", sum(result.timings.values()))
 
 
 class JobTab(ABC):
@@ -132,6 +138,9 @@ class JobTab(ABC):
                         )
                         for kind in KINDS
                     ]  # fmt: skip
+                    self.onward = gr.Button(
+                        "What comes next", size="sm", min_width=0, elem_id=self._id("continue")
+                    )
                 self.readouts = gr.HTML(elem_id=self._id("readouts"))
 
     # ---- events ----------------------------------------------------------------------------------
@@ -263,16 +272,23 @@ class JobTab(ABC):
         raise Cancelled(cancelled_line(last))
 
     def _shown(self, result: Result, title: str) -> dict[str, Any]:
-        total = result.timings.get("total", sum(result.timings.values()))
+        spent = total(result)
         count = len(result.duets)
         made = "Done" if count == 1 else f"{count} samples done"
         return {
             "player": show(result_payload(result, title=title)),
-            "line": status(f"{made} in {seconds(total)}." if total else f"{made}.", tone="done"),
+            "line": status(f"{made} in {seconds(spent)}." if spent else f"{made}.", tone="done"),
             "under": gr.update(visible=True),
             "readouts": readout_panel(result),
             "record": Record(result, title),
         }
+
+    def opened(self, run: Opened) -> dict[gr.components.Component, Any]:
+        """Updates that show a kept run here, by the components of this tab."""
+        made = time.strftime("%Y-%m-%d %H:%M", time.gmtime(run.entry.created))
+        shown = self._shown(run.result, run.entry.title)
+        shown["line"] = status(f"Made on {made} UTC.", tone="done")
+        return {self.outputs[name]: update for name, update in shown.items()}
 
     def _stopped(self, line: str, tone: str) -> Updates:
         return self._updates(player=busy(""), line=status(line, tone=tone))
@@ -296,8 +312,8 @@ class JobTab(ABC):
             return unchanged
         record.exported = True
         try:
-            files = write_files(record.result, self.page.shelf.folder(), prompt=record.prompt)
-            found = for_download(files)
+            files = write_record(record, self.page.shelf.folder())
+            found = for_download(files, file_name(record.prompt, record.result.manifest))
         except Exception as error:
             off = gr.update(value=None, interactive=False)
             return (status(f"The motion is ready, but not its files. {error_line(error)}", tone="error"),

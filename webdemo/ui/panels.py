@@ -51,6 +51,30 @@ def readout_panel(result: Result) -> str:
     return '<div class="pd-readouts">' + "".join(parts) + "</div>"
 
 
+def comparison_panel(results: Mapping[str, Result]) -> str:
+    """The same for results of several methods, by what each is called: their measures next to each other."""
+    heads = [
+        f"{name}, {i + 1}" if len(result.duets) > 1 else name
+        for name, result in results.items()
+        for i in range(len(result.duets))
+    ]
+    joined = Result(
+        duets=tuple(duet for result in results.values() for duet in result.duets),
+        readouts=tuple(readout for result in results.values() for readout in result.readouts),
+        manifest={},
+    )
+    samples = [_sides(readout) for readout in joined.readouts]
+    parts = [_asked(result, name) + _notes(result.notes) for name, result in results.items()]
+    tables = _quality_table(samples, heads) + _relation_table(samples, joined, heads)
+    parts.append(f'<div class="pd-tables">{tables}</div>')
+    parts += [_timings(result.timings, name) for name, result in results.items()]
+    return '<div class="pd-readouts">' + "".join(parts) + "</div>"
+
+
+def _heads(count: int) -> list[str]:
+    return [f"Sample {i + 1}" for i in range(count)]
+
+
 def _sides(readout: Mapping[str, Any]) -> tuple[Summary | None, Summary]:
     """(before, after) of a read-out, as :func:`webdemo.metrics.compare` gives it."""
     after = readout.get("after") or {}
@@ -58,9 +82,10 @@ def _sides(readout: Mapping[str, Any]) -> tuple[Summary | None, Summary]:
     return (before.get("summary", before) if before else None), after.get("summary", after)
 
 
-def _asked(result: Result) -> str:
+def _asked(result: Result, name: str | None = None) -> str:
     request = result.manifest.get("request", result.manifest)
     shown = [
+        ("Method", name),
         ("Actor", request.get("actor", {}).get("name")),
         ("Seed", request.get("seed")),
         ("Length", f"{result.duets[0].seconds:.1f} s" if result.duets else None),
@@ -84,13 +109,16 @@ def _notes(notes: Sequence[str]) -> str:
     return "".join(f'<p class="pd-note" role="note">{text(note)}</p>' for note in notes)
 
 
-def _quality_table(samples: Sequence[tuple[Summary | None, Summary]]) -> str:
+def _quality_table(
+    samples: Sequence[tuple[Summary | None, Summary]], heads: Sequence[str] | None = None
+) -> str:
+    head: Sequence[str]
     if len(samples) == 1 and samples[0][0] is not None:
         head = ("Before", "After", "Change")
     elif len(samples) == 1:
         head = ("Value",)
     else:
-        head = tuple(f"Sample {i + 1}" for i in range(len(samples)))
+        head = heads or _heads(len(samples))
     rows = "".join(_quality_row(measure, samples) for measure in QUALITY)
     return _table("Quality, before → after damping", head, rows)
 
@@ -121,35 +149,38 @@ def _change(measure: Measure, before: Summary, after: Summary) -> str:
     return f'<td class="{tone}">{percent} %</td>'
 
 
-def _relation_table(samples: Sequence[tuple[Summary | None, Summary]], result: Result) -> str:
-    head = ("Value",) if len(samples) == 1 else tuple(f"Sample {i + 1}" for i in range(len(samples)))
+def _relation_table(
+    samples: Sequence[tuple[Summary | None, Summary]], result: Result, heads: Sequence[str] | None = None
+) -> str:
+    head = ("Value",) if len(samples) == 1 else heads or _heads(len(samples))
     rows = "".join(
         _row(measure, "".join(f"<td><b>{_value(measure, after)}</b></td>" for _, after in samples))
         for measure in RELATION
     )
-    contacts = "".join(_contacts(i, result) for i in range(len(samples)))
+    contacts = "".join(_contacts(i, result, head) for i in range(len(samples)))
     return f'<div class="pd-relation">{_table("Between the two", head, rows)}{contacts}</div>'
 
 
-def _contacts(sample: int, result: Result) -> str:
+def _contacts(sample: int, result: Result, head: Sequence[str]) -> str:
     found = result.readouts[sample].get("contacts")
     if found is None:
         return ""
     fps = result.duets[sample].fps
-    title = "Contacts" if len(result.duets) == 1 else f"Contacts, sample {sample + 1}"
+    title = "Contacts" if len(result.duets) == 1 else f"Contacts, {head[sample]}"
     items = "".join(
         f'<li class="pd-{text(contact["kind"])}">'
         f"<b>{contact['start'] / fps:.1f}–{contact['stop'] / fps:.1f} s</b> {text(contact['label'])}</li>"
         for contact in found
     )
-    return f'<div class="pd-contacts"><h4>{title}</h4><ul>{items or "<li>none</li>"}</ul></div>'
+    return f'<div class="pd-contacts"><h4>{text(title)}</h4><ul>{items or "<li>none</li>"}</ul></div>'
 
 
-def _timings(timings: Mapping[str, float]) -> str:
+def _timings(timings: Mapping[str, float], name: str | None = None) -> str:
     if not timings:
         return ""
+    whose = f"<b>{text(name)}</b> " if name else ""
     items = " · ".join(f"{text(stage)} {seconds(spent)}" for stage, spent in timings.items())
-    return f'<p class="pd-timings">{items}</p>'
+    return f'<p class="pd-timings">{whose}{items}</p>'
 
 
 def _value(measure: Measure, values: Summary) -> str:

@@ -11,7 +11,7 @@ import gradio as gr
 
 from webdemo.formats.importing import AXES, UNITS
 from webdemo.inference.live import LiveRequest
-from webdemo.inference.requests import DEFAULT_STEPS, SECONDS, ReactRequest
+from webdemo.inference.requests import DEFAULT_STEPS, SECONDS, ReactRequest, Result
 from webdemo.motion import InputError
 
 from .actors import (
@@ -26,19 +26,19 @@ from .actors import (
     result_source,
     with_method,
 )
+from .compare import comparison_payload
 from .context import PageContext
 from .examples import example_clips
 from .exports import Record
-from .job_tab import QUIET, JobTab, Updates
+from .job_tab import QUIET, JobTab, Updates, total
 from .live import LiveView
-from .panels import status
+from .panels import comparison_panel, status
 from .player import busy, show
 from .show import result_payload
-from .words import error_line, text
+from .words import error_line, seconds, text
 
 EMPTY_TEXT = "Drop a motion file, or take an example"
 FILE_TYPES = [".bvh", ".npz", ".npy", ".skeleton", ".txt"]
-_METHOD_INFO = "Online, each frame answers the actor's frames so far; the others see the whole motion."
 _SHORTEST = 0.1
 """Seconds: the least that the trim's sliders differ in."""
 
@@ -85,20 +85,26 @@ class ReactTab(JobTab):
             "source": self.source, "person": self.person, "start": self.begin, "end": self.end,
             "role": self.role, "prompt": self.prompt, "seed": self.seed, "samples": self.samples,
             "guidance": self.guidance, "steps": self.steps, "damping": self.damping, "method": self.method,
+            "other": self.other,
         }  # fmt: skip
         inputs = set(self.controls.values())
         self._wire_run(self.start, [self.go.click, self.prompt.submit], inputs, record)
         self._wire_start(self.start_live, [self.live.click], inputs)
         self._wire_actor()
+        methods = [self.method, self.other]
         self.method.change(
-            self.fit_method, inputs=self.method, outputs=[self.role, self.steps, self.damping],
+            self.fit_method, inputs=methods, outputs=[self.role, self.steps, self.damping],
+            queue=False, **QUIET,
+        )  # fmt: skip
+        self.other.change(
+            lambda *chosen: self.fit_method(*chosen)[0], inputs=methods, outputs=self.role,
             queue=False, **QUIET,
         )  # fmt: skip
 
     def _ask(self) -> None:
         with gr.Column(elem_classes="pd-panel pd-ask", min_width=0):
             self.file = gr.File(
-                label="The given person: .bvh, .npz, .npy or Kinect text", file_types=FILE_TYPES,
+                label="Given person: .bvh .npz .npy .skeleton .txt", file_types=FILE_TYPES,
                 height=112, elem_id="react-file", elem_classes="pd-file",
             )  # fmt: skip
             with gr.Row(elem_classes="pd-chips"):
@@ -142,10 +148,15 @@ class ReactTab(JobTab):
                     [("acts first", "a"), ("reacts", "b")], value=ReactRequest.role,
                     label="The given person …", elem_id="react-role",
                 )  # fmt: skip
-            self.method = gr.Radio(
-                installed_methods(), value=next(iter(METHODS)),
-                label="Method", elem_id="react-method", info=_METHOD_INFO,
-            )  # fmt: skip
+            with gr.Row(elem_classes="pd-rows"):
+                self.method = gr.Dropdown(
+                    installed_methods(), value=next(iter(METHODS)), label="Method",
+                    elem_id="react-method", min_width=0, filterable=False,
+                )  # fmt: skip
+                self.other = gr.Dropdown(
+                    [("nothing", ""), *installed_methods()], value="", label="Compare with",
+                    elem_id="react-other", min_width=0, filterable=False,
+                )  # fmt: skip
             self.prompt = gr.Textbox(
                 label="What do the two people do? (may stay empty)",
                 placeholder="One person waves and the other waves back.",
@@ -192,11 +203,12 @@ class ReactTab(JobTab):
         )  # fmt: skip
 
     @staticmethod
-    def fit_method(method: str) -> Updates:
+    def fit_method(method: str, other: str = "") -> Updates:
         """Updates of role, steps and damping: what a method does not have cannot be set."""
         model = METHODS[method][1]
         regularised = model == "intergen"
-        role = gr.update(interactive=regularised, **({} if regularised else {"value": "a"}))
+        either = regularised and (not other or METHODS[other][1] == "intergen")
+        role = gr.update(interactive=either, **({} if either else {"value": "a"}))
         return role, gr.update(value=DEFAULT_STEPS[model]), gr.update(interactive=regularised)
 
     def upload(self, path: str | None) -> Iterator[Updates]:
@@ -284,8 +296,30 @@ class ReactTab(JobTab):
     def answer(self, session: str, fields: Mapping[str, Any]) -> Iterator[Updates]:
         if fields.get("live"):
             yield from self._answer_live(session, fields)
+        elif fields.get("other"):
+            yield from self._answer_both(session, fields)
         else:
             yield from super().answer(session, fields)
+
+    def _answer_both(self, session: str, fields: Mapping[str, Any]) -> Iterator[Updates]:
+        """Runs two methods one after the other for the same actor, words and seed, and shows both."""
+        keys = (fields["method"], fields["other"])
+        if keys[0] == keys[1]:
+            raise InputError("Both methods are the same: choose another one to compare with.")
+        wanted = {key: self.request(with_method(fields, key)) for key in keys}
+        made: dict[str, Result] = {}
+        for key, request in wanted.items():
+            made[key] = yield from self.made(session, request, label=f"{METHODS[key][0]}. ")
+        title = self.title(wanted[keys[0]])
+        named = {METHODS[key][0]: result for key, result in made.items()}
+        spent = " and ".join(seconds(total(result)) for result in made.values())
+        yield self._updates(
+            player=show(comparison_payload(named, title=title)),
+            line=status(f"Both done, in {spent}.", tone="done"),
+            under=gr.update(visible=True),
+            readouts=comparison_panel(named),
+            record=Record(made[keys[0]], title, compared=made),
+        )
 
     def _answer_live(self, session: str, fields: Mapping[str, Any]) -> Iterator[Updates]:
         """Streams one sample of the online method, whatever method is chosen."""
