@@ -13,7 +13,8 @@ import pytest
 from sqlalchemy import update
 
 from webdemo import formats
-from webdemo.inference.predict_request import PredictRequest
+from webdemo.inference import Engine
+from webdemo.inference.predict_request import PredictRequest, PredictResult, people_of
 from webdemo.inference.requests import GenerateRequest, ReactRequest, Result
 from webdemo.motion import InputError
 from webdemo.server.database import Database, Link, Run
@@ -62,6 +63,28 @@ def test_a_reaction_is_run_again_from_its_result(history: History) -> None:
     asked = request_of(history.open(run, ME))
     assert isinstance(asked, ReactRequest) and asked.role == "b"
     np.testing.assert_array_equal(asked.actor.positions, actor.positions)
+
+
+@pytest.mark.parametrize(("people", "marker"), [(2, 1.5), (1, 1.5), (2, 3.0)])
+def test_a_prediction_keeps_its_marker_and_what_really_followed(
+    history: History, people: int, marker: float
+) -> None:
+    motion = stub_module().walking(3.0)
+    engine = Engine(Path("no weights are needed"))
+    request = PredictRequest(motion=motion if people == 2 else motion.a, marker=marker, seconds=1.0,
+                             model="still")  # fmt: skip
+    *_, result = engine.run(request)
+    run = history.begin(ME, request, "After")
+    history.finish(run, result)
+    opened = history.open(run, ME)
+    kept = opened.result
+    assert isinstance(kept, PredictResult) and kept.past_frames == result.past_frames == round(30 * marker)
+    assert (kept.error, kept.speed, kept.true_speed) == (result.error, result.speed, result.true_speed)
+    assert (kept.truth is None) == (marker == 3.0)
+    end = min(90, kept.past_frames + 30)
+    np.testing.assert_array_equal(people_of(kept.given), people_of(request.motion)[:, :end])
+    *_, again = engine.run(request_of(opened))
+    assert verdict(kept, again) == "Run again: the same motion, bit for bit."
 
 
 def test_the_verdict_names_what_differs(history: History) -> None:

@@ -15,12 +15,18 @@ os.environ.setdefault("GRADIO_ANALYTICS_ENABLED", "False")
 import gradio as gr
 
 from webdemo.formats import read, write
-from webdemo.inference.predict_request import PredictRequest, PredictResult, people_of, with_people
+from webdemo.inference.predict_request import (
+    METHODS,
+    PredictRequest,
+    PredictResult,
+    people_of,
+    with_people,
+)
 from webdemo.inference.requests import Progress, Result
 from webdemo.ui.api import PredictEndpoint
 from webdemo.ui.context import PageContext
 from webdemo.ui.exports import Record, Shelf, write_files
-from webdemo.ui.predict_tab import PredictTab
+from webdemo.ui.predict_tab import PredictTab, installed_methods
 from webdemo.ui.prediction_view import curves_figure, prediction_payload, still_error
 from webdemo.ui.runs import Loader, Runs
 from webdemo.view.payload import unpack_positions
@@ -38,7 +44,7 @@ def drift(request: PredictRequest) -> PredictResult:
     known = 0 if request.truth is None else request.truth.num_frames
     return PredictResult(
         duets=(with_people(request.motion, whole),),
-        manifest={"model": "motion-mlp", "request": request.to_dict()},
+        manifest={"model": request.model, "request": request.to_dict()},
         past_frames=request.past_frames,
         truth=request.truth,
         error=tuple(10.0 * (i + 1) for i in range(known)),
@@ -151,9 +157,33 @@ def test_curves_compare_with_the_last_pose() -> None:
     expected = 1000 * np.linalg.norm(truth[:, 89] - truth[:, 59], axis=-1).mean()
     assert still_error(result)[-1] == pytest.approx(expected, rel=1e-4)
     names = [trace.name for trace in curves_figure(result).data]
-    assert names == ["Motion MLP", "Last pose held", "Motion MLP, speed", "What really followed"]
+    assert names == ["Motion MLP", "Motion MLP", "Last pose held", "What really followed"]
     alone = drift(PredictRequest(motion=walking(4.0), seconds=1.0))
     assert len(curves_figure(alone).data) == 1 and "Nothing follows" in str(curves_figure(alone).layout)
+
+
+def test_two_methods_stand_side_by_side(tab: PredictTab, pair: Path) -> None:
+    source = loaded(tab, pair)["source"]
+    asked = {"source": source, "marker": 3.0, "seconds": 1.0, "model": "motion-mlp", "other": "mawgan"}
+    done = run(tab, asked)
+    (sample,) = done["player"]["value"]["samples"]
+    other = sample["beside"]
+    assert (sample["caption"], other["caption"]) == ("Motion MLP", "PredictiveMA-WGAN")
+    assert sample["past_until"] == other["past_until"] == 90 and sample["frames"] == other["frames"] == 120
+    assert other["ghost"] == sample["ghost"] is not None
+    assert [curve["label"] for curve in sample["curves"]] == ["Error, left", "Error, right"]
+    assert [request.model for request in tab.page.engine.requests] == ["motion-mlp", "mawgan"]
+    names = [trace.name for trace in done["plot"].data]
+    assert names.count("Motion MLP") == names.count("PredictiveMA-WGAN") == 2
+    assert "Both done" in done["line"] and set(done["record"].compared) == {"motion-mlp", "mawgan"}
+    assert "Both methods are the same" in run(tab, {**asked, "other": "motion-mlp"})["line"]
+
+
+def test_methods_without_weights_are_not_offered(tmp_path: Path) -> None:
+    assert [name for _, name in installed_methods(tmp_path)] == ["motion-mlp", "still"]
+    (tmp_path / "mawgan").mkdir()
+    (tmp_path / "mawgan" / "config.json").write_text("{}")
+    assert [name for _, name in installed_methods(tmp_path)] == list(METHODS)
 
 
 def test_programs_get_the_files_and_the_curves(tab: PredictTab, pair: Path) -> None:

@@ -156,3 +156,11 @@ class PredictResult(Result):
     error: tuple[float, ...] = ()
     speed: tuple[float, ...] = ()
     true_speed: tuple[float, ...] = ()
+
+    @property
+    def given(self) -> Clip | Duet:
+        """The motion that was asked about: the past, and what really followed as far as it was compared."""
+        motion = self.duets[0].cut(0, self.past_frames)
+        if self.truth is None:
+            return motion
+        return with_people(motion, np.concatenate([people_of(motion), people_of(self.truth)], axis=1))

@@ -18,6 +18,7 @@ from sqlalchemy import delete, func, select, update
 from sqlalchemy.orm import Session, selectinload
 
 from webdemo import formats
+from webdemo.inference.predict_request import PredictResult
 from webdemo.inference.requests import Result
 from webdemo.motion import InputError
 from webdemo.ui.history import Entry, Opened
@@ -29,6 +30,9 @@ log = logging.getLogger(__name__)
 SHOWN = 200
 """Runs that a list holds at most."""
 DAY = 86_400.0
+_TRUTH = "truth.npz"
+"""What really followed the past of a prediction."""
+_PREDICTION = ("past_frames", "error", "speed", "true_speed")
 _KEY = re.compile(r"[A-Za-z0-9_-]{16,64}\Z")
 _MISSING = "There is no such run, or its link has ended: ask whoever sent it for a new one."
 
@@ -109,6 +113,8 @@ class History:
             self.end(run, "failed", sentence)
             raise InputError(sentence) from None
         outcome = {"manifest": result.manifest, "timings": result.timings, "notes": list(result.notes)}
+        if isinstance(result, PredictResult):
+            outcome["prediction"] = {name: getattr(result, name) for name in _PREDICTION}
         with self.database.session.begin() as session:
             session.execute(
                 update(Run).where(Run.id == run).values(state="done", outcome=json.dumps(outcome), size=size)
@@ -249,6 +255,8 @@ class History:
             half.mkdir(mode=0o700)
             for i, duet in enumerate(result.duets):
                 formats.write(duet, half / f"{i + 1}.npz")
+            if isinstance(result, PredictResult) and result.truth is not None:
+                formats.write(result.truth, half / _TRUTH)
             (half / "readouts.json").write_text(
                 json.dumps(list(result.readouts), default=float), encoding="utf-8"
             )
@@ -261,18 +269,23 @@ class History:
 
     def _read(self, run: str, outcome: dict[str, Any]) -> Result:
         folder = self.folder / run
-        files = sorted(folder.glob("*.npz"), key=lambda path: int(path.stem))
+        files = sorted(folder.glob("[0-9]*.npz"), key=lambda path: int(path.stem))
         try:
             duets = tuple(map(formats.read, files))
+            truth = formats.read(folder / _TRUTH) if (folder / _TRUTH).exists() else None
             readouts = tuple(json.loads((folder / "readouts.json").read_text(encoding="utf-8")))
         except (OSError, ValueError):
             duets = ()
         if not duets:
             raise InputError("The files of this run are gone or damaged: run it again.")
-        return Result(
-            duets=duets, manifest=outcome["manifest"], readouts=readouts, timings=outcome["timings"],
-            notes=tuple(outcome["notes"]),
-        )  # fmt: skip
+        whole: dict[str, Any] = {
+            "duets": duets, "manifest": outcome["manifest"], "readouts": readouts,
+            "timings": outcome["timings"], "notes": tuple(outcome["notes"]),
+        }  # fmt: skip
+        if kept := outcome.get("prediction"):
+            curves = {name: tuple(value) for name, value in kept.items() if name != "past_frames"}
+            return PredictResult(**whole, truth=truth, past_frames=kept["past_frames"], **curves)
+        return Result(**whole)
 
 
 def _entry(run: Run) -> Entry:

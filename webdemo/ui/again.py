@@ -10,16 +10,20 @@ from typing import Any
 import numpy as np
 
 from webdemo.inference.actor import ROLES
+from webdemo.inference.predict_request import PredictRequest, PredictResult
 from webdemo.inference.requests import GenerateRequest, ReactRequest, Result, SamplingRequest
 from webdemo.motion import InputError
 
 from .actors import Source
 from .history import Opened
 
-_KINDS: dict[str, type[SamplingRequest]] = {"generate": GenerateRequest, "react": ReactRequest}
+Request = SamplingRequest | PredictRequest
+_KINDS: dict[str, type[Request]] = {
+    "generate": GenerateRequest, "react": ReactRequest, "predict": PredictRequest,
+}  # fmt: skip
 
 
-def request_of(opened: Opened) -> SamplingRequest:
+def request_of(opened: Opened) -> Request:
     """The request that a kept run was made from.
 
     Raises:
@@ -32,6 +36,10 @@ def request_of(opened: Opened) -> SamplingRequest:
     given: dict[str, Any] = {f.name: asked[f.name] for f in fields(kind) if f.name in asked}
     if kind is ReactRequest:
         given["actor"] = actor_source(opened).people[0]
+    if kind is PredictRequest:
+        if not isinstance(opened.result, PredictResult):
+            raise InputError("This prediction was kept without its marker: use its tab.")
+        given["motion"] = opened.result.given
     return kind(**given)
 
 

@@ -16,9 +16,7 @@ from .context import PageContext
 from .exports import KINDS, Record
 from .history import Entry, HistoryLike, Opened
 from .job_tab import QUIET, JobTab, Updates
-from .panels import readout_panel, status
-from .player import show
-from .show import result_payload
+from .panels import status
 from .visitor import Visitor, visitor
 from .words import cancelled_line, error_line, progress_line, text
 
@@ -91,7 +89,8 @@ class HistoryTab:
         )  # fmt: skip
         again.then(self.refresh, inputs=self.list, outputs=seen, **quick)
         self.buttons["stop"].click(self.cancel, queue=False, **QUIET)
-        self.opened = [self.tabs, record, self.line, *(c for job in self.jobs.values() for c in _parts(job))]
+        parts = [self.tabs, record, self.line, *(c for job in self.jobs.values() for c in _parts(job))]
+        self.opened = list({part._id: part for part in parts}.values())
         named = gr.Textbox(visible=False)
         chosen = self.buttons["open"].click(self.open, inputs=self.list, outputs=self.opened, **quick)
         address = demo.load(self.open_address, inputs=named, outputs=self.opened, js=_NAMED, **quick)
@@ -222,39 +221,34 @@ class HistoryTab:
         return tuple(changes.get(part._id, gr.skip()) for part in self.opened)
 
     def _shown(self, opened: Opened) -> Updates:
-        entry, result = opened.entry, opened.result
+        entry = opened.entry
         job = self.jobs.get(entry.kind)
         if job is None:
             raise InputError(f"There is no tab for a run of the kind {entry.kind!r} here.")
-        made = time.strftime("%Y-%m-%d %H:%M", time.gmtime(entry.created))
         changes: dict[int, Any] = {
             self.tabs._id: gr.update(selected=entry.kind),
             self.line._id: status(),
-            job.line._id: status(f"Made on {made} UTC.", tone="done"),
-            job.player._id: show(result_payload(result, title=entry.title)),
-            job.under._id: gr.update(visible=True),
-            job.readouts._id: readout_panel(result),
+            **{part._id: update for part, update in job.opened(opened).items()},
             **{
                 getattr(job, name)._id: gr.update(value=entry.request[name])
                 for name in _CONTROLS
                 if name in entry.request and hasattr(job, name)
             },
         }
-        if "actor" in entry.request and hasattr(job, "source"):
+        if "actor" in entry.request and hasattr(job, "trim"):
             source = actor_source(opened)
             last = round(source.seconds, 1)
             changes[job.source._id] = source
             changes[job.trim._id] = gr.update(visible=True)
             changes[job.begin._id] = gr.update(maximum=last, value=0)
             changes[job.end._id] = gr.update(maximum=last, value=last)
-        changes[self.record._id] = Record(result, entry.title)
         return tuple(changes.get(part._id, gr.skip()) for part in self.opened)
 
 
 def _parts(job: JobTab) -> Sequence[gr.components.Component]:
     """Everything of a tab that an opened run may set."""
-    names = ("line", "player", "under", "readouts", *_CONTROLS, "source", "trim", "begin", "end")
-    return [getattr(job, name) for name in names if hasattr(job, name)]
+    names = (*_CONTROLS, "source", "trim", "begin", "end", "marker")
+    return [*job.outputs.values(), *(getattr(job, name) for name in names if hasattr(job, name))]
 
 
 def _signed_in(who: Visitor) -> str:

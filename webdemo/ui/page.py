@@ -83,6 +83,10 @@ def build_page(
                 with gr.Tab(tab.label, id=tab.label.lower()):
                     jobs[tab.label.lower()] = tab(page)
                     jobs[tab.label.lower()].build(demo, record)
+            for onwards in jobs.values():
+                if isinstance(onwards, PredictTab):
+                    for job in jobs.values():
+                        onwards.continues(job.onward, tabs, onwards.label.lower())
             if history is not None:
                 with gr.Tab(HISTORY, id=HISTORY.lower()) as past:
                     HistoryTab(page, jobs, tabs).build(demo, past, record)

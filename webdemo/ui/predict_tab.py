@@ -26,20 +26,43 @@ from .actors import Source, read_source, result_source
 from .context import PageContext
 from .examples import example_clips
 from .exports import Record
-from .job_tab import QUIET, JobTab, Updates
-from .panels import status
+from .history import Opened
+from .job_tab import QUIET, JobTab, Updates, total
+from .panels import comparison_panel, status
 from .player import busy, show
 from .prediction_view import curves_figure, prediction_payload, without_name
 from .react_tab import FILE_TYPES
-from .words import error_line
+from .words import error_line, seconds
 
 EMPTY_TEXT = "Drop a motion file, or take an example"
+WEIGHTS = Path(__file__).resolve().parents[2] / "models" / "weights"
+
+
+def installed_methods(weights: Path = WEIGHTS) -> list[tuple[str, str]]:
+    """(label, name) of the methods that need no weights or have theirs."""
+    return [
+        (label, name)
+        for name, label in METHODS.items()
+        if name in (PredictRequest.model, "still") or (weights / name / "config.json").is_file()
+    ]
 
 
 def motion_of(source: Source) -> Clip | Duet:
     """All people of a source, the first called after it."""
     first = replace(source.people[0], name=source.name)
     return Duet(first, source.people[1]) if len(source.people) > 1 else first
+
+
+def given_source(result: PredictResult, name: str) -> Source:
+    """What a prediction was asked about, as a source again."""
+    given = result.given
+    named = result.manifest.get("request", {}).get("motion", {}).get("name")
+    return Source(named or name, given.people if isinstance(given, Duet) else (given,))
+
+
+def _last_marker(source: Source) -> float:
+    """The latest second at which the past can end, in tenths."""
+    return max(int(source.seconds * 10 + 1e-6) / 10, PAST_SECONDS)
 
 
 class PredictTab(JobTab):
@@ -93,18 +116,24 @@ class PredictTab(JobTab):
                         *PREDICT_SECONDS, value=PredictRequest.seconds, step=0.5, label="Seconds to predict",
                         elem_id="predict-seconds",
                     )  # fmt: skip
-                    self.model = gr.Radio(
-                        [(label, name) for name, label in METHODS.items()], value=PredictRequest.model,
-                        label="Method", elem_id="predict-method",
-                    )  # fmt: skip
+                    with gr.Row(elem_classes="pd-pair"):
+                        self.model = gr.Dropdown(
+                            installed_methods(), value=PredictRequest.model, label="Method",
+                            elem_id="predict-method", min_width=0, filterable=False,
+                        )  # fmt: skip
+                        self.other = gr.Dropdown(
+                            [("nothing", ""), *installed_methods()], value="", label="Compare with",
+                            elem_id="predict-other", min_width=0, filterable=False,
+                        )  # fmt: skip
             with gr.Column(elem_classes="pd-results", min_width=0):
                 self._results(EMPTY_TEXT)
                 with gr.Column(elem_classes="pd-panel", min_width=0, visible=False) as self.curves:
                     self.plot = gr.Plot(show_label=False, elem_id="predict-curves")
         self.source = gr.State(None, time_to_live=3600)
         self._wire_run(
-            self.start, [self.go.click], (self.source, self.marker, self.seconds, self.model), record
-        )
+            self.start, [self.go.click],
+            (self.source, self.marker, self.seconds, self.model, self.other), record,
+        )  # fmt: skip
         self._wire_source()
 
     def _ask(self) -> None:
@@ -130,15 +159,15 @@ class PredictTab(JobTab):
     # ---- events ----------------------------------------------------------------------------------
 
     def _wire_source(self) -> None:
-        changed = [self.source, self.line, self.player, self.marker]
-        load = {"outputs": changed, "concurrency_limit": 2, "concurrency_id": "predict-read", **QUIET}
+        self.changed = [self.source, self.line, self.player, self.marker]
+        load = {"outputs": self.changed, "concurrency_limit": 2, "concurrency_id": "predict-read", **QUIET}
         self.file.upload(self.upload, inputs=self.file, **load)
         for chip, (name, path) in zip(self.chips, self.examples, strict=True):
             chip.click(partial(self.load, partial(read_source, path, name)), **load)
         self.take.click(self.take_result, inputs=self.record, **load)
         for button in (*self.chips, self.take):  # the file is no longer what is used
             button.click(None, outputs=self.file, js="() => null", **QUIET)
-        self.file.clear(self.forget, outputs=changed, queue=False, **QUIET)
+        self.file.clear(self.forget, outputs=self.changed, queue=False, **QUIET)
 
     def upload(self, path: str | None) -> Iterator[Updates]:
         """Reads an uploaded file and shows its motion."""
@@ -164,14 +193,30 @@ class PredictTab(JobTab):
         except Exception as error:
             yield gr.skip(), status(error_line(error), tone="error"), busy(""), gr.skip()
             return
-        last = max(int(source.seconds * 10) / 10, PAST_SECONDS)
+        last = _last_marker(source)
         marker = last if at_end else max(PAST_SECONDS, round(last / 2, 1))
-        yield (
-            source,
-            self._told(source),
-            show(payload),
-            gr.update(minimum=PAST_SECONDS, maximum=max(last, PAST_SECONDS + 0.1), value=marker),
-        )
+        yield source, self._told(source), show(payload), self._marker(source, marker)
+
+    @staticmethod
+    def _marker(source: Source, value: float) -> Any:
+        """The marker's slider as long as a motion."""
+        last = _last_marker(source)
+        return gr.update(minimum=PAST_SECONDS, maximum=max(last, PAST_SECONDS + 0.1), value=value)
+
+    def continues(self, button: gr.Button, tabs: gr.Tabs, tab: str) -> None:
+        """Makes a button of any tab take the last result here, as a past that is to go on.
+
+        Args:
+            button: of the tab that shows the result.
+            tabs: of the page.
+            tab: this one's id among them.
+        """
+        shown = button.click(lambda: gr.update(selected=tab), outputs=tabs, queue=False, **QUIET)
+        shown.then(
+            self.take_result, inputs=self.record, outputs=self.changed, concurrency_limit=2,
+            concurrency_id="predict-read", **QUIET,
+        )  # fmt: skip
+        shown.then(None, outputs=self.file, js="() => null", **QUIET)
 
     @staticmethod
     def _told(source: Source) -> str:
@@ -189,15 +234,63 @@ class PredictTab(JobTab):
         return None, status(), show(None), gr.skip()
 
     def start(
-        self, source: Source | None, marker: float, seconds: float, model: str, request: gr.Request
+        self,
+        source: Source | None,
+        marker: float,
+        seconds: float,
+        model: str,
+        other: str,
+        request: gr.Request,
     ) -> Iterator[Updates]:
         """Runs what the controls ask for; yields updates of the page."""
-        fields = {"source": source, "marker": marker, "seconds": seconds, "model": model, "seed": 0}
+        fields = {
+            "source": source, "marker": marker, "seconds": seconds, "model": model, "other": other, "seed": 0,
+        }  # fmt: skip
         yield from self.run(str(request.session_hash), fields)
+
+    def answer(self, session: str, fields: Mapping[str, Any]) -> Iterator[Updates]:
+        if fields.get("other"):
+            yield from self._answer_both(session, fields)
+        else:
+            yield from super().answer(session, fields)
+
+    def _answer_both(self, session: str, fields: Mapping[str, Any]) -> Iterator[Updates]:
+        """Continues the same past by two methods, one after the other, and shows both on one clock."""
+        models = (fields["model"], fields["other"])
+        if models[0] == models[1]:
+            raise InputError("Both methods are the same: choose another one to compare with.")
+        wanted = {model: self.request({**fields, "model": model}) for model in models}
+        made: dict[str, PredictResult] = {}
+        for model, request in wanted.items():
+            result = yield from self.made(session, request, label=f"{METHODS[model]}. ")
+            assert isinstance(result, PredictResult)
+            made[model] = result
+        title = self.title(wanted[models[0]])
+        named = {METHODS[model]: result for model, result in made.items()}
+        spent = " and ".join(seconds(total(result)) for result in made.values())
+        yield self._updates(
+            player=show(prediction_payload(*made.values(), title=title)),
+            line=status(f"Both done, in {spent}.", tone="done"),
+            under=gr.update(visible=True),
+            readouts=comparison_panel(named),
+            record=Record(made[models[0]], title, compared=made),
+            curves=gr.update(visible=True),
+            plot=curves_figure(*made.values()),
+        )
+
+    def opened(self, run: Opened) -> dict[gr.components.Component, Any]:
+        """Also the motion that was asked about, so that the marker can be moved on it."""
+        found, result = super().opened(run), run.result
+        if isinstance(result, PredictResult):
+            source = given_source(result, run.entry.title)
+            found[self.source] = source
+            found[self.marker] = self._marker(source, result.past_frames / result.duets[0].fps)
+        return found
 
     def _shown(self, result: Result, title: str) -> dict[str, Any]:
         shown = super()._shown(result, title)
-        assert isinstance(result, PredictResult)
+        if not isinstance(result, PredictResult):  # of a history that did not keep what followed
+            return {**shown, "curves": gr.update(visible=False)}
         return {
             **shown,
             "player": show(prediction_payload(result, title=title)),

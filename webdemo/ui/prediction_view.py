@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 import plotly.graph_objects as go
+from numpy.typing import NDArray
 from plotly.subplots import make_subplots
 
 from webdemo.inference.predict_request import METHODS, PredictResult, people_of, with_people
@@ -13,22 +15,46 @@ from webdemo.motion import Clip, Duet
 from webdemo.view.curves import Curve
 from webdemo.view.payload import Payload, build_payload, sample_payload
 
-_BLUE, _GREY, _ORANGE = "#2468d8", "#8e99aa", "#e07a10"
+Array = NDArray[np.floating]
+_BLUE, _VIOLET, _GREY, _ORANGE = "#2468d8", "#8b3fc4", "#8e99aa", "#e07a10"
+_METHOD_COLOURS = (_BLUE, _VIOLET)
+_SIDES = ("left", "right")
 
 
-def prediction_payload(result: PredictResult, *, title: str = "") -> Payload:
-    """The player's value: the past marked as given, what really followed as a ghost, the error below."""
-    motion = without_name(result.duets[0])
-    ghost = _ghost(motion, result)
+def prediction_payload(*results: PredictResult, title: str = "") -> Payload:
+    """The player's value: the past marked as given, what really followed as a ghost, the error below.
+
+    Two results of one past, by different methods, stand side by side on one clock.
+    """
+    motion = without_name(results[0].duets[0])
+    samples = [_sample(result, without_name(result.duets[0])) for result in results]
+    first = samples[0]
+    if len(samples) > 1:
+        curves = [
+            {**sample["curves"][0], "label": f"{sample['curves'][0]['label']}, {side}"}
+            for side, sample in zip(_SIDES, samples, strict=True)
+        ]
+        names = [method_name(result) for result in results]
+        beside = {**samples[1], "caption": names[1]}
+        first = {**first, "curves": curves, "caption": names[0], "beside": beside}
+    return build_payload([first], skeleton=motion.skeleton, title=title)
+
+
+def _sample(result: PredictResult, motion: Clip | Duet) -> dict[str, Any]:
     curves = [
         Curve("error", "Error", "m", _padded(result.error, motion.num_frames, result.past_frames)),
         Curve("speed", "Speed", "m/s", _speed(motion)),
     ]
-    sample = sample_payload(
-        motion, label="1", curves=curves if result.error else curves[1:], ghost=ghost,
+    return sample_payload(
+        motion, label="1", curves=curves if result.error else curves[1:], ghost=_ghost(motion, result),
         past_until=result.past_frames,
     )  # fmt: skip
-    return build_payload([sample], skeleton=motion.skeleton, title=title)
+
+
+def method_name(result: PredictResult) -> str:
+    """What the page calls the method of a result."""
+    model = str(result.manifest.get("model", ""))
+    return METHODS.get(model, model or "Prediction")
 
 
 def without_name(motion: Clip | Duet) -> Clip | Duet:
@@ -36,7 +62,7 @@ def without_name(motion: Clip | Duet) -> Clip | Duet:
     return replace(motion, name="a") if isinstance(motion, Clip) else motion
 
 
-def _padded(values: tuple[float, ...], frames: int, start: int) -> np.ndarray:
+def _padded(values: tuple[float, ...], frames: int, start: int) -> Array:
     """Millimetres a predicted frame → (frames,) metres: 0 before, the last value after."""
     whole = np.zeros(frames)
     known = np.asarray(values[: frames - start]) / 1000
@@ -46,7 +72,7 @@ def _padded(values: tuple[float, ...], frames: int, start: int) -> np.ndarray:
     return whole
 
 
-def _speed(motion: Clip | Duet) -> np.ndarray:
+def _speed(motion: Clip | Duet) -> Array:
     people = people_of(motion).astype(np.float64)
     steps = np.linalg.norm(np.diff(people, axis=1), axis=-1).mean(axis=(0, 2)) * motion.fps
     return np.concatenate([steps[:1], steps])
@@ -56,44 +82,49 @@ def _ghost(motion: Clip | Duet, result: PredictResult) -> Clip | Duet | None:
     """What really happened, as long as the shown motion: held where it is not known."""
     if result.truth is None:
         return None
-    past = people_of(motion)[:, : result.past_frames]
-    real = np.concatenate([past, people_of(result.truth)], axis=1)[:, : motion.num_frames]
+    real = people_of(result.given)[:, : motion.num_frames]
     missing = motion.num_frames - real.shape[1]
     held = np.concatenate([real, np.repeat(real[:, -1:], missing, axis=1)], axis=1)
     return with_people(motion, held)
 
 
-def curves_figure(result: PredictResult) -> go.Figure:
-    """Error (MPJPE) and speed (MPJS) of each predicted frame, beside holding the last pose and the truth."""
-    fps = result.duets[0].fps
-    known = len(result.error)
-    times = np.arange(1, len(result.speed) + 1) / fps
+def curves_figure(*results: PredictResult) -> go.Figure:
+    """Error (MPJPE) and speed (MPJS) of each predicted frame, beside holding the last pose and the truth.
+
+    Results of several methods for one past share the axes.
+    """
+    first = results[0]
+    fps = first.duets[0].fps
+    known = len(first.error)
+    times = np.arange(1, len(first.speed) + 1) / fps
     figure = make_subplots(rows=1, cols=2, subplot_titles=("Error, mm", "Mean speed of a joint, m/s"))
 
-    def line(col: int, values: np.ndarray, name: str, colour: str, dash: str | None = None) -> None:
+    def line(
+        col: int, values: Array, name: str, colour: str, dash: str | None = None, *, listed: bool = True
+    ) -> None:
         figure.add_trace(
             go.Scatter(
-                x=times[: len(values)], y=values, name=name, mode="lines",
-                line={"color": colour, "width": 2, "dash": dash},
+                x=times[: len(values)], y=values, name=name, mode="lines", legendgroup=name,
+                showlegend=listed, line={"color": colour, "width": 2, "dash": dash},
             ),
             row=1, col=col,
         )  # fmt: skip
 
-    model = str(result.manifest.get("model", ""))
-    method = METHODS.get(model, model or "Prediction")
+    metres = fps / 1000
+    for result, colour in zip(results, _METHOD_COLOURS, strict=False):
+        name = method_name(result)
+        if known:
+            line(1, np.asarray(result.error), name, colour)
+        line(2, np.asarray(result.speed) * metres, name, colour, listed=not known)
     if known:
-        line(1, np.asarray(result.error), method, _BLUE)
-        if model != "still":
-            line(1, still_error(result), "Last pose held", _GREY, "dot")
+        if all(result.manifest.get("model") != "still" for result in results):
+            line(1, still_error(first), "Last pose held", _GREY, "dot")
+        line(2, np.asarray(first.true_speed) * metres, "What really followed", _ORANGE)
     else:
         figure.add_annotation(
             text="Nothing follows the marker to compare with.", showarrow=False, x=0.5, y=0.5,
             xref="x domain", yref="y domain",
         )  # fmt: skip
-    metres = fps / 1000
-    line(2, np.asarray(result.speed) * metres, f"{method}, speed", _BLUE)
-    if known:
-        line(2, np.asarray(result.true_speed) * metres, "What really followed", _ORANGE)
     figure.update_xaxes(title_text="seconds after the marker", rangemode="tozero")
     figure.update_yaxes(rangemode="tozero")
     figure.update_layout(
@@ -103,7 +134,7 @@ def curves_figure(result: PredictResult) -> go.Figure:
     return figure
 
 
-def still_error(result: PredictResult) -> np.ndarray:
+def still_error(result: PredictResult) -> Array:
     """(frames of truth,) error in millimetres of holding the last pose."""
     assert result.truth is not None
     last = people_of(result.duets[0])[:, result.past_frames - 1]
