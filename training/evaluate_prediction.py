@@ -83,6 +83,8 @@ def markdown(found: Table) -> str:
     for label, place in (("first", 0), ("10th", 9), ("25th", 24)):
         values = " | ".join(f"{s[place]:.2f}" for s in share)
         lines.append(f"| speed over the truth's, {label} step | {values} |")
+    ranges = " | ".join(f"{s.min():.2f} to {s.max():.2f}" for s in share)
+    lines.append(f"| the same, slowest and fastest of all steps | {ranges} |")
     seams = " | ".join(f"{m.seam:.1%}" for m in means.values())
     lines.append(f"| windows whose first step is within the past's largest | {seams} |")
     return "\n".join(lines) + "\n"
@@ -92,18 +94,22 @@ def _errors(scores: Scores) -> str:
     return " | ".join(f"{scores.error[h - 1]:.1f}" for h in cmu.HORIZONS)
 
 
-BEGIN, END = "<!-- table -->\n", "<!-- end of table -->\n"
+def put_into(page: Path, table: str, *, name: str = "table") -> None:
+    """Writes a table between its marks in a page, or a page of its own where there is none.
 
-
-def put_into(page: Path, table: str) -> None:
-    """Writes the table between the marks of a page, or a page of its own where there is none."""
-    text = page.read_text() if page.exists() else BEGIN + END
-    before, mark, rest = text.partition(BEGIN)
-    _, end, after = rest.partition(END)
-    if not (mark and end):
-        raise InputError(f"{page} lacks the lines {BEGIN.strip()} and {END.strip()}: add them.")
+    Args:
+        page: of Markdown.
+        table: what is put there.
+        name: of the marks, ``<!-- name -->`` and ``<!-- end of name -->``.
+    """
+    begin, end = f"<!-- {name} -->\n", f"<!-- end of {name} -->\n"
+    text = page.read_text() if page.exists() else begin + end
+    before, mark, rest = text.partition(begin)
+    _, found, after = rest.partition(end)
+    if not (mark and found):
+        raise InputError(f"{page} lacks the lines {begin.strip()} and {end.strip()}: add them.")
     with replacing(page) as temporary:
-        temporary.write_text(before + BEGIN + "\n" + table + "\n" + END + after)
+        temporary.write_text(before + begin + "\n" + table + "\n" + end + after)
 
 
 def main(argv: list[str] | None = None) -> int:

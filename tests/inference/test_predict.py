@@ -16,7 +16,8 @@ from webdemo.formats import read
 from webdemo.formats.one_person import write_clip
 from webdemo.inference import PredictRequest, PredictResult
 from webdemo.inference.engine import Engine
-from webdemo.inference.predict import above_floor, joined, mean_steps, without_jump
+from webdemo.inference.predict import above_floor, joined, mean_steps, with_bones_of, without_jump
+from webdemo.inference.predict_feet import with_planted_feet
 from webdemo.inference.predict_frame import to_last_pose, to_world
 from webdemo.motion import SMPL22, Clip, Duet, InputError
 from webdemo.motion.kinematics import forward_kinematics
@@ -174,6 +175,30 @@ def test_corrections_leave_good_motion_alone() -> None:
     assert mean_steps(np.concatenate([past[:, -1:], without_jump(past, future + 0.5, largest)], 1))[0, 0] <= (
         mean_steps(past).max() + 1e-9
     )
+
+
+def test_feet_that_stand_stay_where_the_past_left_them() -> None:
+    pose = SMPL22.rest_positions()
+    pose[:, 1] -= pose[:, 1].min()
+    lean = np.zeros_like(pose)
+    lean[:, 0] = 0.05 * pose[:, 1]
+    sway = np.sin(np.arange(30) / 8)[:, None, None]
+    past = (pose + sway * lean)[None]
+    slide = 0.004 * np.arange(1, 41)[:, None, None] * np.array([0.0, 0.0, 1.0])
+    future = with_bones_of(past[:, -1], past[:, -1:] + slide[None])
+    made = with_planted_feet(past, future, 30.0)
+    feet = [SMPL22.index(f"{side}_foot") for side in ("left", "right")]
+    moved = np.linalg.norm((made - past[:, -1:])[..., feet, :], axis=-1)
+    assert np.linalg.norm((future - past[:, -1:])[..., feet, :], axis=-1).max() > 0.15
+    assert moved[0, :20].max() < 0.02
+    assert np.allclose(bones(made), bones(future), atol=1e-4)
+    joined_up = np.concatenate([past, made], axis=1)
+    assert mean_steps(joined_up)[0, 29] <= mean_steps(past).max() + 1e-6
+    # Who floats, or does not move, is left as they are.
+    up = np.array([0.0, 0.5, 0.0])
+    assert np.array_equal(with_planted_feet(past + up, future + up, 30.0), future + up)
+    held = np.repeat(past[:, -1:], 40, axis=1)
+    assert np.array_equal(with_planted_feet(past, held, 30.0), held)
 
 
 def test_the_shell_writes_one_person(

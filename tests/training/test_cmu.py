@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from training import cmu
-from training.evaluate_prediction import BEGIN, END, evaluate, main, markdown, put_into
+from training.evaluate_prediction import evaluate, main, markdown, put_into
 from training.prediction.scores import score, zero_velocity
 from webdemo.motion import InputError
 
@@ -66,10 +66,13 @@ def test_zero_velocity_is_the_distance_from_the_last_pose(folder: Path) -> None:
 
 def test_table_goes_between_the_marks(folder: Path, tmp_path: Path) -> None:
     page = tmp_path / "page.md"
-    page.write_text(f"Before\n{BEGIN}old\n{END}After\n")
+    begin, end = "<!-- other -->\n", "<!-- end of other -->\n"
+    page.write_text(f"<!-- table -->\n<!-- end of table -->\nBefore\n{begin}old\n{end}After\n")
     table = markdown(evaluate(folder, []))
-    put_into(page, table)
-    assert page.read_text() == f"Before\n{BEGIN}\n{table}\n{END}After\n"
+    put_into(page, table, name="other")
+    assert page.read_text().endswith(f"-->\nBefore\n{begin}\n{table}\n{end}After\n")
+    put_into(tmp_path / "new.md", table)
+    assert (tmp_path / "new.md").read_text() == f"<!-- table -->\n\n{table}\n<!-- end of table -->\n"
     assert "| walking (6) | zero velocity |" in table and "1.00" in table
     (tmp_path / "bare.md").write_text("no marks")
     with pytest.raises(InputError, match="lacks the lines"):

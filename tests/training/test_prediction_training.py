@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import shutil
 from dataclasses import replace
 from pathlib import Path
 
@@ -10,9 +11,10 @@ import numpy as np
 import pytest
 import torch
 
-from models.predictors import load_predictor
+from models.motion_mlp import MotionMLP, MotionMLPConfig
+from models.predictors import load_predictor, save_predictor
 from training import mawgan
-from training.prediction import mlp
+from training.prediction import ablation, mlp, product
 from training.prediction.trainer import PredictionTrainer
 from training.prediction.windows import CorpusWindows, open_windows
 from webdemo.motion import SMPL22, InputError
@@ -110,3 +112,63 @@ def test_lean_settings_are_those_of_the_module_and_can_be_changed(corpus: Path, 
     assert training is not None
     changed = {"fc": 36, "length": False}
     assert {name: training[name] for name in mawgan.LEAN} == mawgan.LEAN | changed
+
+
+def test_the_page_s_predictions_are_scored(tmp_path: Path) -> None:
+    """On two people who glide off by 2 cm a frame."""
+    folder = tmp_path / "corpus"
+    folder.mkdir()
+    along = 0.02 * np.arange(200)[:, None, None, None] * np.array([0.0, 0.0, 1.0])
+    people = np.repeat(SMPL22.rest_positions()[None], 2, axis=0)
+    np.save(folder / "motions.npy", (people + along).astype(np.float32))
+    (folder / "index.json").write_text(json.dumps([{"start": 0, "frames": 200, "split": "test"}]))
+    page = tmp_path / "page.md"
+    page.write_text("<!-- product -->\n<!-- end of product -->\n")
+    tiny = MotionMLP(MotionMLPConfig(width=16, blocks=1))
+    save_predictor(tmp_path / "tiny", tiny, kind="mlp", fps=30.0)
+    asked = ["--data", str(folder), "--weights", str(tmp_path), "--model", "tiny", "--windows", "4"]
+    assert product.main([*asked, "--table", str(page)]) == 0
+    told = page.read_text()
+    assert "| still, mm | 40 | 100 | 200 | 300 | 600 | 1200 | 1800 | 2400 |" in told
+    assert "| tiny, mm |" in told and "still, speed" not in told
+    assert "| first step within the past's largest | 100.0% | 100.0% | 100.0% |" in told
+    assert product.main([*asked, "--model", "missing"]) == 2
+
+
+def test_standing_feet_that_glide_are_measured() -> None:
+    standing = np.repeat(SMPL22.rest_positions()[None], 30, axis=0)
+    standing[..., 1] -= standing[..., 1].min()
+    assert product.glide(standing) == 0.0
+    sliding = standing + 0.004 * np.arange(30)[:, None, None] * np.array([1.0, 0.0, 0.0])
+    assert product.glide(sliding) == pytest.approx(12.0, rel=1e-6)
+
+
+def test_every_row_of_the_ablation_is_trained_once_and_scored(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    small = {"fc": 36, "critic_fc": 8, "batch": 4}
+    monkeypatch.setattr(ablation, "LEAN", ablation.LEAN | small)
+    data = tmp_path / "cmu"
+    data.mkdir()
+    shutil.copy(
+        Path(__file__).parents[1] / "data" / "reference" / "cmu_skeleton.json", data / "skeleton.json"
+    )
+    frames = np.cumsum(np.random.default_rng(0).normal(scale=0.01, size=(170, 117)), axis=0)
+    for split in ("train", "test"):
+        path = data / split / "walking" / "walking_1.txt"
+        path.parent.mkdir(parents=True)
+        np.savetxt(path, frames, delimiter=",")
+    page = tmp_path / "page.md"
+    asked = ["--data", str(data), "--out", str(tmp_path / "runs"), "--steps", "1", "--table", str(page)]
+    assert ablation.main([*asked, "--only", "a-r", "no-linear", "lean", "past-5"]) == 0
+    told = page.read_text()
+    for row in ("| La + Lr |", "| the same, convolutions alone |", "| 25 frames of past |", "zero velocity"):
+        assert row in told
+    configs = {
+        path.parents[1].name: json.loads(path.read_text())
+        for path in (tmp_path / "runs").glob("*/predictor/config.json")
+    }
+    assert configs["past-5"]["model"]["past"] == 5 and not configs["no-linear"]["model"]["linear"]
+    assert configs["a-r"]["training"]["skeleton"] == configs["a-r"]["training"]["position"] == 0
+    monkeypatch.setattr(ablation, "Trainer", None)  # nothing is trained anew
+    assert ablation.main([*asked, "--only", "a-r"]) == 0

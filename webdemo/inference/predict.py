@@ -15,6 +15,7 @@ from webdemo.motion import SMPL22
 from .actor import FPS
 from .cancel import CancelToken
 from .generator import Clock
+from .predict_feet import with_planted_feet
 from .predict_frame import Array, to_last_pose, to_world
 from .predict_request import PredictRequest, PredictResult, people_of, with_people
 from .requests import Progress, Result
@@ -106,10 +107,11 @@ class MotionPredictor:
 
         Returns:
             (people, frames, 22, 3) metres in the world of the past. Bones keep the lengths of the last pose;
-            the first step is no larger than the largest of the past's last second; who stands still, stays.
+            the first step is no larger than the largest of the past's last second; who stands still, stays;
+            feet that stand do not glide.
         """
         *_, whole = self.passes(past.astype(np.float64), frames)
-        return whole[:, past.shape[1] :][:, :frames]
+        return self._cut(whole, past.shape[1], frames)
 
     def passes(self, past: Array, frames: int) -> Iterator[Array]:
         """The motion (people, T + …, 22, 3) after each pass of the network, until all frames are there."""
@@ -131,6 +133,12 @@ class MotionPredictor:
             kept = whole.shape[1] - _OVERLAP
             yield whole
 
+    @staticmethod
+    def _cut(whole: Array, past: int, frames: int) -> Array:
+        """What was predicted, without the frames that no one asked for, on feet that do not glide."""
+        seen, future = whole[:, :past][:, -round(FPS) :], whole[:, past : past + frames]
+        return with_planted_feet(seen, future, FPS)
+
     def _next(self, whole: Array) -> Array:
         assert self.predictor is not None
         past = whole[:, -self.predictor.past :]
@@ -148,7 +156,7 @@ class MotionPredictor:
             whole = longer
             yield clock.progress("sample", step, total)
             cancel.raise_if_cancelled()
-        future = whole[:, past.shape[1] :][:, :frames]
+        future = self._cut(whole, past.shape[1], frames)
         now = clock.lap("sample", now)
         shown = np.concatenate([past, future], axis=1)
         truth = request.truth
