@@ -136,3 +136,13 @@ def test_two_methods_are_seen_side_by_side_on_one_clock(page: Page, tmp_path: Pa
     people(page, 1)
     expect(captions).to_have_count(2)
     expect(captions.nth(1)).to_be_hidden()
+
+
+def test_the_console_stays_quiet_while_runs_are_started(url: str, open_page: Callable[..., Page]) -> None:
+    said: list[str] = []
+    page = open_page(url, before=lambda tab: tab.on("console", lambda message: said.append(message.text)))
+    page.set_default_timeout(SLOW)
+    page.fill("#prompt textarea", "two people walk")
+    page.click("button#generate")
+    expect(page.locator("#status .pd-done")).to_be_visible(timeout=SLOW)
+    assert not [line for line in said if "arguments" in line or "Uncaught" in line]

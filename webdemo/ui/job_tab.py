@@ -37,8 +37,8 @@ QUIET = {"api_visibility": "private", "show_progress": "hidden"}
 """Options of events that are the page's own: no endpoint, no spinner over what they change."""
 
 _DAMPING_INFO = (
-    "While t ≤ threshold × T the predicted motion is corrected for foot contact, bone length, smoothness, "
-    "interpenetration, near-contacts and facing; 0 = plain sampler."
+    "While t ≤ threshold × T the motion is corrected: feet, bones, smoothness, overlap, touch and facing; "
+    "0 = plain sampler."
 )
 _GUIDANCE_INFO = "How closely the motion follows the words; 1 = unguided."
 _STEPS_INFO = "From noise to motion: fewer are faster, more are finer."

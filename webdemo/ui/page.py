@@ -28,7 +28,8 @@ from .theme import HEAD, style_sheet, theme
 TITLE = "Pas de Deux"
 TABS = (GenerateTab, ReactTab, PredictTab)
 """A class a job, with a ``label`` and ``build(demo, record)``."""
-ENDPOINTS = (GenerateEndpoint, ReactEndpoint, PredictEndpoint)
+ENDPOINTS = (PredictEndpoint, GenerateEndpoint, ReactEndpoint)
+"""Gradio's client in the browser takes the page's first function for "/predict", so that one comes first."""
 
 _HEADER = (
     '<div class="pd-brand"><h1>Pas de Deux</h1>'
@@ -73,6 +74,8 @@ def build_page(
         yield from watch_loading(page.loader)
 
     with gr.Blocks(title=TITLE, delete_cache=_CACHE, fill_width=True, analytics_enabled=False) as demo:
+        for endpoint in ENDPOINTS:
+            endpoint(page).publish()
         with gr.Row(elem_classes="pd-header", equal_height=True):
             gr.HTML(_HEADER)
             mark = gr.HTML(model_state("loading"), elem_id="model-state")
@@ -90,8 +93,6 @@ def build_page(
             if history is not None:
                 with gr.Tab(HISTORY, id=HISTORY.lower()) as past:
                     HistoryTab(page, jobs, tabs).build(demo, past, record)
-        for endpoint in ENDPOINTS:
-            endpoint(page).publish()
         demo.load(
             loading,
             outputs=mark,

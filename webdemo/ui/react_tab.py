@@ -124,9 +124,9 @@ class ReactTab(JobTab):
                     [("Person A", "a"), ("Person B", "b")], value="a", label="Which of the two",
                     elem_id="react-person", visible=False,
                 )  # fmt: skip
-                with gr.Row(elem_classes="pd-pair"):
+                with gr.Row(elem_classes="pd-trim"):
                     self.begin = gr.Slider(0, SECONDS[1], value=0, step=0.1, label="Start",
-                                           elem_id="react-start")  # fmt: skip
+                                           elem_id="react-start", elem_classes="pd-trim-start")  # fmt: skip
                     self.end = gr.Slider(0, SECONDS[1], value=SECONDS[1], step=0.1, label="End",
                                          elem_id="react-end")  # fmt: skip
                 with gr.Accordion("How the file was read", open=False, elem_id="react-import"):
