@@ -7,7 +7,8 @@ import torch
 from models.compact import CompactConfig, CompactInterGen, TouchReader
 from models.motion_tokens import encode, pack
 from webdemo.inference.damping import Damping, DampingWeights, asked_energy
-from webdemo.motion import SMPL22
+from webdemo.metrics.quality import penetration
+from webdemo.motion import SMPL22, Duet
 
 HANDS = (("right_wrist", "right_wrist"),)
 
@@ -51,6 +52,22 @@ def test_hands_that_are_not_asked_for_stay_apart(model):
 def test_a_touch_out_of_reach_is_left_alone(model):
     positions = model.positions(standing(model, 2.0))[0]
     assert asked_energy(positions, [HANDS], DampingWeights()).tolist() == [0.0]
+
+
+def test_a_hand_inside_the_other_comes_out(model):
+    """A wrist that is 28 cm into the other's chest: bodies part until they no longer overlap."""
+    x = standing(model, 0.08)
+    chest = SMPL22.index("spine3")
+    positions = model.positions(x)[0][0, :, :61].clone()
+    positions[1] += positions[0, :1, SMPL22.index("right_wrist")][:, None] - positions[1, :, chest][:, None]
+    x = pack(encode(positions, torch.ones(2, 61, 4), model.layout)[None], model.layout)
+
+    def depth(x: torch.Tensor) -> float:
+        return penetration(Duet.from_positions(model.positions(x)[0][0, :, :61].numpy(), fps=30.0)).mean
+
+    met = Damping(model, 1.0, frames=61, final_steps=60)(x, 0)
+    assert depth(x) > 10  # cm
+    assert depth(met) < 0.3 * depth(x)
 
 
 def test_without_damping_nothing_is_corrected(model):

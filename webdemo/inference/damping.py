@@ -19,13 +19,27 @@ import torch
 from torch import Tensor
 
 from models.compact import CompactInterGen, Touch
+from webdemo.metrics.bodies import capsules
 from webdemo.motion import SMPL22
 from webdemo.motion.skeleton import FEET
 
 _WRISTS = [SMPL22.index("left_wrist"), SMPL22.index("right_wrist")]
 _PARENTS, _CHILDREN = (list(side) for side in zip(*SMPL22.bones, strict=True))
-_TRUNK = [SMPL22.index(n) for n in ("pelvis", "spine2", "spine3", "neck", "head", "left_hip", "right_hip")]
 _HIPS = [SMPL22.index("left_hip"), SMPL22.index("right_hip")]
+_LIMBS = [
+    (parent, child)
+    for parent, child in SMPL22.bones
+    if SMPL22.joint_names[child].endswith(("elbow", "wrist", "knee"))
+]
+_NEAR = 1.8  # metres between two pelvises, beyond which no limb reaches the other
+
+
+def _radii() -> Tensor:
+    """Radius in metres of the flesh around each joint and around the middle of each of :data:`_LIMBS`."""
+    body = capsules(SMPL22)
+    around = dict(zip(body.ends.tolist(), body.radii.tolist(), strict=True))
+    joints = [around.get(joint, around[SMPL22.index("spine1")]) for joint in range(SMPL22.num_joints)]
+    return torch.tensor(joints + [around[child] for _, child in _LIMBS])
 
 
 @dataclass(frozen=True)
@@ -44,7 +58,6 @@ class DampingWeights:
     overlap: float = 1.0
     contact: float = 0.5
     facing: float = 0.02
-    trunk_radius: float = 0.28
     touch: float = 0.08
     nearly: float = 0.20
     asked: float = 5.0
@@ -75,9 +88,7 @@ def energy(positions: Tensor, contacts: Tensor, weights: DampingWeights) -> Tens
     smooth = positions.diff(n=3, dim=2).square().sum((1, 2, 3, 4))
 
     a, b = positions.unbind(1)
-    trunks = torch.linalg.vector_norm(a[:, :, _TRUNK, None] - b[:, :, None, _TRUNK] + 1e-6, dim=-1)
-    overlap = (weights.trunk_radius - trunks).clamp_min(0).square().sum((1, 2, 3))
-
+    overlap = _overlap(positions)
     hands = torch.linalg.vector_norm(a[:, :, _WRISTS, None] - b[:, :, None, _WRISTS] + 1e-6, dim=-1)
     # Only the hands and moments that come nearest: hands that pass by at some distance are left alone.
     nearest = hands.flatten(1).amin(1)[:, None, None, None]
@@ -96,6 +107,22 @@ def energy(positions: Tensor, contacts: Tensor, weights: DampingWeights) -> Tens
         weights.facing,
     )
     return torch.stack([factor * term for factor, term in zip(factors, terms, strict=True)]).sum(0)
+
+
+def _overlap(positions: Tensor) -> Tensor:
+    """(B,) how far the two bodies are inside each other, in m²; positions (B, 2, T, 22, 3).
+
+    Bodies are spheres around the joints and around the middles of upper arms, forearms and thighs.
+    """
+    apart = (positions[:, 0, :, 0] - positions[:, 1, :, 0]).detach().square().sum(-1)
+    near = (apart < _NEAR**2).any(0)
+    parents, children = (list(side) for side in zip(*_LIMBS, strict=True))
+    positions = positions[:, :, near]
+    middles = (positions[..., parents, :] + positions[..., children, :]) / 2
+    a, b = torch.cat([positions, middles], dim=-2).unbind(1)
+    radii = _radii().to(positions)
+    gap = torch.cdist(a, b, compute_mode="donot_use_mm_for_euclid_dist")
+    return (radii[:, None] + radii - gap).clamp_min(0).square().sum((1, 2, 3))
 
 
 def asked_energy(positions: Tensor, touches: Sequence[Touch], weights: DampingWeights) -> Tensor:
