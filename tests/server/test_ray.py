@@ -32,6 +32,8 @@ pytestmark = pytest.mark.slow
 WANTED = GenerateRequest(prompt="Two people shake hands.", seconds=1.0, steps=6, seed=5)
 LONG = replace(WANTED, steps=400, damping=0.0, cleanup=False)
 """Takes seconds, so that something can happen meanwhile."""
+TERMS: list[int] = []
+"""Every SIGTERM that this process was sent."""
 
 
 @pytest.fixture(scope="module")
@@ -40,9 +42,13 @@ def replicas(weights: Path) -> Iterator[RayEngine]:
         patch.setenv("RAY_worker_niceness", "0")  # the rest of the machine may be busy
         engine = RayEngine(replicas=(2, 2), batch=4, weights=weights)
         assert not engine.ready
-        engine.warm_up()
+        before = signal.signal(signal.SIGTERM, lambda number, frame: TERMS.append(number))
+        starter = threading.Thread(target=engine.warm_up)  # as a server does: its end must not end Ray's
+        starter.start()
+        starter.join()
         yield engine
         engine.close()
+        signal.signal(signal.SIGTERM, before)
 
 
 def result_of(events: Sequence[Any]) -> Result:
@@ -61,6 +67,12 @@ def wait_for(condition: Any) -> None:
     while not condition():
         assert time.monotonic() < until
         time.sleep(0.02)
+
+
+def test_sigterm_is_left_to_the_server(replicas: RayEngine) -> None:
+    """Ray's own handler would abort the process three seconds later, amid the tests that follow."""
+    os.kill(os.getpid(), signal.SIGTERM)
+    wait_for(lambda: TERMS)
 
 
 def test_the_same_request_gives_the_same_motion(replicas: RayEngine, weights: Path) -> None:

@@ -7,10 +7,13 @@ its progress back. Where the replica dies, the request begins again on another, 
 
 from __future__ import annotations
 
+import contextlib
+import ctypes
 import logging
 import math
 import os
 import queue
+import signal
 import threading
 import time
 from collections.abc import Iterator
@@ -53,6 +56,20 @@ class Began:
 
 class ReplicaError(Exception):
     """A run ended in an error of the program's; says of which kind, and where its log is."""
+
+
+@contextlib.contextmanager
+def keeping_sigterm() -> Iterator[None]:
+    """Leaves what SIGTERM does as it was: Ray's own handler would abort the process three seconds later.
+
+    Python's signal module cannot do it, since it changes handlers in the main thread alone.
+    """
+    libc, saved = ctypes.CDLL(None), ctypes.create_string_buffer(1024)  # more than a struct sigaction
+    libc.sigaction(int(signal.SIGTERM), None, saved)
+    try:
+        yield
+    finally:
+        libc.sigaction(int(signal.SIGTERM), saved, None)
 
 
 class RayEngine:
@@ -238,7 +255,8 @@ class RayEngine:
                     "object_store_memory": STORE_BYTES,
                     "num_cpus": max(os.cpu_count() or 1, math.ceil(cores)),
                 }  # fmt: skip
-            ray.init(namespace=NAMESPACE, configure_logging=False, log_to_driver=False, **where)
+            with keeping_sigterm():
+                ray.init(namespace=NAMESPACE, configure_logging=False, log_to_driver=False, **where)
             serve.start(proxy_location="Disabled")
             logger = logging.getLogger("ray.serve")  # what it says goes into the server's own log
             logger.handlers.clear()
