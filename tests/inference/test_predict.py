@@ -129,6 +129,10 @@ def test_other_frame_rates_are_resampled(predicting: Engine) -> None:
             {"motion": walker(0.5)},
             "The past is 0.50 s long, and 1 s or more is needed: give a longer motion.",
         ),
+        (
+            {"motion": walker(0.5), "marker": 1.0},
+            "The past is 0.50 s long, and 1 s or more is needed: give a",
+        ),
         ({"motion": walker(61.0)}, "The motion lasts 61 s: cut it to 60 s or less."),
         ({"seconds": 9.0}, "Length must be from 0.5 to 4 seconds, not 9."),
         ({"model": "oracle"}, "Model 'oracle' is not known: choose one of"),

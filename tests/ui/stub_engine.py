@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 
 from webdemo.inference.live import LiveFrame, LiveProgress, LiveRequest, paced
+from webdemo.inference.predict_request import PredictRequest, PredictResult, people_of, with_people
 from webdemo.inference.requests import Cancelled, GenerateRequest, Progress, ReactRequest, Result
 from webdemo.metrics import compare
 from webdemo.motion import SMPL22, Clip, Duet, InputError
@@ -52,6 +53,24 @@ def beside(person: Clip, role: str, seed: int) -> Duet:
     return Duet(*pair, ("actor", "reactor"))
 
 
+def drift(request: PredictRequest) -> PredictResult:
+    """Everyone rises after the marker, by a centimetre a frame, or two by another method than the usual."""
+    past, frames = people_of(request.past), round(request.seconds * FPS)
+    pace = 0.01 if request.model == PredictRequest.model else 0.02
+    rise = pace * np.arange(1, frames + 1)[:, None, None] * np.array([0, 1.0, 0])
+    whole = np.concatenate([past, past[:, -1:] + rise], axis=1)
+    known = 0 if request.truth is None else request.truth.num_frames
+    return PredictResult(
+        duets=(with_people(request.motion, whole),),
+        manifest={"model": request.model, "request": request.to_dict()},
+        past_frames=request.past_frames,
+        truth=request.truth,
+        error=tuple(10.0 * (i + 1) for i in range(known)),
+        speed=(1000 * pace,) * frames,
+        true_speed=(12.0,) * known,
+    )
+
+
 def _about_x(angle: Any) -> np.ndarray:
     cos, sin = np.cos(np.asarray(angle)), np.sin(np.asarray(angle))
     one, zero = np.ones_like(cos), np.zeros_like(cos)
@@ -75,7 +94,7 @@ class StubEngine:
         self.load = load
         self.ready = load == 0.0
         self.steps_done = 0
-        self.requests: list[GenerateRequest | ReactRequest] = []
+        self.requests: list[GenerateRequest | ReactRequest | PredictRequest] = []
 
     def warm_up(self) -> None:
         time.sleep(self.load)
@@ -89,9 +108,15 @@ class StubEngine:
             "weights": "none",
         }
 
-    def run(self, request: GenerateRequest | ReactRequest, cancel: Any = None) -> Iterator[Progress | Result]:
+    def run(
+        self, request: GenerateRequest | ReactRequest | PredictRequest, cancel: Any = None
+    ) -> Iterator[Progress | Result]:
         started = time.monotonic()
         self.requests.append(request)
+        if isinstance(request, PredictRequest):
+            yield Progress(stage="sample", step=1, total=1)
+            yield drift(request)
+            return
         if "impossible" in request.prompt:
             raise InputError("The stub cannot do this: ask for something possible.")
         yield Progress(stage="text")

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
@@ -18,11 +17,7 @@ from webdemo.formats import read, write
 from webdemo.inference.predict_request import (
     METHODS,
     PredictRequest,
-    PredictResult,
-    people_of,
-    with_people,
 )
-from webdemo.inference.requests import Progress, Result
 from webdemo.ui.api import PredictEndpoint
 from webdemo.ui.context import PageContext
 from webdemo.ui.exports import Record, Shelf, write_files
@@ -31,40 +26,14 @@ from webdemo.ui.prediction_view import curves_figure, prediction_payload, still_
 from webdemo.ui.runs import Loader, Runs
 from webdemo.view.payload import unpack_positions
 
-from .stub_engine import StubEngine, walking
+from .stub_engine import StubEngine, drift, walking
 
 LOADED = ("source", "line", "player", "marker")
 
 
-def drift(request: PredictRequest) -> PredictResult:
-    """Everyone rises by a centimetre a frame."""
-    past, frames = people_of(request.past), round(request.seconds * 30)
-    rise = 0.01 * np.arange(1, frames + 1)[:, None, None] * np.array([0, 1.0, 0])
-    whole = np.concatenate([past, past[:, -1:] + rise], axis=1)
-    known = 0 if request.truth is None else request.truth.num_frames
-    return PredictResult(
-        duets=(with_people(request.motion, whole),),
-        manifest={"model": request.model, "request": request.to_dict()},
-        past_frames=request.past_frames,
-        truth=request.truth,
-        error=tuple(10.0 * (i + 1) for i in range(known)),
-        speed=(10.0,) * frames,
-        true_speed=(12.0,) * known,
-    )
-
-
-class DriftEngine(StubEngine):
-    """Answers predictions by :func:`drift`."""
-
-    def run(self, request: Any, cancel: Any = None) -> Iterator[Progress | Result]:
-        self.requests.append(request)
-        yield Progress(stage="sample", step=1, total=1)
-        yield drift(request)
-
-
 @pytest.fixture
 def tab(tmp_path: Path) -> PredictTab:
-    engine = DriftEngine()
+    engine = StubEngine()
     page = PageContext(
         engine=engine, runs=Runs(engine), loader=Loader(engine), shelf=Shelf(tmp_path / "files")
     )

@@ -54,12 +54,17 @@ class PredictRequest:
         set_(self, "motion", check_motion(self.motion))
         length = self.motion.seconds
         marker = length if self.marker is None else _number("Marker", self.marker, 0.0, 1e6, " seconds")
+        if round(length * FPS) < round(PAST_SECONDS * FPS):
+            raise InputError(
+                f"The past is {length:.2f} s long, and {PAST_SECONDS:g} s or more is needed: "
+                "give a longer motion."
+            )
         if marker > length + 0.5 / FPS:
             raise InputError(f"The marker, {marker:g} s, lies behind the motion, which lasts {length:.2f} s.")
         if round(marker * FPS) < round(PAST_SECONDS * FPS):
             raise InputError(
                 f"The past is {marker:.2f} s long, and {PAST_SECONDS:g} s or more is needed: "
-                + ("move the marker to the right." if length >= PAST_SECONDS else "give a longer motion.")
+                "move the marker to the right."
             )
         set_(self, "marker", min(marker, length))
         _check_steps(self.past, self.marker)

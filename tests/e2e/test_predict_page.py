@@ -1,0 +1,155 @@
+"""The Predict tab in a real browser, with an engine that needs no networks."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Callable, Iterator
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+os.environ.setdefault("GRADIO_ANALYTICS_ENABLED", "False")
+
+from playwright.sync_api import Page, expect
+
+from webdemo.formats import write
+from webdemo.ui.page import build_page, launch_options
+
+from ..ui.stub_engine import StubEngine, walking
+
+pytestmark = pytest.mark.e2e
+
+SLOW = 60_000
+"""Milliseconds that a busy machine may take to draw."""
+SAMPLE = "window.__pasdedeux.player.sample"
+
+
+@pytest.fixture(scope="module")
+def url(tmp_path_factory: pytest.TempPathFactory) -> Iterator[str]:
+    page = build_page(StubEngine(pause=0.01), files=tmp_path_factory.mktemp("files"))
+    _, address, _ = page.launch(
+        prevent_thread_lock=True, quiet=True, server_name="127.0.0.1", **launch_options()
+    )
+    yield address
+    page.close()
+
+
+@pytest.fixture
+def page(url: str, open_page: Callable[..., Page]) -> Page:
+    tab = open_page(url, accept_downloads=True)
+    tab.set_default_timeout(SLOW)
+    expect(tab.locator("#model-state")).to_contain_text("Model ready", timeout=SLOW)
+    tab.get_by_role("tab", name="Predict").click()
+    expect(tab.locator("#predict-file")).to_be_visible(timeout=SLOW)
+    return tab
+
+
+def people(page: Page, count: int) -> None:
+    page.wait_for_function(f"window.__pasdedeux?.positions?.length === {count}")
+
+
+def marker(page: Page) -> float:
+    return float(page.input_value("#predict-marker input[type=number]"))
+
+
+def move_marker(page: Page, second: float) -> None:
+    page.fill("#predict-marker input[type=number]", str(second))
+    page.press("#predict-marker input[type=number]", "Tab")
+
+
+def upload(page: Page, file: Path) -> None:
+    page.set_input_files("#predict-file input[type=file]", file)
+
+
+def predict(page: Page) -> None:
+    page.click("button#predict-generate")
+    expect(page.locator("#predict-status .pd-done")).to_contain_text("Done", timeout=SLOW)
+
+
+def test_the_past_ends_at_the_marker_and_the_truth_is_a_ghost(page: Page, tmp_path: Path) -> None:
+    upload(page, write(walking(4.0), tmp_path / "walkers.npz")[0])
+    people(page, 2)
+    expect(page.locator("#predict-status")).to_contain_text("two people, 4.0 s", timeout=SLOW)
+    page.wait_for_function("document.querySelector('#predict-marker input[type=number]').value === '2'")
+    move_marker(page, 3.0)
+    predict(page)
+    page.wait_for_function(f"{SAMPLE}.frames === 150")  # two seconds after the marker, by default
+    assert page.evaluate(f"{SAMPLE}.past_until") == 90
+    assert page.evaluate(f"{SAMPLE}.ghost !== null")
+    expect(page.locator("#predict-curves .main-svg").first).to_be_visible(timeout=SLOW)
+    for name in ("Motion MLP", "Last pose held", "What really followed"):
+        expect(page.locator("#predict-curves .legendtext", has_text=name)).to_be_visible(timeout=SLOW)
+    expect(page.locator("#predict-download-npz")).to_be_enabled(timeout=SLOW)
+    with page.expect_download(timeout=SLOW) as download:
+        page.click("#predict-download-npz")
+    assert download.value.suggested_filename == "after-3-0-s-of-walkers-npz.npz"
+
+    # The marker at the very end: nothing is left to compare with.
+    move_marker(page, 4.0)
+    page.click("button#predict-generate")
+    page.wait_for_function(f"{SAMPLE}.frames === 180 && {SAMPLE}.ghost === null")
+    expect(page.locator("#predict-curves")).to_contain_text("Nothing follows the marker", timeout=SLOW)
+
+
+def test_two_methods_go_on_side_by_side_on_one_clock(page: Page, tmp_path: Path) -> None:
+    upload(page, write(walking(3.0).a, tmp_path / "walker.npz")[0])
+    people(page, 1)
+    page.click("#predict-other input")
+    page.get_by_role("option", name="Zero velocity").click()
+    page.click("button#predict-generate")
+    expect(page.locator("#predict-status .pd-done")).to_contain_text("Both done", timeout=SLOW)
+    people(page, 2)
+    captions = page.locator("#predict-player .pdd-caption")
+    expect(captions).to_have_text(["Motion MLP", "Zero velocity (the last pose, held)"])
+    assert page.evaluate(f"[{SAMPLE}.ghost !== null, {SAMPLE}.beside.ghost !== null]") == [True, True]
+    assert page.evaluate(f"[{SAMPLE}.past_until, {SAMPLE}.beside.past_until]") == [45, 45]
+    expect(page.locator("#predict-curves .legendtext", has_text="Zero velocity")).to_be_visible(timeout=SLOW)
+
+
+def test_a_result_of_another_tab_goes_on(page: Page) -> None:
+    page.get_by_role("tab", name="Generate").click()
+    page.fill("#prompt textarea", "two people walk")
+    page.click("button#generate")
+    expect(page.locator("#status .pd-done")).to_be_visible(timeout=SLOW)
+    page.click("button#continue")
+    expect(page.get_by_role("tab", name="Predict")).to_have_attribute("aria-selected", "true", timeout=SLOW)
+    expect(page.locator("#predict-status")).to_contain_text(
+        "two people walk: two people, 5.0 s", timeout=SLOW
+    )
+    page.wait_for_function("document.querySelector('#predict-marker input[type=number]').value === '5'")
+    predict(page)
+    page.wait_for_function(f"{SAMPLE}.frames === 210 && {SAMPLE}.past_until === 150")
+    page.click("button#predict-continue")  # and on from there
+    page.wait_for_function("document.querySelector('#predict-marker input[type=number]').value === '7'")
+    assert marker(page) == 7.0
+
+
+def damaged(kind: str) -> np.ndarray:
+    """(90, 22, 3) of a walker with NaN, with a wrist that jumps, or of half a second."""
+    positions = np.array(walking(0.5 if kind == "short" else 3.0).a.positions)
+    if kind != "short":
+        positions[40, 20] += np.nan if kind == "nan" else 3.0
+    return positions
+
+
+@pytest.mark.parametrize(
+    ("kind", "read", "told"),
+    [
+        ("short", "Give 1 s or more", "1 s or more is needed: give a longer motion"),
+        ("jump", "one person, 3.0 s", "The left wrist jumps"),
+        ("nan", None, "nan.npy"),
+    ],
+)
+def test_what_cannot_be_predicted_is_a_sentence(
+    page: Page, tmp_path: Path, kind: str, read: str | None, told: str
+) -> None:
+    error = page.locator("#predict-status .pd-error")
+    page.click("button#predict-generate")
+    expect(error).to_contain_text("There is no motion yet", timeout=SLOW)
+    np.save(tmp_path / f"{kind}.npy", damaged(kind))
+    upload(page, tmp_path / f"{kind}.npy")
+    if read:
+        expect(page.locator("#predict-status")).to_contain_text(read, timeout=SLOW)
+        page.click("button#predict-generate")
+    expect(error).to_contain_text(told, timeout=SLOW)
