@@ -215,6 +215,32 @@ def test_below_a_path(tmp_path: Path) -> None:
     assert client.get("/motionx").status_code == 404
 
 
+def test_the_page_is_made_once_for_everybody(local: TestClient) -> None:
+    html = {"accept": "text/html"}
+    answers = []
+    for _ in range(2):
+        local.cookies.clear()  # a stranger each time
+        answers.append(local.get("/", headers=html))
+    first, second = answers
+    assert first.text == second.text and first.headers["x-request-id"] != second.headers["x-request-id"]
+    assert first.headers["set-cookie"] != second.headers["set-cookie"]  # whose it is, is not kept
+    assert len(second.headers.get_list("x-request-id")) == 1
+    assert local.get("/?run=abc", headers=html).text == first.text
+    elsewhere = local.get("/", headers={**html, "host": "localhost:99"}).text
+    assert "http://localhost:99" in elsewhere and "http://localhost:99" not in local.get("/").text
+    began = time.process_time()
+    for _ in range(20):
+        local.get("/", headers=html)
+    assert (time.process_time() - began) / 20 < 0.05
+
+
+def test_nobody_says_where_the_page_is(local: TestClient) -> None:
+    """Gradio would take these headers for the page's address, and put it into every link."""
+    for name in ("x-forwarded-host", "x-gradio-server"):
+        for path in ("/", "/config"):
+            assert "evil.example" not in local.get(path, headers={name: "http://evil.example"}).text
+
+
 def test_what_pages_leave_behind_is_bounded(local: TestClient) -> None:
     mounted = next(
         route.app for route in local.app.routes if hasattr(getattr(route, "app", None), "state_holder")

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import json
 from dataclasses import dataclass, field
+from functools import lru_cache
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -161,27 +162,24 @@ def _body(buffer: _Buffer, rest: Array) -> pygltflib.Primitive:
     import pygltflib as gl
     import trimesh
 
-    parts = []
+    parts: list[tuple[int, Array, Array, Array]] = []
     for parent, joint in SMPL22.bones:
         radius = _RADII[SMPL22.joint_names[joint].removeprefix("left_").removeprefix("right_")]
         bone = rest[joint] - rest[parent]
         length = float(np.linalg.norm(bone))
-        capsule = trimesh.creation.capsule(height=length, radius=radius, count=(12, 8))
-        turn = trimesh.geometry.align_vectors([0, 0, 1], bone / max(length, 1e-9))
-        turn[:3, 3] = rest[parent]
-        capsule.apply_transform(turn)
-        parts.append((parent, capsule))
+        vertices, normals, faces = _capsule(round(length, 4), radius)
+        turn = trimesh.geometry.align_vectors([0, 0, 1], bone / max(length, 1e-9))[:3, :3]
+        parts.append((parent, vertices @ turn.T + rest[parent], normals @ turn.T, faces))
     head = SMPL22.index("head")
-    ball = trimesh.creation.icosphere(subdivisions=2, radius=_HEAD_RADIUS)
-    ball.apply_translation(rest[head] + [0.0, 0.07, 0.02])
-    parts.append((SMPL22.parents[head], ball))
+    vertices, normals, faces = _ball()
+    parts.append((SMPL22.parents[head], vertices + rest[head] + [0.0, 0.07, 0.02], normals, faces))
 
-    vertices = np.concatenate([mesh.vertices for _, mesh in parts]).astype(np.float32)
-    normals = np.concatenate([mesh.vertex_normals for _, mesh in parts]).astype(np.float32)
-    starts = np.cumsum([0, *(len(mesh.vertices) for _, mesh in parts)])
-    faces = np.concatenate([mesh.faces + start for (_, mesh), start in zip(parts, starts, strict=False)])
+    vertices = np.concatenate([part[1] for part in parts]).astype(np.float32)
+    normals = np.concatenate([part[2] for part in parts]).astype(np.float32)
+    starts = np.cumsum([0, *(len(part[1]) for part in parts)])
+    faces = np.concatenate([part[3] + start for part, start in zip(parts, starts, strict=False)])
     bound = np.zeros((len(vertices), 4), dtype=np.uint8)
-    bound[:, 0] = np.repeat([joint for joint, _ in parts], np.diff(starts))
+    bound[:, 0] = np.repeat([part[0] for part in parts], np.diff(starts))
     weights = np.zeros((len(vertices), 4), dtype=np.float32)
     weights[:, 0] = 1.0
     attributes = gl.Attributes(
@@ -192,3 +190,21 @@ def _body(buffer: _Buffer, rest: Array) -> pygltflib.Primitive:
     )
     indices = buffer.add(faces.astype(np.uint16).reshape(-1), gl.SCALAR, target=gl.ELEMENT_ARRAY_BUFFER)
     return gl.Primitive(attributes=attributes, indices=indices, material=len(buffer.gltf.materials) - 1)
+
+
+@lru_cache(maxsize=512)
+def _capsule(length: float, radius: float) -> tuple[Array, Array, Array]:
+    """Vertices, their normals and faces of a capsule along +Z, made once: bones keep their lengths."""
+    import trimesh
+
+    mesh = trimesh.creation.capsule(height=length, radius=radius, count=(12, 8))
+    return np.array(mesh.vertices), np.array(mesh.vertex_normals), np.array(mesh.faces)
+
+
+@lru_cache(maxsize=1)
+def _ball() -> tuple[Array, Array, Array]:
+    """The same of the head."""
+    import trimesh
+
+    mesh = trimesh.creation.icosphere(subdivisions=2, radius=_HEAD_RADIUS)
+    return np.array(mesh.vertices), np.array(mesh.vertex_normals), np.array(mesh.faces)

@@ -26,6 +26,7 @@ from .guard import Guard, OpenAnswers, may_read_figures
 from .health import Health
 from .history import History
 from .login import login_routes
+from .pages import PageCache
 from .queue import Batcher, FairQueue, QueueLimits
 from .recorder import Recorder
 from .settings import Settings
@@ -112,6 +113,7 @@ def create_app(
     _add_routes(app, lab)
     if sign_ins is not None:
         app.include_router(login_routes(settings, sign_ins, visitors))
+    app.add_middleware(PageCache)
     app.add_middleware(Guard, settings=settings, visitors=visitors, figures=figures, answers=lab.answers)
     page = build_page(engine, loader=Loader(engine), runs=Recorder(queue, history), history=history)
     page.state_session_capacity = PAGES

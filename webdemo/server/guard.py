@@ -36,6 +36,8 @@ _CLOSED = re.compile(
     re.IGNORECASE,
 )
 """What Gradio offers and this page does not use: proxies, code editing, monitoring, other hosts' files."""
+_NOT_HEARD = (b"x-forwarded-host", b"x-gradio-server")
+"""Headers from which Gradio would take the page's address, whoever sends them: here it is Host's."""
 _CHANGING = ("POST", "PUT", "PATCH", "DELETE")
 _LONGEST_URL = 4096
 _ROUTES = frozenset(
@@ -116,7 +118,8 @@ class Guard:
         route = "(none)"
         try:
             path = self._path(scope)
-            scope = {**scope, "path": path, "raw_path": path.encode()}
+            heard = [pair for pair in scope["headers"] if pair[0] not in _NOT_HEARD or on_a_space()]
+            scope = {**scope, "path": path, "raw_path": path.encode(), "headers": heard}
             route = _route(path)
             visitor, body = await self._admit(scope, headers, receive, reference)
             if visitor is None:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import asyncio
 import resource
 import socket
+import sys
 from typing import Any
 
 import uvicorn
@@ -17,6 +18,8 @@ from .app import Lab, create_app
 from .logs import set_up_logs
 from .settings import Settings
 
+SWITCH_SECONDS = 0.001
+"""After which a thread that computes lets another go on, a fifth of Python's own: the page answers sooner."""
 CLOSING_SECONDS = 3
 """How long open connections may take once all runs have ended."""
 
@@ -75,7 +78,7 @@ def make_server(settings: Settings, **parts: Any) -> Server:
         app, host=settings.host, port=settings.port, http=bounded_protocol(settings), ws="none",
         proxy_headers=True, forwarded_allow_ips=settings.proxies, access_log=False, log_config=None,
         server_header=False, timeout_graceful_shutdown=CLOSING_SECONDS, timeout_keep_alive=30,
-        h11_max_incomplete_event_size=32 * 1024, backlog=512,
+        loop="asyncio", h11_max_incomplete_event_size=32 * 1024, backlog=512,
     )  # fmt: skip
     return Server(config, app.state.lab)
 
@@ -98,6 +101,7 @@ def serve(settings: Settings) -> None:
                 "set PASDEDEUX_PORT to a free port."
             ) from None
     set_up_logs(settings.log_level, content=settings.log_content)
+    sys.setswitchinterval(SWITCH_SECONDS)
     server = make_server(settings)
     print(f"Pas de Deux is on {settings.url}", flush=True)
     server.run()

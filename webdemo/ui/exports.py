@@ -8,6 +8,7 @@ import os
 import re
 import shutil
 import tempfile
+import threading
 import time
 import unicodedata
 import zipfile
@@ -25,6 +26,9 @@ log = logging.getLogger(__name__)
 
 MAX_AGE = 3600.0
 """Seconds for which a run's files are kept."""
+
+_WRITING = threading.Lock()
+"""Writing is work for Python, which does one thing at a time: several at once only hold up the page."""
 
 
 @dataclass(frozen=True)
@@ -121,11 +125,12 @@ def write_files(result: Result, folder: Path, *, prompt: str) -> dict[str, list[
     """
     name = file_name(prompt, result.manifest)
     try:
-        files = {
-            kind.key: _write_kind(kind, result, folder, name, prompt)
-            for kind in KINDS
-            if kind.offered() and _holds(kind, result)
-        }
+        with _WRITING:
+            files = {
+                kind.key: _write_kind(kind, result, folder, name, prompt)
+                for kind in KINDS
+                if kind.offered() and _holds(kind, result)
+            }
     except BaseException:
         shutil.rmtree(folder, ignore_errors=True)
         raise
