@@ -144,6 +144,7 @@ def test_two_methods_stand_side_by_side(tab: PredictTab, pair: Path) -> None:
     assert [request.model for request in tab.page.engine.requests] == ["motion-mlp", "mawgan"]
     names = [trace.name for trace in done["plot"].data]
     assert names.count("Motion MLP") == names.count("PredictiveMA-WGAN") == 2
+    assert "PredictiveMA-WGAN" in done["readouts"] and "<table" not in done["readouts"]
     assert "Both done" in done["line"] and set(done["record"].compared) == {"motion-mlp", "mawgan"}
     assert "Both methods are the same" in run(tab, {**asked, "other": "motion-mlp"})["line"]
 

@@ -139,8 +139,9 @@ class JobTab(ABC):
                         for kind in KINDS
                     ]  # fmt: skip
                     self.onward = gr.Button(
-                        "What comes next", size="sm", min_width=0, elem_id=self._id("continue")
-                    )
+                        "What comes next", size="sm", min_width=0, elem_id=self._id("continue"),
+                        elem_classes="pd-onward",
+                    )  # fmt: skip
                 self.readouts = gr.HTML(elem_id=self._id("readouts"))
 
     # ---- events ----------------------------------------------------------------------------------

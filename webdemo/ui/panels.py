@@ -65,8 +65,9 @@ def comparison_panel(results: Mapping[str, Result]) -> str:
     )
     samples = [_sides(readout) for readout in joined.readouts]
     parts = [_asked(result, name) + _notes(result.notes) for name, result in results.items()]
-    tables = _quality_table(samples, heads) + _relation_table(samples, joined, heads)
-    parts.append(f'<div class="pd-tables">{tables}</div>')
+    if samples:
+        tables = _quality_table(samples, heads) + _relation_table(samples, joined, heads)
+        parts.append(f'<div class="pd-tables">{tables}</div>')
     parts += [_timings(result.timings, name) for name, result in results.items()]
     return '<div class="pd-readouts">' + "".join(parts) + "</div>"
 
