@@ -182,8 +182,8 @@ LAST = GOOD.splitlines()[-1]
             "200 joints",
         ),
         (
-            "HIERARCHY\n" + "ROOT a\n{\n}\nROOT b\n{\n}\nMOTION\nFrames: 1\nFrame Time: 0.03\n1",
-            "more than one ROOT",
+            "HIERARCHY\n" + "".join(f"ROOT {i}\n{{\n}}\n" for i in range(7)) + "MOTION\n",
+            "7 people",
         ),
     ],
 )

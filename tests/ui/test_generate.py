@@ -287,4 +287,4 @@ def test_progress_events_of_other_stages_have_words(tab: GenerateTab) -> None:
 
 def test_build_page_offers_an_endpoint_a_job(tmp_path: Path) -> None:
     demo = build_page(StubEngine(), files=tmp_path)
-    assert list(demo.get_api_info()["named_endpoints"]) == ["/generate", "/react", "/predict"]
+    assert list(demo.get_api_info()["named_endpoints"]) == ["/predict", "/generate", "/react"]

@@ -20,6 +20,7 @@ from webdemo.formats import read, write
 from webdemo.inference.live import LiveRequest
 from webdemo.inference.requests import ReactRequest
 from webdemo.motion import InputError
+from webdemo.motion.layouts import LAYOUTS
 from webdemo.ui.context import PageContext
 from webdemo.ui.examples import example_clips
 from webdemo.ui.exports import Shelf
@@ -31,6 +32,7 @@ from webdemo.view.payload import unpack_positions
 
 from .stub_engine import StubEngine, walking
 
+BOTH = [("Person A", "a"), ("Person B", "b")]
 LOADED = ("source", "line", "player", "trim", "person", "start", "end", "found")
 FIELDS = {"person": "a", "start": 0.0, "end": 10.0, "role": "a", "prompt": "they walk", "seed": 3,
           "samples": 1, "guidance": 2.5, "steps": 5, "damping": 0.7}  # fmt: skip
@@ -87,7 +89,7 @@ def test_an_upload_is_shown_at_once(tab: ReactTab, bvh: Path) -> None:
 
 def test_two_people_in_a_file_are_a_choice_and_a_long_file_is_cut(tab: ReactTab, pair: Path) -> None:
     last = upload(tab, pair)[-1]
-    assert last["person"] == gr.update(visible=True, value="a")
+    assert last["person"] == gr.update(choices=BOTH, visible=True, value="a")
     assert last["end"] == gr.update(maximum=12.0, value=10.0)
     assert last["player"]["value"]["samples"][0]["frames"] == 300
     source = last["source"]
@@ -134,7 +136,7 @@ def test_an_empty_seed_is_drawn(tab: ReactTab, bvh: Path) -> None:
 def test_a_person_of_the_last_result_is_taken(tab: ReactTab, bvh: Path, person: str) -> None:
     record = run(tab, upload(tab, bvh)[-1]["source"])[-1]["record"]
     last = [changes(LOADED, updates) for updates in tab.take_result(person, record)][-1]
-    assert last["person"] == gr.update(visible=True, value=person)
+    assert last["person"] == gr.update(choices=BOTH, visible=True, value=person)
     again = run(tab, last["source"], person=person)[-1]["record"].result.duets[0]
     given = record.result.duets[0].people["ab".index(person)]
     assert again.a.positions.tobytes() == given.positions.tobytes()
@@ -400,3 +402,24 @@ def test_a_live_request_is_online() -> None:
     live = LiveRequest(actor=actor, model="regennet", steps=5)
     plain = ReactRequest(actor=actor, model="regennet", steps=5, mode="online")
     assert live.to_dict() == plain.to_dict(), "its manifest reproduces the same motion"
+
+
+def test_one_of_more_than_two_people_is_chosen(tab: ReactTab, tmp_path: Path) -> None:
+    path = tmp_path / "three.npz"
+    people = np.concatenate([walking(3.0).positions, walking(3.0, 5).positions[:1]])
+    np.savez(path, positions=people, fps=30)
+    last = upload(tab, path)[-1]
+    assert [letter for _, letter in last["person"]["choices"]] == ["a", "b", "c"]
+    assert "3 people" in last["found"]
+    result = run(tab, last["source"], person="c")[-1]["record"].result
+    assert result.duets[0].a.positions.tobytes() == people[2].tobytes()
+
+
+def test_the_order_of_fifteen_joints_is_found_and_can_be_set(tab: ReactTab, tmp_path: Path) -> None:
+    joints = [max(joint, 0) for joint in LAYOUTS["k3hi15"].joints]
+    path = tmp_path / "fifteen.npy"
+    np.save(path, walking(3.0).a.positions[:, joints])
+    last = upload(tab, path)[-1]
+    assert "in the order of K3HI" in last["found"]
+    *_, again = [changes(LOADED, u) for u in tab.read_again(last["source"], "auto", "auto", None, "sbu15")]
+    assert "in the order of SBU" in again["found"]

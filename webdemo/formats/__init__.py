@@ -11,14 +11,15 @@ from webdemo.motion import SMPL22, Clip, Duet, InputError
 from webdemo.motion.retarget import retarget, retarget_duet, to_smpl
 from webdemo.motion.rigs import RigMotion
 
-from .bvh import read_bvh
+from .bvh import read_bvh, read_bvh_people
 from .bvh_writer import write_bvh
+from .crowd import Crowd, Motion, gathered
 from .glb import write_glb
 from .kinect import read_kinect
 from .npz import read_npy, read_npz, write_npy, write_npz
 from .one_person import write_clip
 
-__all__ = ["FORMATS", "Format", "can_read", "can_write", "read", "read_pair", "write"]
+__all__ = ["FORMATS", "Format", "can_read", "can_write", "read", "read_everyone", "read_pair", "write"]
 
 
 @dataclass(frozen=True)
@@ -28,21 +29,25 @@ class Format:
     Attributes:
         suffix: with its dot, lower case.
         label: what people call it.
-        reader: ``reader(source, name=…, fps=…)`` gives a clip or a duet; ``None`` where it is only written.
+        reader: ``reader(source, name=…, fps=…, everyone=…)`` gives a clip, a duet or, where everyone is
+            wanted, a crowd; ``None`` where it is only written.
         writer: ``writer(duet, path)`` gives the paths it wrote; ``None`` where it is only read.
         needs: a package that must be installed for writing.
     """
 
     suffix: str
     label: str
-    reader: Callable[..., Clip | Duet] | None = None
+    reader: Callable[..., Motion] | None = None
     writer: Callable[[Duet, Path], list[Path]] | None = None
     needs: str | None = None
 
 
-def _read_bvh_clip(source: str | Path | bytes, *, name: str | None = None, fps: float | None = None) -> Clip:
-    rig = read_bvh(source, name=name)
-    return own_clip(rig) or retarget(rig, fps=fps or 30.0)
+def _read_bvh_clip(
+    source: str | Path | bytes, *, name: str | None = None, fps: float | None = None, everyone: bool = False
+) -> Motion:
+    rigs = read_bvh_people(source, name=name)
+    people = tuple(own_clip(rig) or retarget(rig, fps=fps or 30.0) for rig in rigs)
+    return gathered(people, people[0].name, everyone=everyone)
 
 
 def own_clip(rig: RigMotion) -> Clip | None:
@@ -64,6 +69,9 @@ FORMATS: dict[str, Format] = {
         Format(".glb", "glTF binary", None, write_glb, needs="pygltflib"),
     )
 }
+
+
+_READABLE = [f.suffix for f in FORMATS.values() if f.reader]
 
 
 def can_read(suffix: str) -> bool:
@@ -107,9 +115,19 @@ def read(
     suffix = Path(label).suffix.lower()
     known = FORMATS.get(suffix)
     if known is None or known.reader is None:
-        raise InputError(_unknown(suffix, "read", [f.suffix for f in FORMATS.values() if f.reader]))
+        raise InputError(_unknown(suffix, "read", _READABLE))
     motion = known.reader(path, name=Path(label).name, fps=fps)
+    assert not isinstance(motion, Crowd)  # not everyone was asked for
     return motion if keep_skeleton else to_smpl(motion)
+
+
+def read_everyone(path: str | Path | bytes, *, name: str | None = None) -> Motion:
+    """As :func:`read`, with more than two people where there are more, and joints as they are in the file."""
+    label = name or str(path)
+    known = FORMATS.get(Path(label).suffix.lower())
+    if known is None or known.reader is None:
+        raise InputError(_unknown(Path(label).suffix.lower(), "read", _READABLE))
+    return known.reader(path, name=Path(label).name, everyone=True)
 
 
 def read_pair(

@@ -18,12 +18,16 @@ from numpy.typing import NDArray
 from webdemo.motion.errors import InputError
 from webdemo.motion.rigs import RigMotion
 
-from .files import check_duration, read_bytes
+from .crowd import MAX_PEOPLE
+from .files import check_duration, decode_text, read_bytes
 
 Array = NDArray[np.floating]
 
 MAX_JOINTS = 200
-MAX_NUMBERS = 40_000_000
+MAX_NUMBERS = 20_000_000
+_LONGEST_HIERARCHY = 2**20
+_PIECE = 2**20
+_LONGEST_NAME = 80
 
 _AXES = {"x": 0, "y": 1, "z": 2}
 _UNITS = {1.0: "m", 0.01: "cm", 0.001: "mm", 0.0254: "inch"}
@@ -55,33 +59,35 @@ def read_bvh(source: str | Path | bytes, *, name: str | None = None) -> RigMotio
     Raises:
         InputError: one sentence with the line and joint where the file is wrong.
     """
+    rigs = read_bvh_people(source, name=name)
+    if len(rigs) > 1:
+        raise InputError(
+            f"{rigs[0].name} holds {len(rigs)} people, a ROOT each: choose one on the page, or give one "
+            "person a file."
+        )
+    return rigs[0]
+
+
+def read_bvh_people(source: str | Path | bytes, *, name: str | None = None) -> tuple[RigMotion, ...]:
+    """The same for a file of several people, a ROOT each; they share one unit and one world.
+
+    Raises:
+        InputError: as :func:`read_bvh`, and for more than six people.
+    """
     data, label = read_bytes(source, name)
-    text = _decode(data, label)
-    motion = re.search(r"^[ \t]*MOTION[ \t]*\r?$", text, re.MULTILINE | re.IGNORECASE)
+    text = decode_text(data, label, "a BVH file")
+    del data
     if not re.search(r"^\s*HIERARCHY\b", text[:4096], re.IGNORECASE):
         raise InputError(f"{label} is not a BVH file: it does not begin with HIERARCHY.")
+    line = re.compile(r"^[ \t]*MOTION[ \t]*\r?$", re.MULTILINE | re.IGNORECASE)
+    motion = line.search(text, 0, min(len(text), _LONGEST_HIERARCHY))
     if motion is None:
+        if len(text) > _LONGEST_HIERARCHY:
+            raise InputError(f"{label} has no MOTION part within its first megabyte: is it of another kind?")
         raise InputError(f"{label} has no MOTION part, it may be cut short: export it again.")
     joints = _parse_hierarchy(text[: motion.start()], label)
     frame_time, values = _parse_motion(text, motion.end(), joints, label)
-    return _to_rig(joints, values, frame_time, label)
-
-
-def _decode(data: bytes, label: str) -> str:
-    """Text in UTF-8, UTF-16 (with or without its mark) or, failing those, Latin-1."""
-    if data[:2] in (b"\xff\xfe", b"\xfe\xff"):
-        encoding = "utf-16"
-    elif b"\0" in data[:200]:
-        encoding = "utf-16-le" if data[1:2] == b"\0" else "utf-16-be"
-    else:
-        encoding = "utf-8-sig"
-    try:
-        text = data.decode(encoding)
-    except UnicodeDecodeError:
-        text = data.decode("latin-1")
-    if "\0" in text:
-        raise InputError(f"{label} is not a BVH file: it holds binary data.")
-    return text
+    return _to_rigs(joints, values, frame_time, label)
 
 
 def _parse_hierarchy(text: str, label: str) -> list[_Joint]:
@@ -105,7 +111,7 @@ def _parse_hierarchy(text: str, label: str) -> list[_Joint]:
                         raise InputError(f"{where}: an End Site hangs on nothing.")
                     given = f"{joints[parent].name}_end"
                 else:
-                    given = " ".join(words[1:])
+                    given = " ".join(words[1:])[:_LONGEST_NAME]
                     if not given:
                         raise InputError(f"{where}: a joint has no name.")
                 joints.append(_Joint(given, parent, number, is_end=keyword == "END"))
@@ -136,13 +142,22 @@ def _parse_hierarchy(text: str, label: str) -> list[_Joint]:
         )
     if not joints:
         raise InputError(f"{label} has no ROOT joint.")
-    if sum(joint.parent < 0 for joint in joints) > 1:
-        raise InputError(f"{label} holds more than one ROOT: give one person a file.")
-    names = [joint.name for joint in joints]
-    for joint in joints:
-        if names.count(joint.name) > 1 and not joint.is_end:
-            raise InputError(f"{label}, line {joint.line}: two joints are named {joint.name}: rename one.")
+    for first, stop in _trees(joints, label):
+        names = [joint.name for joint in joints[first:stop]]
+        for joint in joints[first:stop]:
+            if names.count(joint.name) > 1 and not joint.is_end:
+                raise InputError(
+                    f"{label}, line {joint.line}: two joints are named {joint.name}: rename one."
+                )
     return joints
+
+
+def _trees(joints: list[_Joint], label: str) -> list[tuple[int, int]]:
+    """(first, stop) joint of each person, who is a tree of joints; they follow one another."""
+    roots = [index for index, joint in enumerate(joints) if joint.parent < 0]
+    if len(roots) > MAX_PEOPLE:
+        raise InputError(f"{label} holds {len(roots)} people: give {MAX_PEOPLE} or fewer a file.")
+    return list(zip(roots, [*roots[1:], len(joints)], strict=True))
 
 
 def _three_numbers(words: list[str], where: str, joint: str) -> tuple[float, float, float]:
@@ -180,7 +195,7 @@ def _parse_motion(text: str, start: int, joints: list[_Joint], label: str) -> tu
             f"{label}: after MOTION there must be the lines 'Frames: N' and 'Frame Time: SECONDS'."
         )
     try:
-        frames, frame_time = int(head[1]), float(head[2].replace(",", "."))
+        frames, frame_time = int(head[1][:20]), float(head[2].replace(",", "."))
     except ValueError:
         raise InputError(
             f"{label}: Frames {head[1][:20]!r} or Frame Time {head[2][:20]!r} is not a number."
@@ -194,18 +209,10 @@ def _parse_motion(text: str, start: int, joints: list[_Joint], label: str) -> tu
     if width == 0:
         raise InputError(f"{label}: no joint has CHANNELS, so nothing moves: export it with its animation.")
     if frames * width > MAX_NUMBERS:
-        raise InputError(f"{label} holds {frames * width} numbers, too many: lower its frame rate.")
-
-    block = text[head.end() :]
-    try:
-        values = np.fromstring(block, dtype=np.float64, sep=" ", count=-1)
-        complete = len(values) >= frames * width
-    except ValueError:
-        complete = False
-    if not complete:
-        raise InputError(_find_bad_line(text, head.end(), frames, width, joints, label))
-    values = values[: frames * width].reshape(frames, width)
-    if not np.isfinite(values).all() or np.abs(values).max() > 1e7:
+        raise InputError(f"{label} holds {frames * width:,} numbers, too many: lower its frame rate.")
+    values = _numbers(text, head.end(), frames, width, joints, label)
+    values = values.reshape(frames, width)
+    if not np.abs(values).max() <= 1e7:
         frame, column = np.argwhere(~(np.abs(values) <= 1e7))[0]
         raise InputError(
             f"{label}: joint {_joint_of_column(joints, column)} has no usable number in frame {frame + 1}: "
@@ -214,11 +221,51 @@ def _parse_motion(text: str, start: int, joints: list[_Joint], label: str) -> tu
     return frame_time, values
 
 
-def _find_bad_line(text: str, start: int, frames: int, width: int, joints: list[_Joint], label: str) -> str:
-    """Why the numbers could not be read; only called when they could not, so it may take its time."""
-    first_line = text.count("\n", 0, start) + 1
+def _numbers(text: str, start: int, frames: int, width: int, joints: list[_Joint], label: str) -> Array:
+    """(frames · width,) numbers from ``start`` on, read piece by piece so that no part is held twice."""
+    wanted = frames * width
+    short = (
+        f"{label} is cut short: it says {frames} frames of {width} numbers but holds {{}} whole "
+        "frames: export it again."
+    )
+    if wanted > (len(text) - start + 1) // 2:  # a digit and a space each
+        raise InputError(short.format("fewer"))
+    values = np.empty(wanted)
     count = 0
-    for number, line in enumerate(text[start:].splitlines(), first_line):
+    while count < wanted and start < len(text):
+        stop = _piece_end(text, start)
+        piece = text[start:stop]
+        try:  # of spaces alone numpy makes a number, too
+            found = np.empty(0) if piece.isspace() else np.fromstring(piece, dtype=np.float64, sep=" ")
+        except ValueError:
+            raise InputError(_bad_word(text, start, stop, count, width, joints, label)) from None
+        taken = min(len(found), wanted - count)
+        values[count : count + taken] = found[:taken]
+        count += taken
+        start = stop
+    if count < wanted:
+        raise InputError(short.format(count // width))
+    return values
+
+
+def _piece_end(text: str, start: int) -> int:
+    """Where a piece of about a megabyte ends: behind a line, or a word where lines are longer than that."""
+    if start + _PIECE >= len(text):
+        return len(text)
+    for separator in ("\n", " "):
+        found = text.rfind(separator, start, start + _PIECE)
+        if found >= 0:
+            return found + 1
+    return start + _PIECE
+
+
+def _bad_word(
+    text: str, start: int, stop: int, count: int, width: int, joints: list[_Joint], label: str
+) -> str:
+    """What in a piece is no number, with its line; ``count`` numbers came before it."""
+    number = text.count("\n", 0, start)
+    for line in text[start:stop].split("\n"):
+        number += 1
         for word in line.split():
             try:
                 float(word)
@@ -226,10 +273,7 @@ def _find_bad_line(text: str, start: int, frames: int, width: int, joints: list[
                 joint = _joint_of_column(joints, count % width)
                 return f"{label}, line {number}: {word[:20]!r} ({joint}) is not a number: export it again."
             count += 1
-    return (
-        f"{label} is cut short: it says {frames} frames of {width} numbers but holds {count // width} whole "
-        "frames: export it again."
-    )
+    return f"{label}, line {number}: something here is not a number: export it again."
 
 
 def _joint_of_column(joints: list[_Joint], column: int) -> str:
@@ -240,12 +284,13 @@ def _joint_of_column(joints: list[_Joint], column: int) -> str:
     return joints[-1].name
 
 
-def _to_rig(joints: list[_Joint], values: Array, frame_time: float, label: str) -> RigMotion:
+def _to_rigs(joints: list[_Joint], values: Array, frame_time: float, label: str) -> tuple[RigMotion, ...]:
     frames = len(values)
     offsets = np.array([joint.offset for joint in joints])
     rotations = np.empty((frames, len(joints), 3, 3))
-    world = np.empty_like(rotations)
+    world: dict[int, Array] = {}  # of joints that still have children to come
     positions = np.empty((frames, len(joints), 3))
+    last_child = {joint.parent: index for index, joint in enumerate(joints)}
     column = 0
     for index, joint in enumerate(joints):
         local = np.broadcast_to(offsets[index], (frames, 3)).copy()
@@ -258,22 +303,29 @@ def _to_rig(joints: list[_Joint], values: Array, frame_time: float, label: str) 
             column += 1
         rotations[:, index] = rotation
         if joint.parent < 0:
-            world[:, index], positions[:, index] = rotation, local
+            world[index], positions[:, index] = rotation, local
         else:
-            carrier = world[:, joint.parent]
-            world[:, index] = carrier @ rotation
+            carrier = world[joint.parent]
             positions[:, index] = positions[:, joint.parent] + (carrier @ local[..., None])[..., 0]
-    parents = tuple(joint.parent for joint in joints)
-    scale = _metres_per_unit(positions, parents, label)
-    return RigMotion(
-        tuple(joint.name for joint in joints),
-        parents,
-        offsets * scale,
-        positions * scale,
-        rotations,
-        _frame_rate(frame_time),
-        scale,
-        label,
+            if index in last_child:
+                world[index] = carrier @ rotation
+            if last_child[joint.parent] == index:
+                del world[joint.parent]
+    trees = _trees(joints, label)
+    scale = _metres_per_unit(positions, joints[: trees[0][1]], label)
+    positions *= scale
+    return tuple(
+        RigMotion(
+            tuple(joint.name for joint in joints[first:stop]),
+            tuple(max(joint.parent - first, -1) for joint in joints[first:stop]),
+            offsets[first:stop] * scale,
+            positions[:, first:stop],
+            rotations[:, first:stop],
+            _frame_rate(frame_time),
+            scale,
+            label,
+        )
+        for first, stop in trees
     )
 
 
@@ -293,12 +345,13 @@ def _frame_rate(frame_time: float) -> float:
     return float(round(rate)) if abs(rate - round(rate)) < 5e-4 * rate else round(rate, 4)
 
 
-def _metres_per_unit(positions: Array, parents: tuple[int, ...], label: str) -> float:
-    """The file's unit in metres, from the longest chain of bones that leaves the first fork of the tree.
+def _metres_per_unit(positions: Array, joints: list[_Joint], label: str) -> float:
+    """The file's unit in metres, from the longest chain of bones that leaves the tree's first fork.
 
     Bone lengths do not depend on the pose, so a crouching or lying person is measured as well as a
     standing one. Files in no unit at all (CMU's) are scaled to an average person.
     """
+    parents = [joint.parent for joint in joints]
     bones = np.zeros(len(parents))
     for joint, parent in enumerate(parents):
         if parent >= 0:

@@ -13,6 +13,8 @@ from webdemo.motion.errors import InputError
 
 MAX_BYTES = 50 * 2**20
 MAX_SECONDS = 600.0
+MAX_FRAMES = 72_000
+"""Ten minutes at 120 frames a second."""
 
 
 def read_bytes(source: str | Path | bytes, name: str | None = None) -> tuple[bytes, str]:
@@ -42,11 +44,36 @@ def read_bytes(source: str | Path | bytes, name: str | None = None) -> tuple[byt
     return data, label
 
 
+def decode_text(data: bytes, label: str, kind: str) -> str:
+    """Text in UTF-8, UTF-16 (with or without its mark) or, failing those, Latin-1.
+
+    Raises:
+        InputError: for binary data, which is no file of this ``kind`` ("a BVH file").
+    """
+    if data[:2] in (b"\xff\xfe", b"\xfe\xff"):
+        encoding = "utf-16"
+    elif 3 * data[:200].count(0) > len(data[:200]):
+        encoding = "utf-16-le" if data[1:2] == b"\0" else "utf-16-be"
+    else:
+        encoding = "utf-8-sig"
+    try:
+        text = data.decode(encoding)
+    except UnicodeDecodeError:
+        text = data.decode("latin-1")
+    if "\0" in text:
+        raise InputError(f"{label} is not {kind}: it holds binary data.")
+    return text
+
+
 def check_duration(frames: int, fps: float, label: str) -> None:
-    """Raises InputError for motions longer than ten minutes."""
+    """Raises InputError for motions longer than ten minutes, or of more frames than :data:`MAX_FRAMES`."""
     if fps > 0 and frames / fps > MAX_SECONDS:
         raise InputError(
             f"{label} lasts {frames / fps:.0f} s, more than the {MAX_SECONDS:.0f} s allowed: cut it."
+        )
+    if frames > MAX_FRAMES:
+        raise InputError(
+            f"{label} has {frames:,} frames, more than the {MAX_FRAMES:,} allowed: lower its frame rate."
         )
 
 

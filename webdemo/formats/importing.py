@@ -11,13 +11,14 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from webdemo.motion import SMPL22, Clip, Duet, InputError
+from webdemo.motion import SKELETONS, SMPL22, Clip, Duet, InputError
 from webdemo.motion.layouts import LAYOUTS
-from webdemo.motion.retarget import retarget, to_smpl, up_axis
+from webdemo.motion.retarget import retarget, retarget_duet, to_smpl, up_axis
 from webdemo.motion.rigs import RigMotion, matched_names
 
-from . import own_clip, read
-from .bvh import read_bvh
+from . import own_clip, read_everyone
+from .bvh import read_bvh_people
+from .crowd import people_of
 from .files import MAX_SECONDS
 
 Array = NDArray[np.floating]
@@ -26,6 +27,8 @@ UNITS = {"m": 1.0, "cm": 0.01, "mm": 0.001, "inch": 0.0254}
 """Metres of each unit."""
 AXES = ("x", "y", "z")
 RATES = (1.0, 1000.0)
+ORDERS = {"sbu15": "SBU", "k3hi15": "K3HI"}
+"""What people call the orders of which several have as many joints."""
 # Metres from ankles to head of the smallest and the tallest person.
 _TALL = (0.9, 2.0)
 
@@ -38,11 +41,14 @@ class ImportChoices:
         up: the axis that points up: "x", "y" or "z".
         unit: "m", "cm", "mm" or "inch".
         fps: frames a second, whatever the file says.
+        order: of joints without names, as the recordings write them: a name of
+            :data:`~webdemo.motion.SKELETONS`, such as "sbu15" or "k3hi15".
     """
 
     up: str | None = None
     unit: str | None = None
     fps: float | None = None
+    order: str | None = None
 
     def __post_init__(self) -> None:
         if self.up is not None and self.up not in AXES:
@@ -51,6 +57,10 @@ class ImportChoices:
             raise InputError(f"Unit {self.unit!r:.20} is not known: choose one of {', '.join(UNITS)}.")
         if self.fps is not None and not RATES[0] <= self.fps <= RATES[1]:
             raise InputError(f"A frame rate of {self.fps:g} is not possible: give {RATES[0]:g} to 1,000.")
+        if self.order is not None and self.order not in SKELETONS:
+            raise InputError(
+                f"Joint order {self.order!r:.20} is not known: choose one of {', '.join(SKELETONS)}."
+            )
 
 
 @dataclass(frozen=True)
@@ -58,24 +68,34 @@ class Imported:
     """A motion on SMPL22 and how it was read.
 
     Attributes:
-        motion: one person or two, metres, Y up.
+        people: everybody in the file, metres, Y up; two of a pair come before the others.
         up: the file's axis that points up.
         unit: its unit; "none" where its lengths are scaled to an average person.
         fps: its frames a second.
         joints: (joint of the file, joint of SMPL22).
+        order: whose order of joints an array has, where there are several of as many joints.
     """
 
-    motion: Clip | Duet
+    people: tuple[Clip, ...]
     up: str
     unit: str
     fps: float
     joints: tuple[tuple[str, str], ...] = field(repr=False)
+    order: str | None = None
+
+    @property
+    def motion(self) -> Clip | Duet:
+        """The person, or the first two."""
+        return Duet(*self.people[:2]) if len(self.people) > 1 else self.people[0]
 
     def describe(self) -> str:
         """One line, such as "22 joints matched, cm, Z up, 120 frames a second"."""
         unit = "no unit (scaled to a person)" if self.unit == "none" else self.unit
+        order = "" if self.order is None else f" in the order of {ORDERS[self.order]}"
+        count = f"{len(self.people)} people, " if len(self.people) > 2 else ""
         return (
-            f"{len(self.joints)} joints matched, {unit}, {self.up.upper()} up, {self.fps:g} frames a second"
+            f"{count}{len(self.joints)} joints matched{order}, {unit}, {self.up.upper()} up, "
+            f"{self.fps:g} frames a second"
         )
 
 
@@ -95,14 +115,14 @@ def import_motion(
     choices = choices or ImportChoices()
     label = name or Path(str(source)).name
     if Path(label).suffix.lower() == ".bvh":
-        return _import_rig(read_bvh(source, name=name), choices)
-    motion = read(source, name=name, keep_skeleton=True)
-    people = motion.people if isinstance(motion, Duet) else (motion,)
+        return _import_rigs(read_bvh_people(source, name=name), choices)
+    people = tuple(
+        _ordered(clip, choices.order, label) for clip in people_of(read_everyone(source, name=name))
+    )
     up = choices.up or _up_of(people[0])
     unit = choices.unit or _unit_of(people[0], "xyz".index(up))
     people = tuple(_upright(clip, up, UNITS[unit], choices.fps or clip.fps) for clip in people)
-    upright = replace(motion, a=people[0], b=people[1]) if isinstance(motion, Duet) else people[0]
-    _check_length(upright, label)
+    _check_length(people[0], label)
     skeleton = people[0].skeleton
     layout = LAYOUTS[skeleton.name]
     joints = tuple(
@@ -110,11 +130,50 @@ def import_motion(
         for theirs, ours in zip(skeleton.joint_names, layout.joints, strict=True)
         if ours >= 0
     )
-    return Imported(to_smpl(upright), up, unit, upright.fps, joints)
+    order = skeleton.name if skeleton.name in ORDERS else None
+    return Imported(_on_smpl(people), up, unit, people[0].fps, joints, order)
+
+
+def _on_smpl(people: tuple[Clip, ...]) -> tuple[Clip, ...]:
+    """Everybody on SMPL22; the first two share one scale and one floor."""
+    if len(people) < 2:
+        return (to_smpl(people[0]),)
+    return (*to_smpl(Duet(people[0], people[1])).people, *(to_smpl(clip) for clip in people[2:]))
+
+
+def _ordered(clip: Clip, order: str | None, label: str) -> Clip:
+    """The clip with its joints taken in the order that is known of them."""
+    if order is None or order == clip.skeleton.name:
+        return clip
+    wanted = SKELETONS[order]
+    if wanted.num_joints != clip.skeleton.num_joints:
+        raise InputError(
+            f"{label} has {clip.skeleton.num_joints} joints a frame, but the order of "
+            f"{ORDERS.get(order, order)} has {wanted.num_joints}: leave the order to be found."
+        )
+    return replace(clip, skeleton=wanted)
+
+
+def _import_rigs(rigs: tuple[RigMotion, ...], choices: ImportChoices) -> Imported:
+    found = [_import_rig(rig, choices) for rig in rigs]
+    if len(rigs) > 1 and not any(own_clip(rig) for rig in rigs):
+        known = [_with_choices(rig, choices) for rig in rigs]
+        pair = retarget_duet(known[0], known[1])
+        return replace(found[0], people=(*pair.people, *(one.people[0] for one in found[2:])))
+    return replace(found[0], people=tuple(one.people[0] for one in found))
 
 
 def _import_rig(rig: RigMotion, choices: ImportChoices) -> Imported:
     own = own_clip(rig)
+    rig = _with_choices(rig, choices)
+    _check_length(rig, rig.name)
+    joints = tuple(matched_names(rig))
+    unit = next((n for n, metres in UNITS.items() if np.isclose(metres, rig.metres_per_unit)), "none")
+    keep = own is not None and (choices.up, choices.unit, choices.fps) == (None, None, None)
+    return Imported((own if keep and own else retarget(rig),), up_axis(rig), unit, rig.fps, joints)
+
+
+def _with_choices(rig: RigMotion, choices: ImportChoices) -> RigMotion:
     if choices.unit is not None:
         scale = UNITS[choices.unit] / rig.metres_per_unit
         rig = replace(
@@ -123,15 +182,10 @@ def _import_rig(rig: RigMotion, choices: ImportChoices) -> Imported:
             offsets=rig.offsets * scale,
             metres_per_unit=UNITS[choices.unit],
         )
-    rig = replace(rig, up=choices.up, fps=choices.fps or rig.fps)
-    _check_length(rig, rig.name)
-    joints = tuple(matched_names(rig))
-    unit = next((n for n, metres in UNITS.items() if np.isclose(metres, rig.metres_per_unit)), "none")
-    keep = own is not None and choices == ImportChoices()
-    return Imported(own if keep and own else retarget(rig), up_axis(rig), unit, rig.fps, joints)
+    return replace(rig, up=choices.up, fps=choices.fps or rig.fps)
 
 
-def _check_length(motion: Clip | Duet | RigMotion, label: str) -> None:
+def _check_length(motion: Clip | RigMotion, label: str) -> None:
     seconds = motion.num_frames / motion.fps
     if seconds > MAX_SECONDS:
         raise InputError(

@@ -8,18 +8,21 @@ of two people as x, y, z between 0 and 1, separated by commas.
 
 from __future__ import annotations
 
+import io
 import re
 from collections import defaultdict
+from collections.abc import Iterator
 from pathlib import Path
 
 import numpy as np
 from numpy.typing import NDArray
 
-from webdemo.motion.clip import Clip, Duet
+from webdemo.motion.clip import Clip
 from webdemo.motion.errors import InputError
 from webdemo.motion.skeleton import NTU25, SBU15, Skeleton
 
-from .files import check_duration, read_bytes
+from .crowd import Motion, gathered
+from .files import check_duration, decode_text, read_bytes
 
 Array = NDArray[np.floating]
 
@@ -28,63 +31,75 @@ SBU_FPS = 15.0
 _MAX_BODIES = 6
 """As many as a Kinect v2 tracks."""
 _LONGEST_LINE = 4000
+_MOST_LINES = 4_000_000
+_MOST_IDENTITIES = 200
 _FARTHEST = 100.0  # metres
 
 
 def read_kinect(
-    source: str | Path | bytes, *, name: str | None = None, fps: float | None = None
-) -> Clip | Duet:
+    source: str | Path | bytes, *, name: str | None = None, fps: float | None = None, everyone: bool = False
+) -> Motion:
     """Reads Kinect text of either kind, told by what it holds.
 
     Args:
         source: a path, or the file's bytes.
         name: what to call it in messages.
         fps: frames a second; 30 for ``.skeleton`` and 15 for SBU's text by default, as the files have none.
+        everyone: give more than two people where there are more.
 
     Returns:
-        the person, or the two who are seen longest, in metres and Y up; frames in which one of them is not
-        seen are interpolated.
+        the person, or the two who are seen longest (or everybody, the longest first), in metres and Y up;
+        frames in which one of them is not seen are interpolated.
 
     Raises:
         InputError: one sentence with the line where the file is wrong.
     """
     data, label = read_bytes(source, name)
-    if b"\0" in data[:4096]:
-        raise InputError(f"{label} is not Kinect text: it holds binary data.")
-    lines = data.decode("utf-8", errors="replace").lstrip("\ufeff").splitlines()
-    first = next((line for line in lines if line.strip()), "")
+    text = decode_text(data, label, "Kinect text")
+    del data
+    first = next((line for _, line in _lines(text, label)), "")
     if "," in first:
-        positions = _read_sbu(lines, label)
-        return _motion(positions, fps or SBU_FPS, SBU15, label)
+        positions = _read_sbu(text, label, fps or SBU_FPS)
+        return _motion(positions, fps or SBU_FPS, SBU15, label, everyone)
     if re.fullmatch(r"\s*\d{1,9}\s*", first):
-        positions = _read_skeleton(lines, label, fps or SKELETON_FPS)
-        return _motion(positions, fps or SKELETON_FPS, NTU25, label)
+        positions = _read_skeleton(text, label, fps or SKELETON_FPS)
+        return _motion(positions if everyone else positions[:2], fps or SKELETON_FPS, NTU25, label, everyone)
     raise InputError(
         f"{label} is not Kinect text: it begins neither with a count of frames (.skeleton) nor with SBU's "
         "numbers between commas."
     )
 
 
-def _motion(people: list[Array], fps: float, skeleton: Skeleton, label: str) -> Clip | Duet:
-    frames = len(people[0])
-    check_duration(frames, fps, label)
+def _lines(text: str, label: str) -> Iterator[tuple[int, str]]:
+    """(number from 1, line) of the lines that hold something, one at a time."""
+    for number, line in enumerate(io.StringIO(text), 1):
+        if len(line) > _LONGEST_LINE:
+            raise InputError(
+                f"{label}, line {number} is too long for a Kinect's text: is it of another kind?"
+            )
+        if number > _MOST_LINES:
+            raise InputError(f"{label} has more than {_MOST_LINES:,} lines: cut the motion.")
+        if not line.isspace():
+            yield number, line
+
+
+def _motion(people: list[Array], fps: float, skeleton: Skeleton, label: str, everyone: bool) -> Motion:
     if any(np.abs(person).max() > _FARTHEST for person in people):
         raise InputError(f"{label} holds joints more than {_FARTHEST:g} m away: is it of another kind?")
     try:
-        clips = [Clip(person, fps, skeleton, name=label) for person in people]
+        clips = tuple(Clip(person, fps, skeleton, name=label) for person in people)
     except InputError as error:
         raise InputError(f"{label}: {error}") from None
-    return clips[0] if len(clips) == 1 else Duet(clips[0], clips[1])
+    return gathered(clips, label, everyone=everyone)
 
 
 # ---- SBU ---------------------------------------------------------------------------------------------
 
 
-def _read_sbu(lines: list[str], label: str) -> list[Array]:
-    rows = []
-    for number, line in enumerate(lines, 1):
-        if not line.strip():
-            continue
+def _read_sbu(text: str, label: str, fps: float) -> list[Array]:
+    rows: list[Array] = []
+    for number, line in _lines(text, label):
+        check_duration(len(rows) + 1, fps, label)
         words = line.split(",")
         if len(words) not in (90, 91):
             raise InputError(
@@ -122,21 +137,19 @@ def _is_number(word: str) -> bool:
 class _Lines:
     """The lines of a file one after the other, with their numbers for messages."""
 
-    def __init__(self, lines: list[str], label: str) -> None:
-        self.lines, self.label, self.next = lines, label, 0
+    def __init__(self, text: str, label: str) -> None:
+        self.lines, self.label, self.number = _lines(text, label), label, 0
 
     @property
     def where(self) -> str:
-        return f"{self.label}, line {self.next}"
+        return f"{self.label}, line {self.number}"
 
     def words(self) -> list[str]:
         """The next line's words; raises InputError at the end."""
-        if self.next >= len(self.lines):
-            raise InputError(f"{self.label} is cut short at line {self.next}: export it again.")
-        line = self.lines[self.next]
-        self.next += 1
-        if len(line) > _LONGEST_LINE:
-            raise InputError(f"{self.where} is too long for a Kinect's text: is it of another kind?")
+        found = next(self.lines, None)
+        if found is None:
+            raise InputError(f"{self.label} is cut short at line {self.number}: export it again.")
+        self.number, line = found
         return line.split()
 
     def count(self, what: str, largest: int) -> int:
@@ -150,8 +163,9 @@ class _Lines:
         return int(words[0])
 
 
-def _read_skeleton(lines: list[str], label: str, fps: float) -> list[Array]:
-    reader = _Lines([line for line in lines if line.strip()], label)
+def _read_skeleton(text: str, label: str, fps: float) -> list[Array]:
+    """(T, 25, 3) of every body that is seen at least half as long as the longest, who comes first."""
+    reader = _Lines(text, label)
     frames = reader.count("frames", 999_999_999)
     if frames < 1:
         raise InputError(f"{label} holds no frames: export it again.")
@@ -168,10 +182,12 @@ def _read_skeleton(lines: list[str], label: str, fps: float) -> list[Array]:
                 if len(words) < 3:
                     raise InputError(f"{reader.where}: a joint needs x, y and z.")
                 joints.append(_numbers(words[:3], reader.where))
-            bodies[identity][frame] = np.array(joints)
+            if identity not in bodies and len(bodies) >= _MOST_IDENTITIES:
+                raise InputError(f"{reader.where}: more than {_MOST_IDENTITIES} bodies come and go: cut it.")
+            bodies[identity][frame] = np.array(joints, dtype=np.float32)
     if not bodies:
         raise InputError(f"{label} holds no body in any of its frames: record it again.")
-    longest = sorted(bodies.values(), key=len, reverse=True)[:2]
+    longest = sorted(bodies.values(), key=len, reverse=True)[:_MAX_BODIES]
     # A second body that is seen for a moment is a chair or a ghost.
     kept = [body for body in longest if len(body) >= 0.5 * len(longest[0])]
     return [_filled(body, frames) for body in kept]

@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import Any
 
 from webdemo.formats.importing import ImportChoices, import_motion
-from webdemo.inference.actor import ROLES, at_30_fps, choose_actor
+from webdemo.inference.actor import at_30_fps, choose_actor
 from webdemo.inference.requests import DEFAULT_STEPS, SECONDS, Result
 from webdemo.motion import Clip, Duet, InputError
 from webdemo.view.payload import Payload, player_payload
@@ -35,14 +35,17 @@ def installed_methods(weights: Path = _WEIGHTS) -> list[tuple[str, str]]:
     ]
 
 
+_LETTERS = "abcdef"
+
+
 @dataclass(frozen=True)
 class Source:
     """What a session chose an actor from.
 
     Attributes:
         name: of the file or the result.
-        people: one clip or two, at 30 fps; what is not needed of a file is not kept.
-        chosen: "a" or "b": which one is offered first.
+        people: up to six, at 30 fps; what is not needed of a file is not kept.
+        chosen: "a", "b" …: which one is offered first.
         path: the file, so that it can be read anew with other choices; None for a result.
         found: how the file was read, None for a result.
     """
@@ -52,6 +55,11 @@ class Source:
     chosen: str = "a"
     path: Path | None = None
     found: Found | None = None
+
+    @property
+    def choices(self) -> list[tuple[str, str]]:
+        """(label, letter) of everybody."""
+        return [(f"Person {letter.upper()}", letter) for letter in _LETTERS[: len(self.people)]]
 
     @property
     def seconds(self) -> float:
@@ -64,7 +72,7 @@ class Source:
 
     def actor(self, person: str, start: float, end: float) -> Clip:
         """The trimmed actor; raises InputError where the times do not lie in the motion."""
-        clip = self.people[ROLES.index(person) if len(self.people) > 1 else 0]
+        clip = self.people[_LETTERS.index(person) if len(self.people) > 1 else 0]
         return replace(choose_actor(clip, start=start, end=end), name=self.name)
 
     def preview(self, person: str, start: float, end: float) -> Payload:
@@ -89,20 +97,19 @@ def read_source(path: str | Path, name: str | None = None, choices: ImportChoice
     """A motion file as a source; raises InputError where it cannot be read."""
     path = Path(path)
     found = import_motion(path, choices=choices)
-    people = found.motion.people if isinstance(found.motion, Duet) else (found.motion,)
     return Source(
         name or path.name,
-        tuple(at_30_fps(person) for person in people),
+        tuple(at_30_fps(person) for person in found.people),
         path=path,
         found=Found(found.describe(), found.joints),
     )
 
 
-def import_choices(up: str, unit: str, fps: float | None) -> ImportChoices:
+def import_choices(up: str, unit: str, fps: float | None, order: str = AUTO) -> ImportChoices:
     """The page's import controls as choices; "auto" and an empty or zero rate leave a thing to be found."""
-    return ImportChoices(
-        up=None if up == AUTO else up, unit=None if unit == AUTO else unit, fps=float(fps) if fps else None
-    )
+    chosen = {"up": up, "unit": unit, "order": order}
+    known = {name: value for name, value in chosen.items() if value != AUTO}
+    return ImportChoices(**known, fps=float(fps) if fps else None)
 
 
 def result_source(result: Result, title: str, person: str) -> Source:

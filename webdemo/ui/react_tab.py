@@ -9,7 +9,7 @@ from typing import Any
 
 import gradio as gr
 
-from webdemo.formats.importing import AXES, UNITS
+from webdemo.formats.importing import AXES, ORDERS, UNITS
 from webdemo.inference.live import LiveRequest
 from webdemo.inference.requests import DEFAULT_STEPS, SECONDS, ReactRequest, Result
 from webdemo.motion import InputError
@@ -121,7 +121,7 @@ class ReactTab(JobTab):
                 }  # fmt: skip
             with gr.Column(visible=False, min_width=0, elem_classes="pd-settings") as self.trim:
                 self.person = gr.Radio(
-                    [("Person A", "a"), ("Person B", "b")], value="a", label="Which of the two",
+                    [("Person A", "a"), ("Person B", "b")], value="a", label="Which person",
                     elem_id="react-person", visible=False,
                 )  # fmt: skip
                 with gr.Row(elem_classes="pd-trim"):
@@ -142,6 +142,10 @@ class ReactTab(JobTab):
                         self.fps = gr.Number(
                             value=None, label="Frames a second", placeholder="found", elem_id="react-fps",
                             min_width=0,
+                        )  # fmt: skip
+                        self.order = gr.Dropdown(
+                            [("found", AUTO), *((label, name) for name, label in ORDERS.items())],
+                            value=AUTO, label="Order of 15 joints", elem_id="react-order", min_width=0,
                         )  # fmt: skip
                     self.found = gr.HTML(elem_id="react-found")
                 self.role = gr.Radio(
@@ -183,10 +187,10 @@ class ReactTab(JobTab):
         ]  # fmt: skip
         load = {"outputs": changed, "concurrency_limit": 2, "concurrency_id": "react-read", **QUIET}
         self.file.upload(self.upload, inputs=self.file, **load)
-        choices = [self.up, self.unit, self.fps]
-        self.file.upload(lambda: (AUTO, AUTO, None), outputs=choices, queue=False, **QUIET)
+        choices = [self.up, self.unit, self.fps, self.order]
+        self.file.upload(lambda: (AUTO, AUTO, None, AUTO), outputs=choices, queue=False, **QUIET)
         gr.on(
-            [self.up.input, self.unit.input, self.fps.submit, self.fps.blur],
+            [self.up.input, self.unit.input, self.order.input, self.fps.submit, self.fps.blur],
             self.read_again, inputs=[self.source, *choices], trigger_mode="always_last", **load,
         )  # fmt: skip
         for chip, (name, path) in zip(self.chips, self.examples, strict=True):
@@ -216,11 +220,13 @@ class ReactTab(JobTab):
         if path is not None:
             yield from self.load(partial(read_source, path))
 
-    def read_again(self, source: Source | None, up: str, unit: str, fps: float | None) -> Iterator[Updates]:
+    def read_again(
+        self, source: Source | None, up: str, unit: str, fps: float | None, order: str = AUTO
+    ) -> Iterator[Updates]:
         """Reads the source's file anew with what the visitor knows of it."""
         if source is not None and source.path is not None:
             path, name = source.path, source.name
-            yield from self.load(lambda: read_source(path, name, import_choices(up, unit, fps)))
+            yield from self.load(lambda: read_source(path, name, import_choices(up, unit, fps, order)))
 
     def take_result(self, person: str, record: Record | None) -> Iterator[Updates]:
         """Makes a person of the session's last result the actor."""
@@ -248,7 +254,7 @@ class ReactTab(JobTab):
             self._told(source, 0.0, source.end),
             show(payload),
             gr.update(visible=True),
-            gr.update(visible=len(source.people) > 1, value=source.chosen),
+            gr.update(choices=source.choices, visible=len(source.people) > 1, value=source.chosen),
             gr.update(maximum=last, value=0),
             gr.update(maximum=last, value=min(round(source.end, 1), last)),
             _found(source),
