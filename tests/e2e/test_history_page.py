@@ -6,7 +6,10 @@ import re
 from collections.abc import Callable
 from pathlib import Path
 
+import numpy as np
 import pytest
+
+from ..ui.stub_engine import walking
 
 pytestmark = [pytest.mark.e2e, pytest.mark.slow]
 SLOW = 120_000
@@ -53,6 +56,37 @@ def test_a_result_is_kept_and_its_link_opens_it_with_all_controls(lab: str, open
     page.wait_for_selector("#history-status :text('1 links to it no longer work')")
     ended = open_page(link)
     ended.wait_for_selector("#status .pd-error:has-text('There is no such run')", timeout=SLOW)
+
+
+def test_a_prediction_opens_with_its_marker_and_its_ghost(
+    lab: str, open_page: Callable, tmp_path: Path
+) -> None:
+    page = open_page(lab)
+    page.set_default_timeout(SLOW)
+    page.click("button[role=tab]:has-text('Predict')")
+    np.save(tmp_path / "walker.npy", walking(4.0).a.positions)
+    page.set_input_files("#predict-file input[type=file]", tmp_path / "walker.npy")
+    page.wait_for_selector("#predict-status :text('one person, 4.0 s')")
+    for control, value in (("marker", "2.5"), ("seconds", "1.5")):
+        page.locator(f"#predict-{control} input[type=number]").fill(value)
+        page.locator(f"#predict-{control} input[type=number]").press("Tab")
+    page.click("button#predict-generate")
+    page.wait_for_selector("#predict-status .pd-done")
+
+    page.reload()
+    page.click("button[role=tab]:has-text('History')")
+    page.wait_for_selector("#history-list label:has-text('After walker.npy')")
+    page.click("#history-open")
+    page.wait_for_selector("#predict-status .pd-done:has-text('Made on')")
+    sample = "window.__pasdedeux.player.sample"
+    page.wait_for_function(
+        f"{sample}?.past_until === 75 && {sample}.frames === 120 && {sample}.ghost !== null"
+    )
+    for control, value in (("marker", "2.5"), ("seconds", "1.5")):
+        assert page.input_value(f"#predict-{control} input[type=number]") == value
+    page.wait_for_selector("#predict-curves .legendtext:has-text('What really followed')")
+    page.click("button#predict-generate")  # from what the history kept
+    page.wait_for_selector("#predict-status .pd-done:has-text('Done')")
 
 
 def test_a_forged_link_is_a_sentence(lab: str, open_page: Callable) -> None:

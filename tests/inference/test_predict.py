@@ -15,14 +15,23 @@ from webdemo import cli
 from webdemo.formats import read
 from webdemo.formats.one_person import write_clip
 from webdemo.inference import PredictRequest, PredictResult
-from webdemo.inference.engine import Engine
-from webdemo.inference.predict import above_floor, joined, mean_steps, with_bones_of, without_jump
+from webdemo.inference.engine import WEIGHTS, Engine
+from webdemo.inference.predict import (
+    MotionPredictor,
+    above_floor,
+    joined,
+    mean_steps,
+    with_bones_of,
+    without_jump,
+)
 from webdemo.inference.predict_feet import with_planted_feet
 from webdemo.inference.predict_frame import to_last_pose, to_world
+from webdemo.inference.predict_request import people_of
 from webdemo.motion import SMPL22, Clip, Duet, InputError
 from webdemo.motion.kinematics import forward_kinematics
 from webdemo.motion.skeleton import SBU15
 from webdemo.motion.transforms import heading, heading_matrix
+from webdemo.ui.examples import CLIPS
 
 
 def walker(seconds: float = 3.0, fps: float = 30.0, turn: float = 0.7) -> Clip:
@@ -179,6 +188,25 @@ def test_corrections_leave_good_motion_alone() -> None:
     assert mean_steps(np.concatenate([past[:, -1:], without_jump(past, future + 0.5, largest)], 1))[0, 0] <= (
         mean_steps(past).max() + 1e-9
     )
+
+
+def test_the_shipped_network_goes_on_moving_without_a_jump() -> None:
+    """Eq. 2.13 of Chopin's thesis, over all shipped examples and markers two tenths of a second apart."""
+    predictor = MotionPredictor(WEIGHTS / "motion-mlp")
+    own, real, errors, held = [], [], [], []
+    for path in sorted(CLIPS.glob("*.npz")):
+        people = people_of(read(path)).astype(np.float64)
+        for marker in range(30, people.shape[1] - 30, 6):
+            past, truth = people[:, :marker], people[:, marker : marker + 30]
+            made = predictor.predict(past, 30)
+            own.append(mean_steps(np.concatenate([past[:, -1:], made], axis=1)))
+            real.append(mean_steps(np.concatenate([past[:, -1:], truth], axis=1)))
+            assert np.all(own[-1][:, 0] <= mean_steps(past[:, -30:]).max(axis=1) + 1e-6)
+            errors.append(np.linalg.norm(made - truth, axis=-1).mean())
+            held.append(np.linalg.norm(past[:, -1:] - truth, axis=-1).mean())
+    share = np.concatenate(own).mean(0) / np.concatenate(real).mean(0)
+    assert len(errors) > 30 and np.all((share > 0.7) & (share < 1.3)), share
+    assert np.mean(errors) < 0.85 * np.mean(held)
 
 
 def test_feet_that_stand_stay_where_the_past_left_them() -> None:

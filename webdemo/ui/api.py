@@ -207,7 +207,7 @@ class PredictEndpoint(Endpoint):
                 gr.File(label="the motion of one person or two: .bvh, .npz or .npy, up to 50 MB"),
                 gr.Number(0, label="the second at which the past ends; 0 is the end of the file"),
                 gr.Number(PredictRequest.seconds, label="how much to predict in seconds, 0.5 to 4"),
-                gr.Textbox(PredictRequest.model, label="motion-mlp, or still for the last pose, held"),
+                gr.Textbox(PredictRequest.model, label="motion-mlp, mawgan, or still for the last pose, held"),
             ]
             self._publish(self.predict, "predict", inputs)
 
