@@ -96,7 +96,7 @@ class Settings:
 
 LEAN = {
     "fc": 1024, "width": 32, "critic_fc": 128, "critic_steps": 1, "learning_rate": 1e-3, "final_rate": 0.02,
-    "ema": 0.995, "position": 100.0, "linear": True, "length": True,
+    "ema": 0.995, "position": 100.0, "linear": True, "length": True, "steps": 1500,
 }  # fmt: skip
 """Settings of a run that a share of one CPU core finishes in an hour."""
 

@@ -110,7 +110,7 @@ def test_lean_settings_are_those_of_the_module_and_can_be_changed(corpus: Path, 
     assert mawgan.main(["--lean", "--no-length", *asked, *folders]) == 0
     training = load_predictor(tmp_path / "folder").training
     assert training is not None
-    changed = {"fc": 36, "length": False}
+    changed = {"fc": 36, "length": False, "steps": 1}
     assert {name: training[name] for name in mawgan.LEAN} == mawgan.LEAN | changed
 
 
