@@ -22,6 +22,7 @@ from webdemo.motion import Duet, InputError
 
 from .cancel import CancelToken
 from .generator import Clock, DuetGenerator
+from .interformer import InterFormerReactor
 from .live import LiveFrame
 from .predict import MotionPredictor
 from .predict_request import PredictRequest
@@ -29,10 +30,11 @@ from .reactor import Reactor
 from .requests import GenerateRequest, Progress, ReactRequest, Result
 
 WEIGHTS = Path(__file__).resolve().parents[2] / "models" / "weights"
-Runner = DuetGenerator | Reactor | MotionPredictor
+Runner = DuetGenerator | Reactor | InterFormerReactor | MotionPredictor
 GENERATORS: dict[str, Callable[[Path], Runner]] = {
     "intergen": DuetGenerator,
     "regennet": Reactor,
+    "interformer": InterFormerReactor,
     "motion-mlp": MotionPredictor,
     "mawgan": MotionPredictor,
     "still": lambda _: MotionPredictor(None),

@@ -86,9 +86,9 @@ class Reactor:
         yield clock.progress("finish")
         if not np.isfinite(made).all():
             raise InputError("The motion ran away to infinity: lower the guidance scale or take more steps.")
-        duets = [_duet(request, person) for person in made]
+        duets = [duet_of(request, person) for person in made]
         readouts = tuple(
-            compare(_duet(request, before), duet) for before, duet in zip(raw, duets, strict=True)
+            compare(duet_of(request, before), duet) for before, duet in zip(raw, duets, strict=True)
         )
         clock.lap("finish", now)
         yield Result(
@@ -211,6 +211,6 @@ def settle(off: Array, frames: Array) -> Array:
     return off.reshape(-1, 1, *off.shape[-2:]) * (share**2 * (3 - 2 * share))[:, None, None]
 
 
-def _duet(request: ReactRequest, person: Array) -> Duet:
+def duet_of(request: ReactRequest, person: Array) -> Duet:
     """The given person, exactly as given, and one who was made."""
     return Duet(request.actor, Clip(person, FPS, SMPL22, name=NAMES[1]), NAMES)

@@ -25,10 +25,14 @@ GUIDANCE = (0.0, 10.0)
 DAMPING = (0.0, 1.0)
 MAX_SEED = 2**32 - 1
 SAMPLERS = ("ddim", "dpm++")
-MODES: dict[str, tuple[str, ...]] = {"intergen": ("offline",), "regennet": ("offline", "online")}
+MODES: dict[str, tuple[str, ...]] = {
+    "intergen": ("offline",),
+    "regennet": ("offline", "online"),
+    "interformer": ("offline",),
+}
 """How each model can react: in sight of the whole given motion, or of its past alone."""
-DEFAULT_STEPS = {"intergen": 50, "regennet": 5}
-"""Denoising steps that each model is meant for."""
+DEFAULT_STEPS = {"intergen": 50, "regennet": 5, "interformer": 1}
+"""Denoising steps that each model is meant for; InterFormer has none."""
 
 
 def _number(name: str, value: Any, low: float, high: float, unit: str = "") -> float:
@@ -117,16 +121,17 @@ class GenerateRequest(SamplingRequest):
 
 @dataclass(frozen=True, kw_only=True)
 class ReactRequest(SamplingRequest):
-    """A second person for a given one: InterGen person to person (section 5.4), or ReGenNet.
+    """A second person for a given one: InterGen person to person (section 5.4), ReGenNet or InterFormer.
 
     ReGenNet samples with DDIM alone and has no regularisers: its ``damping`` is 0 whatever was given.
+    InterFormer denoises nothing and takes no words: it heeds ``seed``, ``samples`` and ``cleanup`` alone.
 
     Attributes:
         actor: the given person, 1 to 10 seconds on SMPL22's joints. At 30 fps the result holds these very
             positions; a clip of another rate is resampled first.
         prompt: what the two people do, in English; empty for a reaction without a stated intent.
         role: which of the two the given person is: "a" acts first, "b" reacts to a person who is made.
-            ReGenNet's given person always acts first.
+            ReGenNet's and InterFormer's given person always acts first.
         mode: "offline": the other person is made in sight of the whole motion; "online" (ReGenNet): each of
             their frames in sight of the given person's frames so far.
         start: (22, 3) metres, how the person who is made stands at the first frame, in the actor's world;
@@ -149,6 +154,8 @@ class ReactRequest(SamplingRequest):
             )
         if self.model == "regennet":
             self._check_regennet()
+        if self.model == "interformer":
+            self._check_interformer()
         object.__setattr__(self, "actor", check_actor(self.actor, SECONDS))
         if self.start is not None:
             self._check_start()
@@ -173,6 +180,12 @@ class ReactRequest(SamplingRequest):
             raise InputError(f"ReGenNet samples with ddim, not with {self.sampler!r:.40}: choose ddim.")
         _number("Damping threshold", self.damping, *DAMPING)
         object.__setattr__(self, "damping", 0.0)
+
+    def _check_interformer(self) -> None:
+        if self.role != "a":
+            raise InputError("InterFormer makes the one who reacts: choose role a, or the model intergen.")
+        for name, plain in {"steps": 1, "guidance": 1.0, "damping": 0.0, "sampler": "ddim"}.items():
+            object.__setattr__(self, name, plain)
 
     def to_dict(self) -> dict[str, Any]:
         """Everything but the motion, which is named by its SHA-256."""

@@ -18,6 +18,7 @@ METHODS = {
     "intergen": ("InterGen, person to person", "intergen", "offline"),
     "regennet": ("ReGenNet, offline", "regennet", "offline"),
     "regennet-online": ("ReGenNet, online", "regennet", "online"),
+    "interformer": ("InterFormer", "interformer", "offline"),
 }
 """By key: what the page calls a method, its model and its mode."""
 LIVE = "regennet-online"

@@ -1,0 +1,384 @@
+"""The trained InterFormer: spatial and temporal attention over 15 joints, at 15 frames a second.
+
+What it shares with :mod:`models.interformer` (Chopin's thesis, chapter 3): an encoder of the actor's
+motion, a causal decoder of the reactor's from a given first pose, whose layers attend over time and over
+the joints of a frame side by side; spatial self-attention masked to the skeleton's graph; the softmax of
+negative joint distances added to the spatial cross-attention after its softmax; noise on the encoder's
+input for variety.
+
+What is our own, since it learns from a few hundred clips: a joint has 8 numbers instead of 3 (a frame is
+120 wide); layers are pre-norm with plain dot products and a softmax a row; a frame's decoder input sees the
+encoder's output for the frame that it is to predict; and what is predicted is the step to the next pose,
+not the pose, so no weight is spent on standing where one stands.
+
+Keys and values of past frames are kept in :class:`ReactionDecoder`, so a frame costs one frame's pass.
+
+Shapes: B batch, T frames, J = 15 joints in the order of SBU's files, W numbers a joint, D = J · W.
+Positions are in metres in the actor's frame: the actor at the origin at the start, facing +Z, floor at 0.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import json
+from dataclasses import asdict, dataclass
+from pathlib import Path
+from typing import Any
+
+import torch
+import torch.nn.functional as F
+from torch import Tensor, nn
+
+from models.compact import WeightsFolder
+from models.errors import WeightsError
+from models.interformer import JOINTS, skeleton_mask
+from models.layers import FeedForward, sinusoids
+from webdemo.motion.layouts import find_layout
+
+FPS = 15.0
+JOINTS_15 = tuple(find_layout("sbu15").joints)
+"""The SMPL22 joint of each of SBU's 15."""
+ROOT = 2
+"""The torso, by which a body is told to be where it is."""
+_ACTOR_FEATURES, _REACTOR_FEATURES = 9, 12
+_LARGEST = 30.0
+"""Of a spatial score; its exponential is still finite."""
+
+
+@dataclass(frozen=True)
+class CompactInterFormerConfig:
+    """Sizes of a :class:`CompactInterFormer`.
+
+    joint_width: numbers a joint; spatial_heads and heads divide it and the whole frame's width.
+    window: frames of a sub-sequence; longer actors are answered window after window.
+    noise: width of the noise vector.
+    """
+
+    joint_width: int = 8
+    encoder_layers: int = 1
+    decoder_layers: int = 2
+    heads: int = 4
+    spatial_heads: int = 2
+    ff_size: int = 240
+    window: int = 48
+    noise: int = 16
+    dropout: float = 0.1
+
+    @property
+    def width(self) -> int:
+        return JOINTS * self.joint_width
+
+
+def _split(x: Tensor, heads: int) -> Tensor:
+    """(…, T, D) → (…, heads, T, D / heads)."""
+    return x.unflatten(-1, (heads, -1)).transpose(-2, -3)
+
+
+class TemporalAttention(nn.Module):
+    """Attention over frames, of the frames themselves or of another sequence."""
+
+    def __init__(self, config: CompactInterFormerConfig) -> None:
+        super().__init__()
+        d = config.width
+        self.heads = config.heads
+        self.query, self.memory, self.out = nn.Linear(d, d), nn.Linear(d, 2 * d), nn.Linear(d, d)
+
+    def remember(self, x: Tensor) -> tuple[Tensor, Tensor]:
+        """Keys and values of frames (B, T, D), each (B, heads, T, D / heads)."""
+        keys, values = self.memory(x).chunk(2, dim=-1)
+        return _split(keys, self.heads), _split(values, self.heads)
+
+    def forward(self, x: Tensor, keys: Tensor, values: Tensor, mask: Tensor | None) -> Tensor:
+        """x (B, T, D); mask (…, T, S) bool, true where seen → (B, T, D)."""
+        seen = F.scaled_dot_product_attention(_split(self.query(x), self.heads), keys, values, mask)
+        return self.out(seen.transpose(1, 2).flatten(2))
+
+
+class SpatialAttention(nn.Module):
+    """Attention over the joints of a frame, of the person's own or of the other's."""
+
+    def __init__(self, config: CompactInterFormerConfig) -> None:
+        super().__init__()
+        w = config.joint_width
+        self.width, self.heads = w, config.spatial_heads
+        self.scale = (w // config.spatial_heads) ** -0.5
+        self.query, self.memory = nn.Linear(w, w), nn.Linear(w, 2 * w)
+        self.out = nn.Linear(config.width, config.width)
+
+    def remember(self, x: Tensor) -> tuple[Tensor, Tensor]:
+        """Keys and values of frames (B, T, D), each (B, T, heads, J, w)."""
+        keys, values = self.memory(x.unflatten(-1, (JOINTS, self.width))).chunk(2, dim=-1)
+        return _split(keys, self.heads), _split(values, self.heads)
+
+    def forward(
+        self,
+        x: Tensor,
+        keys: Tensor,
+        values: Tensor,
+        *,
+        graph: Tensor | None = None,
+        distances: Tensor | None = None,
+    ) -> Tensor:
+        """x (B, T, D), graph (J, J) of 0 and 1, distances (B, T, 1, J, J) → (B, T, D)."""
+        query = _split(self.query(x.unflatten(-1, (JOINTS, self.width))), self.heads)
+        # A softmax written out: PyTorch's takes several times as long for rows as short as a skeleton.
+        weights = ((query * self.scale) @ keys.mT).clamp(max=_LARGEST).exp()
+        weights = weights if graph is None else weights * graph
+        weights = weights / weights.sum(-1, keepdim=True)
+        if distances is not None:
+            weights = weights + distances
+        return self.out((weights @ values).transpose(-2, -3).flatten(-3))
+
+
+class EncoderLayer(nn.Module):
+    def __init__(self, config: CompactInterFormerConfig) -> None:
+        super().__init__()
+        d = config.width
+        self.norm_1, self.norm_2 = nn.LayerNorm(d), nn.LayerNorm(d)
+        self.time, self.space = TemporalAttention(config), SpatialAttention(config)
+        self.ff = FeedForward(d, config.ff_size, dropout=config.dropout)
+        self.drop = nn.Dropout(config.dropout)
+
+    def forward(self, x: Tensor, mask: Tensor, graph: Tensor) -> Tensor:
+        y = self.norm_1(x)
+        both = self.time(y, *self.time.remember(y), mask) + self.space(
+            y, *self.space.remember(y), graph=graph
+        )
+        x = x + self.drop(both)
+        return x + self.drop(self.ff(self.norm_2(x)))
+
+
+@dataclass(frozen=True)
+class Memory:
+    """What a decoder layer keeps of the actor: keys and values over time, and of each frame's joints."""
+
+    time: tuple[Tensor, Tensor]
+    space: tuple[Tensor, Tensor]
+
+
+class DecoderLayer(nn.Module):
+    def __init__(self, config: CompactInterFormerConfig) -> None:
+        super().__init__()
+        d = config.width
+        self.norm_1, self.norm_2, self.norm_3 = (nn.LayerNorm(d) for _ in range(3))
+        self.time, self.other_time = TemporalAttention(config), TemporalAttention(config)
+        self.space, self.other_space = SpatialAttention(config), SpatialAttention(config)
+        self.ff = FeedForward(d, config.ff_size, dropout=config.dropout)
+        self.drop = nn.Dropout(config.dropout)
+
+    def remember(self, encoded: Tensor) -> Memory:
+        """What all frames need of the encoder's output (B, T, D); joints are those of the frame to come."""
+        return Memory(self.other_time.remember(encoded), self.other_space.remember(encoded[:, 1:]))
+
+    def forward(
+        self,
+        x: Tensor,
+        memory: Memory,
+        past: tuple[Tensor, Tensor] | None,
+        masks: tuple[Tensor | None, Tensor | None],
+        graph: Tensor,
+        distances: Tensor,
+    ) -> tuple[Tensor, tuple[Tensor, Tensor]]:
+        """x (B, T, D) after ``past`` keys and values → (B, T, D) and the keys and values to keep."""
+        y = self.norm_1(x)
+        kept = self.time.remember(y)
+        if past is not None:
+            kept = (torch.cat([past[0], kept[0]], dim=2), torch.cat([past[1], kept[1]], dim=2))
+        both = self.time(y, *kept, masks[0]) + self.space(y, *self.space.remember(y), graph=graph)
+        x = x + self.drop(both)
+        y = self.norm_2(x)
+        both = self.other_time(y, *memory.time, masks[1]) + self.other_space(
+            y, *memory.space, distances=distances
+        )
+        x = x + self.drop(both)
+        return x + self.drop(self.ff(self.norm_3(x))), kept
+
+
+def _actor_features(actor: Tensor) -> Tensor:
+    velocity = F.pad(actor.diff(dim=1), (0, 0, 0, 0, 1, 0))
+    return torch.cat([actor, actor - actor[:, :, ROOT, None], velocity], dim=-1)
+
+
+def _reactor_features(reactor: Tensor, previous: Tensor, actor: Tensor) -> Tensor:
+    own, other = reactor[:, :, ROOT, None], actor[:, :, ROOT, None]
+    return torch.cat([reactor, reactor - own, reactor - other, reactor - previous], dim=-1)
+
+
+class CompactInterFormer(nn.Module):
+    """Encoder, decoder, normalisers and the pose in which a reactor begins when none is given.
+
+    Buffers: ``actor_mean`` and ``actor_std`` (J, 9), ``reactor_mean`` and ``reactor_std`` (J, 12) of what is
+    read; ``step_std`` (J, 3), metres between two frames; ``stance`` (22, 3), a standing person facing +Z.
+    """
+
+    actor_mean: Tensor
+    actor_std: Tensor
+    reactor_mean: Tensor
+    reactor_std: Tensor
+    step_std: Tensor
+    stance: Tensor
+    graph: Tensor
+    positions: Tensor
+
+    def __init__(self, config: CompactInterFormerConfig) -> None:
+        super().__init__()
+        self.config = config
+        d, w = config.width, config.joint_width
+        for name, features in (("actor", _ACTOR_FEATURES), ("reactor", _REACTOR_FEATURES)):
+            self.register_buffer(f"{name}_mean", torch.zeros(JOINTS, features))
+            self.register_buffer(f"{name}_std", torch.ones(JOINTS, features))
+        self.register_buffer("step_std", torch.ones(JOINTS, 3))
+        self.register_buffer("stance", torch.zeros(22, 3))
+        self.register_buffer("graph", skeleton_mask().float(), persistent=False)
+        self.register_buffer("positions", sinusoids(config.window, d), persistent=False)
+        self.embed_actor, self.embed_reactor = nn.Linear(_ACTOR_FEATURES, w), nn.Linear(_REACTOR_FEATURES, w)
+        self.joints = nn.Parameter(0.5 * torch.randn(2, d))
+        self.embed_noise, self.align = nn.Linear(config.noise, d, bias=False), nn.Linear(d, d)
+        self.encoder = nn.ModuleList(EncoderLayer(config) for _ in range(config.encoder_layers))
+        self.decoder = nn.ModuleList(DecoderLayer(config) for _ in range(config.decoder_layers))
+        self.encoder_norm, self.out_norm = nn.LayerNorm(d), nn.LayerNorm(d)
+        self.out = nn.Linear(d, JOINTS * 3)
+        self.reach = nn.Parameter(torch.ones(()))
+
+    @staticmethod
+    def features(actor: Tensor, reactor: Tensor) -> tuple[Tensor, Tensor]:
+        """What is read of the actor (B, T, J, 3) and of the reactor's frames but the last, not normalised."""
+        previous = torch.cat([reactor[:, :1], reactor[:, :-1]], dim=1)
+        return _actor_features(actor), _reactor_features(reactor, previous, actor[:, 1:])
+
+    def encode(self, actor: Tensor, noise: Tensor, mask: Tensor) -> Tensor:
+        """The actor's whole motion.
+
+        Args:
+            actor: (B, T, J, 3) metres, T ≤ window.
+            noise: (B, noise) standard normal, another one for another reaction.
+            mask: (B, T) bool, false at padding.
+
+        Returns:
+            (B, T, D)
+        """
+        features = _actor_features(actor)
+        x = self.embed_actor((features - self.actor_mean) / self.actor_std).flatten(-2) + self.joints[0]
+        x = x + self.positions[: x.shape[1]] + self.embed_noise(noise)[:, None]
+        for layer in self.encoder:
+            x = layer(x, mask[:, None, None, :], self.graph)
+        return self.encoder_norm(x)
+
+    def embed(self, reactor: Tensor, previous: Tensor, actor: Tensor, encoded: Tensor, first: int) -> Tensor:
+        """The decoder's input at frames ``first`` …, each with the actor's frame to come: (B, T, D)."""
+        features = _reactor_features(reactor, previous, actor)
+        x = self.embed_reactor((features - self.reactor_mean) / self.reactor_std).flatten(-2)
+        x = x + (self.joints[1] + self.positions[first : first + x.shape[1]])
+        return x + self.align(encoded)
+
+    def distances(self, reactor: Tensor, actor: Tensor) -> Tensor:
+        """(B, T, 1, J, J) softmax over the table of −distance (eq. 3.7), times what was learned."""
+        table = -torch.cdist(reactor, actor, compute_mode="donot_use_mm_for_euclid_dist")
+        near = table.exp()
+        return (self.reach * near / near.sum((-1, -2), keepdim=True))[:, :, None]
+
+    def forward(self, actor: Tensor, reactor: Tensor, noise: Tensor, mask: Tensor) -> Tensor:
+        """The next pose after every frame of the reactor.
+
+        Args:
+            actor: (B, T, J, 3) metres.
+            reactor: (B, T − 1, J, 3) metres, all frames but the last.
+            noise: (B, noise).
+            mask: (B, T) bool, false at padding.
+
+        Returns:
+            (B, T − 1, J, 3) metres; frame t is the pose at t + 1.
+        """
+        return self.decode(actor, self.encode(actor, noise, mask), reactor, mask)
+
+    def decode(self, actor: Tensor, encoded: Tensor, reactor: Tensor, mask: Tensor) -> Tensor:
+        """:meth:`forward` from the encoder's output on; fewer frames of the reactor may be given."""
+        length = reactor.shape[1]
+        coming, previous = actor[:, 1 : length + 1], torch.cat([reactor[:, :1], reactor[:, :-1]], dim=1)
+        x = self.embed(reactor, previous, coming, encoded[:, 1 : length + 1], 0)
+        causal = torch.ones(length, length, dtype=torch.bool, device=x.device).tril()
+        distances = self.distances(reactor, coming)
+        for layer in self.decoder:
+            memory = layer.remember(encoded)
+            memory = Memory(memory.time, tuple(part[:, :length] for part in memory.space))
+            x, _ = layer(x, memory, None, (causal, mask[:, None, None, :]), self.graph, distances)
+        return reactor + self.step(x)
+
+    def step(self, x: Tensor) -> Tensor:
+        """(B, T, D) → (B, T, J, 3) metres to the next pose."""
+        return self.out(self.out_norm(x)).unflatten(-1, (JOINTS, 3)) * self.step_std
+
+    @torch.no_grad()
+    def react(self, actor: Tensor, first: Tensor, noise: Tensor, mask: Tensor | None = None) -> Tensor:
+        """The reaction (B, T, J, 3) to a window of the actor (B, T, J, 3), from a first pose (B, J, 3)."""
+        decoder = ReactionDecoder(self, actor, noise, mask)
+        made = [first]
+        for _ in range(actor.shape[1] - 1):
+            made.append(decoder.step(made[-1]))
+        return torch.stack(made, dim=1)
+
+
+class ReactionDecoder:
+    """The reaction to one window, a frame at a time; keys and values of past frames are kept.
+
+    Args:
+        model: in eval mode.
+        actor: (B, T, J, 3) metres.
+        noise: (B, noise).
+        mask: (B, T) bool, false at padding.
+    """
+
+    def __init__(
+        self, model: CompactInterFormer, actor: Tensor, noise: Tensor, mask: Tensor | None = None
+    ) -> None:
+        self.model, self.actor, self.length = model, actor, 0
+        whole = mask is None
+        mask = torch.ones(actor.shape[:2], dtype=torch.bool) if mask is None else mask
+        self.encoded = model.encode(actor, noise, mask)
+        self.mask = None if whole else mask[:, None, None, :]
+        self.memories = [layer.remember(self.encoded) for layer in model.decoder]
+        self.past: list[tuple[Tensor, Tensor] | None] = [None] * len(self.memories)
+        self.previous: Tensor | None = None
+
+    @torch.no_grad()
+    def step(self, pose: Tensor) -> Tensor:
+        """The pose (B, J, 3) after the next one given, (B, J, 3)."""
+        model, i = self.model, self.length
+        previous = pose if self.previous is None else self.previous
+        coming, reactor = self.actor[:, i + 1 : i + 2], pose[:, None]
+        x = model.embed(reactor, previous[:, None], coming, self.encoded[:, i + 1 : i + 2], i)
+        distances = model.distances(reactor, coming)
+        for number, (layer, memory) in enumerate(zip(model.decoder, self.memories, strict=True)):
+            here = Memory(memory.time, tuple(part[:, i : i + 1] for part in memory.space))
+            x, self.past[number] = layer(
+                x, here, self.past[number], (None, self.mask), model.graph, distances
+            )
+        self.previous, self.length = pose, i + 1
+        return pose + model.step(x)[:, 0]
+
+
+def load_folder(folder: Path) -> tuple[CompactInterFormer, WeightsFolder]:
+    """The network of a weights folder in float32, eval mode, and the folder.
+
+    Raises WeightsError where a file is missing, altered or of other sizes.
+    """
+    source = WeightsFolder(folder)
+    try:
+        model = CompactInterFormer(CompactInterFormerConfig(**source.meta["model"]))
+        weights = source.tensors("model.safetensors")
+        model.load_state_dict({name: tensor.float() for name, tensor in weights.items()})
+    except (RuntimeError, TypeError, KeyError) as error:
+        raise WeightsError(f"The weights in {folder.name} do not fit their config: restore them.") from error
+    return model.eval().requires_grad_(False), source
+
+
+def save_folder(folder: Path, model: CompactInterFormer, **meta: Any) -> None:
+    """Writes ``model.safetensors`` in float16, then ``config.json`` with its SHA-256."""
+    from safetensors.torch import save
+
+    folder.mkdir(parents=True, exist_ok=True)
+    data = save({name: v.detach().cpu().half().contiguous() for name, v in model.state_dict().items()})
+    (folder / "model.safetensors").write_bytes(data)
+    files = {"model.safetensors": hashlib.sha256(data).hexdigest()}
+    config = {"model": asdict(model.config), "files": files} | meta
+    (folder / "config.json").write_text(json.dumps(config, indent=1) + "\n")

@@ -1,0 +1,125 @@
+"""InterFormer in the engine: a person in, another one out, whole and on constant bones."""
+
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+import torch
+
+from models.compact_interformer import CompactInterFormer, CompactInterFormerConfig, save_folder
+from models.errors import WeightsError
+from webdemo.inference import Cancelled, CancelToken, GenerateRequest, Progress, ReactRequest, Result
+from webdemo.inference.engine import Engine
+from webdemo.inference.interformer import on_smpl22
+from webdemo.motion import SMPL22, Clip, InputError
+from webdemo.motion.kinematics import forward_kinematics
+from webdemo.motion.transforms import heading_matrix
+
+
+def walker(frames: int = 90) -> Clip:
+    """A person off the origin, turned, who walks a little and lifts an arm."""
+    rotations = np.tile(np.eye(3), (frames, 22, 1, 1))
+    rotations[:, 0] = heading_matrix(np.radians(50))
+    lift = np.sin(np.linspace(0, np.pi, frames))
+    c, s = np.cos(lift), np.sin(lift)
+    shoulder = rotations[:, SMPL22.index("right_shoulder")]
+    shoulder[:, 0, 0], shoulder[:, 0, 1], shoulder[:, 1, 0], shoulder[:, 1, 1] = c, s, -s, c
+    root = np.tile([1.0, 0.9562, -0.5], (frames, 1))
+    root[:, 2] += np.linspace(0, 0.4, frames)
+    return Clip(forward_kinematics(rotations, root), 30.0, name="walker")
+
+
+@pytest.fixture(scope="module")
+def engine(tmp_path_factory: pytest.TempPathFactory) -> Engine:
+    torch.manual_seed(0)
+    model = CompactInterFormer(CompactInterFormerConfig(joint_width=4, ff_size=16, window=12))
+    model.step_std.fill_(0.01)
+    model.stance.copy_(torch.tensor(SMPL22.rest_positions()).float() + torch.tensor([0.0, 0.98, 0.0]))
+    folder = tmp_path_factory.mktemp("weights")
+    save_folder(folder / "interformer", model, card={"summary": "a tiny untrained model"})
+    return Engine(folder)
+
+
+REQUEST = ReactRequest(actor=walker(), model="interformer", seed=4)
+
+
+def react(engine: Engine, **changed: object) -> Result:
+    return next(e for e in engine.run(replace(REQUEST, **changed)) if isinstance(e, Result))
+
+
+def test_the_actor_stays_and_the_reactor_has_constant_bones_without_popping(engine: Engine) -> None:
+    duet = react(engine).duets[0]
+    assert duet.roles == ("actor", "reactor")
+    np.testing.assert_array_equal(duet.a.positions, REQUEST.actor.positions)
+    reactor = duet.b.positions
+    assert reactor.shape == (90, 22, 3) and np.isfinite(reactor).all()
+    parents, children = (list(side) for side in zip(*SMPL22.bones, strict=True))
+    lengths = np.linalg.norm(reactor[:, children] - reactor[:, parents], axis=-1)
+    assert np.ptp(lengths, axis=0).max() < 1e-4
+    # Windows of 12 frames at 15 a second end within the motion, where nothing may be seen of it.
+    assert np.abs(np.diff(reactor, axis=0)).max() < 0.1
+
+
+def test_without_a_start_somebody_stands_before_the_actor_out_of_their_way(engine: Engine) -> None:
+    duet = react(engine).duets[0]
+    ahead = heading_matrix(np.radians(50)) @ np.array([0.0, 0.0, 1.0])
+    way = (duet.a.positions[:, 0] - duet.a.positions[0, 0]) @ ahead
+    gap = (duet.b.positions[0, 0] - duet.a.positions[0, 0]) @ ahead
+    assert gap > max(1.0, way.max() + 0.5)
+
+
+def test_a_given_start_is_where_the_reaction_begins(engine: Engine) -> None:
+    start = react(engine).duets[0].b.positions[0].astype(float) + np.array([0.2, 0.0, 0.1])
+    found = react(engine, start=start, cleanup=False).duets[0].b.positions[0]
+    np.testing.assert_allclose(found, start, atol=1e-4)
+
+
+def test_a_seed_repeats_and_noise_makes_another_reaction(engine: Engine) -> None:
+    one, again = react(engine, samples=2), react(engine)
+    np.testing.assert_allclose(one.duets[0].b.positions, again.duets[0].b.positions, atol=1e-5)
+    assert np.abs(one.duets[1].b.positions - one.duets[0].b.positions).max() > 1e-3
+    assert np.abs(react(engine, seed=5).duets[0].b.positions - again.duets[0].b.positions).max() > 1e-3
+
+
+def test_where_the_scene_stands_in_the_world_does_not_matter(engine: Engine) -> None:
+    turned = heading_matrix(np.radians(75))
+    actor = Clip(REQUEST.actor.positions @ turned.T + np.array([3.0, 0.0, -2.0]), 30.0)
+    moved = react(engine, actor=actor, cleanup=False).duets[0].b.positions
+    expected = react(engine, cleanup=False).duets[0].b.positions @ turned.T + np.array([3.0, 0.0, -2.0])
+    np.testing.assert_allclose(moved, expected, atol=2e-3)
+
+
+def test_fifteen_joints_come_back_as_the_twenty_two_they_were_taken_from() -> None:
+    from models.compact_interformer import JOINTS_15
+
+    body = REQUEST.actor.positions[::2][:, list(JOINTS_15)].astype(float)
+    found = on_smpl22(body, 90)
+    assert np.linalg.norm(found - REQUEST.actor.positions, axis=-1).mean() < 0.01
+
+
+def test_words_are_told_to_have_been_left_out(engine: Engine) -> None:
+    assert "no words" in react(engine, prompt="They wave.").notes[0]
+    assert react(engine).notes == ()
+
+
+def test_progress_counts_frames_and_can_be_stopped(engine: Engine) -> None:
+    token = CancelToken()
+    steps = []
+    with pytest.raises(Cancelled):
+        for event in engine.run(REQUEST, token):
+            if isinstance(event, Progress) and event.stage == "sample":
+                steps.append(event.step)
+                token.cancel()
+    assert steps == [1]
+
+
+def test_what_it_cannot_do_is_said(engine: Engine, tmp_path: Path) -> None:
+    with pytest.raises(InputError, match="choose role a"):
+        replace(REQUEST, role="b")
+    with pytest.raises(InputError, match="choose offline"):
+        replace(REQUEST, mode="online")
+    with pytest.raises(InputError, match="give it an actor"):
+        list(engine.run(GenerateRequest(prompt="Two people wave.", model="interformer")))
+    with pytest.raises(WeightsError):
+        list(Engine(tmp_path).run(REQUEST))
