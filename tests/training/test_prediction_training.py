@@ -15,8 +15,10 @@ from models.motion_mlp import MotionMLP, MotionMLPConfig
 from models.predictors import load_predictor, save_predictor
 from training import mawgan
 from training.prediction import ablation, mlp, product
+from training.prediction.rollout import ADVANCE, with_own_past
 from training.prediction.trainer import PredictionTrainer
 from training.prediction.windows import CorpusWindows, open_windows
+from webdemo.inference.predict_frame import to_last_pose
 from webdemo.motion import SMPL22, InputError
 from webdemo.motion.transforms import heading
 
@@ -112,6 +114,41 @@ def test_lean_settings_are_those_of_the_module_and_can_be_changed(corpus: Path, 
     assert training is not None
     changed = {"fc": 36, "length": False, "steps": 1}
     assert {name: training[name] for name in mawgan.LEAN} == mawgan.LEAN | changed
+
+
+class Extrapolates(torch.nn.Module):
+    """Goes on as fast as at the end of the past, in its direction."""
+
+    def forward(self, past: torch.Tensor) -> torch.Tensor:
+        steps = torch.arange(1, 26)[:, None, None].to(past)
+        return past[:, -1:] + steps * (past[:, -1:] - past[:, -2:-1])
+
+
+@pytest.mark.parametrize("passes", [1, 2])
+def test_pasts_of_its_own_are_the_recorded_ones_where_the_network_is_right(passes: int) -> None:
+    along = np.array([[0.02, 0.0, 0.01], [0.0, 0.0, -0.03]])[:, None, None]
+    motion = SMPL22.rest_positions() + along * np.arange(100)[:, None, None]
+    windows = torch.from_numpy(to_last_pose(motion, 9)[0]).float()
+    made = with_own_past(Extrapolates(), windows, 10, 25, passes)
+    start = ADVANCE * passes
+    expected = to_last_pose(windows[:, start : start + 35].numpy(), 9)[0]
+    assert made.shape == (2, 35, 22, 3) and np.allclose(made.numpy(), expected, atol=1e-4)
+    # A network that strays is not told where it should have been, but how to go on from where it is.
+    still = with_own_past(lambda past: past[:, -1:].repeat(1, 25, 1, 1), windows, 10, 25, passes)
+    assert np.allclose(still[:, 10:].numpy(), expected[:, 10:], atol=1e-4)
+    assert np.abs(np.diff(still[:, :10].numpy(), axis=1)).max() < 1e-4
+
+
+def test_a_trained_network_learns_to_go_on_from_its_own(corpus: Path, tmp_path: Path) -> None:
+    sizes = ["--past=10", "--future=20", "--past-coefficients=6", "--future-coefficients=4", "--width=16",
+             "--blocks=1", "--fit=64", "--batch=4", "--steps=2"]  # fmt: skip
+    run = ["--data", str(corpus), "--out", str(tmp_path / "first"), "--export", str(tmp_path / "folder")]
+    assert mlp.main([*sizes, *run]) == 0
+    asked = [*sizes, "--init", str(tmp_path / "folder"), "--own-pasts", "1", "--data", str(corpus)]
+    assert mlp.main([*asked, "--out", str(tmp_path / "second"), "--export", str(tmp_path / "longer")]) == 0
+    training = load_predictor(tmp_path / "longer").training
+    assert training is not None and training["own_pasts"] == 1
+    assert mlp.main([*asked, "--out", str(tmp_path / "third"), "--own-pasts", "-1"]) == 2
 
 
 def test_the_page_s_predictions_are_scored(tmp_path: Path) -> None:

@@ -12,11 +12,13 @@ import math
 from dataclasses import asdict, dataclass, fields
 from pathlib import Path
 
+import numpy as np
 import torch
 from torch import Tensor, nn
 
 from models.motion_mlp import MotionMLP, MotionMLPConfig
-from models.predictors import save_predictor
+from models.predictors import load_predictor, save_predictor
+from training.prediction.rollout import ADVANCE, with_own_past
 from training.prediction.trainer import PredictionTrainer
 from training.prediction.windows import open_windows
 from training.shell import exit_code
@@ -25,9 +27,16 @@ from webdemo.motion import InputError
 
 @dataclass(frozen=True)
 class Settings:
-    """What a run depends on; a checkpoint of other settings is refused."""
+    """What a run depends on; a checkpoint of other settings is refused.
+
+    ``init`` names the folder of a trained predictor that the run begins with. ``own_pasts`` is how often the
+    network may have been applied to what it gave in the pasts that it sees (of the corpus): 0 to so many
+    times, drawn for each step.
+    """
 
     windows: str = "corpus"
+    init: str = ""
+    own_pasts: int = 0
     past: int = 30
     future: int = 30
     past_coefficients: int = 12
@@ -52,6 +61,16 @@ class Settings:
         for name in ("past", "future", "width", "blocks", "batch", "warmup"):
             if getattr(self, name) < 1:
                 raise InputError(f"{name} is {getattr(self, name)}: give 1 or more.")
+        if self.own_pasts < 0 or (self.own_pasts and (self.windows != "corpus" or self.future < ADVANCE)):
+            raise InputError(
+                f"own_pasts is {self.own_pasts}: give 0, or more with the windows of the corpus and a future "
+                f"of {ADVANCE} frames or more."
+            )
+
+    @property
+    def ahead(self) -> int:
+        """Frames of a window behind its past."""
+        return self.future + ADVANCE * self.own_pasts
 
 
 def lengths(vectors: Tensor) -> Tensor:
@@ -74,8 +93,11 @@ class Trainer(PredictionTrainer):
         )  # fmt: skip
         self.model, self.ema = (MotionMLP(config).to(self.device) for _ in range(2))
         self.ema.eval()
-        if not self.checkpoint.exists():
-            self.model.fit_linear(self.windows.batch(s.fit, (s.seed, 0, 1)).to(self.device))
+        if s.init:
+            self.model.load_state_dict(load_predictor(Path(s.init)).network.state_dict())
+        elif not self.checkpoint.exists():
+            sample = self.windows.batch(s.fit, (s.seed, 0, 1))[:, : s.past + s.future]
+            self.model.fit_linear(sample.to(self.device))
         self.ema.load_state_dict(self.model.state_dict())
         self.ema.requires_grad_(False)
         self.optimizer = torch.optim.AdamW(
@@ -111,9 +133,15 @@ class Trainer(PredictionTrainer):
             "bone": s.bone_weight * (bones[0] - bones[1]).abs().mean(),
         }
 
+    def window(self) -> Tensor:
+        """This step's windows (B, past + future, J, 3), some of whose pasts are the network's own."""
+        s, windows = self.settings, self.batch()
+        passes = int(np.random.default_rng((s.seed, self.step, 2)).integers(s.own_pasts + 1))
+        return with_own_past(self.ema, windows, s.past, s.future, passes) if passes else windows
+
     def train_step(self) -> dict[str, float]:
         torch.manual_seed(self.settings.seed + self.step)  # dropout
-        terms = self.terms(self.batch())
+        terms = self.terms(self.window()[:, : self.settings.past + self.settings.future])
         total = torch.stack(list(terms.values())).sum()
         for group in self.optimizer.param_groups:
             group["lr"] = self.learning_rate()
@@ -151,7 +179,8 @@ def add_run_options(parser: argparse.ArgumentParser, settings: type) -> None:
 def train(trainer: type, settings: type, options: argparse.Namespace) -> None:
     """Runs what :func:`add_run_options` understood."""
     chosen = settings(**{f.name: getattr(options, f.name) for f in fields(settings)})
-    windows = open_windows(chosen.windows, options.data, chosen.past, chosen.future)
+    ahead = getattr(chosen, "ahead", chosen.future)
+    windows = open_windows(chosen.windows, options.data, chosen.past, ahead)
     run = trainer(windows, chosen, options.out, device=options.device)
     run.run_logged(minutes=options.minutes)
     if options.export:
