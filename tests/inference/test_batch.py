@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 import torch
 
-from webdemo.inference import Engine, GenerateRequest, Result
+from webdemo.inference import Engine, GenerateRequest, Result, damping
 from webdemo.inference.batch import Meeting, _Question, answer_together, run_batch
 from webdemo.inference.cancel import CancelToken
 from webdemo.inference.requests import Cancelled, Progress, ReactRequest
@@ -57,6 +57,27 @@ def test_one_pass_answers_all(engine: Engine) -> None:
     finally:
         handle.remove()
     assert counted == [6, 6, 6]  # three requests, both halves of the guidance
+
+
+def test_damping_is_shared_by_those_of_one_length(engine: Engine, monkeypatch: pytest.MonkeyPatch) -> None:
+    counted: list[int] = []
+
+    def energy(positions: torch.Tensor, *rest: object) -> torch.Tensor:
+        counted.append(len(positions))
+        return whole(positions, *rest)
+
+    whole = damping.energy
+    monkeypatch.setattr(damping, "energy", energy)
+    list(engine.run(request(damping=0.7)))
+    alone = len(counted)
+    counted.clear()
+    # One that is longer is corrected by itself, one without damping waits, a given person stays as they are.
+    others = [request(seed=2, samples=2), request(seed=3, seconds=1.2), request(seed=4, damping=0.0)]
+    given = ReactRequest(actor=standing(30), steps=4, seed=5)
+    found = ends(engine, [request(damping=0.7), *others, given])
+    assert all(isinstance(end, Result) for end in found.values())
+    assert sorted(counted) == [1] * alone + [4] * alone
+    np.testing.assert_array_equal(found[4].duets[0].a.positions, given.actor.positions)
 
 
 def test_a_cancelled_request_leaves_the_others(engine: Engine) -> None:

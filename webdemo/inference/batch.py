@@ -1,9 +1,10 @@
 """Several requests in one pass through the network, each otherwise run as if it were alone.
 
 Every request runs in a thread of its own, through the engine as always, until it asks the denoiser for a
-prediction. There it waits for the others; then one pass answers all of them. What a request is told differs
-from what it would be told alone by rounding only: its noise depends on its seed, shorter motions are padded
-and the padding is not attended to, and everything but the pass is its own.
+prediction, or the damping for a correction. There it waits for the others; then one pass answers all of them.
+What a request is told differs from what it would be told alone by rounding only: its noise depends on its
+seed, shorter motions are padded and the padding is not attended to, the damping's energy is a sum over
+motions, and everything else is its own.
 """
 
 from __future__ import annotations
@@ -13,6 +14,7 @@ import queue
 import threading
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
+from functools import partial
 from typing import Any
 
 import torch
@@ -22,6 +24,7 @@ from torch.nn.functional import pad
 from models.intergen import InterGenDenoiser
 
 from .cancel import CancelToken
+from .damping import Damping, correct_together
 from .engine import Engine
 from .generator import DuetGenerator
 from .requests import GenerateRequest, Progress, ReactRequest, Result
@@ -70,6 +73,7 @@ def _lane(engine: Engine, generator: DuetGenerator, meeting: Meeting, lane: int)
     """The engine with a generator whose denoiser meets the others'."""
     own = copy.copy(generator)
     own.model = _MeetingModel(generator.model, _MeetingDenoiser(meeting, lane))  # type: ignore[assignment]
+    own.damp = partial(meeting.correct, lane)  # type: ignore[method-assign]
     alone = copy.copy(engine)
     alone._generators = {generator.name: own}
     return alone
@@ -109,6 +113,15 @@ class _Question:
     scale: float
 
 
+@dataclass(frozen=True)
+class _Correction:
+    """What one lane asks of the damping."""
+
+    damping: Damping
+    x0: Tensor
+    timestep: int
+
+
 class Meeting:
     """Where lanes wait for each other's questions; the last one to come answers all in one pass.
 
@@ -122,12 +135,24 @@ class Meeting:
         self.passes: list[int] = []
         """How many lanes each pass so far has answered."""
         self._here = set(range(lanes))
-        self._questions: dict[int, _Question] = {}
+        self._questions: dict[int, _Question | _Correction] = {}
         self._answers: dict[int, Tensor | Exception] = {}
         self._change = threading.Condition()
 
     def predict(self, lane: int, question: _Question) -> Tensor:
         """The lane's prediction, when all who are still here have asked; raises what the pass raised."""
+        return self._ask(lane, question)
+
+    def correct(self, lane: int, damping: Damping, x0: Tensor, timestep: int) -> Tensor:
+        """The lane's prediction corrected, when all who are still here ask for something.
+
+        Who has no correction to make asks for the next prediction already, and waits for the others there.
+        """
+        if not damping.due(timestep):
+            return x0
+        return self._ask(lane, _Correction(damping, x0, timestep))
+
+    def _ask(self, lane: int, question: _Question | _Correction) -> Tensor:
         with self._change:
             self._questions[lane] = question
             self._answer_if_all_asked()
@@ -147,15 +172,32 @@ class Meeting:
     def _answer_if_all_asked(self) -> None:
         if not self._questions or self._questions.keys() != self._here:
             return
-        questions, self._questions = self._questions, {}
-        self.passes.append(len(questions))
+        corrections = {lane: q for lane, q in self._questions.items() if isinstance(q, _Correction)}
+        predictions = {lane: q for lane, q in self._questions.items() if isinstance(q, _Question)}
+        due = list(corrections or predictions)
+        for lane in due:
+            del self._questions[lane]
         try:
-            with torch.no_grad():  # the thread that answers may be one that just left, with gradients on
-                answers = answer_together(self.denoiser, list(questions.values()))
-            self._answers = dict(zip(questions, answers, strict=True))
+            if corrections:
+                answers = correct_all(list(corrections.values()))
+            else:
+                self.passes.append(len(predictions))
+                with torch.no_grad():  # the thread that answers may be one that just left, with gradients on
+                    answers = answer_together(self.denoiser, list(predictions.values()))
+            self._answers.update(zip(due, answers, strict=True))
         except Exception as error:
-            self._answers = dict.fromkeys(questions, error)
+            self._answers.update(dict.fromkeys(due, error))
         self._change.notify_all()
+
+
+def correct_all(corrections: Sequence[_Correction]) -> list[Tensor]:
+    """All corrections, those at one timestep together."""
+    answers: dict[int, Tensor] = {}
+    for timestep in {c.timestep for c in corrections}:
+        at = [i for i, c in enumerate(corrections) if c.timestep == timestep]
+        made = correct_together([(corrections[i].damping, corrections[i].x0) for i in at], timestep)
+        answers.update(zip(at, made, strict=True))
+    return [answers[i] for i in range(len(corrections))]
 
 
 def answer_together(denoiser: InterGenDenoiser, questions: Sequence[_Question]) -> list[Tensor]:

@@ -197,24 +197,57 @@ class Damping:
         self.frozen, self.touches = frozen, touches
         self.weights = weights or DampingWeights()
 
+    def due(self, timestep: int) -> bool:
+        """Whether anything is corrected at a timestep."""
+        return not self.off and timestep <= self.last
+
     def __call__(self, x0: Tensor, timestep: int) -> Tensor:
         """The corrected prediction, (B, tokens, 2·token_features) as given; the same object if not due."""
-        if self.off or timestep > self.last:
-            return x0
-        scale = self.model.std.repeat(self.model.layout.knots_per_token * 2)
-        steps = self.final_steps if timestep == self.final_timestep else self.gradient_steps
-        for _ in range(steps):
-            with torch.enable_grad():
-                x = x0.detach().requires_grad_(True)
-                positions, contacts = self.model.positions(x)
-                positions, contacts = positions[:, :, : self.frames], contacts[:, :, : self.frames]
-                total = energy(positions, contacts, self.weights).sum()
-                if any(self.touches):
-                    total = total + asked_energy(positions, self.touches, self.weights).sum()
-                (gradient,) = torch.autograd.grad(total, x)
-            # The step is taken on control points in metres: d/dcontrol = d/dx / std.
-            move = (self.step_size * gradient / scale).clamp(-self.largest, self.largest)
-            if self.frozen is not None:
-                move = move.masked_fill(self.frozen, 0.0)
-            x0 = x0.detach() - move / scale
-        return x0
+        return correct_together([(self, x0)], timestep)[0] if self.due(timestep) else x0
+
+
+def correct_together(predictions: Sequence[tuple[Damping, Tensor]], timestep: int) -> list[Tensor]:
+    """What dampings that are due make of their predictions; those of one length are corrected in one pass.
+
+    The energy is a sum over motions, so each moves as if it were alone.
+
+    Args:
+        predictions: each a damping and its (B, tokens, 2·token_features).
+    """
+    groups: dict[tuple[object, ...], list[int]] = {}
+    for i, (damping, x0) in enumerate(predictions):
+        kind = (x0.shape[1:], damping.frames, damping.gradient_steps, damping.final_steps,
+                damping.final_timestep, damping.step_size, damping.largest, damping.weights)  # fmt: skip
+        groups.setdefault(kind, []).append(i)
+    corrected: dict[int, Tensor] = {}
+    for group in groups.values():
+        made = _descend([predictions[i] for i in group], timestep)
+        corrected.update(zip(group, made, strict=True))
+    return [corrected[i] for i in range(len(predictions))]
+
+
+def _descend(predictions: Sequence[tuple[Damping, Tensor]], timestep: int) -> Sequence[Tensor]:
+    """Gradient steps on predictions of one shape by dampings that differ in what is frozen or touched."""
+    first, sizes = predictions[0][0], [len(x0) for _, x0 in predictions]
+    x0 = torch.cat([x0 for _, x0 in predictions])
+    touches = [touch for d, x in predictions for touch in (d.touches or ((),) * len(x))]
+    frozen = None
+    if any(d.frozen is not None for d, _ in predictions):
+        free = torch.zeros(x0.shape[1:], dtype=torch.bool)
+        frozen = torch.cat([(free if d.frozen is None else d.frozen).expand_as(x) for d, x in predictions])
+    scale = first.model.std.repeat(first.model.layout.knots_per_token * 2)
+    for _ in range(first.final_steps if timestep == first.final_timestep else first.gradient_steps):
+        with torch.enable_grad():
+            x = x0.detach().requires_grad_(True)
+            positions, contacts = first.model.positions(x)
+            positions, contacts = positions[:, :, : first.frames], contacts[:, :, : first.frames]
+            total = energy(positions, contacts, first.weights).sum()
+            if any(touches):
+                total = total + asked_energy(positions, touches, first.weights).sum()
+            (gradient,) = torch.autograd.grad(total, x)
+        # The step is taken on control points in metres: d/dcontrol = d/dx / std.
+        move = (first.step_size * gradient / scale).clamp(-first.largest, first.largest)
+        if frozen is not None:
+            move = move.masked_fill(frozen, 0.0)
+        x0 = x0.detach() - move / scale
+    return x0.split(sizes)

@@ -87,6 +87,10 @@ class DuetGenerator:
             f"The nearest thing it knows: “{near[0][1]}”.",
         )
 
+    def damp(self, damping: Damping, x0: Tensor, timestep: int) -> Tensor:
+        """A prediction corrected by its damping; requests that share passes do this together, too."""
+        return damping(x0, timestep)
+
     def run(
         self, request: GenerateRequest | ReactRequest, cancel: CancelToken, clock: Clock
     ) -> Iterator[Progress | Result]:
@@ -123,7 +127,7 @@ class DuetGenerator:
         def correct(x0: Tensor, timestep: int) -> Tensor:
             nonlocal uncorrected
             uncorrected = x0 if given is None else given.hold(x0)
-            return damping(uncorrected, timestep)
+            return self.damp(damping, uncorrected, timestep)
 
         def predict(x: Tensor, t: Tensor) -> Tensor:
             x = x if given is None else given.hold(x)
