@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import errno
+import os
 import time
+from collections.abc import Iterator
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -17,7 +19,7 @@ from webdemo.inference import Engine
 from webdemo.inference.predict_request import PredictRequest, PredictResult, people_of
 from webdemo.inference.requests import GenerateRequest, ReactRequest, Result
 from webdemo.motion import InputError
-from webdemo.server.database import Database, Link, Run
+from webdemo.server.database import Database, Link, Run, Table
 from webdemo.server.estimates import units
 from webdemo.server.history import DAY, History
 from webdemo.server.recorder import title_of
@@ -28,9 +30,16 @@ from .lab import stub_module
 ME, OTHER = "user ada", "user eve"
 
 
-@pytest.fixture
-def history(tmp_path: Path) -> History:
-    return History(Database(f"sqlite:///{tmp_path / 'h.db'}"), tmp_path / "motions", node="n")
+@pytest.fixture(params=["sqlite", "named"])
+def history(request: pytest.FixtureRequest, tmp_path: Path) -> Iterator[History]:
+    """On SQLite, and on the empty database whose URL PASDEDEUX_TEST_DATABASE gives."""
+    url = f"sqlite:///{tmp_path / 'h.db'}"
+    if request.param == "named" and not (url := os.environ.get("PASDEDEUX_TEST_DATABASE", "")):
+        pytest.skip("PASDEDEUX_TEST_DATABASE names no other database")
+    database = Database(url)
+    yield History(database, tmp_path / "motions", node="n")
+    Table.metadata.drop_all(database.engine)
+    database.close()
 
 
 def made(request: Any) -> Result:
