@@ -19,6 +19,7 @@ from .rigs import RIGS, bvh_text
 from .test_kinect import sbu_text, skeleton_text
 
 SECONDS = 2.0
+"""The most that a file of these sizes may keep the processor."""
 BODIES = np.random.default_rng(0).normal(size=(2, 4, 25, 3)).round(3)
 POSITIONS, ROTATIONS = marching(6)
 SKELETONS_15 = POSITIONS[:, [15, 12, 6, 16, 18, 20, 17, 19, 21, 1, 4, 7, 2, 5, 8]]
@@ -57,7 +58,7 @@ VALID = {
 }
 PIECES = [
     b"{", b"}", b"nan ", b"inf", b"1e999 ", b"-", b",", b"\0", b"\xff\xfe", b"999999999", b"\n", b"\r",
-    b" " * 99, b"ROOT x\n{\n", b"JOINT x\n", b"End Site", b"CHANNELS 6 ", b"MOTION\n", b"Frames: 1000000000\n",
+    b"   ", b"ROOT x\n{\n", b"JOINT x\n", b"End Site", b"CHANNELS 6 ", b"MOTION\n", b"Frames: 1000000000\n",
     b"PK\x05\x06", b"PK\x01\x02", b"\x93NUMPY", "é\u2028".encode(), b"(9999999, 22, 3)",
 ]  # fmt: skip
 EDITS = st.lists(
@@ -84,15 +85,17 @@ PATIENT = settings(
 
 def check(data: bytes, name: str, choices: ImportChoices | None = None) -> bool:
     """Whether it was read; fails where it takes long or anything but an InputError of one line is raised."""
-    began = time.perf_counter()
+    began = time.process_time()  # of this process alone, whatever else the machine does
     try:
         found = import_motion(data, name=name, choices=choices)
+        if found.people[0].num_frames < 30:
+            assert np.isfinite(found.motion.positions).all()
     except InputError as error:
         message = str(error)
         assert message and "\n" not in message and len(message) < 400
         return False
     finally:
-        assert time.perf_counter() - began < SECONDS
+        assert time.process_time() - began < SECONDS
     assert all(isinstance(person, Clip) and np.isfinite(person.positions).all() for person in found.people)
     return True
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import contextlib
 import errno
+import math
 import os
 import tempfile
 from collections.abc import Iterator, Mapping
@@ -69,7 +70,7 @@ def check_duration(frames: int, fps: float, label: str) -> None:
     """Raises InputError for motions longer than ten minutes, or of more frames than :data:`MAX_FRAMES`."""
     if fps > 0 and frames / fps > MAX_SECONDS:
         raise InputError(
-            f"{label} lasts {frames / fps:.0f} s, more than the {MAX_SECONDS:.0f} s allowed: cut it."
+            f"{label} lasts {math.ceil(frames / fps)} s, more than the {MAX_SECONDS:.0f} s allowed: cut it."
         )
     if frames > MAX_FRAMES:
         raise InputError(

@@ -8,7 +8,6 @@ of two people as x, y, z between 0 and 1, separated by commas.
 
 from __future__ import annotations
 
-import io
 import re
 from collections import defaultdict
 from collections.abc import Iterator
@@ -71,15 +70,22 @@ def read_kinect(
 
 
 def _lines(text: str, label: str) -> Iterator[tuple[int, str]]:
-    """(number from 1, line) of the lines that hold something, one at a time."""
-    for number, line in enumerate(io.StringIO(text), 1):
-        if len(line) > _LONGEST_LINE:
+    """(number from 1, line) of the lines that hold something, cut out one at a time."""
+    ending = "\n" if "\n" in text else "\r"
+    start, number = 0, 0
+    while start < len(text):
+        number += 1
+        stop = text.find(ending, start)
+        stop = len(text) if stop < 0 else stop
+        if stop - start > _LONGEST_LINE:
             raise InputError(
                 f"{label}, line {number} is too long for a Kinect's text: is it of another kind?"
             )
         if number > _MOST_LINES:
             raise InputError(f"{label} has more than {_MOST_LINES:,} lines: cut the motion.")
-        if not line.isspace():
+        line = text[start:stop]
+        start = stop + 1
+        if line and not line.isspace():
             yield number, line
 
 

@@ -11,6 +11,7 @@ from webdemo.formats.importing import ImportChoices, import_motion
 from webdemo.inference.actor import at_30_fps, choose_actor
 from webdemo.inference.requests import DEFAULT_STEPS, SECONDS, Result
 from webdemo.motion import Clip, Duet, InputError
+from webdemo.motion.retarget import to_smpl
 from webdemo.view.payload import Payload, player_payload
 
 AUTO = "auto"
@@ -45,7 +46,7 @@ class Source:
 
     Attributes:
         name: of the file or the result.
-        people: up to six, at 30 fps; what is not needed of a file is not kept.
+        people: up to six, at 30 fps, with the joints of the file where those have to be fitted.
         chosen: "a", "b" …: which one is offered first.
         path: the file, so that it can be read anew with other choices; None for a result.
         found: how the file was read, None for a result.
@@ -56,6 +57,8 @@ class Source:
     chosen: str = "a"
     path: Path | None = None
     found: Found | None = None
+    _fitted: dict[Any, tuple[Clip, ...]] = field(default_factory=dict, repr=False, compare=False)
+    """What was fitted last, by what was asked."""
 
     @property
     def choices(self) -> list[tuple[str, str]]:
@@ -72,13 +75,28 @@ class Source:
         return min(self.seconds, SECONDS[1])
 
     def actor(self, person: str, start: float, end: float) -> Clip:
-        """The trimmed actor; raises InputError where the times do not lie in the motion."""
+        """The trimmed actor on SMPL22; raises InputError where the times do not lie in the motion."""
+        return self._on_smpl((person, start, end), (self._part(person, start, end),))[0]
+
+    def _part(self, person: str, start: float, end: float) -> Clip:
         clip = self.people[_LETTERS.index(person) if len(self.people) > 1 else 0]
         return replace(choose_actor(clip, start=start, end=end), name=self.name)
 
+    def whole(self, longest: float) -> tuple[Clip, ...]:
+        """Everybody on SMPL22, or as they are in the file where that is longer than ``longest`` seconds."""
+        return self.people if self.seconds > longest else self._on_smpl("whole", self.people)
+
+    def _on_smpl(self, asked: Any, people: tuple[Clip, ...]) -> tuple[Clip, ...]:
+        if asked not in self._fitted:
+            made = to_smpl(Duet(*people)).people if len(people) == 2 else tuple(map(to_smpl, people))
+            self._fitted.clear()
+            self._fitted[asked] = made
+        return self._fitted[asked]
+
     def preview(self, person: str, start: float, end: float) -> Payload:
-        """The trimmed actor for the player."""
-        actor = self.actor(person, start, end)
+        """The trimmed actor for the player; a part that is too long to react to is shown as it is."""
+        too_long = end - start > SECONDS[1] + 0.05
+        actor = self._part(person, start, end) if too_long else self.actor(person, start, end)
         return player_payload(replace(actor, name="actor"), title=self.describe(person))
 
     def describe(self, person: str) -> str:

@@ -49,8 +49,9 @@ def installed_methods(weights: Path = WEIGHTS) -> list[tuple[str, str]]:
 
 def motion_of(source: Source) -> Clip | Duet:
     """All people of a source, the first called after it."""
-    first = replace(source.people[0], name=source.name)
-    return Duet(first, source.people[1]) if len(source.people) > 1 else first
+    people = source.whole(LONGEST)
+    first = replace(people[0], name=source.name)
+    return Duet(first, people[1]) if len(people) > 1 else first
 
 
 def given_source(result: PredictResult, name: str) -> Source:
