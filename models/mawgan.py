@@ -168,7 +168,26 @@ class PredictiveMAWGAN(nn.Module):
     def forward(self, past: Tensor) -> Tensor:
         """(B, past, J, 3) metres → (B, future, J, 3); a past that does not move stays as it is."""
         curve = to_curves(past)
-        return to_positions(self.decode(*self.generate(curve), curve))
+        future = self.decode(*self.generate(curve), curve)
+        return to_positions(without_flicker(curve[:, -1:], future))
+
+
+def without_flicker(start: Tensor, future: Tensor) -> Tensor:
+    """A future without what its velocities cannot tell: even frames that move against the odd ones.
+
+    Central differences are blind to that, so that a prediction holds any amount of it. Each frame becomes the
+    weighted mean (1, 2, 1) / 4 of its neighbours; the last one goes on from the two before.
+
+    Args:
+        start: (B, 1, D) the last given pose.
+        future: (B, T, D), T at least 2.
+
+    Returns:
+        (B, T, D).
+    """
+    whole = torch.cat([start, future], dim=1)
+    calm = torch.cat([start, (whole[:, :-2] + 2 * whole[:, 1:-1] + whole[:, 2:]) / 4], dim=1)
+    return torch.cat([calm[:, 1:], 2 * calm[:, -1:] - calm[:, -2:-1]], dim=1)
 
 
 def to_curves(positions: Tensor) -> Tensor:
@@ -189,7 +208,8 @@ class MAWGANLossWeights:
     """β₁ to β₄ of eq. 2.11 and λ of eq. 2.5 (section 2.5.2).
 
     ``position`` weighs the mean distance of joints in metres, which the thesis has no loss for: eq. 2.9 is
-    blind to a pose that is turned as a whole.
+    blind to a pose that is turned as a whole. ``speed`` weighs how far the mean speed of each frame lies from
+    the truth's, in metres a frame: a network that is unsure slows down.
     """
 
     adversarial: float = 1.0
@@ -198,6 +218,7 @@ class MAWGANLossWeights:
     bone: float = 10.0
     gradient_penalty: float = 10.0
     position: float = 0.0
+    speed: float = 0.0
 
     def to_dict(self) -> dict[str, float]:
         return asdict(self)
@@ -233,6 +254,20 @@ def reconstruction_loss(made: Tensor, real: Tensor) -> Tensor:
 def position_loss(made: Tensor, real: Tensor) -> Tensor:
     """Mean distance of joints (B, T, J, 3) in metres, which is what MPJPE measures."""
     return ((made - real).square().sum(-1) + 1e-10).sqrt().mean()
+
+
+def speed_loss(made: Tensor, real: Tensor, last: Tensor) -> Tensor:
+    """Difference of the mean speeds (eq. 2.13) of predicted and true frames, in metres a frame.
+
+    Args:
+        made, real: (B, T, J, 3) metres.
+        last: (B, 1, J, 3) the pose before.
+    """
+    speeds = [
+        (torch.cat([last, x], dim=1).diff(dim=1).square().sum(-1) + 1e-10).sqrt().mean((0, 2))
+        for x in (made, real)
+    ]
+    return (speeds[0] - speeds[1]).abs().mean()
 
 
 def gram_distance(p: Tensor, q: Tensor) -> Tensor:

@@ -28,10 +28,12 @@ from models.mawgan import (
     position_loss,
     reconstruction_loss,
     skeleton_loss,
+    speed_loss,
     to_curves,
     to_positions,
+    without_flicker,
 )
-from models.predictors import save_predictor
+from models.predictors import load_predictor, save_predictor
 from models.srvf import exp_map, karcher_mean, log_map, to_srvf
 from training.prediction.mlp import add_run_options, train
 from training.prediction.trainer import PredictionTrainer
@@ -46,7 +48,8 @@ class Settings:
     ``width`` is the channels of the predictor's first block (thesis: 512), each further one has half; the
     critic's are an eighth of it, and halved likewise. ``linear`` and ``length`` are those of
     :class:`~models.mawgan.MAWGANConfig`. ``final_rate`` is the share of the learning rate at which its cosine
-    ends; 1 keeps it as it is, like the thesis.
+    ends; 1 keeps it as it is, like the thesis. ``init`` names the folder of a trained predictor that the run
+    begins with.
     """
 
     windows: str = "cmu"
@@ -67,6 +70,8 @@ class Settings:
     bone: float = 10.0
     gradient_penalty: float = 10.0
     position: float = 0.0
+    speed: float = 0.0
+    init: str = ""
     linear: bool = False
     length: bool = False
     seed: int = 0
@@ -90,7 +95,7 @@ class Settings:
     def weights(self) -> MAWGANLossWeights:
         return MAWGANLossWeights(
             self.adversarial, self.reconstruction, self.skeleton, self.bone, self.gradient_penalty,
-            self.position,
+            self.position, self.speed,
         )  # fmt: skip
 
 
@@ -117,6 +122,8 @@ class Trainer(PredictionTrainer):
         past, future = self.curves(sample)
         self.model.past_mean.copy_(karcher_mean(moving(past)))
         self.model.future_mean.copy_(karcher_mean(moving(future)))
+        if s.init:
+            self.model.load_state_dict(load_predictor(Path(s.init)).network.state_dict())
         self.ema.load_state_dict(self.model.state_dict())
         self.ema.requires_grad_(False)
         self.optimizer, self.critic_optimizer = (
@@ -184,7 +191,8 @@ class Trainer(PredictionTrainer):
         s, longer = self.model.generate(past)
         made = self.seen(s)
         critic = list(self.critic_steps(real, made.detach())) if weights.adversarial else [0.0]
-        positions = to_positions(self.model.decode(s, longer, past))
+        curves = self.model.decode(s, longer, past)
+        positions = to_positions(curves)
         truth = windows[:, self.settings.past :]
         terms = {
             "reconstruction": weights.reconstruction * reconstruction_loss(made, real),
@@ -193,6 +201,10 @@ class Trainer(PredictionTrainer):
         }
         if weights.position:
             terms["position"] = weights.position * position_loss(positions, truth)
+        if weights.speed:
+            last = past[:, -1:]
+            calm = to_positions(without_flicker(last, curves))
+            terms["speed"] = weights.speed * speed_loss(calm, truth, to_positions(last))
         if weights.adversarial:
             terms["adversarial"] = -weights.adversarial * self.critic(made).mean()
         total = torch.stack(list(terms.values())).sum()
@@ -210,7 +222,7 @@ class Trainer(PredictionTrainer):
         """Writes the averaged predictor as a predictor's folder."""
         save_predictor(
             folder, self.ema, kind="mawgan", fps=self.windows.fps, bones=self.windows.bones,
-            training={**asdict(self.settings), "steps": self.step},
+            training={**asdict(self.settings), "steps": self.step, "init": Path(self.settings.init).name},
         )  # fmt: skip
 
 

@@ -22,10 +22,12 @@ from models.mawgan import (
     position_loss,
     reconstruction_loss,
     skeleton_loss,
+    speed_loss,
     to_curves,
     to_positions,
+    without_flicker,
 )
-from models.srvf import exp_map, inner, log_map, norm, to_srvf
+from models.srvf import exp_map, inner, log_map, norm, to_srvf, velocity
 
 SMALL = MAWGANConfig(
     joints=5, past=8, future=12, fc=64, channels=(16, 8, 8, 4), critic=(4, 4, 4), critic_fc=8
@@ -56,7 +58,7 @@ def test_defaults_are_the_thesis_sizes() -> None:
     assert [m.out_channels for m in critic.down if isinstance(m, nn.Conv2d)] == [64, 32, 16]
     assert [m.out_features for m in critic.score if isinstance(m, nn.Linear)] == [1024, 1]
     weights = MAWGANLossWeights()
-    assert tuple(weights.to_dict().values()) == (1, 1, 10, 10, 10, 0)
+    assert tuple(weights.to_dict().values()) == (1, 1, 10, 10, 10, 0, 0)
     assert not (config.linear or config.length)
 
 
@@ -120,6 +122,16 @@ def test_what_stands_still_stays_as_it_is(network: PredictiveMAWGAN) -> None:
     assert torch.equal(network(still), still[:, :1].expand(1, 12, 5, 3))
 
 
+def test_predictions_do_not_flicker_and_smooth_motion_stays() -> None:
+    times = torch.arange(13)[None, :, None]
+    line = 0.02 * times.expand(2, 13, 15)
+    assert torch.allclose(without_flicker(line[:, :1], line[:, 1:]), line[:, 1:], atol=1e-6)
+    flicker = 0.01 * (-1.0) ** times.expand(2, 13, 15)
+    assert torch.allclose(*(velocity(x)[:, 1:-1] for x in (line + flicker, line)), atol=1e-5)  # not seen
+    calm = without_flicker(line[:, :1], (line + flicker)[:, 1:])
+    assert (calm - line[:, 1:])[:, 1:].abs().max() < 1e-6
+
+
 def test_gram_distance_knows_no_rotation() -> None:
     p = poses(3, 4, 17, 3).double()
     turned = p @ torch.from_numpy(Rotation.random(random_state=0).as_matrix())
@@ -135,6 +147,10 @@ def test_losses_by_hand() -> None:
     assert float(reconstruction_loss(made, real)) == pytest.approx(1.5)
     apart = torch.tensor([0.0, 0.3, 0.4]).expand(2, 4, 5, 3)
     assert float(position_loss(apart, torch.zeros_like(apart))) == pytest.approx(0.5, abs=1e-5)
+    walk = torch.arange(1, 5.0)[:, None, None].expand(2, 4, 5, 3) * torch.tensor([0.03, 0.0, 0.04])
+    last = torch.zeros(2, 1, 5, 3)
+    assert float(speed_loss(1.5 * walk, walk, last)) == pytest.approx(0.025, abs=1e-5)
+    assert float(speed_loss(walk.flip(-1), walk, last)) == pytest.approx(0, abs=1e-6)
     pose = torch.tensor([[0.0, 0, 0], [0, 2, 0], [0, 2, 1]]).expand(2, 4, 3, 3)
     assert float(bone_loss(pose * 1.1, pose, [(0, 1), (1, 2)])) == pytest.approx(0.15)
     assert float(bone_loss(pose.flip(-1), pose, [(0, 1), (1, 2)])) == pytest.approx(0, abs=1e-6)

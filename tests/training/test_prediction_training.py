@@ -26,7 +26,7 @@ MLP = mlp.Settings(past=10, future=8, past_coefficients=6, future_coefficients=4
                    fit=64, batch=8, steps=6, warmup=1)  # fmt: skip
 GAN = mawgan.Settings(windows="corpus", past=10, future=8, fc=36, width=32, critic_fc=8, critic_steps=2,
                       batch=4, steps=3)  # fmt: skip
-LEAN_GAN = replace(GAN, critic_steps=1, final_rate=0.1, position=100.0, linear=True, length=True)
+LEAN_GAN = replace(GAN, critic_steps=1, final_rate=0.1, position=100.0, speed=300.0, linear=True, length=True)
 
 
 @pytest.fixture(scope="module")
@@ -114,6 +114,12 @@ def test_lean_settings_are_those_of_the_module_and_can_be_changed(corpus: Path, 
     assert training is not None
     changed = {"fc": 36, "length": False, "steps": 1}
     assert {name: training[name] for name in mawgan.LEAN} == mawgan.LEAN | changed
+    begun = ["--init", str(tmp_path / "folder"), "--out", str(tmp_path / "on"), "--learning-rate=0"]
+    folder = tmp_path / "begun"
+    assert mawgan.main(["--lean", "--no-length", *asked, *folders, *begun, "--export", str(folder)]) == 0
+    first, on = (load_predictor(path).network.state_dict() for path in (tmp_path / "folder", folder))
+    assert all(torch.equal(first[name], value) for name, value in on.items())
+    assert json.loads((folder / "config.json").read_text())["training"]["init"] == "folder"
 
 
 class Extrapolates(torch.nn.Module):

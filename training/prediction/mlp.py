@@ -157,7 +157,7 @@ class Trainer(PredictionTrainer):
         """Writes the averaged network as a predictor's folder."""
         save_predictor(
             folder, self.ema, kind="mlp", fps=self.windows.fps, bones=self.windows.bones,
-            training={**asdict(self.settings), "steps": self.step},
+            training={**asdict(self.settings), "steps": self.step, "init": Path(self.settings.init).name},
         )  # fmt: skip
 
 
