@@ -97,6 +97,7 @@ def create_app(
     health = Health(engine, {"database": database.check})
     limits = QueueLimits(
         running=settings.running, waiting=settings.waiting, queue=settings.queue, batch=settings.batch,
+        address=settings.waiting * settings.address_people,
         workers=getattr(engine, "parallel", 1),
     )  # fmt: skip
     queue = FairQueue(engine, limits, batcher=batcher, figures=figures, broken=health.broken)

@@ -88,6 +88,7 @@ class Guard:
         self.answers = answers
         self.bindings = Bindings()
         self.rates = Rates(settings.rate)
+        self.address_rates = Rates(settings.rate * settings.address_people)
         names = settings.hosts or (["localhost", "127.0.0.1", "::1"] if settings.local else [])
         self.hosts = {name.lower() for name in names}
 
@@ -190,6 +191,8 @@ class Guard:
             visitor = Visitor(f"address {address}", "", reference, base)
         if scope["method"] in _CHANGING:
             self.rates.take(visitor.person if visitor else f"address {address}")
+            if visitor is not None and visitor.address:  # whoever throws their cookie away is not new
+                self.address_rates.take(visitor.address)
             if visitor is None:
                 return None, None
             upload = path.startswith(f"{API}upload")

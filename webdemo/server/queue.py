@@ -20,7 +20,7 @@ from webdemo.inference.cancel import CancelToken
 from webdemo.inference.requests import Cancelled, Progress, Result
 from webdemo.motion import InputError
 from webdemo.ui.runs import EngineLike, Waiting
-from webdemo.ui.visitor import visitor
+from webdemo.ui.visitor import Visitor, visitor
 
 from .estimates import Line, Pace, units
 from .figures import Figures
@@ -52,11 +52,12 @@ class Batcher(Protocol):
 
 @dataclass(frozen=True, kw_only=True)
 class QueueLimits:
-    """How much may run and wait: of one person, of all, how many motions in one pass, and how many batches
-    of a model at a time."""
+    """How much may run and wait: of one person, from one address, of all; how many motions in one pass, and
+    how many batches of a model at a time."""
 
     running: int = 2
     waiting: int = 4
+    address: int = 32
     queue: int = 64
     batch: int = 8
     workers: int = 1
@@ -80,6 +81,7 @@ class Job:
     group: str
     cost: float
     key: tuple[Any, ...] | None
+    address: str = ""
     token: CancelToken = field(default_factory=CancelToken)
     events: queue.SimpleQueue[Any] = field(default_factory=queue.SimpleQueue)
     came: float = field(default_factory=time.monotonic)
@@ -151,7 +153,7 @@ class FairQueue:
                 cannot do what is asked.
             Cancelled: where the run was cancelled.
         """
-        job = self._enter(session, request, visitor().person)
+        job = self._enter(session, request, visitor())
         try:
             yield from self._watch(job)
         finally:
@@ -188,9 +190,9 @@ class FairQueue:
 
     # ---- the line --------------------------------------------------------------------------------
 
-    def _enter(self, session: str, request: Any, person: str) -> Job:
-        key = self.batcher.key(request) if self.batcher else None
-        job = Job(person=person, request=request, group="", cost=units(request), key=key)
+    def _enter(self, session: str, request: Any, who: Visitor) -> Job:
+        key, person = self.batcher.key(request) if self.batcher else None, who.person
+        job = Job(person, request, group="", cost=units(request), key=key, address=who.address)
         with self._change:
             if self._stopping:
                 raise InputError("The server is stopping: send this again in a minute.")
@@ -203,6 +205,10 @@ class FairQueue:
                 raise InputError(
                     f"You have {mine} runs waiting already: wait for one or cancel it, then try again."
                 )
+            near = sum(other.address == who.address for other in self._waiting) if who.address else 0
+            if near >= self.limits.address:
+                self.figures.refused.labels("address's share of the queue").inc()
+                raise InputError(f"{near} runs from your network wait already: try again in a few minutes.")
             if len(self._waiting) >= self.limits.queue:
                 self.figures.refused.labels("queue full").inc()
                 raise InputError(

@@ -43,20 +43,40 @@ def bounded_protocol(settings: Settings) -> type[H11Protocol]:
             if len(self.connections) > settings.connections or count > settings.address_connections:
                 transport.close()
                 return
-            self.waiting = self.loop.call_later(settings.header_seconds, self._head_is_late)
+            self._expect_head()
 
         def connection_lost(self, exc: Exception | None) -> None:
             super().connection_lost(exc)
-            if self.waiting is not None:
-                self.waiting.cancel()
+            self._stop_expecting()
             left = open_by_address.get(self.address, 1) - 1
             if left > 0:
                 open_by_address[self.address] = left
             else:
                 open_by_address.pop(self.address, None)
 
+        def data_received(self, data: bytes) -> None:
+            before = self.cycle
+            super().data_received(data)
+            if self.cycle is not before:
+                self._stop_expecting()
+            elif self._between and self.waiting is None:  # the head of a further request has begun
+                self._expect_head()
+
+        @property
+        def _between(self) -> bool:
+            return self.cycle is None or self.cycle.response_complete
+
+        def _expect_head(self) -> None:
+            self.waiting = self.loop.call_later(settings.header_seconds, self._head_is_late)
+
+        def _stop_expecting(self) -> None:
+            if self.waiting is not None:
+                self.waiting.cancel()
+                self.waiting = None
+
         def _head_is_late(self) -> None:
-            if self.cycle is None:
+            self.waiting = None
+            if self._between:
                 self.transport.close()
 
     return Bounded

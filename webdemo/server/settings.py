@@ -101,6 +101,9 @@ class Settings(BaseSettings):
 
     # ---- limits
     rate: int = Field(240, ge=1, description="changing requests of one person a minute")
+    address_people: int = Field(
+        8, ge=1, description="on an open server: people whose share one address may take"
+    )
     upload_megabytes: float = Field(50, gt=0, le=50, description="largest upload")
     body_megabytes: float = Field(2, gt=0, description="largest body of any other request")
     body_seconds: float = Field(60, gt=0, description="time for a request's body to arrive")

@@ -55,7 +55,7 @@ class Visitors:
         token = cookies.get(VISITOR_COOKIE, "")
         browser = f"visitor {digest(token)}" if 20 <= len(token) <= 100 else ""
         if self.settings.open:
-            return Visitor(browser or f"address {address}", browser, reference, base)
+            return Visitor(browser or f"address {address}", browser, reference, base, address=address)
         return Visitor(browser or "local", "local", reference, base)
 
     def forget(self, token: str) -> None:

@@ -17,6 +17,8 @@ class Visitor:
         reference: the request's id in the server's log; empty where the page is served alone.
         base: where the page is, such as "https://lab.example/motion/"; empty where that is not known.
         account: the name they signed in by; empty without accounts.
+        address: from which they come, where strangers are told apart by a cookie that they could throw away;
+            empty elsewhere.
     """
 
     person: str = "local"
@@ -24,6 +26,7 @@ class Visitor:
     reference: str = ""
     base: str = ""
     account: str = ""
+    address: str = ""
 
 
 LOCAL = Visitor()
