@@ -287,7 +287,7 @@ def _joint_of_column(joints: list[_Joint], column: int) -> str:
 def _to_rigs(joints: list[_Joint], values: Array, frame_time: float, label: str) -> tuple[RigMotion, ...]:
     frames = len(values)
     offsets = np.array([joint.offset for joint in joints])
-    rotations = np.empty((frames, len(joints), 3, 3))
+    rotations = np.empty((frames, len(joints), 3, 3), dtype=np.float32)
     world: dict[int, Array] = {}  # of joints that still have children to come
     positions = np.empty((frames, len(joints), 3))
     last_child = {joint.parent: index for index, joint in enumerate(joints)}

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import codecs
 import contextlib
 import errno
 import math
@@ -14,6 +15,7 @@ from webdemo.motion.errors import InputError
 
 MAX_BYTES = 50 * 2**20
 MAX_SECONDS = 600.0
+_PIECE = 2**20
 MAX_FRAMES = 72_000
 """Ten minutes at 120 frames a second."""
 
@@ -57,13 +59,22 @@ def decode_text(data: bytes, label: str, kind: str) -> str:
         encoding = "utf-16-le" if data[1:2] == b"\0" else "utf-16-be"
     else:
         encoding = "utf-8-sig"
-    try:
-        text = data.decode(encoding)
-    except UnicodeDecodeError:
-        text = data.decode("latin-1")
+    text = data.decode(encoding if _is_text(data, encoding) else "latin-1")
     if "\0" in text:
         raise InputError(f"{label} is not {kind}: it holds binary data.")
     return text
+
+
+def _is_text(data: bytes, encoding: str) -> bool:
+    """Whether data is in this encoding, read in pieces, as an error keeps a copy of its piece."""
+    decoder = codecs.getincrementaldecoder(encoding)()
+    try:
+        for start in range(0, len(data), _PIECE):
+            decoder.decode(data[start : start + _PIECE])
+        decoder.decode(b"", final=True)
+    except UnicodeDecodeError:
+        return False
+    return True
 
 
 def check_duration(frames: int, fps: float, label: str) -> None:
