@@ -253,7 +253,7 @@ class CompactStream:
         if self.guided:
             condition = torch.cat([condition, torch.zeros_like(condition)])
             begin = None if begin is None else torch.cat([begin, begin])
-        self.scheduler = make_scheduler("ddim", steps)
+        self.scheduler = make_scheduler("ddim", steps, spacing="top")
         rows = model.num_rows(max_frames) + 1
         with torch.no_grad():
             self.passes = [

@@ -15,7 +15,8 @@ import math
 import threading
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Literal
+from functools import cache
+from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
 import torch
@@ -31,6 +32,7 @@ if TYPE_CHECKING:
 TRAIN_TIMESTEPS = 1000
 _IMPORTING = threading.Lock()
 SamplerName = Literal["ddim", "dpm++", "ddpm"]
+Spacing = Literal["leading", "top"]
 
 
 class SamplerError(InputError):
@@ -70,19 +72,62 @@ class NoiseSchedule:
         return signal * x0 + spread * noise
 
 
+def top_timesteps(steps: int, total: int = TRAIN_TIMESTEPS) -> np.ndarray:
+    """(steps,) int64 timesteps from T − 1 down, close to each other at first: (T − 1)·(1 − (i / steps)²).
+
+    Sampling begins with pure noise. A first timestep below T − 1 would have the network take it for a motion
+    that shines through (Lin et al. 2024, "Common Diffusion Noise Schedules and Sample Steps are Flawed"),
+    and in a motion's many numbers, which say much the same, what happens is decided above 0.9 T.
+    """
+    wanted = np.rint((total - 1) * (1 - (np.arange(steps) / steps) ** 2)).astype(np.int64)
+    # Each below the one before, with room for those that follow: at many steps they lie too close.
+    below = np.minimum.accumulate(wanted + np.arange(steps)) - np.arange(steps)
+    return np.maximum(below, np.arange(steps)[::-1])
+
+
+@cache
+def _ddim_class() -> type[DDIMScheduler]:
+    """DDIM on any timesteps: that of `diffusers` on the noise levels of those alone."""
+    from diffusers import DDIMScheduler
+
+    class ChosenDDIM(DDIMScheduler):
+        def __init__(
+            self, betas: np.ndarray, timesteps: np.ndarray, prediction: str, device: torch.device | str
+        ) -> None:
+            kept = np.cumprod(1 - betas)[timesteps[::-1]]
+            steps = len(timesteps)
+            super().__init__(
+                num_train_timesteps=steps,
+                trained_betas=1 - kept / np.concatenate([[1.0], kept[:-1]]),
+                prediction_type=prediction,
+                clip_sample=False,
+                set_alpha_to_one=True,
+            )
+            self.set_timesteps(steps, device=device)
+            self.places = {int(t): steps - 1 - i for i, t in enumerate(timesteps)}
+            self.timesteps = torch.from_numpy(timesteps.copy()).to(device)
+
+        def step(self, model_output: Tensor, timestep: int, *args: Any, **options: Any) -> Any:
+            return super().step(model_output, self.places[int(timestep)], *args, **options)
+
+    return ChosenDDIM
+
+
 def make_scheduler(
     name: SamplerName,
     steps: int,
     *,
     betas: np.ndarray | None = None,
     prediction: Literal["sample", "epsilon"] = "sample",
+    spacing: Spacing = "leading",
     device: torch.device | str = "cpu",
 ) -> Scheduler:
     """A fresh `diffusers` scheduler with its timesteps set, largest first.
 
-    ``ddim`` uses the timesteps 0, T/steps, 2T/steps, … as InterGen does; ``dpm++`` is second-order
-    multistep with the λ clipping that `diffusers` asks for with cosine schedules; ``ddpm`` is ancestral
-    sampling. A scheduler keeps the history of one sampling run: make a new one for each.
+    ``ddim`` uses the timesteps 0, T/steps, 2T/steps, … as InterGen does, or with ``spacing="top"`` those of
+    :func:`top_timesteps`; ``dpm++`` is second-order multistep with the λ clipping that `diffusers` asks for
+    with cosine schedules; ``ddpm`` is ancestral sampling. A scheduler keeps the history of one sampling run:
+    make a new one for each.
 
     Raises SamplerError for an unknown name, or a number of steps that the sampler cannot spread over T.
     """
@@ -96,6 +141,8 @@ def make_scheduler(
     if not 1 <= steps <= total:
         raise SamplerError(f"{steps} sampling steps cannot be used: choose between 1 and {total}.")
     common = {"num_train_timesteps": total, "trained_betas": betas, "prediction_type": prediction}
+    if name == "ddim" and spacing == "top":
+        return _ddim_class()(betas, top_timesteps(steps, total), prediction, device)
     if name == "ddim":
         # Leading spacing strides by T // steps. Where that leaves out the top of the noise, the first
         # sample, which is pure noise, would be taken for a half-denoised one.

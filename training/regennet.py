@@ -35,7 +35,7 @@ from models.intergen_losses import bone_lengths, facing
 from models.motion_tokens import FEATURES, NUM_CONTACTS, mirror_control
 from training import checkpoint
 from training.corpus.captions import mirror_caption
-from training.intergen import balanced, seeded
+from training.intergen import balanced, draw_timesteps, seeded
 from training.loop import Loop
 from training.prepare import ROOT_SCALE, Scenes, load
 from training.shell import exit_code
@@ -56,6 +56,7 @@ class Settings:
     jitter: metres of noise on the actor's joints, so that recordings with noise are no surprise.
     begin: share of scenes where the network is told how the reactor stands at first.
     crop: share of scenes that begin somewhere in their first half, all of them told so.
+    noisiest: share of samples from the noisiest tenth of the timesteps, see training.intergen.
     recorded: how often a recorded pair counts; there are minutes of them beside hours of composed ones.
     """
 
@@ -76,6 +77,7 @@ class Settings:
     begin: float = 0.5
     crop: float = 0.25
     recorded: int = 8
+    noisiest: float = 0.3
     root_weight: float = 4.0
     velocity: float = 30.0
     bone_length: float = 30.0
@@ -331,7 +333,7 @@ class Trainer(Loop):
         """Every loss term of one batch, weighted."""
         s, model = self.settings, self.model
         size = len(batch.mask)
-        t = torch.randint(self.schedule.timesteps, (size,), generator=generator)
+        t = draw_timesteps(size, self.schedule.timesteps, s.noisiest, generator)
         x0 = (batch.reactor - model.mean) / model.std
         xt = self.schedule.q_sample(x0, t, torch.randn(x0.shape, generator=generator))
         keep = torch.rand(size, 1, generator=generator) >= s.unconditional

@@ -42,7 +42,7 @@ def write_sheet(
     for step in sample_steps(
         lambda x, t: model.denoiser.guided(x, t, condition, scale=guidance),
         noise,
-        make_scheduler("ddim", steps),
+        make_scheduler("ddim", steps, spacing="top"),
     ):
         x = step.sample
     positions = model.positions(x)[0][:, :, :frames].float().cpu().numpy()

@@ -126,7 +126,7 @@ class PlainSampler:
         request, model = self.request, self.generator.model
         tokens = model.layout.num_tokens(round(request.seconds * 30))
         x = sample_noise(request.seed, 1, (tokens, 2 * model.layout.token_features))
-        scheduler = make_scheduler("ddim", request.steps)
+        scheduler = make_scheduler("ddim", request.steps, spacing="top")
         with torch.no_grad():
             for t in scheduler.timesteps:
                 condition, _ = self.generator.condition(request.prompt)

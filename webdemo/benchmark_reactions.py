@@ -55,7 +55,7 @@ def measure_reactions(repeats: int) -> dict[str, Any]:
         began = time.perf_counter()
         seen = model.actor_rows(actor.expand(1, WHOLE, -1, -1))
         noise = torch.randn(1, model.num_rows(WHOLE), FEATURES)
-        scheduler = make_scheduler("ddim", _STEPS)
+        scheduler = make_scheduler("ddim", _STEPS, spacing="top")
         for step in sample_steps(lambda x, t: model.guided(x, t, seen, nothing, scale=1.0), noise, scheduler):
             x = step.sample
         model.positions(x, WHOLE)

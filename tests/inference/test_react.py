@@ -108,7 +108,7 @@ def test_the_network_sees_the_given_person_clean_at_every_step(engine: Engine) -
 
     condition, _ = generator.condition(request.prompt)
     x = sample_noise(request.seed, 1, (layout.num_tokens(60), 2 * half))
-    scheduler = make_scheduler("ddim", request.steps)
+    scheduler = make_scheduler("ddim", request.steps, spacing="top")
     with torch.no_grad():
         for t in scheduler.timesteps:
             x = torch.cat([clean, x[..., half:]], -1)

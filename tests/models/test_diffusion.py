@@ -42,17 +42,43 @@ def gaussian_denoiser(mean: float, std: float):
     return predict
 
 
+@pytest.mark.parametrize("steps", [1, 2, 5, 50, 300, 600, 999, 1000])
+def test_timesteps_from_the_top_begin_with_pure_noise_and_fall(steps):
+    timesteps = make_scheduler("ddim", steps, spacing="top").timesteps
+    assert len(timesteps) == steps and timesteps[0] == 999 and timesteps.min() >= 0
+    assert (timesteps.diff() < 0).all()
+    if 5 <= steps <= 50:  # denser where it is decided what happens
+        assert (timesteps >= 900).sum() >= 0.3 * steps
+
+
+def test_from_the_top_ddim_is_that_of_diffusers_on_its_own_timesteps():
+    """At all 1000 timesteps both spacings are the same sampler."""
+    noise = torch.randn(4, 3, generator=torch.Generator().manual_seed(0))
+    ends = []
+    for spacing in ("leading", "top"):
+        scheduler = make_scheduler("ddim", 1000, spacing=spacing)
+        *_, last = sample_steps(gaussian_denoiser(1.5, 0.5), noise, scheduler)
+        ends.append(last.sample)
+    torch.testing.assert_close(*ends, atol=1e-4, rtol=0)
+
+
 @pytest.mark.parametrize(
-    ("name", "steps", "tolerance"),
-    [("ddim", 50, 0.03), ("ddim", 200, 0.02), ("dpm++", 20, 0.02), ("ddpm", 250, 0.03)],
+    ("name", "steps", "spacing", "tolerance"),
+    [
+        ("ddim", 50, "leading", 0.03),
+        ("ddim", 200, "leading", 0.02),
+        ("ddim", 50, "top", 0.03),
+        ("dpm++", 20, "leading", 0.02),
+        ("ddpm", 250, "leading", 0.03),
+    ],
 )
-def test_samplers_reach_the_distribution(name, steps, tolerance):
+def test_samplers_reach_the_distribution(name, steps, spacing, tolerance):
     noise = torch.randn(20000, 1, generator=torch.Generator().manual_seed(0))
     seen = list(
         sample_steps(
             gaussian_denoiser(1.5, 0.5),
             noise,
-            make_scheduler(name, steps),
+            make_scheduler(name, steps, spacing=spacing),
             generator=torch.Generator().manual_seed(1),
         )
     )

@@ -72,7 +72,7 @@ def draw(generator: Generator, tasks: Sequence[Task], sampling: Sampling) -> Ite
         shape = (model.layout.num_tokens(frames), 2 * model.layout.token_features)
         noise = torch.cat([sample_noise(sampling.seed + i, 1, shape) for i in group])
         condition = torch.cat([generator.condition(tasks[i].caption)[0] for i in group])
-        scheduler = make_scheduler("ddim", sampling.steps)
+        scheduler = make_scheduler("ddim", sampling.steps, spacing="top")
         damping = Damping(
             model,
             sampling.damping,

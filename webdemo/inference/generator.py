@@ -111,7 +111,7 @@ class DuetGenerator:
         noise = sample_noise(
             request.seed, request.samples, (layout.num_tokens(scene.frames), 2 * layout.token_features)
         )
-        scheduler = make_scheduler(request.sampler, request.steps)
+        scheduler = make_scheduler(request.sampler, request.steps, spacing="top")
         damping = Damping(
             self.model,
             request.damping,

@@ -123,7 +123,7 @@ class Reactor:
             return model.guided(x, t, seen, condition, scale=request.guidance, begin=begin)
 
         x = noise
-        for step in sample_steps(predict, noise, make_scheduler("ddim", request.steps)):
+        for step in sample_steps(predict, noise, make_scheduler("ddim", request.steps, spacing="top")):
             x = step.sample
             yield clock.progress("sample", step.step, step.total)
             cancel.raise_if_cancelled()
