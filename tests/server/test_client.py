@@ -29,7 +29,7 @@ def url(tmp_path_factory: pytest.TempPathFactory) -> Iterator[str]:
         probe.bind(("127.0.0.1", 0))
         port = probe.getsockname()[1]
     settings = Settings(port=port, data=folder / "data", users=folder / "users", free_megabytes=0)
-    server = make_server(settings, engine=stub_module().StubEngine())
+    server = make_server(settings, engine=stub_module().StubEngine(pause=0.05))
     thread = threading.Thread(target=server.run, daemon=True)
     thread.start()
     until = time.monotonic() + 120
@@ -52,6 +52,18 @@ def test_generate_from_a_notebook(url: str, tmp_path: Path) -> None:
     with pytest.raises(AppError) as caught:
         lab.predict(prompt="crash", steps=3, api_name="/generate")
     assert "(RuntimeError); its log says more under " in str(caught.value)
+
+
+def test_a_notebook_sees_how_far_a_run_is(url: str, tmp_path: Path) -> None:
+    lab = Client(url, auth=("ada", "correct horse"), verbose=False, download_files=str(tmp_path))
+    job = lab.submit(prompt="Two people walk.", seconds=1, steps=60, api_name="/generate")
+    seen = []
+    while not job.done():
+        seen += job.status().progress_data or []
+        time.sleep(0.02)
+    assert job.result()[0]["manifest"]["request"]["steps"] == 60
+    steps = [unit.index for unit in seen if unit.desc and unit.desc.startswith("Denoising: step")]
+    assert steps == sorted(steps) and len(set(steps)) > 3 and {unit.length for unit in seen} >= {60}
 
 
 def test_nobody_else_gets_in(url: str) -> None:

@@ -23,9 +23,11 @@ from webdemo.motion import InputError
 
 from .context import PageContext
 from .exports import write_files
-from .words import error_line
+from .words import error_line, progress_line
 
 Answer = tuple[dict[str, Any], list[str]]
+PROGRESS = gr.Progress()
+"""A default value by which Gradio gives a job somewhere to tell its progress; ``job.status()`` has it."""
 
 
 class Endpoint:
@@ -69,10 +71,12 @@ class Endpoint:
             concurrency_limit=None,  # runs wait in the line that they share with the page's
         )
 
-    def _answer(self, make: Callable[[], SamplingRequest | PredictRequest], title: str) -> Answer:
+    def _answer(
+        self, make: Callable[[], SamplingRequest | PredictRequest], title: str, progress: gr.Progress
+    ) -> Answer:
         """Runs a request and writes its files, called after ``title``; every error is one sentence."""
         try:
-            result = self._run(make())
+            result = self._run(make(), progress)
             files = write_files(result, self.page.shelf.folder(), prompt=title)
         except Cancelled:
             raise gr.Error("The run was cancelled: send the request again.", print_exception=False) from None
@@ -91,10 +95,12 @@ class Endpoint:
             } | {"past_frames": result.past_frames}
         return answer, [str(path) for paths in files.values() for path in paths]
 
-    def _run(self, request: SamplingRequest | PredictRequest) -> Result:
+    def _run(self, request: SamplingRequest | PredictRequest, progress: gr.Progress) -> Result:
         for event in self.page.runs.run(f"api-{uuid.uuid4().hex}", request):
             if isinstance(event, Result):
                 return event
+            share = (event.step, event.total) if event.stage == "sample" else (0, 1)
+            progress(share, desc=progress_line(event), unit="steps")
         raise Cancelled("The run ended without a result.")
 
 
@@ -121,6 +127,7 @@ class GenerateEndpoint(Endpoint):
         steps: float,
         damping: float,
         sampler: str,
+        progress: gr.Progress = PROGRESS,
     ) -> Answer:
         """Two people from one sentence.
 
@@ -134,6 +141,7 @@ class GenerateEndpoint(Endpoint):
                 damping=damping, sampler=sampler,
             ),
             prompt,
+            progress,
         )  # fmt: skip
 
 
@@ -176,6 +184,7 @@ class ReactEndpoint(Endpoint):
         model: str,
         mode: str,
         keep_start: bool = False,
+        progress: gr.Progress = PROGRESS,
     ) -> Answer:
         """A second person for a given one, who stays exactly as they are (at 30 frames a second).
 
@@ -194,7 +203,7 @@ class ReactEndpoint(Endpoint):
                 steps=steps, damping=damping, sampler=sampler, model=model, mode=mode, start=pose,
             )  # fmt: skip
 
-        return self._answer(request, prompt.strip() or f"Reaction to {Path(actor or '').stem}")
+        return self._answer(request, prompt.strip() or f"Reaction to {Path(actor or '').stem}", progress)
 
 
 class PredictEndpoint(Endpoint):
@@ -207,11 +216,15 @@ class PredictEndpoint(Endpoint):
                 gr.File(label="the motion of one person or two: .bvh, .npz or .npy, up to 50 MB"),
                 gr.Number(0, label="the second at which the past ends; 0 is the end of the file"),
                 gr.Number(PredictRequest.seconds, label="how much to predict in seconds, 0.5 to 4"),
-                gr.Textbox(PredictRequest.model, label="motion-mlp, mawgan, or still for the last pose, held"),
+                gr.Textbox(
+                    PredictRequest.model, label="motion-mlp, mawgan, or still for the last pose, held"
+                ),
             ]
             self._publish(self.predict, "predict", inputs)
 
-    def predict(self, past: str, marker: float, seconds: float, model: str) -> Answer:
+    def predict(
+        self, past: str, marker: float, seconds: float, model: str, progress: gr.Progress = PROGRESS
+    ) -> Answer:
         """What may come after the past of a motion, for one person or two.
 
         Returns the manifest, timings, notes and file names, and under "prediction" the error (mm) and speed
@@ -226,4 +239,4 @@ class PredictEndpoint(Endpoint):
                 motion=read(Path(past)), marker=marker or None, seconds=seconds, model=model
             )
 
-        return self._answer(request, f"After {Path(past or '').stem}")
+        return self._answer(request, f"After {Path(past or '').stem}", progress)
