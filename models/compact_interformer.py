@@ -8,8 +8,9 @@ input for variety.
 
 What is our own, since it learns from a few hundred clips: a joint has 8 numbers instead of 3 (a frame is
 120 wide); layers are pre-norm with plain dot products and a softmax a row; a frame's decoder input sees the
-encoder's output for the frame that it is to predict; and what is predicted is the step to the next pose,
-not the pose, so no weight is spent on standing where one stands.
+encoder's output for the frame that it is to predict; what is predicted is the step to the next pose, not
+the pose; and a linear part, solved in closed form (:mod:`training.interformer`), makes a first guess of
+that step, which the attention corrects.
 
 Keys and values of past frames are kept in :class:`ReactionDecoder`, so a frame costs one frame's pass.
 
@@ -41,6 +42,9 @@ JOINTS_15 = tuple(find_layout("sbu15").joints)
 ROOT = 2
 """The torso, by which a body is told to be where it is."""
 _ACTOR_FEATURES, _REACTOR_FEATURES = 9, 12
+_AROUND = (-8, -4, 0, 4, 8)
+"""Frames of the actor, from the one to come, that the linear part sees."""
+_LINEAR_FEATURES = len(_AROUND) * 3 * (JOINTS + 1) + 3 * 3 * JOINTS + 4
 _LARGEST = 30.0
 """Of a spatial score; its exponential is still finite."""
 
@@ -204,6 +208,27 @@ def _reactor_features(reactor: Tensor, previous: Tensor, actor: Tensor) -> Tenso
     return torch.cat([reactor, reactor - own, reactor - other, reactor - previous], dim=-1)
 
 
+def _around(actor: Tensor) -> Tensor:
+    """(B, T, J, 3) → (B, T, …) the actor's poses around each frame and their ways to that frame's."""
+    length = actor.shape[1]
+    frames = torch.arange(length)[:, None] + torch.tensor(_AROUND)
+    seen = actor[:, frames.clamp(0, length - 1)]  # (B, T, 5, J, 3)
+    own = seen[..., ROOT, None, :]
+    ways = own - actor[:, :, None, ROOT, None]
+    return torch.cat([seen - own, ways], dim=-2).flatten(2)
+
+
+def _linear_features(
+    reactor: Tensor, previous: Tensor, first: Tensor, actor: Tensor, around: Tensor
+) -> Tensor:
+    """(B, T, F) what the linear part sees: reactor, previous and actor (B, T, J, 3), first (B, J, 3)."""
+    own = reactor[:, :, ROOT, None]
+    parts = [reactor - own, reactor - previous, (first[:, None] - own).expand_as(reactor)]
+    flat = [part.flatten(2) for part in parts]
+    apart = reactor[:, :, ROOT] - actor[:, :, ROOT]
+    return torch.cat([around, *flat, apart, torch.ones_like(apart[..., :1])], dim=-1)
+
+
 class CompactInterFormer(nn.Module):
     """Encoder, decoder, normalisers and the pose in which a reactor begins when none is given.
 
@@ -237,7 +262,11 @@ class CompactInterFormer(nn.Module):
         self.encoder = nn.ModuleList(EncoderLayer(config) for _ in range(config.encoder_layers))
         self.decoder = nn.ModuleList(DecoderLayer(config) for _ in range(config.decoder_layers))
         self.encoder_norm, self.out_norm = nn.LayerNorm(d), nn.LayerNorm(d)
+        self.linear = nn.Linear(_LINEAR_FEATURES, JOINTS * 3, bias=False)
         self.out = nn.Linear(d, JOINTS * 3)
+        for layer in (self.linear, self.out):  # before anything is learned, nobody moves
+            nn.init.zeros_(layer.weight)
+        nn.init.zeros_(self.out.bias)
         self.reach = nn.Parameter(torch.ones(()))
 
     @staticmethod
@@ -302,11 +331,19 @@ class CompactInterFormer(nn.Module):
             memory = layer.remember(encoded)
             memory = Memory(memory.time, tuple(part[:, :length] for part in memory.space))
             x, _ = layer(x, memory, None, (causal, mask[:, None, None, :]), self.graph, distances)
-        return reactor + self.step(x)
+        return reactor + self.step(x, self.linear_features(actor, reactor))
 
-    def step(self, x: Tensor) -> Tensor:
-        """(B, T, D) → (B, T, J, 3) metres to the next pose."""
-        return self.out(self.out_norm(x)).unflatten(-1, (JOINTS, 3)) * self.step_std
+    @staticmethod
+    def linear_features(actor: Tensor, reactor: Tensor) -> Tensor:
+        """(B, T − 1, F) what the linear part sees of all frames, shapes as in :meth:`decode`."""
+        coming = slice(1, reactor.shape[1] + 1)
+        previous = torch.cat([reactor[:, :1], reactor[:, :-1]], dim=1)
+        return _linear_features(reactor, previous, reactor[:, 0], actor[:, coming], _around(actor)[:, coming])
+
+    def step(self, x: Tensor, features: Tensor) -> Tensor:
+        """(B, T, D) and (B, T, F) → (B, T, J, 3) metres to the next pose."""
+        steps = self.linear(features) + self.out(self.out_norm(x))
+        return steps.unflatten(-1, (JOINTS, 3)) * self.step_std
 
     @torch.no_grad()
     def react(self, actor: Tensor, first: Tensor, noise: Tensor, mask: Tensor | None = None) -> Tensor:
@@ -338,13 +375,17 @@ class ReactionDecoder:
         self.mask = None if whole else mask[:, None, None, :]
         self.memories = [layer.remember(self.encoded) for layer in model.decoder]
         self.past: list[tuple[Tensor, Tensor] | None] = [None] * len(self.memories)
+        self.around = _around(actor)
+        self.first: Tensor | None = None
         self.previous: Tensor | None = None
 
     @torch.no_grad()
     def step(self, pose: Tensor) -> Tensor:
         """The pose (B, J, 3) after the next one given, (B, J, 3)."""
         model, i = self.model, self.length
-        previous = pose if self.previous is None else self.previous
+        if self.first is None or self.previous is None:
+            self.first = self.previous = pose
+        previous = self.previous
         coming, reactor = self.actor[:, i + 1 : i + 2], pose[:, None]
         x = model.embed(reactor, previous[:, None], coming, self.encoded[:, i + 1 : i + 2], i)
         distances = model.distances(reactor, coming)
@@ -354,7 +395,10 @@ class ReactionDecoder:
                 x, here, self.past[number], (None, self.mask), model.graph, distances
             )
         self.previous, self.length = pose, i + 1
-        return pose + model.step(x)[:, 0]
+        features = _linear_features(
+            reactor, previous[:, None], self.first, coming, self.around[:, i + 1 : i + 2]
+        )
+        return pose + model.step(x, features)[:, 0]
 
 
 def load_folder(folder: Path) -> tuple[CompactInterFormer, WeightsFolder]:

@@ -8,6 +8,9 @@ Of several such reactions to an actor, each of another noise, only the nearest t
 learned from, so that a noise comes to stand for a way to react instead of for their mean (Li and Malik
 2018, implicit maximum likelihood).
 
+Before the first step the linear part is solved by ridge regression on pasts that go astray, then again on
+those that it makes itself (Ross et al. 2011, dataset aggregation), and stays as it is.
+
 Everything random is drawn from the seed and the step number, so a run that stops goes on as if it had not.
 """
 
@@ -58,7 +61,8 @@ class Settings:
     own_past: share of batches whose past is the network's own. tries: reactions made to every actor there,
     the nearest of which is learned from. drift: metres by which the others' recorded past goes astray in
     the end. jitter: metres of noise on the actor. crop: share of clips that begin late. turn (degrees), size
-    and speed (shares): by how much a scene is changed at most. hold: clips kept to be tried on.
+    and speed (shares): by how much a scene is changed at most. rounds and ridge: how often the linear part is
+    solved, and its penalty. hold: clips kept to be tried on.
     """
 
     joint_width: int = 8
@@ -70,10 +74,10 @@ class Settings:
     dropout: float = 0.1
     batch: int = 32
     steps: int = 600
-    learning_rate: float = 2e-3
-    warmup: int = 50
+    learning_rate: float = 1.5e-3
+    warmup: int = 20
     weight_decay: float = 0.02
-    ema: float = 0.995
+    ema: float = 0.98
     tries: int = 2
     own_past: float = 0.3
     drift: float = 0.1
@@ -85,6 +89,8 @@ class Settings:
     velocity: float = 0.3
     first_frame: float = 1.0
     interaction: float = 0.5
+    rounds: int = 3
+    ridge: float = 1e-4
     hold: int = 24
     seed: int = 0
 
@@ -160,10 +166,13 @@ class Trainer(Loop):
         sizes = {k: v for k, v in asdict(settings).items() if k in names}
         self.model = CompactInterFormer(CompactInterFormerConfig(**sizes))
         self._normalize()
+        if not (out / "last.safetensors").exists():
+            self._solve()
+        self.model.linear.requires_grad_(False)
         self.ema = CompactInterFormer(self.model.config).requires_grad_(False).eval()
         self.ema.load_state_dict(self.model.state_dict())
         self.optimizer = torch.optim.AdamW(
-            self.model.parameters(), lr=settings.learning_rate, weight_decay=settings.weight_decay
+            self.trained(), lr=settings.learning_rate, weight_decay=settings.weight_decay
         )
         weights = [
             next((w for part, w in _IMPORTANCE.items() if part in name), 1.0) for name in SBU15.joint_names
@@ -171,6 +180,9 @@ class Trainer(Loop):
         self.importance = torch.tensor(weights) / np.mean(weights)
         self.settings_json = json.dumps(asdict(settings), sort_keys=True)
         self.step = checkpoint.restore(out / "last.safetensors", self.parts(), self.settings_json)
+
+    def trained(self) -> list[torch.nn.Parameter]:
+        return [p for p in self.model.parameters() if p.requires_grad]
 
     def parts(self) -> dict[str, torch.nn.Module | torch.optim.Optimizer]:
         return {"model": self.model, "ema": self.ema, "optimizer": self.optimizer}
@@ -194,6 +206,38 @@ class Trainer(Loop):
         poses = np.stack([_standing(scene[1, 0]) for scene in self.scenes])
         apart = np.linalg.norm(poses[:, None] - poses[None], axis=-1).sum((1, 2))
         self.model.stance.copy_(torch.from_numpy(poses[int(apart.argmin())]).float())
+
+    @torch.no_grad()
+    def _solve(self) -> None:
+        """Fits the linear part: next poses after recorded pasts gone astray, then after its own, too."""
+        s, model = self.settings, self.model
+        rng, generator = np.random.default_rng((s.seed, 2)), torch.Generator().manual_seed(s.seed)
+        order = sorted(self.scenes, key=lambda scene: scene.shape[1])
+        batches = [
+            collate([varied(scene, s, rng) for scene in order[i : i + s.batch]])
+            for _ in range(s.rounds)
+            for i in range(0, len(order), s.batch)
+        ]
+        size = model.linear.in_features
+        gram = torch.zeros(size, size, dtype=torch.float64)
+        right = torch.zeros(size, model.linear.out_features, dtype=torch.float64)
+        rows = 0
+        model.eval()
+        for turn_ in range(s.rounds):
+            for batch in batches:
+                past = self.astray(batch, generator)
+                if turn_:
+                    noise = torch.zeros(len(past), model.config.noise)
+                    past = model.react(batch.actor, batch.reactor[:, 0], noise, batch.mask)
+                past = past[:, :-1]
+                seen = batch.mask[:, 1:]
+                features = model.linear_features(batch.actor, past)[seen].double()
+                steps = ((batch.reactor[:, 1:] - past) / model.step_std).flatten(2)[seen].double()
+                gram += features.T @ features
+                right += features.T @ steps
+                rows += len(features)
+            penalty = s.ridge * rows * torch.eye(size, dtype=torch.float64)
+            model.linear.weight.copy_(torch.linalg.solve(gram + penalty, right).T)
 
     def learning_rate(self) -> float:
         """Linear warm-up, then a cosine to 2 % of the peak."""
@@ -272,7 +316,7 @@ class Trainer(Loop):
             group["lr"] = self.learning_rate()
         self.optimizer.zero_grad(set_to_none=True)
         total.backward()
-        torch.nn.utils.clip_grad_norm_(self.model.parameters(), 1.0)
+        torch.nn.utils.clip_grad_norm_(self.trained(), 1.0)
         self.optimizer.step()
         self.step += 1
         decay = min(s.ema, (self.step + 1) / (self.step + 10))
@@ -343,10 +387,10 @@ def _run(options: argparse.Namespace) -> None:
     trainer = Trainer([pair.positions for pair in pairs if pair.split == "train"], settings, options.out)
 
     def after() -> None:
-        if trainer.step % 100 == 0:
+        if trainer.step % 50 == 0:
             print(json.dumps({k: round(v, 3) for k, v in trainer.tried().items()}), flush=True)
 
-    trainer.run_logged(minutes=options.minutes, after=after)
+    trainer.run_logged(minutes=options.minutes, every=25, after=after)
     if options.export:
         save_folder(options.export, trainer.ema, trained_steps=trainer.step)
 
