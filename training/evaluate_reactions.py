@@ -24,6 +24,7 @@ from training.deep_gru import accuracy, deep_features, fit, frechet_distance, sp
 from training.shell import exit_code
 from webdemo.formats.files import replacing
 from webdemo.inference import Engine, ReactRequest, Result
+from webdemo.inference.engine import WEIGHTS
 from webdemo.metrics import summary
 from webdemo.motion import Clip, Duet, InputError
 
@@ -44,6 +45,7 @@ METHODS: dict[str, dict[str, Any]] = {
         "steps": 5,
         "start": True,
     },
+    "InterFormer, first pose given": {"model": "interformer", "start": True},
     "InterGen, person to person": {"model": "intergen", "mode": "offline", "steps": 20, "guidance": 1.0},
 }
 READOUTS = ("facing", "distance", "contact_seconds", "foot_skate", "penetration")
@@ -89,6 +91,11 @@ def recorded(
 def zero_velocity(reaction: Reaction, _: int) -> Array:
     """Person b as they stand at first."""
     return np.repeat(reaction.people[1, :1], reaction.people.shape[1], axis=0)
+
+
+def installed() -> list[str]:
+    """The methods whose weights are there."""
+    return [m for m, chosen in METHODS.items() if (WEIGHTS / chosen["model"] / "config.json").is_file()]
 
 
 def react(engine: Engine, reaction: Reaction, seed: int, chosen: dict[str, Any]) -> Array:
@@ -185,7 +192,7 @@ def main(argv: list[str] | None = None) -> int:
     parser.add_argument("--out", type=Path, required=True, help="JSON file for all scores")
     parser.add_argument("--table", type=Path, help="Markdown file for the tables, which are printed too")
     parser.add_argument("--datasets", nargs="+", choices=list(DATASETS), default=list(DATASETS))
-    parser.add_argument("--methods", nargs="*", choices=list(METHODS), default=list(METHODS))
+    parser.add_argument("--methods", nargs="*", choices=list(METHODS), default=installed())
     parser.add_argument("--seeds", type=int, default=3, help="classifiers, each with a seed of its own")
     parser.add_argument("--samples", type=int, default=3, help="reactions to every actor")
     options = parser.parse_args(argv)

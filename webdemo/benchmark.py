@@ -35,6 +35,7 @@ def run_benchmark(*, seconds: float, steps: int, repeats: int, browser: bool = F
     """
     import torch
 
+    from webdemo.benchmark_interformer import measure_interformer
     from webdemo.benchmark_reactions import measure_reactions
     from webdemo.inference.engine import Engine
     from webdemo.inference.requests import GenerateRequest
@@ -73,6 +74,7 @@ def run_benchmark(*, seconds: float, steps: int, repeats: int, browser: bool = F
     }
     figures |= measure_prediction(max(repeats, 5))
     figures |= measure_reactions(repeats)
+    figures |= measure_interformer(max(repeats, 3))
     if browser:
         from webdemo.benchmark_browser import measure_browser
 
