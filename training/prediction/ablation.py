@@ -8,6 +8,7 @@ is not trained again, so that the command can be stopped and goes on.
 from __future__ import annotations
 
 import argparse
+from functools import lru_cache
 from pathlib import Path
 from typing import Any
 
@@ -15,7 +16,7 @@ from training import cmu
 from training.evaluate_prediction import ZERO, Table, evaluate, put_into
 from training.mawgan import LEAN, Settings, Trainer
 from training.prediction.scores import average
-from training.prediction.windows import open_windows
+from training.prediction.windows import Windows, open_windows
 from training.shell import exit_code
 
 _WITHOUT = {"skeleton": 0.0, "bone": 0.0, "position": 0.0}
@@ -38,13 +39,18 @@ _NO_LIMIT = 1e9
 PASTS = ("past-5", "past-10", "past-15", "lean")
 
 
+@lru_cache
+def _windows(data: Path, past: int, future: int) -> Windows:
+    """The training windows, which are read once for all rows of one length."""
+    return open_windows(Settings.windows, data, past, future)
+
+
 def trained(data: Path, out: Path, row: str, steps: int) -> Path:
     """The folder of a row's predictor, which is trained where it is missing."""
     folder = out / row / "predictor"
     if not (folder / "config.json").exists():
         settings = Settings(**{**LEAN, **ROWS[row][1], "steps": steps})
-        windows = open_windows(settings.windows, data, settings.past, settings.future)
-        run = Trainer(windows, settings, out / row)
+        run = Trainer(_windows(data, settings.past, settings.future), settings, out / row)
         run.run_logged(minutes=_NO_LIMIT)
         run.export(folder)
     return folder
