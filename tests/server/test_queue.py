@@ -255,7 +255,7 @@ def test_several_workers_of_a_group(monkeypatch: pytest.MonkeyPatch) -> None:
     wait_for(lambda: people.queue.running == 2 and people.waits.get("c") and people.waits.get("d"))
     assert sorted(names[0] for names in gate.order) == ["a", "b"]
     assert people.waits["c"][0].seconds_left == pytest.approx(6, abs=1.5)  # each worker has a run of 6 s
-    assert people.waits["d"][-1].seconds_left == pytest.approx(9, abs=1.5)
+    assert people.waits["d"][0].seconds_left == pytest.approx(9, abs=1.5)
     gate.open.release(4)
     people.end()
     assert all(isinstance(end, Result) for end in people.ends.values())
