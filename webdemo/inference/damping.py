@@ -54,7 +54,7 @@ class DampingWeights:
     bone: float = 1.0
     foot: float = 2.0
     floor: float = 1.0
-    smooth: float = 4.0
+    smooth: float = 16.0
     overlap: float = 1.0
     contact: float = 0.5
     facing: float = 0.02
