@@ -31,7 +31,7 @@ from .job_tab import QUIET, JobTab, Updates, total
 from .panels import comparison_panel, status
 from .player import busy, show
 from .prediction_view import curves_figure, prediction_payload, without_name
-from .react_tab import FILE_TYPES
+from .upload import chip, example_chips, file_field
 from .words import error_line, seconds
 
 EMPTY_TEXT = "Drop a motion file, or take an example"
@@ -139,19 +139,10 @@ class PredictTab(JobTab):
 
     def _ask(self) -> None:
         with gr.Column(elem_classes="pd-panel pd-ask", min_width=0):
-            self.file = gr.File(
-                label="A motion of one person or two: .bvh, .npz or .npy", file_types=FILE_TYPES,
-                height=112, elem_id="predict-file", elem_classes="pd-file",
-            )  # fmt: skip
+            self.file = file_field("Motion", elem_id="predict-file")
             with gr.Row(elem_classes="pd-chips"):
-                self.chips = [
-                    gr.Button(name, size="sm", elem_classes="pd-chip", min_width=0)
-                    for name, _ in self.examples
-                ]
-                self.take = gr.Button(
-                    "Continue the last result", size="sm", elem_classes="pd-chip", elem_id="predict-take",
-                    min_width=0,
-                )  # fmt: skip
+                self.chips = example_chips(self.examples)
+                self.take = chip("Continue the last result", elem_id="predict-take")
             self._go("Predict")
 
     def more_outputs(self) -> dict[str, gr.components.Component]:
@@ -163,8 +154,8 @@ class PredictTab(JobTab):
         self.changed = [self.source, self.line, self.player, self.marker]
         load = {"outputs": self.changed, "concurrency_limit": 2, "concurrency_id": "predict-read", **QUIET}
         self.file.upload(self.upload, inputs=self.file, **load)
-        for chip, (name, path) in zip(self.chips, self.examples, strict=True):
-            chip.click(partial(self.load, partial(read_source, path, name)), **load)
+        for button, (name, path) in zip(self.chips, self.examples, strict=True):
+            button.click(partial(self.load, partial(read_source, path, name)), **load)
         self.take.click(self.take_result, inputs=self.record, **load)
         for button in (*self.chips, self.take):  # the file is no longer what is used
             button.click(None, outputs=self.file, js="() => null", **QUIET)

@@ -35,10 +35,10 @@ from .live import LiveView
 from .panels import comparison_panel, status
 from .player import busy, show
 from .show import result_payload
+from .upload import chip, example_chips, file_field
 from .words import error_line, seconds, text
 
 EMPTY_TEXT = "Drop a motion file, or take an example"
-FILE_TYPES = [".bvh", ".npz", ".npy", ".skeleton", ".txt"]
 _SHORTEST = 0.1
 """Seconds: the least that the trim's sliders differ in."""
 
@@ -103,22 +103,13 @@ class ReactTab(JobTab):
 
     def _ask(self) -> None:
         with gr.Column(elem_classes="pd-panel pd-ask", min_width=0):
-            self.file = gr.File(
-                label="Given person: .bvh .npz .npy .skeleton .txt", file_types=FILE_TYPES,
-                height=112, elem_id="react-file", elem_classes="pd-file",
-            )  # fmt: skip
+            self.file = file_field("Given person", elem_id="react-file")
             with gr.Row(elem_classes="pd-chips"):
-                self.chips = [
-                    gr.Button(name, size="sm", elem_classes="pd-chip", min_width=0)
-                    for name, _ in self.examples
-                ]
+                self.chips = example_chips(self.examples)
                 self.take = {
-                    person: gr.Button(
-                        f"{person.upper()} of the last result", size="sm", elem_classes="pd-chip",
-                        elem_id=f"react-take-{person}", min_width=0,
-                    )
+                    person: chip(f"{person.upper()} of the last result", elem_id=f"react-take-{person}")
                     for person in ("a", "b")
-                }  # fmt: skip
+                }
             with gr.Column(visible=False, min_width=0, elem_classes="pd-settings") as self.trim:
                 self.person = gr.Radio(
                     [("Person A", "a"), ("Person B", "b")], value="a", label="Which person",
@@ -193,8 +184,8 @@ class ReactTab(JobTab):
             [self.up.input, self.unit.input, self.order.input, self.fps.submit, self.fps.blur],
             self.read_again, inputs=[self.source, *choices], trigger_mode="always_last", **load,
         )  # fmt: skip
-        for chip, (name, path) in zip(self.chips, self.examples, strict=True):
-            chip.click(partial(self.load, partial(read_source, path, name)), **load)
+        for button, (name, path) in zip(self.chips, self.examples, strict=True):
+            button.click(partial(self.load, partial(read_source, path, name)), **load)
         for person, button in self.take.items():
             button.click(partial(self.take_result, person), inputs=self.record, **load)
         for button in (*self.chips, *self.take.values()):  # the file is no longer what is used

@@ -1,0 +1,26 @@
+"""What the tabs that begin with a motion share: a field for a file, and chips for what else can be taken."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from pathlib import Path
+
+import gradio as gr
+
+FILE_TYPES = [".bvh", ".npz", ".npy", ".skeleton", ".txt"]
+
+
+def file_field(label: str, *, elem_id: str) -> gr.File:
+    """A field that takes a motion file."""
+    named = f"{label}: {' '.join(FILE_TYPES)}"
+    return gr.File(label=named, file_types=FILE_TYPES, height=112, elem_id=elem_id, elem_classes="pd-file")
+
+
+def chip(label: str, *, elem_id: str | None = None) -> gr.Button:
+    """A small round button."""
+    return gr.Button(label, size="sm", elem_classes="pd-chip", elem_id=elem_id, min_width=0)
+
+
+def example_chips(examples: Sequence[tuple[str, Path]]) -> list[gr.Button]:
+    """A chip for each (name, file)."""
+    return [chip(name) for name, _ in examples]
