@@ -68,6 +68,8 @@ def markdown(found: dict[str, Table], steps: int) -> str:
     lines = [f"| losses ({steps} steps each) | {head} |", rule]
     lines += [_line("zero velocity", next(iter(found.values()))[ZERO])]
     lines += [_line(ROWS[row][0], _own(found[row])) for row in LOSSES if row in found]
+    if not any(row in found for row in PASTS):
+        return "\n".join(lines) + "\n"
     lines += ["", f"| past ({steps} steps each) | {head} |", rule]
     for row in PASTS:
         if row in found:
