@@ -306,6 +306,18 @@ def test_a_method_is_a_model_and_a_mode(
     assert role["interactive"] is damping["interactive"] is (model == "intergen")
 
 
+def test_the_second_person_can_begin_as_the_files_other_stands(tab: ReactTab, pair: Path, bvh: Path) -> None:
+    source = upload(tab, pair)[-1]["source"]
+    run(tab, source, method="regennet", person="b", start=1.0, end=3.0, keep=True)
+    asked = tab.page.engine.requests[-1]
+    assert np.allclose(asked.start, walking(12.0).a.positions[30], atol=2e-3)
+    for changed in ({"keep": False}, {"keep": True, "method": "intergen"}):
+        run(tab, source, **{"method": "regennet", "person": "b", "start": 1.0, "end": 3.0, **changed})
+        assert tab.page.engine.requests[-1].start is None
+    alone = upload(tab, bvh)[-1]["source"]
+    assert "does not hold two people" in run(tab, alone, method="regennet", keep=True)[-1]["line"]
+
+
 def test_how_a_file_was_read_is_shown_and_can_be_changed(tab: ReactTab, bvh: Path) -> None:
     last = upload(tab, bvh)[-1]
     assert "22 joints matched, m, Y up, 30 frames a second" in last["found"]

@@ -7,6 +7,9 @@ from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any
 
+import numpy as np
+from numpy.typing import NDArray
+
 from webdemo.formats.importing import ImportChoices, import_motion
 from webdemo.inference.actor import at_30_fps, choose_actor
 from webdemo.inference.requests import DEFAULT_STEPS, SECONDS, Result
@@ -82,6 +85,15 @@ class Source:
         clip = self.people[_LETTERS.index(person) if len(self.people) > 1 else 0]
         return replace(choose_actor(clip, start=start, end=end), name=self.name)
 
+    def other_pose(self, person: str, start: float) -> NDArray[np.floating]:
+        """(22, 3) metres: how the other of two stands where the actor's part begins."""
+        if len(self.people) != 2:
+            raise InputError(
+                f"{self.name} does not hold two people: there is no other's start to begin from."
+            )
+        other = _LETTERS[1 - _LETTERS.index(person)]
+        return to_smpl(self._part(other, start, self.seconds).cut(0, 1)).positions[0]
+
     def whole(self, longest: float) -> tuple[Clip, ...]:
         """Everybody on SMPL22, or as they are in the file where that is longer than ``longest`` seconds."""
         return self.people if self.seconds > longest else self._on_smpl("whole", self.people)
@@ -153,7 +165,8 @@ def with_method(fields: Mapping[str, Any], key: str) -> dict[str, Any]:
 def chosen_actor(fields: Mapping[str, Any]) -> dict[str, Any]:
     """A request's fields from those of the page.
 
-    ``source``, ``person``, ``start`` and ``end`` become ``actor``, ``method`` becomes ``model`` and ``mode``.
+    ``source``, ``person``, ``start`` and ``end`` become ``actor``, ``method`` becomes ``model`` and ``mode``,
+    and ``keep`` becomes the start pose for a model that takes one.
 
     Raises:
         InputError: where no source is chosen or the times do not fit.
@@ -161,8 +174,10 @@ def chosen_actor(fields: Mapping[str, Any]) -> dict[str, Any]:
     source: Source | None = fields["source"]
     if source is None:
         raise InputError("There is no actor yet: drop a motion file, or take an example or a result.")
-    own = ("source", "person", "start", "end", "method", "live", "other")
+    own = ("source", "person", "start", "end", "method", "live", "other", "keep")
     actor = source.actor(fields["person"], fields["start"], fields["end"])
     _, model, mode = METHODS[fields.get("method") or "intergen"]
     kept = {name: value for name, value in fields.items() if name not in own}
-    return {"actor": actor, "model": model, "mode": mode, **kept}
+    begins = fields.get("keep") and model != "intergen"
+    start = source.other_pose(fields["person"], fields["start"]) if begins else None
+    return {"actor": actor, "model": model, "mode": mode, "start": start, **kept}

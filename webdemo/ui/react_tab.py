@@ -85,7 +85,7 @@ class ReactTab(JobTab):
             "source": self.source, "person": self.person, "start": self.begin, "end": self.end,
             "role": self.role, "prompt": self.prompt, "seed": self.seed, "samples": self.samples,
             "guidance": self.guidance, "steps": self.steps, "damping": self.damping, "method": self.method,
-            "other": self.other,
+            "other": self.other, "keep": self.keep,
         }  # fmt: skip
         inputs = set(self.controls.values())
         self._wire_run(self.start, [self.go.click, self.prompt.submit], inputs, record)
@@ -139,6 +139,10 @@ class ReactTab(JobTab):
                             value=AUTO, label="Order of 15 joints", elem_id="react-order", min_width=0,
                         )  # fmt: skip
                     self.found = gr.HTML(elem_id="react-found")
+                self.keep = gr.Checkbox(
+                    False, label="Begin as the other person of the file stands (not InterGen)",
+                    elem_id="react-keep", visible=False, min_width=0,
+                )  # fmt: skip
                 self.role = gr.Radio(
                     [("acts first", "a"), ("reacts", "b")], value=ReactRequest.role,
                     label="The given person …", elem_id="react-role",
@@ -190,6 +194,10 @@ class ReactTab(JobTab):
             button.click(partial(self.take_result, person), inputs=self.record, **load)
         for button in (*self.chips, *self.take.values()):  # the file is no longer what is used
             button.click(None, outputs=self.file, js="() => null", **QUIET)
+        self.source.change(
+            lambda source: gr.update(visible=source is not None and len(source.people) == 2, value=False),
+            inputs=self.source, outputs=self.keep, queue=False, **QUIET,
+        )  # fmt: skip
         self.file.clear(self.forget, outputs=changed, queue=False, **QUIET)
         trim = [self.source, self.person, self.begin, self.end]
         gr.on(
