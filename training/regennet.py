@@ -44,6 +44,11 @@ from webdemo.formats.files import replacing
 from webdemo.motion import SMPL22, InputError
 from webdemo.motion.skeleton import FEET
 
+SUMMARY = (
+    "ReGenNet (Xu et al.) at width 192 over spline control points: the one who reacts to a given person, "
+    "online or offline. Research and non-commercial use only."
+)
+"""What the page says of the weights."""
 NEAR = 1.0
 """Metres: joints of the two people that are nearer than this count in the loss on their distance."""
 
@@ -419,7 +424,7 @@ def _run(options: argparse.Namespace) -> None:
     trainer = Trainer(load(options.scenes), settings, options.out, words=options.words)
     trainer.run_logged(minutes=options.minutes)
     if options.export:
-        save_folder(options.export, trainer.ema, trained_steps=trainer.step)
+        save_folder(options.export, trainer.ema, card={"summary": SUMMARY}, trained_steps=trainer.step)
 
 
 if __name__ == "__main__":
