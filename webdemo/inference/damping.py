@@ -52,7 +52,7 @@ class DampingWeights:
     """
 
     bone: float = 1.0
-    foot: float = 2.0
+    foot: float = 20.0
     floor: float = 1.0
     smooth: float = 16.0
     overlap: float = 1.0
