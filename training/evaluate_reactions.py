@@ -18,6 +18,7 @@ from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.stats import t as student
 
 from training.corpus.pairs import load_pairs
 from training.deep_gru import accuracy, deep_features, fit, frechet_distance, spread
@@ -157,8 +158,9 @@ def readouts(test: Sequence[Reaction], people: Sequence[Array]) -> dict[str, flo
 
 
 def interval(values: Sequence[float]) -> tuple[float, float]:
-    """Mean, and half the width of its 95 % interval."""
-    half = 1.96 * np.std(values, ddof=1) / np.sqrt(len(values)) if len(values) > 1 else 0.0
+    """Mean, and half the width of its 95 % interval by Student's t."""
+    few = len(values)
+    half = student.ppf(0.975, few - 1) * np.std(values, ddof=1) / np.sqrt(few) if few > 1 else 0.0
     return float(np.mean(values)), float(half)
 
 
