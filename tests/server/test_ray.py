@@ -80,7 +80,7 @@ def test_the_same_request_gives_the_same_motion(replicas: RayEngine, weights: Pa
     assert_same(result_of(events), result_of(list(Engine(weights).run(WANTED))))
     steps = [event.step for event in events[:-1] if event.stage == "sample"]
     assert steps == [1, 2, 3, 4, 5, 6]
-    with ThreadPoolExecutor(1) as pool:  # as the page asks: Playwright leaves an event loop in the main thread
+    with ThreadPoolExecutor(1) as pool:  # Playwright leaves an event loop in this one
         card = pool.submit(replicas.info).result()
     assert replicas.ready and card["summary"] == "a tiny untrained model"
 
