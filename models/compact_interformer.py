@@ -20,18 +20,15 @@ Positions are in metres in the actor's frame: the actor at the origin at the sta
 
 from __future__ import annotations
 
-import hashlib
-import json
-from dataclasses import asdict, dataclass
+from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
 
 import torch
 import torch.nn.functional as F
 from torch import Tensor, nn
 
 from models.compact import WeightsFolder
-from models.errors import WeightsError
+from models.folder import load_network
 from models.interformer import JOINTS, skeleton_mask
 from models.layers import FeedForward, sinusoids
 from webdemo.motion.layouts import find_layout
@@ -402,27 +399,5 @@ class ReactionDecoder:
 
 
 def load_folder(folder: Path) -> tuple[CompactInterFormer, WeightsFolder]:
-    """The network of a weights folder in float32, eval mode, and the folder.
-
-    Raises WeightsError where a file is missing, altered or of other sizes.
-    """
-    source = WeightsFolder(folder)
-    try:
-        model = CompactInterFormer(CompactInterFormerConfig(**source.meta["model"]))
-        weights = source.tensors("model.safetensors")
-        model.load_state_dict({name: tensor.float() for name, tensor in weights.items()})
-    except (RuntimeError, TypeError, KeyError) as error:
-        raise WeightsError(f"The weights in {folder.name} do not fit their config: restore them.") from error
-    return model.eval().requires_grad_(False), source
-
-
-def save_folder(folder: Path, model: CompactInterFormer, **meta: Any) -> None:
-    """Writes ``model.safetensors`` in float16, then ``config.json`` with its SHA-256."""
-    from safetensors.torch import save
-
-    folder.mkdir(parents=True, exist_ok=True)
-    data = save({name: v.detach().cpu().half().contiguous() for name, v in model.state_dict().items()})
-    (folder / "model.safetensors").write_bytes(data)
-    files = {"model.safetensors": hashlib.sha256(data).hexdigest()}
-    config = {"model": asdict(model.config), "files": files} | meta
-    (folder / "config.json").write_text(json.dumps(config, indent=1) + "\n")
+    """See :func:`models.folder.load_network`."""
+    return load_network(folder, CompactInterFormer, CompactInterFormerConfig)

@@ -33,8 +33,8 @@ from models.compact_interformer import (
     JOINTS_15,
     CompactInterFormer,
     CompactInterFormerConfig,
-    save_folder,
 )
+from models.folder import save_network
 from models.interformer import JOINTS
 from training import checkpoint
 from training.corpus.pairs import load_pairs
@@ -392,7 +392,7 @@ def _run(options: argparse.Namespace) -> None:
 
     trainer.run_logged(minutes=options.minutes, every=25, after=after)
     if options.export:
-        save_folder(options.export, trainer.ema, trained_steps=trainer.step)
+        save_network(options.export, trainer.ema, trained_steps=trainer.step)
 
 
 if __name__ == "__main__":

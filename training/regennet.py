@@ -28,9 +28,9 @@ from models.compact_regennet import (
     LEAD,
     CompactReGenNet,
     CompactReGenNetConfig,
-    save_folder,
 )
 from models.diffusion import NoiseSchedule
+from models.folder import save_network
 from models.intergen_losses import bone_lengths, facing
 from models.motion_tokens import FEATURES, NUM_CONTACTS, mirror_control
 from training import checkpoint
@@ -424,7 +424,7 @@ def _run(options: argparse.Namespace) -> None:
     trainer = Trainer(load(options.scenes), settings, options.out, words=options.words)
     trainer.run_logged(minutes=options.minutes)
     if options.export:
-        save_folder(options.export, trainer.ema, card={"summary": SUMMARY}, trained_steps=trainer.step)
+        save_network(options.export, trainer.ema, card={"summary": SUMMARY}, trained_steps=trainer.step)
 
 
 if __name__ == "__main__":

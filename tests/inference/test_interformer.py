@@ -7,8 +7,9 @@ import numpy as np
 import pytest
 import torch
 
-from models.compact_interformer import CompactInterFormer, CompactInterFormerConfig, save_folder
+from models.compact_interformer import CompactInterFormer, CompactInterFormerConfig
 from models.errors import WeightsError
+from models.folder import save_network
 from webdemo.inference import Cancelled, CancelToken, GenerateRequest, Progress, ReactRequest, Result
 from webdemo.inference.engine import Engine
 from webdemo.inference.interformer import on_smpl22
@@ -38,7 +39,7 @@ def engine(tmp_path_factory: pytest.TempPathFactory) -> Engine:
     model.step_std.fill_(0.01)
     model.stance.copy_(torch.tensor(SMPL22.rest_positions()).float() + torch.tensor([0.0, 0.98, 0.0]))
     folder = tmp_path_factory.mktemp("weights")
-    save_folder(folder / "interformer", model, card={"summary": "a tiny untrained model"})
+    save_network(folder / "interformer", model, card={"summary": "a tiny untrained model"})
     return Engine(folder)
 
 

@@ -8,8 +8,9 @@ import numpy as np
 import pytest
 import torch
 
-from models.compact_regennet import CompactReGenNet, CompactReGenNetConfig, load_folder, save_folder
+from models.compact_regennet import CompactReGenNet, CompactReGenNetConfig, load_folder
 from models.errors import WeightsError
+from models.folder import save_network
 from models.motion_tokens import FEATURES, encode
 from webdemo.inference import Cancelled, CancelToken, GenerateRequest, Progress, ReactRequest, Result
 from webdemo.inference.engine import Engine
@@ -46,7 +47,7 @@ def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
     model.mean.copy_(control.mean(0))
     model.std.fill_(0.1)
     folder = tmp_path_factory.mktemp("weights")
-    save_folder(folder / "regennet", model, card={"summary": "a tiny untrained model"})
+    save_network(folder / "regennet", model, card={"summary": "a tiny untrained model"})
     return folder
 
 

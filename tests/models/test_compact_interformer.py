@@ -12,9 +12,9 @@ from models.compact_interformer import (
     CompactInterFormer,
     CompactInterFormerConfig,
     load_folder,
-    save_folder,
 )
 from models.errors import WeightsError
+from models.folder import save_network
 from models.interformer import JOINTS
 
 
@@ -81,7 +81,7 @@ def test_before_anything_is_learned_nobody_moves(scene):
 
 
 def test_a_folder_holds_the_network_and_says_what_is_wrong_with_it(model, tmp_path: Path):
-    save_folder(tmp_path, model, trained_steps=3)
+    save_network(tmp_path, model, trained_steps=3)
     found, source = load_folder(tmp_path)
     assert source.meta["trained_steps"] == 3 and found.config == model.config
     for name, value in model.state_dict().items():
