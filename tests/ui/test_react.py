@@ -21,6 +21,7 @@ from webdemo.inference.live import LiveRequest
 from webdemo.inference.requests import ReactRequest
 from webdemo.motion import InputError
 from webdemo.motion.layouts import LAYOUTS
+from webdemo.ui.actors import METHODS
 from webdemo.ui.context import PageContext
 from webdemo.ui.examples import example_clips
 from webdemo.ui.exports import Shelf
@@ -304,6 +305,13 @@ def test_a_method_is_a_model_and_a_mode(
     role, steps_slider, damping = tab.fit_method(method)
     assert steps_slider["value"] == steps
     assert role["interactive"] is damping["interactive"] is (model == "intergen")
+
+
+def test_the_steps_of_every_method_can_be_set(tab: ReactTab) -> None:
+    """A value outside of the slider's range is refused by the page before the job begins."""
+    for method in METHODS:
+        _, steps, _ = tab.fit_method(method)
+        assert tab.steps.minimum <= steps["value"] <= tab.steps.maximum, method
 
 
 def test_the_second_person_can_begin_as_the_files_other_stands(tab: ReactTab, pair: Path, bvh: Path) -> None:

@@ -29,7 +29,7 @@ from .player import EMPTY_TEXT, MotionPlayer, busy, show
 from .show import result_payload
 from .words import cancelled_line, error_line, progress_line, seconds
 
-STEPS_SHOWN = (5, 100)
+STEPS_SHOWN = (1, 100)
 """What the slider offers; the API takes more."""
 PACE = 0.1
 """Seconds between two updates of the page while a run goes on."""
