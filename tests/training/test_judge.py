@@ -105,6 +105,19 @@ def test_where_hands_meet_the_side_is_the_hand_that_meets() -> None:
         assert verdict(pair, "side", f"with the {side} hand", **events).passed == (side == "right")
 
 
+@pytest.mark.parametrize("turned", [False, True])
+def test_a_side_to_go_to_is_a_way_and_no_hand(turned: bool) -> None:
+    pair = standing()
+    pair[1, :, :, 0] += np.linspace(0.0, 1.0, pair.shape[1])[:, None]  # b, who looks at a, goes to one side
+    if turned:
+        pair = pair * [-1.0, 1.0, -1.0]
+    found = {
+        side: verdict(pair, "side", f"b walks to the {side}.", side={"b": side}) for side in ("left", "right")
+    }
+    assert found["right"].passed and not found["left"].passed
+    assert found["right"].value == pytest.approx(0.85, abs=1e-6)
+
+
 def test_sides_count_only_where_the_words_name_them() -> None:
     assert named_sides("One waves.", {"side": {"a": "left"}}) == []
     assert named_sides("Both wave with their left hands.", {"side": {"a": "left", "b": "left"}}) == [

@@ -191,6 +191,7 @@ class _Writer:
                 b, nouns = verbs_b, tuple(f"{x} and then {y}" for x in nouns_a for y in nouns_b)
             elif self.family == "together":
                 same = slots.get("act_b", slots["act_a"]) == slots["act_a"]
+                same &= slots.get("side_a") == slots.get("side_b")
                 b = tuple(f"{verb} (too|as well)" for verb in verbs_b) if same else verbs_b
                 joint = (verb for verb in verbs_a if "{other}" not in verb)
                 both = tuple(f"{verb}( together| at the same time|)" for verb in joint) if same else ()

@@ -44,6 +44,7 @@ RAISED_TIME = 0.2
 
 _PEOPLE = ("a", "b")
 _BOWS = ("bow",)
+_WAY = re.compile(r"\bto the (left|right)\b", re.IGNORECASE)
 _RAISES = ("wave", "bye", "raise-hand", "raise-hands", "call", "cheer")
 
 
@@ -144,17 +145,23 @@ def _side(duet: Duet, task: Task) -> Verdict:
 def _lead(duet: Duet, person: str, side: str, task: Task) -> float:
     """Metres by which the named limb does more than it has to; above 0 it is the one that acts.
 
-    Where one hand of a touches b, it is the hand that comes nearer to where it should touch (the other arm
-    may swing as far for balance); else the limb that moves more relative to the body.
+    Where the side is a way to go ("walks off to the left"), it is how far the person gets to that side, as
+    they see it before they go. Where one hand of a touches b, it is the hand that comes nearer to where it
+    should touch (the other arm may swing as far for balance); else the limb that moves more relative to the
+    body.
     """
     other = "left" if side == "right" else "right"
     touches = task.events.get("contact") or ()
     if person == "a" and side != "both" and len(touches) == 1 and touches[0]["a"].endswith("wrist"):
         gap = {s: min(_gap(duet, f"{s}_wrist", j) for j in _either(touches[0]["b"])) for s in (side, other)}
         return gap[other] - gap[side]
+    positions = duet.people[_PEOPLE.index(person)].positions.astype(np.float64)
+    if _WAY.search(task.caption):
+        path = positions[:, SMPL22.index("pelvis")]
+        aside = (path[-1] - path[0]) @ heading_matrix(heading(positions[:1])[0])[:, 0]
+        return float(aside if side == "left" else -aside) - LEAST_MOVE
     legs = re.search(r"\b(kick\w*|foot|leg)\b", task.caption, flags=re.IGNORECASE)
     joint, root = ("ankle", "hip") if legs else ("wrist", "shoulder")
-    positions = duet.people[_PEOPLE.index(person)].positions.astype(np.float64)
     travel = {s: limb_travel(positions, f"{s}_{joint}", f"{s}_{root}") for s in ("left", "right")}
     if side == "both":
         return min(travel.values()) - max(LEAST_MOVE, BOTH_SHARE * max(travel.values()))

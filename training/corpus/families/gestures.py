@@ -75,7 +75,7 @@ def wave_back(rng: Rng, library: Library) -> Scene:
         side=first.side if rng.random() < 0.6 else None,
         style=style if rng.random() < 0.6 else None,
     )
-    slots = {"side_b": second.side} if second.side != first.side and rng.random() < 0.3 else None
+    slots = {"side_b": second.side} if second.side != first.side and rng.random() < 0.6 else None
     scene = pair(rng, library, "wave-back", first, second, slots=slots, distance=(1.2, 3.2))
     return scene
 

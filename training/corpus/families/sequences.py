@@ -38,7 +38,7 @@ def ordered(rng: Rng, library: Library) -> Scene:
     b = oppose(rng, a, b, gap)
     sides = {}
     for person, name, take in zip("ab", names, (first, second), strict=True):
-        if name in SIDED and take.side and rng.random() < 0.6:
+        if name in SIDED and take.side and rng.random() < 0.75:
             sides[person] = take.side
     events = {"order": list(names), "facing": True, "distance": "keep"} | ({"side": sides} if sides else {})
     slots = {
@@ -56,7 +56,9 @@ def sequence(rng: Rng, library: Library) -> Scene:
     """a does two things one after the other while b watches."""
     names = _two(rng)
     style = _style(rng, library, names[0])
-    first, second = (gesture(rng, library, name, style=style) for name in names)
+    first = gesture(rng, library, names[0], style=style)
+    side = first.side if set(names) <= set(SIDED) else None
+    second = gesture(rng, library, names[1], side=side, style=style)
     start = seconds(rng, 0.05, 0.5)
     gap = start + len(first) + int(rng.integers(0, 12))
     a, _ = act(
@@ -68,31 +70,37 @@ def sequence(rng: Rng, library: Library) -> Scene:
     )
     b = oppose(rng, a, waiting(rng, library, len(a)), rng.uniform(1.2, 2.8))
     manner_a = first.style if first.style == second.style else None
+    # One side for the sentence: that of the gesture of one hand, or of both where two are of one hand.
+    sides = {take.side for name, take in zip(names, (first, second), strict=True) if name in SIDED}
+    side = sides.pop() if len(sides) == 1 and "raise-hands" not in names and rng.random() < 0.6 else None
+    said = {"side": {"a": side}} if side else {}
     return finish(
         rng,
         library,
         "sequence",
         a,
         b,
-        slots={"first": names[0], "second": names[1], "manner_a": manner_a},
-        events={"order": list(names), "facing": True, "distance": "keep"},
+        slots={"first": names[0], "second": names[1], "manner_a": manner_a, "side_a": side},
+        events={"order": list(names), "facing": True, "distance": "keep"} | said,
         most=285,
     )
 
 
-@register("together", needs=("bow", "wave", "raise-hand", "bye"), weight=1.5)
+@register("together", needs=("bow", "wave", "raise-hand", "bye"), weight=6.0)
 def together(rng: Rng, library: Library) -> Scene:
-    """Both act at the same time: the same gesture, or each their own."""
+    """Both act at the same time: the same gesture, by the same hand or each by their own, or two gestures."""
     names = (pick(rng, GESTURES),) * 2 if rng.random() < 0.5 else _two(rng)
     first = gesture(rng, library, names[0], style=_style(rng, library, names[0]))
     side = first.side if names[0] == names[1] and first.side else None
+    if side in ("left", "right") and rng.random() < 0.5:
+        side = "left" if side == "right" else "right"
     second = gesture(rng, library, names[1], side=side, style=first.style)
     sides = {
         f"side_{p}": t.side
         for p, n, t in zip("ab", names, (first, second), strict=True)
         if n in SIDED and t.side
     }
-    if rng.random() < 0.4:
+    if rng.random() < 0.25:
         sides = {}
     return pair(
         rng,
