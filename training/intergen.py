@@ -232,7 +232,9 @@ class Trainer(Loop):
         self.model = build(settings, self.data).to(device)
         if init is not None:
             if init.is_dir():
-                self.model.load_state_dict(WeightsFolder(init).model().state_dict())
+                shipped = WeightsFolder(init).model()
+                shipped.touch_reader = None  # `training.touch` fits a new one to what will be trained here
+                self.model.load_state_dict(shipped.state_dict())
             else:
                 checkpoint.restore_part(init, "ema", self.model)
         self.ema = build(settings, self.data).to(device).requires_grad_(False)

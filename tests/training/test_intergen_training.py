@@ -12,6 +12,7 @@ from PIL import Image
 from safetensors import SafetensorError
 from safetensors.torch import load_file
 
+from models.compact import WeightsFolder
 from models.motion_tokens import decode
 from training import checkpoint, export, intergen, prepare
 from training.intergen import Settings, Trainer
@@ -258,6 +259,20 @@ def test_contact_sheets_are_written_as_it_goes(
     sheets = sorted((tmp_path / "samples").iterdir())
     assert [sheet.name for sheet in sheets] == ["0000001.png", "0000002.png"]
     assert Image.open(sheets[0]).size[0] > 800
+
+
+def test_a_shipped_network_can_be_trained_on(
+    scenes: Path, trained: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr("training.touch.RARE", 1)
+    out = tmp_path / "weights"
+    assert export.main(["--run", str(trained), "--scenes", str(scenes), "--out", str(out)]) == 0
+    shipped = WeightsFolder(out).model()
+    assert shipped.touch_reader is not None
+    ours = begin(scenes, tmp_path / "on", init=out).model.state_dict()
+    theirs = shipped.state_dict()
+    assert set(theirs) - set(ours) == {key for key in theirs if key.startswith("touch_reader.")}
+    assert all(torch.equal(value, theirs[key]) for key, value in ours.items())
 
 
 def test_export_without_a_run_is_refused_in_one_line(
