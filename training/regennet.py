@@ -28,8 +28,10 @@ from models.compact_regennet import (
     LEAD,
     CompactReGenNet,
     CompactReGenNetConfig,
+    load_folder,
 )
 from models.diffusion import NoiseSchedule
+from models.errors import load_strictly
 from models.folder import save_network
 from models.intergen_losses import bone_lengths, facing
 from models.motion_tokens import FEATURES, NUM_CONTACTS, mirror_control
@@ -289,14 +291,22 @@ class Trainer(Loop):
 
     Args:
         words: a shipped InterGen's folder, whose text conditioner is taken over.
+        init: a shipped ReGenNet's folder, whose weights, normalisers and text conditioner a new run begins
+            with; ``words`` then counts nothing.
     """
 
-    def __init__(self, scenes: Scenes, settings: Settings, out: Path, *, words: Path) -> None:
+    def __init__(
+        self, scenes: Scenes, settings: Settings, out: Path, *, words: Path, init: Path | None = None
+    ) -> None:
         self.settings, self.out = settings, out
         out.mkdir(parents=True, exist_ok=True)
         torch.manual_seed(settings.seed)
-        source = WeightsFolder(words)
-        conditioner = source.model().conditioner
+        if init is None:
+            source = WeightsFolder(words)
+            conditioner = source.model().conditioner
+        else:
+            shipped, source = load_folder(init)
+            conditioner = shipped.conditioner
         sizes = ("latent_dim", "ff_size", "num_layers", "num_heads", "window")
         self.config = CompactReGenNetConfig(
             **{name: getattr(settings, name) for name in sizes},
@@ -307,9 +317,12 @@ class Trainer(Loop):
         self.data = Data(scenes, settings)
         self.conditions = Conditions(self.data.captions(), conditioner, out, source.digest)
         self.model = CompactReGenNet(self.config)
-        self.model.conditioner.load_state_dict(conditioner.state_dict())
+        if init is None:
+            self.model.conditioner.load_state_dict(conditioner.state_dict())
+            self.data.normalize(self.model)
+        else:
+            load_strictly(self.model, shipped.state_dict(), network=init.name)
         self.model.conditioner.requires_grad_(False)
-        self.data.normalize(self.model)
         self.ema = CompactReGenNet(self.config).requires_grad_(False)
         self.ema.load_state_dict(self.model.state_dict())
         self.trained = [p for p in self.model.parameters() if p.requires_grad]
@@ -408,6 +421,7 @@ def main(argv: list[str] | None = None) -> int:
         "--words", type=Path, default=Path("models/weights/intergen"),
         help="a shipped InterGen, whose text conditioner is taken over",
     )  # fmt: skip
+    parser.add_argument("--init", type=Path, help="begin with a shipped ReGenNet, its words and all")
     parser.add_argument(
         "--minutes", type=float, default=1e9, help="stop after this long; start again to go on"
     )
@@ -421,7 +435,7 @@ def main(argv: list[str] | None = None) -> int:
 
 def _run(options: argparse.Namespace) -> None:
     settings = Settings(**{f.name: getattr(options, f.name) for f in fields(Settings)})
-    trainer = Trainer(load(options.scenes), settings, options.out, words=options.words)
+    trainer = Trainer(load(options.scenes), settings, options.out, words=options.words, init=options.init)
     trainer.run_logged(minutes=options.minutes)
     if options.export:
         save_network(options.export, trainer.ema, card={"summary": SUMMARY}, trained_steps=trainer.step)

@@ -10,6 +10,7 @@ from safetensors.torch import load_file
 from models.compact import CaptionBank, CompactConfig, CompactInterGen
 from models.compact import save_folder as save_intergen
 from models.compact_regennet import load_folder
+from models.folder import save_network
 from models.intergen_losses import facing
 from models.motion_tokens import FEATURES, TokenLayout, decode, encode
 from training import prepare, regennet
@@ -176,3 +177,17 @@ def test_wrong_settings_are_told(wrong: dict, says: str) -> None:
 def test_too_few_scenes_are_told(scenes: Scenes, words: Path, tmp_path: Path) -> None:
     with pytest.raises(InputError, match="do not fill a batch"):
         Trainer(scenes, replace(SETTINGS, batch=500), tmp_path, words=words)
+
+
+def test_init_begins_with_a_shipped_network(scenes: Scenes, words: Path, tmp_path: Path) -> None:
+    trained = take(Trainer(scenes, SETTINGS, tmp_path / "a", words=words), 2)
+    save_network(tmp_path / "shipped", trained.ema)
+    begun = Trainer(scenes, SETTINGS, tmp_path / "b", words=tmp_path / "none", init=tmp_path / "shipped")
+    shipped = load_folder(tmp_path / "shipped")[0].state_dict()
+    assert begun.step == 0
+    for model in (begun.model, begun.ema):
+        assert all(torch.equal(value, shipped[name]) for name, value in model.state_dict().items())
+    assert len(begun.trained) == len(trained.trained), "the words' conditioner stays as it is"
+    wider = replace(SETTINGS, latent_dim=32)
+    with pytest.raises(InputError, match="of one size"):
+        Trainer(scenes, wider, tmp_path / "c", words=words, init=tmp_path / "shipped")
