@@ -12,7 +12,7 @@ encoder's output for the frame that it is to predict; what is predicted is the s
 the pose; and a linear part, solved in closed form (:mod:`training.interformer`), makes a first guess of
 that step, which the attention corrects.
 
-Keys and values of past frames are kept in :class:`ReactionDecoder`, so a frame costs one frame's pass.
+A reaction is made by :class:`models.interformer_decoding.ReactionDecoder`, frame by frame.
 
 Shapes: B batch, T frames, J = 15 joints in the order of SBU's files, W numbers a joint, D = J · W.
 Positions are in metres in the actor's frame: the actor at the origin at the start, facing +Z, floor at 0.
@@ -41,8 +41,8 @@ ROOT = 2
 _ACTOR_FEATURES, _REACTOR_FEATURES = 9, 12
 _AROUND = (-8, -4, 0, 4, 8)
 """Frames of the actor, from the one to come, that the linear part sees."""
-_LINEAR_FEATURES = len(_AROUND) * 3 * (JOINTS + 1) + 3 * 3 * JOINTS + 4
-_LARGEST = 30.0
+LINEAR_FEATURES = len(_AROUND) * 3 * (JOINTS + 1) + 3 * 3 * JOINTS + 4
+LARGEST = 30.0
 """Of a spatial score; its exponential is still finite."""
 
 
@@ -123,7 +123,7 @@ class SpatialAttention(nn.Module):
         """x (B, T, D), graph (J, J) of 0 and 1, distances (B, T, 1, J, J) → (B, T, D)."""
         query = _split(self.query(x.unflatten(-1, (JOINTS, self.width))), self.heads)
         # A softmax written out: PyTorch's takes several times as long for rows as short as a skeleton.
-        weights = ((query * self.scale) @ keys.mT).clamp(max=_LARGEST).exp()
+        weights = ((query * self.scale) @ keys.mT).clamp(max=LARGEST).exp()
         weights = weights if graph is None else weights * graph
         weights = weights / weights.sum(-1, keepdim=True)
         if distances is not None:
@@ -149,14 +149,6 @@ class EncoderLayer(nn.Module):
         return x + self.drop(self.ff(self.norm_2(x)))
 
 
-@dataclass(frozen=True)
-class Memory:
-    """What a decoder layer keeps of the actor: keys and values over time, and of each frame's joints."""
-
-    time: tuple[Tensor, Tensor]
-    space: tuple[Tensor, Tensor]
-
-
 class DecoderLayer(nn.Module):
     def __init__(self, config: CompactInterFormerConfig) -> None:
         super().__init__()
@@ -167,32 +159,22 @@ class DecoderLayer(nn.Module):
         self.ff = FeedForward(d, config.ff_size, dropout=config.dropout)
         self.drop = nn.Dropout(config.dropout)
 
-    def remember(self, encoded: Tensor) -> Memory:
-        """What all frames need of the encoder's output (B, T, D); joints are those of the frame to come."""
-        return Memory(self.other_time.remember(encoded), self.other_space.remember(encoded[:, 1:]))
-
     def forward(
-        self,
-        x: Tensor,
-        memory: Memory,
-        past: tuple[Tensor, Tensor] | None,
-        masks: tuple[Tensor | None, Tensor | None],
-        graph: Tensor,
-        distances: Tensor,
-    ) -> tuple[Tensor, tuple[Tensor, Tensor]]:
-        """x (B, T, D) after ``past`` keys and values → (B, T, D) and the keys and values to keep."""
+        self, x: Tensor, encoded: Tensor, causal: Tensor, mask: Tensor, graph: Tensor, distances: Tensor
+    ) -> Tensor:
+        """x (B, T, D), encoded (B, S, D) with S > T: frame t sees the joints of the actor's frame t + 1."""
         y = self.norm_1(x)
-        kept = self.time.remember(y)
-        if past is not None:
-            kept = (torch.cat([past[0], kept[0]], dim=2), torch.cat([past[1], kept[1]], dim=2))
-        both = self.time(y, *kept, masks[0]) + self.space(y, *self.space.remember(y), graph=graph)
-        x = x + self.drop(both)
-        y = self.norm_2(x)
-        both = self.other_time(y, *memory.time, masks[1]) + self.other_space(
-            y, *memory.space, distances=distances
+        both = self.time(y, *self.time.remember(y), causal) + self.space(
+            y, *self.space.remember(y), graph=graph
         )
         x = x + self.drop(both)
-        return x + self.drop(self.ff(self.norm_3(x))), kept
+        y = self.norm_2(x)
+        coming = encoded[:, 1 : x.shape[1] + 1]
+        both = self.other_time(y, *self.other_time.remember(encoded), mask) + self.other_space(
+            y, *self.other_space.remember(coming), distances=distances
+        )
+        x = x + self.drop(both)
+        return x + self.drop(self.ff(self.norm_3(x)))
 
 
 def _actor_features(actor: Tensor) -> Tensor:
@@ -205,7 +187,7 @@ def _reactor_features(reactor: Tensor, previous: Tensor, actor: Tensor) -> Tenso
     return torch.cat([reactor, reactor - own, reactor - other, reactor - previous], dim=-1)
 
 
-def _around(actor: Tensor) -> Tensor:
+def frames_around(actor: Tensor) -> Tensor:
     """(B, T, J, 3) → (B, T, …) the actor's poses around each frame and their ways to that frame's."""
     length = actor.shape[1]
     frames = torch.arange(length)[:, None] + torch.tensor(_AROUND)
@@ -215,9 +197,7 @@ def _around(actor: Tensor) -> Tensor:
     return torch.cat([seen - own, ways], dim=-2).flatten(2)
 
 
-def _linear_features(
-    reactor: Tensor, previous: Tensor, first: Tensor, actor: Tensor, around: Tensor
-) -> Tensor:
+def linear_input(reactor: Tensor, previous: Tensor, first: Tensor, actor: Tensor, around: Tensor) -> Tensor:
     """(B, T, F) what the linear part sees: reactor, previous and actor (B, T, J, 3), first (B, J, 3)."""
     own = reactor[:, :, ROOT, None]
     parts = [reactor - own, reactor - previous, (first[:, None] - own).expand_as(reactor)]
@@ -259,7 +239,7 @@ class CompactInterFormer(nn.Module):
         self.encoder = nn.ModuleList(EncoderLayer(config) for _ in range(config.encoder_layers))
         self.decoder = nn.ModuleList(DecoderLayer(config) for _ in range(config.decoder_layers))
         self.encoder_norm, self.out_norm = nn.LayerNorm(d), nn.LayerNorm(d)
-        self.linear = nn.Linear(_LINEAR_FEATURES, JOINTS * 3, bias=False)
+        self.linear = nn.Linear(LINEAR_FEATURES, JOINTS * 3, bias=False)
         self.out = nn.Linear(d, JOINTS * 3)
         for layer in (self.linear, self.out):  # before anything is learned, nobody moves
             nn.init.zeros_(layer.weight)
@@ -325,9 +305,7 @@ class CompactInterFormer(nn.Module):
         causal = torch.ones(length, length, dtype=torch.bool, device=x.device).tril()
         distances = self.distances(reactor, coming)
         for layer in self.decoder:
-            memory = layer.remember(encoded)
-            memory = Memory(memory.time, tuple(part[:, :length] for part in memory.space))
-            x, _ = layer(x, memory, None, (causal, mask[:, None, None, :]), self.graph, distances)
+            x = layer(x, encoded, causal, mask[:, None, None, :], self.graph, distances)
         return reactor + self.step(x, self.linear_features(actor, reactor))
 
     @staticmethod
@@ -335,67 +313,13 @@ class CompactInterFormer(nn.Module):
         """(B, T − 1, F) what the linear part sees of all frames, shapes as in :meth:`decode`."""
         coming = slice(1, reactor.shape[1] + 1)
         previous = torch.cat([reactor[:, :1], reactor[:, :-1]], dim=1)
-        return _linear_features(reactor, previous, reactor[:, 0], actor[:, coming], _around(actor)[:, coming])
+        around = frames_around(actor)[:, coming]
+        return linear_input(reactor, previous, reactor[:, 0], actor[:, coming], around)
 
     def step(self, x: Tensor, features: Tensor) -> Tensor:
         """(B, T, D) and (B, T, F) → (B, T, J, 3) metres to the next pose."""
         steps = self.linear(features) + self.out(self.out_norm(x))
         return steps.unflatten(-1, (JOINTS, 3)) * self.step_std
-
-    @torch.no_grad()
-    def react(self, actor: Tensor, first: Tensor, noise: Tensor, mask: Tensor | None = None) -> Tensor:
-        """The reaction (B, T, J, 3) to a window of the actor (B, T, J, 3), from a first pose (B, J, 3)."""
-        decoder = ReactionDecoder(self, actor, noise, mask)
-        made = [first]
-        for _ in range(actor.shape[1] - 1):
-            made.append(decoder.step(made[-1]))
-        return torch.stack(made, dim=1)
-
-
-class ReactionDecoder:
-    """The reaction to one window, a frame at a time; keys and values of past frames are kept.
-
-    Args:
-        model: in eval mode.
-        actor: (B, T, J, 3) metres.
-        noise: (B, noise).
-        mask: (B, T) bool, false at padding.
-    """
-
-    def __init__(
-        self, model: CompactInterFormer, actor: Tensor, noise: Tensor, mask: Tensor | None = None
-    ) -> None:
-        self.model, self.actor, self.length = model, actor, 0
-        whole = mask is None
-        mask = torch.ones(actor.shape[:2], dtype=torch.bool) if mask is None else mask
-        self.encoded = model.encode(actor, noise, mask)
-        self.mask = None if whole else mask[:, None, None, :]
-        self.memories = [layer.remember(self.encoded) for layer in model.decoder]
-        self.past: list[tuple[Tensor, Tensor] | None] = [None] * len(self.memories)
-        self.around = _around(actor)
-        self.first: Tensor | None = None
-        self.previous: Tensor | None = None
-
-    @torch.no_grad()
-    def step(self, pose: Tensor) -> Tensor:
-        """The pose (B, J, 3) after the next one given, (B, J, 3)."""
-        model, i = self.model, self.length
-        if self.first is None or self.previous is None:
-            self.first = self.previous = pose
-        previous = self.previous
-        coming, reactor = self.actor[:, i + 1 : i + 2], pose[:, None]
-        x = model.embed(reactor, previous[:, None], coming, self.encoded[:, i + 1 : i + 2], i)
-        distances = model.distances(reactor, coming)
-        for number, (layer, memory) in enumerate(zip(model.decoder, self.memories, strict=True)):
-            here = Memory(memory.time, tuple(part[:, i : i + 1] for part in memory.space))
-            x, self.past[number] = layer(
-                x, here, self.past[number], (None, self.mask), model.graph, distances
-            )
-        self.previous, self.length = pose, i + 1
-        features = _linear_features(
-            reactor, previous[:, None], self.first, coming, self.around[:, i + 1 : i + 2]
-        )
-        return pose + model.step(x, features)[:, 0]
 
 
 def load_folder(folder: Path) -> tuple[CompactInterFormer, WeightsFolder]:

@@ -38,6 +38,7 @@ JOINTS, AXES = 15, 3
 WIDTH = JOINTS * AXES
 DISTANCE_WEIGHT = 2.0
 _HIDDEN = -1e9
+KeysValues = tuple[Tensor, Tensor]
 
 
 @dataclass(frozen=True)
@@ -106,8 +107,8 @@ class Positions(nn.Module):
         even = torch.arange(WIDTH) % 2 == 0
         self.register_buffer("pe", torch.where(even, angles.sin(), angles.cos())[None])
 
-    def forward(self, x: Tensor) -> Tensor:
-        return x * math.sqrt(WIDTH) + self.pe[:, : x.shape[1]]
+    def forward(self, x: Tensor, first: int = 0) -> Tensor:
+        return x * math.sqrt(WIDTH) + self.pe[:, first : first + x.shape[1]]
 
 
 class TemporalAttention(nn.Module):
@@ -118,14 +119,20 @@ class TemporalAttention(nn.Module):
         self.num_heads = num_heads
         self.q_linear, self.v_linear, self.k_linear, self.out = (nn.Linear(WIDTH, WIDTH) for _ in range(4))
 
-    def forward(self, query: Tensor, memory: Tensor, mask: Tensor) -> Tensor:
-        """query (B, T, 45), memory (B, S, 45), mask (B or 1, T or 1, S) bool → (B, T, 45)."""
-        q, k, v = (
-            linear(x).unflatten(-1, (self.num_heads, -1)).transpose(1, 2)
-            for linear, x in ((self.q_linear, query), (self.k_linear, memory), (self.v_linear, memory))
-        )
-        scores = (q @ k.mT / math.sqrt(q.shape[-1])).abs().masked_fill(~mask[:, None], _HIDDEN)
+    def remember(self, memory: Tensor) -> KeysValues:
+        """Keys and values of frames (B, S, 45), each (B, heads, S, 45 / heads)."""
+        return self._split(self.k_linear(memory)), self._split(self.v_linear(memory))
+
+    def forward(self, query: Tensor, memory: KeysValues, mask: Tensor | None) -> Tensor:
+        """query (B, T, 45), mask (B or 1, T or 1, S) bool, none where all is seen → (B, T, 45)."""
+        q, (k, v) = self._split(self.q_linear(query)), memory
+        scores = (q @ k.mT / math.sqrt(q.shape[-1])).abs()
+        if mask is not None:
+            scores = scores.masked_fill(~mask[:, None], _HIDDEN)
         return self.out((scores.softmax(-1) @ v).transpose(1, 2).flatten(2))
+
+    def _split(self, x: Tensor) -> Tensor:
+        return x.unflatten(-1, (self.num_heads, -1)).transpose(1, 2)
 
 
 class SpatialAttention(nn.Module):
@@ -136,16 +143,21 @@ class SpatialAttention(nn.Module):
         self.q_linear_sp, self.v_linear_sp, self.k_linear_sp = (nn.Linear(AXES, AXES) for _ in range(3))
         self.out = nn.Linear(WIDTH, WIDTH)
 
+    def remember(self, memory: Tensor) -> KeysValues:
+        """Keys and values of frames (B, T, 45), each (B, T, 3, J)."""
+        joints = memory.unflatten(-1, (AXES, JOINTS)).mT
+        return self.k_linear_sp(joints).mT, self.v_linear_sp(joints).mT
+
     def forward(
-        self, query: Tensor, memory: Tensor, *, graph: Tensor | None = None, distances: Tensor | None = None
+        self,
+        query: Tensor,
+        memory: KeysValues,
+        *,
+        graph: Tensor | None = None,
+        distances: Tensor | None = None,
     ) -> Tensor:
-        """query, memory (B, T, 45), graph (J, J) bool, distances (B, T, J, J) → (B, T, 45)."""
-        q, k, v = (
-            linear(x.unflatten(-1, (AXES, JOINTS)).mT).mT
-            for linear, x in (
-                (self.q_linear_sp, query), (self.k_linear_sp, memory), (self.v_linear_sp, memory)
-            )
-        )  # fmt: skip
+        """query (B, T, 45), graph (J, J) bool, distances (B, T, J, J) → (B, T, 45)."""
+        q, (k, v) = self.q_linear_sp(query.unflatten(-1, (AXES, JOINTS)).mT).mT, memory
         scores = (q[..., :, None] * k[..., None, :]).abs()  # heads are of width 1: (B, T, 3, J, J)
         if graph is not None:
             scores = scores.masked_fill(~graph, _HIDDEN)
@@ -178,8 +190,8 @@ class EncoderLayer(nn.Module):
 
     def forward(self, x: Tensor, mask: Tensor, graph: Tensor) -> Tensor:
         y = self.norm_1(x)
-        time = x + self.attn(y, y, mask)
-        space = x + self.attn_space(y, y, graph=graph)
+        time = x + self.attn(y, self.attn.remember(y), mask)
+        space = x + self.attn_space(y, self.attn_space.remember(y), graph=graph)
         return time + space + self.ff(self.norm_2(time) + self.norm_space_1(space))
 
 
@@ -195,31 +207,88 @@ class DecoderLayer(nn.Module):
         self.ff = PositionwiseFeedForward(config.ff_size)
 
     def forward(
-        self, x: Tensor, memory: Tensor, distances: Tensor, source_mask: Tensor, mask: Tensor, graph: Tensor
+        self,
+        x: Tensor,
+        kept: LayerMemory,
+        distances: Tensor,
+        source_mask: Tensor,
+        mask: Tensor | None,
+        graph: Tensor,
     ) -> Tensor:
+        """x (B, T, 45), the frames after those that are kept already."""
         y = self.norm_1(x)
-        time = self.norm_2(x + self.attn_1(y, y, mask))
-        space = self.norm_space_1(x + self.attn_space_1(y, y, graph=graph))
-        time = self.norm_3(time + self.attn_2(time, memory, source_mask))
-        at_once = memory[:, : x.shape[1]]
-        space = self.norm_space_2(space + self.attn_space_2(space, at_once, distances=distances))
+        joints = tuple(part[:, kept.length : kept.length + x.shape[1]] for part in kept.joints)
+        time = self.norm_2(x + self.attn_1(y, kept.extended(self.attn_1.remember(y)), mask))
+        space = self.norm_space_1(x + self.attn_space_1(y, self.attn_space_1.remember(y), graph=graph))
+        time = self.norm_3(time + self.attn_2(time, kept.actor, source_mask))
+        space = self.norm_space_2(space + self.attn_space_2(space, joints, distances=distances))
         both = time + space
         return both + self.ff(both)
 
 
-class Stack(nn.Module):
+class LayerMemory:
+    """What a decoder layer keeps while it goes over the target: keys and values.
+
+    Attributes:
+        actor: over time, of all frames of the encoder's output (B, S, 45).
+        joints: of the joints of its first T frames, T the target's.
+        length: target frames seen so far, of which those over time are kept in room for T.
+    """
+
+    def __init__(self, layer: DecoderLayer, memory: Tensor, frames: int) -> None:
+        self.actor = layer.attn_2.remember(memory)
+        self.joints = layer.attn_space_2.remember(memory[:, :frames])
+        self.frames, self.length = frames, 0
+        self._room: KeysValues | None = None
+
+    def extended(self, new: KeysValues) -> KeysValues:
+        """Keys and values of the target so far, with those of its next frames (B, heads, …, 45 / heads)."""
+        begun, self.length = self.length, self.length + new[0].shape[2]
+        if new[0].shape[2] == self.frames:
+            return new
+        if self._room is None:
+            size, heads, _, width = new[0].shape
+            self._room = new[0].new_empty(2, size, heads, self.frames, width).unbind()
+        for room, part in zip(self._room, new, strict=True):
+            room[:, :, begun : self.length] = part
+        keys, values = (room[:, :, : self.length] for room in self._room)
+        return keys, values
+
+
+class Encoder(nn.Module):
     """Positions, layers, a last norm."""
 
-    def __init__(self, layer: type[EncoderLayer] | type[DecoderLayer], config: InterFormerConfig) -> None:
+    def __init__(self, config: InterFormerConfig) -> None:
         super().__init__()
         self.pe = Positions(config.max_length)
-        self.layers = nn.ModuleList(layer(config) for _ in range(config.num_layers))
+        self.layers = nn.ModuleList(EncoderLayer(config) for _ in range(config.num_layers))
         self.norm = Norm()
 
-    def forward(self, x: Tensor, *others: Tensor) -> Tensor:
+    def forward(self, x: Tensor, mask: Tensor, graph: Tensor) -> Tensor:
         x = self.pe(x)
         for layer in self.layers:
-            x = layer(x, *others)
+            x = layer(x, mask, graph)
+        return self.norm(x)
+
+
+class Decoder(nn.Module):
+    """Positions, layers, a last norm."""
+
+    def __init__(self, config: InterFormerConfig) -> None:
+        super().__init__()
+        self.pe = Positions(config.max_length)
+        self.layers = nn.ModuleList(DecoderLayer(config) for _ in range(config.num_layers))
+        self.norm = Norm()
+
+    def remember(self, memory: Tensor, frames: int) -> list[LayerMemory]:
+        """Each layer's memory of the actor (B, S, 45), for a target of so many frames."""
+        return [LayerMemory(layer, memory, frames) for layer in self.layers]
+
+    def forward(self, x: Tensor, kept: list[LayerMemory], *others: Tensor | None) -> Tensor:
+        """x (B, T, 45), the target's next frames; the others as in :meth:`DecoderLayer.forward`."""
+        x = self.pe(x, kept[0].length)
+        for layer, memory in zip(self.layers, kept, strict=True):
+            x = layer(x, memory, *others)
         return self.norm(x)
 
 
@@ -229,7 +298,7 @@ class InterFormer(nn.Module):
     def __init__(self, config: InterFormerConfig | None = None) -> None:
         super().__init__()
         self.config = config = config or InterFormerConfig()
-        self.encoder, self.decoder = Stack(EncoderLayer, config), Stack(DecoderLayer, config)
+        self.encoder, self.decoder = Encoder(config), Decoder(config)
         self.out = nn.Linear(WIDTH, WIDTH)
         self.register_buffer("graph", skeleton_mask(), persistent=False)
 
@@ -260,21 +329,25 @@ class InterFormer(nn.Module):
         self, memory: Tensor, target_input: Tensor, distances: Tensor, source_mask: Tensor, mask: Tensor
     ) -> Tensor:
         """:meth:`forward` from the encoder's output (B, S, 45) on."""
-        return self.out(self.decoder(target_input, memory, distances, source_mask, mask, self.graph))
+        kept = self.decoder.remember(memory, target_input.shape[1])
+        return self.out(self.decoder(target_input, kept, distances, source_mask, mask, self.graph))
 
-    @torch.no_grad()
+    @torch.inference_mode()
     def generate(self, source: Tensor, source_mask: Tensor, first_frame: Tensor, frames: int) -> Tensor:
-        """The reaction, a frame at a time from the given first one (B, 45).
+        """The reaction, a frame at a time from the given first one (B, 45), each at one frame's cost.
 
         Returns:
             (B, frames, 45): zeros, the first frame, then what the network makes.
         """
-        memory = self.encoder(source, source_mask, self.graph)
-        made = torch.stack([torch.zeros_like(first_frame), first_frame], dim=1)
-        while (length := made.shape[1]) < frames:
-            table = joint_distances(source[:, :length], made)
-            mask = target_mask(length, device=source.device)
-            made = torch.cat([made, self.decode(memory, made, table, source_mask, mask)[:, -1:]], dim=1)
+        kept = self.decoder.remember(self.encoder(source, source_mask, self.graph), frames)
+        made = first_frame.new_zeros(len(first_frame), frames, WIDTH)
+        made[:, 1] = first_frame
+        begun = 0
+        for end in range(2, frames):  # the first two see each other, and each later one all before
+            new = made[:, begun:end]
+            table = joint_distances(source[:, begun:end], new)
+            made[:, end] = self.out(self.decoder(new, kept, table, source_mask, None, self.graph))[:, -1]
+            begun = end
         return made
 
 

@@ -36,6 +36,7 @@ from models.compact_interformer import (
 )
 from models.folder import save_network
 from models.interformer import JOINTS
+from models.interformer_decoding import ReactionDecoder
 from training import checkpoint
 from training.corpus.pairs import load_pairs
 from training.loop import Loop
@@ -228,7 +229,7 @@ class Trainer(Loop):
                 past = self.astray(batch, generator)
                 if turn_:
                     noise = torch.zeros(len(past), model.config.noise)
-                    past = model.react(batch.actor, batch.reactor[:, 0], noise, batch.mask)
+                    past = ReactionDecoder(model).react(batch.actor, batch.reactor[:, 0], noise, batch.mask)
                 past = past[:, :-1]
                 seen = batch.mask[:, 1:]
                 features = model.linear_features(batch.actor, past)[seen].double()
@@ -260,7 +261,9 @@ class Trainer(Loop):
         noise = torch.randn(s.tries * size, self.model.config.noise, generator=generator)
         actor, mask = actor.repeat(s.tries, 1, 1, 1), batch.mask.repeat(s.tries, 1)
         self.model.eval()
-        made = self.model.react(actor, batch.reactor[:, 0].repeat(s.tries, 1, 1), noise, mask)
+        made = ReactionDecoder(self.model).react(
+            actor, batch.reactor[:, 0].repeat(s.tries, 1, 1), noise, mask
+        )
         self.model.train()
         made = made.unflatten(0, (s.tries, size))
         error = ((made - batch.reactor).square().sum(-1) * self.importance).mean(-1)
@@ -337,8 +340,9 @@ class Trainer(Loop):
         noise = torch.randn(
             8, len(self.held), self.ema.config.noise, generator=torch.Generator().manual_seed(1)
         )
+        decoder = ReactionDecoder(self.ema)
         made = torch.stack(
-            [self.ema.react(batch.actor, batch.reactor[:, 0], one, batch.mask) for one in noise]
+            [decoder.react(batch.actor, batch.reactor[:, 0], one, batch.mask) for one in noise]
         )
         still = batch.reactor[:, :1].expand_as(batch.reactor)
 

@@ -24,19 +24,21 @@ def measure_interformer(repeats: int) -> dict[str, Any]:
 
     from models.compact_interformer import CompactInterFormer, CompactInterFormerConfig, load_folder
     from models.interformer import JOINTS
+    from models.interformer_decoding import ReactionDecoder
     from webdemo.inference.engine import WEIGHTS
 
     folder = WEIGHTS / "interformer"
     shipped = (folder / "config.json").is_file()
     model = load_folder(folder)[0] if shipped else CompactInterFormer(CompactInterFormerConfig()).eval()
+    decoder = ReactionDecoder(model)
     torch.manual_seed(0)
     actor, first = torch.randn(1, FRAMES, JOINTS, 3), torch.randn(1, JOINTS, 3)
     noise, mask = torch.randn(1, model.config.noise), torch.ones(1, FRAMES, dtype=torch.bool)
 
     def cached() -> Tensor:
-        return model.react(actor, first, noise)
+        return decoder.react(actor, first, noise)
 
-    @torch.no_grad()
+    @torch.inference_mode()
     def plain() -> Tensor:
         encoded, made = model.encode(actor, noise, mask), first[:, None]
         while made.shape[1] < FRAMES:

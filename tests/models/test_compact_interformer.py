@@ -16,6 +16,8 @@ from models.compact_interformer import (
 from models.errors import WeightsError
 from models.folder import save_network
 from models.interformer import JOINTS
+from models.interformer_decoding import ReactionDecoder
+from webdemo.inference.engine import WEIGHTS
 
 
 @pytest.fixture(scope="module")
@@ -25,7 +27,15 @@ def model() -> CompactInterFormer:
     network = CompactInterFormer(CompactInterFormerConfig(joint_width=4, ff_size=16, window=20))
     for layer in (network.linear, network.out):
         torch.nn.init.normal_(layer.weight, std=0.05)
-    network.step_std.fill_(0.02)
+    network.step_std.uniform_(0.01, 0.03)
+    for part in network.modules():  # what is folded must be something
+        if isinstance(part, torch.nn.LayerNorm):
+            torch.nn.init.normal_(part.weight, mean=1.0, std=0.3)
+            torch.nn.init.normal_(part.bias, std=0.3)
+    for name in ("actor", "reactor"):
+        getattr(network, f"{name}_mean").normal_(std=0.5)
+        getattr(network, f"{name}_std").uniform_(0.5, 1.5)
+    torch.nn.init.constant_(network.reach, 0.7)
     return network.eval().requires_grad_(False)
 
 
@@ -41,10 +51,23 @@ def scene() -> tuple[torch.Tensor, ...]:
 
 def test_cached_and_plain_decoding_are_equal(model, scene):
     actor, reactor, noise, mask = scene
-    made = model.react(actor, reactor[:, 0], noise, mask)
+    made = ReactionDecoder(model).react(actor, reactor[:, 0], noise, mask)
     assert made.shape == actor.shape
     again = model(actor, made[:, :-1], noise, mask)
     torch.testing.assert_close(again, made[:, 1:], atol=1e-5, rtol=1e-5)
+
+
+def test_the_shipped_network_decodes_a_whole_window_as_a_plain_run_of_its_decoder_does():
+    network, _ = load_folder(WEIGHTS / "interformer")
+    g = torch.Generator().manual_seed(2)
+    actor, first = 0.5 * torch.randn(3, 48, JOINTS, 3, generator=g), torch.randn(3, JOINTS, 3, generator=g)
+    noise, mask = torch.randn(3, 16, generator=g), torch.ones(3, 48, dtype=torch.bool)
+    made = ReactionDecoder(network).react(actor, first, noise)
+    plain, encoded = first[:, None], network.encode(actor, noise, mask)
+    while plain.shape[1] < 48:
+        plain = torch.cat([plain, network.decode(actor, encoded, plain, mask)[:, -1:]], dim=1)
+    torch.testing.assert_close(made, plain, atol=1e-5, rtol=1e-5)
+    assert (made[:, -1] - made[:, 0]).abs().mean() > 0.01
 
 
 def test_no_frame_of_the_reactor_sees_a_later_one(model, scene):
@@ -58,11 +81,13 @@ def test_no_frame_of_the_reactor_sees_a_later_one(model, scene):
 
 def test_the_whole_actor_and_the_noise_are_seen(model, scene):
     actor, reactor, noise, mask = scene
-    before = model.react(actor, reactor[:, 0], noise, mask)
+    before = ReactionDecoder(model).react(actor, reactor[:, 0], noise, mask)
     later = actor.clone()
     later[0, 12] += 0.5
-    assert (model.react(later, reactor[:, 0], noise, mask) - before)[0, 1].abs().max() > 1e-5
-    assert (model.react(actor, reactor[:, 0], -noise, mask) - before)[:, 1].abs().max() > 1e-5
+    assert (ReactionDecoder(model).react(later, reactor[:, 0], noise, mask) - before)[0, 1].abs().max() > 1e-5
+    assert (ReactionDecoder(model).react(actor, reactor[:, 0], -noise, mask) - before)[
+        :, 1
+    ].abs().max() > 1e-5
 
 
 def test_attention_does_not_see_padding(model, scene):
@@ -76,7 +101,7 @@ def test_attention_does_not_see_padding(model, scene):
 def test_before_anything_is_learned_nobody_moves(scene):
     actor, reactor, noise, mask = scene
     network = CompactInterFormer(CompactInterFormerConfig(joint_width=4, ff_size=16, window=20)).eval()
-    made = network.react(actor, reactor[:, 0], noise, mask)
+    made = ReactionDecoder(network).react(actor, reactor[:, 0], noise, mask)
     assert torch.equal(made, reactor[:, :1].expand_as(made))
 
 

@@ -41,6 +41,14 @@ def test_generation_equals_the_reference(ref, network):
     assert_equal(found, ref["autoregressive"])
 
 
+def test_frame_by_frame_is_the_whole_pass(ref, network):
+    source, mask = ref["source"], ref["source_mask"]
+    made = network.generate(source, mask, ref["first_frame"], 15)
+    table = joint_distances(source[:, :14], made[:, :14])
+    again = network(source, made[:, :14].clone(), table, mask, target_mask(14))
+    torch.testing.assert_close(again[:, 1:], made[:, 2:], atol=1e-5, rtol=1e-5)
+
+
 def test_tables_masks_and_positions_equal_the_reference(ref):
     assert_equal(joint_distances(ref["source"][:, :15], ref["target_input"]), ref["distances"], 1e-6)
     assert torch.equal(target_mask(15)[0], ref["target_mask"][0])

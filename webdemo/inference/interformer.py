@@ -18,7 +18,8 @@ from numpy.typing import NDArray
 from torch import Tensor
 
 from models.compact_interformer import FPS as NETWORK_FPS
-from models.compact_interformer import JOINTS_15, ReactionDecoder, load_folder
+from models.compact_interformer import JOINTS_15, load_folder
+from models.interformer_decoding import ReactionDecoder
 from webdemo.metrics import compare
 from webdemo.motion import SMPL22, Clip, InputError
 from webdemo.motion.ik import fit_skeleton
@@ -51,6 +52,7 @@ class InterFormerReactor:
 
     def __init__(self, folder: Path) -> None:
         self.model, source = load_folder(folder)
+        self.decoder = ReactionDecoder(self.model)
         self.name, self.digest, self.meta = folder.name, source.digest, source.meta
 
     def run(
@@ -107,12 +109,10 @@ class InterFormerReactor:
             window = slow[begun : begun + self.model.config.window]
             here = Placement.of(Clip(window, NETWORK_FPS, SMPL22), "a")
             seen = _tensor(here.to_network(window)[:, list(JOINTS_15)])
-            pose = _tensor(here.to_network(reaction[-1]))
-            with torch.no_grad():
-                decoder = ReactionDecoder(self.model, seen.expand(request.samples, -1, -1, -1), noise)
-            for _ in range(len(window) - 1):
-                pose = decoder.step(pose)
-                reaction.append(here.to_world(pose.double().numpy()))
+            first = _tensor(here.to_network(reaction[-1]))
+            actors = seen.expand(request.samples, -1, -1, -1)
+            for pose in self.decoder.poses_after(actors, first, noise):
+                reaction.append(here.to_world(pose.astype(np.float64)))
                 yield clock.progress("sample", len(reaction) - 1, total)
                 cancel.raise_if_cancelled()
         return np.stack(reaction, axis=1)
