@@ -2,7 +2,8 @@
 
 Sentences of the test split, generated and judged by the rules of :mod:`training.judge`. Beside the scores
 stand those of the recorded motion of the same sentences (what the rules allow at best) and those of recorded
-motion that belongs to other sentences (what they allow to chance). ``--real-only`` needs no weights. With
+motion that belongs to other sentences (what they allow to chance). ``--real-only`` needs no weights;
+``--everyday`` also judges sentences that were written by hand and not by the corpus' grammar. With
 ``--extractor`` come InterGen's measures, R-precision to multimodality (:mod:`training.judge.retrieval`).
 """
 
@@ -17,7 +18,7 @@ from pathlib import Path
 from typing import Any
 
 from training.judge import retrieval
-from training.judge.prompts import choose, real_duet
+from training.judge.prompts import choose, everyday, real_duet
 from training.judge.report import score, table
 from training.judge.rules import Task
 from training.prepare import Scenes, load
@@ -50,6 +51,10 @@ def evaluate(options: argparse.Namespace) -> dict[str, Any]:
         )
         if len(tasks) < about["prompts"]:
             text += f"; stopped by --minutes before {about['prompts']} captions"
+    if drawn and options.everyday:
+        told = everyday()
+        made, _ = _generate(told, options)
+        scores["everyday"] = score([made[i] for i in sorted(made)], [told[i] for i in sorted(made)])
     if options.extractor:
         scores["features"] = _measure(scenes, options)
     return scores | {"about": text + ".", "settings": about}
@@ -127,6 +132,9 @@ def main(argv: list[str] | None = None) -> None:
     parser.add_argument("--repeats", type=int, default=20, help="of the measures by features (20)")
     parser.add_argument(
         "--retrieval-prompts", type=int, default=256, help="test scenes in a repeat, at most (256)"
+    )
+    parser.add_argument(
+        "--everyday", action="store_true", help="also judge sentences as people type them, written by hand"
     )
     parser.add_argument("--real-only", action="store_true", help="only the recorded motion; needs no weights")
     options = parser.parse_args(argv)

@@ -12,7 +12,7 @@ import torch
 from models.motion_tokens import TokenLayout, encode
 from training import evaluate
 from training.judge.draw import batches
-from training.judge.prompts import choose, tells_of_both
+from training.judge.prompts import choose, everyday, tells_of_both
 from training.judge.report import score, table
 from training.judge.rules import Task, Verdict, action_time, judge, named_sides
 from training.prepare import Scenes, save
@@ -208,6 +208,15 @@ def test_sentences_that_tell_of_one_person_only(caption: str, both: bool) -> Non
     assert tells_of_both(caption) == both
 
 
+def test_every_everyday_sentence_can_be_checked() -> None:
+    tasks = everyday()
+    assert len(tasks) > 60 and len({task.caption for task in tasks}) == len(tasks)
+    for task in tasks:
+        assert set(task.checks) == set(task.events), task.caption
+        assert set(task.events.get("side", {})) <= {"a", "b"}
+        assert 30 <= task.frames <= 300
+
+
 @pytest.fixture
 def scenes() -> Scenes:
     layout = TokenLayout()
@@ -258,7 +267,9 @@ def test_scores_count_by_check_and_family() -> None:
     assert found["checks"]["side"]["count"] == 0
     assert found["physical"]["bone_drift"] == pytest.approx(0, abs=1e-3)
     shown = table({"generated": found, "real": found, "other": found, "about": "Two."})
-    assert "50 % (1/2; 9–91 %)" in shown
+    assert "50 % (1/2; 9–91 %)" in shown and "by hand" not in shown
+    told = table({"generated": found, "real": found, "other": found, "everyday": found, "about": "Two."})
+    assert told.startswith(shown) and "| 2 sentences written by hand |" in told
 
 
 def test_command_scores_real_motion_and_writes_both_files(

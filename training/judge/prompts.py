@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import json
 import re
 from itertools import zip_longest
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -15,6 +17,7 @@ from webdemo.motion import Duet, InputError
 
 from .rules import Task
 
+EVERYDAY = Path(__file__).with_name("everyday.json")
 _PERSON = re.compile(r"\b(person|man|woman|first|one|someone|somebody|friend)\b", re.IGNORECASE)
 _SECOND = re.compile(
     r"\b(other|another|second|two|both people|each|partner|someone|person 2|person b|together|pair|couple"
@@ -63,6 +66,12 @@ def choose(scenes: Scenes, count: int, *, seed: int = 0, split: str = "test") ->
             "events by `python -m training.corpus`."
         )
     return found
+
+
+def everyday() -> list[Task]:
+    """Sentences as people type them, written by hand and not by the corpus' grammar, with what to check."""
+    rows = json.loads(EVERYDAY.read_text())
+    return [Task(r["prompt"], r["family"], r["events"], round(30 * r["seconds"])) for r in rows]
 
 
 def _kind(task: Task) -> str:

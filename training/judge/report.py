@@ -79,7 +79,8 @@ def table(scores: dict[str, Any]) -> str:
 
     Args:
         scores: ``real``, ``other`` and, where motion was generated, ``generated``, each as :func:`score`
-            gives it, and ``about``, a line on what was judged.
+            gives it, ``about``, a line on what was judged, and perhaps ``everyday``, the scores of
+            :func:`training.judge.prompts.everyday`.
     """
     made = scores.get("generated")
     lines = [
@@ -99,6 +100,16 @@ def table(scores: dict[str, Any]) -> str:
         ratio = f"{own / real:.2f}" if own is not None and real > 0 else "–"
         shown = "–" if own is None else f"{own:.3g}"
         lines.append(f"| {label}, {unit} | {shown} | {real:.3g} | {ratio} |")
+    if told := scores.get("everyday"):
+        lines += [
+            "",
+            f"| {len(told['verdicts'])} sentences written by hand | Generated (95 % interval) |",
+            "|---|---|",
+        ]
+        lines += [
+            f"| {check}: {_WORDS[check]} | {_share(told['checks'][check], interval=True)} |"
+            for check in CHECKS
+        ]
     return "\n".join(lines) + "\n"
 
 
