@@ -26,9 +26,11 @@ from .guard import Guard, OpenAnswers, may_read_figures
 from .health import Health
 from .history import History
 from .login import login_routes
+from .memory import give_back
 from .pages import PageCache
 from .queue import Batcher, FairQueue, QueueLimits
 from .recorder import Recorder
+from .sessions import keep_states_lean
 from .settings import Settings
 from .visitors import Visitors
 
@@ -36,10 +38,12 @@ log = logging.getLogger(__name__)
 
 CLEAN_EVERY = 900.0
 """Seconds between two looks at what is too old or too much."""
+GIVE_BACK_EVERY = 5.0
+"""Seconds between two returns of memory that runs have left."""
 ANSWER_SECONDS = 5.0
 """How long the answers of runs that ended may take to be sent at least, however short the grace."""
 PAGES = 256
-"""Pages and programs whose last values are kept; Gradio's own 10,000 would be gigabytes of results."""
+"""Pages and programs whose last results are kept; Gradio's own 10,000 would be gigabytes."""
 WARM_UP_AFTER = 2.0
 """Seconds between the start and the loading of the networks, which would slow the first page."""
 
@@ -125,8 +129,10 @@ def create_app(
         "server_name": settings.host,
         "server_port": settings.port,
     }
-    return gr.mount_gradio_app(app, page, path="/", root_path=settings.root_path or None,
-                               **options, **launch_options())  # fmt: skip
+    app = gr.mount_gradio_app(app, page, path="/", root_path=settings.root_path or None,
+                              **options, **launch_options())  # fmt: skip
+    keep_states_lean(app, page)
+    return app
 
 
 def engine_of(settings: Settings) -> tuple[EngineLike, Batcher | None]:
@@ -169,6 +175,7 @@ async def _lifespan(app: FastAPI) -> AsyncIterator[None]:
     tasks = [
         asyncio.create_task(_later(WARM_UP_AFTER, lab.health.probe)),
         asyncio.create_task(_every(CLEAN_EVERY, lab.history.clean)),
+        asyncio.create_task(_every(GIVE_BACK_EVERY, give_back)),
     ]
     try:
         yield

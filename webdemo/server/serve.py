@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import asyncio
-import ctypes
 import resource
 import socket
 import sys
@@ -17,11 +16,9 @@ from webdemo.motion import InputError
 
 from .app import Lab, create_app
 from .logs import set_up_logs
+from .memory import share_heaps
 from .settings import Settings
 
-ARENAS = 2
-"""Heaps of glibc; each keeps what its threads have freed, and a run has many threads."""
-_M_ARENA_MAX = -8
 SWITCH_SECONDS = 0.001
 """After which a thread that computes lets another go on, a fifth of Python's own: the page answers sooner."""
 CLOSING_SECONDS = 3
@@ -126,8 +123,7 @@ def serve(settings: Settings) -> None:
             ) from None
     set_up_logs(settings.log_level, content=settings.log_content)
     sys.setswitchinterval(SWITCH_SECONDS)
-    if hasattr(libc := ctypes.CDLL(None), "mallopt"):
-        libc.mallopt(_M_ARENA_MAX, ARENAS)
+    share_heaps()
     server = make_server(settings)
     print(f"Pas de Deux is on {settings.url}", flush=True)
     server.run()
