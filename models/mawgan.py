@@ -20,13 +20,19 @@ from dataclasses import asdict, dataclass
 from math import ceil
 from typing import Any
 
+import numpy as np
 import torch
+from scipy.fft import dct
 from torch import Tensor, nn
 
 from models.srvf import exp_map, inner, log_map, norm, to_curve, to_srvf, to_tangent
 
 _DOUBLINGS = 5
 _STILL = 1e-6
+_LAST = (1, 3, 8)
+"""Last steps of the past whose mean lengths the network is told."""
+_SHORT = 1e-2
+"""Metres that all joints together move in a past that is told apart from one of no movement."""
 _LONGER = 2.0
 """Bound of the logarithm by which a future's curve may be longer or shorter, frame for frame."""
 
@@ -44,6 +50,12 @@ class MAWGANConfig:
         linear: a linear map from past to future beside the convolutions, which then correct it. The thesis
             has none; it makes up for a long training, since neighbours in the image are strangers.
         length: the length of the future's curve is foretold too; else it is as long as the past's.
+        pose: the last given pose, the logarithm of the past's length and those of how much faster than on
+            the whole its last frames were enter as well. The thesis' network sees only how a pose changes, as
+            if somebody with raised arms could raise them further.
+        coefficients: cosine coefficients in time of each coordinate that the linear map takes and gives,
+            lowest frequencies first; 0: all frames.
+        dropout: of the first layer's outputs, in training.
     """
 
     joints: int = 17
@@ -55,6 +67,9 @@ class MAWGANConfig:
     critic_fc: int = 1024
     linear: bool = False
     length: bool = False
+    pose: bool = False
+    coefficients: int = 0
+    dropout: float = 0.0
 
     @classmethod
     def from_dict(cls, values: dict[str, Any]) -> MAWGANConfig:
@@ -66,6 +81,11 @@ class MAWGANConfig:
         return 3 * self.joints, self.future + 1
 
     @property
+    def beside(self) -> int:
+        """Numbers that enter beside the past's tangent vector."""
+        return 3 * self.joints + 1 + len(_LAST) if self.pose else 0
+
+    @property
     def grid(self) -> tuple[int, int]:
         """Size of the first feature map."""
         high, wide = (ceil(size / 2**_DOUBLINGS) for size in self.image)
@@ -73,14 +93,17 @@ class MAWGANConfig:
 
 
 class Generator(nn.Module):
-    """Tangent vectors of the past (B, past, D) → raw vectors of the future (B, future + 1, D)."""
+    """Tangent vectors of the past (B, past, D) and more → raw vectors of the future (B, future + 1, D)."""
+
+    analysis: Tensor
+    synthesis: Tensor
 
     def __init__(self, config: MAWGANConfig) -> None:
         super().__init__()
         self.config = config
         high, wide = config.grid
         first = config.fc // (high * wide)
-        self.fc = nn.Linear(config.past * 3 * config.joints, first * high * wide)
+        self.fc = nn.Linear(config.past * 3 * config.joints + config.beside, first * high * wide)
         layers: list[nn.Module] = []
         for i, (inputs, outputs) in enumerate(
             zip((first, *config.channels), (*config.channels, 1), strict=True)
@@ -89,17 +112,49 @@ class Generator(nn.Module):
             if i < _DOUBLINGS - 1:
                 layers.append(nn.ReLU())
         self.up = nn.Sequential(*layers)
+        self.dropout = nn.Dropout(config.dropout)
         coordinates, points = config.image
-        self.linear = nn.Linear(config.past * coordinates, points * coordinates) if config.linear else None
+        for name, size in (("analysis", config.past), ("synthesis", points)):
+            cosines = torch.from_numpy(dct(np.eye(size), norm="ortho", axis=0)).float()
+            kept = cosines[: config.coefficients] if config.coefficients else torch.eye(size)
+            self.register_buffer(name, kept if name == "analysis" else kept.T, persistent=False)
+        inputs = self.analysis.shape[0] * coordinates + config.beside
+        outputs = self.synthesis.shape[1] * coordinates
+        self.linear = nn.Linear(inputs, outputs) if config.linear else None
         if self.linear is not None:
             nn.init.zeros_(self.linear.weight)
             nn.init.zeros_(self.linear.bias)
 
-    def forward(self, s: Tensor) -> Tensor:
+    def forward(self, s: Tensor, beside: Tensor) -> Tensor:
+        """``beside`` is (B, :attr:`MAWGANConfig.beside`)."""
         coordinates, points = self.config.image
-        x = torch.relu(self.fc(s.flatten(1))).unflatten(1, (-1, *self.config.grid))
-        made = self.up(x)[:, 0, :coordinates, :points].transpose(1, 2)
-        return made if self.linear is None else made + self.linear(s.flatten(1)).view_as(made)
+        x = self.dropout(torch.relu(self.fc(torch.cat([s.flatten(1), beside], 1))))
+        made = self.up(x.unflatten(1, (-1, *self.config.grid)))[:, 0, :coordinates, :points].transpose(1, 2)
+        if self.linear is None:
+            return made
+        given = torch.cat([(self.analysis @ s).flatten(1), beside], 1)
+        return made + self.synthesis @ self.linear(given).unflatten(1, (-1, coordinates))
+
+    @torch.no_grad()
+    def fit_linear(self, s: Tensor, beside: Tensor, made: Tensor, *, ridge: float) -> None:
+        """Solves for the linear map in closed form; the convolutions begin with corrections of 0.
+
+        Args:
+            s, beside: (N, …) inputs as in :meth:`forward`.
+            made: (N, future + 1, D) what should come out.
+            ridge: weight of the penalty, for inputs of variance 1, as a share of N.
+        """
+        assert self.linear is not None
+        x = torch.cat([(self.analysis @ s).flatten(1), beside], 1).double()
+        y = (torch.linalg.pinv(self.synthesis) @ made).flatten(1).double()
+        mean, deviation = x.mean(0), x.std(0).clamp_min(1e-3)
+        x = (x - mean) / deviation
+        gram = x.T @ x + ridge * len(x) * torch.eye(x.shape[1], dtype=x.dtype, device=x.device)
+        weight = torch.linalg.solve(gram, x.T @ (y - y.mean(0))).T / deviation
+        nn.init.zeros_(self.up[-1].weight)
+        nn.init.zeros_(self.up[-1].bias)
+        self.linear.weight.copy_(weight)
+        self.linear.bias.copy_(y.mean(0) - weight @ mean)
 
 
 class Critic(nn.Module):
@@ -132,6 +187,7 @@ class PredictiveMAWGAN(nn.Module):
 
     past_mean: Tensor
     future_mean: Tensor
+    beside_mean: Tensor
 
     def __init__(self, config: MAWGANConfig) -> None:
         super().__init__()
@@ -141,6 +197,19 @@ class PredictiveMAWGAN(nn.Module):
         for name, count in (("past_mean", config.past), ("future_mean", points)):
             mean = torch.ones(count, coordinates)
             self.register_buffer(name, mean / norm(mean))
+        if config.pose:
+            self.register_buffer("beside_mean", torch.zeros(config.beside))
+
+    def inputs(self, past: Tensor) -> tuple[Tensor, Tensor]:
+        """What the generator takes of past curves (B, past, D): tangent vectors, and what comes beside."""
+        q, length = to_srvf(past)
+        s = log_map(self.past_mean, q)
+        if not self.config.pose:
+            return s, s.new_zeros(len(s), 0)
+        size = length.clamp_min(_SHORT)[:, None]
+        lengths = past.diff(dim=1).norm(dim=-1)
+        ends = [(lengths[:, -n:].mean(1, keepdim=True) * past.shape[1] / size + 0.1).log() for n in _LAST]
+        return s, torch.cat([past[:, -1], size.log(), *ends], 1) - self.beside_mean
 
     def generate(self, past: Tensor) -> tuple[Tensor, Tensor]:
         """What the generator makes of past curves.
@@ -152,10 +221,21 @@ class PredictiveMAWGAN(nn.Module):
             Tangent vectors at ``future_mean`` (B, future + 1, D), and the logarithm (B,) of how much longer
             the future's curve is, frame for frame, than the past's.
         """
-        q, _ = to_srvf(past)
-        made = self.generator(log_map(self.past_mean, q))
+        made = self.generator(*self.inputs(past))
         along = inner(self.future_mean, made).clamp(-_LONGER, _LONGER)
         return to_tangent(self.future_mean, made), along if self.config.length else torch.zeros_like(along)
+
+    def wanted(self, past: Tensor, future: Tensor) -> Tensor:
+        """What the generator has to make (B, future + 1, D) of past curves for their futures to come out.
+
+        Args:
+            past: (B, past, D).
+            future: (B, future + 1, D), the last given pose and what follows.
+        """
+        (_, before), (q, after) = to_srvf(past), to_srvf(future)
+        steps = (self.config.future + 1) / self.config.past
+        longer = (after / (before * steps)).log().clamp(-_LONGER, _LONGER)
+        return log_map(self.future_mean, q) + longer[:, None, None] * self.future_mean
 
     def decode(self, s: Tensor, longer: Tensor, past: Tensor) -> Tensor:
         """What :meth:`generate` gives → curves (B, future, D) that go on from the past (B, past, D)."""

@@ -30,6 +30,8 @@ ACTIONS = (
     "washwindow",
 )  # fmt: skip
 """The papers' eight actions; some releases also hold ``walking_extra``."""
+LEGS = slice(1, 7)
+"""The legs among the 17 joints; root and upper body are the others."""
 _MIRROR = (0, 4, 5, 6, 1, 2, 3, 7, 8, 9, 10, 14, 15, 16, 11, 12, 13)
 
 

@@ -46,10 +46,11 @@ class Settings:
     """What a run depends on; a checkpoint of other settings is refused.
 
     ``width`` is the channels of the predictor's first block (thesis: 512), each further one has half; the
-    critic's are an eighth of it, and halved likewise. ``linear`` and ``length`` are those of
-    :class:`~models.mawgan.MAWGANConfig`. ``final_rate`` is the share of the learning rate at which its cosine
-    ends; 1 keeps it as it is, like the thesis. ``init`` names the folder of a trained predictor that the run
-    begins with.
+    critic's are an eighth of it, and halved likewise. ``linear``, ``length``, ``pose``, ``coefficients`` and
+    ``dropout`` are those of :class:`~models.mawgan.MAWGANConfig`. ``ridge`` above 0 is the penalty with which
+    the linear map is fitted in closed form, to ``fit`` windows, before the first step. ``noise`` is added to
+    the pasts, in metres. ``final_rate`` is the share of the learning rate at which its cosine ends; 1 keeps
+    it as it is, like the thesis. ``init`` names the folder of a trained predictor that the run begins with.
     """
 
     windows: str = "cmu"
@@ -74,6 +75,13 @@ class Settings:
     init: str = ""
     linear: bool = False
     length: bool = False
+    pose: bool = False
+    coefficients: int = 0
+    dropout: float = 0.0
+    ridge: float = 0.0
+    fit: int = 20_000
+    noise: float = 0.0
+    weight_decay: float = 0.0
     seed: int = 0
 
     def __post_init__(self) -> None:
@@ -89,7 +97,8 @@ class Settings:
             joints, self.past, self.future, self.fc,
             channels=tuple(self.width >> i for i in range(4)),
             critic=tuple(self.width // 8 >> i for i in range(3)),
-            critic_fc=self.critic_fc, linear=self.linear, length=self.length,
+            critic_fc=self.critic_fc, linear=self.linear, length=self.length, pose=self.pose,
+            coefficients=self.coefficients, dropout=self.dropout,
         )  # fmt: skip
 
     def weights(self) -> MAWGANLossWeights:
@@ -117,19 +126,34 @@ class Trainer(PredictionTrainer):
         s = self.settings
         config = s.network(self.windows.joints)
         self.model, self.ema = (PredictiveMAWGAN(config).to(self.device) for _ in range(2))
+        self.ema.eval()
         self.critic = Critic(config).to(self.device)
-        sample = self.windows.batch(512, (s.seed, 0, 1))
-        past, future = self.curves(sample)
-        self.model.past_mean.copy_(karcher_mean(moving(past)))
-        self.model.future_mean.copy_(karcher_mean(moving(future)))
         if s.init:
             self.model.load_state_dict(load_predictor(Path(s.init)).network.state_dict())
+        elif not self.checkpoint.exists():
+            self.measure()
         self.ema.load_state_dict(self.model.state_dict())
         self.ema.requires_grad_(False)
         self.optimizer, self.critic_optimizer = (
-            torch.optim.Adam(part.parameters(), lr=s.learning_rate, betas=(0.5, 0.9), fused=True)
-            for part in (self.model, self.critic)
+            torch.optim.AdamW(
+                part.parameters(), lr=s.learning_rate, betas=(0.5, 0.9), weight_decay=decay, fused=True
+            )
+            for part, decay in ((self.model, s.weight_decay), (self.critic, 0.0))
         )
+
+    def measure(self) -> None:
+        """Means of the training data, and the linear map where it is fitted in closed form."""
+        s, model = self.settings, self.model
+        past, future = self.curves(self.windows.batch(512, (s.seed, 0, 1)).to(self.device))
+        model.past_mean.copy_(karcher_mean(moving(past)))
+        model.future_mean.copy_(karcher_mean(moving(future)))
+        if s.pose:
+            model.beside_mean.copy_(model.inputs(past)[1].mean(0))
+        if s.linear and s.ridge:
+            past, future = self.curves(self.windows.batch(s.fit, (s.seed, 0, 2)).to(self.device))
+            moves = self.moves(past, future)
+            past, future = past[moves], future[moves]
+            model.generator.fit_linear(*model.inputs(past), model.wanted(past, future), ridge=s.ridge)
 
     def parts(self) -> dict[str, nn.Module | torch.optim.Optimizer]:
         return {
@@ -142,11 +166,15 @@ class Trainer(PredictionTrainer):
         curves = to_curves(windows)
         return curves[:, : self.settings.past], curves[:, self.settings.past - 1 :]
 
+    def moves(self, past: Tensor, future: Tensor) -> Tensor:
+        """(B,) which windows' curves move."""
+        return (to_srvf(past)[1] > _STILL) & (to_srvf(future)[1] > _STILL)
+
     def pairs(self, part: int) -> tuple[Tensor, Tensor, Tensor]:
         """Windows that move, their past curves, and their real futures' tangent vectors."""
         windows = self.batch(part)
         past, future = self.curves(windows)
-        moves = (to_srvf(past)[1] > _STILL) & (to_srvf(future)[1] > _STILL)
+        moves = self.moves(past, future)
         real = log_map(self.model.future_mean, to_srvf(future[moves])[0])
         return windows[moves], past[moves], real
 
@@ -183,12 +211,13 @@ class Trainer(PredictionTrainer):
             yield loss.item()
 
     def train_step(self) -> dict[str, float]:
+        torch.manual_seed(self.settings.seed + self.step)  # dropout
         weights = self.settings.weights()
         for optimizer in (self.optimizer, self.critic_optimizer):
             for group in optimizer.param_groups:
                 group["lr"] = self.settings.learning_rate * self.rate()
         windows, past, real = self.pairs(0)
-        s, longer = self.model.generate(past)
+        s, longer = self.model.generate(past + self.settings.noise * torch.randn_like(past))
         made = self.seen(s)
         critic = list(self.critic_steps(real, made.detach())) if weights.adversarial else [0.0]
         curves = self.model.decode(s, longer, past)

@@ -59,7 +59,7 @@ def test_defaults_are_the_thesis_sizes() -> None:
     assert [m.out_features for m in critic.score if isinstance(m, nn.Linear)] == [1024, 1]
     weights = MAWGANLossWeights()
     assert tuple(weights.to_dict().values()) == (1, 1, 10, 10, 10, 0, 0)
-    assert not (config.linear or config.length)
+    assert not (config.linear or config.length or config.pose or config.coefficients or config.dropout)
 
 
 def test_curves_are_coordinate_major() -> None:
@@ -115,6 +115,47 @@ def test_a_foretold_length_is_the_part_along_the_mean() -> None:
     untouched = PredictiveMAWGAN(replace(SMALL, length=True)).eval()
     untouched.generator.load_state_dict(network.generator.state_dict(), strict=False)
     assert torch.allclose(longer, untouched.generate(curves)[1] + 0.5, atol=1e-5)
+
+
+def test_what_the_generator_is_wanted_to_make_is_the_true_future() -> None:
+    network = PredictiveMAWGAN(replace(SMALL, length=True))
+    network.future_mean.copy_(to_srvf(poses(8, 1, 13, 15))[0][0])
+    curves = to_curves(0.02 * poses(9, 4, 20, 5, 3).cumsum(1))
+    past, future = curves[:, :8], curves[:, 7:]
+    wanted = network.wanted(past, future)
+    longer = inner(network.future_mean, wanted)
+    made = network.decode(wanted - longer[:, None, None] * network.future_mean, longer, past)
+    # Central differences of another curve of the same velocities; those are what the sphere knows.
+    velocities = [velocity(torch.cat([past[:, -1:], x], 1)) for x in (made, future[:, 1:])]
+    assert longer.abs().max() > 0.05 and torch.allclose(*velocities, atol=1e-4)
+
+
+def test_a_linear_map_is_found_in_closed_form() -> None:
+    torch.manual_seed(0)
+    generator = PredictiveMAWGAN(replace(SMALL, linear=True, pose=True, coefficients=4)).generator.eval()
+    true = PredictiveMAWGAN(replace(SMALL, linear=True, pose=True, coefficients=4)).generator.eval()
+    assert generator.linear is not None and true.linear is not None
+    nn.init.normal_(true.linear.weight, std=0.1)
+    s, beside = poses(5, 400, 8, 15), poses(6, 400, SMALL.joints * 3 + 4)
+    with torch.no_grad():
+        for part in (true.up[-1].weight, true.up[-1].bias):
+            part.zero_()
+        wanted = true(s, beside)
+        generator.fit_linear(s, beside, wanted, ridge=1e-9)
+        assert torch.allclose(generator(s, beside), wanted, atol=1e-4)
+        generator.fit_linear(s, beside, wanted, ridge=1.0)
+        assert generator.linear.weight.norm() < 0.6 * true.linear.weight.norm()
+    assert generator.linear.in_features == 4 * 15 + 19 and generator.linear.out_features == 4 * 15
+
+
+def test_a_network_that_is_told_the_pose_sees_it(network: PredictiveMAWGAN) -> None:
+    torch.manual_seed(0)
+    told = PredictiveMAWGAN(replace(SMALL, pose=True)).eval()
+    past = motion(1)
+    for one, differs in ((network, False), (told, True)):
+        elsewhere = one(past + 0.5) - 0.5
+        assert torch.allclose(one(past), elsewhere, atol=1e-5) != differs
+    assert told(past[:, :1].expand_as(past)).isfinite().all()
 
 
 def test_what_stands_still_stays_as_it_is(network: PredictiveMAWGAN) -> None:

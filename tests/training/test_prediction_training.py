@@ -17,7 +17,7 @@ from training import mawgan
 from training.prediction import ablation, mlp, product
 from training.prediction.rollout import ADVANCE, with_own_past
 from training.prediction.trainer import PredictionTrainer
-from training.prediction.windows import CorpusWindows, open_windows
+from training.prediction.windows import CmuWindows, CorpusWindows, open_windows
 from webdemo.inference.predict_frame import to_last_pose
 from webdemo.motion import SMPL22, InputError
 from webdemo.motion.transforms import heading
@@ -26,7 +26,8 @@ MLP = mlp.Settings(past=10, future=8, past_coefficients=6, future_coefficients=4
                    fit=64, batch=8, steps=6, warmup=1)  # fmt: skip
 GAN = mawgan.Settings(windows="corpus", past=10, future=8, fc=36, width=32, critic_fc=8, critic_steps=2,
                       batch=4, steps=3)  # fmt: skip
-LEAN_GAN = replace(GAN, critic_steps=1, final_rate=0.1, position=100.0, speed=300.0, linear=True, length=True)
+LEAN_GAN = replace(GAN, critic_steps=1, final_rate=0.1, position=100.0, speed=300.0, linear=True, length=True,
+                   pose=True, coefficients=4, dropout=0.3, ridge=0.1, fit=64, noise=0.001)  # fmt: skip
 
 
 @pytest.fixture(scope="module")
@@ -41,6 +42,21 @@ def corpus(tmp_path_factory: pytest.TempPathFactory) -> Path:
     rows = [{"start": 60 * i, "frames": 60, "split": split} for i, split in enumerate(("train", "test"))]
     (folder / "index.json").write_text(json.dumps(rows))
     return folder
+
+
+@pytest.fixture(scope="module")
+def cmu_folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """One clip of noise that drifts, to train on and to test on."""
+    data = tmp_path_factory.mktemp("cmu")
+    shutil.copy(
+        Path(__file__).parents[1] / "data" / "reference" / "cmu_skeleton.json", data / "skeleton.json"
+    )
+    frames = np.cumsum(np.random.default_rng(0).normal(scale=0.01, size=(170, 117)), axis=0)
+    for split in ("train", "test"):
+        path = data / split / "walking" / "walking_1.txt"
+        path.parent.mkdir(parents=True)
+        np.savetxt(path, frames, delimiter=",")
+    return data
 
 
 def start(kind: str, corpus: Path, out: Path, **changed: int) -> PredictionTrainer:
@@ -122,6 +138,31 @@ def test_lean_settings_are_those_of_the_module_and_can_be_changed(corpus: Path, 
     assert json.loads((folder / "config.json").read_text())["training"]["init"] == "folder"
 
 
+def test_mixed_windows_have_legs_from_elsewhere(cmu_folder: Path) -> None:
+    plain, mixed = (CmuWindows(cmu_folder, 10, 8, mixed=share).batch(40, (0, 1)) for share in (0.0, 1.0))
+    assert torch.equal(mixed[:, :, 7:], plain[:, :, 7:]) and torch.equal(mixed[:, :, 0], plain[:, :, 0])
+    assert torch.equal(mixed[1:, :, 1:7], plain[:-1, :, 1:7])
+    some = open_windows("cmu-mixed", cmu_folder, 10, 8).batch(40, (0, 1))
+    moved = (some != plain).flatten(1).any(1)
+    assert 5 < int(moved.sum()) < 25
+
+
+def test_mean_speeds_are_matched_by_the_mean_of_what_may_follow() -> None:
+    """Three of four people stand; their mean moves by a quarter of the one who walks."""
+    ahead = torch.tensor([1.0, 0.0, 0.0])
+    real = torch.zeros(4, 11, 22, 3)
+    real[0] = 4 * ahead
+    speed, acceleration = mlp.liveliness(torch.zeros_like(real), real)
+    assert float(speed) == pytest.approx(1.0, abs=1e-4) and float(acceleration) < 1e-4
+    even = ahead.expand_as(real)
+    assert all(float(x) < 1e-4 for x in mlp.liveliness(even, real))
+    # In two groups the two who stand are told from the walker and the one beside.
+    assert float(mlp.liveliness(even, real, 2)[0]) == pytest.approx(1.0, abs=1e-4)
+    trembling = even * (-1.0) ** torch.arange(11)[:, None, None]
+    speed, acceleration = mlp.liveliness(trembling, real)
+    assert float(speed) < 1e-4 and float(acceleration) == pytest.approx(2.0, abs=1e-4)
+
+
 class Extrapolates(torch.nn.Module):
     """Goes on as fast as at the end of the past, in its direction."""
 
@@ -187,22 +228,12 @@ def test_standing_feet_that_glide_are_measured() -> None:
 
 
 def test_every_row_of_the_ablation_is_trained_once_and_scored(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+    cmu_folder: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     small = {"fc": 36, "critic_fc": 8, "batch": 4}
     monkeypatch.setattr(ablation, "LEAN", ablation.LEAN | small)
-    data = tmp_path / "cmu"
-    data.mkdir()
-    shutil.copy(
-        Path(__file__).parents[1] / "data" / "reference" / "cmu_skeleton.json", data / "skeleton.json"
-    )
-    frames = np.cumsum(np.random.default_rng(0).normal(scale=0.01, size=(170, 117)), axis=0)
-    for split in ("train", "test"):
-        path = data / split / "walking" / "walking_1.txt"
-        path.parent.mkdir(parents=True)
-        np.savetxt(path, frames, delimiter=",")
     page = tmp_path / "page.md"
-    asked = ["--data", str(data), "--out", str(tmp_path / "runs"), "--steps", "1", "--table", str(page)]
+    asked = ["--data", str(cmu_folder), "--out", str(tmp_path / "runs"), "--steps", "1", "--table", str(page)]
     assert ablation.main([*asked, "--only", "a-r", "no-linear", "lean", "past-5"]) == 0
     told = page.read_text()
     for row in ("| La + Lr |", "| the same, convolutions alone |", "| 25 frames of past |", "zero velocity"):

@@ -1,8 +1,8 @@
 """Trains the default predictor: ``python -m training.prediction.mlp --windows corpus --data DIR --out RUN``.
 
-Loss: mean distance of joints (what MPJPE measures), the same of their velocities, and how far the mean speed
-of each predicted frame lies from the truth's. Without the last a network that is unsure slows down (thesis,
-section 2.5.4), because half a step is never far off.
+Loss: mean distance of joints (what MPJPE measures), the same of their velocities, and how far mean speeds and
+accelerations lie from the truth's (:func:`liveliness`). Without the last a network that is unsure slows down
+(thesis, section 2.5.4), because half a step is never far off.
 """
 
 from __future__ import annotations
@@ -31,7 +31,9 @@ class Settings:
 
     ``init`` names the folder of a trained predictor that the run begins with. ``own_pasts`` is how often the
     network may have been applied to what it gave in the pasts that it sees (of the corpus): 0 to so many
-    times, drawn for each step.
+    times, drawn for each step. After so many applications distances and velocities are hardly to be known;
+    they count the less, by a further share for each. ``groups`` is how many parts of the batch, from slow
+    pasts to fast ones, have mean speeds of their own.
     """
 
     windows: str = "corpus"
@@ -53,14 +55,18 @@ class Settings:
     ema: float = 0.995
     velocity_weight: float = 2.0
     speed_weight: float = 1.0
+    acceleration_weight: float = 0.0
+    groups: int = 1
     bone_weight: float = 0.5
     noise: float = 0.002
     seed: int = 0
 
     def __post_init__(self) -> None:
-        for name in ("past", "future", "width", "blocks", "batch", "warmup"):
+        for name in ("past", "future", "width", "blocks", "batch", "warmup", "groups"):
             if getattr(self, name) < 1:
                 raise InputError(f"{name} is {getattr(self, name)}: give 1 or more.")
+        if self.batch % self.groups:
+            raise InputError(f"groups is {self.groups}: give a divisor of the batch, {self.batch}.")
         if self.own_pasts < 0 or (self.own_pasts and (self.windows != "corpus" or self.future < ADVANCE)):
             raise InputError(
                 f"own_pasts is {self.own_pasts}: give 0, or more with the windows of the corpus and a future "
@@ -73,9 +79,37 @@ class Settings:
         return self.future + ADVANCE * self.own_pasts
 
 
+_BIN = 5
+"""Frames that one mean speed is of."""
+
+
 def lengths(vectors: Tensor) -> Tensor:
     """(…, 3) → (…), with a gradient at 0."""
     return (vectors.square().sum(-1) + 1e-10).sqrt()
+
+
+def liveliness(made: Tensor, real: Tensor, groups: int = 1) -> tuple[Tensor, Tensor]:
+    """How far mean speeds lie from the truth's, and how far mean accelerations lie above them.
+
+    Means are over a group of windows, for each joint and, of speeds, :data:`_BIN` frames; of the differences
+    it is the root of the mean square. It is met by the mean of what may follow, not by its median, in which
+    people stand still; without the accelerations it would be met by trembling.
+
+    Args:
+        made, real: (B, T, J, 3) velocities per frame, the first one of the past; B a multiple of ``groups``.
+        groups: how many equal parts of the batch have means of their own.
+
+    Returns:
+        two numbers in the unit of the velocities.
+    """
+    speeds, accelerations = (
+        [lengths(v).unflatten(0, (groups, -1)).mean(1) for v in pair]
+        for pair in ((made[:, 1:], real[:, 1:]), (made.diff(dim=1), real.diff(dim=1)))
+    )
+    few = torch.cat([x.mean(1) for x in (speeds[0] - speeds[1]).split(_BIN, dim=1)])
+    above = torch.relu(accelerations[0] - accelerations[1])
+    speed, acceleration = ((x.square().mean() + 1e-10).sqrt() for x in (few, above))
+    return speed, acceleration
 
 
 class Trainer(PredictionTrainer):
@@ -115,33 +149,40 @@ class Trainer(PredictionTrainer):
         warm, place = min(1.0, (self.step + 1) / s.warmup), min(1.0, self.step / s.steps)
         return s.learning_rate * warm * (0.02 + 0.98 * 0.5 * (1 + math.cos(math.pi * place)))
 
-    def terms(self, window: Tensor) -> dict[str, Tensor]:
-        """Weighted loss terms of windows (B, T, J, 3), in centimetres."""
+    def terms(self, window: Tensor, passes: int = 0) -> dict[str, Tensor]:
+        """Weighted loss terms of windows (B, T, J, 3), in centimetres, whose pasts were made in ``passes``.
+
+        Windows are in the order of the speed in the past that was recorded.
+        """
         s = self.settings
         past, truth = window.split([s.past, s.future], dim=1)
         noise = torch.randn(past.shape, generator=torch.Generator().manual_seed(self.step)).to(past)
         predicted = 100 * self.model(past + s.noise * noise)
-        truth, last = 100 * truth, 100 * past[:, -1:]
-        velocities = [torch.cat([last, x], dim=1).diff(dim=1) for x in (predicted, truth)]
-        speeds = [lengths(v).mean((0, 2)) for v in velocities]
+        truth, before = 100 * truth, 100 * past[:, -2:]
+        velocities = [torch.cat([before, x], dim=1).diff(dim=1) for x in (predicted, truth)]
         parents, children = self.bones
         bones = [lengths(x[..., children, :] - x[..., parents, :]) for x in (predicted, truth)]
+        known = 1 / (1 + passes)
+        speed, acceleration = liveliness(*velocities, s.groups)
         return {
-            "position": lengths(predicted - truth).mean(),
-            "velocity": s.velocity_weight * lengths(velocities[0] - velocities[1]).mean(),
-            "speed": s.speed_weight * (speeds[0] - speeds[1]).abs().mean(),
+            "position": known * lengths(predicted - truth).mean(),
+            "velocity": known * s.velocity_weight * lengths(velocities[0] - velocities[1])[:, 1:].mean(),
+            "speed": s.speed_weight * speed,
+            "acceleration": s.acceleration_weight * acceleration,
             "bone": s.bone_weight * (bones[0] - bones[1]).abs().mean(),
         }
 
-    def window(self) -> Tensor:
-        """This step's windows (B, past + future, J, 3), some of whose pasts are the network's own."""
+    def window(self) -> tuple[Tensor, int]:
+        """This step's windows (B, past + future, J, 3), and in how many passes the network made the pasts."""
         s, windows = self.settings, self.batch()
+        windows = windows[lengths(windows[:, : s.past].diff(dim=1)).mean((1, 2)).argsort()]
         passes = int(np.random.default_rng((s.seed, self.step, 2)).integers(s.own_pasts + 1))
-        return with_own_past(self.ema, windows, s.past, s.future, passes) if passes else windows
+        made = with_own_past(self.ema, windows, s.past, s.future, passes) if passes else windows
+        return made[:, : s.past + s.future], passes
 
     def train_step(self) -> dict[str, float]:
         torch.manual_seed(self.settings.seed + self.step)  # dropout
-        terms = self.terms(self.window()[:, : self.settings.past + self.settings.future])
+        terms = self.terms(*self.window())
         total = torch.stack(list(terms.values())).sum()
         for group in self.optimizer.param_groups:
             group["lr"] = self.learning_rate()

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 from abc import ABC, abstractmethod
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -57,16 +58,19 @@ class CmuWindows(Windows):
     Args:
         folder: see :mod:`training.cmu`.
         paces: slowest and fastest, as multiples of the recorded one.
+        mixed: share of windows whose legs come from another window. Legs and the rest hang from the same
+            joint, which stands still here, so that any two go together.
     """
 
     fps = 25.0
     joints = 17
 
     def __init__(
-        self, folder: Path, past: int = 25, future: int = 25, *, paces: tuple[float, float] = (0.8, 1.25)
-    ) -> None:
+        self, folder: Path, past: int = 25, future: int = 25, *,
+        paces: tuple[float, float] = (0.8, 1.25), mixed: float = 0.0,
+    ) -> None:  # fmt: skip
         super().__init__(past, future)
-        self.paces = paces
+        self.paces, self.mixed = paces, mixed
         self.bones = cmu.CmuSkeleton.read(folder / "skeleton.json").bones
         clips, starts, room, chances = [], [], [], []
         end = 0
@@ -94,6 +98,9 @@ class CmuWindows(Windows):
         found = (1 - share) * self.frames[places] + share * self.frames[places + 1]
         mirror = rng.random(count) < 0.5
         found[mirror] = cmu.mirrored(found[mirror])
+        if self.mixed:
+            mixed = rng.random(count) < self.mixed
+            found[mixed, :, cmu.LEGS] = np.roll(found, 1, axis=0)[mixed, :, cmu.LEGS]
         return found
 
 
@@ -137,8 +144,8 @@ class CorpusWindows(Windows):
 
 
 def open_windows(kind: str, folder: Path, past: int, future: int) -> Windows:
-    """Windows by the name of their data set: "cmu" or "corpus"."""
-    kinds = {"cmu": CmuWindows, "corpus": CorpusWindows}
+    """Windows by the name of their data set: "cmu", "cmu-mixed" (a third with others' legs) or "corpus"."""
+    kinds = {"cmu": CmuWindows, "cmu-mixed": partial(CmuWindows, mixed=1 / 3), "corpus": CorpusWindows}
     if kind not in kinds:
         raise InputError(f"Windows {kind!r} are not known: choose one of {', '.join(kinds)}.")
     return kinds[kind](folder, past, future)
