@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from hypothesis import given, settings
@@ -10,6 +12,7 @@ from hypothesis import strategies as st
 from tests.motion.bodies import marching
 from webdemo import formats
 from webdemo.formats.bvh import read_bvh
+from webdemo.formats.importing import ImportChoices, import_motion
 from webdemo.motion import SMPL22, InputError
 from webdemo.motion.retarget import retarget
 from webdemo.motion.rigs import match_joints
@@ -129,13 +132,40 @@ def test_resampling_to_thirty():
     )
 
 
+GOOD = bvh_text(ROTATIONS[:3], ROOT[:3], RIGS["mixamo"])
+LAST = GOOD.splitlines()[-1]
+FAST = bvh_text(np.repeat(ROTATIONS, 4, axis=0)[2:], np.repeat(ROOT, 4, axis=0)[2:], RIGS["mixamo"])
+
+
+@pytest.mark.parametrize(("file_fps", "every"), [(120, 4), (60, 2), (30, 1), (100, 2), (45, 1)])
+def test_of_a_faster_file_only_the_frames_that_are_needed_are_placed(file_fps, every):
+    data = FAST.replace("Frame Time: 0.0333333", f"Frame Time: {1 / file_fps:.7f}").encode()
+    whole = read_bvh(data)
+    rig = read_bvh(data, fps=30.0)
+    assert (rig.every, rig.fps * rig.every) == (every, file_fps) and whole.fps == file_fps
+    np.testing.assert_array_equal(rig.positions, whole.positions[::every])
+    assert import_motion(data, name="x.bvh").fps == file_fps
+
+
+def test_a_known_rate_decides_which_frames_are_needed():
+    found = import_motion(FAST.encode(), name="x.bvh", choices=ImportChoices(fps=120.0))
+    assert found.fps == 120 and found.people[0].num_frames == -(-(4 * 40 - 2) // 4)
+    truth = retarget(replace(read_bvh(FAST.encode()), fps=120.0)).positions
+    np.testing.assert_allclose(found.people[0].positions, truth, atol=2e-3)
+
+
+def test_numbers_may_stand_on_any_lines():
+    head, numbers = GOOD.split("Frame Time: 0.0333333\n")
+    words = numbers.split()
+    rows = [words[: len(words) // 3 + 5], words[len(words) // 3 + 5 : -7], words[-7:]]
+    text = "\n\n".join("\t ".join(row) for row in rows)
+    found = read_bvh(f"{head}Frame Time: 0.0333333\n{text}".encode())
+    np.testing.assert_allclose(found.positions, read_bvh(GOOD.encode()).positions, atol=1e-6)
+
+
 def test_our_own_joints_are_taken_as_they_are():
     clip = formats.read(bvh_text(ROTATIONS, ROOT, unit=1.0).encode(), name="own.bvh")
     np.testing.assert_allclose(clip.positions, POSITIONS, atol=1e-4)
-
-
-GOOD = bvh_text(ROTATIONS[:3], ROOT[:3], RIGS["mixamo"])
-LAST = GOOD.splitlines()[-1]
 
 
 @pytest.mark.parametrize(

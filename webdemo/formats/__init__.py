@@ -45,7 +45,7 @@ class Format:
 def _read_bvh_clip(
     source: str | Path | bytes, *, name: str | None = None, fps: float | None = None, everyone: bool = False
 ) -> Motion:
-    rigs = read_bvh_people(source, name=name)
+    rigs = read_bvh_people(source, name=name, fps=fps or 30.0)
     people = tuple(own_clip(rig) or retarget(rig, fps=fps or 30.0) for rig in rigs)
     return gathered(people, people[0].name, everyone=everyone)
 
@@ -55,7 +55,8 @@ def own_clip(rig: RigMotion) -> Clip | None:
     if not set(SMPL22.joint_names) <= set(rig.joint_names) or rig.metres_per_unit != 1.0:
         return None
     order = [rig.joint_names.index(name) for name in SMPL22.joint_names]
-    return Clip(rig.positions[:, order], rig.fps, SMPL22, rig.rotations[:, order], rig.name)
+    rotations = None if rig.rotations is None else rig.rotations[:, order]
+    return Clip(rig.positions[:, order], rig.fps, SMPL22, rotations, rig.name)
 
 
 FORMATS: dict[str, Format] = {
@@ -142,7 +143,7 @@ def read_pair(
     """
     paths = (Path(a), Path(b))
     if all(path.suffix.lower() == ".bvh" for path in paths):
-        rigs = [read_bvh(path) for path in paths]
+        rigs = [read_bvh(path, fps=fps or 30.0) for path in paths]
         own = [own_clip(rig) for rig in rigs]
         if own[0] is None or own[1] is None:
             return retarget_duet(rigs[0], rigs[1], fps=fps or 30.0, roles=roles)

@@ -65,6 +65,19 @@ def decode_text(data: bytes, label: str, kind: str) -> str:
     return text
 
 
+def ascii_bytes(data: bytes, label: str, kind: str) -> bytes:
+    """Text whose ASCII is ASCII: UTF-16 as UTF-8, anything else as it is, without a mark of its encoding.
+
+    Raises:
+        InputError: for binary data, which is no file of this ``kind`` ("a BVH file").
+    """
+    if data[:2] in (b"\xff\xfe", b"\xfe\xff") or 3 * data[:200].count(0) > len(data[:200]):
+        return decode_text(data, label, kind).encode("utf-8")
+    if b"\0" in data:
+        raise InputError(f"{label} is not {kind}: it holds binary data.")
+    return data.removeprefix(codecs.BOM_UTF8)
+
+
 def _is_text(data: bytes, encoding: str) -> bool:
     """Whether data is in this encoding, read in pieces, as an error keeps a copy of its piece."""
     decoder = codecs.getincrementaldecoder(encoding)()

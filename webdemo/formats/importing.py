@@ -30,6 +30,7 @@ AXES = ("x", "y", "z")
 RATES = (1.0, 1000.0)
 ORDERS = {"sbu15": "SBU", "k3hi15": "K3HI"}
 """What people call the orders of which several have as many joints."""
+_FPS = 30.0
 # Metres from ankles to head of the smallest and the tallest person.
 _TALL = (0.9, 2.0)
 
@@ -117,7 +118,8 @@ def import_motion(
     choices = choices or ImportChoices()
     label = name or Path(str(source)).name
     if Path(label).suffix.lower() == ".bvh":
-        return _import_rigs(read_bvh_people(source, name=name), choices)
+        rigs = read_bvh_people(source, name=name, fps=_FPS, file_fps=choices.fps)
+        return _import_rigs(rigs, choices)
     people = tuple(
         _ordered(clip, choices.order, label) for clip in people_of(read_everyone(source, name=name))
     )
@@ -165,7 +167,8 @@ def _import_rig(rig: RigMotion, choices: ImportChoices) -> Imported:
     joints = tuple(matched_names(rig))
     unit = next((n for n, metres in UNITS.items() if np.isclose(metres, rig.metres_per_unit)), "none")
     keep = own is not None and (choices.up, choices.unit, choices.fps) == (None, None, None)
-    return Imported((own if keep and own else retarget(rig),), up_axis(rig), unit, rig.fps, joints)
+    clip = own if keep and own else retarget(rig, fps=_FPS)
+    return Imported((clip,), up_axis(rig), unit, rig.fps * rig.every, joints)
 
 
 def _with_choices(rig: RigMotion, choices: ImportChoices) -> RigMotion:
@@ -177,7 +180,7 @@ def _with_choices(rig: RigMotion, choices: ImportChoices) -> RigMotion:
             offsets=rig.offsets * scale,
             metres_per_unit=UNITS[choices.unit],
         )
-    return replace(rig, up=choices.up, fps=choices.fps or rig.fps)
+    return replace(rig, up=choices.up, fps=choices.fps / rig.every if choices.fps else rig.fps)
 
 
 def _check_length(motion: Clip | RigMotion, label: str) -> None:

@@ -20,30 +20,40 @@ def forward_kinematics(rotations: Array, root: Array, skeleton: Skeleton = SMPL2
     Returns:
         (…, J, 3) world positions in metres.
     """
-    world_rotations = global_rotations(rotations, skeleton)
-    positions = np.empty((*rotations.shape[:-3], skeleton.num_joints, 3))
-    positions[..., 0, :] = root
+    world_rotations = _by_joint(rotations, 3)
+    positions = np.empty((skeleton.num_joints, *rotations.shape[:-3], 3))
+    positions[0] = root
     for parent, joint in skeleton.bones:
-        positions[..., joint, :] = (
-            positions[..., parent, :] + world_rotations[..., parent, :, :] @ skeleton.offsets[joint]
-        )
-    return positions
+        positions[joint] = positions[parent] + world_rotations[parent] @ skeleton.offsets[joint]
+        if skeleton.children[joint]:
+            world_rotations[joint] = world_rotations[parent] @ world_rotations[joint]
+    return _by_frame(positions, 2)
 
 
 def global_rotations(rotations: Array, skeleton: Skeleton = SMPL22) -> Array:
     """(…, J, 3, 3) rotations of each joint against the world from local ones."""
-    world = np.array(rotations, dtype=np.float64)
+    world = _by_joint(rotations, 3)
     for parent, joint in skeleton.bones:
-        world[..., joint, :, :] = world[..., parent, :, :] @ rotations[..., joint, :, :]
-    return world
+        world[joint] = world[parent] @ world[joint]
+    return _by_frame(world, 3)
 
 
 def local_rotations(world: Array, skeleton: Skeleton = SMPL22) -> Array:
     """(…, J, 3, 3) rotations against the parent from rotations against the world."""
-    local = np.array(world, dtype=np.float64)
-    for parent, joint in skeleton.bones:
-        local[..., joint, :, :] = np.swapaxes(world[..., parent, :, :], -1, -2) @ world[..., joint, :, :]
-    return local
+    local = _by_joint(world, 3)
+    for parent, joint in reversed(skeleton.bones):  # parents stay as they were until their children are done
+        local[joint] = np.swapaxes(local[parent], -1, -2) @ local[joint]
+    return _by_frame(local, 3)
+
+
+def _by_joint(values: Array, place: int) -> Array:
+    """A copy with the axis of the joints, the ``place``-th from the end, first: each joint's lie together."""
+    return np.array(np.moveaxis(values, -place, 0), dtype=np.float64, order="C")
+
+
+def _by_frame(values: Array, place: int) -> Array:
+    """The other way round."""
+    return np.ascontiguousarray(np.moveaxis(values, 0, -place))
 
 
 def fit_rotations(positions: Array, skeleton: Skeleton = SMPL22) -> Array:
@@ -60,25 +70,21 @@ def fit_rotations(positions: Array, skeleton: Skeleton = SMPL22) -> Array:
     Returns:
         (…, J, 3, 3) local rotations.
     """
-    positions = np.asarray(positions, dtype=np.float64)
-    world = np.empty((*positions.shape[:-1], 3, 3))
+    places = _by_joint(positions, 2)
+    world = np.empty((*places.shape, 3))
     for joint, children in enumerate(skeleton.children):
         parent = skeleton.parents[joint]
-        inherited = (
-            np.broadcast_to(np.eye(3), (*positions.shape[:-2], 3, 3))
-            if parent < 0
-            else world[..., parent, :, :]
-        )
+        inherited = np.broadcast_to(np.eye(3), world.shape[1:]) if parent < 0 else world[parent]
         if not children:
-            world[..., joint, :, :] = inherited
+            world[joint] = inherited
             continue
-        bones = positions[..., list(children), :] - positions[..., joint : joint + 1, :]
+        bones = places[list(children)] - places[joint]
         rest = skeleton.offsets[list(children)]
         if len(children) > 1:
-            world[..., joint, :, :] = _kabsch(rest, bones)
+            world[joint] = _kabsch(rest, np.moveaxis(bones, 0, -2))
         else:
-            world[..., joint, :, :] = _swing(inherited @ rest[0], bones[..., 0, :]) @ inherited
-    return local_rotations(world, skeleton)
+            world[joint] = _swing(inherited @ rest[0], bones[0]) @ inherited
+    return local_rotations(np.moveaxis(world, 0, -3), skeleton)
 
 
 def project_to_skeleton(positions: Array, skeleton: Skeleton = SMPL22) -> tuple[Array, Array]:

@@ -17,7 +17,7 @@ from .cleaning import foot_contacts, plant_feet
 from .clip import Clip, Duet
 from .errors import InputError
 from .ik import body_scale, fit_skeleton
-from .kinematics import fit_rotations, forward_kinematics
+from .kinematics import project_to_skeleton
 from .rigs import BodyParts, RigMotion, match_joints
 from .skeleton import SMPL22
 from .transforms import resample
@@ -35,6 +35,8 @@ _FLAT_FOOT = float(np.arctan2(-_toe[1], np.hypot(_toe[0], _toe[2])))
 # Where pelvis, spine1, spine2 and spine3 lie on the way from between the hips to the neck.
 _spine = [float(-SMPL22.offsets[_J["left_hip"], 1])]
 _spine += [float(SMPL22.bone_lengths[_J[name]]) for name in ("spine1", "spine2", "spine3", "neck")]
+_BLOCK = 2048
+"""Frames whose rotations are fitted at once."""
 _SPINE_FRACTIONS = np.cumsum(_spine) / np.sum(_spine)
 
 
@@ -119,18 +121,28 @@ def leg_scale(rig: RigMotion) -> float:
 def _on_smpl(rig: RigMotion, fps: float, scale: float) -> Array:
     """(T, 22, 3) Y-up positions on SMPL22's bones at the new frame rate; the floor is the file's, scaled."""
     parts = match_joints(rig)
-    source = _bodies(rig.positions @ up_rotation(rig, parts).T, rig, parts)
+    source = _bodies(rig.positions, rig, parts, up_rotation(rig, parts))
     positions = _transfer(source, _standing_rest(rig, parts), scale)
-    positions = resample(positions, rig.fps, fps)
+    if rig.fps == fps:
+        return positions
     # A spline between frames bends bones by fractions of a millimetre; rotations set them right.
-    return forward_kinematics(fit_rotations(positions), positions[:, 0])
+    return _on_bones(resample(positions, rig.fps, fps))[0]
+
+
+def _on_bones(positions: Array) -> tuple[Array, Array]:
+    """:func:`~webdemo.motion.kinematics.project_to_skeleton`, some frames at a time to spare memory."""
+    places, rotations = np.empty(positions.shape), np.empty((*positions.shape, 3), dtype=np.float32)
+    for start in range(0, len(positions), _BLOCK):
+        block = slice(start, start + _BLOCK)
+        places[block], rotations[block] = project_to_skeleton(positions[block])
+    return places, rotations
 
 
 def _finished(positions: Array, fps: float, name: str, plant: bool) -> Clip:
     if plant:
         positions = plant_feet(positions, foot_contacts(positions, fps, speed=_CONTACT_SPEED))
-    rotations = fit_rotations(positions)
-    return Clip(forward_kinematics(rotations, positions[:, 0]), fps, SMPL22, rotations, name)
+    positions, rotations = _on_bones(positions)
+    return Clip(positions, fps, SMPL22, rotations, name)
 
 
 def up_rotation(rig: RigMotion, parts: BodyParts | None = None) -> Array:
@@ -169,21 +181,24 @@ def _to_y(axis: int, sign: float) -> Array:
     return np.array([[0, -sign, 0], [sign, 0, 0], [0, 0, 1.0]])
 
 
-def _bodies(positions: Array, rig: RigMotion, parts: BodyParts) -> dict[str, Array]:
-    """(T, 3) of every part the rig has, by SMPL22's names; ``spine0``… are the joints of its spine."""
+def _bodies(positions: Array, rig: RigMotion, parts: BodyParts, upright: Array) -> dict[str, Array]:
+    """(T, 3) of every part the rig has, turned ``upright`` (3, 3), by SMPL22's names.
+
+    ``spine0``… are the joints of its spine.
+    """
     bodies = {}
     for side, limb in (("left", parts.left), ("right", parts.right)):
         for part, joint in limb.items():
             if joint is not None:
-                bodies[f"{side}_{'foot' if part == 'toe' else part}"] = positions[:, joint]
+                bodies[f"{side}_{'foot' if part == 'toe' else part}"] = positions[:, joint] @ upright.T
     if not {"left_collar", "right_collar"} <= set(bodies):  # one collar alone tells nothing about the chest
         bodies = {name: place for name, place in bodies.items() if not name.endswith("_collar")}
     for number, joint in enumerate(parts.spine):
-        bodies[f"spine_{number}"] = positions[:, joint]
+        bodies[f"spine_{number}"] = positions[:, joint] @ upright.T
     if parts.head is not None:
-        bodies["head"] = positions[:, parts.head]
+        bodies["head"] = positions[:, parts.head] @ upright.T
     shoulders = (bodies["left_shoulder"] + bodies["right_shoulder"]) / 2
-    bodies["neck"] = shoulders if parts.neck is None else positions[:, parts.neck]
+    bodies["neck"] = shoulders if parts.neck is None else positions[:, parts.neck] @ upright.T
     return bodies
 
 
@@ -198,7 +213,7 @@ def _rest_positions(rig: RigMotion) -> Array:
 def _standing_rest(rig: RigMotion, parts: BodyParts) -> dict[str, Array] | None:
     """The rig's rest pose (1 frame), Y up and facing +Z, or ``None`` where it is not a standing one."""
     rest = _rest_positions(rig)[None]
-    bodies = _bodies(rest, rig, parts)
+    bodies = _bodies(rest, rig, parts, np.eye(3))
     ankles = (bodies["left_ankle"] + bodies["right_ankle"]) / 2
     tall = (bodies["neck"] - ankles)[0]
     axis = int(np.argmax(np.abs(tall)))
@@ -206,8 +221,7 @@ def _standing_rest(rig: RigMotion, parts: BodyParts) -> dict[str, Array] | None:
     across = (bodies["left_hip"] - bodies["right_hip"])[0]
     if not straight or np.linalg.norm(across) < 0.05:
         return None
-    rest = rest @ _to_y(axis, float(np.sign(tall[axis]))).T
-    bodies = _bodies(rest, rig, parts)
+    bodies = _bodies(rest, rig, parts, _to_y(axis, float(np.sign(tall[axis]))))
     frame = _frame(np.array([[0.0, 1.0, 0.0]]), bodies["left_hip"] - bodies["right_hip"])[0]
     bodies = {name: place @ frame for name, place in bodies.items()}
     legs_down = all(

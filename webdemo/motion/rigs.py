@@ -28,22 +28,24 @@ class RigMotion:
         parents: index of each joint's parent, -1 for a root; parents come first.
         offsets: (J, 3) rest position relative to the parent, in metres.
         positions: (T, J, 3) world positions in metres, axes as in the file.
-        rotations: (T, J, 3, 3) local rotations against the rig's rest pose.
+        rotations: (T, J, 3, 3) local rotations against the rig's rest pose, where the joints are SMPL22's.
         fps: frames a second.
         metres_per_unit: what the file's lengths were multiplied by.
         name: the file's name, for messages.
         up: the axis that points up ("x", "y" or "z"), where it is known; it is found from the body otherwise.
+        every: of how many frames of the file one is here.
     """
 
     joint_names: tuple[str, ...]
     parents: tuple[int, ...]
     offsets: Array = field(repr=False)
     positions: Array = field(repr=False)
-    rotations: Array = field(repr=False)
+    rotations: Array | None = field(repr=False)
     fps: float
     metres_per_unit: float = 1.0
     name: str = ""
     up: str | None = None
+    every: int = 1
 
     @property
     def num_frames(self) -> int:
