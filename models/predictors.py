@@ -18,6 +18,8 @@ from models.mawgan import MAWGANConfig, PredictiveMAWGAN
 from models.motion_mlp import MotionMLP, MotionMLPConfig
 
 _FILE = "model.safetensors"
+_FADE = 0.7
+"""Share of a correction at the seam that is left a frame later."""
 
 
 @dataclass(frozen=True)
@@ -45,8 +47,12 @@ class Predictor:
 
     @torch.no_grad()
     def __call__(self, past: Tensor) -> Tensor:
-        """(B, past or more, J, 3) metres, of which the last frames are used → (B, future, J, 3)."""
-        return self.network(past[:, -self.past :])
+        """(B, past or more, J, 3) metres, of which the last frames are used → (B, future, J, 3).
+
+        The first step is no larger than the largest of those frames.
+        """
+        seen = past[:, -self.past :]
+        return without_jump(seen, self.network(seen))
 
     def recursive(self, past: Tensor, frames: int) -> Tensor:
         """As many future frames as asked for: each prediction is the past of the next (thesis, 2.5.9)."""
@@ -54,6 +60,25 @@ class Predictor:
         while whole.shape[1] - past.shape[1] < frames:
             whole = torch.cat([whole, self(whole)], dim=1)
         return whole[:, past.shape[1] :][:, :frames]
+
+
+def without_jump(past: Tensor, future: Tensor) -> Tensor:
+    """A future whose first step is at most the past's largest, as mean distances of joints.
+
+    What is too much of it is taken away, and less and less so of the frames after.
+
+    Args:
+        past: (B, T, J, 3) metres.
+        future: (B, F, J, 3) metres.
+
+    Returns:
+        (B, F, J, 3).
+    """
+    step = future[:, 0] - past[:, -1]
+    largest = past.diff(dim=1).norm(dim=-1).mean(-1).amax(1)
+    excess = torch.relu(1 - largest / step.norm(dim=-1).mean(-1).clamp_min(1e-9))[:, None, None] * step
+    fade = _FADE ** torch.arange(future.shape[1]).to(future)
+    return future - fade[:, None, None] * excess[:, None]
 
 
 def save_predictor(

@@ -216,6 +216,7 @@ def test_the_page_s_predictions_are_scored(tmp_path: Path) -> None:
     assert "| still, mm | 40 | 100 | 200 | 300 | 600 | 1200 | 1800 | 2400 |" in told
     assert "| tiny, mm |" in told and "still, speed" not in told
     assert "| first step within the past's largest | 100.0% | 100.0% | 100.0% |" in told
+    assert "| slowest and fastest step over the truth's | 1.00 to 1.00 | 0.00 to 0.00 |" in told
     assert product.main([*asked, "--model", "missing"]) == 2
 
 

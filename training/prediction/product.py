@@ -84,6 +84,8 @@ def markdown(found: dict[str, Quality], count: int) -> str:
             speeds = " | ".join(f"{quality.speed[f - 1]:.2f}" for f in AHEAD)
             lines.append(f"| {name}, speed over the truth's | {speeds} |")
     lines += ["", f"|  | {' | '.join(found)} |", "|---|" + "---:|" * len(found)]
+    ranges = " | ".join(f"{q.speed.min():.2f} to {q.speed.max():.2f}" for q in found.values())
+    lines.append(f"| slowest and fastest step over the truth's | {ranges} |")
     for label, values in (
         ("first step within the past's largest", [f"{q.seam:.1%}" for q in found.values()]),
         ("standing feet glide, cm/s", [f"{q.glide:.1f}" for q in found.values()]),
