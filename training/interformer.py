@@ -40,7 +40,7 @@ from models.interformer_decoding import ReactionDecoder
 from training import checkpoint
 from training.corpus.pairs import load_pairs
 from training.loop import Loop
-from training.shell import exit_code
+from training.shell import add_run_options, chosen, exit_code
 from webdemo.motion import InputError
 from webdemo.motion.skeleton import SBU15
 from webdemo.motion.transforms import canonicalize, mirrored, turn
@@ -373,22 +373,16 @@ def main(argv: list[str] | None = None) -> int:
     parser = argparse.ArgumentParser(description="Train the compact InterFormer on SBU and K3HI.")
     parser.add_argument("--data", type=Path, required=True, help="folder that holds sbu and k3hi")
     parser.add_argument("--cache", type=Path, help="folder of the fitted pairs; --data by default")
-    parser.add_argument("--out", type=Path, required=True, help="folder of the checkpoint and the log")
-    parser.add_argument(
-        "--minutes", type=float, default=1e9, help="stop after this long; start again to go on"
-    )
     parser.add_argument("--export", type=Path, help="after that, write the averaged weights to this folder")
-    for setting in fields(Settings):
-        flag = "--" + setting.name.replace("_", "-")
-        parser.add_argument(flag, type=type(setting.default), default=setting.default)
+    add_run_options(parser, Settings)
     options = parser.parse_args(argv)
     return exit_code(lambda: _run(options))
 
 
 def _run(options: argparse.Namespace) -> None:
-    settings = Settings(**{f.name: getattr(options, f.name) for f in fields(Settings)})
     pairs = load_pairs(options.data, options.cache)
-    trainer = Trainer([pair.positions for pair in pairs if pair.split == "train"], settings, options.out)
+    learned = [pair.positions for pair in pairs if pair.split == "train"]
+    trainer = Trainer(learned, chosen(options, Settings), options.out)
 
     def after() -> None:
         if trainer.step % 50 == 0:

@@ -16,7 +16,7 @@ import math
 import time
 from collections import Counter
 from collections.abc import Callable
-from dataclasses import asdict, dataclass, field, fields
+from dataclasses import asdict, dataclass, field
 from pathlib import Path
 from typing import Any
 
@@ -36,7 +36,7 @@ from training.loop import Loop
 from training.prepare import Scenes, load, normalizer
 from training.reading import CaptionReader
 from training.samples import write_sheet
-from training.shell import exit_code
+from training.shell import add_run_options, chosen, exit_code
 from training.text_features import CaptionFeatures
 from webdemo.motion import SMPL22, InputError
 
@@ -336,31 +336,21 @@ class Trainer(Loop):
 def main(argv: list[str] | None = None) -> int:
     parser = argparse.ArgumentParser(description="Train the compact InterGen on prepared scenes.")
     parser.add_argument("--scenes", type=Path, required=True, help="file of `python -m training.prepare`")
-    parser.add_argument("--out", type=Path, required=True, help="folder of the checkpoint and the log")
     parser.add_argument(
         "--init", type=Path, help="begin with another run's last.safetensors, or a shipped folder"
-    )
-    parser.add_argument(
-        "--minutes", type=float, default=1e9, help="stop after this long; start again to go on"
     )
     parser.add_argument(
         "--sheets", type=float, default=20.0, help="minutes between contact sheets of samples; 0: none (20)"
     )
     parser.add_argument("--device", default="cuda" if torch.cuda.is_available() else "cpu")
-    for setting in fields(Settings):
-        if setting.name != "weights":
-            kind = type(setting.default)
-            flag = "--" + setting.name.replace("_", "-")
-            parser.add_argument(flag, type=kind, default=setting.default)
+    add_run_options(parser, Settings, leave_out=("weights",))
     options = parser.parse_args(argv)
     return exit_code(lambda: _run(options))
 
 
 def _run(options: argparse.Namespace) -> None:
-    chosen = {f.name: getattr(options, f.name) for f in fields(Settings) if f.name != "weights"}
-    trainer = Trainer(
-        load(options.scenes), Settings(**chosen), options.out, init=options.init, device=options.device
-    )
+    settings = chosen(options, Settings)
+    trainer = Trainer(load(options.scenes), settings, options.out, init=options.init, device=options.device)
     drawn = time.monotonic()
 
     def draw() -> None:

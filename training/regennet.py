@@ -13,37 +13,27 @@ from __future__ import annotations
 import argparse
 import json
 import math
-from dataclasses import asdict, dataclass, fields
+from dataclasses import asdict, dataclass
 from pathlib import Path
-from typing import Any
 
 import torch
-from safetensors import SafetensorError
-from safetensors.torch import load_file, save_file
 from torch import Tensor
 from torch.nn.attention import SDPBackend, sdpa_kernel
 
 from models.compact import WeightsFolder
-from models.compact_regennet import (
-    LEAD,
-    CompactReGenNet,
-    CompactReGenNetConfig,
-    load_folder,
-)
+from models.compact_regennet import CompactReGenNet, CompactReGenNetConfig, load_folder
 from models.diffusion import NoiseSchedule
 from models.errors import load_strictly
 from models.folder import save_network
 from models.intergen_losses import bone_lengths, facing
-from models.motion_tokens import FEATURES, NUM_CONTACTS, mirror_control
+from models.motion_tokens import FEATURES, NUM_CONTACTS
 from training import checkpoint
-from training.corpus.captions import mirror_caption
-from training.intergen import balanced, draw_timesteps, seeded
+from training.intergen import draw_timesteps, seeded
 from training.loop import Loop
-from training.prepare import ROOT_SCALE, Scenes, load
-from training.shell import exit_code
-from training.text_features import CaptionFeatures
-from webdemo.formats.files import replacing
-from webdemo.motion import SMPL22, InputError
+from training.prepare import Scenes, load
+from training.regennet_data import Batch, Conditions, Data, knot_positions, seen_rows
+from training.shell import add_run_options, chosen, exit_code
+from webdemo.motion import InputError
 from webdemo.motion.skeleton import FEET
 
 SUMMARY = (
@@ -102,157 +92,6 @@ class Settings:
             raise InputError(
                 f"latent_dim {self.latent_dim} cannot be shared by {self.num_heads} heads: give a multiple."
             )
-
-
-@dataclass
-class Batch:
-    """One batch: control points of reactor and actor (B, K, 70) in metres, mask (B, K), words (B, C), and
-    whether the scene was cropped (B,)."""
-
-    reactor: Tensor
-    actor: Tensor
-    mask: Tensor
-    words: Tensor
-    cropped: Tensor
-
-
-class Conditions:
-    """The condition vector of every caption, worked out once and kept beside the run.
-
-    Args:
-        captions: unique sentences.
-        conditioner: the frozen conditioner.
-        cache: the run's folder.
-        digest: names the conditioner's weights.
-    """
-
-    def __init__(self, captions: list[str], conditioner: torch.nn.Module, cache: Path, digest: str) -> None:
-        self.index = {caption: row for row, caption in enumerate(captions)}
-        path = cache / f"conditions_{len(captions)}_{digest[:12]}.safetensors"
-        try:
-            self.vectors = load_file(path)["conditions"]
-        except (OSError, SafetensorError):
-            features = CaptionFeatures(captions, cache)
-            order = sorted(range(len(captions)), key=lambda row: int(features.lengths[row]))
-            self.vectors = torch.zeros(len(captions), conditioner.config.latent_dim, dtype=torch.half)
-            with torch.no_grad(), torch.autocast("cpu", torch.bfloat16):
-                for start in range(0, len(order), 256):
-                    rows = order[start : start + 256]
-                    self.vectors[rows] = conditioner(*features.batch([captions[r] for r in rows])).half()
-            with replacing(path) as temporary:
-                save_file({"conditions": self.vectors}, temporary)
-
-    def batch(self, captions: list[str]) -> Tensor:
-        """(B, C) float32."""
-        return self.vectors[[self.index[caption] for caption in captions]].float()
-
-
-def knot_positions(control: Tensor) -> Tensor:
-    """Control points (B, K, 70) → positions at the knots (B, K − 2, 22, 3)."""
-    knots = (control[:, :-2] + 4 * control[:, 1:-1] + control[:, 2:]) / 6
-    root, others, _ = knots.split([3, FEATURES - 3 - NUM_CONTACTS, NUM_CONTACTS], dim=-1)
-    others = others.unflatten(-1, (-1, 3)) + root[..., None, :]
-    return torch.cat([root[..., None, :], others], dim=-2)
-
-
-def seen_rows(control: Tensor) -> Tensor:
-    """What each row sees of an actor given by control points (B, K, 70), not normalised: (B, K, 132)."""
-    knots = (control[:, :-2] + 4 * control[:, 1:-1] + control[:, 2:]) / 6
-    pose = knots[..., : FEATURES - NUM_CONTACTS]
-    place = torch.arange(control.shape[1]) - LEAD
-    now, before = pose[:, place.clamp_min(0)], pose[:, (place - 1).clamp_min(0)]
-    return torch.cat([now, now - before], dim=-1)
-
-
-def is_recorded(row: dict[str, Any]) -> bool:
-    """Whether a scene was recorded with both people, and not composed of two recordings."""
-    return any(str(source).startswith(("sbu", "k3hi")) for source in row["sources"])
-
-
-def cropped(people: Tensor, knots: int) -> Tensor:
-    """Control points (2, K, 70) without their first ``knots``, in the frame of the actor's new first pose.
-
-    The actor, person 0, stands at the origin of the floor and faces +Z at the first frame.
-    """
-    people = people[:, knots:]
-    first = knot_positions(people[:1, :3])[0, 0]
-    ahead = facing(first[None])[0]
-    x, z = (ahead / ahead.norm().clamp_min(1e-6))[[0, 2]]
-    zero, one = torch.zeros_like(x), torch.ones_like(x)
-    turn = torch.stack([z, zero, -x, zero, one, zero, x, zero, z]).view(3, 3)
-    pose, contacts = people.split([FEATURES - NUM_CONTACTS, NUM_CONTACTS], dim=-1)
-    pose = pose.unflatten(-1, (-1, 3)).clone()
-    pose[..., 0, :] -= first[0] * torch.tensor([1.0, 0.0, 1.0])
-    return torch.cat([(pose @ turn.T).flatten(-2), contacts], dim=-1)
-
-
-class Data:
-    """Draws batches of similar lengths; batch ``step`` is the same in every run of the same seed."""
-
-    def __init__(self, scenes: Scenes, settings: Settings) -> None:
-        self.scenes, self.settings = scenes, settings
-        self.rows: list[dict[str, Any]] = [
-            row
-            for row in balanced(scenes.split("train"))
-            for _ in range(settings.recorded if is_recorded(row) else 1)
-        ]
-        if len(self.rows) < settings.batch:
-            raise InputError(f"{len(self.rows)} training scenes do not fill a batch of {settings.batch}.")
-        self.knots = torch.tensor([row["tokens"] for row in self.rows]) * scenes.layout.knots_per_token
-        self.batches_an_epoch = len(self.rows) // settings.batch
-        self._epoch, self._order = -1, torch.empty(0)
-
-    def captions(self) -> list[str]:
-        known = {c for row in self.rows for c in row["captions"]}
-        return sorted(known | {mirror_caption(c) for c in known})
-
-    def normalize(self, model: CompactReGenNet) -> None:
-        """Sets a model's normalisers to those of the training scenes and their mirror images."""
-        reactor, actor = [], []
-        for row in self.scenes.split("train"):
-            a, b = self.scenes.scene(row)
-            for one in (a, mirror_control(a, SMPL22.mirror)):
-                actor.append(seen_rows(one[None])[0])
-            reactor += [b, mirror_control(b, SMPL22.mirror)]
-        for name, values in (("", torch.cat(reactor)), ("actor_", torch.cat(actor))):
-            scale = values.std(0).clamp_min(0.01)
-            scale[[0, 2]] = scale[[0, 2]].clamp_max(ROOT_SCALE)
-            getattr(model, f"{name}mean").copy_(values.mean(0))
-            getattr(model, f"{name}std").copy_(scale)
-
-    def _rows_of(self, step: int) -> Tensor:
-        epoch, place = divmod(step, self.batches_an_epoch)
-        if epoch != self._epoch:
-            generator = seeded(self.settings.seed, 1, epoch)
-            by_length = (self.knots + torch.rand(len(self.rows), generator=generator) * 8).argsort()
-            spare = len(by_length) % self.settings.batch
-            keep = torch.randperm(len(by_length), generator=generator)[spare:].sort().values
-            groups = by_length[keep].view(self.batches_an_epoch, -1)
-            self._order = groups[torch.randperm(len(groups), generator=generator)]
-            self._epoch = epoch
-        return self._order[place]
-
-    def batch(self, step: int, conditions: Conditions) -> Batch:
-        rows = [self.rows[i] for i in self._rows_of(step)]
-        draw = torch.rand(len(rows), 4, generator=seeded(self.settings.seed, 2, step))
-        longest = max(row["tokens"] for row in rows) * self.scenes.layout.knots_per_token
-        longest = -8 * (-longest // 8)  # few shapes: kernels are made for each
-        people = torch.zeros(2, len(rows), longest, FEATURES)
-        mask = torch.zeros(len(rows), longest)
-        captions = []
-        for i, row in enumerate(rows):
-            one, caption = self.scenes.scene(row), row["captions"][int(draw[i, 0] * len(row["captions"]))]
-            if draw[i, 1] < 0.5:
-                one, caption = mirror_control(one, SMPL22.mirror), mirror_caption(caption)
-            if draw[i, 2] < self.settings.crop:
-                one = cropped(one, 1 + int(draw[i, 3] * one.shape[1] / 2))
-            people[:, i, : one.shape[1]] = one
-            people[:, i, one.shape[1] :] = one[:, -1:]
-            mask[i, : one.shape[1]] = 1
-            captions.append(caption)
-        actor, reactor = people
-        crop = draw[:, 2] < self.settings.crop
-        return Batch(reactor, actor, mask, conditions.batch(captions), crop)
 
 
 def masked_mean(values: Tensor, mask: Tensor) -> Tensor:
@@ -314,7 +153,13 @@ class Trainer(Loop):
             text_layers=conditioner.config.num_layers,
             frames_per_knot=scenes.layout.frames_per_knot,
         )
-        self.data = Data(scenes, settings)
+        self.data = Data(
+            scenes,
+            size=settings.batch,
+            crop=settings.crop,
+            recorded=settings.recorded,
+            seed=settings.seed,
+        )
         self.conditions = Conditions(self.data.captions(), conditioner, out, source.digest)
         self.model = CompactReGenNet(self.config)
         if init is None:
@@ -416,26 +261,21 @@ class Trainer(Loop):
 def main(argv: list[str] | None = None) -> int:
     parser = argparse.ArgumentParser(description="Train the compact ReGenNet on prepared scenes.")
     parser.add_argument("--scenes", type=Path, required=True, help="file of `python -m training.prepare`")
-    parser.add_argument("--out", type=Path, required=True, help="folder of the checkpoint and the log")
     parser.add_argument(
         "--words", type=Path, default=Path("models/weights/intergen"),
         help="a shipped InterGen, whose text conditioner is taken over",
     )  # fmt: skip
     parser.add_argument("--init", type=Path, help="begin with a shipped ReGenNet, its words and all")
-    parser.add_argument(
-        "--minutes", type=float, default=1e9, help="stop after this long; start again to go on"
-    )
     parser.add_argument("--export", type=Path, help="after that, write the averaged weights to this folder")
-    for setting in fields(Settings):
-        flag = "--" + setting.name.replace("_", "-")
-        parser.add_argument(flag, type=type(setting.default), default=setting.default)
+    add_run_options(parser, Settings)
     options = parser.parse_args(argv)
     return exit_code(lambda: _run(options))
 
 
 def _run(options: argparse.Namespace) -> None:
-    settings = Settings(**{f.name: getattr(options, f.name) for f in fields(Settings)})
-    trainer = Trainer(load(options.scenes), settings, options.out, words=options.words, init=options.init)
+    trainer = Trainer(
+        load(options.scenes), chosen(options, Settings), options.out, words=options.words, init=options.init
+    )
     trainer.run_logged(minutes=options.minutes)
     if options.export:
         save_network(options.export, trainer.ema, card={"summary": SUMMARY}, trained_steps=trainer.step)

@@ -15,15 +15,8 @@ from models.intergen_losses import facing
 from models.motion_tokens import FEATURES, TokenLayout, decode, encode
 from training import prepare, regennet
 from training.prepare import Scenes
-from training.regennet import (
-    Settings,
-    Trainer,
-    cropped,
-    distance_loss,
-    interaction_loss,
-    knot_positions,
-    seen_rows,
-)
+from training.regennet import Settings, Trainer, distance_loss, interaction_loss
+from training.regennet_data import cropped, knot_positions, seen_rows
 from webdemo.motion import SMPL22, InputError
 
 SETTINGS = Settings(latent_dim=16, ff_size=16, num_layers=1, num_heads=2, batch=4, steps=6, warmup=2)
