@@ -111,7 +111,39 @@ def test_the_other_person_of_a_file_says_where_to_begin(
     assert code == 2 and "InterGen takes no start pose" in said
     one = write(standing(120), tmp_path / "one.npz")[0]
     code, _, said = react(capsys, "--actor", one, "--keep-start", "--model", "regennet", "--out", words[-1])
-    assert code == 2 and "one person only" in said
+    assert code == 2 and "does not hold two people" in said
+
+
+def test_any_of_six_people_can_be_chosen(
+    tmp_path: Path, asked: list[ReactRequest], capsys: pytest.CaptureFixture[str]
+) -> None:
+    crowd = tmp_path / "crowd.npz"
+    np.savez(crowd, positions=np.stack([standing(60, x=2.0 * i).positions for i in range(6)]), fps=30.0)
+    words = ["--actor", crowd, "--out", tmp_path / "x.npz"]
+    assert react(capsys, *words, "--person", "e")[0] == 0
+    np.testing.assert_array_equal(asked[0].actor.positions, standing(60, x=8.0).positions)
+    code, _, said = react(capsys, *words)
+    assert code == 2 and "crowd.npz holds six people: choose person a, b, c, d, e or f" in said
+    code, _, said = react(capsys, *words, "--person", "b", "--keep-start", "--model", "regennet")
+    assert code == 2 and "crowd.npz does not hold two people" in said
+
+
+def test_of_a_long_kinect_recording_only_the_part_is_fitted(
+    tmp_path: Path, asked: list[ReactRequest], capsys: pytest.CaptureFixture[str],
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:  # fmt: skip
+    from webdemo.inference import actor
+
+    bodies = standing(3000).positions[:, [15, 12, 6, 16, 18, 20, 17, 19, 21, 1, 4, 7, 2, 5, 8]]
+    np.save(tmp_path / "kinect.npy", bodies)
+    fitted = []
+    fit = actor.to_smpl
+    monkeypatch.setattr(actor, "to_smpl", lambda clip: fitted.append(clip.num_frames) or fit(clip))
+    words = ["--actor", tmp_path / "kinect.npy", "--out", tmp_path / "x.npz"]
+    assert react(capsys, *words, "--start", 1, "--end", 2)[0] == 0
+    code, _, said = react(capsys, *words)
+    assert code == 2 and "trim it to 10 s" in said
+    assert fitted == [30]
 
 
 def test_a_stream_prints_every_frame_before_the_answer(
@@ -140,7 +172,7 @@ def test_a_stream_prints_every_frame_before_the_answer(
     ("words", "says"),
     [
         ([], "holds two people: choose person a or b"),
-        (["--person", "c"], "invalid choice"),
+        (["--person", "c"], "Person 'c' is not known: pair.npz has a or b"),
         (["--person", "a", "--end", "0.5"], "0.50 s: give 1 s or more"),
         (["--person", "a", "--start", "9"], "lies behind the motion"),
         (["--person", "a", "--mode", "online"], "choose offline"),

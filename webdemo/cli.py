@@ -17,8 +17,8 @@ from typing import Any, NoReturn
 
 import numpy as np
 
-from webdemo.inference.actor import FPS, ROLES, other_pose, read_actor
-from webdemo.inference.predict_request import METHODS, PredictRequest, PredictResult
+from webdemo.inference.actor import FPS, read_actor
+from webdemo.inference.predict_request import LONGEST, METHODS, PredictRequest, PredictResult
 from webdemo.inference.requests import (
     DEFAULT_STEPS,
     GenerateRequest,
@@ -105,7 +105,7 @@ def generate(options: argparse.Namespace) -> dict[str, Any]:
 def _add_react(commands: Any) -> None:
     parser = commands.add_parser("react", help="a second person for a given one")
     parser.add_argument("--actor", type=Path, required=True, help="the given person: .bvh, .npz, .npy …")
-    parser.add_argument("--person", choices=ROLES, help="which one, where the file holds two people")
+    parser.add_argument("--person", help="which one, a to f, where the file holds several people")
     parser.add_argument("--start", type=float, default=0.0, help="seconds in the file")
     parser.add_argument("--end", type=float, help="seconds in the file; to its end by default")
     parser.add_argument("--prompt", default=ReactRequest.prompt, help="what the two do; may be left out")
@@ -128,12 +128,11 @@ def _add_react(commands: Any) -> None:
 def react(options: argparse.Namespace) -> dict[str, Any]:
     """Runs a :class:`ReactRequest` on one person of a motion file and writes the duets."""
     _check_out(options.out)
-    actor = read_actor(options.actor, person=options.person, start=options.start, end=options.end)
-    fields = _sampling(options)
-    if options.keep_start:
-        from webdemo.formats import read
-
-        fields["start"] = other_pose(read(options.actor), person=options.person, start=options.start)
+    actor, pose = read_actor(
+        options.actor, person=options.person, start=options.start, end=options.end,
+        keep_start=options.keep_start,
+    )  # fmt: skip
+    fields = _sampling(options) | {"start": pose}
     if fields["steps"] is None:
         fields["steps"] = DEFAULT_STEPS.get(options.model, SamplingRequest.steps)
     mode = options.mode or ("online" if options.stream else ReactRequest.mode)
@@ -178,7 +177,10 @@ def predict(options: argparse.Namespace) -> dict[str, Any]:
 
     _check_out(options.out)
     request = PredictRequest(
-        motion=read(options.past), marker=options.marker, seconds=options.seconds, model=options.model
+        motion=read(options.past, longest=LONGEST),
+        marker=options.marker,
+        seconds=options.seconds,
+        model=options.model,
     )
     result = _run(request)
     assert isinstance(result, PredictResult)

@@ -220,27 +220,32 @@ def test_an_unknown_model_is_refused(engine: Engine) -> None:
 
 def test_one_person_is_chosen_and_trimmed() -> None:
     clip = waver(4.0, fps=60)
-    cut = choose_actor(clip, start=1.0, end=3.0)
+    cut = choose_actor((clip,), start=1.0, end=3.0)
     assert (cut.fps, cut.num_frames) == (30, 60)
     np.testing.assert_allclose(cut.positions[0], clip.positions[60], atol=1e-6)
     duet = Duet(clip, clip.with_positions(clip.positions + 1))
-    np.testing.assert_allclose(choose_actor(duet, person="b").positions[0], duet.b.positions[0], atol=1e-6)
+    for people in (duet.people, (clip, duet.b, clip)):
+        found = choose_actor(people, person="b").positions
+        np.testing.assert_allclose(found[0], duet.b.positions[0], atol=1e-6)
     at_rate = waver()
-    assert choose_actor(at_rate).positions.tobytes() == at_rate.positions.tobytes()
+    assert choose_actor((at_rate,)).positions.tobytes() == at_rate.positions.tobytes()
 
 
 @pytest.mark.parametrize(
-    ("motion", "change", "says"),
+    ("count", "change", "says"),
     [
-        (Duet(waver(), waver()), {}, "two people: choose person a or b"),
-        (waver(), {"person": "b"}, "one person only"),
-        (waver(), {"person": "c"}, "choose a or b"),
-        (waver(), {"start": -1.0}, "start < end"),
-        (waver(), {"start": 1.5, "end": 1.0}, "start < end"),
-        (waver(), {"start": 2.5, "end": 4.0}, "behind the motion"),
-        (waver(), {"end": float("nan")}, "start < end"),
+        (2, {}, "holds two people: choose person a or b"),
+        (3, {}, "holds three people: choose person a, b or c"),
+        (3, {"person": "d"}, "Person 'd' is not known: The file has a, b or c"),
+        (3, {"person": ""}, "Person '' is not known"),
+        (3, {"person": "ab"}, "Person 'ab' is not known"),
+        (1, {"person": "b"}, "one person only"),
+        (1, {"start": -1.0}, "start < end"),
+        (1, {"start": 1.5, "end": 1.0}, "start < end"),
+        (1, {"start": 2.5, "end": 4.0}, "behind the motion"),
+        (1, {"end": float("nan")}, "start < end"),
     ],
 )
-def test_choices_that_do_not_fit_are_refused(motion: Clip | Duet, change: dict, says: str) -> None:
+def test_choices_that_do_not_fit_are_refused(count: int, change: dict, says: str) -> None:
     with pytest.raises(InputError, match=says):
-        choose_actor(motion, **change)
+        choose_actor((waver(),) * count, **change)

@@ -266,7 +266,7 @@ def test_the_endpoints_errors_are_sentences(client: Any, pair: Path, bvh: Path) 
     from gradio_client.exceptions import AppError
 
     for fields, sentence in (
-        ({"actor": handle_file(pair)}, "The file holds two people: choose person a or b."),
+        ({"actor": handle_file(pair)}, "walkers.npz holds two people: choose person a or b."),
         ({"actor": handle_file(pair), "person": "a"},
          "The actor's motion lasts 12.0 s: trim it to 10 s or less by its start and end."),
         ({"actor": handle_file(bvh), "role": "z"}, "Role 'z' is not known: choose one of a, b."),

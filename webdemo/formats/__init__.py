@@ -96,6 +96,7 @@ def read(
     name: str | None = None,
     fps: float | None = None,
     keep_skeleton: bool = False,
+    longest: float | None = None,
 ) -> Clip | Duet:
     """Reads one motion file.
 
@@ -104,6 +105,8 @@ def read(
         name: what to call the file in messages, if not by its own name.
         fps: the rate to resample other rigs' BVH to, and that of arrays without one; 30 by default.
         keep_skeleton: leave arrays of other joint layouts (Kinect's, CMU's) as they are.
+        longest: seconds; a longer motion is refused before its joints are fitted, which takes about 5 ms a
+            frame and person.
 
     Returns:
         a clip, or a duet where the file holds two people, in metres and Y up, on SMPL22. Other rigs and
@@ -119,6 +122,8 @@ def read(
         raise InputError(_unknown(suffix, "read", _READABLE))
     motion = known.reader(path, name=Path(label).name, fps=fps)
     assert not isinstance(motion, Crowd)  # not everyone was asked for
+    if longest is not None and motion.seconds > longest:
+        raise InputError(f"{label} lasts {motion.seconds:.0f} s: cut it to {longest:g} s or less.")
     return motion if keep_skeleton else to_smpl(motion)
 
 

@@ -6,6 +6,7 @@ No torch here: the page and the shell choose and trim before any network loads.
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
@@ -13,8 +14,10 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from webdemo.formats import read
-from webdemo.motion import SMPL22, Clip, Duet, InputError
+from webdemo.formats import read_everyone
+from webdemo.formats.crowd import people_of
+from webdemo.motion import SMPL22, Clip, InputError
+from webdemo.motion.retarget import to_smpl
 from webdemo.motion.transforms import heading, heading_matrix, resample
 
 Array = NDArray[np.floating]
@@ -22,6 +25,11 @@ Array = NDArray[np.floating]
 FPS = 30.0
 """Frames a second of everything that is generated."""
 ROLES = ("a", "b")
+SECONDS = (1.0, 10.0)
+"""The shortest and the longest motion that the networks take."""
+LETTERS = "abcdef"
+"""What the people of a file are called."""
+_COUNTS = ("no", "one", "two", "three", "four", "five", "six")
 APART = 1.5
 """Metres between the two people of the median training scene at its first frame; they face each other."""
 # Metres around the floor at 0 within which a motion's lowest joint is believed to stand on it.
@@ -32,30 +40,48 @@ _BODY_SIZES = (0.5, 1.6)
 _FARTHEST = 1000.0
 
 
-def choose_actor(
-    motion: Clip | Duet, *, person: str | None = None, start: float = 0.0, end: float | None = None
-) -> Clip:
-    """One person of a motion, trimmed, at 30 fps.
+def choose_person(people: Sequence[Clip], person: str | None, name: str) -> int:
+    """Which of a file's people is meant, by a letter.
 
     Args:
-        motion: what a file held.
-        person: "a" or "b"; needed where there are two.
+        people: everybody, one at least.
+        person: "a", "b" … up to as many as there are; may be None where there is one only.
+        name: of the file, for messages.
+
+    Raises:
+        InputError: where the choice is open or there is no such person.
+    """
+    known = LETTERS[: len(people)]
+    listed = " or ".join(part for part in (", ".join(known[:-1]), known[-1]) if part)
+    if len(people) == 1 and person not in (None, "a"):
+        raise InputError(f"{name} holds one person only: leave the choice of a person out.")
+    if len(people) > 1 and person is None:
+        raise InputError(f"{name} holds {_COUNTS[len(people)]} people: choose person {listed}.")
+    if person is not None and (len(person) != 1 or person not in known):
+        raise InputError(f"Person {person!r:.40} is not known: {name} has {listed}.")
+    return 0 if person is None else LETTERS.index(person)
+
+
+def choose_actor(
+    people: Sequence[Clip],
+    *,
+    person: str | None = None,
+    start: float = 0.0,
+    end: float | None = None,
+    name: str = "The file",
+) -> Clip:
+    """One of a file's people, trimmed, at 30 fps, with the joints of the file.
+
+    Args:
+        people: everybody.
+        person: as in :func:`choose_person`.
         start, end: seconds in the file; to the end by default.
+        name: of the file, for messages.
 
     Raises:
         InputError: where the choice is open, or the times do not lie in the motion.
     """
-    name = f"{motion.name} " if isinstance(motion, Clip) and motion.name else "The file "
-    if person is not None and person not in ROLES:
-        raise InputError(f"Person {person!r:.40} is not known: choose a or b.")
-    if isinstance(motion, Duet):
-        if person is None:
-            raise InputError("The file holds two people: choose person a or b.")
-        clip = motion.people[ROLES.index(person)]
-    elif person == "b":
-        raise InputError(f"{name}holds one person only: leave the choice of a person out.")
-    else:
-        clip = motion
+    clip = people[choose_person(people, person, name)]
     if start >= clip.seconds:
         raise InputError(f"The start, {start:g} s, lies behind the motion, which lasts {clip.seconds:.1f} s.")
     stop = clip.seconds if end is None else end
@@ -65,29 +91,51 @@ def choose_actor(
     return at_30_fps(clip.cut(first, max(last, first + 1)))
 
 
-def other_pose(motion: Clip | Duet, *, person: str | None, start: float = 0.0) -> Array:
+def other_pose(
+    people: Sequence[Clip], *, person: str | None, start: float = 0.0, name: str = "The file"
+) -> Array:
     """How the one who is not the actor stands where the actor's part begins: (22, 3) metres.
 
     Args:
-        motion: what a file held.
-        person: the actor, "a" or "b".
+        people: everybody; of the one a single frame is fitted.
+        person: the actor.
         start: seconds in the file.
+        name: of the file, for messages.
 
     Raises:
-        InputError: where the file holds nobody else, or the start lies behind its end.
+        InputError: where the file does not hold two people, or the start lies behind its end.
     """
-    if not isinstance(motion, Duet):
-        raise InputError("The file holds one person only: nobody else's start can be taken from it.")
-    other = ROLES[1 - ROLES.index(person)] if person in ROLES else person
-    return np.asarray(choose_actor(motion, person=other, start=start).positions[0])
+    if len(people) != 2:
+        raise InputError(f"{name} does not hold two people: there is no other's start to begin from.")
+    other = LETTERS[1 - choose_person(people, person, name)]
+    part = choose_actor(people, person=other, start=start, name=name)
+    return np.asarray(to_smpl(part.cut(0, 1)).positions[0])
 
 
 def read_actor(
-    path: str | Path, *, person: str | None = None, start: float = 0.0, end: float | None = None
-) -> Clip:
-    """:func:`choose_actor` from a motion file, after which the clip is called."""
-    clip = choose_actor(read(Path(path)), person=person, start=start, end=end)
-    return replace(clip, name=Path(path).name)
+    path: str | Path,
+    *,
+    person: str | None = None,
+    start: float = 0.0,
+    end: float | None = None,
+    keep_start: bool = False,
+) -> tuple[Clip, Array | None]:
+    """One person of a motion file, trimmed, on SMPL22 and at 30 fps; only what is used is fitted.
+
+    Args:
+        path: the file, after which the clip is called.
+        person, start, end: as in :func:`choose_actor`.
+        keep_start: also give :func:`other_pose`, else None.
+
+    Raises:
+        InputError: where the file or a choice is wrong, or the part longer than a network takes.
+    """
+    name = Path(path).name
+    people = people_of(read_everyone(Path(path), name=name))
+    clip = choose_actor(people, person=person, start=start, end=end, name=name)
+    pose = other_pose(people, person=person, start=start, name=name) if keep_start else None
+    check_length(clip, SECONDS)
+    return replace(to_smpl(clip), name=name), pose
 
 
 def at_30_fps(clip: Clip) -> Clip:
@@ -106,7 +154,6 @@ def check_actor(clip: Any, seconds: tuple[float, float]) -> Clip:
     Raises:
         InputError: one sentence on what does not fit and what to do.
     """
-    shortest, longest = seconds
     if not isinstance(clip, Clip):
         raise InputError("The actor must be one person's clip: of two people, choose person a or b.")
     if clip.skeleton.joint_names != SMPL22.joint_names:
@@ -114,14 +161,7 @@ def check_actor(clip: Any, seconds: tuple[float, float]) -> Clip:
             f"The actor has the joints of {clip.skeleton.name}, not SMPL's 22: bring the clip onto them "
             "with webdemo.motion.retarget.to_smpl."
         )
-    if clip.seconds < shortest:
-        raise InputError(f"The actor's motion lasts {clip.seconds:.2f} s: give {shortest:g} s or more of it.")
-    # From the first frame to the last: ten seconds at 30 fps are often stored as 301 frames.
-    if (clip.num_frames - 1) / clip.fps > longest:
-        raise InputError(
-            f"The actor's motion lasts {clip.seconds:.1f} s: trim it to {longest:g} s or less by its start "
-            "and end."
-        )
+    check_length(clip, seconds)
     actor = at_30_fps(clip)
     parents, children = (list(side) for side in zip(*SMPL22.bones, strict=True))
     lengths = np.linalg.norm(actor.positions[:, children] - actor.positions[:, parents], axis=-1)
@@ -133,6 +173,19 @@ def check_actor(clip: Any, seconds: tuple[float, float]) -> Clip:
     if np.abs(actor.positions).max() > _FARTHEST:
         raise InputError(f"The actor is more than {_FARTHEST:g} m from the origin: move the motion there.")
     return actor
+
+
+def check_length(clip: Clip, seconds: tuple[float, float]) -> None:
+    """Raises InputError where a motion is shorter or longer than what the networks take."""
+    shortest, longest = seconds
+    if clip.seconds < shortest:
+        raise InputError(f"The actor's motion lasts {clip.seconds:.2f} s: give {shortest:g} s or more of it.")
+    # From the first frame to the last: ten seconds at 30 fps are often stored as 301 frames.
+    if (clip.num_frames - 1) / clip.fps > longest:
+        raise InputError(
+            f"The actor's motion lasts {clip.seconds:.1f} s: trim it to {longest:g} s or less by its start "
+            "and end."
+        )
 
 
 @dataclass(frozen=True)

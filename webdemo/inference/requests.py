@@ -15,10 +15,9 @@ from numpy.typing import NDArray
 
 from webdemo.motion import Clip, Duet, InputError
 
-from .actor import ROLES, check_actor
+from .actor import ROLES, SECONDS, check_actor
 
 MAX_PROMPT = 500
-SECONDS = (1.0, 10.0)
 STEPS = (1, 1000)
 SAMPLES = (1, 8)
 GUIDANCE = (0.0, 10.0)

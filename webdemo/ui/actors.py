@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from webdemo.formats.importing import ImportChoices, import_motion
-from webdemo.inference.actor import at_30_fps, choose_actor
+from webdemo.inference.actor import LETTERS, at_30_fps, choose_actor, other_pose
 from webdemo.inference.requests import DEFAULT_STEPS, SECONDS, Result
 from webdemo.motion import Clip, Duet, InputError
 from webdemo.motion.retarget import to_smpl
@@ -40,9 +40,6 @@ def installed_methods(weights: Path = _WEIGHTS) -> list[tuple[str, str]]:
     ]
 
 
-_LETTERS = "abcdef"
-
-
 @dataclass(frozen=True)
 class Source:
     """What a session chose an actor from.
@@ -66,7 +63,7 @@ class Source:
     @property
     def choices(self) -> list[tuple[str, str]]:
         """(label, letter) of everybody."""
-        return [(f"Person {letter.upper()}", letter) for letter in _LETTERS[: len(self.people)]]
+        return [(f"Person {letter.upper()}", letter) for letter in LETTERS[: len(self.people)]]
 
     @property
     def seconds(self) -> float:
@@ -82,17 +79,13 @@ class Source:
         return self._on_smpl((person, start, end), (self._part(person, start, end),))[0]
 
     def _part(self, person: str, start: float, end: float) -> Clip:
-        clip = self.people[_LETTERS.index(person) if len(self.people) > 1 else 0]
-        return replace(choose_actor(clip, start=start, end=end), name=self.name)
+        chosen = person if len(self.people) > 1 else None
+        clip = choose_actor(self.people, person=chosen, start=start, end=end, name=self.name)
+        return replace(clip, name=self.name)
 
     def other_pose(self, person: str, start: float) -> NDArray[np.floating]:
         """(22, 3) metres: how the other of two stands where the actor's part begins."""
-        if len(self.people) != 2:
-            raise InputError(
-                f"{self.name} does not hold two people: there is no other's start to begin from."
-            )
-        other = _LETTERS[1 - _LETTERS.index(person)]
-        return to_smpl(self._part(other, start, self.seconds).cut(0, 1)).positions[0]
+        return other_pose(self.people, person=person, start=start, name=self.name)
 
     def whole(self, longest: float) -> tuple[Clip, ...]:
         """Everybody on SMPL22, or as they are in the file where that is longer than ``longest`` seconds."""

@@ -10,8 +10,8 @@ from typing import Any
 import gradio as gr
 
 from webdemo.formats import read
-from webdemo.inference.actor import other_pose, read_actor
-from webdemo.inference.predict_request import PredictRequest, PredictResult
+from webdemo.inference.actor import read_actor
+from webdemo.inference.predict_request import LONGEST, PredictRequest, PredictResult
 from webdemo.inference.requests import (
     Cancelled,
     GenerateRequest,
@@ -154,7 +154,7 @@ class ReactEndpoint(Endpoint):
             inputs = [
                 gr.File(label="the given person: .bvh, .npz or .npy, up to 50 MB"),
                 gr.Textbox("", label="what the two people do, in English; may be empty"),
-                gr.Textbox("", label="a or b, where the file holds two people"),
+                gr.Textbox("", label="a to f, where the file holds several people"),
                 gr.Number(0, label="start of the part that is used, in seconds"),
                 gr.Number(0, label="its end, in seconds; 0 is the end of the file"),
                 gr.Textbox(ReactRequest.role, label="a: the given person acts first; b: they react"),
@@ -196,8 +196,9 @@ class ReactEndpoint(Endpoint):
         def request() -> ReactRequest:
             if not actor:
                 raise InputError("There is no actor: send a motion file, such as a .bvh.")
-            clip = read_actor(actor, person=person or None, start=start, end=end or None)
-            pose = other_pose(read(Path(actor)), person=person or None, start=start) if keep_start else None
+            clip, pose = read_actor(
+                actor, person=person or None, start=start, end=end or None, keep_start=keep_start
+            )
             return ReactRequest(
                 actor=clip, prompt=prompt, role=role, seed=seed, samples=samples, guidance=guidance,
                 steps=steps, damping=damping, sampler=sampler, model=model, mode=mode, start=pose,
@@ -236,7 +237,7 @@ class PredictEndpoint(Endpoint):
             if not past:
                 raise InputError("There is no past: send a motion file, such as a .bvh.")
             return PredictRequest(
-                motion=read(Path(past)), marker=marker or None, seconds=seconds, model=model
+                motion=read(Path(past), longest=LONGEST), marker=marker or None, seconds=seconds, model=model
             )
 
         return self._answer(request, f"After {Path(past or '').stem}", progress)
