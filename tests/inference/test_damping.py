@@ -6,6 +6,7 @@ import torch
 
 from models.compact import CompactConfig, CompactInterGen, TouchReader
 from models.motion_tokens import encode, pack
+from webdemo.inference import damping
 from webdemo.inference.damping import Damping, DampingWeights, asked_energy
 from webdemo.metrics.quality import penetration
 from webdemo.motion import SMPL22, Duet
@@ -82,3 +83,28 @@ def test_a_reader_answers_only_where_it_is_sure():
     reader.net = torch.nn.Identity()
     assert reader.read(logits) == [(), HANDS, (("left_wrist", "spine3"),)]
     assert reader.read(logits, sure=0.9) == [(), HANDS, ()]
+
+
+@pytest.mark.parametrize("apart", [0.0, 0.2, 0.5, 1.7])
+def test_the_pairs_that_touch_are_all_that_overlap(apart):
+    """The sum over all pairs of spheres at all moments, and its gradient, from those alone that touch."""
+    dice = torch.Generator().manual_seed(3)
+    rest = torch.tensor(SMPL22.rest_positions(), dtype=torch.float32) + torch.tensor([4.0, 1.0, -3.0])
+    positions = rest + 0.15 * torch.randn(3, 2, 9, 22, 3, generator=dice)
+    positions[:, 1] += torch.tensor([apart, 0.0, 0.0])
+    positions[2, 1] += 5  # far away
+    answers = []
+    for energy in (all_pairs, damping._overlap):
+        leaf = positions.clone().requires_grad_(True)
+        total = energy(leaf)
+        answers.append((total.detach(), *torch.autograd.grad(total.sum(), leaf)))
+    for dense, sparse in zip(*answers, strict=True):
+        torch.testing.assert_close(sparse, dense, atol=1e-5, rtol=1e-4)
+    assert (float(answers[0][0][0]) > 0) == (apart < 1) and float(answers[0][0][2]) == 0
+
+
+def all_pairs(positions: torch.Tensor) -> torch.Tensor:
+    ends, radii = damping._ENDS, damping._RADII
+    a, b = ((positions[..., ends[:, 0], :] + positions[..., ends[:, 1], :]) / 2).unbind(1)
+    gap = torch.cdist(a, b, compute_mode="donot_use_mm_for_euclid_dist")
+    return (radii[:, None] + radii - gap).clamp_min(0).square().sum((1, 2, 3))

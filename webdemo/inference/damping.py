@@ -24,7 +24,8 @@ from webdemo.motion import SMPL22
 from webdemo.motion.skeleton import FEET
 
 _WRISTS = [SMPL22.index("left_wrist"), SMPL22.index("right_wrist")]
-_PARENTS, _CHILDREN = (list(side) for side in zip(*SMPL22.bones, strict=True))
+_PARENTS = torch.tensor([parent for parent, _ in SMPL22.bones])
+assert [child for _, child in SMPL22.bones] == list(range(1, SMPL22.num_joints))  # a slice is cheaper
 _HIPS = [SMPL22.index("left_hip"), SMPL22.index("right_hip")]
 _LIMBS = [
     (parent, child)
@@ -34,12 +35,20 @@ _LIMBS = [
 _NEAR = 1.8  # metres between two pelvises, beyond which no limb reaches the other
 
 
-def _radii() -> Tensor:
-    """Radius in metres of the flesh around each joint and around the middle of each of :data:`_LIMBS`."""
+def _spheres() -> tuple[Tensor, Tensor]:
+    """The flesh of a body, as spheres around joints and around the middles of :data:`_LIMBS`.
+
+    Returns:
+        (S, 2) the joints between which each is, and (S,) radii in metres.
+    """
     body = capsules(SMPL22)
     around = dict(zip(body.ends.tolist(), body.radii.tolist(), strict=True))
     joints = [around.get(joint, around[SMPL22.index("spine1")]) for joint in range(SMPL22.num_joints)]
-    return torch.tensor(joints + [around[child] for _, child in _LIMBS])
+    ends = [(joint, joint) for joint in range(SMPL22.num_joints)] + _LIMBS
+    return torch.tensor(ends), torch.tensor(joints + [around[child] for _, child in _LIMBS])
+
+
+_ENDS, _RADII = _spheres()
 
 
 @dataclass(frozen=True)
@@ -75,8 +84,10 @@ def energy(positions: Tensor, contacts: Tensor, weights: DampingWeights) -> Tens
     Returns:
         (B,) energy in m².
     """
-    lengths = torch.linalg.vector_norm(positions[..., _CHILDREN, :] - positions[..., _PARENTS, :], dim=-1)
-    true_lengths = positions.new_tensor(SMPL22.bone_lengths[_CHILDREN])
+    lengths = torch.linalg.vector_norm(
+        positions[..., 1:, :] - positions.index_select(-2, _PARENTS.to(positions.device)), dim=-1
+    )
+    true_lengths = positions.new_tensor(SMPL22.bone_lengths[1:])
     bone = (lengths - true_lengths).square().sum((1, 2, 3))
 
     feet = positions[..., list(FEET), :]
@@ -112,17 +123,41 @@ def energy(positions: Tensor, contacts: Tensor, weights: DampingWeights) -> Tens
 def _overlap(positions: Tensor) -> Tensor:
     """(B,) how far the two bodies are inside each other, in m²; positions (B, 2, T, 22, 3).
 
-    Bodies are spheres around the joints and around the middles of upper arms, forearms and thighs.
+    Of all pairs of their spheres those that touch are sought first; only these, which are few, add something
+    and have a gradient.
     """
-    apart = (positions[:, 0, :, 0] - positions[:, 1, :, 0]).detach().square().sum(-1)
-    near = (apart < _NEAR**2).any(0)
-    parents, children = (list(side) for side in zip(*_LIMBS, strict=True))
-    positions = positions[:, :, near]
-    middles = (positions[..., parents, :] + positions[..., children, :]) / 2
-    a, b = torch.cat([positions, middles], dim=-2).unbind(1)
-    radii = _radii().to(positions)
-    gap = torch.cdist(a, b, compute_mode="donot_use_mm_for_euclid_dist")
-    return (radii[:, None] + radii - gap).clamp_min(0).square().sum((1, 2, 3))
+    count, _, length, joints, _ = positions.shape
+    ends, radii = _ENDS.to(positions.device), _RADII.to(positions)
+    batch, frame, own, other = _touching(positions.detach(), ends, radii)
+    points = positions.reshape(-1, 3)
+
+    def centres(person: int, sphere: Tensor) -> Tensor:
+        first = ((2 * batch + person) * length + frame) * joints
+        return (points.index_select(0, first + ends[sphere, 0])
+                + points.index_select(0, first + ends[sphere, 1])) / 2  # fmt: skip
+
+    gap = torch.linalg.vector_norm(centres(0, own) - centres(1, other), dim=-1)
+    depth = (radii[own] + radii[other] - gap).clamp_min(0).square()
+    return positions.new_zeros(count).index_add(0, batch, depth)
+
+
+def _touching(positions: Tensor, ends: Tensor, radii: Tensor) -> tuple[Tensor, Tensor, Tensor, Tensor]:
+    """(motion, frame, the first person's sphere, the second's) of all pairs that touch, or nearly."""
+    apart = (positions[:, 0, :, 0] - positions[:, 1, :, 0]).square().sum(-1)
+    batch, frame = (apart < _NEAR**2).nonzero(as_tuple=True)
+    people = positions[batch, :, frame]  # (N, 2, 22, 3)
+    limbs = ends[people.shape[2] :]  # whatever comes before stands for one joint
+    middles = (people.index_select(2, limbs[:, 0]) + people.index_select(2, limbs[:, 1])) / 2
+    spheres = torch.cat([people, middles], dim=2)
+    low, high = spheres.amin(-2) - radii.max(), spheres.amax(-2) + radii.max()
+    boxes = (low < high.flip(1)).flatten(1).all(1)
+    batch, frame, spheres = batch[boxes], frame[boxes], spheres[boxes]
+    a, b = (spheres - spheres[:, :1, :1]).unbind(1)  # near 0, where squares are exact enough
+    squares = a.square().sum(-1)[..., None] + b.square().sum(-1)[:, None]
+    near = torch.baddbmm(squares, a, b.mT, alpha=-2) < (radii[:, None] + radii).square() + 1e-4
+    pair = near.flatten().nonzero()[:, 0]
+    at, own, other = pair // len(radii) ** 2, pair // len(radii) % len(radii), pair % len(radii)
+    return batch[at], frame[at], own, other
 
 
 def asked_energy(positions: Tensor, touches: Sequence[Touch], weights: DampingWeights) -> Tensor:
