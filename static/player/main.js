@@ -42,17 +42,17 @@ const hooks = {
 };
 
 /**
- * `element` holds player.html; `props` are the component's, watched by `watch`; `plotlyUrl` is ours.
+ * `element` holds player.html; `props` are the component's, watched by `watch`; `plotly` is the address of our
+ * copy of it, and `empty` what is said while there is no motion.
  * Safe to call again for an element that was hidden and shown.
  */
-export async function mount(element, props, watch, plotlyUrl) {
+export async function mount(element, props, watch, { plotly, empty }) {
   const root = element.querySelector(".pdd");
   const player = new Player(root);
   let shown;
   let heard = null;
   const sync = () => {
-    player.setBusy(props.busy, props.progress);
-    player.setEmptyText(props.empty_text);
+    player.controls.setBusy(props.busy, props.progress);
     const id = props.value?.id ?? null;
     if (player.scene && id !== shown) {
       shown = id;
@@ -65,16 +65,17 @@ export async function mount(element, props, watch, plotlyUrl) {
       if (message) player.arrive(message);
     }
   };
+  player.controls.setEmptyText(empty);
   sync();
-  watch(["value", "busy", "progress", "empty_text", "live"], sync);
+  watch(["value", "busy", "progress", "live"], sync);
   try {
-    const [Plotly] = await Promise.all([loadPlotly(plotlyUrl), loadStyles(new URL("player.css", import.meta.url).href)]);
-    root.classList.add("pdd-styled");
+    const styles = loadStyles(new URL("player.css", import.meta.url).href);
+    const styled = styles.finally(() => root.classList.add("pdd-styled")); // the empty state is there at once
+    const [Plotly] = await Promise.all([loadPlotly(plotly), styled]);
     if (!root.isConnected) return;
     await player.open(Plotly);
   } catch (error) {
-    root.classList.add("pdd-styled");
-    player.setEmptyText("The 3D view could not start: this browser may have WebGL switched off.");
+    player.controls.setEmptyText("The 3D view could not start: this browser may have WebGL switched off.");
     console.error(error);
     return;
   }

@@ -1,12 +1,11 @@
 // The player: one element, one scene, one clock. main.js makes these; everything else is a part of it.
 
 import { Clock } from "./clock.js";
+import { Controls } from "./controls.js";
 import { decode } from "./decode.js";
-import { attach } from "./input.js";
-import { actionFor, belongsToControl } from "./keys.js";
 import * as live from "./live.js";
 import { Orbit } from "./orbit.js";
-import { Tip, roleText } from "./overlay.js";
+import { Tip } from "./overlay.js";
 import { THEMES, themeName } from "./palette.js";
 import { Pane } from "./pane.js";
 import { savePicture } from "./picture.js";
@@ -24,6 +23,7 @@ export class Player {
     this.root = root;
     this.find = (selector) => root.querySelector(selector);
     this.stage = this.find(".pdd-stage");
+    this.controls = new Controls(root);
     this.clock = new Clock();
     this.orbit = new Orbit();
     this.panes = [];
@@ -37,11 +37,10 @@ export class Player {
     this.dirty = true;
     this.handle = 0;
     this.camera = "threequarter";
+    this.root.dataset.theme = this.themeName = themeName();
   }
 
   async open(Plotly) {
-    this.themeName = themeName();
-    this.root.dataset.theme = this.themeName;
     this.Plotly = Plotly;
     await this.panes[0].open(this.theme.background, Plotly);
     this.scene = this.panes[0].scene;
@@ -94,12 +93,8 @@ export class Player {
     if (this.data.live) live.begin(this.data.samples[0]);
     this.skeleton = describe(this.data.names, this.data.parents);
     this.root.dataset.state = "ready";
-    const title = this.find(".pdd-title");
-    title.textContent = this.data.title;
-    title.title = this.data.title;
-    title.hidden = !this.data.title;
     if (!goesOn) this.clock.frame = 0;
-    this.buildTabs();
+    this.controls.load(this.data);
     this.select(0);
     if (!goesOn) this.resetCamera();
     if (this.sample.live) this.clock.pause();
@@ -138,59 +133,18 @@ export class Player {
     if (this.data) this.resetCamera();
   }
 
-  buildTabs() {
-    const tabs = this.find(".pdd-tabs");
-    const { samples } = this.data;
-    tabs.hidden = samples.length < 2;
-    tabs.replaceChildren(
-      ...samples.map((sample, i) => {
-        const tab = document.createElement("button");
-        tab.type = "button";
-        tab.setAttribute("role", "tab");
-        tab.setAttribute("aria-label", `Sample ${sample.label || i + 1}`);
-        tab.textContent = sample.label || String(i + 1);
-        tab.addEventListener("click", () => this.select(i));
-        return tab;
-      }),
-    );
-  }
-
   /** Another sample of the same payload, at the same moment and under the same camera. */
   select(index) {
     const count = this.data.samples.length;
     this.sampleIndex = ((index % count) + count) % count;
     const { sample } = this;
     this.clock.load(sample);
-    this.find(".pdd-range").max = String(sample.frames - 1);
     this.panes[0].load(sample, sample.caption);
     this.panes[1]?.load(sample.beside ?? null, sample.beside?.caption);
     this.split(Boolean(sample.beside));
     this.strip.load(sample, this.theme.curve);
-    for (const [person, key] of ["a", "b"].entries()) {
-      const text = this.find(`[data-key=${key}]`);
-      text.hidden = text.previousElementSibling.hidden = person >= sample.roles.length;
-      text.textContent = text.hidden ? "" : roleText(person, sample.roles[person]);
-    }
-    [...this.find(".pdd-tabs").children].forEach((tab, i) => {
-      tab.setAttribute("aria-selected", String(i === this.sampleIndex));
-      tab.tabIndex = i === this.sampleIndex ? 0 : -1;
-    });
+    this.controls.select(sample, this.sampleIndex);
     this.refresh();
-  }
-
-  /** The overlay while something is being made; "" takes it away. `progress` is 0..1 or null. */
-  setBusy(text, progress = null) {
-    const busy = this.find(".pdd-busy");
-    busy.hidden = !text;
-    this.root.setAttribute("aria-busy", String(Boolean(text)));
-    this.find(".pdd-busy-text").textContent = text || "";
-    const meter = this.find(".pdd-meter");
-    meter.hidden = !Number.isFinite(progress);
-    meter.firstElementChild.style.width = `${100 * Math.min(Math.max(progress || 0, 0), 1)}%`;
-  }
-
-  setEmptyText(text) {
-    this.find(".pdd-empty-text").textContent = text || "";
   }
 
   // ---- actions -------------------------------------------------------------------------------
@@ -203,7 +157,7 @@ export class Player {
   act(action, argument) {
     const { clock } = this;
     const toggle = { follow: 1, trails: 1, ghosts: 1 }[action];
-    if (action === "help" || action === "close") return this.toggleHelp(action === "help" ? undefined : false);
+    if (action === "help" || action === "close") return this.controls.toggleHelp(action === "help" ? undefined : false);
     if (action === "fullscreen") return this.toggleFullscreen();
     if (!this.data) return;
     if (action === "play") clock.playing ? clock.pause() : clock.play();
@@ -224,7 +178,7 @@ export class Player {
 
   setSpeed(speed) {
     this.clock.speed = speed;
-    this.find(".pdd-speed select").value = String(speed);
+    this.controls.show(this);
   }
 
   /** Glides to a preset; at once where `now` is null. */
@@ -246,11 +200,6 @@ export class Player {
 
   resetCamera() {
     this.goTo("threequarter", null);
-  }
-
-  toggleHelp(open = this.find(".pdd-help").hidden) {
-    this.find(".pdd-help").hidden = !open;
-    this.find("[data-act=help]").setAttribute("aria-expanded", String(open));
   }
 
   async toggleFullscreen() {
@@ -277,41 +226,7 @@ export class Player {
 
   listen() {
     const { root } = this;
-    root.addEventListener("click", (event) => {
-      const button = event.target.closest("button");
-      if (button?.dataset.act) this.act(button.dataset.act);
-      else if (button?.dataset.camera) this.act("camera", button.dataset.camera);
-      else if (!event.target.closest(".pdd-help")) this.toggleHelp(false);
-    });
-    root.addEventListener("keydown", (event) => {
-      if (belongsToControl(event)) return;
-      const asked = actionFor(event);
-      if (!asked) return;
-      event.preventDefault();
-      event.stopPropagation();
-      this.act(...asked);
-    });
-    this.find(".pdd-tabs").addEventListener("keydown", (event) => {
-      if (!event.key.startsWith("Arrow")) return;
-      this.select(this.sampleIndex + (event.key === "ArrowLeft" || event.key === "ArrowUp" ? -1 : 1));
-      this.find(".pdd-tabs [aria-selected=true]").focus();
-      event.preventDefault();
-    });
-    this.find(".pdd-range").addEventListener("input", (event) => this.seek(Number(event.target.value)));
-    this.find(".pdd-speed select").addEventListener("change", (event) => this.setSpeed(Number(event.target.value)));
-    attach(this.find(".pdd-touch"), this.orbit, {
-      changed: () => {
-        this.camera = null;
-        this.wake();
-      },
-      hover: (pointer) => {
-        this.pointer = pointer;
-        this.showTip();
-      },
-      mayScroll: (event) => event.ctrlKey || root.contains(document.activeElement) || document.fullscreenElement === root,
-    });
-    this.find(".pdd-touch").addEventListener("pointerdown", () => root.focus({ preventScroll: true }));
-
+    this.controls.listen(this);
     this.abort = new AbortController();
     const { signal } = this.abort;
     document.addEventListener("visibilitychange", () => this.wake(), { signal });
@@ -324,6 +239,18 @@ export class Player {
       if (this.stage.clientWidth) this.resize();
     });
     this.sizeWatch.observe(this.stage);
+  }
+
+  /** A hand has turned the view: it is no longer that of a preset. */
+  turned() {
+    this.camera = null;
+    this.wake();
+  }
+
+  /** Where the pointer is over the scene, [x, y], or null. */
+  hover(pointer) {
+    this.pointer = pointer;
+    this.showTip();
   }
 
   setTheme(name) {
@@ -395,46 +322,14 @@ export class Player {
     const matrix = orbit.matrix();
     for (const pane of this.shown) pane.paint(pose && pane.poseAt(clock.shown), { orbit, matrix, theme, themeName, clock, skeleton, show });
     if (pose) this.showTip();
-    this.showState();
+    this.controls.show(this);
+    this.strip.show(clock.shown);
     this.pose = pose;
     this.frameShown = clock.shown;
   }
 
   setStill(still) {
     return this.shown.map((pane) => pane.scene?.setStill(still)).some(Boolean);
-  }
-
-  /** Brings the controls to what is true now. */
-  showState() {
-    const { clock, root, sample } = this;
-    const frame = clock.shown;
-    const range = this.find(".pdd-range");
-    const at = String(Math.round(frame));
-    if (range.value !== at) range.value = at;
-    range.style.setProperty("--done", `${(100 * frame) / Math.max(clock.frames - 1, 1)}%`);
-    range.setAttribute("aria-valuetext", `${clock.seconds.toFixed(1)} of ${clock.duration.toFixed(1)} seconds`);
-    this.find(".pdd-time").textContent = sample
-      ? `${(frame / clock.fps).toFixed(2)} / ${clock.duration.toFixed(2)} s · frame ${Math.round(frame) + 1} of ${clock.frames}` : "";
-    root.dataset.playing = String(clock.playing);
-    this.find(".pdd-play").setAttribute("aria-label", clock.playing ? "Pause" : "Play");
-    const press = (name, on) => this.find(`[data-act=${name}]`).setAttribute("aria-pressed", String(on));
-    press("loop", clock.loop);
-    press("follow", this.orbit.following);
-    press("trails", this.show.trails);
-    press("ghosts", this.show.ghosts);
-    press("fullscreen", document.fullscreenElement === root || root.classList.contains("pdd-full"));
-    for (const button of root.querySelectorAll("[data-camera]")) button.setAttribute("aria-pressed", String(button.dataset.camera === this.camera));
-    const chip = this.find(".pdd-chip");
-    const given = sample?.past_until;
-    chip.hidden = !given && !sample?.live;
-    if (sample?.live) {
-      chip.dataset.part = "live";
-      chip.textContent = ["live", sample.live.text].filter(Boolean).join(" · ");
-    } else if (given) {
-      chip.dataset.part = frame < given ? "given" : "predicted";
-      chip.textContent = frame < given ? "given" : "predicted";
-    }
-    this.strip.show(frame);
   }
 
   showTip() {

@@ -19,6 +19,8 @@ from urllib.parse import urlsplit
 
 import pytest
 
+from .playing import press
+
 REPOSITORY = Path(__file__).resolve().parents[2]
 LOOPBACK = {"127.0.0.1", "localhost", "::1", ""}
 FLAGS = [
@@ -153,3 +155,24 @@ def start_server() -> Iterator[Callable[..., str]]:
     for server in running:
         server.terminate()
         server.wait(timeout=20)
+
+
+@pytest.fixture(scope="session")
+def player_url(start_server) -> str:
+    return start_server(["tests/e2e/harness.py", "{port}"])
+
+
+@pytest.fixture
+def player(open_page, player_url):
+    """``player(button)`` opens the page, presses one of the harness' buttons and waits for motion."""
+
+    def open_(button: str | None = "load", *, theme: str = "light", **options):
+        page = open_page(f"{player_url}?__theme={theme}", **options)
+        page.wait_for_selector(".pdd-styled", timeout=30_000)
+        page.wait_for_function("window.__pasdedeux.mode !== null", timeout=30_000)
+        if button:
+            press(page, button)
+            page.wait_for_function("window.__pasdedeux.frame > 0", timeout=30_000)
+        return page
+
+    return open_

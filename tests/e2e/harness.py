@@ -85,7 +85,7 @@ def build() -> gr.Blocks:
         with gr.Tab("first"):
             player = MotionPlayer(elem_id="player")
         with gr.Tab("second"):
-            late = MotionPlayer(elem_id="late")
+            late = MotionPlayer(elem_id="late", empty_text="Nothing here yet")
         with gr.Row():
             load = gr.Button("load")
             several = gr.Button("several")

@@ -1,86 +1,18 @@
-"""The player in a real browser: it plays, it can be turned, scrubbed and read, and it cleans up."""
+"""The player in a real browser: it plays, it can be turned, scrubbed and read."""
 
 from __future__ import annotations
 
-import io
 import math
 import runpy
 from pathlib import Path
 
 import numpy as np
 import pytest
+from PIL import Image
+
+from .playing import drag, has_color, hook, pause, press, stage_pixels, until, yaw
 
 pytestmark = pytest.mark.e2e
-
-Image = pytest.importorskip("PIL.Image")
-
-
-@pytest.fixture(scope="session")
-def player_url(start_server) -> str:
-    return start_server(["tests/e2e/harness.py", "{port}"])
-
-
-@pytest.fixture
-def player(open_page, player_url):
-    """``player(button)`` opens the page, presses one of the harness' buttons and waits for motion."""
-
-    def open_(button: str | None = "load", *, theme: str = "light", **options):
-        page = open_page(f"{player_url}?__theme={theme}", **options)
-        page.wait_for_selector(".pdd-styled", timeout=30_000)
-        page.wait_for_function("window.__pasdedeux.mode !== null", timeout=30_000)
-        if button:
-            press(page, button)
-            page.wait_for_function("window.__pasdedeux.frame > 0", timeout=30_000)
-        return page
-
-    return open_
-
-
-def press(page, name: str) -> None:
-    """Presses a button of the harness, which lies after the player's own."""
-    page.get_by_role("button", name=name, exact=True).last.click()
-
-
-def hook(page, name: str):
-    return page.evaluate(f"window.__pasdedeux.{name}")
-
-
-def until(page, expression: str, seconds: float = 15) -> None:
-    page.wait_for_function(expression, timeout=1000 * seconds)
-
-
-def pause(page) -> None:
-    if hook(page, "playing"):
-        page.locator(".pdd-play").click()
-    until(page, "!window.__pasdedeux.playing && window.__pasdedeux.loops === 0")
-
-
-def stage_pixels(page) -> np.ndarray:
-    """The scene alone: names and buttons have the same colours."""
-    style = ".pdd-labels, .pdd-tools { visibility: hidden }"
-    shot = page.locator(".pdd-stage:visible").screenshot(style=style)
-    image = Image.open(io.BytesIO(shot)).convert("RGB")
-    return np.asarray(image, dtype=np.int16)
-
-
-def has_color(pixels: np.ndarray, *, blue: bool) -> bool:
-    """Whether some thousand pixels are clearly of A's blue or B's orange."""
-    red, _, blue_channel = pixels[..., 0], pixels[..., 1], pixels[..., 2]
-    strength = blue_channel - red if blue else red - blue_channel
-    return int((strength > 80).sum()) > 1000
-
-
-def drag(page, dx: float, dy: float, steps: int = 12) -> None:
-    box = page.locator(".pdd-touch").bounding_box()
-    x, y = box["x"] + 0.3 * box["width"], box["y"] + 0.4 * box["height"]
-    page.mouse.move(x, y)
-    page.mouse.down()
-    page.mouse.move(x + dx, y + dy, steps=steps)
-    page.mouse.up()
-
-
-def yaw(page) -> float:
-    return page.evaluate("window.__pasdedeux.player.orbit.yaw")
 
 
 def test_plays_both_people(player):
@@ -245,20 +177,6 @@ def test_trails_and_onion_skin_are_drawn(player):
     assert changed(ghosts, trails) > 100
 
 
-def test_theme_follows_the_page(player):
-    page = player()
-    light = stage_pixels(page)[5:40, 200:400].mean()
-    page.evaluate("document.body.classList.add('dark')")
-    until(page, "document.querySelector('.pdd').dataset.theme === 'dark'")
-    page.wait_for_timeout(500)
-    dark = stage_pixels(page)[5:40, 200:400].mean()
-    assert light > 200
-    assert dark < 60
-    assert has_color(stage_pixels(page), blue=True)
-    page.evaluate("document.body.classList.remove('dark')")
-    until(page, "document.querySelector('.pdd').dataset.theme === 'light'")
-
-
 def test_several_samples_share_the_clock(player):
     page = player("several")
     pause(page)
@@ -287,7 +205,8 @@ def test_user_text_stays_text(player):
 
 def test_empty_busy_and_empty_again(player):
     page = player(None)
-    assert page.locator(".pdd-empty").inner_text() == "Type a sentence and press Generate"
+    assert "press Generate" in page.locator(".pdd-empty-text").inner_text()
+    assert "take the motion home" in page.locator(".pdd-empty-more").inner_text()
     assert page.locator(".pdd-foot").is_hidden()
     press(page, "busy")
     page.wait_for_selector(".pdd-busy:visible")
@@ -311,42 +230,6 @@ def test_marks_what_was_given_and_what_was_predicted(player):
     assert page.locator(".pdd-past").is_visible()
 
 
-def test_hiding_and_showing_leaves_no_loop_behind(player):
-    page = player()
-    for _ in range(3):
-        press(page, "hide")
-        page.wait_for_selector(".pdd", state="detached")
-        until(page, "window.__pasdedeux.loops === 0 && window.__pasdedeux.count === 0")
-        press(page, "show")
-        until(page, "window.__pasdedeux.frame > 0 && window.__pasdedeux.playing")
-    assert hook(page, "count") == 1
-    assert hook(page, "loops") <= 1
-    pause(page)
-
-
-def test_a_closed_tab_gets_its_motion_when_it_opens(player):
-    page = player()
-    pause(page)
-    press(page, "load second")
-    page.get_by_role("tab", name="second").click()
-    until(page, "window.__pasdedeux.player.stage.closest('#late') && window.__pasdedeux.frame > 5")
-    page.wait_for_timeout(1500)
-    assert page.evaluate("window.__pasdedeux.player.orbit.distance") < 8
-    assert has_color(stage_pixels(page), blue=True)
-    assert hook(page, "loops") == 1
-
-
-def test_full_screen_and_back(player):
-    page = player()
-    height = "document.querySelector('.pdd-stage').clientHeight"
-    before = page.evaluate(height)
-    page.locator("[data-act=fullscreen]").click()
-    until(page, f"{height} > {before} + 40")
-    until(page, "window.__pasdedeux.player.scene.inside.glplot.canvas.clientHeight === " + height)
-    page.locator("[data-act=fullscreen]").click()
-    until(page, f"{height} === {before}")
-
-
 def test_saves_a_picture(player):
     page = player()
     pause(page)
@@ -356,69 +239,3 @@ def test_saves_a_picture(player):
     image = np.asarray(Image.open(download.value.path()).convert("RGB"), dtype=np.int16)
     assert has_color(image, blue=True)
     assert has_color(image, blue=False)
-
-
-@pytest.mark.parametrize("size", [(360, 740), (390, 844), (1280, 800), (1920, 1080)])
-def test_fits_the_screen(player, size):
-    page = player("several", width=size[0], height=size[1])
-    inside = page.evaluate("""() => {
-        const box = document.querySelector('.pdd').getBoundingClientRect();
-        return [...document.querySelectorAll('.pdd-stage, .pdd-foot, .pdd-tools, .pdd-range')]
-            .map((e) => e.getBoundingClientRect())
-            .every((b) => b.left >= box.left - 1 && b.right <= box.right + 1);
-    }""")
-    assert inside
-    assert page.evaluate("document.documentElement.scrollWidth") <= size[0]
-    assert has_color(stage_pixels(page), blue=True) or size[0] < 400
-
-
-def test_touch_turns_the_scene(player):
-    page = player(width=390, height=844, has_touch=True, is_mobile=True)
-    before = yaw(page)
-    box = page.locator(".pdd-touch").bounding_box()
-    session = page.context.new_cdp_session(page)
-    x, y = box["x"] + 60, box["y"] + 120
-
-    def touch(kind: str, at: float | None) -> None:
-        points = [] if at is None else [{"x": at, "y": y}]
-        session.send("Input.dispatchTouchEvent", {"type": kind, "touchPoints": points})
-
-    touch("touchStart", x)
-    for i in range(1, 8):
-        touch("touchMove", x + 15 * i)
-    touch("touchEnd", None)
-    until(page, f"Math.abs(window.__pasdedeux.player.orbit.yaw - {before}) > 0.5")
-    assert hook(page, "playing")
-
-
-def test_falls_back_to_restyle(player):
-    """Another plotly may name its inside otherwise; the picture must be the same, only slower."""
-
-    def rename(page):
-        def answer(route):
-            response = route.fetch()
-            route.fulfill(response=response, body=response.text().replace("scatterPlot", "somethingElse"))
-
-        page.route("**/plotly.min.js", answer)
-
-    page = player(before=rename)
-    assert hook(page, "mode") == "restyle"
-    before = np.array(hook(page, "eye"))
-    drag(page, 200, 0)
-    assert np.linalg.norm(np.array(hook(page, "eye")) - before) > 0.5
-    pause(page)
-    page.wait_for_timeout(500)
-    pixels = stage_pixels(page)
-    assert has_color(pixels, blue=True)
-    assert has_color(pixels, blue=False)
-
-
-def test_says_so_without_webgl(open_page, player_url):
-    def no_webgl(page):
-        page.add_init_script("""const original = HTMLCanvasElement.prototype.getContext;
-            HTMLCanvasElement.prototype.getContext = function (kind, ...rest) {
-                return /webgl/.test(kind) ? null : original.call(this, kind, ...rest);
-            };""")
-
-    page = open_page(player_url, before=no_webgl)
-    page.wait_for_function("/WebGL/.test(document.querySelector('.pdd-empty-text')?.textContent)")

@@ -18,22 +18,27 @@ from webdemo.view.payload import Payload, player_payload
 
 PLAYER_FOLDER = Path(__file__).resolve().parents[2] / "static" / "player"
 PLOTLY_JS = Path(plotly.__file__).resolve().parent / "package_data" / "plotly.min.js"
-EMPTY_TEXT = "Type a sentence and press Generate"
+EMPTY_TEXT = (
+    "Say what two people do, or take an example, and press Generate\n"
+    "You can turn the scene while it plays, compare samples, see where the two touch,"
+    " and take the motion home."
+)
+"""What there is to do, and on a second line what comes of it."""
 
 # Only these become reachable over the network: the player's own files and plotly's single script.
 gr.set_static_paths([PLAYER_FOLDER, PLOTLY_JS])
 
 _CSS = "& { min-height: 320px; } .pdd:not(.pdd-styled) { visibility: hidden; }"
 
-_ON_LOAD = f"""
-const config = window.gradio_config || {{}};
+_ON_LOAD = """
+const config = window.gradio_config || {};
 const root = (config.root || new URL(".", document.baseURI).href).replace(/[/]$/, "");
 const encode = (path) => path.split("/").map(encodeURIComponent).join("/");
 const file = (path) => root + (config.api_prefix || "/gradio_api") + "/file=" + encode(path);
-const main = file({json.dumps((PLAYER_FOLDER / "main.js").as_posix())});
-const plotly = file({json.dumps(PLOTLY_JS.as_posix())});
-import(main).then((player) => player.mount(element, props, watch, plotly));
+import(file(%s)).then((player) => player.mount(element, props, watch, { plotly: file(%s), empty: %s }));
 """
+"""To be filled with the player's script, plotly's and the text of the empty state: a tab that is opened late
+knows its component's own properties late."""
 
 
 class MotionPlayer(gr.HTML):
@@ -44,7 +49,7 @@ class MotionPlayer(gr.HTML):
 
     Args:
         value: the payload shown at first.
-        empty_text: shown while there is no motion.
+        empty_text: shown while there is no motion: what to do, and on further lines what comes of it.
         elem_id: id of the element in the page.
     """
 
@@ -56,18 +61,18 @@ class MotionPlayer(gr.HTML):
         elem_id: str | None = None,
         **kwargs: Any,
     ) -> None:
-        self.empty_text = empty_text
+        parts = ((PLAYER_FOLDER / "main.js").as_posix(), PLOTLY_JS.as_posix(), empty_text)
         kwargs = {
             "html_template": (PLAYER_FOLDER / "player.html").read_text(encoding="utf-8"),
             "css_template": _CSS,
-            "js_on_load": _ON_LOAD,
+            "js_on_load": _ON_LOAD % tuple(json.dumps(part) for part in parts),
             "apply_default_css": False,
             "busy": "",
             "progress": None,
             "live": None,
             **kwargs,
         }
-        super().__init__(value, elem_id=elem_id, empty_text=empty_text, **kwargs)
+        super().__init__(value, elem_id=elem_id, **kwargs)
 
     def preprocess(self, payload: Payload | None) -> Payload | None:
         """The payload itself."""

@@ -38,7 +38,10 @@ from .show import result_payload
 from .upload import chip, example_chips, file_field
 from .words import error_line, seconds, text
 
-EMPTY_TEXT = "Drop a motion file, or take an example"
+EMPTY_TEXT = (
+    "Choose one person: drop a motion file, or take an example\n"
+    "React makes a second person who answers; Live makes them while the first one plays."
+)
 _SHORTEST = 0.1
 """Seconds: the least that the trim's sliders differ in."""
 

@@ -1,0 +1,55 @@
+"""Hands and eyes of the tests that look at the player: see the fixture ``player``."""
+
+from __future__ import annotations
+
+import io
+
+import numpy as np
+from PIL import Image
+
+
+def press(page, name: str) -> None:
+    """Presses a button of the harness, which lies after the player's own."""
+    page.get_by_role("button", name=name, exact=True).last.click()
+
+
+def hook(page, name: str):
+    return page.evaluate(f"window.__pasdedeux.{name}")
+
+
+def until(page, expression: str, seconds: float = 15) -> None:
+    page.wait_for_function(expression, timeout=1000 * seconds)
+
+
+def pause(page) -> None:
+    if hook(page, "playing"):
+        page.locator(".pdd-play").click()
+    until(page, "!window.__pasdedeux.playing && window.__pasdedeux.loops === 0")
+
+
+def stage_pixels(page) -> np.ndarray:
+    """The scene alone: names and buttons have the same colours."""
+    style = ".pdd-labels, .pdd-tools { visibility: hidden }"
+    shot = page.locator(".pdd-stage:visible").screenshot(style=style)
+    image = Image.open(io.BytesIO(shot)).convert("RGB")
+    return np.asarray(image, dtype=np.int16)
+
+
+def has_color(pixels: np.ndarray, *, blue: bool) -> bool:
+    """Whether some thousand pixels are clearly of A's blue or B's orange."""
+    red, _, blue_channel = pixels[..., 0], pixels[..., 1], pixels[..., 2]
+    strength = blue_channel - red if blue else red - blue_channel
+    return int((strength > 80).sum()) > 1000
+
+
+def drag(page, dx: float, dy: float, steps: int = 12) -> None:
+    box = page.locator(".pdd-touch").bounding_box()
+    x, y = box["x"] + 0.3 * box["width"], box["y"] + 0.4 * box["height"]
+    page.mouse.move(x, y)
+    page.mouse.down()
+    page.mouse.move(x + dx, y + dy, steps=steps)
+    page.mouse.up()
+
+
+def yaw(page) -> float:
+    return page.evaluate("window.__pasdedeux.player.orbit.yaw")
