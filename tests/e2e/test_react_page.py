@@ -146,3 +146,27 @@ def test_the_console_stays_quiet_while_runs_are_started(url: str, open_page: Cal
     page.click("button#generate")
     expect(page.locator("#status .pd-done")).to_be_visible(timeout=SLOW)
     assert not [line for line in said if "arguments" in line or "Uncaught" in line]
+
+
+@pytest.mark.parametrize("width", [1280, 390])
+def test_the_names_of_the_methods_are_shown_whole(
+    url: str, open_page: Callable[..., Page], width: int
+) -> None:
+    tab = open_page(url, width=width, height=844)
+    tab.set_default_timeout(SLOW)
+    expect(tab.locator("#model-state")).to_contain_text("Model ready", timeout=SLOW)
+    tab.get_by_role("tab", name="React").click()
+    for field in ("#react-method", "#react-other"):
+        tab.locator(f"{field} input").wait_for()
+        room = tab.evaluate(_ROOM, [field, "InterGen, person to person"])
+        assert room >= 0, f"{field} lacks {-room:g} pixels"
+
+
+_ROOM = """([field, text]) => {
+    const input = document.querySelector(`${field} input`);
+    const pen = document.createElement("canvas").getContext("2d");
+    pen.font = getComputedStyle(input).font;
+    const arrow = document.querySelector(`${field} .icon-wrap`).getBoundingClientRect();
+    return arrow.left - input.getBoundingClientRect().left - pen.measureText(text).width;
+}"""
+"""Pixels between a text in a list's field and the field's arrow."""

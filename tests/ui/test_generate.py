@@ -275,7 +275,7 @@ def test_the_page_imports_no_torch() -> None:
 
     code = "import sys, webdemo.ui.page; sys.exit('torch' in sys.modules or 'diffusers' in sys.modules)"
     root = Path(__file__).resolve().parents[2]
-    assert subprocess.run([sys.executable, "-c", code], cwd=root, timeout=60).returncode == 0
+    assert subprocess.run([sys.executable, "-c", code], cwd=root, timeout=600).returncode == 0
 
 
 def test_progress_events_of_other_stages_have_words(tab: GenerateTab) -> None:

@@ -8,8 +8,10 @@ import re
 import pytest
 
 from webdemo.inference.requests import GenerateRequest, Progress, Result
+from webdemo.metrics import MEASURES
 from webdemo.motion import InputError
 from webdemo.ui.panels import model_card, model_state, readout_panel, status
+from webdemo.ui.plain import told
 from webdemo.ui.show import result_payload
 from webdemo.ui.words import cancelled_line, error_line, progress_line, text
 
@@ -47,6 +49,28 @@ def test_readouts_show_before_after_and_change() -> None:
         assert words in made
     assert re.search(r"pd-better\">−\d+ %", made)
     assert "nearest that it knows" in made
+
+
+def test_readouts_are_told_in_words_too() -> None:
+    made = html.unescape(readout_panel(result()))
+    assert re.search(
+        r"The two are \d\.\d m apart on average, \d\.\d m at the nearest, and do not touch", made
+    )
+    good = {"distance": 0.93, "distance_min": 0.91, "contact_seconds": 2.3}
+    assert told(good) == "The two are 0.9 m apart on average, 0.9 m at the nearest, and touch for 2.3 s."
+    assert told({"foot_skate": 3, "penetration_max": 0.5, "jerk": 20}) == (
+        "Standing feet hold, the bodies keep out of each other, the motion is smooth."
+    )
+    assert told({"foot_skate": 30, "penetration_max": 9, "jerk": 200}) == (
+        "Standing feet slide, the bodies run into each other, the motion shakes."
+    )
+    assert told({}) == ""
+
+
+def test_every_figure_is_explained() -> None:
+    made = readout_panel(result())
+    legend = made[made.index("<details") : made.index("</details>")]
+    assert [measure for measure in MEASURES if measure.meaning not in html.unescape(legend)] == []
 
 
 def test_readouts_without_a_before_show_values_alone() -> None:
@@ -89,6 +113,10 @@ def test_the_player_measures_for_itself_without_readouts() -> None:
 def test_progress_and_cancellation_name_the_step() -> None:
     event = Progress(stage="sample", step=12, total=50)
     assert progress_line(event) == "Denoising: step 12 of 50"
+    paced = Progress(stage="sample", step=12, total=50, elapsed=6.0)
+    assert progress_line(paced) == "Denoising: step 12 of 50, about 20 s left"
+    assert progress_line(Progress(stage="sample", step=2, total=50, elapsed=1.0)).endswith("of 50")
+    assert progress_line(Progress(stage="sample", step=49, total=50, elapsed=10.0)).endswith("of 50")
     assert cancelled_line(event) == "Cancelled at step 12 of 50."
     assert cancelled_line(Progress(stage="text")) == "Cancelled before the first step."
     assert cancelled_line(None) == "Cancelled before the first step."

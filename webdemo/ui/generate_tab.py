@@ -72,8 +72,9 @@ class GenerateTab(JobTab):
         with gr.Column(elem_classes="pd-panel pd-settings", min_width=0):
             with gr.Row(elem_classes="pd-pair"):
                 self.seconds = gr.Slider(
-                    *SECONDS, value=GenerateRequest.seconds, step=0.5, label="Seconds", elem_id="seconds"
-                )
+                    *SECONDS, value=GenerateRequest.seconds, step=0.5, label="Seconds",
+                    info="Length of the motion.", elem_id="seconds",
+                )  # fmt: skip
                 self.samples = self._samples()
             self._sampling()
 

@@ -37,12 +37,13 @@ QUIET = {"api_visibility": "private", "show_progress": "hidden"}
 """Options of events that are the page's own: no endpoint, no spinner over what they change."""
 
 _DAMPING_INFO = (
-    "While t ≤ threshold × T the motion is corrected: feet, bones, smoothness, overlap, touch and facing; "
-    "0 = plain sampler."
+    "From which point on feet, bones, overlap, touch and facing are corrected while the motion is made "
+    "(t ≤ threshold × T); 0 = not at all."
 )
-_GUIDANCE_INFO = "How closely the motion follows the words; 1 = unguided."
+_GUIDANCE_INFO = "How strongly the words steer; 1 = no extra push."
 _STEPS_INFO = "From noise to motion: fewer are faster, more are finer."
 _SEED_INFO = "Same seed, same motion; empty draws a new one."
+_SAMPLES_INFO = "Motions drawn at once."
 
 Updates = tuple[Any, ...]
 Watch = Callable[[Progress], dict[str, Any] | None]
@@ -98,8 +99,9 @@ class JobTab(ABC):
 
     def _samples(self) -> gr.Slider:
         return gr.Slider(
-            *SAMPLES, value=SamplingRequest.samples, step=1, label="Samples", elem_id=self._id("samples")
-        )
+            *SAMPLES, value=SamplingRequest.samples, step=1, label="Samples", info=_SAMPLES_INFO,
+            elem_id=self._id("samples"),
+        )  # fmt: skip
 
     def _sampling(self) -> None:
         """Seed, guidance, steps and damping."""
@@ -124,8 +126,8 @@ class JobTab(ABC):
             info=_DAMPING_INFO, elem_id=self._id("damping"),
         )  # fmt: skip
 
-    def _results(self, empty_text: str = EMPTY_TEXT) -> None:
-        """The player, and under it the files and read-outs of a result."""
+    def _results(self, empty_text: str = EMPTY_TEXT, below: Callable[[], None] = lambda: None) -> None:
+        """The player, and under it the files and read-outs of a result and what ``below`` lays out."""
         with gr.Column(elem_classes="pd-results", min_width=0):
             with gr.Column(elem_classes="pd-panel pd-stage", min_width=0):
                 self.player = MotionPlayer(elem_id=self._id("player"), empty_text=empty_text)
@@ -143,6 +145,7 @@ class JobTab(ABC):
                         elem_classes="pd-onward",
                     )  # fmt: skip
                 self.readouts = gr.HTML(elem_id=self._id("readouts"))
+            below()
 
     # ---- events ----------------------------------------------------------------------------------
 

@@ -33,7 +33,8 @@ ENDPOINTS = (PredictEndpoint, GenerateEndpoint, ReactEndpoint)
 
 _HEADER = (
     '<div class="pd-brand"><h1>Pas de Deux</h1>'
-    "<p>Write what two people do, watch them do it in 3D, take the motion home.</p></div>"
+    "<p>Write what two people do and watch them in 3D · give one person a partner · see what comes next</p>"
+    "</div>"
 )
 _CACHE = (1800, 7200)
 """Seconds: how often Gradio's copies of downloads are looked through, and how old they may get."""

@@ -8,12 +8,15 @@ from typing import Any
 from webdemo.inference.requests import Result
 from webdemo.metrics import MEASURES, Measure
 
+from .plain import legend, told_lines
 from .words import number, seconds, text
 
 Summary = Mapping[str, float]
 
 QUALITY = tuple(measure for measure in MEASURES if measure.better)
 RELATION = tuple(measure for measure in MEASURES if not measure.better)
+_MOST_TOLD = 4
+"""Samples: more than these are not told in words."""
 
 
 def status(line: str = "", *, tone: str = "quiet") -> str:
@@ -40,13 +43,11 @@ def model_state(state: str, error: str | None = None) -> str:
 
 
 def readout_panel(result: Result) -> str:
-    """Everything under the player: what was asked, notes, measures before → after, contacts, timings."""
+    """Everything under the player: notes, how it came out, what was asked, measures, contacts, timings."""
     samples = [_sides(readout) for readout in result.readouts]
-    parts = [_asked(result), _notes(result.notes)]
+    parts = [_notes(result.notes), _told(samples, _heads(len(samples))), _asked(result)]
     if samples:
-        parts.append(
-            '<div class="pd-tables">' + _quality_table(samples) + _relation_table(samples, result) + "</div>"
-        )
+        parts += [_tables(_quality_table(samples), _relation_table(samples, result)), legend()]
     parts.append(_timings(result.timings))
     return '<div class="pd-readouts">' + "".join(parts) + "</div>"
 
@@ -64,12 +65,24 @@ def comparison_panel(results: Mapping[str, Result]) -> str:
         manifest={},
     )
     samples = [_sides(readout) for readout in joined.readouts]
-    parts = [_asked(result, name) + _notes(result.notes) for name, result in results.items()]
+    parts = [_notes(result.notes) for result in results.values()]
+    parts += [_told(samples, heads), *(_asked(result, name) for name, result in results.items())]
     if samples:
-        tables = _quality_table(samples, heads) + _relation_table(samples, joined, heads)
-        parts.append(f'<div class="pd-tables">{tables}</div>')
+        tables = _quality_table(samples, heads), _relation_table(samples, joined, heads)
+        parts += [_tables(*tables), legend()]
     parts += [_timings(result.timings, name) for name, result in results.items()]
     return '<div class="pd-readouts">' + "".join(parts) + "</div>"
+
+
+def _tables(*tables: str) -> str:
+    return f'<div class="pd-tables">{"".join(tables)}</div>'
+
+
+def _told(samples: Sequence[tuple[Summary | None, Summary]], heads: Sequence[str]) -> str:
+    """How each came out, in words; of many samples the tables say enough."""
+    if not 0 < len(samples) <= _MOST_TOLD:  # a prediction has no read-outs
+        return ""
+    return told_lines({name: after for name, (_, after) in zip(heads, samples, strict=True)})
 
 
 def _heads(count: int) -> list[str]:
@@ -170,10 +183,16 @@ def _contacts(sample: int, result: Result, head: Sequence[str]) -> str:
     title = "Contacts" if len(result.duets) == 1 else f"Contacts, {head[sample]}"
     items = "".join(
         f'<li class="pd-{text(contact["kind"])}">'
-        f"<b>{contact['start'] / fps:.1f}–{contact['stop'] / fps:.1f} s</b> {text(contact['label'])}</li>"
+        f"<b>{_span(contact['start'] / fps, contact['stop'] / fps)} s</b> {text(contact['label'])}</li>"
         for contact in found
     )
     return f'<div class="pd-contacts"><h4>{text(title)}</h4><ul>{items or "<li>none</li>"}</ul></div>'
+
+
+def _span(start: float, stop: float) -> str:
+    """Two times in seconds, or one where they are the same tenth."""
+    first, last = f"{start:.1f}", f"{stop:.1f}"
+    return first if first == last else f"{first}–{last}"
 
 
 def _timings(timings: Mapping[str, float], name: str | None = None) -> str:

@@ -34,7 +34,10 @@ from .prediction_view import curves_figure, prediction_payload, without_name
 from .upload import chip, example_chips, file_field
 from .words import error_line, seconds
 
-EMPTY_TEXT = "Drop a motion file, or take an example"
+EMPTY_TEXT = (
+    "Choose a motion: drop a file, or take an example\n"
+    "Set where its past ends; Predict shows what may follow, beside what really did."
+)
 WEIGHTS = Path(__file__).resolve().parents[2] / "models" / "weights"
 
 
@@ -126,10 +129,7 @@ class PredictTab(JobTab):
                             [("nothing", ""), *installed_methods()], value="", label="Compare with",
                             elem_id="predict-other", min_width=0, filterable=False,
                         )  # fmt: skip
-            with gr.Column(elem_classes="pd-results", min_width=0):
-                self._results(EMPTY_TEXT)
-                with gr.Column(elem_classes="pd-panel", min_width=0, visible=False) as self.curves:
-                    self.plot = gr.Plot(show_label=False, elem_id="predict-curves")
+            self._results(EMPTY_TEXT, self._curves)
         self.source = gr.State(None, time_to_live=3600)
         self._wire_run(
             self.start, [self.go.click],
@@ -144,6 +144,10 @@ class PredictTab(JobTab):
                 self.chips = example_chips(self.examples)
                 self.take = chip("Continue the last result", elem_id="predict-take")
             self._go("Predict")
+
+    def _curves(self) -> None:
+        with gr.Column(elem_classes="pd-panel pd-curves", min_width=0, visible=False) as self.curves:
+            self.plot = gr.Plot(show_label=False, elem_id="predict-curves")
 
     def more_outputs(self) -> dict[str, gr.components.Component]:
         return {"curves": self.curves, "plot": self.plot}

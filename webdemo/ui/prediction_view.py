@@ -97,7 +97,7 @@ def curves_figure(*results: PredictResult) -> go.Figure:
     fps = first.duets[0].fps
     known = len(first.error)
     times = np.arange(1, len(first.speed) + 1) / fps
-    figure = make_subplots(rows=1, cols=2, subplot_titles=("Error, mm", "Mean speed of a joint, m/s"))
+    figure = make_subplots(rows=1, cols=2, subplot_titles=("Error, mm", "Speed, m/s"))
 
     def line(
         col: int, values: Array, name: str, colour: str, dash: str | None = None, *, listed: bool = True
@@ -125,7 +125,7 @@ def curves_figure(*results: PredictResult) -> go.Figure:
             text="Nothing follows the marker to compare with.", showarrow=False, x=0.5, y=0.5,
             xref="x domain", yref="y domain",
         )  # fmt: skip
-    figure.update_xaxes(title_text="seconds after the marker", rangemode="tozero")
+    figure.update_xaxes(title_text="s after the marker", rangemode="tozero")
     figure.update_yaxes(rangemode="tozero")
     figure.update_layout(
         height=300, margin={"l": 48, "r": 12, "t": 36, "b": 44}, template="plotly_white",

@@ -22,6 +22,11 @@ _STAGES = {
     "finish": "Finishing the motion",
 }
 
+_PACE_STEPS = 3
+"""Steps after which the pace is known, or a tenth of them all."""
+_SHORT = 3.0
+"""Seconds: less than this is not announced."""
+
 
 def text(value: object) -> str:
     """Any value as text inside HTML: no tags, no attributes, no ``${…}`` of a template."""
@@ -30,15 +35,23 @@ def text(value: object) -> str:
 
 
 def progress_line(progress: Progress) -> str:
-    """One line for a progress event, such as "Denoising: step 12 of 50"."""
+    """One line for a progress event, such as "Denoising: step 12 of 50, about 10 s left"."""
     if isinstance(progress, Waiting):
         left = progress.seconds_left
         soon = "" if left is None else f", about {_about(left)} until it starts"
         return f"Waiting in line: place {progress.step} of {progress.total}{soon} …"
     stage = _STAGES.get(progress.stage, progress.stage.capitalize())
     if progress.stage == "sample":
-        return f"{stage}: step {progress.step} of {progress.total}"
+        return f"{stage}: step {progress.step} of {progress.total}{_left(progress)}"
     return f"{stage} …"
+
+
+def _left(progress: Progress) -> str:
+    """How much longer the steps take at the pace so far, once there is a pace and it is worth a word."""
+    if progress.step < max(_PACE_STEPS, progress.total / 10):
+        return ""
+    left = progress.elapsed * (progress.total / progress.step - 1)
+    return f", about {_about(left)} left" if left >= _SHORT else ""
 
 
 def _about(duration: float) -> str:
