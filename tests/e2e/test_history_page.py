@@ -53,7 +53,7 @@ def test_a_result_is_kept_and_its_link_opens_it_with_all_controls(lab: str, open
     other.wait_for_selector("#download-npz:not([disabled])")
 
     page.click("#history-revoke")
-    page.wait_for_selector("#history-status :text('1 links to it no longer work')")
+    page.wait_for_selector("#history-status :text('Its link no longer works')")
     ended = open_page(link)
     ended.wait_for_selector("#status .pd-error:has-text('There is no such run')", timeout=SLOW)
 
@@ -93,3 +93,19 @@ def test_a_forged_link_is_a_sentence(lab: str, open_page: Callable) -> None:
     page = open_page(f"{lab}?run=../../etc/passwd<script>window.__hacked=1</script>")
     page.wait_for_selector("#status .pd-error:has-text('There is no such run')", timeout=SLOW)
     assert page.evaluate("window.__hacked") is None
+
+
+def test_the_buttons_fit_a_phone(lab: str, open_page: Callable) -> None:
+    page = open_page(lab, width=390, height=844)
+    page.set_default_timeout(SLOW)
+    page.wait_for_selector("#model-state :text('Model ready')")
+    page.fill("#prompt textarea", "Two people walk up to each other.")
+    page.click("#generate")
+    page.wait_for_selector("#status .pd-done")
+    page.click("button[role=tab]:has-text('History')")
+    page.wait_for_selector("#history-remove")
+    cut = page.evaluate(
+        "[...document.querySelectorAll('.pd-history-buttons button')]"
+        ".filter(e => e.scrollWidth > e.clientWidth || e.getBoundingClientRect().right > 390).map(e => e.id)"
+    )
+    assert cut == []

@@ -21,7 +21,10 @@ from .visitor import Visitor, visitor
 from .words import cancelled_line, error_line, progress_line, text
 
 LABEL = "History"
-_EMPTY = "Nothing yet: what you make is kept here."
+_EMPTY = (
+    "Nothing yet. What you make in the other tabs is kept here: open it again with all its settings, "
+    "share it by a link, or check that it comes out the same."
+)
 _CONTROLS = ("prompt", "seconds", "seed", "samples", "guidance", "steps", "damping", "role", "model", "mode")
 """Fields of a request that a tab may have a control of the same name for."""
 _NAMED = "() => new URLSearchParams(window.location.search).get('run') || ''"
@@ -57,9 +60,9 @@ class HistoryTab:
         with gr.Column(elem_classes="pd-panel pd-history", min_width=0):
             self.list = gr.Radio([], show_label=False, container=False, elem_id="history-list",
                                  elem_classes="pd-runs")  # fmt: skip
-            self.empty = gr.HTML(status(_EMPTY), elem_id="history-empty")
+            self.empty = gr.HTML(status(_EMPTY), elem_id="history-empty", visible=False)
             self.who = gr.HTML(elem_id="history-who")
-            with gr.Row(elem_classes="pd-go pd-history-buttons"):
+            with gr.Row(elem_classes="pd-go pd-history-buttons", visible=False) as self.actions:
                 self.buttons = {
                     name: gr.Button(label, elem_id=f"history-{name}", size="sm", min_width=0,
                                     variant="primary" if name == "open" else "secondary")
@@ -76,7 +79,7 @@ class HistoryTab:
 
     def _wire(self, demo: gr.Blocks, tab: gr.Tab, record: gr.State) -> None:
         self.record = record
-        seen = [self.list, self.empty, self.who]
+        seen = [self.list, self.empty, self.who, self.actions]
         quick = {"concurrency_limit": 8, "concurrency_id": "history", **QUIET}
         tab.select(self.refresh, inputs=self.list, outputs=seen, **quick)
         for name, act in (("favour", self.favour), ("revoke", self.revoke), ("remove", self.remove)):
@@ -112,7 +115,7 @@ class HistoryTab:
     # ---- events ----------------------------------------------------------------------------------
 
     def refresh(self, chosen: str | None) -> Updates:
-        """The list as it is now, with the same run chosen where it is still there."""
+        """The list as it is now with the same run chosen, where it is still there, and its buttons."""
         who = visitor()
         entries = self.history.entries(who.owner)
         choices = [(_label(entry), entry.id) for entry in entries]
@@ -121,6 +124,7 @@ class HistoryTab:
             gr.update(choices=choices, value=kept or (entries[0].id if entries else None)),
             gr.update(visible=not entries),
             _signed_in(who),
+            gr.update(visible=bool(entries)),
         )
 
     def favour(self, run: str | None) -> str:
@@ -136,9 +140,12 @@ class HistoryTab:
 
     def revoke(self, run: str | None) -> str:
         """Ends a run's links."""
-        return self._act(
-            run, lambda run, owner: f"{self.history.revoke(run, owner)} links to it no longer work."
-        )
+
+        def act(run: str, owner: str) -> str:
+            ended = self.history.revoke(run, owner)
+            return "Its link no longer works." if ended == 1 else f"{ended} links to it no longer work."
+
+        return self._act(run, act)
 
     def remove(self, run: str | None) -> str:
         """Deletes a run."""
