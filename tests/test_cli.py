@@ -12,6 +12,7 @@ import numpy as np
 import pytest
 from PIL import Image
 
+import app
 from tests.inference import conftest as tiny
 from webdemo import cli
 from webdemo.formats import read, read_pair
@@ -202,3 +203,15 @@ def test_missing_weights_are_one_line(run: Run, tmp_path: Path, monkeypatch: pyt
     monkeypatch.setattr(engine, "Engine", partial(engine.Engine.func, tmp_path / "nowhere"))
     assert "restore" in refused(generate(run, tmp_path / "duet.npz"))
     assert list(tmp_path.iterdir()) == []
+
+
+def test_app_takes_the_options_of_serve(
+    capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setenv("PASDEDEUX_PORT", "8001")
+    assert app.main(["--print-settings", "--port", "8002"]) == 0
+    assert "port = 8002" in capsys.readouterr().out
+    assert app.main(["--port", "many"]) == 2
+    assert "invalid int value: 'many'" in capsys.readouterr().err
+    with pytest.raises(SystemExit, match="0"):
+        app.main(["--help"])
