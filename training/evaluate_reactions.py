@@ -49,7 +49,16 @@ METHODS: dict[str, dict[str, Any]] = {
     "InterFormer, first pose given": {"model": "interformer", "start": True},
     "InterGen, person to person": {"model": "intergen", "mode": "offline", "steps": 20, "guidance": 1.0},
 }
-READOUTS = ("facing", "distance", "contact_seconds", "foot_skate", "penetration")
+READOUTS = (
+    ("facing", "Facing °"),
+    ("distance", "Distance m"),
+    ("contact_seconds", "Contact s"),
+    ("contact_due", "Contact where due %"),
+    ("response_delay", "Delay s"),
+    ("foot_skate", "Foot skate cm/s"),
+    ("penetration", "Penetration cm"),
+)
+"""Keys and heads of the read-outs in the table."""
 
 
 @dataclass(frozen=True)
@@ -148,13 +157,28 @@ def score(
     return rows
 
 
-def readouts(test: Sequence[Reaction], people: Sequence[Array]) -> dict[str, float]:
-    """The page's read-outs, each the mean over the test clips."""
-    found = [
-        summary(Duet.from_positions(np.stack([reaction.people[0], person]), fps=30.0))
-        for reaction, person in zip(test, people, strict=True)
-    ]
-    return {key: round(float(np.mean([one[key] for one in found])), 4) for key in READOUTS}
+def readouts(test: Sequence[Reaction], people: Sequence[Array]) -> dict[str, float | None]:
+    """The page's read-outs, each the mean over the test clips that have it.
+
+    ``response_delay`` is the median, for a single chance match far off would carry a mean. ``contact_due``
+    is, of the clips in which the recorded people touch, the percentage in which these do, too. None where no
+    clip has a value.
+    """
+    recorded, found = (
+        [
+            summary(Duet.from_positions(np.stack([reaction.people[0], person]), fps=30.0))
+            for reaction, person in zip(test, made, strict=True)
+        ]
+        for made in ([reaction.people[1] for reaction in test], people)
+    )
+    for true, one in zip(recorded, found, strict=True):
+        one["contact_due"] = 100.0 * (one["contact_seconds"] > 0) if true["contact_seconds"] > 0 else None
+    told: dict[str, float | None] = {}
+    for key, _ in READOUTS:
+        values = [one[key] for one in found if one[key] is not None]
+        middle = np.median if key == "response_delay" else np.mean
+        told[key] = round(float(middle(values)), 4) if values else None
+    return told
 
 
 def interval(values: Sequence[float]) -> tuple[float, float]:
@@ -172,16 +196,17 @@ def table(scores: dict[str, Any]) -> str:
             f"## {DATASETS[dataset]}: {found['train']} training and {found['test']} test clips, "
             f"{len(found['classes'])} classes",
             "",
-            "| Method | Accuracy % | FVD | Diversity (0 is best) | Facing ° | Distance m | Contact s "
-            "| Foot skate cm/s | Penetration cm |",
-            "|---|---|---|---|---|---|---|---|---|",
+            "| Method | Accuracy % | FVD | Diversity (0 is best) | "
+            f"{' | '.join(head for _, head in READOUTS)} |",
+            f"|---|---|---|---{'|---' * len(READOUTS)}|",
         ]
         for method, values in found["scores"].items():
             cells = []
             for name, factor in (("accuracy", 100), ("fvd", 1), ("diversity", 1)):
                 mean, half = interval(np.array(values[name]) * factor)
                 cells.append(f"{mean:.1f} ± {half:.1f}")
-            cells += [f"{found['readouts'][method][key]:.2f}" for key in READOUTS]
+            shown = [found["readouts"][method][key] for key, _ in READOUTS]
+            cells += ["–" if value is None else f"{value:.2f}" for value in shown]
             lines.append(f"| {method} | {' | '.join(cells)} |")
         lines.append("")
     return "\n".join(lines)

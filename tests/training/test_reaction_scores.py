@@ -4,7 +4,9 @@ import numpy as np
 import pytest
 
 from training.deep_gru import accuracy, deep_features, fit, frechet_distance, padded, spread
-from training.evaluate_reactions import Reaction, interval, score, table, zero_velocity
+from training.evaluate_reactions import Reaction, interval, readouts, score, table, zero_velocity
+from webdemo.metrics import summary
+from webdemo.motion import Duet
 
 
 def clips(count: int, seed: int) -> tuple[list[np.ndarray], list[int]]:
@@ -50,6 +52,11 @@ def test_spread_is_the_mean_distance_of_pairs() -> None:
     assert spread(np.array([[0.0, 0], [3, 4], [0, 0]])) == pytest.approx(10 / 3)
 
 
+def touches(pair: Reaction, other: np.ndarray) -> bool:
+    duet = Duet.from_positions(np.stack([pair.people[0], other]), fps=30.0)
+    return summary(duet)["contact_seconds"] > 0
+
+
 def test_the_table_holds_every_method() -> None:
     rng = np.random.default_rng(0)
     people = [rng.normal(size=(2, 40, 22, 3)) for _ in range(12)]
@@ -61,10 +68,24 @@ def test_the_table_holds_every_method() -> None:
     assert len(found["Zero velocity"]["fvd"]) == 2
     mean, half = interval([1.0, 3.0])
     assert (mean, half) == (2.0, pytest.approx(12.706, abs=1e-3))  # t of one degree of freedom
-    shown = dict.fromkeys(("facing", "distance", "contact_seconds", "foot_skate", "penetration"), 1.0)
+    shown = readouts(pairs, still)
+    assert shown["response_delay"] is None  # of somebody who stands still
+    assert shown["contact_due"] == pytest.approx(
+        100
+        * np.mean(
+            [
+                touches(pair, one)
+                for pair, one in zip(pairs, still, strict=True)
+                if touches(pair, pair.people[1])
+            ]
+        ),
+        abs=1e-3,
+    )
+    assert readouts(pairs, [pair.people[1] for pair in pairs])["contact_due"] == 100
     text = table(
         {"sbu": {"train": 12, "test": 12, "classes": ["a", "b"], "scores": found,
                  "readouts": dict.fromkeys(found, shown)}}
     )  # fmt: skip
-    assert "| Zero velocity |" in text
+    row = next(line for line in text.splitlines() if line.startswith("| Zero velocity |"))
+    assert "| Delay s |" in text and "| – |" in row and row.count("|") == text.splitlines()[2].count("|")
     assert "SBU: 12 training" in text

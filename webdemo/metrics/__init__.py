@@ -14,6 +14,7 @@ from .interaction import (
 )
 from .quality import FootSkate, Penetration, bone_drift, foot_skate, jerk, penetration
 from .readouts import MEASURES, Measure, compare, readouts, summary
+from .response import response_delay
 
 __all__ = [
     "MEASURES",
@@ -32,6 +33,7 @@ __all__ = [
     "pelvis_distance",
     "penetration",
     "readouts",
+    "response_delay",
     "summary",
     "wrist_to_body",
     "wrist_to_wrist",

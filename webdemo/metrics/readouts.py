@@ -9,6 +9,7 @@ from webdemo.motion import Duet
 
 from .interaction import contact_events, facing_angle, pelvis_distance, wrist_to_body, wrist_to_wrist
 from .quality import bone_drift, foot_skate, jerk, penetration
+from .response import response_delay
 
 
 @dataclass(frozen=True)
@@ -54,12 +55,19 @@ MEASURES = (
     Measure(
         "contact_seconds", "In contact", "s", 1, "Time during which a hand or foot is on the other person."
     ),
+    Measure(
+        "response_delay",
+        "Response delay",
+        "s",
+        2,
+        "By how much the second person's movement follows the first's, where their speeds are alike.",
+    ),
 )
 """What the summary holds, in the order in which it is shown."""
 
 
-def summary(duet: Duet) -> dict[str, float]:
-    """One number a measure; keys, labels and units are those of :data:`MEASURES`."""
+def summary(duet: Duet) -> dict[str, float | None]:
+    """One number a measure, None for a delay that cannot be told; keys and units are those of `MEASURES`."""
     return readouts(duet)["summary"]
 
 
@@ -93,6 +101,7 @@ def readouts(duet: Duet) -> dict[str, Any]:
         "hands_min": float(hands.min()),
         "facing": float(angles.mean()),
         "contact_seconds": len(touched) / duet.fps,
+        "response_delay": response_delay(duet),
     }
     curves = {
         "pelvis_distance": apart,
@@ -104,7 +113,7 @@ def readouts(duet: Duet) -> dict[str, Any]:
         "penetration": overlap.depth,
     }
     return {
-        "summary": {key: round(value, 4) for key, value in numbers.items()},
+        "summary": {key: None if value is None else round(value, 4) for key, value in numbers.items()},
         "curves": {key: [round(float(value), 4) for value in curve] for key, curve in curves.items()},
         "contacts": [contact.to_dict() for contact in contacts],
     }
