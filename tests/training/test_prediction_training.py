@@ -176,14 +176,29 @@ def test_pasts_of_its_own_are_the_recorded_ones_where_the_network_is_right(passe
     along = np.array([[0.02, 0.0, 0.01], [0.0, 0.0, -0.03]])[:, None, None]
     motion = SMPL22.rest_positions() + along * np.arange(100)[:, None, None]
     windows = torch.from_numpy(to_last_pose(motion, 9)[0]).float()
-    made = with_own_past(Extrapolates(), windows, 10, 25, passes)
+    made, recorded = with_own_past(Extrapolates(), windows, 10, 25, passes)
     start = ADVANCE * passes
     expected = to_last_pose(windows[:, start : start + 35].numpy(), 9)[0]
     assert made.shape == (2, 35, 22, 3) and np.allclose(made.numpy(), expected, atol=1e-4)
+    assert np.allclose(recorded.numpy(), expected, atol=1e-4)
     # A network that strays is not told where it should have been, but how to go on from where it is.
-    still = with_own_past(lambda past: past[:, -1:].repeat(1, 25, 1, 1), windows, 10, 25, passes)
+    still, _ = with_own_past(lambda past: past[:, -1:].repeat(1, 25, 1, 1), windows, 10, 25, passes)
     assert np.allclose(still[:, 10:].numpy(), expected[:, 10:], atol=1e-4)
     assert np.abs(np.diff(still[:, :10].numpy(), axis=1)).max() < 1e-4
+
+
+def test_what_follows_begins_in_the_pose_that_the_network_came_to() -> None:
+    windows = torch.from_numpy(np.repeat(SMPL22.rest_positions()[None, None], 80, axis=1)).float()
+
+    def raises_a_hand(past: torch.Tensor) -> torch.Tensor:
+        made = past[:, -1:].repeat(1, 25, 1, 1)
+        made[:, :, 21, 1] += 0.02 * torch.arange(1, 26)
+        return made
+
+    made, recorded = with_own_past(raises_a_hand, windows, 10, 25, 1)
+    above = (made - recorded)[0, :, 21, 1]
+    assert np.allclose(above[9:], 0.4 * np.linspace(1, 0, 26), atol=1e-5)
+    assert torch.allclose(made[:, :, :21], recorded[:, :, :21], atol=1e-5)
 
 
 def test_a_trained_network_learns_to_go_on_from_its_own(corpus: Path, tmp_path: Path) -> None:

@@ -149,36 +149,41 @@ class Trainer(PredictionTrainer):
         warm, place = min(1.0, (self.step + 1) / s.warmup), min(1.0, self.step / s.steps)
         return s.learning_rate * warm * (0.02 + 0.98 * 0.5 * (1 + math.cos(math.pi * place)))
 
-    def terms(self, window: Tensor, passes: int = 0) -> dict[str, Tensor]:
-        """Weighted loss terms of windows (B, T, J, 3), in centimetres, whose pasts were made in ``passes``.
+    def terms(self, window: Tensor, recorded: Tensor, passes: int = 0) -> dict[str, Tensor]:
+        """Weighted loss terms, in centimetres.
 
-        Windows are in the order of the speed in the past that was recorded.
+        Args:
+            window: (B, T, J, 3) metres; its past was made in ``passes``, its future is asked for.
+            recorded: (B, T, J, 3) the same of recorded motion alone, in the order of the speed of the pasts.
+            passes: how often the network was applied before.
         """
         s = self.settings
-        past, truth = window.split([s.past, s.future], dim=1)
+        past, asked = window.split([s.past, s.future], dim=1)
         noise = torch.randn(past.shape, generator=torch.Generator().manual_seed(self.step)).to(past)
-        predicted = 100 * self.model(past + s.noise * noise)
-        truth, before = 100 * truth, 100 * past[:, -2:]
-        velocities = [torch.cat([before, x], dim=1).diff(dim=1) for x in (predicted, truth)]
+        predicted, before = 100 * self.model(past + s.noise * noise), 100 * past[:, -2:]
+        velocities = torch.cat([before, predicted], dim=1).diff(dim=1)
+        real = 100 * recorded[:, s.past - 2 :].diff(dim=1)
         parents, children = self.bones
+        truth = 100 * recorded[:, s.past :]
         bones = [lengths(x[..., children, :] - x[..., parents, :]) for x in (predicted, truth)]
         known = 1 / (1 + passes)
-        speed, acceleration = liveliness(*velocities, s.groups)
+        speed, acceleration = liveliness(velocities, real, s.groups)
         return {
-            "position": known * lengths(predicted - truth).mean(),
-            "velocity": known * s.velocity_weight * lengths(velocities[0] - velocities[1])[:, 1:].mean(),
+            "position": known * lengths(predicted - 100 * asked).mean(),
+            "velocity": known * s.velocity_weight * lengths(velocities - real)[:, 1:].mean(),
             "speed": s.speed_weight * speed,
             "acceleration": s.acceleration_weight * acceleration,
             "bone": s.bone_weight * (bones[0] - bones[1]).abs().mean(),
         }
 
-    def window(self) -> tuple[Tensor, int]:
-        """This step's windows (B, past + future, J, 3), and in how many passes the network made the pasts."""
+    def window(self) -> tuple[Tensor, Tensor, int]:
+        """What :meth:`terms` takes in this step."""
         s, windows = self.settings, self.batch()
         windows = windows[lengths(windows[:, : s.past].diff(dim=1)).mean((1, 2)).argsort()]
-        passes = int(np.random.default_rng((s.seed, self.step, 2)).integers(s.own_pasts + 1))
-        made = with_own_past(self.ema, windows, s.past, s.future, passes) if passes else windows
-        return made[:, : s.past + s.future], passes
+        if passes := int(np.random.default_rng((s.seed, self.step, 2)).integers(s.own_pasts + 1)):
+            return *with_own_past(self.ema, windows, s.past, s.future, passes), passes
+        windows = windows[:, : s.past + s.future]
+        return windows, windows, 0
 
     def train_step(self) -> dict[str, float]:
         torch.manual_seed(self.settings.seed + self.step)  # dropout

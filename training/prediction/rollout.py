@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import numpy as np
 import torch
 from torch import Tensor, nn
 
@@ -12,7 +13,9 @@ ADVANCE = 20
 
 
 @torch.no_grad()
-def with_own_past(network: nn.Module, windows: Tensor, past: int, future: int, passes: int) -> Tensor:
+def with_own_past(
+    network: nn.Module, windows: Tensor, past: int, future: int, passes: int
+) -> tuple[Tensor, Tensor]:
     """Lets a network go on from the past of windows and cuts them anew where it has come to.
 
     Args:
@@ -23,7 +26,9 @@ def with_own_past(network: nn.Module, windows: Tensor, past: int, future: int, p
 
     Returns:
         (B, past + future, 22, 3): what was given or made before, and what was recorded after, each in the
-        frame of its own last pose before; where the network strayed to is nothing that it can know.
+        frame of its own last pose before; where the network strayed to is nothing that it can know. What was
+        recorded begins in the pose that the network came to, and is quite itself at the end.
+        And (B, past + future, 22, 3) as it was recorded, in the frame of that last pose.
     """
     whole = windows[:, :past]
     for _ in range(passes):
@@ -32,7 +37,11 @@ def with_own_past(network: nn.Module, windows: Tensor, past: int, future: int, p
         turn, shift = (torch.from_numpy(x).to(windows) for x in (turn, shift))
         whole = torch.cat([whole, made @ turn[:, None] + shift[:, None, None]], dim=1)
     start = passes * ADVANCE
-    recorded = windows[:, start : start + past + future].cpu().numpy()
+    recorded = to_last_pose(windows[:, start : start + past + future].cpu().numpy(), past - 1)[0]
     before = to_last_pose(whole[:, start:].cpu().numpy())[0]
-    after = to_last_pose(recorded, past - 1)[0][:, past:]
-    return torch.cat([torch.from_numpy(part).to(windows) for part in (before, after)], dim=1)
+    strayed = (1 - np.arange(1, future + 1) / future)[:, None, None] * (
+        before[:, -1:] - recorded[:, [past - 1]]
+    )
+    made = np.concatenate([before, recorded[:, past:] + strayed], axis=1)
+    own, true = (torch.from_numpy(x).to(windows) for x in (made, recorded))
+    return own, true
