@@ -19,6 +19,7 @@ from webdemo.inference.engine import WEIGHTS, Engine
 from webdemo.inference.predict import (
     MotionPredictor,
     above_floor,
+    faded,
     joined,
     mean_steps,
     with_bones_of,
@@ -174,6 +175,19 @@ def test_frames_of_reference_are_undone() -> None:
     assert np.allclose(local[:, -1, 0, [0, 2]], 0, atol=1e-6)
     assert np.allclose(heading(local[:, -1]), 0, atol=1e-6)
     assert np.allclose(to_world(local, turn, shift), positions, atol=1e-5)
+
+
+def test_two_predictions_are_joined_without_haste() -> None:
+    ahead = np.array([0.0, 0.0, 0.01])
+    pose = np.random.default_rng(0).normal(size=(2, 1, 22, 3))
+    steady = pose + ahead * np.arange(31)[:, None, None]
+    assert np.allclose(faded(steady[:, :11], steady[:, 1:]), steady[:, 1:])
+    assert np.allclose(faded(steady[:, :1], steady[:, 1:]), steady[:, 1:])
+    aside = pose + np.array([0.01, 0.0, 0.0]) * np.arange(31)[:, None, None]
+    made = faded(steady[:, :11], aside[:, 1:])
+    steps = mean_steps(np.concatenate([pose, made], axis=1))
+    assert steps.max() < 0.01 + 1e-9 and steps.min() > 0.007
+    assert np.allclose(np.diff(made[:, 10:], axis=1), [0.01, 0.0, 0.0])
 
 
 def test_corrections_leave_good_motion_alone() -> None:

@@ -87,6 +87,26 @@ def above_floor(past: Array, future: Array) -> Array:
     return raised
 
 
+def faded(before: Array, after: Array) -> Array:
+    """A future that begins with the steps of one prediction and goes over to those of another.
+
+    Steps are faded and not positions: the way from where one prediction is to where the other is would be
+    gone besides, so that people hurried on at every join.
+
+    Args:
+        before: (P, 1 + N, J, 3) the last pose and N frames of the one.
+        after: (P, F, J, 3) the other from that pose, F at least N.
+
+    Returns:
+        (P, F, J, 3).
+    """
+    steps = np.diff(np.concatenate([before[:, :1], after], axis=1), axis=1)
+    again = before.shape[1] - 1
+    share = (np.arange(again) + 1)[:, None, None] / (again + 1)
+    steps[:, :again] = (1 - share) * np.diff(before, axis=1) + share * steps[:, :again]
+    return before[:, :1] + steps.cumsum(axis=1)
+
+
 class MotionPredictor:
     """Continues motions by the predictor of a weights folder; without one, by holding the last pose.
 
@@ -124,10 +144,8 @@ class MotionPredictor:
             future = held = np.repeat(whole[:, kept - 1 : kept], round(FPS), axis=1)
             if not still.all():
                 future = self._next(whole[:, :kept])
-                if again := whole.shape[1] - kept:
-                    share = (np.arange(again) + 1)[:, None, None] / (again + 1)
-                    future[:, :again] = (1 - share) * whole[:, kept:] + share * future[:, :again]
-                    future = with_bones_of(past[:, -1], future)
+                future = with_bones_of(past[:, -1], faded(whole[:, kept - 1 :], future))
+                future = above_floor(past, future)
             future = np.where(still[:, None, None, None], held, future)
             whole = np.concatenate([whole[:, :kept], future], axis=1)
             kept = whole.shape[1] - _OVERLAP
