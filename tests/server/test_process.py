@@ -42,7 +42,7 @@ runpy.run_path(sys.argv[0], run_name="__main__")
 class Process:
     """The stub's server on a free port."""
 
-    def __init__(self, data: Path, pause: float) -> None:
+    def __init__(self, data: Path, pause: float, **settings: str) -> None:
         with socket.socket() as probe:
             probe.bind(("127.0.0.1", 0))
             port = probe.getsockname()[1]
@@ -50,7 +50,7 @@ class Process:
         env = os.environ | {
             "STUB_PAUSE": str(pause), "PASDEDEUX_NODE": "tested", "PASDEDEUX_GRACE_SECONDS": "60",
             "PASDEDEUX_FREE_MEGABYTES": "0", "OMP_NUM_THREADS": "1",
-        }  # fmt: skip
+        } | settings  # fmt: skip
         script = str(ROOT / "tests" / "server" / "lab.py")
         self.process = subprocess.Popen(
             [sys.executable, "-c", WATCH, script, str(port), str(data)], cwd=ROOT, env=env,
@@ -66,11 +66,12 @@ class Process:
                 time.sleep(0.1)
         raise TimeoutError("The server did not answer.")
 
-    def ask(self, steps: int) -> str:
+    def ask(self, steps: int, visitor: str = "") -> str:
         """Begins a run; returns where its result will come."""
         data = ["Two people walk.", 1, 3, 1, 3, steps, 0, "ddim"]
-        event = httpx.post(f"{self.url}{CALL}", json={"data": data}, timeout=60).json()["event_id"]
-        return f"{self.url}{CALL}/{event}"
+        cookie = {"cookie": f"pasdedeux_visitor={visitor}"} if visitor else {}
+        asked = httpx.post(f"{self.url}{CALL}", json={"data": data}, headers=cookie, timeout=60)
+        return f"{self.url}{CALL}/{asked.json()['event_id']}"
 
     def history(self) -> History:
         return History(
@@ -88,8 +89,8 @@ class Process:
 def start(tmp_path: Path) -> Iterator[Any]:
     running: list[Process] = []
 
-    def start_(pause: float) -> Process:
-        running.append(Process(tmp_path / "data", pause))
+    def start_(pause: float, **settings: str) -> Process:
+        running.append(Process(tmp_path / "data", pause, **settings))
         return running[-1]
 
     yield start_
@@ -136,3 +137,25 @@ def test_told_to_stop_it_ends_what_runs_and_asked_nobody_outside(start: Any) -> 
     assert server.process.returncode in (0, -signal.SIGTERM)
     assert "OUTSIDE" not in said and "Traceback" not in said
     assert [entry.state for entry in server.history().entries("local")] == ["done"]
+
+
+def test_a_person_has_one_share_at_two_processes(start: Any) -> None:
+    few = {"PASDEDEUX_RUNNING": "1", "PASDEDEUX_WAITING": "1"}  # two runs at a time
+    one, two = (start(0.5, PASDEDEUX_NODE=node, **few) for node in ("one", "two"))
+    ada, eve = "a" * 32, "e" * 32
+    one.ask(200, ada)
+    two.ask(200, ada)
+    history = one.history()
+    until = time.monotonic() + 60
+
+    def wait_for_running(count: int) -> None:
+        while sum(entry.state == "running" for entry in history.entries("local")) != count:
+            assert time.monotonic() < until
+            time.sleep(0.1)
+
+    wait_for_running(2)
+    for server in (one, two):
+        said = httpx.get(server.ask(1, ada), timeout=60).text
+        assert "event: error" in said and "You have 2 runs waiting or running already" in said
+    two.ask(200, eve)  # somebody else's is let in, and waits
+    wait_for_running(3)

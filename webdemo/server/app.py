@@ -28,6 +28,7 @@ from .history import History
 from .login import login_routes
 from .memory import give_back
 from .pages import PageCache
+from .places import SEEN_EVERY, Places
 from .queue import Batcher, FairQueue, QueueLimits
 from .recorder import Recorder
 from .sessions import keep_states_lean
@@ -56,6 +57,7 @@ class Lab:
     database: Database
     history: History
     queue: FairQueue
+    places: Places
     health: Health
     figures: Figures
     answers: OpenAnswers
@@ -106,8 +108,9 @@ def create_app(
     )  # fmt: skip
     queue = FairQueue(engine, limits, batcher=batcher, figures=figures, broken=health.broken)
     figures.watch(waiting=lambda: queue.waiting, running=lambda: queue.running, ready=lambda: health.ready)
+    places = Places(database, settings.node, settings.running + settings.waiting)
     lab = Lab(
-        settings=settings, database=database, history=history, queue=queue, health=health,
+        settings=settings, database=database, history=history, queue=queue, places=places, health=health,
         figures=figures, answers=OpenAnswers(),
     )  # fmt: skip
     sign_ins = SignIns(database, users, settings.session_hours) if users is not None else None
@@ -120,7 +123,7 @@ def create_app(
         app.include_router(login_routes(settings, sign_ins, visitors))
     app.add_middleware(PageCache)
     app.add_middleware(Guard, settings=settings, visitors=visitors, figures=figures, answers=lab.answers)
-    page = build_page(engine, loader=Loader(engine), runs=Recorder(queue, history), history=history)
+    page = build_page(engine, loader=Loader(engine), runs=Recorder(queue, history, places), history=history)
     page.state_session_capacity = PAGES
     page.max_threads = settings.queue + 64  # whoever waits in line holds a thread
     page.queue(default_concurrency_limit=4, max_size=2 * settings.queue + 64)
@@ -170,12 +173,14 @@ def _add_routes(app: FastAPI, lab: Lab) -> None:
 async def _lifespan(app: FastAPI) -> AsyncIterator[None]:
     lab: Lab = app.state.lab
     lost = await run_in_threadpool(lab.history.recover)
+    await run_in_threadpool(lab.places.clear)
     if lost:
         log.warning("%d runs of the last time were interrupted.", lost)
     tasks = [
         asyncio.create_task(_later(WARM_UP_AFTER, lab.health.probe)),
         asyncio.create_task(_every(CLEAN_EVERY, lab.history.clean)),
         asyncio.create_task(_every(GIVE_BACK_EVERY, give_back)),
+        asyncio.create_task(_every(SEEN_EVERY, lab.places.refresh)),
     ]
     try:
         yield
@@ -198,5 +203,5 @@ async def _every(seconds: float, job: Callable[[], Any]) -> None:
         try:
             await run_in_threadpool(job)
         except Exception:
-            log.exception("Cleaning up failed.")
+            log.exception("What is done regularly failed.")
         await asyncio.sleep(seconds)

@@ -15,23 +15,41 @@ from webdemo.motion import InputError
 from webdemo.ui.visitor import visitor
 
 from .history import History
+from .places import Places
 from .queue import FairQueue
 
 log = logging.getLogger(__name__)
 
 
 class Recorder:
-    """Runs requests in a queue and keeps every one of them; the same use as :class:`webdemo.ui.runs.Runs`."""
+    """Runs requests in a queue and keeps every one of them; the same use as :class:`webdemo.ui.runs.Runs`.
 
-    def __init__(self, queue: FairQueue, history: History) -> None:
-        self.queue, self.history = queue, history
+    Args:
+        queue: runs them.
+        history: keeps them.
+        places: counts a person's, at other processes as well.
+    """
+
+    def __init__(self, queue: FairQueue, history: History, places: Places) -> None:
+        self.queue, self.history, self.places = queue, history, places
 
     def cancel(self, session: str) -> bool:
         """Stops the session's run, waiting or running; False where it has none."""
         return self.queue.cancel(session)
 
     def run(self, session: str, request: Any) -> Iterator[Progress | Result]:
-        """As :meth:`FairQueue.run`; the result comes when it is kept, or with a note that it could not be."""
+        """As :meth:`FairQueue.run`; the result comes when it is kept, or with a note that it could not be.
+
+        Raises:
+            InputError: as well where the person has too many runs, or nothing can be written down.
+        """
+        try:
+            with self.places.held(visitor().person):
+                yield from self._run(session, request)
+        except SQLAlchemyError as error:
+            raise _unwritten(error) from None
+
+    def _run(self, session: str, request: Any) -> Iterator[Progress | Result]:
         who = visitor()
         run = self._begin(who.owner, request) if who.owner else ""
         state, message = "refused", ""
@@ -61,13 +79,7 @@ class Recorder:
         try:
             return self.history.begin(owner, request, title_of(request.to_dict()))
         except SQLAlchemyError as error:
-            log.exception("A run could not be written down.")
-            full = "full" in str(getattr(error, "orig", ""))
-            raise InputError(
-                "The server's disk is full, so nothing new can be kept: tell the person who runs it."
-                if full
-                else "The server's history cannot be written: tell the person who runs it."
-            ) from None
+            raise _unwritten(error) from None
 
     def _end(self, run: str, owner: str, state: str, message: str) -> None:
         if state == "refused":  # it never was in the line
@@ -93,6 +105,16 @@ class Recorder:
         self.queue.figures.runs.labels(model, "done").inc()
         for stage, seconds in result.timings.items():
             self.queue.figures.stage_seconds.labels(model, stage).observe(seconds)
+
+
+def _unwritten(error: SQLAlchemyError) -> InputError:
+    log.error("A run could not be written down.", exc_info=error)
+    full = "full" in str(getattr(error, "orig", ""))
+    return InputError(
+        "The server's disk is full, so nothing new can be kept: tell the person who runs it."
+        if full
+        else "The server's history cannot be written: tell the person who runs it."
+    )
 
 
 def title_of(asked: Mapping[str, Any]) -> str:

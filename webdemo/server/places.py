@@ -1,0 +1,91 @@
+"""How many runs a person has, at all page processes that share a database."""
+
+from __future__ import annotations
+
+import secrets
+import time
+from collections.abc import Iterator
+from contextlib import contextmanager, suppress
+
+from sqlalchemy import delete, func, or_, select, update
+from sqlalchemy.exc import SQLAlchemyError
+from sqlalchemy.orm import Mapped, mapped_column
+
+from webdemo.motion import InputError
+
+from .database import Database, Table
+
+SEEN_EVERY = 20.0
+"""Seconds between two signs of life of a process."""
+LOST_AFTER = 90.0
+"""Seconds without one after which the runs of a process are no longer counted."""
+
+
+class Place(Table):
+    """A run that waits or runs somewhere.
+
+    Attributes:
+        person: whose it is, as the queue knows them.
+        node: the process that has it.
+        seen: when that process last gave a sign of life.
+    """
+
+    __tablename__ = "places"
+
+    id: Mapped[str] = mapped_column(primary_key=True)
+    person: Mapped[str] = mapped_column(index=True)
+    node: Mapped[str] = mapped_column(index=True)
+    seen: Mapped[float] = mapped_column(default=time.time)
+
+
+class Places:
+    """Counts runs.
+
+    Args:
+        database: shared by all processes.
+        node: this process's name.
+        most: runs that a person may have at a time.
+    """
+
+    def __init__(self, database: Database, node: str, most: int) -> None:
+        self.database, self.node, self.most = database, node, most
+
+    @contextmanager
+    def held(self, person: str) -> Iterator[None]:
+        """Counts a run while it lasts.
+
+        Raises:
+            InputError: where the person has as many as they may.
+        """
+        place = secrets.token_hex(12)
+        # Written before it is counted: of two that come at once at two processes both may be refused, but
+        # never both be let in.
+        with self.database.session.begin() as session:
+            session.add(Place(id=place, person=person, node=self.node))
+        try:
+            with self.database.session() as session:
+                count = session.scalar(
+                    select(func.count())
+                    .select_from(Place)
+                    .where(Place.person == person, Place.seen > time.time() - LOST_AFTER)
+                )
+            if (count or 0) > self.most:
+                raise InputError(
+                    f"You have {self.most} runs waiting or running already, here or at another of the "
+                    "server's processes: wait for one or cancel it, then try again."
+                )
+            yield
+        finally:
+            with suppress(SQLAlchemyError), self.database.session.begin() as session:
+                session.execute(delete(Place).where(Place.id == place))
+
+    def refresh(self) -> None:
+        """Gives a sign of life."""
+        with self.database.session.begin() as session:
+            session.execute(update(Place).where(Place.node == self.node).values(seen=time.time()))
+
+    def clear(self) -> None:
+        """Forgets what this process's last life left, and what lost ones did."""
+        old = or_(Place.node == self.node, Place.seen < time.time() - LOST_AFTER)
+        with self.database.session.begin() as session:
+            session.execute(delete(Place).where(old))
