@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from tests.motion.bodies import marching
+from webdemo import formats
 from webdemo.formats.importing import ImportChoices, import_motion
 from webdemo.motion import SMPL22, InputError
 from webdemo.motion.kinematics import forward_kinematics
@@ -98,3 +99,12 @@ def test_unknown_arrays_name_what_is_known(shape: tuple[int, ...]) -> None:
     with pytest.raises(InputError) as error:
         import_motion(npy(np.ones(shape, np.float32)), name="a.npy")
     assert "\n" not in str(error.value)
+
+
+def test_a_recording_that_is_too_long_is_refused_before_its_joints_are_fitted(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    bodies = standing(2000)[:, [15, 12, 6, 16, 18, 20, 17, 19, 21, 1, 4, 7, 2, 5, 8]]
+    monkeypatch.setattr(formats, "to_smpl", lambda motion: pytest.fail("fitted"))
+    with pytest.raises(InputError, match=r"kinect\.npy lasts 67 s: cut it to 60 s or less\."):
+        formats.read(npy(bodies), name="kinect.npy", longest=60.0)
