@@ -14,16 +14,18 @@ from typing import Any
 
 import pytest
 from fastapi.testclient import TestClient
+from sqlalchemy import update
 
 from webdemo.motion import InputError
 from webdemo.server.accounts import Users
 from webdemo.server.app import create_app
+from webdemo.server.database import Link
 from webdemo.server.queue import FairQueue, QueueLimits
 from webdemo.server.serve import make_server
 from webdemo.ui.visitor import Visitor
 
 from .lab import stub_module
-from .test_guard import HERE, client_of, find_fn, lab_of, read_all, settings_for
+from .test_guard import HERE, client_of, find_fn, lab_of, read_all, settings_for, sign_in
 
 UPLOAD, CALL = "/gradio_api/upload", "/gradio_api/call"
 FIELDS = ["Two people walk.", 1, 0, 1, 3, 1, 0, "ddim"]
@@ -121,6 +123,47 @@ def test_a_run_of_another_is_not_opened_by_its_id(tmp_path: Path) -> None:
         stolen = client.get(f"{CALL}/generate/{event}")
         assert stolen.status_code == 401
         assert client.get("/config", headers={"cookie": "pasdedeux_session=user ada"}).status_code == 401
+
+
+def page_at(client: TestClient, key: str, headers: dict[str, str]) -> str:
+    """What the page does first at ``/?run=KEY``: all that it is told then."""
+    session = f"page{time.monotonic_ns()}"
+    fn = find_fn(client, headers, "open_address")
+    body = {"data": [key], "fn_index": fn, "session_hash": session}
+    assert client.post("/gradio_api/queue/join", json=body, headers=headers).status_code == 200
+    lines = client.get(f"/gradio_api/queue/data?session_hash={session}", headers=headers).text.splitlines()
+    events = [json.loads(line.removeprefix("data: ")) for line in lines if line.startswith("data: ")]
+    (done,) = [event for event in events if event["msg"] == "process_completed"]
+    assert done["success"]
+    return json.dumps(done["output"]["data"])
+
+
+def test_an_address_opens_no_run_of_another(tmp_path: Path) -> None:
+    """To a stranger a run, one that never was and a link that ended or was revoked are the same."""
+    users = Users(tmp_path / "users")
+    for name in ("ada", "eve"):
+        users.add(name, f"password of {name}")
+    settings = settings_for(tmp_path, users=users.path, host="0.0.0.0", hosts=["127.0.0.1"])
+    with client_of(settings) as client:
+        ada, eve = sign_in(client, "ada"), sign_in(client, "eve")
+        assert "event: complete" in told(client, "generate", ["SECRET", *FIELDS[1:]], ada)
+        history = lab_of(client).history
+        (entry,) = history.entries("user ada")
+        assert "SECRET" in page_at(client, entry.id, ada)
+        key, _ = history.link(entry.id, "user ada")
+        assert "SECRET" in page_at(client, key, eve)
+        history.revoke(entry.id, "user ada")
+        late, _ = history.link(entry.id, "user ada")
+        with history.database.session.begin() as session:
+            session.execute(update(Link).where(Link.token == late).values(until=time.time() - 1))
+        keys = [entry.id, "n" * len(entry.id), key, late, "../" + entry.id, entry.id + "' OR '1'='1"]
+        answers = {page_at(client, each, eve) for each in keys}
+        assert len(answers) == 1
+        (answer,) = answers
+        assert "There is no such run, or its link has ended" in answer and "SECRET" not in answer
+        client.post("/logout", headers=eve)
+        signed_out = client.get(f"/?run={entry.id}", headers={**eve, "accept": "text/html"})
+        assert signed_out.status_code == 303 and "SECRET" not in signed_out.text
 
 
 def test_a_visitors_history_is_not_had_by_naming_them(open_to_all: TestClient) -> None:
