@@ -14,21 +14,9 @@ from webdemo.inference import Cancelled, CancelToken, GenerateRequest, Progress,
 from webdemo.inference.engine import Engine
 from webdemo.inference.interformer import on_smpl22
 from webdemo.motion import SMPL22, Clip, InputError
-from webdemo.motion.kinematics import forward_kinematics
 from webdemo.motion.transforms import heading_matrix
 
-
-def walker(frames: int = 90) -> Clip:
-    """A person off the origin, turned, who walks a little and lifts an arm."""
-    rotations = np.tile(np.eye(3), (frames, 22, 1, 1))
-    rotations[:, 0] = heading_matrix(np.radians(50))
-    lift = np.sin(np.linspace(0, np.pi, frames))
-    c, s = np.cos(lift), np.sin(lift)
-    shoulder = rotations[:, SMPL22.index("right_shoulder")]
-    shoulder[:, 0, 0], shoulder[:, 0, 1], shoulder[:, 1, 0], shoulder[:, 1, 1] = c, s, -s, c
-    root = np.tile([1.0, 0.9562, -0.5], (frames, 1))
-    root[:, 2] += np.linspace(0, 0.4, frames)
-    return Clip(forward_kinematics(rotations, root), 30.0, name="walker")
+from .people import waver
 
 
 @pytest.fixture(scope="module")
@@ -43,7 +31,7 @@ def engine(tmp_path_factory: pytest.TempPathFactory) -> Engine:
     return Engine(folder)
 
 
-REQUEST = ReactRequest(actor=walker(), model="interformer", seed=4)
+REQUEST = ReactRequest(actor=waver(3.0), model="interformer", seed=4)
 
 
 def react(engine: Engine, **changed: object) -> Result:

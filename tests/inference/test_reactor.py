@@ -14,23 +14,11 @@ from models.folder import save_network
 from models.motion_tokens import FEATURES, encode
 from webdemo.inference import Cancelled, CancelToken, GenerateRequest, Progress, ReactRequest, Result
 from webdemo.inference.engine import Engine
-from webdemo.motion import SMPL22, Clip, InputError
-from webdemo.motion.kinematics import forward_kinematics
+from webdemo.motion import SMPL22, InputError
 from webdemo.motion.transforms import heading_matrix
 from webdemo.view.payload import player_payload
 
-
-def waver(frames: int = 75) -> Clip:
-    """A person off the origin, turned, who walks a little and lifts an arm."""
-    rotations = np.tile(np.eye(3), (frames, 22, 1, 1))
-    rotations[:, 0] = heading_matrix(np.radians(50))
-    lift = np.sin(np.linspace(0, np.pi, frames))
-    c, s = np.cos(lift), np.sin(lift)
-    shoulder = rotations[:, SMPL22.index("right_shoulder")]
-    shoulder[:, 0, 0], shoulder[:, 0, 1], shoulder[:, 1, 0], shoulder[:, 1, 1] = c, s, -s, c
-    root = np.tile([1.0, 0.9562, -0.5], (frames, 1))
-    root[:, 2] += np.linspace(0, 0.4, frames)
-    return Clip(forward_kinematics(rotations, root), 30.0, name="waver")
+from .people import waver
 
 
 @pytest.fixture(scope="module")
@@ -61,7 +49,7 @@ def network(folder: Path) -> CompactReGenNet:
     return load_folder(folder / "regennet")[0]
 
 
-REQUEST = ReactRequest(actor=waver(), model="regennet", mode="online", steps=3, seed=4)
+REQUEST = ReactRequest(actor=waver(2.5), model="regennet", mode="online", steps=3, seed=4)
 
 
 def react(engine: Engine, **changed: object) -> Result:
@@ -72,10 +60,10 @@ def react(engine: Engine, **changed: object) -> Result:
 @pytest.mark.parametrize("until", [1, 30, 43])
 def test_online_the_future_changes_no_frame_by_a_bit(engine: Engine, until: int, changed: dict) -> None:
     """From the clip to the picture: what the player is sent of the reaction is the same up to that frame."""
-    positions = waver().positions.copy()
+    positions = waver(2.5).positions.copy()
     positions[until:] = positions[until:, ::1] + np.float32([3.0, 0.4, -2.0])
     one = react(engine, **changed).duets
-    other = react(engine, actor=waver().with_positions(positions), **changed).duets
+    other = react(engine, actor=waver(2.5).with_positions(positions), **changed).duets
     for a, b in zip(one, other, strict=True):
         assert a.b.positions[:until].tobytes() == b.b.positions[:until].tobytes()
         assert a.b.positions[until + 8 :].tobytes() != b.b.positions[until + 8 :].tobytes()
@@ -85,7 +73,7 @@ def test_online_the_future_changes_no_frame_by_a_bit(engine: Engine, until: int,
 
 @pytest.mark.parametrize("mode", ["online", "offline"])
 def test_a_given_start_is_where_the_reaction_begins(engine: Engine, mode: str) -> None:
-    start = waver().positions[0] + np.array([0.3, 0.0, 1.2])
+    start = waver(2.5).positions[0] + np.array([0.3, 0.0, 1.2])
     free = react(engine, mode=mode, cleanup=False).duets[0].b.positions
     held = react(engine, mode=mode, cleanup=False, start=start).duets[0].b.positions
     assert np.abs(free[0] - start).max() > 0.1
@@ -115,19 +103,19 @@ def test_a_start_is_told_to_the_network(network: CompactReGenNet) -> None:
         (np.zeros((21, 3)), "regennet", "22 joints"),
         (np.full((22, 3), np.nan), "regennet", "finite|NaN"),
         (np.zeros((22, 3)), "regennet", "bones"),
-        (waver().positions[0], "intergen", "no start pose"),
+        (waver(2.5).positions[0], "intergen", "no start pose"),
     ],
 )
 def test_bad_starts_are_told(start: np.ndarray, model: str, why: str) -> None:
     with pytest.raises(InputError, match=why):
-        ReactRequest(actor=waver(), model=model, start=start)
+        ReactRequest(actor=waver(2.5), model=model, start=start)
 
 
 def test_offline_sees_the_future(engine: Engine) -> None:
-    positions = waver().positions.copy()
+    positions = waver(2.5).positions.copy()
     positions[60:] += np.float32([1.0, 0, 0])
     one = react(engine, mode="offline").duets[0].b.positions
-    other = react(engine, mode="offline", actor=waver().with_positions(positions)).duets[0].b.positions
+    other = react(engine, mode="offline", actor=waver(2.5).with_positions(positions)).duets[0].b.positions
     assert np.abs(one[:30] - other[:30]).max() > 1e-4
 
 
@@ -135,7 +123,7 @@ def test_the_stream_is_the_sampling_of_the_whole_at_once(network: CompactReGenNe
     """Cached keys, the window and the one row at a time change nothing but the order of the sums."""
     from models.diffusion import make_scheduler, sample_steps
 
-    frames, actor = 90, torch.from_numpy(np.asarray(waver(90).positions)).float()
+    frames, actor = 90, torch.from_numpy(np.asarray(waver(3.0).positions)).float()
     rows = network.num_rows(frames)
     noise = torch.randn(rows, 1, FEATURES, generator=torch.Generator().manual_seed(1))
     condition = torch.randn(1, 32, generator=torch.Generator().manual_seed(2))
@@ -155,7 +143,7 @@ def test_the_stream_is_the_sampling_of_the_whole_at_once(network: CompactReGenNe
 @pytest.mark.parametrize("mode", ["online", "offline"])
 @pytest.mark.parametrize("frames", [30, 31, 32, 33, 34])
 def test_any_number_of_frames_is_answered(engine: Engine, mode: str, frames: int) -> None:
-    assert react(engine, mode=mode, actor=waver(frames), steps=1).duets[0].num_frames == frames
+    assert react(engine, mode=mode, actor=waver(frames / 30), steps=1).duets[0].num_frames == frames
 
 
 def test_frames_come_one_by_one_as_the_result_has_them(engine: Engine) -> None:
@@ -170,7 +158,7 @@ def test_frames_come_one_by_one_as_the_result_has_them(engine: Engine) -> None:
 def test_the_given_person_stays_and_the_reaction_differs_by_seed_and_words(engine: Engine, mode: str) -> None:
     result = react(engine, mode=mode, samples=2)
     for duet in result.duets:
-        assert duet.a.positions.tobytes() == waver().positions.tobytes()
+        assert duet.a.positions.tobytes() == waver(2.5).positions.tobytes()
     one, two = (duet.b.positions for duet in result.duets)
     assert np.abs(one - two).max() > 1e-3
     first = react(engine, mode=mode).duets[0].b.positions
@@ -181,7 +169,7 @@ def test_the_given_person_stays_and_the_reaction_differs_by_seed_and_words(engin
 
 @pytest.mark.parametrize("mode", ["online", "offline"])
 def test_a_moved_actor_moves_the_reaction(engine: Engine, mode: str) -> None:
-    actor = waver()
+    actor = waver(2.5)
     actor = actor.with_positions(actor.positions - np.array([0, actor.positions[0, :, 1].min(), 0]))
     turn, shift = heading_matrix(2.1), np.array([-4.0, 0.0, 1.0])
     moved = actor.with_positions(actor.positions.astype(np.float64) @ turn.T + shift)

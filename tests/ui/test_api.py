@@ -1,4 +1,4 @@
-"""The endpoint as a program on another machine meets it."""
+"""The endpoints as a program on another machine meets it."""
 
 from __future__ import annotations
 
@@ -13,12 +13,13 @@ import pytest
 
 os.environ.setdefault("GRADIO_ANALYTICS_ENABLED", "False")
 
-from gradio_client import Client
+from gradio_client import Client, handle_file
 from gradio_client.exceptions import AppError
 
+from webdemo.formats import read, write
 from webdemo.ui.page import build_page, launch_options
 
-from .stub_engine import StubEngine
+from .stub_engine import StubEngine, walking
 
 pytestmark = pytest.mark.slow
 
@@ -83,3 +84,45 @@ def test_the_endpoint_is_documented(client: Client) -> None:
     ]  # fmt: skip
     assert all(p["parameter_has_default"] for name, p in parameters.items() if name != "prompt")
     assert "two-person .npz" in endpoint["description"]
+
+
+@pytest.fixture
+def walkers(tmp_path: Path) -> Path:
+    """A file of two people, twelve seconds."""
+    return write(walking(12.0), tmp_path / "walkers.npz")[0]
+
+
+@pytest.fixture
+def walker(tmp_path: Path) -> Path:
+    """A file of one person, four seconds."""
+    return write(walking(4.0), tmp_path / "walker.bvh")[0]
+
+
+def test_react_takes_a_file_and_gives_files(client: Client, walkers: Path) -> None:
+    answer, files = client.predict(
+        actor=handle_file(walkers), person="b", start=1, end=3, steps=2, api_name="/react"
+    )
+    assert answer["manifest"]["request"]["actor"]["name"] == "walkers.npz"
+    motion = next(Path(path) for path in files if path.endswith(".npz"))
+    assert motion.name == "reaction-to-walkers-seed0.npz"
+    np.testing.assert_array_equal(read(motion).a.positions, walking(12.0).b.positions[30:90])
+
+
+def test_errors_of_react_are_sentences(client: Client, walkers: Path, walker: Path) -> None:
+    for fields, sentence in (
+        ({"actor": handle_file(walkers)}, "walkers.npz holds two people: choose person a or b."),
+        ({"actor": handle_file(walkers), "person": "a"},
+         "The actor's motion lasts 12.0 s: trim it to 10 s or less by its start and end."),
+        ({"actor": handle_file(walker), "role": "z"}, "Role 'z' is not known: choose one of a, b."),
+    ):  # fmt: skip
+        with pytest.raises(AppError) as caught:
+            client.predict(api_name="/react", **fields)
+        assert str(caught.value) == sentence
+
+
+def test_of_react_only_the_actor_is_needed(client: Client, walker: Path) -> None:
+    answer, _ = client.predict(handle_file(walker), api_name="/react")
+    assert answer["manifest"]["request"]["prompt"] == ""
+    endpoint = client.view_api(return_format="dict", print_info=False)["named_endpoints"]["/react"]
+    needed = [p["parameter_name"] for p in endpoint["parameters"] if not p["parameter_has_default"]]
+    assert needed == ["actor"]

@@ -19,37 +19,25 @@ from webdemo.inference.predict_request import (
     PredictRequest,
 )
 from webdemo.ui.api import PredictEndpoint
-from webdemo.ui.context import PageContext
-from webdemo.ui.exports import Record, Shelf, write_files
+from webdemo.ui.exports import Record, write_files
 from webdemo.ui.predict_tab import PredictTab, installed_methods
 from webdemo.ui.prediction_view import curves_figure, prediction_payload, still_error
-from webdemo.ui.runs import Loader, Runs
 from webdemo.view.payload import unpack_positions
 
-from .stub_engine import StubEngine, drift, walking
+from .stub_engine import drift, walking
+from .tabs import built, changes
 
 LOADED = ("source", "line", "player", "marker")
 
 
 @pytest.fixture
 def tab(tmp_path: Path) -> PredictTab:
-    engine = StubEngine()
-    page = PageContext(
-        engine=engine, runs=Runs(engine), loader=Loader(engine), shelf=Shelf(tmp_path / "files")
-    )
-    made = PredictTab(page)
-    with gr.Blocks() as demo:
-        made.build(demo)
-    return made
+    return built(PredictTab, tmp_path / "files")
 
 
 @pytest.fixture
 def pair(tmp_path: Path) -> Path:
     return write(walking(4.0), tmp_path / "walkers.npz")[0]
-
-
-def changes(names: Any, updates: tuple[Any, ...]) -> dict[str, Any]:
-    return {name: update for name, update in zip(names, updates, strict=True) if update != gr.skip()}
 
 
 def loaded(tab: PredictTab, path: Path) -> dict[str, Any]:

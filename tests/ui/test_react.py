@@ -5,7 +5,6 @@ from __future__ import annotations
 import os
 import time
 import zipfile
-from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
@@ -16,22 +15,19 @@ os.environ.setdefault("GRADIO_ANALYTICS_ENABLED", "False")
 
 import gradio as gr
 
-from webdemo.formats import read, write
+from webdemo.formats import write
 from webdemo.inference.live import LiveRequest
 from webdemo.inference.requests import ReactRequest
 from webdemo.motion import InputError
 from webdemo.motion.layouts import LAYOUTS
 from webdemo.ui.actors import METHODS
-from webdemo.ui.context import PageContext
 from webdemo.ui.examples import example_clips
-from webdemo.ui.exports import Shelf
 from webdemo.ui.live import BATCH, REPEATED
-from webdemo.ui.page import build_page, launch_options
 from webdemo.ui.react_tab import ReactTab
-from webdemo.ui.runs import Loader, Runs
 from webdemo.view.payload import unpack_positions
 
-from .stub_engine import StubEngine, walking
+from .stub_engine import walking
+from .tabs import built, changes
 
 BOTH = [("Person A", "a"), ("Person B", "b")]
 LOADED = ("source", "line", "player", "trim", "person", "start", "end", "found")
@@ -41,14 +37,7 @@ FIELDS = {"person": "a", "start": 0.0, "end": 10.0, "role": "a", "prompt": "they
 
 @pytest.fixture
 def tab(tmp_path: Path) -> ReactTab:
-    engine = StubEngine()
-    page = PageContext(
-        engine=engine, runs=Runs(engine), loader=Loader(engine), shelf=Shelf(tmp_path / "files")
-    )
-    made = ReactTab(page)
-    with gr.Blocks() as demo:
-        made.build(demo)
-    return made
+    return built(ReactTab, tmp_path / "files")
 
 
 @pytest.fixture
@@ -61,10 +50,6 @@ def pair(tmp_path: Path) -> Path:
 def bvh(tmp_path: Path) -> Path:
     """A file of one person, four seconds."""
     return write(walking(4.0), tmp_path / "walker.bvh")[0]
-
-
-def changes(names: Any, updates: tuple[Any, ...]) -> dict[str, Any]:
-    return {name: update for name, update in zip(names, updates, strict=True) if update != gr.skip()}
 
 
 def upload(tab: ReactTab, path: Path) -> list[dict[str, Any]]:
@@ -232,59 +217,6 @@ def test_examples_are_the_files_of_a_folder(tab: ReactTab, tmp_path: Path) -> No
     click = next(fn for fn in demo.fns.values() if (page.chips[0]._id, "click") in fn.targets)
     last = changes(LOADED, list(click.fn())[-1])
     assert last["source"].name == "Reach out"
-
-
-# ---- the endpoint --------------------------------------------------------------------------------
-
-
-@pytest.fixture(scope="module")
-def client(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Any]:
-    from gradio_client import Client
-
-    page = build_page(StubEngine(), files=tmp_path_factory.mktemp("files"))
-    _, url, _ = page.launch(prevent_thread_lock=True, quiet=True, server_name="127.0.0.1", **launch_options())
-    yield Client(url, verbose=False, download_files=str(tmp_path_factory.mktemp("client")))
-    page.close()
-
-
-@pytest.mark.slow
-def test_the_endpoint_takes_a_file_and_gives_files(client: Any, pair: Path) -> None:
-    from gradio_client import handle_file
-
-    answer, files = client.predict(
-        actor=handle_file(pair), person="b", start=1, end=3, steps=2, api_name="/react"
-    )
-    assert answer["manifest"]["request"]["actor"]["name"] == "walkers.npz"
-    motion = next(Path(path) for path in files if path.endswith(".npz"))
-    assert motion.name == "reaction-to-walkers-seed0.npz"
-    np.testing.assert_array_equal(read(motion).a.positions, walking(12.0).b.positions[30:90])
-
-
-@pytest.mark.slow
-def test_the_endpoints_errors_are_sentences(client: Any, pair: Path, bvh: Path) -> None:
-    from gradio_client import handle_file
-    from gradio_client.exceptions import AppError
-
-    for fields, sentence in (
-        ({"actor": handle_file(pair)}, "walkers.npz holds two people: choose person a or b."),
-        ({"actor": handle_file(pair), "person": "a"},
-         "The actor's motion lasts 12.0 s: trim it to 10 s or less by its start and end."),
-        ({"actor": handle_file(bvh), "role": "z"}, "Role 'z' is not known: choose one of a, b."),
-    ):  # fmt: skip
-        with pytest.raises(AppError) as caught:
-            client.predict(api_name="/react", **fields)
-        assert str(caught.value) == sentence
-
-
-@pytest.mark.slow
-def test_only_the_actor_is_needed(client: Any, bvh: Path) -> None:
-    from gradio_client import handle_file
-
-    answer, _ = client.predict(handle_file(bvh), api_name="/react")
-    assert answer["manifest"]["request"]["prompt"] == ""
-    endpoint = client.view_api(return_format="dict", print_info=False)["named_endpoints"]["/react"]
-    needed = [p["parameter_name"] for p in endpoint["parameters"] if not p["parameter_has_default"]]
-    assert needed == ["actor"]
 
 
 @pytest.mark.parametrize(
