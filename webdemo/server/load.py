@@ -23,6 +23,7 @@ from typing import Any
 
 import httpx
 
+from webdemo.inference.requests import GenerateRequest
 from webdemo.motion import InputError
 
 from .estimates import units
@@ -38,7 +39,11 @@ PROMPTS = (
     "Two people dance together.",
     "One person punches and the other steps back.",
 )
-_CALL = "gradio_api/call/generate"
+CLIP = ROOT / "static" / "examples" / "shake-hands.npz"
+"""What reactions and predictions are asked for with."""
+REST_SECONDS = 10.0
+"""Before memory is read: the server returns what runs have left every few seconds."""
+_API = "gradio_api"
 
 
 @dataclass
@@ -49,6 +54,7 @@ class Tally:
         waits: seconds a unit of work that each person waited for each run.
         latencies: seconds from asking to the result.
         page: seconds that the page took to answer, each time it was asked.
+        memory: megabytes that the server had then.
         errors: what was told instead of a result.
     """
 
@@ -58,6 +64,7 @@ class Tally:
     errors: list[str] = field(default_factory=list)
     latencies: list[float] = field(default_factory=list)
     page: list[float] = field(default_factory=list)
+    memory: list[float] = field(default_factory=list)
     waits: dict[int, list[float]] = field(default_factory=dict)
     work: float = 0.0
 
@@ -65,6 +72,7 @@ class Tally:
         """The tally as plain numbers."""
         means = {person: statistics.mean(waits) for person, waits in self.waits.items() if waits}
         share = statistics.mean(means.values()) if means else float("nan")
+        quarter = max(len(self.memory) // 4, 1)
         return {
             "runs_done": self.done,
             "runs_lost": self.lost,
@@ -77,6 +85,9 @@ class Tally:
             "people_served": len(means),
             "page_median_seconds": statistics.median(self.page) if self.page else None,
             "page_worst_seconds": max(self.page, default=None),
+            "memory_first_quarter_mb": statistics.median(self.memory[:quarter] or [0]),
+            "memory_last_quarter_mb": statistics.median(self.memory[-quarter:] or [0]),
+            "memory_most_mb": max(self.memory, default=0.0),
         }
 
 
@@ -131,6 +142,13 @@ async def _load(
     limits = httpx.Limits(max_connections=None)
     async with httpx.AsyncClient(base_url=url, timeout=httpx.Timeout(60, read=None), limits=limits) as client:
         await _ready(client, server)
+        # Whatever is imported or made by the first run of a kind is there before memory is looked at.
+        warm_up = Tally()
+        await asyncio.gather(*(
+            _person(client, warm_up, i, random.Random(f"warm-up {seed} {i}"), steps, 0.0)
+            for i in range(max(people, len(KINDS)))
+        ))  # fmt: skip
+        await asyncio.sleep(REST_SECONDS)
         memory = await _memory(client)
         began = time.monotonic()
         until = began + 60 * minutes
@@ -140,14 +158,15 @@ async def _load(
         ))  # fmt: skip
         took = time.monotonic() - began
         probe.cancel()
+        await asyncio.sleep(REST_SECONDS)
         after = await _memory(client)
     return {
         "people": people,
         "seconds": took,
         **tally.figures(),
         "units_a_second": tally.work / took,
-        "memory_before_mb": memory,
-        "memory_after_mb": after,
+        "memory_at_rest_before_mb": memory,
+        "memory_at_rest_after_mb": after,
     }
 
 
@@ -178,48 +197,96 @@ async def _probe(client: httpx.AsyncClient, tally: Tally) -> None:
         began = time.monotonic()
         await client.get("", headers={"accept": "text/html"})
         tally.page.append(time.monotonic() - began)
+        tally.memory.append(await _memory(client))
         await asyncio.sleep(PROBE_EVERY)
+
+
+@dataclass(frozen=True)
+class Job:
+    """What somebody asks for.
+
+    Attributes:
+        endpoint: where.
+        data: its arguments; None stands for an uploaded :data:`CLIP`.
+        asked: fields of the request that the result's manifest must hold.
+        work: in units.
+    """
+
+    endpoint: str
+    data: tuple[Any, ...]
+    asked: dict[str, Any]
+    work: float
+
+
+def _generation(dice: random.Random, steps: int) -> Job:
+    r = GenerateRequest(
+        prompt=dice.choice(PROMPTS), seconds=dice.choice((2.0, 4.0, 5.0)), seed=dice.randrange(2**32),
+        samples=dice.choice((1, 1, 1, 2)), steps=dice.choice((max(steps // 2, 1), steps)),
+    )  # fmt: skip
+    data = (r.prompt, r.seconds, r.seed, r.samples, r.guidance, r.steps, r.damping, r.sampler)
+    return Job("generate", data, json.loads(json.dumps(r.to_dict())), units(r))
+
+
+def _reaction(dice: random.Random, steps: int) -> Job:
+    seed, seconds = dice.randrange(2**32), 2.0
+    data = (None, "", "a", 0, seconds, "a", seed, 1, 3.0, steps, 0.7, "ddim", "intergen", "offline", False)
+    return Job("react", data, {"kind": "react", "seed": seed, "steps": steps}, seconds * steps + 10)
+
+
+def _prediction(dice: random.Random, steps: int) -> Job:
+    seconds = dice.choice((0.5, 1.0, 1.5))
+    data = (None, 1.5, seconds, "motion-mlp")
+    return Job("predict", data, {"kind": "predict", "seconds": seconds}, seconds + 10)
+
+
+KINDS = (_generation, _generation, _generation, _generation, _reaction, _prediction)
+"""How often each kind of job is asked for; a person's first is that of their number."""
 
 
 async def _person(
     client: httpx.AsyncClient, tally: Tally, person: int, dice: random.Random, steps: int, until: float
 ) -> None:
-    """One person, who asks again whenever they have their result."""
-    from webdemo.inference.requests import GenerateRequest
-
+    """One person, who asks again whenever they have their result; once at least."""
     cookies = {"cookie": f"{VISITOR_COOKIE}={new_token()}"}
+    job = KINDS[-1 - person % len(KINDS)](dice, steps)
     await asyncio.sleep(dice.random())
-    while time.monotonic() < until:
-        request = GenerateRequest(
-            prompt=dice.choice(PROMPTS), seconds=dice.choice((2.0, 4.0, 5.0)), seed=dice.randrange(2**32),
-            samples=dice.choice((1, 1, 1, 2)), steps=dice.choice((max(steps // 2, 1), steps)),
-        )  # fmt: skip
+    while True:
         began = time.monotonic()
-        kind, answer = await _ask(client, cookies, request)
+        kind, answer = await _ask(client, cookies, job)
         took = time.monotonic() - began
         if kind == "complete":
             tally.done += 1
-            tally.swapped += answer[0]["manifest"]["request"] != json.loads(json.dumps(request.to_dict()))
+            request = answer[0]["manifest"]["request"]
+            tally.swapped += any(request.get(name) != value for name, value in job.asked.items())
             tally.latencies.append(took)
-            tally.waits.setdefault(person, []).append(took / units(request))
-            tally.work += units(request)
+            tally.waits.setdefault(person, []).append(took / job.work)
+            tally.work += job.work
         elif kind == "error":
-            tally.errors.append(str(answer)[:200])
+            tally.errors.append(f"{job.endpoint}: {answer}"[:200])
             await asyncio.sleep(1)
         else:
             tally.lost += 1
+        if time.monotonic() >= until:
+            return
+        job = dice.choice(KINDS)(dice, steps)
 
 
-async def _ask(client: httpx.AsyncClient, cookies: dict[str, str], request: Any) -> tuple[str, Any]:
+async def _ask(client: httpx.AsyncClient, cookies: dict[str, str], job: Job) -> tuple[str, Any]:
     """("complete", result), ("error", sentence), or ("lost", None) where the answer broke off."""
-    r = request
-    data = [r.prompt, r.seconds, r.seed, r.samples, r.guidance, r.steps, r.damping, r.sampler]
+    call = f"{_API}/call/{job.endpoint}"
     try:
-        joined = await client.post(_CALL, json={"data": data}, headers=cookies)
+        data = list(job.data)
+        if None in data:
+            sent = await client.post(f"{_API}/upload", files={"files": (CLIP.name, CLIP.read_bytes())},
+                                     headers=cookies)  # fmt: skip
+            if sent.status_code != 200:
+                return "error", f"{sent.status_code} {sent.text}"
+            data[data.index(None)] = {"path": sent.json()[0], "meta": {"_type": "gradio.FileData"}}
+        joined = await client.post(call, json={"data": data}, headers=cookies)
         if joined.status_code != 200:
             return "error", f"{joined.status_code} {joined.text}"
         kind = ""
-        async with client.stream("GET", f"{_CALL}/{joined.json()['event_id']}", headers=cookies) as stream:
+        async with client.stream("GET", f"{call}/{joined.json()['event_id']}", headers=cookies) as stream:
             async for line in stream.aiter_lines():
                 if line.startswith("event: "):
                     kind = line.removeprefix("event: ")
@@ -241,7 +308,7 @@ def measure_batching(
     from webdemo.inference.batch import run_batch
     from webdemo.inference.cancel import CancelToken
     from webdemo.inference.engine import Engine
-    from webdemo.inference.requests import GenerateRequest, Result
+    from webdemo.inference.requests import Result
 
     engine = Engine()
     engine.warm_up()

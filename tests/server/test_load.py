@@ -1,0 +1,49 @@
+"""The load test itself, on a server whose engine needs no networks."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from webdemo.motion import InputError
+from webdemo.server import load
+from webdemo.server.load import Tally, run_load
+
+from .lab import ROOT
+
+pytestmark = pytest.mark.slow
+
+STUB_APP = f"""
+import os, runpy, sys
+sys.argv = ["lab.py", os.environ["PASDEDEUX_PORT"], os.environ["PASDEDEUX_DATA"]]
+runpy.run_path({str(ROOT / "tests" / "server" / "lab.py")!r}, run_name="__main__")
+"""
+
+
+def test_every_kind_of_job_comes_back(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    (tmp_path / "app.py").write_text(STUB_APP)
+    monkeypatch.setattr(load, "ROOT", tmp_path)
+    monkeypatch.setattr(load, "REST_SECONDS", 0.1)
+    monkeypatch.setattr(load, "PROBE_EVERY", 0.1)
+    people = len(load.KINDS)
+    figures = run_load(people=people, minutes=0.001, steps=2)
+    assert figures["runs_done"] >= people == figures["people_served"], figures
+    assert figures["runs_lost"] == figures["runs_swapped"] == figures["runs_refused_or_failed"] == 0, figures
+    assert figures["memory_at_rest_before_mb"] > 0 and figures["memory_most_mb"] > 0
+    assert figures["page_worst_seconds"] > 0
+
+
+def test_a_server_that_ends_is_one_sentence(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    (tmp_path / "app.py").write_text("raise SystemExit(1)")
+    monkeypatch.setattr(load, "ROOT", tmp_path)
+    with pytest.raises(InputError, match="ended before it was ready"):
+        run_load(people=1, minutes=0.01)
+
+
+def test_shares_are_compared_by_work() -> None:
+    tally = Tally(done=3, waits={0: [1.0, 3.0], 1: [6.0]}, memory=[5.0, 9.0, 7.0, 6.0])
+    figures = tally.figures()
+    assert figures["longest_wait_over_fair_share"] == 1.5
+    assert (figures["memory_first_quarter_mb"], figures["memory_last_quarter_mb"]) == (5.0, 6.0)
+    assert figures["memory_most_mb"] == 9.0
