@@ -31,7 +31,10 @@ Touch = tuple[tuple[str, str], ...]
 
 @dataclass(frozen=True)
 class CompactConfig:
-    """Sizes of a :class:`CompactInterGen`, and the touches that it reads from a sentence."""
+    """Sizes of a :class:`CompactInterGen`, and the touches that it reads from a sentence.
+
+    role_text: see :class:`models.intergen.InterGenConfig`.
+    """
 
     latent_dim: int = 320
     ff_size: int = 1024
@@ -40,6 +43,7 @@ class CompactConfig:
     cond_dim: int = 256
     text_layers: int = 2
     dropout: float = 0.0
+    role_text: bool = False
     layout: TokenLayout = field(default_factory=TokenLayout)
     touches: tuple[Touch, ...] = ()
 
@@ -96,6 +100,7 @@ class CompactInterGen(nn.Module):
                 cond_dim=config.cond_dim,
                 dropout=config.dropout,
                 role_embedding=True,
+                role_text=config.role_text,
             )
         )
         self.conditioner = TextConditioner(

@@ -39,6 +39,9 @@ class InterGenConfig:
     role_embedding: an extension, off in released weights: a learned vector for each person is added to
         their tokens, so that the network can tell actor from reactor. Without it the network is symmetric:
         swapping the people swaps the outputs (eq. 5).
+    role_text: an extension, off in released weights: the text reaches the two people's AdaLN layers with a
+        part of opposite signs, so that "one waves with the left hand, the other with the right" need not be
+        told apart by the tokens alone.
     """
 
     input_features: int = 262
@@ -49,6 +52,7 @@ class InterGenConfig:
     cond_dim: int = 768
     dropout: float = 0.0
     role_embedding: bool = False
+    role_text: bool = False
 
 
 class AdaLayerNorm(nn.Module):
@@ -61,8 +65,8 @@ class AdaLayerNorm(nn.Module):
         nn.init.zeros_(self.emb_layers[1].bias)
 
     def forward(self, h: Tensor, emb: Tensor) -> Tensor:
-        """h (2, B, T, d), emb (B, d) → (2, B, T, d)."""
-        scale, shift = self.emb_layers(emb)[:, None].chunk(2, dim=-1)
+        """h (2, B, T, d), emb (B, d) or, one for each person, (2, B, d) → (2, B, T, d)."""
+        scale, shift = self.emb_layers(emb)[..., None, :].chunk(2, dim=-1)
         return F.layer_norm(h, h.shape[-1:], eps=1e-6) * (1 + scale) + shift
 
 
@@ -174,6 +178,17 @@ class InterGenDenoiser(nn.Module):
         self.out = OutputLayer(config)
         if config.role_embedding:
             self.role_embedding = nn.Parameter(torch.randn(2, d) / math.sqrt(d))
+        if config.role_text:
+            self.role_text = nn.Linear(config.cond_dim, d, bias=False)
+            nn.init.zeros_(self.role_text.weight)
+
+    def embed(self, t: Tensor, cond: Tensor) -> Tensor:
+        """What AdaLN sees of timesteps (B,) and text (B, C): (B, d), or (2, B, d) with ``role_text``."""
+        emb = self.embed_timestep(t) + self.text_embed(cond)
+        if self.config.role_text:
+            own = self.role_text(cond)
+            emb = torch.stack([emb + own, emb - own])
+        return emb
 
     def forward(self, x: Tensor, t: Tensor, cond: Tensor, mask: Tensor | None = None) -> Tensor:
         """The predicted clean motion.
@@ -189,7 +204,7 @@ class InterGenDenoiser(nn.Module):
         """
         b, length, _ = x.shape
         people = x.view(b, length, 2, -1).permute(2, 0, 1, 3)  # (2, B, T, F)
-        emb = self.embed_timestep(t) + self.text_embed(cond)
+        emb = self.embed(t, cond)
         h = self.motion_embed(people) + sinusoids(length, self.config.latent_dim, device=x.device)
         if self.config.role_embedding:
             h = h + self.role_embedding[:, None, None]
@@ -235,6 +250,7 @@ def from_released(weights: Mapping[str, Tensor], *, num_heads: int) -> InterGenD
         num_heads=num_heads,
         cond_dim=shape_of(tensors, "text_embed.weight", network=NETWORK)[1],
         role_embedding="role_embedding" in tensors,
+        role_text="role_text.weight" in tensors,
     )
     network = InterGenDenoiser(config)
     load_strictly(network, tensors, network=NETWORK)

@@ -51,7 +51,7 @@ class ConcatDenoiser(InterGenDenoiser):
     def forward(self, x: Tensor, t: Tensor, cond: Tensor, mask: Tensor | None = None) -> Tensor:
         b, length, _ = x.shape
         people = x.view(b, length, 2, -1).permute(2, 0, 1, 3)
-        emb = self.embed_timestep(t) + self.text_embed(cond)
+        emb = self.embed(t, cond)
         h = self.motion_embed(torch.cat([people, people.flip(0)], dim=-1))
         h = h + sinusoids(length, self.config.latent_dim, device=x.device)
         h = h + self.role_embedding[:, None, None]

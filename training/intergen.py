@@ -197,6 +197,7 @@ def new_model(settings: Settings, data: Data) -> CompactInterGen:
             num_heads=settings.num_heads,
             cond_dim=settings.cond_dim,
             dropout=settings.dropout,
+            role_text=True,
             layout=data.scenes.layout,
         )
     )
@@ -234,7 +235,10 @@ class Trainer(Loop):
             if init.is_dir():
                 shipped = WeightsFolder(init).model()
                 shipped.touch_reader = None  # `training.touch` fits a new one to what will be trained here
-                self.model.load_state_dict(shipped.state_dict())
+                weights = shipped.state_dict()
+                if not shipped.config.role_text:  # of before there was one: it begins at nothing
+                    weights |= {"denoiser.role_text.weight": self.model.denoiser.role_text.weight}
+                self.model.load_state_dict(weights)
             else:
                 checkpoint.restore_part(init, "ema", self.model)
         self.ema = build(settings, self.data).to(device).requires_grad_(False)

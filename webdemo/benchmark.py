@@ -145,14 +145,14 @@ class PlainSampler:
         from models.layers import sinusoids
 
         net = self.generator.model.denoiser
-        emb = net.embed_timestep(t) + net.text_embed(condition)
+        embs = net.embed(t, condition).expand(2, 1, -1)[:, None]
         states = [
             net.motion_embed(person) + sinusoids(x.shape[1], net.config.latent_dim) + net.role_embedding[i]
             for i, person in enumerate(x.chunk(2, dim=-1))
         ]
         for block in net.blocks:
             before, after = states, []
-            for i, h in enumerate(before):
+            for i, (h, emb) in enumerate(zip(before, embs, strict=True)):
                 query = block.sa_block.norm(h[None], emb)[0]
                 h = h + _attention(block.sa_block.attention, query, query)
                 query = block.ca_block.norm(h[None], emb)[0]

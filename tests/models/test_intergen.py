@@ -113,6 +113,24 @@ def test_roles_break_the_symmetry_and_survive_saving():
     assert torch.equal(again(x, t, cond), out)
 
 
+def test_text_of_a_role_tells_the_people_apart_by_words_alone():
+    network = random_network(InterGenConfig(**{**vars(SMALL), "role_text": True}))
+    x, t, cond = random_inputs()
+    out = network(x, t, cond)
+    assert (network(swapped(x), t, cond) - swapped(out)).abs().max() > 0.1
+    without = torch.zeros_like(cond)
+    assert_equal(network(swapped(x), t, without), swapped(network(x, t, without)), 1e-5)
+    again = from_released(network.state_dict(), num_heads=2)
+    assert again.config.role_text and torch.equal(again(x, t, cond), out)
+
+
+def test_text_of_a_role_changes_nothing_before_it_is_trained():
+    network, (x, t, cond) = random_network(), random_inputs()
+    with_it = InterGenDenoiser(InterGenConfig(**{**vars(SMALL), "role_text": True})).eval()
+    assert with_it.load_state_dict(network.state_dict(), strict=False).missing_keys == ["role_text.weight"]
+    assert_equal(with_it(x, t, cond), network(x, t, cond), 1e-5)
+
+
 def test_guidance_of_one_is_the_conditional_prediction_and_zero_the_unconditional():
     network, (x, t, cond) = random_network(), random_inputs()
     assert torch.equal(network.guided(x, t, cond, scale=1), network(x, t, cond))
