@@ -33,9 +33,15 @@ export function arrive(sample, message) {
       for (let i = 0; i < width; i++) values[from + k * width + i] = values[from + i] + (k / (gap + 1)) * (values[to + i] - values[from + i]);
     }
   }
-  live.known = Math.max(live.known, message.start + frames);
+  const before = live.known;
+  live.known = Math.max(before, message.start + frames);
   live.text = message.text;
   sample.motion = live.second;
+  if (first) sample.curves = [{ key: "pelvis_distance", label: "Apart", unit: "m", values: [] }];
+  for (let frame = before; frame < live.known; frame++) {
+    const [a, b] = [width * frame, at(frame)]; // the roots, over the floor
+    sample.curves[0].values.push(Math.hypot(values[a] - values[b], values[a + 2] - values[b + 2]));
+  }
   return first;
 }
 

@@ -60,9 +60,10 @@ export class Strip {
     this.paint();
   }
 
-  /** Draws the curves; they share one scale from zero. */
+  /** Draws the curves, as far as they are known; they share one scale from zero. */
   paint() {
     const { sample, canvas } = this;
+    this.painted = sample?.curves[0]?.values.length;
     if (!sample || this.box.hidden || !canvas.clientWidth) return;
     const ratio = window.devicePixelRatio || 1;
     const [width, height] = [canvas.clientWidth, canvas.clientHeight];
@@ -82,7 +83,7 @@ export class Strip {
       context.lineJoin = "round";
       context.stroke(path);
       if (i === 0) {
-        path.lineTo(width, height);
+        path.lineTo(x(curve.values.length - 1), height);
         path.lineTo(0, height);
         context.globalAlpha = 0.08;
         context.fillStyle = this.colors[0];
@@ -94,10 +95,12 @@ export class Strip {
 
   show(frame) {
     if (!this.sample) return;
+    const { curves } = this.sample;
     const at = Math.min(Math.round(frame), this.sample.frames - 1);
+    if (this.painted !== curves[0]?.values.length) this.paint(); // a live motion grows
     this.playhead.style.left = `${(100 * frame) / Math.max(this.sample.frames - 1, 1)}%`;
-    this.sample.curves.forEach((curve, i) => {
-      const text = `${curve.values[at].toFixed(2)} ${curve.unit}`;
+    curves.forEach((curve, i) => {
+      const text = `${curve.values[Math.min(at, curve.values.length - 1)].toFixed(2)} ${curve.unit}`;
       if (this.readouts[i].textContent !== text) this.readouts[i].textContent = text;
     });
   }
