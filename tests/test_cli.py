@@ -215,3 +215,11 @@ def test_app_takes_the_options_of_serve(
     assert "invalid int value: 'many'" in capsys.readouterr().err
     with pytest.raises(SystemExit, match="0"):
         app.main(["--help"])
+
+
+def test_a_reader_who_has_gone_is_no_traceback(run: Run, monkeypatch: pytest.MonkeyPatch) -> None:
+    def told(options: Any) -> dict[str, Any]:
+        raise BrokenPipeError
+
+    monkeypatch.setattr(cli, "info", told)
+    assert run("info") == (141, "", "")

@@ -1,13 +1,16 @@
 """The same jobs from a shell: ``python -m webdemo generate|react|predict|render|info|benchmark|serve|user``.
 
 The last line on stdout is one JSON object. What goes wrong is one line on stderr that says what is wrong and
-what to do, with exit code 2; a cancelled run (Ctrl+C) ends with 130. No file is left half-written.
+what to do, with exit code 2; a cancelled run (Ctrl+C) ends with 130, one whose reader has gone with 141. No
+file is left half-written.
 """
 
 from __future__ import annotations
 
 import argparse
+import contextlib
 import json
+import os
 import sys
 import time
 from collections.abc import Callable, Sequence
@@ -342,6 +345,11 @@ def main(argv: Sequence[str] | None = None) -> int:
     except InputError as error:
         print(" ".join(str(error).split()), file=sys.stderr)
         return 2
+    except BrokenPipeError:  # whoever read what is printed has gone, as `head` does
+        with contextlib.suppress(OSError):
+            said = sys.stdout.fileno()
+            os.dup2(os.open(os.devnull, os.O_WRONLY), said)
+        return 141
     except KeyboardInterrupt:
         print("Stopped; nothing was written.", file=sys.stderr)
         return 130

@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 
 from .clip import Duet
 from .kinematics import fit_rotations
-from .skeleton import FEET, SMPL22
+from .skeleton import FEET
 from .transforms import canonicalize, heading, put_on_floor, turn
 
 Array = NDArray[np.floating]
@@ -168,11 +168,6 @@ def decode_positions(features: Array, *, restore_last: bool = True) -> Array:
         return positions
     last = positions[-1] + features[-1, VELOCITIES].reshape(22, 3)
     return np.concatenate([positions, last[None]])
-
-
-def decode_duet(features: Array, *, fps: float = 30.0) -> Duet:
-    """A duet from (T, 524) features, T + 1 frames."""
-    return Duet.from_positions(decode_positions(features), fps=fps, skeleton=SMPL22)
 
 
 def to_6d(rotations: Array) -> Array:
