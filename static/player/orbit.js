@@ -97,6 +97,13 @@ export class Orbit {
     this.target = target.slice();
   }
 
+  /** Takes what is to be followed in view at once, where the people too are elsewhere at once. */
+  cut(wanted) {
+    if (!this.following || !wanted) return;
+    this.jump(wanted.target);
+    if (this.framing && !this.glide) this.distance = wanted.distance;
+  }
+
   /** Whether the picture would stay as it is without anyone's doing. */
   settled(wanted) {
     if (this.glide) return false;

@@ -297,9 +297,11 @@ export class Player {
     }
     const seconds = this.lastTick ? Math.min((now - this.lastTick) / 1000, 0.5) : 0;
     this.lastTick = now;
+    const before = this.clock.frame;
     this.clock.advance(now);
     const pose = this.data && this.everybody(this.clock.shown);
     const wanted = pose && { target: midpoint(pose, this.skeleton, this.aspect), distance: this.viewOf(this.framed, pose).distance };
+    if (this.clock.frame < before) this.orbit.cut(wanted); // the loop begins anew
     this.orbit.step(now, seconds, wanted);
     const moving = this.clock.playing || !this.orbit.settled(wanted);
     if (moving || this.dirty) {

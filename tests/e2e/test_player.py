@@ -144,6 +144,24 @@ def test_without_loop_it_stops_on_the_last_frame(player):
     until(page, "!window.__pasdedeux.playing && window.__pasdedeux.frame === 149")
 
 
+def test_when_the_loop_begins_anew_both_are_in_view_at_once(player):
+    page = player()
+    pause(page)
+    page.locator(".pdd-range").fill("140")  # they stand close, and the camera with them
+    until(page, "window.__pasdedeux.frame === 140 && window.__pasdedeux.loops === 0")
+    page.evaluate("""() => {
+        const player = window.__pasdedeux.player, paint = player.paint;
+        player.paint = function (pose) {
+            paint.call(this, pose);
+            const wanted = this.viewOf(this.framed, pose).distance;
+            if (this.clock.frame < 100) window.off ??= wanted - this.orbit.distance;
+        };
+    }""")
+    page.locator(".pdd-play").click()
+    until(page, "window.off !== undefined")
+    assert abs(page.evaluate("window.off")) < 0.01
+
+
 def test_everything_has_a_name_and_can_be_reached(player):
     page = player()
     nameless = page.evaluate("""() => [...document.querySelectorAll('.pdd button, .pdd input, .pdd select')]
