@@ -31,8 +31,6 @@ from .combat import blow
 from .gestures import about
 from .meeting import Encounter, chosen_side, come_together, conclude, opposite, side_by_side
 
-SIDEWAYS = (1.0, -0.35, 0.2)
-
 
 def _timing(rng: Rng, meet: Encounter, *, last: int = 10) -> tuple[int, int, int]:
     """Frames at which a hand arrives, lets go and is back."""
