@@ -17,7 +17,6 @@ import signal
 import threading
 import time
 from collections.abc import Iterator
-from dataclasses import dataclass
 from importlib.util import find_spec
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -25,6 +24,8 @@ from typing import TYPE_CHECKING, Any
 from webdemo.inference.cancel import CancelToken
 from webdemo.inference.requests import Progress, Result, SamplingRequest
 from webdemo.motion import InputError
+
+from .ray_messages import Began
 
 if TYPE_CHECKING:  # imported when first needed, so that the page is up before Ray is
     from ray.serve.handle import DeploymentHandle
@@ -45,17 +46,6 @@ STORE_BYTES = 128 * 2**20
 MOST_PARALLEL = 128
 """Requests of one model that a page's process has on their way; each holds two threads."""
 LOOPBACK = "127.0.0.1"
-
-
-@dataclass(frozen=True)
-class Began:
-    """The first thing that a replica says of a request: which process has it."""
-
-    pid: int
-
-
-class ReplicaError(Exception):
-    """A run ended in an error of the program's; says of which kind, and where its log is."""
 
 
 @contextlib.contextmanager

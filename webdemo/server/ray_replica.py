@@ -19,7 +19,7 @@ from webdemo.motion import InputError
 
 from .engine import SharedEngine
 from .logs import set_up_logs
-from .ray_engine import Began, ReplicaError
+from .ray_messages import Began, ReplicaError
 
 log = logging.getLogger(__name__)
 Event = Progress | Result | Exception
