@@ -150,13 +150,31 @@ class _Lines:
     def where(self) -> str:
         return f"{self.label}, line {self.number}"
 
-    def words(self) -> list[str]:
-        """The next line's words; raises InputError at the end."""
+    def words(self, most: int = -1) -> list[str]:
+        """The next line's words, of which the first ``most`` are wanted; raises InputError at the end."""
         found = next(self.lines, None)
         if found is None:
             raise InputError(f"{self.label} is cut short at line {self.number}: export it again.")
         self.number, line = found
-        return line.split()
+        return line.split(None, most)
+
+    def joints(self) -> Array:
+        """(25, 3) float32: the first three numbers of as many lines."""
+        rows: list[tuple[int, list[str]]] = []
+        try:
+            for _ in range(25):
+                words = self.words(3)[:3]
+                if len(words) < 3:
+                    raise InputError(f"{self.where}: a joint needs x, y and z.")
+                rows.append((self.number, words))
+            places = np.array([[float(x), float(y), float(z)] for _, (x, y, z) in rows])
+            if not np.isfinite(places).all():
+                raise ValueError
+            return places.astype(np.float32)
+        except ValueError:  # an InputError is one, too: what is wrong first is told first
+            for number, words in rows:
+                _numbers(words, f"{self.label}, line {number}")
+            raise
 
     def count(self, what: str, largest: int) -> int:
         """A line that holds one whole number."""
@@ -182,15 +200,10 @@ def _read_skeleton(text: str, label: str, fps: float) -> list[Array]:
             identity = (reader.words() or [""])[0]
             if reader.count("joints", 25) != 25:
                 raise InputError(f"{reader.where}: a body of {label} must have 25 joints.")
-            joints = []
-            for _ in range(25):
-                words = reader.words()
-                if len(words) < 3:
-                    raise InputError(f"{reader.where}: a joint needs x, y and z.")
-                joints.append(_numbers(words[:3], reader.where))
+            joints = reader.joints()
             if identity not in bodies and len(bodies) >= _MOST_IDENTITIES:
                 raise InputError(f"{reader.where}: more than {_MOST_IDENTITIES} bodies come and go: cut it.")
-            bodies[identity][frame] = np.array(joints, dtype=np.float32)
+            bodies[identity][frame] = joints
     if not bodies:
         raise InputError(f"{label} holds no body in any of its frames: record it again.")
     longest = sorted(bodies.values(), key=len, reverse=True)[:_MAX_BODIES]
