@@ -88,7 +88,7 @@ def test_the_same_request_gives_the_same_motion(replicas: RayEngine, weights: Pa
 def test_many_at_once_are_not_swapped(replicas: RayEngine, weights: Path) -> None:
     alone = Engine(weights)
     wanted = [replace(WANTED, seed=i, steps=4 + i % 2, samples=1 + i % 3) for i in range(8)]
-    queue = FairQueue(replicas, QueueLimits(workers=replicas.parallel, running=8))
+    queue = FairQueue(replicas, QueueLimits(workers=replicas.parallel, running=8, waiting=8))
     with ThreadPoolExecutor(8) as pool:
         found = list(pool.map(lambda i: list(queue.run(f"session {i}", wanted[i])), range(8)))
     for request, events in zip(wanted, found, strict=True):
