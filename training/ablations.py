@@ -136,7 +136,7 @@ def judge_variant(
     """Shares of checks that pass, physical measures and InterGen's measures of one trained variant."""
     generator = _Generator(model.cpu().eval(), encoder)
     tasks = [task for task, _ in choose(scenes, options.prompts)]
-    sampling = Sampling(steps=options.sampling_steps, damping=0.0)
+    sampling = Sampling(steps=options.sampling_steps, guidance=3.0, damping=0.0)
 
     def drawn(tasks: Sequence[Task], seed: int) -> Iterator[tuple[int, Duet]]:
         return draw(generator, tasks, replace(sampling, seed=seed))
@@ -215,9 +215,9 @@ def _run(options: argparse.Namespace, small: Settings = SMALL) -> None:
                 raise InputError(f"{path} is damaged ({error}): delete it to judge {name} again.") from error
     meta = checkpoint.metadata(options.out / options.variants[0] / "last.safetensors")
     shown = (
-        f"Each variant: {meta['step']} steps of {small.batch}, width {small.latent_dim}, "
-        f"{small.num_layers} layers; {options.prompts} test captions, DDIM-{options.sampling_steps} without "
-        f"damping; means of {options.repeats} repeats with 95 % intervals.\n\n{table(found)}"
+        f"Each variant: {meta['step']} steps of {small.batch}, width {small.latent_dim}, {small.num_layers} "
+        f"layers; {options.prompts} test captions, DDIM-{options.sampling_steps}, guidance 3, no damping; "
+        f"means of {options.repeats} repeats with 95 % intervals.\n\n{table(found)}"
     )
     if options.table:
         with replacing(options.table) as temporary:

@@ -235,10 +235,7 @@ class Trainer(Loop):
             if init.is_dir():
                 shipped = WeightsFolder(init).model()
                 shipped.touch_reader = None  # `training.touch` fits a new one to what will be trained here
-                weights = shipped.state_dict()
-                if not shipped.config.role_text:  # of before there was one: it begins at nothing
-                    weights |= {"denoiser.role_text.weight": self.model.denoiser.role_text.weight}
-                self.model.load_state_dict(weights)
+                self.model.load_state_dict(shipped.state_dict())
             else:
                 checkpoint.restore_part(init, "ema", self.model)
         self.ema = build(settings, self.data).to(device).requires_grad_(False)

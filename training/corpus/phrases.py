@@ -415,7 +415,7 @@ ENTRIES: dict[str, Entry] = {
     "pat-back": Entry(
         "while",
         ("*pat {other} on the back{with_hand}", "*pat {theirs} back{with_hand}", "*give {other} a pat on the back"),
-        ("*stand still", "*look ahead", "*accept it", "*let {them}"),
+        ("*stand still", "*look ahead", "*accept it", "*let it happen"),
         (),
         ("a pat on the back", "patting someone's back", "back pat", "a (friendly|comforting) pat on the back"),
         ("{B} *get a pat on the back from {A}.", "{B} *is patted on the back by {A}{a_with_hand}."),
