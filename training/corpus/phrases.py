@@ -192,7 +192,7 @@ ENTRIES: dict[str, Entry] = {
     "sequence": Entry("while", (), ()),
     "turn-away": Entry(
         "while",
-        ("*turn away( from {other}|)", "*turn {their} back on {other}", "*turn around", "*turn and *walk away"),
+        ("*turn away( from {other}|)", "*turn {their} back on {other}", "*turn around", "*turn and *face away"),
         _WATCH,
         (),
         ("turning away", "turning one's back"),
