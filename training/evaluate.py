@@ -4,7 +4,8 @@ Sentences of the test split, generated and judged by the rules of :mod:`training
 stand those of the recorded motion of the same sentences (what the rules allow at best) and those of recorded
 motion that belongs to other sentences (what they allow to chance). ``--real-only`` needs no weights;
 ``--everyday`` also judges sentences that were written by hand and not by the corpus' grammar. With
-``--extractor`` come InterGen's measures, R-precision to multimodality (:mod:`training.judge.retrieval`).
+``--reactions`` every model that reacts gets the sentences and the recorded person a. With ``--extractor``
+come InterGen's measures, R-precision to multimodality (:mod:`training.judge.retrieval`).
 """
 
 from __future__ import annotations
@@ -19,10 +20,12 @@ from typing import Any
 
 from training.judge import retrieval
 from training.judge.prompts import choose, everyday, real_duet
-from training.judge.report import score, table
+from training.judge.reactions import TOLD, installed, of_the_reactor, react_to_all
+from training.judge.report import reactions_table, score, table
 from training.judge.rules import Task
 from training.prepare import Scenes, load
 from webdemo.formats.files import replacing
+from webdemo.inference import Engine
 from webdemo.inference.engine import WEIGHTS
 from webdemo.motion import Duet, InputError
 
@@ -55,9 +58,24 @@ def evaluate(options: argparse.Namespace) -> dict[str, Any]:
         told = everyday()
         made, _ = _generate(told, options)
         scores["everyday"] = score([made[i] for i in sorted(made)], [told[i] for i in sorted(made)])
+    if options.reactions and not options.real_only:
+        scores["reactions"] = _react(tasks, real, options)
     if options.extractor:
         scores["features"] = _measure(scenes, options)
     return scores | {"about": text + ".", "settings": about}
+
+
+def _react(tasks: Sequence[Task], real: Sequence[Duet], options: argparse.Namespace) -> dict[str, Any]:
+    """Scores of person b, recorded and as each method makes them, for sentences that ask something of b."""
+    judged = [of_the_reactor(task) for task in tasks]
+    kept = [i for i, task in enumerate(judged) if task.checks]
+    tasks, real = [judged[i] for i in kept], [real[i] for i in kept]
+    engine, found = Engine(options.weights.parent), {"Recorded": score(real, tasks)}
+    for method in installed(TOLD, options.weights.parent):
+        print(f"{method}: {len(tasks)} reactions", file=sys.stderr, flush=True)
+        made = list(react_to_all(engine, tasks, real, options.seed, TOLD[method]))
+        found[method] = score(made, tasks)
+    return found
 
 
 def _measure(scenes: Scenes, options: argparse.Namespace) -> dict[str, Any]:
@@ -136,6 +154,9 @@ def main(argv: list[str] | None = None) -> None:
     parser.add_argument(
         "--everyday", action="store_true", help="also judge sentences as people type them, written by hand"
     )
+    parser.add_argument(
+        "--reactions", action="store_true", help="also judge the models that react to the recorded person a"
+    )
     parser.add_argument("--real-only", action="store_true", help="only the recorded motion; needs no weights")
     options = parser.parse_args(argv)
     if options.prompts < 1:
@@ -143,6 +164,8 @@ def main(argv: list[str] | None = None) -> None:
     try:
         scores = evaluate(options)
         shown = table(scores)
+        if "reactions" in scores:
+            shown += "\n" + reactions_table(scores["reactions"])
         if "features" in scores:
             shown += "\n" + retrieval.table(scores["features"])
         with replacing(options.out) as temporary:

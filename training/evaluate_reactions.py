@@ -22,12 +22,12 @@ from scipy.stats import t as student
 
 from training.corpus.pairs import load_pairs
 from training.deep_gru import accuracy, deep_features, fit, frechet_distance, spread
+from training.judge.reactions import METHODS, installed, react
 from training.shell import exit_code
 from webdemo.formats.files import replacing
-from webdemo.inference import Engine, ReactRequest, Result
-from webdemo.inference.engine import WEIGHTS
+from webdemo.inference import Engine
 from webdemo.metrics import summary
-from webdemo.motion import Clip, Duet, InputError
+from webdemo.motion import Duet, InputError
 
 Array = NDArray[np.floating]
 
@@ -36,19 +36,6 @@ STRIDE = 2
 """The classifier sees every second frame, 15 a second, as SBU was recorded."""
 SHORTEST = 31
 """Frames: the models react to a second or more."""
-METHODS: dict[str, dict[str, Any]] = {
-    "ReGenNet, online": {"model": "regennet", "mode": "online", "steps": 5},
-    "ReGenNet, offline": {"model": "regennet", "mode": "offline", "steps": 5},
-    "ReGenNet, online, first pose given": {"model": "regennet", "mode": "online", "steps": 5, "start": True},
-    "ReGenNet, offline, first pose given": {
-        "model": "regennet",
-        "mode": "offline",
-        "steps": 5,
-        "start": True,
-    },
-    "InterFormer, first pose given": {"model": "interformer", "start": True},
-    "InterGen, person to person": {"model": "intergen", "mode": "offline", "steps": 20, "guidance": 1.0},
-}
 READOUTS = (
     ("facing", "Facing °"),
     ("distance", "Distance m"),
@@ -101,22 +88,6 @@ def recorded(
 def zero_velocity(reaction: Reaction, _: int) -> Array:
     """Person b as they stand at first."""
     return np.repeat(reaction.people[1, :1], reaction.people.shape[1], axis=0)
-
-
-def installed() -> list[str]:
-    """The methods whose weights are there."""
-    return [m for m, chosen in METHODS.items() if (WEIGHTS / chosen["model"] / "config.json").is_file()]
-
-
-def react(engine: Engine, reaction: Reaction, seed: int, chosen: dict[str, Any]) -> Array:
-    """Person b as a model makes them for person a, without words."""
-    chosen = dict(chosen)
-    start = reaction.people[1, 0] if chosen.pop("start", False) else None
-    request = ReactRequest(
-        actor=Clip(reaction.people[0], 30.0), seed=seed, damping=0.0, start=start, **chosen
-    )
-    result = next(event for event in engine.run(request) if isinstance(event, Result))
-    return np.asarray(result.duets[0].b.positions)
 
 
 def score(
@@ -235,7 +206,11 @@ def _run(options: argparse.Namespace) -> None:
             made[method] = []
             for seed in range(options.samples):
                 print(f"{dataset}: {method}, seed {seed}", file=sys.stderr, flush=True)
-                made[method].append([react(engine, one, seed, METHODS[method]) for one in test])
+                duets = [
+                    react(engine, Duet.from_positions(one.people, fps=30.0), seed, METHODS[method])
+                    for one in test
+                ]
+                made[method].append([np.asarray(duet.b.positions) for duet in duets])
         shown = {"Recorded": [reaction.people[1] for reaction in test]}
         shown |= {method: samples[0] for method, samples in made.items()}
         scores[dataset] = {

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections import defaultdict
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from typing import Any
 
 import numpy as np
@@ -110,6 +110,19 @@ def table(scores: dict[str, Any]) -> str:
             f"| {check}: {_WORDS[check]} | {_share(told['checks'][check], interval=True)} |"
             for check in CHECKS
         ]
+    return "\n".join(lines) + "\n"
+
+
+def reactions_table(scores: Mapping[str, dict[str, Any]]) -> str:
+    """A row for each method; ``scores`` are those of :func:`score`, by the method's name."""
+    heads = [*CHECKS, *(f"{label}, {unit}" for label, unit in PHYSICAL.values())]
+    count = max(len(found["verdicts"]) for found in scores.values())
+    lines = [f"| Person b for a recorded person a, {count} captions | {' | '.join(heads)} |"]
+    lines.append("|---" * (len(heads) + 1) + "|")
+    for method, found in scores.items():
+        cells = [_share(found["checks"][check]) for check in CHECKS]
+        cells += [f"{found['physical'][key]:.3g}" for key in PHYSICAL]
+        lines.append(f"| {method} | {' | '.join(cells)} |")
     return "\n".join(lines) + "\n"
 
 

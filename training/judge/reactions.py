@@ -1,0 +1,86 @@
+"""The models that react, and how they heed words: person a as recorded, person b made for them."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+from webdemo.inference import Engine, ReactRequest, Result
+from webdemo.inference.engine import WEIGHTS
+from webdemo.motion import Clip, Duet
+
+from .rules import Task
+
+METHODS: dict[str, dict[str, Any]] = {
+    "ReGenNet, online": {"model": "regennet", "mode": "online", "steps": 5},
+    "ReGenNet, offline": {"model": "regennet", "mode": "offline", "steps": 5},
+    "ReGenNet, online, first pose given": {"model": "regennet", "mode": "online", "steps": 5, "start": True},
+    "ReGenNet, offline, first pose given": {
+        "model": "regennet",
+        "mode": "offline",
+        "steps": 5,
+        "start": True,
+    },
+    "InterFormer, first pose given": {"model": "interformer", "start": True},
+    "InterGen, person to person": {
+        "model": "intergen",
+        "mode": "offline",
+        "steps": 20,
+        "guidance": 1.0,
+        "damping": 0.0,
+    },
+}
+"""The fields of a request without words, by the name of the method."""
+TOLD: dict[str, dict[str, Any]] = {
+    "InterGen, person to person": {"model": "intergen", "mode": "offline", "steps": 25, "damping": 0.7},
+    "ReGenNet, offline": METHODS["ReGenNet, offline"],
+    "ReGenNet, online": METHODS["ReGenNet, online"],
+    "InterFormer, first pose given, no words": METHODS["InterFormer, first pose given"],
+}
+"""The same with words, at the page's settings; InterFormer takes none."""
+LONGEST = 300
+"""Frames that a model reacts to at most."""
+
+
+def installed(methods: Mapping[str, Mapping[str, Any]] = METHODS, weights: Path = WEIGHTS) -> list[str]:
+    """The methods whose weights are there."""
+    return [name for name, chosen in methods.items() if (weights / chosen["model"] / "config.json").is_file()]
+
+
+def react(engine: Engine, recorded: Duet, seed: int, chosen: Mapping[str, Any], *, prompt: str = "") -> Duet:
+    """Person a as recorded, ten seconds at most, with the person b that a method makes for them.
+
+    Args:
+        recorded: 30 fps on SMPL's 22 joints, a second or more; person b lends the first pose, and nothing
+            else, to a method that is given one.
+        chosen: fields of the request; ``start``, if true, gives the first pose.
+        prompt: the sentence, for a method that takes words.
+    """
+    fields = dict(chosen)
+    start = recorded.b.positions[0] if fields.pop("start", False) else None
+    if fields["model"] == "interformer":
+        prompt = ""
+    actor = Clip(recorded.a.positions[:LONGEST], recorded.fps)
+    request = ReactRequest(actor=actor, prompt=prompt, seed=seed, start=start, **fields)
+    return next(event for event in engine.run(request) if isinstance(event, Result)).duets[0]
+
+
+def of_the_reactor(task: Task) -> Task:
+    """The task without what a recorded person a settles alone: a's side, and an order of a's own actions."""
+    events = dict(task.events)
+    side = {person: hand for person, hand in (events.pop("side", None) or {}).items() if person == "b"}
+    if side:
+        events["side"] = side
+    if task.family == "sequence":
+        events.pop("order", None)
+    return replace(task, events=events)
+
+
+def react_to_all(
+    engine: Engine, tasks: Sequence[Task], recorded: Sequence[Duet], seed: int, chosen: Mapping[str, Any]
+) -> Iterator[Duet]:
+    """A method's duet for every sentence and recorded pair, with the seed ``seed`` + its place."""
+    for i, (task, duet) in enumerate(zip(tasks, recorded, strict=True)):
+        yield react(engine, duet, seed + i, chosen, prompt=task.caption)
