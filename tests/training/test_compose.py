@@ -10,7 +10,7 @@ import pytest
 from scipy.spatial.transform import Rotation
 
 from training.corpus import __main__ as command
-from training.corpus import build, checks, compose, stage
+from training.corpus import blending, build, checks, compose, feet, stage
 from training.corpus.families import load_families
 from training.corpus.library import Library, extend, shorten
 from training.corpus.scene import Scene, SourceClip
@@ -103,7 +103,7 @@ def test_slerp_agrees_with_quaternions_up_to_half_turns() -> None:
     axis /= np.linalg.norm(axis, axis=-1, keepdims=True)
     angles = np.concatenate([[0, 1e-9, np.pi - 1e-4, np.pi - 0.02], rng.uniform(0, 3.1, 296)])
     weight = rng.random(300)
-    found = compose.slerp(
+    found = blending.slerp(
         first.as_matrix(), (first * Rotation.from_rotvec(axis * angles[:, None])).as_matrix(), weight
     )
     expected = (first * Rotation.from_rotvec(axis * (angles * weight)[:, None])).as_matrix()
@@ -129,7 +129,7 @@ def test_planted_feet_rest_and_bones_stay() -> None:
     rotations, root = standing(120)
     root[:, 0] += np.linspace(0, 0.1, 120)  # the whole body is dragged along
     positions = forward_kinematics(rotations, root)
-    planted = compose.plant_feet(positions, np.ones((120, 2), dtype=bool))
+    planted = feet.plant_feet(positions, np.ones((120, 2), dtype=bool))
     toes = planted[:, [J("left_foot"), J("right_foot")]]
     assert np.ptp(toes[..., [0, 2]], axis=0).max() < 1e-3
     assert np.ptp(positions[:, J("left_foot"), 0]) > 0.09
@@ -139,7 +139,7 @@ def test_planted_feet_rest_and_bones_stay() -> None:
 def test_a_foot_that_is_carried_far_steps_and_the_feet_take_turns() -> None:
     rotations, root = standing(120)
     root[:, 2] += 0.4 * np.clip((np.arange(120) - 50) / 20, 0, 1)
-    planted = compose.plant_feet(forward_kinematics(rotations, root), np.ones((120, 2), dtype=bool))
+    planted = feet.plant_feet(forward_kinematics(rotations, root), np.ones((120, 2), dtype=bool))
     toes = planted[:, [J("left_foot"), J("right_foot")]]
     moving = np.linalg.norm(np.diff(toes[..., [0, 2]], axis=0), axis=-1) * 30 > 0.05
     assert moving.any(axis=0).all()
@@ -151,8 +151,8 @@ def test_a_foot_that_is_carried_far_steps_and_the_feet_take_turns() -> None:
 
 
 def test_one_after_the_other_keeps_lone_steps() -> None:
-    assert compose.one_after_the_other([[20, 60], [62]], apart=12) == [[20, 55], [67]]
-    assert compose.one_after_the_other([[20], [90]]) == [[20], [90]]
+    assert feet.one_after_the_other([[20, 60], [62]], apart=12) == [[20, 55], [67]]
+    assert feet.one_after_the_other([[20], [90]]) == [[20], [90]]
 
 
 def test_place_puts_root_and_facing() -> None:
@@ -199,7 +199,7 @@ def test_layer_waves_while_walking() -> None:
     both = compose.realise(compose.layer(base, over, start=20, joints=compose.ARMS["left"]))
     alone = compose.realise(base)
     assert both[50, J("left_wrist"), 1] > alone[50, J("left_wrist"), 1] + 0.5
-    legs = [joint for leg in compose.LEGS for joint in leg]
+    legs = [joint for leg in feet.LEGS for joint in leg]
     np.testing.assert_allclose(both[:, legs], alone[:, legs], atol=1e-9)
 
 

@@ -17,7 +17,8 @@ from scipy.spatial.transform import Rotation
 from webdemo.motion.skeleton import SMPL22
 from webdemo.motion.transforms import heading
 
-from .compose import ARMS, FPS, LEGS, Array, two_bone
+from .compose import ARMS, FPS, Array
+from .feet import LEGS, two_bone
 
 UP = np.array([0.0, 1.0, 0.0])
 SPINE = tuple(SMPL22.index(name) for name in ("spine1", "spine2", "spine3"))

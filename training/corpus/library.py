@@ -14,7 +14,8 @@ from scipy.signal import find_peaks
 from webdemo.motion.kinematics import forward_kinematics
 from webdemo.motion.skeleton import SMPL22
 
-from .compose import LEGS, Motion, join, mirror, motion_from_positions, time_warp
+from .compose import Motion, join, mirror, motion_from_positions, time_warp
+from .feet import LEGS
 from .scene import SourceClip
 
 OTHER = {"left": "right", "right": "left", "both": "both", None: None}

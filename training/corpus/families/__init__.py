@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass
 from importlib import import_module
-from importlib.util import find_spec
 
 import numpy as np
 
@@ -50,8 +49,7 @@ def register(
 
 
 def load_families() -> dict[str, Family]:
-    """All registered families, after importing every module of this package that defines some."""
-    for module in ("gestures", "locomotion", "combat", "sequences", "contact", "bodies"):
-        if find_spec(f"{__name__}.{module}") is not None:
-            import_module(f"{__name__}.{module}")
+    """All registered families in the order of their modules, on which a seed's corpus depends."""
+    for module in ("gestures", "locomotion", "combat", "sequences", "contact", "bodies", "blows"):
+        import_module(f"{__name__}.{module}")
     return REGISTRY

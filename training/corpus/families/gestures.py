@@ -6,7 +6,8 @@ import numpy as np
 
 from webdemo.motion.kinematics import global_rotations, local_rotations
 
-from ..compose import ARMS, Motion, ease, mirror, place, slerp, steer, tempo, turned
+from ..blending import ease, slerp
+from ..compose import ARMS, Motion, mirror, place, steer, tempo, turned
 from ..library import Library, Take, pick
 from ..scene import Scene
 from ..stage import Rng, act, finish, how_far, manner, oppose, pad, seconds, stride, waiting

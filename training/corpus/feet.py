@@ -1,0 +1,160 @@
+"""Which foot is planted when, and legs that keep it there: two-bone IK towards the place where it landed."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.ndimage import gaussian_filter1d, maximum_filter1d
+
+from webdemo.motion.skeleton import SMPL22
+from webdemo.motion.transforms import heading
+
+from .blending import Array, ease
+
+FPS = 30
+LEGS = tuple(
+    tuple(SMPL22.index(f"{side}_{joint}") for joint in ("hip", "knee", "ankle", "foot"))
+    for side in ("left", "right")
+)
+
+
+def planted(positions: Array, *, height: float = 0.055, speed: float = 0.3) -> NDArray[np.bool_]:
+    """(T, 2) True where a foot rests on the floor: the toe low (metres) and slow (metres a second).
+
+    Gaps and runs shorter than four frames are closed and dropped.
+    """
+    toes = positions[:, [LEGS[0][3], LEGS[1][3]]]
+    moving = np.linalg.norm(np.gradient(gaussian_filter1d(toes, 1.0, axis=0), axis=0)[..., [0, 2]], axis=-1)
+    resting = (toes[..., 1] - np.percentile(toes[..., 1], 3) < height) & (moving * FPS < speed)
+    for foot in range(2):
+        for value in (True, False):  # first close gaps, then drop short runs
+            for start, stop in runs(resting[:, foot] != value):
+                if stop - start < 4 and start > 0 and stop < len(resting):
+                    resting[start:stop, foot] = value
+    return resting
+
+
+def runs(mask: NDArray[np.bool_]) -> list[tuple[int, int]]:
+    """(start, stop) of every stretch of True."""
+    edges = np.flatnonzero(np.diff(np.concatenate([[False], mask, [False]]).astype(np.int8)))
+    return [(int(a), int(b)) for a, b in zip(edges[::2], edges[1::2], strict=True)]
+
+
+def plant_feet(positions: Array, contacts: NDArray[np.bool_], *, stride: float = 0.18) -> Array:
+    """Holds every planted foot where it landed by bending the leg; bones keep their length.
+
+    A "planted" foot that travels more than ``stride`` metres (a blend between two stances) takes a step
+    instead of sliding. The body sinks a little where a leg would otherwise be too short.
+
+    Args:
+        positions: (T, 22, 3) metres.
+        contacts: (T, 2) left and right foot planted.
+    """
+    positions = positions.copy()
+    toes = [positions[:, leg[3]] for leg in LEGS]
+    steps = one_after_the_other([steps_in(toes[f], contacts[:, f], stride=stride) for f in (0, 1)])
+    targets = []
+    for foot, (_, _, ankle, toe) in enumerate(LEGS):
+        shift = foot_shift(toes[foot], contacts[:, foot], steps[foot])
+        below = np.maximum(-toes[foot][:, 1], 0.04 - positions[:, ankle, 1])
+        shift[:, 1] += gaussian_filter1d(np.maximum(below, 0), 1.5)
+        targets.append(positions[:, [ankle, toe]] + shift[:, None])
+    sink = np.zeros(len(positions))
+    for target, (hip, knee, ankle, _) in zip(targets, LEGS, strict=True):
+        longest = 0.998 * (SMPL22.bone_lengths[knee] + SMPL22.bone_lengths[ankle])
+        gap = positions[:, hip] - target[:, 0]
+        height = np.sqrt(np.maximum(longest**2 - gap[:, 0] ** 2 - gap[:, 2] ** 2, 0.3))
+        sink = np.maximum(sink, gap[:, 1] - height)
+    positions[..., 1] -= gaussian_filter1d(maximum_filter1d(np.clip(sink, 0, 0.15), 9), 3.0)[:, None]
+    forward = np.stack([np.sin(heading(positions)), np.zeros(len(positions)), np.cos(heading(positions))], -1)
+    for target, (hip, knee, ankle, toe) in zip(targets, LEGS, strict=True):
+        positions[:, knee], positions[:, ankle] = two_bone(
+            positions[:, hip], positions[:, knee], positions[:, ankle], target[:, 0], forward
+        )
+        positions[:, toe] = positions[:, ankle] + target[:, 1] - target[:, 0]
+    return positions
+
+
+def steps_in(toe: Array, contact: NDArray[np.bool_], *, stride: float) -> list[int]:
+    """Frames at which a "planted" foot is carried further than ``stride`` metres and so must step."""
+    found, open_runs = [], runs(contact)
+    while open_runs:
+        start, stop = open_runs.pop()
+        flat = toe[start:stop][:, [0, 2]]
+        if stop - start < 4 or np.linalg.norm(np.ptp(flat, axis=0)) <= stride:
+            continue
+        speed = np.linalg.norm(np.gradient(flat, axis=0), axis=-1)
+        middle = start + int(np.argmax(gaussian_filter1d(speed, 2.0)))
+        found.append(middle)
+        open_runs += [(start, middle - 8), (middle + 9, stop)]
+    return sorted(found)
+
+
+def one_after_the_other(steps: list[list[int]], *, apart: int = 12) -> list[list[int]]:
+    """Step times of both feet, moved so that the two never step at once (``apart`` frames at least)."""
+    left, right = (list(foot) for foot in steps)
+    for i, one in enumerate(left):
+        for j, other in enumerate(right):
+            if abs(one - other) < apart:
+                centre, sign = (one + other) / 2, 1 if one <= other else -1
+                left[i], right[j] = int(centre - sign * apart / 2), int(centre + sign * apart / 2)
+    return [left, right]
+
+
+def foot_shift(toe: Array, contact: NDArray[np.bool_], steps: list[int], *, half: int = 6) -> Array:
+    """(T, 3) how far a foot must move each frame so that it rests while planted; smooth in between.
+
+    Args:
+        toe: (T, 3) the toe before.
+        contact: (T,) where it should rest.
+        steps: frames around which it is lifted and set down elsewhere, ``half`` frames before to after.
+    """
+    contact = contact.copy()
+    lift = np.zeros(len(toe))
+    carried = np.zeros(len(toe), dtype=bool)
+    for middle in steps:
+        low, high = max(middle - half, 0), min(middle + half + 1, len(toe))
+        contact[low:high] = False
+        carried[max(middle - 14, 0) : middle + 15] = True
+        lift[low:high] = np.maximum(lift[low:high], 0.05 * np.sin(np.linspace(0, np.pi, high - low)) ** 2)
+    shift = np.zeros_like(toe)
+    known = np.zeros(len(toe), dtype=bool)
+    for start, stop in runs(contact):
+        settled = ~carried[start:stop]
+        rest = toe[start:stop][settled] if settled.any() else toe[start:stop]
+        shift[start:stop] = (rest.mean(axis=0) - toe[start:stop]) * np.array([1.0, 0.0, 1.0])
+        known[start:stop] = True
+    if known.any():
+        for start, stop in runs(~known):
+            before = shift[start - 1] if start else shift[stop] if stop < len(toe) else 0.0
+            after = shift[stop] if stop < len(toe) else before
+            shift[start:stop] = before + ease(stop - start)[:, None] * (after - before)
+    shift[:, 1] += lift
+    return gaussian_filter1d(shift, 0.7, axis=0, mode="nearest")
+
+
+def two_bone(root: Array, middle: Array, end: Array, target: Array, pole: Array) -> tuple[Array, Array]:
+    """Two-bone IK: where the middle joint and the end go when the end should reach ``target``.
+
+    All arguments (T, 3); the bend keeps to the plane in which the limb is bent now, and leans to ``pole``
+    where the limb is nearly straight. A target out of reach is approached as far as the bones allow.
+
+    Returns:
+        (T, 3) middle joint and (T, 3) end; bone lengths are those of the input.
+    """
+    upper = np.linalg.norm(middle - root, axis=-1, keepdims=True)
+    lower = np.linalg.norm(end - middle, axis=-1, keepdims=True)
+    reach = target - root
+    distance = np.linalg.norm(reach, axis=-1, keepdims=True)
+    along = reach / np.maximum(distance, 1e-6)
+    distance = np.clip(distance, np.abs(upper - lower) + 1e-3, (upper + lower) * 0.9995)
+    old = end - root
+    old = old / np.maximum(np.linalg.norm(old, axis=-1, keepdims=True), 1e-6)
+    offset = middle - root
+    offset = offset - np.sum(offset * old, axis=-1, keepdims=True) * old
+    bend = offset + 0.03 * pole
+    bend = bend - np.sum(bend * along, axis=-1, keepdims=True) * along
+    bend = bend / np.maximum(np.linalg.norm(bend, axis=-1, keepdims=True), 1e-6)
+    cosine = (upper**2 + distance**2 - lower**2) / (2 * distance)
+    height = np.sqrt(np.maximum(upper**2 - cosine**2, 0))
+    return root + along * cosine + bend * height, root + along * distance
