@@ -16,7 +16,7 @@ os.environ.setdefault("GRADIO_ANALYTICS_ENABLED", "False")
 from gradio_client import Client, handle_file
 from gradio_client.exceptions import AppError
 
-from webdemo.formats import read, write
+from webdemo.formats import read
 from webdemo.ui.page import build_page, launch_options
 
 from .stub_engine import StubEngine, walking
@@ -84,18 +84,6 @@ def test_the_endpoint_is_documented(client: Client) -> None:
     ]  # fmt: skip
     assert all(p["parameter_has_default"] for name, p in parameters.items() if name != "prompt")
     assert "two-person .npz" in endpoint["description"]
-
-
-@pytest.fixture
-def walkers(tmp_path: Path) -> Path:
-    """A file of two people, twelve seconds."""
-    return write(walking(12.0), tmp_path / "walkers.npz")[0]
-
-
-@pytest.fixture
-def walker(tmp_path: Path) -> Path:
-    """A file of one person, four seconds."""
-    return write(walking(4.0), tmp_path / "walker.bvh")[0]
 
 
 def test_react_takes_a_file_and_gives_files(client: Client, walkers: Path) -> None:

@@ -40,18 +40,6 @@ def tab(tmp_path: Path) -> ReactTab:
     return built(ReactTab, tmp_path / "files")
 
 
-@pytest.fixture
-def pair(tmp_path: Path) -> Path:
-    """A file of two people, twelve seconds."""
-    return write(walking(12.0), tmp_path / "walkers.npz")[0]
-
-
-@pytest.fixture
-def bvh(tmp_path: Path) -> Path:
-    """A file of one person, four seconds."""
-    return write(walking(4.0), tmp_path / "walker.bvh")[0]
-
-
 def upload(tab: ReactTab, path: Path) -> list[dict[str, Any]]:
     return [changes(LOADED, updates) for updates in tab.upload(str(path))]
 
@@ -61,8 +49,8 @@ def run(tab: ReactTab, source: Any, **changed: Any) -> list[dict[str, Any]]:
     return [changes(tab.outputs, updates) for updates in tab.run("me", fields)]
 
 
-def test_an_upload_is_shown_at_once(tab: ReactTab, bvh: Path) -> None:
-    first, last = upload(tab, bvh)
+def test_an_upload_is_shown_at_once(tab: ReactTab, walker: Path) -> None:
+    first, last = upload(tab, walker)
     assert "Reading" in first["line"]
     assert last["trim"]["visible"]
     assert not last["person"]["visible"], "there is one person only"
@@ -73,8 +61,8 @@ def test_an_upload_is_shown_at_once(tab: ReactTab, bvh: Path) -> None:
     assert last["player"]["value"]["title"] == "walker_a.bvh"
 
 
-def test_two_people_in_a_file_are_a_choice_and_a_long_file_is_cut(tab: ReactTab, pair: Path) -> None:
-    last = upload(tab, pair)[-1]
+def test_two_people_in_a_file_are_a_choice_and_a_long_file_is_cut(tab: ReactTab, walkers: Path) -> None:
+    last = upload(tab, walkers)[-1]
     assert last["person"] == gr.update(choices=BOTH, visible=True, value="a")
     assert last["end"] == gr.update(maximum=12.0, value=10.0)
     assert last["player"]["value"]["samples"][0]["frames"] == 300
@@ -91,9 +79,9 @@ def test_two_people_in_a_file_are_a_choice_and_a_long_file_is_cut(tab: ReactTab,
 
 @pytest.mark.parametrize("role", ["a", "b"])
 def test_a_run_keeps_the_trimmed_actor_and_ends_with_both_people(
-    tab: ReactTab, pair: Path, role: str
+    tab: ReactTab, walkers: Path, role: str
 ) -> None:
-    source = upload(tab, pair)[-1]["source"]
+    source = upload(tab, walkers)[-1]["source"]
     steps = run(tab, source, person="b", start=1.0, end=3.0, role=role)
     assert any("step" in step["line"] for step in steps[1:-1])
     last = steps[-1]
@@ -105,22 +93,22 @@ def test_a_run_keeps_the_trimmed_actor_and_ends_with_both_people(
     assert duet.people[0 if role == "a" else 1].positions.tobytes() == given.tobytes()
 
 
-def test_words_may_be_left_out_and_name_nothing_then(tab: ReactTab, bvh: Path) -> None:
-    record = run(tab, upload(tab, bvh)[-1]["source"], prompt="  ")[-1]["record"]
+def test_words_may_be_left_out_and_name_nothing_then(tab: ReactTab, walker: Path) -> None:
+    record = run(tab, upload(tab, walker)[-1]["source"], prompt="  ")[-1]["record"]
     assert record.prompt == "Reaction to walker_a.bvh"
     _, *buttons = tab.export(record)
     assert any(button["interactive"] for button in buttons)
 
 
-def test_an_empty_seed_is_drawn(tab: ReactTab, bvh: Path) -> None:
-    source = upload(tab, bvh)[-1]["source"]
+def test_an_empty_seed_is_drawn(tab: ReactTab, walker: Path) -> None:
+    source = upload(tab, walker)[-1]["source"]
     seeds = {run(tab, source, seed=None)[-1]["record"].result.manifest["request"]["seed"] for _ in range(2)}
     assert len(seeds) == 2
 
 
 @pytest.mark.parametrize("person", ["a", "b"])
-def test_a_person_of_the_last_result_is_taken(tab: ReactTab, bvh: Path, person: str) -> None:
-    record = run(tab, upload(tab, bvh)[-1]["source"])[-1]["record"]
+def test_a_person_of_the_last_result_is_taken(tab: ReactTab, walker: Path, person: str) -> None:
+    record = run(tab, upload(tab, walker)[-1]["source"])[-1]["record"]
     last = [changes(LOADED, updates) for updates in tab.take_result(person, record)][-1]
     assert last["person"] == gr.update(choices=BOTH, visible=True, value=person)
     again = run(tab, last["source"], person=person)[-1]["record"].result.duets[0]
@@ -142,8 +130,8 @@ def test_a_cancelled_upload_changes_nothing_and_a_cleared_file_leaves_no_actor(t
     assert not left["trim"]["visible"]
 
 
-def test_a_result_of_a_result_keeps_the_name_of_the_file(tab: ReactTab, bvh: Path) -> None:
-    record = run(tab, upload(tab, bvh)[-1]["source"], prompt="")[-1]["record"]
+def test_a_result_of_a_result_keeps_the_name_of_the_file(tab: ReactTab, walker: Path) -> None:
+    record = run(tab, upload(tab, walker)[-1]["source"], prompt="")[-1]["record"]
     source = list(tab.take_result("b", record))[-1][0]
     assert run(tab, source, prompt="")[-1]["record"].prompt == "Reaction to walker_a.bvh"
 
@@ -183,9 +171,9 @@ def test_a_bad_file_is_one_sentence_and_leaves_the_last_actor(
     ],
 )
 def test_errors_are_one_sentence_and_the_next_run_works(
-    tab: ReactTab, bvh: Path, changed: dict[str, Any], sentence: str
+    tab: ReactTab, walker: Path, changed: dict[str, Any], sentence: str
 ) -> None:
-    source = upload(tab, bvh)[-1]["source"]
+    source = upload(tab, walker)[-1]["source"]
     last = run(tab, **{"source": source, **changed})[-1]
     assert sentence in last["line"]
     assert 'role="alert"' in last["line"]
@@ -193,8 +181,8 @@ def test_errors_are_one_sentence_and_the_next_run_works(
     assert "record" in run(tab, source)[-1]
 
 
-def test_cancel_ends_within_one_step(tab: ReactTab, bvh: Path) -> None:
-    source = upload(tab, bvh)[-1]["source"]
+def test_cancel_ends_within_one_step(tab: ReactTab, walker: Path) -> None:
+    source = upload(tab, walker)[-1]["source"]
     tab.page.engine.pause = 0.1
     updates = tab.run("me", {"source": source, **FIELDS, "steps": 50})
     for _ in range(5):
@@ -228,9 +216,9 @@ def test_examples_are_the_files_of_a_folder(tab: ReactTab, tmp_path: Path) -> No
     ],
 )
 def test_a_method_is_a_model_and_a_mode(
-    tab: ReactTab, bvh: Path, method: str, model: str, mode: str, steps: int
+    tab: ReactTab, walker: Path, method: str, model: str, mode: str, steps: int
 ) -> None:
-    source = upload(tab, bvh)[-1]["source"]
+    source = upload(tab, walker)[-1]["source"]
     run(tab, source, method=method)
     asked = tab.page.engine.requests[-1]
     assert (asked.model, asked.mode) == (model, mode)
@@ -246,20 +234,22 @@ def test_the_steps_of_every_method_can_be_set(tab: ReactTab) -> None:
         assert tab.steps.minimum <= steps["value"] <= tab.steps.maximum, method
 
 
-def test_the_second_person_can_begin_as_the_files_other_stands(tab: ReactTab, pair: Path, bvh: Path) -> None:
-    source = upload(tab, pair)[-1]["source"]
+def test_the_second_person_can_begin_as_the_files_other_stands(
+    tab: ReactTab, walkers: Path, walker: Path
+) -> None:
+    source = upload(tab, walkers)[-1]["source"]
     run(tab, source, method="regennet", person="b", start=1.0, end=3.0, keep=True)
     asked = tab.page.engine.requests[-1]
     assert np.allclose(asked.start, walking(12.0).a.positions[30], atol=2e-3)
     for changed in ({"keep": False}, {"keep": True, "method": "intergen"}):
         run(tab, source, **{"method": "regennet", "person": "b", "start": 1.0, "end": 3.0, **changed})
         assert tab.page.engine.requests[-1].start is None
-    alone = upload(tab, bvh)[-1]["source"]
+    alone = upload(tab, walker)[-1]["source"]
     assert "does not hold two people" in run(tab, alone, method="regennet", keep=True)[-1]["line"]
 
 
-def test_how_a_file_was_read_is_shown_and_can_be_changed(tab: ReactTab, bvh: Path) -> None:
-    last = upload(tab, bvh)[-1]
+def test_how_a_file_was_read_is_shown_and_can_be_changed(tab: ReactTab, walker: Path) -> None:
+    last = upload(tab, walker)[-1]
     assert "22 joints matched, m, Y up, 30 frames a second" in last["found"]
     assert "left_wrist" in last["found"]
     *_, again = [changes(LOADED, u) for u in tab.read_again(last["source"], "auto", "auto", 60)]
@@ -269,14 +259,14 @@ def test_how_a_file_was_read_is_shown_and_can_be_changed(tab: ReactTab, bvh: Pat
     assert "not possible" in wrong["line"]
 
 
-def test_what_a_method_cannot_do_is_told(tab: ReactTab, bvh: Path) -> None:
-    source = upload(tab, bvh)[-1]["source"]
+def test_what_a_method_cannot_do_is_told(tab: ReactTab, walker: Path) -> None:
+    source = upload(tab, walker)[-1]["source"]
     *_, last = run(tab, source, method="regennet", role="b")
     assert "choose role a" in last["line"]
 
 
-def test_two_methods_stand_side_by_side(tab: ReactTab, bvh: Path) -> None:
-    source = upload(tab, bvh)[-1]["source"]
+def test_two_methods_stand_side_by_side(tab: ReactTab, walker: Path) -> None:
+    source = upload(tab, walker)[-1]["source"]
     steps = run(tab, source, method="intergen", other="regennet-online", steps=20, samples=2, prompt="")
     assert any("ReGenNet, online. Denoising: step" in step.get("line", "") for step in steps)
     first, second = tab.page.engine.requests[-2:]
@@ -302,16 +292,16 @@ def test_two_methods_stand_side_by_side(tab: ReactTab, bvh: Path) -> None:
         ]
 
 
-def test_a_method_is_not_compared_with_itself_and_roles_fit_both(tab: ReactTab, bvh: Path) -> None:
-    source = upload(tab, bvh)[-1]["source"]
+def test_a_method_is_not_compared_with_itself_and_roles_fit_both(tab: ReactTab, walker: Path) -> None:
+    source = upload(tab, walker)[-1]["source"]
     last = run(tab, source, method="intergen", other="intergen")[-1]
     assert "choose another one" in last["line"]
     assert tab.fit_method("intergen", "regennet")[0]["interactive"] is False
     assert tab.fit_method("intergen", "")[0]["interactive"] is True
 
 
-def test_live_frames_come_in_small_messages_and_end_in_a_result(tab: ReactTab, bvh: Path) -> None:
-    source = upload(tab, bvh)[-1]["source"]
+def test_live_frames_come_in_small_messages_and_end_in_a_result(tab: ReactTab, walker: Path) -> None:
+    source = upload(tab, walker)[-1]["source"]
     began = time.monotonic()
     steps = run(tab, source, live=True, end=2.0, samples=4, prompt="")
     assert time.monotonic() - began > 1.9, "the actor plays in real time"
@@ -334,8 +324,8 @@ def test_live_frames_come_in_small_messages_and_end_in_a_result(tab: ReactTab, b
     assert (asked.model, asked.mode, asked.samples, asked.steps) == ("regennet", "online", 1, 5)
 
 
-def test_a_live_reaction_that_is_cancelled_tells_the_player(tab: ReactTab, bvh: Path) -> None:
-    source = upload(tab, bvh)[-1]["source"]
+def test_a_live_reaction_that_is_cancelled_tells_the_player(tab: ReactTab, walker: Path) -> None:
+    source = upload(tab, walker)[-1]["source"]
     fields = {"source": source, **FIELDS, "live": True}
     seen: list[dict[str, Any]] = []
     for updates in tab.run("me", fields):
