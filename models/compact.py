@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import hashlib
 import json
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import asdict, dataclass, field
 from functools import cached_property
 from pathlib import Path
@@ -27,6 +27,11 @@ from models.text import TextConditioner, TextConditionerConfig
 
 Touch = tuple[tuple[str, str], ...]
 """Which joints of the two people come together: (joint of a, joint of b), …"""
+
+
+def as_touches(values: Iterable[Iterable[Sequence[str]]]) -> tuple[Touch, ...]:
+    """Touches as JSON holds them, in lists, as the tuples that a config holds."""
+    return tuple(tuple((a, b) for a, b in touch) for touch in values)
 
 
 @dataclass(frozen=True)
@@ -49,8 +54,8 @@ class CompactConfig:
 
     @classmethod
     def from_dict(cls, values: dict[str, Any]) -> CompactConfig:
-        known = tuple(tuple((a, b) for a, b in touch) for touch in values.get("touches", ()))
-        return cls(**(values | {"layout": TokenLayout(**values["layout"]), "touches": known}))
+        touches = as_touches(values.get("touches", ()))
+        return cls(**(values | {"layout": TokenLayout(**values["layout"]), "touches": touches}))
 
 
 class TouchReader(nn.Module):
@@ -113,6 +118,11 @@ class CompactInterGen(nn.Module):
     @property
     def layout(self) -> TokenLayout:
         return self.config.layout
+
+    @property
+    def scale(self) -> Tensor:
+        """(2·token_features,) metres to a unit of network space."""
+        return self.std.repeat(2 * self.layout.knots_per_token)
 
     def touches(self, condition: Tensor) -> list[Touch]:
         """What should touch, for each condition vector (B, cond_dim); () where nothing should."""

@@ -22,7 +22,7 @@ import torch
 import torch.nn.functional as F
 from torch import Tensor, nn
 
-from models.compact import WeightsFolder
+from models.compact import Touch, TouchReader, WeightsFolder, as_touches
 from models.diffusion import make_scheduler
 from models.folder import load_network
 from models.layers import sinusoids_at
@@ -47,7 +47,10 @@ BEGIN_FEATURES = POSE + 1
 
 @dataclass(frozen=True)
 class CompactReGenNetConfig:
-    """Sizes of a :class:`CompactReGenNet`; ``window``: how many rows an online row sees, itself included."""
+    """Sizes of a :class:`CompactReGenNet`, and the touches that it reads from a sentence.
+
+    window: how many rows an online row sees, itself included.
+    """
 
     latent_dim: int = 192
     ff_size: int = 512
@@ -57,6 +60,10 @@ class CompactReGenNetConfig:
     text_layers: int = 2
     window: int = 40
     frames_per_knot: int = 4
+    touches: tuple[Touch, ...] = ()
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "touches", as_touches(self.touches))
 
 
 class CompactReGenNet(nn.Module):
@@ -93,10 +100,17 @@ class CompactReGenNet(nn.Module):
         self.conditioner = TextConditioner(
             TextConditionerConfig(latent_dim=config.cond_dim, num_layers=config.text_layers, dropout=0.0)
         )
+        self.touch_reader = TouchReader(config.cond_dim, config.touches) if config.touches else None
         for name, width in (("mean", FEATURES), ("actor_mean", ACTOR_FEATURES)):
             self.register_buffer(name, torch.zeros(width))
         for name, width in (("std", FEATURES), ("actor_std", ACTOR_FEATURES)):
             self.register_buffer(name, torch.ones(width))
+
+    def touches(self, condition: Tensor) -> list[Touch]:
+        """What should touch, for each condition vector (B, cond_dim); () where nothing should."""
+        if self.touch_reader is None:
+            return [()] * len(condition)
+        return self.touch_reader.read(condition)
 
     # ---- motion ----------------------------------------------------------------------------------
 

@@ -33,6 +33,7 @@ from training.loop import Loop
 from training.prepare import Scenes, load
 from training.regennet_data import Batch, Conditions, Data, knot_positions, seen_rows
 from training.shell import add_run_options, chosen, exit_code
+from training.touch import with_touches
 from webdemo.motion import InputError
 from webdemo.motion.skeleton import FEET
 
@@ -166,7 +167,8 @@ class Trainer(Loop):
             self.model.conditioner.load_state_dict(conditioner.state_dict())
             self.data.normalize(self.model)
         else:
-            load_strictly(self.model, shipped.state_dict(), network=init.name)
+            known = {k: v for k, v in shipped.state_dict().items() if not k.startswith("touch_reader.")}
+            load_strictly(self.model, known, network=init.name)
         self.model.conditioner.requires_grad_(False)
         self.ema = CompactReGenNet(self.config).requires_grad_(False)
         self.ema.load_state_dict(self.model.state_dict())
@@ -278,7 +280,9 @@ def _run(options: argparse.Namespace) -> None:
     )
     trainer.run_logged(minutes=options.minutes)
     if options.export:
-        save_network(options.export, trainer.ema, card={"summary": SUMMARY}, trained_steps=trainer.step)
+        model, reads = with_touches(trainer.ema, trainer.data.scenes)
+        print(f"touches read from test captions: {reads:.1%}")
+        save_network(options.export, model, card={"summary": SUMMARY}, trained_steps=trainer.step)
 
 
 if __name__ == "__main__":

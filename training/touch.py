@@ -8,17 +8,20 @@ from __future__ import annotations
 
 from collections import Counter
 from dataclasses import replace
-from typing import Any
+from typing import Any, TypeVar
 
 import torch
 import torch.nn.functional as F
 from torch import Tensor
 
 from models.compact import CompactInterGen, Touch
+from models.compact_regennet import CompactReGenNet
 from models.text import MiniLM
 from training.corpus.captions import mirror_caption
 from training.handedness import mirrored
 from training.prepare import Scenes
+
+Network = TypeVar("Network", CompactInterGen, CompactReGenNet)
 
 RARE = 8
 _SWAP = {"left": "right", "right": "left"}
@@ -48,7 +51,7 @@ def examples(rows: list[dict[str, Any]]) -> list[tuple[str, Touch]]:
 
 
 @torch.no_grad()
-def conditions(model: CompactInterGen, captions: list[str]) -> Tensor:
+def conditions(model: CompactInterGen | CompactReGenNet, captions: list[str]) -> Tensor:
     """(N, cond_dim) condition vectors."""
     encoder, parts = MiniLM(), []
     order = sorted(range(len(captions)), key=lambda i: len(captions[i]))
@@ -59,8 +62,8 @@ def conditions(model: CompactInterGen, captions: list[str]) -> Tensor:
 
 
 def with_touches(
-    model: CompactInterGen, scenes: Scenes, *, most: int = 8_000, steps: int = 1500, seed: int = 0
-) -> tuple[CompactInterGen, float]:
+    model: Network, scenes: Scenes, *, most: int = 8_000, steps: int = 1500, seed: int = 0
+) -> tuple[Network, float]:
     """The same network with a fitted touch reader, and its accuracy on test captions.
 
     Args:
@@ -75,8 +78,9 @@ def with_touches(
     known = tuple(sorted(t for t, count in counts.items() if t and count >= RARE))
     if not known:
         return model, float("nan")
-    result = CompactInterGen(replace(model.config, touches=known))
-    result.load_state_dict(model.state_dict(), strict=False)
+    result = type(model)(replace(model.config, touches=known))
+    network = {k: v for k, v in model.state_dict().items() if not k.startswith("touch_reader.")}
+    result.load_state_dict(network, strict=False)
     reader = result.eval().touch_reader
     assert reader is not None
 
@@ -100,7 +104,9 @@ def with_touches(
         return result, float((reader(inputs).argmax(-1) == labels).float().mean())
 
 
-def _tensors(model: CompactInterGen, found: list[tuple[str, Touch]]) -> tuple[Tensor, Tensor]:
+def _tensors(
+    model: CompactInterGen | CompactReGenNet, found: list[tuple[str, Touch]]
+) -> tuple[Tensor, Tensor]:
     reader = model.touch_reader
     assert reader is not None
     kept = [(caption, reader.touches.index(t)) for caption, t in found if t in reader.touches]

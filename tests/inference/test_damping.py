@@ -5,9 +5,10 @@ import pytest
 import torch
 
 from models.compact import CompactConfig, CompactInterGen, TouchReader
+from models.compact_regennet import CompactReGenNet, CompactReGenNetConfig
 from models.motion_tokens import encode, pack
 from webdemo.inference import damping
-from webdemo.inference.damping import Damping, DampingWeights, asked_energy
+from webdemo.inference.damping import Beside, Damping, DampingWeights, asked_energy
 from webdemo.metrics.quality import penetration
 from webdemo.motion import SMPL22, Duet
 
@@ -75,6 +76,40 @@ def test_without_damping_nothing_is_corrected(model):
     x = standing(model, 0.4)
     assert Damping(model, 0.0, frames=61, touches=[HANDS])(x, 0) is x
     assert Damping(model, 0.5, frames=61, touches=[HANDS])(x, 501) is x
+
+
+def test_beside_a_given_actor_the_reactor_alone_moves(model):
+    """ReGenNet's space holds one person, who brings their hand to where the actor holds out theirs."""
+    reactor = CompactReGenNet(
+        CompactReGenNetConfig(latent_dim=32, ff_size=32, num_layers=1, num_heads=2, cond_dim=16)
+    )
+    reactor.std.fill_(0.5)
+    actor, other = model.positions(standing(model, 0.4))[0][0, :, :61]
+    space = Beside(reactor, actor)
+    x = (encode(other, torch.ones(61, 4), reactor.layout)[None] - reactor.mean) / reactor.std
+    before, contacts = space.positions(x)
+    assert before.shape == (1, 2, 61, 22, 3) and contacts.shape == (1, 2, 61, 4)
+    met = Damping(space, 1.0, frames=61, final_steps=60, touches=[HANDS])(x, 0)
+    after = space.positions(met)[0]
+    wrist = SMPL22.index("right_wrist")
+    gaps = [(p[0, 0, :, wrist] - p[0, 1, :, wrist]).norm(dim=-1).min() for p in (before, after)]
+    assert gaps[0] == pytest.approx(0.4, abs=0.02) and gaps[1] < 0.12
+    torch.testing.assert_close(after[:, 0], actor[None], rtol=0, atol=0)
+
+
+def test_actors_of_one_batch_are_not_mixed(model):
+    """Two dampings beside different actors are corrected one by one, each as if alone."""
+    reactor = CompactReGenNet(
+        CompactReGenNetConfig(latent_dim=32, ff_size=32, num_layers=1, num_heads=2, cond_dim=16)
+    )
+    asked = []
+    for apart in (0.3, 0.6):
+        actor, other = model.positions(standing(model, apart))[0][0, :, :61]
+        x = encode(other, torch.ones(61, 4), reactor.layout)[None]
+        asked.append((Damping(Beside(reactor, actor), 1.0, frames=61, touches=[HANDS]), x))
+    together = damping.correct_together(asked, 0)
+    for (alone, x), made in zip(asked, together, strict=True):
+        torch.testing.assert_close(alone(x, 0), made, rtol=0, atol=0)
 
 
 def test_a_reader_answers_only_where_it_is_sure():

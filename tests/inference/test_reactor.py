@@ -12,7 +12,7 @@ from models.compact_regennet import CompactReGenNet, CompactReGenNetConfig, load
 from models.errors import WeightsError
 from models.folder import save_network
 from models.motion_tokens import FEATURES, encode
-from webdemo.inference import Cancelled, CancelToken, GenerateRequest, Progress, ReactRequest, Result
+from webdemo.inference import Cancelled, CancelToken, GenerateRequest, Progress, ReactRequest, Result, reactor
 from webdemo.inference.engine import Engine
 from webdemo.motion import SMPL22, InputError
 from webdemo.motion.transforms import heading_matrix
@@ -215,7 +215,52 @@ def test_what_regennet_cannot_do_is_said_in_one_sentence(changed: dict, says: st
 
 
 def test_damping_is_told_as_it_is_used(engine: Engine) -> None:
-    assert react(engine).manifest["request"]["damping"] == 0.0
+    assert react(engine, damping=0.5).manifest["request"]["damping"] == 0.0
+    assert react(engine, damping=0.5, mode="offline").manifest["request"]["damping"] == 0.5
+
+
+def test_offline_damping_moves_the_reactor_alone(engine: Engine) -> None:
+    plain = react(engine, mode="offline", damping=0.0, cleanup=False)
+    damped = react(engine, mode="offline", damping=1.0, cleanup=False)
+    actor = REQUEST.actor.positions
+    for result in (plain, damped):
+        np.testing.assert_array_equal(result.duets[0].a.positions, actor)
+    moved = np.abs(damped.duets[0].b.positions - plain.duets[0].b.positions).max()
+    assert 1e-3 < moved < 2.0
+    assert bones_off(damped.duets[0].b.positions) < bones_off(plain.duets[0].b.positions)
+
+
+def bones_off(positions: np.ndarray) -> float:
+    """How far bones are from the skeleton's, on average, in metres."""
+    parents, children = (list(side) for side in zip(*SMPL22.bones, strict=True))
+    lengths = np.linalg.norm(positions[:, children] - positions[:, parents], axis=-1)
+    return float(np.abs(lengths - SMPL22.bone_lengths[children]).mean())
+
+
+def test_words_that_ask_for_a_touch_reach_the_damping(
+    engine: Engine, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    hands = (("right_wrist", "right_wrist"),)
+    network = load_folder(engine.weights / "regennet")[0]
+    asking = CompactReGenNet(replace(network.config, touches=(hands,)))
+    asking.load_state_dict(network.state_dict(), strict=False)
+    assert asking.touch_reader is not None
+    with torch.no_grad():  # whatever is said is taken for a handshake
+        asking.touch_reader.net[-1].weight.zero_()
+        asking.touch_reader.net[-1].bias.copy_(torch.tensor([-9.0, 9.0]))
+    save_network(tmp_path / "regennet", asking)
+    heard = []
+
+    class Listening(reactor.Damping):
+        def __init__(self, *given: object, touches: object, **named: object) -> None:
+            heard.append(list(touches))
+            super().__init__(*given, touches=touches, **named)
+
+    monkeypatch.setattr(reactor, "Damping", Listening)
+    for chosen in (engine, Engine(tmp_path)):
+        for prompt in ("", "They shake hands."):
+            react(chosen, mode="offline", prompt=prompt, samples=2)
+    assert heard == [[], [(), ()], [], [hands, hands]]
 
 
 def test_text_alone_is_not_for_regennet(engine: Engine) -> None:

@@ -13,30 +13,23 @@ from webdemo.motion import Clip, Duet
 
 from .rules import Task
 
+_OFFLINE = {"model": "regennet", "mode": "offline", "steps": 5, "damping": 0.0}
+_ONLINE = {"model": "regennet", "mode": "online", "steps": 5}
+_PERSON_TO_PERSON = {"model": "intergen", "mode": "offline"}
 METHODS: dict[str, dict[str, Any]] = {
-    "ReGenNet, online": {"model": "regennet", "mode": "online", "steps": 5},
-    "ReGenNet, offline": {"model": "regennet", "mode": "offline", "steps": 5},
-    "ReGenNet, online, first pose given": {"model": "regennet", "mode": "online", "steps": 5, "start": True},
-    "ReGenNet, offline, first pose given": {
-        "model": "regennet",
-        "mode": "offline",
-        "steps": 5,
-        "start": True,
-    },
+    "ReGenNet, online": _ONLINE,
+    "ReGenNet, offline": _OFFLINE,
+    "ReGenNet, online, first pose given": _ONLINE | {"start": True},
+    "ReGenNet, offline, first pose given": _OFFLINE | {"start": True},
     "InterFormer, first pose given": {"model": "interformer", "start": True},
-    "InterGen, person to person": {
-        "model": "intergen",
-        "mode": "offline",
-        "steps": 20,
-        "guidance": 1.0,
-        "damping": 0.0,
-    },
+    "InterGen, person to person": _PERSON_TO_PERSON | {"steps": 20, "guidance": 1.0, "damping": 0.0},
 }
-"""The fields of a request without words, by the name of the method."""
+"""The fields of a request without words and without damping, by the name of the method."""
 TOLD: dict[str, dict[str, Any]] = {
-    "InterGen, person to person": {"model": "intergen", "mode": "offline", "steps": 25, "damping": 0.7},
-    "ReGenNet, offline": METHODS["ReGenNet, offline"],
-    "ReGenNet, online": METHODS["ReGenNet, online"],
+    "InterGen, person to person": _PERSON_TO_PERSON | {"steps": 25, "damping": 0.7},
+    "ReGenNet, offline": _OFFLINE | {"damping": 0.7},
+    "ReGenNet, offline, no damping": _OFFLINE,
+    "ReGenNet, online": _ONLINE,
     "InterFormer, first pose given, no words": METHODS["InterFormer, first pose given"],
 }
 """The same with words, at the page's settings; InterFormer takes none."""

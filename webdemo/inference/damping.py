@@ -5,7 +5,7 @@ compare with the true motion; at inference there is none, so the terms here are 
 of constant length, feet that stand still and stay above the floor, smooth joints, bodies that do not pass
 through each other, hands that meet where they nearly meet, people who turn fully towards each other where
 they nearly do. While t ≤ t̄·T the predicted clean motion takes a few gradient steps on them, in the network's
-own space of spline control points. Where the sentence asks for a touch
+own space of spline control points; a person who is given does not move. Where the sentence asks for a touch
 (:meth:`models.compact.CompactInterGen.touches`), the joints that it names are drawn together at the moment at
 which they come nearest. At t̄ = 0 nothing is done and the sampler is the plain one, bit for bit.
 """
@@ -14,11 +14,14 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import Protocol
 
 import torch
 from torch import Tensor
 
-from models.compact import CompactInterGen, Touch
+from models.compact import Touch
+from models.compact_regennet import CompactReGenNet
+from models.motion_tokens import foot_contacts
 from webdemo.metrics.bodies import capsules
 from webdemo.motion import SMPL22
 from webdemo.motion.skeleton import FEET
@@ -192,11 +195,48 @@ def _turned_away(person: Tensor, other: Tensor) -> Tensor:
     return ((1 - cos) * nearly).sum(1)
 
 
+class Space(Protocol):
+    """What a network diffuses, as far as the correction needs it: :class:`models.compact.CompactInterGen`'s
+    two people, or :class:`Beside`."""
+
+    @property
+    def scale(self) -> Tensor:
+        """(F,) metres to a unit of each number."""
+        ...
+
+    def positions(self, x: Tensor) -> tuple[Tensor, Tensor]:
+        """(B, tokens, F) → positions (B, 2, T, 22, 3) in metres and foot contacts (B, 2, T, 4)."""
+        ...
+
+
+class Beside:
+    """A ReGenNet's space, which holds the reactor alone, with the given actor beside them.
+
+    Args:
+        actor: (T, 22, 3) metres, in the network's frame of reference.
+    """
+
+    def __init__(self, model: CompactReGenNet, actor: Tensor) -> None:
+        self.model, self.actor, self.contacts = model, actor, foot_contacts(actor)
+
+    @property
+    def scale(self) -> Tensor:
+        return self.model.std
+
+    def positions(self, x: Tensor) -> tuple[Tensor, Tensor]:
+        """(B, K, 70) → positions (B, 2, T, 22, 3) in metres, the actor first, and contacts (B, 2, T, 4)."""
+        made, contacts = self.model.positions(x, len(self.actor))
+        return (
+            torch.stack([self.actor.expand_as(made), made], dim=1),
+            torch.stack([self.contacts.expand_as(contacts), contacts], dim=1),
+        )
+
+
 class Damping:
     """The correction of predicted clean motion that sampling applies while t ≤ t̄·T.
 
     Args:
-        model: gives positions from network space.
+        space: gives positions from what the network diffuses.
         threshold: t̄ as a fraction of T; 0 does nothing.
         frames: frames that will be shown; what the last token decodes to beyond them is ignored.
         timesteps: T.
@@ -204,13 +244,13 @@ class Damping:
         final_timestep: where sampling ends; more steps are taken there, since no network follows them.
         final_steps: how many.
         step_size: of one gradient step; the largest move of any number is held to ``largest``.
-        frozen: (tokens, 2·token_features) true where a number is given and must not move.
+        frozen: (tokens, F) true where a number is given and must not move.
         touches: what the sentence of each motion wants to touch; none by default.
     """
 
     def __init__(
         self,
-        model: CompactInterGen,
+        space: Space,
         threshold: float,
         *,
         frames: int,
@@ -224,7 +264,7 @@ class Damping:
         touches: Sequence[Touch] = (),
         weights: DampingWeights | None = None,
     ) -> None:
-        self.model, self.frames = model, frames
+        self.space, self.frames = space, frames
         self.last = threshold * timesteps
         self.off = threshold == 0
         self.gradient_steps, self.step_size, self.largest = gradient_steps, step_size, largest
@@ -237,7 +277,7 @@ class Damping:
         return not self.off and timestep <= self.last
 
     def __call__(self, x0: Tensor, timestep: int) -> Tensor:
-        """The corrected prediction, (B, tokens, 2·token_features) as given; the same object if not due."""
+        """The corrected prediction, (B, tokens, F) as given; the same object if not due."""
         return correct_together([(self, x0)], timestep)[0] if self.due(timestep) else x0
 
 
@@ -247,11 +287,11 @@ def correct_together(predictions: Sequence[tuple[Damping, Tensor]], timestep: in
     The energy is a sum over motions, so each moves as if it were alone.
 
     Args:
-        predictions: each a damping and its (B, tokens, 2·token_features).
+        predictions: each a damping and its (B, tokens, F).
     """
     groups: dict[tuple[object, ...], list[int]] = {}
     for i, (damping, x0) in enumerate(predictions):
-        kind = (x0.shape[1:], damping.frames, damping.gradient_steps, damping.final_steps,
+        kind = (damping.space.positions, x0.shape[1:], damping.frames, damping.gradient_steps, damping.final_steps,
                 damping.final_timestep, damping.step_size, damping.largest, damping.weights)  # fmt: skip
         groups.setdefault(kind, []).append(i)
     corrected: dict[int, Tensor] = {}
@@ -262,7 +302,7 @@ def correct_together(predictions: Sequence[tuple[Damping, Tensor]], timestep: in
 
 
 def _descend(predictions: Sequence[tuple[Damping, Tensor]], timestep: int) -> Sequence[Tensor]:
-    """Gradient steps on predictions of one shape by dampings that differ in what is frozen or touched."""
+    """Gradient steps on predictions of one space and shape; what is frozen or touched may differ."""
     first, sizes = predictions[0][0], [len(x0) for _, x0 in predictions]
     x0 = torch.cat([x0 for _, x0 in predictions])
     touches = [touch for d, x in predictions for touch in (d.touches or ((),) * len(x))]
@@ -270,11 +310,11 @@ def _descend(predictions: Sequence[tuple[Damping, Tensor]], timestep: int) -> Se
     if any(d.frozen is not None for d, _ in predictions):
         free = torch.zeros(x0.shape[1:], dtype=torch.bool)
         frozen = torch.cat([(free if d.frozen is None else d.frozen).expand_as(x) for d, x in predictions])
-    scale = first.model.std.repeat(first.model.layout.knots_per_token * 2)
+    scale = first.space.scale
     for _ in range(first.final_steps if timestep == first.final_timestep else first.gradient_steps):
         with torch.enable_grad():
             x = x0.detach().requires_grad_(True)
-            positions, contacts = first.model.positions(x)
+            positions, contacts = first.space.positions(x)
             positions, contacts = positions[:, :, : first.frames], contacts[:, :, : first.frames]
             total = energy(positions, contacts, first.weights).sum()
             if any(touches):

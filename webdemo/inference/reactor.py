@@ -18,7 +18,7 @@ from numpy.typing import NDArray
 from torch import Tensor
 
 from models.compact_regennet import CompactReGenNet, load_folder
-from models.diffusion import make_scheduler, sample_steps
+from models.diffusion import TRAIN_TIMESTEPS, make_scheduler, sample_steps
 from models.motion_tokens import FEATURES
 from models.text import MiniLM
 from webdemo.metrics import compare
@@ -27,6 +27,7 @@ from webdemo.motion import SMPL22, Clip, Duet, InputError
 from .actor import FPS, Placement
 from .cancel import CancelToken
 from .cleanup import clean_person
+from .damping import Beside, Damping
 from .following import FollowingCleanup
 from .generator import Clock, sample_noise
 from .live import LiveFrame, LiveProgress, LiveRequest, paced
@@ -110,31 +111,48 @@ class Reactor:
     def _offline(
         self, request: ReactRequest, condition: Tensor, cancel: CancelToken, clock: Clock
     ) -> Generator[Progress, None, tuple[Array, Array]]:
-        """Returns (raw, shown), each (samples, T, 22, 3) in the actor's world."""
+        """Returns (before damping and clean-up, shown), each (samples, T, 22, 3) in the actor's world."""
         model, placement = self.model, Placement.of(request.actor, "a")
         frames = request.actor.num_frames
         given = torch.from_numpy(placement.to_network(request.actor.positions)).float()
         with torch.no_grad():
             seen = model.actor_rows(given[None]).expand(request.samples, -1, -1)
         begin = self._begin(request, placement)
+        scheduler = make_scheduler("ddim", request.steps, spacing="top")
+        damping = Damping(
+            Beside(model, given),
+            request.damping,
+            frames=frames,
+            timesteps=TRAIN_TIMESTEPS,
+            final_timestep=int(scheduler.timesteps[-1]),
+            touches=model.touches(condition) if request.prompt.strip() else (),
+        )
         noise = sample_noise(request.seed, request.samples, (model.num_rows(frames), FEATURES))
 
         def predict(x: Tensor, t: Tensor) -> Tensor:
             return model.guided(x, t, seen, condition, scale=request.guidance, begin=begin)
 
+        uncorrected = noise
+
+        def correct(x0: Tensor, timestep: int) -> Tensor:
+            nonlocal uncorrected
+            uncorrected = x0
+            return damping(x0, timestep)
+
         x = noise
-        for step in sample_steps(predict, noise, make_scheduler("ddim", request.steps, spacing="top")):
+        for step in sample_steps(predict, noise, scheduler, correct=correct):
             x = step.sample
             yield clock.progress("sample", step.step, step.total)
             cancel.raise_if_cancelled()
         with torch.no_grad():
-            raw = model.positions(x, frames)[0].double().numpy()
-        if not np.isfinite(raw).all():
-            return raw, raw
+            raw, made = (model.positions(one, frames)[0].double().numpy() for one in (uncorrected, x))
+        if not np.isfinite(made).all():
+            return raw, made
         if request.start is not None:
-            raw = raw + settle(placement.to_network(request.start) - raw[:, :1], np.arange(frames))
+            first, place = placement.to_network(request.start), np.arange(frames)
+            raw, made = (one + settle(first - one[:, :1], place) for one in (raw, made))
         finish = clean_person if request.cleanup else np.asarray
-        return placement.to_world(raw), placement.to_world(np.stack([finish(person) for person in raw]))
+        return placement.to_world(raw), placement.to_world(np.stack([finish(person) for person in made]))
 
     # ---- online ----------------------------------------------------------------------------------
 

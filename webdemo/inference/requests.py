@@ -122,7 +122,8 @@ class GenerateRequest(SamplingRequest):
 class ReactRequest(SamplingRequest):
     """A second person for a given one: InterGen person to person (section 5.4), ReGenNet or InterFormer.
 
-    ReGenNet samples with DDIM alone and has no regularisers: its ``damping`` is 0 whatever was given.
+    ReGenNet samples with DDIM alone. Online, what is to come cannot be corrected: ``damping`` is 0 whatever
+    was given.
     InterFormer denoises nothing and takes no words: it heeds ``seed``, ``samples`` and ``cleanup`` alone.
 
     Attributes:
@@ -178,7 +179,8 @@ class ReactRequest(SamplingRequest):
         if self.sampler != "ddim":
             raise InputError(f"ReGenNet samples with ddim, not with {self.sampler!r:.40}: choose ddim.")
         _number("Damping threshold", self.damping, *DAMPING)
-        object.__setattr__(self, "damping", 0.0)
+        if self.mode == "online":
+            object.__setattr__(self, "damping", 0.0)
 
     def _check_interformer(self) -> None:
         if self.role != "a":

@@ -211,10 +211,10 @@ class ReactTab(JobTab):
     @staticmethod
     def fit_method(method: str, other: str = "") -> Updates:
         """Updates of role, steps and damping: what a method does not have cannot be set."""
-        model = METHODS[method][1]
-        regularised = model == "intergen"
-        either = regularised and (not other or METHODS[other][1] == "intergen")
+        _, model, mode = METHODS[method]
+        either = model == "intergen" and (not other or METHODS[other][1] == "intergen")
         role = gr.update(interactive=either, **({} if either else {"value": "a"}))
+        regularised = model != "interformer" and mode == "offline"
         return role, gr.update(value=DEFAULT_STEPS[model]), gr.update(interactive=regularised)
 
     def upload(self, path: str | None) -> Iterator[Updates]:
