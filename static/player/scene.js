@@ -19,7 +19,6 @@ const NOWHERE = [[NaN, NaN, NaN], [NaN, NaN, NaN], [NaN, NaN, NaN]];
 const FLAT = { ambient: 1, diffuse: 0, specular: 0, roughness: 1, fresnel: 0 };
 const MOVING_RATIO = 1;
 const STILL_RATIO = 2;
-const DISC_EM = 0.6; // width of the glyph "●" in ems, by which gl-scatter3d counts sizes
 
 const axis = { visible: false, range: [-HALF, HALF], showspikes: false, tickmode: "array", tickvals: [] };
 
@@ -144,7 +143,7 @@ export class Scene {
       const lineWidth = Array.isArray(sizes) ? sizes.map((s) => 2 * s) : 2 * sizes;
       object.update({ position, color: colors, lineWidth, connectGaps: false });
     } else if (KINDS[name] === "points") {
-      const size = sizes.map?.((s) => s / DISC_EM) ?? sizes / DISC_EM;
+      const size = sizes.map?.((s) => s / discWidth()) ?? sizes / discWidth();
       object.update({ position, color: colors, size, glyph: "●", lineWidth: 0, orthographic: true, opacity: 1, project: [false, false, false] });
     } else {
       const rgba = Array.isArray(colors[0]) ? colors.map((c) => [...c, 1]) : points.map(() => [...colors, 1]);
@@ -247,6 +246,18 @@ function withoutMultisampling() {
   return () => {
     HTMLCanvasElement.prototype.getContext = original;
   };
+}
+
+/** Ems that the glyph "●" is wide, by which gl-scatter3d counts sizes; each machine's font has its own. */
+let disc = null;
+function discWidth() {
+  if (disc === null) {
+    const pen = document.createElement("canvas").getContext("2d");
+    pen.font = "100px normal"; // the font that gl-scatter3d draws with
+    const box = pen.measureText("●");
+    disc = (box.actualBoundingBoxLeft + box.actualBoundingBoxRight) / 100 || 0.44;
+  }
+  return disc;
 }
 
 /** Whether WebGL runs on the processor, as on machines without a graphics card and in tests. */

@@ -14,7 +14,7 @@ const RADII = [
   [/foot|toe/, 0.036],
   [/spine|torso|chest|pelvis/, 0.08],
 ];
-const HEAD_RADIUS = 0.1;
+const HEAD_RADIUS = 0.092;
 
 const sideOf = (name) => (/left|^l[_A-Z]/.test(name) ? "left" : /right|^r[_A-Z]/.test(name) ? "right" : "middle");
 const radiusOf = (name) => (RADII.find(([pattern]) => pattern.test(name.toLowerCase())) || [null, 0.045])[1];
@@ -30,12 +30,16 @@ const find = (names, ...patterns) => {
 export function describe(names, parents) {
   const bones = [];
   parents.forEach((parent, joint) => {
-    if (parent >= 0) bones.push({ from: parent, to: joint, side: sideOf(names[joint]), radius: radiusOf(names[joint]) });
+    if (parent < 0) return;
+    const fromTrunk = sideOf(names[parent]) === "middle"; // limbs begin at the collar and the hip
+    bones.push({ from: parent, to: joint, side: fromTrunk ? "middle" : sideOf(names[joint]), radius: radiusOf(names[joint]) });
   });
-  const joints = names.map((name, joint) => ({
-    side: sideOf(name),
-    radius: Math.min(radiusOf(name), ...bones.filter((b) => b.to === joint || b.from === joint).map((b) => b.radius)),
-  }));
+  // A ball as wide as the thickest bone that ends there, or begins there on its side, rounds square ends.
+  const joints = names.map((name, joint) => {
+    const side = sideOf(name);
+    const here = bones.filter((b) => b.to === joint || (b.from === joint && b.side === side));
+    return { side, radius: Math.max(0, ...here.map((b) => b.radius)) || radiusOf(name) };
+  });
   const pelvis = Math.max(find(names, /pelvis|hips$/, /base_of_spine/, /torso/), 0);
   const wrists = names.map((n, i) => (/wrist/.test(n.toLowerCase()) ? i : -1)).filter((i) => i >= 0);
   return {

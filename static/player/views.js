@@ -38,8 +38,8 @@ export function preset(name, { along, apart: gap, aspect }) {
     case "front": return { yaw: along, elevation: 0.16, distance: BODY_HEIGHT / tangent + gap / 2 + 0.6 };
     case "side": return { yaw: along - Math.PI / 2, elevation: 0.1, distance: fit(gap) };
     case "top": return { yaw: along - Math.PI / 2, elevation: 1.48, distance: Math.max(fit(gap), 4) + 0.5 };
-    case "a": return { yaw: along + Math.PI + 0.28, elevation: 0.3, distance: gap / 2 + 2.3 };
-    case "b": return { yaw: along - 0.28, elevation: 0.3, distance: gap / 2 + 2.3 };
+    case "a": return { yaw: along + Math.PI + 0.4, elevation: 0.3, distance: gap / 2 + 2.7 };
+    case "b": return { yaw: along - 0.4, elevation: 0.3, distance: gap / 2 + 2.7 };
     default: return { yaw: along - 1.05, elevation: 0.24, distance: fit(gap * 0.9) };
   }
 }

@@ -43,6 +43,25 @@ def test_shows_what_was_sent(player):
     assert np.abs(np.array(hook(page, "positions")) - sent[:, -1]).max() < 2e-4
 
 
+def test_balls_are_as_wide_as_asked(player):
+    """In whatever font the machine draws them: joints round the ends of bones only where both agree."""
+    page = player()
+    pause(page)
+    page.evaluate(
+        """() => {
+            const { scene, orbit } = window.__pasdedeux.player;
+            for (const name of scene.names) scene.hide(name);
+            scene.set("jointsA", { points: [[...orbit.center]], colors: [1, 0, 0], sizes: [120] });
+            scene.draw();
+        }"""
+    )
+    page.wait_for_timeout(300)
+    pixels = stage_pixels(page)
+    red = (pixels[..., 0] > 200) & (pixels[..., 1] < 60)
+    across, down = red.any(axis=0).sum(), red.any(axis=1).sum()
+    assert (across, down) == (pytest.approx(120, abs=8), pytest.approx(120, abs=8))
+
+
 def test_time_goes_by_the_clock(player):
     page = player()
     page.locator(".pdd-speed select").select_option("0.5")
