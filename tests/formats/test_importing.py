@@ -10,6 +10,7 @@ from webdemo import formats
 from webdemo.formats.importing import ImportChoices, import_motion
 from webdemo.motion import SMPL22, InputError
 from webdemo.motion.kinematics import forward_kinematics
+from webdemo.motion.retarget import to_smpl
 
 from .rigs import RIGS, bvh_text
 
@@ -108,3 +109,10 @@ def test_a_recording_that_is_too_long_is_refused_before_its_joints_are_fitted(
     monkeypatch.setattr(formats, "to_smpl", lambda motion: pytest.fail("fitted"))
     with pytest.raises(InputError, match=r"kinect\.npy lasts 67 s: cut it to 60 s or less\."):
         formats.read(npy(bodies), name="kinect.npy", longest=60.0)
+
+
+def test_joints_in_one_place_are_no_body() -> None:
+    for joints in (15, 22):
+        nobody = import_motion(npy(np.full((30, joints, 3), 0.5)), name="nobody.npy").people[0]
+        with pytest.raises(InputError, match="lie in one place"):
+            to_smpl(nobody)

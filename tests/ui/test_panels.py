@@ -15,7 +15,7 @@ from webdemo.ui.plain import told
 from webdemo.ui.show import result_payload
 from webdemo.ui.words import cancelled_line, error_line, progress_line, text
 
-from .stub_engine import StubEngine
+from .stub_engine import StubEngine, walking
 
 HOSTILE = "<img src=x onerror=alert(1)> ${alert(2)} {{value}} `x` \"quoted\" 'single'"
 
@@ -134,3 +134,20 @@ def test_progress_and_cancellation_name_the_step() -> None:
 )
 def test_errors_become_sentences(error: Exception, start: str) -> None:
     assert error_line(error).startswith(start)
+
+
+@pytest.mark.parametrize(
+    ("before", "after", "said"),
+    [
+        (4.191, 4.186, ">same<"),
+        (200.4, 200.9, ">same<"),
+        (1.0, 0.5, 'pd-better">−50 %<'),
+        (1.0, 1.5, 'pd-worse">+50 %<'),
+        (0.0, 0.5, 'pd-worse">+0.50<'),
+    ],
+)
+def test_a_change_is_told_only_where_the_figures_shown_differ(before: float, after: float, said: str) -> None:
+    readout = {"before": {"penetration": before}, "after": {"penetration": after}}
+    made = readout_panel(Result(duets=(walking(1.0),), manifest={}, readouts=(readout,)))
+    row = next(row for row in made.split("<tr") if "Penetration" in row)
+    assert said in row

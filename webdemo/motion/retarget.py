@@ -25,6 +25,8 @@ from .transforms import resample
 Array = NDArray[np.floating]
 
 _J = {name: index for index, name in enumerate(SMPL22.joint_names)}
+_NO_BODY = 1e-3
+"""Metres: joints that are nowhere farther apart than this are no body."""
 _LEG = float(SMPL22.bone_lengths[_J["left_knee"]] + SMPL22.bone_lengths[_J["left_ankle"]])
 # Recorded feet stand more truly than generated ones: pinning them only while they are slow keeps the
 # moments of landing and leaving as they were.
@@ -87,7 +89,13 @@ def to_smpl(motion: Clip | Duet) -> Clip | Duet:
 
     A skeleton is fitted to the whole clip (:func:`~webdemo.motion.ik.fit_skeleton`), then the feet are put
     on the floor and planted. Two people share one scale and one floor. SMPL22 comes back as it is.
+
+    Raises:
+        InputError: where all joints of a person lie in one place.
     """
+    for clip in motion.people if isinstance(motion, Duet) else (motion,):
+        if not np.ptp(clip.positions, axis=1).max() > _NO_BODY:
+            raise InputError("All joints of a person lie in one place: export the motion with its bones.")
     if motion.skeleton.joint_names == SMPL22.joint_names:
         return motion
     people = motion.people if isinstance(motion, Duet) else (motion,)

@@ -134,7 +134,7 @@ def _quality_table(
     else:
         head = heads or _heads(len(samples))
     rows = "".join(_quality_row(measure, samples) for measure in QUALITY)
-    return _table("Quality, before → after damping", head, rows)
+    return _table("Quality, before → after damping and clean-up", head, rows)
 
 
 def _quality_row(measure: Measure, samples: Sequence[tuple[Summary | None, Summary]]) -> str:
@@ -154,12 +154,14 @@ def _quality_row(measure: Measure, samples: Sequence[tuple[Summary | None, Summa
 def _change(measure: Measure, before: Summary, after: Summary) -> str:
     old, new = before.get(measure.key), after.get(measure.key)
     smallest = 0.5 * 10**-measure.digits
-    if old is None or new is None or abs(new - old) < smallest:
+    if old is None or new is None or _value(measure, before) == _value(measure, after):
         return '<td class="pd-same">same</td>'
     tone = "pd-better" if new < old else "pd-worse"
     if old < smallest:
         return f'<td class="{tone}">+{number(new - old, measure.digits)}</td>'
     percent = f"{100 * (new - old) / old:+.0f}".replace("-", "−")
+    if percent in ("+0", "−0"):
+        return '<td class="pd-same">same</td>'
     return f'<td class="{tone}">{percent} %</td>'
 
 

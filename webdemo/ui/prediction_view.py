@@ -18,6 +18,7 @@ from webdemo.view.payload import Payload, build_payload, sample_payload
 Array = NDArray[np.floating]
 _BLUE, _VIOLET, _GREY, _ORANGE = "#2468d8", "#8b3fc4", "#8e99aa", "#e07a10"
 _METHOD_COLOURS = (_BLUE, _VIOLET)
+_NO_TRUTH = "Nothing follows the marker to compare with."
 _SIDES = ("left", "right")
 
 
@@ -91,13 +92,15 @@ def _ghost(motion: Clip | Duet, result: PredictResult) -> Clip | Duet | None:
 def curves_figure(*results: PredictResult) -> go.Figure:
     """Error (MPJPE) and speed (MPJS) of each predicted frame, beside holding the last pose and the truth.
 
-    Results of several methods for one past share the axes.
+    Results of several methods for one past share the axes. Where the motion ends at the marker there is
+    no error, and the speed is drawn alone.
     """
     first = results[0]
     fps = first.duets[0].fps
     known = len(first.error)
     times = np.arange(1, len(first.speed) + 1) / fps
-    figure = make_subplots(rows=1, cols=2, subplot_titles=("Error, mm", "Speed, m/s"))
+    titles = ("Error, mm", "Speed, m/s") if known else (f"Speed, m/s. {_NO_TRUTH}",)
+    figure = make_subplots(rows=1, cols=len(titles), subplot_titles=titles)
 
     def line(
         col: int, values: Array, name: str, colour: str, dash: str | None = None, *, listed: bool = True
@@ -115,16 +118,11 @@ def curves_figure(*results: PredictResult) -> go.Figure:
         name = method_name(result)
         if known:
             line(1, np.asarray(result.error), name, colour)
-        line(2, np.asarray(result.speed) * metres, name, colour, listed=not known)
+        line(len(titles), np.asarray(result.speed) * metres, name, colour, listed=not known)
     if known:
         if all(result.manifest.get("model") != "still" for result in results):
             line(1, still_error(first), "Last pose held", _GREY, "dot")
-        line(2, np.asarray(first.true_speed) * metres, "What really followed", _ORANGE)
-    else:
-        figure.add_annotation(
-            text="Nothing follows the marker to compare with.", showarrow=False, x=0.5, y=0.5,
-            xref="x domain", yref="y domain",
-        )  # fmt: skip
+        line(len(titles), np.asarray(first.true_speed) * metres, "What really followed", _ORANGE)
     figure.update_xaxes(title_text="s after the marker", rangemode="tozero")
     figure.update_yaxes(rangemode="tozero")
     figure.update_layout(
