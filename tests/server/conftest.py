@@ -1,5 +1,71 @@
-"""The engine tests' tiny weights, for the server as well."""
+"""The engine tests' tiny weights, for the server as well; and servers that many tests share, since a page
+takes seconds to build."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import pytest
+from fastapi.testclient import TestClient
+
+from webdemo.server import accounts, app
+from webdemo.server.accounts import Users
 
 from ..inference.conftest import weights
+from .clients import client_of, served_on_loopback, settings_for
 
 __all__ = ["weights"]
+OFTEN = 100_000
+"""Requests a minute: nothing that these servers are asked is too often."""
+
+
+@pytest.fixture(scope="package")
+def local(tmp_path_factory: pytest.TempPathFactory) -> Iterator[TestClient]:
+    """A server for its own machine, without accounts."""
+    folder = tmp_path_factory.mktemp("local")
+    with client_of(settings_for(folder, metrics_token="", rate=OFTEN)) as client:
+        yield client
+
+
+@pytest.fixture(scope="package")
+def shared(tmp_path_factory: pytest.TempPathFactory) -> Iterator[TestClient]:
+    """A server with the accounts of ada and eve."""
+    folder = tmp_path_factory.mktemp("shared")
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setitem(accounts._COST, "n", 2**4)
+        for name in ("ada", "eve"):
+            Users(folder / "users").add(name, f"password of {name}")
+        settings = settings_for(
+            folder, users=folder / "users", host="0.0.0.0", hosts=["127.0.0.1"], rate=OFTEN
+        )
+        with client_of(settings) as client:
+            yield client
+
+
+@pytest.fixture(scope="package")
+def pair(tmp_path_factory: pytest.TempPathFactory) -> Iterator[tuple[TestClient, TestClient]]:
+    """Two page processes' servers with one database and the accounts of ada and eve, of whom each may have
+    two runs; a step takes 0.1 s."""
+    folder = tmp_path_factory.mktemp("pair")
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setitem(accounts._COST, "n", 2**4)
+        patch.setattr(app, "SHARE_EVERY", 0.05)
+        for name in ("ada", "eve"):
+            Users(folder / "users").add(name, f"password of {name}")
+        common = {"users": folder / "users", "host": "0.0.0.0", "hosts": ["127.0.0.1"]}
+        common |= {"running": 1, "waiting": 1}
+        one, two = (
+            client_of(settings_for(folder, node=node, **common), pause=0.1) for node in ("one", "two")
+        )
+        with one, two:
+            yield one, two
+
+
+@pytest.fixture(scope="package")
+def served(tmp_path_factory: pytest.TempPathFactory) -> Iterator[tuple[str, int]]:
+    """Where a server listens that waits a second for heads and bodies, and bounds connections."""
+    folder = tmp_path_factory.mktemp("served")
+    with served_on_loopback(
+        folder, header_seconds=1, body_seconds=1, connections=60, address_connections=50
+    ) as address:
+        yield address

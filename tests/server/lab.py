@@ -32,4 +32,4 @@ if __name__ == "__main__":
 
     engine = stub_module().StubEngine(pause=float(os.environ.get("STUB_PAUSE", "0.02")))
     settings = read_settings(port=int(sys.argv[1]), data=sys.argv[2])
-    make_server(settings, engine=engine).run()
+    make_server(settings, engine=engine, scratch=True).run()

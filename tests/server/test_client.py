@@ -2,21 +2,26 @@
 
 from __future__ import annotations
 
+import re
 import socket
 import threading
 import time
 from collections.abc import Iterator
+from functools import partialmethod
 from pathlib import Path
+from typing import Any
 
+import gradio_client
 import pytest
 from gradio_client import Client
 from gradio_client.exceptions import AppError, AuthenticationError
 
+from webdemo.inference.requests import Result
 from webdemo.server.accounts import Users
 from webdemo.server.serve import make_server
 from webdemo.server.settings import Settings
 
-from .lab import stub_module
+from .lab import ROOT, stub_module
 
 pytestmark = pytest.mark.slow
 
@@ -29,7 +34,15 @@ def url(tmp_path_factory: pytest.TempPathFactory) -> Iterator[str]:
         probe.bind(("127.0.0.1", 0))
         port = probe.getsockname()[1]
     settings = Settings(port=port, data=folder / "data", users=folder / "users", free_megabytes=0)
-    server = make_server(settings, engine=stub_module().StubEngine(pause=0.05))
+
+    class Engine(stub_module().StubEngine):  # type: ignore[misc]  # made by a path
+        def run(self, request: Any, cancel: Any = None) -> Iterator[Any]:
+            for event in super().run(request, cancel):
+                if isinstance(event, Result):
+                    event.manifest["weights_sha256"] = "0" * 64
+                yield event
+
+    server = make_server(settings, engine=Engine(pause=0.02))
     thread = threading.Thread(target=server.run, daemon=True)
     thread.start()
     until = time.monotonic() + 120
@@ -64,6 +77,25 @@ def test_a_notebook_sees_how_far_a_run_is(url: str, tmp_path: Path) -> None:
     assert job.result()[0]["manifest"]["request"]["steps"] == 60
     steps = [unit.index for unit in seen if unit.desc and unit.desc.startswith("Denoising: step")]
     assert steps == sorted(steps) and len(set(steps)) > 3 and {unit.length for unit in seen} >= {60}
+
+
+def test_the_documents_examples_run(
+    url: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """What docs/hosting.md shows is what is run here, one block after the other."""
+    text = (ROOT / "docs" / "hosting.md").read_text(encoding="utf-8")
+    blocks = re.findall(r"```python\n(.*?)```", text, re.DOTALL)
+    assert len(blocks) == 2 and "https://lab.example/motion/" in blocks[0] and '"PASSWORD"' in blocks[0]
+    monkeypatch.setattr(gradio_client.Client, "__init__", partialmethod(
+        gradio_client.Client.__init__, verbose=False, download_files=str(tmp_path)
+    ))  # fmt: skip
+    names: dict[str, Any] = {}
+    for block in blocks:
+        block = block.replace("https://lab.example/motion/", url).replace("PASSWORD", "correct horse")
+        exec(compile(block.replace("time.sleep(1)", "time.sleep(0.02)"), "hosting.md", "exec"), names)
+    said = capsys.readouterr().out
+    assert str(tmp_path) in said and "Denoising: step" in said
+    assert names["job"].result()[0]["manifest"]["request"]["prompt"] == "Two people hug."
 
 
 def test_nobody_else_gets_in(url: str) -> None:

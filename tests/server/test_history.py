@@ -16,10 +16,12 @@ from sqlalchemy import update
 
 from webdemo import formats
 from webdemo.inference import Engine
+from webdemo.inference.cancel import CancelToken
 from webdemo.inference.predict_request import PredictRequest, PredictResult, people_of
 from webdemo.inference.requests import GenerateRequest, ReactRequest, Result
 from webdemo.motion import InputError
 from webdemo.server.database import Database, Link, Run, Table
+from webdemo.server.engine import SharedEngine
 from webdemo.server.estimates import units
 from webdemo.server.history import DAY, History
 from webdemo.server.recorder import title_of
@@ -104,6 +106,21 @@ def test_the_verdict_names_what_differs(history: History) -> None:
     )
     told = verdict(old, new)
     assert "up to 2 mm" in told and "the weights (unknown → ffffffff)" in told and "torch (none → 9)" in told
+    elsewhere = replace(new, manifest=old.manifest)
+    assert "same weights and versions; it ran on another machine" in verdict(old, elsewhere)
+    shared = replace(old, manifest=old.manifest | {"runs_in_pass": 3})
+    assert "the first shared its pass through the network with 2 others, which" in verdict(shared, elsewhere)
+
+
+def test_a_result_says_how_many_shared_its_pass(weights: Path) -> None:
+    engine = SharedEngine(weights)
+    one = GenerateRequest(prompt="They wave.", seconds=1.0, steps=2, cleanup=False)
+    pair = [(one, CancelToken()), (replace(one, seed=7), CancelToken())]
+    shared = [event for i, event in engine.run_together(pair) if isinstance(event, Result)]
+    shared.sort(key=lambda result: result.manifest["request"]["seed"])
+    *_, alone = engine.run(one)
+    assert [result.manifest.get("runs_in_pass") for result in (*shared, alone)] == [2, 2, None]
+    assert shared[0].manifest["request"] == alone.manifest["request"]
 
 
 def test_others_see_nothing_but_by_a_link_that_lasts(history: History) -> None:

@@ -18,8 +18,8 @@ from fastapi.testclient import TestClient
 from webdemo.server import sessions
 from webdemo.server.sessions import LeanStates
 
+from .clients import client_of, settings_for
 from .lab import ROOT
-from .test_guard import client_of, settings_for
 
 CALL = "/gradio_api/call/generate"
 FIELDS = ["Two people walk.", 1, 0, 1, 3, 1, 0, "ddim"]
@@ -39,9 +39,9 @@ def states_of(client: TestClient) -> LeanStates:
     return states
 
 
-def test_a_session_weighs_little(client: TestClient) -> None:
+def test_a_session_weighs_little(local: TestClient) -> None:
     """Gradio's own describes every component of the page, 0.35 MB."""
-    states = states_of(client)
+    states = states_of(local)
     _ = states["the first"]
     gc.collect()
     tracemalloc.start()

@@ -17,8 +17,9 @@ from webdemo.server import queue as line
 from webdemo.server import ray_engine
 from webdemo.server.app import engine_of
 from webdemo.server.engine import SharedEngine
-from webdemo.server.queue import FairQueue, QueueLimits
+from webdemo.server.queue import FairQueue
 from webdemo.server.settings import Settings
+from webdemo.server.turns import QueueLimits
 from webdemo.ui.runs import Waiting
 from webdemo.ui.visitor import Visitor
 
@@ -70,19 +71,19 @@ class People:
         monkeypatch.setattr(line, "visitor", lambda: Visitor(person=self.who.name))
         monkeypatch.setattr(line, "TICK", 0.02)
 
-    def ask(self, person: str, wanted: Any) -> None:
+    def ask(self, person: str, wanted: Any, *, alone: bool = False) -> None:
         """Asks in a thread of its own; returns when the request is in the line, runs or was refused."""
         before = self.queue.waiting + self.queue.running
-        thread = threading.Thread(target=self._run, args=(person, wanted), daemon=True)
+        thread = threading.Thread(target=self._run, args=(person, wanted, alone), daemon=True)
         self.threads.append(thread)
         thread.start()
         wait_for(lambda: self.queue.waiting + self.queue.running > before or not thread.is_alive())
         wait_for(lambda: self.queue.running or not thread.is_alive())  # the first is taken at once
 
-    def _run(self, person: str, wanted: Any) -> None:
+    def _run(self, person: str, wanted: Any, alone: bool) -> None:
         self.who.name = person
         try:
-            for event in self.queue.run(f"session of {wanted.name}", wanted):
+            for event in self.queue.run(f"session of {wanted.name}", wanted, alone=alone):
                 if isinstance(event, Waiting):
                     self.waits.setdefault(wanted.name, []).append(event)
                 if isinstance(event, Result):
@@ -147,6 +148,35 @@ def test_compatible_runs_of_different_people_share_a_pass(monkeypatch: pytest.Mo
     assert gate.order[0] == ("alone first",)
     assert gate.order[1] == ("a0", "c0", "d0")  # one each before a's second; three motions at most
     assert sorted(gate.order[2:]) == [("a1",), ("b0",)]
+
+
+def test_run_again_shares_no_pass(monkeypatch: pytest.MonkeyPatch) -> None:
+    gate, people = make(monkeypatch, together=True)
+    people.ask("first", request("alone first"))
+    people.ask("a", request("a"))
+    people.ask("b", request("b"), alone=True)
+    people.ask("c", request("c"))
+    gate.open.release(4)
+    people.end()
+    assert gate.order[1:] == [("a", "c"), ("b",)]
+    assert all(isinstance(end, Result) for end in people.ends.values())
+
+
+def test_a_person_has_so_many_at_work(monkeypatch: pytest.MonkeyPatch) -> None:
+    """In one pass as well as in several at a time."""
+    for options in ({"together": True, "workers": 1}, {"together": False, "workers": 4}):
+        gate, people = make(monkeypatch, running=2, waiting=8, **options)
+        people.ask("busy", request("alone 0"))
+        for i in range(1, 5):
+            people.ask("busy", request(f"{i}"))
+        people.ask("other", request("other"))
+        gate.open.release(1)
+        wait_for(lambda queue=people.queue: queue.waiting <= 4)
+        mine = [sum(name != "other" for name in names) for names in gate.order]
+        assert max(mine) <= 2 and people.queue.running <= 3
+        gate.open.release(9)
+        people.end()
+        assert all(sum(name != "other" for name in names) <= 2 for names in gate.order)
 
 
 def test_a_person_may_not_fill_the_line(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -27,18 +27,24 @@ from .health import Health
 from .history import History
 from .login import login_routes
 from .memory import give_back
+from .nodes import Node
 from .pages import PageCache
 from .places import SEEN_EVERY, Places
-from .queue import Batcher, FairQueue, QueueLimits
+from .queue import FairQueue
 from .recorder import Recorder
-from .sessions import keep_states_lean
+from .scratch import Scratch
+from .sessions import keep_states_lean, kept_in_cache
 from .settings import Settings
+from .shares import SHARE_EVERY, Shares
+from .turns import Batcher, QueueLimits
 from .visitors import Visitors
 
 log = logging.getLogger(__name__)
 
 CLEAN_EVERY = 900.0
 """Seconds between two looks at what is too old or too much."""
+TIDY_EVERY = 60.0
+"""Seconds between two looks at the files that are there for a while."""
 GIVE_BACK_EVERY = 5.0
 """Seconds between two returns of memory that runs have left."""
 ANSWER_SECONDS = 5.0
@@ -58,9 +64,16 @@ class Lab:
     history: History
     queue: FairQueue
     places: Places
+    shares: Shares
     health: Health
     figures: Figures
     answers: OpenAnswers
+    node: Node | None = None
+    tidy: Callable[[], Any] = lambda: None
+
+    def share(self) -> None:
+        """Tells the other processes what people had here, and counts what they had there."""
+        self.queue.charge_elsewhere(self.shares.exchange())
 
     def stop(self) -> None:
         """Takes no more runs and lets those that run end, up to the grace that the settings give; blocks."""
@@ -75,7 +88,12 @@ class Lab:
 
 
 def create_app(
-    settings: Settings, *, engine: EngineLike | None = None, batcher: Batcher | None = None
+    settings: Settings,
+    *,
+    engine: EngineLike | None = None,
+    batcher: Batcher | None = None,
+    node: Node | None = None,
+    scratch: Scratch | None = None,
 ) -> FastAPI:
     """Builds the application.
 
@@ -83,11 +101,14 @@ def create_app(
         settings: all of them.
         engine: what generates; by default the shipped networks, which also share passes.
         batcher: runs several requests of ``engine`` at once.
+        node: this process's own name; without it the settings' is taken to be.
+        scratch: for files that are made for download; in the system's temporary folder by default.
 
     Raises:
         InputError: where the settings would leave the server open unsaid, or what they name cannot be used.
     """
     settings.check()
+    name = settings.node if node is None else node.name
     if engine is None:
         engine, batcher = engine_of(settings)
     users = Users(settings.users) if settings.users is not None else None
@@ -95,7 +116,7 @@ def create_app(
         _ = users.names  # a file that cannot be read is told now
     database = Database(settings.database_url)
     history = History(
-        database, settings.motions, node=settings.node, keep_days=settings.keep_days,
+        database, settings.motions, node=name, keep_days=settings.keep_days,
         keep_bytes=settings.keep_megabytes * 2**20, keep_favourites=settings.keep_favourites,
         link_days=settings.link_days, free_bytes=settings.free_megabytes * 2**20,
     )  # fmt: skip
@@ -106,12 +127,20 @@ def create_app(
         address=settings.waiting * settings.address_people,
         workers=getattr(engine, "parallel", 1),
     )  # fmt: skip
-    queue = FairQueue(engine, limits, batcher=batcher, figures=figures, broken=health.broken)
+    shares = Shares(database, name)
+    queue = FairQueue(
+        engine, limits, batcher=batcher, figures=figures, broken=health.broken, served=shares.add
+    )  # fmt: skip
     figures.watch(waiting=lambda: queue.waiting, running=lambda: queue.running, ready=lambda: health.ready)
-    places = Places(database, settings.node, settings.running + settings.waiting)
+    places = Places(database, name, settings.running + settings.waiting)
+    page = build_page(
+        engine, loader=Loader(engine), runs=Recorder(queue, history, places), history=history,
+        files=scratch.files if scratch is not None else None,
+    )  # fmt: skip
     lab = Lab(
-        settings=settings, database=database, history=history, queue=queue, places=places, health=health,
-        figures=figures, answers=OpenAnswers(),
+        settings=settings, database=database, history=history, queue=queue, places=places, shares=shares,
+        health=health, figures=figures, answers=OpenAnswers(), node=node,
+        tidy=lambda: scratch.clean(kept_in_cache(page)) if scratch is not None else None,
     )  # fmt: skip
     sign_ins = SignIns(database, users, settings.session_hours) if users is not None else None
     visitors = Visitors(settings, sign_ins)
@@ -123,7 +152,6 @@ def create_app(
         app.include_router(login_routes(settings, sign_ins, visitors))
     app.add_middleware(PageCache)
     app.add_middleware(Guard, settings=settings, visitors=visitors, figures=figures, answers=lab.answers)
-    page = build_page(engine, loader=Loader(engine), runs=Recorder(queue, history, places), history=history)
     page.state_session_capacity = PAGES
     page.max_threads = settings.queue + 64  # whoever waits in line holds a thread
     page.queue(default_concurrency_limit=4, max_size=2 * settings.queue + 64)
@@ -172,15 +200,17 @@ def _add_routes(app: FastAPI, lab: Lab) -> None:
 @contextlib.asynccontextmanager
 async def _lifespan(app: FastAPI) -> AsyncIterator[None]:
     lab: Lab = app.state.lab
-    lost = await run_in_threadpool(lab.history.recover)
+    lost = await run_in_threadpool(lab.history.recover, lab.node.dead if lab.node else None)
     await run_in_threadpool(lab.places.clear)
     if lost:
         log.warning("%d runs of the last time were interrupted.", lost)
     tasks = [
         asyncio.create_task(_later(WARM_UP_AFTER, lab.health.probe)),
         asyncio.create_task(_every(CLEAN_EVERY, lab.history.clean)),
+        asyncio.create_task(_every(TIDY_EVERY, lab.tidy)),
         asyncio.create_task(_every(GIVE_BACK_EVERY, give_back)),
         asyncio.create_task(_every(SEEN_EVERY, lab.places.refresh)),
+        asyncio.create_task(_every(SHARE_EVERY, lab.share)),
     ]
     try:
         yield
@@ -191,6 +221,8 @@ async def _lifespan(app: FastAPI) -> AsyncIterator[None]:
         if close := getattr(lab.queue.engine, "close", None):
             await run_in_threadpool(close)
         lab.database.close()
+        if lab.node is not None:
+            lab.node.close()
 
 
 async def _later(seconds: float, job: Callable[[], Any]) -> None:

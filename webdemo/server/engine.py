@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
+from dataclasses import replace
 from typing import Any
 
 from webdemo.inference.cancel import CancelToken
@@ -30,10 +31,16 @@ class SharedEngine(LazyEngine):
     def run_together(
         self, items: Sequence[tuple[Any, CancelToken]]
     ) -> Iterator[tuple[int, Progress | Result | Exception]]:
-        """(which request, what happened to it); each ends in a Result or an Exception."""
+        """(which request, what happened to it); each ends in a Result or an Exception.
+
+        A result's manifest says how many shared its pass, since they change it by rounding.
+        """
         from webdemo.inference.batch import run_batch
 
-        yield from run_batch(self._made(), items)
+        for i, event in run_batch(self._made(), items):
+            if isinstance(event, Result) and len(items) > 1:
+                event = replace(event, manifest={**event.manifest, "runs_in_pass": len(items)})
+            yield i, event
 
 
 def _seconds(request: GenerateRequest | ReactRequest) -> float:

@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
+import errno
 import hmac
-import html
 import json
 import logging
 import re
+import shutil
 import time
 import uuid
 from http.cookies import CookieError, SimpleCookie
@@ -20,6 +21,7 @@ from starlette.types import ASGIApp, Message, Receive, Scope, Send
 from webdemo.ui.visitor import Visitor
 
 from .bodies import BoundedBody, Refused, declared_length, too_large
+from .cards import message_card
 from .figures import Figures
 from .logs import REFERENCE
 from .settings import Settings, is_loopback, on_a_space
@@ -36,8 +38,9 @@ _CLOSED = re.compile(
     re.IGNORECASE,
 )
 """What Gradio offers and this page does not use: proxies, code editing, monitoring, other hosts' files."""
-_NOT_HEARD = (b"x-forwarded-host", b"x-gradio-server")
-"""Headers from which Gradio would take the page's address, whoever sends them: here it is Host's."""
+_NOT_HEARD = (b"x-forwarded-host", b"x-forwarded-proto", b"x-gradio-server")
+"""Headers from which Gradio would take the page's address, whoever sends them: here it is Host's, and the
+scheme what a proxy says that is believed."""
 _CHANGING = ("POST", "PUT", "PATCH", "DELETE")
 _LONGEST_URL = 4096
 _ROUTES = frozenset(
@@ -60,6 +63,8 @@ _API_ROUTES = frozenset(
 )  # fmt: skip
 
 
+_NOTHING = "There is nothing here."
+_DISK = "The server's disk is full, so nothing more can be uploaded: tell the person who runs it."
 _ANSWERS = frozenset(f"{API}{name}" for name in ("queue/data", "call", "run", "api"))
 """Where the results of runs are sent."""
 
@@ -106,17 +111,25 @@ class Guard:
         cookie = ""
 
         body: BoundedBody | None = None
+        held: list[Message] = []
+        instead = (500, 404) if b"text/html" in headers.get(b"accept", b"") else (500,)
 
         async def answer(message: Message) -> None:
-            nonlocal status, first
             if body is not None and body.refused is not None and not status:
                 return  # what its reader makes of the refusal is not the answer
+            if held or (message["type"] == "http.response.start" and message["status"] in instead):
+                held.append(message)  # there is something better to say, or an error follows that says more
+                return
+            await pass_on(message)
+
+        async def pass_on(message: Message) -> None:
+            nonlocal status, first
             if message["type"] == "http.response.start":
                 status, first = message["status"], time.perf_counter() - began
                 self._dress(MutableHeaders(scope=message), reference, cookie)
             await send(message)
 
-        route = "(none)"
+        route, root = "(none)", self.settings.root_path
         try:
             path = self._path(scope)
             heard = [pair for pair in scope["headers"] if pair[0] not in _NOT_HEARD or on_a_space()]
@@ -138,18 +151,27 @@ class Guard:
                     refused, body = body.refused if body else None, None
                     if refused is not None:
                         raise refused
+                if held and held[0]["status"] == 404:
+                    raise Refused(404, _NOTHING, "not found")
+                for message in held:
+                    await pass_on(message)
         except Refused as refused:
             self.figures.refused.labels(refused.reason).inc()
             if not status:
-                await _refusal(refused, reference, headers)(scope, receive, answer)
+                await _refusal(refused, reference, headers, root)(scope, receive, pass_on)
         except Exception as error:
+            if isinstance(error, OSError) and error.errno in (errno.ENOSPC, errno.EDQUOT):
+                self.figures.refused.labels("disk").inc()
+                if not status:
+                    await _refusal(Refused(507, _DISK, ""), reference, headers, root)(scope, receive, pass_on)
+                return
             self.figures.errors.labels(type(error).__name__).inc()
             log.exception("A request failed.")
             if not status:
                 broken = Refused(
                     500, f"Something went wrong inside the program; its log says more under {reference}.", ""
                 )
-                await _refusal(broken, reference, headers)(scope, receive, answer)
+                await _refusal(broken, reference, headers, root)(scope, receive, pass_on)
         finally:
             method = scope["method"] if scope["method"] in (*_CHANGING, "GET", "HEAD", "OPTIONS") else "other"
             self.figures.requests.labels(route, method, str(status or 499)).inc()
@@ -172,9 +194,9 @@ class Guard:
         if root and (path == root or path.startswith(f"{root}/")):
             path = path[len(root) :] or "/"
         if "\0" in path or "\\" in path or ".." in path.split("/") or not path.isprintable():
-            raise Refused(404, "There is nothing here.", "bad path")
+            raise Refused(404, _NOTHING, "bad path")
         if _CLOSED.match(path):
-            raise Refused(404, "There is nothing here.", "closed")
+            raise Refused(404, _NOTHING, "closed")
         return path
 
     async def _admit(
@@ -190,16 +212,22 @@ class Guard:
         if visitor is None and (path in PUBLIC or path.startswith("/login/")):
             visitor = Visitor(f"address {address}", "", reference, base)
         if scope["method"] in _CHANGING:
-            self.rates.take(visitor.person if visitor else f"address {address}")
-            if visitor is not None and visitor.address:  # whoever throws their cookie away is not new
-                self.address_rates.take(visitor.address)
-            if visitor is None:
-                return None, None
             upload = path.startswith(f"{API}upload")
             # An upload's form has a little around the file.
             most = (self.settings.upload_megabytes + 1 if upload else self.settings.body_megabytes) * 2**20
-            if declared_length(headers) > most:
+            declared = declared_length(headers)
+            weight = 1.0
+            if upload and declared <= most:  # its megabytes count as requests; not declared, as the most
+                weight += (declared if b"content-length" in headers else most) / 2**20
+            self.rates.take(visitor.person if visitor else f"address {address}", weight)
+            if visitor is not None and visitor.address:  # whoever throws their cookie away is not new
+                self.address_rates.take(visitor.address, weight)
+            if visitor is None:
+                return None, None
+            if declared > most:
                 raise too_large(most)
+            if upload:
+                self._check_room(declared)
             body = BoundedBody(receive, most=most, seconds=self.settings.body_seconds)
             if not upload and path.startswith(API):
                 self._check_session(await body.whole(), visitor.person)
@@ -222,6 +250,11 @@ class Guard:
         elsewhere = bool(origin) and urlsplit(origin).netloc != host
         if elsewhere or headers.get(b"sec-fetch-site") == b"cross-site":
             raise Refused(403, "Another site's page cannot do this: open the page itself.", "cross-site")
+
+    def _check_room(self, size: float) -> None:
+        free = self.settings.free_megabytes * 2**20
+        if free and shutil.disk_usage(self.settings.data).free < free + size:
+            raise Refused(507, _DISK, "disk")
 
     def _check_session(self, body: bytes, person: str) -> None:
         if not body:
@@ -300,14 +333,12 @@ def _sign_in_first(root: str, path: str, scope: Scope, headers: dict[bytes, byte
         query = scope.get("query_string", b"").decode("latin-1")
         wanted = path + (f"?{query}" if query else "")
         return RedirectResponse(f"{root}/login?next={quote(wanted, safe='')}", status_code=303)
-    return JSONResponse({"detail": "Sign in first."}, status_code=401)
+    sentence = "Sign in first: reload the page, or give auth=(name, password) where a program asks."
+    return JSONResponse({"detail": sentence}, status_code=401)
 
 
-def _refusal(refused: Refused, reference: str, headers: dict[bytes, bytes]) -> Response:
+def _refusal(refused: Refused, reference: str, headers: dict[bytes, bytes], root: str = "") -> Response:
     if b"text/html" in headers.get(b"accept", b""):
-        sentence = html.escape(refused.sentence)
-        return HTMLResponse(
-            f"<!doctype html><title>Pas de Deux</title><p>{sentence}</p><p><small>{reference}</small></p>",
-            status_code=refused.status,
-        )
+        page = message_card(refused.sentence, home=f"{root}/", reference=reference)
+        return HTMLResponse(page, status_code=refused.status)
     return JSONResponse({"detail": refused.sentence, "request": reference}, status_code=refused.status)

@@ -10,7 +10,7 @@ import re
 import secrets
 import shutil
 import time
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -125,12 +125,18 @@ class History:
         with self.database.session.begin() as session:
             session.execute(update(Run).where(Run.id == run).values(state=state, message=message))
 
-    def recover(self) -> int:
-        """Marks the runs that this node's last life left unfinished; returns how many.
+    def recover(self, dead: Callable[[Sequence[str]], Sequence[str]] | None = None) -> int:
+        """Marks the runs that processes left unfinished which are no more; returns how many.
 
         What a killed process left half-written is removed.
+
+        Args:
+            dead: which of the named processes are no more; by default this one's last life alone.
         """
-        unfinished = (Run.state == "running", Run.node == self.node)
+        with self.database.session() as session:
+            nodes = list(session.scalars(select(Run.node).where(Run.state == "running").distinct()))
+        gone = dead(nodes) if dead is not None else [self.node]
+        unfinished = (Run.state == "running", Run.node.in_(gone))
         with self.database.session.begin() as session:
             lost = list(session.scalars(select(Run.id).where(*unfinished)))
             session.execute(

@@ -112,7 +112,7 @@ def run_load(*, people: int, minutes: float, steps: int = 20, seed: int = 0) -> 
         env = os.environ | {
             "PASDEDEUX_HOST": "127.0.0.1", "PASDEDEUX_PORT": str(port), "PASDEDEUX_DATA": folder,
             "PASDEDEUX_QUEUE": str(max(64, people)), "PASDEDEUX_FREE_MEGABYTES": "0",
-            "PASDEDEUX_LOG_LEVEL": "warning", "GRADIO_TEMP_DIR": f"{folder}/gradio",
+            "PASDEDEUX_LOG_LEVEL": "warning",
         }  # fmt: skip
         with open(Path(folder) / "log", "w+", encoding="utf-8") as log:
             server = subprocess.Popen(

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import html
 from urllib.parse import urlsplit
 
 from fastapi import APIRouter, Form, Request
@@ -12,34 +11,10 @@ from starlette.responses import HTMLResponse, JSONResponse, RedirectResponse, Re
 from webdemo.motion import InputError
 
 from .accounts import SignIns
+from .cards import sign_in_card
 from .guard import cookie_header
 from .settings import Settings
 from .visitors import SESSION_COOKIE, Visitors
-
-_PAGE = """<!doctype html>
-<html lang="en"><head><meta charset="utf-8"><meta name="viewport" content="width=device-width">
-<title>Pas de Deux</title><style>
-:root {{ color-scheme: light dark; font: 16px/1.5 system-ui, sans-serif; }}
-body {{ margin: 0; min-height: 100vh; display: grid; place-items: center;
-  background: #f4f6fa; color: #1e2733; }}
-main {{ width: min(22rem, 90vw); padding: 2rem; border-radius: 12px; background: #fff;
-  box-shadow: 0 1px 4px #0002; }}
-h1 {{ margin: 0 0 1rem; font-size: 1.3rem; }}
-label {{ display: block; margin: 0 0 .9rem; font-weight: 600; font-size: .9rem; }}
-input {{ display: block; width: 100%; box-sizing: border-box; margin-top: .3rem;
-  padding: .55rem .7rem; font: inherit;
-  border: 1px solid #c3cad5; border-radius: 8px; background: transparent; color: inherit; }}
-button {{ width: 100%; padding: .6rem; border: 0; border-radius: 8px; font: inherit; font-weight: 600;
-  background: #2563eb; color: #fff; cursor: pointer; }}
-p {{ margin: 0 0 1rem; color: #b42318; }}
-@media (prefers-color-scheme: dark) {{
-  body {{ background: #0f131a; color: #e6eaf0; }} main {{ background: #181d27; }}
-  input {{ border-color: #3a4454; }} p {{ color: #ff9c92; }} }}
-</style></head><body><main><h1>Pas de Deux</h1>{error}
-<form method="post" action="{action}"><input type="hidden" name="next" value="{next}">
-<label>Name<input name="username" autocomplete="username" autofocus required maxlength="40"></label>
-<label>Password<input name="password" type="password" autocomplete="current-password" required></label>
-<button>Sign in</button></form></main></body></html>"""
 
 
 def login_routes(settings: Settings, sign_ins: SignIns, visitors: Visitors) -> APIRouter:
@@ -47,9 +22,8 @@ def login_routes(settings: Settings, sign_ins: SignIns, visitors: Visitors) -> A
     router = APIRouter()
     root = settings.root_path
 
-    def page(wanted: str, error: str = "", status: int = 200) -> HTMLResponse:
-        told = f'<p role="alert">{html.escape(error)}</p>' if error else ""
-        body = _PAGE.format(error=told, action=f"{root}/login", next=html.escape(wanted, quote=True))
+    def page(wanted: str, *, name: str = "", error: str = "", status: int = 200) -> HTMLResponse:
+        body = sign_in_card(action=f"{root}/login", wanted=wanted, name=name[:40], error=error)
         return HTMLResponse(body, status_code=status, headers={"Cache-Control": "no-store"})
 
     def cookie(request: Request, token: str, seconds: float) -> str:
@@ -76,7 +50,7 @@ def login_routes(settings: Settings, sign_ins: SignIns, visitors: Visitors) -> A
             error, status = str(reason), 429
         if token is None:
             return (
-                page(_own_path(next), error, status)
+                page(_own_path(next), name=username, error=error, status=status)
                 if in_browser
                 else JSONResponse({"detail": error}, status_code=status)
             )

@@ -1,20 +1,16 @@
 """The line that runs wait in: who has had least goes first, and runs that fit together share a pass.
 
-Each person has an account of the work done for them, in units of motion times denoising steps; the next run
-is that of the waiting person who has had least (start-time fair queueing). Nobody gains by asking more often,
-and a long run costs its owner later turns. Runs of one model group go to one worker.
+Runs of one model group go to one worker; :mod:`webdemo.server.turns` says whose turn it is.
 """
 
 from __future__ import annotations
 
-import itertools
 import logging
 import queue
 import threading
 import time
-from collections.abc import Callable, Iterator, Sequence
-from dataclasses import dataclass, field
-from typing import Any, Protocol
+from collections.abc import Callable, Iterator, Mapping
+from typing import Any
 
 from webdemo.inference.cancel import CancelToken
 from webdemo.inference.requests import Cancelled, Progress, Result
@@ -24,6 +20,7 @@ from webdemo.ui.visitor import Visitor, visitor
 
 from .estimates import Line, Pace, units
 from .figures import Figures
+from .turns import Batcher, Job, QueueLimits, Turns
 
 log = logging.getLogger(__name__)
 
@@ -31,63 +28,6 @@ TICK = 0.5
 """Seconds between two looks at the place in the line."""
 MAX_GROUPS = 8
 """Model groups with workers of their own; further ones share them."""
-MAX_ACCOUNTS = 1000
-"""Accounts of people who are no longer here are dropped above this."""
-
-
-class Batcher(Protocol):
-    """Runs several requests in one pass."""
-
-    def key(self, request: Any) -> tuple[Any, ...] | None:
-        """Requests of equal keys may share a pass; None for one that must run alone."""
-
-    def fits(self, requests: Sequence[Any], other: Any) -> bool:
-        """Whether another request of the same key may join these."""
-
-    def run_together(
-        self, items: Sequence[tuple[Any, CancelToken]]
-    ) -> Iterator[tuple[int, Progress | Result | Exception]]:
-        """(which request, what happened to it); each ends in a Result or an Exception."""
-
-
-@dataclass(frozen=True, kw_only=True)
-class QueueLimits:
-    """How much may run and wait: of one person, from one address, of all; how many motions in one pass, and
-    how many batches of a model at a time."""
-
-    running: int = 2
-    waiting: int = 4
-    address: int = 32
-    queue: int = 64
-    batch: int = 8
-    workers: int = 1
-
-
-@dataclass(eq=False)
-class Job:
-    """One run in the line.
-
-    Attributes:
-        person: who waits for it.
-        group: which worker does it.
-        cost: its work, in units.
-        events: progress, then a result or an error; read by whoever asked.
-        told: seconds that were foretold when it came.
-        batch: how many shared its pass.
-    """
-
-    person: str
-    request: Any
-    group: str
-    cost: float
-    key: tuple[Any, ...] | None
-    address: str = ""
-    token: CancelToken = field(default_factory=CancelToken)
-    events: queue.SimpleQueue[Any] = field(default_factory=queue.SimpleQueue)
-    came: float = field(default_factory=time.monotonic)
-    started: float = 0.0
-    told: float | None = None
-    batch: int = 1
 
 
 class FairQueue:
@@ -99,6 +39,7 @@ class FairQueue:
         batcher: runs several at once; without it each runs alone.
         figures: what is counted.
         broken: told of errors that are no user's.
+        served: told of the work that a person has, as it begins.
     """
 
     def __init__(
@@ -109,17 +50,18 @@ class FairQueue:
         batcher: Batcher | None = None,
         figures: Figures | None = None,
         broken: Callable[[BaseException], None] = lambda error: None,
+        served: Callable[[str, float], None] = lambda person, units: None,
     ) -> None:
         self.engine = engine
         self.limits = limits or QueueLimits()
         self.batcher = batcher
         self.figures = figures or Figures()
-        self.broken = broken
+        self.broken, self.served = broken, served
         self.pace = Pace()
         self._change = threading.Condition()
         self._waiting: list[Job] = []
         self._running: list[Job] = []
-        self._served: dict[str, float] = {}
+        self._turns = Turns(self.limits, batcher)
         self._sessions: dict[str, CancelToken] = {}
         self._workers: set[str] = set()
         self._stopping = False
@@ -143,17 +85,27 @@ class FairQueue:
                 self._change.notify_all()
         return token is not None
 
-    def run(self, session: str, request: Any) -> Iterator[Progress | Result]:
+    def charge_elsewhere(self, totals: Mapping[str, float]) -> None:
+        """Counts the work that people have had at other processes, see :class:`Turns`."""
+        with self._change:
+            self._turns.charge_elsewhere(totals)
+
+    def run(self, session: str, request: Any, *, alone: bool = False) -> Iterator[Progress | Result]:
         """Runs a request: its place in the line, its progress, its result.
 
         An earlier run of the same session is cancelled. Closing the iterator cancels the run.
+
+        Args:
+            session: whose run it is.
+            request: what is asked.
+            alone: let no other run share its pass, so that the same request gives the same bytes.
 
         Raises:
             InputError: where the line or the person's share of it is full, the server stops, or the engine
                 cannot do what is asked.
             Cancelled: where the run was cancelled.
         """
-        job = self._enter(session, request, visitor())
+        job = self._enter(session, request, visitor(), alone=alone)
         try:
             yield from self._watch(job)
         finally:
@@ -190,8 +142,8 @@ class FairQueue:
 
     # ---- the line --------------------------------------------------------------------------------
 
-    def _enter(self, session: str, request: Any, who: Visitor) -> Job:
-        key, person = self.batcher.key(request) if self.batcher else None, who.person
+    def _enter(self, session: str, request: Any, who: Visitor, *, alone: bool = False) -> Job:
+        key, person = self.batcher.key(request) if self.batcher and not alone else None, who.person
         job = Job(person, request, group="", cost=units(request), key=key, address=who.address)
         with self._change:
             if self._stopping:
@@ -215,29 +167,12 @@ class FairQueue:
                     f"The queue is full ({len(self._waiting)} runs wait): try again in a few minutes."
                 )
             job.group = self._group(request)
-            self._meet(person)
+            self._turns.meet(person, self._waiting, self._running)
             self._sessions[session] = job.token
             self._waiting.append(job)
             job.told = self._line(job.group).place(job)[1]
             self._change.notify_all()
         return job
-
-    def _meet(self, person: str) -> None:
-        """Opens an account: whoever comes anew has had as much as the least served who are here.
-
-        What runs now does not count for that, or its owner's next run would be level with the newcomer's.
-        """
-        here = {job.person for job in itertools.chain(self._waiting, self._running)}
-        before = {name: self._served[name] for name in here}
-        for job in self._running:
-            before[job.person] -= job.cost
-        least = min(before.values(), default=0.0)
-        if person not in here:
-            self._served[person] = max(self._served.get(person, 0.0), least)
-        if not here:  # an idle server forgets
-            self._served = {person: 0.0}
-        elif len(self._served) > MAX_ACCOUNTS:
-            self._served = {name: self._served[name] for name in {*here, person}}
 
     def _group(self, request: Any) -> str:
         """The model group of a request, with its workers started."""
@@ -277,46 +212,11 @@ class FairQueue:
         return Line(
             waiting=[job for job in self._waiting if job.group == group],
             running=[job for job in self._running if job.group == group],
-            served=self._served,
-            pick=self._pick,
+            served=self._turns.served,
+            pick=self._turns.pick,
             pace=self.pace.of(group),
             workers=self.limits.workers,
         )
-
-    def _pick(self, waiting: list[Job], served: dict[str, float], running: Sequence[Job]) -> list[Job]:
-        """The next batch: the least served person's first run, and whatever may share its pass."""
-        count: dict[str, int] = {}
-        for job in running:
-            count[job.person] = count.get(job.person, 0) + 1
-        batch: list[Job] = []
-        rest = list(waiting)
-        extra: dict[str, float] = {}
-        while rest:
-            able = [
-                job
-                for job in rest
-                if count.get(job.person, 0) < self.limits.running and self._joins(batch, job)
-            ]
-            if not able:
-                break
-            job = min(
-                able, key=lambda j: (served.get(j.person, 0.0) + extra.get(j.person, 0.0), waiting.index(j))
-            )
-            batch.append(job)
-            rest.remove(job)
-            count[job.person] = count.get(job.person, 0) + 1
-            extra[job.person] = extra.get(job.person, 0.0) + job.cost
-            if job.key is None:
-                break
-        return batch
-
-    def _joins(self, batch: Sequence[Job], job: Job) -> bool:
-        if not batch:
-            return True
-        if self.batcher is None or job.key is None or job.key != batch[0].key:
-            return False
-        motions = sum(other.request.samples for other in batch) + job.request.samples
-        return motions <= self.limits.batch and self.batcher.fits([o.request for o in batch], job.request)
 
     # ---- the workers -----------------------------------------------------------------------------
 
@@ -330,7 +230,8 @@ class FairQueue:
                 began = time.monotonic()
                 for job in batch:
                     self._waiting.remove(job)
-                    self._served[job.person] = self._served.get(job.person, 0.0) + job.cost
+                    self._turns.charge(job)
+                    self.served(job.person, job.cost)
                     job.batch = len(batch)
                     job.started = began
                     self._running.append(job)
@@ -348,7 +249,7 @@ class FairQueue:
     def _next(self, group: str) -> list[Job]:
         self._waiting = [job for job in self._waiting if not job.token.cancelled]
         mine = [job for job in self._waiting if job.group == group]
-        return self._pick(mine, self._served, self._running) if mine else []
+        return self._turns.pick(mine, self._turns.served, self._running) if mine else []
 
     def _run_batch(self, batch: list[Job]) -> bool:
         """Runs a batch; whether all of it came to its end, so that its time says how long such work takes."""

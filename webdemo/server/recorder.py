@@ -37,7 +37,7 @@ class Recorder:
         """Stops the session's run, waiting or running; False where it has none."""
         return self.queue.cancel(session)
 
-    def run(self, session: str, request: Any) -> Iterator[Progress | Result]:
+    def run(self, session: str, request: Any, *, alone: bool = False) -> Iterator[Progress | Result]:
         """As :meth:`FairQueue.run`; the result comes when it is kept, or with a note that it could not be.
 
         Raises:
@@ -45,16 +45,16 @@ class Recorder:
         """
         try:
             with self.places.held(visitor().person):
-                yield from self._run(session, request)
+                yield from self._run(session, request, alone)
         except SQLAlchemyError as error:
             raise _unwritten(error) from None
 
-    def _run(self, session: str, request: Any) -> Iterator[Progress | Result]:
+    def _run(self, session: str, request: Any, alone: bool) -> Iterator[Progress | Result]:
         who = visitor()
         run = self._begin(who.owner, request) if who.owner else ""
         state, message = "refused", ""
         try:
-            for event in self.queue.run(session, request):
+            for event in self.queue.run(session, request, alone=alone):
                 if isinstance(event, Result):
                     state, event = "done", self._kept(run, event)
                     self._count(event)

@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 import asyncio
+import logging
 import resource
 import socket
 import sys
 from typing import Any
+from urllib.parse import quote
 
 import uvicorn
 from starlette.concurrency import run_in_threadpool
@@ -17,10 +19,16 @@ from webdemo.motion import InputError
 from .app import Lab, create_app
 from .logs import set_up_logs
 from .memory import share_heaps
+from .nodes import Node
+from .scratch import Scratch
 from .settings import Settings
+
+log = logging.getLogger(__name__)
 
 SWITCH_SECONDS = 0.001
 """After which a thread that computes lets another go on, a fifth of Python's own: the page answers sooner."""
+FILES = 512
+"""Open files beside the connections: the database, motions, libraries."""
 CLOSING_SECONDS = 3
 """How long open connections may take once all runs have ended."""
 
@@ -31,20 +39,28 @@ def bounded_protocol(settings: Settings) -> type[H11Protocol]:
 
     class Bounded(H11Protocol):
         address = ""
+        taken = False
         waiting: asyncio.TimerHandle | None = None
 
         def connection_made(self, transport: Any) -> None:
             super().connection_made(transport)
             self.address = self.client[0] if self.client else ""
-            count = open_by_address[self.address] = open_by_address.get(self.address, 0) + 1
-            if len(self.connections) > settings.connections or count > settings.address_connections:
+            count = open_by_address.get(self.address, 0)
+            self.taken = (
+                len(self.connections) <= settings.connections and count < settings.address_connections
+            )
+            if not self.taken:
+                self.connections.discard(self)  # it takes no place of those who are let in
                 transport.close()
                 return
+            open_by_address[self.address] = count + 1
             self._expect_head()
 
         def connection_lost(self, exc: Exception | None) -> None:
             super().connection_lost(exc)
             self._stop_expecting()
+            if not self.taken:
+                return
             left = open_by_address.get(self.address, 1) - 1
             if left > 0:
                 open_by_address[self.address] = left
@@ -92,9 +108,18 @@ class Server(uvicorn.Server):
         await super().shutdown(sockets)
 
 
-def make_server(settings: Settings, **parts: Any) -> Server:
-    """The server for the settings; ``parts`` go to :func:`create_app`."""
-    app = create_app(settings, **parts)
+def make_server(settings: Settings, *, scratch: bool = False, **parts: Any) -> Server:
+    """The server for the settings; ``parts`` go to :func:`create_app`.
+
+    With ``scratch`` all files of this process, Gradio's as well, lie in the data folder.
+    """
+    node = Node(settings.data, settings.node)
+    if scratch:
+        parts["scratch"] = Scratch(
+            settings.data / "scratch" / quote(node.name, safe=""), settings.scratch_megabytes * 2**20
+        )
+        parts["scratch"].take_uploads()
+    app = create_app(settings, node=node, **parts)
     config = uvicorn.Config(
         app, host=settings.host, port=settings.port, http=bounded_protocol(settings), ws="none",
         proxy_headers=True, forwarded_allow_ips=settings.proxies, access_log=False, log_config=None,
@@ -111,7 +136,6 @@ def serve(settings: Settings) -> None:
         InputError: where the settings do not fit or the address is taken.
     """
     settings.check()
-    _raise_file_limit(settings.connections + 512)
     with socket.socket(socket.AF_INET6 if ":" in settings.host else socket.AF_INET) as probe:
         probe.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
         try:
@@ -122,14 +146,26 @@ def serve(settings: Settings) -> None:
                 "set PASDEDEUX_PORT to a free port."
             ) from None
     set_up_logs(settings.log_level, content=settings.log_content)
+    settings = with_room_for_files(settings)
     sys.setswitchinterval(SWITCH_SECONDS)
     share_heaps()
-    server = make_server(settings)
+    server = make_server(settings, scratch=True)
     print(f"Pas de Deux is on {settings.url}", flush=True)
     server.run()
 
 
-def _raise_file_limit(wanted: int) -> None:
+def with_room_for_files(settings: Settings) -> Settings:
+    """The settings with no more connections than the system lets this process have beside its files.
+
+    A process that may open nothing more can neither take a connection nor read its history.
+    """
     soft, hard = resource.getrlimit(resource.RLIMIT_NOFILE)
-    if soft < wanted:
-        resource.setrlimit(resource.RLIMIT_NOFILE, (min(wanted, hard), hard))
+    wanted = settings.connections + FILES
+    if soft != resource.RLIM_INFINITY and soft < wanted:
+        soft = wanted if hard == resource.RLIM_INFINITY else min(wanted, hard)
+        resource.setrlimit(resource.RLIMIT_NOFILE, (soft, hard))
+    if soft == resource.RLIM_INFINITY or soft >= wanted:
+        return settings
+    room = max(soft - FILES, soft // 2)
+    log.warning("The system allows %d open files: %d connections are taken.", soft, room)
+    return settings.model_copy(update={"connections": room})

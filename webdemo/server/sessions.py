@@ -67,6 +67,11 @@ class LeanStates(StateHolder):
         self.time_last_used.pop(session_id, None)
 
 
+def kept_in_cache(page: Blocks) -> set[str]:
+    """Files among Gradio's that belong to the page itself, not to what somebody does with it."""
+    return {str(file) for block in page.blocks.values() for file in getattr(block, "keep_in_cache", ())}
+
+
 def keep_states_lean(app: FastAPI, page: Blocks) -> None:
     """Gives the page that is mounted on an application :class:`LeanStates`."""
     for route in app.routes:

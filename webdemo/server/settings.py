@@ -82,7 +82,10 @@ class Settings(BaseSettings):
     keep_megabytes: float = Field(2000, gt=0, description="size of all runs above which the oldest go")
     keep_favourites: int = Field(200, ge=0, description="favourites a person")
     link_days: float = Field(30, gt=0, le=3650, description="how long a link opens a run for others")
-    free_megabytes: float = Field(100, ge=0, description="free disk below which no run is taken")
+    free_megabytes: float = Field(100, ge=0, description="free disk below which no run or upload is taken")
+    scratch_megabytes: float = Field(
+        2000, gt=0, description="size of uploads and of files made for download above which the oldest go"
+    )
 
     # ---- the queue
     running: int = Field(2, ge=1, description="runs of one person at a time")

@@ -116,15 +116,19 @@ class Rates:
         self.a_minute = a_minute
         self._buckets: OrderedDict[str, tuple[float, float]] = OrderedDict()
 
-    def take(self, person: str) -> None:
-        """Takes one request; raises Refused where the bucket is empty."""
+    def take(self, person: str, weight: float = 1.0) -> None:
+        """Takes a request, or one as heavy as several; raises Refused where too little is left.
+
+        A bucket that is full is enough for any one request.
+        """
         now = time.monotonic()
         left, then = self._buckets.pop(person, (float(self.a_minute), now))
         left = min(self.a_minute, left + (now - then) * self.a_minute / 60)
-        self._buckets[person] = (max(left - 1, 0.0), now)
+        enough = left >= min(weight, self.a_minute)
+        self._buckets[person] = (max(left - weight, 0.0) if enough else left, now)
         while len(self._buckets) > _MOST:
             self._buckets.popitem(last=False)
-        if left < 1:
+        if not enough:
             raise Refused(429, "These are too many requests in a minute: wait a little.", "rate")
 
 

@@ -15,7 +15,7 @@ from webdemo.inference.requests import GenerateRequest, ReactRequest, Result, Sa
 from webdemo.motion import InputError
 
 from .actors import Source
-from .history import Opened
+from .history import Entry, Opened
 
 Request = SamplingRequest | PredictRequest
 _KINDS: dict[str, type[Request]] = {
@@ -43,6 +43,18 @@ def request_of(opened: Opened) -> Request:
     return kind(**given)
 
 
+def request_of_unfinished(entry: Entry) -> Request:
+    """The request of a run that has no result.
+
+    Raises:
+        InputError: where it was made from somebody's motion, which is kept with a result alone.
+    """
+    if entry.kind != "generate":
+        raise InputError("This run ended before its motion was kept: send the file again in its tab.")
+    asked = entry.request
+    return GenerateRequest(**{f.name: asked[f.name] for f in fields(GenerateRequest) if f.name in asked})
+
+
 def actor_source(opened: Opened) -> Source:
     """The given person of a kept reaction, whom its result holds unchanged."""
     asked = opened.entry.request
@@ -64,10 +76,13 @@ def verdict(old: Result, new: Result) -> str:
         apart = f"joints differ by up to {1000 * largest:.3g} mm"
     if changed:
         return f"Run again: another motion ({apart}), because of {'; '.join(changed)}."
-    return (
-        f"Run again: {apart}, with the same weights and versions; runs that share a pass with others' "
-        "differ by rounding."
-    )
+    shared = [
+        f"the {which} shared its pass through the network with {others} other{'s' if others > 1 else ''}"
+        for which, result in (("first", old), ("second", new))
+        if (others := result.manifest.get("runs_in_pass", 1) - 1)
+    ]
+    why = " and ".join(shared) if shared else "it ran on another machine"
+    return f"Run again: {apart}, with the same weights and versions; {why}, which rounds otherwise."
 
 
 def _changed(old: Mapping[str, Any], new: Mapping[str, Any]) -> list[str]:

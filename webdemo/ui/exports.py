@@ -19,7 +19,7 @@ from pathlib import Path
 from webdemo import formats
 from webdemo.formats.one_person import SUFFIXES
 from webdemo.inference.requests import Result
-from webdemo.motion import Clip, Duet
+from webdemo.motion import Clip, Duet, InputError
 from webdemo.view.contact_sheet import contact_sheet
 
 log = logging.getLogger(__name__)
@@ -131,8 +131,10 @@ def write_files(result: Result, folder: Path, *, prompt: str) -> dict[str, list[
                 for kind in KINDS
                 if kind.offered() and _holds(kind, result)
             }
-    except BaseException:
+    except BaseException as error:
         shutil.rmtree(folder, ignore_errors=True)
+        if isinstance(error, InputError):  # where the server keeps its files is nobody's business
+            raise InputError(str(error).replace(f"{folder}{os.sep}", "")) from None
         raise
     return files
 

@@ -1,0 +1,103 @@
+"""Servers with the stub engine for tests, and what one asks them."""
+
+from __future__ import annotations
+
+import json
+import socket
+import threading
+import time
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from typing import Any
+
+from fastapi.testclient import TestClient
+
+from webdemo.server.app import Lab, create_app
+from webdemo.server.serve import make_server
+from webdemo.server.settings import Settings
+
+from .lab import stub_module
+
+JOIN, UPLOAD, CALL = "/gradio_api/queue/join", "/gradio_api/upload", "/gradio_api/call"
+HERE = "http://127.0.0.1"
+HTML = {"accept": "text/html"}
+FIELDS = ["Two people walk.", 1, 0, 1, 3, 1, 0, "ddim"]
+"""What /generate is given: a second, one step."""
+
+
+def settings_for(folder: Path, **fields: Any) -> Settings:
+    return Settings(**({"data": folder / "data", "grace_seconds": 1, "free_megabytes": 0} | fields))
+
+
+def client_of(settings: Settings, *, pause: float = 0.0, **options: Any) -> TestClient:
+    app = create_app(settings, engine=stub_module().StubEngine(pause=pause))
+    return TestClient(app, base_url=HERE, client=("127.0.0.1", 5), follow_redirects=False, **options)
+
+
+def lab_of(client: TestClient) -> Lab:
+    return client.app.state.lab  # type: ignore[attr-defined]
+
+
+def sign_in(client: TestClient, name: str) -> dict[str, str]:
+    """The headers of somebody who signed in."""
+    client.cookies.clear()
+    answer = client.post("/login", data={"username": name, "password": f"password of {name}"})
+    assert answer.json() == {"success": True}
+    cookie = answer.headers["set-cookie"]
+    assert all(part in cookie for part in ("HttpOnly", "SameSite=Lax", "Path=/"))
+    client.cookies.clear()
+    return {"cookie": cookie.split(";")[0]}
+
+
+def find_fn(client: TestClient, headers: dict[str, str], api_name: str) -> int:
+    config = client.get("/config", headers=headers).json()
+    return next(d["id"] for d in config["dependencies"] if d["api_name"] == api_name)
+
+
+def told(client: TestClient, endpoint: str, data: list[Any], headers: dict[str, str] | None = None) -> str:
+    """What a call of an endpoint ends with."""
+    joined = client.post(f"{CALL}/{endpoint}", json={"data": data}, headers=headers)
+    if joined.status_code != 200:
+        return joined.text
+    return client.get(f"{CALL}/{endpoint}/{joined.json()['event_id']}", headers=headers).text
+
+
+def answer_of(said: str) -> dict[str, Any]:
+    """The answer of a call that was told to be complete."""
+    data = next(line for line in said.splitlines() if line.startswith("data: ["))
+    return json.loads(data.removeprefix("data: "))[0]
+
+
+@contextmanager
+def served_on_loopback(settings_folder: Path, **fields: Any) -> Iterator[tuple[str, int]]:
+    """A server on a real socket, in a thread."""
+    with socket.socket() as probe:
+        probe.bind(("127.0.0.1", 0))
+        port = probe.getsockname()[1]
+    settings = settings_for(settings_folder, port=port, **fields)
+    server = make_server(settings, engine=stub_module().StubEngine())
+    thread = threading.Thread(target=server.run, daemon=True)
+    thread.start()
+    until = time.monotonic() + 120
+    while not server.started:
+        assert time.monotonic() < until
+        time.sleep(0.05)
+    yield "127.0.0.1", port
+    server.should_exit = True
+    thread.join(timeout=60)
+    assert not thread.is_alive()
+
+
+def read_all(connection: socket.socket) -> bytes:
+    parts = []
+    while part := connection.recv(65536):
+        parts.append(part)
+    return b"".join(parts)
+
+
+def answers(served: tuple[str, int], address: str = "127.0.0.1") -> bool:
+    """Whether the server tells somebody at an address of this machine how it is."""
+    with socket.create_connection(served, timeout=30, source_address=(address, 0)) as one:
+        one.sendall(b"GET /healthz HTTP/1.1\r\nHost: 127.0.0.1\r\nConnection: close\r\n\r\n")
+        return read_all(one).startswith((b"HTTP/1.1 200", b"HTTP/1.1 503"))

@@ -1,0 +1,87 @@
+"""The files that a lab runs it by say what the program understands."""
+
+from __future__ import annotations
+
+import json
+import os
+import re
+import shutil
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+import yaml
+
+from webdemo.server.settings import PREFIX, read_settings
+
+from .lab import ROOT
+from .test_queue import wait_for
+
+DOCKERFILE = (ROOT / "Dockerfile").read_text().replace("\\\n", "")
+UNIT = ROOT / "docs" / "deploy" / "pas-de-deux.service"
+CHECK_PORT = "127.0.0.1:7860"
+
+
+def instructions(name: str) -> list[str]:
+    """What follows each of an instruction's words in the image's last stage."""
+    last = DOCKERFILE[DOCKERFILE.rindex("\nFROM ") + 1 :]
+    return [line.removeprefix(f"{name} ") for line in last.splitlines() if line.startswith(f"{name} ")]
+
+
+def settings_in(text: str) -> dict[str, str]:
+    return dict(re.findall(rf"({PREFIX}[A-Z_]+)=(\S+)", text))
+
+
+def test_the_image_runs_without_rights_and_has_what_it_needs() -> None:
+    assert instructions("USER") == ["10001"]
+    assert "--uid 10001" in DOCKERFILE and "-o lab -g lab -m 700 /data" in DOCKERFILE
+    copied = [line.split()[0] for line in instructions("COPY") if not line.startswith("--from")]
+    assert copied and all((ROOT / name).exists() for name in copied)
+    let_in = (ROOT / ".dockerignore").read_text().splitlines()
+    assert all(f"!{name}" in let_in for name in [*copied, "requirements.txt"])
+    torch = re.search(r"torch==\S+ --index-url \S+/cpu\b", DOCKERFILE)
+    assert torch is not None and torch[0] in (ROOT / "README.md").read_text()
+
+
+def test_compose_takes_every_right_away(monkeypatch: pytest.MonkeyPatch) -> None:
+    (lab,) = yaml.safe_load((ROOT / "compose.yaml").read_text())["services"].values()
+    assert lab["read_only"] is True and lab["cap_drop"] == ["ALL"]
+    assert lab["security_opt"] == ["no-new-privileges:true"]
+    assert all(port.startswith("127.0.0.1:") for port in lab["ports"])
+    for name, value in {**settings_in(DOCKERFILE), **lab["environment"]}.items():
+        monkeypatch.setenv(name, value)
+    settings = read_settings()
+    settings.check()  # it is not open
+    written = {mount.split(":")[1] for mount in lab["volumes"]}
+    assert str(settings.data) in written and str(settings.users).startswith(f"{settings.data}/")
+    assert int(lab["stop_grace_period"].removesuffix("s")) > settings.grace_seconds
+
+
+def test_the_health_check_asks_the_server(served: tuple[str, int]) -> None:
+    (check,) = instructions("HEALTHCHECK")
+    command = json.loads(check[check.index("[") :])
+    assert command[0] == "python" and CHECK_PORT in command[-1]
+
+    def status(port: int) -> int:
+        script = command[-1].replace(CHECK_PORT, f"127.0.0.1:{port}")
+        return subprocess.run([sys.executable, *command[1:-1], script], capture_output=True).returncode
+
+    wait_for(lambda: status(served[1]) == 0)
+    assert status(1) != 0
+
+
+def test_the_unit_is_understood(tmp_path: Path) -> None:
+    text = UNIT.read_text()
+    assert f"{PREFIX}USERS" in settings_in(text) and "User=root" not in text
+    fields = set(type(read_settings()).model_fields)
+    assert {name.removeprefix(PREFIX).lower() for name in settings_in(text)} <= fields
+    if (analyze := shutil.which("systemd-analyze")) is None:
+        pytest.skip("no systemd-analyze on this machine")
+    # It looks for the programs and folders that it names, which are elsewhere here.
+    here = text.replace("/opt/pas-de-deux/.venv/bin/python", sys.executable)
+    unit = tmp_path / UNIT.name
+    unit.write_text(here.replace("/opt/pas-de-deux", str(ROOT)))
+    env = {**os.environ, "SYSTEMD_LOG_LEVEL": "warning"}
+    said = subprocess.run([analyze, "verify", str(unit)], capture_output=True, text=True, env=env)
+    assert said.returncode == 0 and not said.stderr.strip(), said.stderr

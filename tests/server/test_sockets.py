@@ -1,0 +1,144 @@
+"""Slow, broken and very many connections, on a real socket."""
+
+from __future__ import annotations
+
+import resource
+import socket
+import sys
+import time
+from contextlib import ExitStack
+
+import pytest
+
+from webdemo.server.serve import FILES, with_room_for_files
+from webdemo.server.settings import Settings
+
+from .clients import JOIN, UPLOAD, answers, read_all
+from .test_queue import wait_for
+
+
+def test_a_head_that_never_ends_is_cut_off(served: tuple[str, int]) -> None:
+    with socket.create_connection(served, timeout=30) as slow:
+        slow.sendall(b"GET / HTTP/1.1\r\nHost: 127.0.0.1\r\nX-Slow: ")
+        assert read_all(slow) == b""
+
+
+def test_a_body_that_never_comes_is_cut_off(served: tuple[str, int]) -> None:
+    head = f"POST {JOIN} HTTP/1.1\r\nHost: 127.0.0.1\r\nContent-Length: 100\r\nConnection: close\r\n\r\n{{"
+    with socket.create_connection(served, timeout=30) as slow:
+        slow.sendall(head.encode())
+        assert read_all(slow).startswith(b"HTTP/1.1 408")
+
+
+elsewhere = pytest.mark.skipif(not sys.platform.startswith("linux"), reason="has one loopback address")
+"""Comes from other addresses of this machine."""
+
+
+def connect(served: tuple[str, int], address: str = "127.0.0.1") -> socket.socket:
+    return socket.create_connection(served, timeout=30, source_address=(address, 0))
+
+
+def closed(connections: list[socket.socket]) -> int:
+    """How many of the connections the server closes."""
+    count = 0
+    for connection in connections:
+        connection.settimeout(20)
+        count += connection.recv(1) == b""
+    return count
+
+
+@elsewhere
+def test_a_flood_from_many_addresses_leaves_the_page_up(served: tuple[str, int]) -> None:
+    with ExitStack() as flood:
+        found = [flood.enter_context(connect(served, f"127.0.1.{i % 4 + 1}")) for i in range(80)]
+        assert closed(found[60:]) == 20  # of all it takes 60, of one address 50
+    wait_for(lambda: answers(served))
+
+
+def test_broken_http_is_refused(served: tuple[str, int]) -> None:
+    for text in (b"NOT HTTP AT ALL\r\n\r\n", b"GET / HTTP/1.1\r\nHost: 127.0.0.1\r\nX: a\r\n b\x00\r\n\r\n"):
+        with socket.create_connection(served, timeout=30) as broken:
+            broken.sendall(text)
+            assert b" 400 " in broken.recv(4096)
+
+
+def answer_to(connection: socket.socket) -> bytes:
+    """An answer with a Content-Length, whole."""
+    got = b""
+    while b"\r\n\r\n" not in got:
+        got += connection.recv(65536)
+    head, _, body = got.partition(b"\r\n\r\n")
+    length = int(
+        next(line.split(b":")[1] for line in head.lower().split(b"\r\n") if b"content-length" in line)
+    )
+    while len(body) < length:
+        body += connection.recv(65536)
+    return head
+
+
+def test_the_second_head_of_a_connection_has_no_more_time(served: tuple[str, int]) -> None:
+    with socket.create_connection(served, timeout=20) as slow:
+        slow.sendall(b"GET /healthz HTTP/1.1\r\nHost: 127.0.0.1\r\n\r\n")
+        assert answer_to(slow).startswith(b"HTTP/1.1 ")
+        slow.sendall(b"GET /healthz HTTP/1.1\r\nHost: 127.0.0.1\r\nX-Slow: ")
+        began = time.monotonic()
+        assert read_all(slow) == b""
+        assert time.monotonic() - began < 10  # an idle connection would have 30 s
+
+
+def test_a_body_that_drips_is_cut_off(served: tuple[str, int]) -> None:
+    head = f"POST {UPLOAD} HTTP/1.1\r\nHost: 127.0.0.1\r\nContent-Type: multipart/form-data; boundary=x\r\n"
+    with socket.create_connection(served, timeout=20) as slow:
+        slow.sendall(f"{head}Content-Length: 1000\r\nConnection: close\r\n\r\n".encode())
+        began = time.monotonic()
+        try:
+            while time.monotonic() - began < 15:
+                slow.sendall(b"-")
+                time.sleep(0.1)
+        except OSError:
+            pass
+        assert time.monotonic() - began < 10
+
+
+@elsewhere
+def test_thousands_of_connections(served: tuple[str, int]) -> None:
+    """One address gets so many and no more, and others are answered meanwhile."""
+    soft, hard = resource.getrlimit(resource.RLIMIT_NOFILE)
+    many = 2500
+    if hard != resource.RLIM_INFINITY and hard < 2 * many:
+        pytest.skip("this system allows too few open files")
+    resource.setrlimit(resource.RLIMIT_NOFILE, (max(soft, 2 * many), hard))
+    try:
+        with ExitStack() as flood:
+            found = [flood.enter_context(connect(served)) for _ in range(many)]
+            assert answers(served, "127.0.0.9")
+            assert closed(found[60:]) == many - 60
+        wait_for(lambda: answers(served))
+    finally:
+        resource.setrlimit(resource.RLIMIT_NOFILE, (soft, hard))
+
+
+def test_files_enough_for_all_connections(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Where the system allows fewer, fewer connections are taken, so that files can still be opened."""
+    given = {"limits": (100, 5000)}
+    monkeypatch.setattr(resource, "getrlimit", lambda kind: given["limits"])
+    monkeypatch.setattr(resource, "setrlimit", lambda kind, limits: given.update(limits=limits))
+    assert with_room_for_files(Settings(connections=1000)).connections == 1000
+    assert given["limits"] == (1000 + FILES, 5000)
+    given["limits"] = (100, 1024)
+    assert with_room_for_files(Settings(connections=1000)).connections == 1024 - FILES
+    assert given["limits"] == (1024, 1024)
+    given["limits"] = (100, 300)
+    assert with_room_for_files(Settings(connections=1000)).connections == 150
+    given["limits"] = (100, resource.RLIM_INFINITY)
+    assert with_room_for_files(Settings(connections=2000)).connections == 2000
+
+
+def test_an_address_that_a_stranger_claims(served: tuple[str, int]) -> None:
+    """What comes through a proxy from elsewhere is not this machine's, whatever else it says."""
+    with socket.create_connection(served, timeout=30) as one:
+        one.sendall(
+            b"GET /config HTTP/1.1\r\nHost: 127.0.0.1\r\nX-Forwarded-For: 127.0.0.1, 203.0.113.9\r\n"
+            b"Connection: close\r\n\r\n"
+        )
+        assert b" 403 " in read_all(one)[:20]
