@@ -2,13 +2,17 @@
 
 from __future__ import annotations
 
+import time
+from collections.abc import Iterator
+from dataclasses import replace
 from types import SimpleNamespace
 from typing import Any
 
 import pytest
 
+from webdemo.inference.requests import Progress, Result
 from webdemo.ui.history import Entry
-from webdemo.ui.history_tab import HistoryTab
+from webdemo.ui.history_tab import _ABLE, HistoryTab
 
 
 def tab(*entries: Entry) -> HistoryTab:
@@ -27,16 +31,17 @@ def entry(name: str) -> Entry:
 
 
 def test_an_empty_list_says_so_and_has_no_buttons() -> None:
-    chosen, empty, _, actions = tab().refresh(None)
+    chosen, empty, _, actions, *_ = tab().refresh(None)
     assert chosen["choices"] == []
     assert empty["visible"] is True
     assert actions["visible"] is False
 
 
 def test_a_run_that_is_still_there_stays_chosen() -> None:
-    chosen, empty, _, actions = tab(entry("hug"), entry("wave")).refresh("wave")
+    chosen, empty, _, actions, *_ = tab(entry("hug"), entry("wave")).refresh("wave")
+    when = time.strftime("%d %b %H:%M", time.localtime(0))
     assert chosen["value"] == "wave"
-    assert chosen["choices"][0] == ("They hug. · 5 s · seed 3 · 01 Jan 00:00", "hug")
+    assert chosen["choices"][0] == (f"They hug. · 5 s · seed 3 · {when}", "hug")
     assert empty["visible"] is False
     assert actions["visible"] is True
     assert tab(entry("hug")).refresh("wave")[0]["value"] == "hug"
@@ -44,5 +49,49 @@ def test_a_run_that_is_still_there_stays_chosen() -> None:
 
 @pytest.mark.parametrize(("runs", "sentence"), [(1, "Its link no longer works."), (2, "2 links to it")])
 def test_ended_links_are_counted(runs: int, sentence: str) -> None:
-    assert sentence in tab(*(entry(str(i)) for i in range(runs))).revoke("0")
-    assert "Choose a run first" in tab().revoke(None)
+    assert sentence in tab(*(entry(str(i)) for i in range(runs))).revoke("0")[0]
+    line, address = tab().revoke(None)
+    assert "Choose a run first" in line and address["visible"] is False
+
+
+def able(history: HistoryTab, run: str) -> dict[str, bool]:
+    """What can be done with a run."""
+    return dict(
+        zip(_ABLE, (update["interactive"] for update in history.choose(run)[-len(_ABLE) :]), strict=True)
+    )
+
+
+def test_buttons_are_as_the_run_lets_them_be() -> None:
+    linked = replace(entry("hug"), links=1, favourite=True)
+    lost = replace(entry("lost"), state="interrupted", message="Run it again.")
+    history = tab(linked, entry("wave"), lost, replace(entry("now"), state="running"))
+    assert all(able(history, "hug").values())
+    assert [name for name, can in able(history, "wave").items() if not can] == ["revoke"]
+    assert [name for name, can in able(history, "lost").items() if can] == ["favour", "again"]
+    assert [name for name, can in able(history, "now").items() if can] == ["favour"]
+    assert not any(able(history, "gone").values())
+    names = [history.choose(run)[2 + _ABLE.index("favour")]["value"] for run in ("hug", "wave")]
+    assert names == ["Let go", "Keep"]
+    assert "Run it again." in history.choose("lost")[0] and "Run it again." not in history.choose("hug")[0]
+
+
+def test_a_run_without_a_result_is_run_again() -> None:
+    lost = replace(
+        entry("lost"), state="interrupted", request={"prompt": "They hug.", "seconds": 2.0, "seed": 9}
+    )
+    reaction = replace(lost, id="r", kind="react")
+    asked: list[Any] = []
+
+    def run(session: str, request: Any, *, alone: bool) -> Iterator[Any]:
+        asked.append((request.prompt, request.seconds, request.seed, alone))
+        yield Progress(stage="text")
+        yield Result(duets=(), manifest={})
+
+    history = tab(lost, reaction)
+    history.page.runs = SimpleNamespace(run=run)  # type: ignore[assignment]
+    who: Any = SimpleNamespace(session_hash="s")
+    *_, (line, again, stop) = history.again("lost", who)
+    assert asked == [("They hug.", 2.0, 9, True)] and "its result is in the list" in line
+    assert again["interactive"] is True and stop["interactive"] is False
+    *_, (line, _, _) = history.again("r", who)
+    assert "send the file again" in line and len(asked) == 1

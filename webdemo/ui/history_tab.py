@@ -11,7 +11,7 @@ import gradio as gr
 from webdemo.inference.requests import Cancelled, Progress, Result
 from webdemo.motion import InputError
 
-from .again import actor_source, request_of, verdict
+from .again import actor_source, request_of, request_of_unfinished, verdict
 from .context import PageContext
 from .exports import KINDS, Record
 from .history import Entry, HistoryLike, Opened
@@ -29,6 +29,9 @@ _CONTROLS = ("prompt", "seconds", "seed", "samples", "guidance", "steps", "dampi
 """Fields of a request that a tab may have a control of the same name for."""
 _NAMED = "() => new URLSearchParams(window.location.search).get('run') || ''"
 """The run that the page's address names."""
+_KEEP, _LET_GO = "Keep", "Let go"
+_ABLE = ("open", "favour", "link", "revoke", "again")
+"""Buttons that are as the chosen run lets them be."""
 _MARKS = {"running": "⏳", "failed": "✕", "cancelled": "✕", "interrupted": "✕"}
 
 
@@ -58,16 +61,17 @@ class HistoryTab:
             record: keeps the session's last result.
         """
         with gr.Column(elem_classes="pd-panel pd-history", min_width=0):
+            self.who = gr.HTML(elem_id="history-who")
             self.list = gr.Radio([], show_label=False, container=False, elem_id="history-list",
                                  elem_classes="pd-runs")  # fmt: skip
             self.empty = gr.HTML(status(_EMPTY), elem_id="history-empty", visible=False)
-            self.who = gr.HTML(elem_id="history-who")
             with gr.Row(elem_classes="pd-go pd-history-buttons", visible=False) as self.actions:
                 self.buttons = {
                     name: gr.Button(label, elem_id=f"history-{name}", size="sm", min_width=0,
+                                    interactive=name != "stop",
                                     variant="primary" if name == "open" else "secondary")
                     for name, label in (
-                        ("open", "Open"), ("favour", "Keep / let go"), ("link", "Make a link"),
+                        ("open", "Open"), ("favour", _KEEP), ("link", "Make a link"),
                         ("revoke", "End its links"), ("again", "Run again"), ("stop", "Cancel"),
                         ("remove", "Remove"),
                     )
@@ -79,16 +83,20 @@ class HistoryTab:
 
     def _wire(self, demo: gr.Blocks, tab: gr.Tab, record: gr.State) -> None:
         self.record = record
-        seen = [self.list, self.empty, self.who, self.actions]
+        able = [self.buttons[name] for name in _ABLE]
+        seen = [self.list, self.empty, self.who, self.actions, *able]
+        told = [self.line, self.address]
         quick = {"concurrency_limit": 8, "concurrency_id": "history", **QUIET}
         tab.select(self.refresh, inputs=self.list, outputs=seen, **quick)
-        for name, act in (("favour", self.favour), ("revoke", self.revoke), ("remove", self.remove)):
-            done = self.buttons[name].click(act, inputs=self.list, outputs=self.line, **quick)
+        self.list.input(self.choose, inputs=self.list, outputs=[*told, *able], **quick)
+        for name, act in (
+            ("favour", self.favour), ("link", self.link), ("revoke", self.revoke), ("remove", self.remove)
+        ):  # fmt: skip
+            done = self.buttons[name].click(act, inputs=self.list, outputs=told, **quick)
             done.then(self.refresh, inputs=self.list, outputs=seen, **quick)
-        self.buttons["link"].click(self.link, inputs=self.list, outputs=[self.line, self.address], **quick)
         again = self.buttons["again"].click(
-            self.again, inputs=self.list, outputs=self.line, concurrency_limit=None, trigger_mode="once",
-            **QUIET,
+            self.again, inputs=self.list, outputs=[self.line, self.buttons["again"], self.buttons["stop"]],
+            concurrency_limit=None, trigger_mode="once", **QUIET,
         )  # fmt: skip
         again.then(self.refresh, inputs=self.list, outputs=seen, **quick)
         self.buttons["stop"].click(self.cancel, queue=False, **QUIET)
@@ -119,26 +127,33 @@ class HistoryTab:
         who = visitor()
         entries = self.history.entries(who.owner)
         choices = [(_label(entry), entry.id) for entry in entries]
-        kept = chosen if any(entry.id == chosen for entry in entries) else None
+        kept = next((entry for entry in entries if entry.id == chosen), entries[0] if entries else None)
         return (
-            gr.update(choices=choices, value=kept or (entries[0].id if entries else None)),
+            gr.update(choices=choices, value=kept.id if kept else None),
             gr.update(visible=not entries),
             _signed_in(who),
             gr.update(visible=bool(entries)),
+            *_able(kept),
         )
 
-    def favour(self, run: str | None) -> str:
+    def choose(self, run: str | None) -> Updates:
+        """What went wrong with a run that was chosen, and what can be done with it."""
+        entry = self._entry(run)
+        line = status(entry.message, tone="warning") if entry and entry.message else status()
+        return line, gr.update(visible=False), *_able(entry)
+
+    def favour(self, run: str | None) -> Updates:
         """Keeps a run from being removed for its age, or lets it go."""
 
         def act(run: str, owner: str) -> str:
-            entry = next((e for e in self.history.entries(owner) if e.id == run), None)
+            entry = self._entry(run)
             wanted = entry is None or not entry.favourite
             self.history.favour(run, owner, favourite=wanted)
             return "Kept: it will not be removed for its age." if wanted else "No longer kept."
 
         return self._act(run, act)
 
-    def revoke(self, run: str | None) -> str:
+    def revoke(self, run: str | None) -> Updates:
         """Ends a run's links."""
 
         def act(run: str, owner: str) -> str:
@@ -147,7 +162,7 @@ class HistoryTab:
 
         return self._act(run, act)
 
-    def remove(self, run: str | None) -> str:
+    def remove(self, run: str | None) -> Updates:
         """Deletes a run."""
 
         def act(run: str, owner: str) -> str:
@@ -163,37 +178,54 @@ class HistoryTab:
         def act(run: str, owner: str) -> str:
             key, until = self.history.link(run, owner)
             made.append(f"{visitor().base}?run={key}")
-            last = time.strftime("%Y-%m-%d", time.gmtime(until))
-            return f"Whoever has this link sees the motion until {last}."
+            last = time.strftime("%d %B %Y", time.localtime(until))
+            signed = " and can sign in here" if visitor().account else ""
+            return f"Whoever has this link{signed} sees the motion, until {last} or until you end its links."
 
-        line = self._act(run, act)
+        line, _ = self._act(run, act)
         return line, gr.update(value=made[0] if made else "", visible=bool(made))
 
-    def _act(self, run: str | None, act: Any) -> str:
+    def _act(self, run: str | None, act: Any) -> Updates:
+        """What was done, with no link shown."""
         try:
             if not run:
                 raise InputError("Choose a run first.")
-            return status(act(run, visitor().owner), tone="done")
+            line = status(act(run, visitor().owner), tone="done")
         except Exception as error:
-            return status(error_line(error), tone="error")
+            line = status(error_line(error), tone="error")
+        return line, gr.update(visible=False)
 
-    def again(self, run: str | None, request: gr.Request) -> Iterator[str]:
+    def _entry(self, run: str | None) -> Entry | None:
+        """One of the visitor's own runs."""
+        return next((entry for entry in self.history.entries(visitor().owner) if entry.id == run), None)
+
+    def again(self, run: str | None, request: gr.Request) -> Iterator[Updates]:
         """Runs a kept request once more and says whether it came out the same."""
         last: Progress | None = None
+        line, busy = "", (gr.update(interactive=False), gr.update(interactive=True))
         try:
             if not run:
                 raise InputError("Choose a run first.")
-            opened = self.history.open(run, visitor().owner)
-            for event in self.page.runs.run(_session(request), request_of(opened)):
+            entry = self._entry(run)
+            if entry is not None and entry.state != "done":
+                opened, wanted = None, request_of_unfinished(entry)
+            else:
+                opened = self.history.open(run, visitor().owner)
+                wanted = request_of(opened)
+            for event in self.page.runs.run(_session(request), wanted, alone=True):
                 if isinstance(event, Result):
-                    yield status(verdict(opened.result, event), tone="done")
-                    return
+                    said = (
+                        verdict(opened.result, event) if opened else "Run again: its result is in the list."
+                    )
+                    line = status(said, tone="done")
+                    break
                 last = event
-                yield status(progress_line(event), tone="busy")
+                yield status(progress_line(event), tone="busy"), *busy
         except Cancelled:
-            yield status(cancelled_line(last), tone="warning")
+            line = status(cancelled_line(last), tone="warning")
         except Exception as error:
-            yield status(error_line(error), tone="error")
+            line = status(error_line(error), tone="error")
+        yield line, gr.update(interactive=True), gr.update(interactive=False)
 
     def cancel(self, request: gr.Request) -> None:
         """Stops what runs again."""
@@ -220,11 +252,9 @@ class HistoryTab:
     # ---- what an opened run shows ----------------------------------------------------------------
 
     def _not_shown(self, sentence: str, *, first: bool = False) -> Updates:
-        """The sentence under the list, and under the first tab's button where the page began with it."""
-        line = status(sentence, tone="error")
-        changes: dict[int, Any] = {self.line._id: line}
-        if first:
-            changes[next(iter(self.jobs.values())).line._id] = line
+        """The sentence under the list, or under the first tab's button where the page began with it."""
+        shown = next(iter(self.jobs.values())).line if first else self.line
+        changes: dict[int, Any] = {shown._id: status(sentence, tone="error")}
         return tuple(changes.get(part._id, gr.skip()) for part in self.opened)
 
     def _shown(self, opened: Opened) -> Updates:
@@ -263,7 +293,7 @@ def _signed_in(who: Visitor) -> str:
     if not who.account:
         return ""
     return (
-        f'<p class="pd-status">Signed in as {text(who.account)} · '
+        f'<p class="pd-status">Signed in as {text(who.account)} ·\u2002'
         f'<a href="{text(who.base)}logout">Sign out</a></p>'
     )
 
@@ -275,7 +305,7 @@ def _session(request: gr.Request) -> str:
 
 def _label(entry: Entry) -> str:
     """One line for a run: when, what, how long, its seed, and marks."""
-    when = time.strftime("%d %b %H:%M", time.gmtime(entry.created))
+    when = time.strftime("%d %b %H:%M", time.localtime(entry.created))
     asked = entry.request
     facts = [f"{asked['seconds']:g} s"] if "seconds" in asked else []
     facts += [f"seed {asked['seed']}"] if "seed" in asked else []
@@ -284,3 +314,19 @@ def _label(entry: Entry) -> str:
     told = f" · {entry.state}" if entry.state != "done" else ""
     links = f" · {entry.links} link{'s' if entry.links > 1 else ''}" if entry.links else ""
     return f"{marks}{title} · {' · '.join([*facts, when])}{told}{links}"
+
+
+def _able(entry: Entry | None) -> Updates:
+    """How the buttons of :data:`_ABLE` are for a run."""
+    done = entry is not None and entry.state == "done"
+    lets = {
+        "open": done,
+        "link": done,
+        "revoke": entry is not None and entry.links > 0,
+        "again": entry is not None and entry.state != "running",
+        "favour": entry is not None,
+    }
+    name = _LET_GO if entry is not None and entry.favourite else _KEEP
+    return tuple(
+        gr.update(interactive=lets[each], **({"value": name} if each == "favour" else {})) for each in _ABLE
+    )
