@@ -182,6 +182,14 @@ def test_age_and_size_remove_the_oldest_but_no_favourites(history: History) -> N
     assert {path.name for path in history.folder.iterdir()} == {runs[0], runs[4]}
 
 
+def test_a_run_that_is_removed_while_it_runs_leaves_no_files(history: History) -> None:
+    request = GenerateRequest(prompt="Two people walk.", seconds=1.0, steps=1)
+    run = history.begin(ME, request, "removed")
+    history.remove(run, ME)
+    history.finish(run, made(request))
+    assert history.entries(ME) == [] and not any(history.folder.iterdir())
+
+
 def test_favourites_are_counted(history: History) -> None:
     history.keep_favourites = 1
     first, second = kept(history), kept(history)

@@ -21,7 +21,7 @@ p {{ margin: 0 0 1rem; color: var(--soft); }} p:last-child {{ margin-bottom: 0; 
 p[role=alert] {{ color: var(--error); }} small {{ color: var(--soft); }} a {{ color: var(--accent); }}
 label {{ display: block; margin: 0 0 .9rem; font-weight: 600; font-size: .9rem; }}
 input {{ display: block; width: 100%; box-sizing: border-box; margin-top: .3rem; padding: .55rem .7rem;
-  font: inherit; font-size: 1rem; border: 1px solid var(--line); border-radius: 10px;
+  font: inherit; font-size: 1rem; font-weight: 400; border: 1px solid var(--line); border-radius: 10px;
   background: transparent; color: inherit; }}
 input:focus-visible, button:focus-visible {{ outline: 2px solid var(--accent); outline-offset: 1px; }}
 button {{ width: 100%; margin: .3rem 0 1.1rem; padding: .65rem; border: 0; border-radius: 10px; font: inherit;
@@ -56,7 +56,11 @@ def sign_in_card(*, action: str, wanted: str, name: str = "", error: str = "") -
         error: what went wrong then.
     """
     told = f'<p role="alert">{html.escape(error)}</p>' if error else ""
-    why = "to see the motion that you were sent" if wanted.startswith("/?run=") else "to make motion of two"
+    why = (
+        "to see the motion that you were sent"
+        if wanted.startswith("/?run=")
+        else "to make motion of two people"
+    )
     focus = ("", " autofocus") if name else (" autofocus", "")
     fields = "".join(
         f'<label>{label}<input name="{key}" autocomplete="{kind}" required{more}></label>'

@@ -115,10 +115,11 @@ class History:
         outcome = {"manifest": result.manifest, "timings": result.timings, "notes": list(result.notes)}
         if isinstance(result, PredictResult):
             outcome["prediction"] = {name: getattr(result, name) for name in _PREDICTION}
+        done = update(Run).where(Run.id == run).values(state="done", outcome=json.dumps(outcome), size=size)
         with self.database.session.begin() as session:
-            session.execute(
-                update(Run).where(Run.id == run).values(state="done", outcome=json.dumps(outcome), size=size)
-            )
+            there = session.execute(done).rowcount
+        if not there:  # its owner removed it while it ran
+            shutil.rmtree(self.folder / run, ignore_errors=True)
 
     def end(self, run: str, state: str, message: str = "") -> None:
         """Marks a run that has no result."""

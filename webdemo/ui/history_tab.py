@@ -30,7 +30,7 @@ _CONTROLS = ("prompt", "seconds", "seed", "samples", "guidance", "steps", "dampi
 _NAMED = "() => new URLSearchParams(window.location.search).get('run') || ''"
 """The run that the page's address names."""
 _KEEP, _LET_GO = "Keep", "Let go"
-_ABLE = ("open", "favour", "link", "revoke", "again")
+_ABLE = ("open", "favour", "link", "revoke", "again", "remove")
 """Buttons that are as the chosen run lets them be."""
 _MARKS = {"running": "⏳", "failed": "✕", "cancelled": "✕", "interrupted": "✕"}
 
@@ -325,6 +325,7 @@ def _able(entry: Entry | None) -> Updates:
         "revoke": entry is not None and entry.links > 0,
         "again": entry is not None and entry.state != "running",
         "favour": entry is not None,
+        "remove": entry is not None and entry.state != "running" and not entry.favourite,
     }
     name = _LET_GO if entry is not None and entry.favourite else _KEEP
     return tuple(
