@@ -55,6 +55,8 @@ class MAWGANConfig:
             if somebody with raised arms could raise them further.
         coefficients: cosine coefficients in time of each coordinate that the linear map takes and gives,
             lowest frequencies first; 0: all frames.
+        shortcut: the first layer's outputs enter that linear map too, which so is a network of two layers. In
+            the thesis they reach the future through convolutions alone.
         dropout: of the first layer's outputs, in training.
     """
 
@@ -69,6 +71,7 @@ class MAWGANConfig:
     length: bool = False
     pose: bool = False
     coefficients: int = 0
+    shortcut: bool = False
     dropout: float = 0.0
 
     @classmethod
@@ -101,6 +104,7 @@ class Generator(nn.Module):
     def __init__(self, config: MAWGANConfig) -> None:
         super().__init__()
         self.config = config
+        self.convolutions = True
         high, wide = config.grid
         first = config.fc // (high * wide)
         self.fc = nn.Linear(config.past * 3 * config.joints + config.beside, first * high * wide)
@@ -119,6 +123,7 @@ class Generator(nn.Module):
             kept = cosines[: config.coefficients] if config.coefficients else torch.eye(size)
             self.register_buffer(name, kept if name == "analysis" else kept.T, persistent=False)
         inputs = self.analysis.shape[0] * coordinates + config.beside
+        inputs += config.shortcut * self.fc.out_features
         outputs = self.synthesis.shape[1] * coordinates
         self.linear = nn.Linear(inputs, outputs) if config.linear else None
         if self.linear is not None:
@@ -129,11 +134,18 @@ class Generator(nn.Module):
         """``beside`` is (B, :attr:`MAWGANConfig.beside`)."""
         coordinates, points = self.config.image
         x = self.dropout(torch.relu(self.fc(torch.cat([s.flatten(1), beside], 1))))
-        made = self.up(x.unflatten(1, (-1, *self.config.grid)))[:, 0, :coordinates, :points].transpose(1, 2)
+        made = s.new_zeros(len(s), points, coordinates)
+        if self.convolutions:
+            image = self.up(x.unflatten(1, (-1, *self.config.grid)))
+            made = image[:, 0, :coordinates, :points].transpose(1, 2)
         if self.linear is None:
             return made
-        given = torch.cat([(self.analysis @ s).flatten(1), beside], 1)
-        return made + self.synthesis @ self.linear(given).unflatten(1, (-1, coordinates))
+        given = [self.coefficients(s, beside)] + [x] * self.config.shortcut
+        return made + self.synthesis @ self.linear(torch.cat(given, 1)).unflatten(1, (-1, coordinates))
+
+    def coefficients(self, s: Tensor, beside: Tensor) -> Tensor:
+        """What the linear map takes of its own (B, inputs)."""
+        return torch.cat([(self.analysis @ s).flatten(1), beside], 1)
 
     @torch.no_grad()
     def fit_linear(self, s: Tensor, beside: Tensor, made: Tensor, *, ridge: float) -> None:
@@ -145,7 +157,7 @@ class Generator(nn.Module):
             ridge: weight of the penalty, for inputs of variance 1, as a share of N.
         """
         assert self.linear is not None
-        x = torch.cat([(self.analysis @ s).flatten(1), beside], 1).double()
+        x = self.coefficients(s, beside).double()
         y = (torch.linalg.pinv(self.synthesis) @ made).flatten(1).double()
         mean, deviation = x.mean(0), x.std(0).clamp_min(1e-3)
         x = (x - mean) / deviation
@@ -153,7 +165,8 @@ class Generator(nn.Module):
         weight = torch.linalg.solve(gram, x.T @ (y - y.mean(0))).T / deviation
         nn.init.zeros_(self.up[-1].weight)
         nn.init.zeros_(self.up[-1].bias)
-        self.linear.weight.copy_(weight)
+        self.linear.weight.zero_()
+        self.linear.weight[:, : x.shape[1]] = weight
         self.linear.bias.copy_(y.mean(0) - weight @ mean)
 
 
@@ -336,18 +349,20 @@ def position_loss(made: Tensor, real: Tensor) -> Tensor:
     return ((made - real).square().sum(-1) + 1e-10).sqrt().mean()
 
 
-def speed_loss(made: Tensor, real: Tensor, last: Tensor) -> Tensor:
+def speed_loss(made: Tensor, real: Tensor, last: Tensor, *, groups: int = 1) -> Tensor:
     """Difference of the mean speeds (eq. 2.13) of predicted and true frames, in metres a frame.
 
     Args:
         made, real: (B, T, J, 3) metres.
         last: (B, 1, J, 3) the pose before.
+        groups: parts of the batch with means of their own.
     """
     speeds = [
-        (torch.cat([last, x], dim=1).diff(dim=1).square().sum(-1) + 1e-10).sqrt().mean((0, 2))
+        (torch.cat([last, x], dim=1).diff(dim=1).square().sum(-1) + 1e-10).sqrt().mean(2)
         for x in (made, real)
     ]
-    return (speeds[0] - speeds[1]).abs().mean()
+    parts = (speeds[0] - speeds[1]).chunk(groups)
+    return torch.stack([part.mean(0) for part in parts]).abs().mean()
 
 
 def gram_distance(p: Tensor, q: Tensor) -> Tensor:

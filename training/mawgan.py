@@ -36,6 +36,7 @@ from models.mawgan import (
 from models.predictors import load_predictor, save_predictor
 from models.srvf import exp_map, karcher_mean, log_map, to_srvf
 from training.prediction.mlp import add_run_options, train
+from training.prediction.rollout import ADVANCE, check_own_pasts
 from training.prediction.trainer import PredictionTrainer
 from training.shell import exit_code
 from webdemo.motion import InputError
@@ -46,11 +47,15 @@ class Settings:
     """What a run depends on; a checkpoint of other settings is refused.
 
     ``width`` is the channels of the predictor's first block (thesis: 512), each further one has half; the
-    critic's are an eighth of it, and halved likewise. ``linear``, ``length``, ``pose``, ``coefficients`` and
-    ``dropout`` are those of :class:`~models.mawgan.MAWGANConfig`. ``ridge`` above 0 is the penalty with which
-    the linear map is fitted in closed form, to ``fit`` windows, before the first step. ``noise`` is added to
-    the pasts, in metres. ``final_rate`` is the share of the learning rate at which its cosine ends; 1 keeps
-    it as it is, like the thesis. ``init`` names the folder of a trained predictor that the run begins with.
+    critic's are an eighth of it, and halved likewise. ``linear``, ``length``, ``pose``, ``coefficients``,
+    ``shortcut`` and ``dropout`` are those of :class:`~models.mawgan.MAWGANConfig`. ``ridge`` above 0 is the
+    penalty with which the linear map is fitted in closed form, to ``fit`` windows, before the first step.
+    ``convolutions`` false leaves them where they begin, which with ``ridge`` is at nothing. ``noise`` is
+    added to the pasts, in metres. ``own_pasts`` is how often the network may have been applied to what it
+    gave in the pasts that it sees, as in :class:`training.prediction.mlp.Settings`; ``groups`` is how many
+    parts of the batch, from slow pasts to fast ones, have mean speeds of their own. ``final_rate`` is the
+    share of the learning rate at which its cosine ends; 1 keeps it as it is, like the thesis. ``init`` names
+    the folder of a trained predictor that the run begins with.
     """
 
     windows: str = "cmu"
@@ -77,19 +82,32 @@ class Settings:
     length: bool = False
     pose: bool = False
     coefficients: int = 0
+    shortcut: bool = False
+    convolutions: bool = True
     dropout: float = 0.0
     ridge: float = 0.0
     fit: int = 20_000
     noise: float = 0.0
+    own_pasts: int = 0
+    groups: int = 1
     weight_decay: float = 0.0
     seed: int = 0
 
     def __post_init__(self) -> None:
         if self.width % 8 or self.width < 32:
             raise InputError(f"width is {self.width}: give a multiple of 8, 32 or more.")
-        for name, least in (("past", 2), ("future", 2), ("fc", 2), ("batch", 2), ("critic_steps", 1)):
-            if getattr(self, name) < least:
-                raise InputError(f"{name} is {getattr(self, name)}: give {least} or more.")
+        least = {"past": 2, "future": 2, "fc": 2, "batch": 2, "critic_steps": 1, "groups": 1}
+        for name, number in least.items():
+            if getattr(self, name) < number:
+                raise InputError(f"{name} is {getattr(self, name)}: give {number} or more.")
+        check_own_pasts(self.own_pasts, self.windows, self.future)
+        if not self.convolutions and not self.linear:
+            raise InputError("Without convolutions there is nothing but the linear map: ask for linear.")
+
+    @property
+    def ahead(self) -> int:
+        """Frames of a window behind its past."""
+        return self.future + ADVANCE * self.own_pasts
 
     def network(self, joints: int) -> MAWGANConfig:
         """The sizes of predictor and critic."""
@@ -98,7 +116,7 @@ class Settings:
             channels=tuple(self.width >> i for i in range(4)),
             critic=tuple(self.width // 8 >> i for i in range(3)),
             critic_fc=self.critic_fc, linear=self.linear, length=self.length, pose=self.pose,
-            coefficients=self.coefficients, dropout=self.dropout,
+            coefficients=self.coefficients, shortcut=self.shortcut, dropout=self.dropout,
         )  # fmt: skip
 
     def weights(self) -> MAWGANLossWeights:
@@ -133,6 +151,8 @@ class Trainer(PredictionTrainer):
         elif not self.checkpoint.exists():
             self.measure()
         self.ema.load_state_dict(self.model.state_dict())
+        for network in (self.model, self.ema):
+            network.generator.convolutions = s.convolutions
         self.ema.requires_grad_(False)
         self.optimizer, self.critic_optimizer = (
             torch.optim.AdamW(
@@ -151,6 +171,7 @@ class Trainer(PredictionTrainer):
             model.beside_mean.copy_(model.inputs(past)[1].mean(0))
         if s.linear and s.ridge:
             past, future = self.curves(self.windows.batch(s.fit, (s.seed, 0, 2)).to(self.device))
+            past = past + s.noise * torch.randn_like(past)
             moves = self.moves(past, future)
             past, future = past[moves], future[moves]
             model.generator.fit_linear(*model.inputs(past), model.wanted(past, future), ridge=s.ridge)
@@ -163,20 +184,20 @@ class Trainer(PredictionTrainer):
 
     def curves(self, windows: Tensor) -> tuple[Tensor, Tensor]:
         """Past (B, past, D), and the future with the last pose before it (B, future + 1, D)."""
-        curves = to_curves(windows)
-        return curves[:, : self.settings.past], curves[:, self.settings.past - 1 :]
+        s, curves = self.settings, to_curves(windows)
+        return curves[:, : s.past], curves[:, s.past - 1 : s.past + s.future]
 
     def moves(self, past: Tensor, future: Tensor) -> Tensor:
         """(B,) which windows' curves move."""
         return (to_srvf(past)[1] > _STILL) & (to_srvf(future)[1] > _STILL)
 
-    def pairs(self, part: int) -> tuple[Tensor, Tensor, Tensor]:
-        """Windows that move, their past curves, and their real futures' tangent vectors."""
-        windows = self.batch(part)
+    def pairs(self, windows: Tensor) -> tuple[Tensor, Tensor, Tensor]:
+        """(B,) which windows (B, past + future, J, 3) move; the past curves and the real futures' tangent
+        vectors of those."""
         past, future = self.curves(windows)
         moves = self.moves(past, future)
         real = log_map(self.model.future_mean, to_srvf(future[moves])[0])
-        return windows[moves], past[moves], real
+        return moves, past[moves], real
 
     def seen(self, s: Tensor) -> Tensor:
         """Tangent vectors as the critic sees them: taken to the sphere and back (eq. 2.5, 2.7)."""
@@ -197,7 +218,7 @@ class Trainer(PredictionTrainer):
         """
         for i in reversed(range(self.settings.critic_steps)):
             if i:
-                _, past, own = self.pairs(i)
+                _, past, own = self.pairs(self.batch(i))
                 with torch.no_grad():
                     pair = own, self.seen(self.model.generate(past)[0])
             else:
@@ -216,24 +237,27 @@ class Trainer(PredictionTrainer):
         for optimizer in (self.optimizer, self.critic_optimizer):
             for group in optimizer.param_groups:
                 group["lr"] = self.settings.learning_rate * self.rate()
-        windows, past, real = self.pairs(0)
+        windows, recorded, passes = self.window()
+        moves, past, real = self.pairs(windows)
+        truth, true = (x[moves, self.settings.past :] for x in (windows, recorded))
+        known = 1 / (1 + passes)
         s, longer = self.model.generate(past + self.settings.noise * torch.randn_like(past))
         made = self.seen(s)
         critic = list(self.critic_steps(real, made.detach())) if weights.adversarial else [0.0]
         curves = self.model.decode(s, longer, past)
         positions = to_positions(curves)
-        truth = windows[:, self.settings.past :]
         terms = {
-            "reconstruction": weights.reconstruction * reconstruction_loss(made, real),
-            "skeleton": weights.skeleton * skeleton_loss(positions, truth),
+            "reconstruction": known * weights.reconstruction * reconstruction_loss(made, real),
+            "skeleton": known * weights.skeleton * skeleton_loss(positions, truth),
             "bone": weights.bone * bone_loss(positions, truth, self.windows.bones),
         }
         if weights.position:
-            terms["position"] = weights.position * position_loss(positions, truth)
+            terms["position"] = known * weights.position * position_loss(positions, truth)
         if weights.speed:
             last = past[:, -1:]
             calm = to_positions(without_flicker(last, curves))
-            terms["speed"] = weights.speed * speed_loss(calm, truth, to_positions(last))
+            speed = speed_loss(calm, true, to_positions(last), groups=self.settings.groups)
+            terms["speed"] = weights.speed * speed
         if weights.adversarial:
             terms["adversarial"] = -weights.adversarial * self.critic(made).mean()
         total = torch.stack(list(terms.values())).sum()

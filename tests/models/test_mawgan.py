@@ -59,7 +59,8 @@ def test_defaults_are_the_thesis_sizes() -> None:
     assert [m.out_features for m in critic.score if isinstance(m, nn.Linear)] == [1024, 1]
     weights = MAWGANLossWeights()
     assert tuple(weights.to_dict().values()) == (1, 1, 10, 10, 10, 0, 0)
-    assert not (config.linear or config.length or config.pose or config.coefficients or config.dropout)
+    assert not (config.linear or config.length or config.pose or config.coefficients or config.shortcut)
+    assert config.dropout == 0
 
 
 def test_curves_are_coordinate_major() -> None:
@@ -130,6 +131,27 @@ def test_what_the_generator_is_wanted_to_make_is_the_true_future() -> None:
     assert longer.abs().max() > 0.05 and torch.allclose(*velocities, atol=1e-4)
 
 
+def test_the_first_layer_reaches_the_future_past_the_convolutions_too() -> None:
+    torch.manual_seed(0)
+    generator = PredictiveMAWGAN(replace(SMALL, linear=True, coefficients=4, shortcut=True)).generator.eval()
+    assert generator.linear is not None and generator.linear.in_features == 4 * 15 + generator.fc.out_features
+    s, beside = poses(5, 40, 8, 15), torch.zeros(40, 0)
+    with torch.no_grad():
+        generator.fit_linear(s, beside, poses(7, 40, 13, 15), ridge=0.1)
+        begun = generator(s, beside)
+        generator.convolutions = False
+        assert torch.equal(generator(s, beside), begun)  # both begin with nothing
+        column = 4 * 15
+        generator.linear.weight[:, column] = 1.0
+        first = torch.relu(generator.fc(s.flatten(1)))[:, 0]
+        added = generator.synthesis @ (first[:, None, None] * torch.ones(1, 4, 15))
+        assert torch.allclose(generator(s, beside), begun + added, atol=1e-5)
+        nn.init.ones_(generator.up[-1].bias)
+        without = generator(s, beside)
+        generator.convolutions = True
+        assert torch.allclose(generator(s, beside), without + 1, atol=1e-5)
+
+
 def test_a_linear_map_is_found_in_closed_form() -> None:
     torch.manual_seed(0)
     generator = PredictiveMAWGAN(replace(SMALL, linear=True, pose=True, coefficients=4)).generator.eval()
@@ -192,6 +214,11 @@ def test_losses_by_hand() -> None:
     last = torch.zeros(2, 1, 5, 3)
     assert float(speed_loss(1.5 * walk, walk, last)) == pytest.approx(0.025, abs=1e-5)
     assert float(speed_loss(walk.flip(-1), walk, last)) == pytest.approx(0, abs=1e-6)
+    # One too fast and one too slow are right on average, and wrong each for itself.
+    faster = torch.cat([1.5 * walk[:1], 0.5 * walk[:1]])
+    both, start = (x[:1].repeat(2, 1, 1, 1) for x in (walk, last))
+    assert float(speed_loss(faster, both, start)) == pytest.approx(0, abs=1e-6)
+    assert float(speed_loss(faster, both, start, groups=2)) == pytest.approx(0.025, abs=1e-5)
     pose = torch.tensor([[0.0, 0, 0], [0, 2, 0], [0, 2, 1]]).expand(2, 4, 3, 3)
     assert float(bone_loss(pose * 1.1, pose, [(0, 1), (1, 2)])) == pytest.approx(0.15)
     assert float(bone_loss(pose.flip(-1), pose, [(0, 1), (1, 2)])) == pytest.approx(0, abs=1e-6)

@@ -27,7 +27,8 @@ MLP = mlp.Settings(past=10, future=8, past_coefficients=6, future_coefficients=4
 GAN = mawgan.Settings(windows="corpus", past=10, future=8, fc=36, width=32, critic_fc=8, critic_steps=2,
                       batch=4, steps=3)  # fmt: skip
 LEAN_GAN = replace(GAN, critic_steps=1, final_rate=0.1, position=100.0, speed=300.0, linear=True, length=True,
-                   pose=True, coefficients=4, dropout=0.3, ridge=0.1, fit=64, noise=0.001)  # fmt: skip
+                   pose=True, coefficients=4, shortcut=True, dropout=0.3, ridge=0.1, fit=64, noise=0.001,
+                   groups=2)  # fmt: skip
 
 
 @pytest.fixture(scope="module")
@@ -211,6 +212,35 @@ def test_a_trained_network_learns_to_go_on_from_its_own(corpus: Path, tmp_path: 
     training = load_predictor(tmp_path / "longer").training
     assert training is not None and training["own_pasts"] == 1
     assert mlp.main([*asked, "--out", str(tmp_path / "third"), "--own-pasts", "-1"]) == 2
+
+
+def test_the_adversary_s_network_learns_to_go_on_from_its_own(corpus: Path, tmp_path: Path) -> None:
+    settings = replace(LEAN_GAN, past=10, future=20, own_pasts=1, steps=4)
+    windows = open_windows("corpus", corpus, 10, settings.ahead)
+    assert windows.length == 10 + 20 + ADVANCE
+    trainer = mawgan.Trainer(windows, settings, tmp_path)
+    own = 0
+    for _ in range(settings.steps):
+        asked, recorded, passes = trainer.window()
+        assert asked.shape == recorded.shape == (4, 30, 22, 3)
+        own += passes
+        assert np.isfinite(list(trainer.train_step().values())).all()
+    assert 0 < own < settings.steps
+    with pytest.raises(InputError, match="own_pasts is 1"):
+        replace(settings, windows="cmu")
+
+
+def test_convolutions_are_left_out_of_a_run_that_asks_for_it(corpus: Path, tmp_path: Path) -> None:
+    windows = open_windows("corpus", corpus, 10, 8)
+    trainer = mawgan.Trainer(windows, replace(LEAN_GAN, convolutions=False), tmp_path)
+    before = {name: value.clone() for name, value in trainer.model.generator.state_dict().items()}
+    list(trainer.run(minutes=5))
+    changed = {
+        name for name, value in trainer.model.generator.state_dict().items() if not value.equal(before[name])
+    }
+    assert changed == {"fc.weight", "fc.bias", "linear.weight", "linear.bias"}
+    with pytest.raises(InputError, match="ask for linear"):
+        replace(GAN, convolutions=False)
 
 
 def test_the_page_s_predictions_are_scored(tmp_path: Path) -> None:

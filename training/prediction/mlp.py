@@ -12,13 +12,12 @@ import math
 from dataclasses import asdict, dataclass, fields
 from pathlib import Path
 
-import numpy as np
 import torch
 from torch import Tensor, nn
 
 from models.motion_mlp import MotionMLP, MotionMLPConfig
 from models.predictors import load_predictor, save_predictor
-from training.prediction.rollout import ADVANCE, with_own_past
+from training.prediction.rollout import ADVANCE, check_own_pasts
 from training.prediction.trainer import PredictionTrainer
 from training.prediction.windows import open_windows
 from training.shell import exit_code
@@ -67,11 +66,7 @@ class Settings:
                 raise InputError(f"{name} is {getattr(self, name)}: give 1 or more.")
         if self.batch % self.groups:
             raise InputError(f"groups is {self.groups}: give a divisor of the batch, {self.batch}.")
-        if self.own_pasts < 0 or (self.own_pasts and (self.windows != "corpus" or self.future < ADVANCE)):
-            raise InputError(
-                f"own_pasts is {self.own_pasts}: give 0, or more with the windows of the corpus and a future "
-                f"of {ADVANCE} frames or more."
-            )
+        check_own_pasts(self.own_pasts, self.windows, self.future)
 
     @property
     def ahead(self) -> int:
@@ -175,15 +170,6 @@ class Trainer(PredictionTrainer):
             "acceleration": s.acceleration_weight * acceleration,
             "bone": s.bone_weight * (bones[0] - bones[1]).abs().mean(),
         }
-
-    def window(self) -> tuple[Tensor, Tensor, int]:
-        """What :meth:`terms` takes in this step."""
-        s, windows = self.settings, self.batch()
-        windows = windows[lengths(windows[:, : s.past].diff(dim=1)).mean((1, 2)).argsort()]
-        if passes := int(np.random.default_rng((s.seed, self.step, 2)).integers(s.own_pasts + 1)):
-            return *with_own_past(self.ema, windows, s.past, s.future, passes), passes
-        windows = windows[:, : s.past + s.future]
-        return windows, windows, 0
 
     def train_step(self) -> dict[str, float]:
         torch.manual_seed(self.settings.seed + self.step)  # dropout

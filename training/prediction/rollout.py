@@ -7,9 +7,19 @@ import torch
 from torch import Tensor, nn
 
 from webdemo.inference.predict_frame import to_last_pose
+from webdemo.motion import InputError
 
 ADVANCE = 20
 """Frames by which a pass of the recursion goes on: the page's passes share the rest of a second."""
+
+
+def check_own_pasts(own_pasts: int, windows: str, future: int) -> None:
+    """Raises InputError where windows or future are none that :func:`with_own_past` can take."""
+    if own_pasts < 0 or (own_pasts and (windows != "corpus" or future < ADVANCE)):
+        raise InputError(
+            f"own_pasts is {own_pasts}: give 0, or more with the windows of the corpus and a future of "
+            f"{ADVANCE} frames or more."
+        )
 
 
 @torch.no_grad()

@@ -8,11 +8,13 @@ from dataclasses import asdict
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 import torch
 from torch import Tensor, nn
 
 from training import checkpoint
 from training.loop import Loop
+from training.prediction.rollout import with_own_past
 from training.prediction.windows import Windows
 
 
@@ -24,8 +26,8 @@ class PredictionTrainer(Loop):
 
     Args:
         windows: of the training data.
-        settings: a dataclass with ``steps``, ``batch``, ``seed`` and ``ema``; a checkpoint of other settings
-            is refused.
+        settings: a dataclass with ``past``, ``future``, ``own_pasts``, ``steps``, ``batch``, ``seed`` and
+            ``ema``; a checkpoint of other settings is refused.
         out: folder of the checkpoint ``last.safetensors``.
         device: "cpu" or "cuda".
     """
@@ -56,6 +58,20 @@ class PredictionTrainer(Loop):
     def batch(self, part: int = 0) -> Tensor:
         """The windows (B, T, J, 3) of this step."""
         return self.windows.batch(self.settings.batch, (self.settings.seed, self.step, part)).to(self.device)
+
+    def window(self) -> tuple[Tensor, Tensor, int]:
+        """The windows (B, past + future, J, 3) of this step, in the order of the speed of their pasts.
+
+        Returns:
+            what is asked for, what was recorded, and how often the averaged network was applied to make the
+            pasts of the former: 0 to ``own_pasts`` times, drawn for each step; where 0, both are the same.
+        """
+        s, windows = self.settings, self.batch()
+        windows = windows[windows[:, : s.past].diff(dim=1).norm(dim=-1).mean((1, 2)).argsort()]
+        if passes := int(np.random.default_rng((s.seed, self.step, 2)).integers(s.own_pasts + 1)):
+            return *with_own_past(self.ema, windows, s.past, s.future, passes), passes
+        windows = windows[:, : s.past + s.future]
+        return windows, windows, 0
 
     def average(self) -> None:
         """Moves the averaged network towards the current one."""
