@@ -51,8 +51,10 @@ export async function mount(element, props, watch, { plotly, empty }) {
   const player = new Player(root);
   let shown;
   let heard = null;
+  let opening = true;
   const sync = () => {
-    player.controls.setBusy(props.busy, props.progress);
+    const waits = opening && props.value ? "Opening the 3D view …" : "";
+    player.controls.setBusy(props.busy || waits, props.progress);
     const id = props.value?.id ?? null;
     if (player.scene && id !== shown) {
       shown = id;
@@ -75,10 +77,13 @@ export async function mount(element, props, watch, { plotly, empty }) {
     if (!root.isConnected) return;
     await player.open(Plotly);
   } catch (error) {
+    opening = false;
+    sync();
     player.controls.setEmptyText("The 3D view could not start: this browser may have WebGL switched off.");
     console.error(error);
     return;
   }
+  opening = false;
   players.add(player);
   player.onclose = () => players.delete(player);
   sync(); // the value may have come before the scene was ready, with nothing left for watch to see

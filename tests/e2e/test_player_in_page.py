@@ -131,6 +131,24 @@ def test_falls_back_to_restyle(player):
     assert has_color(pixels, blue=False)
 
 
+def test_a_motion_that_waits_for_the_3d_view_is_announced(open_page, player_url):
+    held = []
+
+    def hold_plotly(page):
+        page.route("**/plotly*.js", lambda route: held.append(route))
+
+    page = open_page(player_url, before=hold_plotly)
+    press(page, "load")
+    busy = page.locator(".pdd-busy-text").first
+    page.wait_for_function("/3D view/.test(document.querySelector('.pdd-busy-text')?.textContent)")
+    assert busy.is_visible()
+    assert not page.locator(".pdd-empty").first.is_visible(), "it does not ask for what is there"
+    for route in held:
+        route.continue_()
+    until(page, "window.__pasdedeux?.frame > 0", 30)
+    assert not busy.is_visible()
+
+
 def test_says_so_without_webgl(open_page, player_url):
     def no_webgl(page):
         page.add_init_script("""const original = HTMLCanvasElement.prototype.getContext;

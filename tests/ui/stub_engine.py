@@ -86,8 +86,11 @@ class StubEngine:
     """Answers as the real engine does, after ``steps`` pauses of ``pause`` seconds.
 
     A prompt that holds the word "impossible" is refused, one with "crash" raises an error that is no
-    sentence for a user, and one with "unknown" comes with a note.
+    sentence for a user, and one with "unknown" comes with a note. A live run waits at the frame
+    ``live_waits_at`` until that is another.
     """
+
+    live_waits_at: int | None = None
 
     def __init__(self, *, pause: float = 0.0, load: float = 0.0) -> None:
         self.pause = pause
@@ -157,6 +160,8 @@ class StubEngine:
         other = beside(request.actor, "a", request.seed).b.positions
         frames = (LiveFrame(i, frame[None], frame[None], 0.0) for i, frame in enumerate(other))
         for frame in paced(frames):
+            while frame.index == self.live_waits_at and not (cancel is not None and cancel.cancelled):
+                time.sleep(0.01)
             if cancel is not None and cancel.cancelled:
                 raise Cancelled("The run was cancelled.")
             yield LiveProgress(stage="sample", step=frame.index + 1, total=len(other), frame=frame)
