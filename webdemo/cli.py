@@ -249,8 +249,8 @@ def _add_others(commands: Any) -> None:
     bench.add_argument("--minutes", type=float, default=5.0, help="with --load")
     bench.set_defaults(job=benchmark)
     serve_parser = commands.add_parser("serve", help="the page, as `python app.py`")
-    serve_parser.add_argument("--host")
-    serve_parser.add_argument("--port", type=int)
+    serve_parser.add_argument("--host", help="address to listen on (127.0.0.1: this machine alone)")
+    serve_parser.add_argument("--port", type=int, help="port to listen on (7860)")
     serve_parser.add_argument("--print-settings", action="store_true", help="say what is set, and end")
     serve_parser.set_defaults(job=serve)
     user_parser = commands.add_parser("user", help="accounts: add, remove, list")
@@ -267,9 +267,11 @@ def info(options: argparse.Namespace) -> dict[str, Any]:
     from webdemo.formats import FORMATS, can_read, can_write
     from webdemo.inference.engine import Engine
 
-    card = Engine().info()
+    engine = Engine()
+    card = {name: value for name, value in engine.info().items() if name != "ready"}  # nothing is loaded here
     found = {
         "model": card,
+        "weights": sorted({file.parent.name for file in engine.weights.glob("*/*.safetensors")}),
         "formats": {s: {"read": can_read(s), "write": can_write(s)} for s in FORMATS},
         "versions": {name: version(name) for name in ("gradio", "torch", "numpy", "plotly", "diffusers")},
     }
@@ -282,10 +284,11 @@ def benchmark(options: argparse.Namespace) -> dict[str, Any]:
     from webdemo.benchmark import run_benchmark
 
     if options.load:
-        from webdemo.server.load import measure_batching, run_load
+        from webdemo.server.load import goals_missed, measure_batching, run_load
 
-        batching = measure_batching(steps=options.steps)
-        return batching | run_load(people=options.people, minutes=options.minutes, steps=options.steps)
+        figures = measure_batching(steps=options.steps)
+        figures |= run_load(people=options.people, minutes=options.minutes, steps=options.steps)
+        return figures | {"goals_missed": goals_missed(figures)}
     return run_benchmark(
         seconds=options.seconds, steps=options.steps, repeats=options.repeats, browser=options.browser
     )

@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+import json
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 from typing import Any
 
 import pytest
 
+from webdemo.cli import main
 from webdemo.motion import InputError
 from webdemo.server import load
 from webdemo.server.load import Tally
@@ -54,4 +56,29 @@ def test_shares_are_compared_by_work() -> None:
     figures = tally.figures()
     assert figures["longest_wait_over_fair_share"] == 1.5
     assert (figures["memory_first_quarter_mb"], figures["memory_last_quarter_mb"]) == (5.0, 6.0)
-    assert figures["memory_most_mb"] == 9.0
+    assert figures["memory_most_mb"] == 9.0 and figures["memory_last_over_first_quarter"] == 1.2
+
+
+def test_the_command_says_which_goals_are_missed(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    asked: dict[str, Any] = {}
+    good: dict[str, Any] = {
+        "runs_lost": 0, "runs_swapped": 0, "runs_refused_or_failed": 0, "log_lines_of_errors": 0,
+        "longest_wait_over_fair_share": 2.9, "page_worst_seconds": 0.9, "memory_last_over_first_quarter": 1.0,
+    }  # fmt: skip
+
+    def measured(**options: Any) -> dict[str, Any]:
+        asked.update(options)
+        return good
+
+    monkeypatch.setattr(load, "run_load", measured)
+    monkeypatch.setattr(load, "measure_batching", lambda steps: {"batched_over_serial_throughput": 1.5})
+    command = ["benchmark", "--load", "--people", "7", "--minutes", "0.5"]
+    assert main(command) == 0
+    assert (asked["people"], asked["minutes"]) == (7, 0.5)
+    assert json.loads(capsys.readouterr().out.splitlines()[-1])["goals_missed"] == []
+    good |= {"runs_swapped": 1, "page_worst_seconds": None, "longest_wait_over_fair_share": float("nan")}
+    assert main(command) == 0
+    missed = json.loads(capsys.readouterr().out.splitlines()[-1])["goals_missed"]
+    assert missed == ["runs_swapped", "longest_wait_over_fair_share", "page_worst_seconds"]

@@ -16,7 +16,7 @@ import subprocess
 import sys
 import tempfile
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any
@@ -41,6 +41,17 @@ PROMPTS = (
 )
 CLIP = ROOT / "static" / "examples" / "shake-hands.npz"
 """What reactions and predictions are asked for with."""
+GOALS: dict[str, tuple[float, float]] = {
+    "runs_lost": (0, 0),
+    "runs_swapped": (0, 0),
+    "runs_refused_or_failed": (0, 0),
+    "log_lines_of_errors": (0, 0),
+    "longest_wait_over_fair_share": (0, 3),
+    "page_worst_seconds": (0, 1),
+    "memory_last_over_first_quarter": (0, 1.05),
+    "batched_over_serial_throughput": (1.5, float("inf")),
+}
+"""What a server for a lab is meant to keep to: each figure's least and most."""
 REST_SECONDS = 10.0
 """Before memory is read: the server returns what runs have left every few seconds."""
 _API = "gradio_api"
@@ -87,8 +98,22 @@ class Tally:
             "page_worst_seconds": max(self.page, default=None),
             "memory_first_quarter_mb": statistics.median(self.memory[:quarter] or [0]),
             "memory_last_quarter_mb": statistics.median(self.memory[-quarter:] or [0]),
+            "memory_last_over_first_quarter": (
+                statistics.median(self.memory[-quarter:]) / statistics.median(self.memory[:quarter])
+                if self.memory
+                else None
+            ),
             "memory_most_mb": max(self.memory, default=0.0),
         }
+
+
+def goals_missed(figures: Mapping[str, Any]) -> list[str]:
+    """The names of the :data:`GOALS` that figures do not keep to, or that were not measured."""
+    return [
+        name
+        for name, (least, most) in GOALS.items()
+        if figures.get(name) is None or not least <= figures[name] <= most
+    ]
 
 
 def run_load(*, people: int, minutes: float, steps: int = 20, seed: int = 0) -> dict[str, Any]:
