@@ -186,6 +186,7 @@ def test_info_tells_the_model_and_the_formats(run: Run) -> None:
     assert code == 0
     told = answer(said)
     assert told["model"]["summary"] == "a tiny untrained model"
+    assert told["weights"] == ["intergen"]
     assert told["formats"][".npz"] == {"read": True, "write": True}
     assert told["versions"]["torch"]
 

@@ -6,6 +6,7 @@ Writes ``corpus.md``, one row a family, and ``corpus/FAMILY.webp``, a contact sh
 from __future__ import annotations
 
 import argparse
+import textwrap
 from collections import defaultdict
 from collections.abc import Sequence
 from pathlib import Path
@@ -25,6 +26,8 @@ FPS = 30.0
 MEASURED = 15
 """Scenes of a family that are measured."""
 PICTURE_WIDTH = 960
+_LINE = 119
+"""Characters of a line of prose."""
 
 
 def touch_gap(duet: Duet, contacts: Sequence[dict[str, Any]]) -> float:
@@ -80,21 +83,30 @@ def report(motions: NDArray[np.floating], index: list[dict[str, Any]], out: Path
     head = [
         "# The corpus",
         "",
-        f"{int(count.sum()):,} scenes of {len(families)} families, {minutes.sum() / 60:.1f} hours at 30 fps, "
-        f"{len(captions):,} different captions; {len(recorded)} scenes "
-        f"({sum(s['frames'] for s in recorded) / FPS / 60:.0f} minutes) are recorded pairs, the others are "
-        "composed of single recordings. Over all: bone drift "
-        f"{drift:.2f} %, foot skate {skate:.1f} cm/s, penetration {overlap:.2f} cm.",
+        _wrapped(
+            f"{int(count.sum()):,} scenes of {len(families)} families, {minutes.sum() / 60:.1f} hours at "
+            f"30 fps, {len(captions):,} different captions; {len(recorded)} scenes "
+            f"({sum(s['frames'] for s in recorded) / FPS / 60:.0f} minutes) are recorded pairs, the others "
+            f"are composed of single recordings. Over all: bone drift {drift:.2f} %, foot skate {skate:.1f} "
+            f"cm/s, penetration {overlap:.2f} cm."
+        ),
         "",
-        f"Measured on up to {MEASURED} scenes a family. Touching joints: median distance, at the nearest "
-        "moment of a touch, of the joints that touch; wrists that meet are 6 to 9 cm apart, and a joint of "
-        "the trunk lies inside the body. Rebuilt by `python -m training.corpus.report`.",
+        _wrapped(
+            f"Measured on up to {MEASURED} scenes a family. Touching joints: median distance, at the nearest "
+            "moment of a touch, of the joints that touch; wrists that meet are 6 to 9 cm apart, and a joint "
+            "of the trunk lies inside the body."
+        ),
+        "Rebuilt by `python -m training.corpus.report`.",
         "",
     ]
     text = "\n".join([*head, *lines, ""])
     with replacing(out / "corpus.md") as temporary:
         temporary.write_text(text)
     return text
+
+
+def _wrapped(paragraph: str) -> str:
+    return textwrap.fill(paragraph, _LINE, break_on_hyphens=False)
 
 
 def _duet(motions: NDArray[np.floating], scene: dict[str, Any]) -> Duet:
