@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import os
 import socket
 import threading
 import time
@@ -11,6 +12,7 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
+import pytest
 from fastapi.testclient import TestClient
 
 from webdemo.server.app import Lab, create_app
@@ -28,6 +30,19 @@ FIELDS = ["Two people walk.", 1, 0, 1, 3, 1, 0, "ddim"]
 
 def settings_for(folder: Path, **fields: Any) -> Settings:
     return Settings(**({"data": folder / "data", "grace_seconds": 1, "free_megabytes": 0} | fields))
+
+
+DATABASES = ("sqlite", "named")
+"""SQLite, and the empty database whose URL PASDEDEUX_TEST_DATABASE gives."""
+
+
+def database_url(kind: str, folder: Path) -> str:
+    """The URL of one of :data:`DATABASES`; skips the test where there is none."""
+    if kind == "sqlite":
+        return f"sqlite:///{folder / 'h.db'}"
+    if not (url := os.environ.get("PASDEDEUX_TEST_DATABASE", "")):
+        pytest.skip("PASDEDEUX_TEST_DATABASE names no other database")
+    return url
 
 
 def client_of(settings: Settings, *, pause: float = 0.0, **options: Any) -> TestClient:

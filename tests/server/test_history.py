@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import errno
-import os
 import time
 from collections.abc import Iterator
 from dataclasses import replace
@@ -27,18 +26,15 @@ from webdemo.server.history import DAY, History
 from webdemo.server.recorder import title_of
 from webdemo.ui.again import request_of, verdict
 
+from .clients import DATABASES, database_url
 from .lab import stub_module
 
 ME, OTHER = "user ada", "user eve"
 
 
-@pytest.fixture(params=["sqlite", "named"])
+@pytest.fixture(params=DATABASES)
 def history(request: pytest.FixtureRequest, tmp_path: Path) -> Iterator[History]:
-    """On SQLite, and on the empty database whose URL PASDEDEUX_TEST_DATABASE gives."""
-    url = f"sqlite:///{tmp_path / 'h.db'}"
-    if request.param == "named" and not (url := os.environ.get("PASDEDEUX_TEST_DATABASE", "")):
-        pytest.skip("PASDEDEUX_TEST_DATABASE names no other database")
-    database = Database(url)
+    database = Database(database_url(request.param, tmp_path))
     yield History(database, tmp_path / "motions", node="n")
     Table.metadata.drop_all(database.engine)
     database.close()

@@ -10,15 +10,18 @@ import pytest
 from sqlalchemy import func, select, update
 
 from webdemo.motion import InputError
-from webdemo.server.database import Database
+from webdemo.server.database import Database, Table
 from webdemo.server.places import LOST_AFTER, Place, Places
 
+from .clients import DATABASES, database_url
 
-@pytest.fixture
-def two(tmp_path: Path) -> Iterator[tuple[Places, Places]]:
+
+@pytest.fixture(params=DATABASES)
+def two(request: pytest.FixtureRequest, tmp_path: Path) -> Iterator[tuple[Places, Places]]:
     """The places of two processes, of which each person may have three."""
-    databases = [Database(f"sqlite:///{tmp_path / 'h.db'}") for _ in range(2)]
+    databases = [Database(database_url(request.param, tmp_path)) for _ in range(2)]
     yield Places(databases[0], "one", 3), Places(databases[1], "two", 3)
+    Table.metadata.drop_all(databases[0].engine)
     for database in databases:
         database.close()
 

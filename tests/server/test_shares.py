@@ -13,21 +13,22 @@ from sqlalchemy import update
 
 from webdemo.inference.requests import GenerateRequest
 from webdemo.motion import InputError
-from webdemo.server.database import Database
+from webdemo.server.database import Database, Table
 from webdemo.server.history import History
 from webdemo.server.nodes import Node
 from webdemo.server.shares import KEPT_SECONDS, Shares, Work
 
-from .clients import CALL, FIELDS, lab_of, sign_in, told
+from .clients import CALL, DATABASES, FIELDS, database_url, lab_of, sign_in, told
 from .lab import ROOT
 from .test_queue import make, request, wait_for
 
 
-@pytest.fixture
-def two(tmp_path: Path) -> Iterator[tuple[Shares, Shares]]:
+@pytest.fixture(params=DATABASES)
+def two(request: pytest.FixtureRequest, tmp_path: Path) -> Iterator[tuple[Shares, Shares]]:
     """What two processes know of each other."""
-    databases = [Database(f"sqlite:///{tmp_path / 'h.db'}") for _ in range(2)]
+    databases = [Database(database_url(request.param, tmp_path)) for _ in range(2)]
     yield Shares(databases[0], "one"), Shares(databases[1], "two")
+    Table.metadata.drop_all(databases[0].engine)
     for database in databases:
         database.close()
 
