@@ -191,13 +191,22 @@ def test_info_tells_the_model_and_the_formats(run: Run) -> None:
     assert told["versions"]["torch"]
 
 
-def test_benchmark_reports_figures(run: Run) -> None:
+def test_benchmark_reports_figures(run: Run, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("webdemo.benchmark_reactions.STREAMED", 210)  # two hundred are compared
+    monkeypatch.setattr("webdemo.benchmark_reactions.WHOLE", 30)
     code, said, _ = run("benchmark", "--seconds", 1, "--steps", 2, "--repeats", 1)
     assert code == 0
     told = answer(said)
     assert told["frames"] == 30
     assert told["request_seconds"] > 0
     assert told["plain_over_request"] > 0
+    for figure in (
+        "predict_25_frames_ms",
+        "reaction_frame_ms",
+        "reaction_whole_seconds",
+        "interformer_48_frames",
+    ):
+        assert told[figure] > 0
 
 
 def test_missing_weights_are_one_line(run: Run, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
