@@ -58,6 +58,12 @@ def test_other_sites_change_nothing(local: TestClient, headers: dict[str, str]) 
     assert answer.status_code == 403 and "Another site's page" in answer.json()["detail"]
 
 
+def test_a_head_that_is_no_address_is_refused(local: TestClient) -> None:
+    for headers in ({"host": "["}, {"origin": "http://["}, {"host": "]:1", "origin": "http://[x"}):
+        answer = local.post(JOIN, json={}, headers=headers)
+        assert answer.status_code == 400 and "not an address" in answer.json()["detail"]
+
+
 def test_foreign_names_are_refused(local: TestClient) -> None:
     """A site whose name is made to point to this machine is still that site."""
     assert local.get("/", headers={"host": "evil.example"}).status_code == 421

@@ -239,15 +239,18 @@ class Guard:
 
     def _check_origin(self, scope: Scope, headers: dict[bytes, bytes], host: str) -> None:
         """Raises Refused for another site's page that asks in a visitor's name, and for foreign names."""
-        name = urlsplit(f"//{host}").hostname or ""
+        origin = headers.get(b"origin", b"").decode("latin-1").lower()
+        try:
+            name, asks = urlsplit(f"//{host}").hostname or "", urlsplit(origin).netloc
+        except ValueError:
+            raise Refused(400, "The request's Host or Origin is not an address.", "bad head") from None
         if self.hosts and name not in self.hosts:
             raise Refused(
                 421, "This server is not called so: set PASDEDEUX_HOSTS to the names it has.", "host"
             )
         if scope["method"] not in _CHANGING:
             return
-        origin = headers.get(b"origin", b"").decode("latin-1").lower()
-        elsewhere = bool(origin) and urlsplit(origin).netloc != host
+        elsewhere = bool(origin) and asks != host
         if elsewhere or headers.get(b"sec-fetch-site") == b"cross-site":
             raise Refused(403, "Another site's page cannot do this: open the page itself.", "cross-site")
 
