@@ -132,6 +132,8 @@ class SpatialAttention(nn.Module):
 
 
 class EncoderLayer(nn.Module):
+    """Attention over time and over the joints, side by side, and a feed-forward part; norms before each."""
+
     def __init__(self, config: CompactInterFormerConfig) -> None:
         super().__init__()
         d = config.width
@@ -141,6 +143,7 @@ class EncoderLayer(nn.Module):
         self.drop = nn.Dropout(config.dropout)
 
     def forward(self, x: Tensor, mask: Tensor, graph: Tensor) -> Tensor:
+        """x (B, T, D), mask (…, T, T) bool, graph (J, J) of 0 and 1 → (B, T, D)."""
         y = self.norm_1(x)
         both = self.time(y, *self.time.remember(y), mask) + self.space(
             y, *self.space.remember(y), graph=graph
@@ -150,6 +153,8 @@ class EncoderLayer(nn.Module):
 
 
 class DecoderLayer(nn.Module):
+    """An :class:`EncoderLayer` over the reactor so far, with the same two attentions to the actor."""
+
     def __init__(self, config: CompactInterFormerConfig) -> None:
         super().__init__()
         d = config.width

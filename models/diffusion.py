@@ -60,10 +60,6 @@ class NoiseSchedule:
         self.sqrt_alphas_cumprod = alphas_cumprod.sqrt().float().to(device)
         self.sqrt_one_minus_alphas_cumprod = (1 - alphas_cumprod).sqrt().float().to(device)
 
-    def sample_timesteps(self, batch: int, *, generator: torch.Generator | None = None) -> Tensor:
-        """Uniform timesteps (batch,), int64, on the schedule's device."""
-        return torch.randint(self.timesteps, (batch,), generator=generator, device=self.alphas_cumprod.device)
-
     def q_sample(self, x0: Tensor, t: Tensor, noise: Tensor) -> Tensor:
         """xt = √ᾱ_t · x0 + √(1 − ᾱ_t) · noise, for x0 and noise (B, …) and t (B,)."""
         shape = (-1,) + (1,) * (x0.dim() - 1)

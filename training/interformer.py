@@ -39,7 +39,7 @@ from models.interformer import JOINTS
 from models.interformer_decoding import ReactionDecoder
 from training import checkpoint
 from training.corpus.pairs import load_pairs
-from training.loop import Loop
+from training.loop import Loop, warm_cosine
 from training.shell import add_run_options, chosen, exit_code
 from webdemo.motion import InputError
 from webdemo.motion.skeleton import SBU15
@@ -240,12 +240,6 @@ class Trainer(Loop):
             penalty = s.ridge * rows * torch.eye(size, dtype=torch.float64)
             model.linear.weight.copy_(torch.linalg.solve(gram + penalty, right).T)
 
-    def learning_rate(self) -> float:
-        """Linear warm-up, then a cosine to 2 % of the peak."""
-        s = self.settings
-        warm = min(1.0, (self.step + 1) / s.warmup)
-        return s.learning_rate * warm * (0.51 + 0.49 * math.cos(math.pi * min(1.0, self.step / s.steps)))
-
     def batch(self, rng: np.random.Generator) -> Batch:
         """Scenes of about one length, so that little is padding."""
         s = self.settings
@@ -315,8 +309,9 @@ class Trainer(Loop):
         self.model.train()
         terms = self.terms(batch, torch.Generator().manual_seed(s.seed * 999_983 + self.step))
         total = torch.stack(list(terms.values())).sum()
+        rate = warm_cosine(s.learning_rate, self.step, warmup=s.warmup, steps=s.steps)
         for group in self.optimizer.param_groups:
-            group["lr"] = self.learning_rate()
+            group["lr"] = rate
         self.optimizer.zero_grad(set_to_none=True)
         total.backward()
         torch.nn.utils.clip_grad_norm_(self.trained(), 1.0)

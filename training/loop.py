@@ -3,11 +3,18 @@
 from __future__ import annotations
 
 import json
+import math
 import time
 from abc import ABC, abstractmethod
 from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import Any
+
+
+def warm_cosine(peak: float, step: int, *, warmup: int, steps: int) -> float:
+    """The learning rate at ``step`` of ``steps``: a linear warm-up, then a cosine to 2 % of the peak."""
+    warm = min(1.0, (step + 1) / warmup)
+    return peak * warm * (0.51 + 0.49 * math.cos(math.pi * min(1.0, step / steps)))
 
 
 class Loop(ABC):

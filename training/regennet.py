@@ -12,7 +12,6 @@ from __future__ import annotations
 
 import argparse
 import json
-import math
 from dataclasses import asdict, dataclass
 from pathlib import Path
 
@@ -29,7 +28,7 @@ from models.intergen_losses import bone_lengths, facing
 from models.motion_tokens import FEATURES, NUM_CONTACTS
 from training import checkpoint
 from training.intergen import draw_timesteps, seeded
-from training.loop import Loop
+from training.loop import Loop, warm_cosine
 from training.prepare import Scenes, load
 from training.regennet_data import Batch, Conditions, Data, knot_positions, seen_rows
 from training.shell import add_run_options, chosen, exit_code
@@ -188,12 +187,6 @@ class Trainer(Loop):
     def parts(self) -> dict[str, torch.nn.Module | torch.optim.Optimizer]:
         return {"model": self.model, "ema": self.ema, "optimizer": self.optimizer}
 
-    def learning_rate(self) -> float:
-        """Linear warm-up, then a cosine to 2 % of the peak."""
-        s = self.settings
-        warm = min(1.0, (self.step + 1) / s.warmup)
-        return s.learning_rate * warm * (0.51 + 0.49 * math.cos(math.pi * min(1.0, self.step / s.steps)))
-
     def terms(self, batch: Batch, generator: torch.Generator) -> dict[str, Tensor]:
         """Every loss term of one batch, weighted."""
         s, model = self.settings, self.model
@@ -244,8 +237,10 @@ class Trainer(Loop):
         self.model.train()
         terms = self.terms(batch, seeded(self.settings.seed, 3, self.step))
         total = torch.stack(list(terms.values())).sum()
+        s = self.settings
+        rate = warm_cosine(s.learning_rate, self.step, warmup=s.warmup, steps=s.steps)
         for group in self.optimizer.param_groups:
-            group["lr"] = self.learning_rate()
+            group["lr"] = rate
         self.optimizer.zero_grad(set_to_none=True)
         total.backward()
         torch.nn.utils.clip_grad_norm_(self.trained, 1.0)

@@ -97,4 +97,5 @@ def theme() -> gr.themes.Base:
 
 
 def style_sheet() -> str:
+    """The page's own CSS, beside what the theme sets."""
     return STYLE.read_text(encoding="utf-8")
