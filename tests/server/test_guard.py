@@ -18,6 +18,7 @@ from .clients import HERE, HTML, JOIN, client_of, lab_of, settings_for
 
 
 def test_the_page_and_its_headers(local: TestClient) -> None:
+    local.cookies.clear()
     answer = local.get("/", headers={"accept": "text/html"})
     assert answer.status_code == 200 and "Pas de Deux" in answer.text
     assert answer.headers["x-content-type-options"] == "nosniff"

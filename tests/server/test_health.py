@@ -6,12 +6,13 @@ import json
 import logging
 import re
 import time
+import traceback
 
 import pytest
 from fastapi.testclient import TestClient
 from prometheus_client.parser import text_string_to_metric_families
 
-from webdemo.server.logs import JsonLines
+from webdemo.server.logs import JsonLines, log_instead_of_printing
 
 from .clients import FIELDS, JOIN, answer_of, lab_of, told
 from .test_queue import wait_for
@@ -96,6 +97,24 @@ def test_an_error_is_found_in_the_log_by_its_id(local: TestClient, caplog: pytes
 def test_an_id_that_a_client_makes_up_is_not_taken(local: TestClient) -> None:
     answer = local.get("/healthz", headers={"x-request-id": "forged"})
     assert answer.headers.get_list("x-request-id") != ["forged"]
+
+
+def test_gradios_own_errors_hold_no_prompt(
+    local: TestClient,
+    monkeypatch: pytest.MonkeyPatch,
+    caplog: pytest.LogCaptureFixture,
+    capfd: pytest.CaptureFixture[str],
+) -> None:
+    """It prints what it was sent, a line each: a forged line of the log among them."""
+    forged = 'SECRET PROMPT\n{"level": "error", "message": "forged"}'
+    monkeypatch.setattr(traceback, "print_exc", log_instead_of_printing)
+    said = told(local, "generate", [forged])  # seven more were wanted
+    assert "event: error" in said
+    lines = [JsonLines().format(record) for record in caplog.records]
+    printed = "".join(capfd.readouterr())
+    assert not any("SECRET" in text or "forged" in text for text in (*lines, printed))
+    (line,) = [json.loads(line) for line in lines if "An event failed." in line]
+    assert line["error"] == "ValueError" and line["where"]
 
 
 def test_logs_hold_no_prompt_and_no_forged_line(local: TestClient, caplog: pytest.LogCaptureFixture) -> None:

@@ -71,6 +71,20 @@ def test_a_broken_upload_is_a_sentence(local: TestClient, content: bytes) -> Non
         assert "event: error" in said and "Traceback" not in said and "its log says more" not in said
 
 
+def test_what_the_page_does_not_offer_is_no_error_of_the_programs(local: TestClient) -> None:
+    """A name or number that is made up is refused before Gradio stumbles over it."""
+    errors = lab_of(local).figures.errors.collect()[0].samples
+    for path, body in (
+        ("call/nosuch", {"data": []}), ("run/nosuch", {"data": []}), ("api/..", {"data": []}),
+        ("call/refresh", {"data": [None]}), ("queue/join", {"data": [], "fn_index": 99999}),
+        ("queue/join", {"data": [], "fn_index": -1}), ("run/predict", {"data": [], "fn_index": "0"}),
+        ("queue/join", {"data": [], "fn_index": True}),
+    ):  # fmt: skip
+        answer = local.post(f"/gradio_api/{path}", json=body)
+        assert answer.status_code == 404, (path, body, answer.text)
+    assert lab_of(local).figures.errors.collect()[0].samples == errors
+
+
 def test_a_visitors_history_is_not_had_by_naming_them(open_to_all: TestClient) -> None:
     mine = {"cookie": "pasdedeux_visitor=" + "m" * 32}
     assert "event: complete" in told(open_to_all, "generate", FIELDS, mine)

@@ -151,7 +151,11 @@ def create_app(
     if sign_ins is not None:
         app.include_router(login_routes(settings, sign_ins, visitors))
     app.add_middleware(PageCache)
-    app.add_middleware(Guard, settings=settings, visitors=visitors, figures=figures, answers=lab.answers)
+    app.add_middleware(
+        Guard, settings=settings, visitors=visitors, figures=figures, answers=lab.answers,
+        endpoints={str(fn.api_name) for fn in page.fns.values() if fn.api_visibility == "public"},
+        functions=frozenset(page.fns),
+    )  # fmt: skip
     page.state_session_capacity = PAGES
     page.max_threads = settings.queue + 64  # whoever waits in line holds a thread
     page.queue(default_concurrency_limit=4, max_size=2 * settings.queue + 64)

@@ -10,6 +10,7 @@ import re
 import shutil
 import time
 import uuid
+from collections.abc import Collection
 from http.cookies import CookieError, SimpleCookie
 from urllib.parse import parse_qs, quote, urlsplit
 
@@ -84,13 +85,23 @@ class Guard:
         visitors: who is who.
         figures: what is counted.
         answers: counts those that are being sent.
+        endpoints: names that programs may call.
+        functions: numbers of the page's events.
     """
 
     def __init__(
-        self, app: ASGIApp, settings: Settings, visitors: Visitors, figures: Figures, answers: OpenAnswers
+        self,
+        app: ASGIApp,
+        *,
+        settings: Settings,
+        visitors: Visitors,
+        figures: Figures,
+        answers: OpenAnswers,
+        endpoints: Collection[str],
+        functions: Collection[int],
     ) -> None:
         self.app, self.settings, self.visitors, self.figures = app, settings, visitors, figures
-        self.answers = answers
+        self.answers, self.endpoints, self.functions = answers, endpoints, functions
         self.bindings = Bindings()
         self.rates = Rates(settings.rate)
         self.address_rates = Rates(settings.rate * settings.address_people)
@@ -230,7 +241,8 @@ class Guard:
                 self._check_room(declared)
             body = BoundedBody(receive, most=most, seconds=self.settings.body_seconds)
             if not upload and path.startswith(API):
-                self._check_session(await body.whole(), visitor.person)
+                self._check_endpoint(path)
+                self._check_body(await body.whole(), visitor.person)
             return visitor, body
         if visitor is not None and path.startswith(API):
             for session in _named_sessions(path, scope.get("query_string", b"")):
@@ -259,14 +271,22 @@ class Guard:
         if free and shutil.disk_usage(self.settings.data).free < free + size:
             raise Refused(507, _DISK, "disk")
 
-    def _check_session(self, body: bytes, person: str) -> None:
+    def _check_endpoint(self, path: str) -> None:
+        way, _, name = path[len(API) :].partition("/")
+        if way in ("call", "run", "api") and name.partition("/")[0] not in self.endpoints:
+            raise Refused(404, "There is no endpoint of this name: see /gradio_api/info.", "forged")
+
+    def _check_body(self, body: bytes, person: str) -> None:
         if not body:
             return
         try:
             fields = json.loads(body)
         except (ValueError, RecursionError):
             raise Refused(400, "The request's body is not JSON.", "bad body") from None
-        session = fields.get("session_hash") if isinstance(fields, dict) else None
+        fields = fields if isinstance(fields, dict) else {}
+        function, session = fields.get("fn_index"), fields.get("session_hash")
+        if function is not None and (type(function) is not int or function not in self.functions):
+            raise Refused(404, "The page has no such function: reload it.", "forged")
         if session is not None:
             if not isinstance(session, str):
                 raise Refused(400, "The session's name is not text: reload the page.", "forged")

@@ -53,8 +53,17 @@ class JsonLines(logging.Formatter):
         return json.dumps(line, ensure_ascii=True, default=str)
 
 
+def log_instead_of_printing(limit: Any = None, file: Any = None, chain: bool = True) -> None:
+    """Stands for :func:`traceback.print_exc`, by which Gradio prints an error with what the user had sent."""
+    if file is not None:
+        traceback.print_exception(*sys.exc_info(), limit=limit, file=file, chain=chain)
+    else:
+        logging.getLogger("webdemo.gradio").error("An event failed.", exc_info=True)
+
+
 def set_up_logs(level: str, *, content: bool) -> None:
-    """Sends all logs to stderr as JSON lines."""
+    """Sends all logs to stderr as JSON lines, and what libraries would print of errors as well."""
+    traceback.print_exc = log_instead_of_printing
     handler = logging.StreamHandler(sys.stderr)
     handler.setFormatter(JsonLines(content=content))
     root = logging.getLogger()
