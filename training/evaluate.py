@@ -141,7 +141,7 @@ def main(argv: list[str] | None = None) -> None:
     parser.add_argument("--prompts", type=int, default=200, help="how many captions (200)")
     parser.add_argument("--seed", type=int, default=0)
     parser.add_argument("--steps", type=int, default=25, help="DDIM steps (25)")
-    parser.add_argument("--guidance", type=float, default=3.8)
+    parser.add_argument("--guidance", type=float, default=4.3)
     parser.add_argument("--damping", type=float, default=0.7)
     parser.add_argument(
         "--minutes", type=float, default=0.0, help="draw no more after this time; 0: no limit"

@@ -29,7 +29,7 @@ class Sampling:
 
     seed: int = 0
     steps: int = 25
-    guidance: float = 3.8
+    guidance: float = 4.3
     damping: float = 0.7
 
 

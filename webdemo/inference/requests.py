@@ -80,7 +80,7 @@ class SamplingRequest:
 
     seed: int = 0
     samples: int = 1
-    guidance: float = 3.8
+    guidance: float = 4.3
     steps: int = 50
     damping: float = 0.7
     sampler: str = "ddim"
