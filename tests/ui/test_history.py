@@ -47,6 +47,24 @@ def test_a_run_that_is_still_there_stays_chosen() -> None:
     assert tab(entry("hug")).refresh("wave")[0]["value"] == "hug"
 
 
+@pytest.mark.parametrize(
+    ("request_", "method"),
+    [
+        ({"kind": "react", "model": "intergen", "mode": "offline"}, "InterGen, person to person · "),
+        ({"kind": "react", "model": "regennet", "mode": "online"}, "ReGenNet, online · "),
+        ({"kind": "predict", "model": "motion-mlp"}, "Motion MLP · "),
+        ({"kind": "react", "model": "gone", "mode": "offline"}, ""),
+        ({"kind": "generate", "model": "intergen"}, ""),
+    ],
+)
+def test_reactions_and_predictions_say_their_method(request_: dict[str, Any], method: str) -> None:
+    run = Entry(
+        id="a", kind=request_["kind"], title="One waves.", state="done", request=request_ | {"seed": 3}
+    )
+    label, _ = tab(run).refresh(None)[0]["choices"][0]
+    assert label.startswith(f"One waves. · {method}seed 3 · ")
+
+
 @pytest.mark.parametrize(("runs", "sentence"), [(1, "Its link no longer works."), (2, "2 links to it")])
 def test_ended_links_are_counted(runs: int, sentence: str) -> None:
     assert sentence in tab(*(entry(str(i)) for i in range(runs))).revoke("0")[0]

@@ -8,9 +8,11 @@ from typing import Any
 
 import gradio as gr
 
+from webdemo.inference.predict_request import METHODS as PREDICTORS
 from webdemo.inference.requests import Cancelled, Progress, Result
 from webdemo.motion import InputError
 
+from .actors import METHODS as REACTORS
 from .again import actor_source, request_of, request_of_unfinished, verdict
 from .context import PageContext
 from .exports import KINDS, Record
@@ -304,16 +306,25 @@ def _session(request: gr.Request) -> str:
 
 
 def _label(entry: Entry) -> str:
-    """One line for a run: when, what, how long, its seed, and marks."""
+    """One line for a run: when, what, by which method, how long, its seed, and marks."""
     when = time.strftime("%d %b %H:%M", time.localtime(entry.created))
     asked = entry.request
-    facts = [f"{asked['seconds']:g} s"] if "seconds" in asked else []
+    facts = [method] if (method := _method(asked)) else []
+    facts += [f"{asked['seconds']:g} s"] if "seconds" in asked else []
     facts += [f"seed {asked['seed']}"] if "seed" in asked else []
     marks = ("★ " if entry.favourite else "") + (f"{_MARKS[entry.state]} " if entry.state in _MARKS else "")
     title = entry.title if len(entry.title) <= 80 else f"{entry.title[:79]}…"
     told = f" · {entry.state}" if entry.state != "done" else ""
     links = f" · {entry.links} link{'s' if entry.links > 1 else ''}" if entry.links else ""
     return f"{marks}{title} · {' · '.join([*facts, when])}{told}{links}"
+
+
+def _method(asked: Mapping[str, Any]) -> str:
+    """What the page calls the method of a reaction or a prediction; "" for what has one method only."""
+    model, mode = asked.get("model"), asked.get("mode")
+    if asked.get("kind") == "react":
+        return next((label for label, *its in REACTORS.values() if its == [model, mode]), "")
+    return PREDICTORS.get(str(model), "") if asked.get("kind") == "predict" else ""
 
 
 def _able(entry: Entry | None) -> Updates:
