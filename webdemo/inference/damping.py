@@ -291,8 +291,9 @@ def correct_together(predictions: Sequence[tuple[Damping, Tensor]], timestep: in
     """
     groups: dict[tuple[object, ...], list[int]] = {}
     for i, (damping, x0) in enumerate(predictions):
-        kind = (damping.space.positions, x0.shape[1:], damping.frames, damping.gradient_steps, damping.final_steps,
-                damping.final_timestep, damping.step_size, damping.largest, damping.weights)  # fmt: skip
+        kind = (damping.space.positions, x0.shape[1:], damping.frames, damping.final_timestep,
+                damping.gradient_steps, damping.final_steps, damping.step_size, damping.largest,
+                damping.weights)  # fmt: skip
         groups.setdefault(kind, []).append(i)
     corrected: dict[int, Tensor] = {}
     for group in groups.values():
