@@ -8,9 +8,11 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from models.predictors import load_predictor
 from training import cmu
-from training.evaluate_prediction import evaluate, main, markdown, put_into
+from training.evaluate_prediction import evaluate, main, markdown, of_predictor, put_into
 from training.prediction.scores import score, zero_velocity
+from webdemo.inference.engine import WEIGHTS
 from webdemo.motion import InputError
 
 REFERENCE = Path(__file__).parents[1] / "data" / "reference"
@@ -85,3 +87,19 @@ def test_bad_data_is_one_sentence(folder: Path, capsys: pytest.CaptureFixture[st
     told = capsys.readouterr().err
     assert "walking_2.txt does not hold 117 finite numbers a line" in told and told.count("\n") == 1
     assert main(["--data", str(folder / "nowhere")]) == 2
+
+
+@pytest.mark.parametrize("name", ["mawgan-cmu", "motion-mlp-cmu"])
+def test_the_shipped_networks_of_the_table_foretell_who_swings_arms_and_legs(name: str) -> None:
+    """A made-up walk on the spot, which is in no file: nearer than the held pose, and no jump at the seam."""
+    skeleton = cmu.CmuSkeleton.read(SKELETON)
+    phase = 2 * np.pi * np.arange(cmu.WINDOW) / 60
+    frames = np.zeros((cmu.WINDOW, cmu.CHANNELS))
+    for place, size, behind in ((1, 0.45, 0), (4, 0.45, np.pi), (11, 0.3, np.pi), (14, 0.3, 0)):
+        frames[:, skeleton.channels[skeleton.kept[place]][0]] = size * np.sin(phase + behind)
+    windows = skeleton.forward_kinematics(frames)[None, :, skeleton.kept].astype(np.float32)
+    found = score(of_predictor(load_predictor(WEIGHTS / name)), windows, cmu.PAST)
+    held = score(zero_velocity(cmu.FUTURE), windows, cmu.PAST)
+    ahead = np.array(cmu.HORIZONS) - 1
+    assert np.all(found.error[ahead] < 0.9 * held.error[ahead])
+    assert np.all(found.speed[:10] > 0.6 * found.true_speed[:10]) and found.seam == 1
