@@ -102,4 +102,4 @@ def test_the_shipped_networks_of_the_table_foretell_who_swings_arms_and_legs(nam
     held = score(zero_velocity(cmu.FUTURE), windows, cmu.PAST)
     ahead = np.array(cmu.HORIZONS) - 1
     assert np.all(found.error[ahead] < 0.9 * held.error[ahead])
-    assert np.all(found.speed[:10] > 0.6 * found.true_speed[:10]) and found.seam == 1
+    assert found.speed[:10].sum() > 0.7 * found.true_speed[:10].sum() and found.seam == 1
