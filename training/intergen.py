@@ -12,7 +12,6 @@ from __future__ import annotations
 
 import argparse
 import json
-import math
 import time
 from collections import Counter
 from collections.abc import Callable
@@ -32,7 +31,7 @@ from models.motion_tokens import FEATURES, mirror_control, pack
 from training import checkpoint
 from training.corpus.captions import mirror_caption
 from training.handedness import mirrored
-from training.loop import Loop
+from training.loop import Loop, warm_cosine
 from training.prepare import Scenes, load, normalizer
 from training.reading import CaptionReader
 from training.samples import write_sheet
@@ -160,6 +159,14 @@ class Data:
             self._epoch = epoch
         return self._order[place]
 
+    def caption(self, row: dict[str, Any], draw: float) -> str:
+        """What a scene is told by; ``draw`` is uniform in [0, 1)."""
+        return row["captions"][int(draw * len(row["captions"]))]
+
+    def features(self, captions: list[str]) -> tuple[Tensor, Tensor]:
+        """What the network sees of captions: features (B, …) and their mask."""
+        return self.captions.batch(captions)
+
     def batch(self, step: int) -> Batch:
         settings, layout = self.settings, self.scenes.layout
         rows = [self.rows[i] for i in self._rows_of(step)]
@@ -171,7 +178,7 @@ class Data:
         frame_mask = torch.zeros(len(rows), layout.num_frames(tokens))
         captions, labels = [], []
         for i, row in enumerate(rows):
-            one, caption = self.scenes.scene(row), row["captions"][int(draw[i, 0] * len(row["captions"]))]
+            one, caption = self.scenes.scene(row), self.caption(row, float(draw[i, 0]))
             mirror = mirrored(caption, row.get("hand"), float(draw[i, 1]))
             labels.append(self.reader.labels(row, mirror=mirror))
             if mirror:
@@ -180,7 +187,7 @@ class Data:
             mask[i, : row["tokens"]] = 1
             frame_mask[i, : layout.num_frames(row["tokens"])] = 1
             captions.append(caption)
-        text, text_mask = self.captions.batch(captions)
+        text, text_mask = self.features(captions)
         x0 = pack((control - self.mean) / self.std, layout)
         return Batch(
             *(x.to(self.device) for x in (x0, mask, frame_mask, text, text_mask, torch.stack(labels)))
@@ -262,13 +269,6 @@ class Trainer(Loop):
     def parts(self) -> dict[str, torch.nn.Module | torch.optim.Optimizer]:
         return {"model": self.model, "ema": self.ema, "reader": self.reader, "optimizer": self.optimizer}
 
-    def learning_rate(self) -> float:
-        """Linear warm-up, then a cosine to 2 % of the peak."""
-        s = self.settings
-        warm = min(1.0, (self.step + 1) / s.warmup)
-        place = min(1.0, self.step / s.steps)
-        return s.learning_rate * warm * (0.02 + 0.98 * 0.5 * (1 + math.cos(math.pi * place)))
-
     def frozen(self, mask: Tensor, generator: torch.Generator) -> Tensor:
         """(B, tokens, 2) true where a token is given clean: a whole person, or the past of both.
 
@@ -317,8 +317,10 @@ class Trainer(Loop):
         self.model.train()
         terms = self.terms(batch, t, noise, keep, frozen)
         total = torch.stack(list(terms.values())).sum()
+        s = self.settings
+        rate = warm_cosine(s.learning_rate, self.step, warmup=s.warmup, steps=s.steps)
         for group in self.optimizer.param_groups:
-            group["lr"] = self.learning_rate()
+            group["lr"] = rate
         self.optimizer.zero_grad(set_to_none=True)
         total.backward()
         torch.nn.utils.clip_grad_norm_(self.model.parameters(), 1.0)

@@ -35,7 +35,7 @@ from models.mawgan import (
 )
 from models.predictors import load_predictor, save_predictor
 from models.srvf import exp_map, karcher_mean, log_map, to_srvf
-from training.prediction.mlp import add_run_options, train
+from training.prediction.mlp import add_options, train
 from training.prediction.rollout import ADVANCE, check_own_pasts
 from training.prediction.trainer import PredictionTrainer
 from training.shell import exit_code
@@ -291,7 +291,7 @@ def moving(curves: Tensor) -> Tensor:
 
 def main(argv: list[str] | None = None) -> int:
     parser = argparse.ArgumentParser(description="Train PredictiveMA-WGAN.")
-    add_run_options(parser, Settings)
+    add_options(parser, Settings)
     parser.add_argument("--lean", action="store_true", help="settings that one CPU core trains in an hour")
     options = parser.parse_args(argv)
     if options.lean:  # what is asked for besides still counts

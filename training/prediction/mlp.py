@@ -8,8 +8,7 @@ accelerations lie from the truth's (:func:`liveliness`). Without the last a netw
 from __future__ import annotations
 
 import argparse
-import math
-from dataclasses import asdict, dataclass, fields
+from dataclasses import asdict, dataclass
 from pathlib import Path
 
 import torch
@@ -17,10 +16,11 @@ from torch import Tensor, nn
 
 from models.motion_mlp import MotionMLP, MotionMLPConfig
 from models.predictors import load_predictor, save_predictor
+from training.loop import warm_cosine
 from training.prediction.rollout import ADVANCE, check_own_pasts
 from training.prediction.trainer import PredictionTrainer
 from training.prediction.windows import open_windows
-from training.shell import exit_code
+from training.shell import add_run_options, chosen, exit_code
 from webdemo.motion import InputError
 
 
@@ -138,12 +138,6 @@ class Trainer(PredictionTrainer):
     def parts(self) -> dict[str, nn.Module | torch.optim.Optimizer]:
         return {"model": self.model, "ema": self.ema, "optimizer": self.optimizer}
 
-    def learning_rate(self) -> float:
-        """Linear warm-up, then a cosine to 2 % of the peak."""
-        s = self.settings
-        warm, place = min(1.0, (self.step + 1) / s.warmup), min(1.0, self.step / s.steps)
-        return s.learning_rate * warm * (0.02 + 0.98 * 0.5 * (1 + math.cos(math.pi * place)))
-
     def terms(self, window: Tensor, recorded: Tensor, passes: int = 0) -> dict[str, Tensor]:
         """Weighted loss terms, in centimetres.
 
@@ -175,8 +169,10 @@ class Trainer(PredictionTrainer):
         torch.manual_seed(self.settings.seed + self.step)  # dropout
         terms = self.terms(*self.window())
         total = torch.stack(list(terms.values())).sum()
+        s = self.settings
+        rate = warm_cosine(s.learning_rate, self.step, warmup=s.warmup, steps=s.steps)
         for group in self.optimizer.param_groups:
-            group["lr"] = self.learning_rate()
+            group["lr"] = rate
         self.optimizer.zero_grad(set_to_none=True)
         total.backward()
         nn.utils.clip_grad_norm_(self.model.parameters(), 5.0)
@@ -193,27 +189,20 @@ class Trainer(PredictionTrainer):
         )  # fmt: skip
 
 
-def add_run_options(parser: argparse.ArgumentParser, settings: type) -> None:
+def add_options(parser: argparse.ArgumentParser, settings: type) -> None:
     """Options that every training of a predictor takes: data, folders, minutes and each setting."""
     parser.add_argument("--data", type=Path, required=True, help="folder of the data set")
-    parser.add_argument("--out", type=Path, required=True, help="folder of the checkpoint and the log")
     parser.add_argument("--export", type=Path, help="also write the trained predictor to this folder")
-    parser.add_argument("--minutes", type=float, default=1e9, help="stop after this; start again to go on")
     parser.add_argument("--device", default="cuda" if torch.cuda.is_available() else "cpu")
-    for setting in fields(settings):
-        flag = "--" + setting.name.replace("_", "-")
-        if isinstance(setting.default, bool):
-            parser.add_argument(flag, action=argparse.BooleanOptionalAction, default=setting.default)
-        else:
-            parser.add_argument(flag, type=type(setting.default), default=setting.default)
+    add_run_options(parser, settings)
 
 
 def train(trainer: type, settings: type, options: argparse.Namespace) -> None:
-    """Runs what :func:`add_run_options` understood."""
-    chosen = settings(**{f.name: getattr(options, f.name) for f in fields(settings)})
-    ahead = getattr(chosen, "ahead", chosen.future)
-    windows = open_windows(chosen.windows, options.data, chosen.past, ahead)
-    run = trainer(windows, chosen, options.out, device=options.device)
+    """Runs what :func:`add_options` understood."""
+    asked = chosen(options, settings)
+    ahead = getattr(asked, "ahead", asked.future)
+    windows = open_windows(asked.windows, options.data, asked.past, ahead)
+    run = trainer(windows, asked, options.out, device=options.device)
     run.run_logged(minutes=options.minutes)
     if options.export:
         run.export(options.export)
@@ -221,7 +210,7 @@ def train(trainer: type, settings: type, options: argparse.Namespace) -> None:
 
 def main(argv: list[str] | None = None) -> int:
     parser = argparse.ArgumentParser(description="Train the default predictor.")
-    add_run_options(parser, Settings)
+    add_options(parser, Settings)
     options = parser.parse_args(argv)
     return exit_code(lambda: train(Trainer, Settings, options))
 
