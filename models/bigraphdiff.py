@@ -170,7 +170,10 @@ class BipartiteGraph(nn.Module):
 
 @dataclass(frozen=True)
 class BiGraphDiffConfig:
-    """Sizes; the defaults are the paper's, with 25 joints of NTU a person."""
+    """Sizes; the defaults are the paper's, with 25 joints of NTU a person.
+
+    embed_dim: width of the embedding that styles every block; 0: four times `latent_dim`, as in the paper.
+    """
 
     input_features: int = 75
     latent_dim: int = 512
@@ -181,6 +184,12 @@ class BiGraphDiffConfig:
     max_frames: int = 300
     num_nodes: int = 16
     dropout: float = 0.1
+    embed_dim: int = 0
+
+    @property
+    def embedding(self) -> int:
+        """E, the embedding's width."""
+        return self.embed_dim or 4 * self.latent_dim
 
 
 class Layer(nn.Module):
@@ -191,7 +200,7 @@ class Layer(nn.Module):
 
     def __init__(self, config: BiGraphDiffConfig, *, shared_ffn: bool = False) -> None:
         super().__init__()
-        d, emb, dropout = config.latent_dim, 4 * config.latent_dim, config.dropout
+        d, emb, dropout = config.latent_dim, config.embedding, config.dropout
 
         def attention() -> SelfAttention:
             return SelfAttention(d, config.num_heads, emb, dropout=dropout)
@@ -229,8 +238,9 @@ class BiGraphDiff(nn.Module):
         self.sequence_embedding = nn.Parameter(torch.randn(config.max_frames, d))
         self.joint_embed_1 = nn.Linear(config.input_features, d)
         self.joint_embed_2 = nn.Linear(config.input_features, d)
-        self.time_embed = nn.Sequential(nn.Linear(d, 4 * d), nn.SiLU(), nn.Linear(4 * d, 4 * d))
-        self.text_proj = nn.Linear(config.text_dim, 4 * d)
+        wide = config.embedding
+        self.time_embed = nn.Sequential(nn.Linear(d, wide), nn.SiLU(), nn.Linear(wide, wide))
+        self.text_proj = nn.Linear(config.text_dim, wide)
         self.temporal_decoder_blocks = nn.ModuleList(
             Layer(config, shared_ffn=shared_ffn) for _ in range(config.num_layers)
         )

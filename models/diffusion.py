@@ -68,6 +68,35 @@ class NoiseSchedule:
         return signal * x0 + spread * noise
 
 
+def classifier_free(
+    predict: Callable[[Tensor, Tensor, Tensor, Tensor | None], Tensor],
+    x: Tensor,
+    t: Tensor,
+    cond: Tensor,
+    mask: Tensor | None = None,
+    *,
+    scale: float,
+) -> Tensor:
+    """Classifier-free guidance, scale · D(x, cond) + (1 − scale) · D(x, 0), both halves in one batch.
+
+    At scale 1 the unconditional half has no weight and is not run.
+
+    Args:
+        predict: D of (x, t, cond, mask); a condition of zeros is none.
+        x, t, cond, mask: as D takes them, (B, …).
+    """
+    if scale == 1:
+        return predict(x, t, cond, mask)
+    both = predict(
+        torch.cat([x, x]),
+        torch.cat([t, t]),
+        torch.cat([cond, torch.zeros_like(cond)]),
+        None if mask is None else torch.cat([mask, mask]),
+    )
+    conditional, unconditional = both.chunk(2)
+    return scale * conditional + (1 - scale) * unconditional
+
+
 def top_timesteps(steps: int, total: int = TRAIN_TIMESTEPS) -> np.ndarray:
     """(steps,) int64 timesteps from T − 1 down, close to each other at first: (T − 1)·(1 − (i / steps)²).
 

@@ -20,6 +20,7 @@ import torch
 import torch.nn.functional as F
 from torch import Tensor, nn
 
+from models.diffusion import classifier_free
 from models.errors import as_tensors, count_layers, load_strictly, shape_of
 from models.layers import FeedForward, TimestepEmbedding, sinusoids
 from models.released import read_lightning
@@ -219,20 +220,8 @@ class InterGenDenoiser(nn.Module):
     def guided(
         self, x: Tensor, t: Tensor, cond: Tensor, mask: Tensor | None = None, *, scale: float = 3.5
     ) -> Tensor:
-        """Classifier-free guidance, scale · D(x, cond) + (1 − scale) · D(x, 0), both halves in one batch.
-
-        Shapes as in `forward`. At scale 1 the unconditional half has no weight and is not run.
-        """
-        if scale == 1:
-            return self(x, t, cond, mask)
-        both = self(
-            torch.cat([x, x]),
-            torch.cat([t, t]),
-            torch.cat([cond, torch.zeros_like(cond)]),
-            None if mask is None else torch.cat([mask, mask]),
-        )
-        conditional, unconditional = both.chunk(2)
-        return scale * conditional + (1 - scale) * unconditional
+        """:func:`models.diffusion.classifier_free` of this network; shapes as in `forward`."""
+        return classifier_free(self, x, t, cond, mask, scale=scale)
 
 
 def from_released(weights: Mapping[str, Tensor], *, num_heads: int) -> InterGenDenoiser:
