@@ -8,20 +8,13 @@ one, or a motion without a leading hand, is mirrored half of the time.
 
 from __future__ import annotations
 
-import re
 from collections.abc import Mapping
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from training.judge.rules import limb_travel
-
-LEAD = 1.5
-"""How many times further than the other the leading hand moves."""
-LEAST = 0.3
-"""Metres over which a leading hand moves at least."""
-_NAMES_SIDE = re.compile(r"\b(left|right)(wards)?\b", re.IGNORECASE)
+from webdemo.motion.handedness import leading_wrist, names_side
 
 
 def leading_hand(positions: NDArray[np.floating], events: Mapping[str, Any] | None) -> str | None:
@@ -37,13 +30,11 @@ def leading_hand(positions: NDArray[np.floating], events: Mapping[str, Any] | No
     noted = noted or {(events.get("side") or {}).get("a")} - {None}
     if noted:
         return noted.pop() if len(noted) == 1 and noted <= {"left", "right"} else None
-    travel = {s: limb_travel(positions[0], f"{s}_wrist", f"{s}_shoulder") for s in ("left", "right")}
-    least, most = sorted(travel, key=travel.__getitem__)
-    return most if travel[most] > max(LEAST, LEAD * travel[least]) else None
+    return leading_wrist(positions[0])
 
 
 def mirrored(caption: str, hand: str | None, draw: float) -> bool:
     """Whether a scene is shown mirrored under this caption; ``draw`` is uniform in [0, 1)."""
-    if hand is None or _NAMES_SIDE.search(caption):
+    if hand is None or names_side(caption):
         return draw < 0.5
     return hand == "left"

@@ -10,7 +10,8 @@ from webdemo.inference import Cancelled, CancelToken, Progress, ReactRequest, Re
 from webdemo.inference.actor import APART, Placement, choose_actor
 from webdemo.inference.engine import Engine
 from webdemo.motion import SKELETONS, SMPL22, Clip, Duet, InputError
-from webdemo.motion.transforms import heading, heading_matrix
+from webdemo.motion.handedness import leading_wrist
+from webdemo.motion.transforms import heading, heading_matrix, mirrored
 
 from .people import waver
 
@@ -30,6 +31,20 @@ def test_the_given_person_is_kept_bit_for_bit(engine: Engine, change: dict) -> N
         assert np.isfinite(duet.positions).all()
         assert duet.roles == ("actor", "reactor")
     assert len(result.readouts) == 2
+
+
+@pytest.mark.parametrize("words", ["Two people wave.", "One person waves the right hand.", ""])
+def test_a_left_handed_actor_is_answered_as_the_right_handed_one_where_words_name_no_side(
+    engine: Engine, words: str
+) -> None:
+    """Words without a side were learned from right-handed scenes alone."""
+    right = waver()
+    left = right.with_positions(mirrored(right.positions))
+    assert (leading_wrist(right.positions), leading_wrist(left.positions)) == ("right", "left")
+    one, other = (react(engine, actor=actor, prompt=words).duets[0] for actor in (right, left))
+    assert other.a.positions.tobytes() == left.positions.tobytes()
+    apart = np.abs(mirrored(one.b.positions) - other.b.positions).max()
+    assert apart < 1e-4 if words == "Two people wave." else apart > 1e-2
 
 
 def test_the_reaction_differs_by_seed_by_actor_and_by_words(engine: Engine) -> None:

@@ -17,6 +17,7 @@ from numpy.typing import NDArray
 
 from webdemo.metrics import facing_angle, pelvis_distance
 from webdemo.motion import SMPL22, Duet
+from webdemo.motion.handedness import limb_travel
 from webdemo.motion.transforms import heading, heading_matrix
 
 Array = NDArray[np.floating]
@@ -120,20 +121,6 @@ def named_sides(caption: str, events: Events) -> list[tuple[str, tuple[str, ...]
         else:
             found.append((side, people))
     return found
-
-
-def limb_travel(positions: Array, joint: str, root: str) -> float:
-    """Metres over which a joint moves relative to its root joint, in the body's own heading.
-
-    The diagonal of the box that holds 96 % of its path, so that a pose which is merely held counts nothing.
-
-    Args:
-        positions: (T, 22, 3) metres.
-    """
-    relative = positions[:, SMPL22.index(joint)] - positions[:, SMPL22.index(root)]
-    own = np.einsum("tij,ti->tj", heading_matrix(heading(positions)), relative)
-    low, high = np.percentile(own, (2, 98), axis=0)
-    return float(np.linalg.norm(high - low))
 
 
 def _side(duet: Duet, task: Task) -> Verdict:

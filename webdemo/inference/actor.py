@@ -17,8 +17,9 @@ from numpy.typing import NDArray
 from webdemo.formats import read_everyone
 from webdemo.formats.crowd import people_of
 from webdemo.motion import SMPL22, Clip, InputError
+from webdemo.motion.handedness import leading_wrist, names_side
 from webdemo.motion.retarget import to_smpl
-from webdemo.motion.transforms import heading, heading_matrix, resample
+from webdemo.motion.transforms import heading, heading_matrix, mirrored, resample
 
 Array = NDArray[np.floating]
 
@@ -199,27 +200,37 @@ class Placement:
         turn: (3, 3) rotation about Y.
         origin: (3,) the point of the clip's world that goes to ``goal``.
         goal: (3,) metres.
+        mirror: people (…, 22, 3) are mirrored in the plane X = 0 of the network's frame, too.
     """
 
     turn: Array
     origin: Array
     goal: Array
+    mirror: bool = False
 
     @classmethod
-    def of(cls, clip: Clip, role: str) -> Placement:
-        """The placement that puts a person of this role where the network expects one."""
+    def of(cls, clip: Clip, role: str, words: str = "") -> Placement:
+        """The placement that puts a person of this role where the network expects one.
+
+        A network knows words that name no side from right-handed scenes alone (:mod:`training.handedness`),
+        so that one who acts with the left hand under such words is mirrored.
+        """
         positions = clip.positions.astype(np.float64)
         lowest = positions[..., 1].min()
         floor = 0.0 if _ON_FLOOR[0] <= lowest <= _ON_FLOOR[1] else lowest
         origin = np.array([positions[0, 0, 0], floor, positions[0, 0, 2]])
         goal = np.array([0.0, 0.0, 0.0 if role == "a" else APART])
         towards = 0.0 if role == "a" else math.pi
-        return cls(heading_matrix(towards - float(heading(positions[0]))), origin, goal)
+        told = role == "a" and bool(words.strip()) and not names_side(words)
+        mirror = told and leading_wrist(positions) == "left"
+        return cls(heading_matrix(towards - float(heading(positions[0]))), origin, goal, mirror)
 
     def to_network(self, positions: Array) -> Array:
         """(…, 3) float64 metres in the network's frame."""
-        return (positions.astype(np.float64) - self.origin) @ self.turn.T + self.goal
+        placed = (positions.astype(np.float64) - self.origin) @ self.turn.T + self.goal
+        return mirrored(placed) if self.mirror else placed
 
     def to_world(self, positions: Array) -> Array:
         """Inverse of :meth:`to_network`."""
-        return (positions.astype(np.float64) - self.goal) @ self.turn + self.origin
+        placed = mirrored(positions) if self.mirror else positions
+        return (placed.astype(np.float64) - self.goal) @ self.turn + self.origin

@@ -112,7 +112,7 @@ class Reactor:
         self, request: ReactRequest, condition: Tensor, cancel: CancelToken, clock: Clock
     ) -> Generator[Progress, None, tuple[Array, Array]]:
         """Returns (before damping and clean-up, shown), each (samples, T, 22, 3) in the actor's world."""
-        model, placement = self.model, Placement.of(request.actor, "a")
+        model, placement = self.model, Placement.of(request.actor, "a", request.prompt)
         frames = request.actor.num_frames
         given = torch.from_numpy(placement.to_network(request.actor.positions)).float()
         with torch.no_grad():

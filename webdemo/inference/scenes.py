@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 from torch import Tensor
 
 from models.compact import CompactInterGen
+from models.compact_bigraphdiff import CompactBiGraphDiff
 from models.motion_tokens import encode, foot_contacts, pack
 from webdemo.motion import Clip, Duet
 
@@ -77,17 +78,17 @@ class Reaction(Scene):
         return Duet(people[0], people[1], NAMES)
 
 
-def scene_of(request: GenerateRequest | ReactRequest, model: CompactInterGen) -> Scene:
+def scene_of(request: GenerateRequest | ReactRequest, model: CompactInterGen | CompactBiGraphDiff) -> Scene:
     """The scene that a request asks a model for."""
     if isinstance(request, GenerateRequest):
         return Scene(round(request.seconds * FPS))
-    placement = Placement.of(request.actor, request.role)
+    placement = Placement.of(request.actor, request.role, request.prompt)
     place = ROLES.index(request.role)
     given = _given_person(model, placement.to_network(request.actor.positions), place)
     return Reaction(request.actor.num_frames, given, clip=request.actor, place=place, placement=placement)
 
 
-def _given_person(model: CompactInterGen, positions: Array, place: int) -> Given:
+def _given_person(model: CompactInterGen | CompactBiGraphDiff, positions: Array, place: int) -> Given:
     """A person (T, 22, 3) in the network's frame who is given at every frame."""
     layout = model.layout
     tokens = layout.num_tokens(len(positions))
