@@ -35,7 +35,7 @@ from models.mawgan import (
 )
 from models.predictors import load_predictor, save_predictor
 from models.srvf import exp_map, karcher_mean, log_map, to_srvf
-from training.prediction.mlp import add_options, train
+from training.prediction.mlp import add_options, liveliness, train
 from training.prediction.rollout import ADVANCE, check_own_pasts
 from training.prediction.trainer import PredictionTrainer
 from training.shell import exit_code
@@ -53,7 +53,9 @@ class Settings:
     ``convolutions`` false leaves them where they begin, which with ``ridge`` is at nothing. ``noise`` is
     added to the pasts, in metres. ``own_pasts`` is how often the network may have been applied to what it
     gave in the pasts that it sees, as in :class:`training.prediction.mlp.Settings`; ``groups`` is how many
-    parts of the batch, from slow pasts to fast ones, have mean speeds of their own. ``final_rate`` is the
+    parts of the batch, from slow pasts to fast ones, have mean speeds of their own; ``limbs`` has them of
+    each joint over five frames, as :func:`training.prediction.mlp.liveliness` does, with ``acceleration`` as
+    the weight of its second part, instead of one mean of all joints at each frame. ``final_rate`` is the
     share of the learning rate at which its cosine ends; 1 keeps it as it is, like the thesis. ``init`` names
     the folder of a trained predictor that the run begins with.
     """
@@ -90,6 +92,8 @@ class Settings:
     noise: float = 0.0
     own_pasts: int = 0
     groups: int = 1
+    limbs: bool = False
+    acceleration: float = 0.0
     weight_decay: float = 0.0
     seed: int = 0
 
@@ -231,6 +235,22 @@ class Trainer(PredictionTrainer):
             self.critic_optimizer.step()
             yield loss.item()
 
+    def speed(self, past: Tensor, made: Tensor, recorded: Tensor) -> Tensor:
+        """How far mean speeds lie from the truth's, in metres a frame.
+
+        Args:
+            past, made: (B, …, D) curves that were given and foretold.
+            recorded: (B, past + future, J, 3) metres.
+        """
+        s, last = self.settings, past[:, -2:]
+        calm = to_positions(without_flicker(last[:, 1:], made))
+        if not s.limbs:
+            return speed_loss(calm, recorded[:, s.past :], to_positions(last[:, 1:]), groups=s.groups)
+        kept = len(past) // s.groups * s.groups
+        own = torch.cat([to_positions(last), calm], dim=1).diff(dim=1)[:kept]
+        speed, acceleration = liveliness(own, recorded[:kept, s.past - 2 :].diff(dim=1), s.groups)
+        return speed + s.acceleration * acceleration
+
     def train_step(self) -> dict[str, float]:
         torch.manual_seed(self.settings.seed + self.step)  # dropout
         weights = self.settings.weights()
@@ -239,7 +259,7 @@ class Trainer(PredictionTrainer):
                 group["lr"] = self.settings.learning_rate * self.rate()
         windows, recorded, passes = self.window()
         moves, past, real = self.pairs(windows)
-        truth, true = (x[moves, self.settings.past :] for x in (windows, recorded))
+        truth = windows[moves, self.settings.past :]
         known = 1 / (1 + passes)
         s, longer = self.model.generate(past + self.settings.noise * torch.randn_like(past))
         made = self.seen(s)
@@ -254,10 +274,7 @@ class Trainer(PredictionTrainer):
         if weights.position:
             terms["position"] = known * weights.position * position_loss(positions, truth)
         if weights.speed:
-            last = past[:, -1:]
-            calm = to_positions(without_flicker(last, curves))
-            speed = speed_loss(calm, true, to_positions(last), groups=self.settings.groups)
-            terms["speed"] = weights.speed * speed
+            terms["speed"] = weights.speed * self.speed(past, curves, recorded[moves])
         if weights.adversarial:
             terms["adversarial"] = -weights.adversarial * self.critic(made).mean()
         total = torch.stack(list(terms.values())).sum()

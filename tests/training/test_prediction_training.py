@@ -214,8 +214,12 @@ def test_a_trained_network_learns_to_go_on_from_its_own(corpus: Path, tmp_path: 
     assert mlp.main([*asked, "--out", str(tmp_path / "third"), "--own-pasts", "-1"]) == 2
 
 
-def test_the_adversary_s_network_learns_to_go_on_from_its_own(corpus: Path, tmp_path: Path) -> None:
+@pytest.mark.parametrize("limbs", [False, True])
+def test_the_adversary_s_network_learns_to_go_on_from_its_own(
+    corpus: Path, tmp_path: Path, limbs: bool
+) -> None:
     settings = replace(LEAN_GAN, past=10, future=20, own_pasts=1, steps=4)
+    settings = replace(settings, speed=1.0, groups=2, limbs=limbs, acceleration=2.0)
     windows = open_windows("corpus", corpus, 10, settings.ahead)
     assert windows.length == 10 + 20 + ADVANCE
     trainer = mawgan.Trainer(windows, settings, tmp_path)
@@ -224,7 +228,8 @@ def test_the_adversary_s_network_learns_to_go_on_from_its_own(corpus: Path, tmp_
         asked, recorded, passes = trainer.window()
         assert asked.shape == recorded.shape == (4, 30, 22, 3)
         own += passes
-        assert np.isfinite(list(trainer.train_step().values())).all()
+        terms = trainer.train_step()
+        assert np.isfinite(list(terms.values())).all() and terms["speed"] > 0
     assert 0 < own < settings.steps
     with pytest.raises(InputError, match="own_pasts is 1"):
         replace(settings, windows="cmu")
