@@ -3,7 +3,7 @@
 Chopin's thesis, section 5.5.3: a second of a person's motion and the two seconds that a predictor foretells
 are named. As there, it is trained on what will be foretold and not on what was recorded. The person is the
 first of a scene of :mod:`training.corpus`, who acts; the family of the scene is their gesture. The second
-that is known ends at least half a second into the scene, before two thirds of it are over.
+that is known begins half a second into the scene or later, and may be its last.
 """
 
 from __future__ import annotations
@@ -21,11 +21,12 @@ from numpy.typing import NDArray
 from torch import Tensor
 
 from models.folder import save_network
-from models.recogniser import FORETOLD, KNOWN, Recogniser, RecogniserConfig, sampled
+from models.recogniser import FORETOLD, FPS, KNOWN, Recogniser, RecogniserConfig, sampled
 from training import checkpoint
 from training.loop import Loop, warm_cosine
 from training.prepare import load_corpus
 from training.shell import add_run_options, chosen, exit_code
+from webdemo.inference.agent import Eye
 from webdemo.inference.engine import WEIGHTS
 from webdemo.inference.predict import MotionPredictor
 from webdemo.inference.predict_frame import to_last_pose
@@ -72,8 +73,10 @@ SUMMARY = (
 )
 _CHUNK = 256
 """Windows that are foretold at once."""
-EARLIEST, LATEST = 45, 2 / 3
-"""Frame, and share of the scene, between which the known second ends."""
+LONGEST = 300
+"""Frames of a person that the agent looks at."""
+EARLIEST = 45
+"""Frame of a scene at which the first known second ends."""
 
 
 @dataclass(frozen=True)
@@ -114,10 +117,9 @@ def cut(corpus: Path, settings: Settings, split: str, predictor: MotionPredictor
     rng = np.random.default_rng((settings.seed, split == "train"))
     places, labels = [], []
     for row in index:
-        latest = int(LATEST * row["frames"])
-        if row["split"] != split or row["family"] not in label_of or latest < EARLIEST:
+        if row["split"] != split or row["family"] not in label_of or row["frames"] < EARLIEST:
             continue
-        for end in rng.integers(EARLIEST, latest + 1, size=settings.windows):
+        for end in rng.integers(EARLIEST, row["frames"] + 1, size=settings.windows):
             # What was recorded may end before three seconds are full; then its last pose is held.
             frames = np.minimum(end - KNOWN + np.arange(KNOWN + FORETOLD), row["frames"] - 1)
             places.append(row["start"] + frames)
@@ -222,11 +224,41 @@ def scores(model: Recogniser, windows: Tensor, labels: Tensor) -> dict[str, Any]
     }
 
 
+def answered(corpus: Path, eye: Eye, count: int, *, seed: int = 0) -> dict[str, float]:
+    """How the agent decides on whole first people of test scenes.
+
+    Args:
+        corpus: folder of the corpus.
+        eye: the agent's.
+        count: scenes, drawn by ``seed``.
+
+    Returns:
+        ``scenes``; ``named``: the share whose gesture is the one that is answered, nothing included; and the
+        mean second at which the agent ``stops`` looking.
+    """
+    motions, index = load_corpus(corpus)
+    place_of = {f: i for i, (_, families) in enumerate(GESTURES.values()) for f in families}
+    rows = [row for row in index if row["split"] == "test" and row["family"] in place_of]
+    rows = [rows[i] for i in np.random.default_rng(seed).permutation(len(rows))[:count]]
+    right, seconds = [], []
+    for row in rows:
+        person = motions[row["start"] : row["start"] + min(row["frames"], LONGEST), 0]
+        look, place = eye.decide(eye.looks(person.astype(np.float64)))
+        right.append((place or 0) == place_of[row["family"]])
+        seconds.append(look.frame / FPS)
+    return {
+        "scenes": len(rows),
+        "named": round(float(np.mean(right)), 3),
+        "stops": round(float(np.mean(seconds)), 2),
+    }
+
+
 def main(argv: list[str] | None = None) -> int:
     parser = argparse.ArgumentParser(description="Train the virtual agent's recogniser.")
     parser.add_argument("--corpus", type=Path, required=True, help="folder of `python -m training.corpus`")
     parser.add_argument("--predictor", type=Path, default=WEIGHTS / "motion-mlp", help="a predictor's folder")
     parser.add_argument("--export", type=Path, help="also write the trained network to this folder")
+    parser.add_argument("--answered", type=int, default=300, help="test scenes on which the export decides")
     parser.add_argument("--device", default="cuda" if torch.cuda.is_available() else "cpu")
     add_run_options(parser, Settings)
     options = parser.parse_args(argv)
@@ -244,6 +276,7 @@ def main(argv: list[str] | None = None) -> int:
             save_network(
                 options.export, trainer.ema, card={"summary": SUMMARY}, trained_steps=trainer.step, test=told
             )
+            print(json.dumps(answered(options.corpus, Eye(options.export, predictor), options.answered)))
 
     return exit_code(job)
 

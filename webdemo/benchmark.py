@@ -9,6 +9,7 @@ from __future__ import annotations
 import statistics
 import time
 from collections.abc import Callable
+from functools import partial
 from typing import Any
 
 GOAL_SECONDS = 4.0
@@ -54,8 +55,9 @@ def run_benchmark(*, seconds: float, steps: int, repeats: int, browser: bool = F
         stages.append(result.timings)
         plainly.extend(timed(plain.run, 1))
     middle = {name: statistics.median(s.get(name, 0.0) for s in stages) for name in stages[0]}
-    undamped = timed(lambda: list(engine.run(_replace(request, damping=0.0))), repeats)
-    eight = timed(lambda: list(engine.run(_replace(request, samples=4, damping=0.0))), 1)[0]
+    bare = _replace(request, damping=0.0)
+    undamped = timed(lambda: list(engine.run(bare)), repeats)
+    four = timed(lambda: list(engine.run(_replace(bare, samples=4))), 1)[0]
     figures: dict[str, Any] = {
         "threads": torch.get_num_threads(),
         "frames": round(seconds * 30),
@@ -70,8 +72,9 @@ def run_benchmark(*, seconds: float, steps: int, repeats: int, browser: bool = F
         "plain_sample_seconds": statistics.median(plainly),
         "plain_over_request": statistics.median(p / w for p, w in zip(plainly, whole, strict=True)),
         "plain_over_undamped": statistics.median(plainly) / statistics.median(undamped),
-        "four_samples_over_one": eight / statistics.median(undamped),
+        "four_samples_over_one": four / statistics.median(undamped),
     }
+    figures |= measure_classes(bare, repeats)
     figures |= measure_prediction(max(repeats, 5))
     figures |= measure_reactions(repeats)
     figures |= measure_interformer(max(repeats, 3))
@@ -85,21 +88,52 @@ def run_benchmark(*, seconds: float, steps: int, repeats: int, browser: bool = F
     return figures
 
 
+def measure_classes(request: Any, repeats: int) -> dict[str, float]:
+    """Seconds of a class, and over those of a sentence of the same length and steps, run in turn."""
+    from webdemo.inference.cancel import CancelToken
+    from webdemo.inference.engine import GENERATORS, WEIGHTS
+    from webdemo.inference.generator import Clock
+
+    def run(asked: Any, generator: Any) -> None:
+        list(generator.run(asked, CancelToken(), Clock.start()))
+
+    classed = _replace(request, prompt="shake hands", model="bigraphdiff")
+    jobs = [
+        partial(run, asked, GENERATORS[asked.model](WEIGHTS / asked.model)) for asked in (classed, request)
+    ]
+    for job in jobs:  # the first runs prepare what later ones use
+        job()
+    pairs = [[timed(job, 1)[0] for job in jobs] for _ in range(repeats)]
+    return {
+        "class_request_seconds": statistics.median(own for own, _ in pairs),
+        "class_over_sentence": statistics.median(own / other for own, other in pairs),
+    }
+
+
 def measure_prediction(repeats: int) -> dict[str, float]:
-    """Milliseconds that two people's next 25 frames take, and seconds for four seconds by recursion."""
+    """Of each predictor, milliseconds that two people's next 25 frames take, and seconds for four seconds by
+    recursion; and milliseconds that the virtual agent takes for all its looks at five seconds of a person."""
     import numpy as np
 
-    from webdemo.inference.engine import GENERATORS, WEIGHTS
+    from webdemo.inference.agent import Eye
+    from webdemo.inference.engine import WEIGHTS
+    from webdemo.inference.predict import MotionPredictor
     from webdemo.motion import SMPL22
 
-    predictor: Any = GENERATORS["motion-mlp"](WEIGHTS / "motion-mlp")
-    sway = 0.05 * np.sin(np.arange(30) / 5)[:, None, None] * SMPL22.rest_positions()
-    past = np.stack([SMPL22.rest_positions() + sway] * 2)
-    predictor.predict(past, 25)
-    return {
-        "predict_25_frames_ms": 1000 * statistics.median(timed(lambda: predictor.predict(past, 25), repeats)),
-        "predict_four_seconds": statistics.median(timed(lambda: predictor.predict(past, 120), repeats)),
-    }
+    sway = 0.05 * np.sin(np.arange(150) / 5)[:, None, None] * SMPL22.rest_positions()
+    moving = SMPL22.rest_positions() + sway
+    past = np.stack([moving[:30]] * 2)
+    figures = {}
+    for name, label in (("motion-mlp", "predict"), ("mawgan", "mawgan")):
+        predictor = MotionPredictor(WEIGHTS / name)
+        predictor.predict(past, 25)
+        short, long = (timed(partial(predictor.predict, past, n), repeats) for n in (25, 120))
+        figures[f"{label}_25_frames_ms"] = 1000 * statistics.median(short)
+        figures[f"{label}_four_seconds"] = statistics.median(long)
+    eye = Eye(WEIGHTS / "agent", MotionPredictor(WEIGHTS / "motion-mlp"))
+    eye.looks(moving)
+    figures["agent_looks_ms"] = 1000 * statistics.median(timed(partial(eye.looks, moving), repeats))
+    return figures
 
 
 def _replace(request: Any, **changes: Any) -> Any:

@@ -23,6 +23,7 @@ import numpy as np
 from webdemo.inference.actor import FPS, read_actor
 from webdemo.inference.predict_request import LONGEST, METHODS, PredictRequest, PredictResult
 from webdemo.inference.requests import (
+    DEFAULT_GUIDANCE,
     DEFAULT_STEPS,
     GenerateRequest,
     Progress,
@@ -46,7 +47,7 @@ def _add_sampling(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--out", type=Path, required=True, help="file to write: .npz, .bvh, .glb …")
     parser.add_argument("--seed", type=int, default=default["seed"])
     parser.add_argument("--samples", type=int, default=default["samples"], help="how many motions to draw")
-    parser.add_argument("--guidance", type=float, default=default["guidance"], help="guidance scale s")
+    parser.add_argument("--guidance", type=float, help="guidance scale s; the model's best by default")
     parser.add_argument("--steps", type=int, default=default["steps"], help="denoising steps")
     parser.add_argument("--damping", type=float, default=default["damping"], help="threshold, 0 to 1")
     parser.add_argument("--sampler", default=default["sampler"], help="ddim or dpm++")
@@ -59,7 +60,10 @@ def _add_sampling(parser: argparse.ArgumentParser) -> None:
 def _sampling(options: argparse.Namespace) -> dict[str, Any]:
     """What :func:`_add_sampling` understood, as a request's fields."""
     names = ("seed", "samples", "guidance", "steps", "damping", "sampler", "model")
-    return {name: getattr(options, name) for name in names} | {"cleanup": not options.no_cleanup}
+    found = {name: getattr(options, name) for name in names} | {"cleanup": not options.no_cleanup}
+    if found["guidance"] is None:
+        found["guidance"] = DEFAULT_GUIDANCE.get(options.model, SamplingRequest.guidance)
+    return found
 
 
 def _check_out(path: Path) -> None:
@@ -91,8 +95,10 @@ def _write(result: Result, out: Path) -> dict[str, Any]:
 
 
 def _add_generate(commands: Any) -> None:
-    parser = commands.add_parser("generate", help="two people from one sentence")
-    parser.add_argument("--prompt", required=True, help="what the two people do, in English")
+    parser = commands.add_parser("generate", help="two people from one sentence, or a class")
+    asked = parser.add_mutually_exclusive_group(required=True)
+    asked.add_argument("--prompt", help="what the two people do, in English")
+    asked.add_argument("--class", dest="label", help="name of a class of BiGraphDiff, such as 'shake hands'")
     parser.add_argument("--seconds", type=float, default=GenerateRequest.seconds)
     _add_sampling(parser)
     parser.set_defaults(job=generate)
@@ -101,7 +107,11 @@ def _add_generate(commands: Any) -> None:
 def generate(options: argparse.Namespace) -> dict[str, Any]:
     """Runs a :class:`GenerateRequest` and writes its duets."""
     _check_out(options.out)
-    request = GenerateRequest(prompt=options.prompt, seconds=options.seconds, **_sampling(options))
+    if options.label is not None:
+        options.model = "bigraphdiff"
+    fields = _sampling(options)
+    words = options.prompt if options.label is None else options.label
+    request = GenerateRequest(prompt=words, seconds=options.seconds, **fields)
     return _write(_run(request), options.out)
 
 

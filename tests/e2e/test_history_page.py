@@ -8,6 +8,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from playwright.sync_api import expect
 
 from ..ui.stub_engine import walking
 
@@ -87,6 +88,41 @@ def test_a_prediction_opens_with_its_marker_and_its_ghost(
     page.wait_for_selector("#predict-curves .legendtext:has-text('What really followed')")
     page.click("button#predict-generate")  # from what the history kept
     page.wait_for_selector("#predict-status .pd-done:has-text('Done')")
+
+
+def test_a_class_and_a_reaction_open_with_their_method(lab: str, open_page: Callable) -> None:
+    page = open_page(lab)
+    page.set_default_timeout(SLOW)
+    page.locator("#way").get_by_text("A class").click()
+    page.locator("#class input").click()
+    page.keyboard.type("high five")
+    page.keyboard.press("Enter")
+    page.click("#generate")
+    page.wait_for_selector("#status .pd-done")
+    page.click("button[role=tab]:has-text('React')")
+    page.click(".pd-chip:visible >> nth=0")
+    page.wait_for_selector("#react-status :text('0.0 to')")
+    page.click("#react-method input")
+    page.get_by_role("option", name="ReGenNet, offline").click()
+    page.locator("#react-steps input[type=number]").fill("7")
+    page.locator("#react-steps input[type=number]").press("Tab")
+    page.click("button#react-generate")
+    page.wait_for_selector("#react-status .pd-done:has-text('Done')")
+
+    other = open_page(lab)
+    other.set_default_timeout(SLOW)
+    other.click("button[role=tab]:has-text('History')")
+    other.click("#history-list label:has-text('Reaction to')")
+    other.click("#history-open")
+    other.wait_for_selector("#react-status .pd-done:has-text('Made on')")
+    expect(other.locator("#react-method input")).to_have_value("ReGenNet, offline", timeout=SLOW)
+    expect(other.locator("#react-steps input[type=number]")).to_have_value("7")
+    other.click("button[role=tab]:has-text('History')")
+    other.click("#history-list label:has-text('high five · BiGraphDiff')")
+    other.click("#history-open")
+    other.wait_for_selector("#status .pd-done:has-text('Made on')")
+    expect(other.locator("#class input")).to_have_value("high five", timeout=SLOW)
+    expect(other.locator("#prompt")).to_be_hidden()
 
 
 def test_a_forged_link_is_a_sentence(lab: str, open_page: Callable) -> None:

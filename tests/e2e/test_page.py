@@ -133,6 +133,24 @@ def test_chips_fill_the_prompt(page: Page) -> None:
     expect(page.locator("#prompt textarea")).to_be_focused()
 
 
+def test_a_class_is_chosen_from_the_list(page: Page, server: SimpleNamespace) -> None:
+    page.locator("#way").get_by_text("A class").click()
+    expect(page.locator("#prompt")).to_be_hidden()
+    page.click("button#generate")
+    assert status(page, "error").startswith("No class is chosen")
+    page.locator("#class input").click()
+    page.keyboard.type("shake")
+    page.keyboard.press("Enter")
+    expect(page.locator("#class input")).to_have_value("shake hands")
+    page.click("button#generate")
+    expect(page.locator(".pdd-title")).to_have_text("shake hands", timeout=SLOW)
+    asked = server.engine.requests[-1]
+    assert (asked.model, asked.prompt) == ("bigraphdiff", "shake hands")
+    page.locator("#way").get_by_text("A sentence").click()
+    expect(page.locator("#prompt")).to_be_visible()
+    expect(page.locator("#class")).to_be_hidden()
+
+
 def test_progress_counts_the_steps_in_text_and_over_the_player(page: Page, slow_steps: None) -> None:
     ask(page, "two people bow")
     page.wait_for_function(

@@ -53,6 +53,13 @@ def test_only_the_prompt_is_needed(client: Client) -> None:
     assert answer["manifest"]["request"]["steps"] == 50
 
 
+def test_a_class_is_enough_too(client: Client) -> None:
+    answer, files = client.predict("shake hands", api_name="/generate_class")
+    asked = answer["manifest"]["request"]
+    assert (asked["model"], asked["prompt"], asked["guidance"]) == ("bigraphdiff", "shake hands", 1.8)
+    assert any(Path(path).name == "shake-hands-seed0.npz" for path in files)
+
+
 @pytest.mark.parametrize(
     ("fields", "sentence"),
     [

@@ -18,6 +18,7 @@ import gradio as gr
 
 from webdemo.inference.cancel import CancelToken
 from webdemo.inference.requests import Cancelled, GenerateRequest, Progress, Result
+from webdemo.ui.classes import installed_classes
 from webdemo.ui.examples import EXAMPLES
 from webdemo.ui.exports import KINDS, Record, Shelf, file_name, for_download, write_files
 from webdemo.ui.generate_tab import GenerateTab
@@ -55,6 +56,29 @@ def test_a_run_ends_with_a_motion_readouts_and_a_record(tab: GenerateTab) -> Non
     assert last["player"]["busy"] == ""
     assert "Foot skate" in last["readouts"]
     assert last["record"].result.manifest["request"]["seed"] == 3
+
+
+def test_a_class_is_asked_for_in_place_of_a_sentence(tab: GenerateTab) -> None:
+    last = run(tab, model="bigraphdiff", prompt="shake hands")[-1]
+    assert last["player"]["value"]["title"] == "shake hands"
+    assert last["record"].result.manifest["request"]["model"] == "bigraphdiff"
+    unchosen = run(tab, model="bigraphdiff", prompt="")[-1]
+    assert "No class is chosen" in unchosen["line"] and "record" not in unchosen
+    for way, sentence in (("intergen", True), ("bigraphdiff", False)):
+        *shown, guidance = tab.asked_by(way)
+        assert [update["visible"] for update in shown] == [sentence, not sentence]
+        assert (
+            guidance["value"] == GenerateRequest(prompt="x").guidance if sentence else guidance["value"] < 4
+        )
+
+
+def test_classes_are_those_of_the_weights(tmp_path: Path) -> None:
+    names, card = installed_classes()
+    assert "shake hands" in names and card["name"] == "bigraphdiff" and "summary" in card
+    assert installed_classes(tmp_path) == ([], {})
+    (tmp_path / "bigraphdiff").mkdir()
+    (tmp_path / "bigraphdiff" / "config.json").write_text('{"model": []}')
+    assert installed_classes(tmp_path) == ([], {})
 
 
 def test_progress_is_true_and_paced(tab: GenerateTab) -> None:
@@ -117,7 +141,7 @@ def test_an_empty_seed_is_drawn_and_told(tab: GenerateTab) -> None:
     values = [FIELDS[key] for key in ("prompt", "seconds")]
     seeds = set()
     for _ in range(2):
-        steps = tab.start(*values, None, 1, 2.5, 2, 0.7, Visit())
+        steps = tab.start("intergen", values[0], None, values[1], None, 1, 2.5, 2, 0.7, Visit())
         last = [changes(tab.outputs, step) for step in steps][-1]
         seed = last["record"].result.manifest["request"]["seed"]
         assert f"<dd>{seed}</dd>" in last["readouts"]
@@ -279,4 +303,9 @@ def test_progress_events_of_other_stages_have_words(tab: GenerateTab) -> None:
 
 def test_build_page_offers_an_endpoint_a_job(tmp_path: Path) -> None:
     demo = build_page(StubEngine(), files=tmp_path)
-    assert list(demo.get_api_info()["named_endpoints"]) == ["/predict", "/generate", "/react"]
+    assert list(demo.get_api_info()["named_endpoints"]) == [
+        "/predict",
+        "/generate",
+        "/generate_class",
+        "/react",
+    ]

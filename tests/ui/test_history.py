@@ -55,9 +55,10 @@ def test_a_run_that_is_still_there_stays_chosen() -> None:
         ({"kind": "predict", "model": "motion-mlp"}, "Motion MLP · "),
         ({"kind": "react", "model": "gone", "mode": "offline"}, ""),
         ({"kind": "generate", "model": "intergen"}, ""),
+        ({"kind": "generate", "model": "bigraphdiff"}, "BiGraphDiff · "),
     ],
 )
-def test_reactions_and_predictions_say_their_method(request_: dict[str, Any], method: str) -> None:
+def test_what_has_several_methods_says_which(request_: dict[str, Any], method: str) -> None:
     run = Entry(
         id="a", kind=request_["kind"], title="One waves.", state="done", request=request_ | {"seed": 3}
     )

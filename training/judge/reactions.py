@@ -23,6 +23,7 @@ METHODS: dict[str, dict[str, Any]] = {
     "ReGenNet, offline, first pose given": _OFFLINE | {"start": True},
     "InterFormer, first pose given": {"model": "interformer", "start": True},
     "InterGen, person to person": _PERSON_TO_PERSON | {"steps": 20, "guidance": 1.0, "damping": 0.0},
+    "Virtual agent": {"model": "agent", "steps": 20, "damping": 0.0},
 }
 """The fields of a request without words and without damping, by the name of the method."""
 TOLD: dict[str, dict[str, Any]] = {
@@ -31,8 +32,11 @@ TOLD: dict[str, dict[str, Any]] = {
     "ReGenNet, offline, no damping": _OFFLINE,
     "ReGenNet, online": _ONLINE,
     "InterFormer, first pose given, no words": METHODS["InterFormer, first pose given"],
+    "Virtual agent, no words": {"model": "agent", "steps": 25, "damping": 0.7},
 }
-"""The same with words, at the page's settings; InterFormer takes none."""
+"""The same with words, at the page's settings; InterFormer and the virtual agent take none."""
+WORDLESS = ("interformer", "agent")
+"""Models that take no words."""
 LONGEST = 300
 """Frames that a model reacts to at most."""
 
@@ -53,7 +57,7 @@ def react(engine: Engine, recorded: Duet, seed: int, chosen: Mapping[str, Any], 
     """
     fields = dict(chosen)
     start = recorded.b.positions[0] if fields.pop("start", False) else None
-    if fields["model"] == "interformer":
+    if fields["model"] in WORDLESS:
         prompt = ""
     actor = Clip(recorded.a.positions[:LONGEST], recorded.fps)
     request = ReactRequest(actor=actor, prompt=prompt, seed=seed, start=start, **fields)

@@ -20,8 +20,9 @@ from typing import Any
 
 from webdemo.motion import Duet, InputError
 
+from .agent import Agent
 from .cancel import CancelToken
-from .generator import Clock, DuetGenerator
+from .generator import ClassGenerator, Clock, DuetGenerator
 from .interformer import InterFormerReactor
 from .live import LiveFrame
 from .predict import MotionPredictor
@@ -30,9 +31,10 @@ from .reactor import Reactor
 from .requests import GenerateRequest, Progress, ReactRequest, Result
 
 WEIGHTS = Path(__file__).resolve().parents[2] / "models" / "weights"
-Runner = DuetGenerator | Reactor | InterFormerReactor | MotionPredictor
+Runner = DuetGenerator | ClassGenerator | Reactor | InterFormerReactor | MotionPredictor | Agent
 GENERATORS: dict[str, Callable[[Path], Runner]] = {
     "intergen": DuetGenerator,
+    "bigraphdiff": ClassGenerator,
     "regennet": Reactor,
     "interformer": InterFormerReactor,
     "motion-mlp": MotionPredictor,
@@ -40,6 +42,10 @@ GENERATORS: dict[str, Callable[[Path], Runner]] = {
     "still": lambda _: MotionPredictor(None),
 }
 """What runs requests, by name; the folder of its weights has the same name."""
+COMPOSED: dict[str, tuple[Callable[..., Runner], tuple[str, ...]]] = {
+    "agent": (Agent, ("motion-mlp", "intergen"))
+}
+"""What also needs others, which come after the folder: by name, with the others' names."""
 
 
 class Engine:
@@ -115,12 +121,18 @@ class Engine:
         return reactor.live(request)
 
     def _generator(self, name: str) -> Any:
-        if name not in GENERATORS:
-            raise InputError(f"There is no model {name!r:.40}: choose one of {', '.join(GENERATORS)}.")
+        known = [*GENERATORS, *COMPOSED]
+        if name not in known:
+            raise InputError(f"There is no model {name!r:.40}: choose one of {', '.join(known)}.")
         with self._lock:
-            if name not in self._generators:
-                self._generators[name] = GENERATORS[name](self.weights / name)
-            return self._generators[name]
+            return self._loaded(name)
+
+    def _loaded(self, name: str) -> Any:
+        """What runs a model's requests, loaded where it is not; under the lock."""
+        if name not in self._generators:
+            make, parts = COMPOSED.get(name) or (GENERATORS[name], ())
+            self._generators[name] = make(self.weights / name, *map(self._loaded, parts))
+        return self._generators[name]
 
 
 def _manifest(request: Any, generator: Runner) -> dict[str, Any]:

@@ -1,8 +1,9 @@
-"""Two people from one sentence, or one for a given other, by the compact InterGen."""
+"""Two people from one sentence or a class, or one for a given other."""
 
 from __future__ import annotations
 
 import time
+from abc import ABC, abstractmethod
 from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
@@ -11,7 +12,8 @@ import numpy as np
 import torch
 from torch import Tensor
 
-from models.compact import CaptionBank, CompactInterGen, WeightsFolder
+from models.compact import CaptionBank, CompactInterGen, Touch, WeightsFolder
+from models.compact_bigraphdiff import CompactBiGraphDiff, load_folder
 from models.diffusion import TRAIN_TIMESTEPS, make_scheduler, sample_steps
 from models.text import MiniLM
 from webdemo.metrics import compare
@@ -58,34 +60,39 @@ class Clock:
         return now
 
 
-class DuetGenerator:
-    """The compact InterGen with its text encoder, loaded from a weights folder.
+@dataclass(frozen=True)
+class Told:
+    """What a network is told of a request.
 
-    Raises WeightsError or TextEncoderError (both InputError) where files are missing or altered.
+    Attributes:
+        condition: (1, C) its vector; zeros tell nothing.
+        guidance: scale of classifier-free guidance.
+        touch: which joints should come together.
+        notes: sentences the user should read.
     """
 
-    def __init__(self, folder: Path) -> None:
-        source = WeightsFolder(folder)
-        self.name, self.digest, self.meta = folder.name, source.digest, source.meta
-        self.model: CompactInterGen = source.model()
-        self.bank: CaptionBank = source.captions()
-        self.encoder = MiniLM()
+    condition: Tensor
+    guidance: float
+    touch: Touch = ()
+    notes: tuple[str, ...] = ()
 
-    def condition(self, prompt: str) -> tuple[Tensor, Tensor]:
-        """The condition vector (1, C) of a prompt and its unit sentence vector (384,)."""
-        tokens = self.encoder([prompt])
-        with torch.no_grad():
-            return self.model.conditioner(tokens.features, tokens.mask), tokens.pooled()[0]
 
-    def notes(self, vector: Tensor) -> tuple[str, ...]:
-        """What the user should know of a prompt: that it is far from all that was trained on."""
-        near = self.bank.nearest(vector)
-        if near[0][0] >= self.bank.far:
-            return ()
-        return (
-            "This sentence is far from anything the model was trained on, so the motion may not match it. "
-            f"The nearest thing it knows: “{near[0][1]}”.",
-        )
+class Sampler(ABC):
+    """Denoises two people by the network ``model`` of a weights folder; a subclass says what it is told.
+
+    Args:
+        name: of the folder.
+        source: the folder.
+        model: its network.
+    """
+
+    def __init__(self, name: str, source: WeightsFolder, model: CompactInterGen | CompactBiGraphDiff) -> None:
+        self.name, self.digest, self.meta = name, source.digest, source.meta
+        self.model = model
+
+    @abstractmethod
+    def told(self, request: GenerateRequest | ReactRequest) -> Told:
+        """What the network is told of a request."""
 
     def damp(self, damping: Damping, x0: Tensor, timestep: int) -> Tensor:
         """A prediction corrected by its damping; requests that share passes do this together, too."""
@@ -97,13 +104,8 @@ class DuetGenerator:
         """Progress events, then one :class:`Result` without a manifest; raises Cancelled within one step."""
         now = time.perf_counter()
         yield clock.progress("text")
-        notes: tuple[str, ...] = ()
-        if request.prompt.strip():
-            condition, vector = self.condition(request.prompt)
-            notes, guidance = self.notes(vector), request.guidance
-        else:  # without an intent both halves of the guidance are the same
-            condition, guidance = torch.zeros(1, self.model.config.cond_dim), 1.0
-        condition = condition.expand(request.samples, -1)
+        told = self.told(request)
+        condition = told.condition.expand(request.samples, -1)
         scene = scene_of(request, self.model)
         now = clock.lap("text", now)
 
@@ -119,7 +121,7 @@ class DuetGenerator:
             timesteps=TRAIN_TIMESTEPS,
             final_timestep=int(scheduler.timesteps[-1]),
             frozen=None if given is None else given.mask,
-            touches=self.model.touches(condition) if request.prompt.strip() else (),
+            touches=(told.touch,) * request.samples,
         )
         uncorrected = noise
 
@@ -131,7 +133,7 @@ class DuetGenerator:
 
         def predict(x: Tensor, t: Tensor) -> Tensor:
             x = x if given is None else given.hold(x)
-            return self.model.denoiser.guided(x, t, condition, scale=guidance)
+            return self.model.denoiser.guided(x, t, condition, scale=told.guidance)
 
         cancel.raise_if_cancelled()
         sample = noise
@@ -151,7 +153,7 @@ class DuetGenerator:
             manifest={},
             readouts=readouts,
             timings={**clock.stages, "total": round(clock.elapsed, 4)},
-            notes=notes,
+            notes=told.notes,
         )
 
     def _duets(self, x: Tensor, scene: Scene, finish: Finish) -> tuple[Duet, ...]:
@@ -160,6 +162,68 @@ class DuetGenerator:
         if not np.isfinite(positions).all():
             raise InputError("The motion ran away to infinity: lower the guidance scale or take more steps.")
         return tuple(scene.duet(pair, finish) for pair in positions)
+
+
+class DuetGenerator(Sampler):
+    """The compact InterGen with its text encoder, loaded from a weights folder.
+
+    Raises WeightsError or TextEncoderError (both InputError) where files are missing or altered.
+    """
+
+    def __init__(self, folder: Path) -> None:
+        source = WeightsFolder(folder)
+        self.words = source.model()
+        super().__init__(folder.name, source, self.words)
+        self.bank: CaptionBank = source.captions()
+        self.encoder = MiniLM()
+
+    def condition(self, prompt: str) -> tuple[Tensor, Tensor]:
+        """The condition vector (1, C) of a prompt and its unit sentence vector (384,)."""
+        tokens = self.encoder([prompt])
+        with torch.no_grad():
+            return self.words.conditioner(tokens.features, tokens.mask), tokens.pooled()[0]
+
+    def notes(self, vector: Tensor) -> tuple[str, ...]:
+        """What the user should know of a prompt: that it is far from all that was trained on."""
+        near = self.bank.nearest(vector)
+        if near[0][0] >= self.bank.far:
+            return ()
+        return (
+            "This sentence is far from anything the model was trained on, so the motion may not match it. "
+            f"The nearest thing it knows: “{near[0][1]}”.",
+        )
+
+    def told(self, request: GenerateRequest | ReactRequest) -> Told:
+        """The words' vector, and what they want to touch; nothing where there are no words."""
+        if not request.prompt.strip():  # without an intent both halves of the guidance are the same
+            return Told(torch.zeros(1, self.words.config.cond_dim), 1.0)
+        condition, vector = self.condition(request.prompt)
+        (touch,) = self.words.touches(condition)
+        return Told(condition, request.guidance, touch, self.notes(vector))
+
+
+class ClassGenerator(Sampler):
+    """The compact BiGraphDiff, for which a request's prompt is the name of a class.
+
+    Raises WeightsError (an InputError) where files are missing or altered.
+    """
+
+    def __init__(self, folder: Path) -> None:
+        self.classes, source = load_folder(folder)
+        super().__init__(folder.name, source, self.classes)
+
+    def told(self, request: GenerateRequest | ReactRequest) -> Told:
+        """The class' vector and touch; raises InputError for a class that is not known."""
+        labels = self.classes.config.labels
+        known = {label.casefold(): label for label in labels}
+        label = known.get(" ".join(request.prompt.split()).casefold())
+        if label is None:
+            raise InputError(
+                f"There is no class {request.prompt.strip()!r:.60}: choose one of: {'; '.join(labels)}."
+            )
+        with torch.no_grad():
+            condition = self.classes.condition([label])
+        return Told(condition, request.guidance, self.classes.touches(label))
 
 
 def _as_is(person: np.ndarray) -> np.ndarray:

@@ -28,10 +28,15 @@ MODES: dict[str, tuple[str, ...]] = {
     "intergen": ("offline",),
     "regennet": ("offline", "online"),
     "interformer": ("offline",),
+    "agent": ("offline",),
 }
 """How each model can react: in sight of the whole given motion, or of its past alone."""
-DEFAULT_STEPS = {"intergen": 50, "regennet": 5, "interformer": 1}
+DEFAULT_STEPS = {"intergen": 50, "regennet": 5, "interformer": 1, "agent": 50}
 """Denoising steps that each model is meant for; InterFormer has none."""
+
+
+DEFAULT_GUIDANCE = {"bigraphdiff": 1.8}
+"""Guidance scales of models for which :class:`SamplingRequest`'s is not the best."""
 
 
 def _number(name: str, value: Any, low: float, high: float, unit: str = "") -> float:
@@ -99,10 +104,10 @@ class SamplingRequest:
 
 @dataclass(frozen=True, kw_only=True)
 class GenerateRequest(SamplingRequest):
-    """Two people from one sentence.
+    """Two people from one sentence, or from a class by the model bigraphdiff.
 
     Attributes:
-        prompt: what the two people do, in English.
+        prompt: what the two people do, in English; for bigraphdiff the name of a class.
         seconds: length of the motion.
     """
 
@@ -120,11 +125,13 @@ class GenerateRequest(SamplingRequest):
 
 @dataclass(frozen=True, kw_only=True)
 class ReactRequest(SamplingRequest):
-    """A second person for a given one: InterGen person to person (section 5.4), ReGenNet or InterFormer.
+    """A second person for a given one: InterGen person to person (section 5.4), ReGenNet, InterFormer or the
+    virtual agent.
 
     ReGenNet samples with DDIM alone. Online, what is to come cannot be corrected: ``damping`` is 0 whatever
     was given.
     InterFormer denoises nothing and takes no words: it heeds ``seed``, ``samples`` and ``cleanup`` alone.
+    The virtual agent finds the words itself and has InterGen answer; its given person always acts first.
 
     Attributes:
         actor: the given person, 1 to 10 seconds on SMPL22's joints. At 30 fps the result holds these very
@@ -135,7 +142,7 @@ class ReactRequest(SamplingRequest):
         mode: "offline": the other person is made in sight of the whole motion; "online" (ReGenNet): each of
             their frames in sight of the given person's frames so far.
         start: (22, 3) metres, how the person who is made stands at the first frame, in the actor's world;
-            open by default. Not for InterGen.
+            open by default. Not for InterGen and the virtual agent.
     """
 
     actor: Clip
@@ -156,13 +163,15 @@ class ReactRequest(SamplingRequest):
             self._check_regennet()
         if self.model == "interformer":
             self._check_interformer()
+        if self.model == "agent" and self.role != "a":
+            raise InputError("The virtual agent answers: choose role a, or the model intergen.")
         object.__setattr__(self, "actor", check_actor(self.actor, SECONDS))
         if self.start is not None:
             self._check_start()
         super().__post_init__()
 
     def _check_start(self) -> None:
-        if self.model == "intergen":
+        if self.model in ("intergen", "agent"):
             raise InputError("InterGen takes no start pose: leave it out, or choose the model regennet.")
         start = np.asarray(self.start, dtype=np.float64)
         if start.shape != (22, 3) or not np.isfinite(start).all():

@@ -7,9 +7,11 @@ from dataclasses import replace
 from typing import Any
 
 from webdemo.inference.cancel import CancelToken
-from webdemo.inference.requests import GenerateRequest, Progress, ReactRequest, Result, SamplingRequest
+from webdemo.inference.requests import GenerateRequest, Progress, ReactRequest, Result
 from webdemo.ui.lazy import LazyEngine
 
+TOGETHER = ("intergen", "bigraphdiff")
+"""Models whose requests may share passes."""
 NEARBY = 1.25
 """The longest motion of a pass is at most this many times as long as the shortest: the rest is padding."""
 
@@ -19,7 +21,7 @@ class SharedEngine(LazyEngine):
 
     def key(self, request: Any) -> tuple[Any, ...] | None:
         """Requests of one model, sampler and number of steps may share a pass; others run alone."""
-        if type(request) not in (GenerateRequest, ReactRequest) or request.model != SamplingRequest.model:
+        if type(request) not in (GenerateRequest, ReactRequest) or request.model not in TOGETHER:
             return None
         return request.model, request.sampler, request.steps
 

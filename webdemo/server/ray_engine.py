@@ -33,8 +33,8 @@ if TYPE_CHECKING:  # imported when first needed, so that the page is up before R
 log = logging.getLogger(__name__)
 
 NAMESPACE = "pas-de-deux"
-MODELS = ("intergen", "regennet", "interformer", "motion-mlp", "mawgan")
-"""Those that have replicas of their own; what else there is needs no network and goes to the first's."""
+MODELS = ("intergen", "bigraphdiff", "regennet", "interformer", "motion-mlp", "mawgan")
+"""Those that have replicas of their own; what else there is goes to the first's."""
 TRIES = 4
 """How often a request is begun, where replicas die under it."""
 TICK = 0.2

@@ -23,6 +23,7 @@ METHODS = {
     "regennet": ("ReGenNet, offline", "regennet", "offline"),
     "regennet-online": ("ReGenNet, online", "regennet", "online"),
     "interformer": ("InterFormer", "interformer", "offline"),
+    "agent": ("Virtual agent", "agent", "offline"),
 }
 """By key: what the page calls a method, its model and its mode."""
 LIVE = "regennet-online"

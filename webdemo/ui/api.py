@@ -13,6 +13,7 @@ from webdemo.formats import read
 from webdemo.inference.actor import read_actor
 from webdemo.inference.predict_request import LONGEST, PredictRequest, PredictResult
 from webdemo.inference.requests import (
+    DEFAULT_GUIDANCE,
     Cancelled,
     GenerateRequest,
     ReactRequest,
@@ -21,6 +22,7 @@ from webdemo.inference.requests import (
 )
 from webdemo.motion import InputError
 
+from .classes import MODEL
 from .context import PageContext
 from .exports import write_files
 from .words import error_line, progress_line
@@ -44,14 +46,12 @@ class Endpoint:
         self.page = page
 
     @staticmethod
-    def _sampling() -> list[gr.components.Component]:
+    def _sampling(guidance: float = SamplingRequest.guidance) -> list[gr.components.Component]:
         """Inputs for the fields of a :class:`SamplingRequest`, in the order of the jobs' arguments."""
         return [
             gr.Number(SamplingRequest.seed, label="0 to 4294967295; the same seed gives the same motion"),
             gr.Number(SamplingRequest.samples, label="how many motions to draw, 1 to 8"),
-            gr.Number(
-                SamplingRequest.guidance, label="scale of classifier-free guidance, 0 to 10; 1 is none"
-            ),
+            gr.Number(guidance, label="scale of classifier-free guidance, 0 to 10; 1 is none"),
             gr.Number(SamplingRequest.steps, label="denoising steps, 1 to 1000"),
             gr.Number(SamplingRequest.damping, label="damping threshold as a share of T, 0 to 1; 0 is none"),
             gr.Textbox(SamplingRequest.sampler, label="ddim or dpm++"),
@@ -145,6 +145,45 @@ class GenerateEndpoint(Endpoint):
         )  # fmt: skip
 
 
+class ClassEndpoint(Endpoint):
+    """``/generate_class``: a class → motion files."""
+
+    def publish(self) -> None:
+        """Adds the endpoint to the page that is being built."""
+        with gr.Row(visible=False):
+            inputs = [
+                gr.Textbox(label="name of a class, such as: shake hands"),
+                gr.Number(GenerateRequest.seconds, label="length of the motion in seconds, 1 to 10"),
+                *self._sampling(DEFAULT_GUIDANCE[MODEL]),
+            ]
+            self._publish(self.generate_class, "generate_class", inputs)
+
+    def generate_class(
+        self,
+        name: str,
+        seconds: float,
+        seed: float,
+        samples: float,
+        guidance: float,
+        steps: float,
+        damping: float,
+        sampler: str,
+        progress: gr.Progress = PROGRESS,
+    ) -> Answer:
+        """Two people from the name of a class, by BiGraphDiff; an unknown one is answered with all names.
+
+        Returns what /generate does.
+        """
+        return self._answer(
+            lambda: GenerateRequest(
+                prompt=name, seconds=seconds, seed=seed, samples=samples, guidance=guidance, steps=steps,
+                damping=damping, sampler=sampler, model=MODEL,
+            ),
+            name,
+            progress,
+        )  # fmt: skip
+
+
 class ReactEndpoint(Endpoint):
     """``/react``: one person → motion files of two."""
 
@@ -159,7 +198,10 @@ class ReactEndpoint(Endpoint):
                 gr.Number(0, label="its end, in seconds; 0 is the end of the file"),
                 gr.Textbox(ReactRequest.role, label="a: the given person acts first; b: they react"),
                 *self._sampling(),
-                gr.Textbox(ReactRequest.model, label="intergen, or regennet (for which 5 steps are enough)"),
+                gr.Textbox(
+                    ReactRequest.model,
+                    label="intergen, regennet (for which 5 steps are enough), interformer or agent",
+                ),
                 gr.Textbox(ReactRequest.mode, label="offline, or with regennet online"),
                 gr.Checkbox(
                     False, label="of a file with two: begin as the other stands there (not intergen)"

@@ -14,6 +14,7 @@ from webdemo.motion import InputError
 
 from .actors import METHODS as REACTORS
 from .again import actor_source, request_of, request_of_unfinished, verdict
+from .classes import MODEL as CLASS_MODEL
 from .context import PageContext
 from .exports import KINDS, Record
 from .history import Entry, HistoryLike, Opened
@@ -267,12 +268,12 @@ class HistoryTab:
         changes: dict[int, Any] = {
             self.tabs._id: gr.update(selected=entry.kind),
             self.line._id: status(),
-            **{part._id: update for part, update in job.opened(opened).items()},
             **{
                 getattr(job, name)._id: gr.update(value=entry.request[name])
                 for name in _CONTROLS
                 if name in entry.request and hasattr(job, name)
             },
+            **{part._id: update for part, update in job.opened(opened).items()},
         }
         if "actor" in entry.request and hasattr(job, "trim"):
             source = actor_source(opened)
@@ -286,7 +287,7 @@ class HistoryTab:
 
 def _parts(job: JobTab) -> Sequence[gr.components.Component]:
     """Everything of a tab that an opened run may set."""
-    names = (*_CONTROLS, "source", "trim", "begin", "end", "marker")
+    names = (*_CONTROLS, "source", "trim", "begin", "end", "marker", *job.restored)
     return [*job.outputs.values(), *(getattr(job, name) for name in names if hasattr(job, name))]
 
 
@@ -320,8 +321,10 @@ def _label(entry: Entry) -> str:
 
 
 def _method(asked: Mapping[str, Any]) -> str:
-    """What the page calls the method of a reaction or a prediction; "" for what has one method only."""
+    """What the page calls the method of a run; "" for a sentence, which has one method only."""
     model, mode = asked.get("model"), asked.get("mode")
+    if asked.get("kind") == "generate":
+        return "BiGraphDiff" if model == CLASS_MODEL else ""
     if asked.get("kind") == "react":
         return next((label for label, *its in REACTORS.values() if its == [model, mode]), "")
     return PREDICTORS.get(str(model), "") if asked.get("kind") == "predict" else ""

@@ -66,6 +66,8 @@ class JobTab(ABC):
     label: str
     prefix = ""
     """Before the ids of the tab's elements."""
+    restored: tuple[str, ...] = ()
+    """Attributes that :meth:`opened` sets, besides the result and controls named as a request's fields."""
     dice: gr.Button | None = None
     """Draws a seed, where the tab's motion is random."""
 

@@ -11,7 +11,7 @@ import gradio as gr
 
 from webdemo.formats.files import MAX_BYTES
 
-from .api import GenerateEndpoint, PredictEndpoint, ReactEndpoint
+from .api import ClassEndpoint, GenerateEndpoint, PredictEndpoint, ReactEndpoint
 from .context import PageContext
 from .exports import Shelf
 from .generate_tab import GenerateTab
@@ -28,7 +28,7 @@ from .theme import HEAD, style_sheet, theme
 TITLE = "Pas de Deux"
 TABS = (GenerateTab, ReactTab, PredictTab)
 """A class a job, with a ``label`` and ``build(demo, record)``."""
-ENDPOINTS = (PredictEndpoint, GenerateEndpoint, ReactEndpoint)
+ENDPOINTS = (PredictEndpoint, GenerateEndpoint, ClassEndpoint, ReactEndpoint)
 """Gradio's client in the browser takes the page's first function for "/predict", so that one comes first."""
 
 _HEADER = (

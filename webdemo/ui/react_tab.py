@@ -30,6 +30,7 @@ from .compare import comparison_payload
 from .context import PageContext
 from .examples import example_clips
 from .exports import Record
+from .history import Opened
 from .job_tab import QUIET, JobTab, Updates, total
 from .live import LiveView
 from .panels import comparison_panel, status
@@ -56,6 +57,7 @@ class ReactTab(JobTab):
 
     label = "React"
     prefix = "react-"
+    restored = ("method", "other")
 
     def __init__(self, page: PageContext, examples: list[tuple[str, Path]] | None = None) -> None:
         super().__init__(page)
@@ -66,6 +68,22 @@ class ReactTab(JobTab):
 
     def title(self, request: ReactRequest) -> str:
         return request.prompt.strip() or f"Reaction to {request.actor.name}"
+
+    def opened(self, run: Opened) -> dict[gr.components.Component, Any]:
+        """Also the method, with what it lets be set."""
+        asked = run.entry.request
+        its = [asked.get("model"), asked.get("mode")]
+        method = next((key for key, (_, *known) in METHODS.items() if known == its), next(iter(METHODS)))
+        fitted = zip((self.role, self.steps, self.damping), self.fit_method(method), strict=True)
+        kept = (asked.get(name) for name in ("role", "steps", "damping"))
+        return super().opened(run) | {
+            self.method: gr.update(value=method),
+            self.other: gr.update(value=""),
+            **{
+                part: fit if value is None else {**fit, "value": value}
+                for (part, fit), value in zip(fitted, kept, strict=True)
+            },
+        }
 
     # ---- layout ----------------------------------------------------------------------------------
 
@@ -95,11 +113,11 @@ class ReactTab(JobTab):
         self._wire_start(self.start_live, [self.live.click], inputs)
         self._wire_actor()
         methods = [self.method, self.other]
-        self.method.change(
+        self.method.input(
             self.fit_method, inputs=methods, outputs=[self.role, self.steps, self.damping],
             queue=False, **QUIET,
         )  # fmt: skip
-        self.other.change(
+        self.other.input(
             lambda *chosen: self.fit_method(*chosen)[0], inputs=methods, outputs=self.role,
             queue=False, **QUIET,
         )  # fmt: skip

@@ -1,0 +1,133 @@
+"""Two people from a class, as from a sentence: the same request, the same promises."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+import torch
+
+from models.compact_bigraphdiff import CompactBiGraphDiff, CompactBiGraphDiffConfig
+from models.folder import save_network
+from models.motion_tokens import encode
+from webdemo import cli
+from webdemo.formats import read
+from webdemo.inference import Cancelled, CancelToken, GenerateRequest, Result
+from webdemo.inference.batch import run_batch
+from webdemo.inference.engine import WEIGHTS, Engine
+from webdemo.motion import SMPL22, InputError
+
+LABELS = ("shake hands", "wave to each other")
+QUICK = {"model": "bigraphdiff", "seconds": 1.5, "steps": 3, "guidance": 2.0}
+
+
+@pytest.fixture(scope="module")
+def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    torch.manual_seed(0)
+    model = CompactBiGraphDiff(
+        CompactBiGraphDiffConfig(
+            LABELS, ((("right_wrist", "right_wrist"),), ()), latent_dim=32, ff_size=32, num_layers=2,
+            num_heads=2, embed_dim=32, cond_dim=16,
+        )
+    )  # fmt: skip
+    for parameter in model.parameters():
+        torch.nn.init.normal_(parameter, std=0.05)
+    rest = torch.tensor(SMPL22.rest_positions()).float() + torch.tensor([0.0, 0.98, 0.0])
+    frames = model.layout.num_frames(4)
+    control = encode(rest.expand(frames, -1, -1), torch.ones(frames, 4), model.layout)
+    model.mean.copy_(control.mean(0))
+    model.std.fill_(0.1)
+    made = tmp_path_factory.mktemp("classes")
+    save_network(made / "bigraphdiff", model, card={"summary": "a tiny untrained model"})
+    return made
+
+
+@pytest.fixture(scope="module")
+def engine(folder: Path) -> Engine:
+    return Engine(folder)
+
+
+def result(engine: Engine, label: str = "shake hands", **asked: object) -> Result:
+    (found,) = (
+        e for e in engine.run(GenerateRequest(prompt=label, **{**QUICK, **asked})) if isinstance(e, Result)
+    )
+    return found
+
+
+def test_a_class_gives_two_people_and_a_manifest(engine: Engine) -> None:
+    found = result(engine, samples=2)
+    assert [duet.num_frames for duet in found.duets] == [45, 45]
+    assert found.manifest["model"] == "bigraphdiff"
+    assert found.manifest["request"]["prompt"] == "shake hands"
+    assert not np.array_equal(found.duets[0].positions, found.duets[1].positions)
+    assert set(found.readouts[0]) >= {"before", "after"}
+
+
+def test_the_same_request_gives_the_same_bytes_and_names_may_be_written_otherwise(engine: Engine) -> None:
+    one, other = result(engine), result(engine, "  Shake  HANDS ")
+    assert one.duets[0].positions.tobytes() == other.duets[0].positions.tobytes()
+    waved = result(engine, "wave to each other")
+    assert not np.allclose(one.duets[0].positions, waved.duets[0].positions, atol=1e-4)
+
+
+def test_no_damping_is_the_plain_sampler_and_more_lets_hands_meet(engine: Engine) -> None:
+    plain, damped = (result(engine, damping=d, cleanup=False) for d in (0.0, 1.0))
+    wrist = SMPL22.index("right_wrist")
+
+    def nearest(found: Result) -> float:
+        a, b = (person.positions[:, wrist] for person in found.duets[0].people)
+        return float(np.linalg.norm(a - b, axis=-1).min())
+
+    assert plain.readouts[0]["before"] == plain.readouts[0]["after"]
+    asked = 0.08  # metres between two wrists that meet
+    assert abs(nearest(damped) - asked) < 0.6 * abs(nearest(plain) - asked)
+
+
+def test_a_class_that_is_not_known_is_answered_with_those_that_are(engine: Engine) -> None:
+    with pytest.raises(InputError, match="no class 'juggle': choose one of: shake hands; wave to each other"):
+        result(engine, "juggle")
+
+
+def test_cancel_ends_within_a_step(engine: Engine) -> None:
+    cancel, seen = CancelToken(), []
+    with pytest.raises(Cancelled):
+        for event in engine.run(GenerateRequest(prompt="shake hands", **QUICK | {"steps": 50}), cancel):
+            seen.append(event)
+            if event.stage == "sample" and event.step == 2:
+                cancel.cancel()
+    assert max(event.step for event in seen if event.stage == "sample") <= 3
+
+
+def test_requests_share_passes(engine: Engine) -> None:
+    requests = [
+        GenerateRequest(prompt=label, **QUICK | {"seconds": seconds, "seed": 4})
+        for label, seconds in (("shake hands", 1.5), ("wave to each other", 1.3))
+    ]
+    together = {
+        i: e for i, e in run_batch(engine, [(r, CancelToken()) for r in requests]) if isinstance(e, Result)
+    }
+    for i, request in enumerate(requests):
+        (alone,) = (e for e in engine.run(request) if isinstance(e, Result))
+        assert np.allclose(together[i].duets[0].positions, alone.duets[0].positions, atol=2e-3)
+
+
+def test_the_shell_takes_a_class(
+    engine: Engine, monkeypatch: pytest.MonkeyPatch, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.setattr("webdemo.inference.engine.Engine", lambda: engine)
+    words = ["generate", "--class", "shake hands", "--seconds", "1", "--steps", "2", "--out"]
+    assert cli.main([*words, str(tmp_path / "hands.npz")]) == 0
+    assert read(tmp_path / "hands.npz").num_frames == 30
+    capsys.readouterr()
+    assert cli.main([*words, str(tmp_path / "both.npz"), "--prompt", "They wave."]) == 2
+    assert "not allowed with" in capsys.readouterr().err
+
+
+def test_the_shipped_classes_shake_hands() -> None:
+    """Hands meet, in front of two people who stand as far apart as people do who shake hands."""
+    found = result(Engine(WEIGHTS), seconds=4.0, steps=20)
+    a, b = (person.positions for person in found.duets[0].people)
+    apart = np.linalg.norm(a[:, SMPL22.index("right_wrist")] - b[:, SMPL22.index("right_wrist")], axis=-1)
+    assert apart.min() < 0.15
+    assert 0.4 < np.linalg.norm((a - b)[apart.argmin(), 0]) < 1.3
