@@ -27,7 +27,7 @@ from models.folder import save_network
 from models.intergen_losses import InterGenLoss, LossWeights, simple_loss
 from models.motion_tokens import FEATURES
 from training import checkpoint, intergen
-from training.loop import Loop, warm_cosine
+from training.loop import Loop
 from training.prepare import Scenes, load
 from training.shell import add_run_options, chosen, exit_code
 from training.touch import touch_of
@@ -237,24 +237,10 @@ class Trainer(Loop):
         self.model.train()
         terms = self.terms(batch, t, noise, keep)
         total = torch.stack(list(terms.values())).sum()
-        for group in self.optimizer.param_groups:
-            group["lr"] = warm_cosine(s.learning_rate, self.step, warmup=s.warmup, steps=s.steps)
-        self.optimizer.zero_grad(set_to_none=True)
-        total.backward()
-        torch.nn.utils.clip_grad_norm_(self.model.parameters(), 1.0)
-        self.optimizer.step()
-        self.step += 1
-        self.average()
+        self.descend(total, self.optimizer, self.model.parameters())
+        kept = [self.ema.state_dict(), self.model.state_dict()]  # with what the batch norms have seen
+        self.follow(*([v for v in state.values() if v.is_floating_point()] for state in kept))
         return {name: value.item() for name, value in terms.items()} | {"total": total.item()}
-
-    def average(self) -> None:
-        """Moves the averaged network, with what its batch norms have seen, towards the current one."""
-        decay = min(self.settings.ema, (self.step + 1) / (self.step + 10))
-        current = self.model.state_dict()
-        with torch.no_grad():
-            for name, value in self.ema.state_dict().items():
-                if value.is_floating_point():
-                    value.lerp_(current[name], 1 - decay)
 
     def save(self) -> None:
         checkpoint.save(self.checkpoint, self.parts(), self.step, self.settings_json)

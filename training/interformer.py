@@ -39,7 +39,7 @@ from models.interformer import JOINTS
 from models.interformer_decoding import ReactionDecoder
 from training import checkpoint
 from training.corpus.pairs import load_pairs
-from training.loop import Loop, warm_cosine
+from training.loop import Loop
 from training.shell import add_run_options, chosen, exit_code
 from webdemo.motion import InputError
 from webdemo.motion.skeleton import SBU15
@@ -309,17 +309,8 @@ class Trainer(Loop):
         self.model.train()
         terms = self.terms(batch, torch.Generator().manual_seed(s.seed * 999_983 + self.step))
         total = torch.stack(list(terms.values())).sum()
-        rate = warm_cosine(s.learning_rate, self.step, warmup=s.warmup, steps=s.steps)
-        for group in self.optimizer.param_groups:
-            group["lr"] = rate
-        self.optimizer.zero_grad(set_to_none=True)
-        total.backward()
-        torch.nn.utils.clip_grad_norm_(self.trained(), 1.0)
-        self.optimizer.step()
-        self.step += 1
-        decay = min(s.ema, (self.step + 1) / (self.step + 10))
-        with torch.no_grad():
-            torch._foreach_lerp_(list(self.ema.parameters()), list(self.model.parameters()), 1 - decay)
+        self.descend(total, self.optimizer, self.trained())
+        self.follow(self.ema.parameters(), self.model.parameters())
         return {name: value.item() for name, value in terms.items()} | {"total": total.item()}
 
     @torch.no_grad()

@@ -31,7 +31,7 @@ from models.motion_tokens import FEATURES, mirror_control, pack
 from training import checkpoint
 from training.corpus.captions import mirror_caption
 from training.handedness import mirrored
-from training.loop import Loop, warm_cosine
+from training.loop import Loop
 from training.prepare import Scenes, load, normalizer
 from training.reading import CaptionReader
 from training.samples import write_sheet
@@ -317,19 +317,8 @@ class Trainer(Loop):
         self.model.train()
         terms = self.terms(batch, t, noise, keep, frozen)
         total = torch.stack(list(terms.values())).sum()
-        s = self.settings
-        rate = warm_cosine(s.learning_rate, self.step, warmup=s.warmup, steps=s.steps)
-        for group in self.optimizer.param_groups:
-            group["lr"] = rate
-        self.optimizer.zero_grad(set_to_none=True)
-        total.backward()
-        torch.nn.utils.clip_grad_norm_(self.model.parameters(), 1.0)
-        self.optimizer.step()
-        self.step += 1
-        decay = min(self.settings.ema, (self.step + 1) / (self.step + 10))
-        with torch.no_grad():
-            averaged, current = list(self.ema.parameters()), list(self.model.parameters())
-            torch._foreach_lerp_(averaged, current, 1 - decay)
+        self.descend(total, self.optimizer, self.model.parameters())
+        self.follow(self.ema.parameters(), self.model.parameters())
         return {name: value.item() for name, value in terms.items()} | {"total": total.item()}
 
     def save(self) -> None:

@@ -6,9 +6,12 @@ import json
 import math
 import time
 from abc import ABC, abstractmethod
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from pathlib import Path
 from typing import Any
+
+import torch
+from torch import Tensor, nn
 
 
 def warm_cosine(peak: float, step: int, *, warmup: int, steps: int) -> float:
@@ -21,7 +24,8 @@ class Loop(ABC):
     """A run that counts its steps and can be stopped and saved between any two.
 
     Attributes:
-        settings: whose ``steps`` end the run.
+        settings: whose ``steps`` end the run; :meth:`descend` and :meth:`follow` read ``learning_rate``,
+            ``warmup`` and ``ema``.
         out: folder of the checkpoint and of ``log.jsonl``.
         step: steps done so far.
     """
@@ -37,6 +41,35 @@ class Loop(ABC):
     @abstractmethod
     def save(self) -> None:
         """Writes the checkpoint."""
+
+    def descend(
+        self,
+        loss: Tensor,
+        optimizer: torch.optim.Optimizer,
+        trained: Iterable[nn.Parameter],
+        *,
+        clip: float = 1.0,
+    ) -> None:
+        """One step down a loss at the rate of :func:`warm_cosine`, which counts as one of the run.
+
+        Args:
+            trained: parameters whose gradients are clipped to a norm of ``clip`` together.
+        """
+        s = self.settings
+        rate = warm_cosine(s.learning_rate, self.step, warmup=s.warmup, steps=s.steps)
+        for group in optimizer.param_groups:
+            group["lr"] = rate
+        optimizer.zero_grad(set_to_none=True)
+        loss.backward()
+        nn.utils.clip_grad_norm_(list(trained), clip)
+        optimizer.step()
+        self.step += 1
+
+    @torch.no_grad()
+    def follow(self, averaged: Iterable[Tensor], current: Iterable[Tensor]) -> None:
+        """Moves averages of weights towards the current ones, faster at first than ``settings.ema`` says."""
+        decay = min(self.settings.ema, (self.step + 1) / (self.step + 10))
+        torch._foreach_lerp_(list(averaged), list(current), 1 - decay)
 
     def run(self, *, minutes: float, save_every: float = 5.0) -> Iterator[dict[str, float]]:
         """Trains until the steps or the minutes are over; yields each step's terms; saves as it goes."""

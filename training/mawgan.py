@@ -283,7 +283,7 @@ class Trainer(PredictionTrainer):
         nn.utils.clip_grad_norm_(self.model.parameters(), 10.0)
         self.optimizer.step()
         self.step += 1
-        self.average()
+        self.follow(self.ema.parameters(), self.model.parameters())
         told = {name: value.item() for name, value in terms.items()}
         error = (positions - truth).norm(dim=-1).mean().item()
         return told | {"critic": sum(critic) / len(critic), "mm": 1000 * error}

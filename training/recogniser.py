@@ -23,7 +23,7 @@ from torch import Tensor
 from models.folder import save_network
 from models.recogniser import FORETOLD, FPS, KNOWN, Recogniser, RecogniserConfig, sampled
 from training import checkpoint
-from training.loop import Loop, warm_cosine
+from training.loop import Loop
 from training.prepare import load_corpus
 from training.shell import add_run_options, chosen, exit_code
 from webdemo.inference.agent import Eye
@@ -185,16 +185,8 @@ class Trainer(Loop):
         self.model.train()
         logits = self.model(windows)
         loss = F.cross_entropy(logits, self.labels[rows], label_smoothing=0.05)
-        for group in self.optimizer.param_groups:
-            group["lr"] = warm_cosine(s.learning_rate, self.step, warmup=s.warmup, steps=s.steps)
-        self.optimizer.zero_grad(set_to_none=True)
-        loss.backward()
-        torch.nn.utils.clip_grad_norm_(self.model.parameters(), 1.0)
-        self.optimizer.step()
-        self.step += 1
-        decay = min(s.ema, (self.step + 1) / (self.step + 10))
-        with torch.no_grad():
-            torch._foreach_lerp_(list(self.ema.parameters()), list(self.model.parameters()), 1 - decay)
+        self.descend(loss, self.optimizer, self.model.parameters())
+        self.follow(self.ema.parameters(), self.model.parameters())
         right = (logits.argmax(1) == self.labels[rows]).float().mean()
         return {"loss": loss.item(), "right": right.item()}
 

@@ -28,7 +28,7 @@ from models.intergen_losses import bone_lengths, facing
 from models.motion_tokens import FEATURES, NUM_CONTACTS
 from training import checkpoint
 from training.intergen import draw_timesteps, seeded
-from training.loop import Loop, warm_cosine
+from training.loop import Loop
 from training.prepare import Scenes, load
 from training.regennet_data import Batch, Conditions, Data, knot_positions, seen_rows
 from training.shell import add_run_options, chosen, exit_code
@@ -237,18 +237,8 @@ class Trainer(Loop):
         self.model.train()
         terms = self.terms(batch, seeded(self.settings.seed, 3, self.step))
         total = torch.stack(list(terms.values())).sum()
-        s = self.settings
-        rate = warm_cosine(s.learning_rate, self.step, warmup=s.warmup, steps=s.steps)
-        for group in self.optimizer.param_groups:
-            group["lr"] = rate
-        self.optimizer.zero_grad(set_to_none=True)
-        total.backward()
-        torch.nn.utils.clip_grad_norm_(self.trained, 1.0)
-        self.optimizer.step()
-        self.step += 1
-        decay = min(self.settings.ema, (self.step + 1) / (self.step + 10))
-        with torch.no_grad():
-            torch._foreach_lerp_(self.averaged, self.trained, 1 - decay)
+        self.descend(total, self.optimizer, self.trained)
+        self.follow(self.averaged, self.trained)
         return {name: value.item() for name, value in terms.items()} | {"total": total.item()}
 
     def save(self) -> None:

@@ -16,7 +16,6 @@ from torch import Tensor, nn
 
 from models.motion_mlp import MotionMLP, MotionMLPConfig
 from models.predictors import load_predictor, save_predictor
-from training.loop import warm_cosine
 from training.prediction.rollout import ADVANCE, check_own_pasts
 from training.prediction.trainer import PredictionTrainer
 from training.prediction.windows import open_windows
@@ -169,16 +168,8 @@ class Trainer(PredictionTrainer):
         torch.manual_seed(self.settings.seed + self.step)  # dropout
         terms = self.terms(*self.window())
         total = torch.stack(list(terms.values())).sum()
-        s = self.settings
-        rate = warm_cosine(s.learning_rate, self.step, warmup=s.warmup, steps=s.steps)
-        for group in self.optimizer.param_groups:
-            group["lr"] = rate
-        self.optimizer.zero_grad(set_to_none=True)
-        total.backward()
-        nn.utils.clip_grad_norm_(self.model.parameters(), 5.0)
-        self.optimizer.step()
-        self.step += 1
-        self.average()
+        self.descend(total, self.optimizer, self.model.parameters(), clip=5.0)
+        self.follow(self.ema.parameters(), self.model.parameters())
         return {name: value.item() for name, value in terms.items()} | {"total": total.item()}
 
     def export(self, folder: Path) -> None:

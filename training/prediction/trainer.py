@@ -73,11 +73,5 @@ class PredictionTrainer(Loop):
         windows = windows[:, : s.past + s.future]
         return windows, windows, 0
 
-    def average(self) -> None:
-        """Moves the averaged network towards the current one."""
-        decay = min(self.settings.ema, (self.step + 1) / (self.step + 10))
-        with torch.no_grad():
-            torch._foreach_lerp_(list(self.ema.parameters()), list(self.model.parameters()), 1 - decay)
-
     def save(self) -> None:
         checkpoint.save(self.checkpoint, self.parts(), self.step, self.settings_json)
