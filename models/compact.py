@@ -83,8 +83,8 @@ class TouchReader(nn.Module):
         return [self.touches[int(i)] if d else () for d, i in zip(due, best, strict=True)]
 
 
-class CompactInterGen(nn.Module):
-    """Denoiser, text conditioner and the normaliser of control points.
+class DuetSpace(nn.Module):
+    """The space in which two people's tokens are diffused, and the way back to metres.
 
     ``mean`` and ``std`` (70,) are those of one person's control point, see :mod:`models.motion_tokens`.
     """
@@ -92,8 +92,31 @@ class CompactInterGen(nn.Module):
     mean: Tensor
     std: Tensor
 
-    def __init__(self, config: CompactConfig) -> None:
+    def __init__(self, layout: TokenLayout) -> None:
         super().__init__()
+        self.layout = layout
+        self.register_buffer("mean", torch.zeros(FEATURES))
+        self.register_buffer("std", torch.ones(FEATURES))
+
+    @property
+    def scale(self) -> Tensor:
+        """(2·token_features,) metres to a unit of network space."""
+        return self.std.repeat(2 * self.layout.knots_per_token)
+
+    def control(self, x: Tensor) -> Tensor:
+        """Network space (B, tokens, 2·token_features) → control points (B, 2, knots, 70) in metres."""
+        return unpack(x, self.layout) * self.std + self.mean
+
+    def positions(self, x: Tensor) -> tuple[Tensor, Tensor]:
+        """Network space → positions (B, 2, T, 22, 3) in metres and contact scores (B, 2, T, 4)."""
+        return decode(self.control(x), self.layout)
+
+
+class CompactInterGen(DuetSpace):
+    """Denoiser, text conditioner and the normaliser of control points."""
+
+    def __init__(self, config: CompactConfig) -> None:
+        super().__init__(config.layout)
         self.config = config
         self.denoiser = InterGenDenoiser(
             InterGenConfig(
@@ -112,31 +135,12 @@ class CompactInterGen(nn.Module):
             TextConditionerConfig(latent_dim=config.cond_dim, num_layers=config.text_layers, dropout=0.05)
         )
         self.touch_reader = TouchReader(config.cond_dim, config.touches) if config.touches else None
-        self.register_buffer("mean", torch.zeros(FEATURES))
-        self.register_buffer("std", torch.ones(FEATURES))
-
-    @property
-    def layout(self) -> TokenLayout:
-        return self.config.layout
-
-    @property
-    def scale(self) -> Tensor:
-        """(2·token_features,) metres to a unit of network space."""
-        return self.std.repeat(2 * self.layout.knots_per_token)
 
     def touches(self, condition: Tensor) -> list[Touch]:
         """What should touch, for each condition vector (B, cond_dim); () where nothing should."""
         if self.touch_reader is None:
             return [()] * len(condition)
         return self.touch_reader.read(condition)
-
-    def control(self, x: Tensor) -> Tensor:
-        """Network space (B, tokens, 2·token_features) → control points (B, 2, knots, 70) in metres."""
-        return unpack(x, self.layout) * self.std + self.mean
-
-    def positions(self, x: Tensor) -> tuple[Tensor, Tensor]:
-        """Network space → positions (B, 2, T, 22, 3) in metres and contact scores (B, 2, T, 4)."""
-        return decode(self.control(x), self.layout)
 
 
 @dataclass(frozen=True)

@@ -18,10 +18,10 @@ import torch
 from torch import Tensor, nn
 
 from models.bigraphdiff import BiGraphDiff, BiGraphDiffConfig
-from models.compact import Touch, WeightsFolder, as_touches
+from models.compact import DuetSpace, Touch, WeightsFolder, as_touches
 from models.diffusion import classifier_free
 from models.folder import load_network
-from models.motion_tokens import FEATURES, TokenLayout, decode, unpack
+from models.motion_tokens import TokenLayout
 
 
 @dataclass(frozen=True)
@@ -80,17 +80,11 @@ class LabelDenoiser(nn.Module):
         return classifier_free(self, x, t, cond, mask, scale=scale)
 
 
-class CompactBiGraphDiff(nn.Module):
-    """Denoiser, vectors of the classes and the normaliser of control points.
-
-    ``mean`` and ``std`` (70,) are those of one person's control point, see :mod:`models.motion_tokens`.
-    """
-
-    mean: Tensor
-    std: Tensor
+class CompactBiGraphDiff(DuetSpace):
+    """Denoiser, vectors of the classes and the normaliser of control points."""
 
     def __init__(self, config: CompactBiGraphDiffConfig) -> None:
-        super().__init__()
+        super().__init__(config.layout)
         self.config = config
         self.denoiser = LabelDenoiser(
             BiGraphDiffConfig(
@@ -106,17 +100,6 @@ class CompactBiGraphDiff(nn.Module):
             )
         )
         self.classes = nn.Embedding(len(config.labels), config.cond_dim)
-        self.register_buffer("mean", torch.zeros(FEATURES))
-        self.register_buffer("std", torch.ones(FEATURES))
-
-    @property
-    def layout(self) -> TokenLayout:
-        return self.config.layout
-
-    @property
-    def scale(self) -> Tensor:
-        """(2·token_features,) metres to a unit of network space."""
-        return self.std.repeat(2 * self.layout.knots_per_token)
 
     def condition(self, labels: Sequence[str]) -> Tensor:
         """(N, C) vectors of classes by name; ValueError where one is not known."""
@@ -126,10 +109,6 @@ class CompactBiGraphDiff(nn.Module):
     def touches(self, label: str) -> Touch:
         """What comes together in a class; () where nothing does."""
         return self.config.touches[self.config.labels.index(label)]
-
-    def positions(self, x: Tensor) -> tuple[Tensor, Tensor]:
-        """Network space (B, L, 2F) → positions (B, 2, T, 22, 3) in metres and contact scores (B, 2, T, 4)."""
-        return decode(unpack(x, self.layout) * self.std + self.mean, self.layout)
 
 
 def load_folder(folder: Path) -> tuple[CompactBiGraphDiff, WeightsFolder]:

@@ -10,8 +10,7 @@ import torch
 from numpy.typing import NDArray
 from torch import Tensor
 
-from models.compact import CompactInterGen
-from models.compact_bigraphdiff import CompactBiGraphDiff
+from models.compact import DuetSpace
 from models.motion_tokens import encode, foot_contacts, pack
 from webdemo.motion import Clip, Duet
 
@@ -78,7 +77,7 @@ class Reaction(Scene):
         return Duet(people[0], people[1], NAMES)
 
 
-def scene_of(request: GenerateRequest | ReactRequest, model: CompactInterGen | CompactBiGraphDiff) -> Scene:
+def scene_of(request: GenerateRequest | ReactRequest, model: DuetSpace) -> Scene:
     """The scene that a request asks a model for."""
     if isinstance(request, GenerateRequest):
         return Scene(round(request.seconds * FPS))
@@ -88,7 +87,7 @@ def scene_of(request: GenerateRequest | ReactRequest, model: CompactInterGen | C
     return Reaction(request.actor.num_frames, given, clip=request.actor, place=place, placement=placement)
 
 
-def _given_person(model: CompactInterGen | CompactBiGraphDiff, positions: Array, place: int) -> Given:
+def _given_person(model: DuetSpace, positions: Array, place: int) -> Given:
     """A person (T, 22, 3) in the network's frame who is given at every frame."""
     layout = model.layout
     tokens = layout.num_tokens(len(positions))
