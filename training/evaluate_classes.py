@@ -177,10 +177,8 @@ def main(argv: list[str] | None = None) -> int:
         from models.compact_bigraphdiff import load_folder
 
         model, source = load_folder(options.weights / MODEL)
-        labels, sampling = (
-            model.config.labels,
-            {k: getattr(options, k) for k in ("steps", "guidance", "damping")},
-        )
+        labels = model.config.labels
+        sampling = {name: getattr(options, name) for name in ("steps", "guidance", "damping")}
         found = evaluate(
             load(options.scenes), load_extractor(options.extractor), Engine(options.weights), labels,
             samples=options.samples, **sampling,

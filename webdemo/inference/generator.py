@@ -7,6 +7,7 @@ from abc import ABC, abstractmethod
 from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Generic, TypeVar
 
 import numpy as np
 import torch
@@ -60,6 +61,9 @@ class Clock:
         return now
 
 
+Network = TypeVar("Network", CompactInterGen, CompactBiGraphDiff)
+
+
 @dataclass(frozen=True)
 class Told:
     """What a network is told of a request.
@@ -77,17 +81,16 @@ class Told:
     notes: tuple[str, ...] = ()
 
 
-class Sampler(ABC):
-    """Denoises two people by the network ``model`` of a weights folder; a subclass says what it is told.
+class TwoPersonGenerator(ABC, Generic[Network]):
+    """Denoises two people by the network of a weights folder; a subclass says what it is told.
 
     Args:
-        name: of the folder.
         source: the folder.
         model: its network.
     """
 
-    def __init__(self, name: str, source: WeightsFolder, model: CompactInterGen | CompactBiGraphDiff) -> None:
-        self.name, self.digest, self.meta = name, source.digest, source.meta
+    def __init__(self, source: WeightsFolder, model: Network) -> None:
+        self.name, self.digest, self.meta = source.folder.name, source.digest, source.meta
         self.model = model
 
     @abstractmethod
@@ -164,7 +167,7 @@ class Sampler(ABC):
         return tuple(scene.duet(pair, finish) for pair in positions)
 
 
-class DuetGenerator(Sampler):
+class DuetGenerator(TwoPersonGenerator[CompactInterGen]):
     """The compact InterGen with its text encoder, loaded from a weights folder.
 
     Raises WeightsError or TextEncoderError (both InputError) where files are missing or altered.
@@ -172,8 +175,7 @@ class DuetGenerator(Sampler):
 
     def __init__(self, folder: Path) -> None:
         source = WeightsFolder(folder)
-        self.words = source.model()
-        super().__init__(folder.name, source, self.words)
+        super().__init__(source, source.model())
         self.bank: CaptionBank = source.captions()
         self.encoder = MiniLM()
 
@@ -181,7 +183,7 @@ class DuetGenerator(Sampler):
         """The condition vector (1, C) of a prompt and its unit sentence vector (384,)."""
         tokens = self.encoder([prompt])
         with torch.no_grad():
-            return self.words.conditioner(tokens.features, tokens.mask), tokens.pooled()[0]
+            return self.model.conditioner(tokens.features, tokens.mask), tokens.pooled()[0]
 
     def notes(self, vector: Tensor) -> tuple[str, ...]:
         """What the user should know of a prompt: that it is far from all that was trained on."""
@@ -196,25 +198,25 @@ class DuetGenerator(Sampler):
     def told(self, request: GenerateRequest | ReactRequest) -> Told:
         """The words' vector, and what they want to touch; nothing where there are no words."""
         if not request.prompt.strip():  # without an intent both halves of the guidance are the same
-            return Told(torch.zeros(1, self.words.config.cond_dim), 1.0)
+            return Told(torch.zeros(1, self.model.config.cond_dim), 1.0)
         condition, vector = self.condition(request.prompt)
-        (touch,) = self.words.touches(condition)
+        (touch,) = self.model.touches(condition)
         return Told(condition, request.guidance, touch, self.notes(vector))
 
 
-class ClassGenerator(Sampler):
+class ClassGenerator(TwoPersonGenerator[CompactBiGraphDiff]):
     """The compact BiGraphDiff, for which a request's prompt is the name of a class.
 
     Raises WeightsError (an InputError) where files are missing or altered.
     """
 
     def __init__(self, folder: Path) -> None:
-        self.classes, source = load_folder(folder)
-        super().__init__(folder.name, source, self.classes)
+        model, source = load_folder(folder)
+        super().__init__(source, model)
 
     def told(self, request: GenerateRequest | ReactRequest) -> Told:
         """The class' vector and touch; raises InputError for a class that is not known."""
-        labels = self.classes.config.labels
+        labels = self.model.config.labels
         known = {label.casefold(): label for label in labels}
         label = known.get(" ".join(request.prompt.split()).casefold())
         if label is None:
@@ -222,8 +224,8 @@ class ClassGenerator(Sampler):
                 f"There is no class {request.prompt.strip()!r:.60}: choose one of: {'; '.join(labels)}."
             )
         with torch.no_grad():
-            condition = self.classes.condition([label])
-        return Told(condition, request.guidance, self.classes.touches(label))
+            condition = self.model.condition([label])
+        return Told(condition, request.guidance, self.model.touches(label))
 
 
 def _as_is(person: np.ndarray) -> np.ndarray:
