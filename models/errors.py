@@ -1,4 +1,4 @@
-"""What goes wrong with weights and checkpoints, in one sentence for the user."""
+"""Errors in weights and checkpoints, each one sentence for the user."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from collections.abc import Mapping
 import torch
 from torch import Tensor, nn
 
-from webdemo.motion.errors import InputError
+from motion.errors import InputError
 
 
 class WeightsError(InputError):
@@ -21,14 +21,14 @@ def as_tensors(weights: Mapping[str, object]) -> dict[str, Tensor]:
 
 
 def shape_of(weights: Mapping[str, Tensor], name: str, *, network: str) -> tuple[int, ...]:
-    """The shape of a named tensor; WeightsError where it is absent."""
+    """The shape of a named tensor; WeightsError if it is absent."""
     if name not in weights:
         raise WeightsError(f"These are not {network} weights: {name} is missing. Choose another file.")
     return tuple(weights[name].shape)
 
 
 def count_layers(weights: Mapping[str, Tensor], prefix: str) -> int:
-    """How many layers `prefix`0., `prefix`1., … the names list."""
+    """Number of layers `prefix`0., `prefix`1., … among the names."""
     numbers = {name[len(prefix) :].split(".")[0] for name in weights if name.startswith(prefix)}
     return len(numbers)
 

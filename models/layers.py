@@ -35,7 +35,13 @@ class TimestepEmbedding(nn.Module):
             nn.Linear(latent_dim, latent_dim), nn.SiLU(), nn.Linear(latent_dim, latent_dim)
         )
 
+    def start_at_zero(self) -> None:
+        """Zeroes the last layer, so that the embedding adds nothing before training."""
+        for weight in self.time_embed[2].parameters():
+            nn.init.zeros_(weight)
+
     def forward(self, t: Tensor) -> Tensor:
+        """Timesteps (B,) → (B, d)."""
         return self.time_embed(sinusoids_at(t, self.latent_dim))
 
 
@@ -49,4 +55,5 @@ class FeedForward(nn.Module):
         self.dropout = dropout
 
     def forward(self, h: Tensor) -> Tensor:
+        """h (…, d) → (…, d)."""
         return self.linear2(F.dropout(F.gelu(self.linear1(h)), self.dropout, self.training))

@@ -18,9 +18,10 @@ from functools import lru_cache
 
 import numpy as np
 import torch
+from scipy.interpolate import BSpline
 from torch import Tensor
 
-from webdemo.motion.skeleton import FEET
+from motion.skeleton import FEET, SMPL22
 
 NUM_JOINTS = 22
 NUM_CONTACTS = 4
@@ -29,6 +30,7 @@ CONTACT_HEIGHTS = (0.12, 0.08, 0.12, 0.08)
 """Metres under which left ankle, left toe, right ankle and right toe can stand."""
 CONTACT_SPEED = 0.35
 """Metres a second under which they do."""
+_HIPS = (SMPL22.index("left_hip"), SMPL22.index("right_hip"))
 _SPLINE_SPAN = 3  # a cubic spline over n intervals has n + 3 control points
 
 
@@ -65,13 +67,8 @@ class TokenLayout:
 @lru_cache(maxsize=64)
 def _basis(frames: int, frames_per_knot: int) -> Tensor:
     intervals = (frames - 1) // frames_per_knot
-    place = np.arange(frames) / frames_per_knot
-    interval = np.minimum(place.astype(int), intervals - 1)
-    u = place - interval
-    weights = np.stack([(1 - u) ** 3, 3 * u**3 - 6 * u**2 + 4, -3 * u**3 + 3 * u**2 + 3 * u + 1, u**3], 1) / 6
-    basis = np.zeros((frames, intervals + _SPLINE_SPAN))
-    for offset in range(4):
-        basis[np.arange(frames), interval + offset] = weights[:, offset]
+    knots = np.arange(-_SPLINE_SPAN, intervals + _SPLINE_SPAN + 1, dtype=float)
+    basis = BSpline.design_matrix(np.arange(frames) / frames_per_knot, knots, _SPLINE_SPAN).toarray()
     return torch.from_numpy(basis).float()
 
 
@@ -82,6 +79,14 @@ def _fit(frames: int, frames_per_knot: int) -> Tensor:
     curvature = np.diff(np.eye(basis.shape[1]), n=2, axis=0)
     normal = basis.T @ basis + 1e-3 * curvature.T @ curvature
     return torch.from_numpy(np.linalg.solve(normal, basis.T)).float()
+
+
+@lru_cache(maxsize=1)
+def _absolute() -> Tensor:
+    """(70, 70) float32: control points @ this = the same with the pelvis added to the other joints."""
+    matrix = torch.eye(FEATURES)
+    matrix[:3, 3 : 3 * NUM_JOINTS] = torch.eye(3).repeat(1, NUM_JOINTS - 1)
+    return matrix
 
 
 def foot_contacts(positions: Tensor, fps: float = 30.0) -> Tensor:
@@ -97,6 +102,12 @@ def foot_contacts(positions: Tensor, fps: float = 30.0) -> Tensor:
     return (low & (speed < CONTACT_SPEED)).to(positions.dtype)
 
 
+def feature_rows(positions: Tensor, contacts: Tensor) -> Tensor:
+    """The 70 numbers of every frame: positions (…, T, 22, 3) in metres, contacts (…, T, 4) → (…, T, 70)."""
+    root = positions[..., :1, :]
+    return torch.cat([root.flatten(-2), (positions[..., 1:, :] - root).flatten(-2), contacts], dim=-1)
+
+
 def encode(positions: Tensor, contacts: Tensor, layout: TokenLayout) -> Tensor:
     """Control points of one or more people.
 
@@ -107,8 +118,7 @@ def encode(positions: Tensor, contacts: Tensor, layout: TokenLayout) -> Tensor:
     Returns:
         (…, knots, 70) control points, not normalised.
     """
-    root = positions[..., :1, :]
-    rows = torch.cat([root.flatten(-2), (positions[..., 1:, :] - root).flatten(-2), contacts], dim=-1)
+    rows = feature_rows(positions, contacts)
     tokens = layout.num_tokens(positions.shape[-3])
     if layout.num_frames(tokens) != positions.shape[-3]:
         raise ValueError(
@@ -120,10 +130,10 @@ def encode(positions: Tensor, contacts: Tensor, layout: TokenLayout) -> Tensor:
 def decode(control: Tensor, layout: TokenLayout) -> tuple[Tensor, Tensor]:
     """Positions (…, T, 22, 3) in metres and contact scores (…, T, 4) from control points (…, knots, 70)."""
     tokens = control.shape[-2] // layout.knots_per_token
-    rows = layout.basis(tokens).to(control) @ control
-    root, relative, contacts = rows.split([3, 3 * (NUM_JOINTS - 1), NUM_CONTACTS], dim=-1)
-    relative = relative.unflatten(-1, (NUM_JOINTS - 1, 3)) + root[..., None, :]
-    return torch.cat([root[..., None, :], relative], dim=-2), contacts
+    # The pelvis is added to the joints before there are frames, of which there are four times as many.
+    rows = layout.basis(tokens).to(control) @ (control @ _absolute().to(control))
+    positions, contacts = rows.split([3 * NUM_JOINTS, NUM_CONTACTS], dim=-1)
+    return positions.unflatten(-1, (NUM_JOINTS, 3)), contacts
 
 
 def pack(control: Tensor, layout: TokenLayout) -> Tensor:
@@ -138,6 +148,27 @@ def unpack(x: Tensor, layout: TokenLayout) -> Tensor:
     batch, tokens, _ = x.shape
     people = x.reshape(batch, tokens, 2, layout.knots_per_token, FEATURES)
     return people.transpose(1, 2).reshape(batch, 2, tokens * layout.knots_per_token, FEATURES)
+
+
+def canonical_control(control: Tensor) -> Tensor:
+    """Two people's control points (2, K, 70) in metres, moved and turned as a whole: at the first frame person a
+    stands at the origin and faces +Z."""
+    first = (control[0, 0] + 4 * control[0, 1] + control[0, 2]) / 6  # the spline at frame 0
+    sine, cosine = headings(first)
+    turn = torch.stack(
+        [cosine, 0 * sine, sine, 0 * sine, 1 + 0 * sine, 0 * sine, -sine, 0 * sine, cosine]
+    ).view(3, 3)
+    root, relative, contacts = control.split([3, 3 * (NUM_JOINTS - 1), NUM_CONTACTS], dim=-1)
+    root = (root - first[:3] * first.new_tensor([1.0, 0.0, 1.0])) @ turn
+    relative = relative.unflatten(-1, (NUM_JOINTS - 1, 3)) @ turn
+    return torch.cat([root, relative.flatten(-2), contacts], dim=-1)
+
+
+def headings(rows: Tensor) -> Tensor:
+    """(…, 2) sine and cosine of the angle from +Z towards +X that people face, from rows (…, 70)."""
+    relative = rows[..., 3 : FEATURES - NUM_CONTACTS].unflatten(-1, (NUM_JOINTS - 1, 3))
+    across = relative[..., _HIPS[0] - 1, :] - relative[..., _HIPS[1] - 1, :]
+    return torch.nn.functional.normalize(torch.stack([-across[..., 2], across[..., 0]], -1), dim=-1)
 
 
 def mirror_control(control: Tensor, joint_mirror: tuple[int, ...]) -> Tensor:

@@ -2,22 +2,17 @@
 
 from __future__ import annotations
 
-import hashlib
-import json
-from dataclasses import asdict, dataclass
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
 import torch
-from safetensors.torch import save
 from torch import Tensor, nn
 
-from models.compact import WeightsFolder
-from models.errors import WeightsError
 from models.mawgan import MAWGANConfig, PredictiveMAWGAN
 from models.motion_mlp import MotionMLP, MotionMLPConfig
+from models.weights_io import WeightsFolder, load_network, save_network
 
-_FILE = "model.safetensors"
 _FADE = 0.7
 """Share of a correction at the seam that is left a frame later."""
 
@@ -93,37 +88,31 @@ def save_predictor(
         fps: of the frames it was trained on.
         meta: more for ``config.json``.
     """
-    folder.mkdir(parents=True, exist_ok=True)
-    data = save({k: v.detach().cpu().half().contiguous() for k, v in network.state_dict().items()})
-    (folder / _FILE).write_bytes(data)
-    config = {
-        "kind": kind,
-        "model": asdict(network.config),
-        "fps": fps,
-        "files": {_FILE: hashlib.sha256(data).hexdigest()},
-    } | meta
-    (folder / "config.json").write_text(json.dumps(config, indent=1) + "\n")
+    save_network(folder, network, kind=kind, fps=fps, **meta)
 
 
 def load_predictor(folder: Path) -> Predictor:
     """A predictor in float32, eval mode.
 
     Raises:
-        WeightsError: where a file is missing, altered or of another network.
+        WeightsError: if a file is missing, altered or of another network.
     """
-    source = WeightsFolder(folder)
     network: MotionMLP | PredictiveMAWGAN
-    try:
-        if source.meta["kind"] == "mlp":
-            network = MotionMLP(MotionMLPConfig.from_dict(source.meta["model"]))
-        else:
-            network = PredictiveMAWGAN(MAWGANConfig.from_dict(source.meta["model"]))
-        network.load_state_dict({name: t.float() for name, t in source.tensors(_FILE).items()})
-    except (KeyError, TypeError, RuntimeError) as error:
-        raise WeightsError(f"The weights in {folder.name} do not fit their config: restore them.") from error
+    if WeightsFolder(folder).meta.get("kind") == "mlp":
+        network, source = load_network(folder, _mlp)
+    else:
+        network, source = load_network(folder, _mawgan)
     config = network.config
     return Predictor(
-        network.eval().requires_grad_(False),
+        network,
         config.past, config.future, float(source.meta["fps"]), config.joints,
         folder.name, source.digest, source.meta.get("training"),
     )  # fmt: skip
+
+
+def _mlp(sizes: dict[str, Any]) -> MotionMLP:
+    return MotionMLP(MotionMLPConfig.from_dict(sizes))
+
+
+def _mawgan(sizes: dict[str, Any]) -> PredictiveMAWGAN:
+    return PredictiveMAWGAN(MAWGANConfig.from_dict(sizes))

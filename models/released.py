@@ -15,7 +15,7 @@ def read_lightning(path: str | Path, *, prefix: str, network: str) -> dict[str, 
     """The tensors of a PyTorch Lightning file whose names start with `prefix`, without the prefix.
 
     Position tables (``….pe``) are left out: they are computed, not learned. The file is opened with
-    ``weights_only=True``, so no code in it runs. Raises WeightsError where the file cannot be read so or
+    ``weights_only=True``, so no code in it runs. Raises WeightsError if the file cannot be read so or
     holds no such tensor.
     """
     path = Path(path)

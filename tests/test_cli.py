@@ -3,6 +3,8 @@
 import errno
 import json
 import os
+import subprocess
+import sys
 from collections.abc import Callable
 from functools import partial
 from pathlib import Path
@@ -13,10 +15,10 @@ import pytest
 from PIL import Image
 
 import app
+from motion.formats import read, read_pair
 from tests.inference import conftest as tiny
 from webdemo import cli
-from webdemo.formats import read, read_pair
-from webdemo.inference import engine
+from webdemo.inference import engine, methods
 
 weights = tiny.weights
 PROMPT = "Two people shake hands."
@@ -160,14 +162,18 @@ def test_render_draws_what_generate_wrote(run: Run, tmp_path: Path, suffix: str)
     with Image.open(tmp_path / "sheet.png") as picture:
         picture.load()
         assert picture.format == "PNG"
-        assert picture.width == 4 * 200
+        assert picture.width == 1600
         assert len(picture.getcolors(1 << 20)) > 10
 
 
 def test_render_refuses_in_one_line(run: Run, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     motion = answer(generate(run, tmp_path / "duet.npz")[1])["files"][0]
-    assert "from 2 to 24" in refused(run("render", motion, "--frames", 1))
-    assert "ends in .png" in refused(run("render", motion, "--out", tmp_path / "sheet.jpg"))
+    assert "1 to 24" in refused(run("render", motion, "--frames", 25))
+    assert "frames 0 to 29" in refused(run("render", motion, "--frames", "0,30"))
+    assert "such as 0,30,75" in refused(run("render", motion, "--frames", "all"))
+    assert "ends in .mp4" in refused(run("render", motion, "--out", tmp_path / "sheet.jpg"))
+    assert "such as 1280x720" in refused(run("render", motion, "--out", tmp_path / "x.gif", "--size", "wide"))
+    assert "are even" in refused(run("render", motion, "--out", tmp_path / "x.gif", "--size", "641x360"))
     assert "cannot be read" in refused(run("render", tmp_path / "none.npz"))
     (tmp_path / "broken.npz").write_bytes(b"PK no motion")
     refused(run("render", tmp_path / "broken.npz"))
@@ -191,9 +197,18 @@ def test_info_tells_the_model_and_the_formats(run: Run) -> None:
     assert told["versions"]["torch"]
 
 
-def test_benchmark_reports_figures(run: Run, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("webdemo.benchmark_reactions.STREAMED", 210)  # two hundred are compared
-    monkeypatch.setattr("webdemo.benchmark_reactions.WHOLE", 30)
+def test_benchmark_reports_figures(
+    run: Run, weights: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    for folder in (
+        *methods.WEIGHTS.iterdir(),
+        weights / "intergen",
+    ):  # the tiny InterGen among the shipped others
+        (tmp_path / folder.name).unlink(missing_ok=True)
+        (tmp_path / folder.name).symlink_to(folder)
+    monkeypatch.setattr(engine, "Engine", partial(engine.Engine.func, tmp_path))
+    monkeypatch.setattr("webdemo.benchmark.reactions.STREAMED", 210)  # two hundred are compared
+    monkeypatch.setattr("webdemo.benchmark.reactions.WHOLE", 30)
     code, said, _ = run("benchmark", "--seconds", 1, "--steps", 2, "--repeats", 1)
     assert code == 0
     told = answer(said)
@@ -201,6 +216,9 @@ def test_benchmark_reports_figures(run: Run, monkeypatch: pytest.MonkeyPatch) ->
     assert told["request_seconds"] > 0
     assert told["plain_over_request"] > 0
     for figure in (
+        "part_ms_network",
+        "network_share_of_gemm",
+        "busy_over_alone",
         "predict_25_frames_ms",
         "reaction_frame_ms",
         "reaction_whole_seconds",
@@ -233,3 +251,10 @@ def test_a_reader_who_has_gone_is_no_traceback(run: Run, monkeypatch: pytest.Mon
 
     monkeypatch.setattr(cli, "info", told)
     assert run("info") == (141, "", "")
+
+
+def test_the_shell_starts_without_what_only_some_jobs_need() -> None:
+    heavy = {"torch", "gradio", "scipy.ndimage", "scipy.interpolate", "scipy.linalg", "scipy.spatial"}
+    code = f"import sys, webdemo.cli; sys.exit(', '.join({heavy!r} & set(sys.modules)) or 0)"
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, timeout=60)
+    assert done.returncode == 0, f"loaded: {done.stderr}"

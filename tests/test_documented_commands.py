@@ -36,9 +36,12 @@ COMMANDS = documented()
 
 
 def test_the_documents_show_commands() -> None:
-    assert {"webdemo", "training.intergen", "training.bigraphdiff", "training.mawgan"} <= {
-        m for _, m, _ in COMMANDS
-    }
+    assert {
+        "webdemo",
+        "training.trainers.intergen",
+        "training.trainers.bigraphdiff",
+        "training.trainers.mawgan",
+    } <= {m for _, m, _ in COMMANDS}
     assert len(COMMANDS) > 40
 
 

@@ -7,11 +7,12 @@ from typing import Any
 import numpy as np
 import pytest
 
+from motion import SMPL22, Clip, Duet
+from motion.formats import read, write
+from motion.kinematics import forward_kinematics
+from tests.motion.formats.rigs import RIGS, bvh_text
 from webdemo import cli
-from webdemo.formats import read, write
 from webdemo.inference.requests import ReactRequest, Result
-from webdemo.motion import SMPL22, Clip, Duet
-from webdemo.motion.kinematics import forward_kinematics
 
 
 def standing(frames: int, x: float = 0.0) -> Clip:
@@ -108,7 +109,7 @@ def test_the_other_person_of_a_file_says_where_to_begin(
     np.testing.assert_allclose(asked[-1].start, standing(120).positions[30], atol=1e-5)
     assert json.loads(said.splitlines()[-1])["manifest"]["request"]["start"] == asked[-1].start.tolist()
     code, _, said = react(capsys, *words)
-    assert code == 2 and "InterGen takes no start pose" in said
+    assert code == 2 and "InterGen takes no first pose" in said
     one = write(standing(120), tmp_path / "one.npz")[0]
     code, _, said = react(capsys, "--actor", one, "--keep-start", "--model", "regennet", "--out", words[-1])
     assert code == 2 and "does not hold two people" in said
@@ -151,7 +152,7 @@ def test_a_stream_prints_every_frame_before_the_answer(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:  # fmt: skip
     from webdemo.inference.engine import Engine
-    from webdemo.inference.reactor import LiveFrame
+    from webdemo.inference.live import LiveFrame
 
     def live(self: Engine, request: ReactRequest) -> Any:
         for index, frame in enumerate(request.actor.positions):
@@ -174,10 +175,13 @@ def test_a_stream_prints_every_frame_before_the_answer(
         ([], "holds two people: choose person a or b"),
         (["--person", "c"], "Person 'c' is not known: pair.npz has a or b"),
         (["--person", "a", "--end", "0.5"], "0.50 s: give 1 s or more"),
-        (["--person", "a", "--start", "9"], "lies behind the motion"),
+        (["--person", "a", "--start", "9"], "after the end of the motion"),
         (["--person", "a", "--mode", "online"], "choose offline"),
         (["--person", "a", "--stream"], "choose offline"),
-        (["--person", "a", "--model", "regennet", "--sampler", "dpm++"], "samples with ddim"),
+        (
+            ["--person", "a", "--model", "regennet", "--sampler", "dpm++"],
+            "does not sample with dpm++: choose ddim",
+        ),
         (["--person", "a", "--role", "x"], "Role 'x'"),
         (["--person", "a", "--steps", "0"], "DDIM steps"),
         (["--actor", "none.bvh"], "cannot be read"),
@@ -197,3 +201,22 @@ def test_errors_are_one_line_and_write_nothing(
     assert error.count("\n") == 1
     assert set(tmp_path.iterdir()) == before
     assert asked == []
+
+
+def test_the_partner_comes_on_the_rig_of_the_file_too(
+    capsys: pytest.CaptureFixture[str], asked: list[ReactRequest], tmp_path: Path
+) -> None:
+    rotations = np.tile(np.eye(3), (60, 22, 1, 1))
+    rig = tmp_path / "rig.bvh"
+    rig.write_text(bvh_text(rotations, np.tile([0.0, 0.9562, 0.0], (60, 1)), RIGS["mixamo"]))
+    code, said, _ = react(capsys, "--actor", rig, "--own-rig", "--out", tmp_path / "made.npz")
+    assert code == 0
+    files = [Path(file) for file in json.loads(said.splitlines()[-1])["files"]]
+    assert [file.name for file in files] == ["made.npz", "made_rig.bvh"]
+    assert files[1].read_text().split("MOTION")[0] == rig.read_text().split("MOTION")[0]
+    partner = read(files[1])
+    np.testing.assert_allclose(partner.positions[:, 0, 2] - asked[0].actor.positions[:, 0, 2], 1.5, atol=0.03)
+    code, _, said = react(
+        capsys, "--actor", write(standing(60), tmp_path / "x.npz")[0], "--own-rig", "--out", rig
+    )
+    assert code == 2 and "needs the rig of a BVH" in said

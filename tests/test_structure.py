@@ -10,21 +10,18 @@ from pathlib import Path
 import pytest
 
 ROOT = Path(__file__).resolve().parents[1]
-PACKAGES = ("webdemo", "models", "training")
-TORCH_FREE = ("webdemo.motion", "webdemo.formats", "webdemo.metrics", "webdemo.view", "webdemo.ui")
+PACKAGES = ("motion", "models", "webdemo", "training")
+TORCH_FREE = ("motion", "webdemo.view", "webdemo.ui")
 """The page draws before the networks load, so nothing it needs may wait for torch."""
 
-LOW = {"webdemo.motion"}
-MIDDLE = {"webdemo.formats", "webdemo.metrics", "webdemo.view", "models"}
 FLOORS: dict[str, set[str]] = {
-    "webdemo.motion": set(),
-    **dict.fromkeys(MIDDLE, LOW),
-    "webdemo.view": LOW | {"webdemo.metrics"},
-    "webdemo.inference": LOW | {"webdemo.formats", "webdemo.metrics", "models"},
-    "training": LOW | MIDDLE | {"webdemo.inference"},
+    "motion": set(),
+    "models": {"motion"},
+    "webdemo.view": {"motion"},
+    "webdemo.inference": {"motion", "models"},
+    "training": {"motion", "models", "webdemo.view", "webdemo.inference"},
 }
-"""What the lower floors may import. Those above (ui, server, cli, the scripts) may import all but
-training."""
+"""What the lower floors may import. Those above (ui, server, benchmark, cli) may import all but training."""
 
 
 def module_name(path: Path) -> str:
@@ -39,7 +36,7 @@ FILES = {
 
 
 def package_of(module: str) -> str:
-    """The floor a module stands on: ``webdemo.motion`` for ``webdemo.motion.clip``."""
+    """The floor a module stands on: ``motion`` for ``motion.clip``."""
     parts = module.split(".")
     return ".".join(parts[:2]) if parts[0] == "webdemo" else parts[0]
 
@@ -96,12 +93,13 @@ def reached(module: str) -> set[str]:
 
 def test_imports_are_understood() -> None:
     """The rules below would hold of nothing, too."""
-    assert "webdemo.motion.errors" in ours("webdemo.formats.files")
-    assert "webdemo.inference.generator" in ours("webdemo.inference.engine")
-    assert "torch" in imports("webdemo.inference.generator", True)
-    assert "torch" not in imports("webdemo.benchmark", True)
-    assert "torch" in imports("webdemo.benchmark", False)
-    assert "webdemo.motion.clip" in reached("webdemo.ui.page")
+    assert "motion.errors" in ours("motion.formats.files")
+    assert "webdemo.inference.pipelines.intergen" in ours("webdemo.inference.methods.intergen")
+    assert "torch" in imports("webdemo.inference.pipelines.two_person", True)
+    assert "torch" not in imports("webdemo.benchmark.suite", True)
+    assert "webdemo.inference.pipelines.intergen" not in reached("webdemo.inference.methods")
+    assert "torch" in imports("webdemo.benchmark.suite", False)
+    assert "motion.clip" in reached("webdemo.ui.page")
 
 
 @pytest.mark.parametrize("floor", sorted(FLOORS))

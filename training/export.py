@@ -1,6 +1,6 @@
 """Checkpoint → the folder that is shipped: ``python -m training.export --run DIR --scenes FILE --out DIR``.
 
-Takes the averaged weights, and a bank of training captions by which the demo tells that a prompt is far from
+Takes the averaged weights, and a bank of training captions which the demo uses to detect that a prompt is far from
 all of them.
 """
 
@@ -8,19 +8,21 @@ from __future__ import annotations
 
 import argparse
 import json
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
 import torch
 
-from models.compact import CaptionBank, save_folder
+from models.intergen.compact import CaptionBank, CompactInterGen, save_folder
 from models.text import MiniLM
-from training import checkpoint
-from training.intergen import Data, Settings, new_model
+from motion import InputError
+from training.core import checkpoint
+from training.core.shell import exit_code
 from training.prepare import Scenes, load
-from training.shell import exit_code
-from training.touch import with_touches
-from webdemo.motion import InputError
+from training.trainers.intergen import new_model
+from training.trainers.intergen_data import Data, settings_of
+from training.trainers.touch import with_touches
 
 BANK_PER_FAMILY = 40
 FAR_QUANTILE = 0.02
@@ -53,11 +55,23 @@ def encode(encoder: MiniLM, captions: list[str]) -> torch.Tensor:
     return torch.cat([encoder(captions[i : i + 128]).pooled() for i in range(0, len(captions), 128)])
 
 
+def with_fast(model: CompactInterGen, path: Path) -> CompactInterGen:
+    """The same network with the averaged change of a checkpoint of :mod:`training.trainers.intergen_fast`."""
+    rank = json.loads(checkpoint.metadata(path)["settings"])["rank"]
+    result = CompactInterGen(replace(model.config, fast_rank=rank))
+    result.load_state_dict(model.state_dict(), strict=False)
+    assert result.fast is not None
+    checkpoint.restore_part(path, "ema", result.fast)
+    return result
+
+
 def main(argv: list[str] | None = None) -> int:
+    """Runs the command; returns its exit code."""
     parser = argparse.ArgumentParser(description="Turn a training run into the folder that is shipped.")
     parser.add_argument("--run", type=Path, required=True, help="--out of the training")
     parser.add_argument("--scenes", type=Path, required=True)
     parser.add_argument("--out", type=Path, required=True, help="folder under models/weights")
+    parser.add_argument("--fast", type=Path, help="--out of training.trainers.intergen_fast on that training")
     parser.add_argument("--card", type=Path, help="JSON with the card's fields")
     options = parser.parse_args(argv)
     return exit_code(lambda: _run(options))
@@ -65,13 +79,12 @@ def main(argv: list[str] | None = None) -> int:
 
 def _run(options: argparse.Namespace) -> None:
     path = options.run / "last.safetensors"
-    meta = checkpoint.metadata(path)
-    known = json.loads(meta["settings"])
-    known.pop("weights")
-    settings = Settings(**known)
+    meta, settings = checkpoint.metadata(path), settings_of(path)
     scenes = load(options.scenes)
     model = new_model(settings, Data(scenes, settings, options.run, "cpu", captions=False))
     checkpoint.restore_part(path, "ema", model)
+    if options.fast:
+        model = with_fast(model, options.fast / "last.safetensors")
     try:
         card: dict[str, Any] = json.loads(options.card.read_text()) if options.card else {}
     except (OSError, ValueError) as error:

@@ -10,6 +10,7 @@ from __future__ import annotations
 import argparse
 import json
 import random
+from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -21,12 +22,18 @@ from safetensors.torch import save_file
 from torch import Tensor
 
 from models.motion_tokens import TokenLayout, encode, foot_contacts
-from training.handedness import leading_hand
-from training.shell import exit_code
-from webdemo.formats.files import replacing
-from webdemo.motion import InputError
+from motion import InputError
+from motion.formats.files import replacing
+from training.core.handedness import leading_hand
+from training.core.shell import exit_code
 
 ROOT_SCALE = 0.5  # metres
+
+
+def sentence_lists(row: dict[str, Any]) -> tuple[list[str], list[str], list[str]]:
+    """A scene's sentences for both people, for a alone and for b alone; there may be none of the last two."""
+    a, b = row.get("alone") or ([], [])
+    return row["captions"], a, b
 
 
 @dataclass
@@ -35,8 +42,9 @@ class Scenes:
 
     Attributes:
         control: (total knots, 2, 70) float16, the scenes one after the other.
-        rows: for each scene {"start", "tokens", "family", "captions", "split", "events", "sources",
-            "hand"}, see :func:`training.handedness.leading_hand`.
+        rows: for each scene {"start", "tokens", "family", "captions", "alone", "split", "events", "sources",
+            "beats", "hand"}, see :class:`training.corpus.scene.Scene` and
+            :func:`training.core.handedness.leading_hand`.
         layout: frames a knot and knots a token.
     """
 
@@ -50,6 +58,7 @@ class Scenes:
         return self.control[row["start"] : row["start"] + knots].float().transpose(0, 1)
 
     def split(self, name: str) -> list[dict[str, Any]]:
+        """The rows of a split: "train" or "test"."""
         return [row for row in self.rows if row["split"] == name]
 
 
@@ -92,16 +101,30 @@ def prepare(
         positions = torch.from_numpy(motion).transpose(0, 1)
         control = encode(positions, foot_contacts(positions), layout)
         parts.append(control.transpose(0, 1).half())
-        kept = ("family", "captions", "split", "events", "sources")
+        kept = ("family", "captions", "alone", "split", "events", "sources", "beats")
         hand = leading_hand(motion.swapaxes(0, 1), entry.get("events"))
         row = {"start": start, "tokens": tokens, "hand": hand} | {key: entry.get(key) for key in kept}
-        if captions and row["split"] == "train" and len(row["captions"]) > captions:
-            row["captions"] = rng.sample(row["captions"], captions)
+        if captions and row["split"] == "train":
+            lists = [row["captions"], *(row["alone"] or ())]
+            row["captions"], *row["alone"] = [rng.sample(s, min(captions, len(s))) for s in lists]
+        row["beats"] = [b | {"end": min(b["end"], frames)} for b in row["beats"] or () if b["start"] < frames]
+        if captions and row["split"] == "train":
+            for beat in row["beats"]:
+                beat["captions"] = rng.sample(beat["captions"], min(captions, len(beat["captions"])))
         rows.append(row)
         start += tokens * layout.knots_per_token
     if not rows:
         raise InputError(f"The corpus in {folder} has no scene of a second or more.")
     return Scenes(torch.cat(parts), rows, layout)
+
+
+def joined(parts: Sequence[Scenes]) -> Scenes:
+    """Several corpora as one; they must have one layout."""
+    rows, start = [], 0
+    for part in parts:
+        rows += [row | {"start": row["start"] + start} for row in part.rows]
+        start += len(part.control)
+    return Scenes(torch.cat([part.control for part in parts]), rows, parts[0].layout)
 
 
 def save(scenes: Scenes, path: Path) -> None:
@@ -116,7 +139,7 @@ def save(scenes: Scenes, path: Path) -> None:
 
 
 def load(path: Path) -> Scenes:
-    """Reads what :func:`save` wrote; raises InputError where it is missing or damaged."""
+    """Reads what :func:`save` wrote; raises InputError if it is missing or damaged."""
     try:
         with safe_open(path, framework="pt") as file:
             metadata = file.metadata()
@@ -147,8 +170,11 @@ def normalizer(scenes: Scenes, joint_mirror: tuple[int, ...]) -> tuple[Tensor, T
 
 
 def main(argv: list[str] | None = None) -> int:
+    """Runs the command; returns its exit code."""
     parser = argparse.ArgumentParser(description="Turn a corpus into the tensors that training reads.")
-    parser.add_argument("--corpus", type=Path, required=True, help="folder with motions.npy and index.json")
+    parser.add_argument(
+        "--corpus", type=Path, required=True, nargs="+", help="folders with motions.npy and index.json"
+    )
     parser.add_argument("--out", type=Path, required=True, help="the .safetensors file to write")
     parser.add_argument("--frames-per-knot", type=int, default=4)
     parser.add_argument("--knots-per-token", type=int, default=2)
@@ -161,7 +187,7 @@ def main(argv: list[str] | None = None) -> int:
 
 def _run(options: argparse.Namespace) -> None:
     layout = TokenLayout(options.frames_per_knot, options.knots_per_token)
-    scenes = prepare(options.corpus, layout, captions=options.captions)
+    scenes = joined([prepare(folder, layout, captions=options.captions) for folder in options.corpus])
     save(scenes, options.out)
     seconds = len(scenes.control) * options.frames_per_knot / 30
     print(f"{len(scenes.rows)} scenes, {seconds / 3600:.2f} hours, {options.out.stat().st_size / 1e6:.1f} MB")

@@ -122,6 +122,7 @@ export class Controls {
     press("loop", clock.loop);
     press("follow", orbit.following);
     press("trails", show.trails);
+    this.find("[data-act=figure]").dataset.figure = show.bodies ? (show.skeletons ? "both" : "body") : "skeleton";
     press("ghosts", show.ghosts);
     press("fullscreen", document.fullscreenElement === root || root.classList.contains("pdd-full"));
     for (const button of root.querySelectorAll("[data-camera]")) button.setAttribute("aria-pressed", String(button.dataset.camera === camera));

@@ -54,6 +54,6 @@ const unpackSample = (sample) => ({
 
 /** A payload as the player keeps it. */
 export function decode(payload) {
-  const { id, title, joint_names: names, parents, live, samples } = payload;
-  return { id, title: title || "", names, parents, live: Boolean(live), samples: samples.map(unpackSample) };
+  const { id, title, joint_names: names, parents, live, rounds, samples } = payload;
+  return { id, title: title || "", names, parents, live: Boolean(live), rounds, samples: samples.map(unpackSample) };
 }

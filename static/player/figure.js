@@ -1,14 +1,13 @@
-// From a pose to what the scene draws: bones with thickness in metres, joints, shadow, trails, ghosts.
+// From a pose to the lines that the scene draws: bones and joints, trails, ghosts, the grid on the floor.
 
 import { mix } from "./palette.js";
 import { FIELD_OF_VIEW } from "./orbit.js";
 
 const GAP = [NaN, NaN, NaN];
-const OUTLINE_PX = 2.2;
-const OUTLINE_BEHIND = 0.05; // metres away from the eye, so that the outline shows only around a body
+const BONE = 0.008; // radii in metres
+const JOINT = 0.018;
+const LEAST_PX = 1.5;
 const GHOST_BEHIND = 0.25; // metres away from the eye, so that they never cover the figures
-const SHADOW_BEHIND = 0.15; // so that feet, which are drawn flat, stand on it instead of in it
-const DISC_SIDES = 10;
 const TRAIL_SECONDS = 1;
 const GHOSTS = 5;
 
@@ -51,75 +50,25 @@ export function headCenter(points, skeleton) {
 }
 
 /** Lines for one person: points, colours and widths of a layer. */
-export function bones(points, skeleton, colors, lens) {
+export function bones(points, skeleton, colors, lens, wide = 1) {
   const out = { points: [], colors: [], sizes: [] };
-  const add = (a, b, color, radius) => {
-    const width = lens.pixels(2 * radius, middle(a, b));
+  for (const { from, to, side } of skeleton.bones) {
+    const [a, b, color] = [points[from], points[to], colors[side]];
+    const width = Math.max(lens.pixels(2 * wide * BONE, middle(a, b)), LEAST_PX);
     out.points.push(a, b, GAP);
     out.colors.push(color, color, color);
     out.sizes.push(width, width, width);
-  };
-  for (const bone of skeleton.bones) add(points[bone.from], points[bone.to], colors[bone.side], bone.radius);
-  return out;
-}
-
-/** Balls at the joints and the head. */
-export function joints(points, skeleton, colors, lens) {
-  const out = { points: [], colors: [], sizes: [] };
-  const add = (p, color, radius) => {
-    out.points.push(p);
-    out.colors.push(color);
-    out.sizes.push(lens.pixels(2 * radius, p));
-  };
-  points.forEach((p, j) => j !== skeleton.head && add(p, colors[skeleton.joints[j].side], skeleton.joints[j].radius));
-  add(headCenter(points, skeleton), colors.middle, skeleton.headRadius);
-  return out;
-}
-
-/** A rim behind each body, so that limbs stand off from what they cross. */
-export function outline(pose, skeleton, color, lens) {
-  const out = { points: [], sizes: [] };
-  for (const points of pose) {
-    for (const bone of skeleton.bones) {
-      const [a, b] = [lens.behind(points[bone.from], OUTLINE_BEHIND), lens.behind(points[bone.to], OUTLINE_BEHIND)];
-      const width = lens.pixels(2 * bone.radius, middle(a, b)) + 2 * OUTLINE_PX;
-      out.points.push(a, b, GAP);
-      out.sizes.push(width, width, width);
-    }
-  }
-  return { ...out, colors: color };
-}
-
-/** The bodies laid flat on the floor as a lamp overhead would: a pale rim and a darker core, as one mesh. */
-export function shadow(pose, skeleton, theme, lens) {
-  const out = { points: [], colors: [], cells: [] };
-  const layers = [
-    { color: theme.shadow, spread: 0.05, behind: SHADOW_BEHIND },
-    { color: theme.shadowCore, spread: 0, behind: SHADOW_BEHIND - 0.01 },
-  ];
-  for (const { color, spread, behind } of layers) {
-    const add = (x, y) => {
-      out.colors.push(color);
-      return out.points.push(lens.behind([x, y, 0], behind)) - 1;
-    };
-    const disc = (p, radius) => {
-      const ring = Array.from({ length: DISC_SIDES }, (_, i) => (2 * Math.PI * i) / DISC_SIDES);
-      const corners = ring.map((angle) => add(p[0] + radius * Math.cos(angle), p[1] + radius * Math.sin(angle)));
-      for (let i = 2; i < DISC_SIDES; i++) out.cells.push([corners[0], corners[i - 1], corners[i]]);
-    };
-    for (const points of pose) {
-      for (const bone of skeleton.bones) {
-        const [a, b, radius] = [points[bone.from], points[bone.to], bone.radius + spread];
-        const length = Math.hypot(b[0] - a[0], b[1] - a[1]) || 1;
-        const [nx, ny] = [(-radius * (b[1] - a[1])) / length, (radius * (b[0] - a[0])) / length];
-        const corners = [add(a[0] + nx, a[1] + ny), add(a[0] - nx, a[1] - ny), add(b[0] - nx, b[1] - ny), add(b[0] + nx, b[1] + ny)];
-        out.cells.push([corners[0], corners[1], corners[2]], [corners[0], corners[2], corners[3]]);
-        disc(b, radius);
-      }
-      disc(headCenter(points, skeleton), skeleton.headRadius + spread);
-    }
   }
   return out;
+}
+
+/** Balls at the joints. */
+export function joints(points, skeleton, colors, lens, wide = 1) {
+  return {
+    points,
+    colors: skeleton.joints.map(({ side }) => colors[side]),
+    sizes: points.map((p) => Math.max(lens.pixels(2 * wide * JOINT, p), 2 * LEAST_PX)),
+  };
 }
 
 /** The last second of pelvis and wrists, fading into the background. */

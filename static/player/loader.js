@@ -1,5 +1,7 @@
 // The things the player needs beside its modules, each loaded once a page and from our own server only.
 
+import { decodeBody } from "./body.js";
+
 const once = new Map();
 
 function load(key, make) {
@@ -35,4 +37,14 @@ export function loadStyles(url) {
       document.head.append(link);
     }),
   );
+}
+
+/** A body of static/bodies: "a" or "b", or a smaller one of each. */
+export function loadBody(name) {
+  const url = new URL(`../bodies/${name}.json`, import.meta.url).href;
+  return load(url, async () => {
+    const answer = await fetch(url);
+    if (!answer.ok) throw new Error(`The body ${name} did not load`);
+    return decodeBody(await answer.json());
+  });
 }

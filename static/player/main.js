@@ -55,6 +55,7 @@ export async function mount(element, props, watch, { plotly, empty }) {
   const sync = () => {
     const waits = opening && props.value ? "Opening the 3D view …" : "";
     player.controls.setBusy(props.busy || waits, props.progress);
+    player.cover(Boolean(props.busy));
     const id = props.value?.id ?? null;
     if (player.scene && id !== shown) {
       shown = id;

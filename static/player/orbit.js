@@ -6,7 +6,7 @@ const NEAREST = 0.8;
 const FARTHEST = 40;
 const GLIDE_SECONDS = 0.45;
 const FOLLOW_SECONDS = 0.3; // time constants of the follow
-const FRAME_SECONDS = 0.8;
+const FRAME_SECONDS = 0.45;
 const SETTLED = 0.004; // metres
 export const FIELD_OF_VIEW = Math.PI / 4; // plotly's
 
@@ -126,6 +126,12 @@ export class Orbit {
       dot(right), dot(up), dot(back), 1,
     ];
   }
+}
+
+/** Right, up and back of a camera that looks from there: scene axes. */
+export function axesOf(yaw, elevation) {
+  const [s, c, se, ce] = [Math.sin(yaw), Math.cos(yaw), Math.sin(elevation), Math.cos(elevation)];
+  return { right: [-s, c, 0], up: [-se * c, -se * s, ce], back: [ce * c, ce * s, se] };
 }
 
 function normalise(v) {

@@ -50,7 +50,8 @@ export class Labels {
     }
     this.labels.forEach((label, i) => {
       const depth = spots[i][2];
-      const x = lifted[i][0];
+      const half = this.widths[i] / 2;
+      const x = Math.min(Math.max(lifted[i][0], half), Math.max(this.host.clientWidth - half, half));
       const y = Math.max(lifted[i][1], LABEL_PX); // never above the stage, as over a shoulder
       label.style.transform = `translate(${x.toFixed(1)}px, ${y.toFixed(1)}px) translate(-50%, -100%)`;
       label.style.visibility = depth > 0.1 ? "visible" : "hidden";

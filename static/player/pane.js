@@ -1,12 +1,16 @@
 // One view of one motion: its 3D scene and the names above heads. A player has one, or two side by side.
 
+import { Figure } from "./body.js";
 import { poseAt } from "./decode.js";
 import * as figure from "./figure.js";
+import { Ground } from "./ground.js";
 import { FIELD_OF_VIEW } from "./orbit.js";
 import { Labels, project } from "./overlay.js";
 import { Scene } from "./scene.js";
 
-const ABOVE_HEAD = 0.17; // metres
+const ABOVE_HEAD = 0.2; // metres
+const WIDE = 3.5; // times, skeletons that stand for bodies that cannot be had
+const TRANSLUCENT = 0.42; // of bodies beside their skeletons
 
 export class Pane {
   constructor(host) {
@@ -17,6 +21,14 @@ export class Pane {
     this.scene = null;
     this.spots = [];
     this.painted = { floor: "", trails: false, ghosts: false };
+    this.ground = new Ground();
+    this.figures = [];
+  }
+
+  /** The bodies that people wear, A's and B's, once they are there. */
+  dress(bodies) {
+    this.figures = bodies.map((body) => new Figure(body));
+    this.refresh();
   }
 
   async open(background, Plotly) {
@@ -33,8 +45,7 @@ export class Pane {
     this.labels.load(sample?.roles ?? []);
     this.spots = [];
     if (!this.scene) return;
-    if (!sample) for (const name of this.scene.names) if (name !== "floor") this.scene.hide(name);
-    if (sample?.motion.people < 2) for (const name of ["bonesB", "jointsB"]) this.scene.hide(name);
+    for (const name of this.scene.names) if (name !== "floor" && name !== "ground") this.scene.hide(name);
   }
 
   poseAt(frame) {
@@ -52,18 +63,27 @@ export class Pane {
     const [width, height] = [this.host.clientWidth, this.host.clientHeight];
     const put = (name, layer) => scene.set(name, layer);
     scene.setView(matrix, orbit.eye, orbit.center);
-    const floorKey = `${themeName} ${orbit.target.map(Math.round)}`;
-    if (this.painted.floor !== floorKey) put("floor", figure.floor(orbit.target, 9, theme));
-    this.painted.floor = floorKey;
+    this.paintFloor(orbit.target, theme, themeName);
     if (pose) {
       const lens = new figure.Lens(orbit, height);
-      put("shadow", figure.shadow(pose, skeleton, theme, lens));
-      put("outline", figure.outline(pose, skeleton, theme.outline, lens));
-      const colors = clock.shown < (this.sample.past_until ?? 0) ? theme.given : theme.people;
-      pose.forEach((points, person) => {
-        put(`bones${"AB"[person]}`, figure.bones(points, skeleton, colors[person], lens));
-        put(`joints${"AB"[person]}`, figure.joints(points, skeleton, colors[person], lens));
+      const given = clock.shown < (this.sample.past_until ?? 0);
+      const bodies = show.bodies && skeleton.wears ? this.figures.slice(0, pose.length) : [];
+      bodies.forEach((body, person) => {
+        body.pose(pose[person]);
+        const alpha = show.skeletons ? TRANSLUCENT : 1;
+        body.shade((given ? theme.givenBodies : theme.bodies)[person], theme.lamps, lens, scene.scale, alpha);
+        scene.setTriangles(`body${"AB"[person]}`, { positions: body.positions, colors: body.colors, alpha });
       });
+      this.drop(["bodyA", "bodyB"].slice(bodies.length));
+      const colors = given ? theme.given : theme.people;
+      const wide = bodies.length || show.skeletons ? 1 : WIDE;
+      const thin = show.skeletons || !bodies.length ? pose : [];
+      thin.forEach((points, person) => {
+        put(`bones${"AB"[person]}`, figure.bones(points, skeleton, colors[person], lens, wide));
+        put(`joints${"AB"[person]}`, figure.joints(points, skeleton, colors[person], lens, wide));
+      });
+      this.drop(["bonesA", "jointsA", "bonesB", "jointsB"].slice(2 * thin.length));
+      this.paintShadow(pose, skeleton, bodies, theme);
       this.paintExtras(put, lens, { theme, clock, skeleton, show });
       this.spots = pose.map((points) => points.map((p) => project(p, matrix, width, height, FIELD_OF_VIEW)));
       this.labels.place(pose.map((points) => {
@@ -72,6 +92,35 @@ export class Pane {
       }));
     }
     scene.draw();
+  }
+
+  /** Takes layers away that are not drawn now. */
+  drop(names) {
+    for (const name of names) if (this.scene.layers.get(name)?.hidden !== true) this.scene.hide(name);
+  }
+
+  paintFloor(target, theme, themeName) {
+    const { scene, ground, painted } = this;
+    const key = `${themeName} ${target.slice(0, 2).map(Math.round)} ${scene.scale}`;
+    if (painted.floor === key) return;
+    painted.floor = key;
+    scene.set("floor", figure.floor(target, 9, theme));
+    if (scene.mode !== "fast") return; // the lines alone
+    ground.lay(target.map(Math.round), theme, scene.scale);
+    ground.place(scene.scale);
+    scene.setTriangles("ground", { positions: ground.positions, colors: ground.colors, places: ground.places });
+  }
+
+  paintShadow(pose, skeleton, bodies, theme) {
+    const { scene, ground } = this;
+    if (scene.mode !== "fast") return;
+    const { shadow } = ground;
+    const before = `${shadow.origin} ${shadow.span}`;
+    shadow.cast(pose, skeleton, bodies, theme.shade);
+    scene.setShade("ground", shadow.pixels, shadow.size);
+    if (before === `${shadow.origin} ${shadow.span}`) return;
+    ground.place(scene.scale);
+    scene.setTriangles("ground", { positions: ground.positions, colors: ground.colors, places: ground.places });
   }
 
   paintExtras(put, lens, { theme, clock, skeleton, show }) {

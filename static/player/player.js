@@ -4,6 +4,7 @@ import { Clock } from "./clock.js";
 import { Controls } from "./controls.js";
 import { decode } from "./decode.js";
 import * as live from "./live.js";
+import { loadBody } from "./loader.js";
 import { Orbit } from "./orbit.js";
 import { Tip } from "./overlay.js";
 import { THEMES, themeName } from "./palette.js";
@@ -11,12 +12,21 @@ import { Pane } from "./pane.js";
 import { savePicture } from "./picture.js";
 import { describe } from "./skeleton.js";
 import { Strip } from "./strip.js";
-import { apart, heading, midpoint, preset } from "./views.js";
+import { fit, heading, moments, preset } from "./views.js";
 
 const SPEEDS = [0.25, 0.5, 1, 1.5, 2];
 const FPS_WINDOW = 1500; // ms
 const STILL_AFTER = 250; // ms
 export const loops = { running: 0 }; // animation loops alive on the page; a leak shows here
+
+/** Marks this browser tab as one that has made something, which a reload then brings back (ui/tabs/history.py). */
+function remember() {
+  try {
+    sessionStorage.setItem("pas-de-deux-made", "1");
+  } catch {
+    // a browser may keep nothing; a reload then begins anew
+  }
+}
 
 export class Player {
   constructor(root) {
@@ -30,13 +40,14 @@ export class Player {
     this.addPane();
     this.tip = new Tip(this.find(".pdd-tip"));
     this.strip = new Strip(root, { onSeek: (frame) => this.seek(frame) });
-    this.show = { trails: false, ghosts: false };
+    this.show = { trails: false, ghosts: false, bodies: true, skeletons: false };
     this.data = null;
     this.sampleIndex = 0;
     this.times = [];
     this.dirty = true;
     this.handle = 0;
     this.camera = "threequarter";
+    this.box = { width: 960, height: 640, inset: { top: 44, right: 64, bottom: 22, left: 24 } };
     this.root.dataset.theme = this.themeName = themeName();
   }
 
@@ -46,14 +57,31 @@ export class Player {
     this.scene = this.panes[0].scene;
     this.listen();
     this.wake();
+    this.dress();
     return this;
+  }
+
+  /** Puts bodies on the people; they stay skeletons where none can be had, or plotly is too slow for them. */
+  async dress() {
+    if (this.scene.mode !== "fast") return;
+    const small = matchMedia("(max-width: 700px)").matches;
+    try {
+      this.bodies = await Promise.all(["a", "b"].map((name) => loadBody(small ? `${name}-small` : name)));
+    } catch (error) {
+      console.error(error);
+      return;
+    }
+    for (const pane of this.panes) pane.dress(this.bodies);
+    this.wake();
   }
 
   addPane() {
     const panes = this.find(".pdd-panes");
     panes.append(panes.querySelector("template").content.cloneNode(true));
-    this.panes.push(new Pane(panes.lastElementChild));
-    return this.panes[this.panes.length - 1];
+    const pane = new Pane(panes.lastElementChild);
+    if (this.bodies) pane.dress(this.bodies);
+    this.panes.push(pane);
+    return pane;
   }
 
   get theme() {
@@ -90,10 +118,12 @@ export class Player {
     }
     const goesOn = Boolean(payload.continues) && payload.continues === this.data?.id;
     this.data = decode(payload);
+    if (!payload.rounds) remember();
     if (this.data.live) live.begin(this.data.samples[0]);
     this.skeleton = describe(this.data.names, this.data.parents);
     this.root.dataset.state = "ready";
-    if (!goesOn) this.clock.frame = 0;
+    this.rounds = 0;
+    if (!goesOn) this.clock.frame = Math.min(this.data.samples[0].past_until ?? 0, this.data.samples[0].frames - 1);
     this.controls.load(this.data);
     this.select(0);
     if (!goesOn) this.resetCamera();
@@ -142,6 +172,7 @@ export class Player {
     this.panes[0].load(sample, sample.caption);
     this.panes[1]?.load(sample.beside ?? null, sample.beside?.caption);
     this.split(Boolean(sample.beside));
+    this.measure();
     this.strip.load(sample, this.theme.curve);
     this.controls.select(sample, this.sampleIndex);
     this.refresh();
@@ -158,6 +189,7 @@ export class Player {
     const { clock } = this;
     const toggle = { follow: 1, trails: 1, ghosts: 1 }[action];
     if (action === "help" || action === "close") return this.controls.toggleHelp(action === "help" ? undefined : false);
+    this.data && (this.data.rounds = null); // a visitor is at hand: it goes on
     if (action === "fullscreen") return this.toggleFullscreen();
     if (!this.data) return;
     if (action === "play") clock.playing ? clock.pause() : clock.play();
@@ -172,8 +204,23 @@ export class Player {
     else if (action === "camera") this.goTo(argument);
     else if (action === "picture") this.savePicture();
     else if (toggle && action === "follow") this.orbit.following = !this.orbit.following;
+    else if (action === "figure") this.nextFigure();
     else if (toggle) this.show[action] = !this.show[action];
     this.refresh();
+  }
+
+  /** Bodies, skeletons, both: each in its turn. */
+  nextFigure() {
+    const { bodies, skeletons } = this.show;
+    if (bodies && skeletons) this.show.skeletons = false;
+    else if (bodies) Object.assign(this.show, { bodies: false, skeletons: true });
+    else this.show.bodies = true;
+  }
+
+  /** While a message covers the scene nothing is drawn. */
+  cover(covered) {
+    this.covered = covered;
+    if (!covered && this.scene) this.wake();
   }
 
   setSpeed(speed) {
@@ -183,19 +230,31 @@ export class Player {
 
   /** Glides to a preset; at once where `now` is null. */
   goTo(name, now = performance.now()) {
-    this.camera = this.framed = name;
-    const pose = this.everybody(this.clock.shown);
-    if (!this.orbit.following || now === null) this.orbit.jump(midpoint(pose, this.skeleton, this.aspect));
-    this.orbit.goTo(this.viewOf(name, pose), now);
+    this.camera = name;
+    const view = preset(name, heading(this.everybody(this.clock.shown), this.skeleton));
+    const wanted = this.wanted(view);
+    if (!this.orbit.following || now === null) this.orbit.jump(wanted.target);
+    this.orbit.goTo({ ...view, distance: wanted.distance }, now);
     this.refresh();
   }
 
-  viewOf(name, pose) {
-    return preset(name, { along: heading(pose, this.skeleton), apart: apart(pose, this.skeleton), aspect: this.aspect });
+  /** What the camera should look at, and from how far, to hold everybody in all views about this moment. */
+  wanted(view = this.orbit.glide?.to ?? this.orbit) {
+    const now = this.everybody(this.clock.shown);
+    const soon = moments(this.clock.shown, this.clock).flatMap((frame) => this.everybody(frame));
+    return fit(now, soon, this.skeleton, view, this.box);
   }
 
-  get aspect() {
-    return this.panes[0].host.clientWidth / this.stage.clientHeight || 1.7; // in a closed tab there is no size yet
+  /** The room for people in a view, in pixels: what names, captions and tools leave of it. */
+  measure() {
+    const { clientWidth: width, clientHeight: height } = this.panes[0].host;
+    if (!width || !height) return; // in a closed tab there is no size yet
+    const inset = { top: 44, right: 24, bottom: 22, left: 24 };
+    const tools = this.find(".pdd-tools").getBoundingClientRect();
+    if (tools.width > tools.height) inset.bottom += tools.height; // on narrow stages they lie below
+    else inset.right += tools.width;
+    if (this.sample?.caption) inset.bottom = Math.max(inset.bottom, 48);
+    this.box = { width, height, inset };
   }
 
   resetCamera() {
@@ -264,6 +323,7 @@ export class Player {
 
   resize() {
     for (const pane of this.panes) pane.scene?.resize();
+    this.measure();
     this.strip.paint();
     this.refresh();
   }
@@ -290,7 +350,7 @@ export class Player {
     this.handle = 0;
     loops.running--;
     if (!this.root.isConnected) return this.close();
-    if (document.hidden || !this.stage.clientWidth) {
+    if (document.hidden || !this.stage.clientWidth || this.covered) {
       this.clock.last = null;
       this.lastTick = null;
       return;
@@ -300,8 +360,12 @@ export class Player {
     const before = this.clock.frame;
     this.clock.advance(now);
     const pose = this.data && this.everybody(this.clock.shown);
-    const wanted = pose && { target: midpoint(pose, this.skeleton, this.aspect), distance: this.viewOf(this.framed, pose).distance };
-    if (this.clock.frame < before) this.orbit.cut(wanted); // the loop begins anew
+    const wanted = pose && this.wanted();
+    if (this.clock.frame < before) {
+      this.orbit.cut(wanted); // the loop begins anew
+      this.rounds++;
+      if (this.data.rounds && this.rounds >= this.data.rounds) this.clock.pause();
+    }
     this.orbit.step(now, seconds, wanted);
     const moving = this.clock.playing || !this.orbit.settled(wanted);
     if (moving || this.dirty) {

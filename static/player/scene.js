@@ -3,15 +3,16 @@
 // Plotly.restyle rebuilds every trace and reaches about 16 frames a second. The fast way writes the
 // points into each trace's own line and point objects and asks the scene to redraw. These objects are
 // plotly's inside, so openFast() tests each of them; where one is missing, everything goes through
-// Plotly.restyle and Plotly.relayout instead, slower but the same picture.
+// Plotly.restyle and Plotly.relayout instead, slower, and with skeletons on lines in place of bodies on a floor.
 //
-// Nothing here is translucent: one translucent object makes plotly draw the whole scene twice.
+// Bodies alone are ever translucent, and only beside their skeletons: one translucent object makes plotly draw
+// the whole scene twice.
 
 import { css } from "./palette.js";
 
 const HALF = 60; // metres; a box this wide around the origin makes scene units metres and clips nothing
 const KINDS = {
-  floor: "lines", shadow: "mesh", ghosts: "lines", trails: "lines", outline: "lines",
+  ground: "mesh", floor: "lines", bodyA: "mesh", bodyB: "mesh", ghosts: "lines", trails: "lines",
   bonesA: "lines", bonesB: "lines", jointsA: "points", jointsB: "points",
 };
 const HOLDERS = { lines: "linePlot", points: "scatterPlot", mesh: "mesh" }; // plotly's names for the drawing objects
@@ -85,12 +86,15 @@ export class Scene {
       if (typeof object?.update !== "function" || !("dirty" in object)) return;
       this.objects[name] = object;
     }
+    if (!this.takesTriangles()) return;
     this.gl = gl;
     this.view ||= new Float64Array(16);
     this.size = [0, 0];
     gl.camera.tick = () => this.tick(gl.camera);
     this.skipPicking(gl);
     this.mode = "fast";
+    for (const name of this.names) if (KINDS[name] === "mesh") plain(this.objects[name]);
+    rest(gl);
   }
 
   /** plotly asks this every frame whether the view changed; the view is ours, see orbit.js. */
@@ -115,6 +119,15 @@ export class Scene {
     gl.add(last);
   }
 
+  /** Whether meshes are what setTriangles() and setShade() write into. */
+  takesTriangles() {
+    const buffers = ["trianglePositions", "triangleColors", "triangleNormals", "triangleUVs", "triangleIds"];
+    return this.names.filter((name) => KINDS[name] === "mesh").every((name) => {
+      const mesh = this.objects[name];
+      return buffers.every((key) => typeof mesh[key]?.update === "function") && mesh.texture?.handle && mesh.lineShader?.bind && "hasAlpha" in mesh;
+    });
+  }
+
   setView(matrix, eye, center) {
     if (this.mode === "fast") this.view.set(matrix);
     else {
@@ -126,13 +139,13 @@ export class Scene {
   /**
    * New content for a layer: `points` [x, y, z] each, NaN breaks a line; `colors` one [r, g, b] or one
    * a point; `sizes` in CSS pixels, one or one a point (lines: the width of the segment that starts
-   * there); `cells` the triangles of a mesh, indices of points.
+   * there). Meshes take theirs by setTriangles().
    */
   set(name, layer) {
-    const { points, colors = [0, 0, 0], sizes = 1, cells = [[0, 1, 2]] } = layer;
+    const { points, colors = [0, 0, 0], sizes = 1 } = layer;
     this.layers.set(name, layer);
     if (this.mode !== "fast") {
-      this.pending.set(name, { points, colors, sizes, cells });
+      this.pending.set(name, { points, colors, sizes });
       return;
     }
     const scale = this.inside.dataScale;
@@ -145,14 +158,56 @@ export class Scene {
     } else if (KINDS[name] === "points") {
       const size = sizes.map?.((s) => s / discWidth()) ?? sizes / discWidth();
       object.update({ position, color: colors, size, glyph: "●", lineWidth: 0, orthographic: true, opacity: 1, project: [false, false, false] });
-    } else {
-      const rgba = Array.isArray(colors[0]) ? colors.map((c) => [...c, 1]) : points.map(() => [...colors, 1]);
-      object.update({ positions: position, cells, vertexColors: rgba, vertexNormals: points.map(() => [0, 0, 1]), ...FLAT });
-    }
+    } else object.update({ positions: position, cells: [[0, 1, 2]], vertexColors: points.map(() => [...colors, 1]), vertexNormals: points.map(() => [0, 0, 1]), ...FLAT });
+  }
+
+  /**
+   * New content for a mesh: typed arrays with three corners a triangle, `positions` (3 a corner, times the scene's
+   * scale), `colors` (4) and, for a picture laid over them, `places` in it (2). Lit already; plotly lights nothing.
+   */
+  setTriangles(name, layer) {
+    this.layers.set(name, layer);
+    const { positions, colors, places, alpha = 1 } = layer;
+    const corners = positions.length / 3;
+    if (this.mode !== "fast") return; // too much for restyle
+    const mesh = this.objects[name];
+    mesh.trianglePositions.update(positions);
+    mesh.triangleColors.update(colors);
+    if (mesh.triangleCount !== corners / 3) {
+      mesh.triangleNormals.update(new Float32Array(3 * corners).fill(1)); // of no use, but none may be nothing
+      mesh.triangleUVs.update(places ?? new Float32Array(2 * corners));
+      mesh.triangleIds.update(new Uint32Array(corners));
+      Object.assign(mesh, { ambientLight: 1, diffuseLight: 0, specularLight: 0 });
+      mesh.triangleCount = corners / 3;
+    } else if (places) mesh.triangleUVs.update(places);
+    mesh.hasAlpha = alpha < 1;
+    mesh.dirty = true;
+  }
+
+  /** Multiplies a picture onto a mesh: `pixels` RGBA, `size` each way. */
+  setShade(name, pixels, size) {
+    if (this.mode !== "fast") return;
+    const { texture } = this.objects[name];
+    const { gl } = this.gl;
+    gl.bindTexture(gl.TEXTURE_2D, texture.handle);
+    gl.pixelStorei(gl.UNPACK_ALIGNMENT, 1);
+    gl.pixelStorei(gl.UNPACK_FLIP_Y_WEBGL, false);
+    if (texture.shaded !== size) {
+      gl.texImage2D(gl.TEXTURE_2D, 0, gl.RGBA, size, size, 0, gl.RGBA, gl.UNSIGNED_BYTE, pixels);
+      for (const filter of [gl.TEXTURE_MIN_FILTER, gl.TEXTURE_MAG_FILTER]) gl.texParameteri(gl.TEXTURE_2D, filter, gl.LINEAR);
+      for (const wrap of [gl.TEXTURE_WRAP_S, gl.TEXTURE_WRAP_T]) gl.texParameteri(gl.TEXTURE_2D, wrap, gl.CLAMP_TO_EDGE);
+      texture.shaded = size;
+    } else gl.texSubImage2D(gl.TEXTURE_2D, 0, 0, 0, size, size, gl.RGBA, gl.UNSIGNED_BYTE, pixels);
+  }
+
+  /** What a metre is multiplied by along each axis. */
+  get scale() {
+    return this.inside?.dataScale ?? [1, 1, 1];
   }
 
   hide(name) {
-    this.set(name, { points: NOWHERE });
+    this.set(name, { points: NOWHERE, hidden: true });
+    if (KINDS[name] === "mesh" && this.mode === "fast") Object.assign(this.objects[name], { triangleCount: 0, hasAlpha: false });
   }
 
   draw() {
@@ -171,9 +226,7 @@ export class Scene {
     const keys = {
       lines: ({ points, colors, sizes }) => ({ "line.color": each(colors, points), "line.width": 2 * mean(sizes) }),
       points: ({ points, colors, sizes }) => ({ "marker.color": each(colors, points), "marker.size": sizes }),
-      mesh: ({ points, colors, cells }) => ({
-        vertexcolor: each(colors, points), i: cells.map((c) => c[0]), j: cells.map((c) => c[1]), k: cells.map((c) => c[2]),
-      }),
+      mesh: ({ points, colors }) => ({ vertexcolor: each(colors, points) }),
     };
     for (const [kind, extra] of Object.entries(keys)) {
       const update = {};
@@ -203,7 +256,7 @@ export class Scene {
   async resize() {
     await this.Plotly.Plots.resize(this.host);
     if (this.mode !== "fast" || !this.objects) return;
-    for (const [name, layer] of this.layers) this.set(name, layer);
+    for (const [name, layer] of this.layers) layer.positions ? this.setTriangles(name, layer) : this.set(name, layer);
     this.draw();
   }
 
@@ -232,6 +285,38 @@ export class Scene {
     this.Plotly.purge(this.host);
     this.objects = null;
   }
+}
+
+/**
+ * Draws a mesh's triangles as they are coloured: the shader of its edges does just that, where that of its triangles
+ * computes highlights for every pixel, which takes software four times as long.
+ */
+function plain(mesh) {
+  const [shader, unused] = [mesh.lineShader, mesh.triShader];
+  mesh.triShader = {
+    bind: () => shader.bind(),
+    set uniforms(values) {
+      shader.uniforms = { ...values, opacity: 1 };
+    },
+    dispose: () => unused.dispose(),
+  };
+}
+
+/**
+ * Ends plotly's own loop, which asks at every frame of the screen whether anything changed: it costs a tenth of a
+ * core for nothing. It runs while `_stopped` is false, so it is only just then when something is asked of it.
+ */
+function rest(gl) {
+  for (const name of ["redraw", "update", "add", "remove", "dispose"]) {
+    const act = gl[name];
+    gl[name] = (...given) => {
+      gl._stopped = false;
+      const result = act.apply(gl, given);
+      gl._stopped = true;
+      return result;
+    };
+  }
+  gl._stopped = true;
 }
 
 /**

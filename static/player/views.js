@@ -1,17 +1,12 @@
-// Camera presets, told from where the two people stand.
+// Camera presets, told from where the two people stand, and the view that holds everybody.
 
-import { FIELD_OF_VIEW } from "./orbit.js";
+import { FIELD_OF_VIEW, axesOf } from "./orbit.js";
 
-const BODY_HEIGHT = 2.45; // metres that must fit from floor to above the names
-const SIDE_ROOM = 1.5; // metres beside the outermost pelvis
-const LOOK_AT = { wide: 0.92, tall: 0.74 }; // metres; tall stages keep their tools under the feet
-const WIDEST = 8; // metres; people farther apart than this are not kept in view together
-
-/** The point the camera follows: between the pelvises, at a height that does not bob. */
-export function midpoint(pose, skeleton, aspect) {
-  const spots = pose.map((points) => points[skeleton.pelvis]);
-  return [0, 1].map((i) => spots.reduce((sum, p) => sum + p[i], 0) / spots.length).concat(aspect < 1.1 ? LOOK_AT.tall : LOOK_AT.wide);
-}
+const AROUND = 0.13; // metres about a joint that must be in view: palms and the sides of a body
+const ABOVE = 0.24; // metres over the joint of a head: its crown
+const NEAREST = 2.6; // metres; nearer, one face would fill the stage
+const SPAN = [-1.5, 1.5]; // seconds about the moment in which nobody leaves the view
+const MOMENTS = 12; // looked at within them
 
 /** Angle of the line from A to B on the floor; of the way A faces where there is nobody else. */
 export function heading(pose, skeleton) {
@@ -23,23 +18,62 @@ export function heading(pose, skeleton) {
   return Math.atan2(left[1] - right[1], left[0] - right[0]) - Math.PI / 2;
 }
 
-/** How far apart the pelvises of a pair stand on the floor, the widest of several; metres, 0 for one person. */
-export function apart(pose, skeleton) {
-  const spots = pose.map((points) => points[skeleton.pelvis]);
-  const gaps = spots.map((b, i) => (i % 2 ? Math.hypot(b[0] - spots[i - 1][0], b[1] - spots[i - 1][1]) : 0));
-  return Math.min(Math.max(...gaps), WIDEST);
-}
-
-/** Yaw, elevation and distance of a preset. */
-export function preset(name, { along, apart: gap, aspect }) {
-  const tangent = 2 * Math.tan(FIELD_OF_VIEW / 2);
-  const fit = (across) => Math.max(BODY_HEIGHT / tangent, (across + SIDE_ROOM) / (tangent * aspect)) + across / 6;
+/** Yaw and elevation of a preset. */
+export function preset(name, along) {
   switch (name) {
-    case "front": return { yaw: along, elevation: 0.16, distance: BODY_HEIGHT / tangent + gap / 2 + 0.6 };
-    case "side": return { yaw: along - Math.PI / 2, elevation: 0.1, distance: fit(gap) };
-    case "top": return { yaw: along - Math.PI / 2, elevation: 1.48, distance: Math.max(fit(gap), 4) + 0.5 };
-    case "a": return { yaw: along + Math.PI + 0.4, elevation: 0.3, distance: gap / 2 + 2.7 };
-    case "b": return { yaw: along - 0.4, elevation: 0.3, distance: gap / 2 + 2.7 };
-    default: return { yaw: along - 1.05, elevation: 0.24, distance: fit(gap * 0.9) };
+    case "front": return { yaw: along, elevation: 0.16 };
+    case "side": return { yaw: along - Math.PI / 2, elevation: 0.1 };
+    case "top": return { yaw: along - Math.PI / 2, elevation: 1.48 };
+    case "a": return { yaw: along + Math.PI + 0.4, elevation: 0.3 };
+    case "b": return { yaw: along - 0.4, elevation: 0.3 };
+    default: return { yaw: along - 1.05, elevation: 0.24 };
   }
 }
+
+/** Moments about `frame` at which everybody must be in view. */
+export function moments(frame, { frames, fps }) {
+  const [from, to] = SPAN.map((seconds) => Math.min(Math.max(frame + seconds * fps, 0), frames - 1));
+  return [frame, ...Array.from({ length: MOMENTS }, (_, i) => from + ((to - from) * i) / (MOMENTS - 1))];
+}
+
+/**
+ * Where the camera must look, and from how far, so that people are in view.
+ *
+ * `now` and `soon` are poses: all of `soon` fit into the distance, and the middle is that of `now`. The box is
+ * `width` × `height` pixels, of which `inset` { top, right, bottom, left } are taken by names and buttons.
+ */
+export function fit(now, soon, skeleton, { yaw, elevation }, { width, height, inset }) {
+  const { right, up, back } = axesOf(yaw, elevation);
+  const half = height / 2 || 1;
+  const slope = (pixels) => Math.max(Math.tan(FIELD_OF_VIEW / 2) * (pixels / half), 0.05);
+  const slopes = [slope(width / 2 - inset.right), slope(width / 2 - inset.left), slope(half - inset.top), slope(half - inset.bottom)];
+  const along = (axis, p) => axis[0] * p[0] + axis[1] * p[1] + axis[2] * p[2];
+  // A point (x, y, z) in the camera's axes lies inside a side of slope s, seen from distance d about a centre c,
+  // where x - c <= s (d - z): so c + s d is at least the largest x + s z of all, and so for each side.
+  const reach = (poses) => {
+    const most = [-Infinity, -Infinity, -Infinity, -Infinity];
+    for (const points of poses) {
+      points.forEach((point, joint) => {
+        const tall = joint === skeleton.head ? ABOVE : 0;
+        for (const p of tall ? [point, [point[0], point[1], point[2] + tall]] : [point]) {
+          const [x, y, z] = [along(right, p), along(up, p), along(back, p)];
+          const sides = [x, -x, y, -y];
+          for (let k = 0; k < 4; k++) most[k] = Math.max(most[k], sides[k] + slopes[k] * z + AROUND);
+        }
+      });
+    }
+    return most;
+  };
+  const all = reach(soon);
+  const least = [0, 2].map((k) => (all[k] + all[k + 1]) / (slopes[k] + slopes[k + 1]));
+  // `all` is measured from the world's origin: the depth of the centre is free, so it is taken amidst everybody.
+  const here = reach(now);
+  const depth = mean(now.flatMap((points) => points.map((p) => along(back, p))));
+  const d = Math.max(...least);
+  const centre = [0, 2].map((k) => (here[k] - slopes[k] * d - (here[k + 1] - slopes[k + 1] * d)) / 2);
+  const distance = Math.max(d - depth, NEAREST);
+  const target = [0, 1, 2].map((i) => right[i] * centre[0] + up[i] * centre[1] + back[i] * depth);
+  return { target, distance };
+}
+
+const mean = (values) => values.reduce((sum, v) => sum + v, 0) / Math.max(values.length, 1);

@@ -92,7 +92,7 @@ def _shared_context(chromium):
 
 @pytest.fixture
 def open_page(chromium, _shared_context, watch_hosts) -> Iterator[Callable]:
-    """``open_page(url, width=…, height=…)`` gives a watched page; script errors fail the test.
+    """``open_page(url, width=…, height=…)`` gives a watched page; errors of scripts and of policy fail the test.
 
     ``before(page)`` runs before the page loads; other options make a browser profile of its own.
     """
@@ -106,6 +106,7 @@ def open_page(chromium, _shared_context, watch_hosts) -> Iterator[Callable]:
         opened.append(context if options else page)
         watch_hosts(page)
         page.on("pageerror", lambda error: errors.append(str(error)))
+        page.on("console", lambda said: _note_policy(said.text, errors))
         if before:
             before(page)
         page.goto(url)
@@ -115,6 +116,12 @@ def open_page(chromium, _shared_context, watch_hosts) -> Iterator[Callable]:
     for context_or_page in opened:
         context_or_page.close()
     assert not errors, f"errors in the page: {errors}"
+
+
+def _note_policy(said: str, errors: list[str]) -> None:
+    """A page that needs more than the server's content security policy allows says so on the console."""
+    if "Content Security Policy" in said:
+        errors.append(said)
 
 
 def free_port() -> int:
@@ -128,7 +135,7 @@ def start_server() -> Iterator[Callable[..., str]]:
     """``start_server([script, args…, "{port}"])`` runs Python on them and gives the URL once it answers."""
     running: list[subprocess.Popen] = []
 
-    def start(arguments: list[str], *, seconds: float = 60.0, env: dict[str, str] | None = None) -> str:
+    def start(arguments: list[str], *, seconds: float = 180.0, env: dict[str, str] | None = None) -> str:
         port = free_port()
         command = [sys.executable, *(argument.format(port=port) for argument in arguments)]
         environment = {
@@ -168,11 +175,11 @@ def player(open_page, player_url):
 
     def open_(button: str | None = "load", *, theme: str = "light", **options):
         page = open_page(f"{player_url}?__theme={theme}", **options)
-        page.wait_for_selector(".pdd-styled", timeout=30_000)
-        page.wait_for_function("window.__pasdedeux.mode !== null", timeout=30_000)
+        page.wait_for_selector(".pdd-styled", timeout=90_000)
+        page.wait_for_function("window.__pasdedeux.mode !== null", timeout=90_000)
         if button:
             press(page, button)
-            page.wait_for_function("window.__pasdedeux.frame > 0", timeout=30_000)
+            page.wait_for_function("window.__pasdedeux.frame > 0", timeout=90_000)
         return page
 
     return open_

@@ -12,8 +12,9 @@ sys.path.insert(0, str(Path(__file__).resolve().parents[2]))
 import gradio as gr
 import numpy as np
 
-from webdemo.motion import SMPL22, Duet
-from webdemo.ui.player import MotionPlayer, busy, player_payload, show
+from motion import SMPL22, Duet
+from webdemo.ui.components.player import MotionPlayer, busy, player_payload, show
+from webdemo.view.payload import build_payload, sample_payload
 
 FPS = 30.0
 HOSTILE = ('<img src=x onerror="window.__hacked=1">', "${window.__hacked=2}{{value}}")
@@ -80,6 +81,22 @@ def _hang(body: np.ndarray, side: str, names: list[str]) -> None:
         body[:, SMPL22.index(name)] = shoulder + np.array([out * length / 0.26, -length, 0.0])
 
 
+def apart_duet(seconds: float = 4.0) -> Duet:
+    """The same two on a long way: they come from ten metres apart and pass the place where they meet."""
+    positions = walking_duet(seconds).positions.copy()
+    t = np.linspace(1, -0.4, positions.shape[1])
+    positions[0, :, :, 2] -= 4.0 * t[:, None]
+    positions[1, :, :, 0] += 3.0 * t[:, None]
+    return Duet.from_positions(positions, fps=FPS)
+
+
+def side_by_side() -> dict[str, object]:
+    """Two motions in two views; the second's people stand elsewhere."""
+    first, second = (sample_payload(duet) for duet in (walking_duet(4.0), apart_duet(4.0)))
+    sample = {**first, "caption": "ReGenNet", "beside": {**second, "caption": "InterFormer"}}
+    return build_payload([sample], skeleton=SMPL22)
+
+
 def build() -> gr.Blocks:
     with gr.Blocks(title="Player") as page:
         with gr.Tab("first"):
@@ -94,6 +111,9 @@ def build() -> gr.Blocks:
             working = gr.Button("busy")
             clear = gr.Button("clear")
             load_late = gr.Button("load second")
+            far = gr.Button("far")
+            beside = gr.Button("beside")
+            arrival = gr.Button("arrival")
             hide = gr.Button("hide")
             unhide = gr.Button("show")
         duet = walking_duet()
@@ -116,6 +136,9 @@ def build() -> gr.Blocks:
         working.click(lambda: busy("Step 12 of 50 ${1+1}", progress=0.24), None, player)
         clear.click(lambda: show(None), None, player)
         load_late.click(lambda: show(player_payload(duet)), None, late)
+        far.click(lambda: show(player_payload(apart_duet())), None, player)
+        beside.click(lambda: show(side_by_side()), None, player)
+        arrival.click(lambda: show({**player_payload(walking_duet(1.0)), "rounds": 2}), None, player)
         hide.click(lambda: gr.update(visible=False), None, player)
         unhide.click(lambda: gr.update(visible=True), None, player)
     return page

@@ -17,7 +17,7 @@ def hook(page, name: str):
     return page.evaluate(f"window.__pasdedeux.{name}")
 
 
-def until(page, expression: str, seconds: float = 15) -> None:
+def until(page, expression: str, seconds: float = 60) -> None:
     page.wait_for_function(expression, timeout=1000 * seconds)
 
 

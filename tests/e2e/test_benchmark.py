@@ -6,8 +6,8 @@ from pathlib import Path
 
 import pytest
 
-from webdemo import benchmark_browser
-from webdemo.motion import InputError
+from motion import InputError
+from webdemo.benchmark import browser as benchmark_browser
 
 pytestmark = pytest.mark.e2e
 
@@ -39,6 +39,10 @@ def test_page_and_player_are_measured(
     assert figures["player_pixels"] == "960x640"
     assert figures["player_fps_still"] > 1
     assert figures["player_fps_turning"] > 1
+    assert figures["player_fps_skeletons"] > 1
+    for state in ("idle", "waiting", "paused"):
+        assert 0 <= figures[f"browser_cores_{state}"] < 4, "cores, not seconds"
+    assert figures["browser_cores_paused"] < 0.5
 
 
 def test_a_page_that_does_not_start_is_one_sentence(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

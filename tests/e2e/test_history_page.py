@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 from playwright.sync_api import expect
 
-from ..ui.stub_engine import walking
+from tests.ui.stub_engine import walking
 
 pytestmark = [pytest.mark.e2e, pytest.mark.slow]
 SLOW = 120_000
@@ -57,6 +57,22 @@ def test_a_result_is_kept_and_its_link_opens_it_with_all_controls(lab: str, open
     page.wait_for_selector("#history-status :text('Its link no longer works')")
     ended = open_page(link)
     ended.wait_for_selector("#status .pd-error:has-text('There is no such run')", timeout=SLOW)
+
+
+def test_a_reload_keeps_the_last_result(lab: str, open_page: Callable) -> None:
+    page = open_page(lab)
+    page.set_default_timeout(SLOW)
+    page.fill("#prompt textarea", "Two people bow before the reload.")
+    page.click("#generate")
+    page.wait_for_selector("#status .pd-done:has-text('Done')")
+    page.reload()
+    page.wait_for_selector("#status .pd-done:has-text('Made on')")
+    title = "document.querySelector('#player .pdd-title').textContent"
+    page.wait_for_function(f"{title} === 'Two people bow before the reload.'")
+    assert page.input_value("#prompt textarea") == "Two people bow before the reload."
+    fresh = open_page(lab)  # another tab of the browser begins anew
+    fresh.wait_for_function("window.__pasdedeux?.frame > 0", timeout=SLOW)
+    assert fresh.input_value("#prompt textarea") == ""
 
 
 def test_a_prediction_opens_with_its_marker_and_its_ghost(

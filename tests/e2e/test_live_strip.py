@@ -5,10 +5,10 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from webdemo.motion import Clip
+from motion import Clip
+from tests.ui.stub_engine import walking
 from webdemo.view.payload import pack_positions, player_payload
 
-from ..ui.stub_engine import walking
 from .playing import until
 
 pytestmark = pytest.mark.e2e

@@ -19,9 +19,8 @@ os.environ.setdefault("GRADIO_ANALYTICS_ENABLED", "False")
 
 from playwright.sync_api import Page, expect
 
+from tests.ui.stub_engine import StubEngine
 from webdemo.ui.page import build_page, launch_options
-
-from ..ui.stub_engine import StubEngine
 
 pytestmark = pytest.mark.e2e
 
@@ -102,7 +101,16 @@ def set_number(page: Page, selector: str, value: float) -> None:
     field.press("Tab")
 
 
-def test_a_prompt_becomes_two_moving_skeletons(page: Page, server: SimpleNamespace) -> None:
+def test_a_motion_plays_before_anything_is_asked(page: Page) -> None:
+    expect(page.locator(".pdd-title").first).to_have_text(
+        "Two people walk up to each other and shake hands.", timeout=SLOW
+    )
+    page.wait_for_function("window.__pasdedeux?.frame > 5", timeout=SLOW)
+    expect(page.locator("#player .pdd-empty")).to_be_hidden()
+    expect(page.locator("#downloads")).to_be_hidden()
+
+
+def test_a_prompt_becomes_two_moving_people(page: Page, server: SimpleNamespace) -> None:
     ask(page, "two people walk up to each other")
     assert status(page, "done").startswith("Done in")
     page.wait_for_function("window.__pasdedeux?.positions?.length === 2")

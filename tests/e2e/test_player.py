@@ -174,8 +174,7 @@ def test_when_the_loop_begins_anew_both_are_in_view_at_once(player):
         const player = window.__pasdedeux.player, paint = player.paint;
         player.paint = function (pose) {
             paint.call(this, pose);
-            const wanted = this.viewOf(this.framed, pose).distance;
-            if (this.clock.frame < 100) window.off ??= wanted - this.orbit.distance;
+            if (this.clock.frame < 100) window.off ??= this.wanted().distance - this.orbit.distance;
         };
     }""")
     page.locator(".pdd-play").click()
@@ -245,7 +244,7 @@ def test_user_text_stays_text(player):
 def test_empty_busy_and_empty_again(player):
     page = player(None)
     assert "press Generate" in page.locator(".pdd-empty-text").inner_text()
-    assert "take the motion home" in page.locator(".pdd-empty-more").inner_text()
+    assert "download the motion" in page.locator(".pdd-empty-more").inner_text()
     assert page.locator(".pdd-foot").is_hidden()
     press(page, "busy")
     page.wait_for_selector(".pdd-busy:visible")

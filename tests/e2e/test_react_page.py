@@ -12,10 +12,9 @@ os.environ.setdefault("GRADIO_ANALYTICS_ENABLED", "False")
 
 from playwright.sync_api import Page, expect
 
-from webdemo.formats import write
+from motion.formats import write
+from tests.ui.stub_engine import StubEngine, walking
 from webdemo.ui.page import build_page, launch_options
-
-from ..ui.stub_engine import StubEngine, walking
 
 pytestmark = pytest.mark.e2e
 

@@ -5,21 +5,26 @@ from pathlib import Path
 import pytest
 import torch
 
-from models.compact import CaptionBank, CompactConfig, CompactInterGen, save_folder
+from models.intergen.compact import CaptionBank, CompactConfig, CompactInterGen, save_folder
 from models.motion_tokens import encode
 from models.text import MiniLM
+from motion import SMPL22
 from webdemo.inference.engine import Engine
-from webdemo.motion import SMPL22
 
 CAPTIONS = ("Two people shake hands.", "One person waves.", "They walk away from each other.")
 
 
-@pytest.fixture(scope="session")
-def weights(tmp_path_factory: pytest.TempPathFactory) -> Path:
+def tiny_weights(folder: Path, *, words: bool) -> Path:
     torch.manual_seed(0)
-    model = CompactInterGen(
-        CompactConfig(latent_dim=32, ff_size=32, num_layers=2, num_heads=2, cond_dim=64, text_layers=1)
-    )
+    sizes = {
+        "latent_dim": 32,
+        "ff_size": 32,
+        "num_layers": 2,
+        "num_heads": 2,
+        "cond_dim": 64,
+        "text_layers": 1,
+    }
+    model = CompactInterGen(CompactConfig(**sizes, words=words))
     for parameter in model.parameters():  # the zero-initialised layers would hide what the input does
         torch.nn.init.normal_(parameter, std=0.05)
     rest = torch.tensor(SMPL22.rest_positions()).float() + torch.tensor([0.0, 0.98, 0.0])
@@ -28,9 +33,25 @@ def weights(tmp_path_factory: pytest.TempPathFactory) -> Path:
     model.mean.copy_(control.mean(0))
     model.std.fill_(0.1)
     bank = CaptionBank(CAPTIONS, MiniLM()(CAPTIONS).pooled(), far=0.5)
-    folder = tmp_path_factory.mktemp("weights")
     save_folder(folder / "intergen", model, bank, card={"summary": "a tiny untrained model"})
     return folder
+
+
+@pytest.fixture(scope="session")
+def weights(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    return tiny_weights(tmp_path_factory.mktemp("weights"), words=False)
+
+
+@pytest.fixture(scope="session")
+def reading_engine(tmp_path_factory: pytest.TempPathFactory) -> Engine:
+    """With a network that reads words and sees what is known."""
+    return Engine(tiny_weights(tmp_path_factory.mktemp("reading"), words=True))
+
+
+@pytest.fixture(params=["engine", "reading_engine"])
+def either_engine(request: pytest.FixtureRequest) -> Engine:
+    """Each of the two networks."""
+    return request.getfixturevalue(request.param)
 
 
 @pytest.fixture(scope="session")

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import numpy as np
 
-from webdemo.motion import SMPL22, Clip
-from webdemo.motion.kinematics import forward_kinematics
-from webdemo.motion.transforms import heading_matrix
+from motion import SMPL22, Clip
+from motion.kinematics import forward_kinematics
+from motion.transforms import heading_matrix
 
 
 def waver(seconds: float = 2.0, fps: float = 30.0) -> Clip:

@@ -10,18 +10,20 @@ import numpy as np
 import pytest
 import torch
 
-from models.folder import save_network
+from models.agent.recogniser import Recogniser, RecogniserConfig
 from models.motion_mlp import MotionMLP, MotionMLPConfig
 from models.predictors import save_predictor
-from models.recogniser import Recogniser, RecogniserConfig
-from webdemo.formats import read
+from models.weights_io import save_network
+from motion import InputError
+from motion.formats import read
+from motion.retarget import to_smpl
+from motion.transforms import facing
 from webdemo.inference import Cancelled, CancelToken, ReactRequest, Result
-from webdemo.inference.agent import Agent, Eye, Look
+from webdemo.inference.actor import MEDIAN_START_DISTANCE
 from webdemo.inference.engine import WEIGHTS, Engine
-from webdemo.inference.predict import MotionPredictor
-from webdemo.motion import InputError
-from webdemo.motion.retarget import to_smpl
-from webdemo.ui.examples import CLIPS
+from webdemo.inference.pipelines.agent import AgentPipeline, Eye, Look
+from webdemo.inference.pipelines.predictor import PredictorPipeline
+from webdemo.ui.text.examples import CLIPS
 
 from .people import waver
 
@@ -49,8 +51,8 @@ def engine(folder: Path) -> Engine:
 
 
 @pytest.fixture(scope="module")
-def agent(engine: Engine) -> Agent:
-    return engine._generator("agent")
+def agent(engine: Engine) -> AgentPipeline:
+    return engine.pipeline("agent")
 
 
 REQUEST = ReactRequest(actor=waver(3.0), model="agent", steps=2, damping=0.0, seed=3)
@@ -64,7 +66,7 @@ def look(frame: int, *chances: float) -> Look:
     return Look(frame, np.array(chances))
 
 
-def test_a_look_depends_on_the_second_before_it_alone(agent: Agent) -> None:
+def test_a_look_depends_on_the_second_before_it_alone(agent: AgentPipeline) -> None:
     person = waver(3.0).positions
     looks = agent.eye.looks(person)
     assert [one.frame for one in looks] == [45, 60, 75, 90]
@@ -80,36 +82,99 @@ def test_a_look_depends_on_the_second_before_it_alone(agent: Agent) -> None:
     [
         (
             [look(45, 0.02, 0.95, 0.03), look(60, 0.0, 0.9, 0.1), look(75, 0.0, 0.0, 1.0)],
-            (60, 1),
+            (60, 1, True),
         ),  # once sure
-        ([look(45, 1.0, 0.0, 0.0), look(60, 0.9, 0.1, 0.0), look(75, 0.0, 0.01, 0.99)], (75, 2)),  # it waits
-        ([look(45, 0.1, 0.5, 0.4), look(60, 0.1, 0.5, 0.4)], (60, 1)),  # never sure: the likeliest of all
-        ([look(45, 0.8, 0.1, 0.1), look(60, 0.8, 0.2, 0.0)], (60, None)),
-        ([look(45, 0.1, 0.2, 0.7)], (45, 2)),  # a short clip has one look
+        ([look(45, 1.0, 0.0, 0.0), look(60, 0.9, 0.1, 0.0), look(75, 0.0, 0.01, 0.99)], (75, 2, False)),
+        ([look(45, 0.1, 0.5, 0.4), look(60, 0.1, 0.5, 0.4)], (60, 1, False)),  # the likeliest of all
+        ([look(45, 0.8, 0.1, 0.1), look(60, 0.8, 0.2, 0.0)], (60, None, False)),
+        ([look(45, 0.0, 0.0, 1.0)], (45, 2, False)),  # one look is not enough
     ],
 )
 def test_all_looks_together_decide_as_soon_as_they_are_sure(
-    agent: Agent, looks: list[Look], decided: tuple[int, int | None]
+    agent: AgentPipeline, looks: list[Look], decided: tuple[int, int | None, bool]
 ) -> None:
-    found, place = agent.eye.decide(looks)
-    assert (found.frame, place) == decided
-    assert abs(found.chances.sum() - 1) < 1e-9
+    found = agent.eye.decide(looks)
+    assert (found.look.frame, found.place, found.sure) == decided
+    assert abs(found.look.chances.sum() - 1) < 1e-9
+
+
+SEEN = [look(45, 0.0, 0.95, 0.05), look(60, 0.0, 0.95, 0.05), look(75, 0.0, 0.95, 0.05)]
+"""Looks after which the agent is sure of a wave at frame 60."""
 
 
 def test_it_says_what_it_saw_and_answers_with_the_gestures_sentence(
-    engine: Engine, agent: Agent, monkeypatch: pytest.MonkeyPatch
+    engine: Engine, agent: AgentPipeline, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(agent.eye, "looks", lambda positions: [look(45, 0.0, 0.67, 0.33)] * 3)
+    asked = []
+    conditioning = agent.answers.conditioning
+    monkeypatch.setattr(
+        agent.answers,
+        "conditioning",
+        lambda request: (asked.append(request.prompt), conditioning(request))[1],
+    )
+    monkeypatch.setattr(agent.eye, "looks", lambda positions: SEEN)
     found = react(engine)
-    assert found.notes[0].startswith("After 1.5 s the agent took it for “wave” (74%; “bow” 26%) and answers")
+    assert asked == ["They wait.", "Two people wave."]
+    assert found.notes[0].startswith("After 2.0 s the agent took it for “wave” (95%; “bow” 5%) and answers")
     assert "“Two people wave.”" in found.notes[0]
-    told = react(engine, model="intergen", prompt="Two people wave.")
-    assert found.duets[0].b.positions.tobytes() == told.duets[0].b.positions.tobytes()
     assert found.manifest["request"]["model"] == found.manifest["model"] == "agent"
-    assert found.manifest["weights_sha256"] != told.manifest["weights_sha256"]
+    assert found.manifest["weights_sha256"] != react(engine, model="intergen").manifest["weights_sha256"]
     assert "yours were not used" in react(engine, prompt="Two people hug.").notes[1]
-    monkeypatch.setattr(agent.eye, "looks", lambda positions: [look(45, 0.9, 0.05, 0.05)] * 2)
-    assert "saw no gesture" in react(engine).notes[0]
+
+
+@pytest.mark.parametrize(
+    ("looks", "said"),
+    [
+        ([look(45, 0.9, 0.05, 0.05)] * 2, "saw no gesture"),
+        (
+            [look(45, 0.0, 0.5, 0.5)] * 2,
+            "was not sure of a gesture, so it stands and waits. The likeliest was “wave”",
+        ),
+    ],
+)
+def test_who_is_not_sure_attends(
+    engine: Engine, agent: AgentPipeline, monkeypatch: pytest.MonkeyPatch, looks: list[Look], said: str
+) -> None:
+    monkeypatch.setattr(agent.eye, "looks", lambda positions: looks)
+    found = react(engine)
+    assert said in found.notes[0]
+    person, made = (p.positions for p in (found.duets[0].a, found.duets[0].b))
+    towards = (person[0, 0] - made[:, 0])[:, [0, 2]]
+    assert np.linalg.norm(towards, axis=-1) == pytest.approx(MEDIAN_START_DISTANCE, abs=0.1)
+    forward = facing(made)[:, [0, 2]]
+    cos = (forward * towards).sum(-1) / np.linalg.norm(forward, axis=-1) / np.linalg.norm(towards, axis=-1)
+    assert cos.min() > 0.9
+
+
+@pytest.mark.parametrize("cut", [30, 59, 60, 75])
+def test_no_frame_depends_on_later_frames_of_the_actor(
+    engine: Engine, agent: AgentPipeline, monkeypatch: pytest.MonkeyPatch, cut: int
+) -> None:
+    """The same person up to a frame, who then goes elsewhere with another arm: nothing before it changes."""
+    monkeypatch.setattr(agent.eye, "looks", lambda positions: SEEN)
+    other = np.array(REQUEST.actor.positions)
+    other[cut:] = other[cut:] * np.float32([-1, 1, 1]) + np.float32([0.5, 0.1, 1.0])
+    changed = replace(REQUEST.actor, positions=other)
+    options = {"damping": 0.7, "cleanup": True}
+    one, two = (react(engine, actor=actor, **options) for actor in (REQUEST.actor, changed))
+    before, after = (np.asarray(result.duets[0].b.positions) for result in (one, two))
+    assert before[:cut].tobytes() == after[:cut].tobytes()
+    # Its answer is planned at frame 60 from what it had seen.
+    assert (before.tobytes() == after.tobytes()) == (cut >= 60)
+
+
+def test_the_answer_goes_on_from_the_waiting_without_a_jump(
+    engine: Engine, agent: AgentPipeline, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(agent.eye, "looks", lambda positions: SEEN)
+    answered = react(engine, samples=2)
+    monkeypatch.setattr(agent.eye, "looks", lambda positions: [look(45, 1.0, 0.0, 0.0)] * 2)
+    waited = react(engine).duets[0].b.positions
+    for duet in answered.duets:
+        assert duet.b.positions[:60].tobytes() == waited[:60].tobytes()
+        assert np.linalg.norm(duet.b.positions[60] - duet.b.positions[59], axis=-1).max() < 0.1
+    one, other = (duet.b.positions[-1] for duet in answered.duets)
+    assert not np.allclose(one, other)
 
 
 def test_the_actor_stays_and_the_same_request_gives_the_same_bytes(engine: Engine) -> None:
@@ -122,7 +187,7 @@ def test_the_actor_stays_and_the_same_request_gives_the_same_bytes(engine: Engin
 def test_what_it_cannot_do_is_a_sentence(engine: Engine) -> None:
     with pytest.raises(InputError, match="choose role a"):
         replace(REQUEST, role="b")
-    with pytest.raises(InputError, match="Mode 'online' is none of agent's"):
+    with pytest.raises(InputError, match="Virtual agent has no mode 'online'"):
         replace(REQUEST, mode="online")
     cancel = CancelToken()
     cancel.cancel()
@@ -135,6 +200,6 @@ def test_what_it_cannot_do_is_a_sentence(engine: Engine) -> None:
 )
 def test_the_shipped_agent_names_the_example_actors(name: str, gesture: str) -> None:
     person = to_smpl(read(CLIPS / f"{name}.npz").people[0])
-    eye = Eye(WEIGHTS / "agent", MotionPredictor(WEIGHTS / "motion-mlp"))
-    _, place = eye.decide(eye.looks(person.positions))
-    assert place is not None and eye.recogniser.config.labels[place] == gesture
+    eye = Eye(WEIGHTS / "agent", PredictorPipeline(WEIGHTS / "motion-mlp"))
+    decision = eye.decide(eye.looks(person.positions))
+    assert decision.place is not None and eye.recogniser.config.labels[decision.place] == gesture

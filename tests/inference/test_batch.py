@@ -4,11 +4,11 @@ import numpy as np
 import pytest
 import torch
 
+from motion import SMPL22, Clip
 from webdemo.inference import Engine, GenerateRequest, Result, damping
 from webdemo.inference.batch import Meeting, _Question, answer_together, run_batch
 from webdemo.inference.cancel import CancelToken
 from webdemo.inference.requests import Cancelled, Progress, ReactRequest
-from webdemo.motion import SMPL22, Clip
 
 
 def request(prompt: str = "Two people shake hands.", **fields) -> GenerateRequest:
@@ -30,7 +30,8 @@ def ends(engine: Engine, requests: list) -> dict[int, Result | Exception]:
     return found
 
 
-def test_results_are_those_of_running_alone(engine: Engine) -> None:
+def test_results_are_those_of_running_alone(either_engine: Engine) -> None:
+    engine = either_engine
     requests = [
         request(seed=1),
         request("One person waves.", seed=2, samples=2, guidance=1.0),
@@ -50,7 +51,7 @@ def test_results_are_those_of_running_alone(engine: Engine) -> None:
 
 def test_one_pass_answers_all(engine: Engine) -> None:
     counted: list[int] = []
-    denoiser = engine._generator("intergen").model.denoiser
+    denoiser = engine.pipeline("intergen").model.denoiser
     handle = denoiser.register_forward_hook(lambda module, args, out: counted.append(len(args[0])))
     try:
         ends(engine, [request(seed=i, steps=3) for i in range(3)])
@@ -111,7 +112,7 @@ def test_an_error_of_the_pass_reaches_everybody() -> None:
 
 @pytest.mark.parametrize("lengths", [(4, 4), (3, 5)])
 def test_padding_is_not_attended_to(engine: Engine, lengths: tuple[int, int]) -> None:
-    model = engine._generator("intergen").model
+    model = engine.pipeline("intergen").model
     generator = torch.Generator().manual_seed(0)
     questions = [
         _Question(

@@ -8,15 +8,15 @@ import numpy as np
 import pytest
 import torch
 
-from models.compact_bigraphdiff import CompactBiGraphDiff, CompactBiGraphDiffConfig
-from models.folder import save_network
+from models.bigraphdiff.compact import CompactBiGraphDiff, CompactBiGraphDiffConfig
 from models.motion_tokens import encode
+from models.weights_io import save_network
+from motion import SMPL22, InputError
+from motion.formats import read
 from webdemo import cli
-from webdemo.formats import read
 from webdemo.inference import Cancelled, CancelToken, GenerateRequest, Result
 from webdemo.inference.batch import run_batch
 from webdemo.inference.engine import WEIGHTS, Engine
-from webdemo.motion import SMPL22, InputError
 
 LABELS = ("shake hands", "wave to each other")
 QUICK = {"model": "bigraphdiff", "seconds": 1.5, "steps": 3, "guidance": 2.0}

@@ -1,16 +1,19 @@
 """The regularisers of sampling, on control points of two people who stand still."""
 
+from itertools import pairwise
+
 import numpy as np
 import pytest
 import torch
 
-from models.compact import CompactConfig, CompactInterGen, TouchReader
-from models.compact_regennet import CompactReGenNet, CompactReGenNetConfig
+from models.intergen.compact import CompactConfig, CompactInterGen, TouchReader
 from models.motion_tokens import encode, pack
+from models.regennet.compact import CompactReGenNet, CompactReGenNetConfig
+from motion import SMPL22, Duet
+from motion.metrics.quality import penetration
+from motion.skeleton import FEET
 from webdemo.inference import damping
 from webdemo.inference.damping import Beside, Damping, DampingWeights, asked_energy
-from webdemo.metrics.quality import penetration
-from webdemo.motion import SMPL22, Duet
 
 HANDS = (("right_wrist", "right_wrist"),)
 
@@ -30,6 +33,114 @@ def standing(model: CompactInterGen, apart: float) -> torch.Tensor:
     b += a[wrist] - b[wrist] + [0, 0, apart]
     positions = torch.tensor(np.stack([a, b]), dtype=torch.float32)[:, None].expand(2, 61, 22, 3)
     return pack(encode(positions, torch.ones(2, 61, 4), model.layout)[None], model.layout)
+
+
+def people(model: CompactInterGen, apart: float = 1.0) -> torch.Tensor:
+    """(2, 61, 22, 3) two who stand still, arms down, ``apart`` metres from each other, face to face."""
+    rest = torch.tensor(SMPL22.rest_positions(), dtype=torch.float32) + torch.tensor([0, 0.98, 0])
+    for side in ("left", "right"):
+        chain = [SMPL22.index(f"{side}_{name}") for name in ("shoulder", "elbow", "wrist")]
+        for parent, child in pairwise(chain):
+            length = SMPL22.bone_lengths[child]
+            rest[child] = rest[parent] - torch.tensor([0.0, float(length), 0.0])
+    rest = rest - rest[0] * torch.tensor([1.0, 0, 1.0])
+    other = rest * torch.tensor([-1.0, 1, -1]) + torch.tensor([0.0, 0, apart])
+    return torch.stack([rest, other])[:, None].repeat(1, 61, 1, 1)
+
+
+def damped(model: CompactInterGen, positions: torch.Tensor, *, standing: float = 0.0) -> torch.Tensor:
+    """What the shipped weights of the damping make of two people (2, 61, 22, 3), in metres.
+
+    standing: predicted contact of all feet.
+    """
+    x = pack(encode(positions, torch.full((2, 61, 4), standing), model.layout)[None], model.layout)
+    made = Damping(model, 1.0, frames=61, final_steps=60)(x, 0)
+    return model.positions(made)[0][0, :, :61]
+
+
+def test_bones_get_the_length_they_should_have(model):
+    before = people(model)
+    wrist, elbow = SMPL22.index("left_wrist"), SMPL22.index("left_elbow")
+    before[0, :, wrist, 1] -= 0.1
+
+    def length(positions: torch.Tensor) -> float:
+        return float((positions[0, :, wrist] - positions[0, :, elbow]).norm(dim=-1).mean())
+
+    assert abs(length(damped(model, before)) - SMPL22.bone_lengths[wrist]) < 0.02
+
+
+def test_feet_that_stand_stop_sliding(model):
+    before = people(model) + 0.01 * torch.arange(61)[:, None, None] * torch.tensor([1.0, 0, 0])
+
+    def slide(positions: torch.Tensor) -> float:
+        """Metres that a foot moves in a frame."""
+        return float(positions[:, :, list(FEET)].diff(dim=1).norm(dim=-1).mean())
+
+    assert slide(before) == pytest.approx(0.01)
+    assert slide(damped(model, before, standing=1.0)) < 0.007
+    assert slide(damped(model, before, standing=0.0)) > 0.0095  # a foot in the air may move
+
+
+def test_feet_come_out_of_the_floor(model):
+    before = people(model)
+    before[..., 1] -= before[0, 0, list(FEET), 1].max() + 0.04
+    lowest = damped(model, before)[:, :, list(FEET), 1]
+    assert float(before[:, :, list(FEET), 1].max()) < -0.03
+    assert float(lowest.mean()) > -0.02
+
+
+def test_trembling_is_smoothed(model):
+    control = encode(people(model), torch.zeros(2, 61, 4), model.layout)
+    control[:, ::2, 0] += 0.03  # every other control point of the pelvis, and all joints with it
+    x = pack(control[None], model.layout)
+    made = Damping(model, 1.0, frames=61, final_steps=60)(x, 0)
+    jerk = [
+        float(model.positions(one)[0][0, :, :61].diff(n=3, dim=1).norm(dim=-1).mean()) for one in (x, made)
+    ]
+    assert jerk[1] < 0.5 * jerk[0]
+
+
+def test_hands_that_nearly_meet_do(model):
+    before = people(model)
+    shoulder, elbow, wrist = (SMPL22.index(f"right_{name}") for name in ("shoulder", "elbow", "wrist"))
+    for person, forward in zip(before, (1.0, -1.0), strict=True):  # both hold their right arm out
+        for parent, child in ((shoulder, elbow), (elbow, wrist)):
+            reach = torch.tensor([0.0, 0.0, forward * float(SMPL22.bone_lengths[child])])
+            person[:, child] = person[:, parent] + reach
+    before[1] += before[0, 0, wrist] - before[1, 0, wrist] + torch.tensor([0.0, 0, 0.15])
+
+    def nearest(positions: torch.Tensor) -> float:
+        return float((positions[0, :, wrist] - positions[1, :, wrist]).norm(dim=-1).min())
+
+    assert nearest(before) == pytest.approx(0.15)
+    assert nearest(damped(model, before)) < 0.11
+
+
+def test_people_who_nearly_face_each_other_do(model):
+    before = people(model)
+    before[0] = before[0] @ rotation_y(0.4).T
+
+    def turned(positions: torch.Tensor) -> float:
+        """Radians between where the first person faces and the second."""
+        across = positions[0, :, SMPL22.index("left_hip")] - positions[0, :, SMPL22.index("right_hip")]
+        return float(torch.atan2(across[:, 2], across[:, 0]).abs().mean())
+
+    assert turned(before) == pytest.approx(0.4, abs=0.01)
+    assert turned(damped(model, before)) < 0.25
+
+
+def test_bodies_that_overlap_part(model):
+    before = people(model, apart=0.1)
+
+    def depth(positions: torch.Tensor) -> float:
+        return penetration(Duet.from_positions(positions.numpy(), fps=30.0)).mean
+
+    assert depth(damped(model, before)) < 0.3 * depth(before)
+
+
+def rotation_y(angle: float) -> torch.Tensor:
+    cos, sin = np.cos(angle), np.sin(angle)
+    return torch.tensor([[cos, 0, sin], [0, 1, 0], [-sin, 0, cos]], dtype=torch.float32)
 
 
 def gap(model: CompactInterGen, x: torch.Tensor) -> float:

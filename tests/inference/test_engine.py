@@ -7,9 +7,9 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from motion import SMPL22, InputError
 from webdemo.inference import Cancelled, CancelToken, GenerateRequest, Progress, Result
 from webdemo.inference.engine import Engine
-from webdemo.motion import SMPL22, InputError
 
 REQUEST = GenerateRequest(prompt="Two people shake hands.", seconds=2.0, seed=7, steps=6)
 
@@ -65,12 +65,12 @@ def test_damping_zero_is_the_plain_sampler_bit_for_bit(engine: Engine) -> None:
     import torch
 
     from models.diffusion import make_scheduler
-    from webdemo.inference.generator import sample_noise
+    from webdemo.inference.noise import sample_noise
 
     request = replace(REQUEST, damping=0.0, cleanup=False)
     ours = result_of(engine, request).duets[0].positions
 
-    generator = engine._generator("intergen")
+    generator = engine.pipeline("intergen")
     model, layout = generator.model, generator.model.layout
     condition, _ = generator.condition(request.prompt)
     x = sample_noise(request.seed, 1, (layout.num_tokens(60), 2 * layout.token_features))
@@ -152,7 +152,7 @@ def test_an_unknown_model_is_refused(engine: Engine) -> None:
         list(engine.run(replace(REQUEST, model="nonesuch")))
 
 
-@pytest.mark.parametrize("name", ["config.json", "model-1-of-1.safetensors", "captions.safetensors"])
+@pytest.mark.parametrize("name", ["config.json", "model.safetensors", "captions.safetensors"])
 @pytest.mark.parametrize("damage", ["missing", "altered", "empty"])
 def test_missing_or_altered_weights_are_refused(
     weights: Path, tmp_path: Path, name: str, damage: str

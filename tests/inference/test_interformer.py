@@ -7,14 +7,14 @@ import numpy as np
 import pytest
 import torch
 
-from models.compact_interformer import CompactInterFormer, CompactInterFormerConfig
 from models.errors import WeightsError
-from models.folder import save_network
+from models.interformer.compact import CompactInterFormer, CompactInterFormerConfig
+from models.weights_io import save_network
+from motion import SMPL22, Clip, InputError
+from motion.transforms import heading_matrix
 from webdemo.inference import Cancelled, CancelToken, GenerateRequest, Progress, ReactRequest, Result
 from webdemo.inference.engine import Engine
-from webdemo.inference.interformer import on_smpl22
-from webdemo.motion import SMPL22, Clip, InputError
-from webdemo.motion.transforms import heading_matrix
+from webdemo.inference.pipelines.interformer import on_smpl22
 
 from .people import waver
 
@@ -81,7 +81,7 @@ def test_where_the_scene_stands_in_the_world_does_not_matter(engine: Engine) -> 
 
 
 def test_fifteen_joints_come_back_as_the_twenty_two_they_were_taken_from() -> None:
-    from models.compact_interformer import JOINTS_15
+    from models.interformer.compact import JOINTS_15
 
     body = REQUEST.actor.positions[::2][:, list(JOINTS_15)].astype(float)
     found = on_smpl22(body, 90)
@@ -109,7 +109,7 @@ def test_what_it_cannot_do_is_said(engine: Engine, tmp_path: Path) -> None:
         replace(REQUEST, role="b")
     with pytest.raises(InputError, match="choose offline"):
         replace(REQUEST, mode="online")
-    with pytest.raises(InputError, match="give it an actor"):
-        list(engine.run(GenerateRequest(prompt="Two people wave.", model="interformer")))
+    with pytest.raises(InputError, match="InterFormer does not generate: choose one of intergen"):
+        GenerateRequest(prompt="Two people wave.", model="interformer")
     with pytest.raises(WeightsError):
         list(Engine(tmp_path).run(REQUEST))

@@ -11,13 +11,19 @@ import torch
 
 from models.motion_mlp import MotionMLP, MotionMLPConfig
 from models.predictors import save_predictor
+from motion import SMPL22, Clip, Duet, InputError, stacked_positions
+from motion.formats import read
+from motion.formats.one_person import write_clip
+from motion.kinematics import forward_kinematics
+from motion.skeleton import SBU15
+from motion.transforms import heading, heading_matrix
 from webdemo import cli
-from webdemo.formats import read
-from webdemo.formats.one_person import write_clip
 from webdemo.inference import PredictRequest, PredictResult
 from webdemo.inference.engine import WEIGHTS, Engine
-from webdemo.inference.predict import (
-    MotionPredictor,
+from webdemo.inference.pipelines.predict_feet import with_planted_feet
+from webdemo.inference.pipelines.predict_frame import to_last_pose, to_world
+from webdemo.inference.pipelines.predictor import (
+    PredictorPipeline,
     above_floor,
     faded,
     joined,
@@ -25,14 +31,7 @@ from webdemo.inference.predict import (
     with_bones_of,
     without_jump,
 )
-from webdemo.inference.predict_feet import with_planted_feet
-from webdemo.inference.predict_frame import to_last_pose, to_world
-from webdemo.inference.predict_request import people_of
-from webdemo.motion import SMPL22, Clip, Duet, InputError
-from webdemo.motion.kinematics import forward_kinematics
-from webdemo.motion.skeleton import SBU15
-from webdemo.motion.transforms import heading, heading_matrix
-from webdemo.ui.examples import CLIPS
+from webdemo.ui.text.examples import CLIPS
 
 
 def walker(seconds: float = 3.0, fps: float = 30.0, turn: float = 0.7) -> Clip:
@@ -133,7 +132,7 @@ def test_other_frame_rates_are_resampled(predicting: Engine) -> None:
     ("asked", "told"),
     [
         ({"marker": 0.4}, "The past is 0.40 s long, and 1 s or more is needed: move the marker"),
-        ({"marker": 5.0}, "The marker, 5 s, lies behind the motion, which lasts 3.00 s."),
+        ({"marker": 5.0}, "The marker, 5 s, is after the end of the motion, which lasts 3.00 s."),
         ({"marker": float("nan")}, "Marker must be a number"),
         (
             {"motion": walker(0.5)},
@@ -145,7 +144,7 @@ def test_other_frame_rates_are_resampled(predicting: Engine) -> None:
         ),
         ({"motion": walker(61.0)}, "The motion lasts 61 s: cut it to 60 s or less."),
         ({"seconds": 9.0}, "Length must be from 0.5 to 4 seconds, not 9."),
-        ({"model": "oracle"}, "Model 'oracle' is not known: choose one of"),
+        ({"model": "oracle"}, "There is no model 'oracle': choose one of"),
         ({"motion": None}, "Give the motion of one person or of two to predict from."),
         ({"motion": Clip(np.zeros((60, 15, 3)), 30.0, SBU15)}, "not SMPL's 22"),
     ],
@@ -206,10 +205,10 @@ def test_corrections_leave_good_motion_alone() -> None:
 
 def test_the_shipped_network_goes_on_moving_without_a_jump() -> None:
     """Eq. 2.13 of Chopin's thesis, over all shipped examples and markers two tenths of a second apart."""
-    predictor = MotionPredictor(WEIGHTS / "motion-mlp")
+    predictor = PredictorPipeline(WEIGHTS / "motion-mlp")
     own, real, errors, held = [], [], [], []
     for path in sorted(CLIPS.glob("*.npz")):
-        people = people_of(read(path)).astype(np.float64)
+        people = stacked_positions(read(path)).astype(np.float64)
         for marker in range(30, people.shape[1] - 30, 6):
             past, truth = people[:, :marker], people[:, marker : marker + 30]
             made = predictor.predict(past, 30)

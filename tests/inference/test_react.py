@@ -6,12 +6,12 @@ import numpy as np
 import pytest
 import torch
 
+from motion import SKELETONS, SMPL22, Clip, Duet, InputError
+from motion.handedness import leading_wrist
+from motion.transforms import heading, heading_matrix, mirrored
 from webdemo.inference import Cancelled, CancelToken, Progress, ReactRequest, Result
-from webdemo.inference.actor import APART, Placement, choose_actor
+from webdemo.inference.actor import MEDIAN_START_DISTANCE, Placement, choose_actor
 from webdemo.inference.engine import Engine
-from webdemo.motion import SKELETONS, SMPL22, Clip, Duet, InputError
-from webdemo.motion.handedness import leading_wrist
-from webdemo.motion.transforms import heading, heading_matrix, mirrored
 
 from .people import waver
 
@@ -85,7 +85,7 @@ def test_a_moved_actor_moves_the_reaction(
 def test_placement_puts_a_person_where_the_network_expects_one(role: str) -> None:
     placement = Placement.of(waver(), role)
     seen = placement.to_network(waver().positions)
-    away, towards = (0.0, 0.0) if role == "a" else (APART, np.pi)
+    away, towards = (0.0, 0.0) if role == "a" else (MEDIAN_START_DISTANCE, np.pi)
     np.testing.assert_allclose(seen[0, 0, [0, 2]], [0, away], atol=1e-6)
     np.testing.assert_allclose(np.cos(heading(seen)[0] - towards), 1, atol=1e-6)
     np.testing.assert_allclose(placement.to_world(seen), waver().positions, atol=1e-6)
@@ -94,16 +94,17 @@ def test_placement_puts_a_person_where_the_network_expects_one(role: str) -> Non
 def test_the_network_sees_the_given_person_clean_at_every_step(engine: Engine) -> None:
     """Sampling by hand: the given half is set before each network call, and its prediction overwritten."""
     from models.diffusion import make_scheduler
-    from webdemo.inference.generator import sample_noise
+    from webdemo.inference.noise import sample_noise
     from webdemo.inference.scenes import scene_of
 
     request = replace(REQUEST, damping=0.0, cleanup=False)
-    generator = engine._generator("intergen")
+    generator = engine.pipeline("intergen")
     model, layout = generator.model, generator.model.layout
     scene = scene_of(request, model)
     half = layout.token_features
-    clean = scene.given.x0[None, :, :half]
-    decoded = model.positions(scene.given.x0[None])[0][0, 0, :60].numpy()
+    empty = torch.zeros(1, layout.num_tokens(60), 2 * half)
+    clean = scene.given(empty)[..., :half]
+    decoded = model.positions(scene.given(empty))[0][0, 0, :60].numpy()
     expected = scene.placement.to_network(waver().positions)
     np.testing.assert_allclose(decoded, expected, atol=0.01)
 
@@ -121,6 +122,22 @@ def test_the_network_sees_the_given_person_clean_at_every_step(engine: Engine) -
     np.testing.assert_allclose(scene.placement.to_world(plain), ours, atol=1e-5)
 
 
+def test_a_network_that_sees_what_is_known_sees_the_given_person(reading_engine: Engine) -> None:
+    seen = []
+    denoiser = reading_engine.pipeline("intergen").model.denoiser
+    handle = denoiser.register_forward_pre_hook(
+        lambda module, args: seen.append(args[4].unflatten(-1, (2, -1)).movedim(2, 0))
+    )
+    try:
+        react(reading_engine, damping=0.0)
+    finally:
+        handle.remove()
+    assert len(seen) == REQUEST.steps
+    for known in seen:
+        assert known[0].abs().sum() > 0 and known[1].abs().sum() == 0  # the actor, not the one who is made
+    np.testing.assert_array_equal(react(reading_engine).duets[0].a.positions, waver().positions)
+
+
 def test_damping_and_cleanup_touch_the_reaction_alone(engine: Engine) -> None:
     plain = react(engine, damping=0.0, cleanup=False, steps=20)
     damped = react(engine, damping=0.9, cleanup=False, steps=20)
@@ -136,12 +153,13 @@ def test_damping_moves_no_given_number(engine: Engine) -> None:
     from webdemo.inference.damping import Damping
     from webdemo.inference.scenes import scene_of
 
-    model = engine._generator("intergen").model
+    model = engine.pipeline("intergen").model
     given = scene_of(REQUEST, model).given
-    x0 = given.hold(torch.randn(2, *given.x0.shape, generator=torch.Generator().manual_seed(1)))
-    corrected = Damping(model, 1.0, frames=60, frozen=given.mask)(x0, 0)
-    assert torch.equal(corrected[:, given.mask], x0[:, given.mask])
-    assert (corrected[:, ~given.mask] != x0[:, ~given.mask]).float().mean() > 0.5
+    frozen = given.frozen[0]
+    x0 = given(torch.randn(2, *frozen.shape, generator=torch.Generator().manual_seed(1)))
+    corrected = Damping(model, 1.0, frames=60, frozen=frozen)(x0, 0)
+    assert torch.equal(corrected[:, frozen], x0[:, frozen])
+    assert (corrected[:, ~frozen] != x0[:, ~frozen]).float().mean() > 0.5
 
 
 @pytest.mark.parametrize(("seconds", "frames"), [(1.0, 30), (1.37, 41), (10.0, 300), (301 / 30, 301)])
@@ -215,7 +233,7 @@ def test_what_cannot_be_done_is_refused_with_a_sentence(change: dict, says: str)
 
 
 def test_an_unknown_model_is_refused(engine: Engine) -> None:
-    with pytest.raises(InputError, match="is not known"):
+    with pytest.raises(InputError, match="There is no model"):
         react(engine, model="nonesuch")
 
 
@@ -243,7 +261,7 @@ def test_one_person_is_chosen_and_trimmed() -> None:
         (1, {"person": "b"}, "one person only"),
         (1, {"start": -1.0}, "start < end"),
         (1, {"start": 1.5, "end": 1.0}, "start < end"),
-        (1, {"start": 2.5, "end": 4.0}, "behind the motion"),
+        (1, {"start": 2.5, "end": 4.0}, "after the end of the motion"),
         (1, {"end": float("nan")}, "start < end"),
     ],
 )

@@ -8,14 +8,15 @@ import numpy as np
 import pytest
 import torch
 
-from models.compact_regennet import CompactReGenNet, CompactReGenNetConfig, load_folder
 from models.errors import WeightsError
-from models.folder import save_network
 from models.motion_tokens import FEATURES, encode
-from webdemo.inference import Cancelled, CancelToken, GenerateRequest, Progress, ReactRequest, Result, reactor
+from models.regennet.compact import CompactReGenNet, CompactReGenNetConfig, load_folder
+from models.weights_io import save_network
+from motion import SMPL22, InputError
+from motion.transforms import heading_matrix
+from webdemo.inference import Cancelled, CancelToken, GenerateRequest, Progress, ReactRequest, Result
 from webdemo.inference.engine import Engine
-from webdemo.motion import SMPL22, InputError
-from webdemo.motion.transforms import heading_matrix
+from webdemo.inference.pipelines import regennet as reactor
 from webdemo.view.payload import player_payload
 
 from .people import waver
@@ -103,7 +104,7 @@ def test_a_start_is_told_to_the_network(network: CompactReGenNet) -> None:
         (np.zeros((21, 3)), "regennet", "22 joints"),
         (np.full((22, 3), np.nan), "regennet", "finite|NaN"),
         (np.zeros((22, 3)), "regennet", "bones"),
-        (waver(2.5).positions[0], "intergen", "no start pose"),
+        (waver(2.5).positions[0], "intergen", "no first pose"),
     ],
 )
 def test_bad_starts_are_told(start: np.ndarray, model: str, why: str) -> None:
@@ -121,7 +122,7 @@ def test_offline_sees_the_future(engine: Engine) -> None:
 
 def test_the_stream_is_the_sampling_of_the_whole_at_once(network: CompactReGenNet) -> None:
     """Cached keys, the window and the one row at a time change nothing but the order of the sums."""
-    from models.diffusion import make_scheduler, sample_steps
+    from models.diffusion import denoise, make_scheduler
 
     frames, actor = 90, torch.from_numpy(np.asarray(waver(3.0).positions)).float()
     rows = network.num_rows(frames)
@@ -135,8 +136,8 @@ def test_the_stream_is_the_sampling_of_the_whole_at_once(network: CompactReGenNe
     def predict(x: torch.Tensor, t: torch.Tensor) -> torch.Tensor:
         return network(x, t, seen, condition, causal=True)
 
-    *_, last = sample_steps(predict, noise.transpose(0, 1), make_scheduler("ddim", 3, spacing="top"))
-    whole = network.positions(last.sample, frames)[0][0]
+    sample = denoise(predict, noise.transpose(0, 1), make_scheduler("ddim", 3, spacing="top"))
+    whole = network.positions(sample, frames)[0][0]
     torch.testing.assert_close(streamed, whole, atol=1e-4, rtol=0)
 
 
@@ -200,11 +201,11 @@ def test_a_run_can_be_cancelled(engine: Engine, mode: str) -> None:
 @pytest.mark.parametrize(
     ("changed", "says"),
     [
-        ({"role": "b"}, "makes the one who reacts"),
-        ({"sampler": "dpm++"}, "samples with ddim"),
+        ({"role": "b"}, "makes the person who reacts"),
+        ({"sampler": "dpm++"}, "does not sample with dpm"),
         ({"mode": "backwards"}, "choose offline or online"),
         ({"model": "intergen"}, "choose offline"),
-        ({"model": "nobody"}, "not known"),
+        ({"model": "nobody"}, "There is no model"),
         ({"damping": 3.0}, "Damping"),
     ],
 )
@@ -264,8 +265,8 @@ def test_words_that_ask_for_a_touch_reach_the_damping(
 
 
 def test_text_alone_is_not_for_regennet(engine: Engine) -> None:
-    with pytest.raises(InputError, match="give it an actor"):
-        list(engine.run(GenerateRequest(prompt="They bow.", model="regennet")))
+    with pytest.raises(InputError, match="ReGenNet does not generate"):
+        GenerateRequest(prompt="They bow.", model="regennet")
     with pytest.raises(InputError, match="online"):
         engine.live(replace(REQUEST, mode="offline"))
 

@@ -4,8 +4,20 @@ import numpy as np
 import pytest
 import torch
 
-from models.motion_tokens import FEATURES, TokenLayout, decode, encode, mirror_control, pack, unpack
-from webdemo.motion import SMPL22
+from models.motion_tokens import (
+    FEATURES,
+    TokenLayout,
+    canonical_control,
+    decode,
+    encode,
+    feature_rows,
+    headings,
+    mirror_control,
+    pack,
+    unpack,
+)
+from motion import SMPL22
+from motion.transforms import canonicalize, heading, heading_matrix
 
 LAYOUT = TokenLayout()
 
@@ -68,3 +80,29 @@ def test_unpack_undoes_pack() -> None:
     assert torch.equal(unpack(x, LAYOUT), control)
     first_person = x[..., : LAYOUT.token_features]
     assert torch.equal(first_person.reshape(3, 10, FEATURES), control[:, 0])
+
+
+def turned(positions: torch.Tensor, angle: float) -> torch.Tensor:
+    """Two people (2, T, 22, 3), the second turned once more as much, away from the origin."""
+    first = positions[0].numpy() @ heading_matrix(angle).T + np.array([2.0, 0.0, -1.0])
+    second = positions[1].numpy() @ heading_matrix(2 * angle).T + np.array([3.0, 0.1, 1.0])
+    return torch.from_numpy(np.stack([first, second])).float()
+
+
+@pytest.mark.parametrize("angle", [0.0, 0.8, -2.5])
+def test_headings_are_those_of_the_bodies(angle: float) -> None:
+    positions = turned(smooth(6), angle)
+    found = headings(feature_rows(positions, torch.zeros(*positions.shape[:2], 4)))
+    expected = heading(positions.numpy())
+    assert np.allclose(found[..., 0], np.sin(expected), atol=1e-5)
+    assert np.allclose(found[..., 1], np.cos(expected), atol=1e-5)
+
+
+@pytest.mark.parametrize("angle", [0.8, -2.5])
+def test_canonical_control_points_are_those_of_the_canonical_motion(angle: float) -> None:
+    positions = turned(smooth(6), angle)
+    control = canonical_control(encode(positions, torch.ones(2, positions.shape[1], 4), LAYOUT))
+    found, contacts = decode(control, LAYOUT)
+    expected = torch.from_numpy(canonicalize(positions.numpy(), person=0)).float()
+    assert torch.linalg.vector_norm(found - expected, dim=-1).max() < 0.01
+    torch.testing.assert_close(contacts, torch.ones_like(contacts), atol=1e-3, rtol=0)

@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 from scipy.spatial.transform import Rotation
 
-from webdemo.motion import SMPL22
-from webdemo.motion.kinematics import forward_kinematics
+from motion import SMPL22
+from motion.kinematics import forward_kinematics
 
 FPS = 30.0
 

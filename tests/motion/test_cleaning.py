@@ -6,10 +6,10 @@ import numpy as np
 import pytest
 from scipy.ndimage import gaussian_filter1d
 
-from webdemo.motion import SMPL22
-from webdemo.motion.cleaning import foot_contacts, plant_feet, solve_two_bones
-from webdemo.motion.kinematics import project_to_skeleton
-from webdemo.motion.skeleton import FEET
+from motion import SMPL22
+from motion.cleaning import foot_contacts, plant_feet, solve_two_bones
+from motion.kinematics import project_to_skeleton
+from motion.skeleton import FEET
 
 from .bodies import FPS, gliding, marching
 

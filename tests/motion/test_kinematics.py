@@ -7,8 +7,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy.spatial.transform import Rotation
 
-from webdemo.motion import SMPL22
-from webdemo.motion.kinematics import (
+from motion import SMPL22
+from motion.kinematics import (
     fit_rotations,
     forward_kinematics,
     global_rotations,

@@ -9,10 +9,10 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from webdemo.motion import representation as rep
-from webdemo.motion.kinematics import forward_kinematics
-from webdemo.motion.skeleton import SMPL22
-from webdemo.motion.transforms import turn
+from motion import representation as rep
+from motion.kinematics import forward_kinematics
+from motion.skeleton import SMPL22
+from motion.transforms import turn
 
 REFERENCE = Path(__file__).parents[1] / "data" / "reference" / "intergen_representation.npz"
 

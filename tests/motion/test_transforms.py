@@ -6,8 +6,8 @@ import numpy as np
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from webdemo.motion import SMPL22
-from webdemo.motion.transforms import (
+from motion import SMPL22
+from motion.transforms import (
     canonicalize,
     facing,
     heading,

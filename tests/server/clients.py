@@ -24,7 +24,7 @@ from .lab import stub_module
 JOIN, UPLOAD, CALL = "/gradio_api/queue/join", "/gradio_api/upload", "/gradio_api/call"
 HERE = "http://127.0.0.1"
 HTML = {"accept": "text/html"}
-FIELDS = ["Two people walk.", 1, 0, 1, 3, 1, 0, "ddim"]
+FIELDS = ["Two people walk.", 1, 0, 1, 3, 1, 0, "ddim", "intergen"]
 """What /generate is given: a second, one step."""
 
 
@@ -60,7 +60,7 @@ def sign_in(client: TestClient, name: str) -> dict[str, str]:
     answer = client.post("/login", data={"username": name, "password": f"password of {name}"})
     assert answer.json() == {"success": True}
     cookie = answer.headers["set-cookie"]
-    assert all(part in cookie for part in ("HttpOnly", "SameSite=Lax", "Path=/"))
+    assert all(part in cookie for part in ("HttpOnly", "SameSite=lax", "Path=/"))
     client.cookies.clear()
     return {"cookie": cookie.split(";")[0]}
 

@@ -8,10 +8,11 @@ from collections.abc import Iterator
 import pytest
 from fastapi.testclient import TestClient
 
-from webdemo.server import accounts, app
-from webdemo.server.accounts import Users
+from tests.inference.conftest import weights
+from webdemo.server import app
+from webdemo.server.accounts import users as accounts
+from webdemo.server.accounts.users import Users
 
-from ..inference.conftest import weights
 from .clients import client_of, served_on_loopback, settings_for
 
 __all__ = ["weights"]
@@ -19,7 +20,7 @@ OFTEN = 100_000
 """Requests a minute: nothing that these servers are asked is too often."""
 
 
-@pytest.fixture(scope="package")
+@pytest.fixture(scope="module")
 def local(tmp_path_factory: pytest.TempPathFactory) -> Iterator[TestClient]:
     """A server for its own machine, without accounts."""
     folder = tmp_path_factory.mktemp("local")
@@ -27,7 +28,7 @@ def local(tmp_path_factory: pytest.TempPathFactory) -> Iterator[TestClient]:
         yield client
 
 
-@pytest.fixture(scope="package")
+@pytest.fixture(scope="module")
 def shared(tmp_path_factory: pytest.TempPathFactory) -> Iterator[TestClient]:
     """A server with the accounts of ada and eve."""
     folder = tmp_path_factory.mktemp("shared")
@@ -42,7 +43,7 @@ def shared(tmp_path_factory: pytest.TempPathFactory) -> Iterator[TestClient]:
             yield client
 
 
-@pytest.fixture(scope="package")
+@pytest.fixture(scope="module")
 def pair(tmp_path_factory: pytest.TempPathFactory) -> Iterator[tuple[TestClient, TestClient]]:
     """Two page processes' servers with one database and the accounts of ada and eve, of whom each may have
     two runs; a step takes 0.1 s."""
@@ -61,7 +62,7 @@ def pair(tmp_path_factory: pytest.TempPathFactory) -> Iterator[tuple[TestClient,
             yield one, two
 
 
-@pytest.fixture(scope="package")
+@pytest.fixture(scope="module")
 def served(tmp_path_factory: pytest.TempPathFactory) -> Iterator[tuple[str, int]]:
     """Where a server listens that waits a second for heads and bodies, and bounds connections."""
     folder = tmp_path_factory.mktemp("served")
@@ -69,3 +70,8 @@ def served(tmp_path_factory: pytest.TempPathFactory) -> Iterator[tuple[str, int]
         folder, header_seconds=1, body_seconds=1, connections=60, address_connections=50
     ) as address:
         yield address
+
+
+def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
+    """Ray runs last: its threads stay in the process, and servers that were made before it may then hang."""
+    items.sort(key=lambda item: "test_ray_engine" in item.nodeid)

@@ -27,9 +27,11 @@ def stub_module() -> ModuleType:
 
 
 if __name__ == "__main__":
+    from webdemo.server.logs import set_up_logs
     from webdemo.server.serve import make_server
     from webdemo.server.settings import read_settings
 
     engine = stub_module().StubEngine(pause=float(os.environ.get("STUB_PAUSE", "0.02")))
     settings = read_settings(port=int(sys.argv[1]), data=sys.argv[2])
+    set_up_logs(settings.log_level, content=settings.log_content)
     make_server(settings, engine=engine, scratch=True).run()

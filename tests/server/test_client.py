@@ -17,7 +17,7 @@ from gradio_client import Client
 from gradio_client.exceptions import AppError, AuthenticationError
 
 from webdemo.inference.requests import Result
-from webdemo.server.accounts import Users
+from webdemo.server.accounts.users import Users
 from webdemo.server.serve import make_server
 from webdemo.server.settings import Settings
 

@@ -12,11 +12,13 @@ from pathlib import Path
 
 import pytest
 import yaml
+from packaging.requirements import Requirement
+from packaging.utils import canonicalize_name
 
+from tests.server.queue.test_queue import wait_for
 from webdemo.server.settings import PREFIX, read_settings
 
 from .lab import ROOT
-from .test_queue import wait_for
 
 DOCKERFILE = (ROOT / "Dockerfile").read_text().replace("\\\n", "")
 UNIT = ROOT / "docs" / "deploy" / "pas-de-deux.service"
@@ -39,9 +41,28 @@ def test_the_image_runs_without_rights_and_has_what_it_needs() -> None:
     copied = [line.split()[0] for line in instructions("COPY") if not line.startswith("--from")]
     assert copied and all((ROOT / name).exists() for name in copied)
     let_in = (ROOT / ".dockerignore").read_text().splitlines()
-    assert all(f"!{name}" in let_in for name in [*copied, "requirements.txt"])
+    assert all(f"!{name}" in let_in for name in [*copied, "requirements.lock"])
     torch = re.search(r"torch==\S+ --index-url \S+/cpu\b", DOCKERFILE)
     assert torch is not None and torch[0] in (ROOT / "README.md").read_text()
+
+
+def test_the_image_installs_what_is_locked() -> None:
+    """Everything by its hash, no address of any index, and what the requirements ask for."""
+    text = (ROOT / "requirements.lock").read_text()
+    blocks = re.findall(
+        r"^([a-z0-9-]+)==(\S+) \\\n((?: +--hash=sha256:[0-9a-f]{64}(?: \\)?\n)+)", text, re.MULTILINE
+    )
+    locked = {name: version for name, version, _ in blocks}
+    lines = [line for line in text.splitlines() if not line.startswith(("#", " "))]
+    assert len(lines) == len(blocks) > 50 and "://" not in text
+    assert "--require-hashes --no-deps -r requirements.lock" in DOCKERFILE
+    for line in (ROOT / "requirements.txt").read_text().splitlines():
+        if line.startswith("#"):
+            continue
+        wanted = Requirement(line)
+        assert re.search("<|==", line), f"{line} has no upper bound"
+        if wanted.name != "torch":
+            assert wanted.specifier.contains(locked[canonicalize_name(wanted.name)]), line
 
 
 def test_compose_takes_every_right_away(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -15,14 +15,14 @@ from typing import Any
 import pytest
 from fastapi.testclient import TestClient
 
-from webdemo.server import sessions
-from webdemo.server.sessions import LeanStates
+from webdemo.server.http import page_sessions as sessions
+from webdemo.server.http.page_sessions import LeanStates
 
 from .clients import client_of, settings_for
 from .lab import ROOT
 
 CALL = "/gradio_api/call/generate"
-FIELDS = ["Two people walk.", 1, 0, 1, 3, 1, 0, "ddim"]
+FIELDS = ["Two people walk.", 1, 0, 1, 3, 1, 0, "ddim", "intergen"]
 
 
 @pytest.fixture

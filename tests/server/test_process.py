@@ -15,9 +15,9 @@ from typing import Any
 import httpx
 import pytest
 
-from webdemo.motion import InputError
-from webdemo.server.database import Database
-from webdemo.server.history import History
+from motion import InputError
+from webdemo.server.store.database import Database
+from webdemo.server.store.history import History
 
 from .clients import answer_of
 from .lab import ROOT
@@ -75,7 +75,7 @@ class Process:
 
     def ask(self, steps: int) -> str:
         """Begins a run; returns where its result will come."""
-        data = ["Two people walk.", 1, 3, 1, 3, steps, 0, "ddim"]
+        data = ["Two people walk.", 1, 3, 1, 3, steps, 0, "ddim", "intergen"]
         asked = httpx.post(f"{self.url}{CALL}", json={"data": data}, timeout=60)
         return f"{self.url}{CALL}/{asked.json()['event_id']}"
 

@@ -10,11 +10,11 @@ from contextlib import ExitStack
 
 import pytest
 
+from tests.server.queue.test_queue import wait_for
 from webdemo.server.serve import FILES, with_room_for_files
 from webdemo.server.settings import Settings
 
 from .clients import JOIN, UPLOAD, answers, read_all
-from .test_queue import wait_for
 
 
 def test_a_head_that_never_ends_is_cut_off(served: tuple[str, int]) -> None:

@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from webdemo.formats import write
+from motion.formats import write
 
 from .stub_engine import walking
 

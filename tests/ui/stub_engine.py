@@ -8,13 +8,13 @@ from typing import Any
 
 import numpy as np
 
+from motion import SMPL22, Clip, Duet, InputError, stacked_positions
+from motion.kinematics import forward_kinematics
+from motion.metrics import compare
+from motion.transforms import heading_matrix
 from webdemo.inference.live import LiveFrame, LiveProgress, LiveRequest, paced
-from webdemo.inference.predict_request import PredictRequest, PredictResult, people_of, with_people
+from webdemo.inference.predict_request import PredictRequest, PredictResult, with_people
 from webdemo.inference.requests import Cancelled, GenerateRequest, Progress, ReactRequest, Result
-from webdemo.metrics import compare
-from webdemo.motion import SMPL22, Clip, Duet, InputError
-from webdemo.motion.kinematics import forward_kinematics
-from webdemo.motion.transforms import heading_matrix
 
 FPS = 30
 _WALK = 0.8  # metres a second
@@ -55,7 +55,7 @@ def beside(person: Clip, role: str, seed: int) -> Duet:
 
 def drift(request: PredictRequest) -> PredictResult:
     """Everyone rises after the marker, by a centimetre a frame, or two by another method than the usual."""
-    past, frames = people_of(request.past), round(request.seconds * FPS)
+    past, frames = stacked_positions(request.past), round(request.seconds * FPS)
     pace = 0.01 if request.model == PredictRequest.model else 0.02
     rise = pace * np.arange(1, frames + 1)[:, None, None] * np.array([0, 1.0, 0])
     whole = np.concatenate([past, past[:, -1:] + rise], axis=1)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import os
+import re
 from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
@@ -15,8 +16,9 @@ os.environ.setdefault("GRADIO_ANALYTICS_ENABLED", "False")
 
 from gradio_client import Client, handle_file
 from gradio_client.exceptions import AppError
+from PIL import Image
 
-from webdemo.formats import read
+from motion.formats import read
 from webdemo.ui.page import build_page, launch_options
 
 from .stub_engine import StubEngine, walking
@@ -42,10 +44,12 @@ def test_generate_gives_a_manifest_and_files_that_can_be_read(client: Client) ->
     assert len(answer["readouts"]) == 2
     by_name = {Path(path).name: Path(path) for path in files}
     assert set(by_name) == {name for names in answer["files"].values() for name in names}
-    with np.load(by_name["two-people-walk-seed5-2.npz"], allow_pickle=False) as saved:
+    (plain,) = (Path(name).stem for name in by_name if name.endswith(".json"))
+    assert plain.startswith("two-people-walk-seed5-")
+    with np.load(by_name[f"{plain}-2.npz"], allow_pickle=False) as saved:
         assert saved["positions"].shape == (2, 60, 22, 3)
-    assert json.loads(by_name["two-people-walk-seed5.json"].read_text())["request"]["steps"] == 3
-    assert by_name["two-people-walk-seed5-1_a.bvh"].read_text().startswith("HIERARCHY")
+    assert json.loads(by_name[f"{plain}.json"].read_text())["request"]["steps"] == 3
+    assert by_name[f"{plain}-1_a.bvh"].read_text().startswith("HIERARCHY")
 
 
 def test_only_the_prompt_is_needed(client: Client) -> None:
@@ -57,7 +61,7 @@ def test_a_class_is_enough_too(client: Client) -> None:
     answer, files = client.predict("shake hands", api_name="/generate_class")
     asked = answer["manifest"]["request"]
     assert (asked["model"], asked["prompt"], asked["guidance"]) == ("bigraphdiff", "shake hands", 1.8)
-    assert any(Path(path).name == "shake-hands-seed0.npz" for path in files)
+    assert any(re.fullmatch("shake-hands-seed0-[0-9a-f]{4}.npz", Path(path).name) for path in files)
 
 
 @pytest.mark.parametrize(
@@ -87,7 +91,7 @@ def test_the_endpoint_is_documented(client: Client) -> None:
     endpoint = client.view_api(return_format="dict", print_info=False)["named_endpoints"]["/generate"]
     parameters = {p["parameter_name"]: p for p in endpoint["parameters"]}
     assert list(parameters) == [
-        "prompt", "seconds", "seed", "samples", "guidance", "steps", "damping", "sampler"
+        "prompt", "seconds", "seed", "samples", "guidance", "steps", "damping", "sampler", "model"
     ]  # fmt: skip
     assert all(p["parameter_has_default"] for name, p in parameters.items() if name != "prompt")
     assert "two-person .npz" in endpoint["description"]
@@ -99,7 +103,7 @@ def test_react_takes_a_file_and_gives_files(client: Client, walkers: Path) -> No
     )
     assert answer["manifest"]["request"]["actor"]["name"] == "walkers.npz"
     motion = next(Path(path) for path in files if path.endswith(".npz"))
-    assert motion.name == "reaction-to-walkers-seed0.npz"
+    assert re.fullmatch("reaction-to-walkers-seed0-[0-9a-f]{4}.npz", motion.name)
     np.testing.assert_array_equal(read(motion).a.positions, walking(12.0).b.positions[30:90])
 
 
@@ -121,3 +125,20 @@ def test_of_react_only_the_actor_is_needed(client: Client, walker: Path) -> None
     endpoint = client.view_api(return_format="dict", print_info=False)["named_endpoints"]["/react"]
     needed = [p["parameter_name"] for p in endpoint["parameters"] if not p["parameter_has_default"]]
     assert needed == ["actor"]
+
+
+def test_render_films_a_motion_file(client: Client, walkers: Path) -> None:
+    path = client.predict(
+        motion=handle_file(walkers), kind="gif", width=96, height=64, fps=5, api_name="/render"
+    )
+    with Image.open(path) as picture:
+        assert picture.size == (96, 64) and picture.n_frames == 60
+    sheet = client.predict(motion=handle_file(walkers), kind="svg", look="skeletons", api_name="/render")
+    assert "<svg" in Path(sheet).read_text()
+    for fields, sentence in (
+        ({"kind": "avi"}, "Films end in"),
+        ({"width": 5000}, "ask for less"),
+        ({"motion": None}, "no motion"),
+    ):
+        with pytest.raises(AppError, match=sentence):
+            client.predict(api_name="/render", **({"motion": handle_file(walkers)} | fields))

@@ -6,10 +6,10 @@ import numpy as np
 import pytest
 from PIL import Image
 
+from motion import Clip, Duet
+from motion.skeleton import SBU15
+from motion.transforms import turn
 from tests.motion.bodies import marching
-from webdemo.motion import Clip, Duet
-from webdemo.motion.skeleton import SBU15
-from webdemo.motion.transforms import turn
 from webdemo.view.contact_sheet import contact_sheet
 
 A = marching(90)[0]

@@ -8,13 +8,14 @@ import sys
 import time
 from pathlib import Path
 
-from webdemo.motion import InputError
+from motion import InputError
 
 from .build import build, save
 from .compose import FPS
 
 
 def main(arguments: list[str] | None = None) -> int:
+    """Runs the command; returns its exit code."""
     parser = argparse.ArgumentParser(prog="python -m training.corpus", description=__doc__)
     parser.add_argument("--data", type=Path, required=True, help="folder with the motion data sets")
     parser.add_argument("--out", type=Path, required=True, help="folder for motions.npy and index.json")

@@ -1,4 +1,4 @@
-"""How one pose passes into another: shares of a rotation, and weights without a jolt."""
+"""Blends poses: fractions of a rotation, and smooth weights."""
 
 from __future__ import annotations
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import logging
+import zlib
 from collections import Counter
 from collections.abc import Sequence
 from dataclasses import dataclass, field
@@ -11,8 +12,8 @@ from pathlib import Path
 
 import numpy as np
 
-from webdemo.formats.files import replacing
-from webdemo.motion import InputError
+from motion import InputError
+from motion.formats.files import replacing
 
 from .checks import fault
 from .compose import FPS
@@ -20,6 +21,7 @@ from .families import Family, load_families
 from .library import Library
 from .scene import Scene
 from .sources import load_sources
+from .stage import write_alone
 
 logger = logging.getLogger(__name__)
 TEST_SHARE = 0.08
@@ -131,6 +133,8 @@ def _recorded(data_dir: str | Path, tally: Tally, cache: Path | None) -> list[Sc
         return []
     kept = [scene for scene in pairs if scene.split != "benchmark"]
     for scene in kept:
+        rng = np.random.default_rng(zlib.crc32(scene.sources[0].encode()))
+        scene.alone = write_alone(rng, scene.family, {}, scene.split)
         tally.frames[f"recorded {scene.family}"] += scene.positions.shape[1]
         tally.scenes[f"recorded {scene.family}"] += 1
     return kept
@@ -155,6 +159,8 @@ def save(scenes: Sequence[Scene], folder: Path) -> None:
                 "sources": list(scene.sources),
                 "split": scene.split,
                 "events": scene.events,
+                "alone": list(scene.alone),
+                "beats": scene.beats,
             }
         )
         start += frames

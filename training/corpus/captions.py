@@ -18,6 +18,8 @@ from typing import Any
 
 import numpy as np
 
+from training.evaluate.judge.sentences import kept_out
+
 from .phrases import ACTIONS, ENTRIES
 from .wording import (
     ADJECTIVES,
@@ -115,7 +117,7 @@ class Phrasebook:
         *,
         name_side: bool = True,
     ) -> list[str]:
-        """Different captions that are all true of one scene.
+        """Different captions that are all true of one scene, none of them a sentence that the judge keeps.
 
         Args:
             rng: where the choices come from.
@@ -147,7 +149,24 @@ class Phrasebook:
             text = writer.write()
             if writer.held_out != (split == "test") or any(not _names(text, word) for word in wanted):
                 continue
+            if kept_out(text):
+                continue
             found.setdefault(text)
+            if len(found) == n:
+                break
+        return list(found)
+
+    def alone(
+        self, rng: np.random.Generator, person: int, slots: Mapping[str, Any], n: int, split: str
+    ) -> list[str]:
+        """Different captions of what one person does, 0 a and 1 b; none where there are no such words."""
+        slots = {key: value for key, value in slots.items() if value is not None}
+        found: dict[str, None] = {}
+        for _ in range(25 * n):
+            writer = _Writer(self.family, slots, rng)
+            text = writer.write(alone=person)
+            if text and writer.held_out == (split == "test") and not kept_out(text):
+                found.setdefault(text)
             if len(found) == n:
                 break
         return list(found)
@@ -180,7 +199,8 @@ class _Writer:
         self.held_out |= _held_out(chosen)
         return chosen
 
-    def write(self) -> str:
+    def write(self, *, alone: int | None = None) -> str:
+        """A caption of both, or of one person alone ("" where there are no words)."""
         entry, slots = self.entry, self.slots
         a, b, both, nouns = entry.a, entry.b, entry.both, entry.nouns
         if self.family in ("ordered", "together", "copy", "watch"):
@@ -200,6 +220,15 @@ class _Writer:
             joins = (" and then ", ", then ", " and after that ", ". Then {they} ")
             a = tuple(f"{self._pick(first)}{link}{self._pick(second)}" for link in joins)
             b = ENTRIES["watch"].b
+        if alone is not None:
+            verbs, who = ((a, "A"), (b, "B"))[alone]
+            if not verbs:
+                return ""
+            frame = self._pattern((f"{{{who}}} {{V{who}}}.", f"{{{who}}} *is {{V{who}.ing}}."))
+            if self.family == "sequence":
+                frame = f"{{{who}}} {{V{who}}}."
+            phrase = self._mannered(self._pattern(verbs), alone)
+            return self._finish(self._fill(frame, alone, {f"V{who}": phrase}))
         kinds = ["pair"] * 6 + ["both"] * (3 if both else 0) + ["nouns"] * bool(nouns)
         kinds += ["sentences"] * (2 if entry.sentences else 0) + ["one"] * (
             1 if a and entry.frames != "order" else 0

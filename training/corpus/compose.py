@@ -3,7 +3,7 @@
 Everything works on a :class:`Motion`: local rotations, a root path and which foot is planted when. Bones
 stay constant because only rotations are blended; feet stay where they are planted because
 :func:`realise` solves the legs after all blending (see ``feet.py``).
-Headings are radians about Y, 0 along +Z and positive towards +X, as in ``webdemo.motion.transforms``.
+Headings are radians about Y, 0 along +Z and positive towards +X, as in ``motion.transforms``.
 """
 
 from __future__ import annotations
@@ -15,9 +15,9 @@ from numpy.typing import NDArray
 from scipy.ndimage import gaussian_filter1d
 from scipy.spatial.transform import Rotation
 
-from webdemo.motion.kinematics import fit_rotations, forward_kinematics, global_rotations
-from webdemo.motion.skeleton import SMPL22
-from webdemo.motion.transforms import heading_matrix
+from motion.kinematics import fit_rotations, forward_kinematics, global_rotations
+from motion.skeleton import SMPL22
+from motion.transforms import heading_matrix
 
 from .blending import Array, ease, slerp
 from .feet import FPS, plant_feet, planted
@@ -100,7 +100,7 @@ def facing_at(motion: Motion, frame: int, *, window: int = 5) -> float:
     near = motion.root[max(frame - 8, 0) : frame + 9]
     if np.linalg.norm((near[-1] - near[0])[[0, 2]]) * FPS > 0.4 * len(near):
         window = 16
-    return float(motion.headings[max(frame - window, 0) : frame + window + 1].mean())
+    return float(motion[max(frame - window, 0) : frame + window + 1].headings.mean())
 
 
 def travel_heading(motion: Motion) -> float:

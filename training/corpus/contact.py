@@ -1,8 +1,8 @@
-"""Touching: arms that reach for the other person, hands that meet, bodies that give way.
+"""Contact: arms that reach for the other person, hands that meet, bodies that recoil.
 
 Everything works on the (T, 22, 3) positions of a person whose feet are already planted. Bones keep their
 length: arms are solved by two-bone IK, the spine and the neck bend as rigid parts, and where the hips move
-the legs are solved again so that the feet stay. A reach starts from wherever the arm is at that moment and
+the legs are solved again so that the feet stay. A reach starts from the arm's current pose and
 follows a minimum-jerk course (Flash and Hogan 1985), so nothing jumps.
 """
 
@@ -14,8 +14,8 @@ import numpy as np
 from scipy.ndimage import gaussian_filter1d
 from scipy.spatial.transform import Rotation
 
-from webdemo.motion.skeleton import SMPL22
-from webdemo.motion.transforms import heading
+from motion.skeleton import SMPL22
+from motion.transforms import heading
 
 from .compose import ARMS, FPS, Array
 from .feet import LEGS, two_bone
@@ -24,9 +24,9 @@ UP = np.array([0.0, 1.0, 0.0])
 SPINE = tuple(SMPL22.index(name) for name in ("spine1", "spine2", "spine3"))
 NECK = SMPL22.index("neck")
 ELBOW_DOWN = (0.45, -1.0, -0.25)
-"""Where an elbow points in its owner's frame: outwards, up, forwards."""
+"""Direction of an elbow in its owner's frame: outwards, up, forwards."""
 FULL_REACH = 0.93
-"""The share of the arm's length up to which an arm reaches before the trunk helps."""
+"""Share of its length that an arm extends before the trunk leans to help."""
 
 
 def _below(joint: int) -> list[int]:
@@ -53,7 +53,7 @@ def _minimum_jerk(t: Array) -> Array:
 
 
 def impulse(frames: int, start: int, *, rise: int = 5, fall: int = 22) -> Array:
-    """(frames,) how a body gives way to a blow: up within ``rise`` frames, back within ``fall``."""
+    """(frames,) recoil of a body after a blow: rises within ``rise`` frames, returns within ``fall``."""
     return envelope(frames, start, start + rise, start + rise, start + rise + fall)
 
 
@@ -80,7 +80,7 @@ def towards(origin: Array, target: Array) -> Array:
 def meeting(
     a: Array, b: Array, side_a: str, side_b: str, *, height: float, apart: float = 0.08
 ) -> tuple[Array, Array]:
-    """Where two wrists go when two hands meet between two people.
+    """Targets of two wrists when two hands meet between two people.
 
     Args:
         a, b: (T, 22, 3) the two people.

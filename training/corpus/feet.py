@@ -1,4 +1,4 @@
-"""Which foot is planted when, and legs that keep it there: two-bone IK towards the place where it landed."""
+"""Detects planted feet and keeps them where they landed, by two-bone IK of the legs."""
 
 from __future__ import annotations
 
@@ -6,8 +6,8 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.ndimage import gaussian_filter1d, maximum_filter1d
 
-from webdemo.motion.skeleton import SMPL22
-from webdemo.motion.transforms import heading
+from motion.skeleton import SMPL22
+from motion.transforms import heading
 
 from .blending import Array, ease
 
@@ -102,7 +102,7 @@ def one_after_the_other(steps: list[list[int]], *, apart: int = 12) -> list[list
 
 
 def foot_shift(toe: Array, contact: NDArray[np.bool_], steps: list[int], *, half: int = 6) -> Array:
-    """(T, 3) how far a foot must move each frame so that it rests while planted; smooth in between.
+    """(T, 3) shift of a foot in each frame that keeps it still while planted; smooth in between.
 
     Args:
         toe: (T, 3) the toe before.
@@ -134,7 +134,7 @@ def foot_shift(toe: Array, contact: NDArray[np.bool_], steps: list[int], *, half
 
 
 def two_bone(root: Array, middle: Array, end: Array, target: Array, pole: Array) -> tuple[Array, Array]:
-    """Two-bone IK: where the middle joint and the end go when the end should reach ``target``.
+    """Two-bone IK: places of the middle joint and the end when the end reaches for ``target``.
 
     All arguments (T, 3); the bend keeps to the plane in which the limb is bent now, and leans to ``pole``
     where the limb is nearly straight. A target out of reach is approached as far as the bones allow.

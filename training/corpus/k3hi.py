@@ -10,7 +10,7 @@ from pathlib import Path
 
 import numpy as np
 
-from webdemo.motion.skeleton import K3HI15
+from motion.skeleton import K3HI15
 
 from .sbu import KinectPair, read_clips
 

@@ -12,10 +12,10 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.ndimage import median_filter
 
-from webdemo.motion.ik import body_scale, fit_skeleton
-from webdemo.motion.kinematics import project_to_skeleton
-from webdemo.motion.skeleton import SMPL22, Skeleton
-from webdemo.motion.transforms import heading_matrix, resample
+from motion.ik import body_scale, fit_skeleton
+from motion.kinematics import project_to_skeleton
+from motion.skeleton import SMPL22, Skeleton
+from motion.transforms import heading_matrix, resample
 
 from .sbu import KinectPair
 

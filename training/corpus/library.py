@@ -1,4 +1,4 @@
-"""The source clips as a library to draw from, by action, manner and side; splits never mix."""
+"""The source clips as a library to draw from, by action, manner and side, one library a split."""
 
 from __future__ import annotations
 
@@ -11,8 +11,8 @@ import numpy as np
 from scipy.ndimage import gaussian_filter1d
 from scipy.signal import find_peaks
 
-from webdemo.motion.kinematics import forward_kinematics
-from webdemo.motion.skeleton import SMPL22
+from motion.kinematics import forward_kinematics
+from motion.skeleton import SMPL22
 
 from .compose import Motion, join, mirror, motion_from_positions, time_warp
 from .feet import LEGS
@@ -53,7 +53,7 @@ class Library:
     """Source clips of one split, as motions that are converted once and kept.
 
     Args:
-        clips: the source clips; those of the other split are left out.
+        clips: the source clips; those of the other split are left out, those of ``both`` are not.
         split: "train" or "test".
     """
 
@@ -62,13 +62,17 @@ class Library:
         self._takes: dict[str, list[Take]] = defaultdict(list)
         self._clips: dict[str, list[SourceClip]] = defaultdict(list)
         for clip in clips:
-            if clip.split == split:
+            if clip.split in (split, "both"):
                 self._clips[clip.action].append(clip)
         self._load = cache(self._load_action)
 
     def has(self, *actions: str) -> bool:
         """Whether there is at least one clip of each action."""
         return all(self._clips.get(action) for action in actions)
+
+    def clips(self, action: str) -> list[SourceClip]:
+        """The recordings of an action as they are."""
+        return list(self._clips.get(action, ()))
 
     def styles(self, action: str) -> list[str]:
         """The manners in which an action is performed."""
@@ -231,8 +235,19 @@ def blows(motion: Motion, clip: SourceClip, *, most: int = 5) -> list[Take]:
     return takes
 
 
+KEPT = 0.9
+"""Share of a clip's furthest departure from its first pose that a shortened clip must keep."""
+QUICKEST = 1.5
+"""How much faster a clip is played at most where its middle must not be cut."""
+
+
 def shorten(motion: Motion, frames: int, *, blend: int = 10) -> Motion:
-    """At most ``frames`` frames: the middle is left out, between two moments that look most alike."""
+    """About ``frames`` frames: the middle is left out, between two moments that look most alike.
+
+    Two moments look most alike where a person stands before and after what the clip shows. A cut that would
+    leave out the bow of a bow, or the raised hand of a wave, is not made; the clip is played faster instead,
+    :data:`QUICKEST` times at most.
+    """
     surplus = len(motion) - frames
     if surplus <= 0 or frames < 40:
         return motion
@@ -240,17 +255,22 @@ def shorten(motion: Motion, frames: int, *, blend: int = 10) -> Motion:
     feature = np.concatenate(
         [local.reshape(len(motion), -1), 4 * np.gradient(local, axis=0).reshape(len(motion), -1)], axis=-1
     )
+    heights = local + motion.root[:, None] * np.array([0.0, 1.0, 0.0])
+    away = np.linalg.norm(heights - heights[0], axis=-1).max(axis=-1)
+    before, after = np.maximum.accumulate(away), np.maximum.accumulate(away[::-1])[::-1]
     best: tuple[float, int, int] | None = None
     for skip in range(surplus, min(surplus + 20, len(motion) - 30)):
         low, high = 15, len(motion) - skip - 15
         if high <= low:
             break
         cost = np.linalg.norm(feature[low:high] - feature[low + skip : high + skip], axis=-1)
+        kept = np.maximum(before[low:high], after[low + skip : high + skip])
+        cost = np.where(kept >= KEPT * away.max(), cost, np.inf)
         index = int(cost.argmin())
-        if best is None or cost[index] < best[0]:
+        if np.isfinite(cost[index]) and (best is None or cost[index] < best[0]):
             best = (float(cost[index]), low + index, low + index + skip)
-    if best is None:
-        return motion
+    if best is None or best[0] > 2.0:
+        return time_warp(motion, min(len(motion) / frames, QUICKEST))
     _, leave, enter = best
     half = blend // 2
     return join(motion[: leave + half], motion[enter - half :], blend=blend)

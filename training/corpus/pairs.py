@@ -1,7 +1,7 @@
 """Recorded pairs as scenes: SBU and K3HI on the 22-joint skeleton, cleaned, planted, described.
 
 The way of a clip: camera made level → exchanged sides and spikes undone → each person on the floor →
-:func:`webdemo.motion.ik.fit_skeleton` → 30 fps → hands brought together where the interaction has them
+:func:`motion.ik.fit_skeleton` → 30 fps → hands brought together where the interaction has them
 touch → feet planted → judged. A clip that is judged bad is dropped and counted with its reason: a few good
 pairs teach more than many broken ones.
 """
@@ -21,9 +21,9 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.ndimage import binary_closing, binary_opening, gaussian_filter1d
 
-from webdemo.motion.cleaning import plant_feet, solve_two_bones
-from webdemo.motion.skeleton import SMPL22
-from webdemo.motion.transforms import canonicalize, facing
+from motion.cleaning import plant_feet, solve_two_bones
+from motion.skeleton import SMPL22
+from motion.transforms import canonicalize, facing
 
 from .captions import Phrasebook
 from .checks import foot_skate
@@ -38,20 +38,21 @@ CACHE_VERSION = 1
 _ANKLES = [SMPL22.index("left_ankle"), SMPL22.index("right_ankle")]
 _TOES = [SMPL22.index("left_foot"), SMPL22.index("right_foot")]
 _LEFT, _RIGHT = "left", "right"
-# Wrists of hands that touch stay apart by the hands themselves.
+# Metres between the wrists of two hands that touch.
 _TOUCH = {"handshake": 0.10, "exchange": 0.18}
 _MEANT_TO_FACE = {"kick", "push", "handshake", "exchange", "punch"}
 
 
 @dataclass
 class Report:
-    """How the fit went: kept clips and reasons of the dropped ones by data set and family, errors in mm."""
+    """Results of the fit: kept clips and reasons for dropped ones by data set and family, and errors in metres."""
 
     kept: Counter[str] = field(default_factory=Counter)
     dropped: Counter[str] = field(default_factory=Counter)
     errors: dict[str, list[float]] = field(default_factory=dict)
 
     def lines(self) -> list[str]:
+        """The report as lines of text."""
         lines = [
             f"{name}: {count} kept, fit error {1000 * np.median(self.errors[name]):.0f} mm"
             for name, count in sorted(self.kept.items())
@@ -89,14 +90,14 @@ def load_pairs(
 
 
 def build_scene(pair: KinectPair, report: Report | None = None) -> Scene | None:
-    """One recorded pair as a scene, or ``None`` where it is judged bad (``report`` says why)."""
+    """One recorded pair as a scene, or ``None`` if it is rejected (``report`` says why)."""
     report = report if report is not None else Report()
     name = f"{pair.dataset} {pair.family}"
     if pair.split == "unlisted":
         if pair.family not in ("approach", "depart"):
             report.dropped[f"{name}: who acts is not known"] += 1
             return None
-        # Whoever walks further is the one who approaches or departs.
+        # The person who walks farther is the one who approaches or departs.
         travel = [
             np.linalg.norm(np.ptp(person[:, :, [0, 2]].mean(axis=1), axis=0)) for person in pair.positions
         ]
@@ -142,10 +143,10 @@ def _as_seen(family: str, people: Array) -> tuple[str, Array]:
 
 
 def _settle(positions: Array) -> Array:
-    """One person's feet on the floor, held where they stand.
+    """Puts one person's feet on the floor and plants them where they stand.
 
-    A Kinect's floor moves up and down by centimetres; nobody here jumps, so the lower foot is put on the
-    floor first, slowly varying, and stands are told by speed.
+    A Kinect's floor drifts by centimetres. Nobody here jumps, so a slowly varying shift first puts the lower foot on
+    the floor; then the feet's speed shows when they stand.
     """
     lowest = positions[:, _TOES, 1].min(axis=1)
     lowest = np.minimum(lowest, positions[:, _ANKLES, 1].min(axis=1) - ANKLE)
@@ -188,7 +189,7 @@ def _wrists(people: Array, sides: tuple[str, str]) -> tuple[Array, Array]:
 
 
 def _meet(people: Array, family: str) -> Array:
-    """Brings hands together where they nearly meet: first the people, then the arms."""
+    """Brings hands together where they nearly meet, by moving first the people, then the arms."""
     if family not in _TOUCH:
         return people
     apart = _TOUCH[family]
@@ -200,7 +201,7 @@ def _meet(people: Array, family: str) -> Array:
     near = gap < max(gap.min() + 0.12, apart)
     between = (other - one)[near].mean(axis=0) * np.array([1.0, 0.0, 1.0])
     distance = float(np.linalg.norm(between))
-    # Depth noise and borrowed proportions put two people too near or too far by a hand; move them, half each.
+    # Depth noise and assumed proportions misplace people by about a hand's width: move each by half of it.
     shift = between * (1 - apart / max(distance, 1e-6)) / 2
     shift *= min(1.0, 0.15 / max(float(np.linalg.norm(shift)), 1e-9))
     people = np.stack([people[0] + shift, people[1] - shift])

@@ -17,8 +17,8 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.io import loadmat
 
-from webdemo.motion.errors import InputError
-from webdemo.motion.skeleton import SBU15, Skeleton
+from motion.errors import InputError
+from motion.skeleton import SBU15, Skeleton
 
 Array = NDArray[np.floating]
 
@@ -63,6 +63,7 @@ class KinectPair:
 
     @property
     def num_frames(self) -> int:
+        """Length in frames."""
         return self.positions.shape[1]
 
     def swapped(self) -> KinectPair:

@@ -22,7 +22,9 @@ class SourceClip:
         side: "left", "right", "both" or None: the hand or the turn the action names.
         source: unique stem of the file, for credit and for splits.
         dataset: "bandai-namco-1", "bandai-namco-2", "reactidle", …
-        split: "train" or "test", decided by the source alone.
+        split: "train", "test", or "both" where an action has too few recordings to hold one out.
+        place: x and z in metres and heading in radians of the first frame in the file, by which people who
+            were recorded together are put together again.
     """
 
     positions: Array = field(repr=False)
@@ -32,9 +34,11 @@ class SourceClip:
     source: str
     dataset: str
     split: str = "train"
+    place: tuple[float, float, float] = (0.0, 0.0, 0.0)
 
     @property
     def num_frames(self) -> int:
+        """Length in frames."""
         return len(self.positions)
 
 
@@ -54,6 +58,9 @@ class Scene:
             "distance": "approach" | "part" | "keep";
             "order": ["bow", "wave"] actions in the order in which they happen;
             "facing": True where the two face each other in the middle of the motion.
+        alone: sentences on what a does and on what b does, each without the other's part.
+        beats: what happens when: {"start", "end" (frames, end exclusive), "acts" of a and b, "first" 0 or 1
+            (who begins), "minor" (a transition that captions may leave out), "captions"}.
     """
 
     positions: Array = field(repr=False)
@@ -62,3 +69,5 @@ class Scene:
     sources: tuple[str, ...]
     split: str
     events: dict[str, Any] = field(default_factory=dict)
+    alone: tuple[list[str], list[str]] = field(default_factory=lambda: ([], []))
+    beats: list[dict[str, Any]] = field(default_factory=list)

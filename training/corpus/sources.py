@@ -1,7 +1,8 @@
 """The single-person recordings that the corpus is made of, on one skeleton, read once and cached.
 
 The data folder holds ``bandai-namco/`` (Bandai Namco Research Motion datasets 1 and 2, CC BY-NC 4.0) and
-``reactidle/`` (ReActIdle, MIT), each unpacked or as a ``.tar.xz``; archives are read in place.
+``reactidle/`` (ReActIdle, MIT), each unpacked or as a ``.tar.xz``; archives are read in place. The unpacked
+sets of :mod:`training.corpus.vocabulary` widen what a body can do, where they are there.
 """
 
 from __future__ import annotations
@@ -20,12 +21,13 @@ from pathlib import Path, PurePosixPath
 
 import numpy as np
 
-from webdemo.formats.bvh import read_bvh
-from webdemo.formats.files import replacing
-from webdemo.motion import InputError
-from webdemo.motion.retarget import retarget
-from webdemo.motion.transforms import canonicalize
+from motion import InputError
+from motion.formats.bvh import read_bvh
+from motion.formats.files import replacing
+from motion.retarget import retarget
+from motion.transforms import canonicalize, heading
 
+from . import vocabulary
 from .scene import SourceClip
 
 logger = logging.getLogger(__name__)
@@ -34,7 +36,7 @@ FPS = 30.0
 MAX_FRAMES = 600
 TEST_SHARE = 0.08
 MIN_CLIPS_FOR_TEST = 6
-_CACHE_VERSION = 4  # raise when the reader or the retargeting changes its results
+_CACHE_VERSION = 7  # raise when the reader or the retargeting changes its results
 
 _FOLDERS = ("bandai-namco", "reactidle")
 _ACTIONS = {"byebye": "bye", "dance-short": "dance"}
@@ -47,7 +49,8 @@ def load_sources(data_dir: str | Path, *, cache_dir: str | Path | None = None) -
 
     Clips longer than 20 s are cut into equal pieces that share their source. Files that cannot be read,
     hold NaN or a single frame are left out and counted in the log. About 8 % of the sources of every action
-    and side are the test split, chosen by the hash of their names; actions with fewer than six have none.
+    and side are the test split, chosen by the hash of their names; the few recordings of an action with fewer
+    than six belong to ``both`` splits, so that no family is without a test scene.
 
     Args:
         data_dir: the folder with ``bandai-namco`` and ``reactidle``; either may be missing, not both.
@@ -62,11 +65,12 @@ def load_sources(data_dir: str | Path, *, cache_dir: str | Path | None = None) -
             f"The data folder {root} does not exist: give the folder that holds {' and '.join(_FOLDERS)}."
         )
     found = _find_files(root)
-    if not found:
+    free = vocabulary.files(root)
+    if not found + free:
         raise InputError(
             f"{root} holds no motion recordings: put {' or '.join(_FOLDERS)} there (.bvh files or a .tar.xz)."
         )
-    cache = _cache_path(root, found, cache_dir)
+    cache = _cache_path(root, found + free, cache_dir)
     if cache.exists():
         try:
             return _load_cache(cache)
@@ -136,6 +140,7 @@ def _read_all(root: Path, files: list[Path]) -> list[SourceClip]:
         logger.warning("Left out %s: %s", name, reason)
     if dropped:
         logger.warning("%d of %d recordings were left out.", len(dropped), len(dropped) + len(read))
+    read += vocabulary.read_vocabulary(root)
     if len(dropped) > len(read):
         raise InputError(
             f"{len(dropped)} of {len(dropped) + len(read)} recordings in {root} cannot be used, the first: "
@@ -144,21 +149,32 @@ def _read_all(root: Path, files: list[Path]) -> list[SourceClip]:
     read.sort(key=lambda item: item[0][3])
     splits = _splits([described for described, _ in read])
     return [
-        SourceClip(canonicalize(piece).astype(np.float32), *described, splits[described[3]])
+        SourceClip(
+            canonicalize(piece).astype(np.float32),
+            *described,
+            splits[described[3]],
+            (float(piece[0, 0, 0]), float(piece[0, 0, 2]), float(heading(piece[0]))),
+        )
         for described, positions in read
         for piece in np.array_split(positions, -(-len(positions) // MAX_FRAMES))
     ]
 
 
 def _splits(described: list[tuple[str, str, str | None, str, str]]) -> dict[str, str]:
-    """The split of every source: in each action and side those whose names hash lowest are for testing."""
+    """The split of every source: in each action and side those whose names hash lowest are for testing.
+
+    Where there are fewer than :data:`MIN_CLIPS_FOR_TEST`, all are in ``both`` splits.
+    """
     groups: dict[tuple[str, str | None], list[str]] = defaultdict(list)
     for action, _, side, source, _ in described:
         groups[action, side].append(source)
     splits = {}
     for sources in groups.values():
         ranked = sorted(set(sources), key=lambda source: hashlib.sha256(source.encode()).hexdigest())
-        held_out = max(1, round(TEST_SHARE * len(ranked))) if len(ranked) >= MIN_CLIPS_FOR_TEST else 0
+        if len(ranked) < MIN_CLIPS_FOR_TEST:
+            splits |= dict.fromkeys(ranked, "both")
+            continue
+        held_out = max(1, round(TEST_SHARE * len(ranked)))
         splits |= {source: "test" if rank < held_out else "train" for rank, source in enumerate(ranked)}
     return splits
 
@@ -175,7 +191,7 @@ def _cache_path(root: Path, files: list[Path], cache_dir: str | Path | None) -> 
 
 
 def _save_cache(path: Path, clips: list[SourceClip]) -> None:
-    rows = [[c.action, c.style, c.side, c.source, c.dataset, c.split, c.num_frames] for c in clips]
+    rows = [[c.action, c.style, c.side, c.source, c.dataset, c.split, c.place, c.num_frames] for c in clips]
     positions = np.concatenate([clip.positions for clip in clips])
     try:
         with replacing(path) as temporary, open(temporary, "wb") as file:
@@ -188,7 +204,7 @@ def _load_cache(path: Path) -> list[SourceClip]:
     with np.load(path, allow_pickle=False) as stored:
         rows, positions = json.loads(str(stored["rows"])), stored["positions"]
     clips, start = [], 0
-    for *described, frames in rows:
-        clips.append(SourceClip(positions[start : start + frames], *described))
+    for *described, place, frames in rows:
+        clips.append(SourceClip(positions[start : start + frames], *described, tuple(place)))
         start += frames
     return clips

@@ -7,9 +7,9 @@ from typing import Any
 
 import numpy as np
 
-from webdemo.motion.kinematics import forward_kinematics
-from webdemo.motion.skeleton import SMPL22
-from webdemo.motion.transforms import canonicalize, facing
+from motion.kinematics import forward_kinematics
+from motion.skeleton import SMPL22
+from motion.transforms import canonicalize, facing
 
 from .captions import Phrasebook
 from .compose import FPS, Array, Motion, facing_at, join, look_at, place, realise, time_warp
@@ -111,19 +111,21 @@ def stride(
     side: str | None = None,
 ) -> Take:
     """A walk, run, … of about ``distance`` metres, cut where the feet pass each other."""
-    take = library.take(rng, action, style=style, side=side)
+    take = library.take(rng, action, style=style, side=side, warp=False)
     motion = take.motion
     speed = np.linalg.norm((motion.root[-1] - motion.root[0])[[0, 2]]) / max(len(motion) - 1, 1)
     motion = extend(motion, int(distance / max(speed, 0.005)) + 45)
     passes = feet_together(motion)
     passes = passes[(passes > 6) & (passes < len(motion) - 7)]
+    warp = float(np.clip(rng.normal(1.0, 0.07), 0.85, 1.15))
     if len(passes) < 2:
-        return Take(motion, action, take.style, take.side, speed=take.speed)
+        return Take(time_warp(motion, warp), action, take.style, take.side, speed=warp)
     first = int(passes[rng.integers(min(3, len(passes)))])
     travelled = np.linalg.norm((motion.root - motion.root[first])[:, [0, 2]], axis=-1)
     later = passes[passes > first]
     last = int(later[np.abs(travelled[later] - distance).argmin()]) if len(later) else len(motion) - 7
-    return Take(motion[first - 6 : last + 7], action, take.style, take.side, speed=take.speed)
+    steps = time_warp(motion[first - 6 : last + 7], warp)
+    return Take(steps, action, take.style, take.side, speed=warp)
 
 
 def pace(motion: Motion) -> float:
@@ -211,6 +213,7 @@ def finish(
         tuple(sorted(set(a.sources + b.sources))),
         library.split,
         verified(positions, events or {}),
+        write_alone(rng, family, slots or {}, library.split),
     )
 
 
@@ -244,6 +247,17 @@ def write(rng: Rng, family: str, slots: Mapping[str, Any], count: int, split: st
         if caption not in found:
             found.append(caption)
     return found
+
+
+def write_alone(
+    rng: Rng, family: str, slots: Mapping[str, Any], split: str, *, count: int = 3
+) -> tuple[list[str], list[str]]:
+    """Sentences on each person alone."""
+    known = {
+        k: v for k, v in slots.items() if v is not None and not (k.startswith("manner") and v == "normal")
+    }
+    book = Phrasebook(family)
+    return book.alone(rng, 0, known, count, split), book.alone(rng, 1, known, count, split)
 
 
 def pace_word(speed: float, *, slow: float = 0.75, fast: float = 1.6) -> str | None:

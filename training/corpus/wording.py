@@ -116,7 +116,7 @@ BOTH = (
 )  # fmt: skip
 ONE = ("{A} {VA}.", "{A} *is {VA.ing}.")
 
-IRREGULAR = {"is": ("is", "are", "being", "be"), "has": ("has", "have", "having", "have"),
+IRREGULAR = {"is": ("is", "are", "being", "be"), "be": ("is", "are", "being", "be"), "has": ("has", "have", "having", "have"),
               "do": ("does", "do", "doing", "do"), "go": ("goes", "go", "going", "go"),
               "lie": ("lies", "lie", "lying", "lie")}  # fmt: skip
 DOUBLED = {"put", "pat", "stop", "hit", "get", "let", "step", "run", "clap", "slap", "jog", "chat", "hug",

@@ -14,43 +14,43 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from webdemo.formats import read_everyone
-from webdemo.formats.crowd import people_of
-from webdemo.motion import SMPL22, Clip, InputError
-from webdemo.motion.handedness import leading_wrist, names_side
-from webdemo.motion.retarget import to_smpl
-from webdemo.motion.transforms import heading, heading_matrix, mirrored, resample
+from motion import SMPL22, Clip, InputError
+from motion.formats import read_everyone
+from motion.formats.crowd import clips_of
+from motion.handedness import leading_wrist, names_side
+from motion.retarget import to_smpl
+from motion.transforms import heading, heading_matrix, mirrored, resample
 
 Array = NDArray[np.floating]
 
 FPS = 30.0
-"""Frames a second of everything that is generated."""
+"""Frame rate of all generated motion."""
 ROLES = ("a", "b")
 SECONDS = (1.0, 10.0)
 """The shortest and the longest motion that the networks take."""
 LETTERS = "abcdef"
-"""What the people of a file are called."""
+"""Names of the people in a file."""
 _COUNTS = ("no", "one", "two", "three", "four", "five", "six")
-APART = 1.5
+MEDIAN_START_DISTANCE = 1.5
 """Metres between the two people of the median training scene at its first frame; they face each other."""
-# Metres around the floor at 0 within which a motion's lowest joint is believed to stand on it.
+# Metres: a motion whose lowest joint is this close to 0 is taken to stand on the floor.
 _ON_FLOOR = (-0.05, 0.15)
-# Bones of an actor over those of an adult; beyond, the file is in another unit.
+# Accepted ratio of an actor's bone lengths to an adult's; outside, the file is in another unit.
 _BODY_SIZES = (0.5, 1.6)
 # Metres; farther away, 32-bit positions are not exact to a tenth of a millimetre.
 _FARTHEST = 1000.0
 
 
 def choose_person(people: Sequence[Clip], person: str | None, name: str) -> int:
-    """Which of a file's people is meant, by a letter.
+    """The index of a person in a file, from their letter.
 
     Args:
-        people: everybody, one at least.
-        person: "a", "b" … up to as many as there are; may be None where there is one only.
+        people: all people in the file, at least one.
+        person: "a", "b" … up to the number of people; may be None if there is only one.
         name: of the file, for messages.
 
     Raises:
-        InputError: where the choice is open or there is no such person.
+        InputError: if the choice is open or there is no such person.
     """
     known = LETTERS[: len(people)]
     listed = " or ".join(part for part in (", ".join(known[:-1]), known[-1]) if part)
@@ -80,11 +80,13 @@ def choose_actor(
         name: of the file, for messages.
 
     Raises:
-        InputError: where the choice is open, or the times do not lie in the motion.
+        InputError: if the choice is open, or the times do not lie in the motion.
     """
     clip = people[choose_person(people, person, name)]
     if start >= clip.seconds:
-        raise InputError(f"The start, {start:g} s, lies behind the motion, which lasts {clip.seconds:.1f} s.")
+        raise InputError(
+            f"The start, {start:g} s, is after the end of the motion, which lasts {clip.seconds:.1f} s."
+        )
     stop = clip.seconds if end is None else end
     if not (math.isfinite(start) and math.isfinite(stop) and 0 <= start < stop):
         raise InputError(f"Start and end must be seconds with 0 ≤ start < end, not {start:g} and {stop:g}.")
@@ -95,7 +97,7 @@ def choose_actor(
 def other_pose(
     people: Sequence[Clip], *, person: str | None, start: float = 0.0, name: str = "The file"
 ) -> Array:
-    """How the one who is not the actor stands where the actor's part begins: (22, 3) metres.
+    """Pose of the other person at the first frame of the actor's part: (22, 3) metres.
 
     Args:
         people: everybody; of the one a single frame is fitted.
@@ -104,10 +106,10 @@ def other_pose(
         name: of the file, for messages.
 
     Raises:
-        InputError: where the file does not hold two people, or the start lies behind its end.
+        InputError: if the file does not hold two people, or the start lies behind its end.
     """
     if len(people) != 2:
-        raise InputError(f"{name} does not hold two people: there is no other's start to begin from.")
+        raise InputError(f"{name} does not hold two people, so there is no second first pose to start from.")
     other = LETTERS[1 - choose_person(people, person, name)]
     part = choose_actor(people, person=other, start=start, name=name)
     return np.asarray(to_smpl(part.cut(0, 1)).positions[0])
@@ -129,10 +131,10 @@ def read_actor(
         keep_start: also give :func:`other_pose`, else None.
 
     Raises:
-        InputError: where the file or a choice is wrong, or the part longer than a network takes.
+        InputError: if the file or a choice is wrong, or the part longer than a network takes.
     """
     name = Path(path).name
-    people = people_of(read_everyone(Path(path), name=name))
+    people = clips_of(read_everyone(Path(path), name=name))
     clip = choose_actor(people, person=person, start=start, end=end, name=name)
     pose = other_pose(people, person=person, start=start, name=name) if keep_start else None
     check_length(clip, SECONDS)
@@ -146,21 +148,21 @@ def at_30_fps(clip: Clip) -> Clip:
 
 
 def check_actor(clip: Any, seconds: tuple[float, float]) -> Clip:
-    """An actor as the networks take it: :func:`at_30_fps`, on SMPL22's joints, of a fitting length.
+    """Checks an actor and resamples it for the networks (:func:`at_30_fps`).
 
     Args:
-        clip: what was given.
+        clip: the given motion.
         seconds: the shortest and the longest motion.
 
     Raises:
-        InputError: one sentence on what does not fit and what to do.
+        InputError: one sentence that says what is wrong and what to do.
     """
     if not isinstance(clip, Clip):
         raise InputError("The actor must be one person's clip: of two people, choose person a or b.")
     if clip.skeleton.joint_names != SMPL22.joint_names:
         raise InputError(
             f"The actor has the joints of {clip.skeleton.name}, not SMPL's 22: bring the clip onto them "
-            "with webdemo.motion.retarget.to_smpl."
+            "with motion.retarget.to_smpl."
         )
     check_length(clip, seconds)
     actor = at_30_fps(clip)
@@ -177,7 +179,7 @@ def check_actor(clip: Any, seconds: tuple[float, float]) -> Clip:
 
 
 def check_length(clip: Clip, seconds: tuple[float, float]) -> None:
-    """Raises InputError where a motion is shorter or longer than what the networks take."""
+    """Raises InputError if a motion is shorter or longer than what the networks take."""
     shortest, longest = seconds
     if clip.seconds < shortest:
         raise InputError(f"The actor's motion lasts {clip.seconds:.2f} s: give {shortest:g} s or more of it.")
@@ -191,16 +193,16 @@ def check_length(clip: Clip, seconds: tuple[float, float]) -> None:
 
 @dataclass(frozen=True)
 class Placement:
-    """A turn about the vertical and a shift, from a clip's world to the frame that the network knows.
+    """A rotation about the vertical axis and a translation from a clip's world to the network's frame.
 
-    There person a stands at the origin at the first frame and faces +Z; person b is taken to stand
-    :data:`APART` in front of that place and to face it. The floor is at 0.
+    There person a stands at the origin at the first frame and faces +Z. Person b is assumed to stand
+    :data:`MEDIAN_START_DISTANCE` in front of that place and to face it. The floor is at 0.
 
     Attributes:
         turn: (3, 3) rotation about Y.
-        origin: (3,) the point of the clip's world that goes to ``goal``.
+        origin: (3,) the point of the clip's world that maps to ``goal``.
         goal: (3,) metres.
-        mirror: people (…, 22, 3) are mirrored in the plane X = 0 of the network's frame, too.
+        mirror: whether people (…, 22, 3) are also mirrored in the plane X = 0 of the network's frame.
     """
 
     turn: Array
@@ -212,17 +214,17 @@ class Placement:
     def of(cls, clip: Clip, role: str, words: str = "") -> Placement:
         """The placement that puts a person of this role where the network expects one.
 
-        A network knows words that name no side from right-handed scenes alone (:mod:`training.handedness`),
-        so that one who acts with the left hand under such words is mirrored.
+        In training, words that name no side occur with right-handed scenes only (:mod:`training.core.handedness`),
+        so a person who acts with the left hand under such words is mirrored.
         """
         positions = clip.positions.astype(np.float64)
         lowest = positions[..., 1].min()
         floor = 0.0 if _ON_FLOOR[0] <= lowest <= _ON_FLOOR[1] else lowest
         origin = np.array([positions[0, 0, 0], floor, positions[0, 0, 2]])
-        goal = np.array([0.0, 0.0, 0.0 if role == "a" else APART])
+        goal = np.array([0.0, 0.0, 0.0 if role == "a" else MEDIAN_START_DISTANCE])
         towards = 0.0 if role == "a" else math.pi
-        told = role == "a" and bool(words.strip()) and not names_side(words)
-        mirror = told and leading_wrist(positions) == "left"
+        sideless = role == "a" and bool(words.strip()) and not names_side(words)
+        mirror = sideless and leading_wrist(positions) == "left"
         return cls(heading_matrix(towards - float(heading(positions[0]))), origin, goal, mirror)
 
     def to_network(self, positions: Array) -> Array:

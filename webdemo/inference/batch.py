@@ -1,32 +1,30 @@
-"""Several requests in one pass through the network, each otherwise run as if it were alone.
+"""Runs several requests together, so that they share each pass through the network.
 
-Every request runs in a thread of its own, through the engine as always, until it asks the denoiser for a
-prediction, or the damping for a correction. There it waits for the others; then one pass answers all of them.
-What a request is told differs from what it would be told alone by rounding only: its noise depends on its
-seed, shorter motions are padded and the padding is not attended to, the damping's energy is a sum over
-motions, and everything else is its own.
+Each request runs through the engine in a thread of its own. Whenever it needs a prediction of the denoiser or a
+correction by the damping, it waits for the other requests, and one pass computes the results of all. A request's
+result differs from that of a run alone only by rounding: its noise depends on its seed, shorter motions are padded
+and the padding is masked in attention, and the damping's energy is a sum over motions.
 """
 
 from __future__ import annotations
 
-import copy
 import queue
 import threading
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
-from functools import partial
 from typing import Any
 
 import torch
 from torch import Tensor
 from torch.nn.functional import pad
 
+from models.diffusion import guide
 from models.intergen import InterGenDenoiser
+from models.intergen.words import join_conditions
 
 from .cancel import CancelToken
 from .damping import Damping, correct_together
 from .engine import Engine
-from .generator import DuetGenerator
 from .requests import GenerateRequest, Progress, ReactRequest, Result
 
 Event = Progress | Result | Exception
@@ -39,20 +37,20 @@ def run_batch(
 
     Args:
         engine: has the model.
-        items: requests, each with what cancels it; a cancelled one leaves the others as they are.
+        items: requests with their cancel tokens; cancelling one does not affect the others.
 
     Yields:
-        (index of a request, what happened to it): progress, then its result or the error that ended it.
+        (index of a request, event): its progress, then its result or the error that ended it.
     """
-    generator = engine._generator(items[0][0].model)
-    meeting = Meeting(generator.model.denoiser, len(items))
+    pipeline: Any = engine.pipeline(items[0][0].model)
+    meeting = Meeting(pipeline.model.denoiser, len(items))
     events: queue.SimpleQueue[tuple[int, Event | None]] = queue.SimpleQueue()
 
     def work(i: int, request: GenerateRequest | ReactRequest, token: CancelToken) -> None:
         try:
-            for event in _lane(engine, generator, meeting, i).run(request, cancel=token):
+            for event in engine.run(request, cancel=token, passes=SharedPasses(meeting, i)):
                 events.put((i, event))
-        except Exception as error:  # InputError and Cancelled, too: they are this request's alone
+        except Exception as error:  # InputError and Cancelled, too: they concern this request only
             events.put((i, error))
         finally:
             meeting.leave(i)
@@ -69,53 +67,50 @@ def run_batch(
             yield i, event
 
 
-def _lane(engine: Engine, generator: DuetGenerator, meeting: Meeting, lane: int) -> Engine:
-    """The engine with a generator whose denoiser meets the others'."""
-    own = copy.copy(generator)
-    own.model = _MeetingModel(generator.model, _MeetingDenoiser(meeting, lane))  # type: ignore[assignment]
-    own.damp = partial(meeting.correct, lane)  # type: ignore[method-assign]
-    alone = copy.copy(engine)
-    alone._generators = {generator.name: own}
-    return alone
+class SharedPasses:
+    """The passes of one request among several; see :class:`.pipelines.two_person.Passes`.
 
-
-class _MeetingModel:
-    """A model in everything but its denoiser."""
-
-    def __init__(self, model: Any, denoiser: _MeetingDenoiser) -> None:
-        self._model, self.denoiser = model, denoiser
-
-    def __getattr__(self, name: str) -> Any:
-        return getattr(self._model, name)
-
-
-class _MeetingDenoiser:
-    """Predicts together with the other lanes of a meeting."""
+    Args:
+        meeting: where the requests wait for each other.
+        lane: the request's number.
+    """
 
     def __init__(self, meeting: Meeting, lane: int) -> None:
         self._meeting, self._lane = meeting, lane
 
     def guided(
-        self, x: Tensor, t: Tensor, cond: Tensor, mask: Tensor | None = None, *, scale: float
+        self,
+        x: Tensor,
+        t: Tensor,
+        cond: Tensor,
+        mask: Tensor | None = None,
+        known: Tensor | None = None,
+        *,
+        scale: float,
     ) -> Tensor:
-        """As :meth:`InterGenDenoiser.guided`."""
-        return self._meeting.predict(self._lane, _Question(x, t, cond, mask, scale))
+        """As the denoiser's own ``guided``, together with the other lanes."""
+        return self._meeting.predict(self._lane, _Question(x, t, cond, mask, scale, known))
+
+    def correct(self, damping: Damping, x0: Tensor, timestep: int) -> Tensor:
+        """A prediction corrected by its damping, together with the other lanes."""
+        return self._meeting.correct(self._lane, damping, x0, timestep)
 
 
 @dataclass(frozen=True)
 class _Question:
-    """What one lane asks of the denoiser; shapes as in :meth:`InterGenDenoiser.guided`."""
+    """A request of one lane to the denoiser; shapes as in :meth:`InterGenDenoiser.guided`."""
 
     x: Tensor
     t: Tensor
     cond: Tensor
     mask: Tensor | None
     scale: float
+    known: Tensor | None = None
 
 
 @dataclass(frozen=True)
 class _Correction:
-    """What one lane asks of the damping."""
+    """A request of one lane to the damping."""
 
     damping: Damping
     x0: Tensor
@@ -123,30 +118,30 @@ class _Correction:
 
 
 class Meeting:
-    """Where lanes wait for each other's questions; the last one to come answers all in one pass.
+    """Where lanes wait for each other; the last one to arrive computes the results of all in one pass.
 
     Args:
-        denoiser: answers.
-        lanes: how many take part; each must :meth:`leave` in the end.
+        denoiser: computes the predictions.
+        lanes: number of participants; each must call :meth:`leave` at its end.
     """
 
     def __init__(self, denoiser: InterGenDenoiser, lanes: int) -> None:
         self.denoiser = denoiser
         self.passes: list[int] = []
-        """How many lanes each pass so far has answered."""
+        """Number of lanes of each pass so far."""
         self._here = set(range(lanes))
         self._questions: dict[int, _Question | _Correction] = {}
         self._answers: dict[int, Tensor | Exception] = {}
         self._change = threading.Condition()
 
     def predict(self, lane: int, question: _Question) -> Tensor:
-        """The lane's prediction, when all who are still here have asked; raises what the pass raised."""
+        """The lane's prediction, once all remaining lanes have asked; raises what the pass raised."""
         return self._ask(lane, question)
 
     def correct(self, lane: int, damping: Damping, x0: Tensor, timestep: int) -> Tensor:
-        """The lane's prediction corrected, when all who are still here ask for something.
+        """The lane's corrected prediction, once all remaining lanes have asked for something.
 
-        Who has no correction to make asks for the next prediction already, and waits for the others there.
+        A lane without a correction asks for its next prediction and waits there.
         """
         if not damping.due(timestep):
             return x0
@@ -164,7 +159,7 @@ class Meeting:
         return answer
 
     def leave(self, lane: int) -> None:
-        """The lane asks no more."""
+        """Removes a lane, which will ask for nothing more."""
         with self._change:
             self._here.discard(lane)
             self._answer_if_all_asked()
@@ -182,7 +177,7 @@ class Meeting:
                 answers = correct_all(list(corrections.values()))
             else:
                 self.passes.append(len(predictions))
-                with torch.no_grad():  # the thread that answers may be one that just left, with gradients on
+                with torch.no_grad():  # the computing thread may be one that just left, with gradients on
                     answers = answer_together(self.denoiser, list(predictions.values()))
             self._answers.update(zip(due, answers, strict=True))
         except Exception as error:
@@ -191,7 +186,7 @@ class Meeting:
 
 
 def correct_all(corrections: Sequence[_Correction]) -> list[Tensor]:
-    """All corrections, those at one timestep together."""
+    """Computes all corrections; those at one timestep share a pass."""
     answers: dict[int, Tensor] = {}
     for timestep in {c.timestep for c in corrections}:
         at = [i for i, c in enumerate(corrections) if c.timestep == timestep]
@@ -201,10 +196,11 @@ def correct_all(corrections: Sequence[_Correction]) -> list[Tensor]:
 
 
 def answer_together(denoiser: InterGenDenoiser, questions: Sequence[_Question]) -> list[Tensor]:
-    """The guided predictions for all questions, both halves of the guidance of all of them in one pass."""
+    """The guided predictions for all questions; one pass computes both halves of the guidance of all of them."""
     if len(questions) == 1:
         q = questions[0]
-        return [denoiser.guided(q.x, q.t, q.cond, q.mask, scale=q.scale)]
+        seen = {} if q.known is None else {"known": q.known}
+        return [denoiser.guided(q.x, q.t, q.cond, q.mask, scale=q.scale, **seen)]
     length = max(q.x.shape[1] for q in questions)
     padded = any(q.x.shape[1] < length or q.mask is not None for q in questions)
     guided = [q for q in questions if q.scale != 1]
@@ -212,16 +208,27 @@ def answer_together(denoiser: InterGenDenoiser, questions: Sequence[_Question]) 
     out = denoiser(
         torch.cat([pad(q.x, (0, 0, 0, length - q.x.shape[1])) for q, _ in rows]),
         torch.cat([q.t for q, _ in rows]),
-        torch.cat([cond for _, cond in rows]),
+        join_conditions([cond for _, cond in rows]),
         torch.cat([_mask(q, length) for q, _ in rows]) if padded else None,
+        **_known([q for q, _ in rows], length),
     )
     parts = iter(out.split([len(q.x) for q, _ in rows]))
     conditional = [next(parts)[:, : q.x.shape[1]] for q in questions]
     unconditional = {id(q): next(parts)[:, : q.x.shape[1]] for q in guided}
     return [
-        c if q.scale == 1 else q.scale * c + (1 - q.scale) * unconditional[id(q)]
+        c if q.scale == 1 else guide(c, unconditional[id(q)], q.scale)
         for q, c in zip(questions, conditional, strict=True)
     ]
+
+
+def _known(questions: Sequence[_Question], length: int) -> dict[str, Tensor]:
+    """The denoiser's argument ``known`` for all questions; empty if no question has a known part."""
+    width = next((q.known.shape[-1] for q in questions if q.known is not None), None)
+    if width is None:
+        return {}
+    shown = [q.x.new_zeros(1, q.x.shape[1], width) if q.known is None else q.known for q in questions]
+    rows = [known.expand(len(q.x), -1, -1) for q, known in zip(questions, shown, strict=True)]
+    return {"known": torch.cat([pad(row, (0, 0, 0, length - row.shape[1])) for row in rows])}
 
 
 def _mask(question: _Question, length: int) -> Tensor:

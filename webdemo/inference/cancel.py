@@ -1,4 +1,4 @@
-"""How a run is told to stop."""
+"""How a run is cancelled."""
 
 from __future__ import annotations
 
@@ -8,21 +8,22 @@ from .requests import Cancelled
 
 
 class CancelToken:
-    """Set by whoever owns a run, looked at by the sampling loop before every step.
+    """Set by the owner of a run and checked by the sampling loop before every step.
 
-    Stopping the consumer of a generator does not stop the step that is running, so the loop itself has to
-    ask. Safe to use from several threads.
+    Stopping the consumer of a generator does not stop the running step, so the loop itself has to check.
+    Safe to use from several threads.
     """
 
     def __init__(self) -> None:
         self._event = threading.Event()
 
     def cancel(self) -> None:
-        """Asks the run to stop; it does within one step. May be called more than once."""
+        """Asks the run to stop; it stops within one step. May be called more than once."""
         self._event.set()
 
     @property
     def cancelled(self) -> bool:
+        """Whether the run was asked to stop."""
         return self._event.is_set()
 
     def is_set(self) -> bool:
@@ -30,6 +31,6 @@ class CancelToken:
         return self._event.is_set()
 
     def raise_if_cancelled(self) -> None:
-        """Raises :class:`~webdemo.inference.requests.Cancelled` where the run was asked to stop."""
+        """Raises :class:`~webdemo.inference.requests.Cancelled` if the run was asked to stop."""
         if self._event.is_set():
             raise Cancelled("The run was cancelled.")

@@ -5,10 +5,10 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from webdemo.motion import SMPL22
-from webdemo.motion.cleaning import foot_contacts, plant_feet, solve_two_bones
-from webdemo.motion.kinematics import project_to_skeleton
-from webdemo.motion.transforms import facing
+from motion import SMPL22
+from motion.cleaning import foot_contacts, plant_feet, solve_two_bones
+from motion.kinematics import project_to_skeleton
+from motion.transforms import facing
 
 Array = NDArray[np.floating]
 
@@ -24,7 +24,7 @@ def clean_person(positions: Array, fps: float = 30.0) -> Array:
     """One person on SMPL22's constant bones, feet planted where they stand.
 
     Bones are made constant by their directions, from the pelvis outwards; wrists and ankles are then taken
-    back by two-bone IK to where they were, so that hands that met still meet.
+    back to their places by two-bone IK, so hands that met still meet.
 
     Args:
         positions: (T, 22, 3) metres as a network gave them.
@@ -37,7 +37,7 @@ def clean_person(positions: Array, fps: float = 30.0) -> Array:
 
 
 def on_constant_bones(positions: Array) -> Array:
-    """One person (T, 22, 3) on SMPL22's constant bones, each frame by itself; see :func:`clean_person`."""
+    """One person (T, 22, 3) on SMPL22's constant bones, frame by frame; see :func:`clean_person`."""
     target = np.asarray(positions, dtype=np.float64)
     result, _ = project_to_skeleton(target)
     forward = facing(result)

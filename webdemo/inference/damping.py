@@ -1,13 +1,12 @@
 """Regularisers without ground truth, and the correction that they make while t ≤ t̄·T.
 
-InterGen's damping (section 4.3, eq. 15) lets the regularisers act only at small timesteps. In training they
-compare with the true motion; at inference there is none, so the terms here are those that need none: bones
-of constant length, feet that stand still and stay above the floor, smooth joints, bodies that do not pass
-through each other, hands that meet where they nearly meet, people who turn fully towards each other where
-they nearly do. While t ≤ t̄·T the predicted clean motion takes a few gradient steps on them, in the network's
-own space of spline control points; a person who is given does not move. Where the sentence asks for a touch
-(:meth:`models.compact.CompactInterGen.touches`), the joints that it names are drawn together at the moment at
-which they come nearest. At t̄ = 0 nothing is done and the sampler is the plain one, bit for bit.
+InterGen's damping (section 4.3, eq. 15) applies the regularisers only at small timesteps. In training they
+compare with the true motion. At inference there is none, so the terms here need none: constant bone lengths,
+feet that stay planted and above the floor, smooth joints, bodies that do not intersect, contact of hands that
+nearly touch, and people who nearly face each other turned to face fully. While t ≤ t̄·T, the predicted clean
+motion takes a few gradient steps on these terms in the network's space of spline control points; a given person
+does not move. If the sentence asks for a touch (:meth:`models.intergen.compact.CompactInterGen.touches`), its
+joints are pulled together at the moment when they are nearest. With t̄ = 0 the sampler is unchanged, bit for bit.
 """
 
 from __future__ import annotations
@@ -19,14 +18,15 @@ from typing import Protocol
 import torch
 from torch import Tensor
 
-from models.compact import Touch
-from models.compact_regennet import CompactReGenNet
+from models.intergen.compact import Touch
 from models.motion_tokens import foot_contacts
-from webdemo.metrics.bodies import capsules
-from webdemo.motion import SMPL22
-from webdemo.motion.skeleton import FEET
+from models.regennet.compact import CompactReGenNet
+from motion import SMPL22
+from motion.metrics.bodies import capsules
+from motion.skeleton import FEET
 
-_WRISTS = [SMPL22.index("left_wrist"), SMPL22.index("right_wrist")]
+_WRISTS = torch.tensor([SMPL22.index("left_wrist"), SMPL22.index("right_wrist")])
+_FEET = torch.tensor(FEET)
 _PARENTS = torch.tensor([parent for parent, _ in SMPL22.bones])
 assert [child for _, child in SMPL22.bones] == list(range(1, SMPL22.num_joints))  # a slice is cheaper
 _HIPS = [SMPL22.index("left_hip"), SMPL22.index("right_hip")]
@@ -39,10 +39,10 @@ _NEAR = 1.8  # metres between two pelvises, beyond which no limb reaches the oth
 
 
 def _spheres() -> tuple[Tensor, Tensor]:
-    """The flesh of a body, as spheres around joints and around the middles of :data:`_LIMBS`.
+    """The volume of a body as spheres around its joints and around the midpoints of :data:`_LIMBS`.
 
     Returns:
-        (S, 2) the joints between which each is, and (S,) radii in metres.
+        (S, 2) the two joints whose midpoint is each centre, and (S,) radii in metres.
     """
     body = capsules(SMPL22)
     around = dict(zip(body.ends.tolist(), body.radii.tolist(), strict=True))
@@ -58,9 +58,9 @@ _ENDS, _RADII = _spheres()
 class DampingWeights:
     """λ of each term; lengths are in metres, times in frames at 30 a second.
 
-    touch: wrists that meet are this far apart; nearly: from where they are drawn together unasked.
-    asked: λ of a touch that the sentence asks for; body: a wrist's distance from a joint inside the body that
-        it touches; reach: from where an asked touch is drawn together.
+    touch: distance of two wrists in contact; nearly: wrists closer than this are pulled together in any case.
+    asked: λ of a touch that the sentence asks for; body: distance of a wrist from the joint inside the body part
+        that it touches; reach: joints closer than this are pulled together if the sentence asks for a touch.
     """
 
     bone: float = 1.0
@@ -78,7 +78,7 @@ class DampingWeights:
 
 
 def energy(positions: Tensor, contacts: Tensor, weights: DampingWeights) -> Tensor:
-    """How much a motion offends against the regularisers, summed over frames.
+    """The weighted sum of the regularisers, summed over frames.
 
     Args:
         positions: (B, 2, T, 22, 3) metres.
@@ -93,7 +93,7 @@ def energy(positions: Tensor, contacts: Tensor, weights: DampingWeights) -> Tens
     true_lengths = positions.new_tensor(SMPL22.bone_lengths[1:])
     bone = (lengths - true_lengths).square().sum((1, 2, 3))
 
-    feet = positions[..., list(FEET), :]
+    feet = positions.index_select(-2, _FEET)
     step = feet.diff(dim=2).square().sum(-1)
     standing = torch.minimum(contacts[:, :, 1:], contacts[:, :, :-1]).clamp(0, 1).detach()
     foot = (step * (standing > 0.5) * standing).sum((1, 2, 3))
@@ -103,8 +103,9 @@ def energy(positions: Tensor, contacts: Tensor, weights: DampingWeights) -> Tens
 
     a, b = positions.unbind(1)
     overlap = _overlap(positions)
-    hands = torch.linalg.vector_norm(a[:, :, _WRISTS, None] - b[:, :, None, _WRISTS] + 1e-6, dim=-1)
-    # Only the hands and moments that come nearest: hands that pass by at some distance are left alone.
+    own, other = (person.index_select(-2, _WRISTS) for person in (a, b))
+    hands = torch.linalg.vector_norm(own[:, :, :, None] - other[:, :, None] + 1e-6, dim=-1)
+    # Only the hands and moments of the smallest distance count; hands that pass farther away are left alone.
     nearest = hands.flatten(1).amin(1)[:, None, None, None]
     due = (hands < nearest + 0.05) & (nearest < weights.nearly)
     contact = ((hands - weights.touch).clamp_min(0).square() * due).sum((1, 2, 3))
@@ -124,10 +125,10 @@ def energy(positions: Tensor, contacts: Tensor, weights: DampingWeights) -> Tens
 
 
 def _overlap(positions: Tensor) -> Tensor:
-    """(B,) how far the two bodies are inside each other, in m²; positions (B, 2, T, 22, 3).
+    """(B,) squared penetration depth of the two bodies, in m²; positions (B, 2, T, 22, 3).
 
-    Of all pairs of their spheres those that touch are sought first; only these, which are few, add something
-    and have a gradient.
+    A first search finds the pairs of spheres that touch. They are few, and only they contribute to the energy and
+    its gradient.
     """
     count, _, length, joints, _ = positions.shape
     ends, radii = _ENDS.to(positions.device), _RADII.to(positions)
@@ -149,7 +150,7 @@ def _touching(positions: Tensor, ends: Tensor, radii: Tensor) -> tuple[Tensor, T
     apart = (positions[:, 0, :, 0] - positions[:, 1, :, 0]).square().sum(-1)
     batch, frame = (apart < _NEAR**2).nonzero(as_tuple=True)
     people = positions[batch, :, frame]  # (N, 2, 22, 3)
-    limbs = ends[people.shape[2] :]  # whatever comes before stands for one joint
+    limbs = ends[people.shape[2] :]  # the spheres before these are centred on single joints
     middles = (people.index_select(2, limbs[:, 0]) + people.index_select(2, limbs[:, 1])) / 2
     spheres = torch.cat([people, middles], dim=2)
     low, high = spheres.amin(-2) - radii.max(), spheres.amax(-2) + radii.max()
@@ -164,7 +165,7 @@ def _touching(positions: Tensor, ends: Tensor, radii: Tensor) -> tuple[Tensor, T
 
 
 def asked_energy(positions: Tensor, touches: Sequence[Touch], weights: DampingWeights) -> Tensor:
-    """(B,) how far the joints that the sentences want to meet are apart where they come nearest, in m².
+    """(B,) energy in m² of the touches that the sentences ask for, at the moments of smallest distance.
 
     Args:
         positions: (B, 2, T, 22, 3) metres.
@@ -184,7 +185,7 @@ def asked_energy(positions: Tensor, touches: Sequence[Touch], weights: DampingWe
 
 
 def _turned_away(person: Tensor, other: Tensor) -> Tensor:
-    """(B,) how far from straight a person faces a near partner whom they nearly face; (B, T, 22, 3) each."""
+    """(B,) summed 1 − cos of the angle to a near partner whom a person nearly faces; (B, T, 22, 3) each."""
     across = person[:, :, _HIPS[0]] - person[:, :, _HIPS[1]]
     forward = torch.stack([-across[..., 2], across[..., 0]], dim=-1)
     forward = forward / torch.linalg.vector_norm(forward, dim=-1, keepdim=True).clamp_min(1e-4)
@@ -196,8 +197,10 @@ def _turned_away(person: Tensor, other: Tensor) -> Tensor:
 
 
 class Space(Protocol):
-    """What a network diffuses, as far as the correction needs it: :class:`models.compact.CompactInterGen`'s
-    two people, or :class:`Beside`."""
+    """The space that a network diffuses in, as the correction needs it.
+
+    It is that of the two people of :class:`models.intergen.compact.CompactInterGen`, or :class:`Beside`.
+    """
 
     @property
     def scale(self) -> Tensor:
@@ -210,7 +213,7 @@ class Space(Protocol):
 
 
 class Beside:
-    """A ReGenNet's space, which holds the reactor alone, with the given actor beside them.
+    """ReGenNet's space, which holds the reactor only, extended by the given actor.
 
     Args:
         actor: (T, 22, 3) metres, in the network's frame of reference.
@@ -221,6 +224,7 @@ class Beside:
 
     @property
     def scale(self) -> Tensor:
+        """(70,) metres to a unit of network space."""
         return self.model.std
 
     def positions(self, x: Tensor) -> tuple[Tensor, Tensor]:
@@ -233,19 +237,19 @@ class Beside:
 
 
 class Damping:
-    """The correction of predicted clean motion that sampling applies while t ≤ t̄·T.
+    """Corrects the predicted clean motion while t ≤ t̄·T.
 
     Args:
-        space: gives positions from what the network diffuses.
-        threshold: t̄ as a fraction of T; 0 does nothing.
-        frames: frames that will be shown; what the last token decodes to beyond them is ignored.
+        space: decodes positions from the network's space.
+        threshold: t̄ as a fraction of T; 0 turns the damping off.
+        frames: number of output frames; further frames of the last token are ignored.
         timesteps: T.
         gradient_steps: steps at each timestep.
-        final_timestep: where sampling ends; more steps are taken there, since no network follows them.
-        final_steps: how many.
+        final_timestep: last timestep of sampling; it takes more steps, since no network pass follows.
+        final_steps: gradient steps at that timestep.
         step_size: of one gradient step; the largest move of any number is held to ``largest``.
         frozen: (tokens, F) true where a number is given and must not move.
-        touches: what the sentence of each motion wants to touch; none by default.
+        touches: the touches that the sentence of each motion asks for; none by default.
     """
 
     def __init__(
@@ -282,9 +286,9 @@ class Damping:
 
 
 def correct_together(predictions: Sequence[tuple[Damping, Tensor]], timestep: int) -> list[Tensor]:
-    """What dampings that are due make of their predictions; those of one length are corrected in one pass.
+    """Applies dampings that are due to their predictions; predictions of one length share a pass.
 
-    The energy is a sum over motions, so each moves as if it were alone.
+    The energy is a sum over motions, so the motions do not affect each other.
 
     Args:
         predictions: each a damping and its (B, tokens, F).
@@ -303,7 +307,7 @@ def correct_together(predictions: Sequence[tuple[Damping, Tensor]], timestep: in
 
 
 def _descend(predictions: Sequence[tuple[Damping, Tensor]], timestep: int) -> Sequence[Tensor]:
-    """Gradient steps on predictions of one space and shape; what is frozen or touched may differ."""
+    """Gradient steps on predictions of one space and shape; frozen numbers and touches may differ."""
     first, sizes = predictions[0][0], [len(x0) for _, x0 in predictions]
     x0 = torch.cat([x0 for _, x0 in predictions])
     touches = [touch for d, x in predictions for touch in (d.touches or ((),) * len(x))]

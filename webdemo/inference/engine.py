@@ -12,40 +12,24 @@ from __future__ import annotations
 
 import platform
 import threading
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from dataclasses import replace
 from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
 from typing import Any
 
-from webdemo.motion import Duet, InputError
+from motion import Duet, InputError
 
-from .agent import Agent
+from . import methods
 from .cancel import CancelToken
-from .generator import ClassGenerator, Clock, DuetGenerator
-from .interformer import InterFormerReactor
 from .live import LiveFrame
-from .predict import MotionPredictor
+from .method import Pipeline
+from .methods import WEIGHTS
 from .predict_request import PredictRequest
-from .reactor import Reactor
-from .requests import GenerateRequest, Progress, ReactRequest, Result
+from .requests import GenerateRequest, Progress, ReactRequest, Result, SamplingRequest
+from .timer import StageTimer
 
-WEIGHTS = Path(__file__).resolve().parents[2] / "models" / "weights"
-Runner = DuetGenerator | ClassGenerator | Reactor | InterFormerReactor | MotionPredictor | Agent
-GENERATORS: dict[str, Callable[[Path], Runner]] = {
-    "intergen": DuetGenerator,
-    "bigraphdiff": ClassGenerator,
-    "regennet": Reactor,
-    "interformer": InterFormerReactor,
-    "motion-mlp": MotionPredictor,
-    "mawgan": MotionPredictor,
-    "still": lambda _: MotionPredictor(None),
-}
-"""What runs requests, by name; the folder of its weights has the same name."""
-COMPOSED: dict[str, tuple[Callable[..., Runner], tuple[str, ...]]] = {
-    "agent": (Agent, ("motion-mlp", "intergen"))
-}
-"""What also needs others, which come after the folder: by name, with the others' names."""
+Request = GenerateRequest | ReactRequest | PredictRequest
 
 
 class Engine:
@@ -60,47 +44,52 @@ class Engine:
     def __init__(self, weights: Path = WEIGHTS) -> None:
         self.weights = weights
         self._lock = threading.Lock()
-        self._generators: dict[str, Runner] = {}
+        self._pipelines: dict[str, Pipeline] = {}
 
     @property
     def ready(self) -> bool:
         """Whether the default network is in memory."""
-        return "intergen" in self._generators
+        return SamplingRequest.model in self._pipelines
 
     def warm_up(self) -> None:
-        """Loads the default network and takes one step with it, so that the first request is fast."""
-        generator = self._generator("intergen")
-        request = GenerateRequest(prompt="Two people wave.", seconds=2.0, steps=1, damping=0.0)
-        for _ in generator.run(request, CancelToken(), Clock.start()):
+        """Loads the default network and runs one step, which makes the first request fast."""
+        for _ in self.run(GenerateRequest(prompt="Two people wave.", seconds=2.0, steps=1, damping=0.0)):
             pass
 
     def info(self) -> dict[str, Any]:
-        """Name, summary and figures of the default model, as its folder tells them; loads no network."""
-        from models.compact import WeightsFolder
+        """Name, summary and figures of the default model, read from its folder; loads no network."""
+        from models.weights_io import WeightsFolder
 
-        meta = WeightsFolder(self.weights / "intergen").meta
-        return {"name": "intergen", "ready": self.ready, **meta.get("card", {})}
+        name = SamplingRequest.model
+        meta = WeightsFolder(self.weights / name).meta
+        return {"name": name, "ready": self.ready, **meta.get("card", {})}
 
     def run(
-        self, request: GenerateRequest | ReactRequest | PredictRequest, cancel: CancelToken | None = None
+        self, request: Request, cancel: CancelToken | None = None, **options: Any
     ) -> Iterator[Progress | Result]:
         """Yields :class:`Progress` events, then exactly one :class:`Result`.
 
         The same request on the same machine gives the same bytes.
+
+        Args:
+            request: what is asked for.
+            cancel: stops the run.
+            options: passed on to the pipeline, such as the ``passes`` that several requests share.
 
         Raises:
             InputError: one sentence on what is wrong and what to do.
             Cancelled: within one sampling step of ``cancel.cancel()``.
         """
         cancel = cancel or CancelToken()
-        clock = Clock.start()
-        yield clock.progress("load")
-        generator = self._generator(request.model)
-        clock.lap("load", clock.began)
+        timer = StageTimer.start()
+        yield timer.progress("load")
+        pipeline = self.pipeline(request.model)
+        _take_threads(pipeline)
+        timer.lap("load", timer.began)
         cancel.raise_if_cancelled()
-        for event in generator.run(request, cancel, clock):
+        for event in pipeline.run(request, cancel, timer, **options):
             if isinstance(event, Result):
-                manifest = _manifest(request, generator)
+                manifest = _manifest(request, pipeline)
                 duets = tuple(
                     replace(duet, manifest=manifest | {"sample": i}) if isinstance(duet, Duet) else duet
                     for i, duet in enumerate(event.duets)
@@ -116,32 +105,43 @@ class Engine:
         """
         if request.mode != "online":
             raise InputError("Only an online reaction can be streamed: choose model regennet, mode online.")
-        reactor = self._generator(request.model)
-        assert isinstance(reactor, Reactor)  # no other model has the mode
-        return reactor.live(request)
+        pipeline: Any = self.pipeline(request.model)
+        _take_threads(pipeline)
+        return pipeline.live(request)
 
-    def _generator(self, name: str) -> Any:
-        known = [*GENERATORS, *COMPOSED]
-        if name not in known:
-            raise InputError(f"There is no model {name!r:.40}: choose one of {', '.join(known)}.")
+    def pipeline(self, name: str) -> Pipeline:
+        """What runs the requests of a method, loaded if it is not yet.
+
+        Raises:
+            InputError: if there is no such method, or its weights are missing or altered.
+        """
+        methods.method(name)  # an unknown name waits for no other method's loading
         with self._lock:
             return self._loaded(name)
 
-    def _loaded(self, name: str) -> Any:
-        """What runs a model's requests, loaded where it is not; under the lock."""
-        if name not in self._generators:
-            make, parts = COMPOSED.get(name) or (GENERATORS[name], ())
-            self._generators[name] = make(self.weights / name, *map(self._loaded, parts))
-        return self._generators[name]
+    def _loaded(self, name: str) -> Pipeline:
+        """The pipeline of a method, loaded if it is not yet; under the lock."""
+        if name not in self._pipelines:
+            found = methods.method(name)
+            parts = [self._loaded(needed) for needed in found.needs]
+            self._pipelines[name] = found.load(self.weights / (found.weights or name), *parts)
+        return self._pipelines[name]
 
 
-def _manifest(request: Any, generator: Runner) -> dict[str, Any]:
+def _take_threads(pipeline: Pipeline) -> None:
+    """Sets PyTorch's threads for a run that begins in this thread."""
+    from .threads import take_threads  # needs PyTorch, which the engine itself does not
+
+    take_threads(plain_denoiser=not getattr(pipeline, "compiled", True))
+
+
+def _manifest(request: Any, pipeline: Pipeline) -> dict[str, Any]:
     """Everything that reproduces a result."""
     return {
         "product": "Pas de Deux",
         "request": request.to_dict(),
-        "model": generator.name,
-        "weights_sha256": generator.digest,
+        "model": pipeline.name,
+        "weights_sha256": pipeline.digest,
         "versions": {name: _version(name) for name in ("torch", "diffusers", "numpy")}
         | {"python": platform.python_version()},
     }

@@ -5,9 +5,9 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from webdemo.motion import SMPL22
-from webdemo.motion.cleaning import solve_two_bones
-from webdemo.motion.transforms import facing
+from motion import SMPL22
+from motion.cleaning import solve_two_bones
+from motion.transforms import facing
 
 from .cleanup import on_constant_bones
 
@@ -22,7 +22,7 @@ _STANDS, _LEAVES = 0.5, 0.35
 _LOW = 0.1
 """Metres: a toe that stands is not higher."""
 _FADE = 0.8
-"""What is left of a correction one frame after the foot was let go."""
+"""Factor by which a correction decays each frame after the foot lifts."""
 _FARTHEST = 0.12
 """Metres: a foot that wants to be farther away was stepping, not standing."""
 

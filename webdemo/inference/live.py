@@ -1,6 +1,6 @@
-"""An online reaction at the pace of an actor who plays: each of their frames comes when it is due.
+"""An online reaction in real time: the actor's frames arrive at the pace of their motion.
 
-No torch here: the page builds these requests and reads these events before any network loads.
+This module does not import torch: the page uses it before any network is loaded.
 """
 
 from __future__ import annotations
@@ -12,7 +12,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from webdemo.motion import InputError
+from motion import InputError
 
 from .actor import FPS
 from .requests import Progress, ReactRequest
@@ -22,13 +22,13 @@ Array = NDArray[np.floating]
 
 @dataclass(frozen=True)
 class LiveFrame:
-    """One frame of a reaction as it came.
+    """One frame of a live reaction.
 
     Attributes:
         index: its number from 0.
-        raw: (samples, 22, 3) metres as the network gave it, in the actor's world.
-        positions: (samples, 22, 3) metres as it is shown.
-        seconds: from the actor's frame to this one.
+        raw: (samples, 22, 3) metres, the network's output in the actor's world.
+        positions: (samples, 22, 3) metres, as shown.
+        seconds: delay after the actor's frame.
     """
 
     index: int
@@ -41,7 +41,7 @@ class LiveFrame:
 class LiveRequest(ReactRequest):
     """An online reaction to an actor who plays in real time; its motion is that of the same ReactRequest.
 
-    The run tells of every frame in a :class:`LiveProgress` and lasts as long as the actor's motion.
+    The run reports every frame as a :class:`LiveProgress` and lasts as long as the actor's motion.
 
     Raises:
         InputError: as a ReactRequest, and for a mode that is not online.
@@ -57,21 +57,21 @@ class LiveRequest(ReactRequest):
 
 @dataclass(frozen=True, kw_only=True)
 class LiveProgress(Progress):
-    """A frame of a live reaction, as soon as it is there.
+    """A frame of a live reaction, sent as soon as it is generated.
 
     Attributes:
-        frame: the reaction's frame; its ``seconds`` count from when the actor's frame was due, so that they
-            grow where the machine cannot keep up.
+        frame: the reaction's frame; its ``seconds`` count from the time when the actor's frame was due, so
+            they grow if the machine cannot keep up.
     """
 
     frame: LiveFrame
 
 
 def paced(frames: Iterator[LiveFrame], *, fps: float = FPS) -> Iterator[LiveFrame]:
-    """Asks for each frame when the actor's is due and not before, the first at once.
+    """Requests each frame when the actor's frame is due; the first one immediately.
 
     Args:
-        frames: makes a frame when it is asked for one.
+        frames: generates a frame on request.
         fps: the actor's frames a second.
     """
     began = time.perf_counter()

@@ -1,4 +1,4 @@
-"""What can be asked about the future of a motion, and what comes back; no torch here."""
+"""Requests and results of motion prediction. This module does not import torch."""
 
 from __future__ import annotations
 
@@ -9,25 +9,19 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from webdemo.motion import SMPL22, Clip, Duet, InputError
+from motion import SMPL22, Clip, Duet, InputError, stacked_positions
 
+from . import methods
 from .actor import FPS, at_30_fps
-from .requests import Result, _choice, _number
+from .requests import Result, _number
 
 Array = NDArray[np.floating]
 
-PREDICT_SECONDS = (0.5, 4.0)
 PAST_SECONDS = 1.0
-"""The least past that a prediction needs; no more of it is looked at."""
-METHODS = {
-    "motion-mlp": "Motion MLP",
-    "mawgan": "PredictiveMA-WGAN",
-    "still": "Zero velocity (the last pose, held)",
-}
-"""By name: what the page calls a method."""
+"""Seconds of past that a prediction needs; only the last so many are used."""
 LONGEST = 60.0
 _MAX_STEP = 0.5
-"""Metres from frame to frame; no joint of a person is that fast (15 m/s)."""
+"""Metres from frame to frame: faster (15 m/s) than any joint of a person."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -35,11 +29,11 @@ class PredictRequest:
     """One to four seconds of motion after a given past, of one person or two.
 
     Attributes:
-        motion: on SMPL22's joints, at most a minute. What lies behind the marker is not looked at, but
-            compared with the prediction.
+        motion: on SMPL22's joints, at most a minute. Frames after the marker are not used for the prediction,
+            only compared with it.
         marker: second at which the past ends; the end of the motion by default.
-        seconds: how much is predicted.
-        model: one of :data:`METHODS`.
+        seconds: length of the prediction.
+        model: a method that predicts, see :mod:`webdemo.inference.methods`.
     """
 
     motion: Clip | Duet
@@ -49,8 +43,8 @@ class PredictRequest:
 
     def __post_init__(self) -> None:
         set_ = object.__setattr__
-        _choice("Model", self.model, tuple(METHODS))
-        set_(self, "seconds", _number("Length", self.seconds, *PREDICT_SECONDS, " seconds"))
+        method = methods.method(self.model, "predict")
+        set_(self, "seconds", _number("Length", self.seconds, *method.seconds, " seconds"))
         set_(self, "motion", check_motion(self.motion))
         length = self.motion.seconds
         marker = length if self.marker is None else _number("Marker", self.marker, 0.0, 1e6, " seconds")
@@ -60,14 +54,17 @@ class PredictRequest:
                 "give a longer motion."
             )
         if marker > length + 0.5 / FPS:
-            raise InputError(f"The marker, {marker:g} s, lies behind the motion, which lasts {length:.2f} s.")
+            raise InputError(
+                f"The marker, {marker:g} s, is after the end of the motion, which lasts {length:.2f} s."
+            )
         if round(marker * FPS) < round(PAST_SECONDS * FPS):
             raise InputError(
                 f"The past is {marker:.2f} s long, and {PAST_SECONDS:g} s or more is needed: "
                 "move the marker to the right."
             )
-        set_(self, "marker", min(marker, length))
-        _check_steps(self.past, self.marker)
+        marker = min(marker, length)
+        set_(self, "marker", marker)
+        _check_steps(self.past, marker)
 
     @property
     def past_frames(self) -> int:
@@ -76,17 +73,18 @@ class PredictRequest:
 
     @property
     def past(self) -> Clip | Duet:
+        """The motion before the marker."""
         return self.motion.cut(0, self.past_frames)
 
     @property
     def truth(self) -> Clip | Duet | None:
-        """What followed the marker, as far as it is predicted; None where nothing does."""
+        """The motion after the marker, cut to the length of the prediction; None if there is none."""
         stop = min(self.past_frames + round(self.seconds * FPS), self.motion.num_frames)
         return self.motion.cut(self.past_frames, stop) if stop > self.past_frames else None
 
     def to_dict(self) -> dict[str, Any]:
         """Everything but the motion, which is named by its SHA-256."""
-        positions = np.ascontiguousarray(people_of(self.motion))
+        positions = np.ascontiguousarray(stacked_positions(self.motion))
         motion = {
             "name": (self.motion.name if isinstance(self.motion, Clip) else self.motion.a.name)[:100],
             "people": len(positions),
@@ -98,11 +96,6 @@ class PredictRequest:
             "kind": "predict", "motion": motion, "marker": self.marker, "seconds": self.seconds,
             "model": self.model,
         }  # fmt: skip
-
-
-def people_of(motion: Clip | Duet) -> Array:
-    """(people, T, J, 3) metres of one person or two."""
-    return motion.positions if isinstance(motion, Duet) else motion.positions[None]
 
 
 def with_people(motion: Clip | Duet, positions: Array) -> Clip | Duet:
@@ -119,7 +112,7 @@ def check_motion(motion: Any) -> Clip | Duet:
     if motion.skeleton.joint_names != SMPL22.joint_names:
         raise InputError(
             f"The motion has the joints of {motion.skeleton.name}, not SMPL's 22: bring it onto them "
-            "with webdemo.motion.retarget.to_smpl."
+            "with motion.retarget.to_smpl."
         )
     if motion.seconds > LONGEST:
         raise InputError(f"The motion lasts {motion.seconds:.0f} s: cut it to {LONGEST:g} s or less.")
@@ -129,8 +122,8 @@ def check_motion(motion: Any) -> Clip | Duet:
 
 
 def _check_steps(past: Clip | Duet, marker: float) -> None:
-    """Raises InputError where a joint teleports in the part of the past that is looked at."""
-    seen = people_of(past)[:, -round(PAST_SECONDS * FPS) :]
+    """Raises InputError if a joint jumps in the part of the past that is used."""
+    seen = stacked_positions(past)[:, -round(PAST_SECONDS * FPS) :]
     steps = np.linalg.norm(np.diff(seen, axis=1), axis=-1)
     if steps.max() <= _MAX_STEP:
         return
@@ -145,15 +138,15 @@ def _check_steps(past: Clip | Duet, marker: float) -> None:
 
 @dataclass(frozen=True, kw_only=True)
 class PredictResult(Result):
-    """A prediction: the one entry of ``duets`` is the past and what is predicted, of one person or two.
+    """A prediction: the only entry of ``duets`` holds the past and the prediction, of one person or two.
 
     Attributes:
         past_frames: the first predicted frame.
-        truth: what really followed, as far as the motion goes on.
+        truth: the recorded continuation, as far as it exists.
         error: (frames of truth,) mean distance of joints from the truth, in millimetres (MPJPE).
         speed: (predicted frames,) mean distance per joint and frame, in millimetres (MPJS, eq. 2.13 of
             Chopin's thesis).
-        true_speed: (frames of truth,) the same of what really followed.
+        true_speed: (frames of truth,) the same for the recorded continuation.
     """
 
     past_frames: int
@@ -164,8 +157,10 @@ class PredictResult(Result):
 
     @property
     def given(self) -> Clip | Duet:
-        """The motion that was asked about: the past, and what really followed as far as it was compared."""
+        """The input motion: the past, and the recorded continuation that was compared."""
         motion = self.duets[0].cut(0, self.past_frames)
         if self.truth is None:
             return motion
-        return with_people(motion, np.concatenate([people_of(motion), people_of(self.truth)], axis=1))
+        return with_people(
+            motion, np.concatenate([stacked_positions(motion), stacked_positions(self.truth)], axis=1)
+        )

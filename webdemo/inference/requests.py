@@ -13,9 +13,11 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from webdemo.motion import Clip, Duet, InputError
+from motion import Clip, Duet, InputError
 
-from .actor import ROLES, SECONDS, check_actor
+from . import methods
+from .actor import ROLES, check_actor
+from .method import Method
 
 MAX_PROMPT = 500
 STEPS = (1, 1000)
@@ -24,19 +26,6 @@ GUIDANCE = (0.0, 10.0)
 DAMPING = (0.0, 1.0)
 MAX_SEED = 2**32 - 1
 SAMPLERS = ("ddim", "dpm++")
-MODES: dict[str, tuple[str, ...]] = {
-    "intergen": ("offline",),
-    "regennet": ("offline", "online"),
-    "interformer": ("offline",),
-    "agent": ("offline",),
-}
-"""How each model can react: in sight of the whole given motion, or of its past alone."""
-DEFAULT_STEPS = {"intergen": 50, "regennet": 5, "interformer": 1, "agent": 50}
-"""Denoising steps that each model is meant for; InterFormer has none."""
-
-
-DEFAULT_GUIDANCE = {"bigraphdiff": 1.8}
-"""Guidance scales of models for which :class:`SamplingRequest`'s is not the best."""
 
 
 def _number(name: str, value: Any, low: float, high: float, unit: str = "") -> float:
@@ -67,20 +56,25 @@ def _choice(name: str, value: Any, known: tuple[str, ...]) -> None:
         raise InputError(f"{name} {value!r:.40} is not known: choose one of {', '.join(known)}.")
 
 
+def _others(needed: str) -> str:
+    """Names the models with a capability that another one lacks, for a message."""
+    return "the model " + " or ".join(m.name for m in methods.methods("react") if needed in m.takes)
+
+
 @dataclass(frozen=True, kw_only=True)
 class SamplingRequest:
-    """What every job that denoises a motion can be told.
+    """The settings of every job that denoises a motion.
 
     Attributes:
         seed: the same request with the same seed gives the same motion.
-        samples: how many different motions to draw in one pass.
+        samples: number of different motions to generate.
         guidance: scale s of classifier-free guidance, s·conditioned + (1−s)·unconditioned; 1 is none.
         steps: denoising steps.
-        damping: t̄ as a fraction of the diffusion's T: while t ≤ t̄·T the predicted motion is corrected by
-            the regularisers; 0 is the plain sampler.
+        damping: t̄ as a fraction of the diffusion's T: while t ≤ t̄·T the regularisers correct the predicted
+            motion; 0 turns the correction off.
         sampler: "ddim" (η = 0) or "dpm++" (DPM-Solver++ multistep).
         model: the name of a generator in the registry.
-        cleanup: end in a projection onto constant bones and planted feet.
+        cleanup: project the result onto constant bones and planted feet.
     """
 
     seed: int = 0
@@ -92,14 +86,20 @@ class SamplingRequest:
     model: str = "intergen"
     cleanup: bool = True
 
-    def __post_init__(self) -> None:
+    def _check(self, method: Method) -> None:
         set_ = object.__setattr__
+        for name, value in method.fixed.items():
+            set_(self, name, value)
         set_(self, "seed", _whole("Seed", self.seed, 0, MAX_SEED))
         set_(self, "samples", _whole("Samples", self.samples, *SAMPLES))
         set_(self, "guidance", _number("Guidance scale", self.guidance, *GUIDANCE))
         set_(self, "steps", _whole("DDIM steps", self.steps, *STEPS))
         set_(self, "damping", _number("Damping threshold", self.damping, *DAMPING))
         _choice("Sampler", self.sampler, SAMPLERS)
+        if self.sampler not in method.samplers:
+            raise InputError(
+                f"{method.label} does not sample with {self.sampler}: choose {' or '.join(method.samplers)}."
+            )
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -115,34 +115,36 @@ class GenerateRequest(SamplingRequest):
     seconds: float = 5.0
 
     def __post_init__(self) -> None:
+        method = methods.method(self.model, "generate")
         _words(self.prompt, needed=True)
-        object.__setattr__(self, "seconds", _number("Length", self.seconds, *SECONDS, " seconds"))
-        super().__post_init__()
+        object.__setattr__(self, "seconds", _number("Length", self.seconds, *method.seconds, " seconds"))
+        self._check(method)
 
     def to_dict(self) -> dict[str, Any]:
+        """All fields, and the kind of the request."""
         return {"kind": "generate", **asdict(self)}
 
 
 @dataclass(frozen=True, kw_only=True)
 class ReactRequest(SamplingRequest):
-    """A second person for a given one: InterGen person to person (section 5.4), ReGenNet, InterFormer or the
-    virtual agent.
+    """Generates a second person for a given one.
 
-    ReGenNet samples with DDIM alone. Online, what is to come cannot be corrected: ``damping`` is 0 whatever
-    was given.
-    InterFormer denoises nothing and takes no words: it heeds ``seed``, ``samples`` and ``cleanup`` alone.
-    The virtual agent finds the words itself and has InterGen answer; its given person always acts first.
+    The methods are InterGen person to person (section 5.4), ReGenNet, InterFormer and the virtual agent.
+    ReGenNet samples with DDIM only. Online, frames cannot be corrected after they are shown, so ``damping`` is
+    set to 0.
+    InterFormer neither denoises nor takes text: it uses only ``seed``, ``samples`` and ``cleanup``.
+    The virtual agent chooses the prompt itself and InterGen generates the response; its given person acts first.
 
     Attributes:
         actor: the given person, 1 to 10 seconds on SMPL22's joints. At 30 fps the result holds these very
             positions; a clip of another rate is resampled first.
         prompt: what the two people do, in English; empty for a reaction without a stated intent.
-        role: which of the two the given person is: "a" acts first, "b" reacts to a person who is made.
+        role: role of the given person: "a" acts first, "b" reacts to the generated person.
             ReGenNet's and InterFormer's given person always acts first.
-        mode: "offline": the other person is made in sight of the whole motion; "online" (ReGenNet): each of
-            their frames in sight of the given person's frames so far.
-        start: (22, 3) metres, how the person who is made stands at the first frame, in the actor's world;
-            open by default. Not for InterGen and the virtual agent.
+        mode: "offline": the network sees the given person's whole motion; "online" (ReGenNet): each frame
+            depends only on the given person's frames so far.
+        start: (22, 3) metres, the generated person's first pose in the actor's world; free by default. Not for
+            InterGen and the virtual agent.
     """
 
     actor: Clip
@@ -154,51 +156,37 @@ class ReactRequest(SamplingRequest):
     def __post_init__(self) -> None:
         _words(self.prompt, needed=False)
         _choice("Role", self.role, ROLES)
-        _choice("Model", self.model, tuple(MODES))
-        if self.mode not in MODES[self.model]:
+        method = methods.method(self.model, "react")
+        modes = [variant.mode for variant in method.variants]
+        if self.mode not in modes:
+            raise InputError(f"{method.label} has no mode {self.mode!r:.40}: choose {' or '.join(modes)}.")
+        if self.role != "a" and "either role" not in method.takes:
             raise InputError(
-                f"Mode {self.mode!r:.40} is none of {self.model}'s: choose {' or '.join(MODES[self.model])}."
+                f"{method.label} makes the person who reacts: choose role a, or {_others('either role')}."
             )
-        if self.model == "regennet":
-            self._check_regennet()
-        if self.model == "interformer":
-            self._check_interformer()
-        if self.model == "agent" and self.role != "a":
-            raise InputError("The virtual agent answers: choose role a, or the model intergen.")
-        object.__setattr__(self, "actor", check_actor(self.actor, SECONDS))
+        object.__setattr__(self, "actor", check_actor(self.actor, method.seconds))
         if self.start is not None:
-            self._check_start()
-        super().__post_init__()
+            self._check_start(method)
+        self._check(method)
+        if self.mode == "online":  # a frame that was already sent cannot be corrected
+            object.__setattr__(self, "damping", 0.0)
 
-    def _check_start(self) -> None:
-        if self.model in ("intergen", "agent"):
-            raise InputError("InterGen takes no start pose: leave it out, or choose the model regennet.")
+    def _check_start(self, method: Method) -> None:
+        if "first pose" not in method.takes:
+            raise InputError(
+                f"{method.label} takes no first pose: leave it out, or choose {_others('first pose')}."
+            )
         start = np.asarray(self.start, dtype=np.float64)
         if start.shape != (22, 3) or not np.isfinite(start).all():
             raise InputError(
                 "The start pose must be finite and of 22 joints, in metres of the actor's world."
             )
-        # One person in one place, checked as an actor of a second would be.
+        # Checked like an actor who holds this pose for a second.
         check_actor(Clip(np.repeat(start[None], 30, axis=0), 30.0), (0.0, 2.0))
-        object.__setattr__(self, "start", start.round(5))  # as the manifest keeps it
-
-    def _check_regennet(self) -> None:
-        if self.role != "a":
-            raise InputError("ReGenNet makes the one who reacts: choose role a, or the model intergen.")
-        if self.sampler != "ddim":
-            raise InputError(f"ReGenNet samples with ddim, not with {self.sampler!r:.40}: choose ddim.")
-        _number("Damping threshold", self.damping, *DAMPING)
-        if self.mode == "online":
-            object.__setattr__(self, "damping", 0.0)
-
-    def _check_interformer(self) -> None:
-        if self.role != "a":
-            raise InputError("InterFormer makes the one who reacts: choose role a, or the model intergen.")
-        for name, plain in {"steps": 1, "guidance": 1.0, "damping": 0.0, "sampler": "ddim"}.items():
-            object.__setattr__(self, name, plain)
+        object.__setattr__(self, "start", start.round(5))  # as in the manifest
 
     def to_dict(self) -> dict[str, Any]:
-        """Everything but the motion, which is named by its SHA-256."""
+        """All fields except the motion, which its SHA-256 represents."""
         plain = {f.name: getattr(self, f.name) for f in fields(self) if f.name not in ("actor", "start")}
         if self.start is not None:
             plain["start"] = np.asarray(self.start).tolist()
@@ -214,12 +202,12 @@ class ReactRequest(SamplingRequest):
 
 @dataclass(frozen=True, kw_only=True)
 class Progress:
-    """One thing that happened on the way to a result.
+    """An event during a run.
 
     Attributes:
         stage: "load", "text", "sample", "finish".
-        step: steps of the stage that are done.
-        total: steps the stage has.
+        step: finished steps of the stage.
+        total: all steps of the stage.
         elapsed: seconds since the request began.
     """
 
@@ -236,7 +224,7 @@ class Result:
     Attributes:
         duets: one a sample; a prediction for one person is that person's clip.
         manifest: request, model, weights hash, versions: all that reproduces the result.
-        readouts: one dictionary of interaction measures a sample (see :mod:`webdemo.metrics`), each
+        readouts: one dictionary of interaction measures a sample (see :mod:`motion.metrics`), each
             measure with its value ``before`` and ``after`` the damping and clean-up where both exist.
         timings: seconds by stage.
         notes: sentences the user should read, such as a prompt far from all training captions.

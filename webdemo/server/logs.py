@@ -29,6 +29,7 @@ class JsonLines(logging.Formatter):
         self.content = content
 
     def format(self, record: logging.LogRecord) -> str:
+        """The record as one line of JSON."""
         ours = record.name.partition(".")[0] in _OURS
         line: dict[str, Any] = {
             "time": time.strftime("%Y-%m-%dT%H:%M:%S", time.gmtime(record.created))

@@ -10,15 +10,15 @@ _M_ARENA_MAX = -8
 
 
 def share_heaps() -> None:
-    """Lets all threads share few heaps, where the C library has many; before threads are made."""
+    """Limits the heaps that the C library's threads use; call it before any thread starts."""
     if mallopt := getattr(ctypes.CDLL(None), "mallopt", None):
         mallopt(_M_ARENA_MAX, ARENAS)
 
 
 def give_back() -> None:
-    """Returns to the system what the heaps hold between what is in use; milliseconds.
+    """Returns unused memory inside the heaps to the system; takes milliseconds.
 
-    Tensors and files of a run leave gaps, which glibc by itself returns only from a heap's end.
+    Tensors and files of a run leave gaps, and glibc itself returns memory only from a heap's end.
     """
     if trim := getattr(ctypes.CDLL(None), "malloc_trim", None):
         trim(0)

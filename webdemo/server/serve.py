@@ -14,13 +14,13 @@ import uvicorn
 from starlette.concurrency import run_in_threadpool
 from uvicorn.protocols.http.h11_impl import H11Protocol
 
-from webdemo.motion import InputError
+from motion import InputError
+from webdemo.server.cluster.instance_lock import InstanceLock
+from webdemo.server.store.scratch import Scratch
 
 from .app import Lab, create_app
 from .logs import set_up_logs
 from .memory import share_heaps
-from .nodes import Node
-from .scratch import Scratch
 from .settings import Settings
 
 log = logging.getLogger(__name__)
@@ -30,7 +30,7 @@ SWITCH_SECONDS = 0.001
 FILES = 512
 """Open files beside the connections: the database, motions, libraries."""
 CLOSING_SECONDS = 3
-"""How long open connections may take once all runs have ended."""
+"""Seconds allowed for open connections once all runs have ended."""
 
 
 def bounded_protocol(settings: Settings) -> type[H11Protocol]:
@@ -103,6 +103,7 @@ class Server(uvicorn.Server):
         self.lab = lab
 
     async def shutdown(self, sockets: list[socket.socket] | None = None) -> None:
+        """Lets running work end, then stops the server."""
         if not self.force_exit:
             await run_in_threadpool(self.lab.stop)
         await super().shutdown(sockets)
@@ -113,7 +114,7 @@ def make_server(settings: Settings, *, scratch: bool = False, **parts: Any) -> S
 
     With ``scratch`` all files of this process, Gradio's as well, lie in the data folder.
     """
-    node = Node(settings.data, settings.node)
+    node = InstanceLock(settings.data, settings.node)
     if scratch:
         parts["scratch"] = Scratch(
             settings.data / "scratch" / quote(node.name, safe=""), settings.scratch_megabytes * 2**20
@@ -133,7 +134,7 @@ def serve(settings: Settings) -> None:
     """Serves until SIGTERM or Ctrl+C.
 
     Raises:
-        InputError: where the settings do not fit or the address is taken.
+        InputError: if the settings do not fit or the address is taken.
     """
     settings.check()
     with socket.socket(socket.AF_INET6 if ":" in settings.host else socket.AF_INET) as probe:

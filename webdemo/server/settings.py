@@ -23,19 +23,19 @@ from pydantic_settings import (
     TomlConfigSettingsSource,
 )
 
-from webdemo.motion import InputError
+from motion import InputError
 
 PREFIX = "PASDEDEUX_"
 FILE = "pasdedeux.toml"
 
 
 def on_a_space() -> bool:
-    """Whether this is a Hugging Face Space, which is public by its nature."""
+    """Whether this is a Hugging Face Space, which is always public."""
     return "SPACE_ID" in os.environ
 
 
 def _data_folder() -> Path:
-    """Where a program of this user keeps its data; a folder of their own where they have no home."""
+    """The user's data folder; a temporary folder of the user's if there is no home folder."""
     base = os.environ.get("XDG_DATA_HOME")
     try:
         return (Path(base) if base else Path.home() / ".local" / "share") / "pas-de-deux"
@@ -44,7 +44,7 @@ def _data_folder() -> Path:
 
 
 class Settings(BaseSettings):
-    """What a server is told; every field says what it is for and in which unit."""
+    """The server's settings; each field's description gives its purpose and unit."""
 
     model_config = SettingsConfigDict(
         env_prefix=PREFIX, extra="forbid", frozen=True, validate_default=True, env_ignore_empty=True
@@ -56,67 +56,75 @@ class Settings(BaseSettings):
     )
     port: int = Field(7860, ge=1, le=65535, description="port to listen on")
     root_path: str = Field(
-        "", pattern=r"^(/[\w.~-]+)*$", description="path under which a proxy shows the page"
+        "", pattern=r"^(/[\w.~-]+)*$", description="path under which a proxy serves the page"
     )
     proxies: list[str] = Field(
         default_factory=lambda: ["*"] if on_a_space() else ["127.0.0.1", "::1"],
-        description="addresses whose X-Forwarded headers are believed",
+        description="addresses of proxies whose X-Forwarded headers are trusted",
     )
     hosts: list[str] = Field(
-        [], description="names by which browsers may call; on loopback its own, otherwise any, by default"
+        [], description="host names that browsers may use; by default only its own on loopback, otherwise any"
     )
 
     # ---- who may use it
-    users: Path | None = Field(None, description="file of accounts; none: no accounts")
-    open: bool = Field(
-        default_factory=on_a_space, description="serve others than this machine without accounts"
-    )
+    users: Path | None = Field(None, description="file of accounts; without one there are no accounts")
+    open: bool = Field(default_factory=on_a_space, description="serve other machines without accounts")
     session_hours: float = Field(24 * 14, gt=0, le=24 * 365, description="how long a sign-in lasts")
-    metrics_token: str = Field("", description="bearer of /metrics from elsewhere; empty: this machine alone")
+    metrics_token: str = Field(
+        "", description="bearer token for /metrics from other machines; empty: only this machine"
+    )
 
     # ---- what is kept
-    data: Path = Field(default_factory=_data_folder, description="folder of the history")
+    data: Path = Field(default_factory=_data_folder, description="folder that holds the history")
     database: str = Field("", description="SQLAlchemy URL; empty: SQLite in the data folder")
     node: str = Field(default_factory=socket.gethostname, description="name of this process among several")
-    keep_days: float = Field(30, gt=0, description="age at which a run that is no favourite is removed")
-    keep_megabytes: float = Field(2000, gt=0, description="size of all runs above which the oldest go")
-    keep_favourites: int = Field(200, ge=0, description="favourites a person")
-    link_days: float = Field(30, gt=0, le=3650, description="how long a link opens a run for others")
-    free_megabytes: float = Field(100, ge=0, description="free disk below which no run or upload is taken")
+    keep_days: float = Field(
+        30, gt=0, description="age in days at which a run is removed unless it is a favourite"
+    )
+    keep_megabytes: float = Field(
+        2000, gt=0, description="total size of runs above which the oldest are removed"
+    )
+    keep_favourites: int = Field(200, ge=0, description="favourites per person")
+    link_days: float = Field(30, gt=0, le=3650, description="days for which a link opens a run for others")
+    free_megabytes: float = Field(
+        100, ge=0, description="free disk space below which runs and uploads are refused"
+    )
     scratch_megabytes: float = Field(
-        2000, gt=0, description="size of uploads and of files made for download above which the oldest go"
+        2000, gt=0, description="total size of uploads and download files above which the oldest are removed"
     )
 
     # ---- the queue
-    running: int = Field(2, ge=1, description="runs of one person at a time")
+    running: int = Field(2, ge=1, description="runs of one person at the same time")
     waiting: int = Field(4, ge=1, description="runs of one person that may wait")
     queue: int = Field(64, ge=1, le=1000, description="runs of all people that may wait")
     batch: int = Field(8, ge=1, le=64, description="motions in one pass through the network")
-    grace_seconds: float = Field(60, ge=0, description="how long what runs may take to end at a shutdown")
+    grace_seconds: float = Field(60, ge=0, description="how long runs may take to finish at a shutdown")
 
     # ---- where the networks run
     engine: Literal["local", "ray"] = Field(
         "local", description="local: in this process; ray: in replicas of Ray Serve"
     )
-    ray_address: str = Field("", description="Ray cluster to join; empty: one of this machine's own")
-    ray_replicas: int = Field(2, ge=1, le=64, description="most replicas of the default model")
-    ray_cores: float = Field(1, gt=0, le=256, description="cores of one replica")
+    ray_address: str = Field(
+        "", description="address of the Ray cluster to join; empty: start one on this machine"
+    )
+    ray_replicas: int = Field(2, ge=1, le=64, description="largest number of replicas of the default model")
+    ray_cores: float = Field(1, gt=0, le=256, description="cores per replica")
 
     # ---- limits
-    rate: int = Field(240, ge=1, description="changing requests of one person a minute")
+    rate: int = Field(240, ge=1, description="requests per person and minute that change something")
     address_people: int = Field(
-        8, ge=1, description="on an open server: people whose share one address may take"
+        8, ge=1, description="on an open server: how many people's share one address may take"
     )
     upload_megabytes: float = Field(50, gt=0, le=50, description="largest upload")
     body_megabytes: float = Field(2, gt=0, description="largest body of any other request")
     body_seconds: float = Field(60, gt=0, description="time for a request's body to arrive")
-    header_seconds: float = Field(10, gt=0, description="time for a request's head to arrive")
+    header_seconds: float = Field(10, gt=0, description="time for a request's headers to arrive")
     connections: int = Field(1000, ge=1, description="open connections")
-    address_connections: int = Field(400, ge=1, description="open connections of one address")
+    address_connections: int = Field(400, ge=1, description="open connections per address")
 
     # ---- logs
     log_level: str = Field("info", pattern="^(debug|info|warning|error)$", description="least severe line")
-    log_content: bool = Field(False, description="let logs hold prompts and what an error says of them")
+    log_content: bool = Field(False, description="let logs contain prompts and what errors say about them")
 
     @classmethod
     def settings_customise_sources(
@@ -127,6 +135,7 @@ class Settings(BaseSettings):
         dotenv_settings: PydanticBaseSettingsSource,
         file_secret_settings: PydanticBaseSettingsSource,
     ) -> tuple[PydanticBaseSettingsSource, ...]:
+        """The environment first, then the settings file, then the defaults."""
         file = Path(os.environ.get(f"{PREFIX}SETTINGS") or FILE)
         return init_settings, env_settings, TomlConfigSettingsSource(settings_cls, file)
 
@@ -142,12 +151,13 @@ class Settings(BaseSettings):
 
     @property
     def url(self) -> str:
-        """Where the page is, for the person who started it."""
+        """The page's address, for the person who started the server."""
         host = "127.0.0.1" if self.host in ("0.0.0.0", "::") else self.host
         return f"http://{f'[{host}]' if ':' in host else host}:{self.port}{self.root_path}/"
 
     @property
     def database_url(self) -> str:
+        """The database's SQLAlchemy URL."""
         return self.database or f"sqlite:///{self.data / 'history.db'}"
 
     @property
@@ -156,7 +166,7 @@ class Settings(BaseSettings):
         return self.data / "motions"
 
     def check(self) -> None:
-        """Raises InputError where the server would be open to others without anybody having said so."""
+        """Raises InputError if the server would be open to others without anybody having said so."""
         if not self.local and not self.accounts and not self.open:
             raise InputError(
                 f"{self.host} can be reached from other machines and there are no accounts: make some with "
@@ -172,7 +182,7 @@ class Settings(BaseSettings):
 
 
 def is_loopback(host: str) -> bool:
-    """Whether an address or name means this machine alone."""
+    """Whether an address or name is this machine's loopback."""
     if host == "localhost":
         return True
     try:

@@ -9,12 +9,12 @@ from typing import Any
 
 import numpy as np
 
+from motion import Duet, InputError
 from webdemo.inference.actor import ROLES
 from webdemo.inference.predict_request import PredictRequest, PredictResult
 from webdemo.inference.requests import GenerateRequest, ReactRequest, Result, SamplingRequest
-from webdemo.motion import InputError
+from webdemo.ui.components.actors import Source
 
-from .actors import Source
 from .history import Entry, Opened
 
 Request = SamplingRequest | PredictRequest
@@ -32,7 +32,9 @@ def request_of(opened: Opened) -> Request:
     asked = opened.entry.request
     kind = _KINDS.get(opened.entry.kind)
     if kind is None:
-        raise InputError(f"A run of the kind {opened.entry.kind!r} is not run again from here: use its tab.")
+        raise InputError(
+            f"A run of the kind {opened.entry.kind!r} cannot be run again from here: use its tab."
+        )
     given: dict[str, Any] = {f.name: asked[f.name] for f in fields(kind) if f.name in asked}
     if kind is ReactRequest:
         given["actor"] = actor_source(opened).people[0]
@@ -59,8 +61,9 @@ def actor_source(opened: Opened) -> Source:
     """The given person of a kept reaction, whom its result holds unchanged."""
     asked = opened.entry.request
     place = ROLES.index(asked.get("role", ROLES[0]))
-    return Source(asked.get("actor", {}).get("name") or opened.entry.title,
-                  (opened.result.duets[0].people[place],))  # fmt: skip
+    duet = opened.result.duets[0]
+    assert isinstance(duet, Duet)  # as every reaction is
+    return Source(asked.get("actor", {}).get("name") or opened.entry.title, (duet.people[place],))
 
 
 def verdict(old: Result, new: Result) -> str:
@@ -70,7 +73,7 @@ def verdict(old: Result, new: Result) -> str:
         return "Run again: the same motion, bit for bit."
     changed = _changed(old.manifest, new.manifest)
     if any(a.positions.shape != b.positions.shape for a, b in pairs):
-        apart = "the motions are not of one length"
+        apart = "the motions differ in length"
     else:
         largest = max(float(np.abs(a.positions - b.positions).max()) for a, b in pairs)
         apart = f"joints differ by up to {1000 * largest:.3g} mm"
@@ -82,7 +85,7 @@ def verdict(old: Result, new: Result) -> str:
         if (others := result.manifest.get("runs_in_pass", 1) - 1)
     ]
     why = " and ".join(shared) if shared else "it ran on another machine"
-    return f"Run again: {apart}, with the same weights and versions; {why}, which rounds otherwise."
+    return f"Run again: {apart}, with the same weights and versions; {why}, which changes the rounding."
 
 
 def _changed(old: Mapping[str, Any], new: Mapping[str, Any]) -> list[str]:

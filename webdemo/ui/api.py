@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import threading
 import uuid
 from collections.abc import Callable
 from pathlib import Path
@@ -9,27 +10,37 @@ from typing import Any
 
 import gradio as gr
 
-from webdemo.formats import read
+from motion import InputError
+from motion.formats import read
 from webdemo.inference.actor import read_actor
+from webdemo.inference.methods import methods
 from webdemo.inference.predict_request import LONGEST, PredictRequest, PredictResult
 from webdemo.inference.requests import (
-    DEFAULT_GUIDANCE,
     Cancelled,
     GenerateRequest,
     ReactRequest,
     Result,
     SamplingRequest,
 )
-from webdemo.motion import InputError
+from webdemo.ui.components.exports import file_name, without_place, write_files
+from webdemo.ui.components.film import LONGEST as LONGEST_FILM
+from webdemo.ui.text.classes import class_method
+from webdemo.ui.text.words import error_line, progress_line
+from webdemo.view.camera import VIEWS
+from webdemo.view.film import FPS, SIZE, write_film
+from webdemo.view.sheet import SUFFIXES as SHEETS
+from webdemo.view.sheet import write_sheet
+from webdemo.view.stage import LOOKS, Pane, Style
 
-from .classes import MODEL
 from .context import PageContext
-from .exports import write_files
-from .words import error_line, progress_line
 
 Answer = tuple[dict[str, Any], list[str]]
 PROGRESS = gr.Progress()
 """A default value by which Gradio gives a job somewhere to tell its progress; ``job.status()`` has it."""
+
+
+_READING = threading.BoundedSemaphore(4)
+"""Files that are read at once, as many as of the page's own: a large one takes seconds and 100 MB."""
 
 
 class Endpoint:
@@ -50,7 +61,7 @@ class Endpoint:
         """Inputs for the fields of a :class:`SamplingRequest`, in the order of the jobs' arguments."""
         return [
             gr.Number(SamplingRequest.seed, label="0 to 4294967295; the same seed gives the same motion"),
-            gr.Number(SamplingRequest.samples, label="how many motions to draw, 1 to 8"),
+            gr.Number(SamplingRequest.samples, label="how many motions to generate, 1 to 8"),
             gr.Number(guidance, label="scale of classifier-free guidance, 0 to 10; 1 is none"),
             gr.Number(SamplingRequest.steps, label="denoising steps, 1 to 1000"),
             gr.Number(SamplingRequest.damping, label="damping threshold as a share of T, 0 to 1; 0 is none"),
@@ -76,7 +87,9 @@ class Endpoint:
     ) -> Answer:
         """Runs a request and writes its files, called after ``title``; every error is one sentence."""
         try:
-            result = self._run(make(), progress)
+            with _READING:
+                request = make()
+            result = self._run(request, progress)
             files = write_files(result, self.page.shelf.folder(), prompt=title)
         except Cancelled:
             raise gr.Error("The run was cancelled: send the request again.", print_exception=False) from None
@@ -114,6 +127,10 @@ class GenerateEndpoint(Endpoint):
                 gr.Textbox(label="what the two people do, in English, up to 500 characters"),
                 gr.Number(GenerateRequest.seconds, label="length of the motion in seconds, 1 to 10"),
                 *self._sampling(),
+                gr.Textbox(
+                    GenerateRequest.model,
+                    label=" or ".join(m.name for m in methods("generate") if "words" in m.takes),
+                ),
             ]
             self._publish(self.generate, "generate", inputs)
 
@@ -121,12 +138,13 @@ class GenerateEndpoint(Endpoint):
         self,
         prompt: str,
         seconds: float,
-        seed: float,
-        samples: float,
+        seed: int,
+        samples: int,
         guidance: float,
-        steps: float,
+        steps: int,
         damping: float,
         sampler: str,
+        model: str = GenerateRequest.model,
         progress: gr.Progress = PROGRESS,
     ) -> Answer:
         """Two people from one sentence.
@@ -138,7 +156,7 @@ class GenerateEndpoint(Endpoint):
         return self._answer(
             lambda: GenerateRequest(
                 prompt=prompt, seconds=seconds, seed=seed, samples=samples, guidance=guidance, steps=steps,
-                damping=damping, sampler=sampler,
+                damping=damping, sampler=sampler, model=model,
             ),
             prompt,
             progress,
@@ -154,7 +172,7 @@ class ClassEndpoint(Endpoint):
             inputs = [
                 gr.Textbox(label="name of a class, such as: shake hands"),
                 gr.Number(GenerateRequest.seconds, label="length of the motion in seconds, 1 to 10"),
-                *self._sampling(DEFAULT_GUIDANCE[MODEL]),
+                *self._sampling(class_method().default("guidance", GenerateRequest.guidance)),
             ]
             self._publish(self.generate_class, "generate_class", inputs)
 
@@ -162,10 +180,10 @@ class ClassEndpoint(Endpoint):
         self,
         name: str,
         seconds: float,
-        seed: float,
-        samples: float,
+        seed: int,
+        samples: int,
         guidance: float,
-        steps: float,
+        steps: int,
         damping: float,
         sampler: str,
         progress: gr.Progress = PROGRESS,
@@ -177,7 +195,7 @@ class ClassEndpoint(Endpoint):
         return self._answer(
             lambda: GenerateRequest(
                 prompt=name, seconds=seconds, seed=seed, samples=samples, guidance=guidance, steps=steps,
-                damping=damping, sampler=sampler, model=MODEL,
+                damping=damping, sampler=sampler, model=class_method().name,
             ),
             name,
             progress,
@@ -189,22 +207,22 @@ class ReactEndpoint(Endpoint):
 
     def publish(self) -> None:
         """Adds the endpoint to the page that is being built."""
+        found = methods("react")
+        streaming = " or ".join(m.name for m in found if "online" in m.modes)
+        posed = " or ".join(m.name for m in found if "first pose" in m.takes)
         with gr.Row(visible=False):
             inputs = [
                 gr.File(label="the given person: .bvh, .npz or .npy, up to 50 MB"),
                 gr.Textbox("", label="what the two people do, in English; may be empty"),
-                gr.Textbox("", label="a to f, where the file holds several people"),
-                gr.Number(0, label="start of the part that is used, in seconds"),
+                gr.Textbox("", label="a to f, if the file holds several people"),
+                gr.Number(0, label="start of the part to use, in seconds"),
                 gr.Number(0, label="its end, in seconds; 0 is the end of the file"),
                 gr.Textbox(ReactRequest.role, label="a: the given person acts first; b: they react"),
                 *self._sampling(),
-                gr.Textbox(
-                    ReactRequest.model,
-                    label="intergen, regennet (for which 5 steps are enough), interformer or agent",
-                ),
-                gr.Textbox(ReactRequest.mode, label="offline, or with regennet online"),
+                gr.Textbox(ReactRequest.model, label=" or ".join(m.name for m in methods("react"))),
+                gr.Textbox(ReactRequest.mode, label=f"offline; or online ({streaming})"),
                 gr.Checkbox(
-                    False, label="of a file with two: begin as the other stands there (not intergen)"
+                    False, label=f"start in the first pose of the other person in the file ({posed})"
                 ),
             ]
             self._publish(self.react, "react", inputs)
@@ -217,10 +235,10 @@ class ReactEndpoint(Endpoint):
         start: float,
         end: float,
         role: str,
-        seed: float,
-        samples: float,
+        seed: int,
+        samples: int,
         guidance: float,
-        steps: float,
+        steps: int,
         damping: float,
         sampler: str,
         model: str,
@@ -259,9 +277,7 @@ class PredictEndpoint(Endpoint):
                 gr.File(label="the motion of one person or two: .bvh, .npz or .npy, up to 50 MB"),
                 gr.Number(0, label="the second at which the past ends; 0 is the end of the file"),
                 gr.Number(PredictRequest.seconds, label="how much to predict in seconds, 0.5 to 4"),
-                gr.Textbox(
-                    PredictRequest.model, label="motion-mlp, mawgan, or still for the last pose, held"
-                ),
+                gr.Textbox(PredictRequest.model, label=" or ".join(m.name for m in methods("predict"))),
             ]
             self._publish(self.predict, "predict", inputs)
 
@@ -283,3 +299,56 @@ class PredictEndpoint(Endpoint):
             )
 
         return self._answer(request, f"After {Path(past or '').stem}", progress)
+
+
+class RenderEndpoint:
+    """``/render``: a motion file → a film or a contact sheet.
+
+    Args:
+        page: what tabs and endpoints share.
+    """
+
+    def __init__(self, page: PageContext) -> None:
+        self.page = page
+
+    def publish(self) -> None:
+        """Adds the endpoint to the page that is being built."""
+        with gr.Row(visible=False):
+            inputs = [
+                gr.File(label="the motion of one person or two: .bvh, .npz or .npy, up to 50 MB"),
+                gr.Textbox("mp4", label="film: mp4, webm or gif; contact sheet: png, svg or pdf"),
+                gr.Textbox(Style.look, label=" or ".join(LOOKS)),
+                gr.Textbox(Style.theme, label="light or dark"),
+                gr.Textbox("threequarter", label=" or ".join(VIEWS)),
+                gr.Checkbox(False, label="lines behind hands and pelvis, in a film"),
+                gr.Number(FPS, label="frames a second of a film, 1 to 60"),
+                gr.Number(SIZE[0], label="width in pixels: even, 64 to 1920"),
+                gr.Number(SIZE[1], label="height of a film in pixels: even, 64 to 1080"),
+            ]
+            gr.Button().click(
+                self.render, inputs=inputs, outputs=gr.File(label="the film or sheet"), api_name="render",
+                concurrency_limit=1, concurrency_id="film",
+            )  # fmt: skip
+
+    def render(
+        self, motion: str, kind: str, look: str, theme: str, view: str, trails: bool, fps: float, width: float,
+        height: float,
+    ) -> str:  # fmt: skip
+        """A film or a contact sheet of a motion file. An error is one sentence that says what to change."""
+        folder = self.page.shelf.folder()
+        try:
+            if not motion:
+                raise InputError("There is no motion: send a motion file, such as a .bvh.")
+            if width > 1920 or height > 1080:
+                raise InputError("Pictures have 1920x1080 pixels at most here: ask for less.")
+            with _READING:
+                found = read(Path(motion), longest=LONGEST_FILM)
+            name, suffix = Path(motion).stem, f".{kind.lower().lstrip('.')}"
+            out = folder / f"{file_name(name, {})}{suffix}"
+            style = Style(look=look, theme=theme, trails=trails, names=suffix not in SHEETS)
+            if suffix in SHEETS:
+                return str(write_sheet(found, out, width=int(width), title=name, style=style, view=view))
+            size = (int(width), int(height))
+            return str(write_film([Pane(found)], out, fps=fps, size=size, style=style, view=view, title=name))
+        except Exception as error:
+            raise gr.Error(error_line(without_place(error, folder)), print_exception=False) from None

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from .exports import Shelf
+from webdemo.ui.components.exports import Shelf
+
 from .history import HistoryLike
 from .runs import EngineLike, Loader, RunsLike
 

@@ -3,32 +3,31 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import Any
 
 import gradio as gr
 
-from webdemo.formats.files import MAX_BYTES
+from motion.formats.files import MAX_BYTES
+from webdemo.ui.components.exports import Shelf
+from webdemo.ui.tabs.generate import GenerateTab
+from webdemo.ui.tabs.history import LABEL as HISTORY
+from webdemo.ui.tabs.history import HistoryTab
+from webdemo.ui.tabs.predict import PredictTab
+from webdemo.ui.tabs.react import ReactTab
+from webdemo.ui.text.panels import model_state
 
-from .api import ClassEndpoint, GenerateEndpoint, PredictEndpoint, ReactEndpoint
+from .api import ClassEndpoint, GenerateEndpoint, PredictEndpoint, ReactEndpoint, RenderEndpoint
 from .context import PageContext
-from .exports import Shelf
-from .generate_tab import GenerateTab
 from .history import HistoryLike
-from .history_tab import LABEL as HISTORY
-from .history_tab import HistoryTab
-from .job_tab import JobTab
-from .panels import model_state
-from .predict_tab import PredictTab
-from .react_tab import ReactTab
 from .runs import EngineLike, Loader, Runs, RunsLike
 from .theme import HEAD, style_sheet, theme
 
 TITLE = "Pas de Deux"
 TABS = (GenerateTab, ReactTab, PredictTab)
 """A class a job, with a ``label`` and ``build(demo, record)``."""
-ENDPOINTS = (PredictEndpoint, GenerateEndpoint, ClassEndpoint, ReactEndpoint)
+ENDPOINTS = (PredictEndpoint, GenerateEndpoint, ClassEndpoint, ReactEndpoint, RenderEndpoint)
 """Gradio's client in the browser takes the page's first function for "/predict", so that one comes first."""
 
 _HEADER = (
@@ -45,6 +44,7 @@ def build_page(
     *,
     loader: Loader | None = None,
     files: Path | None = None,
+    owner: Callable[[], str] | None = None,
     runs: RunsLike | None = None,
     history: HistoryLike | None = None,
 ) -> gr.Blocks:
@@ -54,6 +54,7 @@ def build_page(
         engine: answers the page's requests; nothing of it is loaded before the page is up.
         loader: loads the engine's networks; by default the first visit starts one.
         files: folder for the files that users take home; by default in the system's temporary folder.
+        owner: names the folder in ``files`` of whoever's event is answered; by default there is one for all.
         runs: the line that requests wait in; by default one of the page's own, one run at a time.
         history: runs that can be found again, in a tab of its own; none by default.
 
@@ -64,7 +65,7 @@ def build_page(
         engine=engine,
         runs=runs or Runs(engine),
         loader=loader or Loader(engine),
-        shelf=Shelf(files),
+        shelf=Shelf(files, owner=owner),
         history=history,
     )
 
@@ -80,20 +81,7 @@ def build_page(
         with gr.Row(elem_classes="pd-header", equal_height=True):
             gr.HTML(_HEADER)
             mark = gr.HTML(model_state("loading"), elem_id="model-state")
-        record = gr.State(None, time_to_live=3600)
-        jobs: dict[str, JobTab] = {}
-        with gr.Tabs(elem_classes="pd-tabs") as tabs:
-            for tab in TABS:
-                with gr.Tab(tab.label, id=tab.label.lower()):
-                    jobs[tab.label.lower()] = tab(page)
-                    jobs[tab.label.lower()].build(demo, record)
-            for onwards in jobs.values():
-                if isinstance(onwards, PredictTab):
-                    for job in jobs.values():
-                        onwards.continues(job.onward, tabs, onwards.label.lower())
-            if history is not None:
-                with gr.Tab(HISTORY, id=HISTORY.lower()) as past:
-                    HistoryTab(page, jobs, tabs).build(demo, past, record)
+        _build_tabs(page, demo)
         demo.load(
             loading,
             outputs=mark,
@@ -104,6 +92,24 @@ def build_page(
         demo.unload(leave)
     demo.queue(default_concurrency_limit=4, max_size=64)
     return demo
+
+
+def _build_tabs(page: PageContext, demo: gr.Blocks) -> None:
+    """A tab for every job, and the history where there is one."""
+    record = gr.State(None, time_to_live=3600)
+    jobs: dict[str, GenerateTab | ReactTab | PredictTab] = {}
+    with gr.Tabs(elem_classes="pd-tabs") as tabs:
+        for tab in TABS:
+            with gr.Tab(tab.label, id=tab.label.lower()):
+                jobs[tab.label.lower()] = tab(page)
+                jobs[tab.label.lower()].build(demo, record)
+        for onwards in jobs.values():
+            if isinstance(onwards, PredictTab):
+                for job in jobs.values():
+                    onwards.continues(job.onward, tabs, onwards.label.lower())
+        if page.history is not None:
+            with gr.Tab(HISTORY, id=HISTORY.lower()) as past:
+                HistoryTab(page, jobs, tabs).build(demo, past, record)
 
 
 def watch_loading(loader: Loader, *, interval: float = 0.3) -> Iterator[str]:

@@ -8,14 +8,14 @@ import numpy as np
 from numpy.typing import NDArray
 from PIL import Image, ImageDraw, ImageFont
 
-from webdemo.motion.clip import Clip, Duet
+from motion.clip import Clip, Duet
 
 Array = NDArray[np.floating]
 
-# Person a blue, person b orange; left limbs lighter, so that sides can be told apart.
+# Person a blue, person b orange; left limbs lighter, to distinguish the sides.
 _COLOURS = {0: ((31, 95, 168), (120, 175, 232)), 1: ((196, 84, 10), (250, 168, 100))}
 _BACKGROUND, _INK, _GROUND = (252, 252, 250), (60, 60, 60), (205, 205, 200)
-# One person is seen from front and aside, two from the side, so that they stand beside each other.
+# One person is drawn from the front and the side, two people from the side.
 _YAW_OF_ONE, _YAW_OF_TWO = np.radians(35.0), np.radians(-65.0)
 _PITCH = np.radians(10.0)
 
@@ -64,7 +64,7 @@ def contact_sheet(
                 draw.line(
                     [(tile * column + 3, ground), (tile * (column + 1) - 3, ground)], fill=_GROUND, width=2
                 )
-            # Whoever stands further away is drawn first.
+            # The person who is farther away is drawn first.
             for person in np.argsort(view[:, frame, 0, 2]):
                 _draw_person(draw, pixels[person], motion, person)
                 if row == 1:

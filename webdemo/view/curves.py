@@ -1,4 +1,4 @@
-"""What the strip under the player draws by default: distances between two people."""
+"""Default curves of the strip under the player: distances between two people."""
 
 from __future__ import annotations
 
@@ -7,8 +7,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from webdemo.metrics import pelvis_distance, wrist_to_wrist
-from webdemo.motion import Duet
+from motion import Duet
+from motion.metrics import hand_distance, pelvis_distance
 
 Array = NDArray[np.floating]
 
@@ -31,8 +31,8 @@ class Curve:
 
 
 def distance_curves(duet: Duet) -> list[Curve]:
-    """Distance in metres between the two roots over the floor plan, and between the nearest two wrists."""
+    """Distance in metres between the two roots over the floor plan, and between the nearest two hands."""
     return [
         Curve("pelvis_distance", "Apart", "m", pelvis_distance(duet)),
-        Curve("wrist_distance", "Hands", "m", wrist_to_wrist(duet)),
+        Curve("hand_distance", "Hands", "m", hand_distance(duet)),
     ]

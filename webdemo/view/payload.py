@@ -15,9 +15,9 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from webdemo.metrics import Contact, contact_events
-from webdemo.motion.clip import Clip, Duet
-from webdemo.motion.errors import InputError
+from motion.clip import Clip, Duet
+from motion.errors import InputError
+from motion.metrics import Contact, contact_events
 
 from .curves import Curve, distance_curves
 
@@ -80,13 +80,13 @@ def sample_payload(
         motion: two people, or one.
         label: names the sample in the player's tabs.
         curves: read-outs under the scene; by default those of :func:`distance_curves`.
-        contacts: marks on the timeline; by default those of :func:`~webdemo.metrics.contact_events`.
+        contacts: marks on the timeline; by default those of :func:`~motion.metrics.contact_events`.
         ghost: a second motion with the same joints drawn pale beside the first, such as what really
             happened beside a prediction.
         past_until: the first frame that was predicted; the player marks what came before as given.
 
     Raises:
-        InputError: where ghost or curves do not fit the motion.
+        InputError: if ghost or curves do not fit the motion.
     """
     people = motion.people if isinstance(motion, Duet) else (motion,)
     roles = motion.roles if isinstance(motion, Duet) else (motion.name or "a",)
@@ -135,7 +135,7 @@ def build_payload(samples: Sequence[dict[str, Any]], *, skeleton: Any, title: st
 
     Args:
         samples: at least one.
-        skeleton: the :class:`~webdemo.motion.skeleton.Skeleton` they share.
+        skeleton: the :class:`~motion.skeleton.Skeleton` they share.
         title: shown above the scene, such as the prompt; the browser takes it as text only.
 
     Returns:
@@ -171,7 +171,7 @@ def player_payload(
         past_until: the first predicted frame of every sample.
 
     Returns:
-        The value of a :class:`~webdemo.ui.player.MotionPlayer`.
+        The value of a :class:`~webdemo.ui.components.player.MotionPlayer`.
 
     Raises:
         InputError: for no motion, or motions whose skeletons differ.

@@ -8,8 +8,8 @@ from importlib import import_module
 
 import numpy as np
 
-from ..library import Library
-from ..scene import Scene
+from training.corpus.library import Library
+from training.corpus.scene import Scene
 
 Builder = Callable[[np.random.Generator, Library], Scene]
 
@@ -50,6 +50,6 @@ def register(
 
 def load_families() -> dict[str, Family]:
     """All registered families in the order of their modules, on which a seed's corpus depends."""
-    for module in ("gestures", "locomotion", "combat", "sequences", "contact", "bodies", "blows"):
+    for module in ("gestures", "locomotion", "combat", "sequences", "contact", "bodies", "blows", "beats"):
         import_module(f"{__name__}.{module}")
     return REGISTRY

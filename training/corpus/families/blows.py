@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from webdemo.motion.kinematics import forward_kinematics
-from webdemo.motion.skeleton import SMPL22
+from motion.kinematics import forward_kinematics
+from motion.skeleton import SMPL22
 
 from ..compose import Motion
 from ..contact import (
@@ -23,9 +23,10 @@ from ..feet import LEGS, two_bone
 from ..library import Library, pick
 from ..scene import Scene
 from ..stage import Rng, act, beside, forward, pad, seconds, stride
+from ..touches import opposite
 from . import register
 from .combat import blow
-from .meeting import Encounter, conclude, opposite
+from .meeting import Encounter, conclude
 
 
 def _tip(side: str, family: str) -> int:
@@ -104,9 +105,11 @@ def _strike(rng: Rng, library: Library, family: str) -> Scene:
 
 @register("punch", needs=("punch", "idle", "walk-back"), weight=1.5, contact=True)
 def punch(rng: Rng, library: Library) -> Scene:
+    """A punches B, who is hit."""
     return _strike(rng, library, "punch")
 
 
 @register("kick", needs=("kick", "idle", "walk-back"), weight=1.5, contact=True)
 def kick(rng: Rng, library: Library) -> Scene:
+    """A kicks B, who is hit."""
     return _strike(rng, library, "kick")

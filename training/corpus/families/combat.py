@@ -4,13 +4,13 @@ from __future__ import annotations
 
 import numpy as np
 
-from webdemo.motion.kinematics import forward_kinematics
-from webdemo.motion.skeleton import SMPL22
+from motion.kinematics import forward_kinematics
+from motion.skeleton import SMPL22
+from training.corpus.compose import Motion, drift, lean
+from training.corpus.library import Library, Take, pick
+from training.corpus.scene import Scene
+from training.corpus.stage import Rng, act, finish, oppose, pad, seconds, stride, waiting
 
-from ..compose import Motion, drift, lean
-from ..library import Library, Take, pick
-from ..scene import Scene
-from ..stage import Rng, act, finish, oppose, pad, seconds, stride, waiting
 from . import register
 
 TIPS = {"punch": "wrist", "kick": "ankle"}
@@ -31,7 +31,7 @@ def _way(motion: Motion) -> np.ndarray:
 
 
 def reach(take: Take) -> float:
-    """How far in front of the attacker's first stand the blow reaches at its first peak, in metres."""
+    """Reach of the blow at its first peak, in metres in front of the attacker's first place."""
     if take.action == "slash":
         return 0.9
     joint = SMPL22.index(f"{take.side}_{TIPS[take.action]}")
@@ -118,21 +118,25 @@ def _attack(
 
 @register("punch-dodge", needs=("punch", "walk-back"), weight=1.5)
 def punch_dodge(rng: Rng, library: Library) -> Scene:
+    """A punches, and B dodges or retreats."""
     return _attack(rng, library, "punch-dodge", "punch", pick(rng, ("dodge", "retreat")), (0.12, 0.3))
 
 
 @register("punch-recoil", needs=("punch", "walk-back"), weight=1.3)
 def punch_recoil(rng: Rng, library: Library) -> Scene:
+    """A punches, and B recoils without being touched."""
     return _attack(rng, library, "punch-recoil", "punch", "recoil", (0.12, 0.22))
 
 
 @register("kick-step-back", needs=("kick", "walk-back"), weight=1.5)
 def kick_step_back(rng: Rng, library: Library) -> Scene:
+    """A kicks, and B steps back."""
     return _attack(rng, library, "kick-step-back", "kick", "retreat", (0.1, 0.45))
 
 
 @register("sword-retreat", needs=("slash", "walk-back"), weight=1.3)
 def sword_retreat(rng: Rng, library: Library) -> Scene:
+    """A cuts with a sword, and B retreats."""
     return _attack(rng, library, "sword-retreat", "slash", "retreat", (0.4, 1.0))
 
 
@@ -153,9 +157,11 @@ def _exchange(rng: Rng, library: Library, family: str, action: str, distance: tu
 
 @register("spar", needs=("punch",), weight=1.5)
 def spar(rng: Rng, library: Library) -> Scene:
+    """Two people exchange punches that miss."""
     return _exchange(rng, library, "spar", "punch", (1.0, 1.4))
 
 
 @register("sword-fight", needs=("slash",), weight=1.5)
 def sword_fight(rng: Rng, library: Library) -> Scene:
+    """Two people exchange sword cuts."""
     return _exchange(rng, library, "sword-fight", "slash", (1.5, 2.1))

@@ -2,18 +2,22 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 
-from webdemo.motion.kinematics import global_rotations, local_rotations
+from motion.kinematics import forward_kinematics, global_rotations, local_rotations
+from motion.skeleton import SMPL22
+from training.corpus.blending import ease, slerp
+from training.corpus.compose import ARMS, Motion, drift, lean, mirror, place, steer, tempo, turned
+from training.corpus.library import Library, Take, pick
+from training.corpus.scene import Scene
+from training.corpus.stage import Rng, act, finish, how_far, manner, oppose, pad, seconds, stride, waiting
 
-from ..blending import ease, slerp
-from ..compose import ARMS, Motion, mirror, place, steer, tempo, turned
-from ..library import Library, Take, pick
-from ..scene import Scene
-from ..stage import Rng, act, finish, how_far, manner, oppose, pad, seconds, stride, waiting
 from . import register
 
 SIDES = ("left", "right")
+HEAD = SMPL22.index("head")
 SPAN = {"wave": (66, 120), "raise-hand": (40, 90), "bow": (60, 125), "bye": (60, 130), "guide": (60, 125)}
 
 
@@ -25,7 +29,33 @@ def gesture(
         return library.take(rng, "raise-hand", side="both", style=style, frames=SPAN["raise-hand"])
     if name in ("raise-hand", "wave") and side is None:
         side = pick(rng, SIDES)
-    return library.take(rng, name, side=side, style=style, frames=SPAN.get(name, (50, 150)))
+    take = library.take(rng, name, side=side, style=style, frames=SPAN.get(name, (50, 150)))
+    if name == "bow":
+        return replace(take, motion=deepened(take.motion, rng.uniform(0.27, 0.4)))
+    return take
+
+
+def deepened(motion: Motion, drop: float) -> Motion:
+    """A bow whose head comes down by ``drop`` metres at least: the spine bends as much further as needed."""
+    height = forward_kinematics(motion.rotations, motion.root)[:, HEAD, 1]
+    fallen = height[: max(len(height) // 8, 1)].mean() - height
+    if fallen.max() < 0.04:
+        raise LookupError("a bow that is none")
+    if fallen.max() >= drop:
+        return motion
+    weight = np.clip(fallen / fallen.max(), 0, 1)
+    weight = weight * weight * (3 - 2 * weight)
+    angle = 0.0
+    bent = motion
+    for _ in range(6):
+        lacking = drop - (height.max() - forward_kinematics(bent.rotations, bent.root)[:, HEAD, 1].min())
+        if lacking < 0.01:
+            break
+        angle = min(angle + lacking / 0.45, 1.25)
+        bent = lean(motion, angle * weight)
+        back = np.stack([np.sin(motion.headings), np.zeros(len(motion)), np.cos(motion.headings)], axis=-1)
+        bent = drift(bent, -0.09 * angle * weight[:, None] * back)
+    return bent
 
 
 def pair(
@@ -67,6 +97,7 @@ def pair(
 
 @register("wave-back", needs=("wave",), weight=2.0)
 def wave_back(rng: Rng, library: Library) -> Scene:
+    """A waves, and B waves back."""
     style = manner(rng, library, "wave")
     first = gesture(rng, library, "wave", side=pick(rng, ("left", "right", "both")), style=style)
     second = gesture(
@@ -83,6 +114,7 @@ def wave_back(rng: Rng, library: Library) -> Scene:
 
 @register("bow-back", needs=("bow",), weight=1.5)
 def bow_back(rng: Rng, library: Library) -> Scene:
+    """A bows, and B bows in return."""
     style = manner(rng, library, "bow")
     first = gesture(rng, library, "bow", style=style)
     second = gesture(rng, library, "bow", style=style if rng.random() < 0.6 else None)
@@ -91,6 +123,7 @@ def bow_back(rng: Rng, library: Library) -> Scene:
 
 @register("raise-copy", needs=("raise-hand",), weight=1.3)
 def raise_copy(rng: Rng, library: Library) -> Scene:
+    """A raises a hand, and B does the same."""
     side, style = pick(rng, ("left", "right", "both")), manner(rng, library, "raise-hand")
     first, second = (gesture(rng, library, "raise-hand", side=side, style=style) for _ in range(2))
     return pair(
@@ -107,6 +140,7 @@ def raise_copy(rng: Rng, library: Library) -> Scene:
 
 @register("raise-watch", needs=("raise-hand",), weight=1.3)
 def raise_watch(rng: Rng, library: Library) -> Scene:
+    """A raises a hand while B watches."""
     side = pick(rng, ("left", "right", "both"))
     first = gesture(rng, library, "raise-hand", side=side, style=manner(rng, library, "raise-hand"))
     return pair(rng, library, "raise-watch", first, None, slots={"side_a": side}, distance=(1.0, 3.0))
@@ -114,6 +148,7 @@ def raise_watch(rng: Rng, library: Library) -> Scene:
 
 @register("goodbye", needs=("bye", "wave", "walk"), weight=1.5)
 def goodbye(rng: Rng, library: Library) -> Scene:
+    """Two people say goodbye, and one may leave."""
     first = gesture(rng, library, "bye", style=manner(rng, library, "bye"))
     second = gesture(rng, library, pick(rng, ("bye", "wave")))
     if rng.random() < 0.55:
@@ -144,6 +179,7 @@ def about(rng: Rng, walk: Motion, *, angle: float | None = None) -> Motion:
 
 @register("cheer", needs=("raise-hand",), weight=1.2)
 def cheer(rng: Rng, library: Library) -> Scene:
+    """Two people cheer together."""
     style = pick(rng, ("normal", "active", "youthful", "happy"))
     first, second = (gesture(rng, library, "cheer", style=style) for _ in range(2))
     return pair(
@@ -161,6 +197,7 @@ def cheer(rng: Rng, library: Library) -> Scene:
 
 @register("point", needs=("idle",), weight=1.0)
 def point(rng: Rng, library: Library) -> Scene:
+    """A points at B."""
     side, gap = pick(rng, SIDES), rng.uniform(1.2, 3.0)
     start, hold = seconds(rng, 0.2, 0.8), seconds(rng, 1.2, 2.6)
     frames = start + hold + seconds(rng, 0.8, 1.2)
@@ -209,6 +246,7 @@ def pointing(
 
 @register("call-come", needs=("call", "walk"), weight=1.5)
 def call_come(rng: Rng, library: Library) -> Scene:
+    """A beckons, and B comes."""
     call = gesture(rng, library, pick(rng, ("call", "call", "guide")) if library.has("guide") else "call")
     a, _ = act(rng, library, (seconds(rng, 0.1, 0.4), call.motion), tail=20)
     runs = library.has("run") and rng.random() < 0.25
@@ -231,6 +269,7 @@ def call_come(rng: Rng, library: Library) -> Scene:
 
 @register("talk", needs=("guide", "respond"), weight=1.3)
 def talk(rng: Rng, library: Library) -> Scene:
+    """Two people talk to each other."""
     style = manner(rng, library, "guide")
     first = gesture(rng, library, "guide", style=style)
     more = gesture(rng, library, pick(rng, ("guide", "respond")), style=style)
@@ -252,6 +291,7 @@ def talk(rng: Rng, library: Library) -> Scene:
 
 @register("turn-away", needs=("walk",), weight=0.8)
 def turn_away(rng: Rng, library: Library) -> Scene:
+    """A turns away from B."""
     walk = about(
         rng, stride(rng, library, "walk", rng.uniform(0.8, 1.6), style=manner(rng, library, "walk")).motion
     )
@@ -262,6 +302,7 @@ def turn_away(rng: Rng, library: Library) -> Scene:
 
 @register("idle", needs=("idle",), weight=0.8)
 def idle(rng: Rng, library: Library) -> Scene:
+    """Two people stand and wait."""
     frames, gap = seconds(rng, 3, 7), rng.uniform(0.9, 3.0)
     a, b = waiting(rng, library, frames), waiting(rng, library, frames)
     b = oppose(rng, a, b, gap)
@@ -281,6 +322,7 @@ def dance_piece(rng: Rng, library: Library) -> Take:
 
 @register("dance-together", needs=("dance",), weight=1.3)
 def dance_together(rng: Rng, library: Library) -> Scene:
+    """Two people dance together."""
     first = dance_piece(rng, library).motion
     second = first if rng.random() < 0.5 else dance_piece(rng, library).motion
     frames = min(len(first), len(second))
@@ -300,6 +342,7 @@ def dance_together(rng: Rng, library: Library) -> Scene:
 
 @register("dance-mirrored", needs=("dance",), weight=1.2)
 def dance_mirrored(rng: Rng, library: Library) -> Scene:
+    """Two people dance as mirror images."""
     a = place(dance_piece(rng, library).motion, 0.0, 0.0, 0.0)
     b = turned(mirror(a), np.pi)
     gap = 2 * max(float(a.root[:, 2].max()), 0.0) + rng.uniform(1.2, 1.8)
@@ -310,6 +353,7 @@ def dance_mirrored(rng: Rng, library: Library) -> Scene:
 
 @register("dance-watch", needs=("dance", "idle"), weight=1.0)
 def dance_watch(rng: Rng, library: Library) -> Scene:
+    """A dances while B watches."""
     a = dance_piece(rng, library).motion
     b = oppose(rng, a, waiting(rng, library, len(a)), rng.uniform(1.8, 3.0))
     return finish(rng, library, "dance-watch", a, b, gaze=(0.0, 0.9))

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import numpy as np
 
-from ..compose import Motion, place, steer
-from ..library import Library, Take, pick
-from ..scene import Scene
-from ..stage import (
+from training.corpus.compose import Motion, place, steer
+from training.corpus.library import Library, Take, pick
+from training.corpus.scene import Scene
+from training.corpus.stage import (
     Rng,
     act,
     beside,
@@ -22,6 +22,7 @@ from ..stage import (
     stride,
     waiting,
 )
+
 from . import register
 from .gestures import about, gesture, walk_off
 
@@ -66,11 +67,13 @@ def _abreast(rng: Rng, library: Library, family: str, action: str) -> Scene:
 
 @register("walk-together", needs=("walk",), weight=1.6)
 def walk_together(rng: Rng, library: Library) -> Scene:
+    """Two people walk side by side."""
     return _abreast(rng, library, "walk-together", "walk")
 
 
 @register("run-together", needs=("run",), weight=1.2)
 def run_together(rng: Rng, library: Library) -> Scene:
+    """Two people run side by side."""
     return _abreast(rng, library, "run-together", "run")
 
 
@@ -219,11 +222,13 @@ def _behind(
 
 @register("follow", needs=("walk",), weight=1.5)
 def follow(rng: Rng, library: Library) -> Scene:
+    """A follows B."""
     return _behind(rng, library, "follow", ("walk", "walk"), (0.9, 1.8), (3, 6.5))
 
 
 @register("chase", needs=("run",), weight=1.5)
 def chase(rng: Rng, library: Library) -> Scene:
+    """A runs after B."""
     actions = [name for name in ("run", "dash") if library.has(name)]
     return _behind(rng, library, "chase", (pick(rng, actions), pick(rng, actions)), (1.2, 2.2), (2.0, 3.6))
 
@@ -296,6 +301,7 @@ def circle(rng: Rng, library: Library) -> Scene:
 
 @register("circle-each-other", needs=("walk",), weight=1.3)
 def circle_each_other(rng: Rng, library: Library) -> Scene:
+    """Two people circle each other."""
     side, radius = pick(rng, (-1, 1)), rng.uniform(0.8, 1.3)
     style, frames = _styled(rng, library), seconds(rng, 4, 8)
     a, speed = _round(rng, library, radius, frames, side, style=style, speed=None)
@@ -314,6 +320,7 @@ def circle_each_other(rng: Rng, library: Library) -> Scene:
 
 @register("walk-past", needs=("walk",), weight=1.5)
 def walk_past(rng: Rng, library: Library) -> Scene:
+    """Two people walk past each other."""
     style = _styled(rng, library)
     frames = seconds(rng, 3, 5)
     first, second = (going(rng, library, "walk", frames, style=s) for s in (style, _styled(rng, library)))
@@ -367,9 +374,11 @@ def _advance(rng: Rng, library: Library, family: str, action: str, gap: float) -
 
 @register("step-back", needs=("walk", "walk-back"), weight=1.3)
 def step_back(rng: Rng, library: Library) -> Scene:
+    """A comes, and B steps back."""
     return _advance(rng, library, "step-back", "walk-back", rng.uniform(0.6, 1.0))
 
 
 @register("make-way", needs=("walk", "walk-left", "walk-right"), weight=1.2)
 def make_way(rng: Rng, library: Library) -> Scene:
+    """A comes, and B steps aside."""
     return _advance(rng, library, "make-way", pick(rng, ("walk-left", "walk-right")), rng.uniform(0.3, 0.8))

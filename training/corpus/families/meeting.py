@@ -1,4 +1,4 @@
-"""How two people come within reach of each other, and the scene once they have touched."""
+"""Brings two people within reach of each other, and finishes the scene after their touch."""
 
 from __future__ import annotations
 
@@ -8,12 +8,24 @@ from typing import Any
 
 import numpy as np
 
-from webdemo.motion.transforms import canonicalize
+from motion.transforms import canonicalize
+from training.corpus.compose import Array, Motion, look_at, place, realise
+from training.corpus.library import Library, pick
+from training.corpus.scene import Scene
+from training.corpus.stage import (
+    Rng,
+    act,
+    beside,
+    forward,
+    manner,
+    oppose,
+    pad,
+    seconds,
+    stride,
+    write,
+    write_alone,
+)
 
-from ..compose import Array, Motion, look_at, place, realise
-from ..library import Library, pick
-from ..scene import Scene
-from ..stage import Rng, act, beside, forward, manner, oppose, pad, seconds, stride, write
 from .gestures import about
 
 
@@ -30,6 +42,7 @@ class Encounter:
 
     @property
     def frames(self) -> int:
+        """Length in frames."""
         return min(len(self.a), len(self.b))
 
     def bodies(self, *, gaze: tuple[float, float] = (0.8, 0.8)) -> tuple[Array, Array]:
@@ -129,15 +142,6 @@ def abreast(rng: Rng, library: Library, ahead: float, left: float, frames: int) 
     return Encounter(a[:frames], b[:frames], 0, frames, {"manner_a": style, "manner_b": style})
 
 
-def chosen_side(rng: Rng) -> tuple[str, bool]:
-    """The hand that acts, mostly the right one, and whether the captions name it."""
-    return ("right" if rng.random() < 0.75 else "left"), bool(rng.random() < 0.6)
-
-
-def opposite(side: str) -> str:
-    return "left" if side == "right" else "right"
-
-
 def conclude(
     rng: Rng,
     library: Library,
@@ -175,4 +179,5 @@ def conclude(
         tuple(sorted(set(encounter.a.sources + encounter.b.sources))),
         library.split,
         events,
+        write_alone(rng, family, said, library.split),
     )

@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
-from ..library import Library, pick
-from ..scene import Scene
-from ..stage import Rng, act, finish, how_far, manner, oppose, pad, seconds, waiting
+from training.corpus.library import Library, pick
+from training.corpus.scene import Scene
+from training.corpus.stage import Rng, act, finish, how_far, manner, oppose, pad, seconds, waiting
+
 from . import register
 from .gestures import gesture, pair
 

@@ -1,6 +1,4 @@
-"""What one person does alone: the words of the families that join two such actions."""
-
-# ruff: noqa: E501 (a table of phrases reads better unbroken)
+"""Actions of one person: the words of the families that join two such actions."""
 
 from __future__ import annotations
 

@@ -1,7 +1,5 @@
 """Blows that miss, and swords, in words."""
 
-# ruff: noqa: E501 (a table of phrases reads better unbroken)
-
 from __future__ import annotations
 
 from .entry import Entry

@@ -1,4 +1,4 @@
-"""What one family of the phrase book holds; the notation is told in the package."""
+"""The entry of one family in the phrase book; the package's docstring explains the notation."""
 
 from __future__ import annotations
 

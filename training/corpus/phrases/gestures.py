@@ -1,6 +1,4 @@
-"""What people do where they stand: greeting, dancing, talking, in words."""
-
-# ruff: noqa: E501 (a table of phrases reads better unbroken)
+"""Phrases for people who stay in place: greeting, dancing, talking."""
 
 from __future__ import annotations
 

@@ -1,7 +1,5 @@
 """Walking, running, leading and following, in words."""
 
-# ruff: noqa: E501 (a table of phrases reads better unbroken)
-
 from __future__ import annotations
 
 from .entry import WATCH, Entry

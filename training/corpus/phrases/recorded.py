@@ -1,7 +1,5 @@
 """Classes of SBU and K3HI that no composed family has, in words."""
 
-# ruff: noqa: E501 (a table of phrases reads better unbroken)
-
 from __future__ import annotations
 
 from .entry import Entry

@@ -1,0 +1,1 @@
+"""The virtual agent of Chopin's thesis (chapter 5): the network that recognises a gesture."""

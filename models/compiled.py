@@ -1,0 +1,288 @@
+"""Networks run by OpenVINO: the same weights and, to rounding, the same numbers, in about half the time.
+
+PyTorch's matrix products of a few hundred rows reach half of the machine's speed, and its threads synchronise after
+each of them. OpenVINO lays out the weights once and fuses the operations between the products. The two halves of the
+guidance run in parallel on one core each, and so do the requests of two people. PyTorch traces the network and
+OpenVINO translates the trace, so no network is written twice. A translation takes two seconds; a cache folder keeps
+it for the next start.
+
+A compiled network gives each row of a batch the same result, to the last bit, as if the row were alone.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import importlib
+import logging
+import mmap
+import os
+import queue
+import shutil
+import sys
+import tempfile
+import threading
+from collections.abc import Iterator, Mapping
+from contextlib import ExitStack, contextmanager, suppress
+from pathlib import Path
+from typing import Any, Protocol
+
+import numpy as np
+import torch
+from torch import Tensor, nn
+
+log = logging.getLogger(__name__)
+
+TOLERANCE = 1e-4
+"""Largest accepted difference from the plain network, relative to the largest output; measured: 5e-6."""
+THREADS = min(torch.get_num_threads(), 8)
+"""Threads of a pass: PyTorch's default, up to 8; more do not help with products of a few hundred rows."""
+STREAMS = min(THREADS, 2)
+"""Passes that run in parallel, each with a share of the threads. A single pass of several rows is split into as many
+parts: these synchronise once, at the end, while threads that share each product synchronise a hundred times."""
+KEPT = 6
+"""Translations in the cache folder, of 60 MB each; the least recently used are removed first."""
+
+
+class Compilable(Protocol):
+    """A network that :func:`compile_network` takes."""
+
+    @property
+    def varying(self) -> Mapping[str, tuple[int, ...]]:
+        """For each input of ``forward``, in order: the axes whose sizes differ between calls."""
+        ...
+
+    def filled(self, *args: Any, **kwargs: Any) -> tuple[Tensor, ...]:
+        """The arguments of ``forward`` in the order of ``varying``, with a neutral tensor for each omitted one."""
+        ...
+
+    def example(self) -> tuple[Tensor, ...]:
+        """All arguments of ``forward``, for a batch of two."""
+        ...
+
+
+class TwoPersonInputs:
+    """The inputs of a denoiser of two people: x (B, T, 2F), t (B,), cond (B, C) and mask (B, T, 2), as
+    :class:`Compilable` asks for them."""
+
+    @property
+    def varying(self) -> dict[str, tuple[int, ...]]:
+        """See :class:`Compilable`."""
+        return {"x": (0, 1), "t": (0,), "cond": (0,), "mask": (0, 1)}
+
+    @property
+    def widths(self) -> tuple[int, int]:
+        """2F and C."""
+        raise NotImplementedError
+
+    def filled(self, x: Tensor, t: Tensor, cond: Tensor, mask: Tensor | None = None) -> tuple[Tensor, ...]:
+        """See :class:`Compilable`; without a mask, all tokens are real."""
+        real = torch.ones(*x.shape[:2], 2, dtype=torch.bool) if mask is None else mask != 0
+        return x, t, cond, real
+
+    def example(self) -> tuple[Tensor, ...]:
+        """See :class:`Compilable`."""
+        features, width = self.widths
+        draw = torch.Generator().manual_seed(0)
+        x, cond = torch.randn(2, 12, features, generator=draw), torch.randn(2, width, generator=draw)
+        mask = torch.ones(2, 12, 2, dtype=torch.bool)
+        mask[1, 9:] = False
+        return x, torch.tensor([999, 500]), cond, mask
+
+
+def cache_folder() -> Path:
+    """Where translations are kept: ``$XDG_CACHE_HOME/pas-de-deux/compiled``, by default in ``~/.cache``."""
+    return (
+        Path(os.environ.get("XDG_CACHE_HOME") or os.path.expanduser("~/.cache")) / "pas-de-deux" / "compiled"
+    )
+
+
+def compile_network(network: nn.Module, key: str, cache: Path | None = None) -> bool:
+    """Lets OpenVINO run a network's ``forward`` from now on.
+
+    The network's own weights are let go, so nothing but ``forward`` and what calls it can be used afterwards, and
+    it has no gradients.
+
+    Args:
+        network: a :class:`Compilable` in eval mode.
+        key: names its weights, such as :attr:`models.weights_io.WeightsFolder.digest`.
+        cache: where translations are kept; :func:`cache_folder` by default. It need not be writable.
+
+    Returns:
+        whether it is compiled. Where OpenVINO is not installed, cannot translate the network or gives other
+        numbers on this processor, the network stays as it is.
+    """
+    try:
+        openvino = _openvino()
+    except ImportError:
+        return False
+    try:
+        folder = (cache or cache_folder()) / _name(network, key, openvino)
+        compiled = _cached(openvino, network, folder) or _translated(openvino, network, folder)
+    except Exception as error:  # whatever a translator may raise: the plain network does the same job
+        log.warning("%s runs without OpenVINO: %s", type(network).__name__, error)
+        return False
+    network.to("meta")
+    network.forward = compiled
+    return True
+
+
+class Compiled:
+    """A compiled ``forward``; safe to share between threads.
+
+    Args:
+        network: whose ``forward`` it is.
+        model: its translation: OpenVINO's model.
+        weights: the memory that the model's weights lie in, if they are mapped from a file.
+    """
+
+    def __init__(self, openvino: Any, network: Any, model: Any, weights: mmap.mmap | None = None) -> None:
+        self.filled, self.weights = network.filled, weights
+        self.model = openvino.Core().compile_model(
+            model,
+            "CPU",
+            {
+                "INFERENCE_PRECISION_HINT": "f32",
+                "NUM_STREAMS": STREAMS,
+                "INFERENCE_NUM_THREADS": THREADS,
+                "ENABLE_CPU_PINNING": False,  # a thread that is bound to a busy core waits there
+            },
+        )
+        self._requests: queue.SimpleQueue[Any] = queue.SimpleQueue()
+        self._lock, self._under_way = threading.Lock(), 0
+        example = network.example()
+        with torch.no_grad():
+            expected = network(*example)
+            off = float((self(*example) - expected).abs().max() / expected.abs().max().clamp_min(1.0))
+        if not off <= TOLERANCE:  # NaN, too
+            raise ArithmeticError(f"the compiled network is off by {off:.1e}")
+        if weights is not None and hasattr(weights, "madvise"):
+            weights.madvise(mmap.MADV_DONTNEED)  # OpenVINO has laid out a copy for itself
+
+    def __call__(self, *args: Any, **kwargs: Any) -> Tensor:
+        """As the network's own ``forward``; without gradients."""
+        inputs = [np.ascontiguousarray(value.numpy()) for value in self.filled(*args, **kwargs)]
+        with ExitStack() as stack:
+            alone = stack.enter_context(self._counted()) == 1
+            parts = min(STREAMS, len(inputs[0])) if alone else 1
+            requests = [stack.enter_context(self._request()) for _ in range(parts)]
+            for request, *rows in zip(
+                requests, *(np.array_split(value, parts) for value in inputs), strict=True
+            ):
+                request.start_async(rows, share_inputs=True)
+            for request in requests:
+                request.wait()
+            return torch.from_numpy(
+                np.concatenate([request.get_output_tensor(0).data for request in requests])
+            )
+
+    @contextmanager
+    def _counted(self) -> Iterator[int]:
+        """Number of running passes, including this one."""
+        with self._lock:
+            self._under_way += 1
+            count = self._under_way
+        try:
+            yield count
+        finally:
+            with self._lock:
+                self._under_way -= 1
+
+    @contextmanager
+    def _request(self) -> Iterator[Any]:
+        """One of OpenVINO's requests, which hold the memory of a run: as many as there were runs at once."""
+        try:
+            request = self._requests.get_nowait()
+        except queue.Empty:
+            request = self.model.create_infer_request()
+        try:
+            yield request
+        finally:
+            self._requests.put(request)
+
+
+def _openvino() -> Any:
+    """Imports OpenVINO with its telemetry disabled; by default it reports every import over the network.
+
+    Raises:
+        ImportError: if it is not installed.
+    """
+    if "openvino" not in sys.modules:
+        sys.modules.setdefault("openvino_telemetry", None)  # type: ignore[arg-type]  # as if not installed
+    return importlib.import_module("openvino")
+
+
+def _name(network: nn.Module, key: str, openvino: Any) -> str:
+    """The cache's name for a network's translation."""
+    parts = (type(network).__qualname__, key, openvino.get_version(), torch.__version__)
+    return hashlib.sha256("\n".join(parts).encode()).hexdigest()[:24]
+
+
+def _cached(openvino: Any, network: nn.Module, folder: Path) -> Compiled | None:
+    """Loads the network's cached translation; None if there is none, or if its outputs differ from the network's."""
+    try:
+        with (folder / "network.bin").open("rb") as file:
+            weights = mmap.mmap(file.fileno(), 0, access=mmap.ACCESS_COPY)  # OpenVINO wants it writable
+        tensor = openvino.Tensor(np.frombuffer(weights, np.uint8), shared_memory=True)
+        model = openvino.Core().read_model((folder / "network.xml").read_bytes(), tensor)
+        compiled = Compiled(openvino, network, model, weights)
+    except (OSError, ValueError, RuntimeError, ArithmeticError) as error:
+        if folder.exists():
+            log.warning("The cached compilation of %s cannot be used: %s", type(network).__name__, error)
+        return None
+    with suppress(OSError):
+        os.utime(folder)
+    return compiled
+
+
+def _translated(openvino: Any, network: nn.Module, folder: Path) -> Compiled:
+    """The network translated, and kept where that can be."""
+    model = _translate(openvino, network)
+    try:
+        _keep(openvino, model, folder)
+    except (OSError, RuntimeError):  # a folder that cannot be written, a full disk
+        return Compiled(openvino, network, model)
+    return _cached(openvino, network, folder) or Compiled(openvino, network, model)
+
+
+def _translate(openvino: Any, network: Any) -> Any:
+    """OpenVINO's model of a network."""
+
+    class Whole(nn.Module):
+        def __init__(self) -> None:
+            super().__init__()
+            self.network = network
+
+        def forward(self, *inputs: Tensor) -> Tensor:
+            return self.network(*inputs)
+
+    example = network.example()
+    with torch.no_grad():
+        traced = torch.jit.freeze(torch.jit.trace(Whole().eval(), example, check_trace=False))
+    types = {
+        torch.float32: openvino.Type.f32,
+        torch.int64: openvino.Type.i64,
+        torch.bool: openvino.Type.boolean,
+    }
+    inputs = [
+        (
+            openvino.PartialShape([-1 if i in axes else n for i, n in enumerate(value.shape)]),
+            types[value.dtype],
+        )
+        for value, axes in zip(example, network.varying.values(), strict=True)
+    ]
+    return openvino.convert_model(traced, input=inputs)
+
+
+def _keep(openvino: Any, model: Any, folder: Path) -> None:
+    """Writes a translation whole or not at all, and drops those that were not used for longest."""
+    folder.parent.mkdir(parents=True, exist_ok=True)
+    made = Path(tempfile.mkdtemp(prefix=".new-", dir=folder.parent))
+    try:
+        openvino.save_model(model, made / "network.xml", compress_to_fp16=False)
+        shutil.rmtree(folder, ignore_errors=True)
+        made.rename(folder)
+    finally:
+        shutil.rmtree(made, ignore_errors=True)
+    kept = sorted(folder.parent.glob("[!.]*/network.xml"), key=lambda file: file.parent.stat().st_mtime)
+    for file in kept[:-KEPT]:
+        shutil.rmtree(file.parent, ignore_errors=True)

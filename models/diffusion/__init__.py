@@ -1,0 +1,28 @@
+"""The diffusion that every network here trains and samples with: schedule, guidance and sampling loop."""
+
+from .guidance import classifier_free, guide
+from .sampling import SamplingStep, denoise, sample_steps
+from .schedule import (
+    TRAIN_TIMESTEPS,
+    NoiseSchedule,
+    SamplerError,
+    SamplerName,
+    cosine_betas,
+    make_scheduler,
+    top_timesteps,
+)
+
+__all__ = [
+    "TRAIN_TIMESTEPS",
+    "NoiseSchedule",
+    "SamplerError",
+    "SamplerName",
+    "SamplingStep",
+    "classifier_free",
+    "cosine_betas",
+    "denoise",
+    "guide",
+    "make_scheduler",
+    "sample_steps",
+    "top_timesteps",
+]

@@ -1,0 +1,254 @@
+"""The compact default: InterGen's network over spline tokens, with its text conditioner and normaliser.
+
+One object holds what is trained, averaged, shipped and sampled together. On disk it is a weights folder (see
+:mod:`models.weights_io`) with ``captions.json`` and ``captions.safetensors``: a bank of training captions,
+which measures how far a prompt is from the training data.
+"""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass, field
+from functools import cached_property
+from pathlib import Path
+from typing import Any, cast
+
+import torch
+from safetensors.torch import save
+from torch import Tensor, nn
+
+from models.intergen import InterGenConfig, InterGenDenoiser
+from models.known import KNOWN_FEATURES
+from models.motion_tokens import FEATURES, TokenLayout, decode, unpack
+from models.text import TextConditioner, TextConditionerConfig, TokenFeatures
+from models.weights_io import WeightsFolder, load_network, save_network
+from motion.errors import InputError
+
+from .fast import FastChange
+from .words import WordDenoiser
+
+Touch = tuple[tuple[str, str], ...]
+"""Which joints of the two people come together: (joint of a, joint of b), …"""
+
+
+def as_touches(values: Iterable[Iterable[Sequence[str]]]) -> tuple[Touch, ...]:
+    """Touches as JSON holds them, in lists, as the tuples that a config holds."""
+    return tuple(tuple((a, b) for a, b in touch) for touch in values)
+
+
+@dataclass(frozen=True)
+class CompactConfig:
+    """Sizes of a :class:`CompactInterGen`, and the touches that it reads from a sentence.
+
+    role_text: see :class:`models.intergen.InterGenConfig`.
+    words: the denoiser is a :class:`models.intergen.words.WordDenoiser`, which reads words, a sentence for each
+        person and the known part of a motion.
+    fast_rank: rank of the :class:`models.intergen.fast.FastChange` that comes with it; 0: there is none.
+    """
+
+    latent_dim: int = 320
+    ff_size: int = 1024
+    num_layers: int = 6
+    num_heads: int = 5
+    cond_dim: int = 256
+    text_layers: int = 2
+    dropout: float = 0.0
+    role_text: bool = False
+    words: bool = False
+    fast_rank: int = 0
+    layout: TokenLayout = field(default_factory=TokenLayout)
+    touches: tuple[Touch, ...] = ()
+
+    @classmethod
+    def from_dict(cls, values: dict[str, Any]) -> CompactConfig:
+        """The config that ``config.json`` holds as a dictionary."""
+        touches = as_touches(values.get("touches", ()))
+        return cls(**(values | {"layout": TokenLayout(**values["layout"]), "touches": touches}))
+
+
+class TouchReader(nn.Module):
+    """Says from the condition vector which joints the sentence wants to meet.
+
+    The network's own motion brings hands near each other; what they should do there is in the words. This
+    small classifier is fitted after the network, on its frozen condition vectors (:mod:`training.trainers.touch`).
+    """
+
+    def __init__(self, cond_dim: int, touches: Sequence[Touch], width: int = 128) -> None:
+        super().__init__()
+        self.touches: tuple[Touch, ...] = ((), *touches)
+        self.net = nn.Sequential(nn.Linear(cond_dim, width), nn.GELU(), nn.Linear(width, len(self.touches)))
+
+    def forward(self, condition: Tensor) -> Tensor:
+        """Condition (B, cond_dim) → logits (B, 1 + touches); the first says that nothing touches."""
+        return self.net(condition)
+
+    @torch.no_grad()
+    def read(self, condition: Tensor, sure: float = 0.5) -> list[Touch]:
+        """The likeliest touch of each sentence, () where all touches together are less than ``sure``."""
+        probability = self(condition).softmax(-1)
+        due = 1 - probability[:, 0] >= sure
+        best = probability[:, 1:].argmax(-1) + 1
+        return [self.touches[int(i)] if d else () for d, i in zip(due, best, strict=True)]
+
+
+class DuetSpace(nn.Module):
+    """The space in which two people's tokens are diffused, and the way back to metres.
+
+    ``mean`` and ``std`` (70,) are those of one person's control point, see :mod:`models.motion_tokens`.
+    """
+
+    mean: Tensor
+    std: Tensor
+    reads_known = False
+    """Whether the denoiser takes ``known``, the features of what is known (:attr:`models.known.Hold.features`)."""
+
+    def __init__(self, layout: TokenLayout) -> None:
+        super().__init__()
+        self.layout = layout
+        self.register_buffer("mean", torch.zeros(FEATURES))
+        self.register_buffer("std", torch.ones(FEATURES))
+
+    @property
+    def scale(self) -> Tensor:
+        """(2·token_features,) metres to a unit of network space."""
+        return self.std.repeat(2 * self.layout.knots_per_token)
+
+    def control(self, x: Tensor) -> Tensor:
+        """Network space (B, tokens, 2·token_features) → control points (B, 2, knots, 70) in metres."""
+        return unpack(x, self.layout) * self.std + self.mean
+
+    def positions(self, x: Tensor) -> tuple[Tensor, Tensor]:
+        """Network space → positions (B, 2, T, 22, 3) in metres and contact scores (B, 2, T, 4)."""
+        return decode(self.control(x), self.layout)
+
+
+class CompactInterGen(DuetSpace):
+    """Denoiser, text conditioner and the normaliser of control points."""
+
+    def __init__(self, config: CompactConfig) -> None:
+        super().__init__(config.layout)
+        self.config, self.reads_known = config, config.words
+        sizes = InterGenConfig(
+            input_features=config.layout.token_features,
+            latent_dim=config.latent_dim,
+            ff_size=config.ff_size,
+            num_layers=config.num_layers,
+            num_heads=config.num_heads,
+            cond_dim=config.cond_dim,
+            dropout=config.dropout,
+            role_embedding=True,
+            role_text=config.role_text,
+        )
+        self.denoiser: InterGenDenoiser = (
+            WordDenoiser(sizes, KNOWN_FEATURES * config.layout.knots_per_token)
+            if config.words
+            else InterGenDenoiser(sizes)
+        )
+        self.fast = FastChange(self._grown, config.fast_rank) if config.fast_rank else None
+        self.conditioner = TextConditioner(
+            TextConditionerConfig(latent_dim=config.cond_dim, num_layers=config.text_layers, dropout=0.05)
+        )
+        self.touch_reader = TouchReader(config.cond_dim, config.touches) if config.touches else None
+
+    @property
+    def _grown(self) -> WordDenoiser:
+        """The denoiser of weights with a fast mode, which reads words."""
+        return cast(WordDenoiser, self.denoiser)
+
+    @cached_property
+    def fast_denoiser(self) -> WordDenoiser | None:
+        """The denoiser in fast mode, see :mod:`models.intergen.fast`; None if the weights have none."""
+        return None if self.fast is None else self.fast.applied_to(self._grown)
+
+    def condition(
+        self, both: TokenFeatures, a: TokenFeatures | None = None, b: TokenFeatures | None = None
+    ) -> Tensor:
+        """What the denoiser sees of sentences for both people and for each.
+
+        Args:
+            both: of B sentences; one without tokens is missing.
+            a, b: of B sentences for each person; only a network with ``words`` reads them.
+
+        Returns:
+            (B, cond_dim), or with ``words`` (B, 3, R, cond_dim), R rows for the longest sentence.
+        """
+        if not self.config.words:
+            return self.conditioner(both.features, both.mask)
+        given = {i: tokens for i, tokens in enumerate((both, a, b)) if tokens is not None}
+        longest = 1 + max(tokens.mask.shape[1] for tokens in given.values())
+        text = both.features.new_zeros(len(both.mask), 3, longest, self.config.cond_dim)
+        for i, tokens in given.items():
+            rows = self.conditioner.rows(tokens.features, tokens.mask)
+            text[:, i, : rows.shape[1]] = rows * tokens.mask.any(1)[:, None, None]
+        return text
+
+    def no_condition(self, batch: int = 1) -> Tensor:
+        """The condition of no words."""
+        shape = (3, 1, self.config.cond_dim) if self.config.words else (self.config.cond_dim,)
+        return torch.zeros(batch, *shape)
+
+    def vector(self, condition: Tensor) -> Tensor:
+        """The vector (B, cond_dim) of the sentence for both people in what :meth:`condition` gives."""
+        return condition[:, 0, 0] if self.config.words else condition
+
+    def touches(self, condition: Tensor) -> list[Touch]:
+        """What should touch, for each condition of :meth:`condition`; () where nothing should."""
+        if self.touch_reader is None:
+            return [()] * len(condition)
+        return self.touch_reader.read(self.vector(condition))
+
+    def grow_from(self, trained: CompactInterGen) -> None:
+        """Takes over the weights of a network without ``words`` or with them; what it lacks stays as it is.
+
+        Raises:
+            InputError: if its sizes are others.
+        """
+        own, taken = self.state_dict(), trained.state_dict()
+        taken = {
+            name: tensor for name, tensor in taken.items() if not name.startswith(("touch_reader.", "fast."))
+        }
+        if any(name not in own or own[name].shape != tensor.shape for name, tensor in taken.items()):
+            raise InputError(
+                "The weights to begin with are of other sizes: give the sizes they were trained with."
+            )
+        self.load_state_dict(own | taken)
+
+
+@dataclass(frozen=True)
+class CaptionBank:
+    """Training captions and their unit sentence vectors (N, 384)."""
+
+    captions: tuple[str, ...]
+    vectors: Tensor
+    far: float
+
+    def nearest(self, vector: Tensor, count: int = 3) -> list[tuple[float, str]]:
+        """The captions nearest to a unit sentence vector (384,): (cosine, caption), best first."""
+        scores = self.vectors.float() @ vector.float()
+        best = scores.topk(min(count, len(self.captions)))
+        return [(float(s), self.captions[int(i)]) for s, i in zip(best.values, best.indices, strict=True)]
+
+
+def load_folder(folder: Path) -> tuple[CompactInterGen, WeightsFolder]:
+    """See :func:`models.weights_io.load_network`."""
+    return load_network(folder, lambda sizes: CompactInterGen(CompactConfig.from_dict(sizes)))
+
+
+def load_captions(source: WeightsFolder) -> CaptionBank:
+    """The bank of training captions in a weights folder.
+
+    Raises:
+        WeightsError: if a file is missing or altered.
+    """
+    vectors = source.tensors("captions.safetensors")["vectors"]
+    return CaptionBank(tuple(json.loads(source.read("captions.json"))), vectors, float(source.meta["far"]))
+
+
+def save_folder(folder: Path, model: CompactInterGen, bank: CaptionBank, **options: Any) -> None:
+    """Writes the network and its caption bank; options as in :func:`models.weights_io.save_network`."""
+    files = {
+        "captions.safetensors": save({"vectors": bank.vectors.half().contiguous()}),
+        "captions.json": json.dumps(bank.captions, indent=0).encode(),
+    }
+    save_network(folder, model, extra=files, far=bank.far, **options)

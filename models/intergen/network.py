@@ -1,0 +1,297 @@
+"""InterGen's denoiser: two cooperative transformers of shared weights.
+
+Liang et al., "InterGen: Diffusion-based Multi-human Motion Generation under Complex Interactions",
+section 4.2, eq. 8–10. Predicts the clean motion x0 of both people from their noised motion, the
+timestep and a text vector.
+
+Shapes: B batch, T tokens in time, F features a person and token, C text width, d latent width.
+``x`` (B, T, 2F) is ``[a | b]``; inside, states are (2, B, T, d), so both people go through every layer
+as one batch and the counterpart of each is a flip of the first axis.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass
+from pathlib import Path
+
+import torch
+import torch.nn.functional as F
+from torch import Tensor, nn
+
+from models.compiled import TwoPersonInputs
+from models.diffusion import classifier_free
+from models.errors import as_tensors, count_layers, load_strictly, shape_of
+from models.layers import FeedForward, TimestepEmbedding, sinusoids
+from models.released import read_lightning
+
+NETWORK = "InterGen"
+RELEASED_HEADS = 8
+
+
+@dataclass(frozen=True)
+class InterGenConfig:
+    """The sizes of an `InterGenDenoiser`; the defaults are the released ones.
+
+    input_features: numbers a person and token (262 in the paper's representation).
+    cond_dim: width of the text vector.
+    dropout: applied in attention and the feed-forward layers while training; the released weights were
+        trained with 0.1, and it holds no weights.
+    role_embedding: an extension, off in released weights: a learned vector for each person is added to
+        their tokens, which distinguishes actor from reactor. Without it the network is symmetric:
+        swapping the people swaps the outputs (eq. 5).
+    role_text: an extension, off in released weights: the text vector has a part that
+        enters the two people's AdaLN layers with opposite signs. It helps with prompts that give the two
+        different actions, such as "one waves with the left hand, the other with the right".
+    """
+
+    input_features: int = 262
+    latent_dim: int = 1024
+    ff_size: int = 2048
+    num_layers: int = 8
+    num_heads: int = 8
+    cond_dim: int = 768
+    dropout: float = 0.0
+    role_embedding: bool = False
+    role_text: bool = False
+
+
+class AdaLayerNorm(nn.Module):
+    """LayerNorm whose scale and shift come from the timestep and text embedding; identity at the start."""
+
+    def __init__(self, latent_dim: int) -> None:
+        super().__init__()
+        linear = nn.Linear(latent_dim, 2 * latent_dim)
+        nn.init.zeros_(linear.weight)
+        nn.init.zeros_(linear.bias)
+        self.emb_layers = nn.Sequential(nn.SiLU(), linear)
+
+    def forward(self, h: Tensor, emb: Tensor) -> Tensor:
+        """h (2, B, T, d), emb (B, d) or, one for each person, (2, B, d) → (2, B, T, d)."""
+        scale, shift = self.emb_layers(emb)[..., None, :].chunk(2, dim=-1)
+        return F.layer_norm(h, h.shape[-1:], eps=1e-6) * (1 + scale) + shift
+
+
+def attend(
+    q: Tensor, k: Tensor, v: Tensor, keep: Tensor | None, *, num_heads: int, dropout: float = 0.0
+) -> Tensor:
+    """Attention of several heads in which a query may attend to nothing: one all-zero key and value is appended.
+
+    Args:
+        q: (N, T, d) queries.
+        k, v: (N, S, d) keys and values.
+        keep: (N, S) bool, true where a key may be attended to; None for all.
+
+    Returns:
+        (N, T, d), the heads side by side.
+    """
+    n, _, d = q.shape
+    k, v = F.pad(k, (0, 0, 0, 1)), F.pad(v, (0, 0, 0, 1))
+    q, k, v = (x.view(n, -1, num_heads, d // num_heads).transpose(1, 2) for x in (q, k, v))
+    mask = None if keep is None else F.pad(keep, (0, 1), value=True)[:, None, None]
+    out = F.scaled_dot_product_attention(q, k, v, attn_mask=mask, dropout_p=dropout)
+    return out.transpose(1, 2).reshape(n, -1, d)
+
+
+class ZeroAttention(nn.MultiheadAttention):
+    """`nn.MultiheadAttention(add_zero_attn=True)` by its weights, run by :func:`attend`."""
+
+    def __init__(self, latent_dim: int, num_heads: int, dropout: float) -> None:
+        super().__init__(latent_dim, num_heads, dropout=dropout, batch_first=True, add_zero_attn=True)
+
+    def forward(  # type: ignore[override]  # its weights, asked for less
+        self, query: Tensor, source: Tensor, keep: Tensor | None
+    ) -> Tensor:
+        """query (N, T, d), source (N, S, d) for keys and values, keep (N, S) bool or None → (N, T, d)."""
+        d = query.shape[-1]
+        if query is source:
+            q, k, v = F.linear(query, self.in_proj_weight, self.in_proj_bias).chunk(3, dim=-1)
+        else:
+            q = F.linear(query, self.in_proj_weight[:d], self.in_proj_bias[:d])
+            k, v = F.linear(source, self.in_proj_weight[d:], self.in_proj_bias[d:]).chunk(2, dim=-1)
+        dropout = self.dropout if self.training else 0.0
+        return self.out_proj(attend(q, k, v, keep, num_heads=self.num_heads, dropout=dropout))
+
+
+class SelfAttentionBlock(nn.Module):
+    """Attention of each person to themselves (eq. 9)."""
+
+    def __init__(self, config: InterGenConfig) -> None:
+        super().__init__()
+        self.norm = AdaLayerNorm(config.latent_dim)
+        self.attention = ZeroAttention(config.latent_dim, config.num_heads, config.dropout)
+
+    def forward(self, h: Tensor, emb: Tensor, keep: Tensor | None) -> Tensor:
+        """Both people's states h (2, B, T, d), conditioned on emb; ``keep`` masks padding. Same shape out."""
+        query = self.norm(h, emb).flatten(0, 1)
+        return self.attention(query, query, keep).view_as(h)
+
+
+class MutualAttentionBlock(nn.Module):
+    """Attention of each person to the other's states of the previous layer (eq. 10)."""
+
+    def __init__(self, config: InterGenConfig) -> None:
+        super().__init__()
+        self.norm = AdaLayerNorm(config.latent_dim)
+        self.xf_norm = AdaLayerNorm(config.latent_dim)
+        self.attention = ZeroAttention(config.latent_dim, config.num_heads, config.dropout)
+
+    def forward(self, h: Tensor, previous: Tensor, emb: Tensor, keep: Tensor | None) -> Tensor:
+        """Each person's states h (2, B, T, d) attend to the other's ``previous`` ones. Same shape out."""
+        query = self.norm(h, emb).flatten(0, 1)
+        counterpart = self.xf_norm(previous.flip(0), emb).flatten(0, 1)
+        return self.attention(query, counterpart, keep).view_as(h)
+
+
+class AdaFeedForward(FeedForward):
+    """The feed-forward layer behind its own AdaLN; zero at the start of training."""
+
+    def __init__(self, config: InterGenConfig) -> None:
+        super().__init__(config.latent_dim, config.ff_size, dropout=config.dropout)
+        self.norm = AdaLayerNorm(config.latent_dim)
+        nn.init.zeros_(self.linear2.weight)
+        nn.init.zeros_(self.linear2.bias)
+
+    def forward(self, h: Tensor, emb: Tensor) -> Tensor:  # type: ignore[override]  # one more input
+        """h (2, B, T, d), conditioned on emb → the same shape."""
+        return super().forward(self.norm(h, emb))
+
+
+class Block(nn.Module):
+    """Self-attention, mutual attention, feed-forward, each with a residual."""
+
+    def __init__(self, config: InterGenConfig) -> None:
+        super().__init__()
+        self.sa_block = SelfAttentionBlock(config)
+        self.ca_block = MutualAttentionBlock(config)
+        self.ffn = AdaFeedForward(config)
+
+    def forward(self, h: Tensor, emb: Tensor, keep: Tensor | None, keep_other: Tensor | None) -> Tensor:
+        """h (2, B, T, d) → the same shape; ``keep`` masks a person's padding, ``keep_other`` the other's."""
+        attended = h + self.sa_block(h, emb, keep)
+        attended = attended + self.ca_block(attended, h, emb, keep_other)
+        return attended + self.ffn(attended, emb)
+
+
+class OutputLayer(nn.Module):
+    """Linear back to the features, zero at the start of training."""
+
+    def __init__(self, config: InterGenConfig) -> None:
+        super().__init__()
+        self.linear = nn.Linear(config.latent_dim, config.input_features)
+        nn.init.zeros_(self.linear.weight)
+        nn.init.zeros_(self.linear.bias)
+
+    def forward(self, h: Tensor) -> Tensor:
+        """h (…, d) → (…, features)."""
+        return self.linear(h)
+
+
+def padding(mask: Tensor | None) -> tuple[Tensor | None, Tensor | None]:
+    """Which tokens each person's own and the other's queries attend to: (B, T, 2) → (2B, T) bool, twice."""
+    if mask is None:
+        return None, None
+    real = (mask != 0).permute(2, 0, 1)  # (2, B, T)
+    return real.flatten(0, 1), real.flip(0).flatten(0, 1)
+
+
+class InterGenDenoiser(nn.Module, TwoPersonInputs):
+    """D_θ of eq. 8 for both people at once."""
+
+    def __init__(self, config: InterGenConfig) -> None:
+        super().__init__()
+        self.config = config
+        d = config.latent_dim
+        self.embed_timestep = TimestepEmbedding(d)
+        self.motion_embed = nn.Linear(config.input_features, d)
+        self.text_embed = nn.Linear(config.cond_dim, d)
+        self.blocks = nn.ModuleList(Block(config) for _ in range(config.num_layers))
+        self.out = OutputLayer(config)
+        if config.role_embedding:
+            self.role_embedding = nn.Parameter(torch.randn(2, d) / math.sqrt(d))
+        if config.role_text:
+            self.role_text = nn.Linear(config.cond_dim, d, bias=False)
+            nn.init.zeros_(self.role_text.weight)
+
+    def embed(self, t: Tensor, cond: Tensor) -> Tensor:
+        """What AdaLN sees of timesteps (B,) and text (B, C): (B, d), or (2, B, d) with ``role_text``."""
+        emb = self.embed_timestep(t) + self.text_embed(cond)
+        if self.config.role_text:
+            own = self.role_text(cond)
+            emb = torch.stack([emb + own, emb - own])
+        return emb
+
+    def embed_motion(self, people: Tensor) -> Tensor:
+        """States of both people's tokens before the first block: (2, B, T, F) → (2, B, T, d)."""
+        h = self.motion_embed(people) + sinusoids(
+            people.shape[2], self.config.latent_dim, device=people.device
+        )
+        return h + self.role_embedding[:, None, None] if self.config.role_embedding else h
+
+    def forward(self, x: Tensor, t: Tensor, cond: Tensor, mask: Tensor | None = None) -> Tensor:
+        """The predicted clean motion.
+
+        Args:
+            x: (B, T, 2F) noised motion of both people, ``[a | b]``.
+            t: (B,) int64 timesteps.
+            cond: (B, C) text vectors; zeros for the unconditional prediction.
+            mask: (B, T, 2), nonzero where a person's token is real; padding is not attended to.
+
+        Returns:
+            (B, T, 2F); what stands at padded tokens means nothing.
+        """
+        b, length, _ = x.shape
+        people = x.view(b, length, 2, -1).permute(2, 0, 1, 3)  # (2, B, T, F)
+        emb = self.embed(t, cond)
+        h = self.embed_motion(people)
+        keep, keep_other = padding(mask)
+        for block in self.blocks:
+            h = block(h, emb, keep, keep_other)
+        return self.out(h).permute(1, 2, 0, 3).reshape(b, length, -1)
+
+    @property
+    def widths(self) -> tuple[int, int]:
+        """Widths of x and of the text vector, see :class:`models.compiled.TwoPersonInputs`."""
+        return 2 * self.config.input_features, self.config.cond_dim
+
+    def guided(
+        self, x: Tensor, t: Tensor, cond: Tensor, mask: Tensor | None = None, *, scale: float = 3.5
+    ) -> Tensor:
+        """:func:`models.diffusion.classifier_free` of this network; shapes as in `forward`."""
+
+        def predict(x: Tensor, t: Tensor, mask: Tensor | None, cond: Tensor) -> Tensor:
+            return self(x, t, cond, mask)
+
+        return classifier_free(predict, x, t, mask, cond=cond, scale=scale)
+
+
+def from_released(weights: Mapping[str, Tensor], *, num_heads: int) -> InterGenDenoiser:
+    """The network whose released tensors these are: sizes are read off the shapes; eval mode, float32.
+
+    Raises WeightsError if a tensor is missing, unknown or of another size.
+    """
+    tensors = as_tensors(weights)
+    latent_dim, input_features = shape_of(tensors, "motion_embed.weight", network=NETWORK)
+    config = InterGenConfig(
+        input_features=input_features,
+        latent_dim=latent_dim,
+        ff_size=shape_of(tensors, "blocks.0.ffn.linear1.weight", network=NETWORK)[0],
+        num_layers=count_layers(tensors, "blocks."),
+        num_heads=num_heads,
+        cond_dim=shape_of(tensors, "text_embed.weight", network=NETWORK)[1],
+        role_embedding="role_embedding" in tensors,
+        role_text="role_text.weight" in tensors,
+    )
+    network = InterGenDenoiser(config)
+    load_strictly(network, tensors, network=NETWORK)
+    return network
+
+
+def from_checkpoint(path: str | Path) -> InterGenDenoiser:
+    """The denoiser inside the authors' Lightning file (`intergen.ckpt`, names ``model.decoder.net.*``).
+
+    Its text tower is read by `models.text.clip`. Raises WeightsError for any other file.
+    """
+    weights = read_lightning(path, prefix="model.decoder.net.", network=NETWORK)
+    return from_released(weights, num_heads=RELEASED_HEADS)

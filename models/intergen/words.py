@@ -1,0 +1,214 @@
+"""InterGen's denoiser grown: it reads words, one sentence for both people and one for each, and sees what is known.
+
+The parts of :class:`models.intergen.InterGenDenoiser` stay as they are. New are attention to the words' features
+in every block, the vectors of each person's own sentence in AdaLN, and an embedding of the known part of the
+motion (:mod:`models.known`). All of them begin at zero, so a network grown from trained weights gives what those
+gave until it is trained.
+
+Shapes: B batch, T tokens in time, F features a person and token, R rows a sentence (its vector, then a word each),
+C text width, d latent width; the text of a motion is (B, 3, R, C): the sentence for both people, for a, for b.
+A row of zeros is padding, and a sentence of zeros is missing.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import cast
+
+import torch
+import torch.nn.functional as F
+from torch import Tensor, nn
+
+from models.diffusion import classifier_free
+from models.layers import TimestepEmbedding
+
+from .network import Block, InterGenConfig, InterGenDenoiser, attend, padding
+
+GUIDANCE_UNITS = 100.0
+"""A guidance scale times this has the sinusoids of a timestep: scales of 1 to 10 cover 100 to 1000."""
+
+
+def join_conditions(conditions: Sequence[Tensor]) -> Tensor:
+    """Conditions (B, 3, R, C) of different R in one batch, or such of another network as they are, (B, …)."""
+    if conditions[0].dim() == 4:
+        longest = max(condition.shape[2] for condition in conditions)
+        conditions = [F.pad(condition, (0, 0, 0, longest - condition.shape[2])) for condition in conditions]
+    return torch.cat(list(conditions))
+
+
+class WordAttention(nn.Module):
+    """Attention of each person's tokens to rows of text; nothing at the start of training."""
+
+    def __init__(self, config: InterGenConfig) -> None:
+        super().__init__()
+        d = config.latent_dim
+        self.num_heads, self.dropout = config.num_heads, config.dropout
+        self.norm = nn.LayerNorm(d)
+        self.query = nn.Linear(d, d)
+        self.source = nn.Linear(config.cond_dim, 2 * d)
+        self.out = nn.Linear(d, d)
+        nn.init.zeros_(self.out.weight)
+        nn.init.zeros_(self.out.bias)
+
+    def forward(self, h: Tensor, text: Tensor, keep: Tensor) -> Tensor:
+        """h (2, B, T, d), text (2B, S, C), keep (2B, S) bool, true where a row is real → (2, B, T, d)."""
+        q = self.query(self.norm(h)).flatten(0, 1)
+        k, v = self.source(text).chunk(2, dim=-1)
+        dropout = self.dropout if self.training else 0.0
+        return self.out(attend(q, k, v, keep, num_heads=self.num_heads, dropout=dropout)).view_as(h)
+
+
+class WordBlock(Block):
+    """InterGen's block with attention to the words between self-attention and mutual attention."""
+
+    def __init__(self, config: InterGenConfig) -> None:
+        super().__init__(config)
+        self.words = WordAttention(config)
+
+    def read(
+        self,
+        h: Tensor,
+        emb: Tensor,
+        keep: Tensor | None,
+        keep_other: Tensor | None,
+        text: Tensor,
+        real: Tensor,
+    ) -> Tensor:
+        """As `Block.forward`, with the text (2B, S, C) and its real rows (2B, S)."""
+        attended = h + self.sa_block(h, emb, keep)
+        attended = attended + self.words(attended, text, real)
+        attended = attended + self.ca_block(attended, h, emb, keep_other)
+        return attended + self.ffn(attended, emb)
+
+
+class WordDenoiser(InterGenDenoiser):
+    """The grown denoiser.
+
+    Args:
+        config: sizes; its text width is that of a row of text.
+        known_features: numbers a person and token by which the network sees what is known.
+        guidance_input: takes the scale of the guidance as an input, so that one pass gives what two did
+            (Meng et al. 2023, "On Distillation of Guided Diffusion Models").
+    """
+
+    def __init__(self, config: InterGenConfig, known_features: int, *, guidance_input: bool = False) -> None:
+        super().__init__(config)
+        d = config.latent_dim
+        self.blocks = nn.ModuleList(WordBlock(config) for _ in range(config.num_layers))
+        self.sentence_kinds = nn.Parameter(0.02 * torch.randn(3, config.cond_dim))  # both, own, the other's
+        self.person_text = nn.Linear(2 * config.cond_dim, d, bias=False)
+        self.known_embed = nn.Linear(known_features, d, bias=False)
+        nn.init.zeros_(self.person_text.weight)
+        nn.init.zeros_(self.known_embed.weight)
+        self.embed_guidance = TimestepEmbedding(d) if guidance_input else None
+        if self.embed_guidance is not None:
+            self.embed_guidance.start_at_zero()
+
+    def forward(
+        self,
+        x: Tensor,
+        t: Tensor,
+        cond: Tensor,
+        mask: Tensor | None = None,
+        known: Tensor | None = None,
+        guidance: Tensor | None = None,
+    ) -> Tensor:
+        """The predicted clean motion.
+
+        Args:
+            x: (B, T, 2F) noised motion of both people, ``[a | b]``; what is known is clean in it.
+            t: (B,) int64 timesteps.
+            cond: (B, 3, R, C) text; zeros for the unconditional prediction.
+            mask: (B, T, 2), nonzero where a person's token is real; padding is not attended to.
+            known: (B, T, 2·known_features), see :attr:`models.known.Hold.features`; None if nothing is.
+            guidance: (B,) scales, for a network with ``guidance_input``.
+
+        Returns:
+            (B, T, 2F); what stands at padded tokens means nothing.
+        """
+        b, length, _ = x.shape
+        emb = self.embed(t, cond)
+        if self.embed_guidance is not None and guidance is not None:
+            emb = emb + self.embed_guidance(GUIDANCE_UNITS * guidance)
+        h = self.embed_motion(x.view(b, length, 2, -1).permute(2, 0, 1, 3))
+        if known is not None:
+            h = h + self.known_embed(known.view(b, length, 2, -1).permute(2, 0, 1, 3))
+        text, real = self.text_of_each(cond)
+        keep, keep_other = padding(mask)
+        for block in cast(list[WordBlock], self.blocks):
+            h = block.read(h, emb, keep, keep_other, text, real)
+        return self.out(h).permute(1, 2, 0, 3).reshape(b, length, -1)
+
+    @property
+    def varying(self) -> dict[str, tuple[int, ...]]:
+        """See :class:`models.compiled.Compilable`."""
+        more: dict[str, tuple[int, ...]] = {"cond": (0, 2), "known": (0, 1)}
+        return super().varying | more | ({} if self.embed_guidance is None else {"guidance": (0,)})
+
+    def filled(
+        self,
+        x: Tensor,
+        t: Tensor,
+        cond: Tensor,
+        mask: Tensor | None = None,
+        known: Tensor | None = None,
+        guidance: Tensor | None = None,
+    ) -> tuple[Tensor, ...]:
+        """See :class:`models.compiled.Compilable`; zeros say that nothing is known."""
+        if known is None:
+            known = x.new_zeros(*x.shape[:2], 2 * self.known_embed.in_features)
+        inputs = (*super().filled(x, t, cond, mask), known)
+        return inputs if self.embed_guidance is None or guidance is None else (*inputs, guidance)
+
+    def example(self) -> tuple[Tensor, ...]:
+        """See :class:`models.compiled.Compilable`: the second motion has no words for each and less known."""
+        x, t, cond, mask = super().example()
+        draw = torch.Generator().manual_seed(1)
+        cond = torch.randn(2, 3, 4, cond.shape[1], generator=draw)
+        cond[1, 1:] = 0
+        known = torch.randn(2, x.shape[1], 2 * self.known_embed.in_features, generator=draw)
+        known[1, 3:] = 0
+        inputs = (x, t, cond, mask, known)
+        return inputs if self.embed_guidance is None else (*inputs, torch.tensor([3.5, 1.5]))
+
+    def embed(self, t: Tensor, cond: Tensor) -> Tensor:
+        """What AdaLN sees of timesteps (B,) and the sentences' vectors in text (B, 3, R, C): (2, B, d)."""
+        both, a, b = cond[:, :, 0].unbind(1)
+        own = self.person_text(torch.stack([torch.cat([a, b], -1), torch.cat([b, a], -1)]))
+        return super().embed(t, both) + own
+
+    def text_of_each(self, cond: Tensor) -> tuple[Tensor, Tensor]:
+        """Text (B, 3, R, C) as a and as b reads it, (2B, S, C), and which of the S rows are real, (2B, S).
+
+        S is 3R. In training it is the most that a motion has, so that missing sentences cost nothing.
+        """
+        real = (cond != 0).any(-1).flatten(1)
+        kinds = torch.stack([self.sentence_kinds, self.sentence_kinds[[0, 2, 1]]])  # (2, 3, C)
+        text = (cond[None] + kinds[:, None, :, None]).flatten(2, 3)
+        if self.training:
+            first = real.float().argsort(dim=1, descending=True, stable=True)[
+                :, : max(1, int(real.sum(1).max()))
+            ]
+            text = text.gather(2, first[None, :, :, None].expand(2, -1, -1, text.shape[-1]))
+            real = real.gather(1, first)
+        return text.flatten(0, 1), real.repeat(2, 1)
+
+    def guided(
+        self,
+        x: Tensor,
+        t: Tensor,
+        cond: Tensor,
+        mask: Tensor | None = None,
+        known: Tensor | None = None,
+        *,
+        scale: float = 3.5,
+    ) -> Tensor:
+        """Classifier-free guidance, or one pass where the network takes the scale; shapes as in `forward`."""
+        known = None if known is None else known.expand(len(x), -1, -1)
+        if self.embed_guidance is not None:
+            return self(x, t, cond, mask, known, torch.full((len(x),), scale, device=x.device))
+
+        def predict(x: Tensor, t: Tensor, mask: Tensor | None, known: Tensor | None, cond: Tensor) -> Tensor:
+            return self(x, t, cond, mask, known)
+
+        return classifier_free(predict, x, t, mask, known, cond=cond, scale=scale)

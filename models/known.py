@@ -1,0 +1,174 @@
+"""The known part of a motion: a person, the past, a span, single poses, joints, or a path on the floor.
+
+All kinds share one form: values and a mask over people, frames and the 70 numbers of a frame
+(:func:`models.motion_tokens.feature_rows`), and for a path also headings. A network's motion is a spline, so a known
+number of a frame is a linear equation on four control points. :class:`Hold` writes the known part into a noised motion
+or a prediction: it moves the control points by the least amount that satisfies the equations (the null-space method of
+Wang et al. 2023, "Zero-Shot Image Restoration Using Denoising Diffusion Null-Space Model", eq. 11–13). Where all four
+control points are known, this is InterGen's masked noise (section 5.4).
+
+Shapes: B motions, T frames that fill a number of tokens, K knots, 70 numbers a person.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import dataclass
+
+import numpy as np
+import torch
+from torch import Tensor
+
+from models.motion_tokens import FEATURES, TokenLayout, feature_rows, foot_contacts, pack, unpack
+
+FLOOR = (0, 2)
+"""Columns of a row that hold the pelvis' place on the floor: x and z."""
+KNOWN_FEATURES = 2 * FEATURES + 3
+"""Input features of the known part, per person and knot: values, mask, the heading's sine and cosine, and a 1 if
+the heading is known."""
+_SOFT = 3e-4
+"""Weight of the size of the move against the equations, whose squared coefficients sum to about 0.5. A known number
+is met within 0.1 % of the move, and a control point on which a known frame barely depends hardly moves."""
+
+
+@dataclass
+class Known:
+    """What is known of B motions of both people.
+
+    Attributes:
+        rows: (B, 2, T, 70) numbers of frames in metres; anything where they are not known.
+        mask: the same shape, true where a number is known.
+        heading: (B, 2, T, 2) sine and cosine of the angle from +Z towards +X; anything where it is not known.
+        heading_mask: (B, 2, T), true where it is.
+    """
+
+    rows: Tensor
+    mask: Tensor
+    heading: Tensor
+    heading_mask: Tensor
+
+    @classmethod
+    def nothing(cls, frames: int, batch: int = 1) -> Known:
+        """Nothing is known of motions of so many frames."""
+        shape = (batch, 2, frames)
+        return cls(
+            torch.zeros(*shape, FEATURES),
+            torch.zeros(*shape, FEATURES, dtype=torch.bool),
+            torch.zeros(*shape, 2),
+            torch.zeros(shape, dtype=torch.bool),
+        )
+
+    def add_person(self, person: int, positions: Tensor, frames: Iterable[int] | None = None) -> None:
+        """Marks a person's poses as known in all motions, at some frames or from the first frame on.
+
+        Args:
+            person: 0 for a, 1 for b.
+            positions: (N, 22, 3) metres.
+            frames: N of them, 0 … N − 1 by default.
+        """
+        at = torch.tensor(range(len(positions)) if frames is None else list(frames), dtype=torch.long)
+        # A single pose does not show whether the feet are planted.
+        moving = len(at) > 1 and bool((at.diff() == 1).all())
+        contacts = foot_contacts(positions) if moving else positions.new_zeros(len(at), 4)
+        self.rows[:, person, at] = feature_rows(positions, contacts)
+        self.mask[:, person, at, : FEATURES if moving else FEATURES - 4] = True
+
+    def add_path(
+        self, person: int, frames: Iterable[int], places: Tensor, headings: Tensor | None = None
+    ) -> None:
+        """Marks a person's place at some frames, and the heading there, as known in all motions.
+
+        Args:
+            person: 0 for a, 1 for b.
+            frames: N of them.
+            places: (N, 2) x and z of the pelvis in metres.
+            headings: (N,) radians from +Z towards +X.
+        """
+        at = torch.tensor(list(frames), dtype=torch.long)
+        for axis, column in enumerate(FLOOR):
+            self.rows[:, person, at, column] = places[:, axis]
+            self.mask[:, person, at, column] = True
+        if headings is not None:
+            self.heading[:, person, at] = torch.stack([headings.sin(), headings.cos()], -1)
+            self.heading_mask[:, person, at] = True
+
+
+class Hold:
+    """Writes the known part of motions into samples, in a network's space.
+
+    Args:
+        known: for one motion, or for each of a batch.
+        layout: frames a knot and knots a token.
+        mean, std: (70,) of the network's normaliser.
+
+    Attributes:
+        features: (B, tokens, 2·knots_per_token·:data:`KNOWN_FEATURES`) what a network sees of the known part.
+    """
+
+    def __init__(self, known: Known, layout: TokenLayout, mean: Tensor, std: Tensor) -> None:
+        self.layout, self.batch = layout, len(known.rows)
+        frames = known.rows.shape[2]
+        self.tokens = layout.num_tokens(frames)
+        rows = torch.where(known.mask, (known.rows - mean) / std, 0.0)
+        self.features = self._features(known, rows)
+        basis = layout.basis(self.tokens)
+        columns = rows.transpose(2, 3).reshape(-1, frames)
+        masks = known.mask.transpose(2, 3).reshape(-1, frames)
+        self._groups: list[tuple[Tensor, Tensor, Tensor | None]] = []
+        for at, mask in _alike(masks):
+            if mask.all():  # nothing is left to move
+                control = torch.stack(
+                    [layout.fit(self.tokens) @ person for person in known.rows.flatten(0, 1)]
+                )
+                fitted = ((control - mean) / std).transpose(1, 2).reshape(len(masks), -1)
+                self._groups.append((at, fitted[at], None))
+                continue
+            seen = basis[mask].double()
+            normal = seen.T @ seen + _SOFT * torch.eye(len(basis.T), dtype=torch.double)
+            gain = torch.linalg.solve(normal, seen.T)
+            move = torch.eye(len(normal), dtype=torch.double) - gain @ seen
+            offset = columns[at][:, mask].double() @ gain.T
+            self._groups.append((at, offset.float(), move.float()))
+
+    @property
+    def frozen(self) -> Tensor:
+        """(B, tokens, 2·token_features) true where a number is fixed and must not change."""
+        knots = self.tokens * self.layout.knots_per_token
+        whole = torch.zeros(self.batch * 2 * FEATURES, dtype=torch.bool)
+        for at, _, move in self._groups:
+            if move is None:
+                whole[at] = True
+        whole = whole.view(self.batch, 2, 1, FEATURES).expand(-1, -1, knots, -1)
+        return pack(whole, self.layout)
+
+    def __call__(self, x: Tensor) -> Tensor:
+        """x (B, tokens, 2·token_features) with the known part written in; any B if one motion is known."""
+        control = unpack(x, self.layout)  # (B, 2, K, 70)
+        columns = control.transpose(2, 3).reshape(-1, self.batch * 2 * FEATURES, control.shape[2])
+        held = columns.clone()
+        for at, offset, move in self._groups:
+            offset = offset.to(x)
+            held[:, at] = offset if move is None else offset + columns[:, at] @ move.to(x).T
+        return pack(held.view(control.transpose(2, 3).shape).transpose(2, 3), self.layout)
+
+    def _features(self, known: Known, rows: Tensor) -> Tensor:
+        """Means over the frames nearest to each knot."""
+        frames, knots = rows.shape[2], self.tokens * self.layout.knots_per_token
+        step = self.layout.frames_per_knot
+        nearest = (
+            torch.arange(frames) + step // 2
+        ) // step + 1  # knot k of the spline lies at frame step·(k − 1)
+        given = known.heading_mask[..., None]
+        sums = torch.cat([rows, known.mask, torch.where(given, known.heading, 0.0), given], -1)
+        bins = sums.new_zeros(*sums.shape[:2], knots, sums.shape[-1]).index_add(2, nearest, sums)
+        values, counts, heading, times = bins.split([FEATURES, FEATURES, 2, 1], -1)
+        seen = [values / counts.clamp_min(1), counts > 0, heading / times.clamp_min(1), times > 0]
+        return pack(torch.cat([part.to(sums) for part in seen], -1), self.layout)
+
+
+def _alike(masks: Tensor) -> list[tuple[Tensor, Tensor]]:
+    """Rows of masks (N, T) that are alike and not empty: (their indices, the mask)."""
+    found: dict[bytes, list[int]] = {}
+    for i, packed in enumerate(np.packbits(masks.numpy(), axis=1)):
+        found.setdefault(packed.tobytes(), []).append(i)
+    return [(torch.tensor(at), masks[at[0]]) for at in found.values() if masks[at[0]].any()]

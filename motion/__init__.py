@@ -1,0 +1,10 @@
+"""What a motion is: skeletons, clips of one person, duets of two, and the geometry on them.
+
+This package stands on nothing else of the project and imports no torch.
+"""
+
+from .clip import Clip, Duet, stacked_positions
+from .errors import InputError
+from .skeleton import SKELETONS, SMPL22, Skeleton
+
+__all__ = ["SKELETONS", "SMPL22", "Clip", "Duet", "InputError", "Skeleton", "stacked_positions"]

@@ -1,0 +1,277 @@
+"""Skinned bodies on the 22 SMPL joints: what the player, the exports and the films draw.
+
+A body is a closed surface bound to SMPL22 (``static/bodies``, made by ``training/bodies.py`` from MakeHuman's
+mesh, CC0). Joint positions alone pose it: :func:`bone_rotations` finds how each bone is turned, twist
+included, and :func:`skin` moves the surface by linear blend skinning. ``static/player/pose.js`` and
+``skin.js`` do the same in the browser, number for number.
+"""
+
+from __future__ import annotations
+
+import base64
+import json
+from dataclasses import dataclass, field
+from functools import lru_cache
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+
+from .clip import Clip
+from .errors import InputError
+from .kinematics import swing
+from .skeleton import SMPL22
+
+Array = NDArray[np.floating]
+
+FOLDER = Path(__file__).resolve().parents[1] / "static" / "bodies"
+BODIES = ("a", "b")
+"""The bodies there are: the first person's and the second's."""
+
+_J = {name: index for index, name in enumerate(SMPL22.joint_names)}
+_REST = SMPL22.rest_positions()
+
+
+@dataclass(frozen=True, eq=False)
+class Body:
+    """A surface and how it hangs on SMPL22's joints.
+
+    Attributes:
+        name: "a" or "b".
+        vertices: (V, 3) metres in the pose of binding, the soles at 0, facing +Z.
+        faces: (F, 3) vertex indices, counter-clockwise seen from outside.
+        face_zones: (F,) index into ``zones``.
+        zones: what there is: skin, top, trousers, shoes, hair, eyes.
+        sky: (V,) ambient light that reaches each vertex, 0 to 1.
+        joints: (22, 3) places of the joints in the pose of binding.
+        turns: (22, 3, 3) rotation that takes each bone from the pose of binding to SMPL22's T-pose.
+        bones: (V, 4) joints that move each vertex.
+        weights: (V, 4) their shares, which sum to 1.
+    """
+
+    name: str
+    vertices: Array = field(repr=False)
+    faces: NDArray[np.integer] = field(repr=False)
+    face_zones: NDArray[np.integer] = field(repr=False)
+    zones: tuple[str, ...]
+    sky: Array = field(repr=False)
+    joints: Array = field(repr=False)
+    turns: Array = field(repr=False)
+    bones: NDArray[np.integer] = field(repr=False)
+    weights: Array = field(repr=False)
+
+
+@lru_cache(maxsize=4)
+def load_body(name: str, *, small: bool = False) -> Body:
+    """The body ``name``, one of :data:`BODIES`; ``small`` gives about a third of the triangles.
+
+    Raises:
+        InputError: for another name, or where the file is missing or damaged.
+    """
+    if name not in BODIES:
+        raise InputError(f"There is no body {name!r}: take one of {', '.join(BODIES)}.")
+    path = FOLDER / f"{name}{'-small' if small else ''}.json"
+    try:
+        stored = json.loads(path.read_text(encoding="utf-8"))
+
+        def numbers(key: str, kind: str, columns: int) -> NDArray:
+            return np.frombuffer(base64.b64decode(stored[key]), dtype=kind).reshape(-1, columns)
+
+        vertices = np.array(stored["min"]) + np.array(stored["scale"]) * numbers("vertices", "<u2", 3)
+        return Body(
+            name=name,
+            vertices=vertices,
+            faces=numbers("faces", "<u2", 3).astype(np.int64),
+            face_zones=numbers("face_zones", "u1", 1)[:, 0],
+            zones=tuple(stored["zones"]),
+            sky=numbers("sky", "u1", 1)[:, 0] / 255,
+            joints=np.array(stored["joints"]),
+            turns=np.array(stored["turns"]),
+            bones=numbers("bones", "u1", 4).astype(np.int64),
+            weights=numbers("weights", "u1", 4) / 255,
+        )
+    except (OSError, ValueError, KeyError) as error:
+        raise InputError(f"The body {path.name} cannot be read ({error}): restore static/bodies.") from error
+
+
+def skin(body: Body, motion: Clip | Array) -> Array:
+    """The body's surface in each frame.
+
+    Args:
+        motion: a clip on SMPL22, or positions (T, 22, 3) in metres.
+
+    Returns:
+        (T, V, 3) float32 metres.
+
+    Raises:
+        InputError: for joints other than SMPL22's.
+    """
+    positions = _positions(motion)
+    turned = bone_rotations(positions) @ body.turns
+    surface = np.zeros((len(positions), len(body.vertices), 3), dtype=np.float32)
+    for joint in range(SMPL22.num_joints):
+        vertex, slot = np.nonzero((body.bones == joint) & (body.weights > 0))
+        if not len(vertex):
+            continue
+        placed = (body.vertices[vertex] - body.joints[joint]) @ np.swapaxes(turned[:, joint], -1, -2)
+        placed += positions[:, None, joint]
+        surface[:, vertex] += (body.weights[vertex, slot, None] * placed).astype(np.float32)
+    return surface
+
+
+def bone_rotations(motion: Clip | Array) -> Array:
+    """World rotation of each bone against SMPL22's T-pose, from joint positions only.
+
+    Bones point where the positions say. Their twist is what the neighbours tell: trunk and pelvis turn with
+    hips and collars; elbows and knees bend about one axis, which fixes the twist of a bent limb, and a
+    straight one keeps the least twist; shins turn with the feet; soles near the floor lie flat, toes bend;
+    the head turns to the side on which it lies in front of the neck, and looks ahead if only the neck bends.
+
+    Args:
+        motion: a clip on SMPL22, or positions (T, 22, 3) in metres, Y up, floor at 0.
+
+    Returns:
+        (T, 22, 3, 3) world rotations.
+    """
+    positions = _positions(motion)
+    world = np.empty((*positions.shape, 3))
+
+    def toward(a: str, b: str) -> Array:
+        return _unit(positions[:, _J[b]] - positions[:, _J[a]])
+
+    def rest(a: str, b: str) -> Array:
+        return _unit(_REST[_J[b]] - _REST[_J[a]])
+
+    def follow(base: Array, a: str, b: str) -> Array:
+        return swing(base @ rest(a, b), toward(a, b)) @ base
+
+    middle = (positions[:, _J["left_hip"]] + positions[:, _J["right_hip"]]) / 2
+    rest_middle = (_REST[_J["left_hip"]] + _REST[_J["right_hip"]]) / 2
+    pelvis = _frame(positions[:, _J["spine1"]] - middle, toward("right_hip", "left_hip"))
+    pelvis = pelvis @ _frame(_REST[_J["spine1"]] - rest_middle, rest("right_hip", "left_hip")).T
+    chest = _frame(toward("spine3", "neck"), toward("right_collar", "left_collar"))
+    chest = chest @ _frame(rest("spine3", "neck"), rest("right_collar", "left_collar")).T
+    world[:, _J["pelvis"]], world[:, _J["spine3"]] = pelvis, chest
+    between = _rotation_vector(np.swapaxes(pelvis, -1, -2) @ chest)
+    for name, child, share in (("spine1", "spine2", 1 / 3), ("spine2", "spine3", 2 / 3)):
+        world[:, _J[name]] = follow(pelvis @ _rotation(share * between), name, child)
+
+    # The head joint lies in front of the neck, so its place shows to which side the face turns.
+    ahead = np.einsum("tji,tj->ti", chest, toward("neck", "head"))
+    yaw = np.clip(np.arctan2(ahead[:, 0], np.maximum(ahead[:, 2], _LEAST_AHEAD)), -_MOST_YAW, _MOST_YAW)
+    for name, share in (("neck", 0.5), ("head", 1.0)):
+        turned = chest @ _rotation(share * yaw[:, None] * np.array([0.0, 1.0, 0.0]))
+        world[:, _J[name]] = follow(turned, "neck", "head")
+    # People who bend their necks go on looking ahead: the face takes back a part of its pitch.
+    pitch = -np.arcsin(np.clip(world[:, _J["head"], 1, 2], -1.0, 1.0))
+    level = _MOST_LEVEL * np.tanh(0.6 * pitch / _MOST_LEVEL)
+    world[:, _J["head"]] = world[:, _J["head"]] @ _rotation(level[:, None] * np.array([-1.0, 0.0, 0.0]))
+
+    for side, sign in (("left", -1.0), ("right", 1.0)):
+        collar, shoulder, elbow, wrist = (f"{side}_{n}" for n in ("collar", "shoulder", "elbow", "wrist"))
+        world[:, _J[collar]] = follow(chest, collar, shoulder)
+        straight = follow(world[:, _J[collar]], shoulder, elbow)
+        upper = toward(shoulder, elbow)
+        hinge = straight @ np.array([0.0, sign, 0.0])
+        twist = _hinge_twist(upper, toward(elbow, wrist), hinge, _ARM_BEND)
+        # Half of the twist sits in the upper arm, all of it in the forearm: shoulders keep their shape.
+        world[:, _J[shoulder]] = _rotation(0.5 * twist[:, None] * upper) @ straight
+        world[:, _J[elbow]] = follow(_rotation(twist[:, None] * upper) @ straight, elbow, wrist)
+        world[:, _J[wrist]] = world[:, _J[elbow]]
+
+        hip, knee, ankle, foot = (f"{side}_{n}" for n in ("hip", "knee", "ankle", "foot"))
+        straight = follow(pelvis, hip, knee)
+        thigh, shin, sole = toward(hip, knee), toward(knee, ankle), toward(ankle, foot)
+        bend = _bend(thigh, shin, _LEG_BEND)
+        by_knee = _hinge_twist(thigh, shin, straight @ np.array([1.0, 0.0, 0.0]), _LEG_BEND)
+        by_foot = _angle_about(shin, follow(straight, knee, ankle) @ rest(ankle, foot), sole)
+        twist = np.clip(by_knee, -1.2, 1.2) + (1 - bend) * 0.6 * np.clip(by_foot, -_MOST_SHIN, _MOST_SHIN)
+        world[:, _J[hip]] = _rotation(twist[:, None] * thigh) @ straight
+        lower = follow(world[:, _J[hip]], knee, ankle)
+        by_foot = np.clip(_angle_about(shin, lower @ rest(ankle, foot), sole), -_MOST_SHIN, _MOST_SHIN)
+        world[:, _J[knee]] = _rotation(by_foot[:, None] * shin) @ lower
+        loose = follow(world[:, _J[knee]], ankle, foot)
+        low = 1 - _smooth_step(positions[:, _J[foot], 1], *_LOW_FOOT)
+        up = np.broadcast_to(np.array([0.0, 1.0, 0.0]), sole.shape)
+        roll = np.clip(_angle_about(sole, loose[:, :, 1], up), -_MOST_ROLL, _MOST_ROLL)
+        world[:, _J[ankle]] = _rotation((low * roll)[:, None] * sole) @ loose
+        raised = np.arcsin(np.clip(-world[:, _J[ankle], 1, 2], 0.0, 0.9))  # the heel above the toes
+        axis = np.array([-1.0, 0.0, 0.0])
+        world[:, _J[foot]] = world[:, _J[ankle]] @ _rotation((low * raised)[:, None] * axis)
+    return world
+
+
+_LEAST_AHEAD = 0.25
+"""Least distance of the head in front of the neck at which its side counts, in lengths of the neck."""
+_MOST_YAW = 1.2
+_MOST_LEVEL = 0.4
+_MOST_SHIN = 0.9
+_MOST_ROLL = 0.6
+_ARM_BEND = (0.2, 0.55)
+"""Sines of the bend between which the axis of a hinge begins to count and counts in full."""
+_LEG_BEND = (0.2, 0.5)
+_LOW_FOOT = (0.03, 0.1)
+"""Heights in metres of the ball of the foot between which a sole stops lying flat."""
+
+
+def _positions(motion: Clip | Array) -> Array:
+    positions = np.asarray(motion.positions if isinstance(motion, Clip) else motion, dtype=np.float64)
+    names = motion.skeleton.joint_names if isinstance(motion, Clip) else SMPL22.joint_names
+    if positions.ndim != 3 or positions.shape[1:] != (22, 3) or names != SMPL22.joint_names:
+        raise InputError(
+            f"Bodies stand on SMPL22's 22 joints, not on {positions.shape}: retarget the motion."
+        )
+    return positions
+
+
+def _bend(first: Array, second: Array, span: tuple[float, float]) -> Array:
+    """(T,) 0 where two bones are in line, 1 where the direction of their hinge is well determined."""
+    return _smooth_step(np.linalg.norm(np.cross(first, second), axis=-1), *span)
+
+
+def _hinge_twist(first: Array, second: Array, hinge: Array, span: tuple[float, float]) -> Array:
+    """(T,) angle about ``first`` that brings its ``hinge`` to where it bends onto ``second``."""
+    angle = _angle_about(first, hinge, np.cross(first, second))
+    # Half a turn away both ways are equal: fade out before the angle jumps.
+    return angle * _bend(first, second, span) * (1 - _smooth_step(np.abs(angle), 2.4, 3.0))
+
+
+def _angle_about(axis: Array, start: Array, end: Array) -> Array:
+    """(T,) signed angle about unit ``axis`` from ``start`` to ``end``, each (T, 3)."""
+    start = start - np.sum(start * axis, axis=-1, keepdims=True) * axis
+    end = end - np.sum(end * axis, axis=-1, keepdims=True) * axis
+    return np.arctan2(np.sum(axis * np.cross(start, end), axis=-1), np.sum(start * end, axis=-1))
+
+
+def _rotation(vector: Array) -> Array:
+    """(…, 3, 3) rotation by the length of ``vector`` (…, 3) about its direction (Rodrigues)."""
+    angle = np.linalg.norm(vector, axis=-1)[..., None, None]
+    x, y, z = np.moveaxis(vector / np.maximum(angle[..., 0], 1e-12), -1, 0)
+    zero = np.zeros_like(x)
+    skew = np.stack([zero, -z, y, z, zero, -x, -y, x, zero], axis=-1).reshape(*x.shape, 3, 3)
+    return np.eye(3) + np.sin(angle) * skew + (1 - np.cos(angle)) * skew @ skew
+
+
+def _rotation_vector(rotation: Array) -> Array:
+    """(…, 3) the inverse of :func:`_rotation`, for less than half a turn."""
+    axis = np.stack([rotation[..., 2, 1] - rotation[..., 1, 2], rotation[..., 0, 2] - rotation[..., 2, 0],
+                     rotation[..., 1, 0] - rotation[..., 0, 1]], axis=-1)  # fmt: skip
+    sine = np.linalg.norm(axis, axis=-1, keepdims=True) / 2
+    cosine = (np.trace(rotation, axis1=-2, axis2=-1)[..., None] - 1) / 2
+    return axis / np.maximum(2 * sine, 1e-9) * np.arctan2(sine, cosine)
+
+
+def _frame(up: Array, across: Array) -> Array:
+    """(…, 3, 3) rotation whose Y column is ``up`` and whose X column is ``across`` made square to it."""
+    y = _unit(up)
+    x = _unit(across - np.sum(across * y, axis=-1, keepdims=True) * y)
+    return np.stack([x, y, np.cross(x, y)], axis=-1)
+
+
+def _smooth_step(value: Array, low: float, high: float) -> Array:
+    t = np.clip((value - low) / (high - low), 0.0, 1.0)
+    return t * t * (3 - 2 * t)
+
+
+def _unit(vector: Array) -> Array:
+    return vector / np.maximum(np.linalg.norm(vector, axis=-1, keepdims=True), 1e-9)

@@ -1,0 +1,270 @@
+"""Feet that stand: contact detection, planting by analytic leg IK, nothing below the floor."""
+
+from __future__ import annotations
+
+import itertools
+
+import numpy as np
+import scipy  # its parts are loaded with their first use
+from numpy.typing import NDArray
+
+from .skeleton import SMPL22, Skeleton
+from .transforms import facing
+
+Array = NDArray[np.floating]
+
+# Heights below which a joint can stand on the floor, as in InterGen's contact features (metres).
+ANKLE_HEIGHT, TOE_HEIGHT = 0.12, 0.05
+# How much faster and higher than a standing joint must be one that has left the floor.
+_LOOSE = 1.5
+_SIDES = ("left", "right")
+# A foot that drifts further than this within one contact was stepping or turning, not standing (metres).
+_MAX_DRIFT = 0.25
+# What a correction may move a joint from frame to frame (metres).
+_MAX_STEP = 0.03
+_REST_ANKLE = (0.03, 0.09)
+
+
+def foot_contacts(
+    positions: Array, fps: float, *, speed: float = 0.4, skeleton: Skeleton = SMPL22
+) -> NDArray[np.bool_]:
+    """Detects the foot joints that stand on the floor.
+
+    A joint stands where it is near the floor and slower than ``speed``, and goes on standing until it is
+    clearly faster or higher, so that noise does not cut a contact. Gaps of up to two frames are closed,
+    contacts shorter than three frames dropped.
+
+    Args:
+        positions: (T, J, 3) metres, floor at 0.
+        fps: frames a second.
+        speed: m/s; 0.4 suits generated motion, whose standing feet glide.
+
+    Returns:
+        (T, 4) bool: left ankle, left toe, right ankle, right toe.
+    """
+    feet = positions[:, _feet(skeleton)]
+    heights = np.array([ANKLE_HEIGHT, TOE_HEIGHT] * 2)
+    if len(feet) < 2:
+        return feet[..., 1] < heights
+    velocity = np.linalg.norm(np.gradient(feet, axis=0), axis=-1) * fps
+    certain = (velocity < speed) & (feet[..., 1] < heights)
+    possible = (velocity < _LOOSE * speed) & (feet[..., 1] < _LOOSE * heights)
+    in_time = np.ones((3, 1))
+    standing = scipy.ndimage.binary_propagation(certain, in_time, mask=possible)
+    standing = np.pad(standing, ((2, 2), (0, 0)), mode="edge")
+    standing = scipy.ndimage.binary_closing(standing, in_time)
+    return scipy.ndimage.binary_opening(standing, in_time)[2:-2]
+
+
+def plant_feet(
+    positions: Array, contacts: NDArray[np.bool_], *, blend: int = 5, skeleton: Skeleton = SMPL22
+) -> Array:
+    """Holds standing feet where they stand and keeps every foot above the floor.
+
+    Through each contact the toe (or the ankle, where only that stands) is pinned to its median place on the
+    floor; the correction fades in and out over ``blend`` frames. The leg follows by two-bone IK in the
+    plane of the given knee. Where a pinned foot is out of reach the body sinks a little, smoothly.
+
+    Args:
+        positions: (T, J, 3) metres on a skeleton of constant bones, floor at 0.
+        contacts: (T, 4) bool, as :func:`foot_contacts` gives.
+        blend: frames over which a correction fades.
+
+    Returns:
+        (T, J, 3) with the bone lengths of the input.
+    """
+    result = np.array(positions, dtype=np.float64)
+    ankles, toes = [], []
+    for side, name in enumerate(_SIDES):
+        ankle, toe = skeleton.index(f"{name}_ankle"), skeleton.index(f"{name}_foot")
+        foot_length = float(np.median(np.linalg.norm(result[:, toe] - result[:, ankle], axis=-1)))
+        goals = _foot_goals(
+            result[:, ankle],
+            result[:, toe],
+            contacts[:, 2 * side],
+            contacts[:, 2 * side + 1],
+            foot_length,
+            blend,
+        )
+        ankles.append(goals[0])
+        toes.append(goals[1])
+
+    sink = _needed_sink(result, ankles, skeleton)
+    result[..., 1] -= sink[:, None]
+    forward = facing(result, skeleton)
+    for name, ankle_goal, toe_goal in zip(_SIDES, ankles, toes, strict=True):
+        hip, knee, ankle, toe = (
+            skeleton.index(f"{name}_{part}") for part in ("hip", "knee", "ankle", "foot")
+        )
+        new_knee, new_ankle = solve_two_bones(
+            result[:, hip], result[:, knee], result[:, ankle], ankle_goal, forward
+        )
+        result[:, knee] = new_knee
+        result[:, ankle] = new_ankle
+        result[:, toe] = toe_goal + (new_ankle - ankle_goal)
+    return result
+
+
+def solve_two_bones(root: Array, middle: Array, end: Array, goal: Array, pole: Array) -> tuple[Array, Array]:
+    """Analytic IK of a limb of two bones.
+
+    Args:
+        root, middle, end: (…, 3) the limb's joints; they give the bone lengths and the plane it bends in.
+        goal: (…, 3) where the end should go; out of reach, it is drawn in along the line to the root.
+        pole: (…, 3) the direction in which a straight limb bends.
+
+    Returns:
+        (…, 3) new middle joint, and (…, 3) new end.
+    """
+    upper = np.linalg.norm(middle - root, axis=-1, keepdims=True)
+    lower = np.linalg.norm(end - middle, axis=-1, keepdims=True)
+    reach = goal - root
+    distance = np.linalg.norm(reach, axis=-1, keepdims=True)
+    axis = reach / np.maximum(distance, 1e-9)
+    distance = np.clip(distance, np.abs(upper - lower) + 1e-6, upper + lower - 1e-6)
+    along = (distance**2 + upper**2 - lower**2) / (2 * distance)
+    aside = np.sqrt(np.maximum(upper**2 - along**2, 0.0))
+    old_axis = end - root
+    old_axis = old_axis / np.maximum(np.linalg.norm(old_axis, axis=-1, keepdims=True), 1e-9)
+    bend = middle - root
+    bend = bend - np.sum(bend * old_axis, axis=-1, keepdims=True) * old_axis
+    # What the limb bends more than before goes towards the pole: the direction in which a nearly straight
+    # limb bends is noise. A limb that need not bend more keeps its own.
+    more = np.maximum(aside - np.linalg.norm(bend, axis=-1, keepdims=True), 0.0)
+    bend = bend + more * pole
+    bend = bend - np.sum(bend * axis, axis=-1, keepdims=True) * axis
+    bend = bend / np.maximum(np.linalg.norm(bend, axis=-1, keepdims=True), 1e-9)
+    return root + along * axis + aside * bend, root + distance * axis
+
+
+def _feet(skeleton: Skeleton) -> list[int]:
+    return [skeleton.index(f"{side}_{part}") for side in _SIDES for part in ("ankle", "foot")]
+
+
+def _foot_goals(
+    ankle: Array,
+    toe: Array,
+    ankle_stands: NDArray[np.bool_],
+    toe_stands: NDArray[np.bool_],
+    foot_length: float,
+    blend: int,
+) -> tuple[Array, Array]:
+    """Targets of the ankle and the toe of one foot: (T, 3) each, at the distance of the bone's length."""
+    toe_shift = _pin(toe, toe_stands, blend, (0.0, 0.0))
+    ankle_shift = _pin(ankle, ankle_stands, blend, _REST_ANKLE)
+    # Where only one end is pinned, the other moves with it.
+    toe_weight, ankle_weight = _fade(toe_stands, blend), _fade(ankle_stands, blend)
+    total = np.maximum(toe_weight + ankle_weight, 1e-9)
+    shared = (toe_shift * toe_weight + ankle_shift * ankle_weight) / total
+    new_toe = toe + shared + toe_weight * (toe_shift - shared)
+    new_ankle = ankle + shared + ankle_weight * (ankle_shift - shared)
+    new_toe[:, 1] = np.maximum(new_toe[:, 1], 0.0)
+    new_ankle[:, 1] = np.maximum(new_ankle[:, 1], _REST_ANKLE[0])
+    bone = new_ankle - new_toe
+    bone *= foot_length / np.maximum(np.linalg.norm(bone, axis=-1, keepdims=True), 1e-9)
+    # The toe's place wins where both stand: a heel may lift, a toe must not glide.
+    return new_toe + bone, new_toe
+
+
+def _pin(joint: Array, stands: NDArray[np.bool_], blend: int, heights: tuple[float, float]) -> Array:
+    """(T, 3) shift that holds a joint still through each contact and fades between contacts."""
+    shift = np.zeros_like(joint)
+    runs: list[tuple[int, int]] = []
+    for start, stop in _runs(stands):
+        runs.extend(_split(joint, start, stop, blend))
+    goals = [_goal(joint[start:stop], heights) for start, stop in runs]
+    runs = _with_room_to_step(joint, runs, goals)
+    for (start, stop), goal in zip(runs, goals, strict=True):
+        shift[start:stop] = goal - joint[start:stop]
+    edges = [(0, 0), *runs, (len(joint), len(joint))]
+    for (_, before), (after, _) in itertools.pairwise(edges):
+        gap = after - before
+        if gap <= 0:
+            continue
+        reach = min(blend, gap)
+        steps = np.arange(1, gap + 1)[:, None]
+        if before > 0:
+            shift[before:after] += _ease(1 - steps / (reach + 1)) * shift[before - 1]
+        if after < len(joint):
+            shift[before:after] += _ease(1 - (gap + 1 - steps) / (reach + 1)) * shift[after]
+    return shift
+
+
+def _goal(place: Array, heights: tuple[float, float]) -> Array:
+    """(3,) the place that a standing joint is held at, given where it was (frames, 3)."""
+    goal = np.median(place, axis=0)
+    goal[1] = np.clip(goal[1], *heights)
+    return goal
+
+
+def _with_room_to_step(
+    joint: Array, runs: list[tuple[int, int]], goals: list[Array]
+) -> list[tuple[int, int]]:
+    """Shortens contacts that follow each other so closely that the correction between them would jump."""
+    runs = list(runs)
+    for index in range(len(runs) - 1):
+        (start, stop), (next_start, next_stop) = runs[index : index + 2]
+        change = (goals[index + 1] - joint[next_start]) - (goals[index] - joint[stop - 1])
+        # Smoothstep is one and a half times as steep in its middle as on average.
+        missing = int(np.ceil(1.5 * np.linalg.norm(change) / _MAX_STEP)) - (next_start - stop)
+        if missing > 0:
+            half = (missing + 1) // 2
+            runs[index] = (start, max(stop - half, start + 1))
+            runs[index + 1] = (min(next_start + half, next_stop - 1), next_stop)
+    return runs
+
+
+def _runs(mask: NDArray[np.bool_]) -> list[tuple[int, int]]:
+    """(start, stop) of each stretch of True."""
+    edges = np.flatnonzero(np.diff(np.concatenate([[0], mask.astype(np.int8), [0]])))
+    return list(zip(edges[::2].tolist(), edges[1::2].tolist(), strict=True))
+
+
+def _split(joint: Array, start: int, stop: int, blend: int) -> list[tuple[int, int]]:
+    """Cuts a contact in which the joint drifts far into shorter ones, with room between to step."""
+    inside = joint[start:stop]
+    if np.ptp(inside, axis=0)[[0, 2]].max() <= _MAX_DRIFT:
+        return [(start, stop)]
+    if stop - start < 3 * blend:
+        return []
+    middle = (start + stop) // 2
+    return _split(joint, start, middle - blend // 2, blend) + _split(
+        joint, middle + (blend + 1) // 2, stop, blend
+    )
+
+
+def _fade(stands: NDArray[np.bool_], blend: int) -> Array:
+    """(T, 1) 1 through contacts, easing to 0 over ``blend`` frames outside."""
+    if not stands.any():
+        return np.zeros((len(stands), 1))
+    index = np.arange(len(stands))
+    on = np.flatnonzero(stands)
+    after = np.searchsorted(on, index).clip(0, len(on) - 1)
+    before = (np.searchsorted(on, index, side="right") - 1).clip(0)
+    distance = np.minimum(np.abs(on[after] - index), np.abs(index - on[before]))
+    return _ease(1 - distance / (blend + 1))[:, None]
+
+
+def _ease(x: Array) -> Array:
+    """Smoothstep of x, clipped to 0..1."""
+    x = np.clip(x, 0.0, 1.0)
+    return x * x * (3 - 2 * x)
+
+
+def _needed_sink(positions: Array, ankles: list[Array], skeleton: Skeleton) -> Array:
+    """(T,) metres the body must go down for both legs to reach their goals, at most 0.12, smooth."""
+    need = np.zeros(len(positions))
+    for name, goal in zip(_SIDES, ankles, strict=True):
+        hip, knee, ankle = (
+            positions[:, skeleton.index(f"{name}_{part}")] for part in ("hip", "knee", "ankle")
+        )
+        leg = np.linalg.norm(knee - hip, axis=-1) + np.linalg.norm(ankle - knee, axis=-1) - 1e-3
+        aside = hip - goal
+        height = np.sqrt(np.maximum(leg**2 - aside[:, 0] ** 2 - aside[:, 2] ** 2, 0.0))
+        need = np.maximum(need, aside[:, 1] - height)
+    need = np.clip(need, 0.0, 0.12)
+    if len(need) < 3 or not need.any():
+        return need
+    return scipy.ndimage.gaussian_filter1d(
+        scipy.ndimage.maximum_filter1d(need, 5, mode="nearest"), 1.5, mode="nearest"
+    )

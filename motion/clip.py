@@ -1,0 +1,158 @@
+"""The motion types: :class:`Clip` (one person) and :class:`Duet` (two people in one world)."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field, replace
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from .errors import InputError
+from .skeleton import SMPL22, Skeleton
+
+Array = NDArray[np.floating]
+
+
+@dataclass(frozen=True, eq=False)
+class Clip:
+    """One person's motion.
+
+    Attributes:
+        positions: (T, J, 3) float32 joint positions in metres, Y up, floor at 0.
+        fps: frames a second.
+        skeleton: names and parents of the J joints.
+        rotations: (T, J, 3, 3) local rotations against the skeleton's rest pose, where they are known.
+        name: shown in messages and file names.
+    """
+
+    positions: Array = field(repr=False)
+    fps: float
+    skeleton: Skeleton = SMPL22
+    rotations: Array | None = field(default=None, repr=False)
+    name: str = ""
+
+    def __post_init__(self) -> None:
+        positions = np.asarray(self.positions, dtype=np.float32)
+        joints = self.skeleton.num_joints
+        if positions.ndim != 3 or positions.shape[1:] != (joints, 3):
+            raise InputError(
+                f"Positions of shape {positions.shape} do not fit the skeleton {self.skeleton.name}: "
+                f"give an array of shape (frames, {joints}, 3)."
+            )
+        if len(positions) == 0:
+            raise InputError("The motion has no frames: give at least one.")
+        if not np.isfinite(positions).all():
+            raise InputError("The motion holds NaN or infinite positions: remove or repair those frames.")
+        if not np.isfinite(self.fps) or self.fps <= 0:
+            raise InputError(f"A frame rate of {self.fps} is not possible: give frames a second above 0.")
+        object.__setattr__(self, "positions", positions)
+
+    @property
+    def num_frames(self) -> int:
+        """Length in frames."""
+        return len(self.positions)
+
+    @property
+    def seconds(self) -> float:
+        """Length in seconds."""
+        return self.num_frames / self.fps
+
+    def cut(self, start: int = 0, stop: int | None = None) -> Clip:
+        """Frames ``start`` to ``stop`` (exclusive) as a clip of its own."""
+        rotations = None if self.rotations is None else self.rotations[start:stop]
+        return replace(self, positions=self.positions[start:stop], rotations=rotations)
+
+    def with_positions(self, positions: Array) -> Clip:
+        """The same person with other positions; rotations no longer hold and are dropped."""
+        return replace(self, positions=positions, rotations=None)
+
+
+@dataclass(frozen=True, eq=False)
+class Duet:
+    """Two clips in one world frame with the same fps and length.
+
+    Attributes:
+        a: the first person; the actor where one acts and one reacts.
+        b: the second person; the reactor.
+        roles: what the two are called.
+        manifest: everything that reproduces the motion, where it was generated.
+    """
+
+    a: Clip
+    b: Clip
+    roles: tuple[str, str] = ("a", "b")
+    manifest: dict[str, Any] | None = field(default=None, repr=False)
+
+    def __post_init__(self) -> None:
+        if self.a.num_frames != self.b.num_frames or self.a.fps != self.b.fps:
+            raise InputError(
+                f"Two people must share one clock: a has {self.a.num_frames} frames at {self.a.fps:g} fps "
+                f"and b {self.b.num_frames} at {self.b.fps:g}. Resample or trim one of them."
+            )
+        if self.a.skeleton.joint_names != self.b.skeleton.joint_names:
+            raise InputError("The two people must have the same joints: retarget one of them.")
+
+    @classmethod
+    def from_positions(
+        cls,
+        positions: Array,
+        *,
+        fps: float,
+        skeleton: Skeleton = SMPL22,
+        roles: tuple[str, str] = ("a", "b"),
+        manifest: dict[str, Any] | None = None,
+    ) -> Duet:
+        """Builds a duet from positions of shape (2, T, J, 3) in metres."""
+        if np.ndim(positions) != 4 or len(positions) != 2:
+            raise InputError(f"Two people need positions (2, frames, joints, 3), not {np.shape(positions)}.")
+        a, b = (Clip(person, fps, skeleton, name=role) for person, role in zip(positions, roles, strict=True))
+        return cls(a, b, roles, manifest)
+
+    @property
+    def people(self) -> tuple[Clip, Clip]:
+        """Both people, a first."""
+        return self.a, self.b
+
+    @property
+    def fps(self) -> float:
+        """Frames a second of both."""
+        return self.a.fps
+
+    @property
+    def num_frames(self) -> int:
+        """Length in frames."""
+        return self.a.num_frames
+
+    @property
+    def seconds(self) -> float:
+        """Length in seconds."""
+        return self.a.seconds
+
+    @property
+    def skeleton(self) -> Skeleton:
+        """The skeleton of both."""
+        return self.a.skeleton
+
+    @property
+    def positions(self) -> Array:
+        """(2, T, J, 3) float32 metres."""
+        return np.stack([self.a.positions, self.b.positions])
+
+    def cut(self, start: int = 0, stop: int | None = None) -> Duet:
+        """Frames ``start`` to ``stop`` (exclusive)."""
+        return replace(self, a=self.a.cut(start, stop), b=self.b.cut(start, stop))
+
+    def swapped(self) -> Duet:
+        """The same motion with the two people's places exchanged; roles stay with the place."""
+        return replace(self, a=self.b, b=self.a)
+
+    def with_positions(self, positions: Sequence[Array] | Array) -> Duet:
+        """The same two people with other positions (2, T, J, 3)."""
+        return replace(self, a=self.a.with_positions(positions[0]), b=self.b.with_positions(positions[1]))
+
+
+def stacked_positions(motion: Clip | Duet) -> Array:
+    """(people, T, J, 3) metres of one person or two."""
+    return motion.positions if isinstance(motion, Duet) else motion.positions[None]

@@ -1,0 +1,286 @@
+"""Biovision BVH: any rig in, and our two people out.
+
+BVH gives each joint a list of channels; rotations apply in the order in which they are listed
+(``Zrotation Xrotation Yrotation`` is R = Rz·Rx·Ry) and position channels replace the joint's OFFSET.
+Neither the unit nor the up axis is written in the file: the unit is found from the size of the body here,
+the up axis in :mod:`motion.retarget`.
+
+Frames are read and placed block after block: beside the file only the joints' places are held.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+
+from motion.errors import InputError
+from motion.rigs import RigMotion
+from motion.skeleton import SMPL22
+
+from .bvh_hierarchy import Joint, parse_hierarchy, trees
+from .bvh_numbers import MAX_NUMBERS, Motion, find_motion
+from .files import ascii_bytes, read_bytes
+
+Array = NDArray[np.floating]
+
+_LONGEST_HIERARCHY = 2**20
+_ENOUGH = 50.0
+"""Frames a second: what is left of a faster file that is no whole multiple of the wanted rate, at least."""
+_UNITS = {1.0: "m", 0.01: "cm", 0.001: "mm", 0.0254: "inch"}
+# A person's height over the longest chain below the hips (leg and foot) or above (spine and arm).
+_HEIGHT_PER_CHAIN = 1.7
+_PERSON_HEIGHT = (1.2, 2.2)
+
+
+def read_bvh(source: str | Path | bytes, *, name: str | None = None, fps: float | None = None) -> RigMotion:
+    """Reads a BVH file.
+
+    Args:
+        source: a path, or the file's bytes.
+        name: what to call the file in messages; its own name by default.
+        fps: see :func:`read_bvh_people`.
+
+    Returns:
+        the rig and its motion, lengths in metres, axes as in the file.
+
+    Raises:
+        InputError: one sentence with the line and joint where the file is wrong.
+    """
+    rigs = read_bvh_people(source, name=name, fps=fps)
+    if len(rigs) > 1:
+        raise InputError(
+            f"{rigs[0].name} holds {len(rigs)} people, a ROOT each: choose one on the page, or give one "
+            "person a file."
+        )
+    return rigs[0]
+
+
+def read_bvh_people(
+    source: str | Path | bytes,
+    *,
+    name: str | None = None,
+    fps: float | None = None,
+    file_fps: float | None = None,
+) -> tuple[RigMotion, ...]:
+    """The same for a file of several people, a ROOT each; they share one unit and one world.
+
+    Args:
+        source: a path, or the file's bytes.
+        name: what to call the file in messages; its own name by default.
+        fps: the rate that is wanted in the end. Of a faster file only every n-th frame is kept: those of a
+            whole multiple of this rate, or of at least 50 a second. Files with SMPL22's own joints are kept
+            whole, and so is every file by default.
+        file_fps: the file's true rate, where it is not what the file says.
+
+    Raises:
+        InputError: as :func:`read_bvh`, and for more than six people.
+    """
+    joints, motion, label = _opened(source, name)
+    own = any(_is_own(joints[first:stop]) for first, stop in trees(joints, label))
+    every = 1 if own or fps is None else _stride(file_fps or _frame_rate(motion.frame_time), fps)
+    return _placed(motion, every)
+
+
+def read_rotations(
+    source: str | Path | bytes, *, name: str | None = None, most: int
+) -> tuple[list[Joint], Array, Array]:
+    """The rotation channels of a file's joints.
+
+    Args:
+        source, name: as for :func:`read_bvh`.
+        most: how many of the first frames are read.
+
+    Returns:
+        the joints, their local rotations (T, J, 3, 3), and the frames' numbers (T, channels) as in the file.
+    """
+    joints, motion, _ = _opened(source, name)
+    blocks, count = [], 0
+    for block in motion.blocks():
+        blocks.append(np.array(block[: most - count]))
+        count += len(blocks[-1])
+        if count >= most:
+            break
+    values = np.concatenate(blocks)
+    rotations = np.empty((len(values), len(joints), 3, 3))
+    _turn(joints, values.T, rotations)
+    return joints, rotations, values
+
+
+def _opened(source: str | Path | bytes, name: str | None) -> tuple[list[Joint], Motion, str]:
+    """A file's joints and where its numbers are, and what to call it."""
+    data, label = read_bytes(source, name)
+    data = ascii_bytes(data, label, "a BVH file")
+    if not re.search(rb"^\s*HIERARCHY\b", data[:4096], re.IGNORECASE):
+        raise InputError(f"{label} is not a BVH file: it does not begin with HIERARCHY.")
+    line = re.compile(rb"^[ \t]*MOTION[ \t]*\r?$", re.MULTILINE | re.IGNORECASE)
+    head = line.search(data, 0, min(len(data), _LONGEST_HIERARCHY))
+    if head is None:
+        if len(data) > _LONGEST_HIERARCHY:
+            raise InputError(f"{label} has no MOTION part within its first megabyte: is it of another kind?")
+        raise InputError(f"{label} has no MOTION part and may be cut short: export it again.")
+    joints = parse_hierarchy(_decoded(data[: head.start()]), label)
+    return joints, find_motion(data, head.end(), joints, label), label
+
+
+def _decoded(hierarchy: bytes) -> str:
+    try:
+        return hierarchy.decode("utf-8")
+    except UnicodeDecodeError:
+        return hierarchy.decode("latin-1")
+
+
+def _stride(file_fps: float, fps: float) -> int:
+    """Of how many frames of the file one is kept."""
+    times = file_fps / fps
+    if times >= 1 and abs(times - round(times)) < 1e-6:
+        return round(times)
+    return max(1, int(file_fps / max(fps, _ENOUGH)))
+
+
+def _is_own(joints: list[Joint]) -> bool:
+    return set(SMPL22.joint_names) <= {joint.name for joint in joints}
+
+
+def _placed(motion: Motion, every: int) -> tuple[RigMotion, ...]:
+    """Forward kinematics of every n-th frame."""
+    joints, label = motion.joints, motion.label
+    kept = -(-motion.frames // every)
+    if 3 * kept * len(joints) > MAX_NUMBERS:
+        raise InputError(
+            f"{label} holds {len(joints)} joints in {kept:,} frames, too many: lower its frame rate."
+        )
+    positions = np.empty((kept, len(joints), 3), dtype=np.float32)
+    people = trees(joints, label)
+    own = [range(first, stop) for first, stop in people if _is_own(joints[first:stop])]
+    rotations = np.empty((kept, len(joints), 3, 3), dtype=np.float32) if own else None
+    done = 0
+    for values, begun in _every_nth(motion, every):
+        _place(joints, values.T, positions[begun : begun + len(values)])
+        if rotations is not None:
+            _turn(joints, values.T, rotations[begun : begun + len(values)])
+        done = begun + len(values)
+    assert done == kept
+    scale = _metres_per_unit(positions, joints[: people[0][1]], label)
+    positions *= scale
+    return tuple(
+        RigMotion(
+            tuple(joint.name for joint in joints[first:stop]),
+            tuple(max(joint.parent - first, -1) for joint in joints[first:stop]),
+            np.array([joint.offset for joint in joints[first:stop]]) * scale,
+            positions[:, first:stop],
+            None if rotations is None else rotations[:, first:stop],
+            _frame_rate(motion.frame_time) / every,
+            scale,
+            label,
+            every=every,
+        )
+        for first, stop in people
+    )
+
+
+def _every_nth(motion: Motion, every: int) -> Iterator[tuple[Array, int]]:
+    """Blocks of the frames that are kept, with the number of the first among those."""
+    frame = 0
+    for block in motion.blocks():
+        first = -frame % every
+        yield block[first::every], (frame + first) // every
+        frame += len(block)
+
+
+def _place(joints: list[Joint], values: Array, positions: Array) -> None:
+    """Writes the joints' places (n, J, 3), in the file's unit, for channels (width, n).
+
+    Turning by one channel changes two columns of a rotation, so matrices (3, 3, n) are never multiplied.
+    """
+    frames = values.shape[1]
+    world: dict[int, tuple[Array, Array]] = {}  # rotation and place of joints that have children to come
+    last_child = {joint.parent: index for index, joint in enumerate(joints)}
+    column = 0
+    for index, joint in enumerate(joints):
+        local = list(joint.offset)
+        turns = []
+        for kind, axis in joint.channels:
+            if kind == "position":
+                local[axis] = values[column]
+            else:
+                turns.append((axis, values[column]))
+            column += 1
+        if joint.parent < 0:
+            rotation: Array = np.repeat(np.eye(3)[..., None], frames, axis=2)
+            place: Array = np.empty((3, frames))
+            for axis in range(3):
+                place[axis] = local[axis]
+        else:
+            rotation, start = world[joint.parent]
+            place = start + rotation[:, 0] * local[0] + rotation[:, 1] * local[1] + rotation[:, 2] * local[2]
+            if last_child[joint.parent] == index:
+                del world[joint.parent]
+        positions[:, index] = place.T
+        if index in last_child:
+            world[index] = _turned(rotation, turns), place
+
+
+def _turn(joints: list[Joint], values: Array, rotations: Array) -> None:
+    """Writes the joints' local rotations (n, J, 3, 3) for channels (width, n)."""
+    upright = np.repeat(np.eye(3)[..., None], values.shape[1], axis=2)
+    column = 0
+    for index, joint in enumerate(joints):
+        turns = []
+        for kind, axis in joint.channels:
+            if kind == "rotation":
+                turns.append((axis, values[column]))
+            column += 1
+        rotations[:, index] = _turned(upright, turns).transpose(2, 0, 1)
+
+
+def _turned(rotation: Array, turns: list[tuple[int, Array]]) -> Array:
+    """A rotation (3, 3, n) times those about coordinate axes by degrees (n,), as a new array."""
+    rotation = rotation.copy()
+    for axis, degrees in turns:
+        angle = np.radians(degrees)
+        cos, sin = np.cos(angle), np.sin(angle)
+        one, other = rotation[:, (axis + 1) % 3], rotation[:, (axis + 2) % 3]
+        turned = cos * one + sin * other
+        other *= cos
+        other -= sin * one
+        one[...] = turned
+    return rotation
+
+
+def _frame_rate(frame_time: float) -> float:
+    """Frames a second; files round the frame time, so a rate within 0.05 % of a whole one is that one."""
+    rate = 1.0 / frame_time
+    return float(round(rate)) if abs(rate - round(rate)) < 5e-4 * rate else round(rate, 4)
+
+
+def _metres_per_unit(positions: Array, joints: list[Joint], label: str) -> float:
+    """The file's unit in metres, from the longest chain of bones that leaves the tree's first fork.
+
+    Bone lengths do not depend on the pose, so a crouching or lying person is measured as well as a
+    standing one. Files in no unit at all (CMU's) are scaled to an average person.
+    """
+    parents = [joint.parent for joint in joints]
+    bones = np.zeros(len(parents))
+    for index, joint in enumerate(joints):
+        if joint.parent >= 0 and any(kind == "position" for kind, _ in joint.channels):
+            bone = positions[:, index] - positions[:, joint.parent]
+            bones[index] = np.median(np.linalg.norm(bone, axis=-1))
+        elif joint.parent >= 0:
+            bones[index] = np.linalg.norm(joint.offset)
+    fork = next((joint for joint in range(len(parents)) if parents.count(joint) > 1), 0)
+    reach = np.full(len(parents), -np.inf)
+    reach[fork] = 0.0
+    for index, parent in enumerate(parents):
+        if index > fork and parent >= 0:
+            reach[index] = reach[parent] + bones[index]
+    height = _HEIGHT_PER_CHAIN * float(reach.max())
+    if not height > 0:
+        raise InputError(f"{label}: all joints are at one point, so the skeleton has no size.")
+    for unit in _UNITS:
+        if _PERSON_HEIGHT[0] <= height * unit <= _PERSON_HEIGHT[1]:
+            return unit
+    return 1.7 / height

@@ -1,0 +1,150 @@
+"""Reading within limits, and writing so that a half-written file is never taken for a whole one."""
+
+from __future__ import annotations
+
+import codecs
+import contextlib
+import errno
+import math
+import os
+import tempfile
+from collections.abc import Iterator, Mapping
+from pathlib import Path
+
+from motion.errors import InputError
+
+MAX_BYTES = 50 * 2**20
+MAX_SECONDS = 600.0
+_PIECE = 2**20
+MAX_FRAMES = 72_000
+"""Ten minutes at 120 frames a second."""
+
+
+def read_bytes(source: str | Path | bytes, name: str | None = None) -> tuple[bytes, str]:
+    """A file's bytes and what to call it in messages.
+
+    Raises:
+        InputError: if it cannot be read or is larger than 50 MB.
+    """
+    if isinstance(source, bytes):
+        data, label = source, name or "The file"
+        size = len(data)
+    else:
+        path = Path(source)
+        label = name or path.name
+        try:
+            size = path.stat().st_size
+            data = path.read_bytes() if size <= MAX_BYTES else b""
+        except OSError as error:
+            raise InputError(f"{label} cannot be read ({error.strerror}): check the path.") from None
+    if size > MAX_BYTES:
+        raise InputError(
+            f"{label} has {size / 2**20:.0f} MB, more than the {MAX_BYTES // 2**20} MB allowed: "
+            "cut the motion or lower its frame rate."
+        )
+    if not data:
+        raise InputError(f"{label} is empty: export it again.")
+    return data, label
+
+
+def decode_text(data: bytes, label: str, kind: str) -> str:
+    """Text in UTF-8, UTF-16 (with or without its mark) or, failing those, Latin-1.
+
+    Raises:
+        InputError: for binary data, which is no file of this ``kind`` ("a BVH file").
+    """
+    if data[:2] in (b"\xff\xfe", b"\xfe\xff"):
+        encoding = "utf-16"
+    elif 3 * data[:200].count(0) > len(data[:200]):
+        encoding = "utf-16-le" if data[1:2] == b"\0" else "utf-16-be"
+    else:
+        encoding = "utf-8-sig"
+    text = data.decode(encoding if _is_text(data, encoding) else "latin-1")
+    if "\0" in text:
+        raise InputError(f"{label} is not {kind}: it holds binary data.")
+    return text
+
+
+def ascii_bytes(data: bytes, label: str, kind: str) -> bytes:
+    """Text whose ASCII is ASCII: UTF-16 as UTF-8, anything else as it is, without a mark of its encoding.
+
+    Raises:
+        InputError: for binary data, which is no file of this ``kind`` ("a BVH file").
+    """
+    if data[:2] in (b"\xff\xfe", b"\xfe\xff") or 3 * data[:200].count(0) > len(data[:200]):
+        return decode_text(data, label, kind).encode("utf-8")
+    if b"\0" in data:
+        raise InputError(f"{label} is not {kind}: it holds binary data.")
+    return data.removeprefix(codecs.BOM_UTF8)
+
+
+def _is_text(data: bytes, encoding: str) -> bool:
+    """Whether data is in this encoding, read in pieces, as an error keeps a copy of its piece."""
+    decoder = codecs.getincrementaldecoder(encoding)()
+    try:
+        for start in range(0, len(data), _PIECE):
+            decoder.decode(data[start : start + _PIECE])
+        decoder.decode(b"", final=True)
+    except UnicodeDecodeError:
+        return False
+    return True
+
+
+def check_duration(frames: int, fps: float, label: str) -> None:
+    """Raises InputError for motions longer than ten minutes, or of more frames than :data:`MAX_FRAMES`."""
+    if fps > 0 and frames / fps > MAX_SECONDS:
+        raise InputError(
+            f"{label} lasts {math.ceil(frames / fps)} s, more than the {MAX_SECONDS:.0f} s allowed: cut it."
+        )
+    if frames > MAX_FRAMES:
+        raise InputError(
+            f"{label} has {frames:,} frames, more than the {MAX_FRAMES:,} allowed: lower its frame rate."
+        )
+
+
+@contextlib.contextmanager
+def replacing(path: Path) -> Iterator[Path]:
+    """Yields an empty temporary file beside ``path`` that takes its place if the block ends well.
+
+    Raises:
+        InputError: if the disk is full or the folder cannot be written; ``path`` is then as before.
+    """
+    temporary: Path | None = None
+    try:
+        path.parent.mkdir(parents=True, exist_ok=True)
+        descriptor, name = tempfile.mkstemp(prefix=f".{path.name}.", suffix=".tmp", dir=path.parent)
+        temporary = Path(name)
+        os.close(descriptor)
+        yield temporary
+        # mkstemp makes private files; a finished one is as readable as any other.
+        os.chmod(temporary, 0o666 & ~_umask())
+        os.replace(temporary, path)
+    except OSError as error:
+        if error.errno in (errno.ENOSPC, errno.EDQUOT):
+            raise InputError(
+                f"{path} could not be written because the disk is full: free some space and try again."
+            ) from None
+        raise InputError(
+            f"{path} could not be written ({error.strerror or error}): choose another folder or name."
+        ) from None
+    finally:
+        if temporary is not None:
+            temporary.unlink(missing_ok=True)
+
+
+def write_files(contents: Mapping[Path, bytes]) -> list[Path]:
+    """Writes all files or none: each to a temporary one beside it first, then all take their places.
+
+    Raises:
+        InputError: if the disk is full or a folder cannot be written; earlier files are as before.
+    """
+    with contextlib.ExitStack() as waiting:
+        for path, data in contents.items():
+            waiting.enter_context(replacing(path)).write_bytes(data)
+    return list(contents)
+
+
+def _umask() -> int:
+    mask = os.umask(0)
+    os.umask(mask)
+    return mask

@@ -1,0 +1,48 @@
+"""One person's motion as a file, in the formats that need no second person."""
+
+from __future__ import annotations
+
+import io
+from pathlib import Path
+
+import numpy as np
+
+from motion import Clip, InputError
+
+from .bvh_writer import bvh_text
+from .files import write_files
+
+SUFFIXES = (".npz", ".bvh", ".npy")
+
+
+def write_clip(clip: Clip, path: str | Path) -> list[Path]:
+    """Writes one person in the format of the path's suffix, as :func:`motion.formats.read` reads them.
+
+    A .npz holds positions (T, J, 3) float32, fps, joint_names and parents; a .npy the positions alone.
+
+    Returns:
+        the one path.
+
+    Raises:
+        InputError: for a suffix that holds two people only, or where the file cannot be written.
+    """
+    path = Path(path)
+    suffix = path.suffix.lower()
+    if suffix not in SUFFIXES:
+        raise InputError(
+            f"{path.name}: one person is written as {', '.join(SUFFIXES[:-1])} or {SUFFIXES[-1]}: choose one."
+        )
+    if suffix == ".bvh":
+        return write_files({path: bvh_text(clip).encode()})
+    buffer = io.BytesIO()
+    if suffix == ".npy":
+        np.save(buffer, clip.positions, allow_pickle=False)
+    else:
+        np.savez_compressed(
+            buffer,
+            positions=clip.positions,
+            fps=np.float64(clip.fps),
+            joint_names=np.array(clip.skeleton.joint_names),
+            parents=np.array(clip.skeleton.parents, dtype=np.int64),
+        )
+    return write_files({path: buffer.getvalue()})

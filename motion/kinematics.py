@@ -1,0 +1,132 @@
+"""Forward kinematics, and rotations back from positions on a skeleton of constant bones."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from .skeleton import SMPL22, Skeleton
+
+Array = NDArray[np.floating]
+
+
+def forward_kinematics(rotations: Array, root: Array, skeleton: Skeleton = SMPL22) -> Array:
+    """Joint positions from local rotations.
+
+    Args:
+        rotations: (…, J, 3, 3) rotation of each joint against its parent, the root's against the world.
+        root: (…, 3) world position of the root in metres.
+
+    Returns:
+        (…, J, 3) world positions in metres.
+    """
+    world_rotations = _by_joint(rotations, 3)
+    positions = np.empty((skeleton.num_joints, *rotations.shape[:-3], 3))
+    positions[0] = root
+    for parent, joint in skeleton.bones:
+        positions[joint] = positions[parent] + world_rotations[parent] @ skeleton.offsets[joint]
+        if skeleton.children[joint]:
+            world_rotations[joint] = world_rotations[parent] @ world_rotations[joint]
+    return _by_frame(positions, 2)
+
+
+def global_rotations(rotations: Array, skeleton: Skeleton = SMPL22) -> Array:
+    """(…, J, 3, 3) rotations of each joint against the world from local ones."""
+    world = _by_joint(rotations, 3)
+    for parent, joint in skeleton.bones:
+        world[joint] = world[parent] @ world[joint]
+    return _by_frame(world, 3)
+
+
+def local_rotations(world: Array, skeleton: Skeleton = SMPL22) -> Array:
+    """(…, J, 3, 3) rotations against the parent from rotations against the world."""
+    local = _by_joint(world, 3)
+    for parent, joint in reversed(skeleton.bones):  # parents stay as they were until their children are done
+        local[joint] = np.swapaxes(local[parent], -1, -2) @ local[joint]
+    return _by_frame(local, 3)
+
+
+def _by_joint(values: Array, place: int) -> Array:
+    """A copy with the axis of the joints, the ``place``-th from the end, first: each joint's lie together."""
+    return np.array(np.moveaxis(values, -place, 0), dtype=np.float64, order="C")
+
+
+def _by_frame(values: Array, place: int) -> Array:
+    """The other way round."""
+    return np.ascontiguousarray(np.moveaxis(values, 0, -place))
+
+
+def fit_rotations(positions: Array, skeleton: Skeleton = SMPL22) -> Array:
+    """Local rotations whose bones point where the positions say.
+
+    A joint with several children takes the rotation that fits them best (Kabsch); a joint with one child
+    takes its parent's rotation turned the shortest way onto the bone, so twist about a bone is the least
+    that the positions allow; a leaf follows its parent. Bone lengths of ``positions`` need not be the
+    skeleton's: only directions are used.
+
+    Args:
+        positions: (…, J, 3) metres.
+
+    Returns:
+        (…, J, 3, 3) local rotations.
+    """
+    places = _by_joint(positions, 2)
+    world = np.empty((*places.shape, 3))
+    for joint, children in enumerate(skeleton.children):
+        parent = skeleton.parents[joint]
+        inherited = np.broadcast_to(np.eye(3), world.shape[1:]) if parent < 0 else world[parent]
+        if not children:
+            world[joint] = inherited
+            continue
+        bones = places[list(children)] - places[joint]
+        rest = skeleton.offsets[list(children)]
+        if len(children) > 1:
+            world[joint] = _kabsch(rest, np.moveaxis(bones, 0, -2))
+        else:
+            world[joint] = swing(inherited @ rest[0], bones[0]) @ inherited
+    return local_rotations(np.moveaxis(world, 0, -3), skeleton)
+
+
+def project_to_skeleton(positions: Array, skeleton: Skeleton = SMPL22) -> tuple[Array, Array]:
+    """The nearest motion with the skeleton's own bone lengths: the same root path and bone directions.
+
+    Args:
+        positions: (…, J, 3) metres.
+
+    Returns:
+        positions (…, J, 3) with constant bones, and local rotations (…, J, 3, 3).
+    """
+    rotations = fit_rotations(positions, skeleton)
+    return forward_kinematics(rotations, np.asarray(positions)[..., 0, :], skeleton), rotations
+
+
+def _kabsch(rest: Array, observed: Array) -> Array:
+    """(…, 3, 3) rotation R that minimises Σ |R rest_i − observed_i|²; rest (C, 3), observed (…, C, 3)."""
+    covariance = np.swapaxes(observed, -1, -2) @ rest
+    u, _, vt = np.linalg.svd(covariance)
+    sign = np.sign(np.linalg.det(u @ vt))
+    u = u * np.stack([np.ones_like(sign), np.ones_like(sign), sign], axis=-1)[..., None, :]
+    return u @ vt
+
+
+def swing(source: Array, target: Array) -> Array:
+    """(…, 3, 3) the smallest rotation that turns ``source`` onto the direction of ``target`` (…, 3)."""
+    source = _unit(source)
+    target = _unit(target)
+    cross = np.cross(source, target)
+    cos = np.sum(source * target, axis=-1)[..., None, None]
+    # Opposite directions have no smallest rotation; any axis square to the source serves.
+    opposite = cos[..., 0, 0] < -1 + 1e-8
+    if opposite.any():
+        helper = np.where(np.abs(source[..., :1]) < 0.9, np.array([1.0, 0, 0]), np.array([0, 1.0, 0]))
+        axis = _unit(np.cross(source, helper))
+        half_turn = 2 * axis[..., :, None] * axis[..., None, :] - np.eye(3)
+    skew = np.zeros((*cross.shape[:-1], 3, 3))
+    skew[..., 0, 1], skew[..., 0, 2], skew[..., 1, 2] = -cross[..., 2], cross[..., 1], -cross[..., 0]
+    skew -= np.swapaxes(skew, -1, -2)
+    rotation = np.eye(3) + skew + skew @ skew / np.maximum(1 + cos, 1e-8)
+    return np.where(opposite[..., None, None], half_turn, rotation) if opposite.any() else rotation
+
+
+def _unit(vector: Array) -> Array:
+    return vector / np.maximum(np.linalg.norm(vector, axis=-1, keepdims=True), 1e-9)

@@ -1,0 +1,36 @@
+"""What can be measured on a duet: quality of the motion, and what the two people do to each other.
+
+Every measure takes a :class:`~motion.clip.Duet` of any of the project's skeletons and is plain numpy.
+"""
+
+from .bodies import Capsules, capsules
+from .interaction import Contact, contact_events, facing_angle, hand_distance, hand_to_body, pelvis_distance
+from .quality import FootSkate, Penetration, bone_drift, foot_skate, jerk, penetration
+from .readouts import MEASURES, Measure, compare, readouts, summary
+from .regions import contact_precision_recall, region_contacts
+from .response import response_delay
+
+__all__ = [
+    "MEASURES",
+    "Capsules",
+    "Contact",
+    "FootSkate",
+    "Measure",
+    "Penetration",
+    "bone_drift",
+    "capsules",
+    "compare",
+    "contact_events",
+    "contact_precision_recall",
+    "facing_angle",
+    "foot_skate",
+    "hand_distance",
+    "hand_to_body",
+    "jerk",
+    "pelvis_distance",
+    "penetration",
+    "readouts",
+    "region_contacts",
+    "response_delay",
+    "summary",
+]

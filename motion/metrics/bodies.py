@@ -1,0 +1,119 @@
+"""A body around the joints: one capsule a bone, and the distances between capsules.
+
+The radii are those of an average adult, rounded: skeletons carry no flesh, and all that is measured here
+needs is to know when two bodies would be inside each other.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from motion import Skeleton
+
+Array = NDArray[np.floating]
+
+_RADII = {
+    "head": 0.085,
+    "neck": 0.06,
+    "spine3": 0.12,
+    "spine2": 0.12,
+    "spine1": 0.12,
+    "spine_shoulder": 0.12,
+    "middle_of_spine": 0.12,
+    "torso": 0.12,
+    "hip": 0.09,
+    "knee": 0.07,
+    "ankle": 0.045,
+    "foot": 0.04,
+    "collar": 0.06,
+    "shoulder": 0.06,
+    "elbow": 0.045,
+    "wrist": 0.035,
+}
+"""Radius in metres of the capsule of the bone that ends in a joint, by the joint's name without its side."""
+_OTHER = 0.03
+_TRUNK = {
+    "pelvis", "base_of_spine", "spine1", "spine2", "spine3", "middle_of_spine", "spine_shoulder", "torso",
+    "neck", "head", "collar", "hip", "shoulder",
+}  # fmt: skip
+_HANDS = {"hand", "hand_tip", "thumb"}
+
+
+@dataclass(frozen=True)
+class Capsules:
+    """The capsules of a skeleton.
+
+    Attributes:
+        starts: (C,) joint at which each capsule begins.
+        ends: (C,) joint at which it ends.
+        radii: (C,) metres.
+        trunk: (C,) whether it belongs to torso, neck or head.
+    """
+
+    starts: NDArray[np.intp]
+    ends: NDArray[np.intp]
+    radii: Array
+    trunk: NDArray[np.bool_]
+
+    def part(self, kept: Sequence[bool] | NDArray[np.bool_]) -> Capsules:
+        """Those capsules for which ``kept`` (C,) is true."""
+        chosen = np.asarray(kept, dtype=bool)
+        return Capsules(self.starts[chosen], self.ends[chosen], self.radii[chosen], self.trunk[chosen])
+
+
+def sideless(joint_name: str) -> str:
+    """A joint's name without ``left_`` or ``right_``."""
+    return joint_name.removeprefix("left_").removeprefix("right_")
+
+
+def capsules(skeleton: Skeleton) -> Capsules:
+    """The body of a skeleton: one capsule a bone, hands and fingers left out.
+
+    Hands are left out because people who hold hands are not inside each other.
+    """
+    kept = [
+        (parent, child)
+        for parent, child in skeleton.bones
+        if sideless(skeleton.joint_names[child]) not in _HANDS
+    ]
+    names = [sideless(name) for name in skeleton.joint_names]
+    return Capsules(
+        starts=np.array([parent for parent, _ in kept], dtype=np.intp),
+        ends=np.array([child for _, child in kept], dtype=np.intp),
+        radii=np.array([_RADII.get(names[child], _OTHER) for _, child in kept]),
+        trunk=np.array([names[p] in _TRUNK and names[c] in _TRUNK for p, c in kept], dtype=bool),
+    )
+
+
+def point_segment_distance(points: Array, starts: Array, ends: Array) -> Array:
+    """Distance in metres from points (…, 3) to segments from ``starts`` to ``ends`` (…, 3), broadcast."""
+    along = ends - starts
+    length2 = np.maximum(np.einsum("...i,...i->...", along, along), 1e-12)
+    share = np.clip(np.einsum("...i,...i->...", points - starts, along) / length2, 0.0, 1.0)
+    gap = points - starts - share[..., None] * along
+    return np.sqrt(np.einsum("...i,...i->...", gap, gap))
+
+
+def segment_segment_distance(start_a: Array, end_a: Array, start_b: Array, end_b: Array) -> Array:
+    """Distance in metres between segments, each end (N, 3).
+
+    Ericson, *Real-Time Collision Detection* (2005), section 5.1.9, for N pairs at once.
+    """
+    along_a, along_b, between = end_a - start_a, end_b - start_b, start_a - start_b
+    a = np.maximum(np.einsum("ni,ni->n", along_a, along_a), 1e-12)
+    e = np.maximum(np.einsum("ni,ni->n", along_b, along_b), 1e-12)
+    b = np.einsum("ni,ni->n", along_a, along_b)
+    c = np.einsum("ni,ni->n", along_a, between)
+    f = np.einsum("ni,ni->n", along_b, between)
+    denominator = a * e - b * b
+    parallel = denominator <= 1e-9 * a * e
+    s = np.where(parallel, 0.0, np.clip((b * f - c * e) / np.where(parallel, 1.0, denominator), 0.0, 1.0))
+    t = (b * s + f) / e
+    s = np.where(t < 0, np.clip(-c / a, 0, 1), np.where(t > 1, np.clip((b - c) / a, 0, 1), s))
+    t = np.clip(t, 0.0, 1.0)
+    gap = between + s[:, None] * along_a - t[:, None] * along_b
+    return np.sqrt(np.einsum("ni,ni->n", gap, gap))

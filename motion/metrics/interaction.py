@@ -1,0 +1,218 @@
+"""What two people do to each other: distances, facing, contacts."""
+
+from __future__ import annotations
+
+from dataclasses import asdict, dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from motion import SMPL22, Clip, Duet, Skeleton
+from motion.transforms import facing
+
+from .bodies import Capsules, capsules, point_segment_distance, segment_segment_distance, sideless
+
+Array = NDArray[np.floating]
+
+PALM = 0.08
+"""Metres from the wrist joint to the middle of the palm, along the forearm: 22 joints end at the wrist.
+
+Everywhere in the measures a hand is this line from wrist to palm. Palms that meet touch with the ends of these lines;
+in a grasp the two lines overlap, with the wrists a palm's length apart."""
+HANDS_TOUCH = 0.10
+"""Metres between two hands that count as touching."""
+HANDS_PART = 0.13
+"""Metres between two hands at which a touch ends; it is larger because grips loosen and tighten."""
+HANDS_NEAR = 0.25
+"""Metres: a hand this near another one is about to meet it, or has just met it, and is not on the forearm."""
+SKIN_TOUCH = 0.05
+"""Metres between a hand or a foot and the surface of the other's body that count as touching."""
+_JOIN_GAP = 0.1
+_SHORTEST = 0.05
+
+
+def pelvis_distance(duet: Duet) -> Array:
+    """(T,) distance of the two roots over the floor plan, metres."""
+    a, b = duet.positions[:, :, _root(duet.skeleton)][..., [0, 2]]
+    return np.linalg.norm(a - b, axis=-1)
+
+
+def hand_distance(duet: Duet) -> Array:
+    """(T,) distance of the nearest pair of hands, one of each person, metres."""
+    return hand_gaps(duet).min(axis=(1, 2))
+
+
+def hand_to_body(duet: Duet) -> Array:
+    """(2, T) distance in metres from the nearest hand of a, then of b, to the bones of the other's trunk
+    (torso, neck and head)."""
+    trunk = capsules(duet.skeleton)
+    trunk = trunk.part(trunk.trunk)
+    pairs = ((duet.a, duet.b), (duet.b, duet.a))
+    return np.array([_to_bones(hands(me), other.positions, trunk).min(axis=(1, 2)) for me, other in pairs])
+
+
+def facing_angle(duet: Duet) -> Array:
+    """(2, T) angle in degrees between where a person faces and where the other stands; first a, then b.
+
+    0 is straight ahead, 180 behind; over the floor plan.
+    """
+    found = []
+    root = _root(duet.skeleton)
+    for me, other in ((duet.a, duet.b), (duet.b, duet.a)):
+        forward = facing(me.positions, me.skeleton)[..., [0, 2]]
+        towards = (other.positions[:, root] - me.positions[:, root])[..., [0, 2]]
+        cos = np.sum(forward * towards, axis=-1) / np.maximum(np.linalg.norm(towards, axis=-1), 1e-6)
+        found.append(np.degrees(np.arccos(np.clip(cos, -1.0, 1.0))))
+    return np.array(found)
+
+
+@dataclass(frozen=True)
+class Contact:
+    """A stretch of frames during which the two people touch.
+
+    Attributes:
+        start: first frame.
+        stop: one past the last frame.
+        kind: ``"hands"`` (hand on hand), ``"touch"`` (hand on body) or ``"foot"`` (foot on body).
+        label: for people, such as ``"hand of A on B"``.
+    """
+
+    start: int
+    stop: int
+    kind: str
+    label: str
+
+    def to_dict(self) -> dict[str, Any]:
+        """The contact as plain values, for JSON."""
+        return asdict(self)
+
+
+def contact_events(duet: Duet) -> list[Contact]:
+    """Stretches during which hands meet, or a hand or foot of one person is on the other's body.
+
+    Hands meet where they are within 10 cm (:data:`PALM` says what a hand is) and part beyond 13 cm; a hand or
+    foot is on a body where it is within 5 cm of the surface of its capsules. Stretches with
+    gaps under 0.1 s are merged; those shorter than 0.05 s are dropped.
+
+    Returns:
+        contacts by start.
+    """
+    body = capsules(duet.skeleton)
+    feet = _limbs(duet.skeleton, "foot", "ankle")
+    nearest = hand_distance(duet)
+    meeting = _stretches(nearest < HANDS_TOUCH, duet.fps, loosely=nearest < HANDS_PART)
+    found = [Contact(*ends, "hands", "hand on hand") for ends in meeting]
+    for me, other in ((0, 1), (1, 0)):
+        mine, theirs = _shown(duet.roles[me]), _shown(duet.roles[other])
+        on_body = hand_touching(duet, me, body)
+        for start, stop in meeting:
+            on_body[start:stop] = False  # one contact, not two
+        found += [
+            Contact(*ends, "touch", f"hand of {mine} on {theirs}") for ends in _stretches(on_body, duet.fps)
+        ]
+        kicks = touching(
+            duet.people[me].positions[:, feet], duet.people[other].positions,
+            above_ground(body, duet.skeleton), margin=SKIN_TOUCH,
+        )  # fmt: skip
+        found += [
+            Contact(*ends, "foot", f"foot of {mine} on {theirs}") for ends in _stretches(kicks, duet.fps)
+        ]
+    return sorted(found, key=lambda contact: (contact.start, contact.kind, contact.label))
+
+
+def hand_touching(duet: Duet, me: int, body: Capsules) -> NDArray[np.bool_]:
+    """(T,) whether a hand of person ``me`` (0 or 1) is on these capsules of the other.
+
+    A hand that is near one of the other's hands is not on the forearm behind it.
+    """
+    forearms = np.array([sideless(duet.skeleton.joint_names[end]) == "wrist" for end in body.ends])
+    on = _to_bones(hands(duet.people[me]), duet.people[1 - me].positions, body) - body.radii < SKIN_TOUCH
+    meets = hand_gaps(duet).min(axis=2 - me) < HANDS_NEAR  # (T, 2), each hand of mine
+    return np.asarray((on & ~(forearms & meets[..., None])).any(axis=(1, 2)))
+
+
+def touching(points: Array, target: Array, body: Capsules, *, margin: float) -> NDArray[np.bool_]:
+    """(T,) whether any of points (T, P, 3) is within ``margin`` of the surface of a body (T, J, 3)."""
+    gaps = point_segment_distance(
+        points[:, :, None], target[:, None, body.starts], target[:, None, body.ends]
+    )
+    return np.asarray((gaps - body.radii < margin).any(axis=(1, 2)))
+
+
+def above_ground(body: Capsules, skeleton: Skeleton) -> Capsules:
+    """The body without feet: feet side by side on the floor are no kick."""
+    return body.part([sideless(skeleton.joint_names[end]) not in ("foot", "ankle") for end in body.ends])
+
+
+def _shown(role: str) -> str:
+    """A role in a sentence: letters large, words as they are."""
+    return role.upper() if len(role) == 1 else role
+
+
+def palms(positions: Array, skeleton: Skeleton = SMPL22) -> Array:
+    """(…, T, 2, 3) the middles of the left and the right palm of people (…, T, J, 3)."""
+    wrists, elbows = _limbs(skeleton, "wrist"), _limbs(skeleton, "elbow")
+    forearm = positions[..., wrists, :] - positions[..., elbows, :]
+    length = np.maximum(np.linalg.norm(forearm, axis=-1, keepdims=True), 1e-6)
+    return positions[..., wrists, :] + PALM * forearm / length
+
+
+def hands(person: Clip) -> Array:
+    """(T, 2, 2, 3) the left and the right hand as lines: wrist and middle of the palm, metres."""
+    wrists = person.positions[:, _limbs(person.skeleton, "wrist")]
+    return np.stack([wrists, palms(person.positions, person.skeleton)], axis=2)
+
+
+def hand_gaps(duet: Duet) -> Array:
+    """(T, 2, 2) metres from each hand of a (left, right) to each of b."""
+    a, b = (hands(person) for person in duet.people)
+    return _between(a[:, :, None], b[:, None])
+
+
+def _to_bones(lines: Array, target: Array, body: Capsules) -> Array:
+    """(T, P, C) metres from lines (T, P, 2, 3) to the middle lines of capsules on joints (T, J, 3)."""
+    bones = np.stack([target[:, body.starts], target[:, body.ends]], axis=2)
+    return _between(lines[:, :, None], bones[:, None])
+
+
+def _between(first: Array, second: Array) -> Array:
+    """(…,) metres between lines (…, 2, 3), broadcast."""
+    first, second = np.broadcast_arrays(first, second)
+    ends = [line[..., end, :].reshape(-1, 3) for line in (first, second) for end in (0, 1)]
+    return segment_segment_distance(*ends).reshape(first.shape[:-2])
+
+
+def _root(skeleton: Skeleton) -> int:
+    """The joint that represents a person's place: the pelvis, under any of its names."""
+    for name in ("pelvis", "base_of_spine", "torso"):
+        if name in skeleton.joint_names:
+            return skeleton.index(name)
+    return 0
+
+
+def _limbs(skeleton: Skeleton, *parts: str) -> list[int]:
+    """Left and right joint of the first of ``parts`` that the skeleton has."""
+    for part in parts:
+        if f"left_{part}" in skeleton.joint_names:
+            return [skeleton.index(f"left_{part}"), skeleton.index(f"right_{part}")]
+    raise KeyError(f"{skeleton.name} has none of the joints {parts}.")
+
+
+def _stretches(
+    flags: NDArray[np.bool_], fps: float, *, loosely: NDArray[np.bool_] | None = None
+) -> list[tuple[int, int]]:
+    """(start, stop) of the runs of True, joined over short gaps, without the shortest.
+
+    Runs between which ``loosely`` holds throughout are joined too, however long that takes.
+    """
+    edges = np.flatnonzero(np.diff(np.concatenate([[False], flags, [False]]).astype(np.int8)))
+    joined: list[tuple[int, int]] = []
+    for start, stop in edges.reshape(-1, 2).tolist():
+        last = joined[-1][1] if joined else 0
+        held = loosely is not None and loosely[last:start].all()
+        if joined and (held or start - last < _JOIN_GAP * fps):
+            joined[-1] = (joined[-1][0], stop)
+        else:
+            joined.append((start, stop))
+    return [(start, stop) for start, stop in joined if stop - start >= _SHORTEST * fps]

@@ -1,0 +1,364 @@
+"""Any rig's motion onto the 22 SMPL joints with their own constant bones.
+
+Positions carry everything that is needed here, so rest poses that make no sense (Bandai Namco's, whose bones
+all point along X) do no harm. Limbs keep the directions of the rig's bones. Pelvis, spine, chest and neck
+are turned as frames made of an up and a left–right direction, measured against the rig's own rest pose
+where that is a standing one. The root's path is scaled by leg length, so that steps fit the legs.
+"""
+
+from __future__ import annotations
+
+from typing import overload
+
+import numpy as np
+from numpy.typing import NDArray
+
+from .cleaning import foot_contacts, plant_feet
+from .clip import Clip, Duet
+from .errors import InputError
+from .ik import body_scale, fit_skeleton
+from .kinematics import project_to_skeleton
+from .rigs import BodyParts, RigMotion, match_joints
+from .skeleton import SMPL22
+from .transforms import resample
+
+Array = NDArray[np.floating]
+
+_J = {name: index for index, name in enumerate(SMPL22.joint_names)}
+_NO_BODY = 1e-3
+"""Metres: joints that all lie closer together than this are no body."""
+_LEG = float(SMPL22.bone_lengths[_J["left_knee"]] + SMPL22.bone_lengths[_J["left_ankle"]])
+# Recorded feet are steadier than generated ones: pinning them only while they are slow preserves the moments
+# of landing and lift-off.
+_CONTACT_SPEED = 0.25
+# The pitch of SMPL's foot (ankle to toe) when it stands flat, downwards.
+_toe = SMPL22.offsets[_J["left_foot"]]
+_FLAT_FOOT = float(np.arctan2(-_toe[1], np.hypot(_toe[0], _toe[2])))
+# Where pelvis, spine1, spine2 and spine3 lie between the midpoint of the hips and the neck.
+_spine = [float(-SMPL22.offsets[_J["left_hip"], 1])]
+_spine += [float(SMPL22.bone_lengths[_J[name]]) for name in ("spine1", "spine2", "spine3", "neck")]
+_BLOCK = 2048
+"""Frames whose rotations are fitted at once."""
+_SPINE_FRACTIONS = np.cumsum(_spine) / np.sum(_spine)
+
+
+def retarget(rig: RigMotion, *, fps: float = 30.0, plant: bool = True) -> Clip:
+    """Brings a rig's motion onto SMPL22, its feet on the floor at height 0.
+
+    Args:
+        rig: any humanoid rig with its motion.
+        fps: frame rate of the result.
+        plant: hold standing feet still and above the floor.
+
+    Returns:
+        a clip with positions and local rotations against SMPL22's T-pose, over the same place as in the file.
+
+    Raises:
+        InputError: if no human body is found in the rig.
+    """
+    positions = _on_smpl(rig, fps, leg_scale(rig))
+    positions[..., 1] -= _floor_height(positions)
+    return _finished(positions, fps, rig.name, plant)
+
+
+def retarget_duet(
+    a: RigMotion, b: RigMotion, *, fps: float = 30.0, plant: bool = True, roles: tuple[str, str] = ("a", "b")
+) -> Duet:
+    """Brings two rigs that share one world onto SMPL22: one scale, one floor, the shorter one's length.
+
+    Raises:
+        InputError: if no human body is found in a rig.
+    """
+    scale = (leg_scale(a) + leg_scale(b)) / 2
+    people = [_on_smpl(rig, fps, scale) for rig in (a, b)]
+    frames = min(len(person) for person in people)
+    floor = min(_floor_height(person) for person in people)
+    clips = [
+        _finished(person[:frames] - np.array([0.0, floor, 0.0]), fps, rig.name, plant)
+        for person, rig in zip(people, (a, b), strict=True)
+    ]
+    return Duet(clips[0], clips[1], roles)
+
+
+@overload
+def to_smpl(motion: Clip) -> Clip: ...
+@overload
+def to_smpl(motion: Duet) -> Duet: ...
+def to_smpl(motion: Clip | Duet) -> Clip | Duet:
+    """Brings joints of another known layout (SBU15, K3HI15, NTU25, CMU17) onto SMPL22's constant bones.
+
+    A skeleton is fitted to the whole clip (:func:`~motion.ik.fit_skeleton`), then the feet are put
+    on the floor and planted. Two people share one scale and one floor. SMPL22 comes back as it is.
+
+    Raises:
+        InputError: if all joints of a person lie in one place.
+    """
+    for clip in motion.people if isinstance(motion, Duet) else (motion,):
+        if not np.ptp(clip.positions, axis=1).max() > _NO_BODY:
+            raise InputError("All joints of a person lie in one place: export the motion with its bones.")
+    if motion.skeleton.joint_names == SMPL22.joint_names:
+        return motion
+    people = motion.people if isinstance(motion, Duet) else (motion,)
+    lowest = min(float(clip.positions[..., 1].min()) for clip in people)
+    sources = [clip.positions.astype(np.float64) - np.array([0.0, lowest, 0.0]) for clip in people]
+    scale = float(np.mean([body_scale(source, motion.skeleton) for source in sources]))
+    fitted = [
+        fit_skeleton(source, motion.skeleton, fps=motion.fps, scale=scale).positions for source in sources
+    ]
+    floor = min(_floor_height(person) for person in fitted)
+    clips = [
+        _finished(person - np.array([0.0, floor, 0.0]), motion.fps, clip.name, True)
+        for person, clip in zip(fitted, people, strict=True)
+    ]
+    return Duet(clips[0], clips[1], motion.roles, motion.manifest) if isinstance(motion, Duet) else clips[0]
+
+
+def leg_scale(rig: RigMotion) -> float:
+    """SMPL22's leg length over the rig's: what its path is multiplied by so that its steps fit the legs."""
+    parts = match_joints(rig)
+    total = 0.0
+    for limb in (parts.left, parts.right):
+        for upper, lower in (("hip", "knee"), ("knee", "ankle")):
+            bone = rig.positions[:, limb[upper]] - rig.positions[:, limb[lower]]
+            total += float(np.median(np.linalg.norm(bone, axis=-1))) / 2
+    if not total > 0.05:
+        raise InputError("The legs of this rig have no length: export it with its OFFSETs.")
+    return _LEG / total
+
+
+def _on_smpl(rig: RigMotion, fps: float, scale: float) -> Array:
+    """(T, 22, 3) Y-up positions on SMPL22's bones at the new frame rate; the floor is the file's, scaled."""
+    parts = match_joints(rig)
+    source = _bodies(rig.positions, rig, parts, up_rotation(rig, parts))
+    positions = _transfer(source, _standing_rest(rig, parts), scale)
+    if rig.fps == fps:
+        return positions
+    # A spline between frames bends bones by fractions of a millimetre; rotations set them right.
+    return _on_bones(resample(positions, rig.fps, fps))[0]
+
+
+def _on_bones(positions: Array) -> tuple[Array, Array]:
+    """:func:`~motion.kinematics.project_to_skeleton`, some frames at a time to spare memory."""
+    places, rotations = np.empty(positions.shape), np.empty((*positions.shape, 3), dtype=np.float32)
+    for start in range(0, len(positions), _BLOCK):
+        block = slice(start, start + _BLOCK)
+        places[block], rotations[block] = project_to_skeleton(positions[block])
+    return places, rotations
+
+
+def _finished(positions: Array, fps: float, name: str, plant: bool) -> Clip:
+    if plant:
+        positions = plant_feet(positions, foot_contacts(positions, fps, speed=_CONTACT_SPEED))
+    positions, rotations = _on_bones(positions)
+    return Clip(positions, fps, SMPL22, rotations, name)
+
+
+def up_rotation(rig: RigMotion, parts: BodyParts | None = None) -> Array:
+    """(3, 3) rotation that turns the file's up axis to Y.
+
+    People stand most of the time, so up is the axis along which ankles and head are furthest apart. If the motion
+    does not show it clearly (someone lying), the rest pose decides. An axis that the rig names is used; the body
+    shows which end of it is up.
+    """
+    parts = parts or match_joints(rig)
+    heads = [joint for joint in (parts.head, parts.neck, parts.spine[-1]) if joint is not None]
+    ankles = [joint for joint in (parts.left["ankle"], parts.right["ankle"]) if joint is not None]
+    tall = np.median(rig.positions[:, heads[0]] - rig.positions[:, ankles].mean(axis=1), axis=0)
+    tall_rest = _rest_positions(rig)[heads[0]] - _rest_positions(rig)[ankles].mean(axis=0)
+    if rig.up is not None:
+        axis = "xyz".index(rig.up)
+        return _to_y(axis, -1.0 if tall[axis] < -0.5 * np.linalg.norm(tall) else 1.0)
+    for vector in (tall, tall_rest):
+        axis = int(np.argmax(np.abs(vector)))
+        if abs(vector[axis]) > 0.8 * np.linalg.norm(vector) and np.linalg.norm(vector) > 0.7:
+            return _to_y(axis, float(np.sign(vector[axis])))
+    return np.eye(3)
+
+
+def up_axis(rig: RigMotion) -> str:
+    """The file's axis that is taken to be up: "x", "y" or "z"."""
+    return "xyz"[int(np.argmax(np.abs(up_rotation(rig)[1])))]
+
+
+def _to_y(axis: int, sign: float) -> Array:
+    """(3, 3) the quarter or half turn that takes a signed coordinate axis to +Y."""
+    if axis == 1:
+        return np.diag([1.0, sign, sign])
+    if axis == 2:
+        return np.array([[1.0, 0, 0], [0, 0, sign], [0, -sign, 0]])
+    return np.array([[0, -sign, 0], [sign, 0, 0], [0, 0, 1.0]])
+
+
+def _bodies(positions: Array, rig: RigMotion, parts: BodyParts, upright: Array) -> dict[str, Array]:
+    """(T, 3) of every part the rig has, turned ``upright`` (3, 3), by SMPL22's names.
+
+    ``spine0``… are the joints of its spine.
+    """
+    bodies: dict[str, Array] = {}
+    for side, limb in (("left", parts.left), ("right", parts.right)):
+        for part, joint in limb.items():
+            if joint is not None:
+                bodies[f"{side}_{'foot' if part == 'toe' else part}"] = positions[:, joint] @ upright.T
+    if not {"left_collar", "right_collar"} <= set(bodies):  # a single collar does not determine the chest
+        bodies = {name: place for name, place in bodies.items() if not name.endswith("_collar")}
+    for number, joint in enumerate(parts.spine):
+        bodies[f"spine_{number}"] = positions[:, joint] @ upright.T
+    if parts.head is not None:
+        bodies["head"] = positions[:, parts.head] @ upright.T
+    shoulders = (bodies["left_shoulder"] + bodies["right_shoulder"]) / 2
+    bodies["neck"] = shoulders if parts.neck is None else positions[:, parts.neck] @ upright.T
+    return bodies
+
+
+def _rest_positions(rig: RigMotion) -> Array:
+    positions = np.array(rig.offsets, dtype=np.float64)
+    for joint, parent in enumerate(rig.parents):
+        if parent >= 0:
+            positions[joint] += positions[parent]
+    return positions
+
+
+def _standing_rest(rig: RigMotion, parts: BodyParts) -> dict[str, Array] | None:
+    """The rig's rest pose (1 frame), Y up and facing +Z, or ``None`` where it is not a standing one."""
+    rest = _rest_positions(rig)[None]
+    bodies = _bodies(rest, rig, parts, np.eye(3))
+    ankles = (bodies["left_ankle"] + bodies["right_ankle"]) / 2
+    tall = (bodies["neck"] - ankles)[0]
+    axis = int(np.argmax(np.abs(tall)))
+    straight = abs(tall[axis]) > 0.97 * np.linalg.norm(tall) and np.linalg.norm(tall) > 0.7
+    across = (bodies["left_hip"] - bodies["right_hip"])[0]
+    if not straight or np.linalg.norm(across) < 0.05:
+        return None
+    bodies = _bodies(rest, rig, parts, _to_y(axis, float(np.sign(tall[axis]))))
+    frame = _frame(np.array([[0.0, 1.0, 0.0]]), bodies["left_hip"] - bodies["right_hip"])[0]
+    bodies = {name: place @ frame for name, place in bodies.items()}
+    legs_down = all(
+        (bodies[f"{s}_hip"] - bodies[f"{s}_ankle"])[0, 1] > 0.5
+        and (bodies["neck"] - bodies[f"{s}_hip"])[0, 1] > 0.2
+        for s in ("left", "right")
+    )
+    return bodies if legs_down else None
+
+
+def _trunk(bodies: dict[str, Array]) -> dict[str, Array]:
+    """(T, 3, 3) world frames (left, up, forward as columns) of pelvis, spine1–3 and neck."""
+    hips = (bodies["left_hip"] + bodies["right_hip"]) / 2
+    # The pelvis joint itself (spine_0) lies at no agreed height, the hips do.
+    chain = [hips, *(bodies[f"spine_{n}"] for n in range(1, 30) if f"spine_{n}" in bodies), bodies["neck"]]
+    points = _along(np.stack(chain, axis=1), _SPINE_FRACTIONS[:-1])
+    points = np.concatenate([hips[:, None], points[:, 1:], bodies["neck"][:, None]], axis=1)
+    ups = np.diff(points, axis=1)  # pelvis, spine1, spine2, spine3
+    across_hips = _unit(bodies["left_hip"] - bodies["right_hip"])
+    across_chest: Array = bodies["left_shoulder"] - bodies["right_shoulder"]
+    if "left_collar" in bodies and "right_collar" in bodies:
+        collars: Array = bodies["left_collar"] - bodies["right_collar"]
+        if np.median(np.linalg.norm(collars, axis=-1)) > 0.06:
+            across_chest = collars
+    across_chest = _unit(across_chest)
+    frames = {}
+    for number, name in enumerate(("pelvis", "spine1", "spine2", "spine3")):
+        share = number / 3
+        frames[name] = _frame(ups[:, number], (1 - share) * across_hips + share * across_chest)
+    head = bodies.get("head")
+    frames["neck"] = frames["spine3"] if head is None else _frame(head - bodies["neck"], across_chest)
+    return frames
+
+
+def _transfer(source: dict[str, Array], rest: dict[str, Array] | None, scale: float) -> Array:
+    """(T, 22, 3) positions on SMPL22's bones, scaled; the floor is still where it was, scaled."""
+    frames = _trunk(source)
+    if rest is not None:
+        # What the rig calls upright is upright: frames count from its rest pose.
+        frames = {name: frame @ np.swapaxes(_trunk(rest)[name], -1, -2) for name, frame in frames.items()}
+
+    count = len(source["neck"])
+    result = np.zeros((count, SMPL22.num_joints, 3))
+    offsets = SMPL22.offsets
+    middle_of_hips = (offsets[_J["left_hip"]] + offsets[_J["right_hip"]]) / 2
+    hips = (source["left_hip"] + source["right_hip"]) / 2
+    result[:, 0] = hips * scale - frames["pelvis"] @ middle_of_hips
+    for parent, joint in SMPL22.bones:
+        name, parent_name = SMPL22.joint_names[joint], SMPL22.joint_names[parent]
+        if parent_name in frames:
+            bone = frames[parent_name] @ offsets[joint]
+        else:
+            bone = _limb_bone(source, name, parent_name, joint, frames)
+        result[:, joint] = result[:, parent] + bone
+    _level_feet(result, source, rest)
+    return result
+
+
+def _limb_bone(
+    source: dict[str, Array], name: str, parent_name: str, joint: int, frames: dict[str, Array]
+) -> Array:
+    length = SMPL22.bone_lengths[joint]
+    if name.endswith("_shoulder"):
+        if "left_collar" not in source:
+            return frames["spine3"] @ SMPL22.offsets[joint]
+        # Collars begin anywhere between the spine and halfway out; their middle is a place all rigs share.
+        start = (source["left_collar"] + source["right_collar"]) / 2
+        return _unit(source[name] - start) * length
+    if name not in source:  # a toe or wrist that the rig lacks
+        return frames["pelvis"] @ SMPL22.offsets[joint]
+    return _unit(source[name] - source[parent_name]) * length
+
+
+def _level_feet(result: Array, source: dict[str, Array], rest: dict[str, Array] | None) -> None:
+    """Pitches feet so that the rig's flat foot is SMPL's flat foot, in place."""
+    for side in ("left", "right"):
+        ankle, toe = _J[f"{side}_ankle"], _J[f"{side}_foot"]
+        if f"{side}_foot" not in source:
+            continue
+        bone = result[:, toe] - result[:, ankle]
+        pitch = np.arctan2(-bone[:, 1], np.hypot(bone[:, 0], bone[:, 2]))
+        if rest is not None:
+            flat_bone = (rest[f"{side}_foot"] - rest[f"{side}_ankle"])[0]
+            flat = np.arctan2(-flat_bone[1], np.hypot(flat_bone[0], flat_bone[2]))
+        else:
+            # A foot is flat where it stands: low and slow.
+            places = source[f"{side}_ankle"]
+            speed = np.linalg.norm(np.gradient(places, axis=0), axis=-1) if len(places) > 1 else np.zeros(1)
+            low = places[:, 1] <= np.quantile(places[:, 1], 0.5)
+            slow = speed <= np.quantile(speed[low], 0.5)
+            flat = np.median(pitch[low & slow])
+        correction = np.clip(_FLAT_FOOT - flat, -0.5, 0.5)
+        horizontal = bone * np.array([1.0, 0.0, 1.0])
+        horizontal = horizontal / np.maximum(np.linalg.norm(horizontal, axis=-1, keepdims=True), 1e-9)
+        length = np.linalg.norm(bone, axis=-1, keepdims=True)
+        new_pitch = (pitch + correction)[:, None]
+        down = np.array([0.0, -1.0, 0.0])
+        result[:, toe] = result[:, ankle] + length * (
+            np.cos(new_pitch) * horizontal + np.sin(new_pitch) * down
+        )
+
+
+def floor_on_smpl(rig: RigMotion) -> float:
+    """Metres by which :func:`retarget` lowers a rig's motion to put its feet on the floor."""
+    return _floor_height(_on_smpl(rig, rig.fps, leg_scale(rig)))
+
+
+def _floor_height(positions: Array) -> float:
+    """Height of the floor: a low quantile of the lower foot, robust to single bad frames."""
+    feet = positions[:, [_J["left_foot"], _J["right_foot"], _J["left_ankle"], _J["right_ankle"]], 1]
+    return float(np.quantile(feet.min(axis=-1), 0.05))
+
+
+def _along(points: Array, fractions: Array) -> Array:
+    """(T, F, 3) places at fractions of the length of polylines (T, P, 3)."""
+    lengths = np.median(np.linalg.norm(np.diff(points, axis=1), axis=-1), axis=0)
+    at = np.concatenate([[0.0], np.cumsum(lengths)])
+    at = at / max(at[-1], 1e-9)
+    segment = np.clip(np.searchsorted(at, fractions, side="right") - 1, 0, len(lengths) - 1)
+    share = (fractions - at[segment]) / np.maximum(at[segment + 1] - at[segment], 1e-9)
+    return points[:, segment] + share[:, None] * (points[:, segment + 1] - points[:, segment])
+
+
+def _frame(up: Array, across: Array) -> Array:
+    """(T, 3, 3) rotations whose Y column is ``up`` and whose X column is ``across`` made square to it."""
+    y = _unit(up)
+    x = _unit(across - np.sum(across * y, axis=-1, keepdims=True) * y)
+    return np.stack([x, y, np.cross(x, y)], axis=-1)
+
+
+def _unit(vector: Array) -> Array:
+    return vector / np.maximum(np.linalg.norm(vector, axis=-1, keepdims=True), 1e-9)

@@ -1,0 +1,93 @@
+"""Placing motion in the world: facing, canonical frame, floor, mirror, resampling.
+
+All functions take and give arrays (…, T, J, 3) of positions in metres, Y up. Headings are angles around
+Y in radians, 0 along +Z and positive towards +X.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+import scipy  # its parts are loaded with their first use
+from numpy.typing import NDArray
+
+from .skeleton import SMPL22, Skeleton
+
+Array = NDArray[np.floating]
+
+
+def heading_matrix(angle: float | Array) -> Array:
+    """(…, 3, 3) rotation about Y that turns +Z to the heading ``angle`` (radians)."""
+    angle = np.asarray(angle, dtype=np.float64)
+    cos, sin, zero, one = np.cos(angle), np.sin(angle), np.zeros_like(angle), np.ones_like(angle)
+    rows = [cos, zero, sin, zero, one, zero, -sin, zero, cos]
+    return np.stack(rows, axis=-1).reshape(*angle.shape, 3, 3)
+
+
+def facing(positions: Array, skeleton: Skeleton = SMPL22) -> Array:
+    """(…, T, 3) unit vector in the XZ plane that the body faces: Y × (left → right reversed).
+
+    Across runs from the right hip to the left hip, as in InterGen's canonical frame; a degenerate
+    frame (hips above each other) faces +Z.
+    """
+    left, right = skeleton.index("left_hip"), skeleton.index("right_hip")
+    across = positions[..., left, :] - positions[..., right, :]
+    forward = np.stack([-across[..., 2], np.zeros_like(across[..., 0]), across[..., 0]], axis=-1)
+    # Y × (right − left) = forward for a body whose left is at +X when it faces +Z.
+    length = np.linalg.norm(forward, axis=-1, keepdims=True)
+    return np.where(length > 1e-6, forward / np.maximum(length, 1e-6), np.array([0.0, 0.0, 1.0]))
+
+
+def heading(positions: Array, skeleton: Skeleton = SMPL22) -> Array:
+    """(…, T) heading of the body in radians, 0 along +Z and positive towards +X."""
+    forward = facing(positions, skeleton)
+    return np.arctan2(forward[..., 0], forward[..., 2])
+
+
+def turn(positions: Array, angle: float, centre: Array | None = None) -> Array:
+    """Turns positions by ``angle`` radians about the vertical axis through ``centre`` (3,)."""
+    matrix = heading_matrix(angle)
+    if centre is None:
+        return positions @ matrix.T
+    return (positions - centre) @ matrix.T + centre
+
+
+def canonicalize(positions: Array, *, person: int = 0, frame: int = 0, skeleton: Skeleton = SMPL22) -> Array:
+    """Moves a scene so that one person stands at the origin facing +Z at one frame.
+
+    Args:
+        positions: (P, T, J, 3) people of one scene, or (T, J, 3) for one person.
+        person: whose frame becomes the world's.
+        frame: at which frame.
+
+    Returns:
+        the same shape, with that person's root at XZ = 0, facing +Z. Heights do not change.
+    """
+    reference = positions[person] if positions.ndim == 4 else positions
+    root = reference[frame, 0] * np.array([1.0, 0.0, 1.0])
+    return turn(positions - root, -float(heading(reference[frame], skeleton)))
+
+
+def put_on_floor(positions: Array) -> Array:
+    """Shifts a scene vertically so that its lowest joint over all frames and people is at height 0."""
+    return positions - np.array([0.0, 1.0, 0.0]) * positions[..., 1].min()
+
+
+def mirrored(positions: Array, skeleton: Skeleton = SMPL22) -> Array:
+    """The motion as a mirror in the plane X = 0 shows it: X negated, left and right joints exchanged."""
+    return positions[..., list(skeleton.mirror), :] * np.array([-1.0, 1.0, 1.0])
+
+
+def resample(positions: Array, fps: float, new_fps: float) -> Array:
+    """Resamples (T, J, 3) from ``fps`` to ``new_fps`` with a cubic spline; the first frame stays.
+
+    Fewer than four frames are interpolated linearly.
+    """
+    frames = len(positions)
+    if frames == 1 or fps == new_fps:
+        return np.array(positions, dtype=np.float64)
+    duration = (frames - 1) / fps
+    times = np.arange(int(np.floor(duration * new_fps + 1e-6)) + 1) / new_fps
+    spline = scipy.interpolate.make_interp_spline(
+        np.arange(frames) / fps, positions, k=3 if frames > 3 else 1, axis=0
+    )
+    return spline(np.minimum(times, duration))

@@ -1,0 +1,83 @@
+"""The load test itself, on a server whose engine needs no networks."""
+
+from __future__ import annotations
+
+import json
+from concurrent.futures import ThreadPoolExecutor
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from motion import InputError
+from tests.server.lab import ROOT
+from webdemo.benchmark import load
+from webdemo.benchmark.load import Tally
+from webdemo.cli import main
+
+pytestmark = pytest.mark.slow
+
+STUB_APP = f"""
+import os, runpy, sys
+sys.argv = ["lab.py", os.environ["PASDEDEUX_PORT"], os.environ["PASDEDEUX_DATA"]]
+runpy.run_path({str(ROOT / "tests" / "server" / "lab.py")!r}, run_name="__main__")
+"""
+
+
+def run_load(**options: Any) -> dict[str, Any]:
+    """The load test in a thread of its own: a browser test before it leaves a loop running in this one."""
+    with ThreadPoolExecutor(1) as pool:
+        return pool.submit(lambda: load.run_load(**options)).result()
+
+
+def test_every_kind_of_job_comes_back(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    (tmp_path / "app.py").write_text(STUB_APP)
+    monkeypatch.setattr(load, "ROOT", tmp_path)
+    monkeypatch.setattr(load, "REST_SECONDS", 0.1)
+    monkeypatch.setattr(load, "PROBE_EVERY", 0.1)
+    people = len(load.KINDS)
+    figures = run_load(people=people, minutes=0.001, steps=2)
+    assert figures["runs_done"] >= people == figures["people_served"], figures
+    assert figures["runs_lost"] == figures["runs_swapped"] == figures["runs_refused_or_failed"] == 0, figures
+    assert figures["memory_at_rest_before_mb"] > 0 and figures["memory_most_mb"] > 0
+    assert figures["page_worst_seconds"] > 0
+
+
+def test_a_server_that_ends_is_one_sentence(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    (tmp_path / "app.py").write_text("raise SystemExit(1)")
+    monkeypatch.setattr(load, "ROOT", tmp_path)
+    with pytest.raises(InputError, match="ended before it was ready"):
+        run_load(people=1, minutes=0.01)
+
+
+def test_shares_are_compared_by_work() -> None:
+    tally = Tally(done=3, waits={0: [1.0, 3.0], 1: [6.0]}, memory=[5.0, 9.0, 7.0, 6.0])
+    figures = tally.figures()
+    assert figures["longest_wait_over_fair_share"] == 1.5
+    assert (figures["memory_first_quarter_mb"], figures["memory_last_quarter_mb"]) == (5.0, 6.0)
+    assert figures["memory_most_mb"] == 9.0 and figures["memory_last_over_first_quarter"] == 1.2
+
+
+def test_the_command_says_which_goals_are_missed(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    asked: dict[str, Any] = {}
+    good: dict[str, Any] = {
+        "runs_lost": 0, "runs_swapped": 0, "runs_refused_or_failed": 0, "log_lines_of_errors": 0,
+        "longest_wait_over_fair_share": 2.9, "page_worst_seconds": 0.9, "memory_last_over_first_quarter": 1.0,
+    }  # fmt: skip
+
+    def measured(**options: Any) -> dict[str, Any]:
+        asked.update(options)
+        return good
+
+    monkeypatch.setattr(load, "run_load", measured)
+    monkeypatch.setattr(load, "measure_batching", lambda steps: {"batched_over_serial_throughput": 1.5})
+    command = ["benchmark", "--load", "--people", "7", "--minutes", "0.5"]
+    assert main(command) == 0
+    assert (asked["people"], asked["minutes"]) == (7, 0.5)
+    assert json.loads(capsys.readouterr().out.splitlines()[-1])["goals_missed"] == []
+    good |= {"runs_swapped": 1, "page_worst_seconds": None, "longest_wait_over_fair_share": float("nan")}
+    assert main(command) == 0
+    missed = json.loads(capsys.readouterr().out.splitlines()[-1])["goals_missed"]
+    assert missed == ["runs_swapped", "longest_wait_over_fair_share", "page_worst_seconds"]

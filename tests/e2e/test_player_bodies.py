@@ -1,0 +1,184 @@
+"""What the player shows: bodies as Python poses them, everybody in view, and nothing done for nothing."""
+
+from __future__ import annotations
+
+import runpy
+from itertools import pairwise
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from motion.body import load_body, skin
+
+from .playing import has_color, hook, pause, press, stage_pixels, until
+
+pytestmark = pytest.mark.e2e
+
+DRESSED = "window.__pasdedeux.player.panes[0].figures.length === 2"
+
+
+def shown_layers(page) -> dict[str, dict[str, float]]:
+    """By mesh: how many triangles are drawn, and whether they are seen through."""
+    return page.evaluate("""() => {
+        const { objects } = window.__pasdedeux.player.scene;
+        return Object.fromEntries(["bodyA", "bodyB", "ground"].map((name) =>
+            [name, { triangles: objects[name].triangleCount, clear: objects[name].hasAlpha }]));
+    }""")
+
+
+def bones_drawn(page) -> bool:
+    return page.evaluate("!window.__pasdedeux.player.scene.layers.get('bonesA').hidden")
+
+
+@pytest.mark.parametrize("width", [1280, 390])
+def test_bodies_stand_where_python_puts_them(player, width):
+    page = player(width=width)
+    until(page, DRESSED)
+    pause(page)
+    page.locator(".pdd-range").fill("93")
+    until(page, "window.__pasdedeux.frame === 93 && window.__pasdedeux.loops === 0")
+    duet = runpy.run_path(str(Path(__file__).with_name("harness.py")))["walking_duet"]()
+    for person, name in enumerate("ab"):
+        body = load_body(name, small=width < 700)
+        drawn = page.evaluate(f"[...window.__pasdedeux.player.panes[0].figures[{person}].vertices]")
+        drawn = np.reshape(drawn, (-1, 3))[:, [1, 2, 0]]  # the scene's axes are z, x, y
+        expected = skin(body, duet.positions[person][93:94])[0]
+        assert drawn.shape == expected.shape
+        assert np.abs(drawn - expected).max() < 0.002, "metres; positions travel in steps of 0.1 mm"
+
+
+def test_one_key_shows_skeletons_and_the_next_press_both(player):
+    page = player()
+    until(page, DRESSED)
+    pause(page)
+    figure = page.locator("[data-act=figure]")
+    page.locator(".pdd").focus()
+    seen = []
+    for state in ("body", "skeleton", "both", "body"):
+        until(page, f"document.querySelector('[data-act=figure]').dataset.figure === '{state}'")
+        until(page, "window.__pasdedeux.loops === 0")
+        layers = shown_layers(page)
+        assert (layers["bodyA"]["triangles"] > 1000) == (state != "skeleton")
+        assert layers["bodyB"]["clear"] == (state == "both")
+        assert bones_drawn(page) == (state != "body")
+        assert layers["ground"]["triangles"] > 100
+        seen.append(stage_pixels(page))
+        page.keyboard.press("s")
+    assert figure.get_attribute("aria-label")
+    changed = [int((np.abs(a - b).max(axis=-1) > 24).sum()) for a, b in pairwise(seen)]
+    assert min(changed) > 2000, "each of them is another picture"
+
+
+def test_shadows_lie_under_feet(player):
+    """The floor is darker where someone stands than beside, and as bright as ever far away."""
+    page = player()
+    until(page, DRESSED)
+    pause(page)
+    shade = page.evaluate("""() => {
+        const { shadow } = window.__pasdedeux.player.panes[0].ground;
+        const pose = window.__pasdedeux.player.pose[0];
+        const at = (x, y) => {
+            const pixel = (v, i) => Math.round(((v - shadow.origin[i]) / shadow.span) * shadow.size);
+            const [px, py] = [pixel(x, 0), pixel(y, 1)];
+            return shadow.pixels[4 * (shadow.size * py + px)];
+        };
+        return [at(pose[7][0], pose[7][1]), at(pose[7][0], pose[7][1] + 1.2), shadow.pixels[0]];
+    }""")
+    assert shade[0] < 225
+    assert shade[0] < shade[1] - 15
+    assert shade[2] == 255
+
+
+@pytest.mark.parametrize("size", [(1280, 800), (390, 844), (1024, 700), (2560, 1440)])
+@pytest.mark.parametrize("button", ["far", "beside"])
+def test_everybody_is_in_view_over_the_whole_clip(player, button, size):
+    page = player(button, width=size[0], height=size[1])
+    views = 2 if button == "beside" else 1
+    until(page, f"window.__pasdedeux.player.shown.length === {views}")
+    pause(page)
+    outside = page.evaluate("""() => {
+        const player = window.__pasdedeux.player;
+        const { orbit, clock } = player;
+        const wrong = [];
+        for (const camera of ["threequarter", "front", "side", "top"]) {
+            clock.seek(0);
+            player.goTo(camera, null);
+            for (let frame = 0; frame < clock.frames; frame++) {
+                clock.seek(frame);
+                orbit.step(0, 1 / clock.fps, player.wanted());
+                if (frame % 10) continue;
+                player.paint(player.everybody(frame));
+                for (const pane of player.shown) {
+                    const { clientWidth: width, clientHeight: height } = pane.host;
+                    for (const [x, y, depth] of pane.spots.flat()) {
+                        const inside = x > 8 && y > 25 && x < width - 8 && y < height - 4;
+                        if (depth < 0.3 || !inside) wrong.push([camera, frame, x, y, width, height]);
+                    }
+                }
+            }
+        }
+        return wrong;
+    }""")
+    assert outside == []
+
+
+def test_nothing_is_drawn_while_nothing_changes(player):
+    page = player()
+    until(page, DRESSED)
+    pause(page)
+    page.wait_for_timeout(1500)  # a still picture is drawn once more, finer
+    drawn = page.evaluate("""async () => {
+        const { gl } = window.__pasdedeux.player.scene.gl;
+        let count = 0;
+        for (const name of ["clear", "drawArrays", "bufferData", "readPixels"]) {
+            const act = gl[name].bind(gl);
+            gl[name] = (...given) => { count++; return act(...given); };
+        }
+        await new Promise((done) => setTimeout(done, 1500));
+        return count;
+    }""")
+    assert drawn == 0
+    assert hook(page, "loops") == 0
+    assert page.evaluate("window.__pasdedeux.player.scene.gl._stopped"), "plotly's own loop has ended"
+
+
+def test_nothing_is_drawn_under_a_message(player):
+    page = player()
+    press(page, "busy")
+    page.wait_for_selector(".pdd-busy:visible")
+    until(page, "window.__pasdedeux.loops === 0")
+    assert page.evaluate("document.querySelector('.pdd').getAnimations({ subtree: true }).length") == 0
+    press(page, "load")
+    frame = hook(page, "frame")
+    until(page, f"window.__pasdedeux.frame !== {frame}")
+
+
+def test_a_motion_nobody_asked_for_comes_to_rest(player):
+    page = player("arrival")
+    until(page, "!window.__pasdedeux.playing && window.__pasdedeux.loops === 0")
+    page.locator(".pdd-play").click()
+    until(page, "window.__pasdedeux.player.rounds >= 4")
+    assert hook(page, "playing"), "asked for, it goes on"
+
+
+def test_bodies_keep_their_colours_in_the_dark(player):
+    page = player(theme="dark")
+    until(page, DRESSED)
+    pause(page)
+    pixels = stage_pixels(page)
+    assert has_color(pixels, blue=True)
+    assert has_color(pixels, blue=False)
+    assert pixels[5:40, 200:400].mean() < 60
+
+
+def test_without_bodies_there_are_skeletons(open_page, player_url):
+    def without_bodies(page):
+        page.route("**/bodies/*.json", lambda route: route.abort())
+
+    page = open_page(player_url, before=without_bodies)
+    page.wait_for_selector(".pdd-styled", timeout=30_000)
+    page.wait_for_function("window.__pasdedeux.mode !== null", timeout=30_000)
+    press(page, "load")
+    until(page, "window.__pasdedeux.frame > 0")
+    assert bones_drawn(page)

@@ -1,0 +1,106 @@
+"""What is given of a scene is met by what the pipeline makes, after clean-up too, and nonsense is refused."""
+
+from collections.abc import Sequence
+
+import numpy as np
+import pytest
+
+from motion import SMPL22, Duet, InputError
+from motion.transforms import heading_matrix
+from webdemo.inference import Engine, GenerateRequest
+from webdemo.inference.cancel import CancelToken
+from webdemo.inference.directed import FADE, KnownFrames, KnownPath, Part, directed, with_given
+from webdemo.inference.timer import StageTimer
+
+FRAMES = 60
+
+
+def walker(frames: int = FRAMES, angle: float = 0.0, speed: float = 1.0) -> np.ndarray:
+    rest = (SMPL22.rest_positions() + np.array([0, 0.98, 0])) @ heading_matrix(angle).T
+    way = np.arange(frames)[:, None, None] / 30 * speed * np.array([np.sin(angle), 0, np.cos(angle)])
+    return rest + way
+
+
+def make(engine: Engine, parts: Sequence[Part], **changes: float) -> Duet:
+    pipeline = engine.pipeline("intergen")
+    request = GenerateRequest(
+        prompt="They walk away from each other.", seconds=FRAMES / 30, steps=4, **changes
+    )
+    scene = directed(pipeline.model, FRAMES, parts)
+    *_, result = pipeline.run(request, CancelToken(), StageTimer.start(), scene=scene)
+    return result.duets[0]
+
+
+def test_a_span_and_a_pose_are_held_exactly(either_engine: Engine) -> None:
+    past = walker()[:20]
+    pose = walker(angle=1.0)[40:41] + np.array([1.0, 0, 0])
+    parts = [KnownFrames(0, range(20), past), KnownFrames(1, [45], pose)]
+    duet = make(either_engine, parts)
+    np.testing.assert_allclose(duet.a.positions[:20], past, atol=1e-6)
+    np.testing.assert_allclose(duet.b.positions[45], pose[0], atol=1e-6)
+    free = make(either_engine, [])
+    assert np.abs(free.a.positions[:20] - past).max() > 0.1
+    assert np.abs(free.b.positions[45] - pose[0]).max() > 0.1
+
+
+def test_a_given_past_leaves_no_jolt(engine: Engine) -> None:
+    """Even an untrained network leaves the given frames within what a spline of 4 frames a knot can do."""
+    past = walker()[:20]
+    duet = make(engine, [KnownFrames(0, range(20), past)])
+    step = np.linalg.norm(np.diff(duet.a.positions[:, 0], axis=0), axis=-1)
+    assert step[19:21].max() < 3 * step[18] + 0.02
+
+
+@pytest.mark.parametrize("frames", [range(FRAMES), [0, 30, 59]])
+def test_a_path_is_followed(either_engine: Engine, frames: Sequence[int]) -> None:
+    way = walker(angle=-0.6)[list(frames)][:, 0][:, [0, 2]] + np.array([0.5, 0.0])
+    parts = [KnownPath(1, frames, way, np.full(len(way), -0.6))]
+    for damping in (0.0, 0.7):
+        duet = make(either_engine, parts, damping=damping)
+        found = duet.b.positions[list(frames)][:, 0][:, [0, 2]]
+        assert np.linalg.norm(found - way, axis=-1).max() < 0.01
+    assert (
+        np.linalg.norm(
+            make(either_engine, []).b.positions[list(frames)][:, 0][:, [0, 2]] - way, axis=-1
+        ).max()
+        > 0.2
+    )
+
+
+def test_a_given_heading_is_shown_to_a_network_that_sees_it(reading_engine: Engine) -> None:
+    way = walker()[:, 0][:, [0, 2]]
+    turned = [
+        make(reading_engine, [KnownPath(0, range(FRAMES), way, np.full(FRAMES, h))]) for h in (0.0, 2.0)
+    ]
+    assert not np.allclose(turned[0].a.positions, turned[1].a.positions, atol=1e-4)
+
+
+def test_clean_up_is_taken_back_at_given_frames_and_fades() -> None:
+    made, given = np.zeros((40, 22, 3)), np.ones((2, 22, 3))
+    found = with_given(made, np.array([30, 10]), given * np.array([2.0, 1.0])[:, None, None])
+    assert (found[10] == 1).all() and (found[30] == 2).all()
+    assert (found[[10 - FADE - 1, 10 + FADE + 1, 30 - FADE - 1, 39]] == 0).all()
+    assert (np.diff(found[10 : 10 + FADE + 2, 0, 0]) < 0).all()
+    assert (with_given(made, np.array([0]), given[:1])[1:7, 0, 0] > 0).all()
+
+
+@pytest.mark.parametrize(
+    ("parts", "says"),
+    [
+        ([KnownFrames(0, [60], walker(1))], "from 0 to 59"),
+        ([KnownFrames(0, [], walker(1)[:0])], "from 0 to 59"),
+        ([KnownFrames(0, [5, 5], walker(2))], "each once"),
+        ([KnownFrames(1, [5], walker(2))], "1 × 22 × 3"),
+        ([KnownFrames(1, [5], walker(1) * np.nan)], "finite"),
+        ([KnownFrames(1, [5], 2 * walker(1))], "bones have other lengths"),
+        ([KnownFrames(1, [5], walker(1) + 25)], "more than 20 m away"),
+        ([KnownPath(0, [0, 30], np.array([[0, 0], [0, 6.0]]))], "6.0 m/s"),
+        ([KnownPath(0, [0, 30], np.array([[0, 0, 0], [0, 0, 1]]))], "as many places"),
+        ([KnownPath(0, [0], np.array([[0, 30.0]]))], "more than 20 m away"),
+        ([KnownPath(0, [0], np.array([[0, np.inf]]))], "finite"),
+        ([KnownFrames(0, range(9), walker(9)), KnownPath(0, [5, 20], np.zeros((2, 2)))], "Two given parts"),
+    ],
+)
+def test_nonsense_is_refused_in_one_sentence(engine: Engine, parts: list[Part], says: str) -> None:
+    with pytest.raises(InputError, match=says):
+        directed(engine.pipeline("intergen").model, FRAMES, parts)

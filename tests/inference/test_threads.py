@@ -1,0 +1,42 @@
+"""A run takes the cores that are free, and one where more would not help."""
+
+from pathlib import Path
+
+import pytest
+import torch
+
+from webdemo.inference import threads
+from webdemo.inference.engine import Engine
+from webdemo.inference.requests import GenerateRequest
+
+
+@pytest.mark.parametrize(("running", "free"), [(1, 4), (2, 3), (4, 1), (30, 1), (0, 4)])
+def test_what_runs_is_counted(
+    running: int, free: int, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(threads, "CORES", 4)
+    load = tmp_path / "loadavg"
+    load.write_text(f"0.10 0.20 0.30 {running}/345 6789\n")
+    assert threads.free_cores(load) == free
+
+
+@pytest.mark.parametrize("text", [None, "", "nonsense"])
+def test_where_the_system_does_not_tell_all_cores_count(
+    text: str | None, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(threads, "CORES", 4)
+    if text is not None:
+        (tmp_path / "loadavg").write_text(text)
+    assert threads.free_cores(tmp_path / "loadavg") == 4
+
+
+@pytest.mark.parametrize(("compiled", "expected"), [(True, 1), (False, 3)])
+def test_a_run_takes_more_than_one_thread_only_for_a_plain_network(
+    compiled: bool, expected: int, engine: Engine, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    taken: list[int] = []
+    monkeypatch.setattr(torch, "set_num_threads", taken.append)
+    monkeypatch.setattr(threads, "free_cores", lambda: 3)
+    monkeypatch.setattr(engine.pipeline("intergen"), "compiled", compiled)
+    list(engine.run(GenerateRequest(prompt="Two people wave.", seconds=1.0, steps=1, damping=0.0)))
+    assert taken[-1] == expected

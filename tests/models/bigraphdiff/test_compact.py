@@ -1,0 +1,84 @@
+"""The compact BiGraphDiff: classes as vectors, guidance, padding, and the folder that it is shipped in."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+import pytest
+import torch
+
+from models.bigraphdiff.compact import CompactBiGraphDiff, CompactBiGraphDiffConfig, load_folder
+from models.errors import WeightsError
+from models.weights_io import save_network
+
+SHAKE = (("right_wrist", "right_wrist"),)
+CONFIG = CompactBiGraphDiffConfig(
+    ("shake hands", "wave"), (SHAKE, ()), latent_dim=32, ff_size=16, num_layers=2, num_heads=2, embed_dim=24,
+    cond_dim=8, max_tokens=12,
+)  # fmt: skip
+
+
+@pytest.fixture
+def model() -> CompactBiGraphDiff:
+    torch.manual_seed(0)
+    network = CompactBiGraphDiff(CONFIG)
+    for parameter in network.parameters():  # the zero-initialised layers would hide what the input does
+        torch.nn.init.normal_(parameter, std=0.1)
+    return network.eval().requires_grad_(False)
+
+
+def noised(model: CompactBiGraphDiff, tokens: int = 6) -> tuple[torch.Tensor, torch.Tensor]:
+    torch.manual_seed(1)
+    return torch.randn(2, tokens, 2 * model.layout.token_features), torch.tensor([10, 900])
+
+
+def test_the_class_changes_what_is_predicted(model: CompactBiGraphDiff) -> None:
+    x, t = noised(model)
+    shake, wave = (model.condition([name]).expand(2, -1) for name in CONFIG.labels)
+    out = model.denoiser(x, t, shake)
+    assert out.shape == x.shape
+    assert (out - model.denoiser(x, t, wave)).abs().max() > 1e-3
+    with pytest.raises(ValueError):
+        model.condition(["juggle"])
+
+
+def test_guidance_is_the_papers_sum(model: CompactBiGraphDiff) -> None:
+    x, t = noised(model)
+    cond = model.condition(["wave"]).expand(2, -1)
+    given, plain = model.denoiser(x, t, cond), model.denoiser(x, t, torch.zeros_like(cond))
+    for scale in (0.0, 1.0, 3.5):
+        found = model.denoiser.guided(x, t, cond, scale=scale)
+        assert torch.allclose(found, scale * given + (1 - scale) * plain, atol=1e-4)
+
+
+def test_padding_changes_nothing(model: CompactBiGraphDiff) -> None:
+    x, t = noised(model)
+    cond = model.condition(["wave", "shake hands"])
+    padded = torch.cat([x, torch.full((2, 3, x.shape[-1]), 7.0)], dim=1)
+    mask = torch.ones(2, 9, 2)
+    mask[:, 6:] = 0
+    assert torch.allclose(model.denoiser(padded, t, cond, mask)[:, :6], model.denoiser(x, t, cond), atol=1e-4)
+
+
+def test_a_folder_gives_the_same_network_back(model: CompactBiGraphDiff, tmp_path: Path) -> None:
+    save_network(tmp_path, model.half().float())
+    again, _ = load_folder(tmp_path)
+    assert again.config == CONFIG
+    assert again.touches("shake hands") == SHAKE and again.touches("wave") == ()
+    x, t = noised(model)
+    cond = model.condition(["wave"]).expand(2, -1)
+    assert torch.equal(again.denoiser(x, t, cond), model.denoiser(x, t, cond))
+    meta = json.loads((tmp_path / "config.json").read_text())
+    meta["model"]["latent_dim"] = 64
+    (tmp_path / "config.json").write_text(json.dumps(meta))
+    with pytest.raises(WeightsError, match="do not fit their config"):
+        load_folder(tmp_path)
+
+
+def test_positions_are_of_two_people(model: CompactBiGraphDiff) -> None:
+    x, _ = noised(model)
+    positions, contacts = model.positions(x)
+    frames = model.layout.num_frames(6)
+    assert positions.shape == (2, 2, frames, 22, 3) and contacts.shape == (2, 2, frames, 4)
+    assert model.scale.shape == (2 * model.layout.token_features,)

@@ -1,0 +1,179 @@
+"""BiGraphDiff: every part against the released code's numbers, and the network that they make."""
+
+from __future__ import annotations
+
+import pytest
+import torch
+
+from models.bigraphdiff import BiGraphDiff, BiGraphDiffConfig, from_released
+from models.bigraphdiff import network as bigraphdiff
+from models.diffusion import make_scheduler, sample_steps
+from models.errors import WeightsError
+from tests.models.reference_arrays import Reference, assert_equal
+
+SMALL = BiGraphDiffConfig(
+    input_features=6,
+    latent_dim=32,
+    ff_size=16,
+    num_layers=2,
+    num_heads=2,
+    text_dim=8,
+    max_frames=12,
+    num_nodes=4,
+)
+
+
+@pytest.fixture(scope="module")
+def ref() -> Reference:
+    return Reference("bigraphdiff_parts")
+
+
+def check(ref: Reference, part: str, module: torch.nn.Module, *inputs: str) -> None:
+    module.load_state_dict(ref.weights(f"{part}/"))
+    found = module.eval()(*(ref[f"{part}/{name}"] for name in inputs))
+    assert_equal(found.detach(), ref[f"{part}/y"])
+
+
+def test_self_attention_equals_the_reference(ref):
+    check(ref, "self_attention", bigraphdiff.SelfAttention(64, 4, 96), "x", "emb", "mask")
+
+
+def test_cross_attention_equals_the_reference(ref):
+    check(ref, "cross_attention", bigraphdiff.CrossAttention(64, 48, 4, 96), "x", "text", "emb")
+
+
+def test_feed_forward_equals_the_reference(ref):
+    check(ref, "feed_forward", bigraphdiff.FeedForward(64, 128, 96), "x", "emb")
+
+
+def test_bipartite_graph_equals_the_reference(ref):
+    check(ref, "bipartite_graph", bigraphdiff.BipartiteGraph(32, 16), "x")
+
+
+def test_timestep_embedding_equals_the_reference(ref):
+    found = bigraphdiff.timestep_embedding(ref["timestep_embedding/t"], 32)
+    assert_equal(found, ref["timestep_embedding/y"])
+
+
+@pytest.fixture(scope="module")
+def whole() -> tuple[Reference, BiGraphDiff]:
+    """The reference of the whole network, and the network of the released file's names."""
+    ref = Reference("bigraphdiff_whole")
+    weights = ref.made_weights()
+    weights |= {"clip.ln_final.weight": torch.ones(512), "clip.visual.proj": torch.ones(2, 2)}
+    return ref, from_released(weights, num_heads=int(ref["num_heads"])).requires_grad_(False)
+
+
+def test_the_whole_network_equals_the_reference(whole):
+    ref, network = whole
+    mask = torch.arange(ref["x"].shape[1]) < ref["lengths"][:, None]
+    found = network(ref["x"], ref["t"], ref["text"], ref["text_vector"], mask)
+    assert found.shape == ref["output"].shape
+    assert (found - ref["output"]).abs().max() < 1e-4 * ref["output"].abs().max()
+
+
+def test_released_names_and_widths_are_read(whole):
+    """Every tensor of the release but the feed-forward that it never uses has its place here."""
+    ref, network = whole
+    used = [name for name in ref.shapes if ".ffn." not in name]
+    assert len(network.state_dict()) == len(used) == len(ref.shapes) - 10 * network.config.num_layers
+    assert network.config == BiGraphDiffConfig(num_layers=2, max_frames=40)
+    assert network.text_side.text_pre_proj.in_features == 512
+
+
+def test_the_text_side_reads_the_end_of_text(whole):
+    """Against the equations of a transformer's encoder layer, written out."""
+    side = whole[1].text_side
+    features = torch.randn(2, 7, 512, generator=torch.Generator().manual_seed(0))
+    text, vector = side(features, torch.tensor([6, 3]))
+    x = side.text_pre_proj(features)
+    for layer in side.textTransEncoder.layers:
+        attention = layer.self_attn
+        q, k, v = (
+            part.unflatten(-1, (4, -1)).transpose(1, 2)
+            for part in (x @ attention.in_proj_weight.T + attention.in_proj_bias).chunk(3, -1)
+        )
+        seen = ((q @ k.mT) / q.shape[-1] ** 0.5).softmax(-1) @ v
+        x = layer.norm1(x + attention.out_proj(seen.transpose(1, 2).flatten(2)))
+        x = layer.norm2(x + layer.linear2(torch.nn.functional.gelu(layer.linear1(x))))
+    x = side.text_ln(x)
+    assert_equal(text, x)
+    assert_equal(vector, torch.stack([x[0, 6], x[1, 3]]))
+
+
+def random_network() -> BiGraphDiff:
+    torch.manual_seed(0)
+    network = BiGraphDiff(SMALL).eval().requires_grad_(False)
+    for parameter in network.parameters():
+        torch.nn.init.normal_(parameter, std=0.2)
+    return network
+
+
+def inputs(batch: int = 2, length: int = 9):
+    generator = torch.Generator().manual_seed(1)
+    x = torch.randn(batch, length, 12, generator=generator)
+    text = torch.randn(batch, 5, 8, generator=generator)
+    return x, torch.tensor([3, 800])[:batch], text, text.mean(1)
+
+
+def test_padding_does_not_reach_real_frames():
+    network, (x, t, text, vector) = random_network(), inputs()
+    mask = torch.ones(2, 9)
+    mask[:, 6:] = 0
+    padded = x.clone()
+    padded[:, 6:] = 100
+    assert_equal(network(padded, t, text, vector, mask)[:, :6], network(x[:, :6], t, text, vector))
+
+
+def test_people_feel_each_other_and_the_text():
+    network, (x, t, text, vector) = random_network(), inputs()
+    out = network(x, t, text, vector)
+    moved = x.clone()
+    moved[..., 6:] += 1
+    assert (network(moved, t, text, vector) - out)[..., :6].abs().max() > 1e-3
+    assert (network(x, t, -text, vector) - out).abs().max() > 1e-3
+    assert (network(x, t, text, -vector) - out).abs().max() > 1e-3
+
+
+def test_weights_come_back():
+    network = random_network()
+    again = from_released(network.state_dict(), num_heads=2)
+    assert again.config == BiGraphDiffConfig(**{**vars(SMALL), "dropout": 0.1})
+    assert again.text_side is None
+    assert torch.equal(again(*inputs()), network(*inputs()))
+
+
+def test_ancestral_sampling_removes_the_noise_that_it_is_told():
+    """With the exact noise of a known x0 as the prediction, sampling ends at that x0."""
+    scheduler = make_scheduler("ddpm", 100, prediction="epsilon")
+    x0 = torch.linspace(-1, 1, 12).expand(1, 9, 12)
+
+    def exact_noise(x, t):
+        alpha = scheduler.alphas_cumprod[t].view(-1, 1, 1)
+        return (x - alpha.sqrt() * x0) / (1 - alpha).sqrt()
+
+    generator = torch.Generator().manual_seed(0)
+    noise = torch.randn(1, 9, 12, generator=generator)
+    *_, last = sample_steps(exact_noise, noise, scheduler, generator=generator)
+    assert_equal(last.sample, x0.contiguous(), 1e-2)
+
+
+def test_it_trains():
+    torch.manual_seed(0)
+    network = BiGraphDiff(SMALL)
+    optimizer = torch.optim.AdamW(network.parameters(), lr=3e-3)
+    x, t, text, vector = inputs()
+    losses = []
+    for _ in range(30):
+        loss = (network(x, t, text, vector) - x).square().mean()
+        optimizer.zero_grad()
+        loss.backward()
+        optimizer.step()
+        losses.append(loss.item())
+    assert losses[-1] < 0.5 * losses[0]
+    assert all(torch.isfinite(p.grad).all() for p in network.parameters())
+
+
+def test_other_weights_are_refused():
+    with pytest.raises(WeightsError, match="not BiGraphDiff weights"):
+        from_released({"a": torch.zeros(1)}, num_heads=4)

@@ -1,0 +1,191 @@
+"""InterGen's losses against the released code's numbers, and what each term must and must not feel."""
+
+from __future__ import annotations
+
+import math
+
+import pytest
+import torch
+
+from models.intergen import losses
+from models.intergen.losses import InterGenLoss
+from motion.skeleton import SMPL22
+from tests.models.reference_arrays import Reference
+
+REST = torch.as_tensor(SMPL22.rest_positions()).float()
+
+
+@pytest.fixture(scope="module")
+def ref() -> Reference:
+    return Reference("intergen_losses")
+
+
+def positions(features: torch.Tensor) -> torch.Tensor:
+    return features[..., :66].unflatten(-1, (22, 3))
+
+
+def scene(turn: float = math.pi, gap: float = 1.0, frames: int = 4, batch: int = 1) -> torch.Tensor:
+    """Two still T-poses, b at +Z turned about Y by `turn`, (B, T, 2, 22, 3)."""
+    c, s = math.cos(turn), math.sin(turn)
+    rotation = torch.tensor([[c, 0, s], [0, 1, 0], [-s, 0, c]])
+    pair = torch.stack([REST, REST @ rotation.T + torch.tensor([0, 0, gap])])
+    return pair.expand(batch, frames, 2, 22, 3).clone()
+
+
+def close(found, expected) -> bool:
+    return abs(float(found) - float(expected)) < 1e-4 * max(abs(float(expected)), 1e-3)
+
+
+def test_all_terms_equal_the_reference(ref):
+    t, mask = ref["timesteps"], ref["mask"][..., 0]
+    loss = InterGenLoss(t_bar=int(ref["t_bar"]), released_orientation=True)
+    terms = loss(ref["prediction"], ref["target"], t, mask)
+    names = {"simple": "simple", "DM": "distance_map", "JA": "joint_affinity", "RO": "relative_orientation"}
+    for short, name in names.items():
+        assert close(terms[name], ref[f"inter/{short}"]), name
+    for short, name in {"VEL": "velocity", "FC": "foot_contact", "BL": "bone_length"}.items():
+        assert close(terms[name], ref[f"geometric/{short}_A"] + ref[f"geometric/{short}_B"]), name
+    assert close(terms["total"], ref["inter/total"] + ref["geometric/A"] + ref["geometric/B"])
+
+
+def test_each_person_equals_the_reference(ref):
+    pred, true, mask = positions(ref["prediction"]), positions(ref["target"]), ref["mask"][..., 0]
+    chosen = (ref["timesteps"] <= ref["t_bar"]).float()
+
+    def of_person(values, person):
+        return (values[:, person] * chosen).sum() / chosen.sum()
+
+    weights = losses.LossWeights()
+    for person, letter in enumerate("AB"):
+        velocity = losses.velocity_loss(pred, true, mask)
+        assert close(weights.velocity * of_person(velocity, person), ref[f"geometric/VEL_{letter}"])
+        bones = losses.bone_length_loss(pred, true, mask)
+        assert close(weights.bone_length * of_person(bones, person), ref[f"geometric/BL_{letter}"])
+        feet = losses.foot_contact_loss(pred, mask)
+        assert close(weights.foot_contact * of_person(feet, person), ref[f"geometric/FC_{letter}"])
+
+
+def test_the_default_orientation_is_the_only_difference_to_the_release(ref):
+    inputs = ref["prediction"], ref["target"], ref["timesteps"], ref["mask"][..., 0]
+    ours, theirs = InterGenLoss()(*inputs), InterGenLoss(released_orientation=True)(*inputs)
+    differing = {name for name in ours if not torch.equal(ours[name], theirs[name])}
+    assert differing == {"relative_orientation", "total"}
+
+
+def test_every_term_is_zero_on_the_truth():
+    true = scene(gap=0.6)
+    terms = InterGenLoss(losses.LossWeights(joint_affinity=0)).regularizers(true, true, torch.zeros(1))
+    assert all(value == 0 for value in terms.values())
+
+
+def test_damping_leaves_out_samples_above_the_threshold():
+    true = scene(batch=2)
+    pred = true.clone()
+    pred[1] += torch.randn(true[1].shape, generator=torch.Generator().manual_seed(0))
+    loss = InterGenLoss(t_bar=700)
+    undamped = loss.regularizers(pred, true, torch.tensor([0, 700]))
+    damped = loss.regularizers(pred, true, torch.tensor([0, 701]))
+    assert undamped["velocity"] > 0 and undamped["relative_orientation"] > 0
+    assert all(value == 0 for value in damped.values())
+    all_out = loss.regularizers(pred, true, torch.tensor([900, 701]))
+    assert all(value == 0 for value in all_out.values())
+
+
+def test_padding_is_not_counted():
+    true = scene(frames=6)
+    pred = true + 0.01 * torch.randn(true.shape, generator=torch.Generator().manual_seed(0))
+    mask = torch.tensor([[1, 1, 1, 1, 0, 0]])
+    for term in (losses.bone_length_loss, losses.distance_map_loss, losses.relative_orientation_loss):
+        assert torch.allclose(term(pred, true, mask), term(pred[:, :4], true[:, :4]), rtol=1e-5)
+    per_person = mask[..., None].expand(-1, -1, 2)
+    assert torch.equal(losses.velocity_loss(pred, true, mask), losses.velocity_loss(pred, true, per_person))
+
+
+def test_bone_lengths_ignore_where_people_stand():
+    true = scene()
+    assert losses.bone_length_loss(true + torch.tensor([3.0, 0, 1]), true).max() < 1e-10
+    assert torch.allclose(losses.bone_length_loss(true * 1.1, true)[0, 0],
+                          (0.1 * losses.bone_lengths(REST)).square().mean())  # fmt: skip
+
+
+def test_a_foot_that_slides_on_the_floor_costs_its_squared_step():
+    standing = scene() - REST[10, 1]  # the toes on the floor
+    assert losses.foot_contact_loss(standing).max() == 0
+    slide = torch.arange(4).view(1, 4, 1, 1, 1) * torch.tensor([0.02, 0, 0])
+    expected = 0.02**2 / 3
+    assert torch.allclose(losses.foot_contact_loss(standing + slide), torch.full((1, 2), expected))
+    lifted = standing + slide + torch.tensor([0, 0.5, 0])
+    assert losses.foot_contact_loss(lifted).max() == 0
+
+
+def test_the_contact_loss_counts_a_touch_for_more_than_a_gap():
+    """An error of 0.1 m in one distance, where the joints truly are d apart: 0.01 / (d + 0.1), over all pairs."""
+    pairs = 22 * 22
+    for gap in (0.0, 0.4, 3.0):
+        true = torch.zeros(1, 3, 2, 22, 3)
+        true[:, :, 0] += (
+            100 * torch.arange(22)[:, None]
+        )  # every other pair is so far apart that it weighs nothing
+        true[:, :, 1] = true[:, :, 0].flip(2) + 37
+        true[:, :, 1, 0] = true[:, :, 0, 0] + torch.tensor([gap, 0, 0])
+        pred = true.clone()
+        pred[:, :, 1, 0, 0] += 0.1
+        found = losses.contact_loss(pred, true)
+        assert torch.allclose(found, torch.tensor(0.01 / (gap + 0.1) / pairs), rtol=0.05), gap
+    still = losses.InterGenLoss().regularizers(pred, true, torch.zeros(1))
+    weighed = losses.InterGenLoss(losses.LossWeights(contact=2.0)).regularizers(pred, true, torch.zeros(1))
+    assert "contact" not in still
+    assert torch.allclose(weighed["contact"], 2 * losses.contact_loss(pred, true)[0])
+
+
+def test_the_distance_map_looks_at_near_pairs_only():
+    far = scene(gap=5.0)
+    assert losses.distance_map_loss(far + 0.1, far).max() == 0
+    near = scene(gap=0.5)
+    moved = near.clone()
+    moved[:, :, 1] += torch.tensor([0, 0, 0.1])
+    assert losses.distance_map_loss(moved, near) > 1e-4
+    # The paper's mask follows the truth: a prediction that flew away is still called back.
+    away = near.clone()
+    away[:, :, 1, :, 2] += 10
+    assert losses.distance_map_loss(away, near) == 0
+    assert losses.distance_map_loss(away, near, near_by="truth") > 50
+
+
+def test_joints_that_touch_are_drawn_together():
+    true = scene(gap=3.0)
+    true[:, :, 1, 20] = true[:, :, 0, 20] + torch.tensor([0.05, 0, 0])
+    pred = true.clone()
+    pred[:, :, 1, 20] += torch.tensor([0.25, 0, 0])
+    assert torch.allclose(losses.joint_affinity_loss(pred, true), torch.tensor([0.09]), atol=1e-5)
+
+
+@pytest.mark.parametrize("turn", [0.0, 1.0, math.pi, -2.5])
+def test_relative_orientation_is_the_turn_from_a_to_b(turn):
+    cos, sin = losses.relative_orientation(scene(turn))[0, 0]
+    assert cos == pytest.approx(math.cos(turn), abs=1e-5)
+    assert sin == pytest.approx(math.sin(turn), abs=1e-5)
+
+
+def test_relative_orientation_is_smooth_where_people_face_each_other():
+    true, pred = scene(math.pi + 0.01), scene(math.pi - 0.01).requires_grad_()
+    loss = losses.relative_orientation_loss(pred, true)
+    loss.sum().backward()
+    assert 0 < loss < 1e-3
+    assert torch.isfinite(pred.grad).all() and pred.grad.abs().sum() > 0
+
+
+def test_gradients_are_finite_where_bones_and_distances_vanish():
+    pred = torch.zeros(2, 4, 2, 22, 3, requires_grad=True)
+    terms = InterGenLoss().regularizers(pred, scene(batch=2), torch.zeros(2))
+    sum(terms.values()).backward()
+    assert torch.isfinite(pred.grad).all()
+
+
+def test_denormalizing_reaches_the_positions_but_not_the_simple_term(ref):
+    pred, true = ref["prediction"], ref["target"]
+    t = torch.zeros(3)
+    plain = InterGenLoss()(pred, true, t)
+    scaled = InterGenLoss()(pred / 2, true / 2, t, denormalize=lambda x: 2 * x)
+    assert torch.allclose(scaled["simple"], plain["simple"] / 4)
+    assert torch.allclose(scaled["velocity"], plain["velocity"])

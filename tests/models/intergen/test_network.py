@@ -1,0 +1,223 @@
+"""InterGen's denoiser against the released network's numbers, and what the two-as-one batch must keep."""
+
+from __future__ import annotations
+
+import pytest
+import torch
+
+from models.diffusion import make_scheduler, sample_steps
+from models.errors import WeightsError
+from models.intergen import InterGenConfig, InterGenDenoiser, from_checkpoint, from_released
+from tests.models.reference_arrays import Reference, assert_equal
+
+SMALL = InterGenConfig(input_features=9, latent_dim=16, ff_size=24, num_layers=2, num_heads=2, cond_dim=5)
+
+
+@pytest.fixture(scope="module")
+def ref() -> Reference:
+    return Reference("intergen_small")
+
+
+@pytest.fixture(scope="module")
+def network(ref: Reference) -> InterGenDenoiser:
+    return from_released(ref.weights(), num_heads=int(ref["config"][4])).requires_grad_(False)
+
+
+def random_network(config: InterGenConfig = SMALL, seed: int = 0) -> InterGenDenoiser:
+    """A network none of whose weights is zero, unlike a freshly initialised one."""
+    torch.manual_seed(seed)
+    network = InterGenDenoiser(config).eval()
+    for parameter in network.parameters():
+        torch.nn.init.normal_(parameter, std=0.3)
+    return network
+
+
+def random_inputs(batch: int = 3, length: int = 7, config: InterGenConfig = SMALL):
+    generator = torch.Generator().manual_seed(1)
+    x = torch.randn(batch, length, 2 * config.input_features, generator=generator)
+    t = torch.randint(1000, (batch,), generator=generator)
+    return x, t, torch.randn(batch, config.cond_dim, generator=generator)
+
+
+def swapped(x: torch.Tensor) -> torch.Tensor:
+    return torch.cat(x.chunk(2, dim=-1)[::-1], dim=-1)
+
+
+def test_sizes_are_read_off_the_shapes(ref, network):
+    features, d, ff, layers, heads = ref["config"].tolist()
+    assert network.config == InterGenConfig(features, d, ff, layers, heads, 768)
+    assert not network.training
+
+
+def test_forward_equals_the_reference(ref, network):
+    assert_equal(network(ref["x"], ref["t"], ref["cond"]), ref["forward"])
+
+
+def test_masked_forward_equals_the_reference(ref, network):
+    assert_equal(network(ref["x"], ref["t"], ref["cond"], ref["mask"]), ref["forward_masked"])
+
+
+def test_guided_equals_the_reference(ref, network):
+    found = network.guided(ref["x"], ref["t"], ref["cond"], scale=float(ref["cfg_weight"]))
+    assert_equal(found, ref["cfg"])
+
+
+@pytest.mark.parametrize("steps", [50, 5])
+def test_ddim_equals_the_reference(ref, network, steps):
+    cond, scale = ref["cond"][:1], float(ref["cfg_weight"])
+    scheduler = make_scheduler("ddim", steps)
+    assert scheduler.timesteps.flip(0).tolist() == ref[f"ddim{steps}_timesteps"].tolist()
+    *_, last = sample_steps(
+        lambda x, t: network.guided(x, t, cond, scale=scale), ref[f"ddim{steps}_noise"], scheduler
+    )
+    assert_equal(last.sample, ref[f"ddim{steps}_sample"])
+
+
+def test_attention_equals_torch_multihead_attention_with_zero_attention():
+    attention = random_network().blocks[0].sa_block.attention
+    plain = torch.nn.MultiheadAttention(16, 2, add_zero_attn=True, batch_first=True)
+    plain.load_state_dict(attention.state_dict())
+    query, source = torch.randn(4, 5, 16), torch.randn(4, 6, 16)
+    keep = torch.tensor([[1, 1, 1, 1, 1, 1], [1, 1, 0, 0, 0, 0], [0, 1, 0, 1, 0, 1], [0] * 6]).bool()
+    expected, _ = plain(query, source, source, key_padding_mask=~keep)
+    assert_equal(attention(query, source, keep), expected, 1e-5)
+
+
+def test_padding_does_not_reach_real_tokens():
+    network, (x, t, cond) = random_network(), random_inputs()
+    mask = torch.ones(3, 7, 2)
+    mask[:, 5:, 0] = mask[:, 5:, 1] = 0
+    padded = x.clone()
+    padded[:, 5:] = 1e3
+    assert_equal(network(padded, t, cond, mask)[:, :5], network(x[:, :5], t, cond), 1e-4)
+
+
+def test_each_sample_is_alone_in_its_batch():
+    network, (x, t, cond) = random_network(), random_inputs()
+    one_by_one = torch.cat([network(x[i : i + 1], t[i : i + 1], cond[i : i + 1]) for i in range(3)])
+    assert_equal(network(x, t, cond), one_by_one, 1e-5)
+
+
+def test_swapping_the_people_swaps_the_outputs():
+    network, (x, t, cond) = random_network(), random_inputs()
+    assert_equal(network(swapped(x), t, cond), swapped(network(x, t, cond)), 1e-5)
+
+
+def test_roles_break_the_symmetry_and_survive_saving():
+    network = random_network(InterGenConfig(**{**vars(SMALL), "role_embedding": True}))
+    x, t, cond = random_inputs()
+    out = network(x, t, cond)
+    assert (network(swapped(x), t, cond) - swapped(out)).abs().max() > 0.1
+    again = from_released(network.state_dict(), num_heads=2)
+    assert again.config.role_embedding
+    assert torch.equal(again(x, t, cond), out)
+
+
+def test_text_of_a_role_tells_the_people_apart_by_words_alone():
+    network = random_network(InterGenConfig(**{**vars(SMALL), "role_text": True}))
+    x, t, cond = random_inputs()
+    out = network(x, t, cond)
+    assert (network(swapped(x), t, cond) - swapped(out)).abs().max() > 0.1
+    without = torch.zeros_like(cond)
+    assert_equal(network(swapped(x), t, without), swapped(network(x, t, without)), 1e-5)
+    again = from_released(network.state_dict(), num_heads=2)
+    assert again.config.role_text and torch.equal(again(x, t, cond), out)
+
+
+def test_text_of_a_role_changes_nothing_before_it_is_trained():
+    network, (x, t, cond) = random_network(), random_inputs()
+    with_it = InterGenDenoiser(InterGenConfig(**{**vars(SMALL), "role_text": True})).eval()
+    assert with_it.load_state_dict(network.state_dict(), strict=False).missing_keys == ["role_text.weight"]
+    assert_equal(with_it(x, t, cond), network(x, t, cond), 1e-5)
+
+
+def test_guidance_of_one_is_the_conditional_prediction_and_zero_the_unconditional():
+    network, (x, t, cond) = random_network(), random_inputs()
+    assert torch.equal(network.guided(x, t, cond, scale=1), network(x, t, cond))
+    assert_equal(network.guided(x, t, cond, scale=0), network(x, t, torch.zeros_like(cond)), 1e-5)
+
+
+def test_a_new_network_starts_at_zero_and_learns():
+    torch.manual_seed(0)
+    network = InterGenDenoiser(SMALL)
+    x, t, cond = random_inputs()
+    assert network(x, t, cond).abs().max() == 0
+    optimizer = torch.optim.AdamW(network.parameters(), lr=3e-3)
+    losses = []
+    for _ in range(60):
+        loss = (network(x, t, cond) - x).square().mean()
+        optimizer.zero_grad()
+        loss.backward()
+        optimizer.step()
+        losses.append(loss.item())
+    assert losses[-1] < 0.7 * losses[0]
+    assert all(p.grad is not None and p.grad.abs().sum() > 0 for p in network.parameters())
+
+
+def test_dropout_acts_in_training_only():
+    network = random_network(InterGenConfig(**{**vars(SMALL), "dropout": 0.5}))
+    x, t, cond = random_inputs()
+    assert torch.equal(network(x, t, cond), network(x, t, cond))
+    network.train()
+    assert not torch.equal(network(x, t, cond), network(x, t, cond))
+
+
+def test_bfloat16_training_step_stays_near_float32():
+    network, (x, t, cond) = random_network(), random_inputs()
+    network.train()
+    mask = torch.ones(3, 7, 2)
+    mask[0, 4:] = 0
+    expected = network(x, t, cond, mask)
+    with torch.autocast("cpu", dtype=torch.bfloat16):
+        found = network(x, t, cond, mask)
+        loss = found.float().square().mean()
+    loss.backward()
+    assert (found.float() - expected).abs().max() < 0.05 * expected.abs().max()
+    assert all(torch.isfinite(p.grad).all() for p in network.parameters())
+
+
+def test_wrong_weights_are_named(ref):
+    weights = ref.weights()
+    with pytest.raises(WeightsError, match=r"motion_embed\.weight is missing"):
+        from_released({}, num_heads=4)
+    with pytest.raises(WeightsError, match="extra is unknown"):
+        from_released({**weights, "extra": torch.zeros(1)}, num_heads=4)
+    with pytest.raises(WeightsError, match=r"out\.linear\.bias is \(3,\), and \(262,\) was expected"):
+        from_released({**weights, "out.linear.bias": torch.zeros(3)}, num_heads=4)
+
+
+def test_the_lightning_file_is_read_by_its_prefix(ref, tmp_path):
+    config = InterGenConfig(input_features=6, latent_dim=16, ff_size=8, num_layers=1, cond_dim=5)
+    network = random_network(config)
+    state = {f"model.decoder.net.{k}": v for k, v in network.state_dict().items()}
+    state["model.decoder.net.sequence_pos_encoder.pe"] = torch.zeros(4, 16)
+    state["model.ln_final.weight"] = torch.zeros(5)
+    path = tmp_path / "intergen.ckpt"
+    torch.save({"state_dict": state, "epoch": 3}, path)
+    x, t, cond = random_inputs(config=config)
+    assert torch.equal(from_checkpoint(path)(x, t, cond), network(x, t, cond))
+
+
+class Sneaky:
+    """Writes a file when it is unpickled."""
+
+    def __init__(self, path):
+        self.path = path
+
+    def __reduce__(self):
+        return (open, (str(self.path), "w"))
+
+
+def test_bad_checkpoints_are_refused(tmp_path):
+    with pytest.raises(WeightsError, match="There is no file"):
+        from_checkpoint(tmp_path / "absent.ckpt")
+    (tmp_path / "text.ckpt").write_text("hello")
+    with pytest.raises(WeightsError, match="cannot be read"):
+        from_checkpoint(tmp_path / "text.ckpt")
+    torch.save({"state_dict": Sneaky(tmp_path / "written")}, tmp_path / "sneaky.ckpt")
+    with pytest.raises(WeightsError, match="cannot be read"):
+        from_checkpoint(tmp_path / "sneaky.ckpt")
+    assert not (tmp_path / "written").exists()
+    torch.save({"state_dict": {"a": torch.zeros(1)}}, tmp_path / "other.ckpt")
+    with pytest.raises(WeightsError, match=r"holds no model\.decoder\.net"):
+        from_checkpoint(tmp_path / "other.ckpt")

@@ -1,0 +1,174 @@
+"""The grown denoiser: it begins as the network it was grown from, and hears each sentence where it should."""
+
+import pytest
+import torch
+from torch import Tensor
+
+from models.intergen.compact import CompactConfig, CompactInterGen
+from models.known import KNOWN_FEATURES
+from models.text import TokenFeatures
+from models.weights_io import save_network
+from motion.errors import InputError
+
+SIZES = {"latent_dim": 32, "ff_size": 48, "num_layers": 2, "num_heads": 4, "cond_dim": 64, "role_text": True}
+TOKENS = 6
+
+
+def stirred(model: CompactInterGen, seed: int = 0) -> CompactInterGen:
+    """The network as training leaves it: nothing in it is zero any more."""
+    generator = torch.Generator().manual_seed(seed)
+    with torch.no_grad():
+        for parameter in model.parameters():
+            parameter += 0.1 * torch.randn(parameter.shape, generator=generator)
+    return model.eval().requires_grad_(False)
+
+
+def words(*lengths: int, seed: int = 0) -> TokenFeatures:
+    """Features of as many sentences, each of so many tokens."""
+    mask = torch.arange(max(1, *lengths)) < torch.tensor(lengths)[:, None]
+    return TokenFeatures(torch.randn(*mask.shape, 384, generator=torch.Generator().manual_seed(seed)), mask)
+
+
+def inputs(batch: int = 2) -> tuple[Tensor, Tensor]:
+    torch.manual_seed(1)
+    return torch.randn(batch, TOKENS, 280), torch.tensor([0, 700, 999][:batch])
+
+
+@pytest.fixture(scope="module")
+def shipped() -> CompactInterGen:
+    torch.manual_seed(0)
+    return stirred(CompactInterGen(CompactConfig(**SIZES)))
+
+
+@pytest.fixture
+def grown(shipped: CompactInterGen) -> CompactInterGen:
+    torch.manual_seed(5)
+    model = CompactInterGen(CompactConfig(**SIZES, words=True))
+    model.grow_from(shipped)
+    return model.eval().requires_grad_(False)
+
+
+def test_a_grown_network_begins_as_the_one_it_was_grown_from(shipped, grown):
+    x, t = inputs()
+    both, a, b = words(5, 3), words(4, 2, seed=1), words(0, 6, seed=2)
+    mask = torch.ones(2, TOKENS, 2)
+    mask[1, 4:] = 0
+    known = torch.randn(2, TOKENS, 2 * 2 * KNOWN_FEATURES)
+    expected = shipped.denoiser(x, t, shipped.condition(both), mask)
+    found = grown.denoiser(x, t, grown.condition(both, a, b), mask, known)
+    assert torch.equal(found, expected)
+    guided = [m.denoiser.guided(x, t, m.condition(both), mask, scale=4.3) for m in (shipped, grown)]
+    assert torch.equal(*guided)
+    assert torch.equal(grown.vector(grown.condition(both)), shipped.condition(both))
+    nothing = [m.denoiser(x, t, m.no_condition(2), mask) for m in (shipped, grown)]
+    assert torch.equal(*nothing)
+
+
+def test_growing_keeps_normaliser_and_refuses_other_sizes(shipped, grown):
+    assert torch.equal(grown.mean, shipped.mean)
+    other = CompactInterGen(CompactConfig(**SIZES | {"ff_size": 64}, words=True))
+    with pytest.raises(InputError, match="other sizes"):
+        other.grow_from(shipped)
+
+
+def test_each_sentence_changes_the_prediction(grown):
+    model = stirred(grown)
+    x, t = inputs()
+    both, a, b = words(5, 3), words(4, 2, seed=1), words(3, 6, seed=2)
+    conditions = [model.condition(both), model.condition(both, a), model.condition(both, a, b)]
+    conditions.append(model.condition(words(0, 0), a, b))
+    found = [model.denoiser(x, t, condition) for condition in conditions]
+    for i in range(4):
+        for j in range(i):
+            assert (found[i] - found[j]).abs().max() > 1e-3
+
+
+def test_word_order_is_heard_beyond_the_vector(grown):
+    """The attention sees the rows of the words, and not their vector alone."""
+    model = stirred(grown)
+    x, t = inputs()
+    condition = model.condition(words(5, 3))
+    same_vector = condition.clone()
+    same_vector[:, 0, 2] *= -1
+    assert (model.denoiser(x, t, condition) - model.denoiser(x, t, same_vector)).abs().max() > 1e-4
+
+
+def test_padding_and_missing_sentences_are_not_heard(grown):
+    model = stirred(grown)
+    x, t = inputs()
+    both, a = words(5, 3), words(0, 4, seed=1)
+    alone = model.condition(TokenFeatures(both.features[1:, :3], both.mask[1:, :3]), words(4, seed=9))
+    together = model.condition(
+        both, TokenFeatures(torch.cat([a.features[:1], words(4, seed=9).features]), a.mask)
+    )
+    assert together.shape[2] > alone.shape[2]
+    expected = model.denoiser(x[1:], t[1:], alone)
+    assert torch.allclose(model.denoiser(x, t, together)[1:], expected, atol=1e-3)
+    # Person a of the first motion has no sentence: their rows are zeros, as where nobody has one.
+    assert torch.allclose(
+        model.denoiser(x, t, together)[:1], model.denoiser(x[:1], t[:1], model.condition(both)[:1]), atol=1e-3
+    )
+
+
+def test_training_packs_the_text_and_hears_the_same(grown):
+    model = stirred(grown)
+    x, t = inputs()
+    condition = model.condition(words(5, 3), words(0, 2, seed=1), words(3, 0, seed=2))
+    expected = model.denoiser(x, t, condition)
+    model.denoiser.train()
+    text, real = model.denoiser.text_of_each(condition)
+    assert text.shape[1] == 6 + 4 < condition.shape[1] * condition.shape[2]
+    assert real.sum(1).tolist() == [6 + 4, 4 + 3] * 2
+    assert torch.allclose(model.denoiser(x, t, condition), expected, atol=1e-3)
+    assert torch.isfinite(model.denoiser(x, t, 0 * condition)).all()
+
+
+def test_own_and_other_sentence_swap_with_the_people(grown):
+    model = stirred(grown)
+    with torch.no_grad():
+        model.denoiser.role_embedding.zero_()
+        model.denoiser.role_text.weight.zero_()
+    x, t = inputs()
+    both, a, b = words(5, 3), words(4, 2, seed=1), words(3, 6, seed=2)
+    found = model.denoiser(x, t, model.condition(both, a, b))
+    swapped = model.denoiser(x.roll(140, -1), t, model.condition(both, b, a))
+    assert torch.allclose(swapped, found.roll(140, -1), atol=1e-3)
+    assert not torch.allclose(model.denoiser(x, t, model.condition(both, b, a)), found, atol=0.05)
+
+
+def test_what_is_known_is_seen(grown):
+    model = stirred(grown)
+    x, t = inputs()
+    condition = model.condition(words(5, 3))
+    known = torch.zeros(1, TOKENS, 4 * KNOWN_FEATURES)
+    plain = model.denoiser(x, t, condition)
+    assert torch.equal(model.denoiser(x, t, condition, None, known.expand(2, -1, -1)), plain)
+    known[:, 2, 80] = 1
+    seen = model.denoiser.guided(x, t, condition, None, known, scale=1.0)
+    assert (seen - plain).abs().max() > 1e-4
+    halves = [model.denoiser(x, t, c, None, known.expand(2, -1, -1)) for c in (condition, 0 * condition)]
+    assert torch.allclose(
+        model.denoiser.guided(x, t, condition, None, known, scale=2.5),
+        2.5 * halves[0] - 1.5 * halves[1],
+        atol=1e-4,
+    )
+
+
+def test_the_full_size_stays_within_its_budget():
+    with torch.device("meta"):
+        model = CompactInterGen(CompactConfig(role_text=True, words=True))
+    count = sum(parameter.numel() for parameter in model.parameters())
+    assert 15e6 < count < 20e6, count
+
+
+def test_a_folder_of_a_grown_network_loads(grown, tmp_path):
+    from models.intergen.compact import load_folder
+
+    save_network(tmp_path, stirred(grown))
+    again, _ = load_folder(tmp_path)
+    x, t = inputs()
+    assert again.config.words
+    for parameter in grown.parameters():
+        parameter.copy_(parameter.half().float())
+    found, expected = (m.denoiser(x, t, m.condition(words(5, 3))) for m in (again, grown))
+    assert torch.equal(found, expected)

@@ -1,0 +1,247 @@
+"""PredictiveMA-WGAN: sizes of the thesis, the losses by hand, predictions that hang together."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+import torch
+from scipy.spatial.transform import Rotation
+from torch import nn
+
+from models.mawgan import (
+    Critic,
+    MAWGANConfig,
+    MAWGANLossWeights,
+    PredictiveMAWGAN,
+    bone_loss,
+    critic_loss,
+    gradient_penalty,
+    gram_distance,
+    position_loss,
+    reconstruction_loss,
+    skeleton_loss,
+    speed_loss,
+    to_curves,
+    to_positions,
+    without_flicker,
+)
+from models.mawgan.srvf import exp_map, inner, log_map, norm, to_srvf, velocity
+
+SMALL = MAWGANConfig(
+    joints=5, past=8, future=12, fc=64, channels=(16, 8, 8, 4), critic=(4, 4, 4), critic_fc=8
+)
+
+
+def poses(seed: int, *size: int) -> torch.Tensor:
+    return torch.from_numpy(np.random.default_rng(seed).normal(size=size)).float()
+
+
+def motion(seed: int, count: int = 3) -> torch.Tensor:
+    return 0.02 * poses(seed, count, SMALL.past, SMALL.joints, 3).cumsum(1) + 1
+
+
+@pytest.fixture
+def network() -> PredictiveMAWGAN:
+    torch.manual_seed(0)
+    return PredictiveMAWGAN(SMALL).eval()
+
+
+def test_defaults_are_the_thesis_sizes() -> None:
+    config = MAWGANConfig()
+    with torch.device("meta"):
+        generator, critic = PredictiveMAWGAN(config).generator, Critic(config)
+    convolutions = [m.out_channels for m in generator.up if isinstance(m, nn.Conv2d)]
+    assert generator.fc.out_features == 36_864 and convolutions == [512, 256, 128, 64, 1]
+    assert sum(isinstance(m, nn.Upsample) for m in generator.up) == 5
+    assert [m.out_channels for m in critic.down if isinstance(m, nn.Conv2d)] == [64, 32, 16]
+    assert [m.out_features for m in critic.score if isinstance(m, nn.Linear)] == [1024, 1]
+    weights = MAWGANLossWeights()
+    assert tuple(weights.to_dict().values()) == (1, 1, 10, 10, 10, 0, 0)
+    assert not (config.linear or config.length or config.pose or config.coefficients or config.shortcut)
+    assert config.dropout == 0
+
+
+def test_curves_are_coordinate_major() -> None:
+    positions = poses(0, 2, 8, 5, 3)
+    curves = to_curves(positions)
+    assert torch.equal(curves[..., :5], positions[..., 0])
+    assert torch.equal(curves[..., 10:], positions[..., 2])
+    assert torch.equal(to_positions(curves), positions)
+
+
+def test_prediction_stays_on_the_sphere_and_goes_on_from_the_past(network: PredictiveMAWGAN) -> None:
+    past = motion(1)
+    s, longer = network.generate(to_curves(past))
+    assert torch.equal(longer, torch.zeros(3))
+    assert inner(s, network.future_mean).abs().max() < 1e-5
+    assert torch.allclose(norm(exp_map(network.future_mean, s)), torch.ones(3), atol=1e-5)
+    future = network(past)
+    assert future.shape == (3, 12, 5, 3)
+    path = to_curves(torch.cat([past[:, -1:], future], 1))
+    travelled = torch.gradient(path, dim=1)[0].norm(dim=-1).mean(1)
+    before = torch.gradient(to_curves(past), dim=1)[0].norm(dim=-1).mean(1)
+    # As long a way a frame as before: the network foretells directions, not the length.
+    assert torch.all(travelled / before < 1.5) and torch.all(travelled / before > 0.2)
+
+
+@pytest.mark.parametrize(("past", "future"), [(25, 25), (5, 25), (10, 30)])
+def test_the_true_point_of_the_sphere_gives_the_true_future_back(past: int, future: int) -> None:
+    """A start and a length are all that the sphere has lost; both come back exactly."""
+    network = PredictiveMAWGAN(replace(SMALL, past=past, future=future))
+    times = torch.arange(past + future)[:, None] / 25
+    curve = torch.cat([times, 2 * times, torch.zeros(past + future, 13)], 1)[None] + 1  # at one speed
+    q, _ = to_srvf(curve[:, past - 1 :])
+    network.future_mean.copy_(to_srvf(poses(8, 1, future + 1, 15))[0][0])
+    seen = curve[:, :past]
+    made = network.decode(log_map(network.future_mean, q), torch.zeros(1), seen)
+    assert torch.allclose(made, curve[:, past:], atol=1e-5)
+    longer = network.decode(log_map(network.future_mean, q), torch.full((1,), 0.3), seen)
+    ratio = (longer - seen[:, -1:]).norm(dim=-1) / (made - seen[:, -1:]).norm(dim=-1)
+    assert torch.allclose(ratio, torch.tensor(0.3).exp().expand_as(ratio), atol=1e-4)
+
+
+def test_a_foretold_length_is_the_part_along_the_mean() -> None:
+    torch.manual_seed(0)
+    network = PredictiveMAWGAN(replace(SMALL, length=True, linear=True)).eval()
+    assert network.generator.linear is not None
+    with torch.no_grad():
+        network.generator.linear.bias.copy_(0.5 * network.future_mean.flatten())
+    plain = PredictiveMAWGAN(replace(SMALL, linear=True)).eval()
+    plain.load_state_dict(network.state_dict())
+    curves = to_curves(motion(1))
+    (s, longer), (same, none) = network.generate(curves), plain.generate(curves)
+    assert torch.allclose(s, same) and torch.equal(none, torch.zeros(3))
+    untouched = PredictiveMAWGAN(replace(SMALL, length=True)).eval()
+    untouched.generator.load_state_dict(network.generator.state_dict(), strict=False)
+    assert torch.allclose(longer, untouched.generate(curves)[1] + 0.5, atol=1e-5)
+
+
+def test_what_the_generator_is_wanted_to_make_is_the_true_future() -> None:
+    network = PredictiveMAWGAN(replace(SMALL, length=True))
+    network.future_mean.copy_(to_srvf(poses(8, 1, 13, 15))[0][0])
+    curves = to_curves(0.02 * poses(9, 4, 20, 5, 3).cumsum(1))
+    past, future = curves[:, :8], curves[:, 7:]
+    wanted = network.wanted(past, future)
+    longer = inner(network.future_mean, wanted)
+    made = network.decode(wanted - longer[:, None, None] * network.future_mean, longer, past)
+    # Central differences of another curve of the same velocities; those are what the sphere knows.
+    velocities = [velocity(torch.cat([past[:, -1:], x], 1)) for x in (made, future[:, 1:])]
+    assert longer.abs().max() > 0.05 and torch.allclose(*velocities, atol=1e-4)
+
+
+def test_the_first_layer_reaches_the_future_past_the_convolutions_too() -> None:
+    torch.manual_seed(0)
+    generator = PredictiveMAWGAN(replace(SMALL, linear=True, coefficients=4, shortcut=True)).generator.eval()
+    assert generator.linear is not None and generator.linear.in_features == 4 * 15 + generator.fc.out_features
+    s, beside = poses(5, 40, 8, 15), torch.zeros(40, 0)
+    with torch.no_grad():
+        generator.fit_linear(s, beside, poses(7, 40, 13, 15), ridge=0.1)
+        begun = generator(s, beside)
+        generator.convolutions = False
+        assert torch.equal(generator(s, beside), begun)  # both begin with nothing
+        column = 4 * 15
+        generator.linear.weight[:, column] = 1.0
+        first = torch.relu(generator.fc(s.flatten(1)))[:, 0]
+        added = generator.synthesis @ (first[:, None, None] * torch.ones(1, 4, 15))
+        assert torch.allclose(generator(s, beside), begun + added, atol=1e-5)
+        nn.init.ones_(generator.up[-1].bias)
+        without = generator(s, beside)
+        generator.convolutions = True
+        assert torch.allclose(generator(s, beside), without + 1, atol=1e-5)
+
+
+def test_a_linear_map_is_found_in_closed_form() -> None:
+    torch.manual_seed(0)
+    generator = PredictiveMAWGAN(replace(SMALL, linear=True, pose=True, coefficients=4)).generator.eval()
+    true = PredictiveMAWGAN(replace(SMALL, linear=True, pose=True, coefficients=4)).generator.eval()
+    assert generator.linear is not None and true.linear is not None
+    nn.init.normal_(true.linear.weight, std=0.1)
+    s, beside = poses(5, 400, 8, 15), poses(6, 400, SMALL.joints * 3 + 4)
+    with torch.no_grad():
+        for part in (true.up[-1].weight, true.up[-1].bias):
+            part.zero_()
+        wanted = true(s, beside)
+        generator.fit_linear(s, beside, wanted, ridge=1e-9)
+        assert torch.allclose(generator(s, beside), wanted, atol=1e-4)
+        generator.fit_linear(s, beside, wanted, ridge=1.0)
+        assert generator.linear.weight.norm() < 0.6 * true.linear.weight.norm()
+    assert generator.linear.in_features == 4 * 15 + 19 and generator.linear.out_features == 4 * 15
+
+
+def test_a_network_that_is_told_the_pose_sees_it(network: PredictiveMAWGAN) -> None:
+    torch.manual_seed(0)
+    told = PredictiveMAWGAN(replace(SMALL, pose=True)).eval()
+    past = motion(1)
+    for one, differs in ((network, False), (told, True)):
+        elsewhere = one(past + 0.5) - 0.5
+        assert torch.allclose(one(past), elsewhere, atol=1e-5) != differs
+    assert told(past[:, :1].expand_as(past)).isfinite().all()
+
+
+def test_what_stands_still_stays_as_it_is(network: PredictiveMAWGAN) -> None:
+    still = poses(2, 1, 1, 5, 3).expand(1, 8, 5, 3)
+    assert torch.equal(network(still), still[:, :1].expand(1, 12, 5, 3))
+
+
+def test_predictions_do_not_flicker_and_smooth_motion_stays() -> None:
+    times = torch.arange(13)[None, :, None]
+    line = 0.02 * times.expand(2, 13, 15)
+    assert torch.allclose(without_flicker(line[:, :1], line[:, 1:]), line[:, 1:], atol=1e-6)
+    flicker = 0.01 * (-1.0) ** times.expand(2, 13, 15)
+    assert torch.allclose(*(velocity(x)[:, 1:-1] for x in (line + flicker, line)), atol=1e-5)  # not seen
+    calm = without_flicker(line[:, :1], (line + flicker)[:, 1:])
+    assert (calm - line[:, 1:])[:, 1:].abs().max() < 1e-6
+
+
+def test_gram_distance_knows_no_rotation() -> None:
+    p = poses(3, 4, 17, 3).double()
+    turned = p @ torch.from_numpy(Rotation.random(random_state=0).as_matrix())
+    assert gram_distance(p, turned).abs().max() < 1e-9
+    other = poses(4, 4, 17, 3).double()
+    assert torch.all(gram_distance(p, other) <= (p - other).square().sum((-1, -2)) + 1e-9)
+    assert torch.all(gram_distance(p, other) > 0.1)
+    assert float(skeleton_loss(p, other)) == pytest.approx(float(gram_distance(p, other).mean()))
+
+
+def test_losses_by_hand() -> None:
+    made, real = torch.zeros(2, 4, 3), torch.full((2, 4, 3), 0.5)
+    assert float(reconstruction_loss(made, real)) == pytest.approx(1.5)
+    apart = torch.tensor([0.0, 0.3, 0.4]).expand(2, 4, 5, 3)
+    assert float(position_loss(apart, torch.zeros_like(apart))) == pytest.approx(0.5, abs=1e-5)
+    walk = torch.arange(1, 5.0)[:, None, None].expand(2, 4, 5, 3) * torch.tensor([0.03, 0.0, 0.04])
+    last = torch.zeros(2, 1, 5, 3)
+    assert float(speed_loss(1.5 * walk, walk, last)) == pytest.approx(0.025, abs=1e-5)
+    assert float(speed_loss(walk.flip(-1), walk, last)) == pytest.approx(0, abs=1e-6)
+    # One too fast and one too slow are right on average, and wrong each for itself.
+    faster = torch.cat([1.5 * walk[:1], 0.5 * walk[:1]])
+    both, start = (x[:1].repeat(2, 1, 1, 1) for x in (walk, last))
+    assert float(speed_loss(faster, both, start)) == pytest.approx(0, abs=1e-6)
+    assert float(speed_loss(faster, both, start, groups=2)) == pytest.approx(0.025, abs=1e-5)
+    pose = torch.tensor([[0.0, 0, 0], [0, 2, 0], [0, 2, 1]]).expand(2, 4, 3, 3)
+    assert float(bone_loss(pose * 1.1, pose, [(0, 1), (1, 2)])) == pytest.approx(0.15)
+    assert float(bone_loss(pose.flip(-1), pose, [(0, 1), (1, 2)])) == pytest.approx(0, abs=1e-6)
+
+
+def test_gradient_penalty_and_critic_loss_by_hand() -> None:
+    class Slope(nn.Module):
+        def forward(self, x: torch.Tensor) -> torch.Tensor:
+            return 3 * x[:, 0, 0]  # its gradient has norm 3 everywhere
+
+    real, made, share = torch.ones(4, 2, 2), torch.zeros(4, 2, 2), torch.rand(4)
+    assert float(gradient_penalty(Slope(), real, made, share)) == pytest.approx(4, abs=1e-4)
+    assert float(critic_loss(Slope(), real, made, share, penalty=10)) == pytest.approx(-3 + 40, abs=1e-3)
+
+
+@pytest.mark.parametrize(("stride", "inputs"), [(2, 16 * 7 * 4), (1, 16 * 51 * 26)])
+def test_the_critic_has_the_stride_of_the_release_or_of_the_thesis(stride: int, inputs: int) -> None:
+    critic = Critic(MAWGANConfig(critic_stride=stride))
+    assert {m.stride for m in critic.down if isinstance(m, nn.Conv2d)} == {(stride, stride)}
+    assert critic.score[0].in_features == inputs
+    assert critic(torch.zeros(2, 26, 51)).shape == (2,)
+
+
+def test_critic_scores_a_batch() -> None:
+    scores = Critic(SMALL)(poses(5, 6, 13, 15))
+    assert scores.shape == (6,) and scores.requires_grad

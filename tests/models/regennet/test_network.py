@@ -1,0 +1,117 @@
+"""ReGenNet against the released networks' numbers, and what *online* promises."""
+
+from __future__ import annotations
+
+import pytest
+import torch
+
+from models.diffusion import make_scheduler, sample_steps
+from models.errors import WeightsError
+from models.regennet import ReGenNet, ReGenNetConfig, StreamError, from_released
+from tests.models.reference_arrays import Reference, assert_equal
+
+KINDS = ("regennet_online", "regennet_offline", "regennet_online_action")
+
+
+def load(name: str) -> tuple[Reference, ReGenNet]:
+    ref = Reference(name)
+    return ref, from_released(ref.weights(), num_heads=4).requires_grad_(False)
+
+
+@pytest.mark.parametrize("name", KINDS)
+def test_forward_equals_the_reference(name):
+    ref, network = load(name)
+    action = ref.arrays.get("action")
+    assert_equal(network(ref["x"], ref["t"], ref["actor"], action), ref["forward"])
+
+
+def test_unconditional_equals_the_reference():
+    ref, network = load("regennet_online_action")
+    inputs = ref["x"], ref["t"], ref["actor"]
+    expected = ref["forward_unconditional"]
+    assert_equal(network(*inputs, ref["action"], unconditional=True), expected)
+    assert_equal(network(*inputs), expected)
+    mixed = network(*inputs, ref["action"], torch.tensor([True, False]))
+    assert_equal(mixed, torch.stack([expected[0], ref["forward"][1]]))
+
+
+def test_guidance_mixes_both_in_one_batch():
+    ref, network = load("regennet_online_action")
+    inputs = ref["x"], ref["t"], ref["actor"], ref["action"]
+    assert_equal(
+        network.guided(*inputs, scale=2.5), 2.5 * ref["forward"] - 1.5 * ref["forward_unconditional"], 5e-4
+    )
+    assert torch.equal(network.guided(*inputs, scale=1), network(*inputs))
+
+
+def test_sizes_are_read_off_the_shapes():
+    config = ReGenNetConfig(latent_dim=64, ff_size=96, num_layers=2, num_heads=4)
+    assert load("regennet_online")[1].config == config
+    assert load("regennet_offline")[1].config == ReGenNetConfig(**{**vars(config), "online": False})
+    assert load("regennet_online_action")[1].config == ReGenNetConfig(**{**vars(config), "num_actions": 26})
+
+
+def test_the_released_sinusoid_tables_are_left_out():
+    ref, network = load("regennet_online")
+    table = torch.zeros(5000, 1, 64)
+    names = ("sequence_pos_encoder.pe", "embed_timestep.sequence_pos_encoder.pe")
+    again = from_released(ref.weights() | dict.fromkeys(names, table), num_heads=4)
+    assert again.config == network.config
+    assert_equal(again.requires_grad_(False)(ref["x"], ref["t"], ref["actor"]), ref["forward"])
+
+
+@pytest.mark.parametrize("name", KINDS)
+def test_the_future_changes_no_past_frame_by_a_bit_when_online(name):
+    ref, network = load(name)
+    action = ref.arrays.get("action")
+    actor, x = ref["actor"].clone(), ref["x"].clone()
+    actor[..., 10:] = 50
+    x[..., 10:] = -50
+    before = network(ref["x"], ref["t"], ref["actor"], action)
+    after = network(x, ref["t"], actor, action)
+    assert torch.equal(after[..., :10], before[..., :10]) == network.config.online
+    assert not torch.equal(after[..., 10:], before[..., 10:])
+
+
+@pytest.mark.parametrize("name", ["regennet_online", "regennet_online_action"])
+def test_the_stream_gives_the_frames_of_the_whole_motion(name):
+    ref, network = load(name)
+    noise, actor, action = ref["x"], ref["actor"], ref.arrays.get("action")
+    *_, whole = sample_steps(lambda x, t: network(x, t, actor, action), noise, make_scheduler("ddim", 5))
+    stream = network.stream(steps=5, batch=2, action=action, max_frames=18)
+    frames = [stream.step(actor[..., i], noise=noise[..., i]) for i in range(18)]
+    assert_equal(torch.stack(frames, dim=-1), whole.sample)
+    assert stream.length == 18
+    with pytest.raises(StreamError, match="18 frames"):
+        stream.step(actor[..., 0])
+
+
+def test_a_stream_repeats_with_its_generator():
+    ref, network = load("regennet_online")
+
+    def run(seed):
+        stream, generator = network.stream(batch=2), torch.Generator().manual_seed(seed)
+        return torch.stack([stream.step(ref["actor"][..., i], generator=generator) for i in range(4)])
+
+    assert torch.equal(run(1), run(1))
+    assert not torch.equal(run(1), run(2))
+
+
+def test_an_offline_network_cannot_stream():
+    _, network = load("regennet_offline")
+    with pytest.raises(StreamError, match="choose online weights"):
+        network.stream()
+
+
+def test_it_trains():
+    torch.manual_seed(0)
+    config = ReGenNetConfig(rows=3, latent_dim=16, ff_size=16, num_layers=1, num_heads=2, num_actions=4)
+    network = ReGenNet(config)
+    x, actor = torch.randn(2, 3, 6, 5), torch.randn(2, 3, 6, 5)
+    network(x, torch.tensor([3, 900]), actor, torch.tensor([0, 3])).square().mean().backward()
+    assert all(p.grad is not None and torch.isfinite(p.grad).all() for p in network.parameters())
+
+
+def test_other_weights_are_refused():
+    with pytest.raises(WeightsError, match="not ReGenNet weights"):
+        from_released({"a": torch.zeros(1)}, num_heads=4)

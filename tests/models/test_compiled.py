@@ -1,0 +1,170 @@
+"""A network that OpenVINO runs gives what it gave before, from its cache, too, and is left alone where that fails."""
+
+import copy
+import subprocess
+import sys
+import threading
+from pathlib import Path
+from typing import Any
+
+import pytest
+import torch
+from torch import Tensor, nn
+
+from models import compiled
+from models.bigraphdiff.compact import CompactBiGraphDiff, CompactBiGraphDiffConfig
+from models.compiled import compile_network
+from models.intergen import InterGenConfig, InterGenDenoiser
+from models.intergen.words import WordDenoiser
+
+SIZES: dict[str, Any] = {
+    "input_features": 10, "latent_dim": 32, "ff_size": 64, "num_layers": 1, "num_heads": 2, "cond_dim": 16,
+    "role_embedding": True, "role_text": True,
+}  # fmt: skip
+
+
+def bigraphdiff() -> nn.Module:
+    sizes = CompactBiGraphDiffConfig(labels=("wave",), latent_dim=32, ff_size=16, num_layers=1, num_heads=2,
+                                     embed_dim=24, cond_dim=16, max_tokens=20)  # fmt: skip
+    return CompactBiGraphDiff(sizes).denoiser
+
+
+NETWORKS = {
+    "intergen": lambda: InterGenDenoiser(InterGenConfig(**SIZES)),
+    "words": lambda: WordDenoiser(InterGenConfig(**SIZES), 7),
+    "distilled": lambda: WordDenoiser(InterGenConfig(**SIZES), 7, guidance_input=True),
+    "bigraphdiff": bigraphdiff,
+}
+
+
+def network(name: str = "intergen", seed: int = 0) -> Any:
+    """An untrained network with weights that are all at work."""
+    torch.manual_seed(seed)
+    made = NETWORKS[name]().eval().requires_grad_(False)
+    for parameter in made.parameters():
+        nn.init.normal_(parameter, std=0.15)
+    return made
+
+
+def inputs(made: Any, batch: int, tokens: int) -> list[Tensor]:
+    """Arguments of ``forward`` of other extents than the example's."""
+    grown = []
+    extents = {0: batch, 1: tokens, 2: 5}
+    for value, axes in zip(made.example(), made.varying.values(), strict=True):
+        shape = [extents[i] if i in axes else n for i, n in enumerate(value.shape)]
+        if value.dtype == torch.bool:
+            grown.append(torch.rand(shape) < 0.8)
+        elif value.dtype == torch.int64:
+            grown.append(torch.randint(0, 1000, shape))
+        else:
+            grown.append(torch.randn(shape))
+    grown[3][:, 0] = True  # a person has at least one token
+    return grown
+
+
+@pytest.mark.parametrize("name", NETWORKS)
+def test_the_numbers_are_the_same_at_other_lengths_and_from_the_cache(name: str, tmp_path: Path) -> None:
+    plain = network(name)
+    for _ in range(2):  # translated, then from the cache
+        made = copy.deepcopy(plain)
+        assert compile_network(made, "weights", tmp_path)
+        for batch, tokens in ((1, 5), (3, 17)):
+            given = inputs(plain, batch, tokens)
+            real = given[3].all(-1)
+            torch.testing.assert_close(made(*given)[real], plain(*given)[real], atol=1e-5, rtol=1e-5)
+            short = [
+                value for value, key in zip(given, made.varying, strict=True) if key in ("x", "t", "cond")
+            ]
+            if name != "distilled":
+                torch.testing.assert_close(made.guided(*short, scale=2.0), plain.guided(*short, scale=2.0))
+    assert len(list(tmp_path.iterdir())) == 1
+
+
+def test_the_second_start_translates_nothing(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    assert compile_network(network(), "weights", tmp_path)
+    monkeypatch.setattr(compiled, "_translate", lambda *_: pytest.fail("translated again"))
+    assert compile_network(network(), "weights", tmp_path)
+
+
+def test_a_row_is_the_same_to_the_last_bit_alone_and_among_others(tmp_path: Path) -> None:
+    made = network()
+    assert compile_network(made, "weights", tmp_path)
+    given = inputs(made, 6, 11)
+    together = made(*given)
+    alone = torch.cat([made(*(value[i : i + 1] for value in given)) for i in range(6)])
+    assert torch.equal(together, alone)
+
+
+@pytest.mark.parametrize("damage", ["cut", "empty", "other weights"])
+def test_a_cache_that_is_of_no_use_is_made_anew(damage: str, tmp_path: Path) -> None:
+    before = network(seed=1 if damage == "other weights" else 0)
+    assert compile_network(before, "weights", tmp_path)
+    (folder,) = tmp_path.iterdir()
+    if damage != "other weights":
+        weights = (folder / "network.bin").read_bytes()
+        (folder / "network.bin").write_bytes(weights[:100] if damage == "cut" else b"")
+    made, plain = network(), network()
+    assert compile_network(made, "weights", tmp_path)
+    given = inputs(plain, 2, 9)
+    real = given[3].all(-1)
+    torch.testing.assert_close(made(*given)[real], plain(*given)[real], atol=1e-5, rtol=1e-5)
+
+
+def test_only_the_latest_translations_are_kept(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(compiled, "KEPT", 2)
+    for key in ("one", "two", "three"):
+        assert compile_network(network(), key, tmp_path)
+    assert len(list(tmp_path.iterdir())) == 2
+
+
+def test_a_cache_that_cannot_be_written_is_done_without(tmp_path: Path) -> None:
+    (tmp_path / "file").write_text("")
+    made, plain = network(), network()
+    assert compile_network(made, "weights", tmp_path / "file" / "cache")
+    given = plain.example()
+    torch.testing.assert_close(made(*given), plain(*given), atol=1e-5, rtol=1e-5)
+
+
+def test_without_openvino_the_network_stays_plain(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setitem(sys.modules, "openvino", None)
+    made, plain = network(), network()
+    assert not compile_network(made, "weights", tmp_path)
+    given = plain.example()
+    assert torch.equal(made(*given), plain(*given)) and not list(tmp_path.iterdir())
+
+
+def test_a_translation_that_is_off_is_not_used(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    translate, wrong = compiled._translate, network(seed=1)
+    monkeypatch.setattr(compiled, "_translate", lambda openvino, _: translate(openvino, wrong))
+    made, plain = network(), network()
+    assert not compile_network(made, "weights", tmp_path)
+    given = plain.example()
+    assert torch.equal(made(*given), plain(*given))
+
+
+def test_threads_share_a_network(tmp_path: Path) -> None:
+    made = network()
+    assert compile_network(made, "weights", tmp_path)
+    questions = [inputs(made, 2, 5 + i) for i in range(4)]
+    expected = [made(*question) for question in questions]
+    wrong = []
+
+    def ask(i: int) -> None:
+        for _ in range(20):
+            if not torch.equal(made(*questions[i]), expected[i]):
+                wrong.append(i)
+
+    threads = [threading.Thread(target=ask, args=(i,)) for i in range(4)]
+    for thread in threads:
+        thread.start()
+    for thread in threads:
+        thread.join()
+    assert not wrong
+
+
+def test_openvino_reports_nothing_over_the_network() -> None:
+    code = (
+        "import sys; from models.compiled import _openvino; _openvino();"
+        "sys.exit(any(m.startswith('openvino_telemetry') and sys.modules[m] for m in sys.modules))"
+    )
+    assert subprocess.run([sys.executable, "-c", code], timeout=100).returncode == 0

@@ -1,0 +1,121 @@
+"""InterGen's text side: the tower against torch's own layers, the vocabulary, the checkpoint's names."""
+
+from __future__ import annotations
+
+import json
+
+import pytest
+import torch
+from torch import nn
+
+from models.errors import WeightsError
+from models.text.clip import ClipTextEncoder, ClipTokenizer, VocabularyError, from_checkpoint, from_released
+from tests.models.reference_arrays import Reference, assert_equal
+
+
+@pytest.fixture(scope="module")
+def encoder() -> ClipTextEncoder:
+    torch.manual_seed(0)
+    encoder = ClipTextEncoder(
+        vocabulary=40, context_length=12, width=128, num_layers=2, ff_size=32, encoder_layers=2
+    )
+    for parameter in encoder.parameters():
+        nn.init.normal_(parameter, std=0.1)
+    return encoder.eval().requires_grad_(False)
+
+
+def test_the_text_side_equals_the_reference():
+    """Against the CLIP of `transformers` and an encoder in NumPy, see `make_clip_reference`."""
+    ref = Reference("clip_text")
+    encoder = from_released(ref.made_weights())
+    assert_equal(encoder.token_features(ref["tokens"]), ref["token_features"])
+    assert_equal(encoder(ref["tokens"]), ref["condition"])
+
+
+def tokens() -> torch.Tensor:
+    rows = torch.zeros(2, 12, dtype=torch.long)
+    rows[0, :5] = torch.tensor([38, 4, 7, 9, 39])
+    rows[1, :8] = torch.tensor([38, 4, 7, 30, 2, 2, 1, 39])
+    return rows
+
+
+def test_the_tower_equals_torch_layers(encoder):
+    x = torch.randn(2, 12, 128)
+    expected = x
+    causal = nn.Transformer.generate_square_subsequent_mask(12)
+    for block in encoder.clip_transformer.resblocks:
+        layer = nn.TransformerEncoderLayer(
+            128, 2, 512, activation=lambda h: h * torch.sigmoid(1.702 * h), batch_first=True, norm_first=True
+        ).eval()
+        names = {"attn": "self_attn", "mlp.c_fc": "linear1", "mlp.c_proj": "linear2"}
+        names |= {"ln_1": "norm1", "ln_2": "norm2"}
+        state = {
+            ours + name.removeprefix(theirs): value
+            for theirs, ours in names.items()
+            for name, value in block.state_dict().items()
+            if name.startswith(theirs + ".")
+        }
+        layer.load_state_dict(state)
+        expected = layer(expected, src_mask=causal)
+    assert_equal(encoder.clip_transformer(x), expected.detach(), 1e-4)
+
+
+def test_the_frozen_features_look_back_only(encoder):
+    changed = tokens()
+    changed[:, 3] = 11
+    before, after = encoder.token_features(tokens()), encoder.token_features(changed)
+    assert_equal(after[:, :3], before[:, :3], 1e-6)
+    assert (after[:, 3:] - before[:, 3:]).abs().amax((1, 2)).min() > 1e-3
+
+
+def test_the_condition_is_read_at_the_end_token(encoder):
+    out = encoder(tokens())
+    features = encoder.clip_ln(encoder.clipTransEncoder(encoder.token_features(tokens())))
+    assert_equal(out, torch.stack([features[0, 4], features[1, 7]]), 1e-6)
+
+
+def test_the_lightning_file_is_read_by_its_names(encoder, tmp_path):
+    state = {f"model.{k}": v for k, v in encoder.state_dict().items()}
+    state["model.decoder.net.motion_embed.weight"] = torch.zeros(2, 2)
+    torch.save({"state_dict": state}, tmp_path / "intergen.ckpt")
+    assert torch.equal(from_checkpoint(tmp_path / "intergen.ckpt")(tokens()), encoder(tokens()))
+    with pytest.raises(WeightsError, match=r"token_embedding\.weight is missing"):
+        from_released({})
+
+
+def vocabulary(folder, *, specials: bool = True) -> None:
+    """A vocabulary of CLIP's form: letters, letters that end a word, a merge, the two marks."""
+    letters = [chr(c) for c in range(ord("a"), ord("z") + 1)]
+    entries = [*letters, *(letter + "</w>" for letter in letters), "hi</w>"]
+    entries += ["<|startoftext|>", "<|endoftext|>"] if specials else ["<x>"]
+    (folder / "vocab.json").write_text(json.dumps({entry: i for i, entry in enumerate(entries)}))
+    (folder / "merges.txt").write_text("#version: 0.2\nh i</w>\n")
+
+
+def test_words_are_split_as_clip_does(tmp_path):
+    vocabulary(tmp_path)
+    rows = ClipTokenizer(tmp_path, context_length=8)(["Hi  AB", "hi " * 30])
+    start, end, hi = 53, 54, 52
+    assert rows[0].tolist() == [start, hi, 0, 26 + 1, end, 0, 0, 0]
+    assert rows[1].tolist() == [start, *[hi] * 6, end]
+
+
+def test_tokenizer_json_gives_the_same(tmp_path):
+    vocabulary(tmp_path)
+    first = ClipTokenizer(tmp_path)
+    first.tokenizer.enable_truncation(3)
+    (tmp_path / "json").mkdir()
+    first.tokenizer.save(str(tmp_path / "json" / "tokenizer.json"))
+    prompts = ["hi you two", ""]
+    assert torch.equal(ClipTokenizer(tmp_path / "json")(prompts), ClipTokenizer(tmp_path)(prompts))
+
+
+def test_missing_or_foreign_vocabularies_are_said(tmp_path):
+    with pytest.raises(VocabularyError, match="holds no CLIP vocabulary"):
+        ClipTokenizer(tmp_path)
+    vocabulary(tmp_path, specials=False)
+    with pytest.raises(VocabularyError, match="is not CLIP's"):
+        ClipTokenizer(tmp_path)
+    (tmp_path / "tokenizer.json").write_text("{")
+    with pytest.raises(VocabularyError, match="cannot be read"):
+        ClipTokenizer(tmp_path)

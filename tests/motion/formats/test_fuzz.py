@@ -1,0 +1,140 @@
+"""Every reader against noise and damaged files: a motion or one sentence, soon, whatever comes."""
+
+from __future__ import annotations
+
+import io
+import time
+
+import numpy as np
+import pytest
+from hypothesis import HealthCheck, given, settings
+from hypothesis import strategies as st
+
+from motion import Clip, InputError
+from motion.formats import FORMATS
+from motion.formats.importing import AXES, ORDERS, UNITS, ImportChoices, import_motion
+from tests.motion.bodies import marching
+
+from .rigs import RIGS, bvh_text
+from .test_kinect import sbu_text, skeleton_text
+
+SECONDS = 2.0
+"""The most that a file of these sizes may keep the processor."""
+BODIES = np.random.default_rng(0).normal(size=(2, 4, 25, 3)).round(3)
+POSITIONS, ROTATIONS = marching(6)
+SKELETONS_15 = POSITIONS[:, [15, 12, 6, 16, 18, 20, 17, 19, 21, 1, 4, 7, 2, 5, 8]]
+
+
+def saved(**arrays: np.ndarray) -> bytes:
+    buffer = io.BytesIO()
+    np.savez_compressed(buffer, **arrays)
+    return buffer.getvalue()
+
+
+def array_file(array: np.ndarray) -> bytes:
+    buffer = io.BytesIO()
+    np.save(buffer, array)
+    return buffer.getvalue()
+
+
+BVH = bvh_text(ROTATIONS, POSITIONS[:, 0], RIGS["mixamo"], unit=100)
+VALID = {
+    "ours.npz": saved(positions=np.stack([POSITIONS, POSITIONS + 1]), fps=np.float64(30)),
+    "crowd.npz": saved(positions=np.stack([POSITIONS, POSITIONS + 1, POSITIONS - 1])),
+    "amass.npz": saved(
+        poses=np.zeros((40, 156)),
+        trans=np.zeros((40, 3)),
+        mocap_framerate=np.float64(120),
+        gender=np.array("x"),
+    ),
+    "22.npy": array_file(POSITIONS.astype(np.float32)),
+    "15.npy": array_file(SKELETONS_15),
+    "take.bvh": BVH.encode(),
+    "take-16.bvh": BVH.encode("utf-16"),
+    "take-latin.bvh": BVH.replace("mixamorig:Head", "Kopf_é").encode("latin-1"),
+    "S001.skeleton": skeleton_text(BODIES).encode(),
+    "S001-16.skeleton": skeleton_text(BODIES).encode("utf-16"),
+    "skeleton_pos.txt": sbu_text(np.random.default_rng(1).random((5, 90))).encode(),
+}
+PIECES = [
+    b"{", b"}", b"nan ", b"inf", b"1e999 ", b"-", b",", b"\0", b"\xff\xfe", b"999999999", b"\n", b"\r",
+    b"   ", b"ROOT x\n{\n", b"JOINT x\n", b"End Site", b"CHANNELS 6 ", b"MOTION\n", b"Frames: 1000000000\n",
+    b"PK\x05\x06", b"PK\x01\x02", b"\x93NUMPY", "é\u2028".encode(), b"(9999999, 22, 3)",
+]  # fmt: skip
+EDITS = st.lists(
+    st.tuples(
+        st.sampled_from(["cut", "flip", "put", "repeat"]),
+        st.integers(0, 10**6),
+        st.integers(1, 3000),
+        st.one_of(st.sampled_from(PIECES), st.binary(max_size=8)),
+    ),
+    min_size=1,
+    max_size=4,
+)
+CHOICES = st.builds(
+    ImportChoices,
+    up=st.sampled_from([None, *AXES]),
+    unit=st.sampled_from([None, *UNITS]),
+    fps=st.sampled_from([None, 1.0, 30.0, 1000.0]),
+    order=st.sampled_from([None, *ORDERS]),
+)
+PATIENT = settings(
+    max_examples=150, deadline=None, suppress_health_check=[HealthCheck.too_slow, HealthCheck.data_too_large]
+)
+
+
+def check(data: bytes, name: str, choices: ImportChoices | None = None) -> bool:
+    """Whether it was read; fails where it takes long or anything but an InputError of one line is raised."""
+    began = time.process_time()  # of this process alone, whatever else the machine does
+    try:
+        found = import_motion(data, name=name, choices=choices)
+        if found.people[0].num_frames < 30:
+            assert np.isfinite(found.motion.positions).all()
+    except InputError as error:
+        message = str(error)
+        assert message and "\n" not in message and len(message) < 400
+        return False
+    finally:
+        assert time.process_time() - began < SECONDS
+    assert all(isinstance(person, Clip) and np.isfinite(person.positions).all() for person in found.people)
+    return True
+
+
+@pytest.mark.parametrize("name", VALID)
+def test_what_is_damaged_below_is_read_when_whole(name: str) -> None:
+    assert check(VALID[name], name)
+
+
+@pytest.mark.parametrize("suffix", [suffix for suffix, known in FORMATS.items() if known.reader])
+def test_noise_is_a_sentence(suffix: str) -> None:
+    heads = st.sampled_from(
+        [b"", b"HIERARCHY\nROOT a\n{\n", b"\x93NUMPY\x01\0", b"PK\x03\x04", b"3\n2\n", b"1,0.5,", b"\xff\xfe"]
+    )
+
+    @PATIENT
+    @given(heads, st.binary(max_size=400))
+    def read(head: bytes, tail: bytes) -> None:
+        check(head + tail, f"noise{suffix}")
+
+    read()
+
+
+@pytest.mark.parametrize("name", VALID)
+def test_damaged_files_are_read_or_a_sentence(name: str) -> None:
+    @PATIENT
+    @given(EDITS, CHOICES)
+    def read(edits: list[tuple[str, int, int, bytes]], choices: ImportChoices) -> None:
+        raw = bytearray(VALID[name])
+        for kind, place, length, piece in edits:
+            at = place % (len(raw) + 1)
+            if kind == "cut":
+                del raw[at : at + length]
+            elif kind == "flip" and at < len(raw):
+                raw[at] ^= length % 255 + 1
+            elif kind == "put":
+                raw[at:at] = piece
+            else:
+                raw[at:at] = raw[at : at + length]
+        check(bytes(raw), name, choices)
+
+    read()

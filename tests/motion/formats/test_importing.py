@@ -1,0 +1,117 @@
+"""What is found in a file is told, and what is known of it is believed."""
+
+import io
+
+import numpy as np
+import pytest
+
+from motion import SMPL22, InputError, formats
+from motion.formats.importing import ImportChoices, import_motion
+from motion.kinematics import forward_kinematics
+from motion.retarget import to_smpl
+from tests.motion.bodies import marching
+
+from .rigs import RIGS, bvh_text
+
+
+def standing(frames: int = 40) -> np.ndarray:
+    """(T, 22, 3) a person who sways, in metres and Y up."""
+    root = np.zeros((frames, 3))
+    root[:, 0] = 0.05 * np.sin(np.linspace(0, 6, frames))
+    root[:, 1] = 0.9562
+    return forward_kinematics(np.tile(np.eye(3), (frames, 22, 1, 1)), root).astype(np.float32)
+
+
+def npy(array: np.ndarray) -> bytes:
+    buffer = io.BytesIO()
+    np.save(buffer, array)
+    return buffer.getvalue()
+
+
+def test_arrays_are_told_as_they_are_and_kept_bit_for_bit() -> None:
+    found = import_motion(npy(standing()), name="a.npy")
+    assert (found.up, found.unit, found.fps) == ("y", "m", 30.0)
+    assert len(found.joints) == 22
+    assert found.motion.positions.tobytes() == standing().tobytes()
+    assert found.describe() == "22 joints matched, m, Y up, 30 frames a second"
+
+
+@pytest.mark.parametrize(("unit", "metres"), [("m", 1.0), ("cm", 0.01), ("mm", 0.001), ("inch", 0.0254)])
+@pytest.mark.parametrize("up", ["y", "z", "x"])
+def test_up_axis_and_unit_of_arrays_are_found(up: str, unit: str, metres: float) -> None:
+    x, y, z = np.moveaxis(standing() / metres, -1, 0)
+    turned = {"y": (x, y, z), "z": (x, -z, y), "x": (y, -x, z)}[up]
+    found = import_motion(npy(np.stack(turned, axis=-1)), name="a.npy")
+    assert (found.up, found.unit) == (up, unit)
+    np.testing.assert_allclose(found.motion.positions, standing(), atol=1e-4)
+
+
+def test_what_is_known_is_believed() -> None:
+    found = import_motion(npy(standing() * 2), name="a.npy", choices=ImportChoices(unit="m", fps=60.0))
+    assert found.fps == 60
+    assert found.motion.positions[0, 15, 1] > 2.5
+
+
+@pytest.mark.parametrize("joints", [15, 17, 22, 24, 25])
+def test_known_counts_of_joints_are_read(joints: int) -> None:
+    from motion import SKELETONS
+    from motion.layouts import LAYOUTS
+
+    body = standing(12)
+    if joints == 24:
+        array = np.concatenate([body, body[:, 20:22]], axis=1)
+    else:
+        name = {15: "sbu15", 17: "cmu17", 22: "smpl22", 25: "ntu25"}[joints]
+        assert SKELETONS[name].num_joints == joints
+        array = np.stack([body[:, max(ours, 0)] for ours in LAYOUTS[name].joints], axis=1)
+    found = import_motion(npy(array), name="a.npy")
+    assert found.motion.skeleton is SMPL22
+    assert np.abs(found.motion.positions[:, 15] - body[:, 15]).max() < 0.25
+
+
+@pytest.mark.parametrize("rig", ["mixamo", "rokoko", "xsens", "motionbuilder", "bandai-namco", "cmu"])
+def test_rigs_show_which_joint_is_which(rig: str) -> None:
+    positions, rotations = marching(20)
+    text = bvh_text(rotations, positions[:, 0], RIGS[rig], unit=100, z_up=True)
+    found = import_motion(text.encode(), name="clip.bvh")
+    assert (found.up, found.unit) == ("z", "cm")
+    told = {ours: theirs for theirs, ours in found.joints}
+    for part in ("pelvis", "left_elbow", "right_knee", "left_wrist", "right_ankle", "head"):
+        assert told[part] == RIGS[rig][part]
+
+
+@pytest.mark.parametrize(
+    ("choices", "says"),
+    [({"up": "w"}, "choose x, y or z"), ({"unit": "ell"}, "choose one of m"), ({"fps": 0.0}, "not possible")],
+)
+def test_wrong_choices_are_told(choices: dict, says: str) -> None:
+    with pytest.raises(InputError, match=says):
+        ImportChoices(**choices)
+
+
+def test_a_rate_that_makes_a_clip_too_long_is_told() -> None:
+    with pytest.raises(InputError, match="give its true rate"):
+        import_motion(npy(standing(700)), name="a.npy", choices=ImportChoices(fps=1.0))
+
+
+@pytest.mark.parametrize("shape", [(5, 23, 3), (5, 201, 3), (5, 22, 2)])
+def test_unknown_arrays_name_what_is_known(shape: tuple[int, ...]) -> None:
+    with pytest.raises(InputError) as error:
+        import_motion(npy(np.ones(shape, np.float32)), name="a.npy")
+    assert "\n" not in str(error.value)
+
+
+def test_a_recording_that_is_too_long_is_refused_before_its_joints_are_fitted(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    bodies = standing(2000)[:, [15, 12, 6, 16, 18, 20, 17, 19, 21, 1, 4, 7, 2, 5, 8]]
+    monkeypatch.setattr(formats, "to_smpl", lambda motion: pytest.fail("fitted"))
+    with pytest.raises(InputError, match=r"kinect\.npy lasts 67 s: cut it to 60 s or less\."):
+        formats.read(npy(bodies), name="kinect.npy", longest=60.0)
+
+
+def test_joints_in_one_place_are_no_body() -> None:
+    for joints in (15, 22):
+        nobody = import_motion(npy(np.full((30, joints, 3), 0.5)), name="nobody.npy").people[0]
+        with pytest.raises(InputError, match="lie in one place"):
+            to_smpl(nobody)

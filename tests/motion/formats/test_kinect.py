@@ -1,0 +1,112 @@
+"""Kinect text: both kinds come back as they were, and nothing else gets through."""
+
+import time
+
+import numpy as np
+import pytest
+from hypothesis import HealthCheck, given, settings
+from hypothesis import strategies as st
+
+from motion import SKELETONS, Duet, InputError
+from motion.formats import read
+from motion.formats.kinect import read_kinect
+
+
+def skeleton_text(people: np.ndarray, missing: dict[int, set[int]] | None = None) -> str:
+    """(P, T, 25, 3) as NTU RGB+D writes it; ``missing``: the frames that lack a person."""
+    lines = [str(people.shape[1])]
+    for frame in range(people.shape[1]):
+        here = [p for p in range(len(people)) if frame not in (missing or {}).get(p, ())]
+        lines.append(str(len(here)))
+        for person in here:
+            lines += [f"7205759403792{person} 0 1 1 1 1 0 0.02 -0.2 2", "25"]
+            lines += [" ".join(map(str, xyz)) + " 0 0 0 0 0 0 0 0 2" for xyz in people[person, frame]]
+    return "\n".join(lines)
+
+
+def sbu_text(raw: np.ndarray) -> str:
+    """(T, 90) numbers between 0 and 1 as SBU writes them."""
+    return "\n".join(f"{i + 1}," + ",".join(f"{v:.6f}" for v in row) for i, row in enumerate(raw))
+
+
+@pytest.fixture
+def bodies() -> np.ndarray:
+    return np.random.default_rng(0).normal(size=(2, 12, 25, 3)).round(4)
+
+
+def test_skeleton_files_hold_their_two_people(bodies: np.ndarray) -> None:
+    duet = read_kinect(skeleton_text(bodies).encode(), name="S001.skeleton")
+    assert isinstance(duet, Duet)
+    assert duet.fps == 30
+    np.testing.assert_allclose(duet.positions, bodies, atol=1e-5)
+
+
+def test_frames_without_a_body_are_interpolated_and_ghosts_left_out(bodies: np.ndarray) -> None:
+    duet = read_kinect(skeleton_text(bodies, {1: {0, 5}}).encode(), name="x.skeleton")
+    np.testing.assert_allclose(duet.b.positions[5], (bodies[1, 4] + bodies[1, 6]) / 2, atol=1e-5)
+    np.testing.assert_allclose(duet.b.positions[0], bodies[1, 1], atol=1e-5)
+    alone = read_kinect(skeleton_text(bodies, {1: set(range(3, 12))}).encode(), name="x.skeleton")
+    np.testing.assert_allclose(alone.positions, bodies[0], atol=1e-5)
+
+
+def test_sbu_numbers_become_metres() -> None:
+    raw = np.random.default_rng(1).uniform(0.1, 0.9, size=(9, 90)).round(6)
+    duet = read_kinect(sbu_text(raw).encode(), name="skeleton_pos.txt")
+    assert duet.fps == 15
+    assert duet.skeleton is SKELETONS["sbu15"]
+    x, y, z = raw[4, 45:48]  # the second person's head
+    expected = [(1280 - 2560 * x) / 1000, (960 - 1920 * y) / 1000, 10 * z / 7.8125]
+    np.testing.assert_allclose(duet.b.positions[4, 0], expected, atol=1e-5)
+
+
+def test_the_registry_knows_both_suffixes(bodies: np.ndarray) -> None:
+    data = skeleton_text(bodies).encode()
+    assert read(data, name="a.skeleton", keep_skeleton=True).num_frames == 12
+    raw = np.full((3, 90), 0.5)
+    assert read(sbu_text(raw).encode(), name="a.txt", keep_skeleton=True).num_frames == 3
+
+
+WRONG = {
+    "no Kinect text": (b"hello world", "begins neither"),
+    "binary": (b"12\0\1", "binary"),
+    "huge count": (b"999999999\n1\n", "lasts"),
+    "cut short": (b"3\n1\nid\n25\n0 0 0", "cut short"),
+    "too many bodies": (b"3\n99\n", "number of bodies"),
+    "other joints": (b"3\n1\nid\n20\n", "must have 25"),
+    "words": (b"1\n1\nid\n25\n0 a 0\n", "line 5: 'a' is not a number"),
+    "nan": (b"1\n1\nid\n25\n0 nan 0\n", "NaN"),
+    "nobody": (b"2\n0\n0\n", "no body"),
+    "no frames": (b"0\n", "no frames"),
+    "short row": (b"1,0.5,0.5\n", "90 are needed"),
+    "far": (("1," + ",".join(["1e9"] * 90)).encode(), "away"),
+}
+
+
+@pytest.mark.parametrize("case", WRONG)
+def test_wrong_files_are_refused_in_one_sentence(case: str) -> None:
+    data, says = WRONG[case]
+    with pytest.raises(InputError, match=says) as error:
+        read_kinect(data, name="clip.skeleton")
+    assert "\n" not in str(error.value)
+
+
+@settings(max_examples=60, deadline=2000, suppress_health_check=[HealthCheck.too_slow])
+@given(
+    st.sampled_from(["skeleton", "sbu"]),
+    st.lists(st.tuples(st.integers(0, 10_000), st.binary(max_size=6), st.integers(0, 40)), max_size=4),
+)
+def test_damaged_files_never_raise_anything_else(kind: str, edits: list[tuple[int, bytes, int]]) -> None:
+    rng = np.random.default_rng(2)
+    text = (
+        skeleton_text(rng.normal(size=(1, 3, 25, 3))) if kind == "skeleton" else sbu_text(rng.random((4, 90)))
+    )
+    data = bytearray(text.encode())
+    for place, new, cut in edits:
+        place %= len(data) + 1
+        data[place : place + cut] = new
+    began = time.perf_counter()
+    try:
+        read_kinect(bytes(data) or b"?", name="clip.txt")
+    except InputError as error:
+        assert str(error)
+    assert time.perf_counter() - began < 2

@@ -1,0 +1,106 @@
+"""The largest files that a visitor may send: refused at once, with little memory beside the file itself."""
+
+from __future__ import annotations
+
+import time
+import tracemalloc
+from collections.abc import Callable
+
+import pytest
+
+from motion import InputError
+from motion.formats.files import MAX_BYTES
+from motion.formats.importing import import_motion
+from tests.motion.bodies import marching
+
+from .rigs import RIGS, bvh_text
+
+MEGABYTE = 2**20
+FULL = MAX_BYTES - 1000
+CHAIN = (
+    "HIERARCHY\nROOT hips\n{\nOFFSET 0 0 0\n"
+    "CHANNELS 6 Xposition Yposition Zposition Zrotation Yrotation Xrotation\n"
+    + "JOINT j%d\n{\nOFFSET 0 10 0\nCHANNELS 3 Zrotation Yrotation Xrotation\n" * 31 % tuple(range(31))
+    + "}\n" * 32
+)
+
+
+def moving(frames: int, last: str) -> bytes:
+    """A chain of 32 joints whose motion ends in ``last``."""
+    head = f"{CHAIN}MOTION\nFrames: {frames}\nFrame Time: 0.00833333\n"
+    return (head + ("0 " * 99 + "\n") * (frames - 1) + "0 " * 98 + last).encode()
+
+
+HOSTILE: dict[str, tuple[Callable[[], bytes], str]] = {
+    "lines.txt": (lambda: b"1,0.5" + b"\n" * FULL, "90 are needed"),
+    "one-line.txt": (lambda: b"1," * (FULL // 2), "too long"),
+    "latin.txt": (lambda: b"\xff" * FULL, "too long"),
+    "hours.txt": (lambda: ("0," * 90 + "0\n").encode() * (FULL // 182), "600 s allowed"),
+    "billion.skeleton": (lambda: b"999999999\n" + b"1\n" * (FULL // 2 - 10), "600 s allowed"),
+    "joints.skeleton": (lambda: b"17000\n" + b"1\n" * (FULL // 2 - 10), "25 joints"),
+    "braces.bvh": (lambda: b"HIERARCHY\n" + b"{" * FULL, "first megabyte"),
+    "offsets.bvh": (lambda: b"HIERARCHY\nROOT a\n{\n" + b"OFFSET 0 0 0\n" * (FULL // 14), "first megabyte"),
+    "spaces.bvh": (lambda: b"HIERARCHY\nROOT a\n{\n" + b" " * FULL, "first megabyte"),
+    "lines.bvh": (lambda: b"HIERARCHY\n" + b" \t\n" * (FULL // 3), "first megabyte"),
+    "utf-16.bvh": (lambda: ("HIERARCHY\n" + "a" * (FULL // 2 - 20)).encode("utf-16"), "first megabyte"),
+    "frames.bvh": (lambda: moving(2, "0").replace(b"Frames: 2", b"Frames: 1000000000"), "600 s allowed"),
+    "late.bvh": (lambda: moving(50_000, "x"), "line 50164: 'x'"),
+    "short.bvh": (lambda: moving(50_000, ""), "cut short"),
+    "parts.npz": (lambda: b"PK\x01\x02" * (FULL // 4), "200 parts"),
+    "noise.npz": (lambda: b"\x13\x37" * (FULL // 2), "not a whole .npz"),
+    "noise.npy": (lambda: b"\x93NUMPY\x01\x00\xff\xff" + b"(" * FULL, "not a NumPy"),
+}
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("name", HOSTILE)
+def test_large_wrong_files_are_refused_soon_and_within_twice_the_limit(name: str) -> None:
+    make, says = HOSTILE[name]
+    data = make()
+    began = time.process_time()
+    with pytest.raises(InputError, match=says):
+        import_motion(data, name=name)
+    assert time.process_time() - began < 2.0
+    tracemalloc.start()
+    try:
+        with pytest.raises(InputError, match=says):
+            import_motion(data, name=name)
+        peak = tracemalloc.get_traced_memory()[1]
+    finally:
+        tracemalloc.stop()
+    assert len(data) + peak < 2 * MAX_BYTES + 8 * MEGABYTE
+
+
+@pytest.mark.slow
+def test_ten_minutes_at_120_a_second_are_read_soon_and_within_twice_the_limit() -> None:
+    positions, rotations = marching(400)
+    head, rows = bvh_text(rotations, positions[:, 0], RIGS["mixamo"], unit=100, frame_time=1 / 120).split(
+        "Frames: 400\n"
+    )
+    time_line, *rows = rows.splitlines()
+    rows = [" ".join(f"{float(word):.3g}" for word in row.split()) for row in rows]
+    data = "\n".join([f"{head}Frames: 72000", time_line, *(rows * 180)]).encode()
+    import_motion(data[: len(data) // 2].replace(b"Frames: 72000", b"Frames: 100"), name="warm.bvh")
+    began = time.process_time()
+    found = import_motion(data, name="long.bvh")
+    assert time.process_time() - began < 2.0
+    assert found.fps == 120 and found.people[0].num_frames == 18_000
+    tracemalloc.start()
+    try:
+        import_motion(data, name="long.bvh")
+        peak = tracemalloc.get_traced_memory()[1]
+    finally:
+        tracemalloc.stop()
+    assert len(data) + peak < 2 * MAX_BYTES
+
+
+@pytest.mark.parametrize("ending", [b" ", b"\r"])
+def test_a_motion_on_one_line_is_read_soon(ending: bytes) -> None:
+    """Pandas makes a column of every word of the first line: two megabytes took half a minute, and 0.5 GB."""
+    head, _, numbers = moving(10_000, "0").partition(b"Frame Time: 0.00833333\n")
+    long_line = head + b"Frame Time: 0.00833333\n" + numbers.replace(b"\n", ending)
+    assert len(long_line) > 1.8 * MEGABYTE
+    began = time.process_time()
+    with pytest.raises(InputError, match="no joint that looks like"):  # but it is read to its end
+        import_motion(long_line, name="line.bvh")
+    assert time.process_time() - began < 2.0

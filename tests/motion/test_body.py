@@ -1,0 +1,121 @@
+"""Bodies bound to SMPL22: they stand where the joints stand, whatever the pose."""
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+from scipy.spatial.transform import Rotation
+
+from motion.body import BODIES, FOLDER, bone_rotations, load_body, skin
+from motion.clip import Clip
+from motion.errors import InputError
+from motion.kinematics import forward_kinematics, global_rotations
+from motion.skeleton import SBU15, SMPL22
+
+J = {name: index for index, name in enumerate(SMPL22.joint_names)}
+EXAMPLES = Path(__file__).resolve().parents[2] / "static" / "examples"
+
+
+def t_pose() -> np.ndarray:
+    rest = SMPL22.rest_positions()
+    return (rest - [0, rest[J["left_foot"], 1], 0])[None]
+
+
+def recorded() -> np.ndarray:
+    with np.load(EXAMPLES / "shake-hands.npz") as stored:
+        return np.concatenate(list(stored["positions"]))[::15]
+
+
+@pytest.mark.parametrize("small", [False, True])
+@pytest.mark.parametrize("name", BODIES)
+def test_the_stored_body_is_whole_and_small(name, small):
+    body = load_body(name, small=small)
+    assert (FOLDER / f"{name}{'-small' if small else ''}.json").stat().st_size < 200_000
+    assert body.faces.max() < len(body.vertices)
+    assert np.allclose(body.weights.sum(axis=1), 1, atol=1e-9)
+    assert len(body.face_zones) == len(body.faces)
+    assert set(np.unique(body.face_zones)) == set(range(len(body.zones)))
+    assert abs(body.vertices[:, 1].min()) < 1e-4
+    assert 1.7 < np.ptp(body.vertices[:, 1]) < 1.8
+    assert np.allclose(body.turns @ np.swapaxes(body.turns, -1, -2), np.eye(3), atol=1e-5)
+    corners = body.vertices[body.faces]
+    volume = np.sum(corners[:, 0] * np.cross(corners[:, 1], corners[:, 2])) / 6
+    assert 0.035 < volume < 0.09, "cubic metres; the faces look outwards"
+
+
+def test_the_two_bodies_differ():
+    a, b = (load_body(name) for name in BODIES)
+    assert a.vertices.shape != b.vertices.shape or np.abs(a.vertices - b.vertices).max() > 0.02
+
+
+def test_the_t_pose_turns_no_bone():
+    turned = bone_rotations(t_pose())
+    assert np.abs(turned - np.eye(3)).max() < 1e-3
+
+
+@pytest.mark.parametrize("name", BODIES)
+def test_limbs_lie_along_their_bones(name):
+    """Vertices that one limb moves alone lie within a forearm's, a shin's thickness of its bone."""
+    body, positions = load_body(name), recorded()
+    surface = skin(body, positions)
+    for child in ("left_wrist", "right_wrist", "left_ankle", "right_ankle"):
+        joint = SMPL22.parents[J[child]]
+        own = np.nonzero((body.bones[:, 0] == joint) & (body.weights[:, 0] > 0.95))[0]
+        assert len(own) > 20
+        start, end = positions[:, None, joint], positions[:, None, J[child]]
+        along = end - start
+        share = np.clip(np.sum((surface[:, own] - start) * along, -1) / np.sum(along**2, -1), 0, 1)
+        away = np.linalg.norm(surface[:, own] - start - share[..., None] * along, axis=-1)
+        assert away.max() < 0.11
+
+
+def test_the_body_goes_where_the_motion_goes():
+    positions = recorded()
+    turn = Rotation.from_euler("y", 70, degrees=True).as_matrix()
+    moved = positions @ turn.T + [1.0, 0.0, -2.0]
+    body = load_body("b", small=True)
+    assert np.abs(skin(body, moved) - (skin(body, positions) @ turn.T + [1.0, 0.0, -2.0])).max() < 1e-4
+
+
+def test_standing_feet_stay_on_the_floor():
+    surface = skin(load_body("a"), t_pose())
+    assert abs(surface[..., 1].min()) < 0.003
+
+
+def test_a_bent_elbow_turns_the_palm_to_the_other_hand():
+    """Forearms held forward from hanging arms, as to shake hands: palms look inwards, thumbs lie on top."""
+    rotations = np.tile(np.eye(3), (1, 22, 1, 1))
+    for side, sign in (("left", -1), ("right", 1)):
+        rotations[0, J[f"{side}_shoulder"]] = Rotation.from_euler("z", sign * 85, degrees=True).as_matrix()
+        rotations[0, J[f"{side}_elbow"]] = Rotation.from_euler("y", sign * 80, degrees=True).as_matrix()
+    positions = forward_kinematics(rotations, np.array([[0.0, 0.95, 0.0]]))
+    turned = bone_rotations(positions)[0]
+    for side, inwards in (("left", -1), ("right", 1)):
+        palm = turned[J[f"{side}_wrist"]] @ [0, -1, 0]  # in the T-pose palms look down
+        assert palm[0] * inwards > 0.95
+
+
+def test_the_face_turns_with_the_head():
+    """A head turned aside on a skeleton is a face turned aside, without a tilt."""
+    rotations = np.tile(np.eye(3), (3, 22, 1, 1))
+    rotations[:, J["neck"]] = Rotation.from_euler("y", [[-40], [0], [40]], degrees=True).as_matrix()
+    turned = bone_rotations(forward_kinematics(rotations, np.tile([0.0, 0.95, 0.0], (3, 1))))
+    assert np.abs(turned[:, J["head"]] - global_rotations(rotations)[:, J["neck"]]).max() < 0.02
+
+
+def test_nothing_jumps_between_frames():
+    with np.load(EXAMPLES / "push.npz") as stored:
+        positions, fps = stored["positions"][1], float(stored["fps"])
+    turned = bone_rotations(positions)
+    steps = Rotation.from_matrix(
+        (np.swapaxes(turned[:-1], -1, -2) @ turned[1:]).reshape(-1, 3, 3)
+    ).magnitude()
+    assert np.degrees(steps).max() * fps < 1500, "degrees a second"
+
+
+def test_other_joints_and_other_names_are_refused():
+    clip = Clip(np.zeros((2, 15, 3)), 30.0, SBU15)
+    with pytest.raises(InputError, match="22 joints"):
+        skin(load_body("a"), clip)
+    with pytest.raises(InputError, match="no body"):
+        load_body("c")

@@ -1,0 +1,188 @@
+"""Signing in, and what is whose."""
+
+from __future__ import annotations
+
+import json
+import time
+from pathlib import Path
+
+import httpx
+import pytest
+from fastapi.testclient import TestClient
+from sqlalchemy import update
+
+from motion import InputError
+from tests.server.clients import (
+    CALL,
+    FIELDS,
+    HTML,
+    JOIN,
+    answer_of,
+    find_fn,
+    lab_of,
+    served_on_loopback,
+    sign_in,
+    told,
+)
+from webdemo.server.accounts.users import Users
+from webdemo.server.store.database import Link, SignIn
+from webdemo.ui.history import Entry
+
+
+def test_nothing_without_signing_in(shared: TestClient) -> None:
+    shared.cookies.clear()
+    asked = shared.get("/?run=abc", headers={"accept": "text/html"})
+    assert asked.status_code == 303 and asked.headers["location"] == "/login?next=%2F%3Frun%3Dabc"
+    for path in ("/config", "/gradio_api/info", "/gradio_api/queue/data?session_hash=x", "/theme.css"):
+        assert shared.get(path).status_code == 401
+    for path in (JOIN, "/gradio_api/upload", "/gradio_api/call/generate", "/gradio_api/cancel"):
+        assert shared.post(path, json={}).status_code == 401
+    assert shared.get("/healthz").status_code in (200, 503)
+    assert "Sign in" in shared.get("/login").text
+
+
+def test_signing_in_from_the_page(shared: TestClient) -> None:
+    html = {"accept": "text/html"}
+    wrong = shared.post("/login", data={"username": "ada", "password": "no"}, headers=html)
+    assert wrong.status_code == 401 and "password is wrong" in wrong.text
+    for wanted, place in (("/?run=x", "/?run=x"), ("https://evil.example/", "/"), ("//evil.example", "/"),
+                          ("/\\evil.example", "/"), ("/x\r\nSet-Cookie: a=b", "/")):  # fmt: skip
+        fields = {"username": "ada", "password": "password of ada", "next": wanted}
+        answer = shared.post("/login", data=fields, headers=html)
+        assert (answer.status_code, answer.headers["location"]) == (303, place)
+    quoted = shared.get("/login", params={"next": '/"><script>alert(1)</script>'}).text
+    assert "<script>alert" not in quoted
+
+
+def test_another_sites_form_does_not_sign_in(shared: TestClient) -> None:
+    fields = {"username": "ada", "password": "password of ada"}
+    answer = shared.post("/login", data=fields, headers={"origin": "https://evil.example"})
+    assert answer.status_code == 403 and "set-cookie" not in answer.headers
+
+
+def test_sessions_end_and_are_not_forged(shared: TestClient) -> None:
+    ada = sign_in(shared, "ada")
+    assert shared.get("/config", headers=ada).status_code == 200
+    forged = {"cookie": "pasdedeux_session=" + "A" * 43}
+    assert shared.get("/config", headers=forged).status_code == 401
+    shared.post("/logout", headers=ada)
+    assert shared.get("/config", headers=ada).status_code == 401
+    late = sign_in(shared, "ada")
+    with lab_of(shared).database.session.begin() as session:
+        session.execute(update(SignIn).values(until=time.time() - 1))
+    assert shared.get("/config", headers=late).status_code == 401
+
+
+def test_a_page_session_is_its_persons(shared: TestClient) -> None:
+    ada, eve = sign_in(shared, "ada"), sign_in(shared, "eve")
+    fn = find_fn(shared, ada, "generate")
+    fields = ["Two people walk.", 1, 0, 1, 3, 1, 0, "ddim", "intergen"]
+    body = {"data": fields, "fn_index": fn, "session_hash": "adas"}
+    assert shared.post(JOIN, json=body, headers=ada).status_code == 200
+    assert shared.post(JOIN, json=body, headers=eve).status_code == 403
+    assert shared.get("/gradio_api/queue/data?session_hash=adas", headers=eve).status_code == 403
+    assert shared.get("/gradio_api/heartbeat/adas", headers=eve).status_code == 403
+    stop = {"session_hash": "adas", "fn_index": fn, "event_id": "x"}
+    assert shared.post("/gradio_api/cancel", json=stop, headers=eve).status_code == 403
+    told = shared.get("/gradio_api/queue/data?session_hash=adas", headers=ada).text
+    assert "process_completed" in told and '"seed": 0' in told.replace('"seed":0', '"seed": 0')
+    history = lab_of(shared).history
+    assert [entry.title for entry in history.entries("user ada")] == ["Two people walk."]
+    assert history.entries("user eve") == []
+
+
+def test_a_notebook_signs_in(shared: TestClient) -> None:
+    """What gradio_client does with auth=(name, password)."""
+    answer = shared.post("/login", data={"username": "eve", "password": "password of eve"})
+    shared.cookies.clear()
+    cookies = {"cookie": f"pasdedeux_session={answer.cookies['pasdedeux_session']}"}
+    body = {"data": ["impossible", 1, 0, 1, 3, 1, 0, "ddim", "intergen"]}
+    event = shared.post("/gradio_api/call/generate", json=body, headers=cookies).json()["event_id"]
+    told = shared.get(f"/gradio_api/call/generate/{event}", headers=cookies).text
+    assert "event: error" in told and "The stub cannot do this: ask for something possible." in told
+
+
+def newest(client: TestClient, owner: str) -> Entry:
+    return lab_of(client).history.entries(owner)[0]
+
+
+def test_a_run_of_another_is_not_opened_by_its_id(shared: TestClient) -> None:
+    ada = sign_in(shared, "ada")
+    assert "event: complete" in told(shared, "generate", FIELDS, ada)
+    history, entry = lab_of(shared).history, newest(shared, "user ada")
+    for key, owner in ((entry.id, "user eve"), (entry.id, ""), (entry.id[:-1], "user ada")):
+        with pytest.raises(InputError, match="There is no such run"):
+            history.open(key, owner)
+    # Its event is hers as well: nobody else may read what it ends with.
+    event = shared.post(f"{CALL}/generate", json={"data": FIELDS}, headers=ada).json()["event_id"]
+    assert shared.get(f"{CALL}/generate/{event}").status_code == 401
+    assert shared.get("/config", headers={"cookie": "pasdedeux_session=user ada"}).status_code == 401
+
+
+def page_at(client: TestClient, key: str, headers: dict[str, str]) -> str:
+    """What the page does first at ``/?run=KEY``: all that it is told then."""
+    session = f"page{time.monotonic_ns()}"
+    fn = find_fn(client, headers, "open_address")
+    body = {"data": [key], "fn_index": fn, "session_hash": session}
+    assert client.post("/gradio_api/queue/join", json=body, headers=headers).status_code == 200
+    lines = client.get(f"/gradio_api/queue/data?session_hash={session}", headers=headers).text.splitlines()
+    events = [json.loads(line.removeprefix("data: ")) for line in lines if line.startswith("data: ")]
+    (done,) = [event for event in events if event["msg"] == "process_completed"]
+    assert done["success"]
+    return json.dumps(done["output"]["data"])
+
+
+def test_an_address_opens_no_run_of_another(shared: TestClient) -> None:
+    """To a stranger a run, one that never was and a link that ended or was revoked are the same."""
+    ada, eve = sign_in(shared, "ada"), sign_in(shared, "eve")
+    assert "event: complete" in told(shared, "generate", ["SECRET", *FIELDS[1:]], ada)
+    history, entry = lab_of(shared).history, newest(shared, "user ada")
+    assert "SECRET" in page_at(shared, entry.id, ada)
+    key, _ = history.link(entry.id, "user ada")
+    assert "SECRET" in page_at(shared, key, eve)
+    history.revoke(entry.id, "user ada")
+    late, _ = history.link(entry.id, "user ada")
+    with history.database.session.begin() as session:
+        session.execute(update(Link).where(Link.token == late).values(until=time.time() - 1))
+    keys = [entry.id, "n" * len(entry.id), key, late, "../" + entry.id, entry.id + "' OR '1'='1"]
+    answers = {page_at(shared, each, eve) for each in keys}
+    assert len(answers) == 1
+    (answer,) = answers
+    assert "There is no such run, or its link has expired" in answer and "SECRET" not in answer
+    shared.post("/logout", headers=eve)
+    signed_out = shared.get(f"/?run={entry.id}", headers={**eve, **HTML})
+    assert signed_out.status_code == 303 and "SECRET" not in signed_out.text
+
+
+def test_two_page_processes_on_one_database(pair: tuple[TestClient, TestClient]) -> None:
+    """Either knows who signed in, and every run, at the other."""
+    one, two = pair
+    ada = sign_in(one, "ada")
+    assert find_fn(two, ada, "generate") == find_fn(one, ada, "generate")
+    manifest = answer_of(told(one, "generate", FIELDS, ada))["manifest"]
+    entry = newest(two, "user ada")
+    assert lab_of(two).history.open(entry.id, "user ada").result.manifest == manifest
+    key, _ = lab_of(one).history.link(entry.id, "user ada")
+    assert lab_of(two).history.open(key, "").entry.id == entry.id
+
+
+def test_behind_a_proxy_that_speaks_tls(tmp_path: Path) -> None:
+    """Cookies are then for TLS alone, and a link has the page's own address."""
+    users = Users(tmp_path / "users")
+    users.add("ada", "password of ada")
+    given = {"users": users.path, "hosts": ["lab.example", "127.0.0.1"], "proxies": ["127.0.0.2"]}
+    with served_on_loopback(tmp_path, root_path="/motion", **given) as (host, port):
+        for address, secure in (("127.0.0.2", True), ("127.0.0.3", False)):
+            transport = httpx.HTTPTransport(local_address=address)
+            with httpx.Client(base_url=f"http://{host}:{port}", transport=transport) as proxy:
+                answer = proxy.post(
+                    "/login", data={"username": "ada", "password": "password of ada"},
+                    headers={"host": "lab.example", "x-forwarded-proto": "https",
+                             "x-forwarded-for": "203.0.113.9", "origin": "https://lab.example"},
+                )  # fmt: skip
+                assert answer.json() == {"success": True}
+                assert ("; Secure" in answer.headers["set-cookie"]) == secure
+                signed = {"cookie": answer.headers["set-cookie"].split(";")[0], "host": "lab.example",
+                          "x-forwarded-proto": "https"}  # fmt: skip
+                root = proxy.get("/config", headers=signed).json()["root"]
+                assert root == f"http{'s' if secure else ''}://lab.example/motion"

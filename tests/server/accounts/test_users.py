@@ -1,0 +1,197 @@
+"""Accounts, sign-ins and settings."""
+
+from __future__ import annotations
+
+import io
+import json
+import stat
+import time
+from pathlib import Path
+from typing import Any
+
+import pytest
+from sqlalchemy import update
+from starlette.responses import Response
+
+from motion import InputError
+from webdemo.cli import main
+from webdemo.server.accounts import users as accounts
+from webdemo.server.accounts.users import SignIns, Users
+from webdemo.server.http.cookies import set_cookie
+from webdemo.server.settings import Settings, read_settings
+from webdemo.server.store.database import Database, SignIn
+
+
+@pytest.fixture
+def users(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Users:
+    monkeypatch.setitem(accounts._COST, "n", 2**4)  # the real cost is there to be slow
+    users = Users(tmp_path / "users")
+    users.add("ada", "correct horse")
+    return users
+
+
+def test_passwords_are_kept_as_salted_hashes(users: Users) -> None:
+    users.add("eve", "correct horse")
+    text = users.path.read_text()
+    lines = dict(line.split(":", 1) for line in text.splitlines() if not line.startswith("#"))
+    assert "correct horse" not in text and lines["ada"] != lines["eve"]
+    assert stat.S_IMODE(users.path.stat().st_mode) == 0o600
+    assert users.knows("ada", "correct horse") and not users.knows("ada", "wrong horse")
+    assert not users.knows("nobody", "nobody") and not users.knows("", "")
+
+
+def test_changes_are_seen_by_who_reads(users: Users) -> None:
+    reader = Users(users.path)
+    assert reader.names == ["ada"]
+    assert not users.add("ada", "another password")
+    assert reader.knows("ada", "another password") and not reader.knows("ada", "correct horse")
+    users.remove("ada")
+    assert not reader.knows("ada", "another password")
+
+
+@pytest.mark.parametrize("name", ["", "a:b", "a\nroot:x", "../x", "Ada", "a" * 41, "é"])
+def test_names_that_would_break_the_file(users: Users, name: str) -> None:
+    with pytest.raises(InputError, match="is not a valid account name"):
+        users.add(name, "long enough")
+    assert users.names == ["ada"]
+
+
+def test_what_cannot_be_is_a_sentence(users: Users, tmp_path: Path) -> None:
+    with pytest.raises(InputError, match="8 to 256 characters"):
+        users.add("eve", "short")
+    with pytest.raises(InputError, match="no account"):
+        users.remove("eve")
+    users.path.write_text("ada\n")
+    with pytest.raises(InputError, match="it is damaged"):
+        _ = users.names
+    with pytest.raises(InputError, match="cannot be read"):
+        _ = Users(tmp_path / "none").names
+
+
+@pytest.fixture
+def sign_ins(users: Users, tmp_path: Path) -> SignIns:
+    return SignIns(Database(f"sqlite:///{tmp_path / 's.db'}"), users, 1.0)
+
+
+def test_sign_ins_end(sign_ins: SignIns) -> None:
+    token = sign_ins.begin("ada", "correct horse", "1.2.3.4")
+    assert token and sign_ins.person(token) == "ada"
+    assert sign_ins.person("x" * 43) is None and sign_ins.person("") is None
+    with sign_ins.database.session() as session:
+        assert token not in str([vars(row) for row in session.query(SignIn)])  # only its hash
+    with sign_ins.database.session.begin() as session:
+        session.execute(update(SignIn).values(until=time.time() - 1))
+    assert sign_ins.person(token) is None
+    token = sign_ins.begin("ada", "correct horse", "1.2.3.4")
+    assert token
+    sign_ins.end(token)
+    assert sign_ins.person(token) is None
+
+
+def test_whoever_is_removed_is_out(sign_ins: SignIns) -> None:
+    token = sign_ins.begin("ada", "correct horse", "1.2.3.4")
+    sign_ins.users.remove("ada")
+    assert token and sign_ins.person(token) is None
+
+
+def test_guessing_ends(sign_ins: SignIns) -> None:
+    for _ in range(accounts.TRIES):
+        assert sign_ins.begin("ada", "wrong horse", "6.6.6.6") is None
+    with pytest.raises(InputError, match="Too many wrong passwords"):
+        sign_ins.begin("ada", "correct horse", "6.6.6.6")
+    assert sign_ins.begin("ada", "correct horse", "1.2.3.4")  # its owner is not locked out
+
+
+# ---- settings ------------------------------------------------------------------------------------
+
+
+def test_the_environment_goes_before_the_file(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+    file = tmp_path / "p.toml"
+    file.write_text('port = 8001\nwaiting = 9\nproxies = ["10.0.0.1"]\n')
+    monkeypatch.setenv("PASDEDEUX_SETTINGS", str(file))
+    monkeypatch.setenv("PASDEDEUX_PORT", "8002")
+    settings = read_settings()
+    assert (settings.port, settings.waiting, settings.proxies) == (8002, 9, ["10.0.0.1"])
+    assert read_settings(port=8003).port == 8003
+
+
+@pytest.mark.parametrize(
+    ("text", "sentence"),
+    [
+        ("prot = 1", "There is no setting 'prot'"),
+        ("port = 'x'", "The setting port (PASDEDEUX_PORT) cannot be 'x'"),
+        ("port = 70000", "The setting port"),
+        ("root_path = '/a/../b?'", "The setting root_path"),
+        ("port = ", "cannot be read"),
+    ],
+)
+def test_a_wrong_file_is_a_sentence(
+    monkeypatch: pytest.MonkeyPatch, tmp_path: Path, text: str, sentence: str
+) -> None:
+    file = tmp_path / "p.toml"
+    file.write_text(text)
+    monkeypatch.setenv("PASDEDEUX_SETTINGS", str(file))
+    with pytest.raises(InputError) as caught:
+        read_settings()
+    assert sentence in str(caught.value) and "\n" not in str(caught.value)
+
+
+@pytest.mark.parametrize(
+    ("fields", "allowed"),
+    [
+        ({"host": "127.0.0.1"}, True),
+        ({"host": "::1"}, True),
+        ({"host": "0.0.0.0"}, False),
+        ({"host": "192.0.2.7"}, False),
+        ({"host": "0.0.0.0", "open": True}, True),
+        ({"host": "0.0.0.0", "users": "users"}, True),
+    ],
+)
+def test_it_is_never_open_unsaid(fields: dict[str, Any], allowed: bool) -> None:
+    settings = Settings(**fields)
+    if allowed:
+        settings.check()
+    else:
+        with pytest.raises(InputError, match="there are no accounts"):
+            settings.check()
+
+
+def test_a_space_is_open_and_behind_its_own_proxy(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("SPACE_ID", "lab/pas-de-deux")
+    settings = Settings()
+    settings.check()
+    assert (settings.host, settings.open, settings.proxies) == ("0.0.0.0", True, ["*"])
+    response = Response()
+    set_cookie(response, "a", "b", seconds=1, root="", secure=False)
+    assert "SameSite=none; Secure" in response.headers["set-cookie"]
+
+
+def test_secrets_are_not_printed() -> None:
+    shown = Settings(metrics_token="s3cret", database="postgresql://lab:s3cret@db/x").shown()
+    assert "s3cret" not in str(shown)
+
+
+# ---- from a shell --------------------------------------------------------------------------------
+
+
+def test_accounts_from_a_shell(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.setattr("sys.stdin", io.StringIO("correct horse\n"))
+    file = str(tmp_path / "users")
+    assert main(["user", "add", "ada", "--users", file]) == 0
+    assert main(["user", "list", "--users", file]) == 0
+    assert json.loads(capsys.readouterr().out.splitlines()[-1])["users"] == ["ada"]
+    assert Users(Path(file)).knows("ada", "correct horse")
+    assert main(["user", "remove", "eve", "--users", file]) == 2
+    assert main(["user", "remove", "ada", "--users", file]) == 0
+    assert Users(Path(file)).names == []
+
+
+def test_settings_from_a_shell(monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> None:
+    monkeypatch.setenv("PASDEDEUX_METRICS_TOKEN", "s3cret")
+    assert main(["serve", "--port", "8123", "--print-settings"]) == 0
+    said = capsys.readouterr().out
+    assert "port = 8123  # port to listen on" in said and "s3cret" not in said
+    assert main(["serve", "--host", "0.0.0.0"]) == 2
+    assert "there are no accounts" in capsys.readouterr().err

@@ -1,0 +1,125 @@
+"""A server in a process of its own, and the people who talk to it."""
+
+from __future__ import annotations
+
+import os
+import socket
+import subprocess
+import sys
+import time
+from pathlib import Path
+from types import TracebackType
+from typing import Any
+
+import httpx
+import pytest
+
+from webdemo.server.accounts import users
+from webdemo.server.accounts.users import Users
+
+from ..lab import ROOT
+
+FIELDS = ["Two people walk.", 1, 0, 1, 3, 1, 0, "ddim", "intergen"]
+"""What /generate is given: a second, one step."""
+CANARY = "the canary that nobody may read"
+
+
+class Target:
+    """A server with the stub engine, started on entry and killed at the end.
+
+    Args:
+        folder: its data; ``canary.txt`` in it holds :data:`CANARY`.
+        accounts: with those of ada and eve; without, it is open to everybody.
+        settings: further ones, by their names.
+    """
+
+    def __init__(self, folder: Path, *, accounts: bool, **settings: Any) -> None:
+        with socket.socket() as probe:
+            probe.bind(("127.0.0.1", 0))
+            self.port = probe.getsockname()[1]
+        self.url, self.folder, self.accounts = f"http://127.0.0.1:{self.port}", folder, accounts
+        self.data = folder / "data"
+        self.canary = folder / "canary.txt"
+        self.canary.write_text(CANARY)
+        given: dict[str, Any] = {"node": "target", "free_megabytes": 0, "rate": 100_000, "grace_seconds": 1}
+        if accounts:
+            given |= {"users": folder / "users", "host": "0.0.0.0", "hosts": '["127.0.0.1"]'}
+            with pytest.MonkeyPatch.context() as patch:
+                patch.setitem(users._COST, "n", 2**14)  # other tests make it cheaper in here
+                for name in ("ada", "eve"):
+                    Users(folder / "users").add(name, f"password of {name}")
+        else:
+            given |= {"open": 1}
+        self.env = {f"PASDEDEUX_{name.upper()}": str(value) for name, value in {**given, **settings}.items()}
+        self._clients: dict[str, httpx.Client] = {}
+
+    def __enter__(self) -> Target:
+        script = str(ROOT / "tests" / "server" / "lab.py")
+        with open(self.folder / "log", "w") as log:
+            self.process = subprocess.Popen(
+                [sys.executable, script, str(self.port), str(self.data)],
+                cwd=ROOT, env={**os.environ, "OMP_NUM_THREADS": "1", "STUB_PAUSE": "0", **self.env},
+                stdout=log, stderr=subprocess.STDOUT,
+            )  # fmt: skip
+        until = time.monotonic() + 240
+        while not self.healthy():
+            assert self.process.poll() is None, self.log()
+            assert time.monotonic() < until, self.log()
+            time.sleep(0.1)
+        return self
+
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
+    ) -> None:
+        self.process.kill()
+        self.process.wait()
+
+    def log(self) -> str:
+        """What the server wrote so far."""
+        return (self.folder / "log").read_text()
+
+    def healthy(self) -> bool:
+        """Whether it answers within ten seconds that it is well."""
+        try:
+            return httpx.get(f"{self.url}/healthz", timeout=10).status_code == 200
+        except httpx.TransportError:
+            return False
+
+    def memory(self) -> float:
+        """Megabytes that the process has in memory."""
+        status = Path(f"/proc/{self.process.pid}/status").read_text()
+        return int(status.split("VmRSS:")[1].split()[0]) / 1024
+
+    def client(self, who: str) -> httpx.Client:
+        """Somebody's connection: signed in where there are accounts, otherwise with a browser's cookie."""
+        if who not in self._clients:
+            client = self._clients[who] = httpx.Client(base_url=self.url, timeout=30)
+            if who == "stranger":
+                return client
+            if self.accounts:
+                given = {"username": who, "password": f"password of {who}"}
+                assert client.post("/login", data=given).json() == {"success": True}
+            else:
+                client.get("/", headers={"accept": "text/html"})
+        return self._clients[who]
+
+    def ask(self, who: str, method: str, path: str, **more: Any) -> httpx.Response:
+        """One request of somebody's."""
+        return self.client(who).request(method, path, **more)
+
+    def call(self, who: str, endpoint: str, data: list[Any]) -> str:
+        """What a call of an endpoint ends with, or the refusal of it."""
+        asked = self.ask(who, "POST", f"/gradio_api/call/{endpoint}", json={"data": data})
+        if asked.status_code != 200:
+            return asked.text
+        return self.ask(who, "GET", f"/gradio_api/call/{endpoint}/{asked.json()['event_id']}").text
+
+    def upload(self, who: str, name: str, content: bytes) -> str:
+        """Uploads a file; returns its path there."""
+        (path,) = self.ask(who, "POST", "/gradio_api/upload", files={"files": (name, content)}).json()
+        return path
+
+    def copies(self, text: str) -> list[Path]:
+        """Files that the server made which hold a text."""
+        scratch = [path for path in (self.data / "scratch").rglob("*") if path.is_file()]
+        return [path for path in scratch if text.encode() in path.read_bytes()]

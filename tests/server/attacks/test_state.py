@@ -1,0 +1,111 @@
+"""Attacks that need more than one request: on passwords, accounts, the database, and connections."""
+
+from __future__ import annotations
+
+import socket
+import sqlite3
+import time
+from collections.abc import Callable, Iterator
+from contextlib import closing
+from pathlib import Path
+
+import pytest
+
+from webdemo.server.accounts import users
+from webdemo.server.accounts.users import Users
+
+from ..clients import read_all
+from .target import FIELDS, Target
+
+
+@pytest.fixture
+def own(tmp_path: Path) -> Iterator[Target]:
+    """A server with accounts of its own, which a test may ruin."""
+    with Target(tmp_path, accounts=True) as target:
+        yield target
+
+
+def wait_for(condition: Callable[[], bool]) -> None:
+    until = time.monotonic() + 60
+    while not condition():
+        assert time.monotonic() < until
+        time.sleep(0.5)
+
+
+def health(target: Target) -> tuple[int, dict[str, str]]:
+    answer = target.ask("stranger", "GET", "/healthz")
+    return answer.status_code, answer.json()["checks"]
+
+
+def test_a_changed_password_and_ruined_accounts_let_nobody_in(own: Target) -> None:
+    file = own.folder / "users"
+    for who in ("ada", "eve"):
+        assert own.ask(who, "GET", "/config").status_code == 200
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setitem(users._COST, "n", 2**14)
+        Users(file).add("ada", "another password")
+    wait_for(lambda: own.ask("ada", "GET", "/config").status_code == 401)
+    assert own.ask("eve", "GET", "/config").status_code == 200
+
+    whole = file.read_text()
+    for ruin in (file.unlink, lambda: file.write_text("ada:no base64")):
+        ruin()
+        wait_for(lambda: own.ask("eve", "GET", "/config").status_code == 503)
+        given = {"username": "eve", "password": "password of eve"}
+        refused = own.ask("stranger", "POST", "/login", data=given)
+        for answer in (own.ask("eve", "GET", "/config"), refused):
+            assert answer.status_code == 503 and "accounts cannot be read" in answer.json()["detail"]
+            assert str(own.folder) not in answer.text
+        status, checks = health(own)
+        assert status == 503 and checks["accounts"].startswith("failed")
+    file.write_text(whole)
+    wait_for(lambda: own.ask("eve", "GET", "/config").status_code == 200 and own.healthy())
+
+
+def test_a_damaged_database_is_told_as_it_is(own: Target) -> None:
+    """Its middle is overwritten while the server runs: no SQL is shown, and the health says so."""
+    functions = own.ask("ada", "GET", "/config").json()["dependencies"]
+    refresh = next(function["id"] for function in functions if function["api_name"] == "refresh")
+    for _ in range(20):
+        assert "event: complete" in own.call("ada", "generate", ["SECRET " * 60, *FIELDS[1:]])
+    file = own.data / "history.db"
+    with closing(sqlite3.connect(file)) as other:  # so that all is in the one file, and is read from it anew
+        other.execute("PRAGMA wal_checkpoint(TRUNCATE)").fetchone()
+    with open(file, "r+b") as damaged:
+        damaged.seek(4096)
+        damaged.write(b"\xff" * (file.stat().st_size - 4096))
+    wait_for(lambda: health(own)[1]["database"].startswith("failed"))
+    assert health(own)[0] == 503
+    body = {"data": [None], "fn_index": refresh, "session_hash": "list"}
+    said = own.call("ada", "generate", FIELDS)
+    said += own.ask("ada", "POST", "/gradio_api/queue/join", json=body).text
+    said += own.ask("ada", "GET", "/gradio_api/queue/data?session_hash=list").text
+    assert "cannot be read or written" in said
+    assert not [word for word in ("SELECT", "INSERT", "sqlalche", "SECRET", str(own.folder)) if word in said]
+
+
+def test_two_lengths_are_one_too_many(anyone: Target) -> None:
+    """Of a length and pieces a proxy may take the one and the server the other."""
+    head = (
+        "POST /gradio_api/queue/join HTTP/1.1\r\nHost: 127.0.0.1\r\nContent-Type: application/json\r\n"
+        "Content-Length: 5\r\nTransfer-Encoding: chunked\r\nConnection: close\r\n\r\n0\r\n\r\n"
+    )
+    with socket.create_connection(("127.0.0.1", anyone.port), timeout=30) as one:
+        one.sendall(head.encode())
+        assert read_all(one).startswith(b"HTTP/1.1 400")
+
+
+def test_idle_connections_keep_nobody_out(anyone: Target) -> None:
+    """A thousand from one address, of which it may hold 400."""
+    idle = []
+    try:
+        for _ in range(1000):
+            idle.append(socket.create_connection(("127.0.0.1", anyone.port), timeout=30))
+        with socket.create_connection(
+            ("127.0.0.1", anyone.port), timeout=30, source_address=("127.0.0.2", 0)
+        ) as other:
+            other.sendall(b"GET /healthz HTTP/1.1\r\nHost: 127.0.0.1\r\nConnection: close\r\n\r\n")
+            assert read_all(other).startswith(b"HTTP/1.1 200")
+    finally:
+        for one in idle:
+            one.close()

@@ -1,0 +1,176 @@
+"""What a stranger, another site or a hostile client gets to hear."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+import pytest
+from fastapi.testclient import TestClient
+
+from tests.server.clients import HERE, HTML, JOIN, client_of, lab_of, settings_for
+from webdemo.server.app import PAGES
+from webdemo.server.http.body_limits import Refused
+from webdemo.server.http.page_html import PageCache
+from webdemo.server.http.rate_limit import RateLimit
+
+
+def test_the_page_and_its_headers(local: TestClient) -> None:
+    local.cookies.clear()
+    answer = local.get("/", headers={"accept": "text/html"})
+    assert answer.status_code == 200 and "Pas de Deux" in answer.text
+    assert answer.headers["x-content-type-options"] == "nosniff"
+    assert answer.headers["referrer-policy"] == "same-origin"
+    assert len(answer.headers["x-request-id"]) == 12
+    assert "pasdedeux_visitor=" in answer.headers["set-cookie"]
+
+
+@pytest.mark.parametrize(
+    "path",
+    [
+        "/gradio_api/file=/etc/passwd", "/gradio_api/file=../../etc/passwd", "/gradio_api/file=%2e%2e/x",
+        "/gradio_api/file=/proc/self/environ", "/gradio_api/file=https://example.com/x",
+        "/gradio_api/proxy=https://example.com/", "/monitoring", "/gradio_api/vibe-edit/", "/docs",
+        "/openapi.json", "/gradio_api/file=app.py", "/a%00b", "/..%5c..%5cx", "/static/../app.py",
+        "/gradio_api/dev/reload", "/gradio_api/deep_link",
+    ],
+)  # fmt: skip
+def test_paths_lead_nowhere(local: TestClient, path: str) -> None:
+    answer = local.get(path)
+    assert answer.status_code in (400, 403, 404) and "root:" not in answer.text
+
+
+def test_the_database_is_not_served(local: TestClient) -> None:
+    for file in (lab_of(local).settings.data / "history.db", Path(__file__)):
+        assert local.get(f"/gradio_api/file={file}").status_code in (403, 404)
+
+
+@pytest.mark.parametrize(
+    "headers",
+    [
+        {"origin": "https://evil.example"}, {"origin": "null"}, {"sec-fetch-site": "cross-site"},
+        {"origin": "http://127.0.0.1:9999"}, {"origin": "http://127.0.0.1.evil.example"},
+    ],
+)  # fmt: skip
+def test_other_sites_change_nothing(local: TestClient, headers: dict[str, str]) -> None:
+    answer = local.post(JOIN, json={"session_hash": "s1", "data": [], "fn_index": 0}, headers=headers)
+    assert answer.status_code == 403 and "Another site's page" in answer.json()["detail"]
+
+
+def test_a_head_that_is_no_address_is_refused(local: TestClient) -> None:
+    for headers in ({"host": "["}, {"origin": "http://["}, {"host": "]:1", "origin": "http://[x"}):
+        answer = local.post(JOIN, json={}, headers=headers)
+        assert answer.status_code == 400 and "not an address" in answer.json()["detail"]
+
+
+def test_foreign_names_are_refused(local: TestClient) -> None:
+    """A site whose name is made to point to this machine is still that site."""
+    assert local.get("/", headers={"host": "evil.example"}).status_code == 421
+    assert local.get("/", headers={"host": "localhost:1234"}).status_code == 200
+
+
+def test_gradios_own_check_of_files_is_on(local: TestClient) -> None:
+    """It is left out for a page that was not launched, and a mounted one never is."""
+    (mounted,) = [r.app for r in local.app.routes if hasattr(getattr(r, "app", None), "state_holder")]
+    assert mounted.get_blocks().has_launched
+
+
+def test_behind_an_unsaid_proxy_nobody_gets_in(local: TestClient) -> None:
+    other = TestClient(local.app, base_url=HERE, client=("203.0.113.9", 5))
+    answer = other.get("/config")
+    assert answer.status_code == 403 and "PASDEDEUX_OPEN" in answer.json()["detail"]
+    assert other.get("/metrics").status_code == 403
+
+
+def test_bodies_have_limits(local: TestClient) -> None:
+    big = {"content-length": str(10**9), "content-type": "application/json"}
+    assert local.post(JOIN, content=b"{}", headers=big).status_code == 413
+    assert local.post("/gradio_api/upload", content=b"x", headers=big).status_code == 413
+
+    def endless() -> Iterator[bytes]:
+        for _ in range(64):
+            yield b" " * 65536
+
+    assert local.post(JOIN, content=endless()).status_code == 413
+    assert local.post(JOIN, content=b"[" * 15_000).status_code == 400
+    assert local.post(JOIN, content=b'{"session_hash": 7}').status_code == 400
+    assert local.post(JOIN, content=b"{}", headers={"content-length": "-5"}).status_code == 400
+    assert local.get("/" + "a" * 5000).status_code == 414
+
+
+def test_too_many_requests() -> None:
+    rates = RateLimit(5)
+    for _ in range(5):
+        rates.take("a")
+    with pytest.raises(Refused, match="Too many requests"):
+        rates.take("a")
+    rates.take("b")
+
+
+def test_below_a_path(tmp_path: Path) -> None:
+    """A proxy may cut the base path off, or leave it; the page's own addresses hold it."""
+    settings = settings_for(tmp_path, root_path="/motion", proxies=["127.0.0.1"])
+    client = client_of(settings)
+    for path in ("/motion/config", "/config"):
+        assert client.get(path).json()["root"] == f"{HERE}/motion"
+    answer = client.get("/motion")
+    assert answer.status_code == 200 and "Path=/motion;" in answer.headers["set-cookie"]
+    assert client.get("/motionx").status_code == 404
+
+
+def test_the_page_is_made_once_for_everybody(local: TestClient) -> None:
+    html = {"accept": "text/html"}
+    answers = []
+    for _ in range(2):
+        local.cookies.clear()  # a stranger each time
+        answers.append(local.get("/", headers=html))
+    first, second = answers
+    assert first.text == second.text and first.headers["x-request-id"] != second.headers["x-request-id"]
+    assert first.headers["set-cookie"] != second.headers["set-cookie"]  # whose it is, is not kept
+    assert len(second.headers.get_list("x-request-id")) == 1
+    assert local.get("/?run=abc", headers=html).text == first.text
+    elsewhere = local.get("/", headers={**html, "host": "localhost:99"}).text
+    assert "http://localhost:99" in elsewhere and "http://localhost:99" not in local.get("/").text
+
+
+def test_a_kept_page_is_not_made_again() -> None:
+    made: list[str] = []
+
+    async def page(scope: Any, receive: Any, send: Any) -> None:
+        made.append(scope["path"])
+        await send({"type": "http.response.start", "status": 200, "headers": []})
+        await send({"type": "http.response.body", "body": b"page"})
+
+    client = TestClient(PageCache(page))
+    assert [client.get(path).text for path in ("/", "/", "/?run=1", "/")] == ["page"] * 4
+    assert made == ["/"]
+    for path in ("/other", "/?theme=dark"):
+        client.get(path)
+    assert made == ["/", "/other", "/"]
+
+
+def test_nobody_says_where_the_page_is(local: TestClient) -> None:
+    """Gradio would take these headers for the page's address, and put it into every link."""
+    for name in ("x-forwarded-host", "x-gradio-server"):
+        for path in ("/", "/config"):
+            assert "evil.example" not in local.get(path, headers={name: "http://evil.example"}).text
+
+
+def test_what_pages_leave_behind_is_bounded(local: TestClient) -> None:
+    mounted = next(
+        route.app for route in local.app.routes if hasattr(getattr(route, "app", None), "state_holder")
+    )
+    assert mounted.state_holder.capacity == PAGES
+
+
+def test_a_browser_is_told_on_a_page_of_the_labs_own(local: TestClient) -> None:
+    for path, status, sentence in (
+        ("/no/such/place", 404, "There is nothing here."),
+        ("/" + "a" * 5000, 414, "The address is too long."),
+    ):
+        answer = local.get(path, headers=HTML)
+        assert answer.status_code == status and answer.headers["content-type"].startswith("text/html")
+        assert f'<p role="alert">{sentence}</p>' in answer.text and 'href="/"' in answer.text
+        assert answer.headers["x-request-id"] in answer.text
+    assert local.get("/no/such/place").json() == {"detail": "Not Found"}

@@ -1,0 +1,142 @@
+"""How it is told whether the server is well: health, figures and logs."""
+
+from __future__ import annotations
+
+import json
+import logging
+import re
+import time
+import traceback
+from typing import Any
+
+import gradio as gr
+import pytest
+from fastapi.testclient import TestClient
+from prometheus_client.parser import text_string_to_metric_families
+
+from tests.server.clients import FIELDS, JOIN, answer_of, lab_of, told
+from tests.server.queue.test_queue import wait_for
+from webdemo.server.logs import JsonLines, log_instead_of_printing
+
+CRASH = ["crash", *FIELDS[1:5], 3, *FIELDS[6:]]
+"""What the stub breaks at."""
+
+
+def test_ready_when_a_generation_works(local: TestClient) -> None:
+    until = time.monotonic() + 60
+    while (answer := local.get("/healthz")).status_code != 200:
+        assert time.monotonic() < until
+        time.sleep(0.05)
+    assert answer.json() == {"status": "ready", "checks": {"database": "ok", "generation": "ok"}}
+    lab_of(local).health.broken(RuntimeError())
+    answer = local.get("/healthz")
+    assert answer.status_code == 503 and "RuntimeError" in answer.json()["checks"]["generation"]
+    lab_of(local).health._tried_at -= 100
+    local.get("/healthz")
+    while local.get("/healthz").status_code != 200:
+        assert time.monotonic() < until
+        time.sleep(0.05)
+
+
+def test_figures(local: TestClient) -> None:
+    local.get("/no/such/place/" + "x" * 50)
+    text = local.get("/metrics").text
+    assert 'pasdedeux_http_requests_total{method="GET",route="(other)",status="404"}' in text
+    assert "pasdedeux_ready" in text and "pasdedeux_queue_waiting 0.0" in text and "xxx" not in text
+
+
+def samples(client: TestClient) -> dict[str, dict[tuple[tuple[str, str], ...], float]]:
+    """What Prometheus would read: values by name, then by labels."""
+    found: dict[str, dict[tuple[tuple[str, str], ...], float]] = {}
+    for family in text_string_to_metric_families(client.get("/metrics").text):
+        for sample in family.samples:
+            found.setdefault(sample.name, {})[tuple(sorted(sample.labels.items()))] = sample.value
+    return found
+
+
+def test_every_figure_is_there_and_counts(local: TestClient) -> None:
+    before = samples(local)
+    manifest = answer_of(told(local, "generate", FIELDS))["manifest"]
+    assert "event: error" in told(local, "generate", CRASH)
+    model = manifest["model"]
+    wait_for(lambda: not lab_of(local).queue.running)
+    after = samples(local)
+
+    def more(name: str, **labels: str) -> float:
+        key = tuple(sorted(labels.items()))
+        return after[name][key] - before.get(name, {}).get(key, 0.0)
+
+    assert more("pasdedeux_http_requests_total", route="/gradio_api/call", method="POST", status="200") == 2
+    assert more("pasdedeux_http_seconds_count", route="/gradio_api/call") == 4
+    assert more("pasdedeux_runs_total", model=model, outcome="done") == 1
+    group = next(dict(key)["model"] for key in after["pasdedeux_batch_runs_count"])
+    assert more("pasdedeux_runs_total", model=group, outcome="failed") == 1
+    assert more("pasdedeux_errors_total", kind="RuntimeError") >= 1
+    assert more("pasdedeux_batch_runs_count", model=group) == 2
+    assert more("pasdedeux_stage_seconds_count", model=group, stage="queue") == 2
+    stages = {dict(key)["stage"] for key in after["pasdedeux_stage_seconds_count"]}
+    assert stages >= {"queue", "text", "sampling", "finish"}
+    for gauge in ("queue_waiting", "queue_running", "ready", "memory_peak_bytes"):
+        assert () in after[f"pasdedeux_{gauge}"]
+    assert after["process_resident_memory_bytes"][()] > 10 * 2**20
+    assert after["pasdedeux_memory_peak_bytes"][()] >= 10 * 2**20
+
+
+def test_an_error_is_found_in_the_log_by_its_id(local: TestClient, caplog: pytest.LogCaptureFixture) -> None:
+    """The page's sentence names the request; the log says under that name where the error came from."""
+    with caplog.at_level(logging.INFO):
+        said = told(local, "generate", CRASH)
+    reference = re.search(r"its log says more under ([0-9a-f]{12})", said)
+    assert reference is not None
+    lines = [json.loads(JsonLines().format(record)) for record in caplog.records]
+    (line,) = [line for line in lines if "error" in line and line["message"] == "A request failed."]
+    assert line["request"] == reference[1] and line["error"] == "RuntimeError"
+    assert any("stub_engine.py" in place for place in line["where"])
+    assert "crash" not in json.dumps([line for line in lines if line["logger"].startswith("webdemo")])
+
+
+def test_an_id_that_a_client_makes_up_is_not_taken(local: TestClient) -> None:
+    answer = local.get("/healthz", headers={"x-request-id": "forged"})
+    assert answer.headers.get_list("x-request-id") != ["forged"]
+
+
+def test_gradios_own_errors_hold_no_prompt(
+    local: TestClient,
+    monkeypatch: pytest.MonkeyPatch,
+    caplog: pytest.LogCaptureFixture,
+    capfd: pytest.CaptureFixture[str],
+) -> None:
+    """It prints what it was sent, a line each: a forged line of the log among them."""
+    forged = 'SECRET PROMPT\n{"level": "error", "message": "forged"}'
+    monkeypatch.setattr(traceback, "print_exc", log_instead_of_printing)
+
+    def breaks(component: gr.Number, value: Any) -> float:
+        raise ValueError(f"{value} is no number")
+
+    monkeypatch.setattr(gr.Number, "preprocess", breaks)
+    said = told(local, "generate", ["x", forged, *FIELDS[2:]])
+    assert "event: error" in said
+    lines = [JsonLines().format(record) for record in caplog.records]
+    printed = "".join(capfd.readouterr())
+    assert not any("SECRET" in text or "forged" in text for text in (*lines, printed))
+    (line,) = [json.loads(line) for line in lines if "An event failed." in line]
+    assert line["error"] == "ComponentProcessingError" and line["where"]
+
+
+def test_logs_hold_no_prompt_and_no_forged_line(local: TestClient, caplog: pytest.LogCaptureFixture) -> None:
+    forged = 'x\r\n{"level": "error", "message": "forged"}'
+    with caplog.at_level(logging.DEBUG):
+        local.get("/?run=SECRETKEY&x=" + "%0d%0aSet-Cookie:%20a=b")
+        local.post(JOIN, json={"session_hash": "s", "data": ["SECRET PROMPT"]}, headers={"user-agent": "a"})
+        logging.getLogger("elsewhere").warning("got %s", "SECRET PROMPT")
+        logging.getLogger("webdemo").warning("%s", forged)
+        try:
+            raise ValueError("SECRET PROMPT")
+        except ValueError:
+            logging.getLogger("webdemo").exception("A request failed.")
+    lines = [JsonLines().format(record) for record in caplog.records]
+    assert not any("SECRET" in line or "\n" in line for line in lines)
+    assert json.loads(lines[-2])["message"] == forged
+    assert json.loads(lines[-1])["error"] == "ValueError"
+    kept = json.loads(JsonLines(content=True).format(caplog.records[-1]))
+    assert kept["error_text"] == "SECRET PROMPT"

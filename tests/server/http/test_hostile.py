@@ -1,0 +1,131 @@
+"""Uploads and requests of somebody who means ill."""
+
+from __future__ import annotations
+
+import tempfile
+import threading
+import time
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+import pytest
+from fastapi.testclient import TestClient
+
+from motion import InputError
+from tests.server.clients import FIELDS, HERE, UPLOAD, client_of, lab_of, settings_for, told
+from tests.server.lab import stub_module
+from webdemo.server.queue.queue import FairQueue
+from webdemo.server.queue.turns import QueueLimits
+from webdemo.ui.visitor import Visitor
+
+
+@pytest.fixture(scope="module")
+def open_to_all(tmp_path_factory: pytest.TempPathFactory) -> Iterator[TestClient]:
+    """A server without accounts, open to everybody; 25 requests a minute and person."""
+    folder = tmp_path_factory.mktemp("open")
+    with client_of(settings_for(folder, open=True, rate=25, address_people=2)) as client:
+        client.cookies.clear()
+        yield client
+
+
+def react(client: TestClient, actor: Any) -> str:
+    rest = ["", "", 0, 0, "a", 0, 1, 3, 1, 0, "ddim", "intergen", "offline", False]
+    return told(client, "react", [actor, *rest])
+
+
+@pytest.mark.parametrize(
+    "name",
+    ["../../../evil.bvh", "/etc/evil.bvh", "..\\..\\evil.bvh", "a/../../evil.bvh", "%2e%2e%2fevil.bvh",
+     "evil.bvh\r\nSet-Cookie: a=b", "e" * 3000 + ".bvh", "CON.bvh", ".bvh", "evil.bvh/"],
+)  # fmt: skip
+def test_an_upload_stays_in_its_folder(local: TestClient, name: str, tmp_path: Path) -> None:
+    answer = local.post(UPLOAD, files={"files": (name, b"HIERARCHY")})
+    assert answer.status_code in (200, 400, 422) and "set-cookie" not in answer.headers
+    if answer.status_code == 200:
+        (path,) = answer.json()
+        assert Path(path).resolve().is_relative_to(Path(tempfile.gettempdir()).resolve() / "gradio")
+        assert Path(path).is_file() and len(Path(path).name) < 256
+    assert not Path("/etc/evil.bvh").exists() and not (Path.cwd().parent / "evil.bvh").exists()
+
+
+def test_an_upload_is_an_upload(local: TestClient) -> None:
+    """No file of the server's, and nothing of another host's, is read as if somebody had sent it."""
+    database = lab_of(local).settings.data / "history.db"
+    for path in (str(database), "/etc/passwd", "../../etc/passwd", str(Path(__file__)), "", "\0"):
+        said = react(local, {"path": path, "meta": {"_type": "gradio.FileData"}})
+        assert "event: complete" not in said and "root:" not in said
+    for address in ("http://127.0.0.1:9/x.bvh", "https://example.invalid/x.bvh", "file:///etc/passwd"):
+        for actor in ({"path": address, "url": address, "meta": {"_type": "gradio.FileData"}}, address):
+            said = react(local, actor)
+            assert "event: complete" not in said and "root:" not in said
+
+
+@pytest.mark.parametrize(
+    "content", [b"", b"\0" * 1000, b"PK\x03\x04 no zip", b"\x80\x04\x95 a pickle.", b"HIERARCHY\nROOT" * 99]
+)
+def test_a_broken_upload_is_a_sentence(local: TestClient, content: bytes) -> None:
+    for suffix in ("bvh", "npz", "npy"):
+        answer = local.post(UPLOAD, files={"files": (f"clip.{suffix}", content)})
+        said = react(local, {"path": answer.json()[0], "meta": {"_type": "gradio.FileData"}})
+        assert f'event: error\ndata: {{"error": "clip.{suffix}' in said, said
+        assert "Traceback" not in said and "its log says more" not in said
+
+
+def test_what_the_page_does_not_offer_is_no_error_of_the_programs(local: TestClient) -> None:
+    """A name or number that is made up is refused before Gradio stumbles over it."""
+    errors = lab_of(local).figures.errors.collect()[0].samples
+    for path, body in (
+        ("call/nosuch", {"data": []}), ("run/nosuch", {"data": []}), ("api/..", {"data": []}),
+        ("call/refresh", {"data": [None]}), ("queue/join", {"data": [], "fn_index": 99999}),
+        ("queue/join", {"data": [], "fn_index": -1}), ("run/predict", {"data": [], "fn_index": "0"}),
+        ("queue/join", {"data": [], "fn_index": True}),
+    ):  # fmt: skip
+        answer = local.post(f"/gradio_api/{path}", json=body)
+        assert answer.status_code == 404, (path, body, answer.text)
+    assert lab_of(local).figures.errors.collect()[0].samples == errors
+
+
+def test_a_visitors_history_is_not_had_by_naming_them(open_to_all: TestClient) -> None:
+    mine = {"cookie": "pasdedeux_visitor=" + "m" * 32}
+    assert "event: complete" in told(open_to_all, "generate", FIELDS, mine)
+    history = lab_of(open_to_all).history
+    with history.database.engine.connect() as connection:
+        owners = {row[0] for row in connection.exec_driver_sql("SELECT owner FROM runs")}
+    assert len(owners) == 1 and "mmm" not in owners.pop()  # the cookie itself is not kept
+
+
+def test_throwing_the_cookie_away_gains_nothing(open_to_all: TestClient) -> None:
+    answers = [
+        open_to_all.post(
+            "/gradio_api/queue/join", content=b"[]", headers={"cookie": f"pasdedeux_visitor={i:032}"}
+        ).status_code
+        for i in range(60)
+    ]
+    assert 429 in answers[-15:] and 429 not in answers[:20]
+    other = TestClient(open_to_all.app, base_url=HERE, client=("203.0.113.9", 5))
+    assert other.post("/gradio_api/queue/join", content=b"[]").status_code != 429
+
+
+def test_one_address_does_not_fill_the_line(monkeypatch: pytest.MonkeyPatch) -> None:
+    started = threading.Event()
+
+    class Busy:
+        ready = True
+
+        def run(self, request: Any, cancel: Any = None) -> Iterator[Any]:
+            started.set()
+            while not cancel.cancelled:
+                time.sleep(0.01)
+            yield from ()
+
+    queue = FairQueue(Busy(), QueueLimits(address=3))  # type: ignore[arg-type]
+    request = stub_module().GenerateRequest(prompt="x")
+    jobs = [queue._enter("first", request, Visitor(person="first", address="a"))]
+    assert started.wait(10)
+    jobs += [queue._enter(f"s{i}", request, Visitor(person=f"p{i}", address="a")) for i in range(3)]
+    with pytest.raises(InputError, match="3 runs from your network are already waiting"):
+        queue._enter("more", request, Visitor(person="more", address="a"))
+    jobs.append(queue._enter("other", request, Visitor(person="other", address="b")))
+    for job in jobs:
+        job.token.cancel()

@@ -1,0 +1,302 @@
+"""Whose turn it is, caps, places, cancelling; the engine here is a counter that the tests hold."""
+
+from __future__ import annotations
+
+import threading
+import time
+from collections.abc import Iterator
+from dataclasses import replace
+from types import SimpleNamespace
+from typing import Any
+
+import pytest
+
+from motion import InputError
+from webdemo.inference.requests import Cancelled, GenerateRequest, Progress, Result
+from webdemo.server.app import engine_of
+from webdemo.server.cluster import ray_engine
+from webdemo.server.queue import queue as line
+from webdemo.server.queue.queue import FairQueue
+from webdemo.server.queue.shared_engine import SharedEngine
+from webdemo.server.queue.turns import QueueLimits
+from webdemo.server.settings import Settings
+from webdemo.ui.runs import Waiting
+from webdemo.ui.visitor import Visitor
+
+
+def request(name: str, *, samples: int = 1, steps: int = 10, model: str = "m") -> Any:
+    return SimpleNamespace(name=name, samples=samples, steps=steps, seconds=5.0, model=model, prompt=name)
+
+
+class Gate:
+    """An engine whose runs end when the test says so; it also runs several at once."""
+
+    ready = True
+
+    def __init__(self) -> None:
+        self.order: list[tuple[str, ...]] = []
+        self.open = threading.Semaphore(0)
+
+    def run(self, request: Any, cancel: Any = None) -> Iterator[Any]:
+        self.order.append((request.name,))
+        yield Progress(stage="text")
+        while not self.open.acquire(timeout=0.01):
+            cancel.raise_if_cancelled()
+        if "crash" in request.name:
+            raise RuntimeError("broken")
+        yield Result(duets=(), manifest={"name": request.name})
+
+    def key(self, request: Any) -> tuple[Any, ...] | None:
+        return None if "alone" in request.name else (request.steps,)
+
+    def fits(self, requests: Any, other: Any) -> bool:
+        return True
+
+    def run_together(self, items: Any) -> Iterator[Any]:
+        self.order.append(tuple(request.name for request, _ in items))
+        self.open.acquire()
+        for i, (request, _) in enumerate(items):
+            yield i, Result(duets=(), manifest={"name": request.name})
+
+
+class People:
+    """Runs requests of named people in threads and notes how each ended."""
+
+    def __init__(self, queue: FairQueue, monkeypatch: pytest.MonkeyPatch) -> None:
+        self.queue = queue
+        self.ends: dict[str, Any] = {}
+        self.waits: dict[str, list[Waiting]] = {}
+        self.threads: list[threading.Thread] = []
+        self.who = threading.local()
+        monkeypatch.setattr(line, "visitor", lambda: Visitor(person=self.who.name))
+        monkeypatch.setattr(line, "TICK", 0.02)
+
+    def ask(self, person: str, wanted: Any, *, alone: bool = False) -> None:
+        """Asks in a thread of its own; returns when the request is in the line, runs or was refused."""
+        before = self.queue.waiting + self.queue.running
+        thread = threading.Thread(target=self._run, args=(person, wanted, alone), daemon=True)
+        self.threads.append(thread)
+        thread.start()
+        wait_for(lambda: self.queue.waiting + self.queue.running > before or not thread.is_alive())
+        wait_for(lambda: self.queue.running or not thread.is_alive())  # the first is taken at once
+
+    def _run(self, person: str, wanted: Any, alone: bool) -> None:
+        self.who.name = person
+        try:
+            for event in self.queue.run(f"session of {wanted.name}", wanted, alone=alone):
+                if isinstance(event, Waiting):
+                    self.waits.setdefault(wanted.name, []).append(event)
+                if isinstance(event, Result):
+                    self.ends[wanted.name] = event
+        except Exception as error:
+            self.ends[wanted.name] = error
+
+    def end(self) -> None:
+        for thread in self.threads:
+            thread.join(timeout=10)
+            assert not thread.is_alive()
+
+
+def make(monkeypatch: pytest.MonkeyPatch, *, together: bool = False, **limits: int) -> tuple[Gate, People]:
+    gate = Gate()
+    queue = FairQueue(gate, QueueLimits(**limits), batcher=gate if together else None)  # type: ignore[arg-type]
+    return gate, People(queue, monkeypatch)
+
+
+def wait_for(condition: Any) -> None:
+    until = time.monotonic() + 20
+    while not condition():
+        assert time.monotonic() < until
+        time.sleep(0.005)
+
+
+def test_who_has_had_least_goes_first(monkeypatch: pytest.MonkeyPatch) -> None:
+    gate, people = make(monkeypatch)
+    for i in range(4):
+        people.ask("greedy", request(f"greedy {i}"))
+    people.ask("late", request("late 0"))
+    people.ask("later", request("later 0"))
+    gate.open.release(6)
+    people.end()
+    assert [names[0] for names in gate.order] == [
+        "greedy 0", "late 0", "later 0", "greedy 1", "greedy 2", "greedy 3"
+    ]  # fmt: skip
+    assert {name: end.manifest["name"] for name, end in people.ends.items()} == {n: n for n in people.ends}
+
+
+def test_a_long_run_costs_later_turns(monkeypatch: pytest.MonkeyPatch) -> None:
+    gate, people = make(monkeypatch)
+    people.ask("long", request("long 0", samples=4))
+    people.ask("long", request("long 1"))
+    for i in range(3):
+        people.ask("short", request(f"short {i}"))
+    gate.open.release(5)
+    people.end()
+    assert [names[0] for names in gate.order] == ["long 0", "short 0", "short 1", "short 2", "long 1"]
+
+
+def test_compatible_runs_of_different_people_share_a_pass(monkeypatch: pytest.MonkeyPatch) -> None:
+    gate, people = make(monkeypatch, together=True, batch=3)
+    people.ask("x", request("alone first"))
+    people.ask("a", request("a0"))
+    people.ask("a", request("a1"))
+    people.ask("b", request("b0", steps=20))
+    people.ask("c", request("c0"))
+    people.ask("d", request("d0"))
+    gate.open.release(6)
+    people.end()
+    assert gate.order[0] == ("alone first",)
+    assert gate.order[1] == ("a0", "c0", "d0")  # one each before a's second; three motions at most
+    assert sorted(gate.order[2:]) == [("a1",), ("b0",)]
+
+
+def test_run_again_shares_no_pass(monkeypatch: pytest.MonkeyPatch) -> None:
+    gate, people = make(monkeypatch, together=True)
+    people.ask("first", request("alone first"))
+    people.ask("a", request("a"))
+    people.ask("b", request("b"), alone=True)
+    people.ask("c", request("c"))
+    gate.open.release(4)
+    people.end()
+    assert gate.order[1:] == [("a", "c"), ("b",)]
+    assert all(isinstance(end, Result) for end in people.ends.values())
+
+
+def test_a_person_has_so_many_at_work(monkeypatch: pytest.MonkeyPatch) -> None:
+    """In one pass as well as in several at a time."""
+    for options in ({"together": True, "workers": 1}, {"together": False, "workers": 4}):
+        gate, people = make(monkeypatch, running=2, waiting=8, **options)
+        people.ask("busy", request("alone 0"))
+        for i in range(1, 5):
+            people.ask("busy", request(f"{i}"))
+        people.ask("other", request("other"))
+        gate.open.release(1)
+        wait_for(lambda queue=people.queue: queue.waiting <= 4)
+        mine = [sum(name != "other" for name in names) for names in gate.order]
+        assert max(mine) <= 2 and people.queue.running <= 3
+        gate.open.release(9)
+        people.end()
+        assert all(sum(name != "other" for name in names) <= 2 for names in gate.order)
+
+
+def test_a_person_may_not_fill_the_line(monkeypatch: pytest.MonkeyPatch) -> None:
+    gate, people = make(monkeypatch, waiting=2)
+    for i in range(4):
+        people.ask("one", request(f"r{i}"))
+    people.ask("other", request("other"))
+    gate.open.release(4)
+    people.end()
+    assert str(people.ends["r3"]).startswith("You already have 2 runs waiting")
+    assert isinstance(people.ends["other"], Result)
+
+
+def test_a_full_line_says_so(monkeypatch: pytest.MonkeyPatch) -> None:
+    gate, people = make(monkeypatch, queue=2)
+    for name in "abcd":
+        people.ask(name, request(name))
+    gate.open.release(3)
+    people.end()
+    assert str(people.ends["d"]).startswith("The queue is full (2 runs wait)")
+
+
+def test_places_and_estimates(monkeypatch: pytest.MonkeyPatch) -> None:
+    gate, people = make(monkeypatch)
+    people.queue.pace.of("m").learn(120.0, 12.0)  # 0.1 s a unit; a request here has 60 units
+    for name in "abc":
+        people.ask(name, request(name))
+    wait_for(lambda: people.waits.get("b") and people.waits.get("c"))
+    first, last = people.waits["b"][0], people.waits["c"][0]
+    gate.open.release(3)
+    people.end()
+    assert (first.step, last.step) == (1, 2)
+    assert first.seconds_left == pytest.approx(6, abs=1.5)
+    assert last.seconds_left == pytest.approx(12, abs=1.5)
+
+
+def test_cancel_while_waiting_and_while_running(monkeypatch: pytest.MonkeyPatch) -> None:
+    gate, people = make(monkeypatch)
+    people.ask("a", request("a"))
+    people.ask("b", request("b"))
+    assert people.queue.cancel("session of b")
+    wait_for(lambda: "b" in people.ends)
+    assert people.queue.cancel("session of a")
+    people.end()
+    assert all(isinstance(people.ends[name], Cancelled) for name in "ab")
+    assert gate.order == [("a",)]
+    wait_for(lambda: people.queue.running == 0)
+    assert not people.queue.cancel("session of a")
+
+
+def test_an_error_is_its_own_alone(monkeypatch: pytest.MonkeyPatch) -> None:
+    gate, people = make(monkeypatch)
+    told: list[BaseException] = []
+    people.queue.broken = told.append
+    people.ask("a", request("crash"))
+    people.ask("b", request("b"))
+    gate.open.release(2)
+    people.end()
+    assert isinstance(people.ends["crash"], RuntimeError) and isinstance(people.ends["b"], Result)
+    assert [type(error) for error in told] == [RuntimeError]
+    assert b'pasdedeux_errors_total{kind="RuntimeError"} 1.0' in people.queue.figures.text()
+
+
+def test_stopping_lets_running_end_and_returns_the_rest(monkeypatch: pytest.MonkeyPatch) -> None:
+    gate, people = make(monkeypatch)
+    people.ask("a", request("a"))
+    people.ask("b", request("b"))
+    wait_for(lambda: people.queue.running == 1)
+    threading.Timer(0.1, gate.open.release).start()
+    assert people.queue.close(5.0) == 0
+    people.ask("c", request("c"))
+    people.end()
+    assert isinstance(people.ends["a"], Result)
+    assert "The server is stopping" in str(people.ends["b"])
+    assert isinstance(people.ends["c"], InputError)
+
+
+def test_stopping_does_not_wait_for_ever(monkeypatch: pytest.MonkeyPatch) -> None:
+    _, people = make(monkeypatch)
+    people.ask("a", request("a"))
+    wait_for(lambda: people.queue.running == 1)
+    assert people.queue.close(0.05) == 1
+    people.end()
+    assert isinstance(people.ends["a"], (InputError, Cancelled))
+
+
+def test_what_may_share_a_pass() -> None:
+    engine = SharedEngine()
+    one = GenerateRequest(prompt="They wave.", seconds=4.0, steps=20)
+    key = engine.key(one)
+    assert key == engine.key(replace(one, prompt="They hug.", seconds=5.0, guidance=1.0, damping=0.0, seed=4))
+    assert key != engine.key(replace(one, steps=21)) and key != engine.key(replace(one, sampler="dpm++"))
+    assert engine.key(request("of another kind")) is None
+    assert engine.fits([one], replace(one, seconds=5.0))
+    assert not engine.fits([one], replace(one, seconds=5.1))
+    assert not engine.fits([one, replace(one, seconds=5.0)], replace(one, seconds=3.9))
+    assert not engine.ready  # nothing of this loads a network
+
+
+def test_several_workers_of_a_group(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Where passes are shared elsewhere, several requests of a model are on their way at once."""
+    gate, people = make(monkeypatch, workers=2)
+    people.queue.pace.of("m").learn(120.0, 12.0)
+    for name in "abcd":
+        people.ask(name, request(name))
+    wait_for(lambda: people.queue.running == 2 and people.waits.get("c") and people.waits.get("d"))
+    assert sorted(names[0] for names in gate.order) == ["a", "b"]
+    assert people.waits["c"][0].seconds_left == pytest.approx(6, abs=1.5)  # each worker has a run of 6 s
+    assert people.waits["d"][0].seconds_left == pytest.approx(9, abs=1.5)
+    gate.open.release(4)
+    people.end()
+    assert all(isinstance(end, Result) for end in people.ends.values())
+
+
+def test_the_engine_that_settings_name(monkeypatch: pytest.MonkeyPatch) -> None:
+    engine, batcher = engine_of(Settings())
+    assert engine is batcher and isinstance(engine, SharedEngine)
+    monkeypatch.setattr(ray_engine, "find_spec", lambda name: None)
+    with pytest.raises(InputError, match="Ray is not installed"):
+        engine_of(Settings(engine="ray"))
+    monkeypatch.setattr(ray_engine, "find_spec", lambda name: name)
+    engine, batcher = engine_of(Settings(engine="ray", ray_replicas=3, batch=4))
+    assert batcher is None and engine.parallel == 12 and not engine.ready

@@ -1,0 +1,355 @@
+"""Runs that are found again, by whom, for how long, and what a full disk or a killed process leaves."""
+
+from __future__ import annotations
+
+import errno
+import time
+from collections.abc import Iterator
+from contextlib import contextmanager
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from sqlalchemy import event, update
+
+from motion import InputError, formats, stacked_positions
+from tests.server.clients import DATABASES, database_url
+from tests.server.lab import stub_module
+from webdemo.inference import Engine
+from webdemo.inference.cancel import CancelToken
+from webdemo.inference.predict_request import PredictRequest, PredictResult
+from webdemo.inference.requests import GenerateRequest, ReactRequest, Result
+from webdemo.server.queue.shared_engine import SharedEngine
+from webdemo.server.queue.wait_estimate import units
+from webdemo.server.store.database import Database, Link, Run, Table
+from webdemo.server.store.history import DAY, WAIT_SECONDS, History
+from webdemo.server.store.recorder import title_of
+from webdemo.ui.again import request_of, verdict
+
+ME, OTHER = "user ada", "user eve"
+
+
+@pytest.fixture(params=DATABASES)
+def history(request: pytest.FixtureRequest, tmp_path: Path) -> Iterator[History]:
+    database = Database(database_url(request.param, tmp_path))
+    yield History(database, tmp_path / "motions", node="n")
+    Table.metadata.drop_all(database.engine)
+    database.close()
+
+
+def made(request: Any) -> Result:
+    *_, result = stub_module().StubEngine().run(request)
+    return result
+
+
+def kept(history: History, prompt: str = "Two people walk.", *, owner: str = ME, **fields: Any) -> str:
+    request = GenerateRequest(prompt=prompt, **({"seconds": 1.0, "steps": 1, "samples": 2} | fields))
+    run = history.begin(owner, request, prompt)
+    history.finish(run, made(request))
+    return run
+
+
+def test_a_run_is_found_again_as_it_was(history: History) -> None:
+    run = kept(history, seed=9)
+    opened = history.open(run, ME)
+    assert (opened.entry.title, opened.entry.state) == ("Two people walk.", "done")
+    again = made(request_of(opened))
+    assert verdict(opened.result, again) == "Run again: the same motion, bit for bit."
+    assert opened.result.readouts[0]["after"] == again.readouts[0]["after"]
+    assert [entry.id for entry in history.entries(ME)] == [run]
+
+
+def test_a_reaction_is_run_again_from_its_result(history: History) -> None:
+    actor = stub_module().walking(1.0).a
+    request = ReactRequest(actor=actor, role="b", steps=1, seed=3)
+    run = history.begin(ME, request, "Reaction")
+    history.finish(run, made(request))
+    asked = request_of(history.open(run, ME))
+    assert isinstance(asked, ReactRequest) and asked.role == "b"
+    np.testing.assert_array_equal(asked.actor.positions, actor.positions)
+
+
+@pytest.mark.parametrize(("people", "marker"), [(2, 1.5), (1, 1.5), (2, 3.0)])
+def test_a_prediction_keeps_its_marker_and_what_really_followed(
+    history: History, people: int, marker: float
+) -> None:
+    motion = stub_module().walking(3.0)
+    engine = Engine(Path("no weights are needed"))
+    request = PredictRequest(motion=motion if people == 2 else motion.a, marker=marker, seconds=1.0,
+                             model="still")  # fmt: skip
+    *_, result = engine.run(request)
+    run = history.begin(ME, request, "After")
+    history.finish(run, result)
+    opened = history.open(run, ME)
+    kept = opened.result
+    assert isinstance(kept, PredictResult) and kept.past_frames == result.past_frames == round(30 * marker)
+    assert (kept.error, kept.speed, kept.true_speed) == (result.error, result.speed, result.true_speed)
+    assert (kept.truth is None) == (marker == 3.0)
+    end = min(90, kept.past_frames + 30)
+    np.testing.assert_array_equal(stacked_positions(kept.given), stacked_positions(request.motion)[:, :end])
+    *_, again = engine.run(request_of(opened))
+    assert verdict(kept, again) == "Run again: the same motion, bit for bit."
+
+
+def test_the_verdict_names_what_differs(history: History) -> None:
+    old = history.open(kept(history), ME).result
+    new = Result(
+        duets=tuple(duet.with_positions(duet.positions + np.float32(0.002)) for duet in old.duets),
+        manifest=old.manifest | {"weights_sha256": "f" * 64, "versions": {"torch": "9"}},
+    )
+    told = verdict(old, new)
+    assert "up to 2 mm" in told and "the weights (unknown → ffffffff)" in told and "torch (none → 9)" in told
+    elsewhere = replace(new, manifest=old.manifest)
+    assert "same weights and versions; it ran on another machine" in verdict(old, elsewhere)
+    shared = replace(old, manifest=old.manifest | {"runs_in_pass": 3})
+    assert "the first shared its pass through the network with 2 others, which" in verdict(shared, elsewhere)
+
+
+def test_a_result_says_how_many_shared_its_pass(weights: Path) -> None:
+    engine = SharedEngine(weights)
+    one = GenerateRequest(prompt="They wave.", seconds=1.0, steps=2, cleanup=False)
+    pair = [(one, CancelToken()), (replace(one, seed=7), CancelToken())]
+    shared = [event for i, event in engine.run_together(pair) if isinstance(event, Result)]
+    shared.sort(key=lambda result: result.manifest["request"]["seed"])
+    *_, alone = engine.run(one)
+    assert [result.manifest.get("runs_in_pass") for result in (*shared, alone)] == [2, 2, None]
+    assert shared[0].manifest["request"] == alone.manifest["request"]
+
+
+def test_others_see_nothing_but_by_a_link_that_lasts(history: History) -> None:
+    run = kept(history)
+    assert history.entries(OTHER) == []
+    for act in (history.open, history.remove, history.link, history.revoke):
+        with pytest.raises(InputError, match="There is no such run"):
+            act(run, OTHER)
+    with pytest.raises(InputError):
+        history.favour(run, OTHER, favourite=True)
+    key, until = history.link(run, ME)
+    assert until == pytest.approx(time.time() + 30 * DAY, abs=60)
+    assert history.open(key, OTHER).entry.id == run
+    assert history.open(key, "").entry.id == run
+    assert history.entries(ME)[0].links == 1
+    with pytest.raises(InputError):
+        history.remove(key, OTHER)  # a link shows; it gives no power
+    assert history.revoke(run, ME) == 1
+    with pytest.raises(InputError):
+        history.open(key, OTHER)
+
+
+def test_a_link_ends(history: History) -> None:
+    key, _ = history.link(kept(history), ME)
+    with history.database.session.begin() as session:
+        session.execute(update(Link).values(until=time.time() - 1))
+    with pytest.raises(InputError, match="its link has expired"):
+        history.open(key, OTHER)
+
+
+@pytest.mark.parametrize(
+    "key", ["", "x", "../../etc/passwd", "a" * 24, "' OR 1=1 --" + "a" * 20, "%00" * 10, "é" * 20, "a" * 5000]
+)
+def test_forged_keys_say_nothing(history: History, key: str) -> None:
+    kept(history)
+    with pytest.raises(InputError, match="There is no such run, or its link has expired"):
+        history.open(key, ME)
+    with pytest.raises(InputError):
+        history.remove(key, ME)
+
+
+def test_keys_are_unguessable(history: History) -> None:
+    run = kept(history)
+    keys = {run, *(history.link(run, ME)[0] for _ in range(20))}
+    assert len(keys) == 21 and all(len(key) == 24 for key in keys)
+
+
+def test_age_and_size_remove_the_oldest_but_no_favourites(history: History) -> None:
+    runs = [kept(history, seed=i) for i in range(5)]
+    assert history.clean() == 0
+    with history.database.session.begin() as session:
+        for i, run in enumerate(runs):
+            session.execute(update(Run).where(Run.id == run).values(created=time.time() - (40 - 8 * i) * DAY))
+    history.favour(runs[0], ME, favourite=True)
+    assert history.clean() == 1  # 32 days old; the one of 40 days is a favourite
+    size = sum(path.stat().st_size for path in (history.folder / runs[4]).iterdir())
+    history.keep_bytes = 2.5 * size
+    assert history.clean() == 2
+    assert {entry.id for entry in history.entries(ME)} == {runs[0], runs[4]}
+    assert {path.name for path in history.folder.iterdir()} == {runs[0], runs[4]}
+
+
+def test_a_wrong_clock_removes_nothing(
+    history: History, monkeypatch: pytest.MonkeyPatch, caplog: pytest.LogCaptureFixture
+) -> None:
+    """The server is started with its clock 60 days ahead, and the clock is set right within the day."""
+    runs = [kept(history, seed=i) for i in range(2)]
+    link, _ = history.link(runs[0], ME)
+    now = time.time()
+    monkeypatch.setattr(time, "time", lambda: now + 60 * DAY)
+    assert [history.clean(), history.clean()] == [0, 0]
+    assert "clock is 60 days past the newest run" in caplog.text
+    monkeypatch.setattr(time, "time", lambda: now)
+    assert history.clean() == 0
+    assert {entry.id for entry in history.entries(ME)} == set(runs)
+    assert history.open(link, "").entry.id == runs[0]
+
+
+def test_a_clock_that_stays_ahead_is_believed_after_a_day(
+    history: History, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    kept(history)
+    now, uptime = time.time(), time.monotonic()
+    monkeypatch.setattr(time, "time", lambda: now + 60 * DAY)
+    assert history.clean() == 0
+    monkeypatch.setattr(time, "monotonic", lambda: uptime + WAIT_SECONDS + 1)
+    assert history.clean() == 1
+
+
+def test_a_full_disk_in_the_middle_of_a_run_leaves_it_ended(history: History) -> None:
+    """SQLite's own limit stands for the disk; what could not be written is written when there is room."""
+    request = GenerateRequest(prompt="Two people walk.", seconds=1.0, steps=1)
+    run = history.begin(ME, request, "x")
+    with no_room(history):
+        history.end(run, "failed", "y" * 100_000)
+        assert [entry.state for entry in history.entries(ME)] == ["running"]
+    history.settle()
+    (entry,) = history.entries(ME)
+    assert (entry.state, len(entry.message)) == ("failed", 100_000)
+
+
+def test_a_result_that_does_not_fit_is_a_sentence_and_leaves_no_files(history: History) -> None:
+    request = GenerateRequest(prompt="Two people walk.", seconds=1.0, steps=1)
+    run = history.begin(ME, request, "x")
+    with no_room(history), pytest.raises(InputError, match="disk is full"):
+        history.finish(run, replace(made(request), notes=("y" * 100_000,)))
+    history.settle()
+    assert [entry.state for entry in history.entries(ME)] == ["failed"]
+    assert not (history.folder / run).exists()
+
+
+def test_a_damaged_database_is_a_sentence_and_no_sql(history: History) -> None:
+    runs = [kept(history, seed=i) for i in range(3)]
+    with history.database.engine.begin() as connection:
+        connection.exec_driver_sql("UPDATE runs SET outcome = '{', request = '['")
+    assert len(history.entries(ME)) == 3
+    with pytest.raises(InputError, match="gone or damaged"):
+        history.open(runs[0], ME)
+    with history.database.engine.begin() as connection:
+        connection.exec_driver_sql("DROP TABLE links")
+    for act in (lambda: history.entries(ME), lambda: history.link(runs[0], ME)):
+        with pytest.raises(InputError) as told:
+            act()
+        assert "history cannot be read or written" in str(told.value) and "links" not in str(told.value)
+
+
+@contextmanager
+def no_room(history: History) -> Iterator[None]:
+    """The database may not grow."""
+    engine = history.database.engine
+    if engine.dialect.name != "sqlite":
+        pytest.skip("only SQLite has a limit that stands for a full disk")
+
+    def limit(connection: Any, record: Any) -> None:
+        connection.execute("PRAGMA max_page_count=1")
+
+    event.listen(engine, "connect", limit)
+    engine.dispose()
+    try:
+        yield
+    finally:
+        event.remove(engine, "connect", limit)
+        engine.dispose()
+
+
+def test_a_run_that_is_removed_while_it_runs_leaves_no_files(history: History) -> None:
+    request = GenerateRequest(prompt="Two people walk.", seconds=1.0, steps=1)
+    run = history.begin(ME, request, "removed")
+    history.remove(run, ME)
+    history.finish(run, made(request))
+    assert history.entries(ME) == [] and not any(history.folder.iterdir())
+
+
+def test_favourites_are_counted(history: History) -> None:
+    history.keep_favourites = 1
+    first, second = kept(history), kept(history)
+    history.favour(first, ME, favourite=True)
+    with pytest.raises(InputError, match="stop keeping one first"):
+        history.favour(second, ME, favourite=True)
+
+
+def test_what_a_killed_process_left_is_marked(history: History) -> None:
+    whole = kept(history)
+    request = GenerateRequest(prompt="Two people walk.", seconds=1.0)
+    lost = history.begin(ME, request, "lost")
+    half = history.folder / f".{lost}"
+    half.mkdir()
+    (half / "1.npz").write_bytes(b"half")
+    elsewhere = History(history.database, history.folder, node="another").begin(ME, request, "elsewhere")
+    assert history.recover() == 1
+    states = {entry.id: entry.state for entry in history.entries(ME)}
+    assert states == {whole: "done", lost: "interrupted", elsewhere: "running"}
+    assert not half.exists()
+    with pytest.raises(InputError, match="run it again"):
+        history.open(lost, ME)
+    history.open(whole, ME)
+
+
+def test_a_full_disk_is_a_sentence_and_leaves_nothing(
+    history: History, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    before = kept(history)
+    request = GenerateRequest(prompt="Two people walk.", seconds=1.0, steps=1, samples=2)
+    run = history.begin(ME, request, "full")
+
+    def full(duet: Any, path: Path) -> None:
+        Path(path).write_bytes(b"half a file")
+        raise OSError(errno.ENOSPC, "No space left on device")
+
+    with monkeypatch.context() as patch:
+        patch.setattr(formats, "write", full)
+        with pytest.raises(InputError, match="disk is full"):
+            history.finish(run, made(request))
+    assert {path.name for path in history.folder.iterdir()} == {before}
+    assert history.entries(ME)[0].state == "failed"
+    history.free_bytes = 1e18
+    with pytest.raises(InputError, match="disk is nearly full"):
+        history.begin(ME, request, "more")
+    history.open(before, ME)
+
+
+def test_damaged_files_are_a_sentence(history: History) -> None:
+    run = kept(history)
+    (history.folder / run / "1.npz").write_bytes(b"PK\x03\x04 nothing")
+    with pytest.raises(InputError, match="gone or damaged"):
+        history.open(run, ME)
+
+
+def test_a_database_that_is_none(tmp_path: Path) -> None:
+    (tmp_path / "h.db").write_bytes(b"this is no database at all" * 100)
+    for url in (f"sqlite:///{tmp_path / 'h.db'}", "nonsense", "nosuch://x/y"):
+        with pytest.raises(InputError, match="database"):
+            Database(url)
+
+
+def test_what_a_run_is_called() -> None:
+    actor = stub_module().walking(3.0).a
+    assert title_of(GenerateRequest(prompt=" They hug. ").to_dict()) == "They hug."
+    assert title_of(ReactRequest(actor=replace(actor, name="wave.bvh")).to_dict()) == "Reaction to wave.bvh"
+    assert title_of(PredictRequest(motion=replace(actor, name="walk")).to_dict()) == "After walk"
+
+
+def test_every_kind_of_request_has_a_cost() -> None:
+    actor = stub_module().walking(3.0).a
+    one = units(GenerateRequest(prompt="x", seconds=2.0, steps=10))
+    assert units(GenerateRequest(prompt="x", seconds=2.0, steps=10, samples=3)) == pytest.approx(3 * one)
+    assert 0 < units(PredictRequest(motion=actor, seconds=2.0)) < one < units(ReactRequest(actor=actor))
+
+
+def test_a_prediction_of_one_person_is_kept(history: History) -> None:
+    actor = replace(stub_module().walking(3.0).a, name="walk")
+    run = history.begin(ME, PredictRequest(motion=actor), "After walk")
+    history.finish(run, Result(duets=(actor,), manifest={"model": "m"}))
+    opened = history.open(run, ME)
+    np.testing.assert_array_equal(opened.result.duets[0].positions, actor.positions)
+    with pytest.raises(InputError, match="use its tab"):
+        request_of(opened)

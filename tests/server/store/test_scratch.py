@@ -1,0 +1,174 @@
+"""Files that are there for a while go again; an upload costs what it weighs and finds a disk with room."""
+
+from __future__ import annotations
+
+import errno
+import os
+import re
+import time
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+import pytest
+from fastapi.testclient import TestClient
+from sqlalchemy import event
+
+from motion import InputError, formats
+from tests.server.clients import FIELDS, HERE, UPLOAD, client_of, lab_of, settings_for, told
+from tests.server.lab import stub_module
+from tests.server.queue.test_queue import wait_for
+from webdemo.server import app as app_module
+from webdemo.server.app import create_app
+from webdemo.server.http.body_limits import Refused
+from webdemo.server.http.rate_limit import RateLimit
+from webdemo.server.store.scratch import KEPT_SECONDS, Scratch
+
+MB = 2**20
+SMALL = {"files": ("a.bvh", b"HIERARCHY")}
+
+
+def put(folder: Path, name: str, *, age: float, size: int = MB) -> Path:
+    path = folder / name / "file.bvh"
+    path.parent.mkdir()
+    path.write_bytes(b"x" * size)
+    for each in (path, path.parent):
+        os.utime(each, (time.time() - age,) * 2)
+    return path
+
+
+def test_what_is_old_goes_then_the_oldest_of_too_much(tmp_path: Path) -> None:
+    scratch = Scratch(tmp_path / "s", 3.5 * MB)
+    old = put(scratch.uploads, "old", age=KEPT_SECONDS + 1)
+    own = put(scratch.uploads, "the page's own", age=2 * KEPT_SECONDS)
+    files = [put(scratch.uploads, str(i), age=1000 - i) for i in range(4)]
+    used = put(scratch.uploads, "used", age=0)
+    assert scratch.clean([str(own)]) == 4
+    assert [path.exists() for path in (old, own, *files, used)] == [False, True, *[False] * 3, True, True]
+    os.utime(files[0].parent, (0, 0))  # its file's removal had made it new
+    scratch.clean([str(own)])
+    assert not files[0].parent.exists() and scratch.uploads.exists()
+
+
+def test_what_a_killed_process_left_goes_at_the_start(tmp_path: Path) -> None:
+    left = put(Scratch(tmp_path / "s", MB).uploads, "left", age=0)
+    assert Scratch(tmp_path / "s", MB).uploads.is_dir() and not left.exists()
+    (tmp_path / "file").write_text("")
+    with pytest.raises(InputError, match="cannot be made"):
+        Scratch(tmp_path / "file", MB)
+
+
+def test_a_server_keeps_its_files_there_and_tidies_them(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(app_module, "TIDY_EVERY", 0.05)
+    monkeypatch.setenv("GRADIO_TEMP_DIR", "")
+    scratch = Scratch(tmp_path / "s", 100 * MB)
+    scratch.take_uploads()
+    app = create_app(settings_for(tmp_path), engine=stub_module().StubEngine(), scratch=scratch)
+    with TestClient(app, base_url=HERE, client=("127.0.0.1", 5)) as client:
+        (upload,) = map(Path, client.post(UPLOAD, files={"files": ("a.bvh", b"HIERARCHY")}).json())
+        assert upload.is_relative_to(scratch.uploads)
+        assert "event: complete" in told(client, "generate", FIELDS)
+        (made,) = scratch.uploads.glob("*/run-*")
+        files = [upload, *made.iterdir()]
+        assert len(files) > 3 and all(file.exists() for file in files)
+        for file in files:
+            os.utime(file, (0, 0))
+        wait_for(lambda: not any(file.exists() for file in files))
+        assert client.get("/", headers={"accept": "text/html"}).status_code == 200
+
+
+def test_a_megabyte_counts_as_a_request() -> None:
+    rates = RateLimit(60)
+    rates.take("a", 51)
+    rates.take("a", 8)
+    with pytest.raises(Refused, match="Too many requests"):
+        rates.take("a", 2)
+    rates.take("b", 1000)  # one alone is never too heavy
+    with pytest.raises(Refused):
+        rates.take("b")
+
+
+def test_uploads_are_weighed(tmp_path: Path) -> None:
+    def undeclared() -> Iterator[bytes]:
+        yield b"--x\r\n"
+
+    with client_of(settings_for(tmp_path, rate=30, upload_megabytes=20)) as client:
+        file = {"files": ("a.bvh", os.urandom(12 * MB))}
+        assert [client.post(UPLOAD, files=file).status_code for _ in range(3)] == [200, 200, 429]
+        other = {"cookie": "pasdedeux_visitor=" + "o" * 32, "content-type": "multipart/form-data; boundary=x"}
+        statuses = [client.post(UPLOAD, content=undeclared(), headers=other).status_code for _ in range(3)]
+        assert 429 in statuses[1:] and statuses[0] != 429
+
+
+def test_nothing_is_taken_where_the_disk_is_nearly_full(tmp_path: Path) -> None:
+    with client_of(settings_for(tmp_path, free_megabytes=1e12)) as client:
+        said = told(client, "generate", FIELDS)
+        assert "event: error" in said and "disk is nearly full" in said
+        assert lab_of(client).history.entries("local") == []
+        answer = client.post(UPLOAD, files=SMALL)
+        assert answer.status_code == 507 and "disk is full" in answer.json()["detail"]
+
+
+def test_a_disk_that_fills_and_a_program_that_breaks(
+    local: TestClient, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    client = TestClient(local.app, base_url=HERE, client=("127.0.0.1", 5), raise_server_exceptions=False)
+
+    def full(*args: Any, **more: Any) -> None:
+        raise OSError(errno.ENOSPC, "No space left on device")
+
+    monkeypatch.setattr("gradio.routes.upload_fn", full)
+    answer = client.post(UPLOAD, files=SMALL)
+    assert answer.status_code == 507 and "disk is full" in answer.json()["detail"]
+    assert b'pasdedeux_refused_total{reason="disk"} 1.0' in lab_of(client).figures.text()
+
+    def broken(*args: Any, **more: Any) -> None:
+        raise RuntimeError("a secret of the program's")
+
+    monkeypatch.setattr("gradio.routes.upload_fn", broken)
+    answer = client.post(UPLOAD, files=SMALL)
+    reference = answer.headers["x-request-id"]
+    assert answer.status_code == 500 and answer.json()["request"] == reference
+    assert f"its log says more under {reference}" in answer.text and "secret" not in answer.text
+
+
+def test_a_database_that_is_full_is_a_sentence(tmp_path: Path) -> None:
+    """SQLite's own limit stands for a disk that is full: its error is the same."""
+    with client_of(settings_for(tmp_path)) as own:
+        _fill_the_database(own)
+
+
+def _fill_the_database(local: TestClient) -> None:
+    lab = lab_of(local)
+    before = [entry.id for entry in lab.history.entries("local")]
+
+    def limit(connection: Any, record: Any) -> None:
+        connection.execute("PRAGMA max_page_count=1")  # no more than there are
+
+    event.listen(lab.database.engine, "connect", limit)
+    lab.database.engine.dispose()
+    try:
+        said = [told(local, "generate", ["x" * 500, *FIELDS[1:]]) for _ in range(12)][-1]
+    finally:
+        event.remove(lab.database.engine, "connect", limit)
+        lab.database.engine.dispose()
+    assert "event: error" in said and "disk is full, so nothing new can be kept" in said
+    assert "event: complete" in told(local, "generate", FIELDS)
+    assert {*before} <= {entry.id for entry in lab.history.entries("local")}
+
+
+def test_an_error_does_not_say_where_the_files_are(
+    local: TestClient, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def full(duet: Any, path: Path) -> None:
+        raise InputError(
+            f"{path} could not be written because the disk is full: free some space and try again."
+        )
+
+    monkeypatch.setattr(formats, "write", full)
+    said = told(local, "generate", ["They walk to the end of the road.", *FIELDS[1:]])
+    assert "event: error" in said
+    assert re.search(r"road-seed0-[0-9a-f]{4}\.npz could not be written because the disk is full", said)
+    assert "/" not in said.partition("data: ")[2]

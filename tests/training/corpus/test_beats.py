@@ -1,0 +1,180 @@
+"""Scenes of beats on a small made-up library: seams, order, touches, feet, layers, splits."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from motion.skeleton import SMPL22
+from motion.transforms import heading
+from tests.training.corpus.test_compose import bone_error, bow, clips, motion, walk
+from training.corpus import checks
+from training.corpus.beats import script
+from training.corpus.compose import realise
+from training.corpus.families.gestures import deepened
+from training.corpus.library import Library
+from training.corpus.retell import retold
+from training.corpus.scene import Scene, SourceClip
+from training.corpus.words.lexicon import pattern
+
+J = SMPL22.index
+
+
+def more(split: str) -> list[SourceClip]:
+    """Walks backwards and to the sides, which the small library lacks."""
+
+    def clip(positions: np.ndarray, action: str, side: str | None = None) -> SourceClip:
+        return SourceClip(positions, action, "normal", side, f"{split}-{action}", "made-up", split)
+
+    back = walk(150, speed=-0.7)
+    aside = walk(150, speed=0.0)
+    left = aside + 0.6 * np.arange(150)[:, None, None] / 30 * np.array([1.0, 0, 0])
+    return [
+        clip(back, "walk-back"),
+        clip(left, "walk-left", "left"),
+        clip(left * np.array([-1.0, 1, 1]), "walk-right", "right"),
+    ]
+
+
+@pytest.fixture(scope="module")
+def library() -> Library:
+    return Library([*clips(), *clips("test"), *more("train"), *more("test")], "train")
+
+
+def staged(library: Library, story: str, *, seed: int = 0) -> Scene:
+    """A scene of a story; the first seed with which it fits into its frames."""
+    for number in range(seed, seed + 30):
+        try:
+            return script.tell(np.random.default_rng(number), library, pattern(story))
+        except LookupError:
+            continue
+    raise AssertionError(f"{story} never fits")
+
+
+def main(scene: Scene) -> list[dict]:
+    return [beat for beat in scene.beats if not beat["minor"]]
+
+
+def path(scene: Scene, person: int, beat: dict) -> np.ndarray:
+    """(frames, 2) of the root over the ground in a beat."""
+    return scene.positions[person, beat["start"] : beat["end"], 0][:, [0, 2]]
+
+
+def test_free_scenes_are_sound(library: Library) -> None:
+    made = jolts = 0
+    for seed in range(12):
+        try:
+            scene = script.compose(np.random.default_rng(seed), library, stories=0.0)
+        except LookupError:
+            continue
+        made += 1
+        frames = scene.positions.shape[1]
+        assert 30 < frames <= script.MOST and np.isfinite(scene.positions).all()
+        assert bone_error(scene.positions) < 1e-3
+        jolts += checks.fault(scene, contact=True) == "a joint jumps"
+        starts = [beat["start"] for beat in scene.beats]
+        assert starts == sorted(starts) and all(b["start"] < b["end"] <= frames for b in scene.beats)
+        assert all(len(beat["captions"]) >= 1 for beat in scene.beats)
+        assert len(scene.captions) >= 3 and min(map(len, scene.alone)) >= 1
+        assert all(source.startswith("train") for source in scene.sources) and scene.split == "train"
+    assert made >= 10 and jolts <= 1
+
+
+def test_the_same_seed_makes_the_same_scene(library: Library) -> None:
+    one, other = (script.compose(np.random.default_rng(5), library, first="wave") for _ in range(2))
+    np.testing.assert_array_equal(one.positions, other.positions)
+    assert (one.captions, one.alone, one.beats) == (other.captions, other.alone, other.beats)
+
+
+def test_one_comes_the_other_stands_they_touch_and_one_leaves(library: Library) -> None:
+    scene = staged(library, "walk-up / stand ; handshake ; walk-away / stand")
+    first, touch, last = main(scene)
+    walker = first["acts"].index("walk-up")
+    assert np.linalg.norm(path(scene, walker, first)[-1] - path(scene, walker, first)[0]) > 0.6
+    assert np.ptp(path(scene, 1 - walker, first), axis=0).max() < 0.25
+    (contact,) = scene.events["contact"]
+    assert touch["start"] <= contact["start"] <= contact["end"] <= touch["end"] + 34
+    held = slice(contact["start"] + 2, contact["end"] - 1)
+    gap = np.linalg.norm(
+        scene.positions[0, held, J(contact["a"])] - scene.positions[1, held, J(contact["b"])], axis=-1
+    )
+    assert gap.max() < 0.14
+    assert last["acts"].index("walk-away") == walker
+    ends = np.linalg.norm(path(scene, 0, last)[[0, -1]] - path(scene, 1, last)[[0, -1]], axis=-1)
+    assert ends[1] > ends[0] + 0.8
+
+
+def test_a_refused_hand_is_held_out_and_not_taken(library: Library) -> None:
+    scene = staged(library, "offer-hand / refuse")
+    beat = main(scene)[0]
+    i = beat["acts"].index("offer-hand")
+    hand = J(f"{beat['sides'][i]}_wrist")
+    body = scene.positions[i, beat["start"] : beat["end"]]
+    reach = np.linalg.norm((body[:, hand] - body[:, 0])[:, [0, 2]], axis=-1)
+    assert reach.max() > reach[0] + 0.06 and body[:, hand, 1].max() > body[0, hand, 1] + 0.15
+    other = scene.positions[1 - i, beat["start"] : beat["end"]][:, [J("left_wrist"), J("right_wrist")]]
+    assert np.linalg.norm(other - body[:, None, hand], axis=-1).min() > 0.15
+    assert all(touch["start"] > beat["end"] for touch in scene.events.get("contact", ()))
+
+
+def test_hands_stay_joined_while_walking(library: Library) -> None:
+    scene = staged(library, "hand-in-hand")
+    contact = scene.events["contact"][0]
+    held = slice(contact["start"] + 2, contact["end"] - 1)
+    one, other = scene.positions[0, held], scene.positions[1, held]
+    assert np.linalg.norm(one[:, J(contact["a"])] - other[:, J(contact["b"])], axis=-1).max() < 0.2
+    assert np.linalg.norm((one[-1, 0] - one[0, 0])[[0, 2]]) > 1.0
+
+
+def test_who_waves_while_coming_does_both_at_once(library: Library) -> None:
+    scene = staged(library, "up-and-wave / stand")
+    beat = main(scene)[0]
+    i = beat["acts"].index("up-and-wave")
+    body = scene.positions[i, beat["start"] : beat["end"]]
+    raised = body[:, [J("left_wrist"), J("right_wrist")], 1].max(axis=-1) > body[:, J("neck"), 1]
+    speed = np.linalg.norm(np.diff(body[:, 0][:, [0, 2]], axis=0), axis=-1) * 30
+    assert (raised[1:] & (speed > 0.4)).sum() > 8
+
+
+def test_one_stops_while_the_other_goes_on(library: Library) -> None:
+    scene = staged(library, "walk-together ; stop / go-on")
+    beat = next(b for b in scene.beats if "stop" in b["acts"])
+    i = beat["acts"].index("stop")
+    gone = [np.linalg.norm(path(scene, k, beat)[-1] - path(scene, k, beat)[0]) for k in (i, 1 - i)]
+    assert gone[1] > gone[0] + 0.4
+
+
+def test_a_full_turn_is_one(library: Library) -> None:
+    scene = staged(library, "spin / stand")
+    beat = main(scene)[0]
+    i = beat["acts"].index("spin")
+    angles = np.unwrap(heading(scene.positions[i, beat["start"] : beat["end"]]))
+    assert np.ptp(angles) > np.radians(320)
+
+
+def test_bows_are_deep() -> None:
+    shallow = motion(bow(80))
+    shallow = type(shallow)(
+        np.where(np.arange(22)[:, None, None] == J("spine1"), shallow.rotations * 1.0, shallow.rotations),
+        shallow.root, shallow.contacts, shallow.sources,
+    )  # fmt: skip
+    head = realise(deepened(shallow, 0.32))[:, J("head"), 1]
+    assert head.max() - head.min() >= 0.25
+
+
+def test_feet_hold_where_people_walk_and_turn(library: Library) -> None:
+    own = checks.foot_skate(realise(motion(walk(200))))  # the made-up walk slides by itself
+    for story in ("walk-up / stand", "walk-away / stand", "walk-together"):
+        scene = staged(library, story)
+        assert max(checks.foot_skate(person) for person in scene.positions) < own + 0.02, story
+    scene = staged(library, "turn-to / stand")
+    assert max(checks.foot_skate(person) for person in scene.positions) < 0.08
+
+
+def test_captions_can_be_written_anew(library: Library) -> None:
+    scene = staged(library, "walk-up / stand ; handshake")
+    row = {"beats": scene.beats, "split": "train", "captions": scene.captions, "alone": list(scene.alone)}
+    again = retold(row, np.random.default_rng(8))
+    assert again["captions"] != scene.captions and len(again["captions"]) >= 3
+    assert [beat["acts"] for beat in again["beats"]] == [beat["acts"] for beat in scene.beats]
+    assert retold({"captions": ["x"], "beats": []}, np.random.default_rng(8))["captions"] == ["x"]

@@ -1,0 +1,365 @@
+"""Composed scenes on a small made-up library: bones, feet, blends, sides, order, splits, files."""
+
+from __future__ import annotations
+
+import json
+import re
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from scipy.spatial.transform import Rotation
+
+from motion.kinematics import forward_kinematics
+from motion.skeleton import SMPL22
+from motion.transforms import facing, heading
+from training.corpus import __main__ as command
+from training.corpus import blending, build, checks, compose, feet, stage
+from training.corpus.families import load_families
+from training.corpus.library import Library, extend, shorten
+from training.corpus.scene import Scene, SourceClip
+
+J = SMPL22.index
+
+
+def standing(frames: int, *, sway: float = 0.01) -> tuple[np.ndarray, np.ndarray]:
+    """Local rotations and root of a person whose arms hang and who sways a little."""
+    rotations = np.tile(np.eye(3), (frames, 22, 1, 1))
+    rotations[:, J("left_shoulder")] = Rotation.from_rotvec([0, 0, -1.3]).as_matrix()
+    rotations[:, J("right_shoulder")] = Rotation.from_rotvec([0, 0, 1.3]).as_matrix()
+    root = np.zeros((frames, 3))
+    root[:, 0] = sway * np.sin(np.arange(frames) / 20)
+    root[:, 1] = -SMPL22.rest_positions()[:, 1].min() - 0.005
+    return rotations, root
+
+
+def gesture(frames: int, *hands: str) -> np.ndarray:
+    """Raises hands and lowers them."""
+    rotations, root = standing(frames)
+    angle = 2.6 * np.sin(np.linspace(0, np.pi, frames)) ** 2 - 1.3
+    for hand in hands:
+        sign = 1 if hand == "left" else -1
+        rotations[:, J(f"{hand}_shoulder")] = Rotation.from_rotvec(
+            np.stack([0 * angle, 0 * angle, sign * angle], -1)
+        ).as_matrix()
+    return forward_kinematics(rotations, root)
+
+
+def bow(frames: int) -> np.ndarray:
+    rotations, root = standing(frames)
+    bend = np.sin(np.linspace(0, np.pi, frames)) ** 2
+    rotations[:, J("spine1")] = Rotation.from_rotvec(np.stack([bend, 0 * bend, 0 * bend], -1)).as_matrix()
+    return forward_kinematics(rotations, root)
+
+
+def walk(frames: int, speed: float = 1.2) -> np.ndarray:
+    """Legs that swing under a root that moves evenly; feet are planted by the code under test."""
+    rotations, root = standing(frames, sway=0.0)
+    root[:, 2] = speed * np.arange(frames) / 30
+    root[:, 1] -= 0.03
+    phase = 2 * np.pi * np.arange(frames) / 32
+    for sign, side in ((1, "left"), (-1, "right")):
+        swing = -0.42 * sign * np.sin(phase)
+        knee = 0.5 * np.clip(sign * np.cos(phase), 0, None)
+        rotations[:, J(f"{side}_hip")] = Rotation.from_euler("x", (swing - knee / 2)[:, None]).as_matrix()
+        rotations[:, J(f"{side}_knee")] = Rotation.from_euler("x", knee[:, None]).as_matrix()
+    return forward_kinematics(rotations, root)
+
+
+def clips(split: str = "train") -> list[SourceClip]:
+    def clip(positions, action, side=None, number=0):
+        name = f"{split}-{action}-{side}-{number}"
+        return SourceClip(positions, action, "normal", side, name, "made-up", split)
+
+    return [
+        clip(forward_kinematics(*standing(400)), "idle"),
+        clip(bow(80), "bow"),
+        clip(walk(200), "walk"),
+        clip(gesture(80, "right"), "bye"),
+        *(clip(gesture(90, side), "wave", side) for side in ("left", "right")),
+        *(clip(gesture(90, side), "raise-hand", side) for side in ("left", "right")),
+        clip(gesture(90, "left", "right"), "wave", "both"),
+        clip(gesture(90, "left", "right"), "raise-hand", "both"),
+    ]
+
+
+@pytest.fixture(scope="module")
+def library() -> Library:
+    return Library(clips() + clips("test"), "train")
+
+
+def bone_error(positions: np.ndarray) -> float:
+    lengths = np.linalg.norm(positions[..., 1:, :] - positions[..., list(SMPL22.parents[1:]), :], axis=-1)
+    return float(np.abs(lengths - SMPL22.bone_lengths[1:]).max())
+
+
+def motion(positions: np.ndarray) -> compose.Motion:
+    return compose.motion_from_positions(positions, sources=("one",))
+
+
+def test_slerp_agrees_with_quaternions_up_to_half_turns() -> None:
+    rng = np.random.default_rng(0)
+    first = Rotation.random(300, rng)
+    axis = rng.normal(size=(300, 3))
+    axis /= np.linalg.norm(axis, axis=-1, keepdims=True)
+    angles = np.concatenate([[0, 1e-9, np.pi - 1e-4, np.pi - 0.02], rng.uniform(0, 3.1, 296)])
+    weight = rng.random(300)
+    found = blending.slerp(
+        first.as_matrix(), (first * Rotation.from_rotvec(axis * angles[:, None])).as_matrix(), weight
+    )
+    expected = (first * Rotation.from_rotvec(axis * (angles * weight)[:, None])).as_matrix()
+    np.testing.assert_allclose(found, expected, atol=1e-7)
+
+
+def test_join_goes_on_where_the_first_ended_without_a_jump() -> None:
+    first, second = motion(walk(120)), compose.turned(motion(gesture(90, "left")), 2.0)
+    joined = compose.join(first, second, blend=12)
+    positions = compose.realise(joined)
+    assert len(joined) == 120 + 90 - 12
+    assert bone_error(positions) < 1e-9
+    assert np.abs(joined.headings[-1] - joined.headings[0]) < 0.05
+    speeds = np.linalg.norm(np.diff(positions, axis=0), axis=-1).max(axis=-1) * 30
+    own = max(
+        np.linalg.norm(np.diff(p, axis=0), axis=-1).max() * 30 for p in (walk(120), gesture(90, "left"))
+    )
+    assert speeds.max() < 1.8 * own
+    assert np.linalg.norm(joined.root[-1] - joined.root[119]) < 0.2
+
+
+def test_planted_feet_rest_and_bones_stay() -> None:
+    rotations, root = standing(120)
+    root[:, 0] += np.linspace(0, 0.1, 120)  # the whole body is dragged along
+    positions = forward_kinematics(rotations, root)
+    planted = feet.plant_feet(positions, np.ones((120, 2), dtype=bool))
+    toes = planted[:, [J("left_foot"), J("right_foot")]]
+    assert np.ptp(toes[..., [0, 2]], axis=0).max() < 1e-3
+    assert np.ptp(positions[:, J("left_foot"), 0]) > 0.09
+    assert bone_error(planted) < 1e-9
+
+
+def test_a_foot_that_is_carried_far_steps_and_the_feet_take_turns() -> None:
+    rotations, root = standing(120)
+    root[:, 2] += 0.4 * np.clip((np.arange(120) - 50) / 20, 0, 1)
+    planted = feet.plant_feet(forward_kinematics(rotations, root), np.ones((120, 2), dtype=bool))
+    toes = planted[:, [J("left_foot"), J("right_foot")]]
+    moving = np.linalg.norm(np.diff(toes[..., [0, 2]], axis=0), axis=-1) * 30 > 0.05
+    assert moving.any(axis=0).all()
+    assert not moving[:35].any() and not moving[95:].any()
+    for foot in (0, 1):
+        assert (moving[:, foot] & ~moving[:, 1 - foot]).sum() >= 5
+    assert np.ptp(toes[:, 0, 1]) > 0.03  # it is lifted
+    np.testing.assert_allclose(np.ptp(toes[:, 0, 2]), 0.4, atol=0.05)
+
+
+def test_one_after_the_other_keeps_lone_steps() -> None:
+    assert feet.one_after_the_other([[20, 60], [62]], apart=12) == [[20, 55], [67]]
+    assert feet.one_after_the_other([[20], [90]]) == [[20], [90]]
+
+
+def test_place_puts_root_and_facing() -> None:
+    placed = compose.place(motion(gesture(60, "left")), 1.0, -2.0, 0.7, frame=30)
+    np.testing.assert_allclose(placed.root[30, [0, 2]], [1.0, -2.0], atol=1e-9)
+    assert abs(compose.facing_at(placed, 30) - 0.7) < 1e-6
+
+
+def test_mirror_twice_is_the_motion_and_once_swaps_hands() -> None:
+    wave = motion(gesture(60, "left"))
+    back = compose.mirror(compose.mirror(wave))
+    np.testing.assert_allclose(back.rotations, wave.rotations, atol=1e-9)
+    swapped = compose.realise(compose.mirror(wave))
+    assert swapped[30, J("right_wrist"), 1] > swapped[30, J("left_wrist"), 1] + 0.5
+
+
+def test_steer_turns_left_for_positive_angles() -> None:
+    straight = motion(walk(91))
+    bent = compose.steer(straight, np.linspace(0, np.pi / 2, 91))
+    assert bent.root[-1, 0] > 0.5  # +X is to the left of who faces +Z
+    assert abs(bent.headings[-1] - straight.headings[-1] - np.pi / 2) < 1e-6
+    length = [np.linalg.norm(np.diff(m.root, axis=0), axis=-1).sum() for m in (straight, bent)]
+    assert abs(length[0] - length[1]) < 1e-9
+
+
+def test_look_at_turns_the_head_to_the_target_and_not_backwards() -> None:
+    still = motion(forward_kinematics(*standing(60)))
+    left = compose.realise(compose.look_at(still, np.tile([2.0, 1.5, 1.0], (60, 1))))
+    nose = left[30, J("head")] - left[30, J("neck")]
+    assert nose[0] > 0.02
+    behind = compose.realise(compose.look_at(still, np.tile([0.0, 1.5, -2.0], (60, 1))))
+    np.testing.assert_allclose(behind, compose.realise(still), atol=1e-9)
+
+
+def test_time_warp_changes_the_length_only() -> None:
+    wave = motion(gesture(61, "right"))
+    fast = compose.time_warp(wave, 1.2)
+    assert len(fast) == 51
+    np.testing.assert_allclose(fast.rotations[[0, -1]], wave.rotations[[0, -1]], atol=1e-9)
+
+
+def test_layer_waves_while_walking() -> None:
+    base, over = motion(walk(100)), motion(gesture(60, "left"))
+    both = compose.realise(compose.layer(base, over, start=20, joints=compose.ARMS["left"]))
+    alone = compose.realise(base)
+    assert both[50, J("left_wrist"), 1] > alone[50, J("left_wrist"), 1] + 0.5
+    legs = [joint for leg in feet.LEGS for joint in leg]
+    np.testing.assert_allclose(both[:, legs], alone[:, legs], atol=1e-9)
+
+
+def test_shorten_and_extend_reach_their_lengths() -> None:
+    assert len(shorten(motion(gesture(200, "left")), 90)) <= 90
+    longer = extend(motion(walk(100)), 250)
+    assert len(longer) >= 250
+    steps = np.diff(longer.root[:, 2])
+    assert steps.min() > 0  # goes on walking forward all the time
+
+
+def test_a_shortened_clip_still_shows_what_it_is_of() -> None:
+    """The most alike moments of a bow are before and after it; the cut between them left a person standing."""
+    still = forward_kinematics(*standing(60))
+    bowing = motion(np.concatenate([still, bow(90) - bow(90)[:1, :1] + still[-1:, :1], still]))
+    short = shorten(bowing, 70)
+    heads = [realise_height(m) for m in (bowing, short)]
+    assert len(short) < 0.75 * len(bowing)
+    assert heads[1] > 0.9 * heads[0] > 0.1
+
+
+def realise_height(clip: compose.Motion) -> float:
+    """How far the head comes down."""
+    height = forward_kinematics(clip.rotations, clip.root)[:, J("head"), 1]
+    return float(height.max() - height.min())
+
+
+@pytest.mark.parametrize("side", ["left", "right", "both"])
+def test_library_performs_the_wanted_side(library: Library, side: str) -> None:
+    for seed in range(6):
+        take = library.take(np.random.default_rng(seed), "wave", side=side)
+        wrists = compose.realise(take.motion)[:, [J("left_wrist"), J("right_wrist")], 1].max(axis=0)
+        assert take.side == side
+        assert [bool(height > 1.5) for height in wrists] == [side != "right", side != "left"]
+
+
+def test_library_keeps_splits_apart(library: Library) -> None:
+    test = Library(clips() + clips("test"), "test")
+    for books, split in ((library, "train"), (test, "test")):
+        scene = load_families()["wave-back"].build(np.random.default_rng(1), books)
+        assert scene.split == split
+        assert all(source.startswith(split) for source in scene.sources)
+    with pytest.raises(LookupError, match="no 'kick'"):
+        library.take(np.random.default_rng(0), "kick")
+    few = [replace(clip, action="call", source="few", split="both") for clip in clips()[:1]]
+    for split in ("train", "test"):
+        assert Library(clips() + few, split).has("call")
+
+
+@pytest.mark.parametrize("name", ["wave-back", "bow-back", "raise-watch", "ordered", "sequence", "together",
+                                  "meet", "leave", "walk-together", "circle", "point"])  # fmt: skip
+def test_families_pass_the_checks(library: Library, name: str) -> None:
+    family = load_families()[name]
+    scene = family.build(np.random.default_rng(4), library)
+    assert bone_error(scene.positions) < 1e-4
+    assert abs(float(heading(scene.positions[0])[0])) < 1e-4
+    np.testing.assert_allclose(scene.positions[0, 0, 0, [0, 2]], 0, atol=1e-5)
+    assert len(set(scene.captions)) == len(scene.captions) >= 3
+    again = family.build(np.random.default_rng(4), library)
+    np.testing.assert_array_equal(scene.positions, again.positions)
+    assert scene.captions == again.captions
+
+
+def test_the_hand_that_the_captions_name_is_the_one_that_rises(library: Library) -> None:
+    for seed in range(8):
+        scene = load_families()["raise-watch"].build(np.random.default_rng(seed), library)
+        side = scene.events["side"]["a"]
+        heights = {hand: scene.positions[0, :, J(f"{hand}_wrist"), 1].max() for hand in ("left", "right")}
+        if side == "both":
+            assert min(heights.values()) > 1.4
+        else:
+            assert heights[side] > max(1.4, heights["right" if side == "left" else "left"] + 0.3)
+            assert all(re.search(rf"\b{side}\b", caption) for caption in scene.captions)
+
+
+def test_ordered_scenes_happen_in_order(library: Library) -> None:
+    for seed in range(6):
+        scene = load_families()["ordered"].build(np.random.default_rng(seed), library)
+        activity = np.linalg.norm(np.diff(scene.positions[:, :, J("spine3") :], axis=1), axis=-1).mean(
+            axis=-1
+        )
+        centre = (activity * np.arange(activity.shape[1])).sum(axis=1) / activity.sum(axis=1)
+        assert centre[0] + 20 < centre[1]
+
+
+def test_people_meet_face_to_face(library: Library) -> None:
+    scene = load_families()["meet"].build(np.random.default_rng(3), library)
+    roots = scene.positions[:, :, 0]
+    gap = np.linalg.norm((roots[0] - roots[1])[:, [0, 2]], axis=-1)
+    assert gap[-1] < 1.8 < gap[0]
+    towards = (roots[1, -1] - roots[0, -1]) / gap[-1]
+    assert facing(scene.positions[0])[-1] @ towards > 0.9
+    assert facing(scene.positions[1])[-1] @ -towards > 0.9
+
+
+def _scene(positions: np.ndarray) -> Scene:
+    return Scene(positions, "idle", ["a", "b", "c"], ("one",), "train")
+
+
+def test_checks_turn_bad_scenes_away() -> None:
+    person = forward_kinematics(*standing(90))
+    good = np.stack([person, person + np.array([0, 0, 1.5])])
+    assert checks.fault(_scene(good)) is None
+    jump = good.copy()
+    jump[1, 40:] += [0.3, 0, 0]
+    longer = good.copy()
+    longer[0, :, J("left_wrist")] += [0.01, 0, 0]
+    sliding = good.copy()
+    sliding[0] += np.linspace(0, 1, 90)[:, None, None] * np.array([1.0, 0, 0])
+    broken = good.copy()
+    broken[0, 3, 3] = np.nan
+    assert checks.fault(_scene(jump)) == "a joint jumps"
+    assert checks.fault(_scene(longer)) == "bones drift"
+    assert checks.fault(_scene(sliding)) == "feet slide"
+    assert checks.fault(_scene(broken)) == "not finite"
+    close = np.stack([person, person + np.array([0, 0, 0.1])])
+    assert checks.fault(_scene(close)) == "trunks overlap"
+
+
+def test_written_corpus_reads_back(tmp_path, library: Library) -> None:
+    families = {name: load_families()[name] for name in ("wave-back", "ordered")}
+    tally = build.Tally()
+    scenes = build.draw(np.random.default_rng(0), library, families, 900, tally)
+    build.save(scenes, tmp_path)
+    motions = np.load(tmp_path / "motions.npy", allow_pickle=False)
+    index = json.loads((tmp_path / "index.json").read_text())
+    assert motions.shape == (sum(entry["frames"] for entry in index), 2, 22, 3)
+    assert sum(tally.frames.values()) == len(motions) >= 900
+    assert {entry["family"] for entry in index} == set(families)
+    for entry, scene in zip(index, scenes, strict=True):
+        part = motions[entry["start"] : entry["start"] + entry["frames"]]
+        np.testing.assert_array_equal(part.swapaxes(0, 1), scene.positions.astype(np.float32))
+        assert entry["captions"] == scene.captions
+    assert sorted(path.name for path in tmp_path.iterdir()) == ["index.json", "motions.npy"]
+
+
+def test_a_family_that_never_passes_is_left_out(library: Library, monkeypatch, caplog) -> None:
+    monkeypatch.setattr(
+        build, "fault", lambda scene, contact: "broken" if scene.family == "ordered" else None
+    )
+    families = {name: load_families()[name] for name in ("wave-back", "ordered")}
+    tally = build.Tally()
+    scenes = build.draw(np.random.default_rng(0), library, families, 400, tally)
+    assert {scene.family for scene in scenes} == {"wave-back"}
+    assert tally.rejected["ordered", "broken"] == build.TRIES
+    assert "ordered is left out" in caplog.text
+
+
+@pytest.mark.parametrize("extra", [["--families", "tango"], ["--hours", "-1"], []])
+def test_command_says_what_is_wrong(tmp_path, capsys, extra: list[str]) -> None:
+    out = tmp_path / "out"
+    assert command.main(["--data", str(tmp_path / "none"), "--out", str(out), *extra]) == 2
+    message = capsys.readouterr().err.strip()
+    assert message.count("\n") == 0 and message
+    assert not out.exists()
+
+
+def test_pad_waits_and_cuts(library: Library) -> None:
+    rng = np.random.default_rng(0)
+    person = motion(gesture(60, "left"))
+    assert len(stage.pad(rng, library, person, 40)) == 40
+    assert len(stage.pad(rng, library, person, 150)) == 150

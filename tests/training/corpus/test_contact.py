@@ -1,0 +1,247 @@
+"""Contact: arms reach where they should, bones and untouched frames stay, families keep their promises."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from scipy.spatial.transform import Rotation
+
+from motion.kinematics import forward_kinematics
+from motion.skeleton import SMPL22
+from motion.transforms import turn
+from training.corpus.captions import FAMILIES
+from training.corpus.compose import ARMS
+from training.corpus.contact import (
+    bend,
+    envelope,
+    impulse,
+    lean_to,
+    meeting,
+    on_body,
+    pose_arm,
+    reach,
+    settle,
+    shaking,
+    shift_hips,
+)
+from training.corpus.families import load_families
+from training.corpus.library import Library
+from training.corpus.scene import SourceClip
+
+FRAMES = 90
+CONTACT = (
+    "handshake", "high-five", "low-five", "high-ten", "fist-bump", "elbow-bump", "hand-over", "hold-hands",
+    "walk-hand-in-hand", "lead-by-hand", "hug", "pat-back", "pat-shoulder", "hand-on-shoulder", "arm-around",
+    "push", "whisper", "help-up", "tap-turn", "punch", "kick",
+)  # fmt: skip
+HANDS = ("handshake", "high-five", "low-five", "high-ten", "fist-bump", "hand-over", "hold-hands",
+         "walk-hand-in-hand", "lead-by-hand", "help-up")  # fmt: skip
+
+
+def _rotations(frames: int, **turns: np.ndarray) -> np.ndarray:
+    """(frames, 22, 3, 3) arms hanging, and the given joints turned by rotation vectors (frames, 3)."""
+    rotations = np.tile(np.eye(3), (frames, 22, 1, 1))
+    hanging = {"left_shoulder": [0, 0, -1.35], "right_shoulder": [0, 0, 1.35],
+               "left_elbow": [0, -0.3, 0], "right_elbow": [0, 0.3, 0]}  # fmt: skip
+    for name, vector in {**hanging, **turns}.items():
+        rotations[:, SMPL22.index(name)] = Rotation.from_rotvec(
+            np.array(vector) + np.zeros((frames, 3))
+        ).as_matrix()
+    return rotations
+
+
+def _body(
+    frames: int = FRAMES, *, away: float = 0.0, heading: float = 0.0, **turns: np.ndarray
+) -> np.ndarray:
+    root = np.tile([0.0, 0.92, 0.0], (frames, 1))
+    root[:, 0] += 0.01 * np.sin(np.arange(frames) / 20)
+    positions = turn(forward_kinematics(_rotations(frames, **turns), root), heading)
+    return positions + np.array([0.0, 0.0, away])
+
+
+def _bone_error(positions: np.ndarray) -> float:
+    bones = np.array(SMPL22.bones)
+    lengths = np.linalg.norm(positions[:, bones[:, 1]] - positions[:, bones[:, 0]], axis=-1)
+    return float(np.abs(lengths - SMPL22.bone_lengths[bones[:, 1]]).max())
+
+
+def _roughest(positions: np.ndarray) -> float:
+    """Greatest joint acceleration in m/s²."""
+    return float(np.linalg.norm(np.diff(positions, 2, axis=0) * 900, axis=-1).max())
+
+
+def test_envelope_rises_holds_and_falls_without_corners():
+    weight = envelope(100, 10, 30, 60, 90)
+    assert weight[10] == 0 and weight[90] == 0 and np.all(weight[30:61] == 1)
+    assert np.all(np.diff(weight[10:31]) >= 0) and np.all(np.diff(weight[60:91]) <= 0)
+    assert np.abs(np.diff(weight, 2)).max() < 6 / 20**2
+
+
+def test_impulse_peaks_after_its_rise():
+    shape = impulse(60, 20, rise=5, fall=20)
+    assert shape.argmax() == 25 and shape[20] == 0 and shape[45] == 0
+
+
+@pytest.mark.parametrize("side", ["left", "right"])
+def test_a_reach_arrives_keeps_bones_and_leaves_other_frames_alone(side):
+    body = _body()
+    target = np.tile([0.1, 1.25, 0.35], (FRAMES, 1))
+    weight = envelope(FRAMES, 20, 40, 55, 75)
+    reached = reach(body, {side: target}, weight)
+    wrist = reached[:, ARMS[side][3]]
+    assert np.linalg.norm(wrist - target, axis=-1)[40:56].max() < 0.01
+    assert _bone_error(reached) < 1e-6
+    np.testing.assert_allclose(reached[weight == 0], body[weight == 0], atol=1e-12)
+    elbow, shoulder = reached[45, ARMS[side][2]], reached[45, ARMS[side][1]]
+    assert elbow[1] < shoulder[1], "the elbow hangs below the shoulder"
+    assert _roughest(reached) < 25
+
+
+def test_a_far_target_takes_the_trunk_along_but_not_the_feet():
+    body = _body()
+    target = np.tile([0.0, 1.1, 0.68], (FRAMES, 1))
+    reached = reach(body, {"right": target}, envelope(FRAMES, 20, 40, 55, 75))
+    assert np.linalg.norm(reached[45, ARMS["right"][3]] - target[45]) < 0.03
+    assert reached[45, SMPL22.index("right_shoulder"), 2] > body[45, SMPL22.index("right_shoulder"), 2] + 0.05
+    for foot in ("left_foot", "right_foot", "left_ankle", "right_ankle"):
+        np.testing.assert_allclose(reached[:, SMPL22.index(foot)], body[:, SMPL22.index(foot)], atol=5e-3)
+    assert _bone_error(reached) < 1e-6
+
+
+def test_an_impossible_target_is_approached_without_a_jolt():
+    reached = reach(
+        _body(), {"right": np.tile([0.0, 1.0, 3.0], (FRAMES, 1))}, envelope(FRAMES, 20, 40, 55, 75)
+    )
+    assert np.isfinite(reached).all() and _bone_error(reached) < 1e-6
+    assert _roughest(reached) < 60
+
+
+@pytest.mark.parametrize(
+    ("sides", "away"), [(("right", "right"), 0.9), (("left", "right"), 0.8), (("left", "left"), 1.0)]
+)
+def test_hands_meet_and_stay_together(sides, away):
+    a, b = _body(), _body(away=away, heading=np.pi)
+    weights = (envelope(FRAMES, 10, 30, 60, 80), envelope(FRAMES, 15, 35, 60, 82))
+    points = meeting(a, b, *sides, height=1.05, apart=0.08)
+    a = reach(a, {sides[0]: points[0]}, weights[0])
+    b = reach(b, {sides[1]: points[1]}, weights[1])
+    a, b = settle(a, b, sides, weights, apart=0.08)
+    gap = np.linalg.norm(a[:, ARMS[sides[0]][3]] - b[:, ARMS[sides[1]][3]], axis=-1)
+    assert gap[35:61].max() < 0.1
+    assert gap[0] > 0.3
+
+
+def test_bending_and_shifting_keep_bones_and_feet():
+    body = _body()
+    forward = np.tile([0.0, 0.0, 1.0], (FRAMES, 1))
+    leant = lean_to(body, forward, np.full(FRAMES, 0.4))
+    assert leant[0, SMPL22.index("head"), 2] > body[0, SMPL22.index("head"), 2] + 0.1
+    assert _bone_error(leant) < 1e-6
+    np.testing.assert_allclose(bend(body, np.zeros((FRAMES, 3))), body, atol=1e-12)
+    sunk = shift_hips(body, np.tile([0.05, -0.4, 0.0], (FRAMES, 1)))
+    assert _bone_error(sunk) < 1e-6
+    np.testing.assert_allclose(sunk[:, 0], body[:, 0] + [0.05, -0.4, 0.0])
+    np.testing.assert_allclose(
+        sunk[:, SMPL22.index("left_foot")], body[:, SMPL22.index("left_foot")], atol=1e-6
+    )
+
+
+def test_posing_points_both_bones():
+    up, ahead = np.tile([0.0, 1.0, 0.0], (FRAMES, 1)), np.tile([0.0, 0.0, 1.0], (FRAMES, 1))
+    posed = pose_arm(_body(), "left", ahead, up, np.ones(FRAMES))
+    _, shoulder, elbow, wrist = ARMS["left"]
+    upper, lower = posed[0, elbow] - posed[0, shoulder], posed[0, wrist] - posed[0, elbow]
+    np.testing.assert_allclose(upper / np.linalg.norm(upper), ahead[0], atol=1e-9)
+    np.testing.assert_allclose(lower / np.linalg.norm(lower), up[0], atol=1e-9)
+
+
+def test_points_on_the_body_turn_with_it():
+    ahead = on_body(_body(), "spine3", 0.0, 0.0, 0.2)[0] - _body()[0, SMPL22.index("spine3")]
+    np.testing.assert_allclose(ahead, [0, 0, 0.2], atol=0.02)
+    turned = _body(heading=np.pi / 2)
+    ahead = on_body(turned, "spine3", 0.0, 0.0, 0.2)[0] - turned[0, SMPL22.index("spine3")]
+    np.testing.assert_allclose(ahead, [0.2, 0, 0], atol=0.02)
+
+
+def test_a_handshake_dies_away():
+    shake = shaking(90, 20, 60, hertz=2.5, size=0.04)
+    assert np.all(shake[:20] == 0) and np.all(shake[61:] == 0)
+    assert 0.02 < np.abs(shake).max() < 0.04
+    assert 3 <= np.sum(np.diff(np.sign(shake[21:60])) != 0) <= 8
+
+
+# ---- families on small made-up sources
+
+
+def _gait(frames: int, speed: float) -> np.ndarray:
+    """A plain walk along +Z: legs swing, knees bend while a leg swings, arms swing against the legs."""
+    phase = 2 * np.pi * np.arange(frames) / 30 * 0.9
+    turns = {}
+    for sign, leg, arm in ((1, "left", "right"), (-1, "right", "left")):
+        swing = sign * np.sin(phase)
+        turns[f"{leg}_hip"] = np.stack([-0.4 * swing, 0 * swing, 0 * swing], axis=-1)
+        lift = 0.6 * np.maximum(sign * np.cos(phase), 0)
+        turns[f"{leg}_knee"] = np.stack([lift, 0 * lift, 0 * lift], axis=-1)
+        hang = 1.35 if arm == "right" else -1.35
+        arms = Rotation.from_rotvec(np.stack([-0.35 * swing, 0 * swing, 0 * swing], axis=-1))
+        arms = arms * Rotation.from_rotvec([0, 0, hang])
+        turns[f"{arm}_shoulder"] = arms.as_rotvec()
+    root = np.stack([np.zeros(frames), np.full(frames, 0.92), speed * np.arange(frames) / 30], axis=-1)
+    return forward_kinematics(_rotations(frames, **turns), root)
+
+
+def _blow(joint: str, vector: list[float], frames: int = 90) -> np.ndarray:
+    """A limb that goes out and back around the middle."""
+    share = envelope(frames, 30, 44, 46, 62)[:, None]
+    start = np.array([0, 0, 1.35]) if "shoulder" in joint else np.zeros(3)
+    turns = {joint: start * (1 - share) + np.array(vector) * share}
+    root = np.tile([0.0, 0.92, 0.0], (frames, 1))
+    rotations = _rotations(frames, **turns)
+    if "shoulder" in joint:  # the elbow is folded before and after the blow
+        folded = np.array([0, 2.0, 0]) * (1 - share)
+        rotations[:, SMPL22.index("right_elbow")] = Rotation.from_rotvec(folded).as_matrix()
+    return forward_kinematics(rotations, root)
+
+
+@pytest.fixture(scope="module")
+def library() -> Library:
+    sway = {"spine2": 0.02 * np.sin(np.arange(400)[:, None] / 25) * np.ones(3)}
+    clips = [
+        SourceClip(_body(400, **sway), "idle", "normal", None, "idle_1", "made-up"),
+        SourceClip(_gait(150, 1.1), "walk", "normal", None, "walk_1", "made-up"),
+        SourceClip(_gait(150, 0.8), "walk", "tired", None, "walk_2", "made-up"),
+        SourceClip(_gait(120, -0.6), "walk-back", "normal", None, "back_1", "made-up"),
+        SourceClip(_blow("right_shoulder", [0, 1.45, 0.1]), "punch", "normal", "right", "punch_1", "made-up"),
+        SourceClip(_blow("right_hip", [-1.75, 0, 0]), "kick", "normal", "right", "kick_1", "made-up"),
+    ]
+    return Library(clips, "train")
+
+
+@pytest.mark.parametrize("name", CONTACT)
+def test_a_contact_family_touches_on_constant_bones_and_says_so(name, library):
+    family = load_families()[name]
+    assert name in FAMILIES and family.contact
+    for seed in range(3):
+        scene = family.build(np.random.default_rng(seed), library)
+        people = scene.positions
+        assert people.shape[0] == 2 and people.shape[2:] == (22, 3) and np.isfinite(people).all()
+        assert 45 <= people.shape[1] <= 330
+        assert max(_bone_error(person.astype(float)) for person in people) < 1e-3
+        assert len(scene.captions) >= 5 and scene.split == "train" and scene.sources
+        np.testing.assert_allclose(people[0, 0, 0, [0, 2]], 0, atol=1e-4)
+        for touch in scene.events.get("contact", []):
+            own, other = SMPL22.index(touch["a"]), SMPL22.index(touch["b"])
+            assert 0 <= touch["start"] <= touch["end"] < people.shape[1]
+            inside = slice(touch["start"], touch["end"] + 1)
+            gap = np.linalg.norm(people[0, inside, own] - people[1, inside, other], axis=-1)
+            assert gap.min() < (0.1 if name in HANDS else 0.3), (seed, touch, gap.min())
+        side = scene.events.get("side", {}).get("a")
+        if side is not None:
+            assert all(side in caption.lower() for caption in scene.captions)
+            assert any(touch["a"].startswith(side) for touch in scene.events["contact"])
+
+
+def test_the_same_seed_makes_the_same_scene(library):
+    first, second = (load_families()["handshake"].build(np.random.default_rng(5), library) for _ in range(2))
+    np.testing.assert_array_equal(first.positions, second.positions)
+    assert first.captions == second.captions

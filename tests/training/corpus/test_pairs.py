@@ -1,0 +1,213 @@
+"""Recorded pairs: readers undo the files' scaling, repairs a Kinect's errors, and scenes come out."""
+
+import tarfile
+from pathlib import Path
+
+import numpy as np
+import pytest
+from scipy.io import savemat
+from scipy.spatial.transform import Rotation
+
+from motion.errors import InputError
+from motion.kinematics import forward_kinematics
+from motion.layouts import LAYOUTS
+from motion.skeleton import K3HI15, SBU15, SMPL22, Skeleton
+from motion.transforms import heading_matrix
+from training.corpus.k3hi import read_k3hi
+from training.corpus.kinect import exchanged, unswap, upright, without_sideways_lean, without_spikes
+from training.corpus.pairs import Report, build_scene, load_pairs
+from training.corpus.sbu import KinectPair, read_sbu
+
+
+def standing(
+    frames: int, place: tuple[float, float], heading: float, reach: np.ndarray | None = None
+) -> np.ndarray:
+    """(T, 15, 3) SBU joints of a person who stands, the right arm raised by ``reach`` (T,) in 0…1."""
+    body = Skeleton("openni", SMPL22.joint_names, SMPL22.parents, LAYOUTS["sbu15"].offsets)
+    rotations = np.tile(np.eye(3), (frames, 22, 1, 1))
+
+    def about(axis: int, angle: np.ndarray | float) -> np.ndarray:
+        vectors = np.zeros((frames, 3))
+        vectors[:, axis] = angle
+        return Rotation.from_rotvec(vectors).as_matrix()
+
+    rotations[:, 0] = heading_matrix(heading)
+    rotations[:, SMPL22.index("left_shoulder")] = about(2, -1.4)
+    raised = np.zeros(frames) if reach is None else reach
+    rotations[:, SMPL22.index("right_shoulder")] = about(0, -1.4 * raised) @ about(2, 1.4)
+    root = np.tile([place[0], 0.97, place[1]], (frames, 1))
+    return forward_kinematics(rotations, root, body)[:, LAYOUTS["sbu15"].observed]
+
+
+def handshake(frames: int = 30) -> np.ndarray:
+    """(2, T, 15, 3) two people 1.1 m apart, 2 m from the camera, whose right hands meet."""
+    reach = np.sin(np.linspace(0, np.pi, frames)) ** 0.5
+    return np.stack(
+        [standing(frames, (-0.5, 1.78), np.pi / 2, reach), standing(frames, (0.5, 2.22), -np.pi / 2, reach)]
+    )
+
+
+def pair(
+    positions: np.ndarray, family: str = "handshake", split: str = "train", fps: float = 15.0
+) -> KinectPair:
+    return KinectPair(positions, family, "s01s02/05/001", split, "sbu", SBU15, fps, 0.0)
+
+
+def write_release(
+    folder: Path, top: str, clips: dict[str, np.ndarray], train: list[str], test: list[str]
+) -> None:
+    """A release in the data sets' own shape; the actor of every second listed clip is in file B."""
+    for name, people in clips.items():
+        (folder / top / name).mkdir(parents=True)
+        for letter, person in zip("AB", people, strict=True):
+            x, y, z = np.moveaxis(person, -1, 0)
+            curve = np.stack([(1.280 - x) / 2.560, (0.960 - y) / 1.920, z * 0.78125]).transpose(0, 2, 1)
+            savemat(folder / top / name / f"skeleton_{letter}.mat", {"curve_B": curve.reshape(45, -1)})
+    for listing, names in (("Train.txt", train), ("Test.txt", test)):
+        lines = []
+        for number, name in enumerate(names):
+            files = [f"{top}/{name}/skeleton_{letter}.mat" for letter in ("BA" if number % 2 else "AB")]
+            lines.append(" ".join(files) + "\n")
+        (folder / listing).write_text("".join(lines))
+
+
+@pytest.fixture
+def data_dir(tmp_path: Path) -> Path:
+    people = handshake()
+    sbu = {"s01s02/05/001": people, "s01s03/05/001": people, "s02s06/05/001": people}
+    write_release(
+        tmp_path / "sbu", "Skeletons_Check", sbu, ["s01s02/05/001", "s01s03/05/001"], ["s02s06/05/001"]
+    )
+    order = [SBU15.index(name) for name in K3HI15.joint_names]
+    k3hi = {"shaking/1": people[:, :, order], "shaking/2": people[:, :, order]}
+    write_release(tmp_path / "k3hi", "Skeletons", k3hi, ["shaking/1"], [])
+    return tmp_path
+
+
+def test_readers_give_metres_roles_and_splits(data_dir: Path) -> None:
+    clips = {clip.name: clip for clip in read_sbu(data_dir)}
+    assert [clips[n].split for n in ("s01s02/05/001", "s02s06/05/001")] == ["train", "benchmark"]
+    assert clips["s01s02/05/001"].family == "handshake"
+    np.testing.assert_allclose(clips["s01s02/05/001"].positions, handshake(), atol=1e-9)
+    np.testing.assert_allclose(clips["s01s03/05/001"].positions, handshake()[::-1], atol=1e-9)  # B acts
+    listed, unlisted = read_k3hi(data_dir / "k3hi")
+    assert (listed.split, unlisted.split, listed.fps) == ("train", "unlisted", 30.0)
+    wrist = listed.skeleton.index("right_wrist")
+    np.testing.assert_allclose(
+        listed.positions[:, :, wrist], handshake()[:, :, SBU15.index("right_wrist")], atol=1e-9
+    )
+
+
+def test_readers_take_the_archive(data_dir: Path, tmp_path: Path) -> None:
+    packed = tmp_path / "packed"
+    packed.mkdir()
+    with tarfile.open(packed / "skeletons_check.tar.xz", "w:xz") as tar:
+        for name in ("Skeletons_Check", "Train.txt", "Test.txt"):
+            tar.add(data_dir / "sbu" / name, arcname=name)
+    unpacked = read_sbu(data_dir)
+    for one, other in zip(read_sbu(packed), unpacked, strict=True):
+        assert (one.name, one.split) == (other.name, other.split)
+        np.testing.assert_array_equal(one.positions, other.positions)
+
+
+def test_missing_data_are_explained(tmp_path: Path) -> None:
+    with pytest.raises(InputError, match="No sbu data"):
+        read_sbu(tmp_path)
+
+
+def test_exchanged_legs_are_put_back() -> None:
+    true = handshake()[0]
+    spoilt = true.copy()
+    left, right = ([SBU15.index(f"{side}_{part}") for part in ("knee", "foot")] for side in ("left", "right"))
+    spoilt[10:14, left], spoilt[10:14, right] = true[10:14, right], true[10:14, left]
+    mended, frames = unswap(spoilt, SBU15, ("knee", "foot"), 15.0)
+    assert frames == 4
+    np.testing.assert_array_equal(mended, true)
+    assert unswap(true, SBU15, ("knee", "foot"), 15.0)[1] == 0
+
+
+def test_spikes_are_taken_out_and_motion_is_not() -> None:
+    true = handshake()[0]
+    assert np.isfinite(without_spikes(true, 15.0)).all()
+    spoilt = true.copy()
+    spoilt[12, SBU15.index("left_wrist")] += 0.4
+    found = np.isnan(without_spikes(spoilt, 15.0))
+    assert found[12, SBU15.index("left_wrist")].all() and found.sum() == 3
+
+
+def test_a_lean_in_depth_is_turned_back() -> None:
+    true = handshake()[0]
+    leaning = upright(true - true[0, 2], -12.0) + true[0, 2]
+    mended = without_sideways_lean(leaning, SBU15)
+    trunk = mended[:, SBU15.index("neck")] - mended[:, SBU15.index("torso")]
+    assert np.abs(np.degrees(np.arctan2(trunk[:, 2], trunk[:, 1]))).max() < 0.5
+
+
+def test_a_handshake_becomes_a_scene() -> None:
+    report = Report()
+    scene = build_scene(pair(handshake()), report)
+    assert scene is not None and report.kept == {"sbu handshake": 1}
+    a, b = scene.positions.astype(np.float64)
+    assert len(a) == 59  # 30 frames at 15 fps
+    lengths = np.linalg.norm(
+        scene.positions[:, :, 1:] - scene.positions[:, :, list(SMPL22.parents[1:])], axis=-1
+    )
+    np.testing.assert_allclose(lengths, np.broadcast_to(SMPL22.bone_lengths[1:], lengths.shape), atol=1e-5)
+    np.testing.assert_allclose(a[0, 0, [0, 2]], 0, atol=1e-6)
+    assert scene.positions[..., 1].min() > -0.01
+    contact = scene.events["contact"][0]
+    assert (contact["a"], contact["b"]) == ("right_wrist", "right_wrist")
+    middle = (contact["start"] + contact["end"]) // 2
+    wrist = SMPL22.index("right_wrist")
+    assert np.linalg.norm(a[middle, wrist] - b[middle, wrist]) == pytest.approx(0.10, abs=0.02)
+    assert scene.captions and len(set(scene.captions)) == len(scene.captions)
+    feet = scene.positions[:, :, [SMPL22.index("left_foot"), SMPL22.index("right_foot")]][..., [0, 2]]
+    assert np.linalg.norm(np.diff(feet, axis=1), axis=-1).max() * 30 < 0.05
+
+
+def test_a_body_taken_for_its_back_is_turned_round() -> None:
+    people = handshake()
+    scene = build_scene(pair(np.stack([exchanged(people[0], SBU15), people[1]]), family="push"))
+    assert scene is not None
+    towards = scene.positions[1, 20, 0] - scene.positions[0, 20, 0]
+    assert towards[2] > 0.8 * np.linalg.norm(towards)  # b stands ahead of a, who faces +Z
+
+
+def test_bad_clips_are_counted_with_their_reason() -> None:
+    report = Report()
+    people = handshake()
+    far = people + np.array([[[[-0.5, 0, 0]]], [[[0.5, 0, 0]]]])
+    assert build_scene(pair(far), report) is None
+    assert build_scene(pair(people[:, :8]), report) is None
+    assert build_scene(pair(people, split="unlisted"), report) is None
+    assert sorted(reason.split(": ")[1] for reason in report.dropped) == [
+        "shorter than 0.8 s",
+        "the hands do not meet",
+        "who acts is not known",
+    ]
+
+
+def test_who_walks_is_the_actor_of_an_approach() -> None:
+    people = handshake(frames=20)
+    people = np.stack([people[0], people[1] + np.linspace(0.8, 0, 20)[:, None, None] * [1.0, 0, 0]])
+    scene = build_scene(pair(people, family="approach"))
+    assert scene is not None and scene.family == "approach"
+    path = scene.positions[:, :, 0]
+    assert np.linalg.norm(path[0, -1] - path[0, 0]) > 0.7 > 0.1 > np.linalg.norm(path[1, -1] - path[1, 0])
+    both = people + np.stack([-np.linspace(0.8, 0, 20), np.zeros(20)])[:, :, None, None] * [1.0, 0, 0]
+    together = build_scene(pair(both, family="approach"))
+    assert together is not None and together.family == "meet"
+
+
+def test_the_second_load_reads_the_cache(data_dir: Path, tmp_path: Path) -> None:
+    first_report, second_report = Report(), Report()
+    first = load_pairs(data_dir, tmp_path / "cache", report=first_report)
+    second = load_pairs(tmp_path / "nowhere", tmp_path / "cache", report=second_report)
+    assert {scene.split for scene in first} == {"train", "benchmark"}
+    assert first_report.lines() == second_report.lines() and len(first) == sum(first_report.kept.values())
+    for one, other in zip(first, second, strict=True):
+        np.testing.assert_array_equal(one.positions, other.positions)
+        assert (one.family, one.captions, one.sources, one.split, one.events) == (
+            other.family, other.captions, other.sources, other.split, other.events
+        )  # fmt: skip
+    assert [path.suffix for path in (tmp_path / "cache").iterdir()] == [".npz"]

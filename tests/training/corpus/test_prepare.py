@@ -1,0 +1,51 @@
+"""Prepared scenes keep the sentences of each person and the beats, and corpora join."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+import numpy as np
+import torch
+
+from models.motion_tokens import TokenLayout
+from training import prepare
+from training.corpus import build
+from training.corpus.scene import Scene
+
+BEAT = {"start": 0, "end": 70, "acts": ["wave", "stand"], "captions": ["A wave."]}
+LATE = {"start": 69, "end": 70, "acts": ["bow", "stand"], "captions": ["A bow."]}
+
+
+def scene(seed: int) -> Scene:
+    rng = np.random.default_rng(seed)
+    positions = np.cumsum(0.001 * rng.normal(size=(2, 70, 22, 3)), axis=1).astype(np.float32)
+    captions = [f"Scene {seed}, sentence {k}." for k in range(6)]
+    alone = ([f"a {seed} {k}" for k in range(6)], [])
+    return Scene(positions, "wave", captions, ("one",), "train", {}, alone, [BEAT, LATE])
+
+
+def written(folder: Path, seed: int) -> Path:
+    build.save([scene(seed)], folder)
+    return folder
+
+
+def test_sentences_of_each_person_and_beats_are_kept_and_cut(tmp_path: Path) -> None:
+    (row,) = prepare.prepare(written(tmp_path, 1), TokenLayout(), captions=2).rows
+    assert len(row["captions"]) == 2 and set(row["captions"]) <= set(scene(1).captions)
+    assert len(row["alone"][0]) == 2 and row["alone"][1] == []
+    assert [beat["acts"] for beat in row["beats"]] == [["wave", "stand"]]
+    frames = TokenLayout().num_frames(row["tokens"])
+    assert row["beats"][0]["end"] == frames < 70
+
+
+def test_two_corpora_make_one(tmp_path: Path) -> None:
+    folders = [written(tmp_path / str(seed), seed) for seed in (1, 2)]
+    out = tmp_path / "scenes.safetensors"
+    assert prepare.main(["--corpus", *map(str, folders), "--out", str(out)]) == 0
+    scenes = prepare.load(out)
+    apart = [prepare.prepare(folder, TokenLayout()) for folder in folders]
+    for row, own in zip(scenes.rows, apart, strict=True):
+        assert row["captions"] == own.rows[0]["captions"]
+        assert torch.equal(scenes.scene(row), own.scene(own.rows[0]))
+    assert json.dumps(scenes.rows)

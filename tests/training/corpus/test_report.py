@@ -1,0 +1,76 @@
+"""The report of a corpus, from a corpus of two families."""
+
+import json
+from pathlib import Path
+
+import numpy as np
+import pytest
+from PIL import Image
+
+from motion import SMPL22, Duet
+from training.corpus import report, report_beats
+
+WRIST = SMPL22.index("right_wrist")
+TOUCH = {"a": "right_wrist", "b": "right_wrist", "start": 10, "end": 20}
+
+
+def people(gap: float) -> np.ndarray:
+    """(60, 2, 22, 3): b stands before a with the right wrists ``gap`` metres apart from frame 10 to 20."""
+    rest = SMPL22.rest_positions() + np.array([0, 0.98, 0])
+    pair = np.stack([np.broadcast_to(rest + np.array([0, 0, z]), (60, 22, 3)) for z in (0, 1)], axis=1).copy()
+    pair[10:21, 1, WRIST] = pair[10:21, 0, WRIST] + [0, 0, gap]
+    return pair
+
+
+@pytest.fixture
+def corpus(tmp_path: Path) -> Path:
+    rows = [("shake", [TOUCH], "train"), ("shake", [TOUCH], "test"), ("stand", None, "train")]
+    index = [
+        {"start": 60 * i, "frames": 60, "family": family, "captions": [f"{family} {i}"], "split": split}
+        | {"events": {"contact": touch} if touch else {}, "sources": ["x"]}
+        for i, (family, touch, split) in enumerate(rows)
+    ]
+    np.save(tmp_path / "motions.npy", np.concatenate([people(g) for g in (0.06, 0.10, 0.5)]).astype("f4"))
+    (tmp_path / "index.json").write_text(json.dumps(index))
+    return tmp_path
+
+
+def test_touch_gap_is_the_least_in_the_window_and_the_largest_of_the_touches() -> None:
+    duet = Duet.from_positions(people(0.07).swapaxes(0, 1).astype("f4"), fps=30)
+    assert report.touch_gap(duet, [TOUCH]) == pytest.approx(0.07, abs=1e-5)
+    assert report.touch_gap(duet, [TOUCH, TOUCH | {"start": 30, "end": 40}]) == pytest.approx(1, abs=1e-5)
+
+
+def test_command_writes_a_row_and_a_picture_a_family(
+    corpus: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    out = tmp_path / "docs"
+    assert report.main(["--corpus", str(corpus), "--out", str(out)]) == 0
+    text = (out / "corpus.md").read_text()
+    assert text.strip() == capsys.readouterr().out.strip()
+    assert "3 scenes of 2 families" in text
+    row = next(line for line in text.splitlines() if line.startswith("| shake"))
+    assert "| 2 (1) |" in row and "| 8 |" in row
+    for name in ("shake", "stand"):
+        assert Image.open(out / "corpus" / f"{name}.webp").width == report.PICTURE_WIDTH
+
+
+def test_a_folder_without_a_corpus(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    assert report.main(["--corpus", str(tmp_path), "--out", str(tmp_path / "docs")]) != 0
+    assert "python -m training.corpus" in capsys.readouterr().err
+    assert not (tmp_path / "docs").exists()
+
+
+def test_beats_are_reported_act_by_act(corpus: Path, tmp_path: Path) -> None:
+    index = json.loads((corpus / "index.json").read_text())
+    beat = {"start": 0, "end": 60, "acts": ["handshake", "handshake"], "minor": False, "captions": ["They."]}
+    known = {"alone": [["A."], ["B."]], "sources": ["mesh2motion_Bow"]}
+    index[0] |= known | {"beats": [beat]}
+    index[2] |= known | {"beats": [beat | {"acts": ["wave", "stand"]}]}
+    (corpus / "index.json").write_text(json.dumps(index))
+    text = report_beats.report(*report_beats.load_corpus(corpus), tmp_path / "docs")
+    assert "2 scenes, 0.0 hours: 2 with 1 beats" in text
+    assert "| handshake | 1 | 0.0 | handshake | 6 | [sheet](corpus/beats/handshake.webp) |" in text
+    assert "| stand | 1 | 0.0 | wave | – | – |" in text
+    drawn = {path.stem for path in (tmp_path / "docs" / "corpus" / "beats").iterdir()}
+    assert drawn == {"handshake", "wave"}

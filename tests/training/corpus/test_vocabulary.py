@@ -1,0 +1,118 @@
+"""Readers of the free single-person sets, on made-up files; made clips slowed to what a body does."""
+
+from __future__ import annotations
+
+import json
+
+import numpy as np
+import pytest
+from scipy.spatial.transform import Rotation
+
+from motion import Duet, InputError
+from motion.formats.glb import glb_bytes
+from motion.kinematics import forward_kinematics
+from motion.retarget import retarget
+from motion.skeleton import SMPL22
+from tests.motion.bodies import marching
+from training.corpus import vocabulary
+from training.corpus.deepmimic import WIDTH, read_deepmimic
+from training.corpus.gltf_clips import read_animations
+from training.corpus.sources import load_sources
+
+J = SMPL22.index
+
+
+def row(seconds: float = 1 / 30, **angles: float) -> list[float]:
+    """A DeepMimic frame of a person who stands at (1, 0.9, 2), with angles of the joints of one number."""
+    quaternion = [1.0, 0.0, 0.0, 0.0]
+    values = [seconds, 1.0, 0.9, 2.0]
+    for name in ("root", "chest", "neck", "right_hip", "right_knee", "right_ankle", "right_shoulder",
+                 "right_elbow", "left_hip", "left_knee", "left_ankle", "left_shoulder", "left_elbow"):  # fmt: skip
+        values += [angles.get(name, 0.0)] if name.endswith(("knee", "elbow")) else quaternion
+    return values
+
+
+def clip(rows: list[list[float]]) -> bytes:
+    return json.dumps({"Loop": "none", "Frames": rows}).encode()
+
+
+def test_deepmimic_bends_elbows_forward_and_keeps_the_root() -> None:
+    rig = read_deepmimic(clip([row(right_elbow=1.2)] * 4), name="x.txt")
+    names = list(rig.joint_names)
+    root = rig.positions[0, names.index("Hips")]
+    np.testing.assert_allclose(root, [1.0, 0.9, 2.0])
+    bent, straight = (rig.positions[0, names.index(f"{side}Hand")] - root for side in ("Right", "Left"))
+    assert bent[0] > 0.2 and abs(straight[0]) < 0.05  # +X is ahead
+    assert bent[2] > 0.1 > -0.1 > straight[2]  # +Z is to the right
+    person = retarget(rig).positions
+    assert person[0, J("right_wrist"), 1] > person[0, J("left_wrist"), 1] + 0.1
+
+
+def test_deepmimic_is_resampled_by_its_own_seconds() -> None:
+    assert len(read_deepmimic(clip([row(0.1)] * 11)).positions) == 31
+
+
+@pytest.mark.parametrize(
+    ("data", "message"),
+    [
+        (b"no json", "no DeepMimic motion"),
+        (clip([[0.1] * 5] * 3), f"{WIDTH} numbers"),
+        (clip([row(), row(right_knee=float("nan"))]), f"{WIDTH} numbers"),
+        (clip([row(0.0), row(0.0)]), "lasts no time"),
+    ],
+)
+def test_damaged_deepmimic_is_said(data: bytes, message: str) -> None:
+    with pytest.raises(InputError, match=message):
+        read_deepmimic(data, name="x.txt")
+
+
+def test_a_gltf_animation_is_read_as_it_was_written(tmp_path) -> None:
+    a, b = marching(50)[0], marching(50, seed=1)[0]
+    path = tmp_path / "two.glb"
+    path.write_bytes(glb_bytes(Duet.from_positions(np.stack([a, b]), fps=30.0)))
+    rig = read_animations(path)["duet"]
+    order = [list(rig.joint_names).index(f"a_{name}") for name in SMPL22.joint_names]
+    np.testing.assert_allclose(rig.positions[:, order], a, atol=2e-3)
+    rest = rig.offsets[list(rig.joint_names).index("a_left_knee")]
+    np.testing.assert_allclose(np.linalg.norm(rest), SMPL22.bone_lengths[J("left_knee")], atol=1e-4)
+
+
+def test_a_damaged_gltf_is_said(tmp_path) -> None:
+    path = tmp_path / "x.glb"
+    path.write_bytes(b"glTF" + bytes(40))
+    with pytest.raises(InputError, match=r"x\.glb holds no animations"):
+        read_animations(path)
+
+
+def test_made_clips_are_slowed_and_rounded_and_slow_ones_kept() -> None:
+    time = np.arange(40) / 30
+
+    def wave(hertz: float) -> np.ndarray:
+        rotations = np.tile(np.eye(3), (40, 22, 1, 1))
+        turn = np.stack([0 * time, 0 * time, 1.3 * np.sin(2 * np.pi * hertz * time)], -1)
+        rotations[:, J("left_shoulder")] = Rotation.from_rotvec(turn).as_matrix()
+        return forward_kinematics(rotations, np.tile([0.0, 0.95, 0.0], (40, 1)))
+
+    fast, calm = vocabulary.humanly(wave(3.0)), vocabulary.humanly(wave(0.0))
+    tip = fast[:, J("left_wrist")] - fast[:, 0]
+    assert len(calm) == 40 < len(fast)
+    assert np.linalg.norm(np.diff(tip, axis=0), axis=-1).max() * 30 < 1.1 * vocabulary.MOST_SPEED
+    assert np.linalg.norm(np.diff(tip, n=2, axis=0), axis=-1).max() * 900 < 1.2 * vocabulary.MOST_ACCELERATION
+    lengths = np.linalg.norm(fast[:, 1:] - fast[:, list(SMPL22.parents[1:])], axis=-1)
+    np.testing.assert_allclose(lengths, np.tile(SMPL22.bone_lengths[1:], (len(fast), 1)), atol=1e-6)
+
+
+def test_sources_take_the_vocabulary_along(tmp_path) -> None:
+    folder = tmp_path / "data" / "deepmimic"
+    folder.mkdir(parents=True)
+    (folder / "humanoid3d_jump.txt").write_bytes(clip([row()] * 60))
+    (folder / "humanoid3d_unused.txt").write_bytes(clip([row()] * 60))
+    (folder / "humanoid3d_getup_facedown.txt").write_bytes(clip([row(right_elbow=k / 40) for k in range(60)]))
+    clips = {c.action: c for c in load_sources(tmp_path / "data", cache_dir=tmp_path / "cache")}
+    assert set(clips) == {"jump", "get-up-front", "lie-down-front"}
+    assert clips["jump"].dataset == "deepmimic" and clips["jump"].source == "deepmimic_humanoid3d_jump"
+    up, down = clips["get-up-front"].positions, clips["lie-down-front"].positions
+    bend = [body[:, J("right_wrist"), 1] - body[:, J("right_elbow"), 1] for body in (up, down)]
+    assert bend[0][-1] > bend[0][0] + 0.1 and bend[1][0] > bend[1][-1] + 0.1
+    again = load_sources(tmp_path / "data", cache_dir=tmp_path / "cache")
+    assert [c.place for c in again] == [c.place for c in clips.values()] or len(again) == 3

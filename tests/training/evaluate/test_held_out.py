@@ -1,0 +1,69 @@
+"""Errors on the test split: networks with and without words are compared on the same scenes and noise."""
+
+import json
+from dataclasses import replace
+from pathlib import Path
+
+import pytest
+import torch
+
+from tests.training.trainers.test_intergen import SETTINGS, begin, take, write_corpus
+from training import prepare
+from training.evaluate import held_out
+
+SIXTEEN = 20
+
+
+@pytest.fixture(scope="module")
+def scenes(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    folder = tmp_path_factory.mktemp("made")
+    corpus = write_corpus(folder / "corpus", scenes=SIXTEEN + 10)
+    rows = json.loads((corpus / "index.json").read_text())
+    for i, row in enumerate(rows):
+        row["split"] = "test" if i < SIXTEEN else "train"
+    (corpus / "index.json").write_text(json.dumps(rows))
+    out = folder / "scenes.safetensors"
+    assert prepare.main(["--corpus", str(corpus), "--out", str(out)]) == 0
+    return out
+
+
+def test_runs_are_compared_by_timestep(
+    scenes: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(held_out, "TIMESTEPS", (5, 999))
+    for words in (False, True):
+        trainer = begin(scenes, tmp_path / f"words-{words}", replace(SETTINGS, words=words, batch=4))
+        with torch.no_grad():  # a network that gives back what it sees: no error where nothing is noised
+            for module in (trainer.model, trainer.ema):
+                for parameter in module.denoiser.out.parameters():
+                    parameter.zero_()
+        take(trainer, 0)
+    runs = [str(tmp_path / f"words-{words}") for words in (False, True)]
+    words = ["--scenes", str(scenes), "--cache", str(tmp_path), "--batches", "1", "--models", *runs]
+    capsys.readouterr()
+    assert held_out.main([*words, "--given", "nothing", "person"]) == 0
+    found = [json.loads(line) for line in capsys.readouterr().out.splitlines()]
+    assert [(f["model"], f["given"]) for f in found] == [
+        (f"words-{words}", given) for words in (False, True) for given in ("nothing", "person")
+    ]
+    for plain, given in (found[:2], found[2:]):
+        # A network that predicts the mean errs as much at every timestep, and half where one of two is given.
+        assert plain["5"] == plain["999"] > 0.1
+        assert given["5"] < 0.95 * plain["5"]
+    assert found[0]["5"] == pytest.approx(found[2]["5"], rel=1e-3)
+
+
+def test_too_few_scenes_are_refused(scenes: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    loaded = prepare.load(scenes)
+    loaded.rows = loaded.rows[15:]
+    prepare.save(loaded, tmp_path / "few.safetensors")
+    words = [
+        "--scenes",
+        str(tmp_path / "few.safetensors"),
+        "--cache",
+        str(tmp_path),
+        "--models",
+        str(tmp_path),
+    ]
+    assert held_out.main(words) == 2
+    assert "holds 5 scenes" in capsys.readouterr().err

@@ -1,0 +1,111 @@
+"""The scores of reactions: a classifier that learns, and distances that say what they should."""
+
+from functools import partial
+
+import numpy as np
+import pytest
+
+from motion import Duet
+from motion.metrics import summary
+from training.evaluate.deep_gru import (
+    accuracy,
+    deep_features,
+    diversity_score,
+    fit,
+    frechet_distance,
+    padded,
+    spread,
+)
+from training.evaluate.reactions import Reaction, interval, readouts, score, table, zero_velocity
+
+
+def clips(count: int, seed: int) -> tuple[list[np.ndarray], list[int]]:
+    """Clips of two classes: numbers that rise, numbers that swing."""
+    rng = np.random.default_rng(seed)
+    found = []
+    for i in range(count):
+        time = np.linspace(0, 1, int(rng.integers(12, 20)))[:, None]
+        path = time if i % 2 else np.sin(9 * time)
+        found.append(path * np.ones(6) + rng.normal(0, 0.05, (len(time), 6)))
+    return found, [i % 2 for i in range(count)]
+
+
+def test_the_classifier_learns_and_is_the_same_for_a_seed() -> None:
+    known, labels = clips(40, 0)
+    unseen, wanted = clips(20, 1)
+    assert accuracy(fit(known, labels, seed=3, epochs=15), unseen, wanted) > 0.9
+    first, again, other = (
+        deep_features(fit(known[:8], labels[:8], seed=seed, epochs=2), unseen[:4]) for seed in (3, 3, 4)
+    )
+    np.testing.assert_array_equal(first, again)
+    assert not np.array_equal(first, other)
+
+
+def test_padding_changes_nothing() -> None:
+    known, labels = clips(12, 0)
+    network = fit(known, labels, seed=0, epochs=1)
+    together = deep_features(network, known)
+    alone = np.concatenate([deep_features(network, [clip]) for clip in known])
+    np.testing.assert_allclose(together, alone, atol=1e-5)
+    batch, lengths = padded(known)
+    assert batch.shape == (12, max(map(len, known)), 6)
+    assert lengths.tolist() == [len(clip) for clip in known]
+
+
+def test_frechet_distance_of_gaussians() -> None:
+    rng = np.random.default_rng(0)
+    x = rng.normal(size=(4000, 3))
+    assert frechet_distance(x, x) == pytest.approx(0, abs=1e-6)
+    # Means 2 apart, deviations 1 and 3 in each of three directions: 4 + 3 · (3 − 1)².
+    assert frechet_distance(x, 3 * rng.normal(size=(4000, 3)) + [2, 0, 0]) == pytest.approx(16, rel=0.06)
+
+
+def test_diversity_is_a_percentage_of_the_recorded_spread() -> None:
+    real = np.array([[0.0, 0], [3, 4]])
+    assert diversity_score(real, 2 * real) == pytest.approx(100)
+    assert diversity_score(real, 0.5 * real) == pytest.approx(50)
+    assert diversity_score(10 * real, 5 * real) == pytest.approx(50)
+
+
+def test_spread_is_the_mean_distance_of_pairs() -> None:
+    assert spread(np.array([[0.0, 0], [3, 4], [0, 0]])) == pytest.approx(10 / 3)
+
+
+def touches(pair: Reaction, other: np.ndarray) -> bool:
+    duet = Duet.from_positions(np.stack([pair.people[0], other]), fps=30.0)
+    return summary(duet)["contact_seconds"] > 0
+
+
+def test_the_table_holds_every_method(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("training.evaluate.reactions.fit", partial(fit, epochs=2))  # how well is another test
+    rng = np.random.default_rng(0)
+    people = [rng.normal(size=(2, 40, 22, 3)) for _ in range(12)]
+    pairs = [Reaction(one + 3 * (i % 2), i % 2) for i, one in enumerate(people)]
+    still = [zero_velocity(pair, 0) for pair in pairs]
+    assert (np.diff(still[0], axis=0) == 0).all()
+    found = score(pairs, pairs, {"Zero velocity": [still]}, seeds=2)
+    assert set(found) == {"Recorded", "Zero velocity"}
+    assert len(found["Zero velocity"]["fvd"]) == 2
+    mean, half = interval([1.0, 3.0])
+    assert (mean, half) == (2.0, pytest.approx(12.706, abs=1e-3))  # t of one degree of freedom
+    shown = readouts(pairs, still)
+    assert shown["response_delay"] is None  # of somebody who stands still
+    assert shown["contact_due"] == pytest.approx(
+        100
+        * np.mean(
+            [
+                touches(pair, one)
+                for pair, one in zip(pairs, still, strict=True)
+                if touches(pair, pair.people[1])
+            ]
+        ),
+        abs=1e-3,
+    )
+    assert readouts(pairs, [pair.people[1] for pair in pairs])["contact_due"] == 100
+    text = table(
+        {"sbu": {"train": 12, "test": 12, "classes": ["a", "b"], "scores": found,
+                 "readouts": dict.fromkeys(found, shown)}}
+    )  # fmt: skip
+    row = next(line for line in text.splitlines() if line.startswith("| Zero velocity |"))
+    assert "| Delay s |" in text and "| – |" in row and row.count("|") == text.splitlines()[2].count("|")
+    assert "SBU: 12 training" in text

@@ -1,0 +1,154 @@
+"""The judge's eighty sentences: their rules pass where the words are done, and only there."""
+
+from __future__ import annotations
+
+import re
+import zlib
+from functools import cache
+
+import numpy as np
+import pytest
+
+from motion.transforms import mirrored
+from training.corpus.captions import FAMILIES, Phrasebook, expand
+from training.corpus.phrases import ACTIONS, ENTRIES
+from training.evaluate.judge.sentences import kept_out, load_sentences, without_sentences
+from training.evaluate.judge.sentences.joints import Motion
+from training.evaluate.judge.sentences.language import RuleError, check
+from training.evaluate.judge.sentences.stretches import longest, stretches
+
+from .puppets import play
+from .sentence_scripts import SCRIPTS
+
+SENTENCES = {sentence.id: sentence for sentence in load_sentences()}
+
+
+@cache
+def puppets(name: str) -> Motion:
+    return Motion(play(SCRIPTS[name], SENTENCES[name].seconds))
+
+
+@pytest.mark.parametrize("name", SENTENCES)
+def test_a_puppet_that_does_it_passes(name: str) -> None:
+    found = SENTENCES[name].judge(puppets(name))
+    assert found.passed, [rule for rule, fulfilled in found.parts if not fulfilled]
+
+
+@pytest.mark.parametrize("gap", [0.7, 1.5, 3.0])
+@pytest.mark.parametrize("name", SENTENCES)
+def test_two_who_stand_fail(name: str, gap: float) -> None:
+    assert not SENTENCES[name].judge(Motion(play(f"gap {gap}", SENTENCES[name].seconds))).passed
+
+
+@pytest.mark.parametrize("name", [s.id for s in SENTENCES.values() if s.named])
+def test_the_wrong_person_doing_it_fails(name: str) -> None:
+    assert not SENTENCES[name].judge(puppets(name).swapped()).passed
+
+
+@pytest.mark.parametrize("name", [s.id for s in SENTENCES.values() if not s.named])
+def test_where_nobody_is_named_either_may_do_it(name: str) -> None:
+    assert SENTENCES[name].judge(puppets(name).swapped()).passed
+
+
+@pytest.mark.parametrize("name", [s.id for s in SENTENCES.values() if s.ordered])
+def test_played_backwards_it_fails(name: str) -> None:
+    assert not SENTENCES[name].judge(puppets(name).reversed()).passed
+
+
+@pytest.mark.parametrize("name", [s.id for s in SENTENCES.values() if "side" in s.tags])
+def test_the_other_hand_fails(name: str) -> None:
+    motion = Motion(mirrored(puppets(name).positions))
+    assert not SENTENCES[name].judge(motion).passed
+
+
+def test_a_rule_turns_most_other_scenes_away() -> None:
+    names = list(SENTENCES)
+    passed = [
+        (name, other)
+        for i, name in enumerate(names)
+        for other in (names[(i + 9 * k) % len(names)] for k in range(1, 9))
+        if SENTENCES[name].judge(puppets(other)).passed
+    ]
+    assert len(passed) < 0.03 * 8 * len(names), passed
+
+
+def test_there_are_eighty_and_every_weakness_is_among_them() -> None:
+    assert len(SENTENCES) == len(SCRIPTS) == len({s.words for s in SENTENCES.values()}) == 80
+    tags = [tag for sentence in SENTENCES.values() for tag in sentence.tags]
+    for tag in ("two_beats", "three_beats", "at_once", "refuse", "stand", "turn", "jump", "hold_and_move",
+                "stop", "bow", "sit", "kneel", "fall", "lines", "side", "narrative", "passive", "while",
+                "until", "without", "locomotion", "contact"):  # fmt: skip
+        assert tags.count(tag) >= 3, tag
+    assert all(2 <= sentence.seconds <= 10 for sentence in SENTENCES.values())
+    assert sum(sentence.named for sentence in SENTENCES.values()) >= 25
+
+
+# ---- the language of the rules -------------------------------------------------------------------------
+@pytest.mark.parametrize(
+    ("rule", "why"),
+    [
+        ("walks(a)", "must begin with"),
+        ("happens(flies(a))", "'flies' is not known"),
+        ("happens(walks(c))", "neither a person"),
+        ("happens(hand_on(a, 'tail'))", "does not fit"),
+        ("happens(walks(a)", "cannot be read"),
+        ("happens(__import__('os').system('true'))", "not known"),
+    ],
+)
+def test_a_rule_that_makes_no_sense_is_refused(rule: str, why: str) -> None:
+    with pytest.raises(RuleError, match=why):
+        check(rule, Motion(play("", 2)))
+
+
+def test_beats_in_order_and_at_once() -> None:
+    one_by_one = Motion(play("a bow 0.5 2; b bow 3 4.5", 5))
+    at_once = Motion(play("a bow 1 3; b bow 1.2 3.2", 5))
+    assert check("then(bows(a), bows(b))", one_by_one) and not check("then(bows(b), bows(a))", one_by_one)
+    assert not check("then(bows(a), bows(b))", at_once)
+    assert check("happens(both(bows(a), bows(b)), 0.5)", at_once)
+    assert not check("happens(both(bows(a), bows(b)))", one_by_one)
+
+
+def test_stretches_join_over_short_pauses() -> None:
+    mask = np.array([1, 1, 0, 1, 0, 0, 0, 0, 1], dtype=bool)
+    assert stretches(mask, 10.0) == [(0, 4), (8, 9)]
+    assert longest(mask, 10.0) == pytest.approx(0.4)
+    assert stretches(np.zeros(4, dtype=bool), 10.0) == []
+
+
+# ---- kept out of training ------------------------------------------------------------------------------
+def test_captions_that_repeat_a_sentence_are_refused() -> None:
+    for sentence in SENTENCES.values():
+        assert kept_out(sentence.words) == sentence.words
+        assert kept_out(sentence.words.upper().replace(",", "") + "!") == sentence.words
+    assert kept_out("They shake hands and then they turn around and go their separate ways") is not None
+    assert without_sentences(["Two people shake hands.", "walk, shake hands"]) == ["Two people shake hands."]
+
+
+@pytest.mark.parametrize("family", FAMILIES)
+@pytest.mark.parametrize("split", ["train", "test"])
+def test_no_caption_of_the_corpus_is_a_sentence(family: str, split: str) -> None:
+    rng = np.random.default_rng(zlib.crc32(f"{family} {split}".encode()))
+    acts = sorted(ACTIONS)
+    slots = {key: str(rng.choice(acts)) for key in ("act_a", "act_b", "first", "second")}
+    captions = Phrasebook(family).sample(rng, slots, n=40, split=split)
+    assert captions or split == "test"
+    assert not [caption for caption in captions if kept_out(caption)]
+
+
+def test_phrases_of_the_corpus_hold_no_sentence() -> None:
+    """Whole sentences and keywords of the phrase book, every one, whoever they are said of."""
+    people = {"{A}": "one person", "{B}": "the other"}
+    for entry in ENTRIES.values():
+        for pattern in (*entry.nouns, *entry.sentences, *entry.both, *entry.a, *entry.b):
+            for text in expand(pattern):
+                for mark, word in people.items():
+                    text = text.replace(mark, word)
+                assert kept_out(re.sub(r"\*|\{[^}]*\}", "", text)) is None, text
+
+
+def test_the_grammar_writes_no_caption_that_is_kept_out(monkeypatch: pytest.MonkeyPatch) -> None:
+    captions = Phrasebook("hug").sample(np.random.default_rng(3), n=20)
+    monkeypatch.setattr("training.corpus.captions.kept_out", lambda text: text in captions[:10] and text)
+    again = Phrasebook("hug").sample(np.random.default_rng(3), n=20)
+    assert set(captions[10:]) <= set(again) and not set(captions[:10]) & set(again)

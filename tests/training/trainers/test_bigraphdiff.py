@@ -1,0 +1,86 @@
+"""The trainer of classes: what a scene's class is, runs that stop, and the folder that comes out."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+import pytest
+import torch
+from safetensors.torch import load_file
+
+from models.bigraphdiff.compact import load_folder
+from motion import InputError
+from tests.training.trainers.test_intergen import write_corpus
+from training import prepare
+from training.trainers import bigraphdiff
+from training.trainers.bigraphdiff import CLASSES, Settings, Trainer, labels_of, of_classes
+
+SETTINGS = Settings(
+    latent_dim=32, ff_size=16, num_layers=1, num_heads=2, embed_dim=16, cond_dim=8, batch=4, steps=6, warmup=2
+)
+
+
+@pytest.fixture(scope="module")
+def scenes(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """Half of the scenes are handshakes, the others wave; one is of a family that is no class."""
+    folder = tmp_path_factory.mktemp("classes")
+    corpus = write_corpus(folder / "corpus", scenes=13)
+    rows = json.loads((corpus / "index.json").read_text())
+    for i, row in enumerate(rows):
+        row["family"] = "sequence" if i == 4 else "handshake" if i % 2 else "wave-back"
+    (corpus / "index.json").write_text(json.dumps(rows))
+    out = folder / "scenes.safetensors"
+    assert prepare.main(["--corpus", str(corpus), "--out", str(out)]) == 0
+    return out
+
+
+def test_families_are_classes_and_what_most_of_their_scenes_touch_is_theirs(scenes: Path) -> None:
+    loaded = of_classes(prepare.load(scenes))
+    assert {row["family"] for row in loaded.rows} == {"handshake", "wave-back"}
+    names, touches = labels_of(loaded)
+    assert names == ("shake hands", "wave to each other")
+    assert touches == ((("right_wrist", "right_wrist"),), ())
+    loaded.rows = [row | {"family": "sequence"} for row in loaded.rows]
+    with pytest.raises(InputError, match="hold no family of"):
+        of_classes(loaded)
+
+
+def test_names_of_classes_tell_them_apart_in_any_case() -> None:
+    assert len({name.casefold() for name in CLASSES.values()}) == len(set(CLASSES.values()))
+    assert all(name == " ".join(name.split()) for name in CLASSES.values())
+
+
+def test_a_run_that_stops_goes_on_as_if_it_never_had(scenes: Path, tmp_path: Path) -> None:
+    torch.set_num_threads(1)
+    loaded = prepare.load(scenes)
+    straight = Trainer(loaded, SETTINGS, tmp_path / "straight")
+    losses = [terms["total"] for terms in straight.run(minutes=10)]
+    assert len(losses) == 6 and losses[-1] < losses[0]
+    stopped = Trainer(loaded, SETTINGS, tmp_path / "stopped")
+    for _ in range(3):
+        stopped.train_step()
+    stopped.save()
+    resumed = Trainer(loaded, SETTINGS, tmp_path / "stopped")
+    assert resumed.step == 3 and len(list(resumed.run(minutes=10))) == 3
+    one, other = (load_file(tmp_path / name / "last.safetensors") for name in ("straight", "stopped"))
+    assert [key for key in one if not torch.equal(one[key], other[key])] == []
+    seen = "ema/denoiser.network.temporal_decoder_blocks.0.bipartite_graph.blocker.running_var"
+    assert not torch.equal(one[seen], torch.ones_like(one[seen]))
+
+
+def test_the_shell_writes_the_folder_that_is_shipped(
+    scenes: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    sizes = [
+        word
+        for name in ("latent_dim", "ff_size", "num_layers", "num_heads", "embed_dim", "cond_dim", "batch")
+        for word in ("--" + name.replace("_", "-"), str(getattr(SETTINGS, name)))
+    ]
+    words = ["--scenes", str(scenes), "--out", str(tmp_path / "run"), *sizes]
+    assert bigraphdiff.main([*words, "--steps", "2", "--export", str(tmp_path / "weights")]) == 0
+    model, source = load_folder(tmp_path / "weights")
+    assert model.config.labels == ("shake hands", "wave to each other")
+    assert source.meta["trained_steps"] == 2 and "class" in source.meta["card"]["summary"]
+    assert bigraphdiff.main([*words, "--latent-dim", "40", "--steps", "2"]) == 2
+    assert "multiple of 16" in capsys.readouterr().err

@@ -1,0 +1,301 @@
+"""Trainings of predictors: they learn, stop and resume exactly, and write what the engine reads."""
+
+from __future__ import annotations
+
+import json
+import shutil
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+import torch
+
+from models.motion_mlp import MotionMLP, MotionMLPConfig
+from models.predictors import load_predictor, save_predictor
+from motion import SMPL22, InputError
+from motion.transforms import heading
+from training.evaluate import prediction_ablation as ablation
+from training.evaluate import prediction_product as product
+from training.trainers import mawgan
+from training.trainers import motion_mlp as mlp
+from training.trainers.prediction.rollout import ADVANCE, with_own_past
+from training.trainers.prediction.trainer import PredictionTrainer
+from training.trainers.prediction.windows import CmuWindows, CorpusWindows, open_windows
+from webdemo.inference.pipelines.predict_frame import to_last_pose
+
+MLP = mlp.Settings(past=10, future=8, past_coefficients=6, future_coefficients=4, width=16, blocks=1,
+                   fit=64, batch=8, steps=6, warmup=1)  # fmt: skip
+GAN = mawgan.Settings(windows="corpus", past=10, future=8, fc=36, width=32, critic_fc=8, critic_steps=2,
+                      batch=4, steps=3)  # fmt: skip
+LEAN_GAN = replace(GAN, critic_steps=1, final_rate=0.1, position=100.0, speed=300.0, linear=True, length=True,
+                   pose=True, coefficients=4, shortcut=True, dropout=0.3, ridge=0.1, fit=64, noise=0.001,
+                   groups=2)  # fmt: skip
+
+
+@pytest.fixture(scope="module")
+def corpus(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """Two scenes of two people who sway; the second is of the test split."""
+    folder = tmp_path_factory.mktemp("corpus")
+    times = np.arange(120)[:, None, None, None] / 30
+    phase = np.array([0.0, 1.0])[:, None, None]
+    sway = 0.1 * np.sin(5 * times + phase) * np.linspace(0, 1, 22)[:, None]
+    place = np.array([[0.0, 1.0, 0.0], [1.0, 1.0, 2.0]])[:, None]
+    np.save(folder / "motions.npy", (SMPL22.rest_positions() + place + sway).astype(np.float32))
+    rows = [{"start": 60 * i, "frames": 60, "split": split} for i, split in enumerate(("train", "test"))]
+    (folder / "index.json").write_text(json.dumps(rows))
+    return folder
+
+
+@pytest.fixture(scope="module")
+def cmu_folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """One clip of noise that drifts, to train on and to test on."""
+    data = tmp_path_factory.mktemp("cmu")
+    shutil.copy(
+        Path(__file__).parents[2] / "data" / "reference" / "cmu_skeleton.json", data / "skeleton.json"
+    )
+    frames = np.cumsum(np.random.default_rng(0).normal(scale=0.01, size=(170, 117)), axis=0)
+    for split in ("train", "test"):
+        path = data / split / "walking" / "walking_1.txt"
+        path.parent.mkdir(parents=True)
+        np.savetxt(path, frames, delimiter=",")
+    return data
+
+
+def start(kind: str, corpus: Path, out: Path, **changed: int) -> PredictionTrainer:
+    windows = open_windows("corpus", corpus, 10, 8)
+    if kind == "mlp":
+        return mlp.Trainer(windows, replace(MLP, **changed), out)
+    return mawgan.Trainer(windows, replace(LEAN_GAN if kind == "lean" else GAN, **changed), out)
+
+
+def test_windows_are_of_one_split_in_the_frame_of_their_last_pose(corpus: Path) -> None:
+    windows = CorpusWindows(corpus, 10, 8)
+    assert windows.starts.min() == 0 and windows.starts.max() == 42
+    batch = windows.batch(6, (0, 1))
+    assert batch.shape == (6, 18, 22, 3) and torch.equal(batch, windows.batch(6, (0, 1)))
+    assert not torch.equal(batch, windows.batch(6, (0, 2)))
+    assert np.allclose(batch[:, 9, 0, [0, 2]], 0, atol=1e-6)
+    assert np.allclose(heading(batch[:, 9].numpy().astype(float)), 0, atol=1e-5)
+
+
+@pytest.mark.parametrize("kind", ["mlp", "mawgan", "lean"])
+def test_a_run_that_stops_goes_on_as_if_it_had_not(kind: str, corpus: Path, tmp_path: Path) -> None:
+    whole, cut = start(kind, corpus, tmp_path / "whole"), start(kind, corpus, tmp_path / "cut")
+    terms = list(whole.run(minutes=5))
+    before = [next(cut.run(minutes=5))]
+    cut.save()
+    resumed = start(kind, corpus, tmp_path / "cut")
+    assert resumed.step == 1
+    after = list(resumed.run(minutes=5))
+    assert [*before, *after] == terms
+    for a, b in zip(whole.ema.parameters(), resumed.ema.parameters(), strict=True):
+        assert torch.equal(a, b)
+    with pytest.raises(InputError, match="other settings"):
+        start(kind, corpus, tmp_path / "cut", seed=1)
+
+
+def test_training_makes_it_better_than_its_linear_part(corpus: Path, tmp_path: Path) -> None:
+    trainer = start("mlp", corpus, tmp_path, steps=60)
+    totals = [terms["total"] for terms in trainer.run(minutes=5)]
+    assert np.mean(totals[-10:]) < 0.8 * np.mean(totals[:5])
+
+
+@pytest.mark.parametrize("kind", ["mlp", "mawgan"])
+def test_the_shell_writes_a_predictor(kind: str, corpus: Path, tmp_path: Path) -> None:
+    settings, main = (MLP, mlp.main) if kind == "mlp" else (GAN, mawgan.main)
+    asked = [
+        f"--{key.replace('_', '-')}={value}"
+        for key, value in vars(settings).items()
+        if not isinstance(value, bool)
+    ]
+    folders = ["--data", str(corpus), "--out", str(tmp_path / "run"), "--export", str(tmp_path / "folder")]
+    assert main([*asked, *folders]) == 0
+    predictor = load_predictor(tmp_path / "folder")
+    assert (predictor.past, predictor.future, predictor.joints) == (10, 8, 22)
+    assert predictor.training is not None and predictor.training["steps"] == settings.steps
+    assert main([*asked, *folders, "--data", str(tmp_path)]) == 2
+
+
+def test_lean_settings_are_those_of_the_module_and_can_be_changed(corpus: Path, tmp_path: Path) -> None:
+    asked = [
+        "--windows=corpus",
+        "--past=10",
+        "--future=8",
+        "--fc=36",
+        "--batch=4",
+        "--steps=1",
+        "--no-length",
+    ]
+    folders = ["--data", str(corpus), "--out", str(tmp_path / "run"), "--export", str(tmp_path / "folder")]
+    assert mawgan.main(["--lean", "--no-length", *asked, *folders]) == 0
+    training = load_predictor(tmp_path / "folder").training
+    assert training is not None
+    changed = {"fc": 36, "length": False, "steps": 1}
+    assert {name: training[name] for name in mawgan.LEAN} == mawgan.LEAN | changed
+    begun = ["--init", str(tmp_path / "folder"), "--out", str(tmp_path / "on"), "--learning-rate=0"]
+    folder = tmp_path / "begun"
+    assert mawgan.main(["--lean", "--no-length", *asked, *folders, *begun, "--export", str(folder)]) == 0
+    first, on = (load_predictor(path).network.state_dict() for path in (tmp_path / "folder", folder))
+    assert all(torch.equal(first[name], value) for name, value in on.items())
+    assert json.loads((folder / "config.json").read_text())["training"]["init"] == "folder"
+
+
+def test_mixed_windows_have_legs_from_elsewhere(cmu_folder: Path) -> None:
+    plain, mixed = (CmuWindows(cmu_folder, 10, 8, mixed=share).batch(40, (0, 1)) for share in (0.0, 1.0))
+    assert torch.equal(mixed[:, :, 7:], plain[:, :, 7:]) and torch.equal(mixed[:, :, 0], plain[:, :, 0])
+    assert torch.equal(mixed[1:, :, 1:7], plain[:-1, :, 1:7])
+    some = open_windows("cmu-mixed", cmu_folder, 10, 8).batch(40, (0, 1))
+    moved = (some != plain).flatten(1).any(1)
+    assert 5 < int(moved.sum()) < 25
+
+
+def test_mean_speeds_are_matched_by_the_mean_of_what_may_follow() -> None:
+    """Three of four people stand; their mean moves by a quarter of the one who walks."""
+    ahead = torch.tensor([1.0, 0.0, 0.0])
+    real = torch.zeros(4, 11, 22, 3)
+    real[0] = 4 * ahead
+    speed, acceleration = mlp.liveliness(torch.zeros_like(real), real)
+    assert float(speed) == pytest.approx(1.0, abs=1e-4) and float(acceleration) < 1e-4
+    even = ahead.expand_as(real)
+    assert all(float(x) < 1e-4 for x in mlp.liveliness(even, real))
+    # In two groups the two who stand are told from the walker and the one beside.
+    assert float(mlp.liveliness(even, real, 2)[0]) == pytest.approx(1.0, abs=1e-4)
+    trembling = even * (-1.0) ** torch.arange(11)[:, None, None]
+    speed, acceleration = mlp.liveliness(trembling, real)
+    assert float(speed) < 1e-4 and float(acceleration) == pytest.approx(2.0, abs=1e-4)
+
+
+class Extrapolates(torch.nn.Module):
+    """Goes on as fast as at the end of the past, in its direction."""
+
+    def forward(self, past: torch.Tensor) -> torch.Tensor:
+        steps = torch.arange(1, 26)[:, None, None].to(past)
+        return past[:, -1:] + steps * (past[:, -1:] - past[:, -2:-1])
+
+
+@pytest.mark.parametrize("passes", [1, 2])
+def test_pasts_of_its_own_are_the_recorded_ones_where_the_network_is_right(passes: int) -> None:
+    along = np.array([[0.02, 0.0, 0.01], [0.0, 0.0, -0.03]])[:, None, None]
+    motion = SMPL22.rest_positions() + along * np.arange(100)[:, None, None]
+    windows = torch.from_numpy(to_last_pose(motion, 9)[0]).float()
+    made, recorded = with_own_past(Extrapolates(), windows, 10, 25, passes)
+    start = ADVANCE * passes
+    expected = to_last_pose(windows[:, start : start + 35].numpy(), 9)[0]
+    assert made.shape == (2, 35, 22, 3) and np.allclose(made.numpy(), expected, atol=1e-4)
+    assert np.allclose(recorded.numpy(), expected, atol=1e-4)
+    # A network that strays is not told where it should have been, but how to go on from where it is.
+    still, _ = with_own_past(lambda past: past[:, -1:].repeat(1, 25, 1, 1), windows, 10, 25, passes)
+    assert np.allclose(still[:, 10:].numpy(), expected[:, 10:], atol=1e-4)
+    assert np.abs(np.diff(still[:, :10].numpy(), axis=1)).max() < 1e-4
+
+
+def test_what_follows_begins_in_the_pose_that_the_network_came_to() -> None:
+    windows = torch.from_numpy(np.repeat(SMPL22.rest_positions()[None, None], 80, axis=1)).float()
+
+    def raises_a_hand(past: torch.Tensor) -> torch.Tensor:
+        made = past[:, -1:].repeat(1, 25, 1, 1)
+        made[:, :, 21, 1] += 0.02 * torch.arange(1, 26)
+        return made
+
+    made, recorded = with_own_past(raises_a_hand, windows, 10, 25, 1)
+    above = (made - recorded)[0, :, 21, 1]
+    assert np.allclose(above[9:], 0.4 * np.linspace(1, 0, 26), atol=1e-5)
+    assert torch.allclose(made[:, :, :21], recorded[:, :, :21], atol=1e-5)
+
+
+def test_a_trained_network_learns_to_go_on_from_its_own(corpus: Path, tmp_path: Path) -> None:
+    sizes = ["--past=10", "--future=20", "--past-coefficients=6", "--future-coefficients=4", "--width=16",
+             "--blocks=1", "--fit=64", "--batch=4", "--steps=2"]  # fmt: skip
+    run = ["--data", str(corpus), "--out", str(tmp_path / "first"), "--export", str(tmp_path / "folder")]
+    assert mlp.main([*sizes, *run]) == 0
+    asked = [*sizes, "--init", str(tmp_path / "folder"), "--own-pasts", "1", "--data", str(corpus)]
+    assert mlp.main([*asked, "--out", str(tmp_path / "second"), "--export", str(tmp_path / "longer")]) == 0
+    training = load_predictor(tmp_path / "longer").training
+    assert training is not None and training["own_pasts"] == 1
+    assert mlp.main([*asked, "--out", str(tmp_path / "third"), "--own-pasts", "-1"]) == 2
+
+
+@pytest.mark.parametrize("limbs", [False, True])
+def test_the_adversary_s_network_learns_to_go_on_from_its_own(
+    corpus: Path, tmp_path: Path, limbs: bool
+) -> None:
+    settings = replace(LEAN_GAN, past=10, future=20, own_pasts=1, steps=4)
+    settings = replace(settings, speed=1.0, groups=2, limbs=limbs, acceleration=2.0)
+    windows = open_windows("corpus", corpus, 10, settings.ahead)
+    assert windows.length == 10 + 20 + ADVANCE
+    trainer = mawgan.Trainer(windows, settings, tmp_path)
+    own = 0
+    for _ in range(settings.steps):
+        asked, recorded, passes = trainer.window()
+        assert asked.shape == recorded.shape == (4, 30, 22, 3)
+        own += passes
+        terms = trainer.train_step()
+        assert np.isfinite(list(terms.values())).all() and terms["speed"] > 0
+    assert 0 < own < settings.steps
+    with pytest.raises(InputError, match="own_pasts is 1"):
+        replace(settings, windows="cmu")
+
+
+def test_convolutions_are_left_out_of_a_run_that_asks_for_it(corpus: Path, tmp_path: Path) -> None:
+    windows = open_windows("corpus", corpus, 10, 8)
+    trainer = mawgan.Trainer(windows, replace(LEAN_GAN, convolutions=False), tmp_path)
+    before = {name: value.clone() for name, value in trainer.model.generator.state_dict().items()}
+    list(trainer.run(minutes=5))
+    changed = {
+        name for name, value in trainer.model.generator.state_dict().items() if not value.equal(before[name])
+    }
+    assert changed == {"fc.weight", "fc.bias", "linear.weight", "linear.bias"}
+    with pytest.raises(InputError, match="ask for linear"):
+        replace(GAN, convolutions=False)
+
+
+def test_the_page_s_predictions_are_scored(tmp_path: Path) -> None:
+    """On two people who glide off by 2 cm a frame."""
+    folder = tmp_path / "corpus"
+    folder.mkdir()
+    along = 0.02 * np.arange(200)[:, None, None, None] * np.array([0.0, 0.0, 1.0])
+    people = np.repeat(SMPL22.rest_positions()[None], 2, axis=0)
+    np.save(folder / "motions.npy", (people + along).astype(np.float32))
+    (folder / "index.json").write_text(json.dumps([{"start": 0, "frames": 200, "split": "test"}]))
+    page = tmp_path / "page.md"
+    page.write_text("<!-- product -->\n<!-- end of product -->\n")
+    tiny = MotionMLP(MotionMLPConfig(width=16, blocks=1))
+    save_predictor(tmp_path / "tiny", tiny, kind="mlp", fps=30.0)
+    asked = ["--data", str(folder), "--weights", str(tmp_path), "--model", "tiny", "--windows", "4"]
+    assert product.main([*asked, "--table", str(page)]) == 0
+    told = page.read_text()
+    assert "| still, mm | 40 | 100 | 200 | 300 | 600 | 1200 | 1800 | 2400 |" in told
+    assert "| tiny, mm |" in told and "still, speed" not in told
+    assert "| first step within the past's largest | 100.0% | 100.0% | 100.0% |" in told
+    assert "| slowest and fastest step over the truth's | 1.00 to 1.00 | 0.00 to 0.00 |" in told
+    assert product.main([*asked, "--model", "missing"]) == 2
+
+
+def test_standing_feet_that_glide_are_measured() -> None:
+    standing = np.repeat(SMPL22.rest_positions()[None], 30, axis=0)
+    standing[..., 1] -= standing[..., 1].min()
+    assert product.glide(standing) == 0.0
+    sliding = standing + 0.004 * np.arange(30)[:, None, None] * np.array([1.0, 0.0, 0.0])
+    assert product.glide(sliding) == pytest.approx(12.0, rel=1e-6)
+
+
+def test_every_row_of_the_ablation_is_trained_once_and_scored(
+    cmu_folder: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    small = {"fc": 36, "critic_fc": 8, "batch": 4}
+    monkeypatch.setattr(ablation, "LEAN", ablation.LEAN | small)
+    page = tmp_path / "page.md"
+    asked = ["--data", str(cmu_folder), "--out", str(tmp_path / "runs"), "--steps", "1", "--table", str(page)]
+    assert ablation.main([*asked, "--only", "a-r", "no-linear", "lean", "past-5"]) == 0
+    told = page.read_text()
+    for row in ("| La + Lr |", "| the same, convolutions alone |", "| 25 frames of past |", "zero velocity"):
+        assert row in told
+    configs = {
+        path.parents[1].name: json.loads(path.read_text())
+        for path in (tmp_path / "runs").glob("*/predictor/config.json")
+    }
+    assert configs["past-5"]["model"]["past"] == 5 and not configs["no-linear"]["model"]["linear"]
+    assert configs["a-r"]["training"]["skeleton"] == configs["a-r"]["training"]["position"] == 0
+    monkeypatch.setattr(ablation, "Trainer", None)  # nothing is trained anew
+    assert ablation.main([*asked, "--only", "a-r"]) == 0

@@ -1,0 +1,187 @@
+"""The compact ReGenNet's trainer, on scenes that take a moment to make."""
+
+from dataclasses import replace
+from pathlib import Path
+
+import pytest
+import torch
+from safetensors.torch import load_file
+
+from models.intergen.compact import CaptionBank, CompactConfig, CompactInterGen
+from models.intergen.compact import save_folder as save_intergen
+from models.intergen.losses import facing
+from models.motion_tokens import FEATURES, TokenLayout, decode, encode
+from models.regennet.compact import load_folder
+from models.weights_io import save_network
+from motion import SMPL22, InputError
+from training import prepare
+from training.prepare import Scenes
+from training.trainers import regennet
+from training.trainers.regennet import Settings, Trainer, distance_loss, interaction_loss
+from training.trainers.regennet_data import cropped, knot_positions, seen_rows
+
+SETTINGS = Settings(latent_dim=16, ff_size=16, num_layers=1, num_heads=2, batch=4, steps=6, warmup=2)
+SIZES = [
+    word
+    for name in ("latent_dim", "ff_size", "num_layers", "num_heads", "batch", "warmup")
+    for word in ("--" + name.replace("_", "-"), str(getattr(SETTINGS, name)))
+]
+
+
+@pytest.fixture(scope="module", autouse=True)
+def one_thread() -> None:
+    torch.set_num_threads(1)
+
+
+@pytest.fixture(scope="module")
+def scenes() -> Scenes:
+    """Two people who sway, eight times."""
+    layout = TokenLayout(4, 2)
+    generator = torch.Generator().manual_seed(0)
+    rest = torch.tensor(SMPL22.rest_positions()).float() + torch.tensor([0.0, 0.98, 0.0])
+    control, rows, start = [], [], 0
+    for i in range(8):
+        tokens = 6 + i % 3
+        frames = layout.num_frames(tokens)
+        time = torch.arange(frames)[:, None, None] / 30
+        a = rest + 0.05 * torch.sin(4 * time) * torch.randn(1, 22, 3, generator=generator)
+        b = (rest * torch.tensor([-1.0, 1, -1]) + torch.tensor([0.0, 0, 1.5])).expand_as(a)
+        both = encode(torch.stack([a, b]), torch.ones(2, frames, 4), layout)
+        control.append(both.transpose(0, 1).half())
+        rows.append(
+            {"start": start, "tokens": tokens, "family": "sway", "split": "train",
+             "captions": ["One person waves the left hand."], "events": {}, "sources": []}
+        )  # fmt: skip
+        start += tokens * layout.knots_per_token
+    return Scenes(torch.cat(control), rows, layout)
+
+
+@pytest.fixture(scope="module")
+def words(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """A shipped InterGen, tiny and untrained, whose conditioner is taken over."""
+    folder = tmp_path_factory.mktemp("intergen")
+    model = CompactInterGen(
+        CompactConfig(latent_dim=16, ff_size=16, num_layers=1, num_heads=2, cond_dim=16, text_layers=1)
+    )
+    save_intergen(folder, model, CaptionBank(("They wave.",), torch.ones(1, 384), far=0.5))
+    return folder
+
+
+def test_a_cropped_scene_begins_with_the_actor_at_the_origin(scenes: Scenes) -> None:
+    whole = scenes.scene(scenes.rows[2])
+    late = cropped(whole, 4)
+    before, after = knot_positions(whole[:, 4:]), knot_positions(late)
+    pelvis, ahead = after[0, 0, 0], facing(after[0, :1])
+    torch.testing.assert_close(pelvis[[0, 2]], torch.zeros(2), atol=1e-5, rtol=0)
+    torch.testing.assert_close(ahead, torch.tensor([[0.0, 0.0, 1.0]]), atol=1e-5, rtol=0)
+    torch.testing.assert_close(torch.cdist(after[0], after[1]), torch.cdist(before[0], before[1]))
+    torch.testing.assert_close(late[..., -4:], whole[:, 4:, -4:])
+
+
+def take(trainer: Trainer, steps: int) -> Trainer:
+    for _ in range(steps):
+        trainer.train_step()
+    trainer.save()
+    return trainer
+
+
+def test_a_run_that_stops_goes_on_as_if_it_never_had(scenes: Scenes, words: Path, tmp_path: Path) -> None:
+    straight = take(Trainer(scenes, SETTINGS, tmp_path / "a", words=words), 4)
+    take(Trainer(scenes, SETTINGS, tmp_path / "b", words=words), 2)
+    resumed = Trainer(scenes, SETTINGS, tmp_path / "b", words=words)
+    assert resumed.step == 2
+    take(resumed, 2)
+    one, other = (load_file(tmp_path / run / "last.safetensors") for run in "ab")
+    assert one.keys() == other.keys()
+    assert [key for key in one if not torch.equal(one[key], other[key])] == []
+    start = Trainer(scenes, SETTINGS, tmp_path / "c", words=words).model.state_dict()
+    moved = {
+        name for name, value in straight.model.state_dict().items() if not torch.equal(value, start[name])
+    }
+    assert "network.output_process.poseFinal.weight" in moved
+    assert not any(name.startswith("conditioner.") for name in moved)
+    with pytest.raises(InputError, match="run of other settings"):
+        Trainer(scenes, replace(SETTINGS, learning_rate=1e-3), tmp_path / "b", words=words)
+
+
+def test_the_command_trains_and_ships(scenes: Scenes, words: Path, tmp_path: Path) -> None:
+    file, folder = tmp_path / "scenes.safetensors", tmp_path / "regennet"
+    prepare.save(scenes, file)
+    call = ["--scenes", str(file), "--out", str(tmp_path / "run"), "--words", str(words), *SIZES]
+    assert regennet.main([*call, "--steps", "2", "--export", str(folder)]) == 0
+    model, source = load_folder(folder)
+    assert source.meta["trained_steps"] == 2
+    averaged = load_file(tmp_path / "run" / "last.safetensors")
+    for name, value in model.state_dict().items():
+        torch.testing.assert_close(value, averaged[f"ema/{name}"].half().float())
+    assert regennet.main([*call, "--num-heads", "3"]) == 2
+
+
+def test_knots_and_what_rows_see_are_those_of_the_decoded_motion(
+    scenes: Scenes, words: Path, tmp_path: Path
+) -> None:
+    trainer = Trainer(scenes, SETTINGS, tmp_path, words=words)
+    control = scenes.scene(scenes.rows[1])[:1]
+    positions, _ = decode(control, TokenLayout(4, 1))
+    torch.testing.assert_close(knot_positions(control), positions[:, ::4], atol=2e-3, rtol=0)
+    model = trainer.model
+    seen = (seen_rows(control) - model.actor_mean) / model.actor_std
+    rows = model.actor_rows(positions)
+    assert rows.shape == (1, control.shape[1], 132)
+    shown = (rows - seen).abs() * model.actor_std
+    assert shown.max() < 5e-3
+    assert control.shape[-1] == FEATURES
+
+
+def test_the_interaction_loss_is_that_of_the_paper() -> None:
+    """A shift counts as translation alone, a turn of the whole body as pose and orientation."""
+    rest = torch.tensor(SMPL22.rest_positions()).float()
+    actor = rest.expand(1, 3, -1, -1)
+    reactor = (rest * torch.tensor([-1.0, 1, -1]) + torch.tensor([0.0, 0, 1.0])).expand(1, 3, -1, -1)
+    mask = torch.tensor([[1.0, 1.0, 0.0]])
+    assert interaction_loss(reactor, reactor, actor, mask) == 0
+    shifted = reactor + torch.tensor([0.3, 0.0, 0.4])
+    torch.testing.assert_close(interaction_loss(shifted, reactor, actor, mask), torch.tensor([0.25]))
+    root = reactor[..., :1, :]
+    turned = (reactor - root) * torch.tensor([-1.0, 1.0, -1.0]) + root
+    pose = (turned - reactor).square().sum((-1, -2))[0, 0]
+    torch.testing.assert_close(interaction_loss(turned, reactor, actor, mask), (pose + 4)[None])
+    last = torch.cat([reactor[:, :2], shifted[:, 2:]], dim=1)
+    assert interaction_loss(last, reactor, actor, mask) == 0, "the last frame is not real"
+
+
+def test_only_near_joints_count_in_the_distance_loss() -> None:
+    rest = torch.tensor(SMPL22.rest_positions()).float()
+    actor, mask = rest.expand(1, 2, -1, -1), torch.ones(1, 2)
+    far, near = (rest + torch.tensor([0.0, 0, gap]) for gap in (9.0, 0.5))
+    moved = torch.tensor([0.0, 0, 0.2])
+    assert distance_loss((far + moved).expand_as(actor), far.expand_as(actor), actor, mask) == 0
+    assert distance_loss((near + moved).expand_as(actor), near.expand_as(actor), actor, mask) > 1e-3
+
+
+@pytest.mark.parametrize(
+    ("wrong", "says"),
+    [({"batch": 0}, "batch is 0"), ({"num_heads": 3}, "multiple"), ({"window": 0}, "window")],
+)
+def test_wrong_settings_are_told(wrong: dict, says: str) -> None:
+    with pytest.raises(InputError, match=says):
+        replace(SETTINGS, **wrong)
+
+
+def test_too_few_scenes_are_told(scenes: Scenes, words: Path, tmp_path: Path) -> None:
+    with pytest.raises(InputError, match="do not fill a batch"):
+        Trainer(scenes, replace(SETTINGS, batch=500), tmp_path, words=words)
+
+
+def test_init_begins_with_a_shipped_network(scenes: Scenes, words: Path, tmp_path: Path) -> None:
+    trained = take(Trainer(scenes, SETTINGS, tmp_path / "a", words=words), 2)
+    save_network(tmp_path / "shipped", trained.ema)
+    begun = Trainer(scenes, SETTINGS, tmp_path / "b", words=tmp_path / "none", init=tmp_path / "shipped")
+    shipped = load_folder(tmp_path / "shipped")[0].state_dict()
+    assert begun.step == 0
+    for model in (begun.model, begun.ema):
+        assert all(torch.equal(value, shipped[name]) for name, value in model.state_dict().items())
+    assert len(begun.trained) == len(trained.trained), "the words' conditioner stays as it is"
+    wider = replace(SETTINGS, latent_dim=32)
+    with pytest.raises(InputError, match="of one size"):
+        Trainer(scenes, wider, tmp_path / "c", words=words, init=tmp_path / "shipped")

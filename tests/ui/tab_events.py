@@ -1,0 +1,32 @@
+"""A tab by itself, for the tests of its handlers."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from pathlib import Path
+from typing import Any, TypeVar
+
+import gradio as gr
+
+from webdemo.ui.components.exports import Shelf
+from webdemo.ui.context import PageContext
+from webdemo.ui.runs import Loader, Runs
+from webdemo.ui.tabs.job import JobTab
+
+from .stub_engine import StubEngine
+
+Tab = TypeVar("Tab", bound=JobTab)
+
+
+def built(kind: type[Tab], files: Path) -> Tab:
+    """A tab of this kind, laid out on a page of its own, with the stub engine; its files go to a folder."""
+    engine = StubEngine()
+    tab = kind(PageContext(engine=engine, runs=Runs(engine), loader=Loader(engine), shelf=Shelf(files)))
+    with gr.Blocks() as demo:
+        tab.build(demo)
+    return tab
+
+
+def changes(names: Iterable[str], updates: Iterable[Any]) -> dict[str, Any]:
+    """Updates by the names of their outputs, without those that change nothing."""
+    return {name: update for name, update in zip(names, updates, strict=True) if update != gr.skip()}

@@ -1,0 +1,169 @@
+"""What the handlers of the Predict tab do, without a browser, and what its pictures hold."""
+
+from __future__ import annotations
+
+import os
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+os.environ.setdefault("GRADIO_ANALYTICS_ENABLED", "False")
+
+import gradio as gr
+
+from motion.formats import read, write
+from tests.ui.stub_engine import drift, walking
+from tests.ui.tab_events import built, changes
+from webdemo.inference.methods import methods
+from webdemo.inference.predict_request import PredictRequest
+from webdemo.ui.api import PredictEndpoint
+from webdemo.ui.components.exports import Record, write_files
+from webdemo.ui.components.prediction_view import curves_figure, prediction_payload, still_error, told_errors
+from webdemo.ui.tabs.predict import PredictTab, predict_choices
+from webdemo.view.payload import unpack_positions
+
+LOADED = ("source", "line", "player", "marker")
+
+
+@pytest.fixture
+def tab(tmp_path: Path) -> PredictTab:
+    return built(PredictTab, tmp_path / "files")
+
+
+@pytest.fixture
+def pair(tmp_path: Path) -> Path:
+    return write(walking(4.0), tmp_path / "walkers.npz")[0]
+
+
+def loaded(tab: PredictTab, path: Path) -> dict[str, Any]:
+    return [changes(LOADED, updates) for updates in tab.upload(str(path))][-1]
+
+
+def run(tab: PredictTab, fields: dict[str, Any]) -> dict[str, Any]:
+    return [changes(tab.outputs, updates) for updates in tab.run("me", {"seed": 0, **fields})][-1]
+
+
+def test_a_motion_is_shown_and_the_marker_stands_in_its_middle(tab: PredictTab, pair: Path) -> None:
+    found = loaded(tab, pair)
+    assert "two people, 4.0 s" in found["line"]
+    assert (found["marker"]["maximum"], found["marker"]["value"]) == (4.0, 2.0)
+    assert len(found["source"].people) == 2 and found["player"]["value"]["samples"][0]["frames"] == 120
+
+
+def test_a_prediction_marks_the_past_and_shows_the_truth_as_a_ghost(tab: PredictTab, pair: Path) -> None:
+    source = loaded(tab, pair)["source"]
+    done = run(tab, {"source": source, "marker": 3.0, "seconds": 2.0, "model": "motion-mlp"})
+    (sample,) = done["player"]["value"]["samples"]
+    assert (sample["past_until"], sample["frames"]) == (90, 150)
+    ghost, shown = unpack_positions(sample["ghost"]), unpack_positions(sample["positions"])
+    assert ghost.shape == shown.shape == (2, 150, 22, 3)
+    truth = walking(4.0).positions
+    assert np.allclose(ghost[:, :120], truth, atol=2e-3)
+    assert np.allclose(ghost[:, 120:], truth[:, -1:], atol=2e-3)
+    assert [curve["key"] for curve in sample["curves"]] == ["error", "speed"]
+    assert sample["curves"][0]["values"][89:92] == [0.0, 0.01, 0.02]
+    assert done["curves"]["visible"] and len(done["plot"].data) == 4
+    assert "Done" in done["line"] and isinstance(done["record"], Record)
+
+
+def test_the_last_result_is_continued_from_its_end(tab: PredictTab, pair: Path) -> None:
+    source = loaded(tab, pair)["source"]
+    done = run(tab, {"source": source, "marker": 2.0, "seconds": 1.0, "model": "motion-mlp"})
+    taken = [changes(LOADED, updates) for updates in tab.take_result(done["record"])][-1]
+    assert taken["marker"]["value"] == 3.0 and taken["source"].seconds == 3.0
+    again = run(tab, {"source": taken["source"], "marker": 3.0, "seconds": 1.0, "model": "motion-mlp"})
+    (sample,) = again["player"]["value"]["samples"]
+    assert (sample["past_until"], sample["frames"], sample["ghost"]) == (90, 120, None)
+    assert [curve["key"] for curve in sample["curves"]] == ["speed"]
+    (told,) = ([changes(LOADED, u) for u in tab.take_result(None)][-1],)
+    assert "There is no result yet" in told["line"]
+
+
+@pytest.mark.parametrize(
+    ("fields", "told"),
+    [
+        ({"source": None}, "There is no motion yet"),
+        ({"marker": 0.2}, "1 s or more is needed"),
+        ({"marker": None, "seconds": 99.0}, "Length must be from 0.5 to 4 seconds"),
+    ],
+)
+def test_errors_are_one_sentence(tab: PredictTab, pair: Path, fields: dict[str, Any], told: str) -> None:
+    source = loaded(tab, pair)["source"]
+    asked = {"source": source, "marker": 2.0, "seconds": 1.0, "model": "motion-mlp"} | fields
+    assert told in run(tab, asked)["line"]
+
+
+def test_one_person_is_predicted_and_written(tab: PredictTab, tmp_path: Path) -> None:
+    request = PredictRequest(motion=walking(4.0).a, marker=2.0, seconds=1.0)
+    result = drift(request)
+    assert prediction_payload(result)["samples"][0]["ghost"]["shape"] == [1, 90, 22, 3]
+    files = write_files(result, tmp_path, prompt="after a walk")
+    assert set(files) == {"npz", "bvh", "png", "json"}
+    for kind in ("npz", "bvh"):
+        assert np.allclose(read(files[kind][0]).positions, result.duets[0].positions, atol=2e-3)
+
+
+def test_curves_compare_with_the_last_pose() -> None:
+    result = drift(PredictRequest(motion=walking(4.0), marker=2.0, seconds=1.0))
+    truth = walking(4.0).positions.astype(float)
+    expected = 1000 * np.linalg.norm(truth[:, 89] - truth[:, 59], axis=-1).mean()
+    assert still_error(result)[-1] == pytest.approx(expected, rel=1e-4)
+    names = [trace.name for trace in curves_figure(result).data]
+    assert names == ["Motion MLP", "Motion MLP", "Last pose held", "What really followed"]
+    alone = drift(PredictRequest(motion=walking(4.0), seconds=1.0))
+    assert len(curves_figure(alone).data) == 1 and "Nothing follows" in str(curves_figure(alone).layout)
+
+
+def test_errors_are_told_in_words_with_what_the_last_pose_gives(monkeypatch: pytest.MonkeyPatch) -> None:
+    result = drift(PredictRequest(motion=walking(4.0), marker=2.0, seconds=1.0))
+    monkeypatch.setattr("webdemo.ui.components.prediction_view.still_error", lambda _: np.full(30, 60.0))
+    (near,) = told_errors(replace(result, error=(30.0,) * 30))
+    (far,) = told_errors(replace(result, error=(80.0,) * 29 + (170.0,)))
+    assert near == (
+        "Over 1.0 s the joints are 30 mm off on average, and 30 mm at the end. "
+        "Holding the last pose would have been 60 mm off."
+    )
+    assert "83 mm off on average, and 170 mm at the end" in far
+    assert "Holding the last pose would have been nearer: 60 mm." in far
+    (alone,) = told_errors(drift(PredictRequest(motion=walking(4.0), seconds=1.0)))
+    assert "Nothing follows" in alone
+
+
+def test_two_methods_stand_side_by_side(tab: PredictTab, pair: Path) -> None:
+    source = loaded(tab, pair)["source"]
+    asked = {"source": source, "marker": 3.0, "seconds": 1.0, "model": "motion-mlp", "other": "mawgan"}
+    done = run(tab, asked)
+    (sample,) = done["player"]["value"]["samples"]
+    other = sample["beside"]
+    assert (sample["caption"], other["caption"]) == ("Motion MLP", "PredictiveMA-WGAN")
+    assert sample["past_until"] == other["past_until"] == 90 and sample["frames"] == other["frames"] == 120
+    assert other["ghost"] == sample["ghost"] is not None
+    assert [curve["label"] for curve in sample["curves"]] == ["Error, left", "Error, right"]
+    assert [request.model for request in tab.page.engine.requests] == ["motion-mlp", "mawgan"]
+    names = [trace.name for trace in done["plot"].data]
+    assert names.count("Motion MLP") == names.count("PredictiveMA-WGAN") == 2
+    assert "PredictiveMA-WGAN" in done["readouts"] and "<table" not in done["readouts"]
+    assert "Both done" in done["line"] and set(done["record"].compared) == {"motion-mlp", "mawgan"}
+    assert "Both methods are the same" in run(tab, {**asked, "other": "motion-mlp"})["line"]
+
+
+def test_methods_without_weights_are_not_offered(tmp_path: Path) -> None:
+    assert [name for _, name in predict_choices(tmp_path)] == ["motion-mlp", "still"]
+    (tmp_path / "mawgan").mkdir()
+    (tmp_path / "mawgan" / "config.json").write_text("{}")
+    assert [name for _, name in predict_choices(tmp_path)] == [found.name for found in methods("predict")]
+
+
+def test_programs_get_the_files_and_the_curves(tab: PredictTab, pair: Path) -> None:
+    endpoint = PredictEndpoint(tab.page)
+    answer, files = endpoint.predict(str(pair), 2.0, 1.0, "motion-mlp")
+    assert answer["prediction"]["past_frames"] == 60 and len(answer["prediction"]["error"]) == 30
+    assert answer["manifest"]["request"]["kind"] == "predict"
+    (motion,) = (read(file) for file in files if file.endswith(".npz"))
+    assert motion.num_frames == 90
+    for past, marker, told in ((str(pair), 0.3, "1 s or more is needed"), ("", 0, "There is no past")):
+        with pytest.raises(gr.Error, match=told):
+            endpoint.predict(past, marker, 1.0, "motion-mlp")

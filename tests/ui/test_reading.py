@@ -1,0 +1,39 @@
+"""How many files the endpoints read at once."""
+
+from __future__ import annotations
+
+import threading
+import time
+from typing import Any
+
+import gradio as gr
+import pytest
+
+from motion import InputError
+from webdemo.ui.api import PROGRESS, Endpoint
+
+
+def test_no_more_than_four_files_are_read_at_once() -> None:
+    """A large one takes seconds and 100 MB; twenty at once took the process's memory."""
+    lock, reading, most = threading.Lock(), 0, 0
+
+    def read() -> Any:
+        nonlocal reading, most
+        with lock:
+            reading += 1
+            most = max(most, reading)
+        time.sleep(0.02)
+        with lock:
+            reading -= 1
+        raise InputError("The file is empty.")
+
+    def ask() -> None:
+        with pytest.raises(gr.Error, match="The file is empty"):
+            Endpoint(None)._answer(read, "x", PROGRESS)  # type: ignore[arg-type]  # no run is begun
+
+    threads = [threading.Thread(target=ask) for _ in range(20)]
+    for thread in threads:
+        thread.start()
+    for thread in threads:
+        thread.join()
+    assert most == 4

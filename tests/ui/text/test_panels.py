@@ -1,0 +1,152 @@
+"""The page's pieces of HTML: what they say, and that text in them stays text."""
+
+from __future__ import annotations
+
+import html
+import re
+
+import pytest
+
+from motion import InputError
+from motion.metrics import MEASURES
+from tests.ui.stub_engine import StubEngine, walking
+from webdemo.inference.requests import GenerateRequest, Progress, Result
+from webdemo.ui.components.show import result_payload
+from webdemo.ui.text.panels import model_card, model_state, readout_panel, status
+from webdemo.ui.text.plain import told
+from webdemo.ui.text.words import cancelled_line, error_line, progress_line, text
+
+HOSTILE = "<img src=x onerror=alert(1)> ${alert(2)} {{value}} `x` \"quoted\" 'single'"
+
+
+def result(**changed: object) -> Result:
+    request = GenerateRequest(prompt="unknown " + HOSTILE, seconds=1, steps=2, **changed)
+    return list(StubEngine().run(request))[-1]
+
+
+def test_text_is_escaped_and_comes_back_the_same() -> None:
+    escaped = text(HOSTILE)
+    assert not set("<>${}`\"'") & set(re.sub(r"&#?\w+;", "", escaped))
+    assert html.unescape(escaped) == HOSTILE
+
+
+@pytest.mark.parametrize("made", [
+    status(HOSTILE, tone="error"),
+    model_state("failed", HOSTILE),
+    model_card({"name": HOSTILE, "summary": HOSTILE, HOSTILE: HOSTILE}),
+    readout_panel(Result(duets=result().duets, manifest={}, notes=(HOSTILE,))),
+])  # fmt: skip
+def test_no_panel_lets_markup_or_templates_through(made: str) -> None:
+    assert "<img" not in made
+    assert "${" not in made
+    assert "{{" not in made
+
+
+def test_readouts_show_before_after_and_change() -> None:
+    made = readout_panel(result())
+    for words in ("Before", "After", "Change", "Foot skate", "Jerk", "Penetration", "Bone drift", "Contacts"):
+        assert words in made
+    assert re.search(r"pd-better\">−\d+ %", made)
+    assert "nearest that it knows" in made
+
+
+def test_readouts_are_told_in_words_too() -> None:
+    made = html.unescape(readout_panel(result()))
+    assert re.search(
+        r"The two are \d\.\d m apart on average, \d\.\d m at the closest, and do not touch", made
+    )
+    good = {"distance": 0.93, "distance_min": 0.91, "contact_seconds": 2.3}
+    assert told(good) == "The two are 0.9 m apart on average, 0.9 m at the closest, and touch for 2.3 s."
+    assert told({"foot_skate": 3, "penetration_max": 0.5, "jerk": 20}) == (
+        "Standing feet stay in place, the bodies do not overlap, the motion is smooth."
+    )
+    assert told({"foot_skate": 30, "penetration_max": 9, "jerk": 200}) == (
+        "Standing feet slide, the bodies run into each other, the motion shakes."
+    )
+    assert told({}) == ""
+
+
+def test_every_figure_is_explained() -> None:
+    made = readout_panel(result())
+    legend = made[made.index("<details") : made.index("</details>")]
+    assert [measure for measure in MEASURES if measure.meaning not in html.unescape(legend)] == []
+
+
+def test_readouts_without_a_before_show_values_alone() -> None:
+    plain = result()
+    readouts = tuple({**readout, "before": None} for readout in plain.readouts)
+    made = readout_panel(Result(duets=plain.duets, manifest=plain.manifest, readouts=readouts))
+    assert "Before" not in made
+    assert "Value" in made
+
+
+def test_several_samples_are_columns() -> None:
+    made = readout_panel(result(samples=3))
+    assert "Sample 3" in made
+    assert " → " in made
+
+
+def test_no_readouts_is_no_table() -> None:
+    plain = result()
+    assert "<table" not in readout_panel(Result(duets=plain.duets, manifest={}))
+
+
+def test_the_player_gets_the_contacts_of_the_readouts() -> None:
+    made = result()
+    contact = {"start": 3, "stop": 9, "kind": "hands", "label": "hand on hand"}
+    changed = Result(duets=made.duets, manifest={}, readouts=({**made.readouts[0], "contacts": [contact]},))
+    payload = result_payload(changed, title=HOSTILE)
+    assert payload["title"] == HOSTILE, "the player sets it as text"
+    assert payload["samples"][0]["contacts"] == [contact]
+    assert [curve["key"] for curve in payload["samples"][0]["curves"]] == [
+        "pelvis_distance",
+        "hand_distance",
+    ]
+
+
+def test_the_player_measures_for_itself_without_readouts() -> None:
+    payload = result_payload(Result(duets=result().duets, manifest={}))
+    assert payload["samples"][0]["curves"]
+
+
+def test_progress_and_cancellation_name_the_step() -> None:
+    event = Progress(stage="sample", step=12, total=50)
+    assert progress_line(event) == "Denoising: step 12 of 50"
+    paced = Progress(stage="sample", step=12, total=50, elapsed=6.0)
+    assert progress_line(paced) == "Denoising: step 12 of 50, about 20 s left"
+    assert progress_line(Progress(stage="sample", step=2, total=50, elapsed=1.0)).endswith("of 50")
+    assert progress_line(Progress(stage="sample", step=49, total=50, elapsed=10.0)).endswith("of 50")
+    assert cancelled_line(event) == "Cancelled at step 12 of 50."
+    assert cancelled_line(Progress(stage="text")) == "Cancelled before the first step."
+    assert cancelled_line(None) == "Cancelled before the first step."
+
+
+@pytest.mark.parametrize(
+    ("error", "start"),
+    [
+        (InputError("Do this instead."), "Do this instead."),
+        (OSError(28, "No space left on device"), "The disk is full"),
+        (OSError(13, "Permission denied"), "A file could not be read or written (Permission denied)"),
+        (MemoryError(), "There is not enough memory"),
+        (KeyError("x"), "Something went wrong inside the program (KeyError)"),
+    ],
+)
+def test_errors_become_sentences(error: Exception, start: str) -> None:
+    assert error_line(error).startswith(start)
+
+
+@pytest.mark.parametrize(
+    ("before", "after", "said"),
+    [
+        (4.191, 4.186, ">same<"),
+        (200.4, 200.9, ">same<"),
+        (1.0, 0.5, 'pd-better">−50 %<'),
+        (1.0, 1.5, 'pd-worse">+50 %<'),
+        (0.0, 0.5, 'pd-worse">+0.50<'),
+    ],
+)
+def test_a_change_is_told_only_where_the_figures_shown_differ(before: float, after: float, said: str) -> None:
+    readout = {"before": {"penetration": before}, "after": {"penetration": after}}
+    made = readout_panel(Result(duets=(walking(1.0),), manifest={}, readouts=(readout,)))
+    row = next(row for row in made.split("<tr") if "Penetration" in row)
+    assert said in row

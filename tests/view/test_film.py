@@ -1,0 +1,175 @@
+"""Films and figures of a motion, opened with another program's reader."""
+
+from __future__ import annotations
+
+import re
+from pathlib import Path
+
+import av
+import numpy as np
+import pytest
+from PIL import Image
+
+from motion import Clip, Duet, InputError
+from motion.skeleton import SBU15
+from motion.transforms import turn
+from tests.motion.bodies import marching
+from webdemo.view import film
+from webdemo.view.camera import VIEWS, Camera, cameras
+from webdemo.view.sheet import chosen_frames, write_sheet
+from webdemo.view.stage import Pane, Stage, Style
+from webdemo.view.theme import THEMES
+
+A = marching(12)[0]
+DUET = Duet.from_positions(np.stack([A, turn(A, np.pi) + np.array([0, 0, 1.4])]), fps=30)
+SMALL = (160, 120)
+PALETTE = Path(__file__).resolve().parents[2] / "static" / "player" / "palette.js"
+
+
+def _frames(path: Path) -> list[np.ndarray]:
+    with av.open(str(path)) as opened:
+        return [frame.to_ndarray(format="rgb24") for frame in opened.decode(video=0)]
+
+
+def _look(picture: np.ndarray, red_over_blue: bool) -> float:
+    """The share of pixels that are plainly orange, or plainly blue."""
+    difference = picture[..., 0].astype(int) - picture[..., 2]
+    return float(((difference if red_over_blue else -difference) > 70).mean())
+
+
+@pytest.mark.parametrize("suffix", [".mp4", ".webm"])
+def test_a_film_has_every_frame_at_its_rate_and_size(tmp_path, suffix):
+    path = film.write_film([Pane(DUET)], tmp_path / f"x{suffix}", size=SMALL)
+    with av.open(str(path)) as opened:
+        (stream,) = opened.streams.video
+        assert (stream.width, stream.height, stream.average_rate) == (*SMALL, 30)
+    pictures = _frames(path)
+    assert len(pictures) == 12
+    assert _look(pictures[0], True) > 0.005 and _look(pictures[0], False) > 0.005
+    assert np.abs(pictures[0].astype(int) - pictures[8]).max() > 60  # they march
+
+
+def test_a_gif_moves_and_goes_round(tmp_path):
+    path = film.write_film([Pane(DUET)], tmp_path / "x.gif", size=SMALL)
+    with Image.open(path) as picture:
+        assert picture.size == SMALL and picture.n_frames == 10  # 0.4 s at 25 frames a second
+        assert picture.info["duration"] == 40 and picture.info["loop"] == 0
+
+
+def test_processes_draw_what_one_draws(tmp_path, monkeypatch):
+    paths = []
+    for few in (1, 100):
+        monkeypatch.setattr(film, "_FEW", few)
+        monkeypatch.setattr(film.os, "sched_getaffinity", lambda _: {0, 1}, raising=False)
+        paths.append(film.write_film([Pane(DUET)], tmp_path / f"{few}.gif", size=SMALL))
+    assert paths[0].read_bytes() == paths[1].read_bytes()
+
+
+def test_panes_stand_side_by_side_under_their_captions(tmp_path):
+    near = Duet(DUET.a, DUET.b.with_positions(DUET.b.positions + np.array([0, 0, 0.5])))
+    one, two = (film.write_film(panes, tmp_path / f"{len(panes)}.gif", size=(320, 120))
+                for panes in ([Pane(DUET)], [Pane(DUET, "left"), Pane(near, "right")]))  # fmt: skip
+    with Image.open(one) as alone, Image.open(two) as both:
+        assert alone.size == both.size == (320, 120)
+        halves = np.asarray(both.convert("RGB")).reshape(120, 2, 160, 3).swapaxes(0, 1)
+    for half in halves:
+        assert _look(half, True) > 0.005 and _look(half, False) > 0.005
+
+
+@pytest.mark.parametrize(
+    ("change", "sentence"),
+    [
+        ({"path": "x.avi"}, "Films end in"), ({"fps": 0.0}, "frames a second"), ({"size": (10, 10)}, "64 to 3840"),
+        ({"size": (101, 100)}, "are even"), ({"view": "moon"}, "no view"), ({"panes": []}, "no motion"),
+    ],
+)  # fmt: skip
+def test_what_cannot_be_filmed_is_one_sentence(tmp_path, change, sentence):
+    asked = {"panes": [Pane(DUET)], "path": "x.gif", "size": SMALL} | change
+    panes, path = asked.pop("panes"), tmp_path / str(asked.pop("path"))
+    with pytest.raises(InputError, match=sentence):
+        film.write_film(panes, path, **asked)
+    assert not list(tmp_path.iterdir())
+
+
+def test_without_the_encoder_a_sentence_says_what_to_install(tmp_path, monkeypatch):
+    monkeypatch.setattr(film, "find_spec", lambda name: None)
+    with pytest.raises(InputError, match="pip install av"):
+        film.write_film([Pane(DUET)], tmp_path / "x.mp4")
+    assert film.can_write(".gif") and not film.can_write(".webm")
+
+
+@pytest.mark.parametrize("look", ["bodies", "skeletons", "both"])
+@pytest.mark.parametrize("theme", THEMES)
+def test_people_are_seen_in_every_look_and_theme(look, theme):
+    stage = Stage(Pane(DUET), Style(look=look, theme=theme), SMALL)
+    times = np.zeros(1)
+    (picture,) = stage.pictures(times, cameras([DUET], size=SMALL, times=times))
+    assert picture.shape == (120, 160, 4) and (picture[..., 3] == 255).all()
+    assert _look(picture, True) > 0.003 and _look(picture, False) > 0.003
+
+
+def test_other_skeletons_and_one_person_are_drawn():
+    clip = Clip(np.random.default_rng(0).normal(1, 0.3, size=(3, 15, 3)), 15, SBU15)
+    times = np.zeros(1)
+    (picture,) = Stage(Pane(clip), Style(), SMALL).pictures(times, cameras([clip], size=SMALL, times=times))
+    assert _look(picture, False) > 0.003
+
+
+@pytest.mark.parametrize("view", VIEWS)
+def test_every_view_holds_everybody_in_all_panes(view):
+    far = Duet(DUET.a, DUET.b.with_positions(DUET.b.positions + np.array([1.0, 0, 1.5])))
+    times = np.arange(12) / 30
+    for size in ((1280, 720), (360, 640)):
+        for camera in cameras([DUET, far], size=size, times=times, view=view):
+            for duet in (DUET, far):
+                pixels, depth = camera.project(duet.positions.astype(float))
+                assert (depth > 0).all()
+                if view not in ("a", "b", "front"):  # those stand behind somebody's shoulder
+                    assert (pixels >= 0).all() and (pixels <= np.array(size)).all(), (size, camera)
+
+
+def test_the_camera_sees_right_on_the_right_and_up_above():
+    camera = Camera(np.array([0.0, 1.0, 0.0]), 0.0, 0.0, 5.0, (200, 100))
+    pixels, depth = camera.project(np.array([[0.0, 1, 0], [1, 1, 0], [0, 2, 0], [0, 1, 1]]))
+    np.testing.assert_allclose(pixels[0], (100, 50))
+    assert pixels[1, 0] > 100 and pixels[2, 1] < 50
+    np.testing.assert_allclose(depth, [5, 5, 5, 4])
+
+
+def test_colours_are_those_of_the_player():
+    text = PALETTE.read_text(encoding="utf-8")
+    written = set(re.findall(r"#[0-9a-f]{6}", text))
+    for theme in THEMES.values():
+        own = [*theme.bodies[0].values(), *theme.bodies[1].values(), theme.floor, theme.horizon, theme.sky,
+               theme.grid, theme.grid_strong, theme.ghost]  # fmt: skip
+        own += [colour for person in (*theme.people, *theme.given) for colour in person]
+        for colour in own:
+            assert "#" + "".join(f"{round(255 * c):02x}" for c in colour) in written
+
+
+@pytest.mark.parametrize("suffix", [".png", ".svg", ".pdf"])
+@pytest.mark.parametrize("look", ["bodies", "skeletons"])
+def test_sheets_of_chosen_width_open(tmp_path, suffix, look):
+    path = write_sheet(
+        DUET, tmp_path / f"x{suffix}", frames=[0, 6], width=600, title="March", style=Style(look=look, names=False)
+    )  # fmt: skip
+    data = path.read_bytes()
+    if suffix == ".png":
+        with Image.open(path) as picture:
+            assert picture.width == 600
+            pixels = np.asarray(picture.convert("RGB"))
+        assert _look(pixels, True) > 0.002 and _look(pixels, False) > 0.002
+    elif suffix == ".svg":
+        text = data.decode()
+        assert 'width="600pt"' in text and ">March<" in text and ">0.20 s<" in text
+        assert "<image" not in text  # lines and triangles, no pixels
+    else:
+        assert data.startswith(b"%PDF") and b"/Subtype /Image" not in data and b"[ 0 0 600" in data
+
+
+def test_moments_are_chosen_evenly_or_by_hand():
+    assert chosen_frames(DUET, 3) == [0, 6, 11]
+    assert chosen_frames(DUET, [4, 2]) == [4, 2]
+    for frames in (0, 25, [], [12], [-1]):
+        with pytest.raises(InputError):
+            chosen_frames(DUET, frames)

@@ -1,0 +1,1 @@
+"""What all trainers share: the loop, checkpoints, command lines, features of the captions."""

@@ -1,0 +1,95 @@
+"""Checkpoints of a training run as one ``.safetensors`` file, written atomically."""
+
+from __future__ import annotations
+
+import hashlib
+from pathlib import Path
+
+import torch
+from safetensors import SafetensorError, safe_open
+from safetensors.torch import save_file
+from torch import Tensor, nn
+
+from motion import InputError
+from motion.formats.files import replacing
+
+Parts = dict[str, nn.Module | torch.optim.Optimizer]
+
+
+def _tensors(parts: Parts) -> dict[str, Tensor]:
+    found: dict[str, Tensor] = {}
+    for name, part in parts.items():
+        if isinstance(part, nn.Module):
+            found |= {f"{name}/{key}": value for key, value in part.state_dict().items()}
+        else:
+            for row, state in part.state_dict()["state"].items():
+                found |= {f"{name}/{row}/{key}": torch.as_tensor(value) for key, value in state.items()}
+    return {key: value.detach().contiguous().cpu().clone() for key, value in found.items()}
+
+
+def save(path: Path, parts: Parts, step: int, settings: str) -> None:
+    """Writes modules and optimisers with the step number and the run's settings (JSON text)."""
+    with replacing(path) as temporary:
+        save_file(_tensors(parts), temporary, metadata={"step": str(step), "settings": settings})
+
+
+def _read(path: Path) -> tuple[dict[str, Tensor], dict[str, str]]:
+    """Tensors and metadata of a checkpoint; raises InputError if it is missing or damaged."""
+    try:
+        with safe_open(path, framework="pt") as file:
+            return {key: file.get_tensor(key) for key in file.keys()}, file.metadata()  # noqa: SIM118
+    except (OSError, SafetensorError) as error:
+        raise InputError(f"{path} is missing or damaged ({error}): delete it to begin anew.") from error
+
+
+def digest(path: Path) -> str:
+    """SHA-256 of a checkpoint's bytes; raises InputError if it is missing."""
+    try:
+        return hashlib.sha256(path.read_bytes()).hexdigest()
+    except OSError as error:
+        raise InputError(f"{path} is missing or damaged ({error}): give the folder of a run.") from error
+
+
+def metadata(path: Path) -> dict[str, str]:
+    """``step`` and ``settings`` (JSON text) of a checkpoint."""
+    return _read(path)[1]
+
+
+def restore_part(path: Path, name: str, module: nn.Module) -> None:
+    """Loads one module from a checkpoint of any run.
+
+    Raises InputError for a damaged file and for a module of other sizes.
+    """
+    tensors, _ = _read(path)
+    own = {key.removeprefix(f"{name}/"): v for key, v in tensors.items() if key.startswith(f"{name}/")}
+    try:
+        module.load_state_dict(own)
+    except RuntimeError as error:
+        raise InputError(
+            f"{path} holds a network of other sizes: give the settings it was trained with."
+        ) from error
+
+
+def restore(path: Path, parts: Parts, settings: str) -> int:
+    """Loads what :func:`save` wrote into ``parts`` and returns its step; 0 if there is no checkpoint.
+
+    Raises InputError for a damaged file and for a checkpoint of other settings.
+    """
+    if not path.exists():
+        return 0
+    tensors, metadata = _read(path)
+    if metadata.get("settings") != settings:
+        raise InputError(
+            f"{path} belongs to a run of other settings: give another --out, or the same settings."
+        )
+    for name, part in parts.items():
+        own = {key.removeprefix(f"{name}/"): v for key, v in tensors.items() if key.startswith(f"{name}/")}
+        if isinstance(part, nn.Module):
+            part.load_state_dict(own)
+            continue
+        states: dict[int, dict[str, Tensor]] = {}
+        for key, value in own.items():
+            row, field = key.split("/")
+            states.setdefault(int(row), {})[field] = value
+        part.load_state_dict(part.state_dict() | {"state": states})
+    return int(metadata["step"])

@@ -1,0 +1,103 @@
+"""The training loop that all networks share: time limit, checkpoints, log."""
+
+from __future__ import annotations
+
+import json
+import math
+import time
+from abc import ABC, abstractmethod
+from collections.abc import Callable, Iterable, Iterator
+from pathlib import Path
+from typing import Any
+
+import torch
+from torch import Tensor, nn
+
+
+def warm_cosine(peak: float, step: int, *, warmup: int, steps: int) -> float:
+    """The learning rate at ``step`` of ``steps``: a linear warm-up, then a cosine to 2 % of the peak."""
+    warm = min(1.0, (step + 1) / warmup)
+    return peak * warm * (0.51 + 0.49 * math.cos(math.pi * min(1.0, step / steps)))
+
+
+class Loop(ABC):
+    """A run that counts its steps and can be stopped and saved after any of them.
+
+    Attributes:
+        settings: ``steps`` is the length of the run. :meth:`optimizer_step` and :meth:`ema_update` read
+            ``learning_rate``, ``warmup`` and ``ema``.
+        out: folder of the checkpoint and of ``log.jsonl``.
+        step: steps done so far.
+    """
+
+    settings: Any
+    out: Path
+    step: int
+
+    @abstractmethod
+    def train_step(self) -> dict[str, float]:
+        """Takes one optimiser step and counts it; returns the loss terms."""
+
+    @abstractmethod
+    def save(self) -> None:
+        """Writes the checkpoint."""
+
+    def optimizer_step(
+        self,
+        loss: Tensor,
+        optimizer: torch.optim.Optimizer,
+        trained: Iterable[nn.Parameter],
+        *,
+        clip: float = 1.0,
+    ) -> None:
+        """Takes one optimiser step at the learning rate of :func:`warm_cosine`, and counts it.
+
+        Args:
+            trained: parameters; their joint gradient norm is clipped to ``clip``.
+        """
+        s = self.settings
+        rate = warm_cosine(s.learning_rate, self.step, warmup=s.warmup, steps=s.steps)
+        for group in optimizer.param_groups:
+            group["lr"] = rate
+        optimizer.zero_grad(set_to_none=True)
+        loss.backward()
+        nn.utils.clip_grad_norm_(list(trained), clip)
+        optimizer.step()
+        self.step += 1
+
+    @torch.no_grad()
+    def ema_update(self, averaged: Iterable[Tensor], current: Iterable[Tensor]) -> None:
+        """Updates exponential moving averages of weights; the decay grows to ``settings.ema`` over the first steps."""
+        decay = min(self.settings.ema, (self.step + 1) / (self.step + 10))
+        torch._foreach_lerp_(list(averaged), list(current), 1 - decay)
+
+    def run(self, *, minutes: float, save_every: float = 5.0) -> Iterator[dict[str, float]]:
+        """Trains until the steps or the minutes are over; yields each step's loss terms; saves regularly."""
+        began = saved = time.monotonic()
+        while self.step < self.settings.steps and time.monotonic() - began < minutes * 60:
+            yield self.train_step()
+            if time.monotonic() - saved > save_every * 60:
+                self.save()
+                saved = time.monotonic()
+        self.save()
+
+    def run_logged(self, *, minutes: float, every: int = 50, after: Callable[[], None] | None = None) -> None:
+        """:meth:`run`, with means over every ``every`` steps printed and appended to ``log.jsonl``.
+
+        Args:
+            after: called after every step.
+        """
+        terms: list[dict[str, float]] = []
+        began, first = time.monotonic(), self.step
+        with open(self.out / "log.jsonl", "a") as file:
+            for one in self.run(minutes=minutes):
+                terms.append(one)
+                if self.step % every == 0 or self.step == self.settings.steps:
+                    pace = (time.monotonic() - began) / (self.step - first)
+                    mean = {name: round(sum(t[name] for t in terms) / len(terms), 5) for name in one}
+                    line = json.dumps({"step": self.step, "pace": round(pace, 3)} | mean)
+                    print(line, file=file, flush=True)
+                    print(line, flush=True)
+                    terms = []
+                if after:
+                    after()

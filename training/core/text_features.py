@@ -1,0 +1,63 @@
+"""Frozen MiniLM features of every caption, computed once and kept beside the prepared scenes."""
+
+from __future__ import annotations
+
+import hashlib
+from collections.abc import Sequence
+from pathlib import Path
+
+import torch
+from safetensors import SafetensorError
+from safetensors.torch import load_file, save_file
+from torch import Tensor
+
+from models.text import MiniLM
+from motion.formats.files import replacing
+
+
+class CaptionFeatures:
+    """Per-token features of a fixed list of captions, float16, stored end to end.
+
+    Args:
+        captions: unique sentences.
+        cache: a folder; features of the same captions are read from it, and written to it otherwise.
+        device: where the encoder runs; the features stay on the CPU.
+    """
+
+    def __init__(self, captions: Sequence[str], cache: Path, *, device: str = "cpu") -> None:
+        self.index = {caption: row for row, caption in enumerate(captions)}
+        key = hashlib.sha256("\n".join(captions).encode()).hexdigest()[:16]
+        path = cache / f"captions_{key}.safetensors"
+        try:
+            stored = load_file(path)
+        except (OSError, SafetensorError):
+            stored = _encode(captions, device)
+            with replacing(path) as temporary:
+                save_file(stored, temporary)
+        self.features, self.lengths = stored["features"], stored["lengths"]
+        self.starts = torch.cat([torch.zeros(1, dtype=torch.long), self.lengths.cumsum(0)])
+
+    def batch(self, captions: Sequence[str]) -> tuple[Tensor, Tensor]:
+        """(B, L, 384) float32 features and (B, L) mask, true where a token is real."""
+        rows = torch.tensor([self.index[caption] for caption in captions])
+        lengths = self.lengths[rows]
+        longest = -8 * (-int(lengths.max()) // 8)  # few shapes: kernels are made for each
+        place = torch.arange(longest)[None]
+        mask = place < lengths[:, None]
+        where = (self.starts[rows][:, None] + place).clamp_max(len(self.features) - 1)
+        return self.features[where].float() * mask[..., None], mask
+
+
+@torch.no_grad()
+def _encode(captions: Sequence[str], device: str) -> dict[str, Tensor]:
+    encoder = MiniLM().to(device)
+    order = sorted(range(len(captions)), key=lambda row: len(captions[row]))
+    features: list[Tensor] = [torch.empty(0)] * len(captions)
+    for start in range(0, len(order), 256):
+        rows = order[start : start + 256]
+        with torch.autocast(device, torch.bfloat16):
+            tokens = encoder([captions[row] for row in rows])
+        for row, one, mask in zip(rows, tokens.features, tokens.mask, strict=True):
+            features[row] = one[mask].half().cpu()
+    lengths = torch.tensor([len(one) for one in features])
+    return {"features": torch.cat(features), "lengths": lengths}

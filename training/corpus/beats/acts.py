@@ -1,0 +1,405 @@
+"""What one person does alone, at any place on the stage: gestures, jumps, sitting, falling, dancing."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+
+from motion.skeleton import SMPL22
+
+from ..compose import ARMS, Array, Motion, drift, join, layer
+from ..contact import UP, axes, bend, envelope, nod, on_body, reach_arm
+from ..families.combat import blow
+from ..families.gestures import dance_piece, deepened
+from ..library import Library, Take, pick
+from ..touches import Touches
+from .performer import Rng
+from .play import Play
+
+UPPER = (*ARMS["left"], *ARMS["right"])
+HEAD = SMPL22.index("head")
+
+
+@dataclass(frozen=True)
+class Done:
+    """How an act was done.
+
+    Attributes:
+        start, stop: its frames on the person's timeline.
+        side: the hand or foot that leads.
+        style: the actor's manner.
+    """
+
+    start: int
+    stop: int
+    side: str | None = None
+    style: str = "normal"
+
+
+Make = Callable[[Play, int], Done]
+
+
+@dataclass(frozen=True)
+class Act:
+    """One thing that a person can do.
+
+    Attributes:
+        make: (play, person) -> how it was done.
+        needs: source actions it is made of.
+        weight: how often it is drawn.
+        room: metres that must be free in front.
+        over: the source action whose arms can be laid over a walk, or None.
+        calm: whether others may be done at the same time by someone who stands near.
+    """
+
+    make: Make
+    needs: tuple[str, ...]
+    weight: float = 1.0
+    room: float = 0.9
+    over: str | None = None
+
+
+def _perform(play: Play, i: int, take: Take, *, aim: float = 0.0) -> Done:
+    person = play.people[i]
+    start, stop = person.perform(take.motion, aim=aim)
+    return Done(start, stop, take.side, take.style)
+
+
+def taken(
+    action: str, frames: tuple[int, int] = (40, 100), *, side: str | None = None, one: bool = False
+) -> Make:
+    """An act that is one clip of the library; with ``one``, of one hand."""
+
+    def make(play: Play, i: int) -> Done:
+        person, rng = play.people[i], play.rng
+        own = side or (pick(rng, ("left", "right")) if one else None)
+        styles = play.library.styles(action)
+        style = person.style if person.style in styles and rng.random() < 0.7 else pick(rng, styles)
+        length = (frames[0], max(frames[0] + 15, int(0.72 * frames[1]))) if play.brisk else frames
+        return _perform(play, i, play.library.take(rng, action, side=own, style=style, frames=length))
+
+    return make
+
+
+def bow(play: Play, i: int) -> Done:
+    """Person i bows."""
+    take = play.library.take(play.rng, "bow", frames=(50, 72 if play.brisk else 100))
+    return _perform(play, i, Take(deepened(take.motion, play.rng.uniform(0.27, 0.42)), "bow", take.style))
+
+
+def _then(first: Motion, *more: Motion, blend: int = 12) -> Motion:
+    for motion in more:
+        first = join(first, motion, blend=blend)
+    return first
+
+
+def _plain(play: Play, *actions: str) -> list[Motion]:
+    return [play.library.take(play.rng, action, frames=(1, 400)).motion for action in actions]
+
+
+def frozen(motion: Motion, frames: int) -> Motion:
+    """The last pose held for ``frames`` frames."""
+    last = [len(motion) - 1] * frames
+    return Motion(motion.rotations[last], motion.root[last], motion.contacts[last], motion.sources)
+
+
+def looped(motion: Motion, frames: int, *, blend: int = 8) -> Motion:
+    """At least ``frames`` frames of a clip that ends as it begins."""
+    longer = motion
+    while len(longer) < frames:
+        longer = join(longer, motion, blend=blend)
+    return longer
+
+
+def sit(play: Play, i: int) -> Done:
+    """Sits down, stays a while, gets up."""
+    rng = play.rng
+    down, up = _plain(play, "sit-down", "stand-up")
+    still = _plain(play, pick(rng, ("sitting", "sitting-talk")))[0]
+    rest = looped(still, 120)[: play.seconds(0.8, 2.0)]
+    start, stop = play.people[i].perform(_then(down, rest, up))
+    return Done(start, stop)
+
+
+def fall(play: Play, i: int) -> Done:
+    """Falls on the back, lies there and gets up."""
+    down, up = _plain(play, "fall", "get-up-back")
+    start, stop = play.people[i].perform(_then(down, frozen(down, play.seconds(0.3, 0.8)), up, blend=18))
+    return Done(start, stop)
+
+
+def crawl(play: Play, i: int) -> Done:
+    """Person i lies down, crawls and gets up."""
+    down, on, up = _plain(play, "lie-down-front", "crawl", "get-up-front")
+    start, stop = play.people[i].perform(_then(down[: len(down) - 25], on, up, blend=14))
+    return Done(start, stop)
+
+
+def push_up(play: Play, i: int) -> Done:
+    """Person i does push-ups."""
+    down, press, up = _plain(play, "lie-down-front", "push-up", "get-up-front")
+    presses = looped(press, int(len(press) * play.rng.integers(1, 3)))
+    start, stop = play.people[i].perform(_then(down[: len(down) - 30], presses, up[20:], blend=14))
+    return Done(start, stop)
+
+
+def jacks(play: Play, i: int) -> Done:
+    """Person i does jumping jacks."""
+    (jump,) = _plain(play, "jumping-jacks")
+    start, stop = play.people[i].perform(looped(jump, int(len(jump) * play.rng.uniform(1.9, 3.2)), blend=4))
+    return Done(start, stop)
+
+
+def rage(play: Play, i: int) -> Done:
+    """Person i rages."""
+    (clip,) = _plain(play, "rage")
+    start, stop = play.people[i].perform(looped(clip, play.seconds(1.5, 2.8), blend=5))
+    return Done(start, stop)
+
+
+def talk(play: Play, i: int) -> Done:
+    """Talks with the hands."""
+    rng = play.rng
+    action = pick(rng, [name for name in ("guide", "respond", "talking") if play.library.has(name)])
+    return taken(action, (50, 100))(play, i)
+
+
+def dance(play: Play, i: int) -> Done:
+    """Person i dances."""
+    rng = play.rng
+    action = pick(rng, [n for n in ("dance", "dance-show", "ballet") if play.library.has(n)])
+    if action == "dance":
+        take = dance_piece(rng, play.library)
+        motion = take.motion[: play.seconds(2.5, 4.0)]
+    else:
+        clip = play.library.take(rng, action).motion
+        frames = min(play.seconds(2.5, 4.0), len(clip))
+        at = int(rng.integers(0, len(clip) - frames + 1))
+        motion = clip[at : at + frames]
+        way = (motion.root[-1] - motion.root[0]) * np.array([1.0, 0.0, 1.0])
+        if np.linalg.norm(way) > 0.8:  # it stays about where it began
+            motion = drift(motion, -np.linspace(0, 0.7, len(motion))[:, None] * way)
+    start, stop = play.people[i].perform(motion)
+    return Done(start, stop)
+
+
+def spin(play: Play, i: int) -> Done:
+    """A full turn on the spot."""
+    person = play.people[i]
+    start = len(person)
+    person.hold(play.seconds(1.5, 2.2), turn=2 * np.pi * pick(play.rng, (-1, 1)))
+    return Done(start, len(person))
+
+
+def look_around(play: Play, i: int) -> Done:
+    """Person i looks around."""
+    person, rng = play.people[i], play.rng
+    start = len(person)
+    angle = pick(rng, (-1, 1)) * rng.uniform(0.5, 0.9)
+    for turn in (angle, -2 * angle, angle):
+        person.hold(int(12 + 10 * abs(turn)), turn=turn)
+    play.look(i, start, len(person), 0.0)
+    return Done(start, len(person))
+
+
+def stand(play: Play, i: int) -> Done:
+    """Person i stands."""
+    return Done(len(play.people[i]), len(play.people[i]))
+
+
+# ---- acts that are laid over a person who stands ------------------------------------------------------------
+
+
+def _alone(change: Callable[[Array], Array]) -> Callable[[Array, Array], tuple[Array, Array, Touches]]:
+    return lambda own, other: (change(own), other, [])
+
+
+def _standing(play: Play, i: int, low: float, high: float) -> tuple[int, int]:
+    person = play.people[i]
+    start = len(person)
+    person.hold(play.seconds(low, high))
+    return start, len(person)
+
+
+def nodding(play: Play, i: int) -> Done:
+    """Person i nods."""
+    rng = play.rng
+    start, stop = _standing(play, i, 1.2, 2.0)
+    hertz, size = rng.uniform(1.1, 1.7), rng.uniform(0.25, 0.42)
+
+    def change(body: Array) -> Array:
+        time = np.arange(len(body)) / 30
+        weight = envelope(len(body), 0, 8, len(body) - 10, len(body) - 1)
+        return nod(body, weight * size * (0.5 - 0.5 * np.cos(2 * np.pi * hertz * time)))
+
+    play.effect(start, stop, _alone(change), i=i)
+    return Done(start, stop)
+
+
+def head_shake(play: Play, i: int) -> Done:
+    """Turns the head from side to side; the face shows in the shoulders' small counter-turn."""
+    rng = play.rng
+    start, stop = _standing(play, i, 1.3, 2.0)
+    hertz, size = rng.uniform(0.9, 1.4), rng.uniform(0.4, 0.6)
+
+    def change(body: Array) -> Array:
+        time = np.arange(len(body)) / 30
+        weight = envelope(len(body), 0, 8, len(body) - 12, len(body) - 1)
+        swing = (weight * size * np.sin(2 * np.pi * hertz * time))[:, None]
+        _, forward = axes(body)
+        body = bend(body, 0.3 * swing * UP)
+        return bend(body, swing * 0.35 * forward, joints=(SMPL22.index("neck"),))
+
+    play.effect(start, stop, _alone(change), i=i)
+    play.look(i, start, stop, 0.4)
+    return Done(start, stop)
+
+
+def clap(play: Play, i: int) -> Done:
+    """Person i claps."""
+    rng = play.rng
+    start, stop = _standing(play, i, 1.6, 2.6)
+    hertz, wide, height = rng.uniform(2.0, 3.0), rng.uniform(0.1, 0.16), rng.uniform(-0.02, 0.12)
+
+    def change(body: Array) -> Array:
+        time = np.arange(len(body)) / 30
+        weight = envelope(len(body), 0, 16, len(body) - 18, len(body) - 1)
+        gap = 0.035 + wide * (0.5 + 0.5 * np.cos(2 * np.pi * hertz * time))
+        left, _ = axes(body)
+        middle = on_body(body, "spine3", 0.0, height, 0.33)
+        for side, sign in (("left", 1.0), ("right", -1.0)):
+            body = reach_arm(body, side, middle + sign * gap[:, None] * left, weight, elbow=(0.9, -0.7, -0.1))
+        return body
+
+    play.effect(start, stop, _alone(change), i=i)
+    return Done(start, stop, "both")
+
+
+def _pose(targets: Callable[[Array, str], Array], low: float, high: float, *, both: bool = True) -> Make:
+    """An act of hands held at a place on the own body for a while."""
+
+    def make(play: Play, i: int) -> Done:
+        rng = play.rng
+        start, stop = _standing(play, i, low, high)
+        sides = ("left", "right") if both else (pick(rng, ("left", "right")),)
+
+        def change(body: Array) -> Array:
+            weight = envelope(len(body), 0, 18, len(body) - 20, len(body) - 1)
+            for side in sides:
+                body = reach_arm(body, side, targets(body, side), weight, elbow=(1.0, -0.4, -0.1))
+            return body
+
+        play.effect(start, stop, _alone(change), i=i)
+        return Done(start, stop, "both" if both else sides[0])
+
+    return make
+
+
+def _out(side: str) -> float:
+    return 1.0 if side == "left" else -1.0
+
+
+hands_on_hips = _pose(lambda body, side: on_body(body, "pelvis", 0.2 * _out(side), 0.12, 0.03), 1.5, 2.8)
+cover_face = _pose(lambda body, side: on_body(body, "head", 0.05 * _out(side), 0.0, 0.14), 1.4, 2.4)
+fold_arms = _pose(
+    lambda body, side: on_body(body, "spine2", -0.12 * _out(side), 0.1 + 0.03 * _out(side), 0.2), 1.6, 3.0
+)
+shrug = _pose(lambda body, side: on_body(body, f"{side}_shoulder", 0.26 * _out(side), -0.2, 0.22), 1.2, 1.8)
+stop_hand = _pose(lambda body, side: on_body(body, f"{side}_shoulder", 0.0, 0.02, 0.5), 1.2, 2.0, both=False)
+phone = _pose(lambda body, side: on_body(body, "head", 0.13 * _out(side), -0.02, 0.03), 1.8, 3.0, both=False)
+heart = _pose(lambda body, side: on_body(body, "spine3", 0.03 * _out(side), 0.0, 0.13), 1.3, 2.2, both=False)
+open_arms = _pose(
+    lambda body, side: on_body(body, f"{side}_shoulder", 0.38 * _out(side), -0.06, 0.24), 1.3, 2.2
+)
+reach_out = _pose(
+    lambda body, side: on_body(body, f"{side}_shoulder", -0.08 * _out(side), -0.28, 0.42),
+    1.4,
+    2.2,
+    both=False,
+)
+
+
+def point(play: Play, i: int) -> Done:
+    """Points at the other."""
+    rng = play.rng
+    start, stop = _standing(play, i, 1.4, 2.4)
+    side = pick(rng, ("left", "right"))
+
+    def effect(own: Array, other: Array) -> tuple[Array, Array, Touches]:
+        weight = envelope(len(own), 0, 16, len(own) - 18, len(own) - 1)
+        shoulder = own[:, ARMS[side][1]]
+        way = other[:, 0] + np.array([0.0, 0.25, 0.0]) - shoulder
+        way = way / np.linalg.norm(way, axis=-1, keepdims=True)
+        return reach_arm(own, side, shoulder + 0.56 * way, weight), other, []
+
+    play.effect(start, stop, effect, i=i)
+    return Done(start, stop, side)
+
+
+def strike(action: str) -> Make:
+    """One or two blows in the air."""
+
+    def make(play: Play, i: int) -> Done:
+        take = blow(play.rng, play.library, action, most=2)
+        return _perform(play, i, take, aim=take.aim)
+
+    return make
+
+
+def arms_over(
+    library: Library, rng: Rng, base: Motion, action: str, start: int, side: str | None, *, most: int = 100
+) -> tuple[Motion, Take]:
+    """Arms of a gesture of about ``most`` frames over a motion that goes on: who waves while walking."""
+    take = library.take(rng, action, side=side, frames=(40, max(most, 45)))
+    return layer(base, take.motion, start=start, joints=UPPER, blend=10), take
+
+
+ACTS: dict[str, Act] = {
+    "wave": Act(taken("wave", (50, 100), one=True), ("wave",), 3.0, over="wave"),
+    "bye": Act(taken("bye", (50, 100)), ("bye",), 1.5, over="bye"),
+    "bow": Act(bow, ("bow",), 3.0),
+    "raise-hand": Act(taken("raise-hand", (40, 80), one=True), ("raise-hand",), 2.0, over="raise-hand"),
+    "raise-hands": Act(taken("raise-hand", (40, 80), side="both"), ("raise-hand",), 1.2, over="raise-hand"),
+    "call": Act(taken("call", (50, 100)), ("call",), 1.0),
+    "guide": Act(taken("guide", (50, 100)), ("guide",), 1.0),
+    "talk": Act(talk, ("guide",), 2.0, over="guide"),
+    "point": Act(point, ("idle",), 2.0),
+    "nod": Act(nodding, ("idle",), 2.0),
+    "head-shake": Act(head_shake, ("idle",), 1.5),
+    "clap": Act(clap, ("idle",), 2.0),
+    "hands-on-hips": Act(hands_on_hips, ("idle",), 1.0),
+    "cover-face": Act(cover_face, ("idle",), 1.0),
+    "fold-arms": Act(fold_arms, ("idle",), 1.2),
+    "shrug": Act(shrug, ("idle",), 1.2),
+    "stop-hand": Act(stop_hand, ("idle",), 1.0),
+    "phone": Act(phone, ("idle",), 1.0),
+    "heart": Act(heart, ("idle",), 0.7),
+    "open-arms": Act(open_arms, ("idle",), 1.0),
+    "dance": Act(dance, ("dance",), 1.6, room=1.4),
+    "spin": Act(spin, ("idle",), 1.5),
+    "look-around": Act(look_around, ("idle",), 1.0),
+    "jump": Act(taken("jump", (30, 110)), ("jump",), 2.0, room=1.6),
+    "jumping-jacks": Act(jacks, ("jumping-jacks",), 1.2),
+    "sit": Act(sit, ("sit-down", "sitting", "stand-up"), 2.5),
+    "kneel": Act(taken("kneel", (60, 110)), ("kneel",), 1.6),
+    "fall": Act(fall, ("fall", "get-up-back"), 1.5, room=1.4),
+    "crawl": Act(crawl, ("lie-down-front", "crawl", "get-up-front"), 1.0, room=2.6),
+    "push-up": Act(push_up, ("lie-down-front", "push-up", "get-up-front"), 0.8, room=2.0),
+    "roll": Act(taken("roll", (40, 110)), ("roll",), 1.0, room=2.2),
+    "cartwheel": Act(taken("cartwheel", (40, 110)), ("cartwheel",), 0.7, room=3.2),
+    "pick-up": Act(taken("pick-up", (60, 120)), ("pick-up",), 1.5),
+    "throw": Act(taken("throw", (40, 90)), ("throw",), 1.0, room=1.2),
+    "rage": Act(rage, ("rage",), 1.2),
+    "scratch-head": Act(taken("scratch-head", (50, 100)), ("scratch-head",), 1.0),
+    "drink": Act(taken("drink", (60, 110)), ("drink",), 1.2),
+    "reject": Act(taken("reject", (50, 110)), ("reject",), 1.5),
+    "victory": Act(taken("victory", (40, 90)), ("victory",), 1.2),
+    "fist-pump": Act(taken("fist-pump", (40, 90)), ("fist-pump",), 1.0),
+    "guard": Act(taken("guard", (25, 60)), ("guard",), 0.6),
+    "punch": Act(strike("punch"), ("punch",), 1.2, room=1.5),
+    "kick": Act(strike("kick"), ("kick",), 1.2, room=1.7),
+    "slash": Act(strike("slash"), ("slash",), 0.6, room=1.9),
+}  # fmt: skip
+"""Acts of one person by the names of the phrase book."""

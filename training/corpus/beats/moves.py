@@ -1,0 +1,368 @@
+"""Where two people go: towards, away from, past, around, behind and beside each other."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from ..blending import ease
+from ..compose import Array, Motion, steer, tempo
+from ..library import Take, pick
+from ..stage import stride
+from .acts import ACTS, arms_over
+from .performer import Performer, bearing, wrap
+from .play import Play
+
+
+def ahead(angle: float) -> Array:
+    """(2,) unit vector (x, z) of a heading."""
+    return np.array([np.sin(angle), np.cos(angle)])
+
+
+def leftwards(angle: float) -> Array:
+    """(2,) unit vector on the floor to the left of a heading in radians."""
+    return np.array([np.cos(angle), -np.sin(angle)])
+
+
+def gait(play: Play, *, fast: float = 0.15) -> tuple[str, str]:
+    """(source action, name in the phrase book) of a way to go."""
+    rng = play.rng
+    wish = play.wish[0].split("-")[0] if play.wish else ""
+    if wish in ("walk", "run", "sneak") and play.library.has(wish):
+        return wish, wish
+    if play.library.has("run") and rng.random() < fast:
+        return "run", "run"
+    if play.library.has("sneak") and rng.random() < 0.05:
+        return "sneak", "sneak"
+    return "walk", "walk"
+
+
+def close_in(play: Play, i: int, distance: float, *, both: bool = False, action: str = "walk") -> Take | None:
+    """The two come to stand ``distance`` metres apart, face to face; the walk of i, if any was needed."""
+    own, other = play.people[i], play.people[1 - i]
+    start = play.sync()
+    gap, axis = play.gap, own.spot - other.spot
+    axis = axis / max(float(np.linalg.norm(axis)), 1e-6)
+    towards = bearing(-axis)
+    take = None
+    if both and gap - distance > 1.4:
+        middle = (own.spot + other.spot) / 2
+        take = own.go(middle + axis * distance / 2, towards, action=action)
+        other.go(middle - axis * distance / 2, towards + np.pi, action=action)
+    else:
+        stay = other.spot
+        if abs(distance - gap) > 0.08 or abs(play.off(i)) > 0.25:
+            take = own.go(stay + axis * distance, towards, action=action)
+        if abs(play.off(1 - i)) > 0.3:
+            other.hold(max(min(len(own) - start - 40, 12), 0))
+            other.turn(wrap(bearing(own.spot - other.spot) - other.angle))
+    play.sync()
+    error = play.gap - distance
+    if abs(error) > 0.06 or max(abs(play.off(0)), abs(play.off(1))) > 0.22:
+        shift = -error * (own.spot - other.spot) / max(play.gap, 1e-6)
+        turns = (play.off(i), play.off(1 - i))
+        frames = int(14 + 30 * abs(error) + 10 * max(map(abs, turns)))
+        own.hold(frames, turn=turns[0], shift=shift)
+        other.hold(frames, turn=turns[1])
+    play.sync()
+    return take
+
+
+def make_room(play: Play, i: int, room: float) -> None:
+    """i steps back where the two stand too close for what comes next."""
+    if play.gap >= room:
+        return
+    start = play.sync()
+    steps = stride(play.rng, play.library, "walk-back", max(room - play.gap, 0.4))
+    play.people[i].perform(steps.motion)
+    play.note(("step-back", "stand"), start, i=i, relation="while", minor=True)
+
+
+def walk_up(play: Play, i: int, *, distance: float | None = None) -> None:
+    """i comes up to the other, who stands; or both do."""
+    rng = play.rng
+    start = play.sync()
+    action, name = gait(play, fast=0.25)
+    both = play.wish[0] == "meet" if play.wish else rng.random() < 0.25
+    take = close_in(play, i, distance or rng.uniform(0.8, 1.3), both=both, action=action)
+    style = take.style if take else "normal"
+    acts = ("meet", "meet") if both else (f"{name}-up", "stand")
+    play.note(acts, start, i=i, relation="while", styles=(style, "normal"))
+
+
+def leave(play: Play, i: int, *, distance: tuple[float, float] = (1.6, 3.0)) -> None:
+    """i turns and goes away; the other stays, with or without an answer."""
+    rng = play.rng
+    start = play.sync()
+    own = play.people[i]
+    action, name = gait(play)
+    way = own.angle + np.pi + rng.normal(0, 0.35) if abs(play.off(i)) < 1.2 else own.angle
+    answer = play.wanted(
+        ("stand", "stand", "wave", "bye", "call", "turn-away", "head-shake", "shrug", "point"), 1
+    )
+    if answer in ACTS and not play.library.has(*ACTS[answer].needs):
+        answer = "stand"
+    take = own.go(
+        own.spot + rng.uniform(*distance) * ahead(way), None, action=action, stop=rng.random() < 0.6
+    )
+    side, style = None, "normal"
+    if answer == "turn-away":
+        _turn_off(play, 1 - i, start)
+    elif answer != "stand":
+        play.people[1 - i].hold(play.seconds(0.3, 0.9))
+        done = ACTS[answer].make(play, 1 - i)
+        side, style = done.side, done.style
+    play.note(
+        (f"{name}-away", answer), start, i=i, relation="while", styles=(take.style, style), sides=(None, side)
+    )
+
+
+def _turn_off(play: Play, i: int, start: int) -> None:
+    """i turns the back on the other."""
+    person = play.people[i]
+    person.hold(play.seconds(0.2, 0.6))
+    person.turn(pick(play.rng, (-1, 1)) * play.rng.uniform(2.3, 3.1))
+    play.look(i, start, len(person) + 60, 0.0)
+
+
+def part(play: Play, i: int) -> None:
+    """Both turn and go their ways."""
+    rng = play.rng
+    start = play.sync()
+    take = None
+    for k in (i, 1 - i):
+        person = play.people[k]
+        way = person.angle + np.pi + rng.normal(0, 0.3)
+        if k != i:
+            person.hold(int(rng.integers(0, 15)))
+        take = person.go(person.spot + rng.uniform(1.6, 2.6) * ahead(way), None, stop=rng.random() < 0.5)
+    play.note(
+        ("part", "part"), start, i=i, relation="while", styles=(take.style, take.style) if take else None
+    )
+
+
+def turn_away(play: Play, i: int) -> None:
+    """A turns away from B."""
+    start = play.sync()
+    _turn_off(play, i, start)
+    play.note(("turn-away", "stand"), start, i=i, relation="while")
+
+
+def turn_to(play: Play, i: int) -> None:
+    """i, who looks elsewhere, turns round to the other."""
+    start = play.sync()
+    play.people[i].hold(6)
+    play.people[i].turn(play.off(i))
+    play.note(("turn-to", "stand"), start, i=i, relation="while")
+
+
+def turn_round(play: Play, i: int) -> None:
+    """A full turn on the spot, the other watching."""
+    start = play.sync()
+    ACTS["spin"].make(play, i)
+    play.note(("spin", "stand"), start, i=i, relation="while")
+
+
+def step_back(play: Play, i: int) -> None:
+    """i goes up a step and the other backs away; or i only steps back."""
+    rng = play.rng
+    start = play.sync()
+    alone = play.wish[0] == "step-back" if play.wish else play.gap < 1.6 or rng.random() < 0.5
+    if alone:
+        walk = stride(rng, play.library, "walk-back", rng.uniform(0.5, 1.2))
+        play.people[i].perform(walk.motion)
+        play.note(("step-back", "stand"), start, i=i, relation="while", styles=(walk.style, "normal"))
+        return
+    close_in(play, i, max(play.gap - rng.uniform(0.5, 0.8), 0.7))
+    walk = stride(rng, play.library, "walk-back", rng.uniform(0.5, 1.2))
+    play.people[1 - i].perform(walk.motion)
+    play.note(("step-up", "step-back"), start, i=i, styles=("normal", walk.style))
+
+
+def step_aside(play: Play, i: int) -> None:
+    """i steps to a side."""
+    rng = play.rng
+    start = play.sync()
+    side = pick(rng, ("left", "right"))
+    walk = stride(rng, play.library, f"walk-{side}", rng.uniform(0.6, 1.1), side=side)
+    step = walk.motion.root[-1] - walk.motion.root[0]
+    course = wrap(float(np.arctan2(step[0], step[2]) - walk.motion.headings.mean()))
+    play.people[i].perform(walk.motion, aim=course - (1 if side == "left" else -1) * np.pi / 2)
+    play.note(("step-aside", "stand"), start, i=i, relation="while", sides=(side, None))
+
+
+def circle(play: Play, i: int) -> None:
+    """i walks around the other, who stands or turns along."""
+    rng = play.rng
+    start = play.sync()
+    own, other = play.people[i], play.people[1 - i]
+    side = int(pick(rng, (-1, 1)))  # 1: the other is on the left hand
+    radius = float(np.clip(play.gap, 0.85, 1.3))
+    if abs(play.gap - radius) > 0.15:
+        close_in(play, i, radius)
+    own.turn(wrap(bearing(other.spot - own.spot) - side * np.pi / 2 - own.angle))
+    arc = rng.uniform(0.55, 1.05) * 2 * np.pi
+    take, walk = curve(own, radius * arc, side / radius)
+    own.append(walk)
+    follows = play.wanted(("stand", "turn-along"), 1) == "turn-along"
+    if follows:
+        other.hold_until(start + (len(own) - start) // 5)
+        other.hold(int((len(own) - len(other)) * 0.9), turn=side * arc * 0.85)
+    direction = "counterclockwise" if side > 0 else "clockwise"
+    play.note(
+        ("circle", "turn-along" if follows else "stand"), start, i=i, relation="while",
+        styles=(take.style, "normal"), more={"direction": direction},
+    )  # fmt: skip
+
+
+def curve(person: Performer, length: float, bend: float) -> tuple[Take, Motion]:
+    """A walk of ``length`` metres that turns by ``bend`` radians a metre (positive: to the left)."""
+    take = stride(person.rng, person.library, "walk", length, style=person.style)
+    steps = np.linalg.norm(np.diff(take.motion.root[:, [0, 2]], axis=0), axis=-1)
+    return take, steer(take.motion, bend * np.concatenate([[0.0], np.cumsum(steps)]))
+
+
+def pace_about(play: Play, i: int) -> None:
+    """i walks up and down while the other stands."""
+    rng = play.rng
+    start = play.sync()
+    person = play.people[i]
+    angle = play.people[i].angle + pick(rng, (-1, 1)) * np.pi / 2
+    home = person.spot
+    take = person.go(home + rng.uniform(1.0, 1.5) * ahead(angle), None, stop=False)
+    person.go(home, None, stop=True)
+    play.note(("pace", "stand"), start, i=i, relation="while", styles=(take.style, "normal"))
+
+
+def follow(play: Play, i: int) -> None:
+    """i goes off and the other comes after."""
+    rng = play.rng
+    start = play.sync()
+    own, other = play.people[i], play.people[1 - i]
+    runs = play.wish[1] == "chase" if play.wish else rng.random() < 0.25
+    runs &= play.library.has("run")
+    action = "run" if runs else "walk"
+    way = own.angle + np.pi + rng.normal(0, 0.3) if abs(play.off(i)) < 1.2 else own.angle
+    far = rng.uniform(2.6, 4.0) if runs else rng.uniform(2.0, 3.0)
+    take = own.go(own.spot + far * ahead(way), None, action=action, stop=False)
+    other.hold(play.seconds(0.1, 0.5))
+    other.go(own.spot - rng.uniform(0.9, 1.3) * ahead(way), None, action=action, stop=False)
+    acts = ("run-away", "chase") if runs else ("walk-away", "follow")
+    play.note(acts, start, i=i, relation="while", styles=(take.style, "normal"))
+
+
+def side_by_side(play: Play, i: int, gap: float) -> tuple[float, int]:
+    """The other comes to i's side and both look the same way; that heading, and the side (1: left)."""
+    rng = play.rng
+    own, other = play.people[i], play.people[1 - i]
+    play.sync()
+    way = own.angle + (pick(rng, (-1, 1)) * rng.uniform(0.5, 1.3) if abs(play.off(i)) < 1.2 else 0.0)
+    side = 1 if np.dot(other.spot - own.spot, leftwards(way)) >= 0 else -1
+    own.turn(wrap(way - own.angle))
+    way = own.angle
+    other.go(own.spot + side * gap * leftwards(way), way)
+    play.sync()
+    other.hold(10, turn=wrap(way - other.angle), shift=own.spot + side * gap * leftwards(way) - other.spot)
+    play.sync()
+    return way, side
+
+
+def abreast(
+    play: Play, i: int, gap: float, *, length: tuple[float, float] = (2.2, 4.0), action: str = "walk"
+) -> tuple[int, int, Take, int]:
+    """Both walk side by side, in step; (first frame, last frame, walk, side of the other: 1 left)."""
+    rng = play.rng
+    own, other = play.people[i], play.people[1 - i]
+    _, side = side_by_side(play, i, gap)
+    start = play.frames
+    take = stride(rng, play.library, action, rng.uniform(*length), style=own.style)
+    frames = len(take.motion)
+    turn = (pick(rng, (-1, 1)) * rng.uniform(0.2, 1.4) if rng.random() < 0.5 else 0.0) * ease(frames)
+    steps = np.linalg.norm(np.diff(take.motion.root[:, [0, 2]], axis=0), axis=-1)
+    # Who walks outside goes the longer way.
+    scale = np.clip(
+        1 + np.append(np.diff(turn), 0.0) * -side * gap / np.maximum(np.append(steps, 1.0), 0.01), 0.5, 1.5
+    )
+    own.append(steer(take.motion, turn), blend=12)
+    other.append(steer(tempo(take.motion, scale), turn), blend=12)
+    return start, play.frames, take, side
+
+
+def walk_together(play: Play, i: int) -> None:
+    """Side by side, with or without talk; or one stops while the other goes on."""
+    rng = play.rng
+    begun = play.sync()
+    far = (3.2, 4.2) if play.wish and play.wish[0] == "stop" else (2.2, 3.2 if play.brisk else 4.0)
+    start, stop, take, _ = abreast(play, i, rng.uniform(0.65, 0.95), length=far)
+    own, other = play.people[i], play.people[1 - i]
+    style = (take.style, take.style)
+    if start - begun > 35:
+        play.beats_before(begun, start, i)
+    kind = {"stop": 0.0, "walk-and-talk": 0.5, "walk-together": 0.9}.get(
+        play.wish[0] if play.wish else "", rng.random()
+    )
+    if kind < 0.3 and stop - start > 66:  # i stops, the other goes on
+        cut = start + int((stop - start) * rng.uniform(0.4, 0.6))
+        own.motion = own.motion[: cut + 8]
+        play.note_span(("walk-together", "walk-together"), start, cut, i=i, relation="while", styles=style)
+        own.hold_until(len(other))
+        play.note(("stop", "go-on"), cut, i=i, relation="while", styles=style)
+        return
+    if kind < 0.65 and play.library.has("guide"):  # talking while strolling
+        who = i if play.wish or rng.random() < 0.6 else 1 - i
+        speaker = play.people[who]
+        speaker.motion, _ = arms_over(
+            play.library, rng, speaker.motion, pick(rng, _spoken(play)), start + 12, None
+        )
+        play.look(who, start, stop, 0.6)
+        acts = ("walk-and-talk", "walk-and-listen") if who == i else ("walk-and-listen", "walk-and-talk")
+        play.note(acts, start, i=i, relation="while", styles=style)
+        return
+    play.note(("walk-together", "walk-together"), start, i=i, relation="while", styles=style)
+
+
+def _spoken(play: Play) -> list[str]:
+    return [name for name in ("guide", "respond", "talking") if play.library.has(name)]
+
+
+def walk_and(play: Play, i: int) -> None:
+    """i walks away or up and waves, talks or raises a hand meanwhile."""
+    rng = play.rng
+    start = play.sync()
+    own, other = play.people[i], play.people[1 - i]
+    ways = [n for n in ("wave", "wave", "bye", "raise-hand") if play.library.has(n)]
+    wish = play.wish[0] if play.wish else ""
+    over = wish.partition("-and-")[2] if wish else pick(rng, ways)
+    up = wish.startswith("up") if wish else play.gap > 2.2
+    if over not in ways:
+        raise LookupError("no arms for it")
+    side = pick(rng, ("left", "right")) if over != "bye" else None
+    if up:
+        axis = (own.spot - other.spot) / max(play.gap, 1e-6)
+        take = own.go(other.spot + rng.uniform(0.9, 1.3) * axis, bearing(-axis), stop=False)
+    else:
+        take = stride(rng, play.library, "walk-back", rng.uniform(1.2, 1.9))
+        own.perform(take.motion)
+    # The hand is up while the person walks, not only after it.
+    length = len(own) - start
+    own.hold(14)
+    own.motion, gesture = arms_over(play.library, rng, own.motion, over, start, side, most=length)
+    play.note(
+        (f"{'up' if up else 'back'}-and-{over}", "stand"), start, i=i, relation="while",
+        sides=(gesture.side, None), styles=(take.style, "normal"),
+    )  # fmt: skip
+
+
+def walk_past(play: Play, i: int) -> None:
+    """Both go past each other without stopping."""
+    rng = play.rng
+    start = play.sync()
+    styles = []
+    aside = pick(rng, (-1, 1)) * rng.uniform(0.8, 1.1)
+    spots = [person.spot for person in play.people]
+    for k in (i, 1 - i):
+        person, goal = play.people[k], spots[1 - k]
+        way = bearing(goal - person.spot)
+        target = goal + aside * leftwards(way) + rng.uniform(0.3, 0.8) * ahead(way)
+        # Each keeps to their own side from the middle on.
+        styles.append(person.go(target, None, stop=False).style)
+    play.note(("walk-past", "walk-past"), start, i=i, relation="while", styles=tuple(styles))

@@ -1,0 +1,1 @@
+"""Scores of what is shipped: ``python -m training.evaluate``, and a module for each other table."""

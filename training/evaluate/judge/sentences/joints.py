@@ -1,0 +1,129 @@
+"""A duet's joints with what the predicates derive from them: paths, headings, palms, heights."""
+
+from __future__ import annotations
+
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.ndimage import gaussian_filter1d
+
+from motion import SMPL22
+from motion.metrics.interaction import palms
+from motion.transforms import facing
+
+Array = NDArray[np.floating]
+
+_SMOOTH = 0.15
+"""Seconds: standard deviation of the filter over root paths and headings, which takes out a step's sway."""
+SIDES = ("left", "right")
+
+
+class Motion:
+    """Two people on SMPL's 22 joints.
+
+    Args:
+        positions: (2, T, 22, 3) metres, Y up, floor at 0.
+        fps: frames a second.
+    """
+
+    def __init__(self, positions: Array, fps: float = 30.0) -> None:
+        if np.ndim(positions) != 4 or positions.shape[0] != 2 or positions.shape[2:] != (22, 3):
+            raise ValueError(f"A duet has the shape (2, frames, 22, 3), not {np.shape(positions)}.")
+        self.positions = np.asarray(positions, dtype=np.float64)
+        self.fps = fps
+
+    @property
+    def frames(self) -> int:
+        """Length in frames."""
+        return self.positions.shape[1]
+
+    def swapped(self) -> Motion:
+        """The same motion with the two people exchanged."""
+        return Motion(self.positions[::-1], self.fps)
+
+    def reversed(self) -> Motion:
+        """The same motion played backwards."""
+        return Motion(self.positions[:, ::-1], self.fps)
+
+    # ---- joints --------------------------------------------------------------------------------------
+    def joint(self, who: int, name: str) -> Array:
+        """(T, 3) path of a joint."""
+        return self.positions[who, :, SMPL22.index(name)]
+
+    def pair(self, who: int, part: str) -> Array:
+        """(2, T, 3) paths of the left and the right joint of a part."""
+        return np.stack([self.joint(who, f"{side}_{part}") for side in SIDES])
+
+    @cached_property
+    def palms(self) -> Array:
+        """(2 people, 2 sides, T, 3) middles of the palms."""
+        return palms(self.positions).swapaxes(1, 2)
+
+    def hands(self, who: int, side: str = "any") -> Array:
+        """(H, T, 3) wrists and palms of one hand or of both ("any")."""
+        sides = [SIDES.index(side)] if side in SIDES else [0, 1]
+        return np.concatenate([self.pair(who, "wrist")[sides], self.palms[who][sides]])
+
+    # ---- paths over the floor --------------------------------------------------------------------------
+    @cached_property
+    def roots(self) -> Array:
+        """(2, T, 2) smoothed paths of the pelvises over the floor (X, Z)."""
+        return gaussian_filter1d(
+            self.positions[:, :, 0][..., [0, 2]], _SMOOTH * self.fps, axis=1, mode="nearest"
+        )
+
+    @cached_property
+    def velocities(self) -> Array:
+        """(2, T, 2) metres a second of the roots over the floor."""
+        return np.gradient(self.roots, axis=1) * self.fps
+
+    @cached_property
+    def speeds(self) -> Array:
+        """(2, T) metres a second."""
+        return np.linalg.norm(self.velocities, axis=-1)
+
+    @cached_property
+    def distance(self) -> Array:
+        """(T,) metres between the roots over the floor."""
+        return np.linalg.norm(self.roots[1] - self.roots[0], axis=-1)
+
+    def towards(self, who: int) -> Array:
+        """(T, 2) unit vector over the floor from a person to the other."""
+        line = self.roots[1 - who] - self.roots[who]
+        return line / np.maximum(np.linalg.norm(line, axis=-1, keepdims=True), 1e-6)
+
+    @cached_property
+    def forward(self) -> Array:
+        """(2, T, 2) unit vectors over the floor that the bodies face."""
+        return facing(self.positions)[..., [0, 2]]
+
+    @cached_property
+    def headings(self) -> Array:
+        """(2, T) headings in degrees, unwrapped and smoothed; they grow in a turn to the left."""
+        forward = self.forward
+        angles = np.unwrap(np.arctan2(forward[..., 0], forward[..., 1]), axis=1)
+        return np.degrees(gaussian_filter1d(angles, _SMOOTH * self.fps, axis=1, mode="nearest"))
+
+    def off(self, who: int) -> Array:
+        """(T,) degrees between where a person faces and where the other is, 0 to 180."""
+        cos = np.sum(self.forward[who] * self.towards(who), axis=-1)
+        return np.degrees(np.arccos(np.clip(cos, -1.0, 1.0)))
+
+    # ---- heights ---------------------------------------------------------------------------------------
+    def height(self, who: int) -> Array:
+        """(T,) height of the pelvis as a share of its height in standing, which the leg's bones give."""
+        hip, knee, ankle, foot = (self.pair(who, part)[:, 0] for part in ("hip", "knee", "ankle", "foot"))
+        leg = np.linalg.norm(hip - knee, axis=-1) + np.linalg.norm(knee - ankle, axis=-1)
+        standing = leg + np.linalg.norm(ankle - foot, axis=-1) * 0.4 + 0.09
+        return self.positions[who, :, 0, 1] / standing.mean()
+
+    def lean(self, who: int) -> Array:
+        """(T,) degrees by which the trunk leans out of the vertical."""
+        trunk = self.joint(who, "neck") - self.joint(who, "pelvis")
+        return np.degrees(np.arctan2(np.linalg.norm(trunk[:, [0, 2]], axis=-1), trunk[:, 1]))
+
+    def drop(self, who: int) -> Array:
+        """(T,) metres by which the head is below where it mostly is (its 90th percentile)."""
+        head = self.joint(who, "head")[:, 1]
+        return np.percentile(head, 90) - head

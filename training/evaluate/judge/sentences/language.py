@@ -1,0 +1,139 @@
+"""Rules as text, such as ``then(hands_meet(), walks_away(a))``: read without running any code of theirs.
+
+A rule is one condition over predicates (:mod:`.vocabulary`). ``a`` and ``b`` are the two people; numbers,
+text and keywords are passed on as they are.
+"""
+
+from __future__ import annotations
+
+import ast
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+
+from . import paths, poses, touches  # noqa: F401 (they fill the vocabulary)
+from .joints import Motion
+from .stretches import Mask, longest, stretches
+from .vocabulary import PREDICATES
+
+SLACK = 0.3
+"""Seconds by which the middle of a later beat may come before the end of an earlier one."""
+SHORTEST = 0.1
+"""Seconds that a beat lasts at least."""
+EDGE = 0.5
+"""Seconds that count as the start or the end of a motion."""
+
+CONDITIONS: dict[str, Callable[..., bool]] = {}
+"""The conditions by the name that rules use."""
+
+
+def condition(function: Callable[..., bool]) -> Callable[..., bool]:
+    """Adds a condition to the language, under its name without a final underscore."""
+    CONDITIONS[function.__name__.rstrip("_")] = function
+    return function
+
+
+@condition
+def happens(m: Motion, mask: Mask, seconds: float = SHORTEST) -> bool:
+    """It holds for ``seconds`` in one stretch."""
+    return longest(mask, m.fps) >= seconds - 1e-9
+
+
+@condition
+def never(m: Motion, mask: Mask, seconds: float = 0.2) -> bool:
+    """It holds for less than ``seconds`` in every stretch."""
+    return longest(mask, m.fps) < seconds
+
+
+@condition
+def mostly(m: Motion, mask: Mask, share: float = 0.6) -> bool:
+    """It holds for that share of all frames."""
+    return bool(mask.mean() >= share)
+
+
+@condition
+def times(m: Motion, mask: Mask, count: int) -> bool:
+    """It holds in ``count`` stretches or more."""
+    return len([1 for i, j in stretches(mask, m.fps, pause=0.1) if j - i >= 2]) >= count
+
+
+@condition
+def start(m: Motion, mask: Mask) -> bool:
+    """It holds for most of the first half second."""
+    return bool(mask[: round(EDGE * m.fps)].mean() > 0.5)
+
+
+@condition
+def end(m: Motion, mask: Mask) -> bool:
+    """It holds for most of the last half second."""
+    return bool(mask[-round(EDGE * m.fps) :].mean() > 0.5)
+
+
+@condition
+def then(m: Motion, *masks: Mask) -> bool:
+    """The beats come in this order: the middle of each is no more than 0.3 s before the end of the last."""
+    after = -np.inf
+    for mask in masks:
+        found = [
+            (i, j)
+            for i, j in stretches(mask, m.fps)
+            if j - i >= SHORTEST * m.fps and (i + j) / 2 >= after - SLACK * m.fps
+        ]
+        if not found:
+            return False
+        after = min(j for _, j in found)
+    return True
+
+
+@condition
+def together(m: Motion, first: Mask, second: Mask, seconds: float = 0.5) -> bool:
+    """A stretch of one has its middle within ``seconds`` of the middle of a stretch of the other."""
+    middles = [[(i + j) / 2 for i, j in stretches(mask, m.fps)] for mask in (first, second)]
+    return any(abs(x - y) <= seconds * m.fps for x in middles[0] for y in middles[1])
+
+
+class RuleError(ValueError):
+    """A rule that cannot be read."""
+
+
+def check(rule: str, motion: Motion) -> bool:
+    """Whether a motion fulfils one rule.
+
+    Raises:
+        RuleError: if the rule uses a word that the language does not have.
+    """
+    try:
+        tree = ast.parse(rule, mode="eval").body
+    except SyntaxError as error:
+        raise RuleError(f"The rule {rule!r} cannot be read: {error.msg}.") from error
+    if not isinstance(tree, ast.Call) or _name(tree.func) not in CONDITIONS:
+        raise RuleError(f"The rule {rule!r} must begin with one of {', '.join(CONDITIONS)}.")
+    return bool(_call(tree, motion, CONDITIONS))
+
+
+def _call(node: ast.Call, motion: Motion, known: dict[str, Callable[..., Any]]) -> Any:
+    name = _name(node.func)
+    if name not in known:
+        raise RuleError(f"{name!r} is not known here: use one of {', '.join(known)}.")
+    arguments = [_value(argument, motion) for argument in node.args]
+    named = {str(keyword.arg): _value(keyword.value, motion) for keyword in node.keywords}
+    try:
+        return known[name](motion, *arguments, **named)
+    except (TypeError, KeyError) as error:
+        raise RuleError(f"{ast.unparse(node)} does not fit {name}: {error}.") from error
+
+
+def _value(node: ast.expr, motion: Motion) -> Any:
+    if isinstance(node, ast.Call):
+        return _call(node, motion, PREDICATES)
+    if isinstance(node, ast.Name) and node.id in ("a", "b"):
+        return "ab".index(node.id)
+    try:
+        return ast.literal_eval(node)
+    except ValueError as error:
+        raise RuleError(f"{ast.unparse(node)!r} is neither a person, a number nor a predicate.") from error
+
+
+def _name(node: ast.expr) -> str:
+    return node.id if isinstance(node, ast.Name) else ast.unparse(node)

@@ -1,0 +1,92 @@
+"""Motions of the sentences by one generator, kept in a folder, so an interrupted run can resume."""
+
+from __future__ import annotations
+
+import sys
+import time
+import zlib
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+
+from motion import Duet, InputError
+from motion.formats.files import replacing
+from training.evaluate.judge.draw import Sampling, draw
+from training.evaluate.judge.rules import Task
+from webdemo.inference.pipelines.intergen import InterGenPipeline
+
+from .catalogue import Sentence
+
+FPS = 30
+
+
+@dataclass(frozen=True)
+class Motions:
+    """A folder with one ``.npy`` of positions (2, T, 22, 3) for each sentence and seed.
+
+    Attributes:
+        folder: one for every weights folder and sampling, see :func:`motions_folder`.
+    """
+
+    folder: Path
+
+    def path(self, sentence: Sentence, seed: int) -> Path:
+        """The file of a sentence; its name changes with the words and the length."""
+        text = zlib.crc32(f"{sentence.words} {sentence.seconds}".encode())
+        return self.folder / f"{sentence.id}-{text:08x}-{seed}.npy"
+
+    def read(self, sentence: Sentence, seed: int) -> Duet:
+        """One motion; raises InputError if it has not been generated or cannot be read."""
+        path = self.path(sentence, seed)
+        try:
+            positions = np.load(path, allow_pickle=False)
+        except (OSError, ValueError) as error:
+            raise InputError(f"{path.name} is missing or damaged: draw the motions again.") from error
+        return Duet.from_positions(positions, fps=float(FPS))
+
+    def write(self, sentence: Sentence, seed: int, duet: Duet) -> None:
+        """Keeps one motion."""
+        with replacing(self.path(sentence, seed)) as temporary, temporary.open("wb") as file:
+            np.save(file, duet.positions.astype(np.float32))
+
+
+def motions_folder(cache: Path, digest: str, sampling: Sampling) -> Motions:
+    """The folder for motions of these weights and settings."""
+    sampler = "fast" if sampling.fast else f"ddim{sampling.steps}"
+    name = f"{digest[:12]}-{sampler}-g{sampling.guidance:g}-d{sampling.damping:g}"
+    return Motions(cache / name)
+
+
+def draw_missing(
+    generator: InterGenPipeline,
+    sentences: Sequence[Sentence],
+    seeds: Sequence[int],
+    sampling: Sampling,
+    motions: Motions,
+    *,
+    minutes: float = 0.0,
+) -> int:
+    """Draws what the folder does not hold yet; the page gives the same motion for a sentence and its seed.
+
+    Args:
+        minutes: draw no more after this time; 0 is no limit.
+
+    Returns:
+        motions that are still missing.
+    """
+    wanted = [(s, k) for k in seeds for s in sentences if not motions.path(s, k).is_file()]
+    tasks = [Task(s.words, "", {}, round(FPS * s.seconds)) for s, _ in wanted]
+    motions.folder.mkdir(parents=True, exist_ok=True)
+    began, done = time.perf_counter(), 0
+    for i, duet in draw(generator, tasks, sampling, [k for _, k in wanted]):
+        motions.write(*wanted[i], duet)
+        done += 1
+        seconds = time.perf_counter() - began
+        print(f"\r{done} of {len(wanted)} drawn, {seconds:.0f} s", end="", file=sys.stderr, flush=True)
+        if minutes and seconds > 60 * minutes:
+            break
+    if done:
+        print(file=sys.stderr)
+    return len(wanted) - done

@@ -1,0 +1,191 @@
+"""Predicates on paths: walking, standing, turning, and relative places."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from .joints import Array, Motion
+from .stretches import Mask, keep
+from .vocabulary import predicate
+
+# ---- going and standing ----------------------------------------------------------------------------------
+WALK = 0.3
+"""Metres a second of the root from which a person is on the way."""
+
+
+def _gained(m: Motion, rate: Array, metres: float, least: float) -> Mask:
+    """Stretches with ``rate`` (m/s) above ``least`` that add up to ``metres``."""
+    return keep(rate > least, m.fps, lambda i, j: rate[i:j].sum() / m.fps >= metres)
+
+
+@predicate
+def walks(m: Motion, who: int, metres: float = 0.8, speed: float = WALK) -> Mask:
+    """On the way for ``metres`` at ``speed`` or more, in any direction."""
+    return _gained(m, m.speeds[who], metres, speed)
+
+
+@predicate
+def runs(m: Motion, who: int, metres: float = 1.0) -> Mask:
+    """Faster than people walk: 1.7 m/s and more."""
+    return walks(m, who, metres, 1.7)
+
+
+@predicate
+def stands(m: Motion, who: int, speed: float = 0.25) -> Mask:
+    """The root stays where it is, for half a second or more; arms and trunk may move."""
+    return keep(m.speeds[who] < speed, m.fps, lambda i, j: j - i >= 0.5 * m.fps, pause=0.1)
+
+
+@predicate
+def stays(m: Motion, who: int, metres: float = 0.6) -> Mask:
+    """Never further than ``metres`` from where they began: all frames or none."""
+    away = np.linalg.norm(m.roots[who] - m.roots[who][0], axis=-1).max()
+    return np.full(m.frames, away < metres)
+
+
+@predicate
+def walks_to(m: Motion, who: int, metres: float = 0.5) -> Mask:
+    """Goes ``metres`` or more towards the other."""
+    return _gained(m, np.sum(m.velocities[who] * m.towards(who), axis=-1), metres, 0.2)
+
+
+@predicate
+def walks_away(m: Motion, who: int, metres: float = 0.9) -> Mask:
+    """Goes ``metres`` or more away from the other, forwards or backwards."""
+    return _gained(m, -np.sum(m.velocities[who] * m.towards(who), axis=-1), metres, 0.2)
+
+
+@predicate
+def backs(m: Motion, who: int, metres: float = 0.3) -> Mask:
+    """Goes backwards by ``metres`` or more."""
+    return _gained(m, -np.sum(m.velocities[who] * m.forward[who], axis=-1), metres, 0.12)
+
+
+@predicate
+def sidesteps(m: Motion, who: int, metres: float = 0.3) -> Mask:
+    """Leaves the line on which the two stand, to either side, by ``metres`` or more."""
+    line = m.towards(who)
+    across = m.velocities[who][:, 0] * line[:, 1] - m.velocities[who][:, 1] * line[:, 0]
+    return _gained(m, across, metres, 0.12) | _gained(m, -across, metres, 0.12)
+
+
+@predicate
+def passes(m: Motion, who: int, metres: float = 0.4) -> Mask:
+    """One walk that comes ``metres`` nearer to the other and then as far away again."""
+
+    def by(i: int, j: int) -> bool:
+        gap = m.distance[i:j]
+        k = int(gap.argmin())
+        return gap[0] - gap[k] >= metres and gap[-1] - gap[k] >= metres
+
+    return keep(walks(m, who), m.fps, by, pause=0.4)
+
+
+@predicate
+def follows(m: Motion, who: int, metres: float = 0.7) -> Mask:
+    """Walks after the other, who walks ahead with their back to this one."""
+    other = 1 - who
+    mine, theirs = m.velocities[who], m.velocities[other]
+    line = m.towards(who)
+    ahead = np.sum(theirs * line, axis=-1) > 0.15
+    after = np.sum(mine * line, axis=-1) > 0.7 * m.speeds[who]
+    mask = ahead & after & (m.speeds[who] > 0.2) & (m.off(other) > 100)
+    return keep(mask, m.fps, lambda i, j: m.speeds[who][i:j].sum() / m.fps >= metres)
+
+
+@predicate
+def same_way(m: Motion, speed: float = WALK) -> Mask:
+    """Both are on the way in one direction, give or take 45°."""
+    a, b = m.velocities
+    cos = np.sum(a * b, axis=-1) / np.maximum(m.speeds[0] * m.speeds[1], 1e-6)
+    return (m.speeds[0] > speed) & (m.speeds[1] > speed) & (cos > 0.7)
+
+
+@predicate
+def beside(m: Motion) -> Mask:
+    """Next to each other, looking the same way."""
+    same = np.sum(m.forward[0] * m.forward[1], axis=-1) > 0.6
+    aside = [(m.off(who) > 45) & (m.off(who) < 140) for who in (0, 1)]
+    return same & aside[0] & aside[1] & (m.distance < 1.8)
+
+
+@predicate
+def orbits(m: Motion, who: int, degrees: float = 180.0) -> Mask:
+    """Goes around the other: their line turns by ``degrees`` or more while this one walks."""
+    line = m.roots[who] - m.roots[1 - who]
+    angle = np.degrees(np.unwrap(np.arctan2(line[:, 0], line[:, 1])))
+    moving = (m.speeds[who] > 0.15) & (m.distance > 0.15)
+    return keep(moving, m.fps, lambda i, j: abs(angle[j - 1] - angle[i]) >= degrees, pause=0.5)
+
+
+# ---- where they are and where they look ------------------------------------------------------------------
+@predicate
+def near(m: Motion, metres: float) -> Mask:
+    """The roots are closer than ``metres``."""
+    return m.distance < metres
+
+
+@predicate
+def apart(m: Motion, metres: float) -> Mask:
+    """The roots are further apart than ``metres``."""
+    return m.distance > metres
+
+
+@predicate
+def faces(m: Motion, who: int, degrees: float = 50.0) -> Mask:
+    """Looks towards the other, give or take ``degrees``."""
+    return m.off(who) < degrees
+
+
+@predicate
+def faces_away(m: Motion, who: int, degrees: float = 110.0) -> Mask:
+    """Turned ``degrees`` or more away from the other."""
+    return m.off(who) > degrees
+
+
+@predicate
+def behind(m: Motion, who: int) -> Mask:
+    """In the other's back."""
+    return m.off(1 - who) > 110
+
+
+def _turning(m: Motion, who: int, rate: float = 20.0) -> tuple[Mask, Mask, Array]:
+    """Masks of turning to the left and to the right, and the heading in degrees."""
+    heading = m.headings[who]
+    speed = np.gradient(heading) * m.fps
+    return speed > rate, speed < -rate, heading
+
+
+@predicate
+def turns(m: Motion, who: int, degrees: float = 90.0) -> Mask:
+    """Turns by ``degrees`` or more, on the spot or on the way."""
+    left, right, heading = _turning(m, who)
+
+    def far(i: int, j: int) -> bool:
+        return abs(heading[j - 1] - heading[i]) >= degrees
+
+    return keep(left, m.fps, far, pause=0.4) | keep(right, m.fps, far, pause=0.4)
+
+
+@predicate
+def turns_to(m: Motion, who: int, degrees: float = 60.0) -> Mask:
+    """Turns by ``degrees`` or more, from looking elsewhere until they look at the other."""
+    off = m.off(who)
+
+    def done(i: int, j: int) -> bool:
+        last = min(j + round(0.2 * m.fps), m.frames) - 1
+        return off[i] > 60 and off[i] - off[last] > 0.7 * degrees and off[last] < 60
+
+    return keep(turns(m, who, degrees), m.fps, done, pause=0.0)
+
+
+@predicate
+def turns_away(m: Motion, who: int, degrees: float = 60.0) -> Mask:
+    """Turns by ``degrees`` or more, from looking at the other until they look elsewhere."""
+    off = m.off(who)
+
+    def done(i: int, j: int) -> bool:
+        last = min(j + round(0.2 * m.fps), m.frames) - 1
+        return off[i] < 60 and off[last] - off[i] > 0.7 * degrees and off[last] > 90
+
+    return keep(turns(m, who, degrees), m.fps, done, pause=0.0)

@@ -1,0 +1,124 @@
+"""Scores the page's predictions: ``python -m training.evaluate.prediction_product --data CORPUS``.
+
+Whole predictions as the page makes them (frame of reference, bones, seam, feet, recursion), on windows of the
+corpus' test split, root and all in the world.
+"""
+
+from __future__ import annotations
+
+import argparse
+from collections.abc import Callable
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+
+from motion.cleaning import foot_contacts
+from training.core.shell import exit_code
+from training.evaluate.prediction import put_into
+from training.evaluate.prediction_scores import Array, steps
+from training.trainers.prediction.windows import CorpusWindows
+from webdemo.inference.engine import WEIGHTS
+from webdemo.inference.pipelines.predictor import PredictorPipeline
+
+FPS = 30
+PAST, FUTURE = FPS, 4 * FPS
+TRUTH = "what really followed"
+AHEAD = (2, 5, 10, 15, 30, 60, 90, 120)
+"""Predicted frames that are scored."""
+_FEET = (7, 10, 8, 11)
+"""Ankle and toe of the left and the right foot, in the order of :func:`foot_contacts`."""
+
+
+@dataclass(frozen=True)
+class Quality:
+    """Of one method.
+
+    Attributes:
+        error: (FUTURE,) mean distance of joints from the truth in millimetres.
+        speed: (FUTURE,) mean distance per joint and frame (MPJS, eq. 2.13), over the truth's.
+        seam: share of windows whose first step is at most the largest of the past.
+        glide: mean speed of standing feet over the floor, in centimetres a second.
+    """
+
+    error: Array
+    speed: Array
+    seam: float
+    glide: float
+
+
+def measure(predict: Callable[[Array], Array], windows: Array) -> Quality:
+    """Scores a method on windows (N, PAST + FUTURE, 22, 3) in metres."""
+    past, truth = windows[:, :PAST], windows[:, PAST:]
+    made = predict(past)
+    own, real = (steps(np.concatenate([past[:, -1:], x], axis=1)) for x in (made, truth))
+    return Quality(
+        1000 * np.linalg.norm(made - truth, axis=-1).mean((0, 2)),
+        own.mean(0) / real.mean(0),
+        float(np.mean(own[:, 0] <= steps(past).max(axis=1) + 1e-6)),
+        float(np.mean([glide(motion) for motion in made])),
+    )
+
+
+def glide(positions: Array) -> float:
+    """Mean speed over the floor of feet that stand, in centimetres a second; 0 if none does.
+
+    Args:
+        positions: (T, 22, 3) metres.
+    """
+    stands = foot_contacts(positions, FPS)
+    moves = np.linalg.norm(np.diff(positions[:, _FEET][..., [0, 2]], axis=0), axis=-1)
+    both = stands[1:] & stands[:-1]
+    return float(100 * FPS * moves[both].mean()) if both.any() else 0.0
+
+
+def markdown(found: dict[str, Quality], count: int) -> str:
+    """The scores by method as a table."""
+    head = " | ".join(f"{frame / FPS:.2g} s" for frame in AHEAD)
+    lines = [f"| {count} windows | {head} |", "|---|" + "---:|" * len(AHEAD)]
+    methods = {name: quality for name, quality in found.items() if name != TRUTH}
+    for name, quality in methods.items():
+        lines.append(f"| {name}, mm | {' | '.join(f'{quality.error[f - 1]:.0f}' for f in AHEAD)} |")
+    for name, quality in methods.items():
+        if quality.speed.any():
+            speeds = " | ".join(f"{quality.speed[f - 1]:.2f}" for f in AHEAD)
+            lines.append(f"| {name}, speed over the truth's | {speeds} |")
+    lines += ["", f"|  | {' | '.join(found)} |", "|---|" + "---:|" * len(found)]
+    ranges = " | ".join(f"{q.speed.min():.2f} to {q.speed.max():.2f}" for q in found.values())
+    lines.append(f"| slowest and fastest step over the truth's | {ranges} |")
+    for label, values in (
+        ("first step within the past's largest", [f"{q.seam:.1%}" for q in found.values()]),
+        ("standing feet glide, cm/s", [f"{q.glide:.1f}" for q in found.values()]),
+    ):
+        lines.append(f"| {label} | {' | '.join(values)} |")
+    return "\n".join(lines) + "\n"
+
+
+def main(argv: list[str] | None = None) -> int:
+    """Runs the command; returns its exit code."""
+    parser = argparse.ArgumentParser(description="Score the page's predictions on the corpus' test split.")
+    parser.add_argument("--data", type=Path, required=True, help="folder of the corpus")
+    parser.add_argument("--weights", type=Path, default=WEIGHTS, help="folder of the models' folders")
+    parser.add_argument("--model", action="append", help="name of a model; motion-mlp by default")
+    parser.add_argument("--windows", type=int, default=200, help="how many are drawn")
+    parser.add_argument("--table", type=Path, help="Markdown page that the table is put into")
+    options = parser.parse_args(argv)
+
+    def job() -> None:
+        source = CorpusWindows(options.data, PAST, FUTURE, split="test")
+        windows = source.draw(options.windows, np.random.default_rng(0)).astype(np.float64)
+        truth = windows[:, PAST:]
+        found = {TRUTH: measure(lambda _: truth, windows)}
+        for name in ("still", *(options.model or ["motion-mlp"])):
+            predictor = PredictorPipeline(None if name == "still" else options.weights / name)
+            found[name] = measure(lambda past, own=predictor: own.predict(past, FUTURE), windows)
+        table = markdown(found, len(windows))
+        if options.table:
+            put_into(options.table, table, name="product")
+        print(table)
+
+    return exit_code(job)
+
+
+if __name__ == "__main__":
+    raise SystemExit(main())

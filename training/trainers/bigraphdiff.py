@@ -1,0 +1,282 @@
+"""Trains the compact BiGraphDiff: ``python -m training.trainers.bigraphdiff --scenes FILE --out DIR``.
+
+Chopin's thesis, chapter 4, on the scenes of :mod:`training.prepare`: the family that a scene was composed as
+is its class. The loss is that of :mod:`training.trainers.intergen` (x0 prediction and InterGen's damped regularisers),
+where the thesis has the noise's alone (eq. 4.12). A scene in which one hand leads is shown right-handed, as a
+class names no side; the others are mirrored half of the time.
+
+Everything random is drawn from the seed and the step number, so a run that stops goes on as if it had not.
+"""
+
+from __future__ import annotations
+
+import argparse
+import json
+from collections import Counter
+from collections.abc import Sequence
+from dataclasses import asdict, dataclass, field
+from pathlib import Path
+from typing import Any
+
+import torch
+from torch import Tensor
+
+from models.bigraphdiff.compact import CompactBiGraphDiff, CompactBiGraphDiffConfig
+from models.diffusion import NoiseSchedule
+from models.intergen.compact import Touch
+from models.intergen.losses import InterGenLoss, LossWeights, simple_loss
+from models.motion_tokens import FEATURES
+from models.weights_io import save_network
+from motion import InputError
+from training.core import checkpoint
+from training.core.loop import Loop
+from training.core.shell import add_run_options, chosen, exit_code
+from training.prepare import Scenes, load
+from training.trainers import intergen_data
+from training.trainers.intergen import draw_timesteps
+from training.trainers.touch import touch_of
+
+CLASSES: dict[str, str] = {
+    "approach": "approach",
+    "arm-around": "arm around the shoulders",
+    "bow-back": "bow to each other",
+    "call-come": "call, and come",
+    "chase": "chase",
+    "cheer": "cheer together",
+    "circle": "walk around the other",
+    "circle-each-other": "circle each other",
+    "copy": "copy the other",
+    "dance-mirrored": "dance mirrored",
+    "dance-together": "dance together",
+    "dance-watch": "dance, and watch",
+    "depart": "walk away",
+    "elbow-bump": "bump elbows",
+    "fist-bump": "bump fists",
+    "exchange": "hand over an object",
+    "follow": "follow",
+    "goodbye": "wave goodbye",
+    "hand-on-shoulder": "lay a hand on the shoulder",
+    "hand-over": "hand over an object",
+    "handshake": "shake hands",
+    "help-up": "help up",
+    "high-five": "high five",
+    "high-ten": "high ten",
+    "hold-hands": "hold hands",
+    "hug": "hug",
+    "kick": "kick",
+    "kick-step-back": "kick, and step back",
+    "lead-by-hand": "lead by the hand",
+    "leave": "walk away",
+    "low-five": "low five",
+    "make-way": "make way",
+    "meet": "walk up to each other",
+    "part": "part from each other",
+    "pat-back": "pat on the back",
+    "pat-shoulder": "pat on the shoulder",
+    "point": "point, and look",
+    "punch": "punch",
+    "punch-dodge": "punch, and dodge",
+    "punch-recoil": "punch, and recoil",
+    "push": "push",
+    "raise-copy": "raise a hand together",
+    "run-together": "run together",
+    "spar": "spar",
+    "step-back": "step back from the other",
+    "sword-fight": "fight with swords",
+    "sword-retreat": "strike with a sword, and retreat",
+    "talk": "talk",
+    "tap-turn": "tap on the shoulder, and turn",
+    "turn-away": "turn away",
+    "walk-hand-in-hand": "walk hand in hand",
+    "walk-past": "walk past each other",
+    "walk-together": "walk side by side",
+    "walk-up": "approach",
+    "wave-back": "wave to each other",
+    "whisper": "whisper into the ear",
+}
+"""The class of a scene by its family; scenes of other families are not used."""
+SUMMARY = (
+    "BiGraphDiff (Chopin et al.) at width 192 over spline tokens: two people from a class. Research and "
+    "non-commercial use only."
+)
+"""Summary of the weights on the page."""
+COMMON = 0.4
+"""Share of a class's scenes from which on a touch is the class's."""
+
+
+@dataclass(frozen=True)
+class Settings:
+    """What a run depends on; a checkpoint of other settings is refused. Named as in training.trainers.intergen."""
+
+    latent_dim: int = 192
+    ff_size: int = 512
+    num_layers: int = 5
+    num_heads: int = 6
+    embed_dim: int = 192
+    cond_dim: int = 128
+    batch: int = 32
+    steps: int = 8000
+    learning_rate: float = 6e-4
+    warmup: int = 200
+    weight_decay: float = 1e-4
+    ema: float = 0.998
+    unconditional: float = 0.1
+    root_weight: float = 4.0
+    t_bar: float = 0.7
+    noisiest: float = 0.4
+    seed: int = 0
+    weights: LossWeights = field(default_factory=lambda: intergen_data.Settings().weights)
+
+    def __post_init__(self) -> None:
+        if self.latent_dim % 16 or self.latent_dim % self.num_heads:
+            raise InputError(
+                f"latent_dim {self.latent_dim} must be a multiple of 16 and of {self.num_heads} heads."
+            )
+
+
+def of_classes(scenes: Scenes) -> Scenes:
+    """The scenes whose family is a class; raises InputError if there are none."""
+    rows = [row for row in scenes.rows if row["family"] in CLASSES]
+    if not rows:
+        raise InputError(f"The scenes hold no family of {', '.join(CLASSES)}: build the corpus anew.")
+    return Scenes(scenes.control, rows, scenes.layout)
+
+
+def labels_of(scenes: Scenes) -> tuple[tuple[str, ...], tuple[Touch, ...]]:
+    """Names of the classes in the training split, in alphabetical order, and the touch of each."""
+    counts: dict[str, Counter[Touch]] = {}
+    for row in scenes.split("train"):
+        touch = touch_of(row, mirror=row.get("hand") == "left")
+        counts.setdefault(CLASSES[row["family"]], Counter())[touch] += 1
+    touches = []
+    for name in sorted(counts):
+        touch, count = counts[name].most_common(1)[0]
+        touches.append(touch if count >= COMMON * counts[name].total() else ())
+    return tuple(sorted(counts)), tuple(touches)
+
+
+class Data(intergen_data.Data):
+    """Batches as :mod:`training.trainers.intergen` draws them, conditioned on their class."""
+
+    def __init__(self, scenes: Scenes, settings: Settings, device: str) -> None:
+        super().__init__(scenes, settings, Path(), device, captions=False)  # type: ignore[arg-type]  # of the same names
+        self.names, self.touches = labels_of(scenes)
+
+    def sentences(self, row: dict[str, Any], draw: Sequence[float]) -> tuple[list[str], list[bool]]:
+        """The class as the joint condition, nothing for each person alone, and which of them are given."""
+        return [CLASSES[row["family"]], "", ""], [True, False, False]
+
+    def continued(self, row: dict[str, Any], draw: Sequence[float]) -> None:
+        """No scene is cut: its class is that of the whole."""
+
+    def features(self, captions: list[str]) -> tuple[Tensor, Tensor]:
+        """(B,) places of the classes; all count."""
+        places = torch.tensor([self.names.index(caption) for caption in captions])
+        return places, torch.ones_like(places)
+
+
+class Trainer(Loop):
+    """One training run, which goes on from wherever its checkpoint in ``out`` stands."""
+
+    def __init__(self, scenes: Scenes, settings: Settings, out: Path, *, device: str = "cpu") -> None:
+        self.settings, self.out, self.device = settings, out, device
+        torch.manual_seed(settings.seed)
+        self.data = Data(of_classes(scenes), settings, device)
+        config = CompactBiGraphDiffConfig(
+            self.data.names,
+            self.data.touches,
+            settings.latent_dim,
+            settings.ff_size,
+            settings.num_layers,
+            settings.num_heads,
+            settings.embed_dim,
+            settings.cond_dim,
+            layout=scenes.layout,
+        )
+        self.model, self.ema = (CompactBiGraphDiff(config).to(device) for _ in range(2))
+        self.model.mean.copy_(self.data.mean)
+        self.model.std.copy_(self.data.std)
+        self.ema.load_state_dict(self.model.state_dict())
+        self.ema.eval().requires_grad_(False)
+        self.optimizer = torch.optim.AdamW(
+            self.model.parameters(), lr=settings.learning_rate, weight_decay=settings.weight_decay, fused=True
+        )
+        self.schedule = NoiseSchedule(device=device)
+        self.loss = InterGenLoss(
+            settings.weights, t_bar=round(settings.t_bar * self.schedule.timesteps), near_by="truth"
+        )
+        # Three of 70 numbers say where a person stands; they count more than their share.
+        self.feature_weights = torch.ones(FEATURES, device=device)
+        self.feature_weights[:3] = settings.root_weight**0.5
+        self.feature_weights = self.feature_weights.repeat(scenes.layout.knots_per_token)
+        self.settings_json = json.dumps(asdict(settings), sort_keys=True)
+        out.mkdir(parents=True, exist_ok=True)
+        self.step = checkpoint.restore(self.checkpoint, self.parts(), self.settings_json)
+
+    @property
+    def checkpoint(self) -> Path:
+        """Path of the run's checkpoint."""
+        return self.out / "last.safetensors"
+
+    def parts(self) -> dict[str, torch.nn.Module | torch.optim.Optimizer]:
+        """The contents of a checkpoint, by name."""
+        return {"model": self.model, "ema": self.ema, "optimizer": self.optimizer}
+
+    def terms(self, batch: intergen_data.Batch, t: Tensor, noise: Tensor, keep: Tensor) -> dict[str, Tensor]:
+        """Every loss term of one batch, weighted."""
+        people = (*batch.x0.shape[:2], 2, -1)
+        xt = self.schedule.q_sample(batch.x0, t, noise)
+        with torch.autocast(self.device, torch.bfloat16):
+            cond = self.model.classes(batch.text) * keep[:, None]
+            predicted = self.model.denoiser(xt, t, cond, batch.mask)
+        predicted = predicted.float()
+        weighted = [x.view(people) * self.feature_weights for x in (predicted, batch.x0)]
+        positions = [self.model.positions(x)[0].transpose(1, 2) for x in (predicted, batch.x0)]
+        terms = {"simple": simple_loss(*weighted, batch.mask)}
+        return terms | self.loss.regularizers(*positions, t, batch.frame_mask)
+
+    def train_step(self) -> dict[str, float]:
+        """One optimiser step; returns the loss terms."""
+        s, batch = self.settings, self.data.batch(self.step)
+        generator = intergen_data.seeded(s.seed, 3, self.step)
+        size = len(batch.x0)
+        t = draw_timesteps(size, self.schedule.timesteps, s.noisiest, generator).to(self.device)
+        noise = torch.randn(batch.x0.shape, generator=generator).to(self.device)
+        keep = (torch.rand(size, generator=generator) >= s.unconditional).float().to(self.device)
+        self.model.train()
+        terms = self.terms(batch, t, noise, keep)
+        total = torch.stack(list(terms.values())).sum()
+        self.optimizer_step(total, self.optimizer, self.model.parameters())
+        kept = [self.ema.state_dict(), self.model.state_dict()]  # with what the batch norms have seen
+        self.ema_update(*([v for v in state.values() if v.is_floating_point()] for state in kept))
+        return {name: value.item() for name, value in terms.items()} | {"total": total.item()}
+
+    def save(self) -> None:
+        """Writes the checkpoint."""
+        checkpoint.save(self.checkpoint, self.parts(), self.step, self.settings_json)
+
+    def export(self, folder: Path) -> None:
+        """Writes the averaged network as the folder that is shipped."""
+        save_network(folder, self.ema, card={"summary": SUMMARY}, trained_steps=self.step)
+
+
+def main(argv: list[str] | None = None) -> int:
+    """Runs the command; returns its exit code."""
+    parser = argparse.ArgumentParser(description="Train the compact BiGraphDiff on prepared scenes.")
+    parser.add_argument("--scenes", type=Path, required=True, help="file of `python -m training.prepare`")
+    parser.add_argument("--export", type=Path, help="also write the trained network to this folder")
+    parser.add_argument("--device", default="cuda" if torch.cuda.is_available() else "cpu")
+    add_run_options(parser, Settings, leave_out=("weights",))
+    options = parser.parse_args(argv)
+
+    def job() -> None:
+        trainer = Trainer(load(options.scenes), chosen(options, Settings), options.out, device=options.device)
+        trainer.run_logged(minutes=options.minutes)
+        if options.export:
+            trainer.export(options.export)
+
+    return exit_code(job)
+
+
+if __name__ == "__main__":
+    raise SystemExit(main())

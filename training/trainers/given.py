@@ -1,0 +1,155 @@
+"""Draws the given part of a training motion: a person, the past, all but a span, poses, joints, or paths."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import torch
+from torch import Tensor
+
+from models.known import FLOOR, Known
+from models.motion_tokens import FEATURES, NUM_CONTACTS, NUM_JOINTS, TokenLayout, headings
+
+POSE = FEATURES - NUM_CONTACTS
+
+
+@dataclass(frozen=True)
+class Shares:
+    """Probabilities of each kind of given part; otherwise nothing is given.
+
+    Attributes:
+        person: all that one person does (InterGen, section 5.4).
+        past: up to six tenths of the motion of both, from its beginning.
+        span: all but a span, of both or of one.
+        poses: one to three single frames, of both or of one.
+        path: where one or both are on the floor, at all times or at a few; in half of them the heading, too.
+        joints: the pelvis and one to four joints of a person for a while.
+        more: of the samples in which something is given, how many have a second kind given.
+    """
+
+    person: float = 0.12
+    past: float = 0.08
+    span: float = 0.06
+    poses: float = 0.06
+    path: float = 0.1
+    joints: float = 0.03
+    more: float = 0.3
+
+
+class Draw:
+    """Draws parts with a generator of its own, so that a step's parts are the same in every run."""
+
+    def __init__(self, generator: torch.Generator) -> None:
+        self.generator = generator
+
+    def uniform(self, low: float = 0.0, high: float = 1.0) -> float:
+        """A number between ``low`` and ``high``."""
+        return low + (high - low) * float(torch.rand((), generator=self.generator))
+
+    def integer(self, low: int, high: int) -> int:
+        """From low to high, both included."""
+        return int(torch.randint(low, high + 1, (), generator=self.generator))
+
+    def people(self) -> list[int]:
+        """a, b or both."""
+        return [[0], [1], [0, 1]][self.integer(0, 2)]
+
+    def frames(self, count: int, total: int) -> Tensor:
+        """So many different frames of ``total``."""
+        return torch.randperm(total, generator=self.generator)[:count]
+
+
+def known_parts(
+    control: Tensor,
+    frames: list[int],
+    past: list[int],
+    layout: TokenLayout,
+    shares: Shares,
+    generator: torch.Generator,
+) -> Known | None:
+    """What is given of each motion of a batch.
+
+    Args:
+        control: (B, 2, K, 70) true control points in metres.
+        frames: real frames of each motion.
+        past: so many frames at the beginning of each motion are given in any case.
+
+    Returns:
+        the known part, None if nothing is given in the whole batch.
+    """
+    draw = Draw(generator)
+    basis = layout.basis(control.shape[2] // layout.knots_per_token)
+    known = Known.nothing(len(basis), len(control))
+    names = ("person", "past", "span", "poses", "path", "joints")
+    weights = [getattr(shares, name) for name in names]
+    for i, (count, before) in enumerate(zip(frames, past, strict=True)):
+        known.mask[i, :, :before] = True
+        place, first = draw.uniform(), None
+        for name, weight in zip(names, weights, strict=True):
+            if 0 <= place < weight:
+                first = name
+            place -= weight
+        if first is None:
+            continue
+        chosen = {first}
+        if draw.uniform() < shares.more:
+            chosen.add(("past", "poses", "path")[draw.integer(0, 2)])
+        for name in sorted(chosen):
+            _KINDS[name](known.mask[i], known.heading_mask[i], count, draw)
+    if not known.mask.any() and not known.heading_mask.any():
+        return None
+    known.rows = basis @ control
+    known.heading = headings(known.rows)
+    return known
+
+
+def _person(mask: Tensor, heading: Tensor, frames: int, draw: Draw) -> None:
+    mask[draw.integer(0, 1), :frames] = True
+
+
+def _past(mask: Tensor, heading: Tensor, frames: int, draw: Draw) -> None:
+    mask[:, : max(1, round(draw.uniform(0, 0.6) * frames))] = True
+
+
+def _span(mask: Tensor, heading: Tensor, frames: int, draw: Draw) -> None:
+    length = round(draw.uniform(0.15, 0.7) * frames)
+    start = draw.integer(0, frames - length)
+    for person in draw.people():
+        mask[person, :start] = mask[person, start + length : frames] = True
+
+
+def _poses(mask: Tensor, heading: Tensor, frames: int, draw: Draw) -> None:
+    for person in draw.people():
+        first = 3 if draw.uniform() < 0.25 else 0  # a pose that may stand anywhere
+        mask[person, draw.frames(draw.integer(1, 3), frames), first:POSE] = True
+
+
+def _path(mask: Tensor, heading: Tensor, frames: int, draw: Draw) -> None:
+    turned = draw.uniform() < 0.5
+    for person in draw.people():
+        times = torch.arange(frames)
+        if draw.uniform() < 0.5:
+            times = draw.frames(draw.integer(1, 6), frames)
+            times[0] = frames - 1  # most who draw a path say where it ends
+        for column in FLOOR:
+            mask[person, times, column] = True
+        if turned:
+            heading[person, times] = True
+
+
+def _joints(mask: Tensor, heading: Tensor, frames: int, draw: Draw) -> None:
+    person, start = draw.integer(0, 1), draw.integer(0, frames - 1)
+    stop = min(frames, start + draw.integer(1, frames))
+    mask[person, start:stop, :3] = True
+    for joint in draw.frames(draw.integer(1, 4), NUM_JOINTS - 1).tolist():
+        mask[person, start:stop, 3 + 3 * joint : 6 + 3 * joint] = True
+
+
+_KINDS = {
+    "person": _person,
+    "past": _past,
+    "span": _span,
+    "poses": _poses,
+    "path": _path,
+    "joints": _joints,
+}

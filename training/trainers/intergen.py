@@ -1,0 +1,227 @@
+"""Trains the compact InterGen: ``python -m training.trainers.intergen --scenes FILE --out DIR``.
+
+InterGen (Liang et al., section 4): both people's clean motion from their noised motion, the timestep and a
+text vector; x0 prediction, eq. 8, the regularisers of eq. 11–14 and the damping of eq. 15. The motion is
+the control points of :mod:`models.motion_tokens`; the regularisers see positions at 30 fps.
+
+Everything random is drawn from the seed and the step number, so a run that stops (``--minutes``, Ctrl+C) and
+is started again with the same command goes on exactly as if it had never stopped.
+"""
+
+from __future__ import annotations
+
+import argparse
+import json
+import time
+from collections.abc import Callable
+from dataclasses import asdict
+from pathlib import Path
+
+import torch
+from torch import Tensor
+from torch.nn.attention import SDPBackend, sdpa_kernel
+
+from models.diffusion import NoiseSchedule
+from models.intergen.compact import CompactConfig, CompactInterGen, load_folder
+from models.intergen.losses import InterGenLoss, simple_loss
+from models.known import Hold, Known
+from models.motion_tokens import FEATURES
+from training.core import checkpoint
+from training.core.loop import Loop
+from training.core.samples import write_sheet
+from training.core.shell import add_run_options, chosen, exit_code
+from training.prepare import Scenes, load
+from training.trainers.given import known_parts
+from training.trainers.intergen_data import Batch, Data, Settings, seeded
+
+
+def draw_timesteps(size: int, timesteps: int, noisiest: float, generator: torch.Generator) -> Tensor:
+    """(size,) timesteps: a share ``noisiest`` from the last tenth, the others from all.
+
+    A motion's tokens say much the same, so its outline shines through all but the strongest noise: at
+    t = 0.95 T a network without words already sees which gesture a scene holds. What the words decide is
+    learned above, which is 5 % of uniform draws.
+    """
+    t = torch.randint(timesteps, (size,), generator=generator)
+    late = timesteps - 1 - torch.randint(max(timesteps // 10, 1), (size,), generator=generator)
+    return torch.where(torch.rand(size, generator=generator) < noisiest, late, t)
+
+
+def new_model(settings: Settings, data: Data) -> CompactInterGen:
+    """An untrained network of the run's sizes that carries the data's normaliser."""
+    model = CompactInterGen(
+        CompactConfig(
+            latent_dim=settings.latent_dim,
+            ff_size=settings.ff_size,
+            num_layers=settings.num_layers,
+            num_heads=settings.num_heads,
+            cond_dim=settings.cond_dim,
+            dropout=settings.dropout,
+            role_text=True,
+            words=settings.words,
+            layout=data.scenes.layout,
+        )
+    )
+    model.mean.copy_(data.mean)
+    model.std.copy_(data.std)
+    return model
+
+
+def condition(model: CompactInterGen, batch: Batch) -> tuple[Tensor, Tensor]:
+    """What the denoiser sees of the sentences that are read, and the vectors (B, C) of those for both people."""
+    size = len(batch.x0)
+    if not model.config.words:
+        vectors = model.conditioner(batch.text[:size], batch.text_mask[:size])
+        return vectors * batch.read[:, :1], vectors
+    rows = model.conditioner.rows(batch.text, batch.text_mask)
+    text = rows.new_zeros(3 * size, *rows.shape[1:]).index_copy(0, batch.places, rows)
+    return text.view(size, 3, *rows.shape[1:]) * batch.read[:, :, None, None], rows[:size, 0]
+
+
+class Trainer(Loop):
+    """One training run: :meth:`run` goes on from wherever its checkpoint stands.
+
+    Args:
+        init: whose weights and normaliser a new run begins with: a checkpoint of another run (its average),
+            or a folder that was shipped.
+        cache: where features of captions are kept, ``out`` by default; runs on the same scenes can share it.
+        build: makes the untrained network.
+    """
+
+    def __init__(
+        self,
+        scenes: Scenes,
+        settings: Settings,
+        out: Path,
+        *,
+        init: Path | None = None,
+        device: str = "cpu",
+        cache: Path | None = None,
+        build: Callable[[Settings, Data], CompactInterGen] = new_model,
+    ) -> None:
+        self.set_up(scenes, settings, out, device, cache)
+        self.model = build(settings, self.data).to(device)
+        if init is not None:
+            if init.is_dir():
+                self.model.grow_from(load_folder(init)[0])
+            else:
+                checkpoint.restore_part(init, "ema", self.model)
+        self.ema = build(settings, self.data).to(device).requires_grad_(False)
+        self.ema.load_state_dict(self.model.state_dict())
+        self.reader = self.data.reader.to(device)
+        self.optimizer = torch.optim.AdamW(
+            [*self.model.parameters(), *self.reader.parameters()],
+            lr=settings.learning_rate,
+            weight_decay=settings.weight_decay,
+            fused=True,
+        )
+        self.settings_json = json.dumps(asdict(settings), sort_keys=True)
+        self.step = checkpoint.restore(self.out / "last.safetensors", self.parts(), self.settings_json)
+        self.data.mean, self.data.std = self.model.mean.cpu(), self.model.std.cpu()
+
+    def set_up(self, scenes: Scenes, settings: Settings, out: Path, device: str, cache: Path | None) -> None:
+        """What a run has beside its networks: data, noise schedule and losses."""
+        self.scenes, self.settings, self.out, self.device = scenes, settings, out, device
+        out.mkdir(parents=True, exist_ok=True)
+        torch.manual_seed(settings.seed)
+        self.data = Data(scenes, settings, cache or out, device)
+        self.schedule = NoiseSchedule(device=device)
+        self.loss = InterGenLoss(
+            settings.weights, t_bar=round(settings.t_bar * self.schedule.timesteps), near_by="truth"
+        )
+        # Three of 70 numbers say where a person stands; they count more than their share.
+        self.feature_weights = torch.ones(FEATURES, device=device)
+        self.feature_weights[:3] = settings.root_weight**0.5
+        self.feature_weights = self.feature_weights.repeat(scenes.layout.knots_per_token)
+
+    def parts(self) -> dict[str, torch.nn.Module | torch.optim.Optimizer]:
+        """What a checkpoint holds, by name."""
+        return {"model": self.model, "ema": self.ema, "reader": self.reader, "optimizer": self.optimizer}
+
+    def known(self, batch: Batch, generator: torch.Generator) -> Known | None:
+        """What is given of each motion, drawn by the settings' shares."""
+        control, frames = self.model.control(batch.x0).cpu(), batch.frame_mask.sum(1).int().tolist()
+        return known_parts(
+            control, frames, batch.past.tolist(), self.scenes.layout, self.settings.given, generator
+        )
+
+    def terms(self, batch: Batch, t: Tensor, noise: Tensor, known: Known | None) -> dict[str, Tensor]:
+        """Every loss term of one batch, weighted."""
+        xt = self.schedule.q_sample(batch.x0, t, noise)
+        hold = None if known is None else Hold(known, self.scenes.layout, self.data.mean, self.data.std)
+        if hold is not None:
+            xt = hold(xt)
+        seen = {} if hold is None or not self.settings.words else {"known": hold.features.to(xt)}
+        # The fused attention kernel's backward pass is slow for sequences this short.
+        with torch.autocast(self.device, torch.bfloat16), sdpa_kernel(SDPBackend.MATH):
+            cond, vectors = condition(self.model, batch)
+            predicted = self.model.denoiser(xt, t, cond, batch.mask, **seen)
+        predicted = predicted.float() if hold is None else hold(predicted.float())
+        reading = self.settings.reading_weight * self.reader(vectors, batch.labels)
+        return {"reading": reading} | self.motion_terms(predicted, batch.x0, t, batch)
+
+    def motion_terms(self, made: Tensor, wanted: Tensor, t: Tensor, batch: Batch) -> dict[str, Tensor]:
+        """The losses of clean motions (B, tokens, 2F) against those that are wanted, weighted and damped."""
+        weighted = [x.view(*x.shape[:2], 2, -1) * self.feature_weights for x in (made, wanted)]
+        terms = {"simple": simple_loss(*weighted, batch.mask)}
+        # Motions above the threshold have no part in the regularisers; one keeps the terms there, at zero.
+        chosen = (t <= self.loss.t_bar).nonzero()[:, 0] if (t <= self.loss.t_bar).any() else t.argmin()[None]
+        positions = [self.model.positions(x[chosen])[0].transpose(1, 2) for x in (made, wanted)]
+        return terms | self.loss.regularizers(*positions, t[chosen], batch.frame_mask[chosen])
+
+    def train_step(self) -> dict[str, float]:
+        """One optimiser step; returns the loss terms."""
+        batch = self.data.batch(self.step)
+        generator = seeded(self.settings.seed, 3, self.step)
+        size = len(batch.x0)
+        t = draw_timesteps(size, self.schedule.timesteps, self.settings.noisiest, generator).to(self.device)
+        noise = torch.randn(batch.x0.shape, generator=generator).to(self.device)
+        known = self.known(batch, generator)
+        torch.manual_seed(seeded(self.settings.seed, 4, self.step).initial_seed())  # dropout
+        self.model.train()
+        terms = self.terms(batch, t, noise, known)
+        total = torch.stack(list(terms.values())).sum()
+        self.optimizer_step(total, self.optimizer, self.model.parameters())
+        self.ema_update(self.ema.parameters(), self.model.parameters())
+        return {name: value.item() for name, value in terms.items()} | {"total": total.item()}
+
+    def save(self) -> None:
+        """Writes the checkpoint."""
+        checkpoint.save(self.out / "last.safetensors", self.parts(), self.step, self.settings_json)
+
+
+def main(argv: list[str] | None = None) -> int:
+    """Runs the command; returns its exit code."""
+    parser = argparse.ArgumentParser(description="Train the compact InterGen on prepared scenes.")
+    parser.add_argument("--scenes", type=Path, required=True, help="file of `python -m training.prepare`")
+    parser.add_argument(
+        "--init", type=Path, help="begin with another run's last.safetensors, or a shipped folder"
+    )
+    parser.add_argument(
+        "--sheets", type=float, default=20.0, help="minutes between contact sheets of samples; 0: none (20)"
+    )
+    parser.add_argument("--threads", type=int, help="of torch on the CPU (as many as there are cores)")
+    parser.add_argument("--device", default="cuda" if torch.cuda.is_available() else "cpu")
+    add_run_options(parser, Settings, leave_out=("weights", "given"))
+    options = parser.parse_args(argv)
+    if options.threads:
+        torch.set_num_threads(options.threads)
+    return exit_code(lambda: _run(options))
+
+
+def _run(options: argparse.Namespace) -> None:
+    settings = chosen(options, Settings)
+    trainer = Trainer(load(options.scenes), settings, options.out, init=options.init, device=options.device)
+    drawn = time.monotonic()
+
+    def draw() -> None:
+        nonlocal drawn
+        if options.sheets and time.monotonic() - drawn > options.sheets * 60:
+            write_sheet(trainer.ema.eval(), options.out / "samples" / f"{trainer.step:07d}.png")
+            drawn = time.monotonic()
+
+    trainer.run_logged(minutes=options.minutes, after=draw)
+
+
+if __name__ == "__main__":
+    raise SystemExit(main())

@@ -1,0 +1,340 @@
+"""Trains PredictiveMA-WGAN: ``python -m training.trainers.mawgan --windows cmu --data DIR --out RUN``.
+
+Chopin's thesis, Algorithm 2 and section 2.5.2: Adam at 1e-4, batches of 64, β = (1, 1, 10, 10), gradient
+penalty 10. Where the thesis and its release differ, the release is the default: four critic steps a predictor
+step (Algorithm 2: ``--critic-steps 1``) and a critic of stride 2 (section 2.4.1: ``--critic-stride 1``).
+``--fc`` and ``--width`` make the network smaller than the thesis' one, which a CPU cannot train. ``--lean`` is
+what a CPU trains in an hour: ``LEAN`` below says what it changes.
+"""
+
+from __future__ import annotations
+
+import argparse
+import math
+from collections.abc import Iterator
+from dataclasses import asdict, dataclass
+from pathlib import Path
+
+import numpy as np
+import torch
+from torch import Tensor, nn
+
+from models.mawgan import (
+    Critic,
+    MAWGANConfig,
+    MAWGANLossWeights,
+    PredictiveMAWGAN,
+    bone_loss,
+    critic_loss,
+    position_loss,
+    reconstruction_loss,
+    skeleton_loss,
+    speed_loss,
+    to_curves,
+    to_positions,
+    without_flicker,
+)
+from models.mawgan.srvf import exp_map, karcher_mean, log_map, to_srvf
+from models.predictors import load_predictor, save_predictor
+from motion import InputError
+from training.core.shell import exit_code
+from training.trainers.motion_mlp import add_options, liveliness, train
+from training.trainers.prediction.rollout import ADVANCE, check_own_pasts
+from training.trainers.prediction.trainer import PredictionTrainer
+
+
+@dataclass(frozen=True)
+class Settings:
+    """Settings of a run; a checkpoint of other settings is refused.
+
+    width: channels of the predictor's first block (thesis: 512), halved in each further block; the critic's first
+        has an eighth of it, halved likewise.
+    linear, length, pose, coefficients, shortcut, dropout: as in :class:`~models.mawgan.MAWGANConfig`.
+    ridge: above 0, the penalty with which the linear map is fitted in closed form, to ``fit`` windows, before the
+        first step.
+    convolutions: false leaves them untrained; with ``ridge`` their output is then 0.
+    noise: metres of noise on the pasts.
+    own_pasts: most recursive passes of the network that generated a past, as in
+        :class:`training.trainers.motion_mlp.Settings`.
+    groups: parts of the batch, from slow to fast pasts, each with its own mean speed.
+    limbs: compares the speed of each joint over five frames, as :func:`training.trainers.motion_mlp.liveliness`
+        does, instead of the mean speed of all joints at each frame; ``acceleration`` is the weight of its second
+        part.
+    final_rate: share of the learning rate at which its cosine schedule ends; 1 keeps it constant, as in the thesis.
+    init: folder of a trained predictor to start from.
+    """
+
+    windows: str = "cmu"
+    past: int = 25
+    future: int = 25
+    fc: int = 36_864
+    width: int = 512
+    critic_fc: int = 1024
+    critic_stride: int = 2
+    critic_steps: int = 4
+    batch: int = 64
+    steps: int = 20_000
+    learning_rate: float = 1e-4
+    final_rate: float = 1.0
+    ema: float = 0.99
+    adversarial: float = 1.0
+    reconstruction: float = 1.0
+    skeleton: float = 10.0
+    bone: float = 10.0
+    gradient_penalty: float = 10.0
+    position: float = 0.0
+    speed: float = 0.0
+    init: str = ""
+    linear: bool = False
+    length: bool = False
+    pose: bool = False
+    coefficients: int = 0
+    shortcut: bool = False
+    convolutions: bool = True
+    dropout: float = 0.0
+    ridge: float = 0.0
+    fit: int = 20_000
+    noise: float = 0.0
+    own_pasts: int = 0
+    groups: int = 1
+    limbs: bool = False
+    acceleration: float = 0.0
+    weight_decay: float = 0.0
+    seed: int = 0
+
+    def __post_init__(self) -> None:
+        if self.width % 8 or self.width < 32:
+            raise InputError(f"width is {self.width}: give a multiple of 8, 32 or more.")
+        least = {
+            "past": 2,
+            "future": 2,
+            "fc": 2,
+            "batch": 2,
+            "critic_steps": 1,
+            "critic_stride": 1,
+            "groups": 1,
+        }
+        for name, number in least.items():
+            if getattr(self, name) < number:
+                raise InputError(f"{name} is {getattr(self, name)}: give {number} or more.")
+        check_own_pasts(self.own_pasts, self.windows, self.future)
+        if not self.convolutions and not self.linear:
+            raise InputError("Without convolutions there is nothing but the linear map: ask for linear.")
+
+    @property
+    def ahead(self) -> int:
+        """Frames of a window behind its past."""
+        return self.future + ADVANCE * self.own_pasts
+
+    def network(self, joints: int) -> MAWGANConfig:
+        """The sizes of predictor and critic."""
+        return MAWGANConfig(
+            joints, self.past, self.future, self.fc,
+            channels=tuple(self.width >> i for i in range(4)),
+            critic=tuple(self.width // 8 >> i for i in range(3)),
+            critic_fc=self.critic_fc, critic_stride=self.critic_stride,
+            linear=self.linear, length=self.length, pose=self.pose,
+            coefficients=self.coefficients, shortcut=self.shortcut, dropout=self.dropout,
+        )  # fmt: skip
+
+    def weights(self) -> MAWGANLossWeights:
+        """The weights of the losses."""
+        return MAWGANLossWeights(
+            self.adversarial, self.reconstruction, self.skeleton, self.bone, self.gradient_penalty,
+            self.position, self.speed,
+        )  # fmt: skip
+
+
+LEAN = {
+    "fc": 1024, "width": 32, "critic_fc": 128, "critic_steps": 1, "learning_rate": 1e-3, "final_rate": 0.02,
+    "ema": 0.995, "position": 100.0, "linear": True, "length": True, "steps": 1500,
+}  # fmt: skip
+"""Settings of a run that a share of one CPU core finishes in an hour."""
+
+
+class Trainer(PredictionTrainer):
+    """Trains predictor and critic against each other."""
+
+    settings: Settings
+    model: PredictiveMAWGAN
+    ema: PredictiveMAWGAN
+
+    def build(self) -> None:
+        """Makes the network, its average and the optimizers."""
+        s = self.settings
+        config = s.network(self.windows.joints)
+        self.model, self.ema = (PredictiveMAWGAN(config).to(self.device) for _ in range(2))
+        self.ema.eval()
+        self.critic = Critic(config).to(self.device)
+        if s.init:
+            self.model.load_state_dict(load_predictor(Path(s.init)).network.state_dict())
+        elif not self.checkpoint.exists():
+            self.measure()
+        self.ema.load_state_dict(self.model.state_dict())
+        for network in (self.model, self.ema):
+            network.generator.convolutions = s.convolutions
+        self.ema.requires_grad_(False)
+        self.optimizer, self.critic_optimizer = (
+            torch.optim.AdamW(
+                part.parameters(), lr=s.learning_rate, betas=(0.5, 0.9), weight_decay=decay, fused=True
+            )
+            for part, decay in ((self.model, s.weight_decay), (self.critic, 0.0))
+        )
+
+    def measure(self) -> None:
+        """Means of the training data, and the linear map where it is fitted in closed form."""
+        s, model = self.settings, self.model
+        past, future = self.curves(self.windows.batch(512, (s.seed, 0, 1)).to(self.device))
+        model.past_mean.copy_(karcher_mean(moving(past)))
+        model.future_mean.copy_(karcher_mean(moving(future)))
+        if s.pose:
+            model.beside_mean.copy_(model.inputs(past)[1].mean(0))
+        if s.linear and s.ridge:
+            past, future = self.curves(self.windows.batch(s.fit, (s.seed, 0, 2)).to(self.device))
+            past = past + s.noise * torch.randn_like(past)
+            moves = self.moves(past, future)
+            past, future = past[moves], future[moves]
+            model.generator.fit_linear(*model.inputs(past), model.wanted(past, future), ridge=s.ridge)
+
+    def parts(self) -> dict[str, nn.Module | torch.optim.Optimizer]:
+        """The contents of a checkpoint, by name."""
+        return {
+            "model": self.model, "ema": self.ema, "critic": self.critic,
+            "optimizer": self.optimizer, "critic_optimizer": self.critic_optimizer,
+        }  # fmt: skip
+
+    def curves(self, windows: Tensor) -> tuple[Tensor, Tensor]:
+        """Past (B, past, D), and the future with the last pose before it (B, future + 1, D)."""
+        s, curves = self.settings, to_curves(windows)
+        return curves[:, : s.past], curves[:, s.past - 1 : s.past + s.future]
+
+    def moves(self, past: Tensor, future: Tensor) -> Tensor:
+        """(B,) which windows' curves move."""
+        return (to_srvf(past)[1] > _STILL) & (to_srvf(future)[1] > _STILL)
+
+    def pairs(self, windows: Tensor) -> tuple[Tensor, Tensor, Tensor]:
+        """(B,) which windows (B, past + future, J, 3) move; the past curves and the real futures' tangent
+        vectors of those."""
+        past, future = self.curves(windows)
+        moves = self.moves(past, future)
+        real = log_map(self.model.future_mean, to_srvf(future[moves])[0])
+        return moves, past[moves], real
+
+    def seen(self, s: Tensor) -> Tensor:
+        """Tangent vectors as the critic sees them: taken to the sphere and back (eq. 2.5, 2.7)."""
+        mean = self.model.future_mean
+        return log_map(mean, exp_map(mean, s))
+
+    def rate(self) -> float:
+        """Share of the learning rate: a cosine from 1 to ``final_rate``."""
+        s = self.settings
+        return s.final_rate + (1 - s.final_rate) * 0.5 * (1 + math.cos(math.pi * min(1, self.step / s.steps)))
+
+    def critic_steps(self, real: Tensor, made: Tensor) -> Iterator[float]:
+        """Trains the critic; yields its losses.
+
+        Args:
+            real, made: (B, future + 1, D) tangent vectors of the predictor's own batch, which the last critic
+                step shares with it; the steps before it draw theirs.
+        """
+        for i in reversed(range(self.settings.critic_steps)):
+            if i:
+                _, past, own = self.pairs(self.batch(i))
+                with torch.no_grad():
+                    pair = own, self.seen(self.model.generate(past)[0])
+            else:
+                pair = real, made
+            rng = np.random.default_rng((self.settings.seed, self.step, 100 + i))
+            share = torch.from_numpy(rng.random(len(pair[0]), dtype=np.float32)).to(real)
+            loss = critic_loss(self.critic, *pair, share, penalty=self.settings.gradient_penalty)
+            self.critic_optimizer.zero_grad(set_to_none=True)
+            loss.backward()
+            self.critic_optimizer.step()
+            yield loss.item()
+
+    def speed(self, past: Tensor, made: Tensor, recorded: Tensor) -> Tensor:
+        """Difference of mean speeds from the true ones, in metres a frame.
+
+        Args:
+            past, made: (B, …, D) given and predicted curves.
+            recorded: (B, past + future, J, 3) metres.
+        """
+        s, last = self.settings, past[:, -2:]
+        calm = to_positions(without_flicker(last[:, 1:], made))
+        if not s.limbs:
+            return speed_loss(calm, recorded[:, s.past :], to_positions(last[:, 1:]), groups=s.groups)
+        kept = len(past) // s.groups * s.groups
+        own = torch.cat([to_positions(last), calm], dim=1).diff(dim=1)[:kept]
+        speed, acceleration = liveliness(own, recorded[:kept, s.past - 2 :].diff(dim=1), s.groups)
+        return speed + s.acceleration * acceleration
+
+    def train_step(self) -> dict[str, float]:
+        """Takes one optimizer step; returns each loss by name."""
+        torch.manual_seed(self.settings.seed + self.step)  # dropout
+        weights = self.settings.weights()
+        for optimizer in (self.optimizer, self.critic_optimizer):
+            for group in optimizer.param_groups:
+                group["lr"] = self.settings.learning_rate * self.rate()
+        windows, recorded, passes = self.window()
+        moves, past, real = self.pairs(windows)
+        truth = windows[moves, self.settings.past :]
+        known = 1 / (1 + passes)
+        s, longer = self.model.generate(past + self.settings.noise * torch.randn_like(past))
+        made = self.seen(s)
+        critic = list(self.critic_steps(real, made.detach())) if weights.adversarial else [0.0]
+        curves = self.model.decode(s, longer, past)
+        positions = to_positions(curves)
+        terms = {
+            "reconstruction": known * weights.reconstruction * reconstruction_loss(made, real),
+            "skeleton": known * weights.skeleton * skeleton_loss(positions, truth),
+            "bone": weights.bone * bone_loss(positions, truth, self.windows.bones),
+        }
+        if weights.position:
+            terms["position"] = known * weights.position * position_loss(positions, truth)
+        if weights.speed:
+            terms["speed"] = weights.speed * self.speed(past, curves, recorded[moves])
+        if weights.adversarial:
+            terms["adversarial"] = -weights.adversarial * self.critic(made).mean()
+        total = torch.stack(list(terms.values())).sum()
+        self.optimizer.zero_grad(set_to_none=True)
+        total.backward()
+        nn.utils.clip_grad_norm_(self.model.parameters(), 10.0)
+        self.optimizer.step()
+        self.step += 1
+        self.ema_update(self.ema.parameters(), self.model.parameters())
+        values = {name: value.item() for name, value in terms.items()}
+        error = (positions - truth).norm(dim=-1).mean().item()
+        return values | {"critic": sum(critic) / len(critic), "mm": 1000 * error}
+
+    def export(self, folder: Path) -> None:
+        """Writes the averaged predictor as a predictor's folder."""
+        save_predictor(
+            folder, self.ema, kind="mawgan", fps=self.windows.fps, bones=self.windows.bones,
+            training={**asdict(self.settings), "steps": self.step, "init": Path(self.settings.init).name},
+        )  # fmt: skip
+
+
+_STILL = 1e-3
+"""Metres: a window in which all joints together move less counts as still."""
+
+
+def moving(curves: Tensor) -> Tensor:
+    """SRVFs of the curves that move."""
+    q, length = to_srvf(curves)
+    return q[length > _STILL]
+
+
+def main(argv: list[str] | None = None) -> int:
+    """Runs the command; returns its exit code."""
+    parser = argparse.ArgumentParser(description="Train PredictiveMA-WGAN.")
+    add_options(parser, Settings)
+    parser.add_argument("--lean", action="store_true", help="settings that one CPU core trains in an hour")
+    options = parser.parse_args(argv)
+    if options.lean:  # explicit options still override
+        parser.set_defaults(**LEAN)
+        options = parser.parse_args(argv)
+    return exit_code(lambda: train(Trainer, Settings, options))
+
+
+if __name__ == "__main__":
+    raise SystemExit(main())

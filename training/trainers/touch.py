@@ -1,0 +1,113 @@
+"""Fits the :class:`models.intergen.compact.TouchReader` of a trained network on the corpus' touches.
+
+Every training caption stands for the touch that its scene shows, as the trainer shows it: a sentence that
+names a side for both mirror images, one that names none for the right-handed image.
+"""
+
+from __future__ import annotations
+
+from collections import Counter
+from dataclasses import replace
+from typing import Any, TypeVar
+
+import torch
+import torch.nn.functional as F
+from torch import Tensor
+
+from models.intergen.compact import CompactInterGen, Touch
+from models.regennet.compact import CompactReGenNet
+from models.text import MiniLM
+from training.core.handedness import mirrored
+from training.corpus.captions import mirror_caption
+from training.prepare import Scenes
+
+Network = TypeVar("Network", CompactInterGen, CompactReGenNet)
+
+RARE = 8
+_SWAP = {"left": "right", "right": "left"}
+
+
+def touch_of(row: dict[str, Any], *, mirror: bool = False) -> Touch:
+    """What touches in a scene of :mod:`training.prepare`, or in its mirror image."""
+    entries = (row["events"] or {}).get("contact") or ()
+    pairs = {(entry["a"], entry["b"]) for entry in entries}
+    return tuple(sorted((_mirror(a), _mirror(b)) if mirror else (a, b) for a, b in pairs))
+
+
+def _mirror(joint: str) -> str:
+    side, _, part = joint.partition("_")
+    return f"{_SWAP[side]}_{part}" if side in _SWAP else joint
+
+
+def examples(rows: list[dict[str, Any]]) -> list[tuple[str, Touch]]:
+    """(caption, touch) of every way in which the trainer may show these scenes."""
+    found = set()
+    for row in rows:
+        for caption in row["captions"]:
+            for draw in (0.0, 0.9):
+                mirror = mirrored(caption, row.get("hand"), draw)
+                found.add((mirror_caption(caption) if mirror else caption, touch_of(row, mirror=mirror)))
+    return sorted(found)
+
+
+@torch.no_grad()
+def conditions(model: CompactInterGen | CompactReGenNet, captions: list[str]) -> Tensor:
+    """(N, cond_dim) condition vectors."""
+    encoder, parts = MiniLM(), []
+    order = sorted(range(len(captions)), key=lambda i: len(captions[i]))
+    for start in range(0, len(order), 128):
+        tokens = encoder([captions[i] for i in order[start : start + 128]])
+        parts.append(model.conditioner(tokens.features, tokens.mask))
+    return torch.cat(parts)[torch.tensor(order).argsort()]
+
+
+def with_touches(
+    model: Network, scenes: Scenes, *, most: int = 8_000, steps: int = 1500, seed: int = 0
+) -> tuple[Network, float]:
+    """The same network with a fitted touch reader, and its accuracy on test captions.
+
+    Args:
+        most: captions that are used, drawn by ``seed``.
+        steps: of AdamW, batches of 256.
+
+    Returns:
+        the network (as it was, where no scene of the corpus touches) and the accuracy, nan without test
+        captions.
+    """
+    counts = Counter(touch_of(r, mirror=m) for r in scenes.split("train") for m in (False, True))
+    known = tuple(sorted(t for t, count in counts.items() if t and count >= RARE))
+    if not known:
+        return model, float("nan")
+    result = type(model)(replace(model.config, touches=known))
+    network = {k: v for k, v in model.state_dict().items() if not k.startswith("touch_reader.")}
+    result.load_state_dict(network, strict=False)
+    reader = result.eval().touch_reader
+    assert reader is not None
+
+    generator = torch.Generator().manual_seed(seed)
+    found = examples(scenes.split("train"))
+    chosen = [found[i] for i in torch.randperm(len(found), generator=generator)[:most].tolist()]
+    inputs, labels = _tensors(result, chosen)
+    torch.manual_seed(seed)
+    optimizer = torch.optim.AdamW(reader.parameters(), lr=2e-3, weight_decay=1e-2)
+    for _ in range(steps):
+        rows = torch.randint(len(inputs), (256,), generator=generator)
+        loss = F.cross_entropy(reader(inputs[rows]), labels[rows], label_smoothing=0.02)
+        optimizer.zero_grad(set_to_none=True)
+        loss.backward()
+        optimizer.step()
+    unseen = examples(scenes.split("test"))[:most]
+    if not unseen:
+        return result, float("nan")
+    inputs, labels = _tensors(result, unseen)
+    with torch.no_grad():
+        return result, float((reader(inputs).argmax(-1) == labels).float().mean())
+
+
+def _tensors(
+    model: CompactInterGen | CompactReGenNet, found: list[tuple[str, Touch]]
+) -> tuple[Tensor, Tensor]:
+    reader = model.touch_reader
+    assert reader is not None
+    kept = [(caption, reader.touches.index(t)) for caption, t in found if t in reader.touches]
+    return conditions(model, [caption for caption, _ in kept]), torch.tensor([label for _, label in kept])

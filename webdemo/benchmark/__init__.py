@@ -1,0 +1,1 @@
+"""Everything that is timed: ``python -m webdemo benchmark``."""

@@ -1,0 +1,244 @@
+"""The page and the player in a headless Chromium that draws on the processor.
+
+Part of ``python -m webdemo benchmark --browser``; needs Playwright and a Chromium of the system.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import os
+import shutil
+import socket
+import statistics
+import subprocess
+import sys
+import tempfile
+import time
+import urllib.request
+from collections.abc import Callable, Iterator
+from pathlib import Path
+from typing import Any
+
+from motion import InputError
+
+ROOT = Path(__file__).resolve().parents[2]
+CHROMIUM = ("chromium", "chromium-browser", "google-chrome", "google-chrome-stable")
+SOFTWARE_GL = ("--no-sandbox", "--disable-gpu", "--use-gl=angle", "--use-angle=swiftshader",
+               "--enable-unsafe-swiftshader", "--disable-background-networking")  # fmt: skip
+STAGE = (960, 640)
+PROMPT = "Two people walk up to each other and shake hands."
+LONGEST_START = 120.0
+LONGEST_RUN = 120.0
+WATCHED = 3.0
+"""Seconds over which frames a second are read."""
+
+_STAGE_STYLE = """#player .pdd-stage {{ width: {0}px !important; min-width: {0}px !important;
+height: {1}px !important; min-height: {1}px !important; flex: none !important }}"""
+_FOLLOW_RUN = """() => {
+  const seen = (window.__benchmark = { before: window.__pasdedeux?.id ?? null, done: null, motion: null });
+  const look = (now) => {
+    const player = window.__pasdedeux;
+    if (seen.done === null && document.querySelector("#status .pd-done")) seen.done = now;
+    const moves = player?.id && player.id !== seen.before && player.frame > 0;
+    if (seen.motion === null && moves) seen.motion = now;
+    // Every frame only where something moves: the page's own quiet is measured meanwhile.
+    if (seen.done === null) setTimeout(() => look(performance.now()), 30);
+    else if (seen.motion === null) requestAnimationFrame(look);
+  };
+  seen.asked = performance.now();
+  look(seen.asked);
+  document.querySelector("button#generate").click();
+}"""
+
+
+def measure_browser() -> dict[str, Any]:
+    """Seconds to the page and to motion on screen, and the player's frames a second.
+
+    Returns:
+        ``page_first_answer_seconds`` and ``page_prompt_seconds``, both from the command ``python app.py``;
+        ``page_model_ready_seconds``, from the same; ``page_request_seconds`` from the button to the end of a
+        run of 4 s of motion; ``page_result_to_motion_seconds``; ``player_fps_still`` and
+        ``player_fps_turning`` (the camera at rest, and dragged) while bodies play, ``player_fps_skeletons``
+        and ``player_pixels``. ``browser_cores_idle``, ``browser_cores_waiting`` and ``browser_cores_paused``
+        are what all of the browser's processes took of a core while the page was left alone, while it waited
+        for a run, and while a motion was paused.
+
+    Raises:
+        InputError: where Playwright, Chromium or the model's weights are missing, or the page does not come.
+    """
+    with _chromium() as browser:
+        page = browser.new_page(viewport={"width": 1440, "height": 1000})
+        began = time.perf_counter()
+        with _served() as url:
+            figures = {"page_first_answer_seconds": time.perf_counter() - began}
+            page.goto(url)
+            page.locator("#prompt textarea").wait_for(state="visible", timeout=1000 * LONGEST_START)
+            figures["page_prompt_seconds"] = time.perf_counter() - began
+            _wait_for_model(page)
+            figures["page_model_ready_seconds"] = time.perf_counter() - began
+            page.wait_for_function("!window.__pasdedeux?.playing", timeout=1000 * LONGEST_RUN)
+            page.wait_for_timeout(1000)
+            figures["browser_cores_idle"] = _cores(browser, lambda: page.wait_for_timeout(1000 * WATCHED))
+            figures |= _follow_a_run(page, browser) | _frame_rates(page)
+            if page.evaluate("window.__pasdedeux.playing"):
+                page.locator("#player .pdd-play").click()
+            page.wait_for_timeout(1500)  # a still picture is drawn once more, finer
+            figures["browser_cores_paused"] = _cores(browser, lambda: page.wait_for_timeout(1000 * WATCHED))
+            return figures
+
+
+@contextlib.contextmanager
+def _chromium() -> Iterator[Any]:
+    """A headless browser, closed afterwards."""
+    try:
+        from playwright.sync_api import sync_playwright
+    except ImportError:
+        raise InputError(
+            "Playwright is not installed: `pip install -r requirements-dev.txt`, or leave --browser out."
+        ) from None
+    path = next(filter(None, map(shutil.which, CHROMIUM)), None)
+    if path is None:
+        raise InputError("There is no Chromium here: install the package chromium, or leave --browser out.")
+    with sync_playwright() as playwright:
+        browser = playwright.chromium.launch(executable_path=path, args=list(SOFTWARE_GL))
+        try:
+            yield browser
+        finally:
+            browser.close()
+
+
+@contextlib.contextmanager
+def _served() -> Iterator[str]:
+    """The address of ``app.py`` in a process of its own, once it answers; the process ends afterwards."""
+    with socket.socket() as probe:
+        probe.bind(("127.0.0.1", 0))
+        port = probe.getsockname()[1]
+    data = tempfile.TemporaryDirectory(prefix="pas-de-deux-benchmark-")
+    environment = {
+        **os.environ,
+        "PASDEDEUX_HOST": "127.0.0.1",
+        "PASDEDEUX_PORT": str(port),
+        "PASDEDEUX_DATA": data.name,
+    }
+    server = subprocess.Popen(
+        [sys.executable, "app.py"],
+        cwd=ROOT,
+        env=environment,
+        stdout=subprocess.DEVNULL,
+        stderr=subprocess.DEVNULL,
+    )
+    url = f"http://127.0.0.1:{port}/"
+    try:
+        until = time.monotonic() + LONGEST_START
+        while not _answers(url):
+            if server.poll() is not None or time.monotonic() > until:
+                raise InputError("The page did not start: run `python app.py` to see why.")
+            time.sleep(0.05)
+        yield url
+    finally:
+        server.terminate()
+        try:
+            server.wait(timeout=20)
+        except subprocess.TimeoutExpired:
+            server.kill()
+            server.wait()
+        data.cleanup()
+
+
+def _answers(url: str) -> bool:
+    try:
+        with urllib.request.urlopen(url, timeout=5) as answer:
+            return answer.status == 200
+    except OSError:
+        return False
+
+
+def _wait_for_model(page: Any) -> None:
+    from playwright.sync_api import TimeoutError as TookTooLong
+
+    mark = page.locator("#model-state")
+    with contextlib.suppress(TookTooLong):
+        settled = mark.locator(".pd-model-ready, .pd-model-failed")
+        settled.wait_for(timeout=1000 * LONGEST_START)
+    if not mark.locator(".pd-model-ready").count():
+        raise InputError(
+            f"The page's model did not load (it says {mark.inner_text()!r}): run `python -m webdemo info`."
+        )
+
+
+def _cores(browser: Any, act: Callable[[], Any]) -> float:
+    """Of a core, what all of the browser's processes took by their own clocks while ``act()`` went on."""
+    session = browser.new_browser_cdp_session()
+
+    def spent() -> float:
+        return sum(p["cpuTime"] for p in session.send("SystemInfo.getProcessInfo")["processInfo"])
+
+    before, began = spent(), time.perf_counter()
+    act()
+    share = (spent() - before) / (time.perf_counter() - began)
+    session.detach()
+    return share
+
+
+def _follow_a_run(page: Any, browser: Any) -> dict[str, float]:
+    """Asks for motion as a visitor does; the page's own clock times what happens."""
+    from playwright.sync_api import TimeoutError as TookTooLong
+
+    def wait() -> None:
+        page.wait_for_function("window.__benchmark.done !== null", polling=250, timeout=1000 * LONGEST_RUN)
+
+    page.fill("#prompt textarea", PROMPT)
+    page.locator("button#generate:enabled").wait_for(timeout=1000 * LONGEST_RUN)
+    page.evaluate(_FOLLOW_RUN)
+    try:
+        waiting = _cores(browser, wait)
+        page.wait_for_function("window.__benchmark.motion !== null", timeout=1000 * LONGEST_RUN)
+    except TookTooLong:
+        said = page.locator("#status").inner_text()
+        raise InputError(f"No motion came on screen; the page says {said!r}: try again.") from None
+    seen = page.evaluate("window.__benchmark")
+    return {
+        "page_request_seconds": (seen["done"] - seen["asked"]) / 1000,
+        "page_result_to_motion_seconds": max(0.0, seen["motion"] - seen["done"]) / 1000,
+        "browser_cores_waiting": waiting,
+    }
+
+
+def _frame_rates(page: Any) -> dict[str, Any]:
+    """Frames a second while the motion plays, with the camera at rest and with it dragged about."""
+    page.add_style_tag(content=_STAGE_STYLE.format(*STAGE))
+    stage = page.locator("#player .pdd-stage")
+    stage.scroll_into_view_if_needed()
+    if not page.evaluate("window.__pasdedeux.playing"):
+        page.locator("#player .pdd-play").click()
+    page.wait_for_timeout(1500)  # the scene is laid out anew
+    still = _read_fps(page, lambda i: page.wait_for_timeout(50))
+    box = stage.bounding_box()
+    x, y = box["x"] + 0.3 * box["width"], box["y"] + 0.4 * box["height"]
+    page.mouse.move(x, y)
+    page.mouse.down()
+    turning = _read_fps(page, lambda i: page.mouse.move(x + 8 * (i % 40), y))
+    page.mouse.up()
+    page.evaluate("window.__pasdedeux.player.act('figure')")
+    page.wait_for_timeout(1500)
+    skeletons = _read_fps(page, lambda i: page.wait_for_timeout(50))
+    width, height = page.evaluate(
+        "(({ clientWidth, clientHeight }) => [clientWidth, clientHeight])(window.__pasdedeux.player.stage)"
+    )
+    return {
+        "player_pixels": f"{width}x{height}",
+        "player_fps_still": still,
+        "player_fps_turning": turning,
+        "player_fps_skeletons": skeletons,
+    }
+
+
+def _read_fps(page: Any, act: Any) -> float:
+    """The median of the player's own count while ``act(i)`` is done again and again."""
+    counts, i, until = [], 0, time.monotonic() + WATCHED
+    while time.monotonic() < until:
+        act(i)
+        i += 1
+        if until - time.monotonic() < WATCHED / 2:  # the count looks back over a while
+            counts.append(page.evaluate("window.__pasdedeux.fps"))
+    return statistics.median(counts)

@@ -1,0 +1,373 @@
+"""Many people at once: a server on loopback, mixed jobs, and what became of every one of them.
+
+``python -m webdemo benchmark --load --people 20 --minutes 5``.
+"""
+
+from __future__ import annotations
+
+import asyncio
+import json
+import os
+import random
+import signal
+import socket
+import statistics
+import subprocess
+import sys
+import tempfile
+import time
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field, replace
+from pathlib import Path
+from typing import Any
+
+import httpx
+
+from motion import InputError
+from webdemo.inference.requests import GenerateRequest
+from webdemo.server.accounts.visitors import VISITOR_COOKIE, new_token
+from webdemo.server.queue.wait_estimate import units
+
+ROOT = Path(__file__).resolve().parents[2]
+START_SECONDS = 180.0
+PROBE_EVERY = 2.0
+"""Seconds between two looks at how quickly the page answers."""
+PROMPTS = (
+    "Two people walk up to each other and shake hands.",
+    "One person waves and the other waves back.",
+    "Two people dance together.",
+    "One person punches and the other steps back.",
+)
+CLIP = ROOT / "static" / "examples" / "shake-hands.npz"
+"""What reactions and predictions are asked for with."""
+GOALS: dict[str, tuple[float, float]] = {
+    "runs_lost": (0, 0),
+    "runs_swapped": (0, 0),
+    "runs_refused_or_failed": (0, 0),
+    "log_lines_of_errors": (0, 0),
+    "longest_wait_over_fair_share": (0, 3),
+    "page_worst_seconds": (0, 1),
+    "memory_last_over_first_quarter": (0, 1.05),
+    "batched_over_serial_throughput": (1.5, float("inf")),
+}
+"""What a server for a lab is meant to keep to: each figure's least and most."""
+REST_SECONDS = 10.0
+"""Before memory is read: the server returns what runs have left every few seconds."""
+_API = "gradio_api"
+
+
+@dataclass
+class Tally:
+    """What happened.
+
+    Attributes:
+        waits: seconds a unit of work that each person waited for each run.
+        latencies: seconds from asking to the result.
+        page: seconds that the page took to answer, each time it was asked.
+        memory: megabytes that the server had then.
+        errors: what was told instead of a result.
+    """
+
+    done: int = 0
+    lost: int = 0
+    swapped: int = 0
+    errors: list[str] = field(default_factory=list)
+    latencies: list[float] = field(default_factory=list)
+    page: list[float] = field(default_factory=list)
+    memory: list[float] = field(default_factory=list)
+    waits: dict[int, list[float]] = field(default_factory=dict)
+    work: float = 0.0
+
+    def figures(self) -> dict[str, Any]:
+        """The tally as plain numbers."""
+        means = {person: statistics.mean(waits) for person, waits in self.waits.items() if waits}
+        share = statistics.mean(means.values()) if means else float("nan")
+        quarter = max(len(self.memory) // 4, 1)
+        return {
+            "runs_done": self.done,
+            "runs_lost": self.lost,
+            "runs_swapped": self.swapped,
+            "runs_refused_or_failed": len(self.errors),
+            "first_errors": self.errors[:3],
+            "latency_median_seconds": statistics.median(self.latencies) if self.latencies else None,
+            "latency_worst_seconds": max(self.latencies, default=None),
+            "longest_wait_over_fair_share": max(means.values(), default=float("nan")) / share,
+            "people_served": len(means),
+            "page_median_seconds": statistics.median(self.page) if self.page else None,
+            "page_worst_seconds": max(self.page, default=None),
+            "memory_first_quarter_mb": statistics.median(self.memory[:quarter] or [0]),
+            "memory_last_quarter_mb": statistics.median(self.memory[-quarter:] or [0]),
+            "memory_last_over_first_quarter": (
+                statistics.median(self.memory[-quarter:]) / statistics.median(self.memory[:quarter])
+                if self.memory
+                else None
+            ),
+            "memory_most_mb": max(self.memory, default=0.0),
+        }
+
+
+def goals_missed(figures: Mapping[str, Any]) -> list[str]:
+    """The names of the :data:`GOALS` that figures do not keep to, or that were not measured."""
+    return [
+        name
+        for name, (least, most) in GOALS.items()
+        if figures.get(name) is None or not least <= figures[name] <= most
+    ]
+
+
+def run_load(*, people: int, minutes: float, steps: int = 20, seed: int = 0) -> dict[str, Any]:
+    """Starts ``python app.py`` on a free port of 127.0.0.1 and lets people ask it for motion.
+
+    Args:
+        people: how many ask at once, each again as soon as they have their result.
+        minutes: for how long; runs that are under way then are waited for.
+        steps: the most denoising steps that a job has; jobs differ in prompt, length, samples and steps.
+        seed: of the mix of jobs.
+
+    Raises:
+        InputError: where the numbers do not fit, or the server does not come up.
+    """
+    if not 1 <= people <= 200 or not 0 < minutes <= 60 or not 2 <= steps <= 100:
+        raise InputError("A load has 1 to 200 people, up to 60 minutes and 2 to 100 steps.")
+    with tempfile.TemporaryDirectory(prefix="pas-de-deux-load-") as folder:
+        with socket.socket() as probe:
+            probe.bind(("127.0.0.1", 0))
+            port = probe.getsockname()[1]
+        env = os.environ | {
+            "PASDEDEUX_HOST": "127.0.0.1", "PASDEDEUX_PORT": str(port), "PASDEDEUX_DATA": folder,
+            "PASDEDEUX_QUEUE": str(max(64, people)), "PASDEDEUX_FREE_MEGABYTES": "0",
+            "PASDEDEUX_LOG_LEVEL": "warning",
+        }  # fmt: skip
+        with open(Path(folder) / "log", "w+", encoding="utf-8") as log:
+            server = subprocess.Popen(
+                [sys.executable, "app.py"], cwd=ROOT, env=env, stdout=subprocess.DEVNULL, stderr=log
+            )
+            try:
+                figures = asyncio.run(
+                    _load(f"http://127.0.0.1:{port}/", server, people, minutes, steps, seed)
+                )
+            finally:
+                server.send_signal(signal.SIGTERM)
+                try:
+                    server.wait(timeout=90)
+                except subprocess.TimeoutExpired:
+                    server.kill()
+            log.seek(0)
+            figures["log_lines_of_errors"] = sum('"level": "error"' in line for line in log)
+    for name, value in figures.items():
+        print(f"{name:32} {round(value, 3) if isinstance(value, float) else value}")
+    return figures
+
+
+async def _load(
+    url: str, server: subprocess.Popen[bytes], people: int, minutes: float, steps: int, seed: int
+) -> dict[str, Any]:
+    tally = Tally()
+    limits = httpx.Limits(max_connections=None)
+    async with httpx.AsyncClient(base_url=url, timeout=httpx.Timeout(60, read=None), limits=limits) as client:
+        await _ready(client, server)
+        # Whatever is imported or made by the first run of a kind is there before memory is looked at.
+        warm_up = Tally()
+        await asyncio.gather(*(
+            _person(client, warm_up, i, random.Random(f"warm-up {seed} {i}"), steps, 0.0)
+            for i in range(max(people, len(KINDS)))
+        ))  # fmt: skip
+        await asyncio.sleep(REST_SECONDS)
+        memory = await _memory(client)
+        began = time.monotonic()
+        until = began + 60 * minutes
+        probe = asyncio.create_task(_probe(client, tally))
+        await asyncio.gather(*(
+            _person(client, tally, i, random.Random(seed * 1000 + i), steps, until) for i in range(people)
+        ))  # fmt: skip
+        took = time.monotonic() - began
+        probe.cancel()
+        await asyncio.sleep(REST_SECONDS)
+        after = await _memory(client)
+    return {
+        "people": people,
+        "seconds": took,
+        **tally.figures(),
+        "units_a_second": tally.work / took,
+        "memory_at_rest_before_mb": memory,
+        "memory_at_rest_after_mb": after,
+    }
+
+
+async def _ready(client: httpx.AsyncClient, server: subprocess.Popen[bytes]) -> None:
+    until = time.monotonic() + START_SECONDS
+    while time.monotonic() < until:
+        if server.poll() is not None:
+            raise InputError("The server ended before it was ready: start `python app.py` to see why.")
+        try:
+            if (await client.get("healthz")).status_code == 200:
+                return
+        except httpx.TransportError:  # it does not listen yet
+            pass
+        await asyncio.sleep(0.5)
+    raise InputError(f"The server was not ready within {START_SECONDS:g} s: see its /healthz.")
+
+
+async def _memory(client: httpx.AsyncClient) -> float:
+    """Megabytes that the server holds, as its figures say; 0 where this system does not tell."""
+    for line in (await client.get("metrics")).text.splitlines():
+        if line.startswith("process_resident_memory_bytes "):
+            return float(line.split()[1]) / 2**20
+    return 0.0
+
+
+async def _probe(client: httpx.AsyncClient, tally: Tally) -> None:
+    while True:
+        began = time.monotonic()
+        await client.get("", headers={"accept": "text/html"})
+        tally.page.append(time.monotonic() - began)
+        tally.memory.append(await _memory(client))
+        await asyncio.sleep(PROBE_EVERY)
+
+
+@dataclass(frozen=True)
+class Job:
+    """What somebody asks for.
+
+    Attributes:
+        endpoint: where.
+        data: its arguments; None stands for an uploaded :data:`CLIP`.
+        asked: fields of the request that the result's manifest must hold.
+        work: in units.
+    """
+
+    endpoint: str
+    data: tuple[Any, ...]
+    asked: dict[str, Any]
+    work: float
+
+
+def _generation(dice: random.Random, steps: int) -> Job:
+    r = GenerateRequest(
+        prompt=dice.choice(PROMPTS), seconds=dice.choice((2.0, 4.0, 5.0)), seed=dice.randrange(2**32),
+        samples=dice.choice((1, 1, 1, 2)), steps=dice.choice((max(steps // 2, 1), steps)),
+    )  # fmt: skip
+    data = (r.prompt, r.seconds, r.seed, r.samples, r.guidance, r.steps, r.damping, r.sampler, r.model)
+    return Job("generate", data, json.loads(json.dumps(r.to_dict())), units(r))
+
+
+def _reaction(dice: random.Random, steps: int) -> Job:
+    seed, seconds = dice.randrange(2**32), 2.0
+    data = (None, "", "a", 0, seconds, "a", seed, 1, 3.0, steps, 0.7, "ddim", "intergen", "offline", False)
+    return Job("react", data, {"kind": "react", "seed": seed, "steps": steps}, seconds * steps + 10)
+
+
+def _prediction(dice: random.Random, steps: int) -> Job:
+    seconds = dice.choice((0.5, 1.0, 1.5))
+    data = (None, 1.5, seconds, "motion-mlp")
+    return Job("predict", data, {"kind": "predict", "seconds": seconds}, seconds + 10)
+
+
+KINDS = (_generation, _generation, _generation, _generation, _reaction, _prediction)
+"""How often each kind of job is asked for; a person's first is that of their number."""
+
+
+async def _person(
+    client: httpx.AsyncClient, tally: Tally, person: int, dice: random.Random, steps: int, until: float
+) -> None:
+    """One person, who asks again whenever they have their result; once at least."""
+    cookies = {"cookie": f"{VISITOR_COOKIE}={new_token()}"}
+    job = KINDS[-1 - person % len(KINDS)](dice, steps)
+    await asyncio.sleep(dice.random())
+    while True:
+        began = time.monotonic()
+        kind, answer = await _ask(client, cookies, job)
+        took = time.monotonic() - began
+        if kind == "complete":
+            tally.done += 1
+            request = answer[0]["manifest"]["request"]
+            tally.swapped += any(request.get(name) != value for name, value in job.asked.items())
+            tally.latencies.append(took)
+            tally.waits.setdefault(person, []).append(took / job.work)
+            tally.work += job.work
+        elif kind == "error":
+            tally.errors.append(f"{job.endpoint}: {answer}"[:200])
+            await asyncio.sleep(1)
+        else:
+            tally.lost += 1
+        if time.monotonic() >= until:
+            return
+        job = dice.choice(KINDS)(dice, steps)
+
+
+async def _ask(client: httpx.AsyncClient, cookies: dict[str, str], job: Job) -> tuple[str, Any]:
+    """("complete", result), ("error", sentence), or ("lost", None) where the answer broke off."""
+    call = f"{_API}/call/{job.endpoint}"
+    try:
+        data = list(job.data)
+        if None in data:
+            sent = await client.post(f"{_API}/upload", files={"files": (CLIP.name, CLIP.read_bytes())},
+                                     headers=cookies)  # fmt: skip
+            if sent.status_code != 200:
+                return "error", f"{sent.status_code} {sent.text}"
+            data[data.index(None)] = {"path": sent.json()[0], "meta": {"_type": "gradio.FileData"}}
+        joined = await client.post(call, json={"data": data}, headers=cookies)
+        if joined.status_code != 200:
+            return "error", f"{joined.status_code} {joined.text}"
+        kind = ""
+        async with client.stream("GET", f"{call}/{joined.json()['event_id']}", headers=cookies) as stream:
+            async for line in stream.aiter_lines():
+                if line.startswith("event: "):
+                    kind = line.removeprefix("event: ")
+                elif line.startswith("data: ") and kind in ("complete", "error"):
+                    return kind, json.loads(line.removeprefix("data: "))
+    except httpx.TransportError as error:
+        return "error", type(error).__name__
+    return "lost", None
+
+
+def measure_batching(
+    *, requests: int = 8, steps: int = 50, seconds: float = 4.0, repeats: int = 3
+) -> dict[str, float]:
+    """Throughput of requests that share passes against the same ones one after another, and how far apart
+    their motions are at most. Both are done in turn ``repeats`` times, and medians are told; processor time
+    is told as well, since on a machine that does something else the other time is that of both."""
+    import numpy as np
+
+    from webdemo.inference.batch import run_batch
+    from webdemo.inference.cancel import CancelToken
+    from webdemo.inference.engine import Engine
+    from webdemo.inference.requests import Result
+
+    engine = Engine()
+    engine.warm_up()
+    first = GenerateRequest(prompt=PROMPTS[0], seconds=seconds, steps=steps)
+    asked = [replace(first, prompt=PROMPTS[i % len(PROMPTS)], seed=i) for i in range(requests)]
+    alone: list[Result] = []
+    together: dict[int, Result] = {}
+
+    def serially() -> None:
+        alone[:] = [event for r in asked for event in engine.run(r) if isinstance(event, Result)]
+
+    def at_once() -> None:
+        events = run_batch(engine, [(r, CancelToken()) for r in asked])
+        together.update((i, event) for i, event in events if isinstance(event, Result))
+
+    list(engine.run(replace(first, steps=2)))
+    times = [(*_took(serially), *_took(at_once)) for _ in range(repeats)]
+    serial, batched = (statistics.median(t[i] for t in times) for i in (0, 2))
+    figures = {
+        "serial_seconds": serial,
+        "batched_seconds": batched,
+        "batched_over_serial_throughput": statistics.median(t[0] / t[2] for t in times),
+        "batched_over_serial_by_processor_time": statistics.median(t[1] / t[3] for t in times),
+        "batched_largest_difference_mm": 1000 * max(
+            float(np.abs(together[i].duets[0].positions - alone[i].duets[0].positions).max())
+            for i in range(requests)
+        ),
+    }  # fmt: skip
+    for name, value in figures.items():
+        print(f"{name:40} {value:.3f}")
+    return figures
+
+
+def _took(job: Callable[[], None]) -> tuple[float, float]:
+    """Seconds, and seconds of processor time, that a job takes."""
+    began, before = time.perf_counter(), time.process_time()
+    job()
+    return time.perf_counter() - began, time.process_time() - before

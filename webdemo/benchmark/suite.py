@@ -1,0 +1,206 @@
+"""Speed on this machine, as figures and as ratios to a plain run of the same network.
+
+``python -m webdemo benchmark`` prints one line a figure. Absolute times depend on the machine and what else
+it does; the ratios are of runs that alternate within one call and hold anywhere.
+"""
+
+from __future__ import annotations
+
+import statistics
+import time
+from collections.abc import Callable
+from functools import partial
+from typing import Any
+
+
+def timed(job: Callable[[], Any], repeats: int) -> list[float]:
+    """Seconds of each run."""
+    times = []
+    for _ in range(repeats):
+        began = time.perf_counter()
+        job()
+        times.append(time.perf_counter() - began)
+    return times
+
+
+def run_benchmark(*, seconds: float, steps: int, repeats: int, browser: bool = False) -> dict[str, Any]:
+    """Times loading, text, sampling and finishing of the default model, beside the plain run.
+
+    Args:
+        seconds: length of the motion; 10 is 300 frames.
+        steps: DDIM steps.
+        repeats: pairs of runs; medians are reported.
+        browser: also measure the page and the player in a headless Chromium.
+    """
+    from models.intergen.compact import load_folder
+    from webdemo.benchmark.interformer import measure_interformer
+    from webdemo.benchmark.parts import REQUEST_GOAL, UNDAMPED_GOAL, measure_busy, measure_parts
+    from webdemo.benchmark.reactions import measure_reactions
+    from webdemo.inference.engine import Engine
+    from webdemo.inference.requests import GenerateRequest, Result
+    from webdemo.inference.threads import CORES
+
+    engine = Engine()
+    (load,) = timed(engine.warm_up, 1)
+    request = GenerateRequest(
+        prompt="Two people walk up to each other and shake hands.", seconds=seconds, steps=steps
+    )
+    pipeline: Any = engine.pipeline(request.model)
+    by_torch = load_folder(engine.weights / request.model)[0].denoiser
+    plain = PlainSampler(by_torch, pipeline, request)
+    whole, stages, plainly = [], [], []
+    for _ in range(repeats):
+        began = time.perf_counter()
+        *_, result = engine.run(request)
+        assert isinstance(result, Result)  # the last event of a run
+        whole.append(time.perf_counter() - began)
+        stages.append(result.timings)
+        plainly.extend(timed(plain.run, 1))
+    middle = {name: statistics.median(s.get(name, 0.0) for s in stages) for name in stages[0]}
+    bare = _replace(request, damping=0.0)
+    undamped = timed(lambda: list(engine.run(bare)), repeats)
+    four = timed(lambda: list(engine.run(_replace(bare, samples=4))), 1)[0]
+    figures: dict[str, Any] = {
+        "threads": CORES,
+        "compiled": pipeline.compiled,
+        "frames": round(seconds * 30),
+        "steps": steps,
+        "load_seconds": load,
+        "request_seconds": statistics.median(whole),
+        "request_seconds_all": whole,
+        "request_seconds_goal": REQUEST_GOAL,
+        "sample_seconds": middle["sample"],
+        "finish_seconds": middle["finish"],
+        "undamped_request_seconds": statistics.median(undamped),
+        "undamped_request_seconds_goal": UNDAMPED_GOAL,
+        "plain_sample_seconds": statistics.median(plainly),
+        "plain_over_request": statistics.median(p / w for p, w in zip(plainly, whole, strict=True)),
+        "plain_over_undamped": statistics.median(plainly) / statistics.median(undamped),
+        "four_samples_over_one": four / statistics.median(undamped),
+    }
+    figures |= measure_parts(engine, request, by_torch, repeats)
+    figures |= measure_busy(lambda: list(engine.run(request)), figures["request_seconds"], repeats)
+    figures |= measure_classes(bare, repeats)
+    figures |= measure_prediction(max(repeats, 5))
+    figures |= measure_reactions(repeats)
+    figures |= measure_interformer(max(repeats, 3))
+    if browser:
+        from webdemo.benchmark.browser import measure_browser
+
+        figures |= measure_browser()
+    figures = {k: round(v, 3) if isinstance(v, float) else v for k, v in figures.items()}
+    for name, value in figures.items():
+        print(f"{name:34} {value}")
+    return figures
+
+
+def measure_classes(request: Any, repeats: int) -> dict[str, float]:
+    """Seconds of a class, and over those of a sentence of the same length and steps, run in turn."""
+    from webdemo.inference.engine import Engine
+    from webdemo.inference.methods import methods
+
+    engine = Engine()
+    by_class = next(found.name for found in methods("generate") if "class" in found.takes)
+    classed = _replace(request, prompt="shake hands", model=by_class)
+    jobs = [partial(lambda asked: list(engine.run(asked)), asked) for asked in (classed, request)]
+    for job in jobs:  # the first runs prepare what later ones use
+        job()
+    pairs = [[timed(job, 1)[0] for job in jobs] for _ in range(repeats)]
+    return {
+        "class_request_seconds": statistics.median(own for own, _ in pairs),
+        "class_over_sentence": statistics.median(own / other for own, other in pairs),
+    }
+
+
+def measure_prediction(repeats: int) -> dict[str, float]:
+    """Of each predictor, milliseconds that two people's next 25 frames take, and seconds for four seconds by
+    recursion; and milliseconds that the virtual agent takes for all its looks at five seconds of a person."""
+    import numpy as np
+
+    from motion import SMPL22
+    from webdemo.inference.engine import Engine
+    from webdemo.inference.methods import methods
+
+    sway = 0.05 * np.sin(np.arange(150) / 5)[:, None, None] * SMPL22.rest_positions()
+    moving = SMPL22.rest_positions() + sway
+    past = np.stack([moving[:30]] * 2)
+    figures = {}
+    engine = Engine()
+    for i, found in enumerate(m for m in methods("predict") if m.weights):
+        predictor: Any = engine.pipeline(found.name)
+        label = found.name if i else "predict"
+        predictor.predict(past, 25)
+        short, long = (timed(partial(predictor.predict, past, n), repeats) for n in (25, 120))
+        figures[f"{label}_25_frames_ms"] = 1000 * statistics.median(short)
+        figures[f"{label}_four_seconds"] = statistics.median(long)
+    agent: Any = engine.pipeline("agent")
+    eye = agent.eye
+    eye.looks(moving)
+    figures["agent_looks_ms"] = 1000 * statistics.median(timed(partial(eye.looks, moving), repeats))
+    return figures
+
+
+def _replace(request: Any, **changes: Any) -> Any:
+    from dataclasses import replace
+
+    return replace(request, **changes)
+
+
+class PlainSampler:
+    """The same network, sampled without batching or caching, in float32.
+
+    Each person and each guidance half is a pass of its own through ``torch.nn.MultiheadAttention``, and the
+    prompt is encoded anew at every step: how the papers' equations read, and what the ratios are against.
+    """
+
+    def __init__(self, denoiser: Any, pipeline: Any, request: Any) -> None:
+        self.denoiser, self.pipeline, self.request = denoiser, pipeline, request
+
+    def run(self) -> Any:
+        """Samples one motion; returns it in network space."""
+        import torch
+
+        from models.diffusion import denoise, guide, make_scheduler
+        from webdemo.inference.noise import sample_noise
+
+        request, model = self.request, self.pipeline.model
+        tokens = model.layout.num_tokens(round(request.seconds * 30))
+        noise = sample_noise(request.seed, 1, (tokens, 2 * model.layout.token_features))
+
+        def predict(x: Any, t: Any) -> Any:
+            condition, _ = self.pipeline.condition(request.prompt)
+            nothing = torch.zeros_like(condition)
+            return guide(self.forward(x, t, condition), self.forward(x, t, nothing), request.guidance)
+
+        return denoise(predict, noise, make_scheduler("ddim", request.steps, spacing="top"))
+
+    def forward(self, x: Any, t: Any, condition: Any) -> Any:
+        """InterGen's denoiser, one person at a time: (1, T, 2F) → (1, T, 2F)."""
+        import torch
+
+        from models.layers import sinusoids
+
+        net = self.denoiser
+        embs = net.embed(t, condition).expand(2, 1, -1)[:, None]
+        states = [
+            net.motion_embed(person) + sinusoids(x.shape[1], net.config.latent_dim) + net.role_embedding[i]
+            for i, person in enumerate(x.chunk(2, dim=-1))
+        ]
+        for block in net.blocks:
+            before, after = states, []
+            for i, (h, emb) in enumerate(zip(before, embs, strict=True)):
+                query = block.sa_block.norm(h[None], emb)[0]
+                h = h + _attention(block.sa_block.attention, query, query)
+                query = block.ca_block.norm(h[None], emb)[0]
+                other = block.ca_block.xf_norm(before[1 - i][None], emb)[0]
+                h = h + _attention(block.ca_block.attention, query, other)
+                after.append(h + block.ffn(h[None], emb)[0])
+            states = after
+        return torch.cat([net.out(h[None])[0] for h in states], dim=-1)
+
+
+def _attention(module: Any, query: Any, source: Any) -> Any:
+    """The module's weights in PyTorch's own multi-head attention."""
+    import torch
+
+    return torch.nn.MultiheadAttention.forward(module, query, source, source, need_weights=False)[0]

@@ -1,0 +1,165 @@
+"""Scenes of which something is given: what a person does at some frames (the past, a span, a pose), or where they go.
+
+All is in the network's frame: metres, Y up, the floor at 0, 30 frames a second; person a is expected at the origin at
+the first frame, facing +Z (:func:`motion.transforms.canonicalize` takes a scene there).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+import torch
+from numpy.typing import NDArray
+
+from models.intergen.compact import DuetSpace
+from models.known import Hold, Known
+from motion import SMPL22, Duet, InputError
+
+from .actor import FPS
+from .scenes import Finish, Scene
+
+Array = NDArray[np.floating]
+MOST_DISTANCE = 20.0
+"""Metres from the origin that a given place may have."""
+MOST_SPEED = 5.0
+"""Metres a second between two places of a path."""
+FADE = 6
+"""Frames over which what clean-up changed at a given frame is taken back beside it."""
+_BONE_ERROR = 0.3
+
+
+@dataclass(frozen=True, eq=False)
+class KnownFrames:
+    """What a person does at some frames; held exactly.
+
+    Attributes:
+        person: 0 for a, 1 for b.
+        frames: N different frames of the scene, in order.
+        positions: (N, 22, 3) metres.
+    """
+
+    person: int
+    frames: Sequence[int]
+    positions: Array
+
+
+@dataclass(frozen=True, eq=False)
+class KnownPath:
+    """A person's places at some frames, and optionally their headings.
+
+    Attributes:
+        person: 0 for a, 1 for b.
+        frames: N different frames of the scene, in order; between them the way is free.
+        places: (N, 2) x and z of the pelvis in metres.
+        headings: (N,) radians from +Z towards +X. The network is shown them; they are not held.
+    """
+
+    person: int
+    frames: Sequence[int]
+    places: Array
+    headings: Array | None = None
+
+
+Part = KnownFrames | KnownPath
+
+
+@dataclass(frozen=True, kw_only=True)
+class Directed(Scene):
+    """Both people are made around what is given."""
+
+    parts: Sequence[Part]
+
+    def duet(self, pair: Array, finish: Finish) -> Duet:
+        """As :meth:`Scene.duet`; what clean-up changed at given frames is taken back."""
+        people = [finish(person) for person in pair]
+        for person in range(2):
+            given = [p for p in self.parts if isinstance(p, KnownFrames) and p.person == person]
+            if given:
+                at = np.concatenate([np.asarray(p.frames) for p in given])
+                wanted = np.concatenate([p.positions for p in given])
+                people[person] = with_given(people[person], at, wanted)
+        return super().duet(np.stack(people), lambda person: person)
+
+
+def with_given(positions: Array, frames: Array, given: Array) -> Array:
+    """Positions (T, 22, 3) that are ``given`` (N, 22, 3) at ``frames`` (N,), and led there over :data:`FADE` frames."""
+    order = np.argsort(frames)
+    frames, given = frames[order], np.asarray(given)[order]
+    time = np.arange(len(positions))
+    after = np.searchsorted(frames, time).clip(max=len(frames) - 1)
+    before = (after - 1).clip(min=0)
+    nearest = np.where(np.abs(frames[after] - time) < np.abs(time - frames[before]), after, before)
+    weight = (1 - np.abs(frames[nearest] - time) / (FADE + 1)).clip(min=0)
+    moved = positions + weight[:, None, None] * (given - positions[frames])[nearest]
+    moved[frames] = given
+    return moved
+
+
+def directed(model: DuetSpace, frames: int, parts: Sequence[Part]) -> Directed:
+    """A scene of so many frames with what is given of it.
+
+    Raises:
+        InputError: if a part lies outside the scene or the limits, is no pose that a body takes, or
+            contradicts another.
+    """
+    length = model.layout.num_frames(model.layout.num_tokens(frames))
+    known = Known.nothing(length)
+    for part in parts:
+        at = _frames(part, frames)
+        if known.mask[0, part.person, at][:, 0].any():
+            raise InputError(
+                f"Two given parts say where person {'ab'[part.person]} is at one time: give one."
+            )
+        if isinstance(part, KnownFrames):
+            _check_poses(part, at)
+            known.add_person(part.person, torch.from_numpy(np.asarray(part.positions)).float(), at)
+        else:
+            _check_path(part, at)
+            headings = None if part.headings is None else torch.from_numpy(np.asarray(part.headings)).float()
+            known.add_path(part.person, at, torch.from_numpy(np.asarray(part.places)).float(), headings)
+    return Directed(frames, Hold(known, model.layout, model.mean, model.std) if parts else None, parts=parts)
+
+
+def _frames(part: Part, total: int) -> list[int]:
+    at = [int(frame) for frame in part.frames]
+    if not at or at != sorted(set(at)) or at[0] < 0 or at[-1] >= total:
+        raise InputError(
+            f"What is given of person {'ab'[part.person]} does not fit into the scene: give frames in order, each "
+            f"once, from 0 to {total - 1}."
+        )
+    return at
+
+
+def _check_poses(part: KnownFrames, at: list[int]) -> None:
+    positions = np.asarray(part.positions)
+    if positions.shape != (len(at), SMPL22.num_joints, 3) or not np.isfinite(positions).all():
+        raise InputError(f"{len(at)} given poses need {len(at)} × 22 × 3 finite numbers.")
+    parents, children = np.array(SMPL22.bones).T
+    lengths = np.linalg.norm(positions[:, children] - positions[:, parents], axis=-1)
+    expected = np.asarray(SMPL22.bone_lengths)[children]
+    if (np.abs(lengths / expected - 1) > _BONE_ERROR).any():
+        raise InputError("A given pose is none that this body takes: its bones have other lengths.")
+    _check_places(positions[:, 0][:, [0, 2]])
+
+
+def _check_path(part: KnownPath, at: list[int]) -> None:
+    places = np.asarray(part.places, dtype=np.float64)
+    headings = np.zeros(len(at)) if part.headings is None else np.asarray(part.headings)
+    if places.shape != (len(at), 2) or headings.shape != (len(at),):
+        raise InputError(f"A path of {len(at)} frames needs as many places, and as many headings or none.")
+    if not (np.isfinite(places).all() and np.isfinite(headings).all()):
+        raise InputError("A path needs finite numbers.")
+    _check_places(places)
+    speed = np.linalg.norm(np.diff(places, axis=0), axis=-1) / np.diff(at) * FPS
+    if (speed > MOST_SPEED).any():
+        raise InputError(
+            f"The path asks person {'ab'[part.person]} for {speed.max():.1f} m/s: give more time or a shorter way "
+            f"(at most {MOST_SPEED:g} m/s)."
+        )
+
+
+def _check_places(places: Array) -> None:
+    if (np.linalg.norm(places, axis=-1) > MOST_DISTANCE).any():
+        raise InputError(f"A given place is more than {MOST_DISTANCE:g} m away: bring it nearer.")

@@ -1,0 +1,28 @@
+"""InterFormer: one person's reactor, pose after pose from a first one."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from webdemo.inference.method import Method, Pipeline
+
+
+def load(folder: Path) -> Pipeline:
+    """The pipeline of a weights folder; imports torch."""
+
+    from webdemo.inference.pipelines.interformer import InterFormerPipeline
+
+    return InterFormerPipeline(folder)
+
+
+METHOD = Method(
+    name="interformer",
+    label="InterFormer",
+    summary="Generates the person who reacts, pose after pose, like people in front of a Kinect; it takes no words.",
+    tasks=("react",),
+    takes=frozenset({"actor", "first pose"}),
+    fixed={"steps": 1, "guidance": 1.0, "damping": 0.0, "sampler": "ddim"},
+    defaults={"steps": 1},
+    weights="interformer",
+    load=load,
+)

@@ -1,0 +1,27 @@
+"""Motion MLP: what comes next, for one person or two."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from webdemo.inference.method import Method, Pipeline
+
+
+def load(folder: Path) -> Pipeline:
+    """The pipeline of a weights folder; imports torch."""
+
+    from webdemo.inference.pipelines.predictor import PredictorPipeline
+
+    return PredictorPipeline(folder)
+
+
+METHOD = Method(
+    name="motion-mlp",
+    label="Motion MLP",
+    summary="Predicts with a residual network over cosine coefficients, one second at a time.",
+    tasks=("predict",),
+    takes=frozenset({"past"}),
+    seconds=(0.5, 4.0),
+    weights="motion-mlp",
+    load=load,
+)

@@ -1,0 +1,260 @@
+"""The virtual agent of Chopin's thesis (chapter 5): predicts what a person does, recognises it, and responds.
+
+Every half second the agent takes the last second of the person's motion, predicts the next two, and classifies
+the gesture in these three seconds (section 5.5.6). It multiplies the probabilities of all looks, while the thesis
+uses the last look only. Until it is sure, it stands and faces the place where the person began. Then InterGen
+generates the response from the sentence of that gesture, where the thesis plays a prerecorded motion. As in the
+thesis, the response is planned once. InterGen receives what both people have done so far and generates the
+person's next movements itself, so no frame of the agent depends on a later frame of the person. The agent does not
+see the person's face, which in the thesis decides whether to respond.
+"""
+
+from __future__ import annotations
+
+import hashlib
+from collections.abc import Generator, Iterator
+from dataclasses import dataclass, replace
+from pathlib import Path
+
+import numpy as np
+import torch
+from numpy.typing import NDArray
+from torch import Tensor
+
+from models.agent.recogniser import OBSERVED, PREDICTED, load_folder, sampled
+from models.intergen.compact import DuetSpace
+from models.known import Hold, Known
+from models.motion_tokens import TokenLayout
+from motion import SMPL22, Clip, Duet
+from webdemo.inference.actor import FPS, MEDIAN_START_DISTANCE, Placement
+from webdemo.inference.cancel import CancelToken
+from webdemo.inference.requests import Progress, ReactRequest, Result
+from webdemo.inference.scenes import NAMES, Finish, Reaction
+from webdemo.inference.timer import StageTimer
+
+from .intergen import InterGenPipeline
+from .predict_frame import to_last_pose
+from .predictor import PredictorPipeline
+from .regennet import settle
+
+Array = NDArray[np.floating]
+
+SURE = 0.9
+"""The agent responds to a gesture from this probability on."""
+LEAST = 0.5
+"""The agent responds only if the probabilities of any gesture, summed over its looks, exceed this."""
+WEIGHT = 0.5
+"""Weight of a look in the sum of log-probabilities: successive looks share half of their frames."""
+FLOOR = 1e-3
+"""Added to each probability, so that one look cannot rule a gesture out."""
+FIRST, BETWEEN = 45, 15
+"""Frame of the agent's first look (the last frame of a shorter motion), and frames between two looks."""
+_HIPS = (SMPL22.index("left_hip"), SMPL22.index("right_hip"))
+_NO_WORDS = "The virtual agent finds the words itself, so yours were not used."
+
+
+@dataclass(frozen=True)
+class Look:
+    """The agent's classification of a person at one moment.
+
+    Attributes:
+        frame: number of the person's frames seen so far.
+        chances: (gestures,) probabilities.
+    """
+
+    frame: int
+    chances: Array
+
+
+@dataclass(frozen=True)
+class Decision:
+    """The result of :meth:`Eye.decide`.
+
+    Attributes:
+        look: the last look, with the probabilities of all gestures given all looks so far.
+        place: index of the likeliest gesture in the recogniser's list; None if there was no gesture.
+        sure: whether the agent responds, from the look's frame on.
+    """
+
+    look: Look
+    place: int | None
+    sure: bool
+
+
+class Eye:
+    """Recognises a person's gesture from their motion so far.
+
+    Args:
+        folder: of the recogniser's weights.
+        predictor: predicts two seconds.
+
+    Raises WeightsError (an InputError) if files are missing or altered.
+    """
+
+    def __init__(self, folder: Path, predictor: PredictorPipeline) -> None:
+        self.recogniser, source = load_folder(folder)
+        self.predictor, self.digest, self.meta = predictor, source.digest, source.meta
+
+    def looks(self, positions: Array) -> list[Look]:
+        """Every moment at which the agent looks at a person (T, 22, 3), in metres at 30 fps; T is 30 or more.
+
+        A look depends on the second before it and on nothing after.
+        """
+        frames = list(range(FIRST, len(positions) + 1, BETWEEN)) or [len(positions)]
+        seen = np.stack([positions[frame - OBSERVED : frame] for frame in frames]).astype(np.float64)
+        predicted = self.predictor.predict(seen, PREDICTED)
+        local = to_last_pose(np.concatenate([seen, predicted], axis=1), OBSERVED - 1)[0]
+        with torch.no_grad():
+            chances = self.recogniser(sampled(torch.from_numpy(local).float())).softmax(-1)
+        return [Look(frame, row) for frame, row in zip(frames, chances.double().numpy(), strict=True)]
+
+    def decide(self, looks: list[Look]) -> Decision:
+        """Combines looks until the agent is sure.
+
+        A look is weighted by its probability of any gesture. The agent is sure, and stops, as soon as one gesture
+        reaches the probability :data:`SURE`, after two looks at the earliest. If the weights of all looks sum to
+        :data:`LEAST` or less, there is no gesture.
+        """
+        evidence, done = np.zeros(len(looks[0].chances) - 1), 0.0
+        for i, look in enumerate(looks):
+            busy = 1 - look.chances[0]
+            evidence += WEIGHT * busy * np.log(look.chances[1:] / max(busy, FLOOR) + FLOOR)
+            done += busy
+            chances = np.exp(evidence - evidence.max())
+            chances /= chances.sum()
+            sure = bool(i and done > LEAST and chances.max() >= SURE)
+            if sure:
+                break
+        place = 1 + int(chances.argmax()) if done > LEAST else None
+        return Decision(Look(look.frame, np.concatenate([[0.0], chances])), place, sure)
+
+    def note(self, decision: Decision) -> str:
+        """The result of :meth:`decide` as a sentence."""
+        look, place = decision.look, decision.place
+        if place is None:
+            return "The agent saw no gesture that asks for an answer, so it stands and waits."
+        config, rest = self.recogniser.config, look.chances.copy()
+        rest[place] = 0
+        second = int(rest.argmax())
+        seen = f"“{config.labels[place]}” ({look.chances[place]:.0%}; “{config.labels[second]}” {rest[second]:.0%})"
+        if not decision.sure:
+            return f"The agent was not sure of a gesture, so it stands and waits. The likeliest was {seen}."
+        return (
+            f"After {look.frame / FPS:.1f} s the agent took it for {seen} and answers from then on: "
+            f"“{config.sentences[place]}”"
+        )
+
+
+@dataclass(frozen=True, kw_only=True)
+class Answering(Reaction):
+    """The agent's response, which continues what it has done so far.
+
+    Attributes:
+        past: (F, 22, 3) metres in the person's world; it stays unchanged.
+    """
+
+    past: Array
+
+    def duet(self, pair: Array, finish: Finish) -> Duet:
+        """The duet of one sample; ``finish`` cleans up the frames that continue the past."""
+        past, seen = self.placement.to_network(self.past), len(self.past)
+        off = past[-1:] - pair[1, seen - 1]
+        later = pair[1, seen:] + settle(off, np.arange(1, len(pair[1]) - seen + 1))[0]
+        made = self.placement.to_world(finish(np.concatenate([past, later]).astype(pair.dtype)))
+        made[:seen] = self.past
+        return Duet(self.clip, Clip(made, FPS, self.clip.skeleton, name=NAMES[1]), NAMES)
+
+
+class AgentPipeline:
+    """Lets InterGen respond to what an :class:`Eye` recognises.
+
+    Args:
+        folder: of the recogniser's weights.
+        predictor: predicts two seconds.
+        answers: generates the response.
+
+    Raises WeightsError (an InputError) if files are missing or altered.
+    """
+
+    def __init__(self, folder: Path, predictor: PredictorPipeline, answers: InterGenPipeline) -> None:
+        self.eye, self.answers = Eye(folder, predictor), answers
+        self.name, self.meta = folder.name, self.eye.meta
+        parts = (self.eye.digest, predictor.digest, answers.digest)
+        self.digest = hashlib.sha256(" ".join(parts).encode()).hexdigest()
+
+    def run(
+        self, request: ReactRequest, cancel: CancelToken, timer: StageTimer
+    ) -> Iterator[Progress | Result]:
+        """Progress events, then one :class:`Result` without a manifest, whose first note says what was recognised.
+
+        Raises:
+            Cancelled: within one denoising step.
+        """
+        yield timer.progress("text")
+        decision = self.eye.decide(self.eye.looks(request.actor.positions))
+        notes = [self.eye.note(decision)] + [_NO_WORDS] * bool(request.prompt.strip())
+        sentences, frame = self.eye.recogniser.config.sentences, decision.look.frame
+        answers = decision.sure and frame < request.actor.num_frames
+        asked = replace(request, model=self.answers.name, prompt=sentences[0])
+        if answers:  # all samples continue the same past
+            first = replace(asked, samples=1)
+            waits = yield from self._made(first, self._attending(first), cancel, timer)
+            past = np.asarray(waits.duets[0].b.positions)[:frame]  # type: ignore[union-attr]
+            asked = replace(asked, prompt=sentences[decision.place or 0])
+            scene: Reaction = self._answering(asked, past)
+        else:
+            scene = self._attending(asked)
+        result = yield from self._made(asked, scene, cancel, timer)
+        yield replace(result, notes=(*notes, *result.notes))
+
+    def _made(
+        self, request: ReactRequest, scene: Reaction, cancel: CancelToken, timer: StageTimer
+    ) -> Generator[Progress, None, Result]:
+        """Passes progress on and returns InterGen's result."""
+        for event in self.answers.run(request, cancel, timer, scene=scene):
+            if isinstance(event, Result):
+                return event
+            yield event
+        raise AssertionError("A pipeline ends with its result.")
+
+    def _attending(self, request: ReactRequest) -> Reaction:
+        """A person who stands in front of the other and faces the place where they began.
+
+        Known are one frame of the other person, and the place of the agent's pelvis and the direction of its hips.
+        """
+        clip, model = request.actor, self.answers.model
+        placement = Placement.of(clip.cut(0, 1), "a")
+        known = Known.nothing(_padded(model.layout, clip.num_frames))
+        known.add_person(0, _tensor(placement.to_network(clip.positions[:1])))
+        frames = range(clip.num_frames)
+        places = torch.tensor([[0.0, MEDIAN_START_DISTANCE]]).expand(len(frames), -1)
+        known.add_path(1, frames, places, torch.full((len(frames),), torch.pi))
+        for hip in _HIPS:  # beside the pelvis, turned by half a turn about Y
+            for axis, number in ((0, -float(SMPL22.offsets[hip, 0])), (2, 0.0)):
+                known.rows[:, 1, : len(frames), 3 * hip + axis] = number
+                known.mask[:, 1, : len(frames), 3 * hip + axis] = True
+        return Reaction(clip.num_frames, _held(model, known), clip=clip, place=0, placement=placement)
+
+    def _answering(self, request: ReactRequest, past: Array) -> Answering:
+        """A response to what the person did while the agent waited."""
+        clip, model, seen = request.actor, self.answers.model, len(past)
+        placement = Placement.of(clip.cut(0, seen), "a", request.prompt)
+        known = Known.nothing(_padded(model.layout, clip.num_frames))
+        for person, positions in enumerate((clip.positions[:seen], past)):
+            known.add_person(person, _tensor(placement.to_network(positions)))
+        return Answering(
+            clip.num_frames, _held(model, known), clip=clip, place=0, placement=placement, past=past
+        )
+
+
+def _padded(layout: TokenLayout, frames: int) -> int:
+    """The number of frames, rounded up to whole tokens."""
+    return layout.num_frames(layout.num_tokens(frames))
+
+
+def _held(model: DuetSpace, known: Known) -> Hold:
+    return Hold(known, model.layout, model.mean, model.std)
+
+
+def _tensor(values: Array) -> Tensor:
+    return torch.from_numpy(np.ascontiguousarray(values)).float()

@@ -1,0 +1,127 @@
+"""Reactions by the compact InterFormer, generated pose by pose from a first pose.
+
+The network works on 15 joints at 15 frames a second. The actor's joints are selected from SMPL22's. The reactor's
+are converted to SMPL22 by fitting constant bones to the whole motion (:mod:`motion.ik`), so nothing pops. A long
+motion is processed in sub-sequences. Each one starts with the last pose of the previous one (Chopin's thesis,
+section 3.5), in the frame of the actor's place at that moment, as in training.
+"""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Generator, Iterator
+from pathlib import Path
+
+import numpy as np
+import torch
+from numpy.typing import NDArray
+from torch import Tensor
+
+from models.interformer.compact import FPS as NETWORK_FPS
+from models.interformer.compact import JOINTS_15, load_folder
+from models.interformer.decoding import ReactionDecoder
+from motion import SMPL22, Clip
+from motion.ik import fit_skeleton
+from motion.metrics import compare
+from motion.transforms import heading_matrix, resample
+from webdemo.inference.actor import FPS, Placement
+from webdemo.inference.cancel import CancelToken
+from webdemo.inference.cleanup import clean_person
+from webdemo.inference.noise import sample_noise
+from webdemo.inference.requests import Progress, ReactRequest, Result
+from webdemo.inference.timer import StageTimer
+
+from .regennet import duet_of, settle
+
+Array = NDArray[np.floating]
+
+RECORDED_START_DISTANCE = 1.05
+"""Metres between the two people of the median recorded pair at its first frame."""
+_ROOM = 0.7
+"""Metres between the actor's path and a reactor who stands in front of it."""
+_NAMES_15 = tuple(SMPL22.joint_names[joint] for joint in JOINTS_15)
+_NOISE = 0.01
+"""Metres: uncertainty of the network's joints in the fit."""
+_NO_WORDS = "InterFormer takes no words: it reacts to what the given person does."
+
+
+class InterFormerPipeline:
+    """The compact InterFormer, loaded from a weights folder.
+
+    Raises WeightsError (an InputError) if files are missing or altered.
+    """
+
+    def __init__(self, folder: Path) -> None:
+        self.model, source = load_folder(folder)
+        self.decoder = ReactionDecoder(self.model)
+        self.name, self.digest, self.meta = folder.name, source.digest, source.meta
+
+    def run(
+        self, request: ReactRequest, cancel: CancelToken, timer: StageTimer
+    ) -> Iterator[Progress | Result]:
+        """Progress events, then one :class:`Result` without a manifest.
+
+        Raises:
+            Cancelled: within one frame.
+        """
+        now = time.perf_counter()
+        placement = Placement.of(request.actor, "a")
+        actor = placement.to_network(request.actor.positions)
+        first_pose = self._first_pose(actor) if request.start is None else placement.to_network(request.start)
+        made = yield from self._sample(request, actor, first_pose, cancel, timer)
+        now = timer.lap("sample", now)
+        yield timer.progress("finish")
+        frames = request.actor.num_frames
+        raw = np.stack([on_smpl22(person, frames) for person in made])
+        # Joints that the network lacks, such as the toes, also start at the first pose.
+        raw = raw + settle(first_pose - raw[:, :1], np.arange(frames))
+        shown = np.stack([clean_person(person) for person in raw]) if request.cleanup else raw
+        duets = [
+            [duet_of(request, placement.to_world(person)) for person in people] for people in (raw, shown)
+        ]
+        readouts = tuple(compare(before, after) for before, after in zip(*duets, strict=True))
+        timer.lap("finish", now)
+        yield Result(
+            duets=tuple(duets[1]),
+            manifest={},
+            readouts=readouts,
+            notes=(_NO_WORDS,) if request.prompt.strip() else (),
+            timings={**timer.stages, "total": round(timer.elapsed, 4)},
+        )
+
+    def _first_pose(self, actor: Array) -> Array:
+        """(22, 3) a person who stands in front of the actor, clear of their path, and faces their first place."""
+        ahead = actor[:, 0, 2].max() + _ROOM
+        stance = self.model.stance.double().numpy()
+        return stance @ heading_matrix(np.pi).T + np.array([0.0, 0.0, max(RECORDED_START_DISTANCE, ahead)])
+
+    def _sample(
+        self, request: ReactRequest, actor: Array, first_pose: Array, cancel: CancelToken, timer: StageTimer
+    ) -> Generator[Progress, None, Array]:
+        """Returns the network's frames (samples, T', 15, 3), which cover the actor's motion."""
+        noise = sample_noise(request.seed, request.samples, (self.model.config.noise,))
+        slow = resample(actor, FPS, NETWORK_FPS)
+        reaction = [np.repeat(first_pose[None, list(JOINTS_15)], request.samples, axis=0)]
+        total = len(slow) - 1
+        while (begun := len(reaction) - 1) < total:
+            window = slow[begun : begun + self.model.config.window]
+            here = Placement.of(Clip(window, NETWORK_FPS, SMPL22), "a")
+            seen = _tensor(here.to_network(window)[:, list(JOINTS_15)])
+            first = _tensor(here.to_network(reaction[-1]))
+            actors = seen.expand(request.samples, -1, -1, -1)
+            for pose in self.decoder.poses_after(actors, first, noise):
+                reaction.append(here.to_world(pose.astype(np.float64)))
+                yield timer.progress("sample", len(reaction) - 1, total)
+                cancel.raise_if_cancelled()
+        return np.stack(reaction, axis=1)
+
+
+def on_smpl22(joints: Array, frames: int) -> Array:
+    """The network's joints (T', 15, 3) as SMPL22's, on constant bones at 30 fps: (frames, 22, 3)."""
+    fast = resample(joints, NETWORK_FPS, FPS)[:frames]
+    fast = np.concatenate([fast, np.repeat(fast[-1:], frames - len(fast), axis=0)])
+    return fit_skeleton(fast, _NAMES_15, fps=FPS, noise=_NOISE, scale=1.0, iterations=4).positions
+
+
+def _tensor(values: Array) -> Tensor:
+    return torch.from_numpy(np.ascontiguousarray(values)).float()

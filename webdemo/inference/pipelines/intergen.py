@@ -1,0 +1,55 @@
+"""The shipped InterGen: generates two people from a sentence, or one for a given other (section 5.4)."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import torch
+from torch import Tensor
+
+from models.compiled import compile_network
+from models.intergen.compact import CaptionBank, CompactInterGen, load_captions, load_folder
+from models.text import MiniLM
+from webdemo.inference.requests import GenerateRequest, ReactRequest
+
+from .two_person import Conditioning, TwoPersonPipeline
+
+
+class InterGenPipeline(TwoPersonPipeline[CompactInterGen]):
+    """The compact InterGen with its text encoder, loaded from a weights folder.
+
+    Raises WeightsError or TextEncoderError (both InputError) where files are missing or altered.
+    """
+
+    def __init__(self, folder: Path) -> None:
+        model, source = load_folder(folder)
+        fast = model.fast_denoiser  # before the network's own weights are let go
+        super().__init__(source, model)
+        if fast is not None:
+            compile_network(fast, f"{source.digest} fast")
+        self.bank: CaptionBank = load_captions(source)
+        self.encoder = MiniLM()
+
+    def condition(self, prompt: str) -> tuple[Tensor, Tensor]:
+        """The condition (1, …) of a prompt and its unit sentence vector (384,)."""
+        tokens = self.encoder([prompt])
+        with torch.no_grad():
+            return self.model.condition(tokens), tokens.pooled()[0]
+
+    def notes(self, vector: Tensor) -> tuple[str, ...]:
+        """What the user should know of a prompt: that it is far from all that was trained on."""
+        near = self.bank.nearest(vector)
+        if near[0][0] >= self.bank.far:
+            return ()
+        return (
+            "This sentence is far from anything the model was trained on, so the motion may not match it. "
+            f"The nearest thing it knows: “{near[0][1]}”.",
+        )
+
+    def conditioning(self, request: GenerateRequest | ReactRequest) -> Conditioning:
+        """The text vector and the touches that the text asks for; nothing without text."""
+        if not request.prompt.strip():  # without an intent both halves of the guidance are the same
+            return Conditioning(self.model.no_condition(), 1.0)
+        condition, vector = self.condition(request.prompt)
+        (touch,) = self.model.touches(condition)
+        return Conditioning(condition, request.guidance, touch, self.notes(vector))

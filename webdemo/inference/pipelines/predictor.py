@@ -1,0 +1,201 @@
+"""Predicts the future of one person or two by applying a trained predictor recursively (thesis, 2.5.9)."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Iterator
+from pathlib import Path
+
+import numpy as np
+import torch
+
+from models.predictors import Predictor, load_predictor
+from motion import SMPL22, stacked_positions
+from webdemo.inference.actor import FPS
+from webdemo.inference.cancel import CancelToken
+from webdemo.inference.predict_request import PredictRequest, PredictResult, with_people
+from webdemo.inference.requests import Progress, Result
+from webdemo.inference.timer import StageTimer
+
+from .predict_feet import with_planted_feet
+from .predict_frame import Array, to_last_pose, to_world
+
+_STILL = 1e-3
+"""Metres: if no joint of a past moves farther than this, the person stands still."""
+_OVERLAP = 10
+"""Frames that a pass of the recursion shares with the previous one; over them the two are cross-faded."""
+_SEAM_TRIES = 8
+_SEAM_FADE = 0.7
+"""Factor by which a correction at the seam decays each frame."""
+
+
+def mean_steps(positions: Array) -> Array:
+    """(…, T, J, 3) → (…, T − 1) mean distance per joint from frame to frame."""
+    return np.linalg.norm(np.diff(positions, axis=-3), axis=-1).mean(-1)
+
+
+def without_jump(past: Array, future: Array, largest: Array) -> Array:
+    """A future whose first step is no larger than a given mean distance per joint; the rest follows smoothly.
+
+    Args:
+        past: (P, T, J, 3) metres.
+        future: (P, F, J, 3) metres.
+        largest: (P,) metres.
+    """
+    step = future[:, 0] - past[:, -1]
+    size = np.linalg.norm(step, axis=-1).mean(-1)
+    excess = np.maximum(1 - largest / np.maximum(size, 1e-9), 0.0)[:, None, None] * step
+    fade = _SEAM_FADE ** np.arange(future.shape[1])
+    return future - fade[:, None, None] * excess[:, None]
+
+
+def joined(past: Array, future: Array) -> Array:
+    """Fits a future (P, F, 22, 3) to its past.
+
+    The result keeps the bone lengths of the last pose, its first step is no larger than the largest of the past, and
+    it does not sink below the lowest point of the past.
+    """
+    largest = mean_steps(past).max(axis=1)
+    asked = largest
+    for _ in range(_SEAM_TRIES):
+        made = above_floor(past, with_bones_of(past[:, -1], without_jump(past, future, asked)))
+        step = np.linalg.norm(made[:, 0] - past[:, -1], axis=-1).mean(-1)
+        if np.all(step <= largest):
+            break
+        # The bone and floor corrections lengthened the step again: ask for a shorter one.
+        asked = asked * np.where(step > largest, 0.98 * largest / np.maximum(step, 1e-9), 1.0)
+    return made
+
+
+def with_bones_of(pose: Array, positions: Array) -> Array:
+    """Positions (P, T, 22, 3) with the bone lengths of a pose (P, 22, 3): same root, same directions."""
+    result = np.array(positions, dtype=np.float64)
+    for parent, child in SMPL22.bones:
+        length = np.linalg.norm(pose[:, child] - pose[:, parent], axis=-1)[:, None, None]
+        bone = positions[:, :, child] - positions[:, :, parent]
+        unit = bone / np.maximum(np.linalg.norm(bone, axis=-1, keepdims=True), 1e-9)
+        result[:, :, child] = result[:, :, parent] + length * unit
+    return result
+
+
+def above_floor(past: Array, future: Array) -> Array:
+    """Raises the frames of a future that would sink below the lowest point of the past."""
+    floor = past[..., 1].min(axis=(1, 2))[:, None]
+    lift = np.maximum(floor - future[..., 1].min(axis=-1), 0.0)
+    raised = future.copy()
+    raised[..., 1] += lift[..., None]
+    return raised
+
+
+def faded(before: Array, after: Array) -> Array:
+    """Cross-fades from the steps of one prediction to those of another.
+
+    It fades steps, not positions. A fade of positions would add the offset between the two predictions to the
+    motion, and people would speed up at every join.
+
+    Args:
+        before: (P, 1 + N, J, 3) the last pose and N frames of the first prediction.
+        after: (P, F, J, 3) the second prediction from that pose, F at least N.
+
+    Returns:
+        (P, F, J, 3).
+    """
+    steps = np.diff(np.concatenate([before[:, :1], after], axis=1), axis=1)
+    again = before.shape[1] - 1
+    share = (np.arange(again) + 1)[:, None, None] / (again + 1)
+    steps[:, :again] = (1 - share) * np.diff(before, axis=1) + share * steps[:, :again]
+    return before[:, :1] + steps.cumsum(axis=1)
+
+
+class PredictorPipeline:
+    """Continues motions by the predictor of a weights folder; without one, by holding the last pose.
+
+    Raises WeightsError (an InputError) if files are missing or altered.
+    """
+
+    def __init__(self, folder: Path | None) -> None:
+        self.predictor: Predictor | None = None if folder is None else load_predictor(folder)
+        self.name = folder.name if folder else "still"
+        self.digest = self.predictor.digest if self.predictor else ""
+
+    def predict(self, past: Array, frames: int) -> Array:
+        """Predicts the frames that follow a past.
+
+        Args:
+            past: (people, T, 22, 3) metres at 30 fps, a second or more.
+            frames: how many are predicted.
+
+        Returns:
+            (people, frames, 22, 3) metres in the world of the past. Bones keep the lengths of the last pose;
+            the first step is no larger than the largest of the past's last second. A person who stands still
+            stays still, and planted feet do not slide.
+        """
+        *_, whole = self.passes(past.astype(np.float64), frames)
+        return self._cut(whole, past.shape[1], frames)
+
+    def passes(self, past: Array, frames: int) -> Iterator[Array]:
+        """The motion (people, T + …, 22, 3) after each pass of the network, until all frames are there."""
+        whole, seen = past, past[:, -round(FPS) :]
+        still = np.abs(seen - seen[:, -1:]).max(axis=(1, 2, 3)) < _STILL
+        if self.predictor is None:
+            still[:] = True
+        kept = past.shape[1]  # a pass continues from these frames; it predicts the later ones again
+        while whole.shape[1] - past.shape[1] < frames:
+            future = held = np.repeat(whole[:, kept - 1 : kept], round(FPS), axis=1)
+            if not still.all():
+                future = self._next(whole[:, :kept])
+                future = with_bones_of(past[:, -1], faded(whole[:, kept - 1 :], future))
+                future = above_floor(past, future)
+            future = np.where(still[:, None, None, None], held, future)
+            whole = np.concatenate([whole[:, :kept], future], axis=1)
+            kept = whole.shape[1] - _OVERLAP
+            yield whole
+
+    @staticmethod
+    def _cut(whole: Array, past: int, frames: int) -> Array:
+        """The requested frames of a prediction, with planted feet."""
+        seen, future = whole[:, :past][:, -round(FPS) :], whole[:, past : past + frames]
+        return with_planted_feet(seen, future, FPS)
+
+    def _next(self, whole: Array) -> Array:
+        assert self.predictor is not None
+        past = whole[:, -self.predictor.past :]
+        local, turn, shift = to_last_pose(past)
+        made = self.predictor(torch.from_numpy(local.astype(np.float32))).numpy()
+        future = to_world(made.astype(np.float64), turn, shift)
+        return joined(past, future)
+
+    def run(
+        self, request: PredictRequest, cancel: CancelToken, timer: StageTimer
+    ) -> Iterator[Progress | Result]:
+        """Progress events, then one :class:`PredictResult` without a manifest."""
+        now = time.perf_counter()
+        past, frames = stacked_positions(request.past).astype(np.float64), round(request.seconds * FPS)
+        whole: Array = past
+        total = 1 + max(0, -(-(frames - round(FPS)) // (round(FPS) - _OVERLAP)))
+        for step, longer in enumerate(self.passes(past, frames), start=1):
+            whole = longer
+            yield timer.progress("sample", step, total)
+            cancel.raise_if_cancelled()
+        future = self._cut(whole, past.shape[1], frames)
+        now = timer.lap("sample", now)
+        shown = np.concatenate([past, future], axis=1)
+        truth = request.truth
+        error: Array = np.empty(0)
+        true_speed: Array = np.empty(0)
+        if truth is not None:
+            real = stacked_positions(truth).astype(np.float64)
+            error = np.linalg.norm(future[:, : real.shape[1]] - real, axis=-1).mean(axis=(0, 2))
+            true_speed = mean_steps(np.concatenate([past[:, -1:], real], axis=1)).mean(0)
+        speed = mean_steps(shown[:, past.shape[1] - 1 :]).mean(0)
+        timer.lap("finish", now)
+        yield PredictResult(
+            duets=(with_people(request.motion, shown),),
+            manifest={},
+            timings={**timer.stages, "total": round(timer.elapsed, 4)},
+            past_frames=past.shape[1],
+            truth=truth,
+            error=tuple((1000 * error).round(2).tolist()),
+            speed=tuple((1000 * speed).round(3).tolist()),
+            true_speed=tuple((1000 * true_speed).round(3).tolist()),
+        )

@@ -1,0 +1,233 @@
+"""Reactions by the compact ReGenNet, offline or online.
+
+*Online*, nothing looks ahead: the first frame gives the actor's place, the network is a causal stream, and bones and
+feet are corrected frame by frame. So frame i of the reaction does not depend, to the last bit, on what the actor does
+after frame i.
+"""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Generator, Iterator
+from dataclasses import asdict
+from functools import cached_property
+from pathlib import Path
+
+import numpy as np
+import torch
+from numpy.typing import NDArray
+from torch import Tensor
+
+from models.diffusion import TRAIN_TIMESTEPS, make_scheduler, sample_steps
+from models.motion_tokens import FEATURES
+from models.regennet.compact import CompactReGenNet, load_folder
+from models.text import MiniLM
+from motion import SMPL22, Clip, Duet, InputError
+from motion.metrics import compare
+from webdemo.inference.actor import FPS, Placement
+from webdemo.inference.cancel import CancelToken
+from webdemo.inference.cleanup import clean_person
+from webdemo.inference.damping import Beside, Damping
+from webdemo.inference.following import FollowingCleanup
+from webdemo.inference.live import LiveFrame, LiveProgress, LiveRequest, paced
+from webdemo.inference.noise import sample_noise
+from webdemo.inference.requests import Progress, ReactRequest, Result
+from webdemo.inference.timer import StageTimer
+
+Array = NDArray[np.floating]
+SETTLE = 0.5
+"""Seconds over which the difference between a given first pose and the network's fades out."""
+NAMES = ("actor", "reactor")
+
+
+class ReGenNetPipeline:
+    """The compact ReGenNet with its text encoder, loaded from a weights folder.
+
+    Raises WeightsError or TextEncoderError (both InputError) if files are missing or altered.
+    """
+
+    def __init__(self, folder: Path) -> None:
+        self.model: CompactReGenNet
+        self.model, source = load_folder(folder)
+        self.name, self.digest, self.meta = folder.name, source.digest, source.meta
+
+    @cached_property
+    def encoder(self) -> MiniLM:
+        """The text encoder, loaded at the first prompt; a reaction without text does not need it."""
+        return MiniLM()
+
+    def condition(self, prompt: str, samples: int) -> Tensor:
+        """(samples, C) text vectors; zeros without text."""
+        if not prompt.strip():
+            return torch.zeros(samples, self.model.config.cond_dim)
+        tokens = self.encoder([prompt])
+        with torch.no_grad():
+            return self.model.conditioner(tokens.features, tokens.mask).expand(samples, -1)
+
+    def run(
+        self, request: ReactRequest, cancel: CancelToken, timer: StageTimer
+    ) -> Iterator[Progress | Result]:
+        """Progress events, then one :class:`Result` without a manifest.
+
+        Raises:
+            Cancelled: within one denoising step, or within one frame online.
+        """
+        now = time.perf_counter()
+        yield timer.progress("text")
+        condition = self.condition(request.prompt, request.samples)
+        now = timer.lap("text", now)
+        cancel.raise_if_cancelled()
+        if request.mode == "online":
+            raw, made = yield from self._online(request, condition, cancel, timer)
+        else:
+            raw, made = yield from self._offline(request, condition, cancel, timer)
+        now = timer.lap("sample", now)
+        yield timer.progress("finish")
+        if not np.isfinite(made).all():
+            raise InputError("The motion diverged: lower the guidance scale or take more steps.")
+        duets = [duet_of(request, person) for person in made]
+        readouts = tuple(
+            compare(duet_of(request, before), duet) for before, duet in zip(raw, duets, strict=True)
+        )
+        timer.lap("finish", now)
+        yield Result(
+            duets=tuple(duets),
+            manifest={},
+            readouts=readouts,
+            timings={**timer.stages, "total": round(timer.elapsed, 4)},
+        )
+
+    def _begin(self, request: ReactRequest, placement: Placement) -> Tensor | None:
+        """(samples, 67) the network's input for the reactor's first pose, if one is given."""
+        if request.start is None:
+            return None
+        pose = torch.from_numpy(placement.to_network(request.start)).float()
+        return self.model.begin_row(pose).expand(request.samples, -1)
+
+    # ---- offline ---------------------------------------------------------------------------------
+
+    def _offline(
+        self, request: ReactRequest, condition: Tensor, cancel: CancelToken, timer: StageTimer
+    ) -> Generator[Progress, None, tuple[Array, Array]]:
+        """Returns (before damping and clean-up, shown), each (samples, T, 22, 3) in the actor's world."""
+        model, placement = self.model, Placement.of(request.actor, "a", request.prompt)
+        frames = request.actor.num_frames
+        given = torch.from_numpy(placement.to_network(request.actor.positions)).float()
+        with torch.no_grad():
+            seen = model.actor_rows(given[None]).expand(request.samples, -1, -1)
+        begin = self._begin(request, placement)
+        scheduler = make_scheduler("ddim", request.steps, spacing="top")
+        damping = Damping(
+            Beside(model, given),
+            request.damping,
+            frames=frames,
+            timesteps=TRAIN_TIMESTEPS,
+            final_timestep=int(scheduler.timesteps[-1]),
+            touches=model.touches(condition) if request.prompt.strip() else (),
+        )
+        noise = sample_noise(request.seed, request.samples, (model.num_rows(frames), FEATURES))
+
+        def predict(x: Tensor, t: Tensor) -> Tensor:
+            return model.guided(x, t, seen, condition, scale=request.guidance, begin=begin)
+
+        uncorrected = noise
+
+        def correct(x0: Tensor, timestep: int) -> Tensor:
+            nonlocal uncorrected
+            uncorrected = x0
+            return damping(x0, timestep)
+
+        x = noise
+        for step in sample_steps(predict, noise, scheduler, correct=correct):
+            x = step.sample
+            yield timer.progress("sample", step.step, step.total)
+            cancel.raise_if_cancelled()
+        with torch.no_grad():
+            raw, made = (model.positions(one, frames)[0].double().numpy() for one in (uncorrected, x))
+        if not np.isfinite(made).all():
+            return raw, made
+        if request.start is not None:
+            first, place = placement.to_network(request.start), np.arange(frames)
+            raw, made = (one + settle(first - one[:, :1], place) for one in (raw, made))
+        finish = clean_person if request.cleanup else np.asarray
+        return placement.to_world(raw), placement.to_world(np.stack([finish(person) for person in made]))
+
+    # ---- online ----------------------------------------------------------------------------------
+
+    def live(self, request: ReactRequest) -> Iterator[LiveFrame]:
+        """Yields the reaction's frames; each one is computed before the actor's next frame is read."""
+        condition = self.condition(request.prompt, request.samples)
+        return self._live(request, condition)
+
+    def _live(self, request: ReactRequest, condition: Tensor) -> Iterator[LiveFrame]:
+        frames, model = request.actor.num_frames, self.model
+        # A last frame on a knot starts an interval that offline sampling does not need.
+        rows = model.num_rows(frames) + 1
+        noise = iter(sample_noise(request.seed, request.samples, (rows, FEATURES)).transpose(0, 1))
+        stream = None
+        off: Array | None = None
+        finish = [FollowingCleanup() for _ in range(request.samples)]
+        placement: Placement | None = None
+        for index, frame in enumerate(request.actor.positions):
+            began = time.perf_counter()
+            if placement is None:  # from the first frame only
+                placement = Placement.of(Clip(frame[None], FPS, request.actor.skeleton), "a")
+                stream = model.stream(
+                    condition,
+                    steps=request.steps,
+                    scale=request.guidance,
+                    max_frames=frames,
+                    begin=self._begin(request, placement),
+                )
+            assert stream is not None  # opened with the first frame
+            given = torch.from_numpy(placement.to_network(frame)).float()
+            made, contacts = stream.step(given, noise=noise)
+            raw = made.double().numpy()
+            if request.start is not None:
+                if off is None:
+                    off = placement.to_network(request.start) - raw
+                raw = raw + settle(off, np.array([index]))[:, 0]
+            shown = raw
+            if request.cleanup and np.isfinite(raw).all():
+                people = zip(finish, raw, contacts.numpy(), strict=True)
+                shown = np.stack([clean(person, standing) for clean, person, standing in people])
+            raw, shown = placement.to_world(raw), placement.to_world(shown)
+            yield LiveFrame(index, raw, shown, time.perf_counter() - began)
+
+    def _online(
+        self, request: ReactRequest, condition: Tensor, cancel: CancelToken, timer: StageTimer
+    ) -> Generator[Progress, None, tuple[Array, Array]]:
+        """Returns (raw, shown), each (samples, T, 22, 3) in the actor's world."""
+        total = request.actor.num_frames
+        live = []
+        plays = isinstance(request, LiveRequest)
+        frames = self._live(request, condition)
+        for frame in paced(frames) if plays else frames:
+            live.append(frame)
+            done = timer.progress("sample", frame.index + 1, total)
+            yield LiveProgress(frame=frame, **asdict(done)) if plays else done
+            cancel.raise_if_cancelled()
+        delays = [frame.seconds for frame in live]
+        timer.stages["delay of a frame, median"] = round(float(np.median(delays)), 4)
+        timer.stages["delay of a frame, longest"] = round(max(delays), 4)
+        raw, shown = (np.stack([getattr(f, name) for f in live], axis=1) for name in ("raw", "positions"))
+        return raw, shown
+
+
+def settle(off: Array, frames: NDArray[np.integer]) -> Array:
+    """Fades out the difference between a wanted and a generated first pose.
+
+    Args:
+        off: (samples, 1, 22, 3) or (samples, 22, 3) metres.
+        frames: (T,) frame indices.
+
+    Returns:
+        (samples, T, 22, 3), ``off`` at frame 0 and 0 from :data:`SETTLE` seconds on.
+    """
+    share = np.clip(1 - frames / (SETTLE * FPS), 0, 1)
+    return off.reshape(-1, 1, *off.shape[-2:]) * (share**2 * (3 - 2 * share))[:, None, None]
+
+
+def duet_of(request: ReactRequest, person: Array) -> Duet:
+    """The given person, unchanged, and the generated one."""
+    return Duet(request.actor, Clip(person, FPS, SMPL22, name=NAMES[1]), NAMES)

@@ -1,0 +1,215 @@
+"""Two people denoised together: what the pipelines of InterGen and BiGraphDiff share."""
+
+from __future__ import annotations
+
+import time
+from abc import ABC, abstractmethod
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
+from typing import Any, Generic, Protocol, TypeVar, cast
+
+import numpy as np
+import torch
+from torch import Tensor
+
+from models.bigraphdiff.compact import CompactBiGraphDiff
+from models.compiled import compile_network
+from models.diffusion import TRAIN_TIMESTEPS, SamplerName, make_scheduler, sample_steps
+from models.intergen.compact import CompactInterGen, Touch
+from models.weights_io import WeightsFolder
+from motion import Duet, InputError
+from motion.metrics import compare
+from webdemo.inference.cancel import CancelToken
+from webdemo.inference.cleanup import clean_person
+from webdemo.inference.damping import Damping
+from webdemo.inference.noise import sample_noise
+from webdemo.inference.requests import GenerateRequest, Progress, ReactRequest, Result
+from webdemo.inference.scenes import Finish, Scene, scene_of
+from webdemo.inference.timer import StageTimer
+
+Network = TypeVar("Network", CompactInterGen, CompactBiGraphDiff)
+
+
+@dataclass(frozen=True)
+class Conditioning:
+    """What a network conditions on, and how strongly.
+
+    Attributes:
+        condition: (1, …) as the denoiser takes it; zeros are no condition.
+        guidance: scale of classifier-free guidance.
+        touch: which joints should come together.
+        notes: sentences the user should read.
+    """
+
+    condition: Tensor
+    guidance: float
+    touch: Touch = ()
+    notes: tuple[str, ...] = ()
+
+
+class Passes(Protocol):
+    """The network calls of a run, step by step."""
+
+    def guided(
+        self,
+        x: Tensor,
+        t: Tensor,
+        cond: Tensor,
+        mask: Tensor | None = None,
+        known: Tensor | None = None,
+        *,
+        scale: float,
+    ) -> Tensor:
+        """The guided prediction of x0, as the denoiser's own ``guided``."""
+        ...
+
+    def correct(self, damping: Damping, x0: Tensor, timestep: int) -> Tensor:
+        """A prediction (B, tokens, features) corrected by its damping."""
+        ...
+
+
+class OwnPasses:
+    """The passes of a request that runs alone.
+
+    Args:
+        denoiser: has ``guided`` as :meth:`Passes.guided`.
+    """
+
+    def __init__(self, denoiser: Any) -> None:
+        self.guided = denoiser.guided
+
+    def correct(self, damping: Damping, x0: Tensor, timestep: int) -> Tensor:
+        """A prediction corrected by its damping."""
+        return damping(x0, timestep)
+
+
+class _Steps:
+    """What the sampling loop calls at every step: the guided prediction, then its correction.
+
+    Args:
+        passes: make both.
+        damping: the correction.
+        condition: (samples, …) as the denoiser takes it.
+        guidance: scale of classifier-free guidance.
+        given: the part of the motion that is known; it is clean at every timestep, as in training (InterGen,
+            section 5.4).
+        known: the same as the network is shown it, if it reads it.
+    """
+
+    uncorrected: Tensor
+    """The last prediction before its correction."""
+
+    def __init__(
+        self,
+        passes: Passes,
+        damping: Damping,
+        condition: Tensor,
+        guidance: float,
+        given: Callable[[Tensor], Tensor] | None,
+        known: Tensor | None,
+    ) -> None:
+        self.passes, self.damping = passes, damping
+        self.condition, self.guidance = condition, guidance
+        self.given = given or (lambda x: x)
+        self.seen = {} if known is None else {"known": known}
+
+    def predict(self, x: Tensor, t: Tensor) -> Tensor:
+        """The guided prediction of x0 from xt (samples, tokens, features)."""
+        return self.passes.guided(self.given(x), t, self.condition, scale=self.guidance, **self.seen)
+
+    def correct(self, x0: Tensor, timestep: int) -> Tensor:
+        """The prediction with what is given in its place and corrected by the damping."""
+        self.uncorrected = self.given(x0)
+        return self.given(self.passes.correct(self.damping, self.uncorrected, timestep))
+
+
+class TwoPersonPipeline(ABC, Generic[Network]):
+    """Denoises two people by the network of a weights folder; a subclass says what it conditions on.
+
+    Args:
+        source: the folder.
+        model: its network.
+    """
+
+    def __init__(self, source: WeightsFolder, model: Network) -> None:
+        self.name, self.digest, self.meta = source.folder.name, source.digest, source.meta
+        self.model: Network = model
+        self.compiled = compile_network(model.denoiser, source.digest)
+
+    @abstractmethod
+    def conditioning(self, request: GenerateRequest | ReactRequest) -> Conditioning:
+        """The conditioning of a request."""
+
+    def run(
+        self,
+        request: GenerateRequest | ReactRequest,
+        cancel: CancelToken,
+        timer: StageTimer,
+        passes: Passes | None = None,
+        scene: Scene | None = None,
+    ) -> Iterator[Progress | Result]:
+        """Progress events, then one :class:`Result` without a manifest; raises Cancelled within one step.
+
+        Args:
+            request: what is asked for.
+            cancel: looked at before every step.
+            timer: of the run.
+            passes: makes the guided predictions and the corrections, for requests that share them; by default
+                the network itself does.
+            scene: what is known of the motion, and how samples become duets; by default what the request says.
+        """
+        passes = passes or OwnPasses(self.model.denoiser)
+        now = time.perf_counter()
+        yield timer.progress("text")
+        conditioning = self.conditioning(request)
+        condition = conditioning.condition.expand(request.samples, *conditioning.condition.shape[1:])
+        scene = scene or scene_of(request, self.model)
+        now = timer.lap("text", now)
+
+        layout, given = self.model.layout, scene.given
+        noise = sample_noise(
+            request.seed, request.samples, (layout.num_tokens(scene.frames), 2 * layout.token_features)
+        )
+        scheduler = make_scheduler(cast(SamplerName, request.sampler), request.steps, spacing="top")
+        damping = Damping(
+            self.model,
+            request.damping,
+            frames=scene.frames,
+            timesteps=TRAIN_TIMESTEPS,
+            final_timestep=int(scheduler.timesteps[-1]),
+            frozen=None if given is None else given.frozen[0],
+            touches=(conditioning.touch,) * request.samples,
+        )
+        known = given.features if given is not None and self.model.reads_known else None
+        steps = _Steps(passes, damping, condition, conditioning.guidance, given, known)
+        cancel.raise_if_cancelled()
+        sample = steps.uncorrected = noise
+        for step in sample_steps(steps.predict, noise, scheduler, correct=steps.correct):
+            sample = step.sample
+            yield timer.progress("sample", step.step, step.total)
+            cancel.raise_if_cancelled()
+        now = timer.lap("sample", now)
+
+        yield timer.progress("finish")
+        before = self._duets(steps.uncorrected, scene, _as_is)
+        duets = self._duets(sample, scene, clean_person if request.cleanup else _as_is)
+        readouts = tuple(compare(raw, duet) for raw, duet in zip(before, duets, strict=True))
+        timer.lap("finish", now)
+        yield Result(
+            duets=duets,
+            manifest={},
+            readouts=readouts,
+            timings={**timer.stages, "total": round(timer.elapsed, 4)},
+            notes=conditioning.notes,
+        )
+
+    def _duets(self, x: Tensor, scene: Scene, finish: Finish) -> tuple[Duet, ...]:
+        with torch.no_grad():
+            positions = self.model.positions(x)[0][:, :, : scene.frames].numpy()
+        if not np.isfinite(positions).all():
+            raise InputError("The motion diverged: lower the guidance scale or take more steps.")
+        return tuple(scene.duet(pair, finish) for pair in positions)
+
+
+def _as_is(person: np.ndarray) -> np.ndarray:
+    return person

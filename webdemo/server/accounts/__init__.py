@@ -1,0 +1,1 @@
+"""Identities: accounts, sign-in, and visitors without an account."""

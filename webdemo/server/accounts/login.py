@@ -1,0 +1,90 @@
+"""Signing in and out: one small page, and the same address for programs."""
+
+from __future__ import annotations
+
+from urllib.parse import urlsplit
+
+from fastapi import APIRouter, Form, Request
+from starlette.concurrency import run_in_threadpool
+from starlette.responses import HTMLResponse, JSONResponse, RedirectResponse, Response
+
+from motion import InputError
+from webdemo.server.http.body_limits import Refused
+from webdemo.server.http.cookies import set_cookie
+from webdemo.server.http.error_pages import sign_in_card
+from webdemo.server.settings import Settings
+
+from .users import SignIns, TooManyTries
+from .visitors import NO_ACCOUNTS, SESSION_COOKIE, Visitors
+
+
+def login_routes(settings: Settings, sign_ins: SignIns, visitors: Visitors) -> APIRouter:
+    """``/login`` (the page, and POST for it and for gradio_client) and ``/logout``."""
+    router = APIRouter()
+    root = settings.root_path
+
+    def page(wanted: str, *, name: str = "", error: str = "", status: int = 200) -> HTMLResponse:
+        body = sign_in_card(action=f"{root}/login", wanted=wanted, name=name[:40], error=error)
+        return HTMLResponse(body, status_code=status, headers={"Cache-Control": "no-store"})
+
+    def keep(response: Response, request: Request, token: str, seconds: float) -> Response:
+        secure = request.url.scheme == "https"
+        set_cookie(response, SESSION_COOKIE, token, seconds=seconds, root=root, secure=secure)
+        return response
+
+    @router.get("/login")
+    def ask(next: str = "/") -> Response:
+        return page(_own_path(next))
+
+    @router.post("/login")
+    async def sign_in(
+        request: Request,
+        username: str = Form("", max_length=200),
+        password: str = Form("", max_length=1000),
+        next: str = Form("/", max_length=4096),
+    ) -> Response:
+        in_browser = "text/html" in request.headers.get("accept", "")
+        address = request.client.host if request.client else ""
+        error, status, token = "The name or the password is wrong: try again.", 401, None
+        try:
+            token = await run_in_threadpool(sign_ins.begin, username.strip().lower(), password, address)
+        except TooManyTries as reason:
+            error, status = str(reason), 429
+        except InputError:
+            raise Refused(503, NO_ACCOUNTS, "accounts") from None
+        if token is None:
+            return (
+                page(_own_path(next), name=username, error=error, status=status)
+                if in_browser
+                else JSONResponse({"detail": error}, status_code=status)
+            )
+        response: Response = (
+            RedirectResponse(f"{root}{_own_path(next)}", status_code=303)
+            if in_browser
+            else JSONResponse({"success": True})
+        )
+        return keep(response, request, token, sign_ins.seconds)
+
+    @router.get("/logout")
+    def sign_out_first() -> Response:
+        raise Refused(405, "A link cannot sign you out: use the button on the page.", "bad method")
+
+    @router.post("/logout")
+    async def sign_out(request: Request) -> Response:
+        if token := request.cookies.get(SESSION_COOKIE, ""):
+            await run_in_threadpool(sign_ins.end, token)
+            visitors.forget(token)
+        return keep(RedirectResponse(f"{root}/login", status_code=303), request, "", 0)
+
+    return router
+
+
+def _own_path(wanted: str) -> str:
+    """A path on this server: an address of another host, or a header's line break, becomes the page."""
+    parts = urlsplit(wanted)
+    plain = wanted.isprintable() and wanted.isascii() and not any(c in wanted for c in "\\ \"'<>")
+    return (
+        wanted
+        if plain and wanted.startswith("/") and not wanted.startswith("//") and not parts.netloc
+        else "/"
+    )

@@ -1,0 +1,203 @@
+"""Accounts: a file of names with salted hashes, and sign-ins that end."""
+
+from __future__ import annotations
+
+import base64
+import hashlib
+import hmac
+import os
+import re
+import secrets
+import threading
+import time
+from pathlib import Path
+
+from sqlalchemy import delete
+
+from motion import InputError
+from motion.formats.files import replacing
+from webdemo.server.store.database import Database, SignIn
+
+NAME = re.compile(r"[a-z0-9][a-z0-9._-]{0,39}\Z")
+SHORTEST = 8
+"""Characters of a password at least."""
+LONGEST = 256
+_COST = {"n": 2**14, "r": 8, "p": 1}
+"""scrypt's cost: 16 MB and about 50 ms a try."""
+_HEADER = (
+    "# Accounts of Pas de Deux: a name, then scrypt's salt and hash. `python -m webdemo user` edits it.\n"
+)
+TRIES = 8
+"""Wrong passwords for one name from one address in :data:`TRY_SECONDS` before the next is refused."""
+TRY_SECONDS = 300.0
+
+
+class Users:
+    """The file of accounts, read anew when it changes.
+
+    One line a person: ``name:salt:hash``, salt and hash in base64.
+
+    Args:
+        path: the file.
+    """
+
+    def __init__(self, path: Path) -> None:
+        self.path = path
+        self._read_at: tuple[int, int] | None = None
+        self._known: dict[str, tuple[bytes, bytes]] = {}
+        self._lock = threading.Lock()
+        self._hashing = threading.Semaphore(2)  # so that guesses cannot take all memory and cores
+        self._nobody = _hashed("nobody")
+
+    @property
+    def names(self) -> list[str]:
+        """Everybody's name."""
+        return sorted(self._entries())
+
+    def add(self, name: str, password: str) -> bool:
+        """Adds a person, or changes their password; whether they are new."""
+        if not NAME.match(name):
+            raise InputError(
+                f"{name!r:.60} is not a valid account name: use up to 40 of a-z, 0-9, '.', '_' and '-'."
+            )
+        if not SHORTEST <= len(password) <= LONGEST:
+            raise InputError(f"The password must have {SHORTEST} to {LONGEST} characters.")
+        entries = self._entries() if self.path.exists() else {}
+        new = name not in entries
+        self._write(entries | {name: _hashed(password)})
+        return new
+
+    def remove(self, name: str) -> None:
+        """Removes a person; raises InputError if there is none of that name."""
+        entries = self._entries()
+        if name not in entries:
+            raise InputError(f"There is no account {name!r:.60} in {self.path}: see `user list`.")
+        self._write({other: entry for other, entry in entries.items() if other != name})
+
+    def knows(self, name: str, password: str) -> bool:
+        """Whether this is the person's password; takes as long for a name that is not there."""
+        entries = self._entries()
+        known = name in entries
+        salt, digest = entries.get(name, self._nobody)
+        with self._hashing:
+            found = hashlib.scrypt(
+                password[: LONGEST + 1].encode(errors="replace"), salt=salt, dklen=len(digest), **_COST
+            )
+        return hmac.compare_digest(found, digest) and known
+
+    def entry(self, name: str) -> str | None:
+        """A fingerprint of a person's password, which changes with it; None if there is no such person."""
+        found = self._entries().get(name)
+        return None if found is None else hashlib.sha256(b"".join(found)).hexdigest()
+
+    def _entries(self) -> dict[str, tuple[bytes, bytes]]:
+        try:
+            status = self.path.stat()
+            with self._lock:
+                if self._read_at != (status.st_mtime_ns, status.st_size):
+                    self._known = _parse(self.path.read_text(encoding="utf-8"))
+                    self._read_at = (status.st_mtime_ns, status.st_size)
+                return dict(self._known)
+        except (OSError, ValueError) as error:
+            reason = getattr(error, "strerror", None) or "it is damaged"
+            raise InputError(
+                f"The file of accounts {self.path} cannot be read ({reason}): "
+                "make it with `python -m webdemo user add NAME`."
+            ) from None
+
+    def _write(self, entries: dict[str, tuple[bytes, bytes]]) -> None:
+        lines = [
+            ":".join([name, *(base64.b64encode(part).decode() for part in entry)])
+            for name, entry in sorted(entries.items())
+        ]
+        with replacing(self.path) as temporary:
+            temporary.write_text(_HEADER + "".join(f"{line}\n" for line in lines), encoding="utf-8")
+        os.chmod(self.path, 0o600)
+
+
+def _hashed(password: str) -> tuple[bytes, bytes]:
+    salt = secrets.token_bytes(16)
+    return salt, hashlib.scrypt(password.encode(), salt=salt, dklen=32, **_COST)
+
+
+def _parse(text: str) -> dict[str, tuple[bytes, bytes]]:
+    entries = {}
+    for line in text.splitlines():
+        if line.strip() and not line.startswith("#"):
+            name, salt, digest = line.strip().split(":")
+            entries[name] = (base64.b64decode(salt, validate=True), base64.b64decode(digest, validate=True))
+    return entries
+
+
+class TooManyTries(InputError):
+    """Too many wrong passwords for one name or from one address."""
+
+
+class SignIns:
+    """Sessions of signed-in people; only the hash of the cookie is stored.
+
+    Args:
+        database: stores them, so a restart signs nobody out.
+        users: the accounts. A session ends when its account is removed or its password changed.
+        hours: lifetime of a session.
+    """
+
+    def __init__(self, database: Database, users: Users, hours: float) -> None:
+        self.database, self.users, self.seconds = database, users, hours * 3600
+        self._tries: dict[str, list[float]] = {}
+        self._lock = threading.Lock()
+
+    def begin(self, name: str, password: str, address: str) -> str | None:
+        """A new session's token, or None if name and password do not match.
+
+        Raises:
+            TooManyTries: after too many wrong passwords.
+            InputError: if the accounts cannot be read.
+        """
+        # A name is locked for one address only, so a stranger cannot lock its owner out.
+        allowed = {f"{name[:64]} {address}": TRIES, address: 5 * TRIES}
+        with self._lock:
+            self._forget()
+            if any(len(self._tries.get(key, ())) >= most for key, most in allowed.items()):
+                raise TooManyTries("Too many wrong passwords: try again in five minutes.")
+        entry = self.users.entry(name)  # read before the password is checked, which may change meanwhile
+        if not self.users.knows(name, password) or entry is None:
+            with self._lock:
+                for key in allowed:
+                    self._tries.setdefault(key, []).append(time.monotonic())
+            return None
+        token = secrets.token_urlsafe(32)
+        now = time.time()
+        with self.database.session.begin() as session:
+            session.execute(delete(SignIn).where(SignIn.until < now))
+            session.add(SignIn(digest=_digest(token), person=name, entry=entry, until=now + self.seconds))
+        return token
+
+    def person(self, token: str) -> str | None:
+        """The owner of a session; None if it is unknown, has expired, or belongs to an earlier password.
+
+        Raises:
+            InputError: if the accounts cannot be read.
+        """
+        if not 20 <= len(token) <= 100:
+            return None
+        with self.database.session() as session:
+            found = session.get(SignIn, _digest(token))
+        if found is None or found.until < time.time() or found.entry != self.users.entry(found.person):
+            return None
+        return found.person
+
+    def end(self, token: str) -> None:
+        """Signs a session out."""
+        with self.database.session.begin() as session:
+            session.execute(delete(SignIn).where(SignIn.digest == _digest(token)))
+
+    def _forget(self) -> None:
+        since = time.monotonic() - TRY_SECONDS
+        self._tries = {
+            key: recent for key, tries in self._tries.items() if (recent := [t for t in tries if t > since])
+        }
+
+
+def _digest(token: str) -> str:
+    return hashlib.sha256(token.encode()).hexdigest()

@@ -1,0 +1,132 @@
+"""Identifies visitors by sign-in, cookie or address, and tracks the owners of page sessions."""
+
+from __future__ import annotations
+
+import hashlib
+import secrets
+import threading
+import time
+from collections import OrderedDict
+from collections.abc import Mapping
+
+from motion import InputError
+from webdemo.server.http.body_limits import Refused
+from webdemo.server.settings import Settings, is_loopback
+from webdemo.ui.visitor import Visitor
+
+from .users import SignIns
+
+SESSION_COOKIE = "pasdedeux_session"
+VISITOR_COOKIE = "pasdedeux_visitor"
+_REMEMBERED = 10.0
+"""Seconds for which a sign-in is not looked up anew."""
+_MOST = 20_000
+NO_ACCOUNTS = "The server's accounts cannot be read: tell the person who runs it."
+
+
+class Visitors:
+    """Identifies the sender of a request.
+
+    Args:
+        settings: whether there are accounts, and whether other machines may connect.
+        sign_ins: sessions of people with accounts; None without accounts.
+    """
+
+    def __init__(self, settings: Settings, sign_ins: SignIns | None) -> None:
+        self.settings, self.sign_ins = settings, sign_ins
+        self._lock = threading.Lock()
+        self._known: OrderedDict[str, tuple[str | None, float]] = OrderedDict()
+
+    def of(self, cookies: Mapping[str, str], address: str, *, reference: str, base: str) -> Visitor | None:
+        """The visitor, or None if they must sign in first.
+
+        Raises:
+            Refused: if a request from elsewhere arrives at a server that is not open.
+        """
+        if self.sign_ins is not None:
+            person = self._signed_in(cookies.get(SESSION_COOKIE, ""))
+            name = f"user {person}"
+            return None if person is None else Visitor(name, name, reference, base, person)
+        local = is_loopback(address)
+        if not local and not self.settings.open:
+            raise Refused(
+                403,
+                "This server is for its own machine: its owner can make accounts or set PASDEDEUX_OPEN=1.",
+                "not open",
+            )
+        token = cookies.get(VISITOR_COOKIE, "")
+        browser = f"visitor {digest(token)}" if 20 <= len(token) <= 100 else ""
+        if self.settings.open:
+            return Visitor(browser or f"address {address}", browser, reference, base, address=address)
+        return Visitor(browser or "local", "local", reference, base)
+
+    def forget(self, token: str) -> None:
+        """Drops a signed-out session from the cache."""
+        with self._lock:
+            self._known.pop(digest(token), None)
+
+    def _signed_in(self, token: str) -> str | None:
+        if not token or self.sign_ins is None:
+            return None
+        key, now = digest(token), time.monotonic()
+        with self._lock:
+            known = self._known.get(key)
+        if known is not None and known[1] > now:
+            return known[0]
+        try:
+            person = self.sign_ins.person(token)
+        except InputError:
+            raise Refused(503, NO_ACCOUNTS, "accounts") from None
+        with self._lock:
+            self._known[key] = (person, now + _REMEMBERED)
+            while len(self._known) > _MOST:
+                self._known.popitem(last=False)
+        return person
+
+
+class Bindings:
+    """Tracks the owners of page sessions and calls: the first person who uses a session owns it.
+
+    Gradio hands the results of a session, and of a call, to anybody who names it; here only its owner is let
+    through.
+    """
+
+    def __init__(self) -> None:
+        self._owners: OrderedDict[str, str] = OrderedDict()
+        self._lock = threading.Lock()
+
+    def check(self, name: object, person: str, *, begin: bool = False, known: bool = False) -> None:
+        """Raises Refused if a session or call is another person's.
+
+        Args:
+            name: of the session or call.
+            person: who uses it.
+            begin: makes an unknown one theirs.
+            known: refuses an unknown one.
+        """
+        if not isinstance(name, str):
+            raise Refused(400, "The session's name is not text: reload the page.", "forged")
+        if len(name) > 100:
+            raise Refused(400, "The session's name is too long: reload the page.", "forged")
+        with self._lock:
+            owner = self._owners.get(name)
+            if owner is None and begin:
+                self._owners[name] = person
+                while len(self._owners) > _MOST:
+                    self._owners.popitem(last=False)
+            elif owner is not None:
+                self._owners.move_to_end(name)
+        if owner is None and known:
+            raise Refused(404, "There is no such call: send it again.", "forged")
+        if owner is not None and owner != person:
+            raise Refused(403, "This session is somebody else's: reload the page.", "forged")
+
+
+def digest(token: str) -> str:
+    """A hash that identifies a secret without storing it."""
+    return hashlib.sha256(token.encode()).hexdigest()[:32]
+
+
+def new_token() -> str:
+    """An unguessable name for a browser."""
+    return secrets.token_urlsafe(24)

@@ -1,0 +1,1 @@
+"""Several processes or machines: names for each, and the engine on Ray Serve."""

@@ -1,0 +1,142 @@
+"""One request and the answer to it."""
+
+from __future__ import annotations
+
+import json
+import time
+import uuid
+from collections.abc import Callable
+
+from starlette.datastructures import MutableHeaders
+from starlette.responses import HTMLResponse, JSONResponse, Response
+from starlette.types import Message, Scope, Send
+
+from webdemo.server.settings import on_a_space
+
+from .body_limits import BoundedBody, Refused
+from .error_pages import message_card
+
+_POLICY = (
+    "default-src 'none'",
+    # Gradio starts by scripts within the page and compiles those of its events; WebGL drawing does as well.
+    "script-src 'self' 'unsafe-inline' 'unsafe-eval' blob:",
+    "worker-src 'self' blob:",
+    "style-src 'self' 'unsafe-inline'",
+    "img-src 'self' data: blob:",
+    "media-src 'self' data: blob:",
+    "font-src 'self' data:",
+    "connect-src 'self' data: blob:",
+    "manifest-src 'self'",
+    "form-action 'self'",
+    "base-uri 'self'",
+)
+"""Content security policy: the page loads everything from this server, nothing from other hosts."""
+_NOT_FRAMED = "frame-ancestors 'self'"
+"""Not on a Space, which shows its page in a frame."""
+
+
+class Exchange:
+    """A request, and what is sent for it: an id and safe headers on every answer, sentences for errors.
+
+    Args:
+        scope: the request's.
+        send: where the answer goes.
+        root: path under which the page is.
+
+    Attributes:
+        reference: the request's id.
+        headers: the request's; the last of several of one name.
+        status: of the answer; 0 while none was sent.
+        first_byte: seconds until the answer began.
+        body: the request's; a refusal of it is the answer, whatever its reader makes of that.
+        cookie: a Set-Cookie header that the answer gets.
+        heard: is given every part of the answer's body before it is sent.
+    """
+
+    def __init__(self, scope: Scope, send: Send, *, root: str) -> None:
+        self.scope, self._send, self._root = scope, send, root
+        self.reference = uuid.uuid4().hex[:12]
+        self.headers: dict[bytes, bytes] = dict(scope["headers"])
+        self.status, self.first_byte = 0, 0.0
+        self.body: BoundedBody | None = None
+        self.cookie = ""
+        self.heard: Callable[[bytes], None] | None = None
+        self._began = time.perf_counter()
+        self._held: list[Message] = []
+        self._instead = (500, 404) if self.in_browser else (500,)
+
+    @property
+    def in_browser(self) -> bool:
+        """Whether somebody looks at the answer."""
+        return b"text/html" in self.headers.get(b"accept", b"")
+
+    @property
+    def seconds(self) -> float:
+        """Seconds since the request arrived."""
+        return time.perf_counter() - self._began
+
+    async def answer(self, message: Message) -> None:
+        """Sends a part of the page's answer, or holds it where there may be something better to say."""
+        if self.body is not None and self.body.refused is not None and not self.status:
+            return
+        if self._held or (message["type"] == "http.response.start" and message["status"] in self._instead):
+            self._held.append(message)
+            return
+        await self._pass_on(message)
+
+    async def finish(self) -> None:
+        """Sends what was held; raises Refused for a place that does not exist, or a body that was refused."""
+        if self.body is not None and self.body.refused is not None:
+            raise self.body.refused
+        if self._held and self._held[0]["status"] == 404:
+            raise Refused(404, "There is nothing here.", "not found")
+        if self._held and _is_sentence(self._held):
+            self._held[0]["status"] = 422
+        for message in self._held:
+            await self._pass_on(message)
+
+    async def refuse(self, refused: Refused) -> None:
+        """Answers with a sentence, where no answer has begun."""
+        if not self.status:
+            await self.respond(self._refusal(refused))
+
+    async def respond(self, response: Response) -> None:
+        """Answers with a response of ours."""
+        await response(self.scope, _nothing, self._pass_on)
+
+    async def _pass_on(self, message: Message) -> None:
+        if message["type"] == "http.response.start":
+            self.status, self.first_byte = message["status"], self.seconds
+            self._dress(MutableHeaders(scope=message))
+        elif self.heard is not None and self.status == 200:
+            self.heard(message.get("body", b""))
+        await self._send(message)
+
+    def _dress(self, headers: MutableHeaders) -> None:
+        headers["X-Request-ID"] = self.reference
+        headers["X-Content-Type-Options"] = "nosniff"
+        headers["Referrer-Policy"] = "same-origin"  # the address of an opened run is its key
+        policy = _POLICY if on_a_space() else (*_POLICY, _NOT_FRAMED)
+        headers["Content-Security-Policy"] = "; ".join(policy)
+        if self.cookie:
+            headers.append("Set-Cookie", self.cookie)
+
+    def _refusal(self, refused: Refused) -> Response:
+        if self.in_browser:
+            page = message_card(refused.sentence, home=f"{self._root}/", reference=self.reference)
+            return HTMLResponse(page, status_code=refused.status)
+        content = {"detail": refused.sentence, "request": self.reference}
+        return JSONResponse(content, status_code=refused.status)
+
+
+def _is_sentence(answer: list[Message]) -> bool:
+    """Whether a response is Gradio's error about a value, which has status 500."""
+    try:
+        content = json.loads(b"".join(message.get("body", b"") for message in answer))
+    except ValueError:
+        return False
+    return isinstance(content, dict) and isinstance(content.get("error"), str) and "title" in content
+
+
+async def _nothing() -> Message:
+    return {"type": "http.disconnect"}

@@ -1,0 +1,396 @@
+"""What every request passes before the page sees it: limits, where it comes from, and who sent it.
+
+Starlette's TrustedHostMiddleware and RequestBodyLimitMiddleware would do a part of it: the first answers
+without naming the setting, the second bounds no time. So both are done here.
+"""
+
+from __future__ import annotations
+
+import errno
+import hmac
+import json
+import logging
+import re
+import shutil
+from collections.abc import Callable
+from urllib.parse import parse_qs, quote, urlsplit
+
+from sqlalchemy.exc import SQLAlchemyError
+from starlette.concurrency import run_in_threadpool
+from starlette.responses import JSONResponse, RedirectResponse, Response
+from starlette.types import ASGIApp, Receive, Scope, Send
+
+from webdemo.server.accounts.visitors import VISITOR_COOKIE, Bindings, Visitors, new_token
+from webdemo.server.logs import REFERENCE
+from webdemo.server.settings import Settings, is_loopback, on_a_space
+from webdemo.server.store.database import is_full
+from webdemo.server.store.personal_files import PERSON
+from webdemo.ui.visitor import Visitor
+
+from .body_limits import BoundedBody, Refused, declared_length, too_large
+from .cookies import read_cookies, set_cookie
+from .exchange import Exchange
+from .metrics import Figures
+from .payloads import Payloads
+from .rate_limit import RateLimit
+from .upload_form import UploadForm
+
+log = logging.getLogger(__name__)
+
+PUBLIC = ("/login", "/logout", "/healthz", "/metrics")
+"""Paths that need no sign-in; /metrics has its own rule."""
+API = "/gradio_api/"
+_CLOSED = re.compile(
+    r"/(monitoring|docs|redoc|openapi\.json|gradio_api/(openapi\.json|proxy=|vibe|undo-vibe|run-history|runs|deep_link|dev/"
+    r"|stream/|process_recording|custom_component|file=\w+:|file/\w+:))",
+    re.IGNORECASE,
+)
+"""Gradio's routes that this page does not use: proxies, code editing, monitoring, other hosts' files."""
+_NOT_HEARD = (b"x-forwarded-host", b"x-forwarded-proto", b"x-gradio-server")
+"""Headers from any client from which Gradio would take the page's address. Here they are dropped: the address is
+Host's, and the scheme is that of a trusted proxy."""
+_CHANGING = ("POST", "PUT", "PATCH", "DELETE")
+_LONGEST_URL = 4096
+_ROUTES = frozenset(
+    f"/{name}"
+    for name in (
+        "login",
+        "logout",
+        "healthz",
+        "metrics",
+        "config",
+        "theme.css",
+        "static",
+        "assets",
+        "favicon.ico",
+    )
+)
+_API_ROUTES = frozenset(
+    ("queue", "upload", "upload_progress", "file", "call", "run", "api", "info", "heartbeat", "cancel",
+     "reset", "component_server", "startup-events", "app_id")
+)  # fmt: skip
+
+
+_NOTHING = "There is nothing here."
+_DISK = "The server's disk is full, so nothing more can be kept: tell the person who runs it."
+_DATABASE = "The server's database cannot be read or written: tell the person who runs it."
+_ANSWERS = frozenset(f"{API}{name}" for name in ("queue/data", "call", "run", "api"))
+"""Paths that send the results of runs."""
+_CALLS = frozenset(f"{API}{name}" for name in ("queue/join", "call"))
+"""Paths whose responses hold the id of a call, with which its result is fetched."""
+_MOST_FIELDS = 50
+"""Parameters of an address."""
+
+
+_MOST_VALUES = 20_000
+"""Of a call's body: the page's own have a few dozen."""
+
+
+class OpenAnswers:
+    """The number of run results being sent; used only by the server's main thread."""
+
+    count = 0
+
+
+class Guard:
+    """The outermost ASGI middleware.
+
+    Args:
+        app: the guarded application.
+        settings: limits and host names.
+        visitors: identifies visitors.
+        figures: metrics to update.
+        answers: counts the results being sent.
+        payloads: validates the payloads of calls.
+    """
+
+    def __init__(
+        self,
+        app: ASGIApp,
+        *,
+        settings: Settings,
+        visitors: Visitors,
+        figures: Figures,
+        answers: OpenAnswers,
+        payloads: Payloads,
+    ) -> None:
+        self.app, self.settings, self.visitors, self.figures = app, settings, visitors, figures
+        self.answers, self.payloads = answers, payloads
+        self.bindings = Bindings()
+        self.rate_limit = RateLimit(settings.rate)
+        self.address_rate_limit = RateLimit(settings.rate * settings.address_people)
+        names = settings.hosts or (["localhost", "127.0.0.1", "::1"] if settings.local else [])
+        self.hosts = {name.lower() for name in names}
+
+    async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
+        """Checks a request, then passes it on."""
+        if scope["type"] == "websocket":
+            await send({"type": "websocket.close", "code": 1008})
+            return
+        if scope["type"] != "http":
+            await self.app(scope, receive, send)
+            return
+        exchange = Exchange(scope, send, root=self.settings.root_path)
+        REFERENCE.set(exchange.reference)
+        route = "(none)"
+        try:
+            path = self._path(scope)
+            route = _route(path)
+            heard = [pair for pair in scope["headers"] if pair[0] not in _NOT_HEARD or on_a_space()]
+            scope = {**scope, "path": path, "raw_path": path.encode(), "headers": heard}
+            await self._pass(exchange, scope, receive, route)
+        except Exception as error:
+            await exchange.refuse(self._refusal_of(error, exchange.reference))
+        finally:
+            self._note(exchange, route)
+
+    async def _pass(self, exchange: Exchange, scope: Scope, receive: Receive, route: str) -> None:
+        """Lets a request through to the page, if it is let in."""
+        self._check_head(scope, exchange.headers)
+        visitor = await self._visitor(scope, exchange)
+        if visitor is None:
+            await exchange.respond(_sign_in_first(self.settings.root_path, scope, exchange.in_browser))
+            return
+        if scope["method"] in _CHANGING:
+            exchange.body = await self._body(scope, exchange.headers, receive, visitor)
+        else:
+            self._check_names(scope, visitor.person)
+        if scope["path"] == "/" and VISITOR_COOKIE.encode() not in exchange.headers.get(b"cookie", b""):
+            exchange.cookie = self._visitor_cookie(scope)
+        if scope["method"] == "POST" and route in _CALLS:
+            exchange.heard = self._binds(visitor.person)
+        scope["state"] = {
+            **scope.get("state", {}), "visitor": visitor, "reference": exchange.reference,
+        }  # fmt: skip
+        PERSON.set(visitor.person)
+        self.answers.count += route in _ANSWERS
+        try:
+            await self.app(scope, exchange.body or receive, exchange.answer)
+        except Exception:
+            if exchange.body is None or exchange.body.refused is None:
+                raise
+        finally:
+            self.answers.count -= route in _ANSWERS
+        await exchange.finish()
+
+    def _refusal_of(self, error: Exception, reference: str) -> Refused:
+        """The response to an error, which is counted, and logged if it is internal."""
+        if isinstance(error, Refused):
+            self.figures.refused.labels(error.reason).inc()
+            return error
+        if (isinstance(error, OSError) and error.errno in (errno.ENOSPC, errno.EDQUOT)) or is_full(error):
+            self.figures.refused.labels("disk").inc()
+            return Refused(507, _DISK, "disk")
+        self.figures.errors.labels(type(error).__name__).inc()
+        log.error("A request failed.", exc_info=error)
+        if isinstance(error, SQLAlchemyError):
+            return Refused(503, _DATABASE, "database")
+        sentence = f"Something went wrong inside the program; its log says more under {reference}."
+        return Refused(500, sentence, "")
+
+    def _note(self, exchange: Exchange, route: str) -> None:
+        """Counts and logs an exchange."""
+        method = exchange.scope["method"]
+        method = method if method in (*_CHANGING, "GET", "HEAD", "OPTIONS") else "other"
+        status = exchange.status or 499
+        self.figures.requests.labels(route, method, str(status)).inc()
+        self.figures.answer_seconds.labels(route).observe(exchange.first_byte)
+        # Neither the query nor the whole path: both can hold the key of a run or of a file.
+        log.info(
+            "request",
+            extra={"method": method, "route": route, "status": status,
+                   "first_byte_seconds": round(exchange.first_byte, 4), "seconds": round(exchange.seconds, 4)},
+        )  # fmt: skip
+
+    # ---- the head --------------------------------------------------------------------------------
+
+    def _path(self, scope: Scope) -> str:
+        """The path below the base path; raises Refused for one that tries tricks."""
+        path, root = scope["path"], self.settings.root_path
+        if len(path) + len(scope.get("query_string", b"")) > _LONGEST_URL:
+            raise Refused(414, "The address is too long.", "bad path")
+        if root and (path == root or path.startswith(f"{root}/")):
+            path = path[len(root) :] or "/"
+        if "\0" in path or "\\" in path or ".." in path.split("/") or not path.isprintable():
+            raise Refused(404, _NOTHING, "bad path")
+        if _CLOSED.match(path):
+            raise Refused(404, _NOTHING, "closed")
+        return path
+
+    def _check_head(self, scope: Scope, headers: dict[bytes, bytes]) -> None:
+        """Raises Refused for foreign names, and for another site's page that asks in a visitor's name."""
+        if b"transfer-encoding" in headers and b"content-length" in headers:  # a proxy may take the other
+            raise Refused(400, "The request has a length and comes in pieces: send one of both.", "bad head")
+        host = headers.get(b"host", b"").decode("latin-1").lower()
+        origin = headers.get(b"origin", b"").decode("latin-1").lower()
+        try:
+            name, asks = urlsplit(f"//{host}").hostname or "", urlsplit(origin).netloc
+        except ValueError:
+            raise Refused(400, "The request's Host or Origin is not an address.", "bad head") from None
+        if self.hosts and name not in self.hosts:
+            raise Refused(
+                421, "This server is not called so: set PASDEDEUX_HOSTS to the names it has.", "host"
+            )
+        if scope["method"] not in _CHANGING:
+            return
+        elsewhere = bool(origin) and asks != host
+        if elsewhere or headers.get(b"sec-fetch-site") == b"cross-site":
+            raise Refused(403, "Another site's page cannot do this: open the page itself.", "cross-site")
+
+    async def _visitor(self, scope: Scope, exchange: Exchange) -> Visitor | None:
+        """The visitor who sent the request; None if they must sign in first."""
+        headers = exchange.headers
+        path, address = scope["path"], (scope.get("client") or ("127.0.0.1", 0))[0]
+        host = headers.get(b"host", b"").decode("latin-1").lower()
+        base = f"{scope['scheme']}://{host}{self.settings.root_path}/"
+        try:
+            visitor = await run_in_threadpool(
+                self.visitors.of, read_cookies(headers), address, reference=exchange.reference, base=base
+            )
+        except (Refused, SQLAlchemyError):
+            if path not in ("/healthz", "/metrics"):  # they say what is wrong
+                raise
+            visitor = None
+        nobody = Visitor(f"address {address}", "", exchange.reference, base)
+        if visitor is None and (path in PUBLIC or path.startswith("/login/")):
+            visitor = nobody
+        if scope["method"] in _CHANGING:
+            self._take(visitor or nobody, self._weight(scope, headers))
+        return visitor
+
+    def _take(self, visitor: Visitor, weight: float) -> None:
+        self.rate_limit.take(visitor.person, weight)
+        if visitor.address:  # deleting the cookie does not make a new visitor
+            self.address_rate_limit.take(visitor.address, weight)
+
+    def _visitor_cookie(self, scope: Scope) -> str:
+        response = Response()
+        set_cookie(
+            response, VISITOR_COOKIE, new_token(), seconds=365 * 86400, root=self.settings.root_path,
+            secure=scope["scheme"] == "https",
+        )  # fmt: skip
+        return response.headers["set-cookie"]
+
+    # ---- the body --------------------------------------------------------------------------------
+
+    def _most(self, path: str) -> float:
+        """Most bytes of a body; an upload's form has some overhead around the file."""
+        megabytes = self.settings.upload_megabytes + 1 if _is_upload(path) else self.settings.body_megabytes
+        return megabytes * 2**20
+
+    def _weight(self, scope: Scope, headers: dict[bytes, bytes]) -> float:
+        """The number of requests that this one counts as; each megabyte of an upload adds one. An undeclared length
+        counts as the largest allowed."""
+        path, declared = scope["path"], declared_length(headers)
+        most = self._most(path)
+        if not _is_upload(path) or declared > most:
+            return 1.0
+        return 1.0 + (declared if b"content-length" in headers else most) / 2**20
+
+    async def _body(
+        self, scope: Scope, headers: dict[bytes, bytes], receive: Receive, visitor: Visitor
+    ) -> BoundedBody:
+        """The body of a request that may have one, checked where it is a call of the page's."""
+        path, declared = scope["path"], declared_length(headers)
+        most = self._most(path)
+        if declared > most:
+            raise too_large(most)
+        form = None
+        if _is_upload(path):
+            self._check_room(declared)
+            form = UploadForm(headers.get(b"content-type", b""))
+        body = BoundedBody(receive, most=most, seconds=self.settings.body_seconds, form=form)
+        if form is None and path.startswith(API):
+            self._check_call(await body.whole(), visitor.person, path)
+        return body
+
+    def _check_room(self, size: float) -> None:
+        free = self.settings.free_megabytes * 2**20
+        if free and shutil.disk_usage(self.settings.data).free < free + size:
+            raise Refused(507, _DISK, "disk")
+
+    def _endpoint(self, path: str) -> int | None:
+        """The function that a path names; None if it names none."""
+        way, _, name = path[len(API) :].partition("/")
+        return self.payloads.number_of(name.partition("/")[0]) if way in ("call", "run", "api") else None
+
+    def _check_call(self, body: bytes, person: str, path: str) -> None:
+        endpoint = self._endpoint(path)
+        if not body:
+            return
+        if sum(map(body.count, (b"[", b"{", b","))) > _MOST_VALUES:  # each weighs far more once it is read
+            raise Refused(413, "The request has too many values: send fewer.", "too large")
+        try:
+            fields = json.loads(body)
+        except (ValueError, RecursionError):
+            raise Refused(400, "The request's body is not JSON.", "bad body") from None
+        fields = fields if isinstance(fields, dict) else {}
+        if (endpoint is not None or path.startswith(f"{API}queue/join")) and fields.get("data") is None:
+            fields["data"] = []  # as many values as a function without inputs takes
+        self.payloads.check(fields, endpoint, person)
+        session, event = fields.get("session_hash"), fields.get("event_id")
+        if session is not None:
+            self.bindings.check(session, person, begin=True)
+        if event is not None:
+            self.bindings.check(event, person, known=True)
+
+    # ---- whose -----------------------------------------------------------------------------------
+
+    def _check_names(self, scope: Scope, person: str) -> None:
+        """Raises Refused if an address names a session or a call that is another person's."""
+        path = scope["path"]
+        try:
+            query = parse_qs(scope.get("query_string", b"").decode("latin-1"), max_num_fields=_MOST_FIELDS)
+        except ValueError:
+            raise Refused(400, "The address has too many parameters.", "bad path") from None
+        if not path.startswith(API):
+            return
+        way, *names = path[len(API) :].split("/")
+        for session in query.get("session_hash", []) + (names[:1] if way == "heartbeat" else []):
+            self.bindings.check(session, person)
+        if way == "call":
+            self.bindings.check("/".join(names[1:]).rstrip("/"), person, known=True)
+
+    def _binds(self, person: str) -> Callable[[bytes], None]:
+        """What hears the answer to a call, whose result is then for who made it."""
+
+        def hear(answer: bytes) -> None:
+            try:
+                event = json.loads(answer)["event_id"]
+            except (ValueError, KeyError, TypeError):
+                return
+            self.bindings.check(event, person, begin=True)
+
+        return hear
+
+
+def _is_upload(path: str) -> bool:
+    return path.startswith(f"{API}upload")
+
+
+def may_read_figures(settings: Settings, address: str, authorization: str) -> bool:
+    """Whether /metrics may be read: from this machine, or with the token."""
+    token = settings.metrics_token
+    if token:
+        return hmac.compare_digest(authorization.encode(), f"Bearer {token}".encode())
+    return is_loopback(address)
+
+
+def _route(path: str) -> str:
+    """Label of a path in metrics and log: its first word if that is known, never a key or a name."""
+    if path.startswith(API):
+        word, _, rest = path[len(API) :].replace("=", "/").partition("/")
+        if word == "queue" and rest in ("join", "data"):
+            return f"{API}queue/{rest}"
+        return f"{API}{word}" if word in _API_ROUTES else "(other)"
+    first = "/" + path[1:].partition("/")[0]
+    return first if path == "/" or first in _ROUTES else "(other)"
+
+
+def _sign_in_first(root: str, scope: Scope, in_browser: bool) -> Response:
+    if scope["method"] == "GET" and in_browser:
+        query = scope.get("query_string", b"").decode("latin-1")
+        wanted = scope["path"] + (f"?{query}" if query else "")
+        return RedirectResponse(f"{root}/login?next={quote(wanted, safe='')}", status_code=303)
+    sentence = "Sign in first: reload the page, or give auth=(name, password) where a program asks."
+    return JSONResponse({"detail": sentence}, status_code=401)

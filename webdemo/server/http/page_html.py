@@ -1,0 +1,59 @@
+"""Caches the page's HTML: Gradio would copy and traverse its whole configuration for every visitor."""
+
+from __future__ import annotations
+
+from collections import OrderedDict
+from urllib.parse import parse_qs
+
+from starlette.types import ASGIApp, Message, Receive, Scope, Send
+
+KEPT = 16
+"""Most cached variants: they differ by host name, scheme and encoding of the request."""
+_VARIES_WITH = (b"host", b"x-forwarded-host", b"x-forwarded-proto", b"accept-encoding")
+_NOT_READ = {"run"}
+"""Parameters of the page's address that its HTML does not depend on; its scripts read them."""
+
+
+class PageCache:
+    """An ASGI middleware that answers ``GET /`` from memory; it runs inside the access checks.
+
+    The HTML is the same for all visitors: personal content arrives through events.
+
+    Args:
+        app: renders the page.
+    """
+
+    def __init__(self, app: ASGIApp) -> None:
+        self.app = app
+        self._kept: OrderedDict[tuple[object, ...], list[Message]] = OrderedDict()
+
+    async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
+        """Answers a request for the page; passes every other one on."""
+        if scope["type"] != "http" or scope["method"] != "GET" or scope["path"] != "/":
+            await self.app(scope, receive, send)
+            return
+        if not parse_qs(scope.get("query_string", b"").decode("latin-1")).keys() <= _NOT_READ:
+            await self.app(scope, receive, send)
+            return
+        key = (scope["scheme"], *(pair for pair in scope["headers"] if pair[0] in _VARIES_WITH))
+        if (kept := self._kept.get(key)) is not None:
+            self._kept.move_to_end(key)
+            for message in kept:
+                await send(_copy(message))
+            return
+        made: list[Message] = []
+
+        async def keep(message: Message) -> None:
+            made.append(_copy(message))
+            await send(message)
+
+        await self.app(scope, receive, keep)
+        if made and made[0].get("status") == 200:
+            self._kept[key] = made
+            while len(self._kept) > KEPT:
+                self._kept.popitem(last=False)
+
+
+def _copy(message: Message) -> Message:
+    """A message with a copy of its headers, since outer middleware adds to them."""
+    return {**message, "headers": list(message["headers"])} if "headers" in message else message

@@ -1,0 +1,131 @@
+"""The parts of a running server, put together."""
+
+from __future__ import annotations
+
+import logging
+import time
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Any
+
+from webdemo.server.accounts.users import SignIns, Users
+from webdemo.server.cluster.instance_lock import InstanceLock
+from webdemo.server.http.guard import OpenAnswers
+from webdemo.server.http.health import Health
+from webdemo.server.http.metrics import Figures
+from webdemo.server.queue.places import Places
+from webdemo.server.queue.queue import FairQueue
+from webdemo.server.queue.shared_engine import SharedEngine
+from webdemo.server.queue.shares import Shares
+from webdemo.server.queue.turns import Batcher, QueueLimits
+from webdemo.server.store.database import Database
+from webdemo.server.store.history import History
+from webdemo.ui.runs import EngineLike
+
+from .settings import Settings
+
+log = logging.getLogger(__name__)
+
+ANSWER_SECONDS = 5.0
+"""Least seconds allowed for sending results of finished runs, even with a shorter grace period."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class Lab:
+    """The parts of a running server; ``app.state.lab``."""
+
+    settings: Settings
+    database: Database
+    history: History
+    queue: FairQueue
+    places: Places
+    shares: Shares
+    health: Health
+    figures: Figures
+    answers: OpenAnswers
+    sign_ins: SignIns | None = None
+    node: InstanceLock | None = None
+
+    def share(self) -> None:
+        """Exchanges the work done for people with the other processes."""
+        self.queue.charge_elsewhere(self.shares.exchange())
+
+    def stop(self) -> None:
+        """Accepts no more runs and waits for running ones, at most for the grace period of the settings."""
+        until = time.monotonic() + self.settings.grace_seconds
+        self.health.stopping = True
+        left = self.queue.close(self.settings.grace_seconds)
+        until = max(until, time.monotonic() + ANSWER_SECONDS)
+        while self.answers.count and time.monotonic() < until:  # results are still written and sent
+            time.sleep(0.05)
+        if left:
+            log.warning("%d runs were stopped before their end.", left)
+
+
+def make_lab(
+    settings: Settings, engine: EngineLike, batcher: Batcher | None, node: InstanceLock | None
+) -> Lab:
+    """Puts the parts together.
+
+    Args:
+        settings: all of them.
+        engine: what generates.
+        batcher: runs several requests of ``engine`` at once.
+        node: this process's own name; without it the settings' is taken to be.
+
+    Raises:
+        InputError: if the accounts, the database or the data folder cannot be used.
+    """
+    name = settings.node if node is None else node.name
+    users = Users(settings.users) if settings.users is not None else None
+    database = Database(settings.database_url)
+    figures = Figures()
+    wants: dict[str, Callable[[], Any]] = {"database": database.check}
+    if users is not None:
+        _ = users.names  # reports an unreadable file at start
+        wants["accounts"] = lambda: users.names
+    health = Health(engine, wants)
+    shares = Shares(database, name)
+    queue = FairQueue(
+        engine, _limits(settings, engine), batcher=batcher, figures=figures, broken=health.broken,
+        served=shares.add,
+    )  # fmt: skip
+    figures.watch(waiting=lambda: queue.waiting, running=lambda: queue.running, ready=lambda: health.ready)
+    return Lab(
+        settings=settings, database=database, history=_history(settings, database, name), queue=queue,
+        places=Places(database, name, settings.running + settings.waiting), shares=shares, health=health,
+        figures=figures, answers=OpenAnswers(), node=node,
+        sign_ins=SignIns(database, users, settings.session_hours) if users is not None else None,
+    )  # fmt: skip
+
+
+def _history(settings: Settings, database: Database, name: str) -> History:
+    return History(
+        database, settings.motions, node=name, keep_days=settings.keep_days,
+        keep_bytes=settings.keep_megabytes * 2**20, keep_favourites=settings.keep_favourites,
+        link_days=settings.link_days, free_bytes=settings.free_megabytes * 2**20,
+    )  # fmt: skip
+
+
+def _limits(settings: Settings, engine: EngineLike) -> QueueLimits:
+    return QueueLimits(
+        running=settings.running, waiting=settings.waiting, queue=settings.queue, batch=settings.batch,
+        address=settings.waiting * settings.address_people, workers=getattr(engine, "parallel", 1),
+    )  # fmt: skip
+
+
+def engine_of(settings: Settings) -> tuple[EngineLike, Batcher | None]:
+    """The engine that the settings name, and what shares its passes where that is done in this process.
+
+    Raises:
+        InputError: if it is Ray and Ray is not installed.
+    """
+    if settings.engine == "ray":
+        from webdemo.server.cluster.ray_engine import RayEngine
+
+        return RayEngine(
+            address=settings.ray_address, replicas=(1, settings.ray_replicas), cores=settings.ray_cores,
+            batch=settings.batch,
+        ), None  # fmt: skip
+    shared = SharedEngine()
+    return shared, shared

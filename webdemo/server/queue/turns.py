@@ -1,0 +1,160 @@
+"""Fair scheduling: an account of the work done for each person, and the choice of the next batch.
+
+The next run is that of the waiting person who has been served least (start-time fair queueing). Sending more
+requests brings no advantage, and a long run delays its owner's later ones.
+"""
+
+from __future__ import annotations
+
+import queue
+import time
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, field
+from typing import Any, Protocol
+
+from webdemo.inference.cancel import CancelToken
+from webdemo.inference.requests import Progress, Result
+
+MAX_ACCOUNTS = 1000
+"""Above this number, accounts of people without runs are dropped."""
+
+
+class Batcher(Protocol):
+    """Runs several requests in one pass."""
+
+    def key(self, request: Any) -> tuple[Any, ...] | None:
+        """Requests of equal keys may share a pass; None for one that must run alone."""
+
+    def fits(self, requests: Sequence[Any], other: Any) -> bool:
+        """Whether another request of the same key may join these."""
+
+    def run_together(
+        self, items: Sequence[tuple[Any, CancelToken]]
+    ) -> Iterator[tuple[int, Progress | Result | Exception]]:
+        """(index of a request, its event); each request ends in a Result or an Exception."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class QueueLimits:
+    """Limits of running and waiting runs per person, per address and in total, of motions per pass, and of
+    concurrent batches per model."""
+
+    running: int = 2
+    waiting: int = 4
+    address: int = 32
+    queue: int = 64
+    batch: int = 8
+    workers: int = 1
+
+
+@dataclass(eq=False)
+class Job:
+    """One run in the queue.
+
+    Attributes:
+        person: its owner.
+        group: the model group whose worker runs it.
+        cost: its work, in units.
+        key: jobs of equal keys may share a pass; None for one that runs alone.
+        events: progress, then a result or an error; read by the caller.
+        estimate: estimated wait in seconds when it arrived.
+        batch: number of runs that shared its pass.
+    """
+
+    person: str
+    request: Any
+    group: str
+    cost: float
+    key: tuple[Any, ...] | None
+    address: str = ""
+    token: CancelToken = field(default_factory=CancelToken)
+    events: queue.SimpleQueue[Any] = field(default_factory=queue.SimpleQueue)
+    came: float = field(default_factory=time.monotonic)
+    started: float = 0.0
+    estimate: float | None = None
+    batch: int = 1
+
+
+class Turns:
+    """Keeps the accounts and chooses batches by them; the caller must hold a lock.
+
+    Args:
+        limits: upper limits.
+        batcher: decides which runs may share a pass; without it none do.
+    """
+
+    def __init__(self, limits: QueueLimits, batcher: Batcher | None) -> None:
+        self.limits, self.batcher = limits, batcher
+        self.served: dict[str, float] = {}
+        """Units of work done for each person."""
+        self._elsewhere: Mapping[str, float] | None = None
+
+    def meet(self, person: str, waiting: Iterable[Job], running: Iterable[Job]) -> None:
+        """Opens an account; a newcomer starts at the level of the least served person present.
+
+        Running work does not count towards that level, or its owner would be tied with the newcomer.
+        """
+        running = list(running)
+        here = {job.person for job in waiting} | {job.person for job in running}
+        before = {name: self.served[name] for name in here}
+        for job in running:
+            before[job.person] -= job.cost
+        least = min(before.values(), default=0.0)
+        if person not in here:
+            self.served[person] = max(self.served.get(person, 0.0), least)
+        if not here:  # an idle server resets the accounts
+            self.served = {person: 0.0}
+        elif len(self.served) > MAX_ACCOUNTS:
+            self.served = {name: self.served[name] for name in {*here, person}}
+
+    def charge(self, job: Job) -> None:
+        """Charges a job to its owner when it starts."""
+        self.served[job.person] = self.served.get(job.person, 0.0) + job.cost
+
+    def charge_elsewhere(self, totals: Mapping[str, float]) -> None:
+        """Adds the work done at other processes since the last call.
+
+        Args:
+            totals: units by person, summed over all other processes since they started.
+        """
+        before, self._elsewhere = self._elsewhere, dict(totals)
+        if before is None:  # work done before this process started does not count
+            return
+        for person, total in totals.items():
+            if person in self.served:
+                self.served[person] += max(total - before.get(person, 0.0), 0.0)
+
+    def pick(self, waiting: Sequence[Job], served: Mapping[str, float], running: Sequence[Job]) -> list[Job]:
+        """The next batch: the first run of the least served person, and the runs that may share its pass."""
+        count: dict[str, int] = {}
+        for job in running:
+            count[job.person] = count.get(job.person, 0) + 1
+        batch: list[Job] = []
+        rest = list(waiting)
+        extra: dict[str, float] = {}
+        while rest:
+            able = [
+                job
+                for job in rest
+                if count.get(job.person, 0) < self.limits.running and self._joins(batch, job)
+            ]
+            if not able:
+                break
+            job = min(
+                able, key=lambda j: (served.get(j.person, 0.0) + extra.get(j.person, 0.0), waiting.index(j))
+            )
+            batch.append(job)
+            rest.remove(job)
+            count[job.person] = count.get(job.person, 0) + 1
+            extra[job.person] = extra.get(job.person, 0.0) + job.cost
+            if job.key is None:
+                break
+        return batch
+
+    def _joins(self, batch: Sequence[Job], job: Job) -> bool:
+        if not batch:
+            return True
+        if self.batcher is None or job.key is None or job.key != batch[0].key:
+            return False
+        motions = sum(other.request.samples for other in batch) + job.request.samples
+        return motions <= self.limits.batch and self.batcher.fits([o.request for o in batch], job.request)

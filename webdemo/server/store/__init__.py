@@ -1,0 +1,1 @@
+"""Storage: the database, the history of runs, and files that expire."""

@@ -1,0 +1,172 @@
+"""The tables: runs, the links that open them for others, and sign-ins."""
+
+from __future__ import annotations
+
+import logging
+import time
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from typing import Any
+
+from sqlalchemy import Engine, ForeignKey, Text, create_engine, event, select
+from sqlalchemy.exc import ArgumentError, DatabaseError, NoSuchModuleError, SQLAlchemyError
+from sqlalchemy.orm import DeclarativeBase, Mapped, mapped_column, relationship, sessionmaker
+
+from motion import InputError
+
+log = logging.getLogger(__name__)
+
+BUSY_SECONDS = 15
+"""Time that SQLite waits for another writer."""
+SOUND_SECONDS = 30.0
+"""Time for which a successful integrity check of SQLite's file is valid: checking a large file is slow."""
+CHECKED_ROWS = 200
+"""Rows of a table that are read to see whether that works: as many as a list of runs holds."""
+
+
+class Table(DeclarativeBase):
+    """What all tables share. Times are seconds since 1970."""
+
+
+class Run(Table):
+    """One run, from when it was asked for.
+
+    Attributes:
+        id: unguessable; names its folder of motion files.
+        owner: whose history it is in.
+        state: "running" (or waiting), "done", "failed", "cancelled", "interrupted".
+        request: as JSON, without motion.
+        outcome: manifest, timings and notes as JSON; empty until done.
+        message: what went wrong, as one sentence.
+        size: bytes of its files.
+        node: the process that runs it.
+    """
+
+    __tablename__ = "runs"
+
+    id: Mapped[str] = mapped_column(primary_key=True)
+    owner: Mapped[str] = mapped_column(index=True)
+    kind: Mapped[str]
+    title: Mapped[str] = mapped_column(Text)
+    state: Mapped[str] = mapped_column(default="running", index=True)
+    request: Mapped[str] = mapped_column(Text)
+    outcome: Mapped[str] = mapped_column(Text, default="")
+    message: Mapped[str] = mapped_column(Text, default="")
+    created: Mapped[float] = mapped_column(default=time.time, index=True)
+    size: Mapped[int] = mapped_column(default=0)
+    favourite: Mapped[bool] = mapped_column(default=False)
+    node: Mapped[str] = mapped_column(default="")
+    links: Mapped[list[Link]] = relationship(back_populates="run", cascade="all, delete-orphan")
+
+
+class Link(Table):
+    """A link that opens a run for anybody, until it expires or is revoked."""
+
+    __tablename__ = "links"
+
+    token: Mapped[str] = mapped_column(primary_key=True)
+    run_id: Mapped[str] = mapped_column(ForeignKey("runs.id", ondelete="CASCADE"), index=True)
+    until: Mapped[float]
+    run: Mapped[Run] = relationship(back_populates="links")
+
+
+class SignIn(Table):
+    """A session of a signed-in person, known by the hash of its cookie.
+
+    Attributes:
+        entry: fingerprint of the password at sign-in; a changed password invalidates the session.
+    """
+
+    __tablename__ = "sessions"
+
+    digest: Mapped[str] = mapped_column(primary_key=True)
+    person: Mapped[str] = mapped_column(index=True)
+    entry: Mapped[str]
+    until: Mapped[float]
+
+
+class Database:
+    """A connection to the tables, which are made where they are missing.
+
+    Args:
+        url: as SQLAlchemy takes it.
+
+    Raises:
+        InputError: if the URL is none, its driver is missing or the database cannot be opened.
+    """
+
+    def __init__(self, url: str) -> None:
+        try:
+            self.engine = create_engine(url, pool_pre_ping=True)
+            if self.engine.dialect.name == "sqlite":
+                _prepare_sqlite(self.engine)
+            Table.metadata.create_all(self.engine)
+        except (ArgumentError, NoSuchModuleError):
+            raise InputError(
+                "The database's URL is not understood: write it as sqlite:///FILE or postgresql+psycopg://…"
+            ) from None
+        except ModuleNotFoundError as error:
+            raise InputError(
+                f"The database needs the Python package {error.name}: install it, or use SQLite."
+            ) from None
+        except (SQLAlchemyError, OSError) as error:
+            reason = str(getattr(error, "orig", None) or error).partition("\n")[0]
+            raise InputError(
+                f"The database cannot be opened ({reason}): check its URL, or move the damaged file away."
+            ) from None
+        self._sound_until = 0.0
+        self.session = sessionmaker(self.engine, expire_on_commit=False)
+
+    def check(self) -> None:
+        """Raises SQLAlchemyError if the database does not answer, or what people need cannot be read."""
+        with self.engine.connect() as connection:
+            for table in (Run, Link, SignIn):
+                connection.execute(select(table).limit(CHECKED_ROWS)).all()
+            if self.engine.dialect.name == "sqlite" and time.monotonic() > self._sound_until:
+                (found,) = connection.exec_driver_sql("PRAGMA quick_check(1)").one()
+                if found != "ok":
+                    raise DatabaseError("PRAGMA quick_check", None, ValueError(found))
+                self._sound_until = time.monotonic() + SOUND_SECONDS
+
+    def close(self) -> None:
+        """Closes all connections."""
+        self.engine.dispose()
+
+
+def sentence_of(error: SQLAlchemyError) -> InputError:
+    """The user's message for a database error. The error itself may quote private text, so it goes to the log."""
+    log.error("The database failed.", exc_info=error)
+    return InputError(
+        "The server's disk is full, so nothing new can be kept: tell the person who runs it."
+        if is_full(error)
+        else "The server's history cannot be read or written: tell the person who runs it."
+    )
+
+
+@contextmanager
+def sentences() -> Iterator[None]:
+    """Turns a database error into an InputError with one sentence; also works as a decorator."""
+    try:
+        yield
+    except SQLAlchemyError as error:
+        raise sentence_of(error) from None
+
+
+def is_full(error: BaseException) -> bool:
+    """Whether a database's error says that its disk is full."""
+    return isinstance(error, SQLAlchemyError) and "full" in str(getattr(error, "orig", ""))
+
+
+def _prepare_sqlite(engine: Engine) -> None:
+    """Turns on write-ahead logging: readers never wait, and a killed process leaves an intact file."""
+    if (file := engine.url.database) and file != ":memory:":
+        Path(file).parent.mkdir(mode=0o700, parents=True, exist_ok=True)
+
+    @event.listens_for(engine, "connect")
+    def set_up(connection: Any, _: Any) -> None:
+        cursor = connection.cursor()
+        cursor.execute(f"PRAGMA busy_timeout={BUSY_SECONDS * 1000}")
+        cursor.execute("PRAGMA journal_mode=WAL")
+        cursor.execute("PRAGMA foreign_keys=ON")
+        cursor.close()

@@ -1,0 +1,111 @@
+"""Runs that are written down: the queue, with the history beside it."""
+
+from __future__ import annotations
+
+import logging
+from collections.abc import Iterator, Mapping
+from contextlib import suppress
+from dataclasses import replace
+from typing import Any
+
+from sqlalchemy.exc import SQLAlchemyError
+
+from motion import InputError
+from webdemo.inference.requests import Cancelled, Progress, Result
+from webdemo.server.queue.places import Places
+from webdemo.server.queue.queue import FairQueue
+from webdemo.ui.visitor import visitor
+
+from .database import sentence_of
+from .history import History
+
+log = logging.getLogger(__name__)
+
+
+class Recorder:
+    """Runs requests in a queue and keeps every one of them; the same use as :class:`webdemo.ui.runs.Runs`.
+
+    Args:
+        queue: runs them.
+        history: keeps them.
+        places: counts a person's, at other processes as well.
+    """
+
+    def __init__(self, queue: FairQueue, history: History, places: Places) -> None:
+        self.queue, self.history, self.places = queue, history, places
+
+    def cancel(self, session: str) -> bool:
+        """Stops the session's run, waiting or running; False if it has none."""
+        return self.queue.cancel(session)
+
+    def run(self, session: str, request: Any, *, alone: bool = False) -> Iterator[Progress | Result]:
+        """As :meth:`FairQueue.run`; the result comes when it is kept, or with a note that it could not be.
+
+        Raises:
+            InputError: as well where the person has too many runs, or nothing can be written down.
+        """
+        try:
+            with self.places.held(visitor().person):
+                yield from self._run(session, request, alone)
+        except SQLAlchemyError as error:
+            raise sentence_of(error) from None
+
+    def _run(self, session: str, request: Any, alone: bool) -> Iterator[Progress | Result]:
+        who = visitor()
+        run = self.history.begin(who.owner, request, title_of(request.to_dict())) if who.owner else ""
+        state, message = "refused", ""
+        try:
+            for event in self.queue.run(session, request, alone=alone):
+                if isinstance(event, Result):
+                    state, event = "done", self._kept(run, event)
+                    self._count(event)
+                elif state == "refused":
+                    state, message = "cancelled", "This run was cancelled."
+                yield event
+        except InputError as error:
+            if state != "refused":
+                state, message = "failed", str(error)
+            raise
+        except (Cancelled, GeneratorExit):
+            raise
+        except BaseException as error:
+            state, message = "failed", f"Something went wrong inside the program ({type(error).__name__})."
+            raise
+        finally:
+            if run and state != "done":
+                self._end(run, who.owner, state, message)
+
+    def _end(self, run: str, owner: str, state: str, message: str) -> None:
+        if state == "refused":  # it never was in the line
+            with suppress(InputError):
+                self.history.remove(run, owner)
+                return
+        self.history.end(run, state, message)
+
+    def _kept(self, run: str, result: Result) -> Result:
+        if not run:
+            return result
+        try:
+            self.history.finish(run, result)
+        except InputError as error:
+            return replace(result, notes=(*result.notes, str(error)))
+        except Exception:  # whatever it is, the result itself is there
+            log.exception("A result could not be kept.")
+            self.history.end(run, "failed", "The result could not be kept in the history.")
+            sentence = "The result could not be kept in the history: download its files now."
+            return replace(result, notes=(*result.notes, sentence))
+        return result
+
+    def _count(self, result: Result) -> None:
+        model = str(result.manifest.get("model", "unknown"))
+        self.queue.figures.runs.labels(model, "done").inc()
+        for stage, seconds in result.timings.items():
+            self.queue.figures.stage_seconds.labels(model, stage).observe(seconds)
+
+
+def title_of(asked: Mapping[str, Any]) -> str:
+    """Title of a run from its request's dictionary: its prompt, or the name of its input."""
+    if words := str(asked.get("prompt", "")).strip():
+        return words
+    given = asked.get("actor") or asked.get("motion") or {}
+    return f"{'Reaction to' if 'actor' in asked else 'After'} {given.get('name') or 'a motion'}"

@@ -1,0 +1,177 @@
+"""The given person of a reaction: read from a file or taken from a result, trimmed, shown."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field, replace
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from motion import Clip, Duet, InputError
+from motion.formats.importing import ImportChoices, import_motion
+from motion.retarget import to_smpl
+from webdemo.inference.actor import LETTERS, SECONDS, at_30_fps, choose_actor, other_pose
+from webdemo.inference.method import Variant
+from webdemo.inference.methods import installed, variants
+from webdemo.inference.requests import Result, SamplingRequest
+from webdemo.view.payload import Payload, player_payload
+
+AUTO = "auto"
+
+
+def react_choices(weights: Path | None = None) -> list[tuple[str, str]]:
+    """(label, key) of the ways to react whose weights are there, in each of their modes."""
+    return [(v.label, v.key) for method in installed("react", weights) for v in method.variants]
+
+
+def reactor(key: str | None) -> Variant:
+    """A way to react, by key; the default for an empty one. Raises InputError for an unknown key."""
+    known = variants("react")
+    if key and key not in known:
+        raise InputError(f"There is no method {key!r:.40}: choose one of {', '.join(known)}.")
+    return known[key] if key else next(iter(known.values()))
+
+
+def live_variant() -> Variant | None:
+    """The first installed way to react that can stream; None where there is none."""
+    found = (v for method in installed("react") for v in method.variants if v.mode == "online")
+    return next(found, None)
+
+
+@dataclass(frozen=True)
+class Source:
+    """What a session chose an actor from.
+
+    Attributes:
+        name: of the file or the result.
+        people: up to six, at 30 fps, with the joints of the file where those have to be fitted.
+        chosen: "a", "b" …: which one is offered first.
+        path: the file, so that it can be read anew with other choices; None for a result.
+        found: how the file was read, None for a result.
+    """
+
+    name: str
+    people: tuple[Clip, ...] = field(repr=False)
+    chosen: str = "a"
+    path: Path | None = None
+    found: Found | None = None
+    _fitted: dict[Any, tuple[Clip, ...]] = field(default_factory=dict, repr=False, compare=False)
+    """What was fitted last, by what was asked."""
+
+    @property
+    def choices(self) -> list[tuple[str, str]]:
+        """(label, letter) of everybody."""
+        return [(f"Person {letter.upper()}", letter) for letter in LETTERS[: len(self.people)]]
+
+    @property
+    def seconds(self) -> float:
+        """Length in seconds."""
+        return self.people[0].seconds
+
+    @property
+    def end(self) -> float:
+        """Where the trim ends at first: the whole motion, or as much of it as a network takes."""
+        return min(self.seconds, SECONDS[1])
+
+    def actor(self, person: str, start: float, end: float) -> Clip:
+        """The trimmed actor on SMPL22; raises InputError where the times do not lie in the motion."""
+        return self._on_smpl((person, start, end), (self._part(person, start, end),))[0]
+
+    def _part(self, person: str, start: float, end: float) -> Clip:
+        chosen = person if len(self.people) > 1 else None
+        clip = choose_actor(self.people, person=chosen, start=start, end=end, name=self.name)
+        return replace(clip, name=self.name)
+
+    def other_pose(self, person: str, start: float) -> NDArray[np.floating]:
+        """(22, 3) metres: how the other of two stands where the actor's part begins."""
+        return other_pose(self.people, person=person, start=start, name=self.name)
+
+    def whole(self, longest: float) -> tuple[Clip, ...]:
+        """Everybody on SMPL22, or as they are in the file where that is longer than ``longest`` seconds."""
+        return self.people if self.seconds > longest else self._on_smpl("whole", self.people)
+
+    def _on_smpl(self, asked: Any, people: tuple[Clip, ...]) -> tuple[Clip, ...]:
+        if asked not in self._fitted:
+            made = to_smpl(Duet(*people)).people if len(people) == 2 else tuple(map(to_smpl, people))
+            self._fitted.clear()
+            self._fitted[asked] = made
+        return self._fitted[asked]
+
+    def preview(self, person: str, start: float, end: float) -> Payload:
+        """The trimmed actor for the player; a part that is too long to react to is shown as it is."""
+        too_long = end - start > SECONDS[1] + 0.05
+        actor = self._part(person, start, end) if too_long else self.actor(person, start, end)
+        return player_payload(replace(actor, name="actor"), title=self.describe(person))
+
+    def describe(self, person: str) -> str:
+        """The name, and which person of two."""
+        return f"{self.name}, person {person.upper()}" if len(self.people) > 1 else self.name
+
+
+@dataclass(frozen=True)
+class Found:
+    """How a file was read: one line, and its joints beside SMPL's."""
+
+    line: str
+    joints: tuple[tuple[str, str], ...] = field(repr=False)
+
+
+def read_source(path: str | Path, name: str | None = None, choices: ImportChoices | None = None) -> Source:
+    """A motion file as a source; raises InputError where it cannot be read."""
+    path = Path(path)
+    found = import_motion(path, choices=choices)
+    return Source(
+        name or path.name,
+        tuple(at_30_fps(person) for person in found.people),
+        path=path,
+        found=Found(found.describe(), found.joints),
+    )
+
+
+def import_choices(up: str, unit: str, fps: float | None, order: str = AUTO) -> ImportChoices:
+    """The page's import controls as choices; "auto" and an empty or zero rate leave a thing to be found."""
+    chosen = {"up": up, "unit": unit, "order": order}
+    known = {name: value for name, value in chosen.items() if value != AUTO}
+    return ImportChoices(**known, fps=float(fps) if fps else None)
+
+
+def result_source(result: Result, title: str, person: str) -> Source:
+    """A person of a result's first sample, as they were made or given.
+
+    It is called after the file that the result began with, or else after its title.
+    """
+    given = result.manifest.get("request", {}).get("actor", {})
+    motion = result.duets[0]
+    people = motion.people if isinstance(motion, Duet) else (motion,)
+    return Source(given.get("name") or title, people, person if len(people) > 1 else "a")
+
+
+def with_method(fields: Mapping[str, Any], key: str) -> dict[str, Any]:
+    """The page's fields for another method, with the steps it is meant for where the model is another."""
+    asked, other = reactor(fields.get("method")).method, reactor(key).method
+    steps = fields["steps"] if other == asked else other.default("steps", SamplingRequest.steps)
+    return {**fields, "method": key, "steps": steps}
+
+
+def chosen_actor(fields: Mapping[str, Any]) -> dict[str, Any]:
+    """A request's fields from those of the page.
+
+    ``source``, ``person``, ``start`` and ``end`` become ``actor``, ``method`` becomes ``model`` and ``mode``,
+    and ``keep`` becomes the start pose for a model that takes one.
+
+    Raises:
+        InputError: where no source is chosen or the times do not fit.
+    """
+    source: Source | None = fields["source"]
+    if source is None:
+        raise InputError("There is no actor yet: drop a motion file, or pick an example or a result.")
+    own = ("source", "person", "start", "end", "method", "live", "other", "keep")
+    actor = source.actor(fields["person"], fields["start"], fields["end"])
+    chosen = reactor(fields.get("method"))
+    kept = {name: value for name, value in fields.items() if name not in own}
+    begins = fields.get("keep") and "first pose" in chosen.method.takes
+    start = source.other_pose(fields["person"], fields["start"]) if begins else None
+    return {"actor": actor, "model": chosen.method.name, "mode": chosen.mode, "start": start, **kept}

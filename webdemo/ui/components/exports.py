@@ -1,0 +1,208 @@
+"""Files to take home: written to a folder of their own for every run, removed when they are old."""
+
+from __future__ import annotations
+
+import hashlib
+import json
+import logging
+import os
+import re
+import shutil
+import tempfile
+import threading
+import time
+import unicodedata
+import zipfile
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field
+from pathlib import Path
+
+from motion import Clip, Duet, InputError, formats
+from motion.formats.one_person import SUFFIXES
+from webdemo.inference.requests import Result
+from webdemo.view.sheet import write_sheet
+
+log = logging.getLogger(__name__)
+
+MAX_AGE = 3600.0
+"""Seconds for which a run's files are kept."""
+
+_WRITING = threading.Lock()
+"""Writing is work for Python, which does one thing at a time: several at once only hold up the page."""
+
+
+@dataclass(frozen=True)
+class Kind:
+    """One kind of file.
+
+    Attributes:
+        key: its suffix without the dot, and how programs call it.
+        label: on its button.
+    """
+
+    key: str
+    label: str
+
+    def offered(self) -> bool:
+        """Whether this installation can write it."""
+        return self.key in ("png", "json") or formats.can_write(f".{self.key}")
+
+
+KINDS = (
+    Kind("npz", "Motion .npz"),
+    Kind("bvh", "BVH pair"),
+    Kind("glb", "Animated .glb"),
+    Kind("png", "Contact sheet"),
+    Kind("json", "Manifest"),
+)
+
+
+@dataclass
+class Record:
+    """A session's last result.
+
+    Attributes:
+        result: what the engine gave.
+        prompt: names the files.
+        exported: whether its files were written.
+        compared: the results that stand side by side, by method; ``result`` is the first of them.
+    """
+
+    result: Result = field(repr=False)
+    prompt: str
+    exported: bool = False
+    compared: Mapping[str, Result] = field(default_factory=dict, repr=False)
+
+
+class Shelf:
+    """A folder with one folder a run.
+
+    Args:
+        root: created when first needed; by default a folder of this user in the system's temporary one.
+        owner: names the folder in it for the person whose event is answered; by default there is one for all.
+        max_age: seconds after which a run's folder is removed when another is made.
+    """
+
+    def __init__(
+        self, root: Path | None = None, *, owner: Callable[[], str] | None = None, max_age: float = MAX_AGE
+    ) -> None:
+        self.root = root or Path(tempfile.gettempdir()) / f"pas-de-deux-{os.getuid()}"
+        self.owner, self.max_age = owner, max_age
+
+    def folder(self) -> Path:
+        """A new empty folder; those that are too old are removed."""
+        parent = self.root / self.owner() if self.owner else self.root
+        parent.mkdir(mode=0o700, parents=True, exist_ok=True)
+        self.clean()
+        return Path(tempfile.mkdtemp(prefix="run-", dir=parent))
+
+    def clean(self) -> None:
+        """Removes the folders of runs older than ``max_age``."""
+        oldest = time.time() - self.max_age
+        for folder in self.root.glob("*/run-*" if self.owner else "run-*"):
+            try:
+                if folder.stat().st_mtime < oldest:
+                    shutil.rmtree(folder)
+            except OSError as error:  # another process may be quicker
+                log.info("Could not remove %s: %s", folder, error)
+
+
+def write_record(record: Record, folder: Path) -> dict[str, list[Path]]:
+    """:func:`write_files` for all results of a record; names of compared ones begin with their method."""
+    if not record.compared:
+        return write_files(record.result, folder, prompt=record.prompt)
+    files: dict[str, list[Path]] = {}
+    for method, result in record.compared.items():
+        for key, paths in write_files(result, folder, prompt=f"{method} {record.prompt}").items():
+            files.setdefault(key, []).extend(paths)
+    return files
+
+
+def write_files(result: Result, folder: Path, *, prompt: str) -> dict[str, list[Path]]:
+    """Writes a result in every kind that this installation can write.
+
+    Returns:
+        the files by the key of their kind, in the order of the samples; a BVH pair is two files.
+
+    Raises:
+        OSError: where the disk is full or cannot be written; the folder is removed.
+    """
+    name = file_name(prompt, result.manifest)
+    try:
+        with _WRITING:
+            files = {
+                kind.key: _write_kind(kind, result, folder, name, prompt)
+                for kind in KINDS
+                if kind.offered() and _holds(kind, result)
+            }
+    except BaseException as error:
+        shutil.rmtree(folder, ignore_errors=True)
+        raise (without_place(error, folder) if isinstance(error, Exception) else error) from None
+    return files
+
+
+def without_place(error: Exception, folder: Path) -> Exception:
+    """An error whose sentence does not say where the server keeps its files."""
+    if isinstance(error, InputError):
+        return InputError(str(error).replace(f"{folder}{os.sep}", ""))
+    return error
+
+
+def _write_kind(kind: Kind, result: Result, folder: Path, name: str, prompt: str) -> list[Path]:
+    if kind.key == "json":
+        path = folder / f"{name}.json"
+        path.write_text(json.dumps(result.manifest, indent=2, ensure_ascii=False), encoding="utf-8")
+        return [path]
+    several = len(result.duets) > 1
+    files: list[Path] = []
+    for i, duet in enumerate(result.duets):
+        path = folder / (f"{name}-{i + 1}.{kind.key}" if several else f"{name}.{kind.key}")
+        files += _write_motion(duet, path, title=prompt)
+    return files
+
+
+def _holds(kind: Kind, result: Result) -> bool:
+    """Whether files of a kind can hold the people of a result."""
+    one = isinstance(result.duets[0], Clip)
+    return not one or kind.key in ("png", "json") or f".{kind.key}" in SUFFIXES
+
+
+def _write_motion(duet: Duet | Clip, path: Path, *, title: str) -> list[Path]:
+    if path.suffix == ".png":
+        return [write_sheet(duet, path, title=title)]
+    return [Path(written) for written in formats.write(duet, path)]
+
+
+def for_download(files: Mapping[str, list[Path]], name: str | None = None) -> dict[str, Path]:
+    """One file a kind: the file itself, or a .zip of several, called after the first or ``name``."""
+    name = name or files["json"][0].stem
+    return {
+        key: paths[0] if len(paths) == 1 else _zipped(paths, paths[0].with_name(f"{name}-{key}.zip"))
+        for key, paths in files.items()
+    }
+
+
+def _zipped(paths: list[Path], archive: Path) -> Path:
+    with zipfile.ZipFile(archive, "w", zipfile.ZIP_DEFLATED) as target:
+        for path in paths:
+            target.write(path, path.name)
+    return archive
+
+
+def file_name(prompt: str, manifest: Mapping[str, object]) -> str:
+    """A short plain name, such as "two-people-shake-hands-seed7-3fa2": the prompt, the seed and four digits of a
+    digest of everything that was asked, so that runs that differ have files that differ in name."""
+    plain = unicodedata.normalize("NFKD", prompt).encode("ascii", "ignore").decode().lower()
+    words = re.findall(r"[a-z0-9]+", plain)
+    name = ""
+    for word in words:
+        if len(name) + len(word) > 40:
+            break
+        name = f"{name}-{word}" if name else word
+    request = manifest.get("request")
+    seed = request.get("seed") if isinstance(request, Mapping) else None
+    told = {key: manifest.get(key) for key in ("model", "weights", "request")}
+    digest = hashlib.blake2b(
+        json.dumps(told, sort_keys=True, default=str).encode(), digest_size=2
+    ).hexdigest()
+    return (name or "motion") + (f"-seed{seed}" if isinstance(seed, int) else "") + f"-{digest}"

@@ -1,0 +1,117 @@
+"""A film of what the player shows, made when somebody asks for it."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from motion import Clip, Duet, InputError
+from webdemo.inference.predict_request import PredictResult
+from webdemo.inference.requests import Result
+from webdemo.view import film
+from webdemo.view.camera import VIEWS
+from webdemo.view.stage import LOOKS, Pane, Style
+from webdemo.view.theme import THEMES
+
+from .exports import Record, file_name, without_place
+from .prediction_view import ghost_of, method_name, without_name
+
+LONGEST = 60.0
+"""Seconds of motion that the page films; the shell has no such limit."""
+
+READ_PLAYER = """(record, _) => {
+  const player = window.__pasdedeux?.player;
+  if (!player) return [record, "{}"];
+  const { orbit, show } = player;
+  const bodies = show.bodies ?? false, skeletons = show.skeletons ?? !bodies;
+  return [record, JSON.stringify({
+    yaw: orbit.yaw, elevation: orbit.elevation, view: player.framed, follow: orbit.following,
+    trails: Boolean(show.trails), theme: player.themeName, sample: player.sampleIndex,
+    look: bodies && skeletons ? "both" : bodies ? "bodies" : "skeletons",
+  })];
+}"""
+"""JavaScript that tells how the player shows the motion: what :func:`make_film` takes."""
+
+
+def suffix() -> str:
+    """What films are written as here: MP4, or GIF where its encoder is not installed."""
+    return ".mp4" if film.can_write(".mp4") else ".gif"
+
+
+def make_film(record: Record | None, shown: str, folder: Path) -> Path:
+    """Films a session's last result as its player shows it.
+
+    Args:
+        record: the result, or None where there is none yet.
+        shown: what :data:`READ_PLAYER` gave; whatever is unknown in it is left at its default.
+        folder: where the film is written.
+
+    Raises:
+        InputError: where there is nothing to film, or it is too long.
+    """
+    if record is None:
+        raise InputError("There is no motion to film yet: make one first.")
+    told = _read(shown)
+    results = record.compared or {"": record.result}
+    panes = [
+        _pane(result, told.get("sample"), name if record.compared else "") for name, result in results.items()
+    ]
+    if max(pane.motion.seconds for pane in panes) > LONGEST:
+        raise InputError(
+            f"Films on the page last {LONGEST:g} s at most: use `python -m webdemo render` for more."
+        )
+    path = folder / f"{file_name(record.prompt, record.result.manifest)}{suffix()}"
+    style = Style(
+        look=_one_of(told, "look", LOOKS, "bodies"),
+        trails=told.get("trails") is True,
+        theme=_one_of(told, "theme", tuple(THEMES), "light"),
+    )
+    try:
+        return film.write_film(
+            panes,
+            path,
+            style=style,
+            size=film.SIZE if suffix() == ".mp4" else (640, 360),
+            view=_one_of(told, "view", VIEWS, "threequarter"),
+            follow=told.get("follow") is not False,
+            title=record.prompt,
+            yaw=_number(told, "yaw", -1000.0, 1000.0),
+            elevation=_number(told, "elevation", -0.05, 1.5),
+        )
+    except InputError as error:
+        raise without_place(error, folder) from None
+
+
+def _pane(result: Result, sample: Any, name: str) -> Pane:
+    last = len(result.duets) - 1
+    chosen = sample if isinstance(sample, int) and 0 <= sample <= last else 0
+    motion: Clip | Duet = result.duets[chosen]
+    if not isinstance(result, PredictResult):
+        return Pane(motion, name)
+    motion = without_name(motion)
+    caption = method_name(result) if name else ""
+    return Pane(motion, caption, ghost_of(motion, result), result.past_frames)
+
+
+def _read(shown: str) -> Mapping[str, Any]:
+    try:
+        told = json.loads(shown[:2000])
+    except (TypeError, ValueError):
+        return {}
+    return told if isinstance(told, dict) else {}
+
+
+def _one_of(told: Mapping[str, Any], key: str, known: tuple[str, ...], default: str) -> str:
+    value = told.get(key)
+    return value if value in known else default
+
+
+def _number(told: Mapping[str, Any], key: str, low: float, high: float) -> float | None:
+    value = told.get(key)
+    if isinstance(value, bool) or not isinstance(value, (int, float)) or not np.isfinite(value):
+        return None
+    return float(min(max(value, low), high))

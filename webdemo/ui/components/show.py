@@ -1,0 +1,60 @@
+"""From a result to what the player draws."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from functools import lru_cache
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from motion import Clip, Duet
+from motion.formats import read
+from motion.metrics import Contact
+from webdemo.inference.requests import Result
+from webdemo.view.curves import Curve
+from webdemo.view.payload import Payload, build_payload, player_payload, sample_payload
+
+ROUNDS = 3
+"""How often a motion nobody asked for plays before it rests: a page left open costs nothing."""
+_CURVES = (("pelvis_distance", "Apart", "m"), ("hand_distance", "Hands", "m"))
+
+
+def result_payload(result: Result, *, title: str = "") -> Payload:
+    """The player's value for a result: every sample with the curves and contacts of its read-outs.
+
+    Samples whose read-outs hold no curves get those that the player measures itself.
+    """
+    samples = [
+        sample_payload(duet, label=str(i + 1), **_strip(duet, result.readouts[i : i + 1]))
+        for i, duet in enumerate(result.duets)
+    ]
+    return build_payload(samples, skeleton=result.duets[0].skeleton, title=title)
+
+
+def _strip(duet: Duet | Clip, readouts: tuple[Mapping[str, Any], ...]) -> dict[str, Any]:
+    if not readouts:
+        return {}
+    curves, contacts = readouts[0].get("curves"), readouts[0].get("contacts")
+    found: dict[str, Any] = {}
+    if curves and all(len(curves.get(key, ())) == duet.num_frames for key, *_ in _CURVES):
+        found["curves"] = [Curve(key, label, unit, np.asarray(curves[key])) for key, label, unit in _CURVES]
+    if contacts is not None:
+        found["contacts"] = [Contact(c["start"], c["stop"], c["kind"], c["label"]) for c in contacts]
+    return found
+
+
+@lru_cache(maxsize=1)
+def arrival_payload(path: Path) -> Payload | None:
+    """A motion file that a page shows before anything is asked of it, played ``ROUNDS`` times, then at rest.
+
+    Its title is the sentence that it was made from. None where the file is missing.
+    """
+    if not path.is_file():
+        return None
+    duet = read(path)
+    if not isinstance(duet, Duet):
+        return None
+    title = (duet.manifest or {}).get("request", {}).get("prompt", "")
+    return {**player_payload(duet, title=title), "rounds": ROUNDS}

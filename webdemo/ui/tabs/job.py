@@ -1,0 +1,364 @@
+"""What every tab that makes motion has: sliders, a player, a run that can be cancelled, files."""
+
+from __future__ import annotations
+
+import secrets
+import time
+from abc import ABC, abstractmethod
+from collections.abc import Callable, Collection, Generator, Iterator, Mapping, Sequence
+from typing import Any
+
+import gradio as gr
+
+from webdemo.inference.requests import (
+    DAMPING,
+    GUIDANCE,
+    MAX_SEED,
+    SAMPLES,
+    Cancelled,
+    Progress,
+    Result,
+    SamplingRequest,
+)
+from webdemo.ui.components.exports import KINDS, Record, file_name, for_download, write_record
+from webdemo.ui.components.film import READ_PLAYER, make_film
+from webdemo.ui.components.film import suffix as film_suffix
+from webdemo.ui.components.player import EMPTY_TEXT, MotionPlayer, busy, show
+from webdemo.ui.components.show import result_payload
+from webdemo.ui.context import PageContext
+from webdemo.ui.history import Opened
+from webdemo.ui.text.panels import readout_panel, status
+from webdemo.ui.text.words import cancelled_line, error_line, progress_line, seconds
+from webdemo.view.payload import Payload
+
+STEPS_SHOWN = (1, 100)
+"""What the slider offers; the API takes more."""
+PACE = 0.1
+"""Seconds between two updates of the page while a run goes on."""
+QUIET: dict[str, Any] = {"api_visibility": "private", "show_progress": "hidden"}
+"""Options of events that are the page's own: no endpoint, no spinner over what they change."""
+
+_DAMPING_INFO = (
+    "While t ≤ threshold × T, corrects feet, bones, overlap, touch and facing as the motion is generated; "
+    "0 = off."
+)
+_GUIDANCE_INFO = "How strongly the words steer; 1 = no guidance."
+_STEPS_INFO = "Denoising steps: fewer are faster, more are finer."
+_SEED_INFO = "Same seed, same motion; empty for a new one."
+_SAMPLES_INFO = "Motions to generate."
+
+Updates = tuple[Any, ...]
+Watch = Callable[[Progress], dict[str, Any] | None]
+
+
+def total(result: Result) -> float:
+    """Seconds that a result took."""
+    return result.timings.get("total", sum(result.timings.values()))
+
+
+class JobTab(ABC):
+    """A tab that turns its controls into a request, runs it and shows the result.
+
+    A subclass lays out its own controls between these parts and answers :meth:`request` and :meth:`title`.
+
+    Args:
+        page: what the tabs share.
+    """
+
+    label: str
+    prefix = ""
+    """Before the ids of the tab's elements."""
+    restored: tuple[str, ...] = ()
+    """Attributes that :meth:`opened` sets, besides the result and controls named as a request's fields."""
+    dice: gr.Button | None = None
+    """Draws a seed, where the tab's motion is random."""
+
+    def __init__(self, page: PageContext) -> None:
+        self.page = page
+
+    @abstractmethod
+    def request(self, fields: Mapping[str, Any]) -> SamplingRequest:
+        """The request that the controls' values ask for; raises InputError where they do not fit."""
+
+    @abstractmethod
+    def title(self, request: Any) -> str:
+        """What the player shows over the result and its files are called after."""
+
+    # ---- layout ----------------------------------------------------------------------------------
+
+    def _id(self, name: str) -> str:
+        return self.prefix + name
+
+    def _go(self, verb: str, beside: Callable[[], None] = lambda: None) -> None:
+        """The buttons that start a run and cancel it, with what ``beside`` lays out between them."""
+        with gr.Row(elem_classes="pd-go"):
+            self.go = gr.Button(
+                verb, variant="primary", elem_id=self._id("generate"), elem_classes="pd-run", min_width=0
+            )
+            beside()
+            self.stop = gr.Button(
+                "Cancel", elem_id=self._id("cancel"), elem_classes="pd-stop", interactive=False, min_width=0
+            )
+        self.line = gr.HTML(status(), elem_id=self._id("status"), elem_classes="pd-line")
+
+    def _samples(self) -> gr.Slider:
+        return gr.Slider(
+            *SAMPLES, value=SamplingRequest.samples, step=1, label="Samples", info=_SAMPLES_INFO,
+            elem_id=self._id("samples"),
+        )  # fmt: skip
+
+    def _sampling(self) -> None:
+        """Seed, guidance, steps and damping."""
+        with gr.Row(elem_classes="pd-seed"):
+            self.seed = gr.Number(
+                value=SamplingRequest.seed, precision=0, label="Seed", info=_SEED_INFO,
+                elem_id=self._id("seed"), elem_classes="pd-seed-field", min_width=0,
+            )  # fmt: skip
+            self.dice = gr.Button(
+                "Random", size="sm", elem_id=self._id("dice"), elem_classes="pd-dice", min_width=0
+            )
+        self.guidance = gr.Slider(
+            *GUIDANCE, value=SamplingRequest.guidance, step=0.1, label="Guidance scale", info=_GUIDANCE_INFO,
+            elem_id=self._id("guidance"),
+        )  # fmt: skip
+        self.steps = gr.Slider(
+            *STEPS_SHOWN, value=SamplingRequest.steps, step=1, label="DDIM steps", info=_STEPS_INFO,
+            elem_id=self._id("steps"),
+        )  # fmt: skip
+        self.damping = gr.Slider(
+            *DAMPING, value=SamplingRequest.damping, step=0.05, label="Damping threshold",
+            info=_DAMPING_INFO, elem_id=self._id("damping"),
+        )  # fmt: skip
+
+    def _results(
+        self,
+        empty_text: str = EMPTY_TEXT,
+        below: Callable[[], None] = lambda: None,
+        first: Payload | None = None,
+    ) -> None:
+        """The player, and under it the files and read-outs of a result and what ``below`` lays out.
+
+        ``first`` is played before anything is asked for.
+        """
+        with gr.Column(elem_classes="pd-results", min_width=0):
+            with gr.Column(elem_classes="pd-panel pd-stage", min_width=0):
+                self.player = MotionPlayer(first, elem_id=self._id("player"), empty_text=empty_text)
+            with gr.Column(elem_classes="pd-panel pd-under", min_width=0, visible=False) as self.under:
+                with gr.Row(elem_classes="pd-downloads", elem_id=self._id("downloads")):
+                    self.downloads = [
+                        gr.DownloadButton(
+                            kind.label, size="sm", interactive=False, visible=kind.offered(), min_width=0,
+                            elem_id=self._id(f"download-{kind.key}"),
+                        )
+                        for kind in KINDS
+                    ]  # fmt: skip
+                    self.film = gr.Button("Make a film", size="sm", min_width=0, elem_id=self._id("film"))
+                    self.filmed = gr.DownloadButton(
+                        f"Film {film_suffix()}", size="sm", interactive=False, min_width=0,
+                        elem_id=self._id("download-film"),
+                    )  # fmt: skip
+                    self.player_state = gr.Textbox(visible=False)
+                    self.onward = gr.Button(
+                        "What comes next", size="sm", min_width=0, elem_id=self._id("continue"),
+                        elem_classes="pd-onward",
+                    )  # fmt: skip
+                self.readouts = gr.HTML(elem_id=self._id("readouts"))
+            below()
+
+    # ---- events ----------------------------------------------------------------------------------
+
+    def _wire_run(
+        self,
+        start: Callable[..., Iterator[Updates]],
+        triggers: Sequence[Any],
+        inputs: Collection[gr.components.Component],
+        record: gr.State | None,
+    ) -> None:
+        """Runs ``start`` with these inputs, or with one dictionary of them where they are a set.
+
+        ``record`` keeps the result, in a state of its own by default.
+        """
+        self.record = record or gr.State(None, time_to_live=3600)
+        self.outputs = {
+            "player": self.player,
+            "line": self.line,
+            **self.starts(),
+            "stop": self.stop,
+            "under": self.under,
+            "readouts": self.readouts,
+            "record": self.record,
+            **self.more_outputs(),
+        }
+        self._wire_start(start, triggers, inputs)
+        self.stop.click(self.cancel, queue=False, **QUIET)
+        self.film.click(
+            self.make_film, inputs=[self.record, self.player_state], outputs=[self.line, self.filmed],
+            js=READ_PLAYER, concurrency_limit=1, concurrency_id="film", trigger_mode="once", **QUIET,
+        )  # fmt: skip
+        if self.dice is not None:
+            self.dice.click(
+                None, outputs=self.seed, js=f"() => Math.floor(Math.random() * {MAX_SEED + 1})", **QUIET
+            )
+
+    def _wire_start(
+        self,
+        start: Callable[..., Iterator[Updates]],
+        triggers: Sequence[Any],
+        inputs: Collection[gr.components.Component],
+    ) -> None:
+        run = gr.on(
+            triggers,
+            start,  # not called "generate": that name is the public endpoint's
+            inputs=inputs if isinstance(inputs, set) else list(inputs),
+            outputs=list(self.outputs.values()),
+            concurrency_limit=None,  # runs wait in a line of their own, where they can be cancelled
+            trigger_mode="once",
+            **QUIET,
+        )
+        # Only now would a press be taken: while the event goes on, Gradio drops it.
+        run.then(self.rest, outputs=[*self.starts().values(), self.stop], queue=False, **QUIET)
+        run.then(
+            self.export,
+            inputs=self.record,
+            outputs=[self.line, *self.downloads],
+            concurrency_limit=2,
+            **QUIET,
+        )
+
+    def starts(self) -> dict[str, gr.Button]:
+        """The buttons that start a run, by name: none of them can be pressed while one goes on."""
+        return {"go": self.go}
+
+    def more_outputs(self) -> dict[str, Any]:
+        """What else :meth:`run` updates, by the names that :meth:`_shown` gives."""
+        return {}
+
+    def run(self, session: str, fields: Mapping[str, Any]) -> Iterator[Updates]:
+        """The page's updates while a request with these fields runs for a session.
+
+        An empty seed is drawn. Whatever goes wrong ends as one sentence in the status line, with the last
+        result still on show.
+        """
+        yield self._updates(
+            player=busy("Starting …"),
+            line=status("Starting …", tone="busy"),
+            stop=gr.update(interactive=True),
+            **{name: gr.update(interactive=False) for name in self.starts()},
+        )
+        try:
+            if fields["seed"] is None:
+                fields = {**fields, "seed": secrets.randbelow(MAX_SEED + 1)}
+            yield from self.answer(session, fields)
+        except Cancelled as stopped:
+            yield self._stopped(str(stopped), "warning")
+        except Exception as error:
+            yield self._stopped(error_line(error), "error")
+
+    def answer(self, session: str, fields: Mapping[str, Any]) -> Iterator[Updates]:
+        """Runs what the fields ask for and shows it."""
+        wanted = self.request(fields)
+        result = yield from self.made(session, wanted)
+        yield self._updates(**self._shown(result, self.title(wanted)))
+
+    def made(
+        self, session: str, wanted: Any, *, label: str = "", watch: Watch | None = None
+    ) -> Generator[Updates, None, Result]:
+        """Runs one request, yields the page's updates meanwhile and returns its result.
+
+        Args:
+            session: whose run it is.
+            wanted: the request.
+            label: stands before the progress, where several requests are run.
+            watch: sees each event first, and gives what is to change on the page or None for the progress
+                line.
+
+        Raises:
+            InputError: for what the engine cannot do.
+            Cancelled: with a sentence on how far it was.
+        """
+        last: Progress | None = None
+        shown_at = 0.0
+        try:
+            for event in self.page.runs.run(session, wanted):
+                if isinstance(event, Result):
+                    return event
+                new_stage = last is None or event.stage != last.stage
+                last = event
+                if watch is not None and (seen := watch(event)) is not None:
+                    if seen:
+                        yield self._updates(**seen)
+                    continue
+                if new_stage or time.monotonic() - shown_at >= PACE:
+                    shown_at = time.monotonic()
+                    line = label + progress_line(event)
+                    share = event.step / max(event.total, 1) if event.stage == "sample" else None
+                    yield self._updates(player=busy(line, progress=share), line=status(line, tone="busy"))
+        except Cancelled:
+            raise Cancelled(cancelled_line(last)) from None
+        raise Cancelled(cancelled_line(last))
+
+    def _shown(self, result: Result, title: str) -> dict[str, Any]:
+        spent = total(result)
+        count = len(result.duets)
+        made = "Done" if count == 1 else f"{count} samples done"
+        return {
+            "player": show(result_payload(result, title=title)),
+            "line": status(f"{made} in {seconds(spent)}." if spent else f"{made}.", tone="done"),
+            "under": gr.update(visible=True),
+            "readouts": readout_panel(result),
+            "record": Record(result, title),
+        }
+
+    def opened(self, run: Opened) -> dict[gr.components.Component, Any]:
+        """Updates that show a kept run here, by the components of this tab."""
+        made = time.strftime("%Y-%m-%d %H:%M", time.gmtime(run.entry.created))
+        shown = self._shown(run.result, run.entry.title)
+        shown["line"] = status(f"Made on {made} UTC.", tone="done")
+        return {self.outputs[name]: update for name, update in shown.items()}
+
+    def _stopped(self, line: str, tone: str) -> Updates:
+        return self._updates(player=busy(""), line=status(line, tone=tone))
+
+    def rest(self) -> Updates:
+        """The buttons once a run is over, however it ended."""
+        return *(gr.update(interactive=True) for _ in self.starts()), gr.update(interactive=False)
+
+    def _updates(self, **changed: Any) -> Updates:
+        """Updates in the order of the outputs; what is not named stays as it is."""
+        return tuple(changed.get(name, gr.skip()) for name in self.outputs)
+
+    def cancel(self, request: gr.Request) -> None:
+        """Stops the session's run within one denoising step."""
+        self.page.runs.cancel(str(request.session_hash))
+
+    def make_film(self, record: Record | None, shown: str) -> Iterator[Updates]:
+        """Films the last result as the player shows it and hands the film to its download button."""
+        yield status("Drawing the film …", tone="busy"), gr.update(value=None, interactive=False)
+        began = time.perf_counter()
+        try:
+            path = make_film(record, shown, self.page.shelf.folder())
+        except Exception as error:
+            yield status(error_line(error), tone="error"), gr.skip()
+            return
+        line = (
+            f"The film is ready, drawn in {seconds(time.perf_counter() - began)}: press Film {path.suffix}."
+        )
+        yield status(line, tone="done"), gr.update(value=path, interactive=True)
+
+    def export(self, record: Record | None) -> Updates:
+        """Writes the files of a new result and hands them to the download buttons."""
+        unchanged = (gr.skip(),) * (1 + len(KINDS))
+        if record is None or record.exported:
+            return unchanged
+        record.exported = True
+        try:
+            files = write_record(record, self.page.shelf.folder())
+            found = for_download(files, file_name(record.prompt, record.result.manifest))
+        except Exception as error:
+            off = gr.update(value=None, interactive=False)
+            return (status(f"The motion is ready, but its files are not. {error_line(error)}", tone="error"),
+                    *(off for _ in KINDS))  # fmt: skip
+        return (
+            gr.skip(),
+            *(gr.update(value=found.get(kind.key), interactive=kind.key in found) for kind in KINDS),
+        )

@@ -1,0 +1,305 @@
+"""What comes next: a motion, a marker where the past ends, and what is predicted after it."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Mapping
+from dataclasses import replace
+from functools import partial
+from pathlib import Path
+from typing import Any
+
+import gradio as gr
+
+from motion import Clip, Duet, InputError
+from webdemo.inference.methods import installed, label_of, method
+from webdemo.inference.predict_request import (
+    LONGEST,
+    PAST_SECONDS,
+    PredictRequest,
+    PredictResult,
+)
+from webdemo.inference.requests import Result
+from webdemo.ui.components.actors import Source, read_source, result_source
+from webdemo.ui.components.exports import Record
+from webdemo.ui.components.player import busy, show
+from webdemo.ui.components.prediction_view import (
+    curves_figure,
+    prediction_payload,
+    told_errors,
+    without_name,
+)
+from webdemo.ui.components.upload import chip, example_chips, file_field
+from webdemo.ui.context import PageContext
+from webdemo.ui.history import Opened
+from webdemo.ui.text.examples import example_clips
+from webdemo.ui.text.panels import comparison_panel, prediction_lines, status
+from webdemo.ui.text.words import error_line, seconds
+from webdemo.view.payload import player_payload
+
+from .job import QUIET, JobTab, Updates, total
+
+EMPTY_TEXT = (
+    "Choose a motion: drop a file or pick an example\n"
+    "Set where the past ends. Predict shows what may follow, next to what really did."
+)
+
+
+def predict_choices(weights: Path | None = None) -> list[tuple[str, str]]:
+    """(label, name) of the methods of prediction whose weights are there, or that need none."""
+    return [(method.label, method.name) for method in installed("predict", weights)]
+
+
+def motion_of(source: Source) -> Clip | Duet:
+    """All people of a source, the first called after it."""
+    people = source.whole(LONGEST)
+    first = replace(people[0], name=source.name)
+    return Duet(first, people[1]) if len(people) > 1 else first
+
+
+def given_source(result: PredictResult, name: str) -> Source:
+    """What a prediction was asked about, as a source again."""
+    given = result.given
+    named = result.manifest.get("request", {}).get("motion", {}).get("name")
+    return Source(named or name, given.people if isinstance(given, Duet) else (given,))
+
+
+def _last_marker(source: Source) -> float:
+    """The latest second at which the past can end, in tenths."""
+    return max(int(source.seconds * 10 + 1e-6) / 10, PAST_SECONDS)
+
+
+class PredictTab(JobTab):
+    """A past → its future.
+
+    Args:
+        page: what the tabs share.
+        examples: (name, file) of example motions; those that are shipped by default.
+    """
+
+    label = "Predict"
+    prefix = "predict-"
+
+    def __init__(self, page: PageContext, examples: list[tuple[str, Path]] | None = None) -> None:
+        super().__init__(page)
+        self.examples = example_clips() if examples is None else examples
+
+    def request(self, fields: Mapping[str, Any]) -> Any:
+        """A :class:`PredictRequest`; raises InputError where none can be made of the fields."""
+        source: Source | None = fields["source"]
+        if source is None:
+            raise InputError("There is no motion yet: drop a file, or pick an example or the last result.")
+        return PredictRequest(
+            motion=motion_of(source), marker=fields["marker"], seconds=fields["seconds"],
+            model=fields["model"],
+        )  # fmt: skip
+
+    def title(self, request: PredictRequest) -> str:
+        """Where the prediction begins, and of which motion."""
+        name = request.motion.name if isinstance(request.motion, Clip) else request.motion.a.name
+        return f"After {request.marker:.1f} s of {name}"
+
+    # ---- layout ----------------------------------------------------------------------------------
+
+    def build(self, demo: gr.Blocks, record: gr.State | None = None) -> None:
+        """Lays out the tab inside ``demo`` and wires its events.
+
+        Args:
+            demo: the page.
+            record: keeps the session's last result, of this tab or another.
+        """
+        with gr.Row(elem_classes="pd-lab", equal_height=False):
+            with gr.Column(elem_classes="pd-controls", min_width=0):
+                self._ask()
+                with gr.Column(elem_classes="pd-panel pd-settings", min_width=0):
+                    self.marker = gr.Slider(
+                        0, 10, value=PAST_SECONDS, step=0.1, label="The past ends at (s)",
+                        info="The method sees what comes before. What really followed is shown as a pale ghost.",
+                        elem_id="predict-marker",
+                    )  # fmt: skip
+                    self.seconds = gr.Slider(
+                        *method(PredictRequest.model).seconds, value=PredictRequest.seconds, step=0.5,
+                        label="Seconds to predict",
+                        elem_id="predict-seconds",
+                    )  # fmt: skip
+                    with gr.Row(elem_classes="pd-pair"):
+                        self.model = gr.Dropdown(
+                            predict_choices(), value=PredictRequest.model, label="Method",
+                            elem_id="predict-method", min_width=0, filterable=False,
+                        )  # fmt: skip
+                        self.other = gr.Dropdown(
+                            [("nothing", ""), *predict_choices()], value="", label="Compare with",
+                            elem_id="predict-other", min_width=0, filterable=False,
+                        )  # fmt: skip
+            self._results(EMPTY_TEXT, self._curves)
+        self.source = gr.State(None, time_to_live=3600)
+        self._wire_run(
+            self.start, [self.go.click],
+            (self.source, self.marker, self.seconds, self.model, self.other), record,
+        )  # fmt: skip
+        self._wire_source()
+
+    def _ask(self) -> None:
+        with gr.Column(elem_classes="pd-panel pd-ask", min_width=0):
+            self.file = file_field("Motion", elem_id="predict-file")
+            with gr.Row(elem_classes="pd-chips"):
+                self.chips = example_chips(self.examples)
+                self.take = chip("Continue the last result", elem_id="predict-take")
+            self._go("Predict")
+
+    def _curves(self) -> None:
+        with gr.Column(elem_classes="pd-panel pd-curves", min_width=0, visible=False) as self.curves:
+            self.plot = gr.Plot(show_label=False, elem_id="predict-curves")
+
+    def more_outputs(self) -> dict[str, gr.components.Component]:
+        """The curves under the player."""
+        return {"curves": self.curves, "plot": self.plot}
+
+    # ---- events ----------------------------------------------------------------------------------
+
+    def _wire_source(self) -> None:
+        self.changed = [self.source, self.line, self.player, self.marker]
+        load: dict[str, Any] = {
+            "outputs": self.changed,
+            "concurrency_limit": 2,
+            "concurrency_id": "predict-read",
+            **QUIET,
+        }
+        self.file.upload(self.upload, inputs=self.file, **load)
+        for button, (name, path) in zip(self.chips, self.examples, strict=True):
+            button.click(partial(self.load, partial(read_source, path, name)), **load)
+        self.take.click(self.take_result, inputs=self.record, **load)
+        for button in (*self.chips, self.take):  # the file is no longer what is used
+            button.click(None, outputs=self.file, js="() => null", **QUIET)
+        self.file.clear(self.forget, outputs=self.changed, queue=False, **QUIET)
+
+    def upload(self, path: str | None) -> Iterator[Updates]:
+        """Reads an uploaded file and shows its motion."""
+        if path is not None:
+            yield from self.load(partial(read_source, path))
+
+    def take_result(self, record: Record | None) -> Iterator[Updates]:
+        """Makes the session's last result the past: the marker stands at its end."""
+
+        def read() -> Source:
+            if record is None:
+                raise InputError("There is no result yet: generate one first.")
+            return result_source(record.result, record.prompt, "a")
+
+        yield from self.load(read, at_end=True)
+
+    def load(self, read: Callable[[], Source], *, at_end: bool = False) -> Iterator[Updates]:
+        """Updates of source, line, player and marker while a motion is read."""
+        yield gr.skip(), status("Reading the motion …", tone="busy"), busy("Reading the motion …"), gr.skip()
+        try:
+            source = read()
+            payload = player_payload(without_name(motion_of(source)), title=source.name)
+        except Exception as error:
+            yield gr.skip(), status(error_line(error), tone="error"), busy(""), gr.skip()
+            return
+        last = _last_marker(source)
+        marker = last if at_end else max(PAST_SECONDS, round(last / 2, 1))
+        yield source, self._told(source), show(payload), self._marker(source, marker)
+
+    @staticmethod
+    def _marker(source: Source, value: float) -> Any:
+        """The marker's slider as long as a motion."""
+        last = _last_marker(source)
+        return gr.update(minimum=PAST_SECONDS, maximum=max(last, PAST_SECONDS + 0.1), value=value)
+
+    def continues(self, button: gr.Button, tabs: gr.Tabs, tab: str) -> None:
+        """Makes a button of any tab take the last result here, as a past that is to go on.
+
+        Args:
+            button: of the tab that shows the result.
+            tabs: of the page.
+            tab: this one's id among them.
+        """
+        shown = button.click(lambda: gr.update(selected=tab), outputs=tabs, queue=False, **QUIET)
+        shown.then(
+            self.take_result, inputs=self.record, outputs=self.changed, concurrency_limit=2,
+            concurrency_id="predict-read", **QUIET,
+        )  # fmt: skip
+        shown.then(None, outputs=self.file, js="() => null", **QUIET)
+
+    @staticmethod
+    def _told(source: Source) -> str:
+        people = "two people" if len(source.people) > 1 else "one person"
+        told = f"{source.name}: {people}, {source.seconds:.1f} s."
+        if source.seconds < PAST_SECONDS:
+            return status(f"{told} Give {PAST_SECONDS:g} s or more.", tone="warning")
+        if source.seconds > LONGEST:
+            return status(f"{told} Cut it to {LONGEST:g} s or less.", tone="warning")
+        return status(told)
+
+    @staticmethod
+    def forget() -> Updates:
+        """The tab without a motion."""
+        return None, status(), show(None), gr.skip()
+
+    def start(
+        self,
+        source: Source | None,
+        marker: float,
+        seconds: float,
+        model: str,
+        other: str,
+        request: gr.Request,
+    ) -> Iterator[Updates]:
+        """Runs what the controls ask for; yields updates of the page."""
+        fields = {
+            "source": source, "marker": marker, "seconds": seconds, "model": model, "other": other, "seed": 0,
+        }  # fmt: skip
+        yield from self.run(str(request.session_hash), fields)
+
+    def answer(self, session: str, fields: Mapping[str, Any]) -> Iterator[Updates]:
+        """Runs one method, or two side by side."""
+        if fields.get("other"):
+            yield from self._answer_both(session, fields)
+        else:
+            yield from super().answer(session, fields)
+
+    def _answer_both(self, session: str, fields: Mapping[str, Any]) -> Iterator[Updates]:
+        """Continues the same past by two methods, one after the other, and shows both on one clock."""
+        models = (fields["model"], fields["other"])
+        if models[0] == models[1]:
+            raise InputError("Both methods are the same: choose another one to compare with.")
+        wanted = {model: self.request({**fields, "model": model}) for model in models}
+        made: dict[str, PredictResult] = {}
+        for model, request in wanted.items():
+            result = yield from self.made(session, request, label=f"{label_of(model)}. ")
+            assert isinstance(result, PredictResult)
+            made[model] = result
+        title = self.title(wanted[models[0]])
+        named = {label_of(model): result for model, result in made.items()}
+        spent = " and ".join(seconds(total(result)) for result in made.values())
+        yield self._updates(
+            player=show(prediction_payload(*made.values(), title=title)),
+            line=status(f"Both done, in {spent}.", tone="done"),
+            under=gr.update(visible=True),
+            readouts=prediction_lines(dict(zip(named, told_errors(*named.values()), strict=True)))
+            + comparison_panel(named),
+            record=Record(made[models[0]], title, compared=made),
+            curves=gr.update(visible=True),
+            plot=curves_figure(*made.values()),
+        )
+
+    def opened(self, run: Opened) -> dict[gr.components.Component, Any]:
+        """Also the motion that was asked about, so that the marker can be moved on it."""
+        found, result = super().opened(run), run.result
+        if isinstance(result, PredictResult):
+            source = given_source(result, run.entry.title)
+            found[self.source] = source
+            found[self.marker] = self._marker(source, result.past_frames / result.duets[0].fps)
+        return found
+
+    def _shown(self, result: Result, title: str) -> dict[str, Any]:
+        shown = super()._shown(result, title)
+        if not isinstance(result, PredictResult):  # of a history that did not keep what followed
+            return {**shown, "curves": gr.update(visible=False)}
+        return {
+            **shown,
+            "player": show(prediction_payload(result, title=title)),
+            "readouts": prediction_lines({"": told_errors(result)[0]}) + str(shown["readouts"]),
+            "curves": gr.update(visible=True),
+            "plot": curves_figure(result),
+        }

@@ -1,0 +1,393 @@
+"""Give it one person, get the other: an uploaded actor, a trim, and a second person who reacts."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Mapping
+from functools import partial
+from pathlib import Path
+from typing import Any
+
+import gradio as gr
+
+from motion import InputError
+from motion.formats.importing import AXES, ORDERS, UNITS
+from webdemo.inference.actor import SECONDS
+from webdemo.inference.live import LiveRequest
+from webdemo.inference.methods import variants
+from webdemo.inference.requests import ReactRequest, Result
+from webdemo.ui.components.actors import (
+    AUTO,
+    Source,
+    chosen_actor,
+    import_choices,
+    live_variant,
+    react_choices,
+    reactor,
+    read_source,
+    result_source,
+    with_method,
+)
+from webdemo.ui.components.compare import comparison_payload
+from webdemo.ui.components.exports import Record
+from webdemo.ui.components.live import LiveView
+from webdemo.ui.components.player import busy, show
+from webdemo.ui.components.show import result_payload
+from webdemo.ui.components.upload import chip, example_chips, file_field
+from webdemo.ui.context import PageContext
+from webdemo.ui.history import Opened
+from webdemo.ui.text.examples import example_clips
+from webdemo.ui.text.panels import comparison_panel, status
+from webdemo.ui.text.words import error_line, seconds, text
+
+from .job import QUIET, JobTab, Updates, total
+
+EMPTY_TEXT = (
+    "Choose one person: drop a motion file or pick an example\n"
+    "React adds a second person who answers. Live does so while the first one plays."
+)
+_SHORTEST = 0.1
+"""Seconds: the least that the trim's sliders differ in."""
+
+
+class ReactTab(JobTab):
+    """One person → two people.
+
+    Args:
+        page: what the tabs share.
+        examples: (name, file) of the example actors; those that are shipped by default.
+    """
+
+    label = "React"
+    prefix = "react-"
+    restored = ("method", "other")
+
+    def __init__(self, page: PageContext, examples: list[tuple[str, Path]] | None = None) -> None:
+        super().__init__(page)
+        self.examples = example_clips() if examples is None else examples
+
+    def request(self, fields: Mapping[str, Any]) -> ReactRequest:
+        """See :meth:`JobTab.request`."""
+        return ReactRequest(**chosen_actor(fields))
+
+    def title(self, request: ReactRequest) -> str:
+        """The words, or whose reaction it is."""
+        return request.prompt.strip() or f"Reaction to {request.actor.name}"
+
+    def opened(self, run: Opened) -> dict[gr.components.Component, Any]:
+        """Also the method, with what it lets be set."""
+        asked = run.entry.request
+        known = variants("react")
+        its = (asked.get("model"), asked.get("mode"))
+        method = next((key for key, v in known.items() if (v.method.name, v.mode) == its), next(iter(known)))
+        fitted = zip((self.role, self.steps, self.damping), self.fit_method(method), strict=True)
+        kept = (asked.get(name) for name in ("role", "steps", "damping"))
+        return super().opened(run) | {
+            self.method: gr.update(value=method),
+            self.other: gr.update(value=""),
+            **{
+                part: fit if value is None else {**fit, "value": value}
+                for (part, fit), value in zip(fitted, kept, strict=True)
+            },
+        }
+
+    # ---- layout ----------------------------------------------------------------------------------
+
+    def build(self, demo: gr.Blocks, record: gr.State | None = None) -> None:
+        """Lays out the tab inside ``demo`` and wires its events.
+
+        Args:
+            demo: the page.
+            record: keeps the session's last result, of this tab or another.
+        """
+        with gr.Row(elem_classes="pd-lab", equal_height=False):
+            with gr.Column(elem_classes="pd-controls", min_width=0):
+                self._ask()
+                with gr.Column(elem_classes="pd-panel pd-settings", min_width=0):
+                    self.samples = self._samples()
+                    self._sampling()
+            self._results(EMPTY_TEXT)
+        self.source = gr.State(None, time_to_live=3600)
+        self.controls = {
+            "source": self.source, "person": self.person, "start": self.begin, "end": self.end,
+            "role": self.role, "prompt": self.prompt, "seed": self.seed, "samples": self.samples,
+            "guidance": self.guidance, "steps": self.steps, "damping": self.damping, "method": self.method,
+            "other": self.other, "keep": self.keep,
+        }  # fmt: skip
+        inputs = set(self.controls.values())
+        self._wire_run(self.start, [self.go.click, self.prompt.submit], inputs, record)
+        self._wire_start(self.start_live, [self.live.click], inputs)
+        self._wire_actor()
+        methods = [self.method, self.other]
+        self.method.input(
+            self.fit_method, inputs=methods, outputs=[self.role, self.steps, self.damping],
+            queue=False, **QUIET,
+        )  # fmt: skip
+        self.other.input(
+            lambda *chosen: self.fit_method(*chosen)[0], inputs=methods, outputs=self.role,
+            queue=False, **QUIET,
+        )  # fmt: skip
+
+    def _ask(self) -> None:
+        with gr.Column(elem_classes="pd-panel pd-ask", min_width=0):
+            self.file = file_field("Given person", elem_id="react-file")
+            with gr.Row(elem_classes="pd-chips"):
+                self.chips = example_chips(self.examples)
+                self.take = {
+                    person: chip(f"{person.upper()} of the last result", elem_id=f"react-take-{person}")
+                    for person in ("a", "b")
+                }
+            with gr.Column(visible=False, min_width=0, elem_classes="pd-settings") as self.trim:
+                self.person = gr.Radio(
+                    [("Person A", "a"), ("Person B", "b")], value="a", label="Which person",
+                    elem_id="react-person", visible=False,
+                )  # fmt: skip
+                with gr.Row(elem_classes="pd-trim"):
+                    self.begin = gr.Slider(0, SECONDS[1], value=0, step=0.1, label="Start",
+                                           elem_id="react-start", elem_classes="pd-trim-start")  # fmt: skip
+                    self.end = gr.Slider(0, SECONDS[1], value=SECONDS[1], step=0.1, label="End",
+                                         elem_id="react-end")  # fmt: skip
+                self._import_choices()
+                self.keep = gr.Checkbox(
+                    False, label="Start in the other person's first pose (not InterGen)",
+                    elem_id="react-keep", visible=False, min_width=0,
+                )  # fmt: skip
+                self.role = gr.Radio(
+                    [("acts first", "a"), ("reacts", "b")], value=ReactRequest.role,
+                    label="The given person …", elem_id="react-role",
+                )  # fmt: skip
+            with gr.Row(elem_classes="pd-rows"):
+                self.method = gr.Dropdown(
+                    react_choices(), value=reactor("").key, label="Method",
+                    elem_id="react-method", min_width=0, filterable=False,
+                )  # fmt: skip
+                self.other = gr.Dropdown(
+                    [("nothing", ""), *react_choices()], value="", label="Compare with",
+                    elem_id="react-other", min_width=0, filterable=False,
+                )  # fmt: skip
+            self.prompt = gr.Textbox(
+                label="What do the two people do? (optional)",
+                placeholder="One person waves and the other waves back.",
+                lines=1,  # so that Enter generates; the style sheet gives it the height of three
+                max_lines=6,
+                elem_id="react-prompt",
+            )
+            self._go("React", self._live_button)
+
+    def _import_choices(self) -> None:
+        """How the file was read, and what can be set about it."""
+        with gr.Accordion("How the file was read", open=False, elem_id="react-import"):
+            with gr.Row(elem_classes="pd-pair"):
+                self.up = gr.Dropdown(
+                    [("found", AUTO), *AXES], value=AUTO, label="Up axis", elem_id="react-up",
+                    min_width=0,
+                )  # fmt: skip
+                self.unit = gr.Dropdown(
+                    [("found", AUTO), *UNITS], value=AUTO, label="Unit", elem_id="react-unit",
+                    min_width=0,
+                )  # fmt: skip
+                self.fps = gr.Number(
+                    value=None, label="Frames a second", placeholder="found", elem_id="react-fps",
+                    min_width=0,
+                )  # fmt: skip
+                self.order = gr.Dropdown(
+                    [("found", AUTO), *((label, name) for name, label in ORDERS.items())],
+                    value=AUTO, label="Order of 15 joints", elem_id="react-order", min_width=0,
+                )  # fmt: skip
+            self.found = gr.HTML(elem_id="react-found")
+
+    def _live_button(self) -> None:
+        self.live = gr.Button(
+            "Live", elem_id="react-live", elem_classes="pd-live", min_width=0,
+            visible=live_variant() is not None,
+        )  # fmt: skip
+
+    def starts(self) -> dict[str, gr.Button]:
+        """The buttons *React* and *Live*."""
+        return {**super().starts(), "live": self.live}
+
+    # ---- events ----------------------------------------------------------------------------------
+
+    def _wire_actor(self) -> None:
+        changed = [
+            self.source, self.line, self.player, self.trim, self.person, self.begin, self.end, self.found,
+        ]  # fmt: skip
+        load: dict[str, Any] = {
+            "outputs": changed,
+            "concurrency_limit": 2,
+            "concurrency_id": "react-read",
+            **QUIET,
+        }
+        self.file.upload(self.upload, inputs=self.file, **load)
+        choices = [self.up, self.unit, self.fps, self.order]
+        self.file.upload(lambda: (AUTO, AUTO, None, AUTO), outputs=choices, queue=False, **QUIET)
+        gr.on(
+            [self.up.input, self.unit.input, self.order.input, self.fps.submit, self.fps.blur],
+            self.read_again, inputs=[self.source, *choices], trigger_mode="always_last", **load,
+        )  # fmt: skip
+        for button, (name, path) in zip(self.chips, self.examples, strict=True):
+            button.click(partial(self.load, partial(read_source, path, name)), **load)
+        for person, button in self.take.items():
+            button.click(partial(self.take_result, person), inputs=self.record, **load)
+        for button in (*self.chips, *self.take.values()):  # the file is no longer what is used
+            button.click(None, outputs=self.file, js="() => null", **QUIET)
+        self.source.change(
+            lambda source: gr.update(visible=source is not None and len(source.people) == 2, value=False),
+            inputs=self.source, outputs=self.keep, queue=False, **QUIET,
+        )  # fmt: skip
+        self.file.clear(self.forget, outputs=changed, queue=False, **QUIET)
+        trim = [self.source, self.person, self.begin, self.end]
+        gr.on(
+            [self.person.input, self.begin.release, self.end.release],
+            self.preview, inputs=trim, outputs=[self.line, self.player], trigger_mode="always_last", **QUIET,
+        )  # fmt: skip
+
+    @staticmethod
+    def fit_method(method: str, other: str = "") -> Updates:
+        """Updates of role, steps and damping: what a method does not have cannot be set."""
+        chosen = reactor(method)
+        both = [chosen, *([reactor(other)] if other else [])]
+        either = all("either role" in variant.method.takes for variant in both)
+        forced: dict[str, Any] = {} if either else {"value": "a"}
+        role = gr.update(interactive=either, **forced)
+        damped = "damping" not in chosen.method.fixed and chosen.mode == "offline"
+        steps = chosen.method.default("steps", ReactRequest.steps)
+        return role, gr.update(value=steps), gr.update(interactive=damped)
+
+    def upload(self, path: str | None) -> Iterator[Updates]:
+        """Reads an uploaded file and shows its actor."""
+        if path is not None:
+            yield from self.load(partial(read_source, path))
+
+    def read_again(
+        self, source: Source | None, up: str, unit: str, fps: float | None, order: str = AUTO
+    ) -> Iterator[Updates]:
+        """Reads the source's file anew with what the visitor knows of it."""
+        if source is not None and source.path is not None:
+            path, name = source.path, source.name
+            yield from self.load(lambda: read_source(path, name, import_choices(up, unit, fps, order)))
+
+    def take_result(self, person: str, record: Record | None) -> Iterator[Updates]:
+        """Makes a person of the session's last result the actor."""
+
+        def read() -> Source:
+            if record is None:
+                raise InputError("There is no result yet: generate one first.")
+            return result_source(record.result, record.prompt, person)
+
+        yield from self.load(read)
+
+    def load(self, read: Callable[[], Source]) -> Iterator[Updates]:
+        """Updates of source, line, player, trim, person, start, end and found while an actor is read."""
+        same = (gr.skip(),) * 5
+        yield gr.skip(), status("Reading the motion …", tone="busy"), busy("Reading the motion …"), *same
+        try:
+            source = read()
+            payload = source.preview(source.chosen, 0.0, source.end)
+        except Exception as error:
+            yield gr.skip(), status(error_line(error), tone="error"), busy(""), *same
+            return
+        last = max(round(source.seconds, 1), _SHORTEST)
+        yield (
+            source,
+            self._told(source, 0.0, source.end),
+            show(payload),
+            gr.update(visible=True),
+            gr.update(choices=source.choices, visible=len(source.people) > 1, value=source.chosen),
+            gr.update(maximum=last, value=0),
+            gr.update(maximum=last, value=min(round(source.end, 1), last)),
+            _found(source),
+        )
+
+    @staticmethod
+    def forget() -> Updates:
+        """The tab without an actor; a result stays in the downloads."""
+        return None, status(), show(None), gr.update(visible=False), *(gr.skip(),) * 4
+
+    def preview(self, source: Source | None, person: str, start: float, end: float) -> Updates:
+        """Shows the actor as trimmed."""
+        if source is None:
+            return gr.skip(), gr.skip()
+        try:
+            payload = source.preview(person, start, end)
+        except Exception as error:
+            return status(error_line(error), tone="error"), busy("")
+        return self._told(source, start, end), show(payload)
+
+    @staticmethod
+    def _told(source: Source, start: float, end: float) -> str:
+        end = min(end, source.seconds)
+        shortest, longest = SECONDS
+        used = f"{source.name}: {start:.1f} to {end:.1f} s of {source.seconds:.1f} s."
+        if end - start < shortest - 1e-6:
+            return status(f"{used} Take {shortest:g} s or more.", tone="warning")
+        if end - start > longest + 0.05:
+            return status(f"{used} Take {longest:g} s or less.", tone="warning")
+        return status(used)
+
+    def start(self, values: dict[gr.components.Component, Any], request: gr.Request) -> Iterator[Updates]:
+        """Runs what the controls ask for; yields updates of the page."""
+        yield from self.run(str(request.session_hash), self._fields(values))
+
+    def start_live(
+        self, values: dict[gr.components.Component, Any], request: gr.Request
+    ) -> Iterator[Updates]:
+        """Streams an online reaction while the actor plays; yields updates of the page."""
+        yield from self.run(str(request.session_hash), {**self._fields(values), "live": True})
+
+    def _fields(self, values: Mapping[gr.components.Component, Any]) -> dict[str, Any]:
+        return {name: values[component] for name, component in self.controls.items()}
+
+    def answer(self, session: str, fields: Mapping[str, Any]) -> Iterator[Updates]:
+        """Runs one method, two side by side, or the live reaction."""
+        if fields.get("live"):
+            yield from self._answer_live(session, fields)
+        elif fields.get("other"):
+            yield from self._answer_both(session, fields)
+        else:
+            yield from super().answer(session, fields)
+
+    def _answer_both(self, session: str, fields: Mapping[str, Any]) -> Iterator[Updates]:
+        """Runs two methods one after the other for the same actor, words and seed, and shows both."""
+        keys = (fields["method"], fields["other"])
+        if keys[0] == keys[1]:
+            raise InputError("Both methods are the same: choose another one to compare with.")
+        wanted = {key: self.request(with_method(fields, key)) for key in keys}
+        made: dict[str, Result] = {}
+        for key, request in wanted.items():
+            made[key] = yield from self.made(session, request, label=f"{reactor(key).label}. ")
+        title = self.title(wanted[keys[0]])
+        named = {reactor(key).label: result for key, result in made.items()}
+        spent = " and ".join(seconds(total(result)) for result in made.values())
+        yield self._updates(
+            player=show(comparison_payload(named, title=title)),
+            line=status(f"Both done, in {spent}.", tone="done"),
+            under=gr.update(visible=True),
+            readouts=comparison_panel(named),
+            record=Record(made[keys[0]], title, compared=made),
+        )
+
+    def _answer_live(self, session: str, fields: Mapping[str, Any]) -> Iterator[Updates]:
+        """Streams one sample of the online method, whatever method is chosen."""
+        live = live_variant()
+        if live is None:
+            raise InputError("No installed method can react live: choose a method and press React.")
+        wanted = LiveRequest(**chosen_actor({**with_method(fields, live.key), "samples": 1}))
+        title = self.title(wanted)
+        view = LiveView(wanted.actor, title)
+        try:
+            result = yield from self.made(session, wanted, watch=view)
+        except Exception:
+            yield self._updates(player=view.stopped())
+            raise
+        shown = self._shown(result, title)
+        payload = {**result_payload(result, title=title), "continues": view.id}
+        line = status(f"Live reaction done: {view.delay}.", tone="done")
+        yield self._updates(**{**shown, "player": show(payload), "line": line})
+
+
+def _found(source: Source) -> str:
+    """How a source's file was read, as HTML: one line, then which of its joints is which of SMPL's."""
+    if source.found is None:
+        return status("Taken from a result, so there was nothing to detect.")
+    pairs = " · ".join(f"{text(theirs)} → {text(ours)}" for theirs, ours in source.found.joints)
+    return f'{status(source.found.line)}<p class="pd-timings">{pairs}</p>'

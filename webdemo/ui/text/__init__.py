@@ -1,0 +1,1 @@
+"""What the page says: words, read-outs, examples. Nothing here knows Gradio's components."""

@@ -1,0 +1,30 @@
+"""The classes that can be picked, as the weights folder of their method names them; nothing is loaded."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+from typing import Any
+
+from webdemo.inference.method import Method
+from webdemo.inference.methods import WEIGHTS, method, methods
+
+
+def takes_class(name: str) -> bool:
+    """Whether a method is asked by the name of a class and not by a sentence."""
+    return "class" in method(name).takes
+
+
+def class_method() -> Method:
+    """The method that makes two people from a class."""
+    return next(found for found in methods("generate") if "class" in found.takes)
+
+
+def installed_classes(weights: Path = WEIGHTS) -> tuple[list[str], dict[str, Any]]:
+    """Names of the classes, and what the model's card says; none and nothing where there are no weights."""
+    found = class_method()
+    try:
+        meta = json.loads((weights / str(found.weights) / "config.json").read_text())
+        return list(map(str, meta["model"]["labels"])), {"name": found.name, **meta.get("card", {})}
+    except (OSError, ValueError, KeyError, TypeError):
+        return [], {}

@@ -1,0 +1,249 @@
+"""The page's small pieces of HTML: status, read-outs, model card. Every text in them is escaped."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+from motion.metrics import MEASURES, Measure
+from webdemo.inference.requests import Result
+
+from .plain import legend, told_lines
+from .words import number, seconds, text
+
+Summary = Mapping[str, float]
+
+QUALITY = tuple(measure for measure in MEASURES if measure.better)
+RELATION = tuple(measure for measure in MEASURES if not measure.better)
+_MOST_TOLD = 4
+"""Samples: more than these are not told in words."""
+
+
+def status(line: str = "", *, tone: str = "quiet") -> str:
+    """The line under the buttons.
+
+    Args:
+        line: one sentence.
+        tone: "quiet", "busy", "done", "warning" or "error"; errors are announced at once.
+    """
+    if not line:
+        return ""
+    role = "alert" if tone == "error" else "status"
+    return f'<p class="pd-status pd-{tone}" role="{role}">{text(line)}</p>'
+
+
+def model_state(state: str, error: str | None = None) -> str:
+    """The small mark in the header: whether the networks are loaded."""
+    words = {
+        "loading": "Loading model …",
+        "ready": "Model ready",
+        "failed": error or "The model did not load.",
+    }
+    return f'<p class="pd-model pd-model-{text(state)}" role="status">{text(words[state])}</p>'
+
+
+def readout_panel(result: Result) -> str:
+    """Everything under the player: notes, how it came out, what was asked, measures, contacts, timings."""
+    samples = [_sides(readout) for readout in result.readouts]
+    parts = [_notes(result.notes), _told(samples, _heads(len(samples))), _asked(result)]
+    if samples:
+        parts += [_tables(_quality_table(samples), _relation_table(samples, result)), legend()]
+    parts.append(_timings(result.timings))
+    return '<div class="pd-readouts">' + "".join(parts) + "</div>"
+
+
+def comparison_panel(results: Mapping[str, Result]) -> str:
+    """The same for results of several methods, by what each is called: their measures next to each other."""
+    heads = [
+        f"{name}, {i + 1}" if len(result.duets) > 1 else name
+        for name, result in results.items()
+        for i in range(len(result.duets))
+    ]
+    joined = Result(
+        duets=tuple(duet for result in results.values() for duet in result.duets),
+        readouts=tuple(readout for result in results.values() for readout in result.readouts),
+        manifest={},
+    )
+    samples = [_sides(readout) for readout in joined.readouts]
+    parts = [_notes(result.notes) for result in results.values()]
+    parts += [_told(samples, heads), *(_asked(result, name) for name, result in results.items())]
+    if samples:
+        tables = _quality_table(samples, heads), _relation_table(samples, joined, heads)
+        parts += [_tables(*tables), legend()]
+    parts += [_timings(result.timings, name) for name, result in results.items()]
+    return '<div class="pd-readouts">' + "".join(parts) + "</div>"
+
+
+def prediction_lines(lines: Mapping[str, str]) -> str:
+    """How far off each prediction was, a line each, after what each is called where there are several."""
+    return "".join(
+        f'<p class="pd-told">{f"<b>{text(name)}</b> " if name else ""}{text(line)}</p>'
+        for name, line in lines.items()
+    )
+
+
+def _tables(*tables: str) -> str:
+    return f'<div class="pd-tables">{"".join(tables)}</div>'
+
+
+def _told(samples: Sequence[tuple[Summary | None, Summary]], heads: Sequence[str]) -> str:
+    """How each came out, in words; of many samples the tables say enough."""
+    if not 0 < len(samples) <= _MOST_TOLD:  # a prediction has no read-outs
+        return ""
+    return told_lines({name: after for name, (_, after) in zip(heads, samples, strict=True)})
+
+
+def _heads(count: int) -> list[str]:
+    return [f"Sample {i + 1}" for i in range(count)]
+
+
+def _sides(readout: Mapping[str, Any]) -> tuple[Summary | None, Summary]:
+    """(before, after) of a read-out, as :func:`motion.metrics.compare` gives it."""
+    after = readout.get("after") or {}
+    before = readout.get("before")
+    return (before.get("summary", before) if before else None), after.get("summary", after)
+
+
+def _asked(result: Result, name: str | None = None) -> str:
+    request = result.manifest.get("request", result.manifest)
+    shown = [
+        ("Method", name),
+        ("Actor", request.get("actor", {}).get("name")),
+        ("Seed", request.get("seed")),
+        ("Length", f"{result.duets[0].seconds:.1f} s" if result.duets else None),
+        ("Guidance", _plain(request.get("guidance"))),
+        ("Steps", request.get("steps")),
+        ("Damping", _plain(request.get("damping"))),
+    ]
+    items = "".join(
+        f"<div><dt>{text(label)}</dt><dd>{text(value)}</dd></div>"
+        for label, value in shown
+        if value is not None
+    )
+    return f'<dl class="pd-asked">{items}</dl>'
+
+
+def _plain(value: Any) -> str | None:
+    return None if value is None else f"{value:g}"
+
+
+def _notes(notes: Sequence[str]) -> str:
+    return "".join(f'<p class="pd-note" role="note">{text(note)}</p>' for note in notes)
+
+
+def _quality_table(
+    samples: Sequence[tuple[Summary | None, Summary]], heads: Sequence[str] | None = None
+) -> str:
+    head: Sequence[str]
+    if len(samples) == 1 and samples[0][0] is not None:
+        head = ("Before", "After", "Change")
+    elif len(samples) == 1:
+        head = ("Value",)
+    else:
+        head = heads or _heads(len(samples))
+    rows = "".join(_quality_row(measure, samples) for measure in QUALITY)
+    return _table("Quality, before → after damping and clean-up", head, rows)
+
+
+def _quality_row(measure: Measure, samples: Sequence[tuple[Summary | None, Summary]]) -> str:
+    cells = []
+    for before, after in samples:
+        new = _value(measure, after)
+        old = "" if before is None else _value(measure, before)
+        if len(samples) > 1:
+            cells.append(f"<td>{old} → <b>{new}</b></td>" if old else f"<td><b>{new}</b></td>")
+        elif before is None:
+            cells.append(f"<td><b>{new}</b></td>")
+        else:
+            cells.append(f"<td>{old}</td><td><b>{new}</b></td>{_change(measure, before, after)}")
+    return _row(measure, "".join(cells))
+
+
+def _change(measure: Measure, before: Summary, after: Summary) -> str:
+    old, new = before.get(measure.key), after.get(measure.key)
+    smallest = 0.5 * 10**-measure.digits
+    if old is None or new is None or _value(measure, before) == _value(measure, after):
+        return '<td class="pd-same">same</td>'
+    tone = "pd-better" if new < old else "pd-worse"
+    if old < smallest:
+        return f'<td class="{tone}">+{number(new - old, measure.digits)}</td>'
+    percent = f"{100 * (new - old) / old:+.0f}".replace("-", "−")
+    if percent in ("+0", "−0"):
+        return '<td class="pd-same">same</td>'
+    return f'<td class="{tone}">{percent} %</td>'
+
+
+def _relation_table(
+    samples: Sequence[tuple[Summary | None, Summary]], result: Result, heads: Sequence[str] | None = None
+) -> str:
+    head = ("Value",) if len(samples) == 1 else heads or _heads(len(samples))
+    rows = "".join(
+        _row(measure, "".join(f"<td><b>{_value(measure, after)}</b></td>" for _, after in samples))
+        for measure in RELATION
+    )
+    contacts = "".join(_contacts(i, result, head) for i in range(len(samples)))
+    return f'<div class="pd-relation">{_table("Between the two", head, rows)}{contacts}</div>'
+
+
+def _contacts(sample: int, result: Result, head: Sequence[str]) -> str:
+    found = result.readouts[sample].get("contacts")
+    if found is None:
+        return ""
+    fps = result.duets[sample].fps
+    title = "Contacts" if len(result.duets) == 1 else f"Contacts, {head[sample]}"
+    items = "".join(
+        f'<li class="pd-{text(contact["kind"])}">'
+        f"<b>{_span(contact['start'] / fps, contact['stop'] / fps)} s</b> {text(contact['label'])}</li>"
+        for contact in found
+    )
+    return f'<div class="pd-contacts"><h4>{text(title)}</h4><ul>{items or "<li>none</li>"}</ul></div>'
+
+
+def _span(start: float, stop: float) -> str:
+    """Two times in seconds, or one where they are the same tenth."""
+    first, last = f"{start:.1f}", f"{stop:.1f}"
+    return first if first == last else f"{first}–{last}"
+
+
+def _timings(timings: Mapping[str, float], name: str | None = None) -> str:
+    if not timings:
+        return ""
+    whose = f"<b>{text(name)}</b> " if name else ""
+    items = " · ".join(f"{text(stage)} {seconds(spent)}" for stage, spent in timings.items())
+    return f'<p class="pd-timings">{whose}{items}</p>'
+
+
+def _value(measure: Measure, values: Summary) -> str:
+    value = values.get(measure.key)
+    return "–" if value is None else number(value, measure.digits)
+
+
+def _row(measure: Measure, cells: str) -> str:
+    unit = f" <small>{text(measure.unit)}</small>" if measure.unit else ""
+    return f'<tr title="{text(measure.meaning)}"><th scope="row">{text(measure.label)}{unit}</th>{cells}</tr>'
+
+
+def _table(caption: str, head: Sequence[str], rows: str) -> str:
+    cells = "".join(f'<th scope="col">{text(label)}</th>' for label in head)
+    return (
+        f'<div class="pd-table"><table><caption>{text(caption)}</caption>'
+        f"<thead><tr><td></td>{cells}</tr></thead><tbody>{rows}</tbody></table></div>"
+    )
+
+
+def model_card(info: Mapping[str, Any]) -> str:
+    """A model's name, its summary and the plain facts of its card."""
+    facts = "".join(
+        f"<div><dt>{text(str(key).replace('_', ' ').capitalize())}</dt><dd>{text(value)}</dd></div>"
+        for key, value in info.items()
+        if key not in ("name", "summary")
+        and isinstance(value, (str, int, float))
+        and not isinstance(value, bool)
+    )
+    paragraphs = "".join(
+        f"<p>{text(part)}</p>" for part in str(info.get("summary", "")).split("\n\n") if part.strip()
+    )
+    return (
+        f'<div class="pd-card"><h4>{text(info.get("name", "Model"))}</h4>{paragraphs}'
+        f'<dl class="pd-facts">{facts}</dl></div>'
+    )

@@ -1,0 +1,104 @@
+"""What the page says about progress, errors and numbers."""
+
+from __future__ import annotations
+
+import errno
+import html
+import logging
+from collections.abc import Iterator
+from contextlib import contextmanager
+
+import gradio as gr
+
+from motion import InputError
+from webdemo.inference.requests import Progress
+from webdemo.ui.runs import Waiting
+from webdemo.ui.visitor import visitor
+
+log = logging.getLogger(__name__)
+
+_STAGES = {
+    "queue": "Waiting for another run to finish",
+    "load": "Loading the model",
+    "text": "Reading the prompt",
+    "sample": "Denoising",
+    "finish": "Finishing the motion",
+}
+
+_PACE_STEPS = 3
+"""Steps after which the pace is known, or a tenth of them all."""
+_SHORT = 3.0
+"""Seconds: less than this is not announced."""
+
+
+def text(value: object) -> str:
+    """Any value as text inside HTML: no tags, no attributes, no ``${…}`` of a template."""
+    escaped = html.escape(str(value), quote=True)
+    return escaped.replace("$", "&#36;").replace("{", "&#123;").replace("}", "&#125;").replace("`", "&#96;")
+
+
+def progress_line(progress: Progress) -> str:
+    """One line for a progress event, such as "Denoising: step 12 of 50, about 10 s left"."""
+    if isinstance(progress, Waiting):
+        left = progress.seconds_left
+        soon = "" if left is None else f", about {_about(left)} until it starts"
+        return f"Waiting in line: place {progress.step} of {progress.total}{soon} …"
+    stage = _STAGES.get(progress.stage, progress.stage.capitalize())
+    if progress.stage == "sample":
+        return f"{stage}: step {progress.step} of {progress.total}{_left(progress)}"
+    return f"{stage} …"
+
+
+def _left(progress: Progress) -> str:
+    """How much longer the steps take at the pace so far, once there is a pace and it is worth a word."""
+    if progress.step < max(_PACE_STEPS, progress.total / 10):
+        return ""
+    left = progress.elapsed * (progress.total / progress.step - 1)
+    return f", about {_about(left)} left" if left >= _SHORT else ""
+
+
+def _about(duration: float) -> str:
+    """A duration as rough as it is known: "5 s", "40 s", "3 min"."""
+    return f"{max(5, round(duration / 5) * 5)} s" if duration < 100 else f"{round(duration / 60)} min"
+
+
+def cancelled_line(progress: Progress | None) -> str:
+    """What is said after a cancellation, with the last step that was done."""
+    if progress is None or progress.stage != "sample":
+        return "Cancelled before the first step."
+    return f"Cancelled at step {progress.step} of {progress.total}."
+
+
+def error_line(error: Exception) -> str:
+    """The sentence for an error; what is not the user's doing goes to the log with its traceback."""
+    if isinstance(error, InputError):
+        return str(error)
+    log.error("A request failed.", exc_info=error, extra={"request": visitor().reference})
+    if isinstance(error, OSError) and error.errno == errno.ENOSPC:
+        return "The disk is full: free some space and try again."
+    if isinstance(error, OSError):
+        return f"A file could not be read or written ({error.strerror or error}): try again."
+    if isinstance(error, MemoryError):
+        return "There is not enough memory for this: ask for a shorter motion or fewer samples."
+    reference = visitor().reference
+    where = f"its log says more under {reference}" if reference else "its log says more"
+    return f"Something went wrong inside the program ({type(error).__name__}); {where}. Try again."
+
+
+@contextmanager
+def shown_errors() -> Iterator[None]:
+    """Lets an event end with the sentence of its error."""
+    try:
+        yield
+    except Exception as error:
+        raise gr.Error(error_line(error), print_exception=False) from None
+
+
+def number(value: float, digits: int) -> str:
+    """A number with ``digits`` after the point and a thin space between thousands."""
+    return f"{value:,.{digits}f}".replace(",", "\u202f")
+
+
+def seconds(value: float) -> str:
+    """A duration: "0.24 s", "3.1 s", "72 s"."""
+    return f"{value:.2f} s" if value < 1 else f"{value:.1f} s" if value < 60 else f"{value:.0f} s"

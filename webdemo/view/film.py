@@ -1,0 +1,278 @@
+"""Films of what the player shows: MP4, WebM and GIF, drawn off screen.
+
+Pictures are drawn by this process or, for more than a second or two, by one child process a core; PyAV (FFmpeg's
+libraries) packs them as H.264 or VP9, Pillow as GIF.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import os
+import pickle
+import subprocess
+import sys
+from collections.abc import Callable, Generator, Iterator, Sequence
+from dataclasses import dataclass
+from fractions import Fraction
+from importlib.util import find_spec
+from pathlib import Path
+from typing import cast
+
+import numpy as np
+from numpy.typing import NDArray
+from PIL import Image
+
+from motion.errors import InputError
+from motion.formats.files import replacing
+
+from .camera import Camera, cameras
+from .stage import Pane, Picture, Stage, Style, paste, words
+
+SUFFIXES = (".mp4", ".webm", ".gif")
+SIZES = (64, 3840)
+RATES = (1.0, 60.0)
+SIZE = (1280, 720)
+FPS = 30.0
+_GIF_FPS = 25.0
+"""GIF counts in hundredths of a second and browsers slow down what is shown for one: 25 is its best rate."""
+_FEW = 45
+"""Frames up to which starting other processes costs more than it saves."""
+_CODECS = {
+    ".mp4": ("libx264", {"preset": "veryfast", "crf": "19", "movflags": "+faststart"}),
+    ".webm": ("libvpx-vp9", {"deadline": "realtime", "cpu-used": "8", "crf": "31", "b": "0", "row-mt": "1"}),
+}
+
+
+def can_write(suffix: str) -> bool:
+    """Whether this installation writes films with this suffix (with its dot)."""
+    return suffix.lower() == ".gif" or (suffix.lower() in SUFFIXES and find_spec("av") is not None)
+
+
+def write_film(
+    panes: Sequence[Pane],
+    path: str | Path,
+    *,
+    fps: float = FPS,
+    size: tuple[int, int] = SIZE,
+    style: Style | None = None,
+    view: str = "threequarter",
+    follow: bool = True,
+    title: str = "",
+    yaw: float | None = None,
+    elevation: float | None = None,
+    progress: Callable[[int, int], None] | None = None,
+) -> Path:
+    """Writes a film of one motion, or of several side by side on one clock.
+
+    Args:
+        panes: what is shown, from left to right.
+        path: ends in .mp4, .webm or .gif; a GIF has at most 25 frames a second.
+        fps: frames a second; motion is interpolated to them.
+        size: width and height in pixels.
+        style: how people are drawn.
+        view: one of :data:`~webdemo.view.camera.VIEWS`.
+        follow: whether the camera goes with the people.
+        title: stands at the lower edge, with the time.
+        yaw, elevation: radians, instead of the view's.
+        progress: is called with frames done and frames in all.
+
+    Returns:
+        the path.
+
+    Raises:
+        InputError: for what cannot be shown or written, or where PyAV is missing; no file is left.
+    """
+    path, style = Path(path), style or Style()
+    suffix = path.suffix.lower()
+    _check(suffix, fps, size, panes)
+    rate = min(fps, _GIF_FPS) if suffix == ".gif" else fps
+    seconds = max(pane.motion.seconds for pane in panes)
+    times = np.arange(max(1, round(seconds * rate))) / rate
+    width = size[0] // len(panes)
+    views = cameras(
+        [pane.motion for pane in panes],
+        size=(width, size[1]),
+        times=times,
+        view=view,
+        follow=follow,
+        yaw=yaw,
+        elevation=elevation,
+    )
+    job = _Job(tuple(panes), style, size, times, views, title)
+    with replacing(path) as temporary, contextlib.closing(_pictures(job)) as pictures:
+        counted = _counted(pictures, len(times), progress)
+        if suffix == ".gif":
+            _write_gif(counted, temporary, rate)
+        else:
+            _write_video(counted, temporary, suffix, rate, size)
+    return path
+
+
+def _check(suffix: str, fps: float, size: tuple[int, int], panes: Sequence[Pane]) -> None:
+    if suffix not in SUFFIXES:
+        raise InputError(f"Films end in .mp4, .webm or .gif, not in {suffix or 'nothing'}.")
+    if not can_write(suffix):
+        raise InputError(
+            "MP4 and WebM need the package av: install it with `pip install av`, or write a .gif."
+        )
+    if not panes:
+        raise InputError("There is no motion to film: give at least one.")
+    if not RATES[0] <= fps <= RATES[1]:
+        raise InputError(f"{fps:g} frames a second are not possible: give {RATES[0]:g} to {RATES[1]:g}.")
+    if not all(SIZES[0] <= side <= SIZES[1] for side in size) or size[0] // len(panes) < SIZES[0]:
+        raise InputError(
+            f"A picture of {size[0]}x{size[1]} is not possible: give {SIZES[0]} to {SIZES[1]} pixels each way."
+        )
+    if any(side % 2 for side in size):
+        raise InputError(f"A film's width and height are even: give {size[0] & ~1}x{size[1] & ~1}.")
+
+
+@dataclass(frozen=True)
+class _Job:
+    """All that a process needs to draw."""
+
+    panes: tuple[Pane, ...]
+    style: Style
+    size: tuple[int, int]
+    times: NDArray[np.floating]
+    views: list[Camera]
+    title: str
+
+    def part(self, first: int, step: int) -> _Job:
+        """Every ``step``-th picture."""
+        return _Job(
+            self.panes, self.style, self.size, self.times[first::step], self.views[first::step], self.title
+        )
+
+    def draw(self) -> Iterator[Picture]:
+        width = self.size[0] // len(self.panes)
+        stages = [
+            Stage(pane, self.style, (width, self.size[1])).pictures(self.times, self.views)
+            for pane in self.panes
+        ]
+        for seconds, shown in zip(self.times, zip(*stages, strict=True), strict=True):
+            whole = shown[0] if len(shown) == 1 else np.concatenate(shown, axis=1)
+            if whole.shape[1] < self.size[0]:
+                whole = np.pad(whole, ((0, 0), (0, self.size[0] - whole.shape[1]), (0, 0)), mode="edge")
+            self._caption(whole, float(seconds))
+            yield whole
+
+    def _caption(self, whole: Picture, seconds: float) -> None:
+        height, ink = self.size[1], self.style.colours.ink
+        small = max(round(height / 48), 9)
+        width = self.size[0] // len(self.panes)
+        for number, pane in enumerate(self.panes):
+            if pane.caption:
+                label = words(pane.caption, ink, small)
+                paste(whole, label, round(width * (number + 0.5) - label.shape[1] / 2), small // 2)
+            if number:
+                whole[:, width * number, :3] = [round(255 * c) for c in ink]
+        line = f"{self.title}  ·  {seconds:.2f} s" if self.title else f"{seconds:.2f} s"
+        paste(whole, words(line, ink, small), small, height - 2 * small)
+
+
+def _pictures(job: _Job) -> Generator[Picture, None, None]:
+    """All pictures in their order, drawn here or by one process a core."""
+    workers = min(
+        len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1, 4
+    )
+    if workers < 2 or len(job.times) <= _FEW:
+        yield from job.draw()
+        return
+    count = 4 * job.size[0] * job.size[1]
+    with contextlib.ExitStack() as running:
+        outputs = []
+        for number in range(workers):
+            worker = running.enter_context(_worker())
+            assert worker.stdin is not None and worker.stdout is not None
+            worker.stdin.write(pickle.dumps(job.part(number, workers)))
+            worker.stdin.close()
+            outputs.append(worker.stdout)
+        for frame in range(len(job.times)):
+            # Frames go round the workers, so that each draws the next while the others are read.
+            data = outputs[frame % workers].read(count)
+            if len(data) < count:
+                raise InputError(
+                    "The film could not be drawn: a process that draws it ended early. Try again."
+                )
+            yield np.frombuffer(data, np.uint8).reshape(job.size[1], job.size[0], 4)
+
+
+@contextlib.contextmanager
+def _worker() -> Iterator[subprocess.Popen[bytes]]:
+    """A Python process that draws what it reads; it is ended with the block."""
+    environment = os.environ | {
+        "PYTHONPATH": os.pathsep.join(place for place in sys.path if place), "OMP_NUM_THREADS": "1",
+        "OPENBLAS_NUM_THREADS": "1",
+    }  # fmt: skip
+    process = subprocess.Popen(
+        [sys.executable, "-c", "from webdemo.view.film import draw_for_parent; draw_for_parent()"],
+        stdin=subprocess.PIPE, stdout=subprocess.PIPE, env=environment,
+    )  # fmt: skip
+    try:
+        yield process
+    finally:
+        process.kill()
+        process.wait()
+        for pipe in (process.stdin, process.stdout):
+            if pipe is not None:
+                pipe.close()
+
+
+def draw_for_parent() -> None:
+    """Draws the job on standard input and writes raw pictures to standard output.
+
+    Only :func:`_pictures` starts this, in a child process whose input is a pipe from it: nothing that a user sent is
+    ever unpickled.
+    """
+    job = pickle.load(sys.stdin.buffer)
+    for picture in job.draw():
+        sys.stdout.buffer.write(picture.tobytes())
+    sys.stdout.buffer.flush()
+
+
+def _counted(
+    pictures: Iterator[Picture], total: int, progress: Callable[[int, int], None] | None
+) -> Iterator[Picture]:
+    for done, picture in enumerate(pictures, start=1):
+        yield picture
+        if progress is not None:
+            progress(done, total)
+
+
+def _write_video(
+    pictures: Iterator[Picture], path: Path, suffix: str, fps: float, size: tuple[int, int]
+) -> None:
+    import av
+
+    codec, options = _CODECS[suffix]
+    with av.open(str(path), "w", format=suffix[1:]) as film:
+        rate = Fraction(fps).limit_denominator(1001)
+        stream = cast(av.VideoStream, film.add_stream(codec, rate=rate, options=options))
+        stream.width, stream.height = size
+        stream.pix_fmt = "yuv420p"
+        for picture in pictures:
+            film.mux(stream.encode(av.VideoFrame.from_ndarray(picture, format="rgba")))
+        film.mux(stream.encode(None))
+
+
+def _write_gif(pictures: Iterator[Picture], path: Path, fps: float) -> None:
+    first = _opaque(next(pictures)).quantize(256, dither=Image.Dither.NONE)
+
+    def others() -> Iterator[Image.Image]:
+        for picture in pictures:
+            yield _opaque(picture).quantize(palette=first, dither=Image.Dither.NONE)
+
+    first.save(
+        path,
+        format="GIF",
+        save_all=True,
+        append_images=others(),
+        duration=round(1000 / fps),
+        loop=0,
+        optimize=False,
+    )
+
+
+def _opaque(picture: Picture) -> Image.Image:
+    return Image.fromarray(picture).convert("RGB")

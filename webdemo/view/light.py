@@ -1,0 +1,146 @@
+"""Light on bodies and their shadow on the floor, as in the player (``body.js``, ``ground.js``)."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+from numpy.typing import NDArray
+
+from motion.body import Body
+from motion.skeleton import Skeleton
+
+from .camera import Camera
+from .theme import Lamps, Worn
+
+Array = NDArray[np.floating]
+
+_GAMMA = 2.2
+SHADOW_SIZE = 192
+"""Pixels of the shadow's picture, each way."""
+_LEAST_SPAN = 5.0
+_HIGHEST = 1.8
+_SAMPLES = 3
+_RADII = {"head": 0.09, "spine1": 0.11, "spine2": 0.11, "spine3": 0.11, "hip": 0.09, "knee": 0.07}
+_RADIUS = 0.05
+
+
+def vertex_normals(vertices: Array, faces: NDArray[np.integer]) -> Array:
+    """(V, 3) unit normals of a surface with vertices (V, 3) and faces (F, 3)."""
+    a, b, c = (vertices[faces[:, corner]] for corner in range(3))
+    flat = np.cross(b - a, c - a)
+    total = np.empty_like(vertices)
+    for axis in range(3):
+        total[:, axis] = np.bincount(
+            faces.ravel(), weights=np.repeat(flat[:, axis], 3), minlength=len(vertices)
+        )
+    return total / np.maximum(np.linalg.norm(total, axis=1, keepdims=True), 1e-12)
+
+
+def shaded(body: Body, vertices: Array, worn: Worn, lamps: Lamps, camera: Camera) -> Array:
+    """Colours (F, 3, 3) of the corners of a body's triangles, under lamps that move with the camera.
+
+    Args:
+        body: whose faces and zones.
+        vertices: (V, 3) where they are, metres.
+        worn: the colour of each zone.
+        lamps: of the theme.
+        camera: from which it is seen.
+    """
+    normals = vertex_normals(vertices, body.faces)
+    right, _, forward = camera.axes
+    flat = forward * np.array([1.0, 0.0, 1.0])
+    key = _unit(-0.75 * flat - 0.75 * right + np.array([0.0, 0.95, 0.0]))
+    rim = _unit(0.8 * flat + 0.9 * right + np.array([0.0, 0.55, 0.0]))
+    to_eye = _unit(camera.eye - vertices)
+    opened = body.sky
+    above = 0.5 + 0.5 * normals[:, 1]
+    front = np.maximum((normals @ key + 0.25) / 1.25, 0.0) * (0.35 + 0.65 * opened)
+    edge = 1 - np.maximum(np.einsum("vi,vi->v", normals, to_eye), 0.0)
+    behind = np.maximum(normals @ rim, 0.0) * edge * edge * opened
+    shine = np.maximum(np.einsum("vi,vi->v", _unit(to_eye + key), normals), 0.0) ** 22
+    step = np.clip((vertices[:, 1] + 0.05) / 0.55, 0.0, 1.0)
+    grounded = 0.4 + 0.6 * step * step * (3 - 2 * step)
+    shares = np.stack(
+        [(1 - above) * grounded * opened**2, above * opened**2, front, behind], axis=1
+    )  # of ground, sky, key and rim
+    light = shares @ np.array([lamps.ground, lamps.sky, lamps.key, lamps.rim])
+    palette = np.array([worn[zone] for zone in body.zones]) ** _GAMMA
+    glow = (lamps.shine * shine * opened)[body.faces, None]
+    colours = palette[body.face_zones][:, None] * light[body.faces] + glow
+    return np.clip(colours, 0.0, 1.0) ** (1 / _GAMMA)
+
+
+class Shadow:
+    """Ambient shadow: how much of the sky is hidden from each place on the floor.
+
+    Attributes:
+        dark: (S, S) from 0, open, to 1, hidden; rows along X and columns along Z.
+        origin: (2,) X and Z of the first pixel's corner, metres.
+        span: metres across the picture.
+    """
+
+    def __init__(self, poses: Array, skeleton: Skeleton, surfaces: Sequence[Array]) -> None:
+        """Shades the floor under poses (people, J, 3); the soles of surfaces (V, 3) darken it at contact."""
+        floor = poses[..., [0, 2]].reshape(-1, 2)
+        low, high = floor.min(axis=0) - 0.9, floor.max(axis=0) + 0.9
+        self.span = max(float(np.ceil((high - low).max())), _LEAST_SPAN)
+        pixel = self.span / SHADOW_SIZE
+        self.origin = np.round(((low + high) / 2 - self.span / 2) / pixel) * pixel
+        bones = np.array(skeleton.bones)
+        radii = np.array([_radius(skeleton.joint_names[joint]) for _, joint in bones])
+        starts, ends = poses[:, bones[:, 0]], poses[:, bones[:, 1]]
+        along = (np.arange(_SAMPLES) + 0.5) / _SAMPLES
+        points = starts[:, :, None] + along[:, None] * (ends - starts)[:, :, None]
+        height = points[..., 1]
+        length = np.linalg.norm(ends - starts, axis=-1)[..., None] / _SAMPLES
+        fade = np.maximum(1 - height / _HIGHEST, 0.0)
+        amount = 6 * radii[:, None] * length * fade**2
+        field = self._splats(
+            points.reshape(-1, 3), 0.05 + 0.17 * np.maximum(height, 0).ravel(), amount.ravel()
+        )
+        soles = [surface[surface[:, 1] < 0.07] for surface in surfaces]
+        if soles and sum(map(len, soles)):
+            near = np.concatenate(soles)
+            pressed = 0.0011 * np.minimum(np.exp(-near[:, 1] / 0.02), 1.2)
+            field += self._splats(near, np.full(len(near), 0.026), pressed)
+        self.dark = 1 - np.exp(-field)
+        self.dark[[0, -1]] = self.dark[:, [0, -1]] = 0.0
+
+    def _splats(self, points: Array, sigma: Array, amount: Array) -> Array:
+        """(S, S) the sum of round Gaussians, which are products of one along each axis."""
+        pixel = self.span / SHADOW_SIZE
+        places = (np.arange(SHADOW_SIZE) + 0.5) * pixel
+        away = (points[:, [0, 2]] - self.origin)[:, :, None] - places
+        bells = np.exp(-0.5 * (away / sigma[:, None, None]) ** 2).astype(np.float32)
+        peak = (amount / (2 * np.pi * sigma**2)).astype(np.float32)
+        return (bells[:, 0] * peak[:, None]).T @ bells[:, 1]
+
+    def at(self, x: Array, z: Array) -> tuple[Array, tuple[NDArray[np.intp], ...]]:
+        """Darkness of the floor's shadow at places (any shape, metres).
+
+        Returns:
+            (N,) from 0 to 1, and the indices of these places.
+        """
+        scale = np.float32(SHADOW_SIZE / self.span)
+        row = (x - np.float32(self.origin[0])) * scale - np.float32(0.5)
+        column = (z - np.float32(self.origin[1])) * scale - np.float32(0.5)
+        last = SHADOW_SIZE - 1
+        inside = np.nonzero((row >= 0) & (column >= 0) & (row < last) & (column < last))
+        row, column = row[inside], column[inside]
+        i, j = row.astype(np.int32), column.astype(np.int32)
+        s, t = row - i, column - j
+        corner = i * SHADOW_SIZE + j
+        dark = self.dark.ravel()
+        upper, lower = dark[corner] * (1 - t), dark[corner + SHADOW_SIZE] * (1 - t)
+        upper += dark[corner + 1] * t
+        lower += dark[corner + SHADOW_SIZE + 1] * t
+        return upper + s * (lower - upper), inside
+
+
+def _radius(joint: str) -> float:
+    return _RADII.get(joint.removeprefix("left_").removeprefix("right_"), _RADIUS)
+
+
+def _unit(vectors: Array) -> Array:
+    return vectors / np.maximum(np.linalg.norm(vectors, axis=-1, keepdims=True), 1e-12)

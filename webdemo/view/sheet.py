@@ -1,0 +1,243 @@
+"""A motion as a figure for a paper: moments side by side on the ground, as PNG, SVG or PDF.
+
+PNG shows the player's own picture of each moment. SVG and PDF are drawn as lines and triangles that stay sharp at
+any size; their shadow is the bodies' outline under a lamp overhead.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+from PIL import Image
+
+from motion.body import BODIES, load_body, skin
+from motion.clip import Clip, Duet, stacked_positions
+from motion.errors import InputError
+from motion.formats.files import replacing
+from motion.skeleton import SMPL22
+
+from .camera import Camera, cameras, project_shadow
+from .light import shaded
+from .stage import Pane, Stage, Style, paste, side_of, words
+
+Array = NDArray[np.floating]
+
+SUFFIXES = (".png", ".svg", ".pdf")
+MOMENTS = (1, 24)
+WIDTHS = (200, 8000)
+WIDTH = 1600
+_COLUMNS = 8
+_TALL = 1.15
+"""Height of a picture over its width."""
+_NEARER = 0.85
+"""A moment needs no room to move in."""
+_VECTOR: dict[Any, Any] = {"svg.fonttype": "none", "pdf.fonttype": 42, "svg.hashsalt": "pas de deux"}
+
+
+def chosen_frames(motion: Clip | Duet, frames: int | Sequence[int]) -> list[int]:
+    """Evenly spaced frames including both ends, or the named ones in the given order.
+
+    Raises:
+        InputError: for no frames, more than 24, or one that the motion has not.
+    """
+    last = motion.num_frames - 1
+    if isinstance(frames, int):
+        if not MOMENTS[0] <= frames <= MOMENTS[1]:
+            raise InputError(f"A contact sheet has {MOMENTS[0]} to {MOMENTS[1]} moments, not {frames}.")
+        return np.unique(np.linspace(0, last, frames).round().astype(int)).tolist()
+    found = [int(frame) for frame in frames]
+    if not MOMENTS[0] <= len(found) <= MOMENTS[1]:
+        raise InputError(f"A contact sheet has {MOMENTS[0]} to {MOMENTS[1]} moments, not {len(found)}.")
+    if any(not 0 <= frame <= last for frame in found):
+        raise InputError(f"The motion has frames 0 to {last}: choose among them.")
+    return found
+
+
+def write_sheet(
+    motion: Clip | Duet,
+    path: str | Path,
+    *,
+    frames: int | Sequence[int] = 8,
+    width: int = WIDTH,
+    title: str = "",
+    style: Style | None = None,
+    view: str = "threequarter",
+) -> Path:
+    """Writes moments of a motion, up to eight in a row, each with its time.
+
+    Args:
+        motion: one person or two.
+        path: ends in .png, .svg or .pdf.
+        frames: how many, evenly spaced, or which.
+        width: of the whole in pixels; in points for SVG and PDF.
+        title: stands above.
+        style: how people are drawn.
+        view: one of :data:`~webdemo.view.camera.VIEWS`.
+
+    Returns:
+        the path.
+
+    Raises:
+        InputError: for what cannot be shown or written; no file is left.
+    """
+    path, style = Path(path), style or Style(names=False)
+    suffix = path.suffix.lower()
+    if suffix not in SUFFIXES:
+        raise InputError(f"Contact sheets end in .png, .svg or .pdf, not in {suffix or 'nothing'}.")
+    if not WIDTHS[0] <= width <= WIDTHS[1]:
+        raise InputError(f"A width of {width} is not possible: give {WIDTHS[0]} to {WIDTHS[1]}.")
+    moments = chosen_frames(motion, frames)
+    columns = min(len(moments), _COLUMNS)
+    tile = (width // columns, round(width / columns * _TALL))
+    times = np.arange(motion.num_frames) / motion.fps
+    ways = cameras([motion], size=tile, times=times, view=view)
+    views = [replace(ways[frame], distance=_NEARER * ways[frame].distance) for frame in moments]
+    with replacing(path) as temporary:
+        if suffix == ".png":
+            sheet = _raster(motion, style, moments, views, tile, title)
+            sheet.save(temporary, format="PNG")
+        else:
+            _vector(motion, style, moments, views, tile, title, temporary, suffix[1:])
+    return path
+
+
+def _places(count: int, tile: tuple[int, int], head: int) -> list[tuple[int, int]]:
+    """The upper left corner of each picture; under each row is a line for the times."""
+    foot = _text_size(tile) * 2
+    return [
+        (tile[0] * (i % _COLUMNS), head + (tile[1] + foot) * (i // _COLUMNS)) for i in range(count)
+    ]  # fmt: skip
+
+
+def _text_size(tile: tuple[int, int]) -> int:
+    return max(tile[0] // 16, 9)
+
+
+def _whole(count: int, tile: tuple[int, int], head: int) -> tuple[int, int]:
+    rows = -(-count // _COLUMNS)
+    return tile[0] * min(count, _COLUMNS), head + rows * (tile[1] + _text_size(tile) * 2)
+
+
+def _raster(
+    motion: Clip | Duet,
+    style: Style,
+    moments: list[int],
+    views: list[Camera],
+    tile: tuple[int, int],
+    title: str,
+) -> Image.Image:
+    small, ink = _text_size(tile), style.colours.ink
+    head = 2 * small if title else 0
+    width, height = _whole(len(moments), tile, head)
+    sheet = np.full((height, width, 4), 255, dtype=np.uint8)
+    sheet[..., :3] = [round(255 * c) for c in style.colours.horizon]
+    pictures = Stage(Pane(motion), style, tile).pictures(np.array(moments) / motion.fps, views)
+    for frame, (x, y), picture in zip(moments, _places(len(moments), tile, head), pictures, strict=True):
+        sheet[y : y + tile[1], x : x + tile[0]] = picture
+        paste(
+            sheet, words(f"{frame / motion.fps:.2f} s", ink, small), x + small // 2, y + tile[1] + small // 4
+        )
+    if title:
+        paste(sheet, words(title, ink, small), small // 2, small // 4)
+    return Image.fromarray(sheet).convert("RGB")
+
+
+def _vector(
+    motion: Clip | Duet, style: Style, moments: list[int], views: list[Camera], tile: tuple[int, int],
+    title: str, path: Path, kind: str,
+) -> None:  # fmt: skip
+    import matplotlib
+    from matplotlib.figure import Figure
+
+    small, theme = _text_size(tile), style.colours
+    head = 2 * small if title else 0
+    width, height = _whole(len(moments), tile, head)
+    figure = Figure(figsize=(width / 72, height / 72), dpi=72, facecolor=theme.horizon)
+    axes = figure.add_axes((0, 0, 1, 1))
+    axes.set(xlim=(0, width), ylim=(height, 0))
+    axes.set_axis_off()
+    if title:
+        axes.text(small / 2, small * 1.3, title, size=small, color=theme.ink)
+    people = stacked_positions(motion).astype(np.float64)
+    for frame, camera, (x, y) in zip(moments, views, _places(len(moments), tile, head), strict=True):
+        _draw_tile(axes, motion, people[:, frame], camera, np.array([x, y]), style)
+        axes.text(
+            x + small / 2,
+            y + tile[1] + small * 1.3,
+            f"{frame / motion.fps:.2f} s",
+            size=small,
+            color=theme.ink,
+        )
+    with matplotlib.rc_context(_VECTOR):
+        metadata = {"Date": None} if kind == "svg" else {"CreationDate": None}
+        figure.savefig(path, format=kind, metadata=metadata)
+
+
+def _draw_tile(axes, motion: Clip | Duet, pose: Array, camera: Camera, corner: Array, style: Style) -> None:
+    from matplotlib.collections import LineCollection, PolyCollection
+    from matplotlib.patches import PathPatch, Rectangle
+
+    theme = style.colours
+    frame = Rectangle(
+        (float(corner[0]), float(corner[1])), *camera.size, facecolor=theme.floor, edgecolor="none"
+    )
+    axes.add_patch(frame)
+
+    def add(kind, shapes: Array, **look) -> None:
+        drawn = kind(list(shapes + corner), zorder=2, **look)  # as painters do, one over the other
+        axes.add_collection(drawn)
+        drawn.set_clip_path(frame)
+
+    grid = camera.ground_lines()
+    add(LineCollection, grid, colors=[theme.grid], linewidths=0.5)
+    dressed = style.look != "skeletons" and motion.skeleton.joint_names == SMPL22.joint_names
+    triangles, depths, colours = [], [], []
+    for person, points in enumerate(pose if dressed else ()):
+        body = load_body(BODIES[person], small=True)
+        surface = skin(body, points[None])[0].astype(np.float64)
+        pixels, depth = camera.project(surface)
+        corners = pixels[body.faces]
+        seen = _facing(corners)
+        triangles.append(corners[seen])
+        depths.append(depth[body.faces][seen].mean(axis=1))
+        colours.append(shaded(body, surface, theme.bodies[person], theme.lamps, camera)[seen].mean(axis=1))
+        shade = camera.project(project_shadow(surface))[0][body.faces]
+        dark = np.array(theme.floor) * (1 + np.array(theme.shade)) / 2
+        shadow = PathPatch(
+            _outlines(shade[_facing(shade)] + corner), facecolor=dark, edgecolor="none", zorder=2
+        )
+        axes.add_patch(shadow)
+        shadow.set_clip_path(frame)
+    if triangles:
+        order = np.argsort(-np.concatenate(depths))
+        faces = np.concatenate(colours)[order]
+        shapes = np.concatenate(triangles)[order]
+        add(PolyCollection, shapes, facecolors=faces, edgecolors=faces, linewidths=0.5)
+    if style.look != "bodies" or not dressed:
+        bones = np.array(motion.skeleton.bones)
+        sides = [side_of(motion.skeleton.joint_names[joint]) for _, joint in bones]
+        for person in np.argsort(-camera.project(pose[:, 0])[1]):
+            limbs = [theme.people[person][side] for side in sides]
+            lines = camera.project(pose[person][bones])[0]
+            add(LineCollection, lines, colors=limbs, linewidths=camera.size[0] / 90, capstyle="round")
+
+
+def _outlines(triangles: Array):
+    from matplotlib.path import Path as Outline
+
+    codes = np.array(
+        [Outline.MOVETO, Outline.LINETO, Outline.LINETO, Outline.CLOSEPOLY], dtype=Outline.code_type
+    )
+    closed = np.concatenate([triangles, triangles[:, :1]], axis=1)
+    return Outline(closed.reshape(-1, 2), np.tile(codes, len(triangles)))
+
+
+def _facing(corners: Array) -> NDArray[np.bool_]:
+    """(F,) whether triangles (F, 3, 2) in pixels are seen from outside."""
+    one, other = corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]
+    return one[:, 0] * other[:, 1] - one[:, 1] * other[:, 0] < 0

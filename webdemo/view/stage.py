@@ -1,0 +1,368 @@
+"""Draws a picture of the player's scene without a display: floor, shadows, bodies, skeletons, names.
+
+Matplotlib's Agg renderer fills the triangles and strokes the lines; it needs no window and no graphics card.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, field
+from functools import lru_cache
+
+import numpy as np
+from numpy.typing import NDArray
+from PIL import Image, ImageDraw, ImageFont
+
+from motion.body import BODIES, Body, load_body, skin
+from motion.clip import Clip, Duet, stacked_positions
+from motion.errors import InputError
+from motion.skeleton import SMPL22
+
+from .camera import Camera, sampled
+from .light import Shadow, shaded
+from .theme import THEMES, Colour, Theme, mix
+
+Array = NDArray[np.floating]
+Picture = NDArray[np.uint8]
+
+LOOKS = ("bodies", "skeletons", "both")
+_TRAIL_SECONDS = 1.0
+_TRAIL_STEPS = 24
+_GRID = 9
+_COARSE = 2
+"""The floor and the sky are computed at every second pixel, lines and people at every pixel."""
+_GRID_STEPS = 10
+_BLOCK = 32
+"""Frames whose bodies are posed at once."""
+_TRANSLUCENT = 0.42
+_ABOVE_HEAD = 0.26
+
+
+@dataclass(frozen=True)
+class Pane:
+    """One motion of a picture.
+
+    Attributes:
+        motion: one person or two.
+        caption: distinguishes it from the pane beside it.
+        ghost: a second motion drawn pale, such as what really followed.
+        past_until: the first predicted frame; people are greyer before it.
+    """
+
+    motion: Clip | Duet
+    caption: str = ""
+    ghost: Clip | Duet | None = None
+    past_until: int = 0
+
+
+@dataclass(frozen=True)
+class Style:
+    """Drawing style of people.
+
+    Attributes:
+        look: "bodies", "skeletons" or "both"; bodies need SMPL's 22 joints.
+        trails: whether pelvis and wrists leave a line of their last second.
+        names: whether roles stand above the heads.
+        theme: "light" or "dark".
+
+    Raises:
+        InputError: for another look or theme.
+    """
+
+    look: str = "bodies"
+    trails: bool = False
+    names: bool = True
+    theme: str = "light"
+
+    def __post_init__(self) -> None:
+        if self.look not in LOOKS:
+            raise InputError(f"There is no look {self.look!r:.30}: choose one of {', '.join(LOOKS)}.")
+        if self.theme not in THEMES:
+            raise InputError(f"There is no theme {self.theme!r:.30}: choose one of {', '.join(THEMES)}.")
+
+    @property
+    def colours(self) -> Theme:
+        """The colours of its theme."""
+        return THEMES[self.theme]
+
+
+@dataclass
+class Stage:
+    """Draws a pane at any moment.
+
+    Args:
+        pane: what is shown.
+        style: how.
+        size: width and height in pixels.
+    """
+
+    pane: Pane
+    style: Style
+    size: tuple[int, int]
+    people: Array = field(init=False, repr=False)
+    bodies: tuple[Body, ...] = field(init=False, repr=False)
+
+    def __post_init__(self) -> None:
+        motion = self.pane.motion
+        self.people = stacked_positions(motion).astype(np.float64)
+        dressed = self.style.look != "skeletons" and motion.skeleton.joint_names == SMPL22.joint_names
+        # Most of a small picture's triangles would be smaller than its pixels.
+        small = self.size[1] < 400
+        self.bodies = (
+            tuple(load_body(name, small=small) for name in BODIES[: len(self.people)]) if dressed else ()
+        )
+
+    def pictures(self, times: Array, cameras: Sequence[Camera]) -> Iterator[Picture]:
+        """The pictures (height, width, 4) at moments in seconds, without captions, each from its camera."""
+        for start in range(0, len(times), _BLOCK):
+            block = times[start : start + _BLOCK]
+            poses = sampled(self.people, self.pane.motion.fps, block)
+            surfaces = [skin(body, way) for body, way in zip(self.bodies, poses, strict=False)]
+            for i, seconds in enumerate(block):
+                worn = [surface[i].astype(np.float64) for surface in surfaces]
+                yield self._draw(float(seconds), poses[:, i], worn, cameras[start + i])
+
+    def _draw(self, seconds: float, pose: Array, surfaces: Sequence[Array], camera: Camera) -> Picture:
+        from matplotlib.backends.backend_agg import RendererAgg
+
+        motion, theme = self.pane.motion, self.style.colours
+        given = seconds * motion.fps < self.pane.past_until
+        renderer = RendererAgg(*self.size, 72)
+        canvas = np.asarray(renderer.buffer_rgba())
+        shadow = Shadow(pose, motion.skeleton, surfaces)
+        canvas.view(np.uint32)[..., 0] = _ground(camera, theme, shadow)
+        pen = _Pen(renderer, camera)
+        pen.grid(theme)
+        if self.pane.ghost is not None:
+            for points in sampled(stacked_positions(self.pane.ghost), motion.fps, np.array([seconds]))[:, 0]:
+                pen.bones(points, motion.skeleton, [theme.ghost] * len(motion.skeleton.bones), 2.5)
+        if self.style.trails:
+            self._trails(pen, seconds, theme)
+        worn = theme.given_bodies if given else theme.bodies
+        pen.bodies(
+            [(body, surface, shaded(body, surface, worn[person], theme.lamps, camera))
+             for person, (body, surface) in enumerate(zip(self.bodies, surfaces, strict=True))],
+            _TRANSLUCENT if self.style.look == "both" else 1.0,
+        )  # fmt: skip
+        if self.style.look != "bodies" or not self.bodies:
+            limbs = theme.given if given else theme.people
+            order = np.argsort(-pen.camera.project(pose[:, 0])[1])
+            for person in order:
+                pen.skeleton(pose[person], motion.skeleton, limbs[person])
+        if self.style.names:
+            self._names(canvas, pose, camera, limbs=theme.people)
+        return canvas
+
+    def _trails(self, pen: _Pen, seconds: float, theme: Theme) -> None:
+        motion = self.pane.motion
+        times = np.linspace(max(0.0, seconds - _TRAIL_SECONDS), seconds, _TRAIL_STEPS)
+        names = motion.skeleton.joint_names
+        chosen = [0, *(names.index(n) for n in ("left_wrist", "right_wrist") if n in names)]
+        ways = sampled(self.people, motion.fps, times)
+        shares = np.linspace(0, 1, _TRAIL_STEPS)[1:]
+        for person, way in enumerate(ways):
+            for colour, joint in zip(theme.people[person], chosen, strict=False):
+                fading = [mix(theme.horizon, colour, share) for share in shares]
+                pen.lines(np.stack([way[:-1, joint], way[1:, joint]], axis=1), fading, 1 + 2.5 * shares)
+
+    def _names(self, canvas: Picture, pose: Array, camera: Camera, *, limbs: Sequence) -> None:
+        motion = self.pane.motion
+        roles = motion.roles if isinstance(motion, Duet) else (motion.name or "a",)
+        for person, points in enumerate(pose):
+            top = points[points[:, 1].argmax()] + np.array([0.0, _ABOVE_HEAD, 0.0])
+            (x, y), depth = camera.project(top)
+            if depth > 0:
+                role = roles[person]
+                label = _label(role.upper() if len(role) == 1 else role, limbs[person][0], self.size[1])
+                height, width = label.shape[:2]
+                paste(canvas, label, round(x - width / 2), round(max(y - height / 2, 2)))
+
+
+class _Pen:
+    """Strokes and fills in metres."""
+
+    def __init__(self, renderer, camera: Camera) -> None:
+        from matplotlib.transforms import IdentityTransform
+
+        self.renderer, self.camera = renderer, camera
+        self.height = camera.size[1]
+        self.nowhere = IdentityTransform()
+
+    def grid(self, theme: Theme) -> None:
+        """A one-metre grid that fades out around the camera's target."""
+        middle = np.round(self.camera.target[[0, 2]])
+        steps = np.arange(-_GRID, _GRID + 1)
+        along = np.stack(np.meshgrid(steps[:-1], steps), axis=-1).reshape(-1, 2).astype(float)
+        for first, second in ((0, 1), (1, 0)):
+            lines = np.zeros((len(along), 2, 3))
+            lines[:, 0, [0, 2]] = along[:, [first, second]]
+            lines[:, 1, [0, 2]] = (along + np.array([1.0, 0.0]))[:, [first, second]]
+            lines[..., [0, 2]] += middle
+            away = np.clip(np.linalg.norm(lines.mean(axis=1)[:, [0, 2]] - middle, axis=1) / _GRID, 0, 1)
+            strength = np.round(_GRID_STEPS * (1 - away * away * (3 - 2 * away)))
+            strong = (along[:, 1] + middle[1 - first]) % 5 == 0
+            pixels, seen = self._placed(lines)
+            for is_strong in (False, True):
+                colour = theme.grid_strong if is_strong else theme.grid
+                width = (1.6 if is_strong else 1.1) * self.height / 720
+                for step in range(1, _GRID_STEPS + 1):
+                    chosen = seen & (strong == is_strong) & (strength == step)
+                    if chosen.any():
+                        self._stroke(pixels[chosen], colour, width, step / _GRID_STEPS)
+
+    def lines(self, ends: Array, colours: Sequence[Colour], widths: Array | float) -> None:
+        """Straight lines (N, 2, 3), each with its colour and width in pixels."""
+        pixels, seen = self._placed(ends)
+        widths = np.broadcast_to(widths, len(ends))
+        for i in np.flatnonzero(seen).tolist():
+            self._stroke(pixels[i], colours[i], float(widths[i]))
+
+    def _placed(self, ends: Array) -> tuple[Array, NDArray[np.bool_]]:
+        """Pixels (N, 2, 2) of lines (N, 2, 3), and a mask of those in front of the camera."""
+        pixels, depth = self.camera.project(ends)
+        return self._up(pixels), np.all(depth > 0.1, axis=1)
+
+    def _stroke(self, pixels: Array, colour: Colour, width: float, alpha: float = 1.0) -> None:
+        from matplotlib.path import Path
+
+        pen = self.renderer.new_gc()
+        pen.set_foreground((*colour, alpha), isRGBA=True)
+        pen.set_linewidth(width)
+        pen.set_capstyle("round")
+        ends = pixels.reshape(-1, 2)
+        codes = np.tile(np.array([Path.MOVETO, Path.LINETO], dtype=Path.code_type), len(ends) // 2)
+        self.renderer.draw_path(pen, Path(ends, codes), self.nowhere)
+
+    def bones(self, points: Array, skeleton, colours: Sequence[Colour], widths: Array | float) -> None:
+        bones = np.array(skeleton.bones)
+        self.lines(points[bones], colours, widths)
+
+    def skeleton(self, points: Array, skeleton, limbs: tuple[Colour, Colour, Colour]) -> None:
+        """Thin bones with round joints, left lighter and right darker."""
+        sides = [side_of(name) for name in skeleton.joint_names]
+        bones = np.array(skeleton.bones)
+        far = self.camera.project(points[bones].mean(axis=1))[1]
+        widths = np.maximum(0.022 * self.camera.focal / np.maximum(far, 0.1), 1.5)
+        order = np.argsort(-far)
+        self.lines(points[bones][order], [limbs[sides[bones[i, 1]]] for i in order], widths[order])
+        depth = self.camera.project(points)[1]
+        dots = np.maximum(0.044 * self.camera.focal / np.maximum(depth, 0.1), 3.0)
+        self.lines(np.repeat(points[:, None], 2, axis=1) + np.array([[0, 0, 0], [1e-4, 0, 0]]),
+                   [limbs[side] for side in sides], dots)  # fmt: skip
+
+    def bodies(self, people: Sequence[tuple[Body, Array, Array]], alpha: float) -> None:
+        """Smooth triangles of all people, the farthest first."""
+        triangles, depths, colours = [], [], []
+        for body, surface, shades in people:
+            pixels, depth = self.camera.project(surface)
+            corners = pixels[body.faces]
+            one, other = corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]
+            far = depth[body.faces]
+            seen = (one[:, 0] * other[:, 1] - one[:, 1] * other[:, 0] < 0) & (far.min(axis=1) > 0.1)
+            triangles.append(corners[seen])
+            depths.append(far[seen].mean(axis=1))
+            colours.append(shades[seen])
+        if not triangles:
+            return
+        order = np.argsort(-np.concatenate(depths))
+        shades = np.concatenate(colours)[order]
+        filled = np.concatenate([shades, np.full((*shades.shape[:2], 1), alpha)], axis=-1)
+        plain = self.renderer.new_gc()
+        self.renderer.draw_gouraud_triangles(
+            plain, self._up(np.concatenate(triangles)[order]), filled, self.nowhere
+        )
+
+    def _up(self, pixels: Array) -> Array:
+        """Agg's origin is the lower left corner."""
+        return pixels * np.array([1.0, -1.0]) + np.array([0.0, self.height])
+
+
+def side_of(joint: str) -> int:
+    """Index of a limb's colour in the theme: 0 middle, 1 left, 2 right."""
+    return 1 if joint.startswith("left_") else 2 if joint.startswith("right_") else 0
+
+
+def _ground(camera: Camera, theme: Theme, shadow: Shadow) -> NDArray[np.uint32]:
+    """(height, width) floor, horizon and sky with the shadow, a number a pixel: red, green, blue, 255."""
+    width, height = (-(-side // _COARSE) for side in camera.size)
+    right, up, forward = camera.axes.astype(np.float32)
+    x = (((np.arange(width) + 0.5) * _COARSE - camera.size[0] / 2) / camera.focal).astype(np.float32)
+    y = ((camera.size[1] / 2 - (np.arange(height) + 0.5) * _COARSE) / camera.focal).astype(np.float32)
+    rows = forward + y[:, None] * up  # the camera never leans, so that a row has one slope
+    slope = rows[:, 1]
+    first = int(np.searchsorted(-slope, 1e-4))  # of the rows that show floor
+    picture = np.empty((height, width), dtype=np.uint32)
+    rise = np.arctan(slope[:first] / np.hypot(rows[:first, 0], rows[:first, 2]))
+    picture[:first] = _ramp(theme.horizon, theme.sky)[_levels(np.sqrt(np.clip(rise / 0.55, 0, 1)))][:, None]
+    if first < height:
+        reach = (camera.eye[1] / -slope[first:])[:, None].astype(np.float32)
+        # Metres from what the camera looks at, along X and Z.
+        east = reach * (rows[first:, :1] + x * right[0]) + np.float32(camera.eye[0] - camera.target[0])
+        south = reach * (rows[first:, 2:] + x * right[2]) + np.float32(camera.eye[2] - camera.target[2])
+        t = np.minimum(np.sqrt(east * east + south * south) / np.float32(24), np.float32(1))
+        floor = _ramp(theme.floor, theme.horizon)[_levels(t * t * (3 - 2 * t))]
+        dark, hidden = shadow.at(east + np.float32(camera.target[0]), south + np.float32(camera.target[2]))
+        plain = floor[hidden].view(np.uint8).reshape(-1, 4)
+        lost = dark[:, None] * np.array([*(1 - np.array(theme.shade)), 0], dtype=np.float32)
+        floor[hidden] = (plain * (1 - lost)).astype(np.uint8).view(np.uint32)[:, 0]
+        picture[first:] = floor
+    return picture.repeat(_COARSE, axis=0).repeat(_COARSE, axis=1)[: camera.size[1], : camera.size[0]]
+
+
+_LEVELS = 1023
+
+
+def _levels(shares: Array) -> NDArray[np.integer]:
+    return (shares * _LEVELS).astype(np.int16)
+
+
+@lru_cache(maxsize=8)
+def _ramp(first: Colour, second: Colour) -> NDArray[np.uint32]:
+    """(1024,) from one colour to another, as pixels."""
+    shares = np.linspace(0, 1, _LEVELS + 1)[:, None]
+    colours = 255 * (np.array(first) + shares * (np.array(second) - np.array(first))) + 0.5
+    pixels = np.concatenate([colours, np.full((len(colours), 1), 255.0)], axis=1).astype(np.uint8)
+    return pixels.view(np.uint32)[:, 0]
+
+
+def paste(canvas: Picture, label: Picture, x: int, y: int) -> None:
+    """Lays a label (h, w, 4) over a picture (H, W, 4) with its upper left corner at a pixel."""
+    height, width = label.shape[:2]
+    rows, columns = slice(max(y, 0), max(y + height, 0)), slice(max(x, 0), max(x + width, 0))
+    under = canvas[rows, columns, :3]
+    top = label[max(-y, 0) :, max(-x, 0) :][: under.shape[0], : under.shape[1]]
+    share = top[..., 3:] / np.float32(255)
+    under[:] = under + share * (top[..., :3] - under.astype(np.float32))
+
+
+@lru_cache(maxsize=64)
+def font(pixels: int) -> ImageFont.FreeTypeFont:
+    """DejaVu Sans, which comes with matplotlib."""
+    from matplotlib import get_data_path
+
+    return ImageFont.truetype(f"{get_data_path()}/fonts/ttf/DejaVuSans.ttf", pixels)
+
+
+@lru_cache(maxsize=64)
+def _label(text: str, colour: Colour, height: int) -> Picture:
+    """White text on a pill of a person's colour."""
+    pixels = max(round(height / 50), 9)
+    fine = 4
+    left, _, right, _ = font(fine * pixels).getbbox(text)
+    size = (round(right - left + 1.4 * fine * pixels), round(1.8 * fine * pixels))
+    pill = Image.new("RGBA", size, (0, 0, 0, 0))
+    pen = ImageDraw.Draw(pill)
+    fill = tuple(round(255 * c) for c in colour)
+    pen.rounded_rectangle((0, 0, size[0] - 1, size[1] - 1), size[1] / 2, fill=fill)
+    pen.text((size[0] / 2, size[1] / 2), text, font=font(fine * pixels), fill="white", anchor="mm")
+    return np.asarray(pill.resize((size[0] // fine, size[1] // fine), Image.Resampling.LANCZOS))
+
+
+@lru_cache(maxsize=64)
+def words(text: str, colour: Colour, pixels: int) -> Picture:
+    """A line of text as a label."""
+    left, _, right, _ = font(pixels).getbbox(text)
+    line = Image.new("RGBA", (max(round(right - left), 1) + 2, round(1.4 * pixels)), (0, 0, 0, 0))
+    fill = tuple(round(255 * c) for c in colour)
+    ImageDraw.Draw(line).text((1 - left, 1.1 * pixels), text, font=font(pixels), fill=fill, anchor="ls")
+    return np.asarray(line)
