@@ -12,6 +12,7 @@ from motion.formats import read, write
 from motion.kinematics import forward_kinematics
 from tests.motion.formats.rigs import RIGS, bvh_text
 from webdemo import cli
+from webdemo.cli import generation
 from webdemo.inference.requests import ReactRequest, Result
 
 
@@ -36,7 +37,7 @@ def asked(monkeypatch: pytest.MonkeyPatch) -> list[ReactRequest]:
         manifest = {"request": request.to_dict()}
         return Result(duets=(duet,) * request.samples, manifest=manifest)
 
-    monkeypatch.setattr(cli, "_run", run)
+    monkeypatch.setattr(generation, "run", run)
     return requests
 
 

@@ -20,7 +20,7 @@ OFTEN = 100_000
 """Requests a minute: nothing that these servers are asked is too often."""
 
 
-@pytest.fixture(scope="module")
+@pytest.fixture(scope="package")
 def local(tmp_path_factory: pytest.TempPathFactory) -> Iterator[TestClient]:
     """A server for its own machine, without accounts."""
     folder = tmp_path_factory.mktemp("local")
@@ -28,7 +28,7 @@ def local(tmp_path_factory: pytest.TempPathFactory) -> Iterator[TestClient]:
         yield client
 
 
-@pytest.fixture(scope="module")
+@pytest.fixture(scope="package")
 def shared(tmp_path_factory: pytest.TempPathFactory) -> Iterator[TestClient]:
     """A server with the accounts of ada and eve."""
     folder = tmp_path_factory.mktemp("shared")
@@ -43,7 +43,7 @@ def shared(tmp_path_factory: pytest.TempPathFactory) -> Iterator[TestClient]:
             yield client
 
 
-@pytest.fixture(scope="module")
+@pytest.fixture(scope="package")
 def pair(tmp_path_factory: pytest.TempPathFactory) -> Iterator[tuple[TestClient, TestClient]]:
     """Two page processes' servers with one database and the accounts of ada and eve, of whom each may have
     two runs; a step takes 0.1 s."""
@@ -62,7 +62,7 @@ def pair(tmp_path_factory: pytest.TempPathFactory) -> Iterator[tuple[TestClient,
             yield one, two
 
 
-@pytest.fixture(scope="module")
+@pytest.fixture(scope="package")
 def served(tmp_path_factory: pytest.TempPathFactory) -> Iterator[tuple[str, int]]:
     """Where a server listens that waits a second for heads and bodies, and bounds connections."""
     folder = tmp_path_factory.mktemp("served")

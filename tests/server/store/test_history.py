@@ -23,6 +23,7 @@ from webdemo.inference.predict_request import PredictRequest, PredictResult
 from webdemo.inference.requests import GenerateRequest, ReactRequest, Result
 from webdemo.server.queue.shared_engine import SharedEngine
 from webdemo.server.queue.wait_estimate import units
+from webdemo.server.store import history as history_module
 from webdemo.server.store.database import Database, Link, Run, Table
 from webdemo.server.store.history import DAY, WAIT_SECONDS, History
 from webdemo.server.store.recorder import title_of
@@ -178,17 +179,39 @@ def test_age_and_size_remove_the_oldest_but_no_favourites(history: History) -> N
     assert {path.name for path in history.folder.iterdir()} == {runs[0], runs[4]}
 
 
+class Clock:
+    """Stands for the module ``time`` in the history alone: an event loop beside it keeps the true time."""
+
+    def __init__(self) -> None:
+        self.ahead = self.uptime = 0.0
+
+    def set(self, ahead: float, uptime: float = 0.0) -> None:
+        self.ahead, self.uptime = ahead, uptime
+
+    def time(self) -> float:
+        return time.time() + self.ahead
+
+    def monotonic(self) -> float:
+        return time.monotonic() + self.uptime
+
+
+def clock_of(monkeypatch: pytest.MonkeyPatch) -> Clock:
+    clock = Clock()
+    monkeypatch.setattr(history_module, "time", clock)
+    return clock
+
+
 def test_a_wrong_clock_removes_nothing(
     history: History, monkeypatch: pytest.MonkeyPatch, caplog: pytest.LogCaptureFixture
 ) -> None:
     """The server is started with its clock 60 days ahead, and the clock is set right within the day."""
     runs = [kept(history, seed=i) for i in range(2)]
     link, _ = history.link(runs[0], ME)
-    now = time.time()
-    monkeypatch.setattr(time, "time", lambda: now + 60 * DAY)
+    clock = clock_of(monkeypatch)
+    clock.set(60 * DAY)
     assert [history.clean(), history.clean()] == [0, 0]
     assert "clock is 60 days past the newest run" in caplog.text
-    monkeypatch.setattr(time, "time", lambda: now)
+    clock.set(0)
     assert history.clean() == 0
     assert {entry.id for entry in history.entries(ME)} == set(runs)
     assert history.open(link, "").entry.id == runs[0]
@@ -198,10 +221,10 @@ def test_a_clock_that_stays_ahead_is_believed_after_a_day(
     history: History, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     kept(history)
-    now, uptime = time.time(), time.monotonic()
-    monkeypatch.setattr(time, "time", lambda: now + 60 * DAY)
+    clock = clock_of(monkeypatch)
+    clock.set(60 * DAY)
     assert history.clean() == 0
-    monkeypatch.setattr(time, "monotonic", lambda: uptime + WAIT_SECONDS + 1)
+    clock.set(60 * DAY, uptime=WAIT_SECONDS + 1)
     assert history.clean() == 1
 
 

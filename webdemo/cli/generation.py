@@ -1,0 +1,157 @@
+"""The commands that run a network: ``generate``, ``react`` and ``predict``."""
+
+from __future__ import annotations
+
+import argparse
+import json
+import time
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from motion import Duet, InputError
+from webdemo.inference.actor import FPS, read_actor
+from webdemo.inference.methods import methods
+from webdemo.inference.predict_request import LONGEST, PredictRequest, PredictResult
+from webdemo.inference.requests import GenerateRequest, ReactRequest, Result
+
+from .parser import add_sampling, names_of, sampling_fields
+from .running import check_out, run, write_result
+
+
+def add_generate(commands: Any) -> None:
+    """Adds ``generate`` to the shell's commands."""
+    parser = commands.add_parser("generate", help="generate two people from a sentence or a class")
+    asked = parser.add_mutually_exclusive_group(required=True)
+    asked.add_argument("--prompt", help="what the two people do, in English")
+    asked.add_argument("--class", dest="label", help="name of a class of BiGraphDiff, such as 'shake hands'")
+    parser.add_argument("--seconds", type=float, default=GenerateRequest.seconds)
+    add_sampling(parser, "generate")
+    parser.set_defaults(job=generate)
+
+
+def generate(options: argparse.Namespace) -> dict[str, Any]:
+    """Runs a :class:`GenerateRequest` and writes its duets."""
+    check_out(options.out)
+    if options.label is not None:
+        options.model = next(m.name for m in methods("generate") if "class" in m.takes)
+    fields = sampling_fields(options)
+    words = options.prompt if options.label is None else options.label
+    request = GenerateRequest(prompt=words, seconds=options.seconds, **fields)
+    return write_result(run(request), options.out)
+
+
+def add_react(commands: Any) -> None:
+    """Adds ``react`` to the shell's commands."""
+    parser = commands.add_parser("react", help="generate a second person for a given one")
+    parser.add_argument("--actor", type=Path, required=True, help="the given person: .bvh, .npz, .npy …")
+    parser.add_argument("--person", help="which person, a to f, if the file holds several")
+    parser.add_argument("--start", type=float, default=0.0, help="first second of the file to use")
+    parser.add_argument("--end", type=float, help="last second of the file to use; the end by default")
+    parser.add_argument("--prompt", default=ReactRequest.prompt, help="what the two people do (optional)")
+    parser.add_argument(
+        "--keep-start", action="store_true",
+        help="start the new person in the first pose of the file's other person (not intergen)",
+    )  # fmt: skip
+    parser.add_argument(
+        "--role", default=ReactRequest.role, help="whether the given person acts (a) or reacts (b)"
+    )
+    parser.add_argument(
+        "--mode", help="offline sees the whole motion; online (regennet) sees the frames so far"
+    )
+    parser.add_argument(
+        "--stream", action="store_true",
+        help="react online at the actor's pace and print each frame as a line of JSON",
+    )  # fmt: skip
+    parser.add_argument(
+        "--own-rig", action="store_true",
+        help="of a BVH: also the partner on that file's rig, as NAME_rig.bvh, in its unit and rest pose",
+    )  # fmt: skip
+    add_sampling(parser, "react")
+    parser.set_defaults(job=react)
+
+
+def react(options: argparse.Namespace) -> dict[str, Any]:
+    """Runs a :class:`ReactRequest` on one person of a motion file and writes the duets."""
+    check_out(options.out)
+    actor, pose = read_actor(
+        options.actor, person=options.person, start=options.start, end=options.end,
+        keep_start=options.keep_start,
+    )  # fmt: skip
+    fields = sampling_fields(options) | {"start": pose}
+    mode = options.mode or ("online" if options.stream else ReactRequest.mode)
+    request = ReactRequest(actor=actor, prompt=options.prompt, role=options.role, mode=mode, **fields)
+    if options.own_rig and options.actor.suffix.lower() != ".bvh":
+        raise InputError(f"--own-rig needs the rig of a BVH file, and {options.actor.name} is none.")
+    if options.stream:
+        _stream(request)
+    result = run(request)
+    written = write_result(result, options.out)
+    if options.own_rig:
+        written["files"] += _on_own_rig(result, request, options)
+    return written
+
+
+def _on_own_rig(result: Result, request: ReactRequest, options: argparse.Namespace) -> list[str]:
+    """Writes the one who was made, of every sample, on the rig of the given file."""
+    from motion.formats.bvh_rig import write_on_rig
+
+    paths: list[Path] = []
+    for i, duet in enumerate(result.duets):
+        number = f"_{i + 1}" if len(result.duets) > 1 else ""
+        assert isinstance(duet, Duet)
+        given_is_a = np.array_equal(duet.a.positions, request.actor.positions)
+        made = duet.b if given_is_a else duet.a
+        path = options.out.with_name(f"{options.out.stem}{number}_rig.bvh")
+        paths += write_on_rig(made, options.actor, path)
+    return [str(path) for path in paths]
+
+
+def _stream(request: ReactRequest) -> None:
+    """Plays the actor at 30 frames a second and prints each frame of the reaction as it is made.
+
+    A line is ``{"frame", "milliseconds", "positions": [22 × [x, y, z]]}``, the first sample's, in metres.
+    """
+    from webdemo.inference.engine import Engine
+
+    frames = Engine().live(request)
+    began = time.perf_counter()
+    for frame in frames:
+        line = {
+            "frame": frame.index,
+            "milliseconds": round(1000 * frame.seconds, 2),
+            "positions": np.round(frame.positions[0], 4).tolist(),
+        }
+        print(json.dumps(line), flush=True)
+        time.sleep(max(0.0, began + (frame.index + 1) / FPS - time.perf_counter()))
+
+
+def add_predict(commands: Any) -> None:
+    """Adds ``predict`` to the shell's commands."""
+    parser = commands.add_parser("predict", help="predict what comes after a motion of one person or two")
+    parser.add_argument("--past", type=Path, required=True, help="the motion: .bvh, .npz, .npy …")
+    parser.add_argument("--marker", type=float, help="second at which the past ends; the end by default")
+    parser.add_argument(
+        "--seconds", type=float, default=PredictRequest.seconds, help="how many seconds to predict"
+    )
+    parser.add_argument("--model", default=PredictRequest.model, help=names_of("predict"))
+    parser.add_argument("--out", type=Path, required=True, help="file to write: .npz, .bvh …")
+    parser.set_defaults(job=predict)
+
+
+def predict(options: argparse.Namespace) -> dict[str, Any]:
+    """Runs a :class:`PredictRequest` and writes the past with what is predicted."""
+    from motion.formats import read
+
+    check_out(options.out)
+    request = PredictRequest(
+        motion=read(options.past, longest=LONGEST),
+        marker=options.marker,
+        seconds=options.seconds,
+        model=options.model,
+    )
+    result = run(request)
+    assert isinstance(result, PredictResult)
+    figures = {name: getattr(result, name) for name in ("past_frames", "error", "speed", "true_speed")}
+    return write_result(result, options.out) | figures

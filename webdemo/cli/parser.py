@@ -1,0 +1,56 @@
+"""The parser of the shell's commands: one line for each mistake, and options that several commands share."""
+
+from __future__ import annotations
+
+import argparse
+from dataclasses import fields
+from pathlib import Path
+from typing import Any, NoReturn
+
+from motion import InputError
+from webdemo.inference.method import Task
+from webdemo.inference.methods import method, methods
+from webdemo.inference.requests import SamplingRequest
+
+
+class Parser(argparse.ArgumentParser):
+    """Reports a mistake in one line, without the usage."""
+
+    def error(self, message: str) -> NoReturn:
+        """Raises :class:`InputError` with argparse's message as a sentence."""
+        raise InputError(f"{message[:1].upper()}{message[1:]}: see `{self.prog} --help`.")
+
+
+def names_of(task: Task) -> str:
+    """The names of the methods of a task, for a help text."""
+    return " or ".join(found.name for found in methods(task))
+
+
+def add_sampling(parser: argparse.ArgumentParser, task: Task) -> None:
+    """The options of a :class:`SamplingRequest`, and where its result goes."""
+    default = {field.name: field.default for field in fields(SamplingRequest)}
+    parser.add_argument("--out", type=Path, required=True, help="file to write: .npz, .bvh, .glb …")
+    parser.add_argument("--seed", type=int, default=default["seed"])
+    parser.add_argument(
+        "--samples", type=int, default=default["samples"], help="how many motions to generate"
+    )
+    parser.add_argument(
+        "--guidance", type=float, help="guidance scale s; the model's own default if not given"
+    )
+    parser.add_argument("--steps", type=int, help="denoising steps; the model's own default if not given")
+    parser.add_argument("--damping", type=float, default=default["damping"], help="damping threshold, 0 to 1")
+    parser.add_argument("--sampler", default=default["sampler"], help="ddim or dpm++")
+    parser.add_argument("--model", default=default["model"], help=names_of(task))
+    parser.add_argument(
+        "--no-cleanup", action="store_true", help="keep bones and feet as the network outputs them"
+    )
+
+
+def sampling_fields(options: argparse.Namespace) -> dict[str, Any]:
+    """The fields of a request, from the options of :func:`add_sampling`."""
+    names = ("seed", "samples", "guidance", "steps", "damping", "sampler", "model")
+    found = {name: getattr(options, name) for name in names} | {"cleanup": not options.no_cleanup}
+    for name in ("guidance", "steps"):
+        if found[name] is None:
+            found[name] = method(options.model).default(name, getattr(SamplingRequest, name))
+    return found

@@ -1,0 +1,105 @@
+"""The command ``render``: films and contact sheets of any motion file."""
+
+from __future__ import annotations
+
+import argparse
+from pathlib import Path
+from typing import Any
+
+from motion import InputError
+
+
+def add_render(commands: Any) -> None:
+    """Adds ``render`` to the shell's commands."""
+    parser = commands.add_parser("render", help="draw a film or a contact sheet of any motion file")
+    parser.add_argument("file", type=Path, help="motion file: .npz, .bvh, .npy …")
+    parser.add_argument("second", type=Path, nargs="?", help="the other person, if each has a file")
+    parser.add_argument(
+        "--out", type=Path,
+        help="film: .mp4, .webm or .gif; contact sheet: .png, .svg or .pdf; a .png beside the file by default",
+    )  # fmt: skip
+    parser.add_argument(
+        "--beside", type=Path, action="append", default=[], help="film: a motion to show beside it"
+    )
+    parser.add_argument("--look", default="bodies", help="bodies, skeletons or both")
+    parser.add_argument("--theme", default="light", help="light or dark")
+    parser.add_argument("--view", default="threequarter", help="threequarter, front, side, top, a or b")
+    parser.add_argument("--title", help="title in the picture; the file's name by default")
+    parser.add_argument("--fps", type=float, default=30.0, help="film: frames a second")
+    parser.add_argument("--size", default="1280x720", help="film: width and height in pixels")
+    parser.add_argument("--trails", action="store_true", help="film: lines behind hands and pelvis")
+    parser.add_argument(
+        "--still-camera", action="store_true", help="film: the camera does not follow the people"
+    )
+    parser.add_argument(
+        "--frames", default="8", help="contact sheet: how many moments, 1 to 24, or which, as in 0,30,75"
+    )
+    parser.add_argument(
+        "--width", type=int, default=1600, help="contact sheet: pixels (points for .svg, .pdf)"
+    )
+    parser.set_defaults(job=render)
+
+
+def render(options: argparse.Namespace) -> dict[str, Any]:
+    """Draws a film or a contact sheet of a motion file; a BVH pair may be given as two files, or by its first."""
+    from webdemo.view import film, sheet
+    from webdemo.view.stage import Pane, Style
+
+    motion = _motion(options.file, options.second)
+    out = options.out or options.file.with_suffix(".png")
+    title = options.file.stem if options.title is None else options.title
+    suffix = out.suffix.lower()
+    if suffix in film.SUFFIXES:
+        beside = [_motion(path, None) for path in options.beside]
+        names = [options.file.stem, *(path.stem for path in options.beside)] if beside else [""]
+        film.write_film(
+            [Pane(shown, name) for shown, name in zip([motion, *beside], names, strict=True)],
+            out,
+            fps=options.fps,
+            size=_size(options.size),
+            style=Style(look=options.look, trails=options.trails, theme=options.theme),
+            view=options.view,
+            follow=not options.still_camera,
+            title=title,
+        )
+    elif suffix in sheet.SUFFIXES:
+        sheet.write_sheet(
+            motion,
+            out,
+            frames=_moments(options.frames),
+            width=options.width,
+            title=title,
+            style=Style(look=options.look, names=False, theme=options.theme),
+            view=options.view,
+        )
+    else:
+        raise InputError(
+            f"{out.name} cannot be rendered: give --out a name that ends in .mp4, .webm, .gif, .png, .svg or .pdf."
+        )
+    return {"files": [str(out)], "frames": motion.num_frames, "fps": motion.fps, "seconds": motion.seconds}
+
+
+def _motion(file: Path, second: Path | None) -> Any:
+    """The motion of a file, or of a pair of files of which the second may be left to be found."""
+    from motion.formats import read, read_pair
+
+    if second is None and file.stem.endswith("_a"):
+        other = file.with_stem(file.stem[:-2] + "_b")
+        second = other if other.exists() else None
+    return read(file) if second is None else read_pair(file, second)
+
+
+def _size(words: str) -> tuple[int, int]:
+    """Width and height of ``"1280x720"``."""
+    parts = words.lower().split("x")
+    if len(parts) != 2 or not all(part.isdecimal() for part in parts):
+        raise InputError(f"--size is width x height, such as 1280x720, not {words!r:.30}.")
+    return int(parts[0]), int(parts[1])
+
+
+def _moments(words: str) -> int | list[int]:
+    """How many frames, or which."""
+    parts = words.split(",")
+    if not all(part.strip().isdecimal() for part in parts):
+        raise InputError(f"--frames is a number or frames with commas, such as 0,30,75, not {words!r:.30}.")
+    return int(parts[0]) if len(parts) == 1 else [int(part) for part in parts]
