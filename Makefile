@@ -17,6 +17,7 @@ test: $(VENV)/.tests
 	$(BIN)/ruff check .
 	$(BIN)/mypy
 	$(BIN)/python -m pytest
+	! $(BIN)/python -c 'import ray' 2>/dev/null || $(BIN)/python -m pytest -m ray tests/server/cluster
 
 lint: $(VENV)/.tests
 	$(BIN)/ruff check .

@@ -14,10 +14,12 @@ from typing import Any
 
 import pytest
 from fastapi.testclient import TestClient
+from sqlalchemy import event
 
 from webdemo.server.app import Lab, create_app
 from webdemo.server.serve import make_server
 from webdemo.server.settings import Settings
+from webdemo.server.store.database import Database
 
 from .lab import stub_module
 
@@ -82,6 +84,25 @@ def answer_of(said: str) -> dict[str, Any]:
     """The answer of a call that was told to be complete."""
     data = next(line for line in said.splitlines() if line.startswith("data: ["))
     return json.loads(data.removeprefix("data: "))[0]
+
+
+@contextmanager
+def no_room(database: Database) -> Iterator[None]:
+    """The database may not grow."""
+    engine = database.engine
+    if engine.dialect.name != "sqlite":
+        pytest.skip("only SQLite has a limit that stands for a full disk")
+
+    def limit(connection: Any, record: Any) -> None:
+        connection.execute("PRAGMA max_page_count=1")
+
+    event.listen(engine, "connect", limit)
+    engine.dispose()
+    try:
+        yield
+    finally:
+        event.remove(engine, "connect", limit)
+        engine.dispose()
 
 
 @contextmanager

@@ -70,8 +70,3 @@ def served(tmp_path_factory: pytest.TempPathFactory) -> Iterator[tuple[str, int]
         folder, header_seconds=1, body_seconds=1, connections=60, address_connections=50
     ) as address:
         yield address
-
-
-def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
-    """Ray runs last: its threads stay in the process, and servers that were made before it may then hang."""
-    items.sort(key=lambda item: "test_ray_engine" in item.nodeid)

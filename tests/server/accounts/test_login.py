@@ -20,6 +20,7 @@ from tests.server.clients import (
     answer_of,
     find_fn,
     lab_of,
+    no_room,
     served_on_loopback,
     sign_in,
     told,
@@ -71,6 +72,20 @@ def test_sessions_end_and_are_not_forged(shared: TestClient) -> None:
     with lab_of(shared).database.session.begin() as session:
         session.execute(update(SignIn).values(until=time.time() - 1))
     assert shared.get("/config", headers=late).status_code == 401
+
+
+def test_a_full_disk_at_sign_in_is_a_sentence(shared: TestClient) -> None:
+    """Sessions that exist go on; the next person can sign in when there is room again."""
+    before = sign_in(shared, "ada")
+    fields = {"username": "eve", "password": "password of eve"}
+    with no_room(lab_of(shared).database):
+        answers = [shared.post("/login", data=fields, headers=HTML) for _ in range(60)]
+        full = [answer for answer in answers if answer.status_code != 303]
+        assert full and {answer.status_code for answer in full} == {507}
+        assert "disk" in full[0].text and "Traceback" not in full[0].text and "sqlite" not in full[0].text.lower()
+        assert shared.get("/config", headers=before).status_code == 200
+    shared.cookies.clear()
+    assert shared.get("/config", headers=sign_in(shared, "eve")).status_code == 200
 
 
 def test_a_page_session_is_its_persons(shared: TestClient) -> None:

@@ -29,7 +29,7 @@ from webdemo.server.queue.queue import FairQueue
 from webdemo.server.queue.shared_engine import SharedEngine
 from webdemo.server.queue.turns import QueueLimits
 
-pytestmark = pytest.mark.slow
+pytestmark = [pytest.mark.slow, pytest.mark.ray]
 WANTED = GenerateRequest(prompt="Two people shake hands.", seconds=1.0, steps=6, seed=5)
 LONG = replace(WANTED, steps=400, damping=0.0, cleanup=False)
 """Takes seconds, so that something can happen meanwhile."""

@@ -5,17 +5,16 @@ from __future__ import annotations
 import errno
 import time
 from collections.abc import Iterator
-from contextlib import contextmanager
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pytest
-from sqlalchemy import event, update
+from sqlalchemy import update
 
 from motion import InputError, formats, stacked_positions
-from tests.server.clients import DATABASES, database_url
+from tests.server.clients import DATABASES, database_url, no_room
 from tests.server.lab import stub_module
 from webdemo.inference import Engine
 from webdemo.inference.cancel import CancelToken
@@ -232,7 +231,7 @@ def test_a_full_disk_in_the_middle_of_a_run_leaves_it_ended(history: History) ->
     """SQLite's own limit stands for the disk; what could not be written is written when there is room."""
     request = GenerateRequest(prompt="Two people walk.", seconds=1.0, steps=1)
     run = history.begin(ME, request, "x")
-    with no_room(history):
+    with no_room(history.database):
         history.end(run, "failed", "y" * 100_000)
         assert [entry.state for entry in history.entries(ME)] == ["running"]
     history.settle()
@@ -243,7 +242,7 @@ def test_a_full_disk_in_the_middle_of_a_run_leaves_it_ended(history: History) ->
 def test_a_result_that_does_not_fit_is_a_sentence_and_leaves_no_files(history: History) -> None:
     request = GenerateRequest(prompt="Two people walk.", seconds=1.0, steps=1)
     run = history.begin(ME, request, "x")
-    with no_room(history), pytest.raises(InputError, match="disk is full"):
+    with no_room(history.database), pytest.raises(InputError, match="disk is full"):
         history.finish(run, replace(made(request), notes=("y" * 100_000,)))
     history.settle()
     assert [entry.state for entry in history.entries(ME)] == ["failed"]
@@ -263,25 +262,6 @@ def test_a_damaged_database_is_a_sentence_and_no_sql(history: History) -> None:
         with pytest.raises(InputError) as told:
             act()
         assert "history cannot be read or written" in str(told.value) and "links" not in str(told.value)
-
-
-@contextmanager
-def no_room(history: History) -> Iterator[None]:
-    """The database may not grow."""
-    engine = history.database.engine
-    if engine.dialect.name != "sqlite":
-        pytest.skip("only SQLite has a limit that stands for a full disk")
-
-    def limit(connection: Any, record: Any) -> None:
-        connection.execute("PRAGMA max_page_count=1")
-
-    event.listen(engine, "connect", limit)
-    engine.dispose()
-    try:
-        yield
-    finally:
-        event.remove(engine, "connect", limit)
-        engine.dispose()
 
 
 def test_a_run_that_is_removed_while_it_runs_leaves_no_files(history: History) -> None:
