@@ -58,7 +58,7 @@ def refused(outcome: tuple[int, str, str]) -> str:
     return error
 
 
-@pytest.mark.parametrize("command", ["generate", "react", "render", "info", "benchmark", "serve"])
+@pytest.mark.parametrize("command", ["generate", "react", "scene", "render", "info", "benchmark", "serve"])
 def test_every_command_has_help(run: Run, capsys: pytest.CaptureFixture[str], command: str) -> None:
     with pytest.raises(SystemExit) as ended:
         run(command, "--help")

@@ -15,6 +15,7 @@ from motion.transforms import heading_matrix
 from webdemo.inference.live import LiveFrame, LiveProgress, LiveRequest, paced
 from webdemo.inference.predict_request import PredictRequest, PredictResult, with_people
 from webdemo.inference.requests import Cancelled, GenerateRequest, Progress, ReactRequest, Result
+from webdemo.inference.story import SceneProgress, SceneRequest
 
 FPS = 30
 _WALK = 0.8  # metres a second
@@ -120,6 +121,9 @@ class StubEngine:
             yield Progress(stage="sample", step=1, total=1)
             yield drift(request)
             return
+        if isinstance(request, SceneRequest):
+            yield from self._scene(request, cancel)
+            return
         if "impossible" in request.prompt:
             raise InputError("The stub cannot do this: ask for something possible.")
         yield Progress(stage="text")
@@ -154,6 +158,32 @@ class StubEngine:
             readouts=tuple(compare(b, a) for b, a in zip(before, after, strict=True)),
             timings={"text": 0.01, "sampling": time.monotonic() - started, "finish": 0.05},
             notes=notes,
+        )
+
+    def _scene(self, request: SceneRequest, cancel: Any) -> Iterator[Progress | Result]:
+        """The two walk, beat by beat; what is kept of a given motion stays."""
+        wholes = [walking(request.total_seconds, request.seed + i).positions for i in range(request.samples)]
+        for sample, whole in enumerate(wholes):
+            first, last = request.made
+            if request.motion is not None:
+                before, after = request.kept(request.motion)
+                whole[:, :first], whole[:, last : last + after.shape[1]] = before, after
+            for beat, stop in enumerate(request.edges[1:]):
+                time.sleep(self.pause)
+                if cancel is not None and cancel.cancelled:
+                    raise Cancelled("The run was cancelled.")
+                so_far = Duet.from_positions(whole[:, :stop], fps=FPS)
+                step = sample * len(request.beats) + beat + 1
+                yield SceneProgress(
+                    stage="sample", step=step, total=request.samples * len(request.beats), sample=sample,
+                    beat=beat, motion=so_far,
+                )  # fmt: skip
+        duets = tuple(Duet.from_positions(whole, fps=FPS) for whole in wholes)
+        yield Result(
+            duets=duets,
+            manifest={"model": "stub", "request": request.to_dict()},
+            readouts=tuple(compare(None, duet) for duet in duets),
+            timings={"sampling": 0.1},
         )
 
     def _live(self, request: LiveRequest, cancel: Any) -> Iterator[LiveProgress]:

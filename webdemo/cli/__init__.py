@@ -1,4 +1,4 @@
-"""The same jobs from a shell: ``python -m webdemo generate|react|predict|render|info|benchmark|serve|user``.
+"""The same jobs from a shell: ``python -m webdemo generate|react|predict|scene|render|info|benchmark|serve|user``.
 
 The last line on stdout is one JSON object. An error is one line on stderr that says what is
 wrong and what to do, with exit code 2. A cancelled run (Ctrl+C) ends with 130, and one whose reader has gone
@@ -21,6 +21,7 @@ from motion import InputError
 from .generation import add_generate, add_predict, add_react
 from .parser import Parser
 from .rendering import add_render
+from .scenes import add_scene
 from .service import add_service
 
 __all__ = ["main"]
@@ -30,7 +31,7 @@ def main(argv: Sequence[str] | None = None) -> int:
     """Runs one command; returns the exit code."""
     parser = Parser(prog="python -m webdemo", description="Motion of two people, from a shell.")
     commands = parser.add_subparsers(required=True, metavar="COMMAND", parser_class=Parser)
-    for add in (add_generate, add_react, add_predict, add_render, add_service):
+    for add in (add_generate, add_react, add_predict, add_scene, add_render, add_service):
         add(commands)
     began = time.perf_counter()
     try:

@@ -9,6 +9,7 @@ from typing import Any
 from motion import InputError
 from webdemo.inference.predict_request import PredictRequest
 from webdemo.inference.requests import GenerateRequest, Progress, ReactRequest, Result
+from webdemo.inference.story.request import SceneRequest
 
 
 def check_out(path: Path) -> None:
@@ -40,7 +41,7 @@ def write_result(result: Result, out: Path) -> dict[str, Any]:
     }
 
 
-def run(request: GenerateRequest | ReactRequest | PredictRequest) -> Result:
+def run(request: GenerateRequest | ReactRequest | PredictRequest | SceneRequest) -> Result:
     """Runs a request with a step counter on stderr, where that is a terminal."""
     from webdemo.inference.engine import Engine
 

@@ -8,13 +8,14 @@ from typing import TYPE_CHECKING, Any
 from .cancel import CancelToken
 from .predict_request import PredictRequest, PredictResult
 from .requests import Cancelled, GenerateRequest, Progress, ReactRequest, Result
+from .story.request import SceneRequest
 
 if TYPE_CHECKING:
     from .engine import Engine
 
 __all__ = [
     "CancelToken", "Cancelled", "Engine", "GenerateRequest", "PredictRequest", "PredictResult", "Progress",
-    "ReactRequest", "Result",
+    "ReactRequest", "Result", "SceneRequest",
 ]  # fmt: skip
 
 

@@ -26,12 +26,13 @@ from .cancel import CancelToken
 from .damping import Damping, correct_together
 from .engine import Engine
 from .requests import GenerateRequest, Progress, ReactRequest, Result
+from .story.request import SceneRequest
 
 Event = Progress | Result | Exception
 
 
 def run_batch(
-    engine: Engine, items: Sequence[tuple[GenerateRequest | ReactRequest, CancelToken]]
+    engine: Engine, items: Sequence[tuple[GenerateRequest | ReactRequest | SceneRequest, CancelToken]]
 ) -> Iterator[tuple[int, Event]]:
     """Runs requests of one model, sampler and number of steps together.
 
@@ -46,7 +47,7 @@ def run_batch(
     meeting = Meeting(pipeline.model.denoiser, len(items))
     events: queue.SimpleQueue[tuple[int, Event | None]] = queue.SimpleQueue()
 
-    def work(i: int, request: GenerateRequest | ReactRequest, token: CancelToken) -> None:
+    def work(i: int, request: GenerateRequest | ReactRequest | SceneRequest, token: CancelToken) -> None:
         try:
             for event in engine.run(request, cancel=token, passes=SharedPasses(meeting, i)):
                 events.put((i, event))

@@ -28,6 +28,7 @@ MOST_SPEED = 5.0
 FADE = 6
 """Frames over which what clean-up changed at a given frame is taken back beside it."""
 _BONE_ERROR = 0.3
+_HIPS = (SMPL22.index("left_hip"), SMPL22.index("right_hip"))
 
 
 @dataclass(frozen=True, eq=False)
@@ -54,12 +55,14 @@ class KnownPath:
         frames: N different frames of the scene, in order; between them the way is free.
         places: (N, 2) x and z of the pelvis in metres.
         headings: (N,) radians from +Z towards +X. The network is shown them; they are not held.
+        turned: the headings are held, too, by the places of the hips.
     """
 
     person: int
     frames: Sequence[int]
     places: Array
     headings: Array | None = None
+    turned: bool = False
 
 
 Part = KnownFrames | KnownPath
@@ -97,8 +100,14 @@ def with_given(positions: Array, frames: Array, given: Array) -> Array:
     return moved
 
 
-def directed(model: DuetSpace, frames: int, parts: Sequence[Part]) -> Directed:
+def directed(model: DuetSpace, frames: int, parts: Sequence[Part], *, check: bool = True) -> Directed:
     """A scene of so many frames with what is given of it.
+
+    Args:
+        model: the network's space.
+        frames: length at 30 fps.
+        parts: what is given.
+        check: whether poses and places may be outside the limits; off for what a network made itself.
 
     Raises:
         InputError: if a part lies outside the scene or the limits, is no pose that a body takes, or
@@ -113,13 +122,30 @@ def directed(model: DuetSpace, frames: int, parts: Sequence[Part]) -> Directed:
                 f"Two given parts say where person {'ab'[part.person]} is at one time: give one."
             )
         if isinstance(part, KnownFrames):
-            _check_poses(part, at)
+            if check:
+                _check_poses(part, at)
             known.add_person(part.person, torch.from_numpy(np.asarray(part.positions)).float(), at)
         else:
-            _check_path(part, at)
+            if check:
+                _check_path(part, at)
             headings = None if part.headings is None else torch.from_numpy(np.asarray(part.headings)).float()
             known.add_path(part.person, at, torch.from_numpy(np.asarray(part.places)).float(), headings)
+            if part.turned and headings is not None:
+                _hold_hips(known, part.person, at, headings)
     return Directed(frames, Hold(known, model.layout, model.mean, model.std) if parts else None, parts=parts)
+
+
+def _hold_hips(known: Known, person: int, at: list[int], headings: torch.Tensor) -> None:
+    """Marks the places of the hips beside the pelvis as known, so that the person faces the headings."""
+    for hip in _HIPS:
+        across, along = (float(SMPL22.offsets[hip, axis]) for axis in (0, 2))
+        turned = (
+            across * headings.cos() + along * headings.sin(),
+            along * headings.cos() - across * headings.sin(),
+        )
+        for axis, values in zip((0, 2), turned, strict=True):
+            known.rows[:, person, at, 3 * hip + axis] = values
+            known.mask[:, person, at, 3 * hip + axis] = True
 
 
 def _frames(part: Part, total: int) -> list[int]:

@@ -27,9 +27,10 @@ from .method import Pipeline
 from .methods import WEIGHTS
 from .predict_request import PredictRequest
 from .requests import GenerateRequest, Progress, ReactRequest, Result, SamplingRequest
+from .story.request import SceneRequest
 from .timer import StageTimer
 
-Request = GenerateRequest | ReactRequest | PredictRequest
+Request = GenerateRequest | ReactRequest | PredictRequest | SceneRequest
 
 
 class Engine:

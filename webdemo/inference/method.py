@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from .requests import Progress, Result
     from .timer import StageTimer
 
-Task = Literal["generate", "react", "predict"]
+Task = Literal["generate", "react", "predict", "scene"]
 Input = Literal["words", "class", "actor", "first pose", "either role", "past"]
 
 

@@ -105,8 +105,8 @@ def with_people(motion: Clip | Duet, positions: Array) -> Clip | Duet:
     return motion.with_positions(positions[0])
 
 
-def check_motion(motion: Any) -> Clip | Duet:
-    """A motion at 30 fps on SMPL22's joints; raises InputError for another, and for one that is too long."""
+def check_motion(motion: Any, longest: float = LONGEST) -> Clip | Duet:
+    """A motion at 30 fps on SMPL22's joints; raises InputError for another, and for one longer than ``longest``."""
     if not isinstance(motion, Clip | Duet):
         raise InputError("Give the motion of one person or of two to predict from.")
     if motion.skeleton.joint_names != SMPL22.joint_names:
@@ -114,8 +114,8 @@ def check_motion(motion: Any) -> Clip | Duet:
             f"The motion has the joints of {motion.skeleton.name}, not SMPL's 22: bring it onto them "
             "with motion.retarget.to_smpl."
         )
-    if motion.seconds > LONGEST:
-        raise InputError(f"The motion lasts {motion.seconds:.0f} s: cut it to {LONGEST:g} s or less.")
+    if motion.seconds > longest:
+        raise InputError(f"The motion lasts {motion.seconds:.0f} s: cut it to {longest:g} s or less.")
     if isinstance(motion, Duet):
         return replace(motion, a=at_30_fps(motion.a), b=at_30_fps(motion.b))
     return at_30_fps(motion)

@@ -13,13 +13,14 @@ from motion import Duet, InputError
 from webdemo.inference.actor import ROLES
 from webdemo.inference.predict_request import PredictRequest, PredictResult
 from webdemo.inference.requests import GenerateRequest, ReactRequest, Result, SamplingRequest
+from webdemo.inference.story import SceneRequest
 from webdemo.ui.components.actors import Source
 
 from .history import Entry, Opened
 
 Request = SamplingRequest | PredictRequest
 _KINDS: dict[str, type[Request]] = {
-    "generate": GenerateRequest, "react": ReactRequest, "predict": PredictRequest,
+    "generate": GenerateRequest, "react": ReactRequest, "predict": PredictRequest, "scene": SceneRequest,
 }  # fmt: skip
 
 
@@ -35,6 +36,9 @@ def request_of(opened: Opened) -> Request:
         raise InputError(
             f"A run of the kind {opened.entry.kind!r} cannot be run again from here: use its tab."
         )
+    if kind is SceneRequest:
+        kept = opened.result.duets[0]  # what was made of it is not read again
+        return SceneRequest.from_dict(asked, kept if "motion" in asked and isinstance(kept, Duet) else None)
     given: dict[str, Any] = {f.name: asked[f.name] for f in fields(kind) if f.name in asked}
     if kind is ReactRequest:
         given["actor"] = actor_source(opened).people[0]
@@ -51,6 +55,8 @@ def request_of_unfinished(entry: Entry) -> Request:
     Raises:
         InputError: where it was made from somebody's motion, which is kept with a result alone.
     """
+    if entry.kind == "scene" and "motion" not in entry.request:
+        return SceneRequest.from_dict(entry.request)
     if entry.kind != "generate":
         raise InputError("This run ended before its motion was kept: send the file again in its tab.")
     asked = entry.request

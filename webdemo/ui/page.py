@@ -22,12 +22,13 @@ from .api import ClassEndpoint, GenerateEndpoint, PredictEndpoint, ReactEndpoint
 from .context import PageContext
 from .history import HistoryLike
 from .runs import EngineLike, Loader, Runs, RunsLike
+from .scene_api import SceneEndpoint
 from .theme import HEAD, style_sheet, theme
 
 TITLE = "Pas de Deux"
 TABS = (GenerateTab, ReactTab, PredictTab)
 """A class a job, with a ``label`` and ``build(demo, record)``."""
-ENDPOINTS = (PredictEndpoint, GenerateEndpoint, ClassEndpoint, ReactEndpoint, RenderEndpoint)
+ENDPOINTS = (PredictEndpoint, GenerateEndpoint, ClassEndpoint, ReactEndpoint, RenderEndpoint, SceneEndpoint)
 """Gradio's client in the browser takes the page's first function for "/predict", so that one comes first."""
 
 _HEADER = (

@@ -360,4 +360,5 @@ def test_build_page_offers_an_endpoint_a_job(tmp_path: Path) -> None:
         "/generate_class",
         "/react",
         "/render",
+        "/scene",
     ]

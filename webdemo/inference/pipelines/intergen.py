@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from pathlib import Path
 
 import torch
@@ -10,9 +11,14 @@ from torch import Tensor
 from models.compiled import compile_network
 from models.intergen.compact import CaptionBank, CompactInterGen, load_captions, load_folder
 from models.text import MiniLM
-from webdemo.inference.requests import GenerateRequest, ReactRequest
+from webdemo.inference.cancel import CancelToken
+from webdemo.inference.requests import GenerateRequest, Progress, ReactRequest, Result
+from webdemo.inference.scenes import Scene
+from webdemo.inference.story.request import SceneRequest
+from webdemo.inference.timer import StageTimer
 
-from .two_person import Conditioning, TwoPersonPipeline
+from .scene import SceneMaker
+from .two_person import Conditioning, Passes, TwoPersonPipeline
 
 
 class InterGenPipeline(TwoPersonPipeline[CompactInterGen]):
@@ -29,6 +35,20 @@ class InterGenPipeline(TwoPersonPipeline[CompactInterGen]):
             compile_network(fast, f"{source.digest} fast")
         self.bank: CaptionBank = load_captions(source)
         self.encoder = MiniLM()
+        self.scenes = SceneMaker(self)
+
+    def run(
+        self,
+        request: GenerateRequest | ReactRequest | SceneRequest,
+        cancel: CancelToken,
+        timer: StageTimer,
+        passes: Passes | None = None,
+        scene: Scene | None = None,
+    ) -> Iterator[Progress | Result]:
+        """As :meth:`TwoPersonPipeline.run`; a scene of several beats is made window by window."""
+        if isinstance(request, SceneRequest):
+            return self.scenes.run(request, cancel, timer, passes)
+        return super().run(request, cancel, timer, passes, scene)
 
     def condition(self, prompt: str) -> tuple[Tensor, Tensor]:
         """The condition (1, …) of a prompt and its unit sentence vector (384,)."""

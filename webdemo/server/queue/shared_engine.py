@@ -6,9 +6,12 @@ from collections.abc import Iterator, Sequence
 from dataclasses import replace
 from typing import Any
 
+from webdemo.inference.actor import FPS
 from webdemo.inference.cancel import CancelToken
 from webdemo.inference.methods import method
 from webdemo.inference.requests import GenerateRequest, Progress, ReactRequest, Result
+from webdemo.inference.story.plan import windows
+from webdemo.inference.story.request import SceneRequest
 from webdemo.ui.lazy import LazyEngine
 
 NEARBY = 1.25
@@ -20,7 +23,10 @@ class SharedEngine(LazyEngine):
 
     def key(self, request: Any) -> tuple[Any, ...] | None:
         """Requests of one model, sampler and number of steps may share a pass; others run alone."""
-        if type(request) not in (GenerateRequest, ReactRequest) or not method(request.model).shares_passes:
+        if (
+            type(request) not in (GenerateRequest, ReactRequest, SceneRequest)
+            or not method(request.model).shares_passes
+        ):
             return None
         return request.model, request.sampler, request.steps
 
@@ -44,5 +50,10 @@ class SharedEngine(LazyEngine):
             yield i, event
 
 
-def _seconds(request: GenerateRequest | ReactRequest) -> float:
+def _seconds(request: GenerateRequest | ReactRequest | SceneRequest) -> float:
+    """The longest motion that it passes through the network at once."""
+    if isinstance(request, SceneRequest):
+        return (
+            max(window.past + window.stop - window.start + window.after for window in windows(request)) / FPS
+        )
     return request.seconds if isinstance(request, GenerateRequest) else request.actor.seconds

@@ -12,6 +12,7 @@ from sqlalchemy.exc import SQLAlchemyError
 
 from motion import InputError
 from webdemo.inference.requests import Cancelled, Progress, Result
+from webdemo.inference.story.beats import story_title
 from webdemo.server.queue.places import Places
 from webdemo.server.queue.queue import FairQueue
 from webdemo.ui.visitor import visitor
@@ -107,5 +108,7 @@ def title_of(asked: Mapping[str, Any]) -> str:
     """Title of a run from its request's dictionary: its prompt, or the name of its input."""
     if words := str(asked.get("prompt", "")).strip():
         return words
+    if beats := asked.get("beats"):
+        return story_title(beats)
     given = asked.get("actor") or asked.get("motion") or {}
     return f"{'Reaction to' if 'actor' in asked else 'After'} {given.get('name') or 'a motion'}"

@@ -1,0 +1,75 @@
+"""A story is read from TOML and written again; a mistake is named with its line and key."""
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from motion import SMPL22, Duet, InputError
+from motion.formats import write
+from webdemo.inference.story import FloorPoint, SceneRequest, read_story, write_story
+
+STORY = """
+seed = 4
+loop = true
+
+[[beat]]
+words = "They \\"meet\\"."
+seconds = 2.5
+
+[[beat]]
+a = "waves"
+seed = 9
+
+[[path]]
+person = "b"
+points = [[0, 0, 1.5], [2, 0.5, 2, 90], [3, 0, 2]]
+"""
+
+
+def test_a_story_is_read_and_written() -> None:
+    found = read_story(STORY)
+    assert [beat.words for beat in found["beats"]] == ['They "meet".', ""]
+    assert found["beats"][1].seed == 9 and found["seed"] == 4 and found["loop"] is True
+    assert found["paths"][0].points[1] == FloorPoint(0.5, 2, 2, 90)
+    request = SceneRequest(**found)
+    again = SceneRequest(**read_story(write_story(request)))
+    assert again.to_dict() == request.to_dict()
+
+
+@pytest.mark.parametrize(
+    ("text", "says"),
+    [
+        ("seed = \n", "line 1, column 8"),
+        (
+            '[[beat]]\nwords = "x"\n\n[[beat]]\nwrods = "y"\n',
+            "Line 5: there is no key 'wrods' in a beat; did you mean 'words'",
+        ),
+        ('[[beat]]\nwords = "x"\nseconds = "long"\n', "Line 3: seconds must be a number"),
+        ("sede = 3\n", "Line 1: there is no key 'sede' in a story; did you mean 'seed'"),
+        ("seed = 1.5\n", "Line 1: seed must be a whole number"),
+        ("loop = 1\n", "Line 1: loop must be true or false"),
+        ("[beat]\nwords = 'x'\n", "Line 1: beat must be a list"),
+        ('[[path]]\nperson = "a"\npoints = [[0, 1], [1]]\n', "Line 3: point 2 of points"),
+        ('[[path]]\nperson = "a"\npoints = [["0", 1]]\n', "Line 3: point 1 of points"),
+        ('[[pose]]\nperson = "a"\nfile = "x.npz"\n', "Line 3: a file is only read from the shell"),
+        ('[[pose]]\nperson = "a"\npositions = [["x"]]\n', "Line 3: positions"),
+        ("x = " + "[" * 5000, "TOML"),
+        ("#" * 200_001, "200,001 characters"),
+    ],
+)
+def test_a_mistake_is_named_with_line_and_key(text: str, says: str) -> None:
+    with pytest.raises(InputError) as error:
+        read_story(text)
+    assert says in str(error.value)
+
+
+def test_a_pose_is_read_from_a_file_beside_the_story(tmp_path: Path) -> None:
+    rest = SMPL22.rest_positions() + np.array([0, 0.98, 0])
+    two = np.stack([np.repeat(rest[None], 3, axis=0), np.repeat(rest[None] + [0, 0, 1.5], 3, axis=0)])
+    write(Duet.from_positions(two, fps=30.0), tmp_path / "x.npz")
+    text = '[[pose]]\nperson = "b"\nseconds = 2\nfile = "x.npz"\nframe = 2\n'
+    (pose,) = read_story(text, tmp_path)["poses"]
+    np.testing.assert_allclose(pose.positions, two[1, 2], atol=1e-6)
+    with pytest.raises(InputError, match=r"Line 5: x.npz has frames 0 to 2, not 7"):
+        read_story(text.replace("frame = 2", "frame = 7"), tmp_path)

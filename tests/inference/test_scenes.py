@@ -1,0 +1,142 @@
+"""Scenes through the engine: windows that join, kept parts, spans bit for bit, wishes that are met."""
+
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+import pytest
+
+from motion import Duet
+from webdemo.inference import Cancelled, CancelToken, Engine, GenerateRequest, Result, SceneRequest
+from webdemo.inference.story import Beat, FloorPath, FloorPoint, Pose, SceneProgress
+
+QUICK: dict[str, Any] = {"steps": 3}
+BEATS = (
+    Beat("They wave.", seconds=2.0),
+    Beat("They walk away.", seconds=2.5),
+    Beat("They bow.", seconds=1.5),
+)
+
+
+def run(engine: Engine, request: Any, cancel: CancelToken | None = None) -> Result:
+    *_, result = engine.run(request, cancel=cancel)
+    assert isinstance(result, Result)
+    return result
+
+
+def positions(result: Result, sample: int = 0) -> np.ndarray:
+    duet = result.duets[sample]
+    assert isinstance(duet, Duet)
+    return duet.positions
+
+
+@pytest.fixture(scope="module")
+def story(engine: Engine) -> Result:
+    return run(engine, SceneRequest(beats=BEATS, **QUICK))
+
+
+def test_a_scene_has_the_length_of_its_beats_and_says_what_made_it(story: Result) -> None:
+    assert positions(story).shape == (2, 180, 22, 3) and np.isfinite(positions(story)).all()
+    assert SceneRequest.from_dict(story.manifest["request"]).beats == BEATS
+    assert story.readouts[0]["after"] and len(story.readouts[0]["curves"]["pelvis_distance"]) == 180
+
+
+def test_one_beat_is_what_plain_generation_gives(engine: Engine) -> None:
+    scene = run(engine, SceneRequest(beats=BEATS[:1], seed=5, **QUICK))
+    plain = run(engine, GenerateRequest(prompt="They wave.", seconds=2.0, seed=5, **QUICK))
+    np.testing.assert_allclose(positions(scene), positions(plain), atol=1e-5)
+
+
+def test_windows_join_without_a_jump(story: Result) -> None:
+    step = np.linalg.norm(np.diff(positions(story), axis=1), axis=-1).max((0, 2))
+    assert step[[59, 134]].max() < 2 * np.percentile(step, 95) + 0.01
+
+
+def test_parts_that_did_not_change_are_not_made_again(engine: Engine, story: Result) -> None:
+    changed = SceneRequest(beats=(*BEATS[:2], Beat("They hug.", seconds=1.5)), **QUICK)
+    steps = [
+        e.step for e in engine.run(changed) if e.__class__.__name__ == "Progress" and e.stage == "sample"
+    ]
+    assert min(steps) == 2 * QUICK["steps"] + 1
+    again = run(engine, changed)
+    np.testing.assert_array_equal(positions(again)[:, :135], positions(story)[:, :135])
+    other = run(engine, SceneRequest(beats=(BEATS[0], replace(BEATS[1], seed=8), BEATS[2]), **QUICK))
+    np.testing.assert_array_equal(positions(other)[:, :60], positions(story)[:, :60])
+    assert np.abs(positions(other)[:, 60:135] - positions(story)[:, 60:135]).max() > 0.01
+
+
+@pytest.mark.parametrize(("start", "end"), [(2.0, 4.0), (0.0, 1.0), (5.0, 6.0)])
+def test_outside_a_remade_span_nothing_changes(
+    engine: Engine, story: Result, start: float, end: float
+) -> None:
+    motion = story.duets[0]
+    request = SceneRequest(beats=(Beat("They hug."),), motion=motion, start=start, end=end, **QUICK)
+    made, first, last = positions(run(engine, request)), round(30 * start), round(30 * end)
+    np.testing.assert_array_equal(made[:, :first], positions(story)[:, :first])
+    np.testing.assert_array_equal(made[:, last:], positions(story)[:, last:])
+    assert np.abs(made[:, first:last] - positions(story)[:, first:last]).max() > 0.01
+    # Run again from the result alone, as a history does.
+    again = run(engine, SceneRequest.from_dict(request.to_dict(), run(engine, request).duets[0]))
+    np.testing.assert_array_equal(positions(again), made)
+
+
+def test_futures_share_the_past_and_differ(engine: Engine, story: Result) -> None:
+    motion = story.duets[0]
+    request = SceneRequest(beats=(Beat(seconds=2.0),), motion=motion, start=3.0, samples=2, **QUICK)
+    result = run(engine, request)
+    one, other = positions(result, 0), positions(result, 1)
+    assert one.shape[1] == 150
+    np.testing.assert_array_equal(one[:, :90], other[:, :90])
+    np.testing.assert_array_equal(one[:, :90], positions(story)[:, :90])
+    assert np.abs(one[:, 90:] - other[:, 90:]).max() > 0.01
+
+
+def test_paths_and_poses_are_met_in_every_window(engine: Engine, story: Result) -> None:
+    points = tuple(FloorPoint(1 + 0.3 * t, 0.5 * t, float(t)) for t in range(6))
+    pose = Pose("b", 5.0, positions(story)[1, 20].astype(np.float64))
+    result = run(engine, SceneRequest(beats=BEATS, paths=(FloorPath("a", points),), poses=(pose,), **QUICK))
+    found = positions(result)
+    places = found[0, [30 * t for t in range(6)], 0][:, [0, 2]]
+    np.testing.assert_allclose(places, [(p.x, p.z) for p in points], atol=0.02)
+    np.testing.assert_allclose(found[1, 150], pose.positions, atol=1e-4)
+
+
+def test_a_heading_is_held(engine: Engine) -> None:
+    from motion.transforms import heading
+
+    path = FloorPath("b", (FloorPoint(1.0, 1.0, 1.0, heading=-120.0),))
+    found = positions(run(engine, SceneRequest(beats=BEATS[:1], paths=(path,), **QUICK)))
+    assert np.degrees(heading(found[1, 30:31])[0]) == pytest.approx(-120, abs=10)
+
+
+@pytest.mark.parametrize("beats", [BEATS, BEATS[:1]])
+def test_a_loop_meets_its_beginning(engine: Engine, beats: tuple[Beat, ...]) -> None:
+    found = positions(run(engine, SceneRequest(beats=beats, loop=True, **QUICK)))
+    around = np.concatenate([found[:, -3:], found[:, :3]], axis=1)
+    step = np.linalg.norm(np.diff(around, axis=1), axis=-1)
+    inside = np.linalg.norm(np.diff(found, axis=1), axis=-1)
+    assert step[:, 2].max() < inside.max() + 0.01
+
+
+def test_what_was_finished_before_a_cancellation_stays(engine: Engine) -> None:
+    request = SceneRequest(beats=BEATS, seed=77, **QUICK)
+    cancel, seen = CancelToken(), []
+    with pytest.raises(Cancelled):
+        for event in engine.run(request, cancel=cancel):
+            if isinstance(event, SceneProgress):
+                seen.append(event)
+                cancel.cancel()
+    assert len(seen) == 1 and seen[0].motion.num_frames == 60 and seen[0].beat == 0
+    steps = [
+        e.step for e in engine.run(request) if e.__class__.__name__ == "Progress" and e.stage == "sample"
+    ]
+    assert min(steps) == QUICK["steps"] + 1
+
+
+def test_crossing_paths_are_noted(engine: Engine) -> None:
+    paths = (
+        FloorPath("a", (FloorPoint(-1, 0, 0.0), FloorPoint(1, 0, 1.9))),
+        FloorPath("b", (FloorPoint(1, 0, 0.0), FloorPoint(-1, 0, 1.9))),
+    )
+    result = run(engine, SceneRequest(beats=BEATS[:1], paths=paths, **QUICK))
+    assert any("The two paths come within" in note for note in result.notes)

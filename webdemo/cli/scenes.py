@@ -1,0 +1,76 @@
+"""The command ``scene``: a story in a TOML file → motion files."""
+
+from __future__ import annotations
+
+import argparse
+from dataclasses import fields
+from pathlib import Path
+from typing import Any
+
+from motion import Duet, InputError
+from webdemo.inference.requests import SamplingRequest
+from webdemo.inference.story import SceneRequest, read_story, split_sentence
+from webdemo.inference.story.request import MOST_SECONDS
+
+from .parser import names_of
+from .running import check_out, run, write_result
+
+
+def add_scene(commands: Any) -> None:
+    """Adds ``scene`` to the shell's commands."""
+    parser = commands.add_parser("scene", help="generate a scene of several beats from a story")
+    parser.add_argument("story", type=Path, nargs="?", help="TOML file with the story")
+    parser.add_argument("--prompt", help="instead of a file: a sentence, which is split into beats")
+    parser.add_argument("--motion", type=Path, help="motion of two people that the story goes on from")
+    parser.add_argument(
+        "--start", type=float, help="with --motion: second at which the story begins; the end by default"
+    )
+    parser.add_argument(
+        "--end", type=float, help="with --motion: second at which the motion goes on unchanged"
+    )
+    parser.add_argument("--out", type=Path, required=True, help="file to write: .npz, .bvh, .glb …")
+    default = "the story's own if not given"
+    parser.add_argument("--seed", type=int, help=default)
+    parser.add_argument("--samples", type=int, help=f"how many scenes or futures to generate; {default}")
+    parser.add_argument("--guidance", type=float, help=default)
+    parser.add_argument("--steps", type=int, help=default)
+    parser.add_argument("--damping", type=float, help=default)
+    parser.add_argument("--sampler", help=f"ddim or dpm++; {default}")
+    parser.add_argument("--model", help=f"{names_of('scene')}; {default}")
+    parser.set_defaults(job=scene)
+
+
+def scene(options: argparse.Namespace) -> dict[str, Any]:
+    """Runs a :class:`SceneRequest` and writes its duets."""
+    check_out(options.out)
+    asked = _story(options)
+    for field in fields(SamplingRequest):
+        if getattr(options, field.name, None) is not None:
+            asked[field.name] = getattr(options, field.name)
+    motion = _motion(options.motion) if options.motion is not None else None
+    request = SceneRequest(**asked, motion=motion, start=options.start, end=options.end)
+    return write_result(run(request), options.out)
+
+
+def _story(options: argparse.Namespace) -> dict[str, Any]:
+    """The fields that the story sets."""
+    if (options.story is None) == (options.prompt is None):
+        raise InputError("Give a story: a TOML file, or a sentence with --prompt.")
+    if options.prompt is not None:
+        return {"beats": split_sentence(options.prompt)}
+    try:
+        text = options.story.read_text(encoding="utf-8")
+    except (OSError, UnicodeDecodeError) as error:
+        why = getattr(error, "strerror", None) or "it is not text in UTF-8"
+        raise InputError(f"The story {options.story} cannot be read: {why}.") from None
+    return read_story(text, options.story.parent)
+
+
+def _motion(path: Path) -> Duet:
+    from motion.formats import read
+    from motion.retarget import to_smpl
+
+    found = read(path, longest=MOST_SECONDS)
+    if not isinstance(found, Duet):
+        raise InputError(f"{path.name} holds one person: a scene goes on from a motion of two.")
+    return to_smpl(found)

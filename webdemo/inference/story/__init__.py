@@ -1,0 +1,15 @@
+"""A story of two people: beats along a time line, paths, poses, and the request that turns it into motion.
+
+Importing this package imports no torch.
+"""
+
+from .beats import Beat, split_sentence
+from .progress import SceneProgress
+from .request import SceneRequest
+from .toml import read_story, read_words, write_story
+from .wishes import FloorPath, FloorPoint, Pose
+
+__all__ = [
+    "Beat", "FloorPath", "FloorPoint", "Pose", "SceneProgress", "SceneRequest", "read_story", "read_words",
+    "split_sentence", "write_story",
+]  # fmt: skip

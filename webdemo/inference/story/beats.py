@@ -1,0 +1,209 @@
+"""Beats: what two people do one thing after another, how long it takes, and how a sentence is split into them."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+from typing import Any
+
+from motion import InputError
+from webdemo.inference.requests import MAX_PROMPT, MAX_SEED
+
+SHORTEST, LONGEST = 0.5, 30.0
+"""Seconds of one beat."""
+MOST_BEATS = 60
+TITLE = 90
+"""Characters of a title."""
+DEFAULT_SECONDS = 4.0
+"""Of a beat whose words name no act of :data:`ACT_SECONDS`."""
+LEAD_SECONDS = 1.5
+"""Added to an act's length: people reach their places before it and come to rest after it."""
+
+ACT_SECONDS: tuple[tuple[str, float], ...] = (
+    (r"danc\w*|waltz\w*", 7.0),
+    (r"circl\w*|carousel", 5.2),
+    (r"sits?\b|sitting|kneel\w*|lies?\b|falls?\b|falling|get\w* up|stands? up|help\w*.* up", 5.0),
+    (r"fight\w*|spar\w*|duel\w*", 4.5),
+    (r"lead\w*|guid\w*|follow\w*", 4.5),
+    (r"walk\w*|stroll\w*|wander\w*|go(?:es|ing)? (?:away|off|their)|leav\w*|part\b|parts\b|approach\w*", 3.0),
+    (r"hand in hand|side by side|together", 4.0),
+    (r"hug\w*|embrac\w*|arm around", 2.4),
+    (r"talk\w*|chat\w*|whisper\w*|listen\w*|quarrel\w*|argu\w*", 2.7),
+    (r"bow\w*", 2.9),
+    (r"shak\w* hands|handshake|hands? over|gives?|passes|takes?\b", 2.2),
+    (r"wav\w*|goodbye|greet\w*|claps?|clapping|cheer\w*", 2.6),
+    (r"high[- ]?fives?|low[- ]?fives?|fist[- ]?bumps?|elbow|pats?\b|patting|taps?\b|points?\b|pointing", 2.0),
+    (r"turn\w*", 2.0),
+    (r"runs?\b|running|chas\w*|jump\w*|push\w*|kick\w*|punch\w*|dodg\w*|steps?\b|nods?\b|shrugs?", 1.8),
+)
+"""Patterns of acts and their seconds, which are medians over the corpus of beats (docs/corpus-beats.md); a dance, which
+goes on as long as one likes, has the length of its scenes."""
+
+_SPEEDS = ((r"\bslow\w*|\bcalm\w*|\bgentl\w*", 1.3), (r"\bquick\w*|\bfast\b|\bbrief\w*|\bhurr\w*", 0.75))
+_STATED = re.compile(r"\bfor (?:about )?(\d+(?:\.\d+)?|[a-z]+) seconds?\b", re.IGNORECASE)
+_COUNT = ("one", "two", "three", "four", "five", "six", "seven", "eight", "nine", "ten")
+_NUMBERS = {name: i for i, name in enumerate(_COUNT, 1)}
+
+_MARK = r"(?:and\s+)?(?:then|finally|afterwards?|after\s+that|at\s+last|at\s+the\s+end|lastly)"
+_LOOSE_MARK = r"(?:next|later|now)"
+"""Marks of time only at the beginning of a clause: "next to each other" is a place."""
+_BREAK = re.compile(
+    rf"(?:[.;!,]\s*|\s+){_MARK}\b,?\s*|[.;!,]\s+(?:and\s+)?{_LOOSE_MARK}\b,?\s+(?!to\b)|(?<=[.!])\s+"
+    r"|,?\s+before\s+(?=(?:they|he|she)\b)",
+    re.IGNORECASE,
+)
+_LATE_MARK = re.compile(
+    r"(?:,\s+(?:and\s+)?|\s+and\s+)(?P<who>person\s+[ab]|the\s+(?:other|first|second)(?:\s+person)?|they|he|she|both)\s+(?P<mark>then|finally|afterwards)\s+",
+    re.IGNORECASE,
+)
+_VERB = (
+    r"(?:walk|go|come|run|turn|bow|wave|shake|hug|embrac|danc|kick|push|punch|jump|sit|kneel|get|stand|talk|part|leav|circl"
+    r"|hold|clap|point|pat|tap|nod|step|stop|help|hand|give|take|wait|meet|greet|stroll|high[- ]five|raise|let)\w*"
+)
+_LIST = re.compile(rf",\s+(?={_VERB}\b)|,?\s+and\s+(?={_VERB}\b)", re.IGNORECASE)
+_OPENING = re.compile(
+    r"^(?:first(?:ly)?|at first|to begin with|in the beginning)\b(?!\s+person),?\s*", re.IGNORECASE
+)
+_STARTS_WITH_MARK = re.compile(rf"^(?:{_MARK}\b,?|{_LOOSE_MARK},)\s*", re.IGNORECASE)
+_SUBJECT = re.compile(
+    r"^(?:the\s+(?:two|first|second|other|actor|reactor|man|woman|people|couple|latter|former)\b(?:\s+(?:people|persons?|man|woman|one))?"
+    r"|two\s+\w+|both(?:\s+of\s+them|\s+people)?|they|he|she|one(?:\s+(?:person|of\s+them|man|woman))?"
+    r"|person\s+[ab]|(?:a|an|another|each|every)\s+\w+|someone|somebody|everyone|everybody|people|each)\b",
+    re.IGNORECASE,
+)
+_MANY = re.compile(
+    r"^(?:the\s+two|two|both|they|people|the\s+people|the\s+couple|everyone|everybody)\b", re.IGNORECASE
+)
+
+
+@dataclass(frozen=True)
+class Beat:
+    """A part of a story in which one thing happens.
+
+    Attributes:
+        words: what both people do, in English.
+        a: what person a does, if it is said separately.
+        b: what person b does.
+        seconds: length; by default it follows from the words.
+        seed: makes this beat another way than its neighbours; by default the story's seed.
+    """
+
+    words: str = ""
+    a: str = ""
+    b: str = ""
+    seconds: float | None = None
+    seed: int | None = None
+
+    @property
+    def sentence(self) -> str:
+        """All its words as one sentence, for a model that reads one."""
+        alone = [
+            _of_person(text, who)
+            for text, who in ((self.a, "one person"), (self.b, "the other person"))
+            if text
+        ]
+        own = ", while ".join(alone)
+        parts = [part.strip().rstrip(".") for part in (self.words, own) if part.strip()]
+        return " ".join(f"{part[:1].upper()}{part[1:]}." for part in parts)
+
+    @property
+    def length(self) -> float:
+        """Seconds, as set or as they follow from the words."""
+        return self.seconds if self.seconds is not None else seconds_of(self.sentence)
+
+    def check(self, number: int) -> None:
+        """Raises InputError if something is wrong with it; ``number`` from 1 is for the message."""
+        which = f"Beat {number}"
+        for name in ("words", "a", "b"):
+            if not isinstance(getattr(self, name), str):
+                raise InputError(f"{which}: {name} must be text, not {getattr(self, name)!r:.40}.")
+        if len(self.sentence) > MAX_PROMPT:
+            raise InputError(
+                f"{which} has {len(self.sentence):,} characters: shorten it to {MAX_PROMPT}, or split it."
+            )
+        if self.seconds is not None and (
+            isinstance(self.seconds, bool)
+            or not isinstance(self.seconds, (int, float))
+            or not SHORTEST <= self.seconds <= LONGEST
+        ):
+            raise InputError(
+                f"{which}: its length must be from {SHORTEST:g} to {LONGEST:g} seconds, not {self.seconds!r:.20}."
+            )
+        if self.seed is not None and (
+            isinstance(self.seed, bool) or not isinstance(self.seed, int) or not 0 <= self.seed <= MAX_SEED
+        ):
+            raise InputError(
+                f"{which}: its seed must be a whole number from 0 to {MAX_SEED}, not {self.seed!r:.20}."
+            )
+
+    def timed(self) -> Beat:
+        """The same beat with its length set."""
+        return replace(self, seconds=self.length)
+
+
+def story_title(beats: Sequence[Mapping[str, Any]]) -> str:
+    """A title for beats as a manifest has them: their words, as many as fit on a line."""
+    found = [Beat(beat.get("words") or "", beat.get("a") or "", beat.get("b") or "") for beat in beats]
+    words = [beat.sentence or "…" for beat in found]
+    title = " ".join(words)
+    return title if len(title) <= TITLE else f"{title[:TITLE].rsplit(' ', 1)[0]} …"
+
+
+def _of_person(text: str, who: str) -> str:
+    """What one person does as a clause with a subject."""
+    text = text.strip().rstrip(".")
+    if _SUBJECT.match(text):
+        return text[:1].lower() + text[1:]
+    return f"{who} {text[:1].lower()}{text[1:]}"
+
+
+def seconds_of(sentence: str) -> float:
+    """How long an act takes, in half seconds: as long as the words say, or as long as such acts are."""
+    stated = _STATED.search(sentence)
+    if stated:
+        number = stated[1].lower()
+        value = float(number) if number[0].isdigit() else _NUMBERS.get(number, 0)
+        if SHORTEST <= value <= LONGEST:
+            return float(value)
+    found = [
+        seconds for pattern, seconds in ACT_SECONDS if re.search(rf"\b(?:{pattern})", sentence, re.IGNORECASE)
+    ]
+    length = max(found) + LEAD_SECONDS if found else DEFAULT_SECONDS
+    for pattern, factor in _SPEEDS:
+        if re.search(pattern, sentence, re.IGNORECASE):
+            length *= factor
+    return min(max(round(2 * length) / 2, 1.5), 10.0)
+
+
+def split_sentence(text: str) -> tuple[Beat, ...]:
+    """The beats of a sentence such as "First …, then …. Finally …"; one beat if it names one thing.
+
+    A part that names nobody is given the last subject, so that each part can be read alone.
+    """
+    text = " ".join(text.split())
+    parts, subject = [], ""
+    for part in _clauses(_OPENING.sub("", text)):
+        part = _STARTS_WITH_MARK.sub("", _OPENING.sub("", part.strip())).strip(" ,;.!")
+        part = re.sub(r"^and\s+|\s+and$", "", part, flags=re.IGNORECASE)
+        if not part:
+            continue
+        found = _SUBJECT.match(part)
+        if found:
+            subject = "they" if _MANY.match(part) else found[0]
+        elif subject:
+            part = f"{subject} {part[:1].lower()}{part[1:]}"
+        parts.append(f"{part[:1].upper()}{part[1:]}.")
+    return tuple(Beat(part) for part in parts) if len(parts) > 1 else ((Beat(text),) if text else ())
+
+
+def _clauses(text: str) -> list[str]:
+    """The text cut where one thing follows another: at marks of time, at full stops, and in lists of three or more."""
+    found: list[str] = []
+    clauses = _BREAK.split(_LATE_MARK.sub(lambda m: f", {m['mark']} {m['who']} ", text))
+    for i, clause in enumerate(clauses):
+        listed = _LIST.split(clause)
+        goes_on = i + 1 < len(clauses) and not clauses[i + 1][:1].isupper()
+        in_a_list = bool(re.search(rf",\s+{_VERB}\b", clause, re.IGNORECASE))
+        found += listed if in_a_list and (len(listed) > 2 or goes_on) else [clause]
+    return found

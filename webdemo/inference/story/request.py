@@ -1,0 +1,272 @@
+"""The request for a scene: beats one after another, alone or as a part of a given motion."""
+
+from __future__ import annotations
+
+import hashlib
+from collections.abc import Mapping, Sequence
+from dataclasses import asdict, dataclass, field, fields, replace
+from typing import Any
+
+import numpy as np
+
+from motion import Duet, InputError
+from webdemo.inference import methods
+from webdemo.inference.actor import FPS
+from webdemo.inference.predict_request import check_motion
+from webdemo.inference.requests import SamplingRequest, _number
+
+from .beats import MOST_BEATS, SHORTEST, Beat
+from .wishes import MOST_POSES, FloorPath, FloorPoint, Pose, check_together
+
+MOST_SECONDS = 180.0
+"""Of a scene."""
+MOST_MADE = 360.0
+"""Seconds of motion that one request makes, over all samples."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class SceneRequest(SamplingRequest):
+    """Two people through the beats of a story.
+
+    Without ``motion`` the scene is made from nothing. With it, the beats are made from ``start`` on: up to ``end``,
+    where the given motion goes on (a span that is made again), or as a continuation that replaces what followed.
+    The given motion is kept bit for bit, at 30 frames a second.
+
+    Attributes:
+        beats: one or more; without ``motion`` each needs words. Their lengths are set when the request is made.
+            In a span they are stretched to fill it.
+        paths: on the floor, one for a person at most; seconds count from the scene's beginning.
+        poses: likewise.
+        loop: the end meets the beginning; not with ``motion``.
+        motion: a given motion of two people on SMPL22's joints, of up to three minutes.
+        start: second of the given motion at which the beats begin; its end by default.
+        end: second at which the given motion goes on.
+    """
+
+    beats: tuple[Beat, ...] = ()
+    paths: tuple[FloorPath, ...] = ()
+    poses: tuple[Pose, ...] = field(default=(), compare=False)
+    loop: bool = False
+    motion: Duet | None = None
+    start: float | None = None
+    end: float | None = None
+
+    def __post_init__(self) -> None:
+        set_ = object.__setattr__
+        self._check(methods.method(self.model, "scene"))
+        set_(self, "beats", tuple(self.beats))
+        self._check_beats()
+        if self.motion is None:
+            self._check_alone()
+        else:
+            self._check_motion(self.motion)
+        self._time_beats()
+        if self.total_seconds > MOST_SECONDS + 1e-6:
+            raise InputError(
+                f"The scene would last {self.total_seconds:.0f} s: shorten it to {MOST_SECONDS:g} s or less."
+            )
+        if self.seconds * self.samples > MOST_MADE:
+            raise InputError(
+                f"{self.samples} samples of {self.seconds:.0f} s are {self.seconds * self.samples:.0f} s of motion: "
+                f"ask for {MOST_MADE:g} s or less in all."
+            )
+        self._check_wishes()
+
+    # ---- checks ----------------------------------------------------------------------------------
+
+    def _check_beats(self) -> None:
+        if not self.beats:
+            raise InputError("The story is empty: say in a sentence or more what the two people do.")
+        if len(self.beats) > MOST_BEATS:
+            raise InputError(f"The story has {len(self.beats)} beats: keep to {MOST_BEATS} or fewer.")
+        for number, beat in enumerate(self.beats, 1):
+            beat.check(number)
+            if self.motion is None and not beat.sentence:
+                raise InputError(f"Beat {number} has no words: say what happens in it, or delete it.")
+
+    def _check_alone(self) -> None:
+        if self.start is not None or self.end is not None:
+            raise InputError(
+                "A start or an end belongs to a given motion: give the motion too, or leave them out."
+            )
+
+    def _check_motion(self, motion: Duet) -> None:
+        set_ = object.__setattr__
+        if not isinstance(motion, Duet):
+            raise InputError("A scene goes on from a motion of two people: give both.")
+        if self.loop:
+            raise InputError(
+                "Only a scene that is made from nothing can be a loop: leave the motion or the loop out."
+            )
+        checked = check_motion(motion, longest=MOST_SECONDS)
+        assert isinstance(checked, Duet)
+        motion = checked
+        set_(self, "motion", motion)
+        length = motion.seconds
+        start = length if self.start is None else _number("Start", self.start, 0.0, length, " seconds")
+        start = round(start * FPS) / FPS
+        set_(self, "start", start)
+        if self.end is None:
+            if start < SHORTEST:
+                raise InputError(f"A continuation needs {SHORTEST:g} s of motion before it: start it later.")
+            return
+        end = round(_number("End", self.end, 0.0, length, " seconds") * FPS) / FPS
+        if end - start < SHORTEST - 1e-6:
+            raise InputError(
+                f"The span from {start:g} to {end:g} s is too short: select {SHORTEST:g} s or more."
+            )
+        if start == 0 and end >= length - 1e-6:
+            raise InputError(
+                "The span is the whole motion, so nothing of it is kept: generate a new one instead."
+            )
+        set_(self, "end", end)
+
+    def _time_beats(self) -> None:
+        """Sets the beats' lengths, in whole frames; in a span they fill it."""
+        beats = [beat.timed() for beat in self.beats]
+        if self.end is not None:
+            span = self.end - (self.start or 0.0)
+            factor = span / sum(beat.length for beat in beats)
+            edges = np.round(np.cumsum([0.0, *(beat.length * factor for beat in beats)]) * FPS) / FPS
+            lengths = np.diff(edges)
+            if lengths.min() < SHORTEST - 1e-6:
+                raise InputError(
+                    f"{len(beats)} beats do not fit into a span of {span:.1f} s: use fewer, or a longer span."
+                )
+            beats = [
+                replace(beat, seconds=round(float(s), 4)) for beat, s in zip(beats, lengths, strict=True)
+            ]
+        object.__setattr__(self, "beats", tuple(beats))
+
+    def _check_wishes(self) -> None:
+        set_, total = object.__setattr__, self.total_seconds
+        if len(self.poses) > MOST_POSES:
+            raise InputError(f"There are {len(self.poses)} poses: keep to {MOST_POSES} or fewer.")
+        for path in self.paths:
+            path.check(total)
+        set_(self, "paths", tuple(path.timed(total) for path in self.paths))
+        set_(self, "poses", tuple(pose.check(total) for pose in self.poses))
+        check_together(self.paths, self.poses)
+        if self.motion is None:
+            return
+        first, last = self.made
+        for moment in [p.seconds or 0.0 for path in self.paths for p in path.points] + [
+            p.seconds for p in self.poses
+        ]:
+            if not first <= round(moment * FPS) < last:
+                raise InputError(
+                    f"A path or pose at {moment:g} s lies in the part that is kept: give times from "
+                    f"{first / FPS:g} to {last / FPS:g} s."
+                )
+
+    # ---- what it comes to ------------------------------------------------------------------------
+
+    @property
+    def seconds(self) -> float:
+        """Length of what is made."""
+        return sum(beat.length for beat in self.beats)
+
+    @property
+    def total_seconds(self) -> float:
+        """Length of the whole motion that results."""
+        if self.motion is not None and self.end is not None:
+            return self.motion.seconds
+        return (self.start or 0.0) + self.seconds
+
+    @property
+    def edges(self) -> tuple[int, ...]:
+        """Frames at which the beats begin, and at which the last ends."""
+        first = round((self.start or 0.0) * FPS)
+        times = np.cumsum([0.0, *(beat.length for beat in self.beats)])
+        return tuple(first + round(t * FPS) for t in times)
+
+    @property
+    def made(self) -> tuple[int, int]:
+        """The first frame that is made, and the one after the last."""
+        return self.edges[0], self.edges[-1]
+
+    @property
+    def num_frames(self) -> int:
+        """Frames of the whole motion that results."""
+        if self.motion is not None and self.end is not None:
+            return self.motion.num_frames
+        return self.edges[-1]
+
+    def to_dict(self) -> dict[str, Any]:
+        """All fields; of a given motion the part that is kept, by its SHA-256."""
+        own = {f.name for f in fields(SceneRequest)} - {f.name for f in fields(SamplingRequest)}
+        plain = {f.name: getattr(self, f.name) for f in fields(self) if f.name not in own}
+        told = {
+            "kind": "scene",
+            "beats": [asdict(beat) for beat in self.beats],
+            "paths": [asdict(path) for path in self.paths],
+            "poses": [pose.to_dict() for pose in self.poses],
+            "loop": self.loop,
+        }
+        if self.motion is not None:
+            kept = self.kept(self.motion)
+            told["motion"] = {
+                "name": self.motion.a.name[:100],
+                "frames": self.motion.num_frames,
+                "sha256": hashlib.sha256(
+                    b"".join(np.ascontiguousarray(part).tobytes() for part in kept)
+                ).hexdigest(),
+            }
+            told |= {"start": self.start, "end": self.end}
+        return told | plain
+
+    def kept(self, motion: Duet) -> tuple[np.ndarray, np.ndarray]:
+        """The parts of a motion (2, T, 22, 3) before and after what is made."""
+        first, last = self.made
+        positions = motion.positions
+        return positions[:, :first], positions[:, last:] if self.end is not None else positions[:, :0]
+
+    @classmethod
+    def from_dict(cls, told: Mapping[str, Any], motion: Duet | None = None) -> SceneRequest:
+        """The request that :meth:`to_dict` gave, with the motion that it was given.
+
+        Raises:
+            InputError: for values that are no longer taken.
+        """
+        plain = {f.name: told[f.name] for f in fields(SamplingRequest) if f.name in told}
+        return cls(
+            **plain,
+            beats=tuple(beat_of(beat) for beat in told.get("beats", ())),
+            paths=tuple(path_of(path) for path in told.get("paths", ())),
+            poses=tuple(pose_of(pose) for pose in told.get("poses", ())),
+            loop=bool(told.get("loop", False)),
+            motion=motion,
+            start=told.get("start"),
+            end=told.get("end"),
+        )
+
+
+def beat_of(told: Mapping[str, Any]) -> Beat:
+    """A beat from its fields."""
+    return Beat(**{f.name: told[f.name] for f in fields(Beat) if told.get(f.name) is not None})
+
+
+def path_of(told: Mapping[str, Any]) -> FloorPath:
+    """A path from its fields; a point may be a mapping or ``[seconds, x, z]`` with or without a heading."""
+    return FloorPath(told.get("person", ""), tuple(map(point_of, told.get("points", ()))))
+
+
+def point_of(told: Mapping[str, Any] | Sequence[float]) -> FloorPoint:
+    """A point of a path; raises InputError if it is none."""
+    if isinstance(told, Mapping):
+        return FloorPoint(**{f.name: told[f.name] for f in fields(FloorPoint) if f.name in told})
+    if len(told) == 2:
+        return FloorPoint(told[0], told[1])
+    if len(told) not in (3, 4):
+        raise InputError("A point of a path is [x, z], [seconds, x, z] or [seconds, x, z, heading].")
+    seconds, x, z = told[:3]
+    return FloorPoint(x, z, seconds, told[3] if len(told) == 4 else None)
+
+
+def pose_of(told: Mapping[str, Any]) -> Pose:
+    """A pose from its fields."""
+    return Pose(
+        told.get("person", ""),
+        told.get("seconds", 0.0),
+        np.asarray(told.get("positions", ()), dtype=np.float64),
+    )

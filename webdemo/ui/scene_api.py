@@ -1,0 +1,72 @@
+"""``/scene``: a story → motion files, for programs."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import gradio as gr
+
+from motion import Duet, InputError
+from motion.formats import read
+from motion.retarget import to_smpl
+from webdemo.inference.story import SceneRequest, read_words
+from webdemo.inference.story.request import MOST_SECONDS
+
+from .api import PROGRESS, Answer, Endpoint
+
+
+class SceneEndpoint(Endpoint):
+    """``/scene``: a story, alone or as a part of a motion."""
+
+    def publish(self) -> None:
+        """Adds the endpoint to the page that is being built."""
+        with gr.Row(visible=False):
+            inputs = [
+                gr.Textbox(
+                    label="the story: TOML (docs/scenes.md), or sentences, which are split into beats"
+                ),
+                gr.File(
+                    label="a motion of two people that the story goes on from, up to 50 MB; may be empty"
+                ),
+                gr.Number(
+                    0, label="with a motion: the second at which the story begins; 0 is the motion's end"
+                ),
+                gr.Number(0, label="with a motion: the second at which it goes on unchanged; 0: it does not"),
+                gr.Number(None, label="how many scenes or futures, 1 to 8; the story's own by default"),
+                gr.Number(None, label="seed; the story's own by default"),
+            ]
+            self._publish(self.scene, "scene", inputs)
+
+    def scene(
+        self,
+        story: str,
+        motion: str | None = None,
+        start: float = 0,
+        end: float = 0,
+        samples: float | None = None,
+        seed: float | None = None,
+        progress: gr.Progress = PROGRESS,
+    ) -> Answer:
+        """A scene of several beats, or a span or a continuation of a given motion.
+
+        Returns the manifest, read-outs, timings, notes and file names; and the files: for every sample a
+        two-person .npz, two .bvh (and a .glb where the server writes them), a contact sheet .png, and one
+        manifest .json. An error is one sentence that says what to change.
+        """
+
+        def request() -> SceneRequest:
+            fields = read_words(story)
+            fields |= {
+                key: value for key, value in (("samples", samples), ("seed", seed)) if value is not None
+            }
+            given = _two_people(motion) if motion else None
+            return SceneRequest(**fields, motion=given, start=start or None, end=end or None)
+
+        return self._answer(request, story.split("\n", 1)[0][:80] or "A scene", progress)
+
+
+def _two_people(path: str) -> Duet:
+    found = read(Path(path), longest=MOST_SECONDS)
+    if not isinstance(found, Duet):
+        raise InputError(f"{Path(path).name} holds one person: a scene goes on from a motion of two.")
+    return to_smpl(found)
