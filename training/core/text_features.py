@@ -13,6 +13,7 @@ from torch import Tensor
 
 from models.text import MiniLM
 from motion.formats.files import replacing
+from training.core.precision import mixed_precision
 
 
 class CaptionFeatures:
@@ -55,7 +56,7 @@ def _encode(captions: Sequence[str], device: str) -> dict[str, Tensor]:
     features: list[Tensor] = [torch.empty(0)] * len(captions)
     for start in range(0, len(order), 256):
         rows = order[start : start + 256]
-        with torch.autocast(device, torch.bfloat16):
+        with mixed_precision(device):
             tokens = encoder([captions[row] for row in rows])
         for row, one, mask in zip(rows, tokens.features, tokens.mask, strict=True):
             features[row] = one[mask].half().cpu()

@@ -25,6 +25,7 @@ from models.motion_tokens import FEATURES, TokenLayout, encode, foot_contacts, p
 from models.text import TextConditioner, TextConditionerConfig, TokenFeatures
 from motion import InputError
 from motion.formats.files import replacing
+from training.core.precision import mixed_precision
 from training.core.shell import exit_code
 from training.prepare import Scenes, load
 from training.trainers.intergen_data import Data
@@ -128,7 +129,7 @@ def fit(scenes: Scenes, settings: Settings, cache: Path, *, device: str = "cpu")
     began, shown = time.monotonic(), 0.0
     for step in range(settings.steps):
         batch = data.batch(step)
-        with torch.autocast(device, torch.bfloat16):
+        with mixed_precision(device):
             motion = model.motion(batch.x0, batch.mask[..., 0].bool())
             text = model.text(TokenFeatures(batch.text, batch.text_mask))
         same = (batch.text[:, None] == batch.text[None]).flatten(2).all(-1)

@@ -30,6 +30,7 @@ from models.weights_io import save_network
 from motion import InputError
 from training.core import checkpoint
 from training.core.loop import Loop
+from training.core.precision import mixed_precision
 from training.core.shell import add_run_options, chosen, exit_code
 from training.prepare import Scenes, load
 from training.trainers import intergen_data
@@ -226,7 +227,7 @@ class Trainer(Loop):
         """Every loss term of one batch, weighted."""
         people = (*batch.x0.shape[:2], 2, -1)
         xt = self.schedule.q_sample(batch.x0, t, noise)
-        with torch.autocast(self.device, torch.bfloat16):
+        with mixed_precision(self.device):
             cond = self.model.classes(batch.text) * keep[:, None]
             predicted = self.model.denoiser(xt, t, cond, batch.mask)
         predicted = predicted.float()

@@ -28,6 +28,7 @@ from models.known import Hold, Known
 from models.motion_tokens import FEATURES
 from training.core import checkpoint
 from training.core.loop import Loop
+from training.core.precision import mixed_precision
 from training.core.samples import write_sheet
 from training.core.shell import add_run_options, chosen, exit_code
 from training.prepare import Scenes, load
@@ -153,7 +154,7 @@ class Trainer(Loop):
             xt = hold(xt)
         seen = {} if hold is None or not self.settings.words else {"known": hold.features.to(xt)}
         # The fused attention kernel's backward pass is slow for sequences this short.
-        with torch.autocast(self.device, torch.bfloat16), sdpa_kernel(SDPBackend.MATH):
+        with mixed_precision(self.device), sdpa_kernel(SDPBackend.MATH):
             cond, vectors = condition(self.model, batch)
             predicted = self.model.denoiser(xt, t, cond, batch.mask, **seen)
         predicted = predicted.float() if hold is None else hold(predicted.float())

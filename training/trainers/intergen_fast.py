@@ -24,6 +24,7 @@ from models.intergen.words import WordDenoiser
 from models.known import Hold
 from motion import InputError
 from training.core import checkpoint
+from training.core.precision import mixed_precision
 from training.core.shell import add_run_options, chosen, exit_code
 from training.prepare import Scenes, load
 from training.trainers.intergen import Trainer, condition, new_model
@@ -131,7 +132,7 @@ class FastTrainer(Trainer):
         known = {} if hold is None else {"known": hold.features.repeat(2, 1, 1)}
         for i in range(self.fast.substeps):
             t, following = (self.timesteps[place * self.fast.substeps + i + k] for k in (0, 1))
-            with torch.autocast(self.device, torch.bfloat16):
+            with mixed_precision(self.device):
                 both = self.model.denoiser(
                     x.repeat(2, 1, 1), t.repeat(2), torch.cat([cond, nothing]), mask.repeat(2, 1, 1), **known
                 )
@@ -171,11 +172,11 @@ class FastTrainer(Trainer):
         t = self.timesteps[place * self.fast.substeps]
         x = self.schedule.q_sample(batch.x0, t, noise)
         x = x if hold is None else hold(x)
-        with torch.no_grad(), torch.autocast(self.device, torch.bfloat16):
+        with torch.no_grad(), mixed_precision(self.device):
             cond = condition(self.model, batch)[0].float()
         target = self.target(x, place, cond, scale, batch.mask, hold)
         known = None if hold is None else hold.features
-        with torch.autocast(self.device, torch.bfloat16), sdpa_kernel(SDPBackend.MATH):
+        with mixed_precision(self.device), sdpa_kernel(SDPBackend.MATH):
             changed = self.change.tensors(self.model.denoiser)
             made = functional_call(self.student, changed, (x, t, cond, batch.mask, known, scale))
         made = made.float() if hold is None else hold(made.float())

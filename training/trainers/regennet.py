@@ -30,6 +30,7 @@ from motion import InputError
 from motion.skeleton import FEET
 from training.core import checkpoint
 from training.core.loop import Loop
+from training.core.precision import mixed_precision
 from training.core.shell import add_run_options, chosen, exit_code
 from training.prepare import Scenes, load
 from training.trainers.intergen import draw_timesteps
@@ -208,7 +209,7 @@ class Trainer(Loop):
         seen = (seen - model.actor_mean) / model.actor_std
         given = (torch.rand(size, generator=generator) < s.begin) | batch.cropped
         begin = model.begin_row(knot_positions(batch.reactor[:, :3])[:, 0]) * given[:, None]
-        with torch.autocast("cpu", torch.bfloat16), sdpa_kernel(SDPBackend.MATH):
+        with mixed_precision("cpu"), sdpa_kernel(SDPBackend.MATH):
             predicted = model(xt, t, seen, batch.words * keep, causal=causal, start=start, begin=begin)
         predicted = predicted.float()
         error = ((predicted - x0).square() * self.weights).mean(-1)

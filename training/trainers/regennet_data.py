@@ -16,6 +16,7 @@ from models.motion_tokens import FEATURES, NUM_CONTACTS, mirror_control
 from models.regennet.compact import LEAD, CompactReGenNet
 from motion import SMPL22, InputError
 from motion.formats.files import replacing
+from training.core.precision import mixed_precision
 from training.core.text_features import CaptionFeatures
 from training.corpus.captions import mirror_caption
 from training.prepare import ROOT_SCALE, Scenes
@@ -53,7 +54,7 @@ class Conditions:
             features = CaptionFeatures(captions, cache)
             order = sorted(range(len(captions)), key=lambda row: int(features.lengths[row]))
             self.vectors = torch.zeros(len(captions), conditioner.config.latent_dim, dtype=torch.half)
-            with torch.no_grad(), torch.autocast("cpu", torch.bfloat16):
+            with torch.no_grad(), mixed_precision("cpu"):
                 for start in range(0, len(order), 256):
                     rows = order[start : start + 256]
                     self.vectors[rows] = conditioner(*features.batch([captions[r] for r in rows])).half()

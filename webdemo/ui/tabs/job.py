@@ -33,7 +33,7 @@ from webdemo.view.payload import Payload
 
 STEPS_SHOWN = (1, 100)
 """What the slider offers; the API takes more."""
-PACE = 0.1
+PACE = 0.3
 """Seconds between two updates of the page while a run goes on."""
 QUIET: dict[str, Any] = {"api_visibility": "private", "show_progress": "hidden"}
 """Options of events that are the page's own: no endpoint, no spinner over what they change."""
