@@ -24,7 +24,7 @@ import threading
 from collections.abc import Iterator, Mapping
 from contextlib import ExitStack, contextmanager, suppress
 from pathlib import Path
-from typing import Any, Protocol
+from typing import Any, Literal, Protocol
 
 import numpy as np
 import torch
@@ -32,8 +32,9 @@ from torch import Tensor, nn
 
 log = logging.getLogger(__name__)
 
-TOLERANCE = 1e-4
-"""Largest accepted difference from the plain network, relative to the largest output; measured: 5e-6."""
+Precision = Literal["f32", "bf16"]
+TOLERANCE: dict[Precision, float] = {"f32": 1e-4, "bf16": 5e-2}
+"""Largest accepted difference from the plain network, relative to the largest output; measured: 5e-6 in float32."""
 THREADS = min(torch.get_num_threads(), 8)
 """Threads of a pass: PyTorch's default, up to 8; more do not help with products of a few hundred rows."""
 STREAMS = min(THREADS, 2)
@@ -96,7 +97,14 @@ def cache_folder() -> Path:
     )
 
 
-def compile_network(network: nn.Module, key: str, cache: Path | None = None) -> bool:
+def has_bfloat16() -> bool:
+    """Whether this processor multiplies matrices of bfloat16 numbers itself (AVX512-BF16 or AMX)."""
+    return bool(torch.cpu._is_avx512_bf16_supported() or torch.cpu._is_amx_tile_supported())
+
+
+def compile_network(
+    network: nn.Module, key: str, cache: Path | None = None, *, precision: Precision = "f32"
+) -> bool:
     """Lets OpenVINO run a network's ``forward`` from now on.
 
     The network's own weights are let go, so nothing but ``forward`` and what calls it can be used afterwards, and
@@ -106,6 +114,7 @@ def compile_network(network: nn.Module, key: str, cache: Path | None = None) -> 
         network: a :class:`Compilable` in eval mode.
         key: names its weights, such as :attr:`models.weights_io.WeightsFolder.digest`.
         cache: where translations are kept; :func:`cache_folder` by default. It need not be writable.
+        precision: of the matrix products; the weights are kept in float32 in any case.
 
     Returns:
         whether it is compiled. Where OpenVINO is not installed, cannot translate the network or gives other
@@ -117,7 +126,9 @@ def compile_network(network: nn.Module, key: str, cache: Path | None = None) -> 
         return False
     try:
         folder = (cache or cache_folder()) / _name(network, key, openvino)
-        compiled = _cached(openvino, network, folder) or _translated(openvino, network, folder)
+        compiled = _cached(openvino, network, folder, precision) or _translated(
+            openvino, network, folder, precision
+        )
     except Exception as error:  # whatever a translator may raise: the plain network does the same job
         log.warning("%s runs without OpenVINO: %s", type(network).__name__, error)
         return False
@@ -133,15 +144,23 @@ class Compiled:
         network: whose ``forward`` it is.
         model: its translation: OpenVINO's model.
         weights: the memory that the model's weights lie in, if they are mapped from a file.
+        precision: see :func:`compile_network`.
     """
 
-    def __init__(self, openvino: Any, network: Any, model: Any, weights: mmap.mmap | None = None) -> None:
+    def __init__(
+        self,
+        openvino: Any,
+        network: Any,
+        model: Any,
+        weights: mmap.mmap | None = None,
+        precision: Precision = "f32",
+    ) -> None:
         self.filled, self.weights = network.filled, weights
         self.model = openvino.Core().compile_model(
             model,
             "CPU",
             {
-                "INFERENCE_PRECISION_HINT": "f32",
+                "INFERENCE_PRECISION_HINT": precision,
                 "NUM_STREAMS": STREAMS,
                 "INFERENCE_NUM_THREADS": THREADS,
                 "ENABLE_CPU_PINNING": False,  # a thread that is bound to a busy core waits there
@@ -153,7 +172,7 @@ class Compiled:
         with torch.no_grad():
             expected = network(*example)
             off = float((self(*example) - expected).abs().max() / expected.abs().max().clamp_min(1.0))
-        if not off <= TOLERANCE:  # NaN, too
+        if not off <= TOLERANCE[precision]:  # NaN, too
             raise ArithmeticError(f"the compiled network is off by {off:.1e}")
         if weights is not None and hasattr(weights, "madvise"):
             weights.madvise(mmap.MADV_DONTNEED)  # OpenVINO has laid out a copy for itself
@@ -217,14 +236,14 @@ def _name(network: nn.Module, key: str, openvino: Any) -> str:
     return hashlib.sha256("\n".join(parts).encode()).hexdigest()[:24]
 
 
-def _cached(openvino: Any, network: nn.Module, folder: Path) -> Compiled | None:
+def _cached(openvino: Any, network: nn.Module, folder: Path, precision: Precision) -> Compiled | None:
     """Loads the network's cached translation; None if there is none, or if its outputs differ from the network's."""
     try:
         with (folder / "network.bin").open("rb") as file:
             weights = mmap.mmap(file.fileno(), 0, access=mmap.ACCESS_COPY)  # OpenVINO wants it writable
         tensor = openvino.Tensor(np.frombuffer(weights, np.uint8), shared_memory=True)
         model = openvino.Core().read_model((folder / "network.xml").read_bytes(), tensor)
-        compiled = Compiled(openvino, network, model, weights)
+        compiled = Compiled(openvino, network, model, weights, precision=precision)
     except (OSError, ValueError, RuntimeError, ArithmeticError) as error:
         if folder.exists():
             log.warning("The cached compilation of %s cannot be used: %s", type(network).__name__, error)
@@ -234,14 +253,16 @@ def _cached(openvino: Any, network: nn.Module, folder: Path) -> Compiled | None:
     return compiled
 
 
-def _translated(openvino: Any, network: nn.Module, folder: Path) -> Compiled:
+def _translated(openvino: Any, network: nn.Module, folder: Path, precision: Precision) -> Compiled:
     """The network translated, and kept where that can be."""
     model = _translate(openvino, network)
     try:
         _keep(openvino, model, folder)
     except (OSError, RuntimeError):  # a folder that cannot be written, a full disk
-        return Compiled(openvino, network, model)
-    return _cached(openvino, network, folder) or Compiled(openvino, network, model)
+        return Compiled(openvino, network, model, precision=precision)
+    return _cached(openvino, network, folder, precision) or Compiled(
+        openvino, network, model, precision=precision
+    )
 
 
 def _translate(openvino: Any, network: Any) -> Any:

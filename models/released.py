@@ -3,37 +3,143 @@
 from __future__ import annotations
 
 import pickle
+import threading
+from collections.abc import Iterator, Mapping
 from pathlib import Path
+from typing import Any
 
 import torch
+from safetensors import SafetensorError
+from safetensors.torch import load_file
 from torch import Tensor
 
 from models.errors import WeightsError
+
+MARKS = {
+    "InterGen": "decoder.net.blocks.",
+    "ReGenNet": "cmo_process.poseEmbedding.",
+    "InterFormer": "decoder.layers.0.attn_space_1.",
+    "BiGraphDiff": "temporal_decoder_blocks.0.ca_block_1.",
+}
+"""Part of a tensor's name by which the released file of each network is known."""
+WRAPPED = ("module.", "model.", "net.")
+"""Prefixes that trainers put before all names of a network."""
+HARMLESS = (
+    "argparse.Namespace",
+    "lightning_fabric.utilities.data.AttributeDict",
+    "pathlib.PosixPath",
+    "pathlib.WindowsPath",
+    "pytorch_lightning.callbacks.model_checkpoint.ModelCheckpoint",
+    "pytorch_lightning.utilities.parsing.AttributeDict",
+    "yacs.config.CfgNode",
+)
+"""Objects that trainers store beside the tensors. An empty stand-in takes the place of each; none is imported."""
+_reading = threading.Lock()
+
+
+class _StandIn(dict[Any, Any]):
+    """Takes the place of one of :data:`HARMLESS`; it keeps nothing of what it is given."""
+
+    def __init__(self, *args: Any, **options: Any) -> None:
+        super().__init__()
+
+    def __setstate__(self, state: Any) -> None:
+        pass
+
+
+def read_tensors(path: str | Path, *, network: str) -> dict[str, Tensor]:
+    """The tensors of a checkpoint by name; they are mapped from the file and read when they are used.
+
+    A PyTorch file is opened with ``weights_only=True``, so no code in it runs; ``.safetensors`` files hold
+    none. Where a trainer put the network into a larger record, the part with the most tensors is taken. Position
+    tables (``….pe``) are kept.
+
+    Args:
+        path: of the file.
+        network: what it should be, for messages.
+
+    Raises:
+        WeightsError: if the file is missing, truncated, holds objects other than tensors, or no tensors.
+    """
+    path = Path(path)
+    if not path.is_file():
+        raise WeightsError(f"There is no file {path}: name the released {network} checkpoint.")
+    checkpoint = _read_safetensors(path) if path.suffix == ".safetensors" else _read_torch(path, network)
+    found = max(_records(checkpoint), key=len, default={})
+    if not found:
+        raise WeightsError(f"{path.name} holds no tensors: use the released {network} checkpoint.")
+    return dict(found)
+
+
+def network_of(names: Mapping[str, Any]) -> str | None:
+    """The network whose released file has these tensor names; None for any other file."""
+    return next((network for network, mark in MARKS.items() if any(mark in name for name in names)), None)
+
+
+def without_wrapper(tensors: Mapping[str, Tensor], mark: str) -> dict[str, Tensor]:
+    """The tensors without a prefix of :data:`WRAPPED` that stands before the name which begins with ``mark``."""
+    for prefix in WRAPPED:
+        if any(name.startswith(prefix + mark) for name in tensors):
+            kept = {name: value for name, value in tensors.items() if name.startswith(prefix)}
+            return {name.removeprefix(prefix): value for name, value in kept.items()}
+    return dict(tensors)
 
 
 def read_lightning(path: str | Path, *, prefix: str, network: str) -> dict[str, Tensor]:
     """The tensors of a PyTorch Lightning file whose names start with `prefix`, without the prefix.
 
-    Position tables (``….pe``) are left out: they are computed, not learned. The file is opened with
-    ``weights_only=True``, so no code in it runs. Raises WeightsError if the file cannot be read so or
-    holds no such tensor.
+    Position tables (``….pe``) are left out: they are computed, not learned. Raises WeightsError as
+    :func:`read_tensors` does, or where the file holds no such tensor.
     """
-    path = Path(path)
-    try:
-        checkpoint = torch.load(path, map_location="cpu", weights_only=True, mmap=True)
-    except FileNotFoundError:
-        raise WeightsError(f"There is no file {path}: name the released {network} checkpoint.") from None
-    except (pickle.UnpicklingError, RuntimeError, EOFError, OSError, ValueError) as error:
-        raise WeightsError(
-            f"{path.name} cannot be read as plain tensors, so it was not opened: use the released {network} "
-            "checkpoint."
-        ) from error
-    state = checkpoint.get("state_dict", checkpoint) if isinstance(checkpoint, dict) else {}
+    return with_prefix(read_tensors(path, network=network), prefix, name=Path(path).name, network=network)
+
+
+def with_prefix(tensors: Mapping[str, Tensor], prefix: str, *, name: str, network: str) -> dict[str, Tensor]:
+    """What :func:`read_lightning` gives, of tensors that were read before; ``name`` is the file's."""
     found = {
-        name.removeprefix(prefix): tensor
-        for name, tensor in state.items()
-        if isinstance(tensor, Tensor) and name.startswith(prefix) and not name.endswith(".pe")
+        key.removeprefix(prefix): tensor
+        for key, tensor in tensors.items()
+        if key.startswith(prefix) and not key.endswith(".pe")
     }
     if not found:
-        raise WeightsError(f"{path.name} holds no {prefix}* tensors: use the released {network} checkpoint.")
+        other = network_of(tensors)
+        known = f" It is a checkpoint of {other}." if other else ""
+        raise WeightsError(
+            f"{name} holds no {prefix}* tensors, so it is no {network} checkpoint: use the released one.{known}"
+        )
     return found
+
+
+def _records(checkpoint: Any) -> Iterator[Mapping[str, Tensor]]:
+    """Every dictionary in a checkpoint, to two levels, reduced to its tensors."""
+    if not isinstance(checkpoint, dict):
+        return
+    inner = [value for value in checkpoint.values() if isinstance(value, dict)]
+    for record in (checkpoint, *inner):
+        yield {str(name): value for name, value in record.items() if isinstance(value, Tensor)}
+
+
+def _read_safetensors(path: Path) -> dict[str, Tensor]:
+    try:
+        return load_file(path)
+    except (SafetensorError, OSError, ValueError) as error:
+        raise WeightsError(
+            f"{path.name} is not a whole safetensors file: copy or download it again."
+        ) from error
+
+
+def _read_torch(path: Path, network: str) -> Any:
+    try:
+        with _reading:  # the list of stand-ins is the process's own
+            before = torch.serialization.get_safe_globals()
+            torch.serialization.add_safe_globals([(_StandIn, name) for name in HARMLESS])
+            try:
+                return torch.load(path, map_location="cpu", weights_only=True, mmap=True)
+            finally:
+                torch.serialization.clear_safe_globals()
+                torch.serialization.add_safe_globals(before)
+    except (pickle.UnpicklingError, RuntimeError, EOFError, OSError, ValueError, TypeError) as error:
+        raise WeightsError(
+            f"{path.name} cannot be read as plain tensors, so it was not opened: it is truncated, or holds code or "
+            f"other objects. Use the released {network} checkpoint, or save its state_dict alone."
+        ) from error

@@ -77,7 +77,7 @@ class WeightsFolder:
         return {name: tensor.float() for shard in shards for name, tensor in shard.items()}
 
 
-class _Uninitialised(TorchFunctionMode):
+class Uninitialised(TorchFunctionMode):
     """Within it, new layers draw no random weights: the weights that are loaded replace them."""
 
     def __torch_function__(self, func: Any, types: Any, args: Any = (), kwargs: Any = None) -> Any:
@@ -99,7 +99,7 @@ def load_network(folder: Path, build: Callable[[dict[str, Any]], Network]) -> tu
     """
     source = WeightsFolder(folder)
     try:
-        with _Uninitialised():
+        with Uninitialised():
             model = build(source.meta["model"])
         model.load_state_dict(source.state_dict(), assign=True)  # every tensor, or it raises
     except (RuntimeError, TypeError, KeyError) as error:

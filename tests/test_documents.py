@@ -18,6 +18,7 @@ FOLDERS = "motion|models|webdemo|training|static|tests|docs"
 _CODE = re.compile(r"^```.*?^```|`[^`]+`", re.DOTALL | re.MULTILINE)
 _LINK = re.compile(r"\]\(([^)\s]+)\)")
 _PATH = re.compile(rf"(?<![\w./-])(?:{FOLDERS})/[\w./-]*\w")
+_TABLE = re.compile(r"^\[.*\]$", re.MULTILINE)  # a table's heading in a settings file, such as [models.toy]
 _NAME = re.compile(r"(?<![\w./-])(?:motion|models|webdemo|training)(?:\.[A-Za-z_]\w*)+(?![\w/])")
 
 
@@ -35,7 +36,7 @@ def missing_paths(text: str) -> list[str]:
 
 def missing_names(text: str) -> list[str]:
     """Dotted names in code whose module does not exist or does not mention the rest."""
-    found = {name for code in _CODE.findall(text) for name in _NAME.findall(code)}
+    found = {name for code in _CODE.findall(text) for name in _NAME.findall(_TABLE.sub("", code))}
     return sorted(name for name in found if not _defined(name.split(".")))
 
 

@@ -2,15 +2,17 @@
 
 Radford et al. 2021, section 2.4 (the tower: causal transformer, pre-norm, QuickGELU); Liang et al.,
 "InterGen", section 5.1 and figure 5 (per-token features, a 2-layer encoder, read out at the end-of-text
-token). All weights lie in the authors' `intergen.ckpt`; the byte-pair vocabulary does not, so the user names
-a folder that has it.
+token). All weights lie in the authors' `intergen.ckpt`; the byte-pair vocabulary does not. It is read from the
+files of the package open-clip-torch, of which nothing is imported, or from a file or folder that the user names.
 
 Shapes: B prompts, 77 tokens, C = 768.
 """
 
 from __future__ import annotations
 
+import gzip
 from collections.abc import Mapping, Sequence
+from importlib.metadata import PackageNotFoundError, distribution
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -23,6 +25,7 @@ from motion.errors import InputError
 
 if TYPE_CHECKING:
     from tokenizers import Tokenizer
+    from tokenizers.models import BPE
 
 NETWORK = "CLIP text"
 HEAD_WIDTH = 64  # CLIP's towers all have heads of 64 channels
@@ -36,6 +39,11 @@ PARTS = (
     "clip_ln.",
 )
 START, END = "<|startoftext|>", "<|endoftext|>"
+VOCABULARY_PACKAGE = "open-clip-torch"
+VOCABULARY_FILE = "open_clip/bpe_simple_vocab_16e6.txt.gz"
+MERGES = 49152 - 256 - 2
+"""Merges of CLIP's own vocabulary; its file holds more of them, which CLIP leaves out."""
+_MOST_CHARACTERS = 20_000_000
 # CLIP's own split of a sentence into words (Radford et al.'s tokenizer).
 WORDS = r"'s|'t|'re|'ve|'m|'ll|'d|[\p{L}]+|[\p{N}]|[^\s\p{L}\p{N}]+"
 
@@ -44,21 +52,40 @@ class VocabularyError(InputError):
     """CLIP's byte-pair vocabulary is missing or is not CLIP's."""
 
 
+def find_vocabulary() -> Path:
+    """The vocabulary in the files of the installed package open-clip-torch; nothing of it is imported.
+
+    Raises VocabularyError if the package is not installed.
+    """
+    try:
+        path = Path(str(distribution(VOCABULARY_PACKAGE).locate_file(VOCABULARY_FILE)))
+    except PackageNotFoundError:
+        path = Path()
+    if not path.is_file():
+        raise VocabularyError(
+            "CLIP's vocabulary is not inside the checkpoint: `pip install --no-deps open-clip-torch` (one of its "
+            "files is read, nothing is imported), or name a file that has it as `vocabulary`."
+        )
+    return path
+
+
 class ClipTokenizer:
     """Text → (B, 77) token numbers: start, words, end, zeros.
 
     Args:
-        folder: holds ``tokenizer.json``, or ``vocab.json`` and ``merges.txt``, of any CLIP text model.
+        place: CLIP's own ``bpe_simple_vocab_16e6.txt.gz``, or a folder that holds ``tokenizer.json``, or
+            ``vocab.json`` and ``merges.txt``, of any CLIP text model.
 
-    Raises VocabularyError if it holds neither.
+    Raises VocabularyError if it is none of these.
     """
 
-    def __init__(self, folder: str | Path, *, context_length: int = 77) -> None:
-        self.tokenizer = _read_vocabulary(Path(folder))
+    def __init__(self, place: str | Path, *, context_length: int = 77) -> None:
+        place = Path(place)
+        self.tokenizer = _read_merges(place) if place.is_file() else _read_vocabulary(place)
         self.context_length = context_length
         start, end = self.tokenizer.token_to_id(START), self.tokenizer.token_to_id(END)
         if start is None or end is None:
-            raise VocabularyError(f"The vocabulary in {folder} is not CLIP's: it has no {START} and {END}.")
+            raise VocabularyError(f"The vocabulary in {place} is not CLIP's: it has no {START} and {END}.")
         self.start, self.end = start, end
 
     def __call__(self, prompts: Sequence[str]) -> Tensor:
@@ -71,7 +98,8 @@ class ClipTokenizer:
 
 
 def _read_vocabulary(folder: Path) -> Tokenizer:
-    from tokenizers import Regex, Tokenizer, models, normalizers, pre_tokenizers
+    from tokenizers import Tokenizer
+    from tokenizers.models import BPE
 
     whole, vocabulary, merges = (folder / name for name in ("tokenizer.json", "vocab.json", "merges.txt"))
     try:
@@ -81,20 +109,50 @@ def _read_vocabulary(folder: Path) -> Tokenizer:
             tokenizer.no_truncation()
             return tokenizer
         if vocabulary.is_file() and merges.is_file():
-            bpe = models.BPE.from_file(str(vocabulary), str(merges), end_of_word_suffix="</w>", unk_token=END)
-            tokenizer = Tokenizer(bpe)
-            spaces = normalizers.Replace(Regex(r"\s+"), " ")
-            tokenizer.normalizer = normalizers.Sequence([normalizers.NFC(), spaces, normalizers.Lowercase()])
-            words = pre_tokenizers.Split(Regex(WORDS), behavior="removed", invert=True)
-            letters = pre_tokenizers.ByteLevel(add_prefix_space=False)
-            tokenizer.pre_tokenizer = pre_tokenizers.Sequence([words, letters])
-            return tokenizer
+            return _tokenizer(
+                BPE.from_file(str(vocabulary), str(merges), end_of_word_suffix="</w>", unk_token=END)
+            )
     except Exception as error:  # tokenizers raises plain Exception for a file that it cannot parse
         raise VocabularyError(f"The vocabulary in {folder} cannot be read: download it again.") from error
     raise VocabularyError(
         f"{folder} holds no CLIP vocabulary: put tokenizer.json, or vocab.json and merges.txt, of a CLIP "
         "text model there (InterGen's checkpoint does not carry it)."
     )
+
+
+def _read_merges(path: Path) -> Tokenizer:
+    """CLIP's own file: a title, then one merge a line; letters, merges and the two marks are the vocabulary."""
+    from tokenizers.models import BPE
+    from tokenizers.pre_tokenizers import ByteLevel
+
+    try:
+        with gzip.open(path, "rt", encoding="utf-8") as file:
+            lines = file.read(_MOST_CHARACTERS).splitlines()[1 : MERGES + 1]
+        merges = [(first, second) for first, second in (line.split() for line in lines if line)]
+        letters = sorted(ByteLevel.alphabet(), key=_byte_order)
+        names = [*letters, *(f"{letter}</w>" for letter in letters), *("".join(merge) for merge in merges)]
+        vocabulary = {name: i for i, name in enumerate([*names, START, END])}
+        return _tokenizer(BPE(vocabulary, merges, end_of_word_suffix="</w>", unk_token=END))
+    except Exception as error:  # gzip, Unicode, a line that is no merge, or what tokenizers raises
+        raise VocabularyError(f"{path.name} is not CLIP's vocabulary: download it again.") from error
+
+
+def _byte_order(letter: str) -> tuple[bool, int]:
+    """CLIP lists the bytes that can be printed as themselves first, then the stand-ins of the others."""
+    return ord(letter) > 255, ord(letter)
+
+
+def _tokenizer(bpe: BPE) -> Tokenizer:
+    """CLIP's split into words and letters, in front of its merges."""
+    from tokenizers import Regex, Tokenizer, normalizers, pre_tokenizers
+
+    tokenizer = Tokenizer(bpe)
+    spaces = normalizers.Replace(Regex(r"\s+"), " ")
+    tokenizer.normalizer = normalizers.Sequence([normalizers.NFC(), spaces, normalizers.Lowercase()])
+    words = pre_tokenizers.Split(Regex(WORDS), behavior="removed", invert=True)
+    letters = pre_tokenizers.ByteLevel(add_prefix_space=False)
+    tokenizer.pre_tokenizer = pre_tokenizers.Sequence([words, letters])
+    return tokenizer
 
 
 class ResidualBlock(nn.Module):
@@ -187,3 +245,44 @@ def from_checkpoint(path: str | Path) -> ClipTextEncoder:
     """The text side of the authors' Lightning file; raises WeightsError for any other file."""
     weights = read_lightning(path, prefix="model.", network="InterGen")
     return from_released({name: value for name, value in weights.items() if name.startswith(PARTS)})
+
+
+class ClipTower(nn.Module):
+    """CLIP's frozen text tower alone, by OpenAI's names, as BiGraphDiff's released file holds it.
+
+    Args:
+        vocabulary, context_length: sizes of the tables of tokens and positions.
+        width, num_layers: of the transformer.
+    """
+
+    def __init__(self, *, vocabulary: int, context_length: int, width: int, num_layers: int) -> None:
+        super().__init__()
+        self.token_embedding = nn.Embedding(vocabulary, width)
+        self.positional_embedding = nn.Parameter(torch.zeros(context_length, width))
+        self.transformer = Tower(width, num_layers)
+        self.ln_final = nn.LayerNorm(width)
+
+    def forward(self, tokens: Tensor) -> Tensor:
+        """(B, 77) int64 → features of every token (B, 77, C) after the last norm."""
+        x = self.token_embedding(tokens) + self.positional_embedding
+        return self.ln_final(self.transformer(x))
+
+
+TOWER_PARTS = ("transformer.", "token_embedding.", "positional_embedding", "ln_final.")
+
+
+def tower_from_released(weights: Mapping[str, Tensor]) -> ClipTower:
+    """The text tower among CLIP's tensors, whose picture side is left out; eval mode, float32.
+
+    Raises WeightsError if a tensor is missing, unknown or of another size.
+    """
+    tensors = as_tensors({name: value for name, value in weights.items() if name.startswith(TOWER_PARTS)})
+    vocabulary, width = shape_of(tensors, "token_embedding.weight", network=NETWORK)
+    tower = ClipTower(
+        vocabulary=vocabulary,
+        context_length=shape_of(tensors, "positional_embedding", network=NETWORK)[0],
+        width=width,
+        num_layers=count_layers(tensors, "transformer.resblocks."),
+    )
+    load_strictly(tower, tensors, network=NETWORK)
+    return tower.requires_grad_(False)

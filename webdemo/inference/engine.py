@@ -25,6 +25,7 @@ from .cancel import CancelToken
 from .live import LiveFrame
 from .method import Pipeline
 from .methods import WEIGHTS
+from .own.classes import fenced
 from .predict_request import PredictRequest
 from .requests import GenerateRequest, Progress, ReactRequest, Result, SamplingRequest
 from .story.request import SceneRequest
@@ -45,6 +46,7 @@ class Engine:
     def __init__(self, weights: Path = WEIGHTS) -> None:
         self.weights = weights
         self._lock = threading.Lock()
+        self._loading: dict[str, threading.RLock] = {}
         self._pipelines: dict[str, Pipeline] = {}
 
     @property
@@ -116,17 +118,15 @@ class Engine:
         Raises:
             InputError: if there is no such method, or its weights are missing or altered.
         """
-        methods.method(name)  # an unknown name waits for no other method's loading
+        found = methods.method(name)
         with self._lock:
-            return self._loaded(name)
-
-    def _loaded(self, name: str) -> Pipeline:
-        """The pipeline of a method, loaded if it is not yet; under the lock."""
-        if name not in self._pipelines:
-            found = methods.method(name)
-            parts = [self._loaded(needed) for needed in found.needs]
-            self._pipelines[name] = found.load(self.weights / (found.weights or name), *parts)
-        return self._pipelines[name]
+            loading = self._loading.setdefault(name, threading.RLock())
+        with loading:  # of this method alone: no model waits for another one's loading
+            if name not in self._pipelines:
+                parts = [self.pipeline(needed) for needed in found.needs]
+                made = found.load(self.weights / (found.weights or name), *parts)
+                self._pipelines[name] = made if found in methods.BUILT_IN else fenced(made, name)
+            return self._pipelines[name]
 
 
 def _take_threads(pipeline: Pipeline) -> None:

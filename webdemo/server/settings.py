@@ -110,6 +110,11 @@ class Settings(BaseSettings):
     ray_replicas: int = Field(2, ge=1, le=64, description="largest number of replicas of the default model")
     ray_cores: float = Field(1, gt=0, le=256, description="cores per replica")
 
+    # ---- models of the lab's own
+    models: dict[str, Any] = Field(
+        {}, description="released checkpoints and Python classes, one table for each: see docs/own-model.md"
+    )
+
     # ---- limits
     rate: int = Field(240, ge=1, description="requests per person and minute that change something")
     address_people: int = Field(

@@ -1,8 +1,9 @@
 """The registry of methods: the one list that everything else reads.
 
-A module of this package exports ``METHOD``. Methods of a lab's own enter by an entry point of the group
-``pasdedeux.methods`` or by a path in the environment variable ``PASDEDEUX_METHODS`` (files or folders, separated
-as in ``PATH``); each such module exports ``METHOD``, too. Importing this package imports no torch.
+A module of this package exports ``METHOD``. Models of a lab's own enter by a table ``[models.NAME]`` of the settings
+(:mod:`webdemo.inference.own`), by an entry point of the group ``pasdedeux.methods``, or by a path in the environment
+variable ``PASDEDEUX_METHODS`` (files or folders, separated as in ``PATH``). An entry point names a ``METHOD`` or a
+class with the ``Pipeline`` protocol; a file exports ``METHOD``. Importing this package imports no torch.
 """
 
 from __future__ import annotations
@@ -36,6 +37,7 @@ WEIGHTS = Path(__file__).resolve().parents[3] / "models" / "weights"
 _lock = threading.RLock()
 _registered: dict[str, Method] = {}
 _failed: dict[str, str] = {}
+_from_settings: set[str] = set()
 _complete = False
 
 
@@ -49,10 +51,13 @@ def method(name: str, task: Task | None = None) -> Method:
     """A method by name.
 
     Raises:
-        InputError: if there is none of this name, or none that does this task.
+        InputError: if there is none of this name, none that does this task, or the settings name one that cannot
+            be used.
     """
     _register_all()
     found = _registered.get(name)
+    if found is None and name in _failed:
+        raise InputError(_failed[name])
     if found is not None and (task is None or task in found.tasks):
         return found
     wrong = f"There is no model {name!r:.40}" if found is None else f"{found.label} does not {task}"
@@ -77,7 +82,7 @@ def installed(task: Task, weights: Path | None = None) -> tuple[Method, ...]:
 
 
 def failed() -> dict[str, str]:
-    """Modules that export no usable method: where each was found → one sentence on what is wrong with it."""
+    """Models that cannot be used: the name in the settings, or the place of a module → one sentence on why."""
     _register_all()
     return dict(_failed)
 
@@ -123,6 +128,35 @@ def _register_all() -> None:
                 _fail(entry.value, error)
         for path in filter(None, os.environ.get(PATHS_VARIABLE, "").split(os.pathsep)):
             _register_path(Path(path))
+        _register_settings()
+
+
+def register_settings() -> None:
+    """Adds the models of the settings as they are now, in place of those of before."""
+    _register_all()
+    with _lock:
+        for name in _from_settings:
+            _registered.pop(name, None)
+            _failed.pop(name, None)
+        _from_settings.clear()
+        _register_settings()
+
+
+def _register_settings() -> None:
+    from webdemo.inference.own import method_of, read_entries  # these read requests, which read this registry
+
+    entries, failures = read_entries()
+    for name, entry in entries.items():
+        try:
+            _add(method_of(entry))
+        except Exception as error:
+            log.debug("%s cannot be used.", name, exc_info=True)
+            reason = str(error) if isinstance(error, InputError) else f"{type(error).__name__}: {error}."
+            failures[name] = f"The model {name} cannot be used: {reason}"
+    for sentence in failures.values():
+        log.warning("%s", sentence)
+    _failed.update(failures)
+    _from_settings.update(entries, failures)
 
 
 def _register_path(path: Path) -> None:
@@ -151,7 +185,11 @@ def _import(file: Path) -> ModuleType:
     return module
 
 
-def _add(found: Method) -> None:
+def _add(found: Method | type) -> None:
+    if isinstance(found, type):
+        from webdemo.inference.own.classes import method_of_class
+
+        found = method_of_class(found)
     if not isinstance(found, Method):
         raise InputError("METHOD is not a webdemo.inference.method.Method.")
     if found.name in _registered:

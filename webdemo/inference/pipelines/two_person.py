@@ -15,7 +15,9 @@ from torch import Tensor
 from models.bigraphdiff.compact import CompactBiGraphDiff
 from models.compiled import compile_network
 from models.diffusion import TRAIN_TIMESTEPS, SamplerName, make_scheduler, sample_steps
+from models.diffusion.schedule import Spacing
 from models.intergen.compact import CompactInterGen, Touch
+from models.intergen.released import ReleasedInterGen
 from models.weights_io import WeightsFolder
 from motion import Duet, InputError
 from motion.metrics import compare
@@ -27,7 +29,7 @@ from webdemo.inference.requests import GenerateRequest, Progress, ReactRequest, 
 from webdemo.inference.scenes import Finish, Scene, scene_of
 from webdemo.inference.timer import StageTimer
 
-Network = TypeVar("Network", CompactInterGen, CompactBiGraphDiff)
+Network = TypeVar("Network", CompactInterGen, CompactBiGraphDiff, ReleasedInterGen)
 
 
 @dataclass(frozen=True)
@@ -131,6 +133,9 @@ class TwoPersonPipeline(ABC, Generic[Network]):
         model: its network.
     """
 
+    spacing: Spacing = "top"
+    """How the timesteps are spread, see :func:`models.diffusion.make_scheduler`."""
+
     def __init__(self, source: WeightsFolder, model: Network) -> None:
         self.name, self.digest, self.meta = source.folder.name, source.digest, source.meta
         self.model: Network = model
@@ -170,7 +175,7 @@ class TwoPersonPipeline(ABC, Generic[Network]):
         noise = sample_noise(
             request.seed, request.samples, (layout.num_tokens(scene.frames), 2 * layout.token_features)
         )
-        scheduler = make_scheduler(cast(SamplerName, request.sampler), request.steps, spacing="top")
+        scheduler = make_scheduler(cast(SamplerName, request.sampler), request.steps, spacing=self.spacing)
         damping = Damping(
             self.model,
             request.damping,

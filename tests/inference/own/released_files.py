@@ -1,0 +1,64 @@
+"""Files with random weights under the names of the released ones, small enough for a test."""
+
+from __future__ import annotations
+
+import gzip
+from pathlib import Path
+
+import numpy as np
+import torch
+from torch import Tensor, nn
+
+from models.intergen import InterGenConfig, InterGenDenoiser
+from models.text.clip import ClipTextEncoder
+from motion import SMPL22
+from motion.representation import encode_person
+
+MERGES = ("t w", "tw o</w>", "p e", "pe o", "w a", "wa v", "wav e</w>")
+
+
+def write_vocabulary(folder: Path) -> Path:
+    """A vocabulary in the form of CLIP's own file, with a few merges."""
+    path = folder / "bpe_simple_vocab_16e6.txt.gz"
+    path.write_bytes(gzip.compress("\n".join(['"bpe_simple_vocab_16e6.txt#version: 0.2', *MERGES]).encode()))
+    return path
+
+
+def drawn(module: nn.Module, spread: float = 0.05) -> dict[str, Tensor]:
+    """The module's tensors, drawn anew: the zero-initialised ones would hide what the input does."""
+    draw = torch.Generator().manual_seed(3)
+    for tensor in module.parameters():
+        tensor.data = spread * torch.randn(tensor.shape, generator=draw)
+    return {name: tensor.detach().clone() for name, tensor in module.state_dict().items()}
+
+
+def normaliser() -> tuple[np.ndarray, np.ndarray]:
+    """Mean and standard deviation (262,) of a person who stands at the origin."""
+    rest = SMPL22.rest_positions()
+    rest = rest - np.array([0.0, rest[:, 1].min(), 0.0])
+    numbers = encode_person(np.repeat(rest[None], 3, axis=0))
+    return numbers[0], np.full(262, 0.1, dtype=np.float32)
+
+
+def write_intergen(
+    folder: Path, *, sizes: dict[str, int] | None = None, text_width: int = 64, layers: int = 1
+) -> dict[str, Path]:
+    """``intergen.ckpt`` as Lightning writes it, with its normaliser and a vocabulary; role → path."""
+    small = {"latent_dim": 128, "ff_size": 64, "num_layers": 2, "num_heads": 1}
+    denoiser = InterGenDenoiser(InterGenConfig(**(sizes or small), cond_dim=text_width))
+    text = ClipTextEncoder(
+        vocabulary=512 + len(MERGES) + 2, context_length=77, width=text_width, num_layers=layers, ff_size=64,
+        encoder_layers=2,
+    )  # fmt: skip
+    state = {f"model.decoder.net.{name}": value for name, value in drawn(denoiser).items()}
+    state |= {f"model.{name}": value for name, value in drawn(text).items()}
+    state["model.decoder.net.sequence_pos_encoder.pe"] = torch.zeros(4, 1, 8)
+    folder.mkdir(parents=True, exist_ok=True)
+    paths = {role: folder / name for role, name in FILES.items()}
+    torch.save({"state_dict": state, "epoch": 2000, "optimizer_states": []}, paths["checkpoint"])
+    for role, value in zip(("mean", "std"), normaliser(), strict=True):
+        np.save(paths[role], value)
+    return paths | {"vocabulary": write_vocabulary(folder)}
+
+
+FILES = {"checkpoint": "intergen.ckpt", "mean": "global_mean.npy", "std": "global_std.npy"}

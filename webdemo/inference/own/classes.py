@@ -1,0 +1,194 @@
+"""Python classes of a lab's own as methods, and the fence around them: a broken one fails alone."""
+
+from __future__ import annotations
+
+import importlib
+import importlib.util
+import logging
+import sys
+from collections.abc import Iterator
+from dataclasses import replace
+from functools import partial
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from motion import Clip, Duet, InputError
+from motion.skeleton import SMPL22
+from webdemo.inference.actor import SECONDS
+from webdemo.inference.cancel import CancelToken
+from webdemo.inference.method import Method, Pipeline
+from webdemo.inference.requests import Cancelled, Progress, Result
+from webdemo.inference.timer import StageTimer
+
+from .entries import Entry
+
+log = logging.getLogger(__name__)
+
+TASKS = ("generate", "react", "predict")
+INPUTS = ("words", "actor", "first pose", "either role", "past")
+
+
+def class_method(entry: Entry) -> Method:
+    """The method of an entry that names a class.
+
+    Raises:
+        InputError: one sentence on why the class cannot be used.
+    """
+    return method_of_class(find_class(entry.pipeline, entry.folder), name=entry.name, label=entry.label)
+
+
+def method_of_class(found: Any, *, name: str = "", label: str = "") -> Method:
+    """The method of a class with the :class:`~webdemo.inference.method.Pipeline` protocol.
+
+    The class may say more in attributes: ``label``, ``summary``, ``tasks``, ``takes``, ``seconds``, ``defaults``,
+    ``fixed``, ``samplers`` and, for reactions, ``modes``, as in :class:`Method`.
+
+    Raises:
+        InputError: if it lacks ``run``, or an attribute has a value that nothing can be done with.
+    """
+    if not isinstance(found, type) or not callable(getattr(found, "run", None)):
+        raise InputError("it is not a class with a method `run(request, cancel, timer)`.")
+    name = name or str(getattr(found, "name", "") or found.__name__.lower())
+    tasks = _texts(found, "tasks", ("generate",), TASKS)
+    assumed = {"generate": ("words",), "react": ("actor",), "predict": ("past",)}
+    takes = _texts(found, "takes", tuple(t for task in tasks for t in assumed[task]), INPUTS)
+    seconds = getattr(found, "seconds", SECONDS)
+    if not (isinstance(seconds, tuple | list) and len(seconds) == 2 and 0 < seconds[0] <= seconds[1] <= 60):
+        raise InputError("its `seconds` must be the shortest and the longest motion, such as (1.0, 10.0).")
+    return Method(
+        name=name,
+        label=label or str(getattr(found, "label", name)),
+        summary=str(getattr(found, "summary", "A model of this lab's own.")),
+        tasks=tasks,  # type: ignore[arg-type]
+        takes=frozenset(takes),  # type: ignore[arg-type]
+        seconds=(float(seconds[0]), float(seconds[1])),
+        modes=dict(getattr(found, "modes", {})),
+        defaults=dict(getattr(found, "defaults", {})),
+        fixed=dict(getattr(found, "fixed", {})),
+        samplers=tuple(getattr(found, "samplers", ("ddim", "dpm++"))),
+        load=partial(_load, found, name),
+    )
+
+
+def find_class(place: str, folder: Path) -> Any:
+    """The class at ``file.py:Class``, relative to a folder, or at ``package.module:Class``.
+
+    Raises:
+        InputError: if it cannot be imported, whatever the file itself raises.
+    """
+    module, _, name = place.rpartition(":")
+    if not module or not name.isidentifier():
+        raise InputError(f"`pipeline` must be file.py:Class or package.module:Class, not {place!r:.60}.")
+    try:
+        loaded = _from_file(folder / module) if module.endswith(".py") else importlib.import_module(module)
+    except InputError:
+        raise
+    except (Exception, SystemExit) as error:
+        log.warning("%s cannot be imported.", module, exc_info=True)
+        raise InputError(f"importing {module} raised {_named(error)}.") from error
+    found = getattr(loaded, name, None)
+    if found is None:
+        raise InputError(f"{module} has no class {name}.")
+    return found
+
+
+def _from_file(path: Path) -> Any:
+    if not path.is_file():
+        raise InputError(f"there is no file {path}.")
+    if str(path.parent) not in sys.path:  # so that the file can import others beside it
+        sys.path.append(str(path.parent))
+    spec = importlib.util.spec_from_file_location(f"pasdedeux_own_{path.stem}", path)
+    assert spec is not None and spec.loader is not None  # its name ends in .py
+    module = importlib.util.module_from_spec(spec)
+    sys.modules[spec.name] = module  # dataclasses look their module up
+    try:
+        spec.loader.exec_module(module)
+    except BaseException:
+        del sys.modules[spec.name]
+        raise
+    return module
+
+
+def _texts(found: Any, attribute: str, otherwise: tuple[str, ...], known: tuple[str, ...]) -> tuple[str, ...]:
+    value = getattr(found, attribute, otherwise)
+    if isinstance(value, str) or not value or not set(value) <= set(known):
+        raise InputError(f"its `{attribute}` must be some of {', '.join(known)}, not {value!r:.60}.")
+    return tuple(value)
+
+
+def _named(error: BaseException) -> str:
+    return f"{type(error).__name__}: {error}"[:300].rstrip(".")
+
+
+def _load(found: Any, name: str, folder: Path) -> Pipeline:
+    """Makes the pipeline; ``folder`` is that of shipped weights, which it does not get."""
+    try:
+        return Fenced(found(), name)
+    except InputError:
+        raise
+    except (Exception, SystemExit) as error:
+        log.warning("The model %s cannot be made.", name, exc_info=True)
+        raise InputError(f"The model {name} cannot be loaded: it raised {_named(error)}.") from error
+
+
+def fenced(pipeline: Any, name: str) -> Pipeline:
+    """A pipeline behind :class:`Fenced`, unless it is one of this project's."""
+    ours = type(pipeline).__module__.startswith("webdemo.")
+    made: Pipeline = pipeline if ours else Fenced(pipeline, name)
+    return made
+
+
+class Fenced:
+    """A pipeline of a lab's own: what it raises or gives wrongly ends its run with one sentence.
+
+    Args:
+        inner: the lab's object.
+        name: of the model.
+    """
+
+    def __init__(self, inner: Any, name: str) -> None:
+        self.inner, self.name = inner, name
+        self.digest = str(getattr(inner, "digest", ""))
+
+    def __getattr__(self, attribute: str) -> Any:
+        return getattr(self.inner, attribute)
+
+    def run(self, request: Any, cancel: CancelToken, timer: StageTimer) -> Iterator[Progress | Result]:
+        """As the pipeline's own, checked event by event.
+
+        Raises:
+            InputError: if the pipeline raises anything but Cancelled, or gives what is no result.
+        """
+        try:
+            for event in self.inner.run(request, cancel, timer):
+                if isinstance(event, Result):
+                    yield self._checked(event, timer)
+                    return
+                if not isinstance(event, Progress):
+                    raise InputError(f"The model {self.name} gave {event!r:.60}, not Progress or a Result.")
+                yield event
+        except (InputError, Cancelled):
+            raise
+        except (Exception, SystemExit) as error:
+            log.warning("The model %s failed.", self.name, exc_info=True)
+            raise InputError(f"The model {self.name} failed: it raised {_named(error)}.") from error
+        raise InputError(f"The model {self.name} ended without a Result: yield one at the end of `run`.")
+
+    def _checked(self, result: Result, timer: StageTimer) -> Result:
+        wrong = ""
+        if not result.duets or not all(isinstance(duet, Duet | Clip) for duet in result.duets):
+            wrong = "no motion of two people"
+        elif any(duet.skeleton.joint_names != SMPL22.joint_names for duet in result.duets):
+            wrong = "people who do not have SMPL's 22 joints"
+        elif not all(np.isfinite(person.positions).all() for d in result.duets for person in _people(d)):
+            wrong = "positions that are not finite"
+        if wrong:
+            raise InputError(f"The model {self.name} gave {wrong}: see docs/own-model.md.")
+        timings = result.timings or {**timer.stages, "total": round(timer.elapsed, 4)}
+        return replace(result, timings=timings)
+
+
+def _people(motion: Duet | Clip) -> tuple[Clip, ...]:
+    return motion.people if isinstance(motion, Duet) else (motion,)

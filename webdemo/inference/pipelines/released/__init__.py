@@ -1,0 +1,1 @@
+"""Pipelines of the checkpoints that the papers' authors released, one file a network."""
