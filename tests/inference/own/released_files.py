@@ -9,8 +9,11 @@ import numpy as np
 import torch
 from torch import Tensor, nn
 
+from models.bigraphdiff.network import BiGraphDiff, BiGraphDiffConfig, TextSide
+from models.interformer.network import InterFormer, InterFormerConfig
 from models.intergen import InterGenConfig, InterGenDenoiser
-from models.text.clip import ClipTextEncoder
+from models.regennet.network import ReGenNet, ReGenNetConfig
+from models.text.clip import ClipTextEncoder, ClipTower
 from motion import SMPL22
 from motion.representation import encode_person
 
@@ -62,3 +65,38 @@ def write_intergen(
 
 
 FILES = {"checkpoint": "intergen.ckpt", "mean": "global_mean.npy", "std": "global_std.npy"}
+
+
+def write_regennet(path: Path, *, online: bool, actions: int = 0) -> None:
+    """A file as ReGenNet's trainer writes it, with the position tables that the release stores."""
+    network = ReGenNet(
+        ReGenNetConfig(
+            latent_dim=128, ff_size=32, num_layers=2, num_heads=1, online=online, num_actions=actions
+        )
+    )
+    state = drawn(network) | {"sequence_pos_encoder.pe": torch.zeros(9, 1, 128)}
+    state["embed_timestep.sequence_pos_encoder.pe"] = torch.zeros(9, 1, 128)
+    torch.save(state, path)
+
+
+def write_interformer(path: Path) -> None:
+    """A file as PyTorch's DataParallel names it."""
+    network = InterFormer(InterFormerConfig(num_layers=1, ff_size=32, max_length=40))
+    torch.save({f"module.{name}": value for name, value in drawn(network).items()}, path)
+
+
+def write_bigraphdiff(path: Path) -> None:
+    """A file by the released names, with the unused parts that the release holds."""
+    side = TextSide(clip_dim=64, text_dim=32, ff_size=32, num_layers=1, num_heads=4)
+    config = BiGraphDiffConfig(
+        latent_dim=64, ff_size=32, num_layers=1, num_heads=1, text_dim=32, max_frames=90, num_nodes=4
+    )
+    state = {}
+    for name, value in drawn(BiGraphDiff(config, text_side=side)).items():
+        name = name.removeprefix("text_side.").replace(".bipartite_graph.", ".ga.")
+        state[name.replace("text_proj.", "text_proj.0.") if name.startswith("text_proj.") else name] = value
+    tower = ClipTower(vocabulary=512 + len(MERGES) + 2, context_length=77, width=64, num_layers=1)
+    state |= {f"clip.{name}": value for name, value in drawn(tower).items()}
+    unused = {"clip.visual.proj": (2, 2), "temporal_decoder_blocks.0.ffn.linear1.weight": (2, 2)}
+    state |= {name: torch.zeros(shape) for name, shape in unused.items()}
+    torch.save({"encoder": state, "ep": 3, "opt_encoder": {"state": {}}}, path)

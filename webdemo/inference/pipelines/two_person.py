@@ -16,7 +16,7 @@ from models.bigraphdiff.compact import CompactBiGraphDiff
 from models.compiled import compile_network
 from models.diffusion import TRAIN_TIMESTEPS, SamplerName, make_scheduler, sample_steps
 from models.diffusion.schedule import Spacing
-from models.intergen.compact import CompactInterGen, Touch
+from models.intergen.compact import CompactInterGen, DuetSpace, Touch
 from models.intergen.released import ReleasedInterGen
 from models.weights_io import WeightsFolder
 from motion import Duet, InputError
@@ -141,6 +141,10 @@ class TwoPersonPipeline(ABC, Generic[Network]):
         self.model: Network = model
         self.compiled = compile_network(model.denoiser, source.digest)
 
+    def scene(self, request: GenerateRequest | ReactRequest) -> Scene:
+        """What a request says is known of the motion, and how samples become duets."""
+        return scene_of(request, cast(DuetSpace, self.model))
+
     @abstractmethod
     def conditioning(self, request: GenerateRequest | ReactRequest) -> Conditioning:
         """The conditioning of a request."""
@@ -168,7 +172,7 @@ class TwoPersonPipeline(ABC, Generic[Network]):
         yield timer.progress("text")
         conditioning = self.conditioning(request)
         condition = conditioning.condition.expand(request.samples, *conditioning.condition.shape[1:])
-        scene = scene or scene_of(request, self.model)
+        scene = scene or self.scene(request)
         now = timer.lap("text", now)
 
         layout, given = self.model.layout, scene.given

@@ -42,9 +42,9 @@ class ReleasedInterGenPipeline(TwoPersonPipeline[ReleasedInterGen]):
 
     def __init__(self, entry: Entry) -> None:
         vocabulary = entry.file("vocabulary") if "vocabulary" in entry.files else find_vocabulary()
-        paths = [entry.file(role) for role in ("checkpoint", "mean", "std")]
-        self.model = load_released(*paths, vocabulary)
-        self.name, self.digest, self.meta = entry.name, digest(paths), {}
+        checkpoint, mean, std = (entry.file(role) for role in ("checkpoint", "mean", "std"))
+        self.model = load_released(checkpoint, mean, std, vocabulary)
+        self.name, self.digest, self.meta = entry.name, digest((checkpoint, mean, std)), {}
         precision = precision_of(entry)
         self.compiled = compile_network(
             self.model.denoiser, f"{self.digest} {precision}", precision=precision
@@ -65,7 +65,7 @@ class ReleasedInterGenPipeline(TwoPersonPipeline[ReleasedInterGen]):
         scene: Scene | None = None,
     ) -> Iterator[Progress | Result]:
         """As :meth:`TwoPersonPipeline.run`; the result's notes say what the conversion lost."""
-        measured = Measured(scene or self._scene(request))
+        measured = Measured(scene or self.scene(request))
         for event in super().run(request, cancel, timer, passes, measured):  # type: ignore[arg-type]
             if isinstance(event, Result):
                 notes = [CONVERTED, measured.note(request.cleanup)]
@@ -73,7 +73,8 @@ class ReleasedInterGenPipeline(TwoPersonPipeline[ReleasedInterGen]):
                 event = replace(event, notes=(*event.notes, *notes))
             yield event
 
-    def _scene(self, request: GenerateRequest | ReactRequest) -> Scene:
+    def scene(self, request: GenerateRequest | ReactRequest) -> Scene:
+        """As :meth:`TwoPersonPipeline.scene`, in the paper's representation."""
         if isinstance(request, GenerateRequest):
             return Scene(round(request.seconds * FPS))
         placement = Placement.of(request.actor, request.role, request.prompt)
