@@ -122,7 +122,7 @@ def skin(body: Body, motion: Clip | Array) -> Array:
 def bone_rotations(motion: Clip | Array) -> Array:
     """World rotation of each bone against SMPL22's T-pose, from joint positions only.
 
-    Bones point where the positions say. Their twist is what the neighbours tell: trunk and pelvis turn with
+    Bones point where the positions say. Their twist follows from their neighbours: trunk and pelvis turn with
     hips and collars; elbows and knees bend about one axis, which fixes the twist of a bent limb, and a
     straight one keeps the least twist; shins turn with the feet; soles near the floor lie flat, toes bend;
     the head turns to the side on which it lies in front of the neck, and looks ahead if only the neck bends.
@@ -135,69 +135,11 @@ def bone_rotations(motion: Clip | Array) -> Array:
     """
     positions = _positions(motion)
     world = np.empty((*positions.shape, 3))
-
-    def toward(a: str, b: str) -> Array:
-        return _unit(positions[:, _J[b]] - positions[:, _J[a]])
-
-    def rest(a: str, b: str) -> Array:
-        return _unit(_REST[_J[b]] - _REST[_J[a]])
-
-    def follow(base: Array, a: str, b: str) -> Array:
-        return swing(base @ rest(a, b), toward(a, b)) @ base
-
-    middle = (positions[:, _J["left_hip"]] + positions[:, _J["right_hip"]]) / 2
-    rest_middle = (_REST[_J["left_hip"]] + _REST[_J["right_hip"]]) / 2
-    pelvis = _frame(positions[:, _J["spine1"]] - middle, toward("right_hip", "left_hip"))
-    pelvis = pelvis @ _frame(_REST[_J["spine1"]] - rest_middle, rest("right_hip", "left_hip")).T
-    chest = _frame(toward("spine3", "neck"), toward("right_collar", "left_collar"))
-    chest = chest @ _frame(rest("spine3", "neck"), rest("right_collar", "left_collar")).T
-    world[:, _J["pelvis"]], world[:, _J["spine3"]] = pelvis, chest
-    between = _rotation_vector(np.swapaxes(pelvis, -1, -2) @ chest)
-    for name, child, share in (("spine1", "spine2", 1 / 3), ("spine2", "spine3", 2 / 3)):
-        world[:, _J[name]] = follow(pelvis @ _rotation(share * between), name, child)
-
-    # The head joint lies in front of the neck, so its place shows to which side the face turns.
-    ahead = np.einsum("tji,tj->ti", chest, toward("neck", "head"))
-    yaw = np.clip(np.arctan2(ahead[:, 0], np.maximum(ahead[:, 2], _LEAST_AHEAD)), -_MOST_YAW, _MOST_YAW)
-    for name, share in (("neck", 0.5), ("head", 1.0)):
-        turned = chest @ _rotation(share * yaw[:, None] * np.array([0.0, 1.0, 0.0]))
-        world[:, _J[name]] = follow(turned, "neck", "head")
-    # People who bend their necks go on looking ahead: the face takes back a part of its pitch.
-    pitch = -np.arcsin(np.clip(world[:, _J["head"], 1, 2], -1.0, 1.0))
-    level = _MOST_LEVEL * np.tanh(0.6 * pitch / _MOST_LEVEL)
-    world[:, _J["head"]] = world[:, _J["head"]] @ _rotation(level[:, None] * np.array([-1.0, 0.0, 0.0]))
-
+    _turn_trunk(positions, world)
+    _turn_head(positions, world)
     for side, sign in (("left", -1.0), ("right", 1.0)):
-        collar, shoulder, elbow, wrist = (f"{side}_{n}" for n in ("collar", "shoulder", "elbow", "wrist"))
-        world[:, _J[collar]] = follow(chest, collar, shoulder)
-        straight = follow(world[:, _J[collar]], shoulder, elbow)
-        upper = toward(shoulder, elbow)
-        hinge = straight @ np.array([0.0, sign, 0.0])
-        twist = _hinge_twist(upper, toward(elbow, wrist), hinge, _ARM_BEND)
-        # Half of the twist sits in the upper arm, all of it in the forearm: shoulders keep their shape.
-        world[:, _J[shoulder]] = _rotation(0.5 * twist[:, None] * upper) @ straight
-        world[:, _J[elbow]] = follow(_rotation(twist[:, None] * upper) @ straight, elbow, wrist)
-        world[:, _J[wrist]] = world[:, _J[elbow]]
-
-        hip, knee, ankle, foot = (f"{side}_{n}" for n in ("hip", "knee", "ankle", "foot"))
-        straight = follow(pelvis, hip, knee)
-        thigh, shin, sole = toward(hip, knee), toward(knee, ankle), toward(ankle, foot)
-        bend = _bend(thigh, shin, _LEG_BEND)
-        by_knee = _hinge_twist(thigh, shin, straight @ np.array([1.0, 0.0, 0.0]), _LEG_BEND)
-        by_foot = _angle_about(shin, follow(straight, knee, ankle) @ rest(ankle, foot), sole)
-        twist = np.clip(by_knee, -1.2, 1.2) + (1 - bend) * 0.6 * np.clip(by_foot, -_MOST_SHIN, _MOST_SHIN)
-        world[:, _J[hip]] = _rotation(twist[:, None] * thigh) @ straight
-        lower = follow(world[:, _J[hip]], knee, ankle)
-        by_foot = np.clip(_angle_about(shin, lower @ rest(ankle, foot), sole), -_MOST_SHIN, _MOST_SHIN)
-        world[:, _J[knee]] = _rotation(by_foot[:, None] * shin) @ lower
-        loose = follow(world[:, _J[knee]], ankle, foot)
-        low = 1 - _smooth_step(positions[:, _J[foot], 1], *_LOW_FOOT)
-        up = np.broadcast_to(np.array([0.0, 1.0, 0.0]), sole.shape)
-        roll = np.clip(_angle_about(sole, loose[:, :, 1], up), -_MOST_ROLL, _MOST_ROLL)
-        world[:, _J[ankle]] = _rotation((low * roll)[:, None] * sole) @ loose
-        raised = np.arcsin(np.clip(-world[:, _J[ankle], 1, 2], 0.0, 0.9))  # the heel above the toes
-        axis = np.array([-1.0, 0.0, 0.0])
-        world[:, _J[foot]] = world[:, _J[ankle]] @ _rotation((low * raised)[:, None] * axis)
+        _turn_arm(positions, world, side, sign)
+        _turn_leg(positions, world, side)
     return world
 
 
@@ -224,6 +166,88 @@ def _positions(motion: Clip | Array) -> Array:
     return positions
 
 
+def _toward(positions: Array, a: str, b: str) -> Array:
+    """(T, 3) unit vector from joint ``a`` to joint ``b``."""
+    return _unit(positions[:, _J[b]] - positions[:, _J[a]])
+
+
+def _rest_toward(a: str, b: str) -> Array:
+    """(3,) unit vector from joint ``a`` to joint ``b`` in the T-pose."""
+    return _unit(_REST[_J[b]] - _REST[_J[a]])
+
+
+def _follow(positions: Array, base: Array, a: str, b: str) -> Array:
+    """(T, 3, 3) ``base`` turned by the least rotation that points its bone from ``a`` to ``b`` as it lies."""
+    return swing(base @ _rest_toward(a, b), _toward(positions, a, b)) @ base
+
+
+def _turn_trunk(positions: Array, world: Array) -> None:
+    """Pelvis and chest turn with hips and collars; the spine between them shares their difference."""
+    middle = (positions[:, _J["left_hip"]] + positions[:, _J["right_hip"]]) / 2
+    rest_middle = (_REST[_J["left_hip"]] + _REST[_J["right_hip"]]) / 2
+    pelvis = _frame(positions[:, _J["spine1"]] - middle, _toward(positions, "right_hip", "left_hip"))
+    pelvis = pelvis @ _frame(_REST[_J["spine1"]] - rest_middle, _rest_toward("right_hip", "left_hip")).T
+    chest = _frame(_toward(positions, "spine3", "neck"), _toward(positions, "right_collar", "left_collar"))
+    chest = chest @ _frame(_rest_toward("spine3", "neck"), _rest_toward("right_collar", "left_collar")).T
+    world[:, _J["pelvis"]], world[:, _J["spine3"]] = pelvis, chest
+    between = _rotation_vector(np.swapaxes(pelvis, -1, -2) @ chest)
+    for name, child, share in (("spine1", "spine2", 1 / 3), ("spine2", "spine3", 2 / 3)):
+        world[:, _J[name]] = _follow(positions, pelvis @ _rotation(share * between), name, child)
+
+
+def _turn_head(positions: Array, world: Array) -> None:
+    """Neck and head turn to the side on which the head lies, and the face takes back a part of its pitch."""
+    chest = world[:, _J["spine3"]]
+    # The head joint lies in front of the neck, so its place shows to which side the face turns.
+    ahead = np.einsum("tji,tj->ti", chest, _toward(positions, "neck", "head"))
+    yaw = np.clip(np.arctan2(ahead[:, 0], np.maximum(ahead[:, 2], _LEAST_AHEAD)), -_MOST_YAW, _MOST_YAW)
+    for name, share in (("neck", 0.5), ("head", 1.0)):
+        turned = chest @ _rotation(share * yaw[:, None] * np.array([0.0, 1.0, 0.0]))
+        world[:, _J[name]] = _follow(positions, turned, "neck", "head")
+    # People who bend their necks go on looking ahead.
+    pitch = -np.arcsin(np.clip(world[:, _J["head"], 1, 2], -1.0, 1.0))
+    level = _MOST_LEVEL * np.tanh(0.6 * pitch / _MOST_LEVEL)
+    world[:, _J["head"]] = world[:, _J["head"]] @ _rotation(level[:, None] * np.array([-1.0, 0.0, 0.0]))
+
+
+def _turn_arm(positions: Array, world: Array, side: str, sign: float) -> None:
+    """The elbow bends about one axis, which gives the twist; ``sign`` is that of the axis in the T-pose."""
+    collar, shoulder, elbow, wrist = (f"{side}_{n}" for n in ("collar", "shoulder", "elbow", "wrist"))
+    world[:, _J[collar]] = _follow(positions, world[:, _J["spine3"]], collar, shoulder)
+    straight = _follow(positions, world[:, _J[collar]], shoulder, elbow)
+    upper = _toward(positions, shoulder, elbow)
+    hinge = straight @ np.array([0.0, sign, 0.0])
+    twist = _hinge_twist(upper, _toward(positions, elbow, wrist), hinge, _ARM_BEND)
+    # Half of the twist sits in the upper arm, all of it in the forearm: shoulders keep their shape.
+    world[:, _J[shoulder]] = _rotation(0.5 * twist[:, None] * upper) @ straight
+    world[:, _J[elbow]] = _follow(positions, _rotation(twist[:, None] * upper) @ straight, elbow, wrist)
+    world[:, _J[wrist]] = world[:, _J[elbow]]
+
+
+def _turn_leg(positions: Array, world: Array, side: str) -> None:
+    """The knee and the foot give the twist of the leg; a sole near the floor lies flat and its toes bend."""
+    hip, knee, ankle, foot = (f"{side}_{n}" for n in ("hip", "knee", "ankle", "foot"))
+    straight = _follow(positions, world[:, _J["pelvis"]], hip, knee)
+    thigh, shin = _toward(positions, hip, knee), _toward(positions, knee, ankle)
+    sole, rest_sole = _toward(positions, ankle, foot), _rest_toward(ankle, foot)
+    bend = _bend(thigh, shin, _LEG_BEND)
+    by_knee = _hinge_twist(thigh, shin, straight @ np.array([1.0, 0.0, 0.0]), _LEG_BEND)
+    by_foot = _angle_about(shin, _follow(positions, straight, knee, ankle) @ rest_sole, sole)
+    twist = np.clip(by_knee, -1.2, 1.2) + (1 - bend) * 0.6 * np.clip(by_foot, -_MOST_SHIN, _MOST_SHIN)
+    world[:, _J[hip]] = _rotation(twist[:, None] * thigh) @ straight
+    lower = _follow(positions, world[:, _J[hip]], knee, ankle)
+    by_foot = np.clip(_angle_about(shin, lower @ rest_sole, sole), -_MOST_SHIN, _MOST_SHIN)
+    world[:, _J[knee]] = _rotation(by_foot[:, None] * shin) @ lower
+    loose = _follow(positions, world[:, _J[knee]], ankle, foot)
+    low = 1 - _smooth_step(positions[:, _J[foot], 1], *_LOW_FOOT)
+    up = np.broadcast_to(np.array([0.0, 1.0, 0.0]), sole.shape)
+    roll = np.clip(_angle_about(sole, loose[:, :, 1], up), -_MOST_ROLL, _MOST_ROLL)
+    world[:, _J[ankle]] = _rotation((low * roll)[:, None] * sole) @ loose
+    raised = np.arcsin(np.clip(-world[:, _J[ankle], 1, 2], 0.0, 0.9))  # the heel above the toes
+    axis = np.array([-1.0, 0.0, 0.0])
+    world[:, _J[foot]] = world[:, _J[ankle]] @ _rotation((low * raised)[:, None] * axis)
+
+
 def _bend(first: Array, second: Array, span: tuple[float, float]) -> Array:
     """(T,) 0 where two bones are in line, 1 where the direction of their hinge is well determined."""
     return _smooth_step(np.linalg.norm(np.cross(first, second), axis=-1), *span)
@@ -236,11 +260,11 @@ def _hinge_twist(first: Array, second: Array, hinge: Array, span: tuple[float, f
     return angle * _bend(first, second, span) * (1 - _smooth_step(np.abs(angle), 2.4, 3.0))
 
 
-def _angle_about(axis: Array, start: Array, end: Array) -> Array:
-    """(T,) signed angle about unit ``axis`` from ``start`` to ``end``, each (T, 3)."""
-    start = start - np.sum(start * axis, axis=-1, keepdims=True) * axis
-    end = end - np.sum(end * axis, axis=-1, keepdims=True) * axis
-    return np.arctan2(np.sum(axis * np.cross(start, end), axis=-1), np.sum(start * end, axis=-1))
+def _angle_about(axis: Array, first: Array, second: Array) -> Array:
+    """(T,) signed angle about unit ``axis`` from ``first`` to ``second``, each (T, 3)."""
+    first = first - np.sum(first * axis, axis=-1, keepdims=True) * axis
+    second = second - np.sum(second * axis, axis=-1, keepdims=True) * axis
+    return np.arctan2(np.sum(axis * np.cross(first, second), axis=-1), np.sum(first * second, axis=-1))
 
 
 def _rotation(vector: Array) -> Array:

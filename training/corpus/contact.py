@@ -8,7 +8,7 @@ follows a minimum-jerk course (Flash and Hogan 1985), so nothing jumps.
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 
 import numpy as np
 from scipy.ndimage import gaussian_filter1d
@@ -181,6 +181,31 @@ def reach(
     def trunk(share: float) -> Array:
         return np.cross(UP, direction[0]) * (lean * share) + UP * (turn * share)
 
+    share, lacking = _least_trunk(positions[still], goals, trunk)
+    if share > 0:
+        left_over = min(lacking * 1.2, shift)
+        if left_over > 0.005:
+            positions = shift_hips(positions, direction * left_over * weight[:, None])
+        positions = bend(positions, trunk(share)[None] * weight[:, None])
+    for side, target in targets.items():
+        positions = reach_arm(positions, side, target, weight, elbow=elbow)
+    return positions
+
+
+def _least_trunk(
+    pose: Array, goals: Mapping[str, Array], trunk: Callable[[float], Array]
+) -> tuple[float, float]:
+    """How far the trunk must help the arms reach their goals at one pose.
+
+    Args:
+        pose: (1, 22, 3) the person.
+        goals: "left" and/or "right" to (1, 3).
+        trunk: the rotation vector (3,) of the trunk for a share of its most, 0 to 1.
+
+    Returns:
+        the least share with which the goals are in reach, and the metres missing at the most share (0 if none).
+    """
+
     def missing(body: Array) -> float:
         return max(
             float(np.linalg.norm(goal - body[:, ARMS[side][1]], axis=-1)[0])
@@ -189,21 +214,16 @@ def reach(
         )
 
     shares = np.linspace(0, 1, 6)
-    lacking = [missing(bend(positions[still], trunk(share)[None])) for share in shares]
+    lacking = [missing(bend(pose, trunk(share)[None])) for share in shares]
     enough = np.flatnonzero(np.array(lacking) <= 0)
-    if len(enough) and enough[0] > 0:  # between the last share too little and the first enough
-        high = int(enough[0])
-        share = shares[high - 1] + shares[1] * lacking[high - 1] / (lacking[high - 1] - lacking[high])
-    else:
-        share = shares[enough[0]] if len(enough) else 1.0
-    if share > 0:
-        left_over = 0.0 if len(enough) else min(lacking[-1] * 1.2, shift)
-        if left_over > 0.005:
-            positions = shift_hips(positions, direction * left_over * weight[:, None])
-        positions = bend(positions, trunk(float(share))[None] * weight[:, None])
-    for side, target in targets.items():
-        positions = reach_arm(positions, side, target, weight, elbow=elbow)
-    return positions
+    if not len(enough):
+        return 1.0, lacking[-1]
+    high = int(enough[0])
+    if high == 0:
+        return float(shares[0]), 0.0
+    # Between the last share too little and the first enough.
+    share = shares[high - 1] + shares[1] * lacking[high - 1] / (lacking[high - 1] - lacking[high])
+    return float(share), 0.0
 
 
 def _arm_length(positions: Array, side: str) -> float:

@@ -16,7 +16,7 @@ from ..words.lexicon import ANSWERS as REPLIES
 from ..words.lexicon import Pair, sentences
 from ..words.narrator import ALONE, JOINT, ONE_BEAT
 from . import moves
-from .acts import ACTS
+from .acts import ACTS, Done
 from .performer import Rng
 from .play import Play
 from .touching import TOUCH_BEATS
@@ -73,56 +73,14 @@ def solo(name: str) -> Callable[[Play, int], None]:
     """A beat in which i does something and the other answers, does the same, does something else, or watches."""
 
     def make(play: Play, i: int) -> None:
-        rng, act = play.rng, ACTS[name]
-        start = play.sync()
-        if abs(play.off(i)) > 1.0 and (play.wish or rng.random() < 0.8):
-            play.people[i].turn(play.off(i))
-            if len(play.people[i]) - start > 25:
-                play.note(("turn-to", "stand"), start, i=i, relation="while", minor=True)
-                start = play.sync()
-        draw = rng.random()
+        start = _face(play, i)
+        draw = play.rng.random()
         if play.wish:
-            need = max(act.room, ACTS[play.wish[1]].room if play.wish[1] in ACTS else 0.0)
+            need = max(ACTS[act].room for act in (name, play.wish[1]) if act in ACTS)
             moves.make_room(play, i, need + 0.1)
             start = play.sync()
-        done = act.make(play, i)
-        answer, relation = "stand", "while"
-        other = play.people[1 - i]
-        if play.wish:
-            answer = play.wish[1]
-            if answer in ACTS and not play.library.has(*ACTS[answer].needs):
-                raise LookupError(f"no {answer}")
-        elif draw < 0.28:
-            answer = name
-        elif draw < 0.62:
-            answer = pick(rng, [a for a in ANSWERS if a != name and play.library.has(*ACTS[a].needs)])
-        elif draw < 0.68:
-            answer = "turn-away"
-        elif draw < 0.72:
-            answer = "turn-to"
-        second = None
-        if answer in ACTS and play.gap > ACTS[answer].room - (0.4 if play.wish else 0.0):
-            relation = pick(rng, ("while", "reply", "reply", "order"))
-            wait = {
-                "while": done.start - 4,
-                "reply": done.start + play.seconds(0.5, 1.3),
-                "order": done.stop - 4,
-            }[relation]
-            if relation != "while" and abs(play.off(1 - i)) > 0.9:
-                other.turn(play.off(1 - i))
-            other.hold_until(wait)
-            second = ACTS[answer].make(play, 1 - i)
-        elif answer == "turn-away" and abs(play.off(1 - i)) < 1.0:
-            other.hold_until(done.start + play.seconds(0.4, 1.0))
-            other.turn(pick(rng, (-1, 1)) * rng.uniform(2.2, 3.1))
-            play.look(1 - i, done.start, len(other) + 30, 0.0)
-            relation = "reply"
-        elif answer == "turn-to" and abs(play.off(1 - i)) > 1.2:
-            other.hold_until(done.start + play.seconds(0.2, 0.8))
-            other.turn(play.off(1 - i))
-            relation = "reply"
-        else:
-            answer = "stand"
+        done = ACTS[name].make(play, i)
+        answer, relation, second = _play_answer(play, 1 - i, _draw_answer(play, name, draw), done)
         play.note(
             (name, answer), start, i=i, relation=relation,
             sides=(done.side, second.side if second else None),
@@ -130,6 +88,62 @@ def solo(name: str) -> Callable[[Play, int], None]:
         )  # fmt: skip
 
     return make
+
+
+def _face(play: Play, i: int) -> int:
+    """Turns person i to the other, most of the time; the frame at which the beat proper begins."""
+    start = play.sync()
+    if abs(play.off(i)) > 1.0 and (play.wish or play.rng.random() < 0.8):
+        play.people[i].turn(play.off(i))
+        if len(play.people[i]) - start > 25:
+            play.note(("turn-to", "stand"), start, i=i, relation="while", minor=True)
+            start = play.sync()
+    return start
+
+
+def _draw_answer(play: Play, name: str, draw: float) -> str:
+    """What the other does while one person does ``name``: as the story wishes, or by ``draw`` from 0 to 1."""
+    if play.wish:
+        answer = play.wish[1]
+        if answer in ACTS and not play.library.has(*ACTS[answer].needs):
+            raise LookupError(f"no {answer}")
+        return answer
+    if draw < 0.28:
+        return name
+    if draw < 0.62:
+        return pick(play.rng, [a for a in ANSWERS if a != name and play.library.has(*ACTS[a].needs)])
+    if draw < 0.68:
+        return "turn-away"
+    return "turn-to" if draw < 0.72 else "stand"
+
+
+def _play_answer(play: Play, i: int, answer: str, done: Done) -> tuple[str, str, Done | None]:
+    """Person i answers what the other has ``done``: the act that came of it, its relation, how it was done.
+
+    An answer that does not fit where the two stand becomes "stand".
+    """
+    rng, person = play.rng, play.people[i]
+    if answer in ACTS and play.gap > ACTS[answer].room - (0.4 if play.wish else 0.0):
+        relation = pick(rng, ("while", "reply", "reply", "order"))
+        wait = {
+            "while": done.start - 4,
+            "reply": done.start + play.seconds(0.5, 1.3),
+            "order": done.stop - 4,
+        }[relation]
+        if relation != "while" and abs(play.off(i)) > 0.9:
+            person.turn(play.off(i))
+        person.hold_until(wait)
+        return answer, relation, ACTS[answer].make(play, i)
+    if answer == "turn-away" and abs(play.off(i)) < 1.0:
+        person.hold_until(done.start + play.seconds(0.4, 1.0))
+        person.turn(pick(rng, (-1, 1)) * rng.uniform(2.2, 3.1))
+        play.look(i, done.start, len(person) + 30, 0.0)
+        return answer, "reply", None
+    if answer == "turn-to" and abs(play.off(i)) > 1.2:
+        person.hold_until(done.start + play.seconds(0.2, 0.8))
+        person.turn(play.off(i))
+        return answer, "reply", None
+    return "stand", "while", None
 
 
 def _room(name: str) -> Callable[[Play, int], bool]:
@@ -260,7 +274,7 @@ def _begin(play: Play) -> None:
 def _ended(play: Play) -> Scene:
     for person in play.people:
         person.hold(min(play.seconds(0.2, 0.5), MOST - play.frames))
-    return told(play.rng, play, play.library.split)
+    return as_scene(play.rng, play, play.library.split)
 
 
 def _improvise(play: Play, wanted: int, *, first: str | None = None) -> None:
@@ -352,7 +366,7 @@ def draw_beat(rng: Rng, play: Play, i: int, used: list[str]) -> str | None:
     return open_names[int(rng.choice(len(open_names), p=weights / weights.sum()))]
 
 
-def told(rng: Rng, play: Play, split: str) -> Scene:
+def as_scene(rng: Rng, play: Play, split: str) -> Scene:
     """The finished scene with its captions."""
     positions, touches = play.finish(MOST)
     frames = positions.shape[1]
