@@ -9,6 +9,7 @@ from __future__ import annotations
 import statistics
 import time
 from collections.abc import Callable
+from dataclasses import replace
 from functools import partial
 from typing import Any
 
@@ -31,13 +32,16 @@ def run_benchmark(*, seconds: float, steps: int, repeats: int, browser: bool = F
         steps: DDIM steps.
         repeats: pairs of runs; medians are reported.
         browser: also measure the page and the player in a headless Chromium.
+
+    Returns:
+        the figures by name, which are also printed.
     """
     from models.intergen.compact import load_folder
     from webdemo.benchmark.interformer import measure_interformer
-    from webdemo.benchmark.parts import REQUEST_GOAL, UNDAMPED_GOAL, measure_busy, measure_parts
+    from webdemo.benchmark.parts import measure_busy, measure_parts
     from webdemo.benchmark.reactions import measure_reactions
     from webdemo.inference.engine import Engine
-    from webdemo.inference.requests import GenerateRequest, Result
+    from webdemo.inference.requests import GenerateRequest
     from webdemo.inference.threads import CORES
 
     engine = Engine()
@@ -45,42 +49,18 @@ def run_benchmark(*, seconds: float, steps: int, repeats: int, browser: bool = F
     request = GenerateRequest(
         prompt="Two people walk up to each other and shake hands.", seconds=seconds, steps=steps
     )
-    pipeline: Any = engine.pipeline(request.model)
     by_torch = load_folder(engine.weights / request.model)[0].denoiser
-    plain = PlainSampler(by_torch, pipeline, request)
-    whole, stages, plainly = [], [], []
-    for _ in range(repeats):
-        began = time.perf_counter()
-        *_, result = engine.run(request)
-        assert isinstance(result, Result)  # the last event of a run
-        whole.append(time.perf_counter() - began)
-        stages.append(result.timings)
-        plainly.extend(timed(plain.run, 1))
-    middle = {name: statistics.median(s.get(name, 0.0) for s in stages) for name in stages[0]}
-    bare = _replace(request, damping=0.0)
-    undamped = timed(lambda: list(engine.run(bare)), repeats)
-    four = timed(lambda: list(engine.run(_replace(bare, samples=4))), 1)[0]
     figures: dict[str, Any] = {
         "threads": CORES,
-        "compiled": pipeline.compiled,
+        "compiled": engine.pipeline(request.model).compiled,
         "frames": round(seconds * 30),
         "steps": steps,
         "load_seconds": load,
-        "request_seconds": statistics.median(whole),
-        "request_seconds_all": whole,
-        "request_seconds_goal": REQUEST_GOAL,
-        "sample_seconds": middle["sample"],
-        "finish_seconds": middle["finish"],
-        "undamped_request_seconds": statistics.median(undamped),
-        "undamped_request_seconds_goal": UNDAMPED_GOAL,
-        "plain_sample_seconds": statistics.median(plainly),
-        "plain_over_request": statistics.median(p / w for p, w in zip(plainly, whole, strict=True)),
-        "plain_over_undamped": statistics.median(plainly) / statistics.median(undamped),
-        "four_samples_over_one": four / statistics.median(undamped),
     }
+    figures |= measure_requests(engine, request, by_torch, repeats)
     figures |= measure_parts(engine, request, by_torch, repeats)
     figures |= measure_busy(lambda: list(engine.run(request)), figures["request_seconds"], repeats)
-    figures |= measure_classes(bare, repeats)
+    figures |= measure_classes(replace(request, damping=0.0), repeats)
     figures |= measure_prediction(max(repeats, 5))
     figures |= measure_reactions(repeats)
     figures |= measure_interformer(max(repeats, 3))
@@ -94,6 +74,47 @@ def run_benchmark(*, seconds: float, steps: int, repeats: int, browser: bool = F
     return figures
 
 
+def measure_requests(engine: Any, request: Any, by_torch: Any, repeats: int) -> dict[str, Any]:
+    """Seconds of a request, of the same without damping and with four samples, and those of the plain run.
+
+    Args:
+        engine: has the model.
+        request: of the default model.
+        by_torch: its denoiser, run by PyTorch.
+        repeats: pairs of runs; medians are reported.
+    """
+    from webdemo.benchmark.parts import REQUEST_GOAL, UNDAMPED_GOAL
+    from webdemo.benchmark.plain import PlainSampler
+    from webdemo.inference.requests import Result
+
+    plain = PlainSampler(by_torch, engine.pipeline(request.model), request)
+    whole, stages, plainly = [], [], []
+    for _ in range(repeats):
+        began = time.perf_counter()
+        *_, result = engine.run(request)
+        assert isinstance(result, Result)  # the last event of a run
+        whole.append(time.perf_counter() - began)
+        stages.append(result.timings)
+        plainly.extend(timed(plain.run, 1))
+    middle = {name: statistics.median(s.get(name, 0.0) for s in stages) for name in stages[0]}
+    bare = replace(request, damping=0.0)
+    undamped = timed(lambda: list(engine.run(bare)), repeats)
+    (four,) = timed(lambda: list(engine.run(replace(bare, samples=4))), 1)
+    return {
+        "request_seconds": statistics.median(whole),
+        "request_seconds_all": whole,
+        "request_seconds_goal": REQUEST_GOAL,
+        "sample_seconds": middle["sample"],
+        "finish_seconds": middle["finish"],
+        "undamped_request_seconds": statistics.median(undamped),
+        "undamped_request_seconds_goal": UNDAMPED_GOAL,
+        "plain_sample_seconds": statistics.median(plainly),
+        "plain_over_request": statistics.median(p / w for p, w in zip(plainly, whole, strict=True)),
+        "plain_over_undamped": statistics.median(plainly) / statistics.median(undamped),
+        "four_samples_over_one": four / statistics.median(undamped),
+    }
+
+
 def measure_classes(request: Any, repeats: int) -> dict[str, float]:
     """Seconds of a class, and over those of a sentence of the same length and steps, run in turn."""
     from webdemo.inference.engine import Engine
@@ -101,7 +122,7 @@ def measure_classes(request: Any, repeats: int) -> dict[str, float]:
 
     engine = Engine()
     by_class = next(found.name for found in methods("generate") if "class" in found.takes)
-    classed = _replace(request, prompt="shake hands", model=by_class)
+    classed = replace(request, prompt="shake hands", model=by_class)
     jobs = [partial(lambda asked: list(engine.run(asked)), asked) for asked in (classed, request)]
     for job in jobs:  # the first runs prepare what later ones use
         job()
@@ -138,69 +159,3 @@ def measure_prediction(repeats: int) -> dict[str, float]:
     eye.looks(moving)
     figures["agent_looks_ms"] = 1000 * statistics.median(timed(partial(eye.looks, moving), repeats))
     return figures
-
-
-def _replace(request: Any, **changes: Any) -> Any:
-    from dataclasses import replace
-
-    return replace(request, **changes)
-
-
-class PlainSampler:
-    """The same network, sampled without batching or caching, in float32.
-
-    Each person and each guidance half is a pass of its own through ``torch.nn.MultiheadAttention``, and the
-    prompt is encoded anew at every step: how the papers' equations read, and what the ratios are against.
-    """
-
-    def __init__(self, denoiser: Any, pipeline: Any, request: Any) -> None:
-        self.denoiser, self.pipeline, self.request = denoiser, pipeline, request
-
-    def run(self) -> Any:
-        """Samples one motion; returns it in network space."""
-        import torch
-
-        from models.diffusion import denoise, guide, make_scheduler
-        from webdemo.inference.noise import sample_noise
-
-        request, model = self.request, self.pipeline.model
-        tokens = model.layout.num_tokens(round(request.seconds * 30))
-        noise = sample_noise(request.seed, 1, (tokens, 2 * model.layout.token_features))
-
-        def predict(x: Any, t: Any) -> Any:
-            condition, _ = self.pipeline.condition(request.prompt)
-            nothing = torch.zeros_like(condition)
-            return guide(self.forward(x, t, condition), self.forward(x, t, nothing), request.guidance)
-
-        return denoise(predict, noise, make_scheduler("ddim", request.steps, spacing="top"))
-
-    def forward(self, x: Any, t: Any, condition: Any) -> Any:
-        """InterGen's denoiser, one person at a time: (1, T, 2F) → (1, T, 2F)."""
-        import torch
-
-        from models.layers import sinusoids
-
-        net = self.denoiser
-        embs = net.embed(t, condition).expand(2, 1, -1)[:, None]
-        states = [
-            net.motion_embed(person) + sinusoids(x.shape[1], net.config.latent_dim) + net.role_embedding[i]
-            for i, person in enumerate(x.chunk(2, dim=-1))
-        ]
-        for block in net.blocks:
-            before, after = states, []
-            for i, (h, emb) in enumerate(zip(before, embs, strict=True)):
-                query = block.sa_block.norm(h[None], emb)[0]
-                h = h + _attention(block.sa_block.attention, query, query)
-                query = block.ca_block.norm(h[None], emb)[0]
-                other = block.ca_block.xf_norm(before[1 - i][None], emb)[0]
-                h = h + _attention(block.ca_block.attention, query, other)
-                after.append(h + block.ffn(h[None], emb)[0])
-            states = after
-        return torch.cat([net.out(h[None])[0] for h in states], dim=-1)
-
-
-def _attention(module: Any, query: Any, source: Any) -> Any:
-    """The module's weights in PyTorch's own multi-head attention."""
-    import torch
-
-    return torch.nn.MultiheadAttention.forward(module, query, source, source, need_weights=False)[0]
