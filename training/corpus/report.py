@@ -10,7 +10,7 @@ import textwrap
 from collections import defaultdict
 from collections.abc import Sequence
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -50,41 +50,83 @@ def report(motions: NDArray[np.floating], index: list[dict[str, Any]], out: Path
         families[scene["family"]].append(scene)
     pictures = out / "corpus"
     pictures.mkdir(parents=True, exist_ok=True)
+    rows = [_family(name, scenes, motions, pictures) for name, scenes in sorted(families.items())]
+    text = "\n".join([*_head(rows, index), *_table(rows), ""])
+    with replacing(out / "corpus.md") as temporary:
+        temporary.write_text(text)
+    return text
+
+
+class _Family(NamedTuple):
+    """A row of the table: ``gap`` is the median distance in cm of joints that touch, None if none do."""
+
+    name: str
+    scenes: int
+    test: int
+    minutes: float
+    captions: int
+    drift: float
+    skate: float
+    overlap: float
+    gap: float | None
+
+
+def _family(
+    name: str, scenes: list[dict[str, Any]], motions: NDArray[np.floating], pictures: Path
+) -> _Family:
+    """Measures a family and draws one of its scenes into ``pictures``."""
+    chosen = scenes[:: max(len(scenes) // MEASURED, 1)][:MEASURED]
+    duets = [_duet(motions, scene) for scene in chosen]
+    contacts = [(scene.get("events") or {}).get("contact") for scene in chosen]
+    gaps = [100 * touch_gap(d, c) for d, c in zip(duets, contacts, strict=True) if c]
+    found = [(bone_drift(d), foot_skate(d).speed, penetration(d).mean) for d in duets]
+    drift, skate, overlap = np.mean(found, axis=0)
+    sheet = contact_sheet(duets[-1], title=f"{name}: {chosen[-1]['captions'][0]}", frames=6)
+    sheet = sheet.resize((PICTURE_WIDTH, round(sheet.height * PICTURE_WIDTH / sheet.width)))
+    with replacing(pictures / f"{name}.webp") as temporary:
+        sheet.save(temporary, "webp", quality=60)
+    return _Family(
+        name=name,
+        scenes=len(scenes),
+        test=sum(scene["split"] == "test" for scene in scenes),
+        minutes=sum(scene["frames"] for scene in scenes) / FPS / 60,
+        captions=len({caption for scene in scenes for caption in scene["captions"]}),
+        drift=drift,
+        skate=skate,
+        overlap=overlap,
+        gap=float(np.median(gaps)) if gaps else None,
+    )
+
+
+def _table(rows: Sequence[_Family]) -> list[str]:
     lines = [
         "| Family | Scenes (test) | Minutes | Captions | Bone drift, % | Foot skate, cm/s | Penetration, cm "
         "| Touching joints, cm | Scene |",
         "|---|---|---|---|---|---|---|---|---|",
     ]
-    rows = []
-    for name, scenes in sorted(families.items()):
-        chosen = scenes[:: max(len(scenes) // MEASURED, 1)][:MEASURED]
-        duets = [_duet(motions, scene) for scene in chosen]
-        contacts = [(scene.get("events") or {}).get("contact") for scene in chosen]
-        gaps = [100 * touch_gap(d, c) for d, c in zip(duets, contacts, strict=True) if c]
-        found = [(bone_drift(d), foot_skate(d).speed, penetration(d).mean) for d in duets]
-        drift, skate, overlap = np.mean(found, axis=0)
-        minutes = sum(scene["frames"] for scene in scenes) / FPS / 60
-        test = sum(scene["split"] == "test" for scene in scenes)
-        captions = len({caption for scene in scenes for caption in scene["captions"]})
-        touching = f"{np.median(gaps):.0f}" if gaps else "–"
-        rows.append((minutes, len(scenes), drift, skate, overlap))
+    for row in rows:
+        gap = "–" if row.gap is None else f"{row.gap:.0f}"
         lines.append(
-            f"| {name} | {len(scenes)} ({test}) | {minutes:.1f} | {captions} | {drift:.2f} | {skate:.1f} "
-            f"| {overlap:.2f} | {touching} | [sheet](corpus/{name}.webp) |"
+            f"| {row.name} | {row.scenes} ({row.test}) | {row.minutes:.1f} | {row.captions} | {row.drift:.2f} "
+            f"| {row.skate:.1f} | {row.overlap:.2f} | {gap} | [sheet](corpus/{row.name}.webp) |"
         )
-        sheet = contact_sheet(duets[-1], title=f"{name}: {chosen[-1]['captions'][0]}", frames=6)
-        sheet = sheet.resize((PICTURE_WIDTH, round(sheet.height * PICTURE_WIDTH / sheet.width)))
-        with replacing(pictures / f"{name}.webp") as temporary:
-            sheet.save(temporary, "webp", quality=60)
-    minutes, count, *measures = np.array(rows).T
-    drift, skate, overlap = (np.average(column, weights=minutes) for column in measures)
+    return lines
+
+
+def _head(rows: Sequence[_Family], index: list[dict[str, Any]]) -> list[str]:
+    """What stands above the table: sizes, means weighted by minutes, and how the corpus was split and measured."""
+    minutes = np.array([row.minutes for row in rows])
+    drift, skate, overlap = (
+        np.average([getattr(row, key) for row in rows], weights=minutes)
+        for key in ("drift", "skate", "overlap")
+    )
     recorded = [s for s in index if str((s.get("sources") or [""])[0]).startswith(("sbu", "k3hi"))]
     captions = {caption for scene in index for caption in scene["captions"]}
-    head = [
+    return [
         "# The corpus",
         "",
         _wrapped(
-            f"{int(count.sum()):,} scenes of {len(families)} families, {minutes.sum() / 60:.1f} hours at "
+            f"{len(index):,} scenes of {len(rows)} families, {minutes.sum() / 60:.1f} hours at "
             f"30 fps, with {len(captions):,} different captions. {len(recorded)} scenes "
             f"({sum(s['frames'] for s in recorded) / FPS / 60:.0f} minutes) are recorded pairs; the others "
             f"are composed from single-person recordings. Overall, bone drift is {drift:.2f} %, foot skate "
@@ -106,10 +148,6 @@ def report(motions: NDArray[np.floating], index: list[dict[str, Any]], out: Path
         "`python -m training.corpus.report` rebuilds this page.",
         "",
     ]
-    text = "\n".join([*head, *lines, ""])
-    with replacing(out / "corpus.md") as temporary:
-        temporary.write_text(text)
-    return text
 
 
 def _wrapped(paragraph: str) -> str:

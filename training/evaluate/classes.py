@@ -107,27 +107,15 @@ def evaluate(
     classifier = fit_classifier(train, where, len(labels))
     duets, where = recorded("test")
     test = features(extractor, duets)
-    known = {source for row in scenes.split("train") for source in row["sources"]}
-    tested = right_handed(scenes.split("test"))
     found: dict[str, Any] = {
-        "tested": sorted({CLASSES[row["family"]] for row in tested}),
-        "known": sorted({CLASSES[row["family"]] for row in tested if known & set(row["sources"])}),
+        **_tested(scenes),
         "real": {
             "accuracy": accuracy(classifier, test, where),
             "FID": frechet_distance(train[rng.permutation(len(train))[: len(test)]].numpy(), test.numpy()),
             **score(duets, [Task("", "", {}, 0)] * len(duets)),
         },
     }
-    made: list[Duet] = []
-    tasks: list[Task] = []
-    for label in labels:
-        wanted = tasks_of(scenes, label, rng, samples)
-        seconds = float(np.clip(round(2 * wanted[0].frames / 30) / 2, 2.0, 10.0))
-        request = GenerateRequest(prompt=label, model=MODEL, seconds=seconds, samples=samples, **sampling)
-        made += [
-            d for e in engine.run(request) if isinstance(e, Result) for d in e.duets if isinstance(d, Duet)
-        ]
-        tasks += wanted
+    made, tasks = _generate(scenes, engine, labels, rng, samples=samples, **sampling)
     own = features(extractor, made)
     wanted_labels = torch.arange(len(labels)).repeat_interleave(samples)
     found["generated"] = {
@@ -142,6 +130,39 @@ def evaluate(
         if missed[wanted_labels == i].any()
     }
     return found
+
+
+def _tested(scenes: Scenes) -> dict[str, list[str]]:
+    """Classes of the test scenes, ``tested``, and those of them that share a recording with training scenes."""
+    trained = {source for row in scenes.split("train") for source in row["sources"]}
+    tested = right_handed(scenes.split("test"))
+    return {
+        "tested": sorted({CLASSES[row["family"]] for row in tested}),
+        "known": sorted({CLASSES[row["family"]] for row in tested if trained & set(row["sources"])}),
+    }
+
+
+def _generate(
+    scenes: Scenes,
+    engine: Engine,
+    labels: Sequence[str],
+    rng: np.random.Generator,
+    *,
+    samples: int,
+    **sampling: Any,
+) -> tuple[list[Duet], list[Task]]:
+    """``samples`` motions of each class, and what each of them should show."""
+    made: list[Duet] = []
+    tasks: list[Task] = []
+    for label in labels:
+        wanted = tasks_of(scenes, label, rng, samples)
+        seconds = float(np.clip(round(2 * wanted[0].frames / 30) / 2, 2.0, 10.0))
+        request = GenerateRequest(prompt=label, model=MODEL, seconds=seconds, samples=samples, **sampling)
+        made += [
+            d for e in engine.run(request) if isinstance(e, Result) for d in e.duets if isinstance(d, Duet)
+        ]
+        tasks += wanted
+    return made, tasks
 
 
 def table(found: dict[str, Any], about: str) -> str:
