@@ -49,10 +49,11 @@ def run_benchmark(*, seconds: float, steps: int, repeats: int, browser: bool = F
     request = GenerateRequest(
         prompt="Two people walk up to each other and shake hands.", seconds=seconds, steps=steps
     )
+    pipeline: Any = engine.pipeline(request.model)
     by_torch = load_folder(engine.weights / request.model)[0].denoiser
     figures: dict[str, Any] = {
         "threads": CORES,
-        "compiled": engine.pipeline(request.model).compiled,
+        "compiled": pipeline.compiled,
         "frames": round(seconds * 30),
         "steps": steps,
         "load_seconds": load,
