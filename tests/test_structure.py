@@ -96,9 +96,9 @@ def test_imports_are_understood() -> None:
     assert "motion.errors" in ours("motion.formats.files")
     assert "webdemo.inference.pipelines.intergen" in ours("webdemo.inference.methods.intergen")
     assert "torch" in imports("webdemo.inference.pipelines.two_person", True)
-    assert "torch" not in imports("webdemo.benchmark.suite", True)
+    assert "torch" not in imports("webdemo.benchmark.parts", True)
     assert "webdemo.inference.pipelines.intergen" not in reached("webdemo.inference.methods")
-    assert "torch" in imports("webdemo.benchmark.suite", False)
+    assert "torch" in imports("webdemo.benchmark.parts", False)
     assert "motion.clip" in reached("webdemo.ui.page")
 
 
@@ -164,3 +164,46 @@ def test_no_file_names_a_place_on_somebodys_machine() -> None:
         if b"\0" not in data[:8000] and (match := place.search(data)):
             found[name] = match[0]
     assert not found
+
+
+LONGEST_FUNCTION, DEEPEST_BLOCK, LONGEST_FILE = 60, 5, 450
+BLOCKS = (ast.For, ast.While, ast.If, ast.With, ast.Try, ast.Match, ast.AsyncFor, ast.AsyncWith)
+FUNCTIONS = (ast.FunctionDef, ast.AsyncFunctionDef)
+
+
+def nesting(node: ast.AST) -> int:
+    """How many blocks and functions stand inside each other below a node; an ``elif`` is no deeper than its ``if``."""
+    deepest = 0
+    for name, value in ast.iter_fields(node):
+        for child in value if isinstance(value, list) else [value]:
+            if isinstance(child, ast.AST):
+                is_elif = (
+                    isinstance(node, ast.If)
+                    and isinstance(child, ast.If)
+                    and (name, len(value)) == ("orelse", 1)
+                )
+                own = isinstance(child, (*BLOCKS, *FUNCTIONS)) and not is_elif
+                deepest = max(deepest, own + nesting(child))
+    return deepest
+
+
+def test_nesting_is_counted() -> None:
+    tree = ast.parse("for x in y:\n if x:\n  pass\n elif z:\n  with z:\n   pass\n")
+    assert nesting(tree) == 3
+    assert nesting(ast.parse("def f():\n def g():\n  try:\n   pass\n  finally:\n   pass\n")) == 3
+
+
+def test_functions_are_short_and_flat() -> None:
+    long, deep = set(), set()
+    for module, path in FILES.items():
+        for node in ast.walk(ast.parse(path.read_text())):
+            if isinstance(node, FUNCTIONS):
+                lines = (node.end_lineno or node.lineno) - node.lineno + 1
+                long |= {f"{module}.{node.name}: {lines} lines"} if lines > LONGEST_FUNCTION else set()
+                deep |= {f"{module}.{node.name}"} if nesting(node) > DEEPEST_BLOCK else set()
+    assert not long and not deep, "take these apart"
+
+
+def test_files_are_short() -> None:
+    lines = {module: path.read_text().count("\n") for module, path in FILES.items()}
+    assert not {module: count for module, count in lines.items() if count > LONGEST_FILE}, "split these"

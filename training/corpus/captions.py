@@ -13,23 +13,21 @@ from __future__ import annotations
 import re
 import zlib
 from collections.abc import Mapping
-from functools import cache
 from typing import Any
 
 import numpy as np
 
 from training.evaluate.judge.sentences import kept_out
 
+from .grammar import article, conjugate, expand
 from .phrases import ACTIONS, ENTRIES
 from .wording import (
     ADJECTIVES,
     BOTH,
     CASES,
     DISTANCES,
-    DOUBLED,
     FRAMES,
     GROUPS,
-    IRREGULAR,
     LEADS,
     MANNERS,
     ONE,
@@ -43,52 +41,6 @@ FAMILIES: tuple[str, ...] = tuple(ENTRIES)
 
 SLOTS = ("side_a", "side_b", "manner_a", "manner_b", "speed", "distance", "direction", "thing",
          "act_a", "act_b", "first", "second")  # fmt: skip
-
-
-def conjugate(verb: str, form: str) -> str:
-    """A verb in a form: "s" (waves), "plural" (wave), "ing" (waving) or "inf" (wave)."""
-    index = ("s", "plural", "ing", "inf").index(form)
-    if verb in IRREGULAR:
-        return IRREGULAR[verb][index]
-    stem, hyphen, rest = verb.partition("-")
-    if hyphen:  # high-five: the last part is inflected
-        return f"{stem}-{conjugate(rest, form)}"
-    if form in ("plural", "inf"):
-        return verb
-    if form == "s":
-        if re.search(r"(s|x|z|ch|sh)$", verb):
-            return verb + "es"
-        return verb[:-1] + "ies" if re.search(r"[^aeiou]y$", verb) else verb + "s"
-    if verb in DOUBLED:
-        return verb + verb[-1] + "ing"
-    return (verb[:-1] if re.search(r"[^eo]e$", verb) else verb) + "ing"
-
-
-_SWAP = {"left": "right", "clockwise": "counterclockwise", "leftwards": "rightwards"}
-_SWAP.update({value: key for key, value in _SWAP.items()} | {"anticlockwise": "clockwise"})
-
-
-def mirror_caption(text: str) -> str:
-    """The caption of the mirrored motion: left and right, clockwise and counterclockwise change places."""
-
-    def other(match: re.Match[str]) -> str:
-        word = match.group(0)
-        swapped = _SWAP[word.lower()]
-        return swapped.upper() if word.isupper() else swapped.capitalize() if word[0].isupper() else swapped
-
-    return re.sub(rf"\b({'|'.join(_SWAP)})\b", other, text, flags=re.IGNORECASE)
-
-
-@cache
-def expand(pattern: str) -> tuple[str, ...]:
-    """All strings that a pattern with alternatives ``(a|b|)`` stands for."""
-    match = re.search(r"\(([^()]*\|[^()]*)\)", pattern)
-    if match is None:
-        return (pattern,)
-    head, tail = pattern[: match.start()], pattern[match.end() :]
-    return tuple(
-        dict.fromkeys(s for choice in match.group(1).split("|") for s in expand(head + choice + tail))
-    )
 
 
 def _held_out(pattern: str) -> bool:
@@ -402,7 +354,7 @@ class _Writer:
     def _finish(self, text: str, *, keyword: bool = False) -> str:
         """Articles, casing and punctuation."""
         text = re.sub(r"\s+", " ", text).strip()
-        text = re.sub(r"(?<!erson )\b([Aa])n? (?=(\w+))", _article, text)
+        text = re.sub(r"(?<!erson )\b([Aa])n? (?=(\w+))", article, text)
         text = re.sub(r"^First (?=(the|person) )", "First, ", text)
         text = re.sub(r"(?<=\. )[a-z]", lambda match: match.group(0).upper(), text)
         if keyword:
@@ -415,10 +367,3 @@ class _Writer:
             return text[0].upper() + text[1:-1]
         text = re.sub(r"(^|\. )([A-Z])(?=[a-z])", lambda m: m.group(1) + m.group(2).lower(), text)
         return text[:-1] if style < 0.93 else text
-
-
-def _article(match: re.Match[str]) -> str:
-    """ "a " or "an ", as the word behind it asks."""
-    word = match.group(2).lower()
-    vowel = word[0] in "aeiou" and not re.match(r"one|uni|use|eu", word)
-    return match.group(1) + ("n " if vowel else " ")

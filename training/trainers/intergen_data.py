@@ -21,7 +21,7 @@ from motion import SMPL22, InputError
 from training.core import checkpoint
 from training.core.handedness import mirrored
 from training.core.text_features import CaptionFeatures
-from training.corpus.captions import mirror_caption
+from training.corpus.grammar import mirror_caption
 from training.prepare import Scenes, normalizer, sentence_lists
 from training.trainers.given import Shares
 from training.trainers.reading import UNKNOWN, CaptionReader

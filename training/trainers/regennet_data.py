@@ -18,7 +18,7 @@ from motion import SMPL22, InputError
 from motion.formats.files import replacing
 from training.core.precision import mixed_precision
 from training.core.text_features import CaptionFeatures
-from training.corpus.captions import mirror_caption
+from training.corpus.grammar import mirror_caption
 from training.prepare import ROOT_SCALE, Scenes
 from training.trainers.intergen_data import balanced, seeded
 

@@ -18,7 +18,7 @@ from models.intergen.compact import CompactInterGen, Touch
 from models.regennet.compact import CompactReGenNet
 from models.text import MiniLM
 from training.core.handedness import mirrored
-from training.corpus.captions import mirror_caption
+from training.corpus.grammar import mirror_caption
 from training.prepare import Scenes
 
 Network = TypeVar("Network", CompactInterGen, CompactReGenNet)

@@ -7,7 +7,8 @@ import re
 import numpy as np
 import pytest
 
-from training.corpus.captions import FAMILIES, Phrasebook, conjugate, expand, mirror_caption
+from training.corpus.captions import FAMILIES, Phrasebook
+from training.corpus.grammar import conjugate, expand, mirror_caption
 from training.corpus.phrases import ACTIONS
 
 CHOSEN = {

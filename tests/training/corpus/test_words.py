@@ -8,7 +8,7 @@ import numpy as np
 
 from training.corpus.beats.play import Beat
 from training.corpus.beats.script import staged_by
-from training.corpus.captions import mirror_caption
+from training.corpus.grammar import mirror_caption
 from training.corpus.words import Narrator
 from training.corpus.words.lexicon import count, options, pattern, phrases, sentences
 from training.corpus.words.narrator import held_out

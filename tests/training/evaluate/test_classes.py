@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 import torch
 
-from tests.training.trainers.test_intergen import HANDS_MEET, write_corpus
+from tests.training.trainers.runs import HANDS_MEET, write_corpus
 from training import prepare
 from training.evaluate.classes import accuracy, evaluate, fit_classifier, right_handed, table, tasks_of
 from training.evaluate.judge.prompts import real_duet

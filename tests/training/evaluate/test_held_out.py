@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 import torch
 
-from tests.training.trainers.test_intergen import SETTINGS, begin, take, write_corpus
+from tests.training.trainers.runs import SETTINGS, begin, take, write_corpus
 from training import prepare
 from training.evaluate import held_out
 

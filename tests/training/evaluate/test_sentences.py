@@ -10,7 +10,8 @@ import numpy as np
 import pytest
 
 from motion.transforms import mirrored
-from training.corpus.captions import FAMILIES, Phrasebook, expand
+from training.corpus.captions import FAMILIES, Phrasebook
+from training.corpus.grammar import expand
 from training.corpus.phrases import ACTIONS, ENTRIES
 from training.evaluate.judge.sentences import kept_out, load_sentences, without_sentences
 from training.evaluate.judge.sentences.joints import Motion

@@ -11,7 +11,7 @@ from safetensors.torch import load_file
 
 from models.bigraphdiff.compact import load_folder
 from motion import InputError
-from tests.training.trainers.test_intergen import write_corpus
+from tests.training.trainers.runs import write_corpus
 from training import prepare
 from training.trainers import bigraphdiff
 from training.trainers.bigraphdiff import CLASSES, Settings, Trainer, labels_of, of_classes

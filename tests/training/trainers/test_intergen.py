@@ -14,51 +14,19 @@ from safetensors.torch import load_file
 
 from models.intergen.compact import load_folder
 from models.motion_tokens import decode
-from motion import SMPL22, InputError
+from motion import InputError
+from tests.training.trainers.runs import SETTINGS, begin, prepared, take, write_corpus
 from training import export, prepare
 from training.core import checkpoint
-from training.core.text_features import CaptionFeatures
 from training.trainers import intergen
-from training.trainers.given import Shares
-from training.trainers.intergen import Trainer
-from training.trainers.intergen_data import LEAST, SENTENCES, Settings
-from training.trainers.reading import UNKNOWN
 from webdemo.inference import GenerateRequest, Result
 from webdemo.inference.engine import Engine
 
-SETTINGS = Settings(
-    latent_dim=32, ff_size=32, num_layers=2, num_heads=2, cond_dim=64, batch=4, steps=6, warmup=2, dropout=0.1
-)
 SIZES = [
     word
     for name in ("latent_dim", "ff_size", "num_layers", "num_heads", "cond_dim", "batch", "warmup", "dropout")
     for word in ("--" + name.replace("_", "-"), str(getattr(SETTINGS, name)))
 ]
-HANDS_MEET = [{"a": "right_wrist", "b": "right_wrist", "start": 10, "end": 20}]
-
-
-def write_corpus(folder: Path, scenes: int = 10) -> Path:
-    """Two people who sway, for one to two seconds a scene."""
-    rng = np.random.default_rng(0)
-    rest = SMPL22.rest_positions() + np.array([0, 0.98, 0])
-    motions, index, start = [], [], 0
-    for i in range(scenes):
-        frames = int(rng.integers(40, 60))
-        time = np.arange(frames) / 30
-        a = rest + 0.05 * np.sin(rng.uniform(2, 6) * time)[:, None, None] * rng.normal(size=(1, 22, 3))
-        b = np.broadcast_to(rest * [-1, 1, -1] + [0, 0, 1.5], a.shape)
-        motions.append(np.stack([a, b], axis=1))
-        captions = ["They shake hands." if i % 2 else "One person waves the left hand."] * 2
-        split = "test" if i == 0 else "train"
-        index.append(
-            {"start": start, "frames": frames, "family": "sway", "captions": captions, "split": split}
-            | {"events": {"contact": HANDS_MEET} if i % 2 else {}, "sources": []}
-        )
-        start += frames
-    folder.mkdir()
-    np.save(folder / "motions.npy", np.concatenate(motions).astype(np.float32))
-    (folder / "index.json").write_text(json.dumps(index))
-    return folder
 
 
 @pytest.fixture(scope="module", autouse=True)
@@ -68,22 +36,7 @@ def one_thread() -> None:
 
 @pytest.fixture(scope="module")
 def scenes(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    folder = tmp_path_factory.mktemp("made")
-    out = folder / "scenes.safetensors"
-    assert prepare.main(["--corpus", str(write_corpus(folder / "corpus")), "--out", str(out)]) == 0
-    return out
-
-
-def begin(scenes: Path, out: Path, settings: Settings = SETTINGS, **options: Path) -> Trainer:
-    return Trainer(prepare.load(scenes), settings, out, **options)
-
-
-def take(trainer: Trainer, steps: int) -> Trainer:
-    """Takes some steps, as a run that is stopped then: saved where it stands."""
-    for _ in range(steps):
-        trainer.train_step()
-    trainer.save()
-    return trainer
+    return prepared(tmp_path_factory.mktemp("made"))
 
 
 @pytest.fixture(scope="module")
@@ -279,97 +232,6 @@ def test_a_shipped_network_can_be_trained_on(
     theirs = shipped.state_dict()
     assert set(theirs) - set(ours) == {key for key in theirs if key.startswith("touch_reader.")}
     assert all(torch.equal(value, theirs[key]) for key, value in ours.items())
-
-
-def with_sentences_for_each(scenes: Path, out: Path) -> Path:
-    """The prepared scenes, each with sentences for a and for b alone; what is missing in the first is in the rest."""
-    loaded = prepare.load(scenes)
-    for i, row in enumerate(loaded.rows[1:]):
-        a = ["They put out the right hand.", "They reach out."]
-        row["alone"] = [a, ["They wait." if i % 2 else "They turn to the left."]]
-    prepare.save(loaded, out)
-    return out
-
-
-def test_sentences_for_each_person_are_read_and_left_out(scenes: Path, tmp_path: Path) -> None:
-    trainer = begin(with_sentences_for_each(scenes, tmp_path / "each.safetensors"), tmp_path)
-    shares = {tuple(read): 0 for read in SENTENCES} | {(0, 0, 0): 0}
-    for step in range(60):
-        batch = trainer.data.batch(step)
-        conditions, vectors = intergen.condition(trainer.model, batch)
-        assert conditions.shape[:2] == (4, 3) and len(vectors) == 4
-        # A sentence that is read has rows, and no other has.
-        assert torch.equal((conditions != 0).any(-1).any(-1), batch.read.bool())
-        for read in batch.read.bool().tolist():
-            shares[tuple(read)] += 1
-    assert all(shares.values()), shares
-    assert shares[True, False, False] > shares[False, True, True] > shares[False, False, True]
-
-
-def test_person_sentences_change_sides_with_the_mirror(scenes: Path, tmp_path: Path) -> None:
-    path = with_sentences_for_each(scenes, tmp_path / "each.safetensors")
-    data = begin(path, tmp_path, replace(SETTINGS, unconditional=0.0)).data
-    seen = set()
-    data.features = lambda captions: (seen.update(captions), CaptionFeatures.batch(data.captions, captions))[
-        1
-    ]
-    for step in range(40):
-        data.batch(step)
-    assert {"They turn to the left.", "They turn to the right."} <= seen
-
-
-def with_beats(scenes: Path, out: Path) -> Path:
-    """The prepared scenes, each of three beats: an unnamed one in the middle is minor."""
-    loaded = prepare.load(scenes)
-    for row in loaded.rows:
-        beat = {"start": 0, "end": 10, "captions": ["They wait."]}
-        row["beats"] = [
-            beat,
-            beat | {"minor": True},
-            beat | {"start": 12, "end": 40, "captions": ["They bow."]},
-        ]
-    prepare.save(loaded, out)
-    return out
-
-
-def test_a_later_beat_is_learned_with_what_came_before_it_given(scenes: Path, tmp_path: Path) -> None:
-    path = with_beats(scenes, tmp_path / "beats.safetensors")
-    given = Shares(person=0, past=0, span=0, poses=0, path=0, joints=0, more=0)
-    trainer = begin(path, tmp_path, replace(SETTINGS, continued=0.5, unconditional=0.0, given=given))
-    told, cut, data = [], 0, trainer.data
-
-    def features(captions: list[str]) -> tuple[torch.Tensor, torch.Tensor]:
-        told.extend(captions)
-        return CaptionFeatures.batch(data.captions, captions)
-
-    data.features = features
-    for step in range(12):
-        told.clear()
-        batch = trainer.data.batch(step)
-        known = trainer.known(batch, torch.Generator().manual_seed(0))
-        for i, past in enumerate(batch.past.tolist()):
-            if not past:
-                assert told[i] != "They bow." and (batch.labels[i] >= 0).all()
-                continue
-            cut += 1
-            assert told[i] == "They bow." and past == 12 and (batch.labels[i] == UNKNOWN).all()
-            assert batch.frame_mask[i].sum() >= past + LEAST
-            assert torch.equal(known.mask[i].any(-1).sum(-1), torch.tensor([past, past]))
-            root = known.rows[i, 0, 0, :3]
-            assert root[[0, 2]].abs().max() < 1e-4  # canonical again
-            assert known.heading[i, 0, 0, 1] > 0.999
-        assert np.isfinite(trainer.train_step()["total"])
-    assert 12 < cut < 36
-
-
-def test_a_beat_that_was_cut_off_is_left_out(scenes: Path, tmp_path: Path) -> None:
-    data = begin(scenes, tmp_path, replace(SETTINGS, continued=1.0)).data
-    row = data.rows[0] | {"beats": [{}, {"start": 300, "end": 320, "captions": ["They bow."]}]}
-    assert data.continued(row, [0.0] * 4) is None
-    row["beats"][1] |= {"start": 8, "end": 300}
-    assert data.continued(row, [0.0] * 4)[1:] == (8, "They bow.")
-    row["beats"][1]["captions"] = []
-    assert data.continued(row, [0.0] * 4) is None
 
 
 def test_grown_from_a_shipped_network_the_first_loss_is_the_same(

@@ -11,7 +11,7 @@ from models.diffusion import denoise, make_scheduler
 from models.intergen.compact import load_folder
 from models.intergen.fast import PASSES
 from motion import InputError
-from tests.training.trainers.test_intergen import SETTINGS, begin, take, write_corpus
+from tests.training.trainers.runs import SETTINGS, begin, take, write_corpus
 from training import export, prepare
 from training.evaluate.judge.draw import Sampling, draw
 from training.evaluate.judge.rules import Task

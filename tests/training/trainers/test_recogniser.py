@@ -12,7 +12,7 @@ from safetensors.torch import load_file
 
 from models.agent.recogniser import FRAMES, load_folder
 from motion import InputError
-from tests.training.trainers.test_intergen import write_corpus
+from tests.training.trainers.runs import write_corpus
 from training.trainers import recogniser
 from training.trainers.recogniser import GESTURES, Settings, Trainer, cut, scores
 from webdemo.inference.pipelines.predictor import PredictorPipeline

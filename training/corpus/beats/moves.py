@@ -67,6 +67,21 @@ def close_in(play: Play, i: int, distance: float, *, both: bool = False, action:
     return take
 
 
+def come(play: Play, i: int, distance: float) -> int:
+    """The two come within reach; the way there is a beat of its own if it is long enough."""
+    start = play.sync()
+    far = play.gap - distance
+    both = far > 1.6 and play.rng.random() < 0.3
+    take = close_in(play, i, distance, both=both)
+    if far > 0.5:
+        acts = ("meet", "meet") if both else ("walk-up", "stand")
+        play.note_span(
+            acts, start, play.frames, i=i, relation="while", styles=(take.style if take else "normal", "normal"),
+            minor=bool(play.wish) or bool(play.rng.random() < 0.4),
+        )  # fmt: skip
+    return play.sync()
+
+
 def make_room(play: Play, i: int, room: float) -> None:
     """i steps back where the two stand too close for what comes next."""
     if play.gap >= room:

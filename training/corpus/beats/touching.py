@@ -1,4 +1,4 @@
-"""Beats in which the two touch, or would if the other let them."""
+"""Beats in which the two touch face to face or from the side, and the list of all beats with touches."""
 
 from __future__ import annotations
 
@@ -6,37 +6,17 @@ from collections.abc import Callable
 
 import numpy as np
 
-from ..compose import Array, steer
-from ..contact import (
-    UP,
-    axes,
-    envelope,
-    impulse,
-    lean_to,
-    nod,
-    on_body,
-    reach,
-    reach_arm,
-    towards,
-)
+from motion.skeleton import SMPL22
+
+from ..compose import Array
+from ..contact import UP, envelope, on_body, reach
 from ..library import pick
 from ..stage import stride
-from ..touches import (
-    TOUCHES,
-    Touches,
-    arm_around,
-    chosen_side,
-    help_up,
-    hug,
-    joined_hands,
-    meet_hands,
-    opposite,
-    pat_back,
-    pats,
-    whisper,
-)
-from .acts import ACTS
-from .moves import abreast, ahead, close_in, leftwards
+from ..touches import TOUCHES, Touches, chosen_side, help_up, hug, pat_back, pats, whisper
+from .blows import blow_at, push
+from .joined import arm_around_beat, carousel, hand_in_hand
+from .moves import ahead, close_in, come, leftwards
+from .offers import refused, throw_catch
 from .performer import wrap
 from .play import Play
 
@@ -44,27 +24,12 @@ AFTER = 34
 """Frames for which hands may still be on their way back when a touch is over."""
 
 
-def _come(play: Play, i: int, distance: float) -> int:
-    """The two come within reach; the way there is a beat of its own where it is one."""
-    start = play.sync()
-    far = play.gap - distance
-    both = far > 1.6 and play.rng.random() < 0.3
-    take = close_in(play, i, distance, both=both)
-    if far > 0.5:
-        acts = ("meet", "meet") if both else ("walk-up", "stand")
-        play.note_span(
-            acts, start, play.frames, i=i, relation="while", styles=(take.style if take else "normal", "normal"),
-            minor=bool(play.wish) or bool(play.rng.random() < 0.4),
-        )  # fmt: skip
-    return play.sync()
-
-
 def face_to_face(name: str) -> Callable[[Play, int], None]:
     """A beat of one of :data:`~training.corpus.touches.TOUCHES`."""
 
     def make(play: Play, i: int) -> None:
         rng, touch = play.rng, TOUCHES[name]
-        start = _come(play, i, rng.uniform(*touch.distance))
+        start = come(play, i, rng.uniform(*touch.distance))
         length = play.seconds(touch.hold[0], min(touch.hold[1], 2.4))
         side, _ = chosen_side(rng)
         for person in play.people:
@@ -84,7 +49,7 @@ def face_to_face(name: str) -> Callable[[Play, int], None]:
 
 def _hug(play: Play, i: int) -> None:
     rng = play.rng
-    start = _come(play, i, rng.uniform(0.41, 0.46))
+    start = come(play, i, rng.uniform(0.41, 0.46))
     length = play.seconds(1.8, 2.6)
     for person in play.people:
         person.hold(length + 14)
@@ -132,138 +97,6 @@ def _from_the_side(make: Callable, name: str, answer: str) -> Callable[[Play, in
     return beat
 
 
-def _arm_around(play: Play, i: int) -> None:
-    from .moves import side_by_side
-
-    rng = play.rng
-    begun = play.sync()
-    _, side = side_by_side(play, i, rng.uniform(0.43, 0.5))
-    start = play.sync()
-    if start - begun > 30:
-        play.beats_before(begun, start, i)
-    length = play.seconds(1.8, 3.0)
-    for person in play.people:
-        person.hold(length + 20)
-    hand, own_rng = "left" if side > 0 else "right", np.random.default_rng(rng.integers(2**32))
-    play.effect(start, start + length + 36, lambda a, b: arm_around(own_rng, a, b, 2, length, hand), i=i)
-    play.note(("arm-around", "stand"), start, i=i, relation="while", sides=(hand, None))
-
-
-def _held(sides: tuple[str, str], height: float, start: int, arrive: int, leave: int):
-    """Hands joined from ``arrive`` to ``leave``, frames of the scene; the window begins at ``start``."""
-
-    def effect(a: Array, b: Array) -> tuple[Array, Array, Touches]:
-        weight = envelope(len(a), 0, arrive - start, leave - start, leave - start + 22)
-        a, b = joined_hands(a, b, sides, height, 0.05, weight)
-        return a, b, [(f"{sides[0]}_wrist", f"{sides[1]}_wrist", arrive - start, leave - start)]
-
-    return effect
-
-
-def _hand_in_hand(play: Play, i: int) -> None:
-    """They take each other by the hand and walk on, or stand so."""
-    rng = play.rng
-    begun = play.sync()
-    gap = rng.uniform(0.55, 0.66)
-    if play.wish[0] == "hold-hands" if play.wish else rng.random() < 0.25:
-        from .moves import side_by_side
-
-        _, side = side_by_side(play, i, gap)
-        start = play.sync()
-        for person in play.people:
-            person.hold(play.seconds(1.8, 3.0))
-        name, stop = "hold-hands", play.frames
-    else:
-        start, stop, _, side = abreast(play, i, gap, length=(2.0, 2.8 if play.brisk else 4.2))
-        name = "hand-in-hand"
-    if start - begun > 35:
-        play.beats_before(begun, start - 14, i)
-    hand = "left" if side > 0 else "right"
-    taken = max(start - 14, begun)
-    letting = play.frames - (0 if rng.random() < 0.5 else 8)
-    play.effect(
-        taken,
-        letting + 22,
-        _held((hand, opposite(hand)), rng.uniform(0.78, 0.86), taken, taken + 16, letting),
-        i=i,
-    )
-    play.note((name, name), taken, i=i, relation="while")
-    for k in (0, 1):
-        play.look(k, start, stop, float(rng.uniform(0, 0.5)))
-
-
-def _carousel(play: Play, i: int) -> None:
-    """Face to face, hands joined, they go round each other."""
-    rng = play.rng
-    start = _come(play, i, rng.uniform(0.72, 0.86))
-    side = pick(rng, ("left", "right"))
-    radius = play.gap / 2
-    walk = stride(rng, play.library, f"walk-{side}", radius * rng.uniform(2.5, 5.5), side=side)
-    step = walk.motion.root[-1] - walk.motion.root[0]
-    course = wrap(float(np.arctan2(step[0], step[2]) - walk.motion.headings.mean()))
-    aim = course - (1 if side == "left" else -1) * np.pi / 2
-    steps = np.linalg.norm(np.diff(walk.motion.root[:, [0, 2]], axis=0), axis=-1)
-    # Who steps to the left around a point ahead turns to the right.
-    turn = (-1 if side == "left" else 1) * np.concatenate([[0.0], np.cumsum(steps)]) / radius
-    for person in play.people:
-        person.hold(16)
-    for person in play.people:
-        person.perform(steer(walk.motion, turn), aim=aim)
-    stop = play.sync()
-    for person in play.people:
-        person.hold(14)
-    height = rng.uniform(0.95, 1.1)
-
-    def effect(a: Array, b: Array) -> tuple[Array, Array, Touches]:
-        last = stop - start
-        weight = envelope(len(a), 0, 18, last - 6, last + 14)
-        pairs = (("left", "right"), ("right", "left"))
-        a, b = meet_hands(a, b, pairs, (weight, weight), height=height, apart=0.08)
-        return a, b, [(f"{own}_wrist", f"{to}_wrist", 18, last - 6) for own, to in pairs]
-
-    play.effect(start, stop + 14, effect, i=i)
-    direction = "clockwise" if side == "left" else "counterclockwise"
-    play.note(("carousel", "carousel"), start, i=i, relation="while", more={"direction": direction})
-
-
-def _push(play: Play, i: int) -> None:
-    rng = play.rng
-    start = _come(play, i, rng.uniform(0.53, 0.62))
-    hit = int(rng.integers(16, 22))
-    own, other = play.people[i], play.people[1 - i]
-    own.hold(hit + 34)
-    other.hold(hit + 6)
-    falls = play.library.has("fall", "get-up-back")
-    answer = play.wanted(("stumble", "stumble", "fall"), 1) if falls else "stumble"
-    if answer == "fall":
-        ACTS["fall"].make(play, 1 - i)
-    else:
-        other.perform(stride(rng, play.library, "walk-back", rng.uniform(0.5, 1.3)).motion)
-    depth, leaning = rng.uniform(0.25, 0.4) * (0.5 if answer == "fall" else 1.0), rng.uniform(0.12, 0.25)
-
-    def effect(a: Array, b: Array) -> tuple[Array, Array, Touches]:
-        frames = len(a)
-        line = towards(a[:, 0], b[:, 0])
-        give = impulse(frames, hit - 1, rise=7, fall=24) * depth
-        stood = b
-        b = nod(lean_to(b, line, give), give * 0.6)
-        weight = envelope(frames, hit - 15, hit - 1, hit + 4, hit + 24)
-        a = lean_to(a, line, envelope(frames, hit - 10, hit + 2, hit + 4, hit + 26) * leaning)
-        still = stood[min(hit + 2, frames - 1)][None].repeat(frames, axis=0)
-        seen = np.where((np.arange(frames) > hit + 2)[:, None, None], still, stood)
-        chest = {
-            side: on_body(seen, "spine3", 0.11 * sign, 0.02, 0.13) + 0.1 * line * give[:, None]
-            for side, sign in (("left", -1), ("right", 1))
-        }
-        drawn = 1 - envelope(frames, hit - 10, hit, hit + 30, hit + 31)
-        chest = {side: point - 0.14 * line * drawn[:, None] for side, point in chest.items()}
-        a = reach(a, chest, weight, elbow=(0.8, -0.9, -0.2))
-        return a, b, [(f"{side}_wrist", "spine3", hit - 2, hit + 3) for side in ("left", "right")]
-
-    play.effect(start, start + hit + 36, effect, i=i)
-    play.note(("push", answer), start, i=i, sides=("both", None))
-
-
 def _help_up(play: Play, i: int) -> None:
     """The other crouches; i comes and helps."""
     rng = play.rng
@@ -289,8 +122,6 @@ def _help_up(play: Play, i: int) -> None:
 
 def _on_bones(positions: Array, like: Array) -> Array:
     """Positions whose bones are as long as ``like``'s."""
-    from motion.skeleton import SMPL22
-
     result = positions.copy()
     for parent, joint in SMPL22.bones:
         bone = positions[:, joint] - positions[:, parent]
@@ -338,127 +169,6 @@ def _tap_turn(play: Play, i: int) -> None:
     play.note(("tap", "turn-to"), start, i=i, sides=(side, None))
 
 
-_OFFERS = {
-    "offer-hand": (0.95, (-0.02, -0.34, 0.46)),
-    "offer-five": (0.92, (0.02, 0.22, 0.36)),
-    "offer-thing": (1.0, (-0.06, -0.2, 0.46)),
-    "offer-hug": (0.95, (0.34, -0.06, 0.3)),
-}
-"""Offers that can be refused: metres apart, and where the hand goes from its shoulder: out, up, ahead."""
-
-
-_REFUSALS = {
-    "stand": "refuse",
-    "head-shake": "refuse-shake",
-    "turn-away": "refuse-turn",
-    "step-back": "refuse-back",
-}
-
-
-def _refused(play: Play, i: int) -> None:
-    """i offers a hand, a high five, a thing or a hug, and the other does not take it."""
-    rng = play.rng
-    offer = play.wanted(tuple(_OFFERS))
-    distance, (out, up, front) = _OFFERS[offer]
-    start = _come(play, i, rng.uniform(distance, distance + 0.15))
-    side, _ = chosen_side(rng)
-    sides = ("left", "right") if offer == "offer-hug" else (side,)
-    answers = ["stand", "head-shake", "turn-away", "step-back", "fold-arms", "stop-hand"]
-    answers += ["reject"] if play.library.has("reject") else []
-    wish = play.wish[1] if play.wish else ""
-    named = {refusal: plain for plain, refusal in _REFUSALS.items()}.get(wish, wish.removeprefix("refuse-"))
-    answer = named if named in answers else pick(rng, answers)
-    other = play.people[1 - i]
-    other.hold(play.seconds(0.7, 1.2))
-    if answer == "turn-away":
-        other.turn(pick(rng, (-1, 1)) * rng.uniform(2.0, 3.0))
-        play.look(1 - i, start + 20, len(other) + 40, 0.0)
-    elif answer == "step-back":
-        other.perform(stride(rng, play.library, "walk-back", rng.uniform(0.4, 0.9)).motion)
-    elif answer != "stand":
-        ACTS[answer].make(play, 1 - i)
-    play.people[i].hold_until(max(len(other) + 10, start + 66))
-    stop = play.sync()
-    leave = stop - start - 26
-
-    def effect(a: Array, b: Array) -> tuple[Array, Array, Touches]:
-        weight = envelope(len(a), 2, 20, leave, leave + 22)
-        for hand in sides:
-            sign = 1.0 if hand == "left" else -1.0
-            a = reach_arm(a, hand, on_body(a, f"{hand}_shoulder", sign * out, up, front), weight)
-        return a, b, []
-
-    play.effect(start, stop, effect, i=i)
-    play.note(
-        (offer, _REFUSALS.get(answer, f"refuse-{answer}")),
-        start,
-        i=i,
-        sides=(None if len(sides) > 1 else side, None),
-    )
-
-
-def _throw_catch(play: Play, i: int) -> None:
-    """i throws something, the other catches it with both hands."""
-    rng = play.rng
-    start = play.sync()
-    if not 1.6 < play.gap < 4.0 or abs(play.off(i)) > 0.3 or abs(play.off(1 - i)) > 0.3:
-        close_in(play, i, float(np.clip(play.gap, 1.8, 3.0)))
-        start = play.sync()
-    take = play.library.take(rng, "throw", frames=(40, 90))
-    own = play.people[i]
-    first, last = own.perform(take.motion)
-    caught = first - start + int(0.62 * len(take.motion)) + int(8 * play.gap / 2)
-    play.people[1 - i].hold_until(max(last, start + caught + 40))
-
-    def effect(a: Array, b: Array) -> tuple[Array, Array, Touches]:
-        weight = envelope(len(b), max(caught - 20, 0), caught, caught + 6, caught + 34)
-        drawn = envelope(len(b), caught, caught + 14, len(b), len(b) + 1)
-        for side, sign in (("left", 1.0), ("right", -1.0)):
-            goal = on_body(b, "spine3", 0.08 * sign, 0.0, 0.42) - 0.2 * axes(b)[1] * drawn[:, None]
-            b = reach_arm(b, side, goal, weight, elbow=(0.7, -0.8, 0.0))
-        return a, b, []
-
-    stop = play.sync()
-    play.effect(start, stop, effect, i=i)
-    play.note(("throw-to", "catch"), start, i=i, sides=(take.side, None))
-
-
-def _blow(name: str) -> Callable[[Play, int], None]:
-    """A blow in the air in front of the other, who gives way: recoil, dodge or retreat."""
-
-    def make(play: Play, i: int) -> None:
-        from ..families.combat import blow, dodge, recoil
-        from ..families.combat import reach as reach_of
-
-        rng = play.rng
-        take = blow(rng, play.library, name, most=1)
-        start = play.sync()
-        answers = {"punch": ("dodge", "recoil", "step-back", "fall"), "kick": ("step-back", "recoil", "fall")}
-        answer = play.wanted(answers[name], 1)
-        if answer == "fall" and not play.library.has("fall", "get-up-back"):
-            answer = "recoil"
-        far = play.gap
-        close_in(play, i, reach_of(take) + rng.uniform(0.1, 0.25))
-        begun = play.sync()
-        if far - play.gap > 0.6:
-            play.note_span(("walk-up", "stand"), start, begun, i=i, relation="while", minor=True)
-        own, other = play.people[i], play.people[1 - i]
-        first, _ = own.perform(take.motion, aim=take.aim)
-        hit = first + take.peaks[0]
-        if answer == "step-back":
-            other.hold_until(max(hit - 12, len(other)))
-            other.perform(stride(rng, play.library, "walk-back", rng.uniform(0.5, 1.1)).motion)
-        elif answer == "fall":
-            other.hold_until(max(hit - 2, len(other)))
-            ACTS["fall"].make(play, 1 - i)
-        else:
-            other.hold_until(max(len(own), hit + 34))
-            other.motion = (dodge if answer == "dodge" else recoil)(rng, other.motion, hit)
-        play.note((f"{name}-at", answer), begun, i=i, sides=(take.side, None))
-
-    return make
-
-
 TOUCH_BEATS: dict[str, tuple[Callable[[Play, int], None], float, tuple[str, ...]]] = {
     **{name: (face_to_face(name), weight, ("walk", "idle")) for name, weight in (
         ("handshake", 4.0), ("high-five", 3.0), ("low-five", 1.2), ("high-ten", 1.3), ("fist-bump", 1.8),
@@ -466,15 +176,15 @@ TOUCH_BEATS: dict[str, tuple[Callable[[Play, int], None], float, tuple[str, ...]
     "hug": (_hug, 4.0, ("walk", "idle", "walk-back")),
     "pat-back": (_from_the_side(pat_back, "pat-back", "stand"), 1.5, ("walk", "idle")),
     "whisper": (_from_the_side(whisper, "whisper", "listen"), 1.5, ("walk", "idle")),
-    "arm-around": (_arm_around, 1.3, ("walk", "idle")),
-    "hand-in-hand": (_hand_in_hand, 3.0, ("walk", "idle")),
-    "carousel": (_carousel, 2.0, ("walk-left", "walk-right")),
-    "push": (_push, 2.5, ("walk", "walk-back")),
+    "arm-around": (arm_around_beat, 1.3, ("walk", "idle")),
+    "hand-in-hand": (hand_in_hand, 3.0, ("walk", "idle")),
+    "carousel": (carousel, 2.0, ("walk-left", "walk-right")),
+    "push": (push, 2.5, ("walk", "walk-back")),
     "help-up": (_help_up, 1.5, ("walk", "idle")),
     "tap": (_tap_turn, 1.8, ("walk", "idle")),
-    "refused": (_refused, 5.0, ("walk", "walk-back")),
-    "throw-to": (_throw_catch, 1.5, ("throw",)),
-    "punch-at": (_blow("punch"), 1.8, ("punch", "walk-back")),
-    "kick-at": (_blow("kick"), 1.5, ("kick", "walk-back")),
+    "refused": (refused, 5.0, ("walk", "walk-back")),
+    "throw-to": (throw_catch, 1.5, ("throw",)),
+    "punch-at": (blow_at("punch"), 1.8, ("punch", "walk-back")),
+    "kick-at": (blow_at("kick"), 1.5, ("kick", "walk-back")),
 }  # fmt: skip
 """(beat, how often it is drawn, source actions it needs) by name."""

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..captions import conjugate
+from ..grammar import conjugate
 
 Rng = np.random.Generator
 

@@ -200,9 +200,7 @@ class TwoPersonPipeline(ABC, Generic[Network]):
         now = timer.lap("sample", now)
 
         yield timer.progress("finish")
-        before = self._duets(steps.uncorrected, scene, _as_is)
-        duets = self._duets(sample, scene, clean_person if request.cleanup else _as_is)
-        readouts = tuple(compare(raw, duet) for raw, duet in zip(before, duets, strict=True))
+        duets, readouts = self._finished(request, scene, steps.uncorrected, sample)
         timer.lap("finish", now)
         yield Result(
             duets=duets,
@@ -211,6 +209,14 @@ class TwoPersonPipeline(ABC, Generic[Network]):
             timings={**timer.stages, "total": round(timer.elapsed, 4)},
             notes=conditioning.notes,
         )
+
+    def _finished(
+        self, request: GenerateRequest | ReactRequest, scene: Scene, uncorrected: Tensor, sample: Tensor
+    ) -> tuple[tuple[Duet, ...], tuple[dict[str, Any], ...]]:
+        """The duets of a sample, and how each differs from the last prediction before its correction."""
+        before = self._duets(uncorrected, scene, _as_is)
+        duets = self._duets(sample, scene, clean_person if request.cleanup else _as_is)
+        return duets, tuple(compare(raw, duet) for raw, duet in zip(before, duets, strict=True))
 
     def _duets(self, x: Tensor, scene: Scene, finish: Finish) -> tuple[Duet, ...]:
         with torch.no_grad():

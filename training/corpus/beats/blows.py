@@ -1,0 +1,88 @@
+"""Beats in which one strikes or pushes and the other gives way."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import numpy as np
+
+from ..compose import Array
+from ..contact import envelope, impulse, lean_to, nod, on_body, reach, towards
+from ..families import combat
+from ..stage import stride
+from ..touches import Touches
+from .acts import ACTS
+from .moves import close_in, come
+from .play import Play
+
+
+def push(play: Play, i: int) -> None:
+    """i pushes the other with both hands, who stumbles or falls."""
+    rng = play.rng
+    start = come(play, i, rng.uniform(0.53, 0.62))
+    hit = int(rng.integers(16, 22))
+    own, other = play.people[i], play.people[1 - i]
+    own.hold(hit + 34)
+    other.hold(hit + 6)
+    falls = play.library.has("fall", "get-up-back")
+    answer = play.wanted(("stumble", "stumble", "fall"), 1) if falls else "stumble"
+    if answer == "fall":
+        ACTS["fall"].make(play, 1 - i)
+    else:
+        other.perform(stride(rng, play.library, "walk-back", rng.uniform(0.5, 1.3)).motion)
+    depth, leaning = rng.uniform(0.25, 0.4) * (0.5 if answer == "fall" else 1.0), rng.uniform(0.12, 0.25)
+
+    def effect(a: Array, b: Array) -> tuple[Array, Array, Touches]:
+        frames = len(a)
+        line = towards(a[:, 0], b[:, 0])
+        give = impulse(frames, hit - 1, rise=7, fall=24) * depth
+        stood = b
+        b = nod(lean_to(b, line, give), give * 0.6)
+        weight = envelope(frames, hit - 15, hit - 1, hit + 4, hit + 24)
+        a = lean_to(a, line, envelope(frames, hit - 10, hit + 2, hit + 4, hit + 26) * leaning)
+        still = stood[min(hit + 2, frames - 1)][None].repeat(frames, axis=0)
+        seen = np.where((np.arange(frames) > hit + 2)[:, None, None], still, stood)
+        chest = {
+            side: on_body(seen, "spine3", 0.11 * sign, 0.02, 0.13) + 0.1 * line * give[:, None]
+            for side, sign in (("left", -1), ("right", 1))
+        }
+        drawn = 1 - envelope(frames, hit - 10, hit, hit + 30, hit + 31)
+        chest = {side: point - 0.14 * line * drawn[:, None] for side, point in chest.items()}
+        a = reach(a, chest, weight, elbow=(0.8, -0.9, -0.2))
+        return a, b, [(f"{side}_wrist", "spine3", hit - 2, hit + 3) for side in ("left", "right")]
+
+    play.effect(start, start + hit + 36, effect, i=i)
+    play.note(("push", answer), start, i=i, sides=("both", None))
+
+
+def blow_at(name: str) -> Callable[[Play, int], None]:
+    """A blow in the air in front of the other, who gives way: recoil, dodge or retreat."""
+
+    def make(play: Play, i: int) -> None:
+        rng = play.rng
+        take = combat.blow(rng, play.library, name, most=1)
+        start = play.sync()
+        answers = {"punch": ("dodge", "recoil", "step-back", "fall"), "kick": ("step-back", "recoil", "fall")}
+        answer = play.wanted(answers[name], 1)
+        if answer == "fall" and not play.library.has("fall", "get-up-back"):
+            answer = "recoil"
+        far = play.gap
+        close_in(play, i, combat.reach(take) + rng.uniform(0.1, 0.25))
+        begun = play.sync()
+        if far - play.gap > 0.6:
+            play.note_span(("walk-up", "stand"), start, begun, i=i, relation="while", minor=True)
+        own, other = play.people[i], play.people[1 - i]
+        first, _ = own.perform(take.motion, aim=take.aim)
+        hit = first + take.peaks[0]
+        if answer == "step-back":
+            other.hold_until(max(hit - 12, len(other)))
+            other.perform(stride(rng, play.library, "walk-back", rng.uniform(0.5, 1.1)).motion)
+        elif answer == "fall":
+            other.hold_until(max(hit - 2, len(other)))
+            ACTS["fall"].make(play, 1 - i)
+        else:
+            other.hold_until(max(len(own), hit + 34))
+            other.motion = (combat.dodge if answer == "dodge" else combat.recoil)(rng, other.motion, hit)
+        play.note((f"{name}-at", answer), begun, i=i, sides=(take.side, None))
+
+    return make
