@@ -91,14 +91,14 @@ class TwoPersonInputs:
 
 
 def cache_folder() -> Path:
-    """Where translations are kept: ``$XDG_CACHE_HOME/pas-de-deux/compiled``, by default in ``~/.cache``."""
+    """The folder of compiled networks: ``$XDG_CACHE_HOME/pas-de-deux/compiled``, by default in ``~/.cache``."""
     return (
         Path(os.environ.get("XDG_CACHE_HOME") or os.path.expanduser("~/.cache")) / "pas-de-deux" / "compiled"
     )
 
 
 def has_bfloat16() -> bool:
-    """Whether this processor multiplies matrices of bfloat16 numbers itself (AVX512-BF16 or AMX)."""
+    """True if this processor multiplies matrices of bfloat16 numbers itself (AVX512-BF16 or AMX)."""
     return bool(torch.cpu._is_avx512_bf16_supported() or torch.cpu._is_amx_tile_supported())
 
 

@@ -33,7 +33,7 @@ is met within 0.1 % of the move, and a control point on which a known frame bare
 
 @dataclass
 class Known:
-    """What is known of B motions of both people.
+    """The known parts of B motions of both people.
 
     Attributes:
         rows: (B, 2, T, 70) numbers of frames in metres; anything where they are not known.

@@ -36,7 +36,7 @@ _SPLINE_SPAN = 3  # a cubic spline over n intervals has n + 3 control points
 
 @dataclass(frozen=True)
 class TokenLayout:
-    """How frames map to tokens."""
+    """The mapping from frames to tokens."""
 
     frames_per_knot: int = 4
     knots_per_token: int = 2

@@ -95,7 +95,7 @@ def read_lightning(path: str | Path, *, prefix: str, network: str) -> dict[str, 
 
 
 def with_prefix(tensors: Mapping[str, Tensor], prefix: str, *, name: str, network: str) -> dict[str, Tensor]:
-    """What :func:`read_lightning` gives, of tensors that were read before; ``name`` is the file's."""
+    """Does what :func:`read_lightning` does with tensors that were read before; ``name`` is the file's."""
     found = {
         key.removeprefix(prefix): tensor
         for key, tensor in tensors.items()

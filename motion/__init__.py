@@ -1,4 +1,4 @@
-"""What a motion is: skeletons, clips of one person, duets of two, and the geometry on them.
+"""Motion of people: skeletons, clips of one person, duets of two, and the geometry on them.
 
 This package stands on nothing else of the project and imports no torch.
 """

@@ -1,4 +1,4 @@
-"""What colour each person is, in files and films: those of the player's light theme (``palette.js``)."""
+"""The colour of each person in files and films: those of the player's light theme (``palette.js``)."""
 
 from __future__ import annotations
 

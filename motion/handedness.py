@@ -20,7 +20,7 @@ _SIDE = re.compile(r"\b(left|right)(wards)?\b", re.IGNORECASE)
 
 
 def names_side(words: str) -> bool:
-    """Whether words say left or right."""
+    """True if words say left or right."""
     return _SIDE.search(words) is not None
 
 

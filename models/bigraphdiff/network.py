@@ -39,7 +39,7 @@ def timestep_embedding(t: Tensor, width: int) -> Tensor:
 
 
 class StylizationBlock(nn.Module):
-    """What ends every block: a LayerNorm scaled and shifted by the embedding, SiLU, Linear."""
+    """The end of every block: a LayerNorm scaled and shifted by the embedding, SiLU, Linear."""
 
     def __init__(self, latent_dim: int, embed_dim: int, *, dropout: float = 0.0) -> None:
         super().__init__()
@@ -244,7 +244,7 @@ class TextSide(nn.Module):
         self.text_ln = nn.LayerNorm(text_dim)
 
     def forward(self, features: Tensor, end: Tensor) -> tuple[Tensor, Tensor]:
-        """What :class:`BiGraphDiff` takes of a text.
+        """Encodes a text for :class:`BiGraphDiff`.
 
         Args:
             features: (B, L, clip_dim) CLIP's token features after its last norm.

@@ -47,7 +47,7 @@ def cosine_betas(timesteps: int = TRAIN_TIMESTEPS, *, max_beta: float = 0.999) -
 
 
 class Scheduler(Protocol):
-    """What sampling asks of a scheduler of `diffusers`; ``timesteps`` are (steps,) int64, largest first."""
+    """The part of a `diffusers` scheduler that sampling uses; ``timesteps`` are (steps,) int64, largest first."""
 
     timesteps: Tensor
 

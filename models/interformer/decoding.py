@@ -149,7 +149,7 @@ class ReactionDecoder:
     def _prepared(
         self, actor: Tensor, first: Tensor, noise: Tensor, mask: Tensor | None
     ) -> tuple[Array, list[_Memory]]:
-        """What depends only on actor and first pose: :meth:`_read` of two poses of zeros, and the memories."""
+        """The part that depends only on actor and first pose: :meth:`_read` of two poses of zeros, and the memories."""
         whole = torch.ones(actor.shape[:2], dtype=torch.bool)
         encoded = self.model.encode(actor, noise, whole if mask is None else mask)
         nobody, around = torch.zeros_like(actor[:, 1:]), frames_around(actor)[:, 1:]

@@ -233,7 +233,7 @@ class DecoderLayer(nn.Module):
 
 
 class LayerMemory:
-    """What a decoder layer keeps while it goes over the target: keys and values.
+    """The keys and values that a decoder layer keeps while it goes over the target.
 
     Attributes:
         actor: over time, of all frames of the encoder's output (B, S, 45).

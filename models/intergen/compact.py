@@ -164,7 +164,7 @@ class CompactInterGen(DuetSpace):
     def condition(
         self, both: TokenFeatures, a: TokenFeatures | None = None, b: TokenFeatures | None = None
     ) -> Tensor:
-        """What the denoiser sees of sentences for both people and for each.
+        """Encodes sentences for both people and for each as the denoiser's condition.
 
         Args:
             both: of B sentences; one without tokens is missing.
@@ -193,7 +193,7 @@ class CompactInterGen(DuetSpace):
         return condition[:, 0, 0] if self.config.words else condition
 
     def touches(self, condition: Tensor) -> list[Touch]:
-        """What should touch, for each condition of :meth:`condition`; () where nothing should."""
+        """The joints that should touch, for each condition of :meth:`condition`; () if none should."""
         if self.touch_reader is None:
             return [()] * len(condition)
         return self.touch_reader.read(self.vector(condition))

@@ -189,7 +189,7 @@ class OutputLayer(nn.Module):
 
 
 def padding(mask: Tensor | None) -> tuple[Tensor | None, Tensor | None]:
-    """Which tokens each person's own and the other's queries attend to: (B, T, 2) → (2B, T) bool, twice."""
+    """The tokens that each person's own and the other's queries attend to: (B, T, 2) → (2B, T) bool, twice."""
     if mask is None:
         return None, None
     real = (mask != 0).permute(2, 0, 1)  # (2, B, T)
@@ -215,7 +215,7 @@ class InterGenDenoiser(nn.Module, TwoPersonInputs):
             nn.init.zeros_(self.role_text.weight)
 
     def embed(self, t: Tensor, cond: Tensor) -> Tensor:
-        """What AdaLN sees of timesteps (B,) and text (B, C): (B, d), or (2, B, d) with ``role_text``."""
+        """The embedding for AdaLN of timesteps (B,) and text (B, C): (B, d), or (2, B, d) with ``role_text``."""
         emb = self.embed_timestep(t) + self.text_embed(cond)
         if self.config.role_text:
             own = self.role_text(cond)

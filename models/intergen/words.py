@@ -172,7 +172,7 @@ class WordDenoiser(InterGenDenoiser):
         return inputs if self.embed_guidance is None else (*inputs, torch.tensor([3.5, 1.5]))
 
     def embed(self, t: Tensor, cond: Tensor) -> Tensor:
-        """What AdaLN sees of timesteps (B,) and the sentences' vectors in text (B, 3, R, C): (2, B, d)."""
+        """The embedding for AdaLN of timesteps (B,) and the sentences' vectors in text (B, 3, R, C): (2, B, d)."""
         both, a, b = cond[:, :, 0].unbind(1)
         own = self.person_text(torch.stack([torch.cat([a, b], -1), torch.cat([b, a], -1)]))
         return super().embed(t, both) + own

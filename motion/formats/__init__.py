@@ -76,12 +76,12 @@ _READABLE = [f.suffix for f in FORMATS.values() if f.reader]
 
 
 def can_read(suffix: str) -> bool:
-    """Whether files with this suffix (with its dot) are understood."""
+    """True if files with this suffix (with its dot) are understood."""
     return suffix.lower() in FORMATS and FORMATS[suffix.lower()].reader is not None
 
 
 def can_write(suffix: str) -> bool:
-    """Whether this installation writes files with this suffix (with its dot)."""
+    """True if this installation writes files with this suffix (with its dot)."""
     known = FORMATS.get(suffix.lower())
     return (
         known is not None

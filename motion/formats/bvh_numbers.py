@@ -79,7 +79,7 @@ class Motion:
             raise InputError(short.format(done))
 
     def _bad_word(self, start: int, stop: int, count: int) -> str:
-        """What in a piece is no number, with its line; ``count`` numbers came before it."""
+        """The first word of a piece that is no number, with its line; ``count`` numbers came before it."""
         number = self.data.count(b"\n", 0, start)
         for line in self.data[start:stop].split(b"\n"):
             number += 1

@@ -79,7 +79,7 @@ def ascii_bytes(data: bytes, label: str, kind: str) -> bytes:
 
 
 def _is_text(data: bytes, encoding: str) -> bool:
-    """Whether data is in this encoding, read in pieces, as an error keeps a copy of its piece."""
+    """True if data is in this encoding, read in pieces, as an error keeps a copy of its piece."""
     decoder = codecs.getincrementaldecoder(encoding)()
     try:
         for start in range(0, len(data), _PIECE):

@@ -1,4 +1,4 @@
-"""What can be measured on a duet: quality of the motion, and what the two people do to each other.
+"""Measures of a duet: quality of the motion, and what the two people do to each other.
 
 Every measure takes a :class:`~motion.clip.Duet` of any of the project's skeletons and is plain numpy.
 """

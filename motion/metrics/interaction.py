@@ -1,4 +1,4 @@
-"""What two people do to each other: distances, facing, contacts."""
+"""Interaction of two people: distances, facing, contacts."""
 
 from __future__ import annotations
 

@@ -28,7 +28,7 @@ SHORTEST = 0.1
 
 
 def region_contacts(duet: Duet) -> dict[str, Mask]:
-    """When regions of the two touch.
+    """The frames in which regions of the two touch.
 
     Hands meet within 10 cm of each other; a hand or a foot touches within 5 cm of the surface of the other's
     capsules, and chests where their capsules come within 5 cm. Feet side by side on the floor are no touch.
@@ -81,7 +81,7 @@ def _capsules_touch(duet: Duet, part: Capsules) -> Mask:
 def contact_precision_recall(
     made: Iterable[Duet], recorded: Iterable[Duet]
 ) -> dict[str, Mapping[str, tuple[int, int]]]:
-    """Whether the regions that touch in made motion are those that touch in recorded motion of the same words.
+    """Compares the regions that touch in generated motion with those in recorded motion of the same words.
 
     A region of a on one of b and the same of b on a are two touches, so that exchanged roles count as wrong.
 

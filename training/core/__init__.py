@@ -1,1 +1,1 @@
-"""What all trainers share: the loop, checkpoints, command lines, features of the captions."""
+"""The common part of all trainers: the loop, checkpoints, command lines, features of the captions."""

@@ -34,7 +34,7 @@ def leading_hand(positions: NDArray[np.floating], events: Mapping[str, Any] | No
 
 
 def mirrored(caption: str, hand: str | None, draw: float) -> bool:
-    """Whether a scene is shown mirrored under this caption; ``draw`` is uniform in [0, 1)."""
+    """True if a scene is shown mirrored under this caption; ``draw`` is uniform in [0, 1)."""
     if hand is None or names_side(caption):
         return draw < 0.5
     return hand == "left"

@@ -30,7 +30,7 @@ TRIES = 30
 
 @dataclass
 class Tally:
-    """What was built: frames by family, and scenes turned away by family and reason."""
+    """Counts of a build: frames by family, and rejected scenes by family and reason."""
 
     frames: Counter[str] = field(default_factory=Counter)
     scenes: Counter[str] = field(default_factory=Counter)

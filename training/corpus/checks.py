@@ -97,7 +97,7 @@ def foot_skate(positions: Array) -> float:
 
 
 def fault(scene: Scene, *, contact: bool = False) -> str | None:
-    """Why a scene must not enter the corpus, or ``None`` where it may."""
+    """The reason why a scene must not enter the corpus, or ``None`` if it may."""
     if not np.isfinite(scene.positions).all():
         return "not finite"
     if not 45 <= scene.positions.shape[1] <= 300:

@@ -195,7 +195,7 @@ def reach(
 def _least_trunk(
     pose: Array, goals: Mapping[str, Array], trunk: Callable[[float], Array]
 ) -> tuple[float, float]:
-    """How far the trunk must help the arms reach their goals at one pose.
+    """Finds how far the trunk must help the arms reach their goals at one pose.
 
     Args:
         pose: (1, 22, 3) the person.

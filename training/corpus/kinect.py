@@ -1,4 +1,4 @@
-"""What a Kinect gets wrong about two people, undone: lean, sides, spikes, open trunks; then the fit.
+"""Corrects a Kinect's errors on two people: lean, sides, spikes, open trunks; then fits bodies.
 
 The joints go in as recorded (:class:`training.corpus.sbu.KinectPair`) and come out on the 22-joint skeleton
 of constant bones.

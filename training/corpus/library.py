@@ -67,7 +67,7 @@ class Library:
         self._load = cache(self._load_action)
 
     def has(self, *actions: str) -> bool:
-        """Whether there is at least one clip of each action."""
+        """True if there is at least one clip of each action."""
         return all(self._clips.get(action) for action in actions)
 
     def clips(self, action: str) -> list[SourceClip]:
@@ -195,7 +195,7 @@ def calm(motion: Motion, *, radius: float = 0.35, shortest: int = 120) -> list[M
 
 
 def hanging(motion: Motion) -> bool:
-    """Whether both arms hang down all the time."""
+    """True if both arms hang down all the time."""
     positions = forward_kinematics(motion.rotations, motion.root)
     wrists = positions[:, [SMPL22.index("left_wrist"), SMPL22.index("right_wrist")]]
     return bool((wrists[..., 1] - positions[:, :1, 1]).max() < 0.12)

@@ -241,7 +241,7 @@ def _reach(positions: Array, side: str, goal: Array) -> Array:
 
 
 def _fault(people: Array, family: str, error: float) -> str | None:
-    """Why a fitted clip is not good enough to learn from, or ``None``."""
+    """The reason why a fitted clip is not good enough to learn from, or ``None``."""
     if people.shape[1] < 24:
         return "shorter than 0.8 s"
     if error > 0.09:

@@ -1,4 +1,4 @@
-"""What a corpus holds, in numbers and pictures: ``python -m training.corpus.report --corpus DIR --out DIR``.
+"""The report of a corpus in numbers and pictures: ``python -m training.corpus.report --corpus DIR --out DIR``.
 
 Writes ``corpus.md``, one row a family, and ``corpus/FAMILY.webp``, a contact sheet of one scene a family.
 """
@@ -114,7 +114,7 @@ def _table(rows: Sequence[_Family]) -> list[str]:
 
 
 def _head(rows: Sequence[_Family], index: list[dict[str, Any]]) -> list[str]:
-    """What stands above the table: sizes, means weighted by minutes, and how the corpus was split and measured."""
+    """The text above the table: sizes, means weighted by minutes, and how the corpus was split and measured."""
     minutes = np.array([row.minutes for row in rows])
     drift, skate, overlap = (
         np.average([getattr(row, key) for row in rows], weights=minutes)

@@ -1,4 +1,4 @@
-"""What the composed beats of a corpus hold: ``python -m training.corpus.report_beats --corpus DIR --out DIR``.
+"""The report of a corpus' composed beats: ``python -m training.corpus.report_beats --corpus DIR --out DIR``.
 
 Writes ``corpus-beats.md``, one row an act, and ``corpus/beats/ACT.webp``, a contact sheet of one beat each.
 """

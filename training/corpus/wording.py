@@ -50,7 +50,7 @@ THINGS = (
 
 @dataclass(frozen=True)
 class Pair:
-    """How two people are named: at first and later; ``by_text`` where the name follows the order of the text."""
+    """Names of two people, at first and later; ``by_text`` if the name follows the order of the text."""
 
     first: tuple[str, str]
     later: tuple[str, str]

@@ -1,4 +1,4 @@
-"""What each part of InterGen is worth: ``python -m training.evaluate.ablations --scenes F --extractor F --out DIR``.
+"""Ablations of InterGen's parts: ``python -m training.evaluate.ablations --scenes F --extractor F --out DIR``.
 
 The paper's Tables 3 and 4 on our corpus: the damping threshold t̄ of the regularisers, the distance-map and
 relative-orientation losses, weight sharing, and mutual attention against concatenation. Every variant is a
@@ -144,7 +144,7 @@ def builder(variant: Variant) -> Callable[[Settings, Data], CompactInterGen]:
 
 
 class _Generator:
-    """What :func:`training.evaluate.judge.draw.draw` needs of a generator, around a network in memory."""
+    """A generator for :func:`training.evaluate.judge.draw.draw` around a network in memory."""
 
     def __init__(self, model: CompactInterGen, encoder: MiniLM) -> None:
         self.model, self.encoder = model, encoder

@@ -67,7 +67,7 @@ def right_handed(rows: list[dict[str, Any]]) -> list[dict[str, Any]]:
 
 
 def tasks_of(scenes: Scenes, label: str, rng: np.random.Generator, count: int) -> list[Task]:
-    """What motions of a class should show: the events of ``count`` recorded ones, drawn by ``rng``."""
+    """The tasks of motions of a class: the events of ``count`` recorded ones, drawn by ``rng``."""
     rows = right_handed([row for row in scenes.split("train") if CLASSES[row["family"]] == label])
     chosen = [rows[i] for i in rng.integers(len(rows), size=count)]
     return [

@@ -40,7 +40,7 @@ POOLS = 20
 
 
 def of_two_parts(family: str) -> bool:
-    """Whether the words of a family give the two people different parts: none say that both do it."""
+    """True if the words of a family give the two people different parts: none say that both do it."""
     return family in ENTRIES and not ENTRIES[family].both
 
 

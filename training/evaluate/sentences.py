@@ -1,4 +1,4 @@
-"""Whether motions do what eighty sentences from elsewhere say: ``python -m training.evaluate.sentences``.
+"""Scores motions of eighty sentences from elsewhere: ``python -m training.evaluate.sentences``.
 
 Draws four seeds of each sentence of :mod:`training.evaluate.judge.sentences` with any weights folder and
 judges them by the sentences' own rules. What was drawn is kept, so that a run that was stopped goes on, rules

@@ -107,7 +107,7 @@ COMMON = 0.4
 
 @dataclass(frozen=True)
 class Settings:
-    """What a run depends on; a checkpoint of other settings is refused. Named as in training.trainers.intergen."""
+    """The settings of a run; a checkpoint of others is refused. Named as in training.trainers.intergen."""
 
     latent_dim: int = 192
     ff_size: int = 512

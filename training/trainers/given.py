@@ -67,7 +67,7 @@ def known_parts(
     shares: Shares,
     generator: torch.Generator,
 ) -> Known | None:
-    """What is given of each motion of a batch.
+    """Draws the parts of each motion of a batch that are given.
 
     Args:
         control: (B, 2, K, 70) true control points in metres.

@@ -69,7 +69,7 @@ def new_model(settings: Settings, data: Data) -> CompactInterGen:
 
 
 def condition(model: CompactInterGen, batch: Batch) -> tuple[Tensor, Tensor]:
-    """What the denoiser sees of the sentences that are read, and the vectors (B, C) of those for both people."""
+    """The condition of the sentences that are read, and the vectors (B, C) of those for both people."""
     size = len(batch.x0)
     if not model.config.words:
         vectors = model.conditioner(batch.text[:size], batch.text_mask[:size])
@@ -121,7 +121,7 @@ class Trainer(Loop):
         self.data.mean, self.data.std = self.model.mean.cpu(), self.model.std.cpu()
 
     def set_up(self, scenes: Scenes, settings: Settings, out: Path, device: str, cache: Path | None) -> None:
-        """What a run has beside its networks: data, noise schedule and losses."""
+        """Prepares data, noise schedule and losses."""
         self.scenes, self.settings, self.out, self.device = scenes, settings, out, device
         out.mkdir(parents=True, exist_ok=True)
         torch.manual_seed(settings.seed)
@@ -136,11 +136,11 @@ class Trainer(Loop):
         self.feature_weights = self.feature_weights.repeat(scenes.layout.knots_per_token)
 
     def parts(self) -> dict[str, torch.nn.Module | torch.optim.Optimizer]:
-        """What a checkpoint holds, by name."""
+        """The contents of a checkpoint, by name."""
         return {"model": self.model, "ema": self.ema, "reader": self.reader, "optimizer": self.optimizer}
 
     def known(self, batch: Batch, generator: torch.Generator) -> Known | None:
-        """What is given of each motion, drawn by the settings' shares."""
+        """The given parts of each motion, drawn by the settings' shares."""
         control, frames = self.model.control(batch.x0).cpu(), batch.frame_mask.sum(1).int().tolist()
         return known_parts(
             control, frames, batch.past.tolist(), self.scenes.layout, self.settings.given, generator

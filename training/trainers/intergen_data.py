@@ -1,4 +1,4 @@
-"""What the compact InterGen learns from: a run's settings, and batches of scenes with their words."""
+"""Data of the compact InterGen: a run's settings, and batches of scenes with their words."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ from training.trainers.reading import UNKNOWN, CaptionReader
 
 @dataclass(frozen=True)
 class Settings:
-    """What a run depends on; a checkpoint of other settings is refused.
+    """The settings of a run; a checkpoint of others is refused.
 
     noisiest: share of samples whose timestep is drawn from the noisiest tenth, where it is decided what
         happens, see :func:`training.trainers.intergen.draw_timesteps`.
@@ -228,7 +228,7 @@ class Data:
         return canonical_control(one), before, beat["captions"][int(draw[2] * len(beat["captions"]))]
 
     def features(self, captions: list[str]) -> tuple[Tensor, Tensor]:
-        """What the network sees of captions: features (B, …) and their mask."""
+        """The text encoder's output for captions: features (B, …) and their mask."""
         return self.captions.batch(captions)
 
     def batch(self, step: int) -> Batch:

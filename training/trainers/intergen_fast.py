@@ -33,7 +33,7 @@ from training.trainers.intergen_data import Batch, seeded, settings_of
 
 @dataclass(frozen=True)
 class FastSettings:
-    """What a run depends on, beside the settings of the run whose network is made fast.
+    """The settings of a run, beside those of the run whose network is made fast.
 
     substeps: DDIM steps of the trained network for one pass.
     lowest, highest: scales of the guidance are drawn between them.
@@ -105,7 +105,7 @@ class FastTrainer(Trainer):
         self.step = checkpoint.restore(self.out / "last.safetensors", self.parts(), of)
 
     def parts(self) -> dict[str, torch.nn.Module | torch.optim.Optimizer]:
-        """What a checkpoint holds, by name."""
+        """The contents of a checkpoint, by name."""
         return {"change": self.change, "ema": self.ema, "optimizer": self.optimizer}
 
     def levels(self, t: Tensor) -> tuple[Tensor, Tensor]:

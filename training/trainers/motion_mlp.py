@@ -25,7 +25,7 @@ from training.trainers.prediction.windows import open_windows
 
 @dataclass(frozen=True)
 class Settings:
-    """What a run depends on; a checkpoint of other settings is refused.
+    """The settings of a run; a checkpoint of others is refused.
 
     ``init`` names the folder of a trained predictor that the run begins with. ``own_pasts`` is how often the
     network may have been applied to what it gave in the pasts that it sees (of the corpus): 0 to so many

@@ -75,7 +75,7 @@ def knot_positions(control: Tensor) -> Tensor:
 
 
 def seen_rows(control: Tensor) -> Tensor:
-    """What each row sees of an actor given by control points (B, K, 70), not normalised: (B, K, 132)."""
+    """The actor as each row sees it, not normalised: control points (B, K, 70) → (B, K, 132)."""
     knots = (control[:, :-2] + 4 * control[:, 1:-1] + control[:, 2:]) / 6
     pose = knots[..., : FEATURES - NUM_CONTACTS]
     place = torch.arange(control.shape[1]) - LEAD
@@ -84,7 +84,7 @@ def seen_rows(control: Tensor) -> Tensor:
 
 
 def is_recorded(row: dict[str, Any]) -> bool:
-    """Whether a scene was recorded with both people, and not composed of two recordings."""
+    """True if a scene was recorded with both people, and not composed of two recordings."""
     return any(str(source).startswith(("sbu", "k3hi")) for source in row["sources"])
 
 

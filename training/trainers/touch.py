@@ -28,7 +28,7 @@ _SWAP = {"left": "right", "right": "left"}
 
 
 def touch_of(row: dict[str, Any], *, mirror: bool = False) -> Touch:
-    """What touches in a scene of :mod:`training.prepare`, or in its mirror image."""
+    """The joints that touch in a scene of :mod:`training.prepare`, or in its mirror image."""
     entries = (row["events"] or {}).get("contact") or ()
     pairs = {(entry["a"], entry["b"]) for entry in entries}
     return tuple(sorted((_mirror(a), _mirror(b)) if mirror else (a, b) for a, b in pairs))

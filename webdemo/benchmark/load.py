@@ -58,7 +58,7 @@ _API = "gradio_api"
 
 @dataclass
 class Tally:
-    """What happened.
+    """Everything that a run of the load test recorded.
 
     Attributes:
         waits: seconds a unit of work that each person waited for each run.
@@ -227,7 +227,7 @@ async def _probe(client: httpx.AsyncClient, tally: Tally) -> None:
 
 @dataclass(frozen=True)
 class Job:
-    """What somebody asks for.
+    """A request that a simulated person sends.
 
     Attributes:
         endpoint: where.

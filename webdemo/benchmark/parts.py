@@ -1,4 +1,4 @@
-"""Where a request's time goes, how much of the machine's arithmetic its network reaches, and what a busy core costs."""
+"""The time that each part of a request takes, the share of the machine's arithmetic, and the cost of a busy core."""
 
 from __future__ import annotations
 

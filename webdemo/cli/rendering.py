@@ -98,7 +98,7 @@ def _size(words: str) -> tuple[int, int]:
 
 
 def _moments(words: str) -> int | list[int]:
-    """How many frames, or which."""
+    """Reads ``--frames``: a number of frames, or a list of them."""
     parts = words.split(",")
     if not all(part.strip().isdecimal() for part in parts):
         raise InputError(f"--frames is a number or frames with commas, such as 0,30,75, not {words!r:.30}.")

@@ -119,7 +119,7 @@ class _Correction:
 
 
 class Meeting:
-    """Where lanes wait for each other; the last one to arrive computes the results of all in one pass.
+    """A meeting point of lanes; the last one to arrive computes the results of all in one pass.
 
     Args:
         denoiser: computes the predictions.

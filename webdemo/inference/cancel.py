@@ -1,4 +1,4 @@
-"""How a run is cancelled."""
+"""Cancelling a run."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ class CancelToken:
 
     @property
     def cancelled(self) -> bool:
-        """Whether the run was asked to stop."""
+        """True if the run was asked to stop."""
         return self._event.is_set()
 
     def is_set(self) -> bool:

@@ -277,7 +277,7 @@ class Damping:
         self.weights = weights or DampingWeights()
 
     def due(self, timestep: int) -> bool:
-        """Whether anything is corrected at a timestep."""
+        """True if anything is corrected at a timestep."""
         return not self.off and timestep <= self.last
 
     def __call__(self, x0: Tensor, timestep: int) -> Tensor:

@@ -33,7 +33,7 @@ _HIPS = (SMPL22.index("left_hip"), SMPL22.index("right_hip"))
 
 @dataclass(frozen=True, eq=False)
 class KnownFrames:
-    """What a person does at some frames; held exactly.
+    """The motion of a person at some frames, held exactly.
 
     Attributes:
         person: 0 for a, 1 for b.

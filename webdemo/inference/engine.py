@@ -51,7 +51,7 @@ class Engine:
 
     @property
     def ready(self) -> bool:
-        """Whether the default network is in memory."""
+        """True if the default network is in memory."""
         return SamplingRequest.model in self._pipelines
 
     def warm_up(self) -> None:
@@ -113,7 +113,7 @@ class Engine:
         return pipeline.live(request)
 
     def pipeline(self, name: str) -> Pipeline:
-        """What runs the requests of a method, loaded if it is not yet.
+        """The pipeline that runs the requests of a method; loads it first if necessary.
 
         Raises:
             InputError: if there is no such method, or its weights are missing or altered.

@@ -1,4 +1,4 @@
-"""What a method is: one object with everything that the rest of the product needs to know about it.
+"""The description of a method: one object with everything that the rest of the product needs to know about it.
 
 The page, the shell, the API, the queue, the history and the benchmark read these objects through
 :mod:`webdemo.inference.methods` and keep no list of their own. Importing this module imports no torch.
@@ -86,7 +86,7 @@ class Method:
         return self.defaults.get(name, otherwise)
 
     def installed(self, weights: Path) -> bool:
-        """Whether its weights are in the folder of all weights; nothing is loaded."""
+        """True if its weights are in the folder of all weights; nothing is loaded."""
         return self.weights is None or (weights / self.weights / "config.json").is_file()
 
     @property

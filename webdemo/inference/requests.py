@@ -1,4 +1,4 @@
-"""What can be asked of the :class:`~webdemo.inference.engine.Engine`, and what it answers.
+"""Requests to the :class:`~webdemo.inference.engine.Engine`, and its results.
 
 These dataclasses import no torch, so the page, the shell and the API build them before any network loads.
 """
@@ -219,7 +219,7 @@ class Progress:
 
 @dataclass(frozen=True, kw_only=True)
 class Result:
-    """What a request gave.
+    """The result of a request.
 
     Attributes:
         duets: one a sample; a prediction for one person is that person's clip.

@@ -30,7 +30,7 @@ FILE = "pasdedeux.toml"
 
 
 def on_a_space() -> bool:
-    """Whether this is a Hugging Face Space, which is always public."""
+    """True if this is a Hugging Face Space, which is always public."""
     return "SPACE_ID" in os.environ
 
 
@@ -146,12 +146,12 @@ class Settings(BaseSettings):
 
     @property
     def local(self) -> bool:
-        """Whether only this machine can reach the server."""
+        """True if only this machine can reach the server."""
         return is_loopback(self.host)
 
     @property
     def accounts(self) -> bool:
-        """Whether people sign in."""
+        """True if people sign in."""
         return self.users is not None
 
     @property
@@ -187,7 +187,7 @@ class Settings(BaseSettings):
 
 
 def is_loopback(host: str) -> bool:
-    """Whether an address or name is this machine's loopback."""
+    """True if an address or name is this machine's loopback."""
     if host == "localhost":
         return True
     try:

@@ -95,7 +95,7 @@ def verdict(old: Result, new: Result) -> str:
 
 
 def _changed(old: Mapping[str, Any], new: Mapping[str, Any]) -> list[str]:
-    """What differs between two manifests, in words."""
+    """Lists the differences between two manifests, in words."""
     found = []
     if old.get("model") != new.get("model"):
         found.append(f"the model ({old.get('model')} → {new.get('model')})")

@@ -284,7 +284,7 @@ class PredictEndpoint(Endpoint):
     def predict(
         self, past: str, marker: float, seconds: float, model: str, progress: gr.Progress = PROGRESS
     ) -> Answer:
-        """What may come after the past of a motion, for one person or two.
+        """Predicts what comes after the past of a motion, for one person or two.
 
         Returns the manifest, timings, notes and file names, and under "prediction" the error (mm) and speed
         (mm a frame) of every predicted frame; and the files, which hold the past and what is predicted. An

@@ -1,4 +1,4 @@
-"""What every tab of the page is given."""
+"""The objects that every tab of the page shares."""
 
 from __future__ import annotations
 

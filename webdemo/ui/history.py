@@ -1,4 +1,4 @@
-"""What the page needs of a history; the server keeps one."""
+"""The interface of a history as the page uses it; the server keeps one."""
 
 from __future__ import annotations
 

@@ -33,7 +33,7 @@ class LazyEngine:
 
     @property
     def ready(self) -> bool:
-        """Whether the networks are loaded; does not load anything."""
+        """True if the networks are loaded; does not load anything."""
         return self._engine is not None and bool(self._engine.ready)
 
     def warm_up(self) -> None:

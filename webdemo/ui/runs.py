@@ -1,4 +1,4 @@
-"""Who is running what: one run a session, a place in the line, and a way to stop."""
+"""The runs that are going on: one a session, its place in the line, and a way to stop it."""
 
 from __future__ import annotations
 
@@ -16,11 +16,11 @@ log = logging.getLogger(__name__)
 
 
 class EngineLike(Protocol):
-    """What the page needs of an engine."""
+    """The interface of an engine as the page uses it."""
 
     @property
     def ready(self) -> bool:
-        """Whether the networks are loaded."""
+        """True if the networks are loaded."""
 
     def warm_up(self) -> None:
         """Loads the networks; returns when they are ready."""
@@ -44,7 +44,7 @@ class Waiting(Progress):
 
 
 class RunsLike(Protocol):
-    """What tabs and endpoints need to run a request, see :class:`Runs`."""
+    """The interface with which tabs and endpoints run a request, see :class:`Runs`."""
 
     def cancel(self, session: str) -> bool:
         """Stops the session's run within one step; False where it has none."""

@@ -1,4 +1,4 @@
-"""Who asks: told by the server around the page, to the code that answers an event."""
+"""The person behind a request, from the server around the page to the code that answers an event."""
 
 from __future__ import annotations
 

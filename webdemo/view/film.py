@@ -44,7 +44,7 @@ _CODECS = {
 
 
 def can_write(suffix: str) -> bool:
-    """Whether this installation writes films with this suffix (with its dot)."""
+    """True if this installation writes films with this suffix (with its dot)."""
     return suffix.lower() == ".gif" or (suffix.lower() in SUFFIXES and find_spec("av") is not None)
 
 

@@ -1,4 +1,4 @@
-"""What travels to the player in the browser: motion as compact, plain JSON.
+"""The data sent to the player in the browser: motion as compact, plain JSON.
 
 Positions are quantised to 16 bits an axis and sent as base64, so a clip of ten seconds for two people
 takes about 105 kB. The browser's side of this format is ``static/player/decode.js``.

@@ -1,4 +1,4 @@
-"""What one person does alone, at any place on the stage: gestures, jumps, sitting, falling, dancing."""
+"""Acts of one person alone, at any place on the stage: gestures, jumps, sitting, falling, dancing."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ HEAD = SMPL22.index("head")
 
 @dataclass(frozen=True)
 class Done:
-    """How an act was done.
+    """A performed act.
 
     Attributes:
         start, stop: its frames on the person's timeline.

@@ -1,4 +1,4 @@
-"""Where two people go: towards, away from, past, around, behind and beside each other."""
+"""Ways of two people: towards, away from, past, around, behind and beside each other."""
 
 from __future__ import annotations
 

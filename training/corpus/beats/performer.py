@@ -54,7 +54,7 @@ class Performer:
         self.motion = place(self._rest[:4], *spot, angle)
 
     def state(self) -> tuple[Motion, int, bool]:
-        """What :meth:`restore` goes back to."""
+        """The state that :meth:`restore` goes back to."""
         return self.motion, self._used, self._calm
 
     def restore(self, state: tuple[Motion, int, bool]) -> None:

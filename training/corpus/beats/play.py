@@ -20,7 +20,7 @@ Effect = Callable[[Array, Array], tuple[Array, Array, Touches]]
 
 @dataclass
 class Beat:
-    """What the two do in one stretch of a scene.
+    """One stretch of a scene, in which each of the two does one thing.
 
     Attributes:
         acts: what a and b do, by the names of the phrase book; "stand" who only looks on.
@@ -156,11 +156,11 @@ class Play:
         self.effects.append(_Timed(effect, max(start, 0), stop, i == 1))
 
     def look(self, i: int, start: int, stop: int, amount: float) -> None:
-        """How much person ``i`` looks at the other between two frames (0.7 by default)."""
+        """Sets how much person ``i`` looks at the other between two frames (0.7 by default)."""
         self.looks.append((i, start, stop, amount))
 
     def snapshot(self) -> tuple[Any, ...]:
-        """What :meth:`restore` goes back to."""
+        """The state that :meth:`restore` goes back to."""
         kept = (list(self.beats), list(self.effects), list(self.looks))
         return [person.state() for person in self.people], *kept
 

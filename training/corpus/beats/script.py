@@ -1,4 +1,4 @@
-"""Which beats follow each other: draws scenes of one to four beats that fit into their frames."""
+"""The order of beats: draws scenes of one to four beats that fit into their frames."""
 
 from __future__ import annotations
 
@@ -102,7 +102,7 @@ def _face(play: Play, i: int) -> int:
 
 
 def _draw_answer(play: Play, name: str, draw: float) -> str:
-    """What the other does while one person does ``name``: as the story wishes, or by ``draw`` from 0 to 1."""
+    """Draws the other's answer to ``name``: as the story wishes, or by ``draw`` from 0 to 1."""
     if play.wish:
         answer = play.wish[1]
         if answer in ACTS and not play.library.has(*ACTS[answer].needs):

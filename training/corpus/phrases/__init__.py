@@ -1,4 +1,4 @@
-"""What the corpus' captions say: the phrase book's words, one entry a family, a kind of families a module.
+"""The phrase book of the corpus' captions: one entry a family, a kind of families a module.
 
 Notation (read by :mod:`training.corpus.captions`):
     ``(a|b|)``  one of the alternatives, the last of which is empty here;

@@ -42,7 +42,7 @@ _LINKS = (
 
 
 def held_out(text: str) -> bool:
-    """Whether a phrase is reserved for captions of the test split."""
+    """True if a phrase is reserved for captions of the test split."""
     return zlib.crc32(text.encode()) % 100 < HELD_OUT
 
 
@@ -286,7 +286,7 @@ class Narrator:
         return spoken + self._adverb(draft, beat, person, len(text))
 
     def _adverb(self, draft: _Draft, beat: Beat, person: int, length: int) -> str:
-        """How, or how long, where the scene knows it."""
+        """An adverb of manner or duration, if the scene knows one."""
         draw, style = self.rng.random(), beat.styles[person]
         if style in MANNERS and draw < 0.35:
             return " " + self._pick(draft, MANNERS[style])

@@ -127,7 +127,7 @@ class Voice:
         return order.index(person)
 
     def name(self, person: int) -> str:
-        """How the sentence names a person this time."""
+        """The name or pronoun of a person at this place of the sentence."""
         slot = self._slot(person)
         if person in self.mentioned:
             return self.cast.later[slot]
@@ -140,7 +140,7 @@ class Voice:
 
     @property
     def clear(self) -> bool:
-        """Whether a pronoun says who is meant."""
+        """True if a pronoun says who is meant."""
         one, other = self.cast.pronouns
         return one != other and "they" not in (one, other)
 

@@ -27,7 +27,7 @@ _SECOND = re.compile(
 
 
 def tells_of_both(caption: str) -> bool:
-    """Whether a sentence speaks of both people, or of none by name ("a short handshake").
+    """True if a sentence speaks of both people, or of none by name ("a short handshake").
 
     "One person holds a hand down." is true of a low five but does not ask for one.
     """

@@ -1,4 +1,4 @@
-"""What a person would check on a duet, as rules on joint positions.
+"""Checks that a person would make on a duet, as rules on joint positions.
 
 Each rule reads the events of a scene (see :class:`training.corpus.scene.Scene`) and answers only where they
 name something: the hand that moves, joints that touch, whether the two come nearer, whether they face each

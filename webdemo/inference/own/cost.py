@@ -1,4 +1,4 @@
-"""What a released network takes on this machine, from the shapes in its file: memory, and seconds for a motion.
+"""The memory and the seconds for a motion that a released network needs here, from the shapes in its file.
 
 Torch is not imported. The machine's speed is that of a matrix product in NumPy, measured once in a process.
 """
@@ -31,7 +31,7 @@ EFFICIENCY = 0.8
 
 @dataclass(frozen=True)
 class Cost:
-    """What a network takes.
+    """The memory and the time that a network needs.
 
     Attributes:
         parameters: of the network and its text side.

@@ -166,7 +166,7 @@ def _files(value: Any, folder: Path) -> dict[str, Path]:
 
 
 def _role(path: str) -> str:
-    """What a file is, by its name."""
+    """The part that a file plays, by its name."""
     name = Path(path).name.lower()
     if name.endswith(_CHECKPOINTS):
         return "checkpoint"

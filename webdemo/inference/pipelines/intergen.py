@@ -57,7 +57,7 @@ class InterGenPipeline(TwoPersonPipeline[CompactInterGen]):
             return self.model.condition(tokens), tokens.pooled()[0]
 
     def notes(self, vector: Tensor) -> tuple[str, ...]:
-        """What the user should know of a prompt: that it is far from all that was trained on."""
+        """Warns the user of a prompt that is far from all that was trained on."""
         near = self.bank.nearest(vector)
         if near[0][0] >= self.bank.far:
             return ()

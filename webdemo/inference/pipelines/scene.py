@@ -48,7 +48,7 @@ FAR = 6.0
 
 @dataclass(frozen=True, kw_only=True)
 class WindowRequest(GenerateRequest):
-    """What one window asks of the network; its words may be missing."""
+    """The request of one window of a scene; its words may be missing."""
 
     def __post_init__(self) -> None:
         self._check(methods.method(self.model, "scene"))
@@ -56,7 +56,7 @@ class WindowRequest(GenerateRequest):
 
 @dataclass(frozen=True)
 class Made:
-    """What a window gave: positions (2, frames, 22, 3) in the scene's world, and notes."""
+    """The motion of a window: positions (2, frames, 22, 3) in the scene's world, and notes."""
 
     positions: Array
     notes: tuple[str, ...] = ()
@@ -291,7 +291,7 @@ def _at(place: Array, angle: float) -> Placement:
 
 
 def _anchor(request: SceneRequest) -> Placement | None:
-    """Where a scene begins that has paths or poses: person a at their first point, or in front of b's."""
+    """The place where a scene with paths or poses begins: person a at their first point, or in front of b's."""
     for person in ROLES:
         places: list[tuple[float, float, float, float]] = []  # seconds, x, z, heading
         for path in request.paths:

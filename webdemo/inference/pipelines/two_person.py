@@ -34,7 +34,7 @@ Network = TypeVar("Network", CompactInterGen, CompactBiGraphDiff, ReleasedInterG
 
 @dataclass(frozen=True)
 class Conditioning:
-    """What a network conditions on, and how strongly.
+    """The condition of a network, and the strength of its guidance.
 
     Attributes:
         condition: (1, …) as the denoiser takes it; zeros are no condition.
@@ -86,7 +86,7 @@ class OwnPasses:
 
 
 class _Steps:
-    """What the sampling loop calls at every step: the guided prediction, then its correction.
+    """The functions that the sampling loop calls at every step: the guided prediction, then its correction.
 
     Args:
         passes: make both.
@@ -142,7 +142,7 @@ class TwoPersonPipeline(ABC, Generic[Network]):
         self.compiled = compile_network(model.denoiser, source.digest)
 
     def scene(self, request: GenerateRequest | ReactRequest) -> Scene:
-        """What a request says is known of the motion, and how samples become duets."""
+        """The known part of the motion that a request asks for, and how samples become duets."""
         return scene_of(request, cast(DuetSpace, self.model))
 
     @abstractmethod

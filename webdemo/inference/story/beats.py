@@ -151,7 +151,7 @@ def story_title(beats: Sequence[Mapping[str, Any]]) -> str:
 
 
 def _of_person(text: str, who: str) -> str:
-    """What one person does as a clause with a subject."""
+    """Writes what one person does as a clause with a subject."""
     text = text.strip().rstrip(".")
     if _SUBJECT.match(text):
         return text[:1].lower() + text[1:]
@@ -159,7 +159,7 @@ def _of_person(text: str, who: str) -> str:
 
 
 def seconds_of(sentence: str) -> float:
-    """How long an act takes, in half seconds: as long as the words say, or as long as such acts are."""
+    """The duration of an act in half seconds: as the words say, or as long as such acts usually are."""
     stated = _STATED.search(sentence)
     if stated:
         number = stated[1].lower()

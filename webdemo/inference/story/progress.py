@@ -1,4 +1,4 @@
-"""What a scene reports while it is made."""
+"""Progress of a scene while it is generated."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What a story asks of single people at single moments: paths on the floor, and poses.
+"""Wishes of a story for single people at single moments: paths on the floor, and poses.
 
 The floor's middle is the origin; x and z are metres, a heading is in degrees from +z towards +x.
 """
@@ -132,7 +132,7 @@ class FloorPath:
             before = point
 
     def place(self, seconds: float) -> tuple[float, float] | None:
-        """Where the straight way between its points is at a time; None before the first and after the last."""
+        """The place (x, z) at a time, on straight lines between the points; None outside of their times."""
         times = [point.seconds or 0.0 for point in self.points]
         if not times[0] <= seconds <= times[-1]:
             return None

@@ -75,7 +75,7 @@ class Users:
         self._write({other: entry for other, entry in entries.items() if other != name})
 
     def knows(self, name: str, password: str) -> bool:
-        """Whether this is the person's password; takes as long for a name that is not there."""
+        """True if this is the person's password; takes as long for a name that is not there."""
         entries = self._entries()
         known = name in entries
         salt, digest = entries.get(name, self._nobody)

@@ -114,7 +114,7 @@ class RayEngine:
 
     @property
     def ready(self) -> bool:
-        """Whether the replicas of the default model are up."""
+        """True if the replicas of the default model are up."""
         return SamplingRequest.model in self._handles
 
     def warm_up(self) -> None:

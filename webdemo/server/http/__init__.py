@@ -1,1 +1,1 @@
-"""What every HTTP request meets: limits, checks, pages of the lab's own, health and metrics."""
+"""The way of every HTTP request: limits, checks, pages of the lab's own, health and metrics."""

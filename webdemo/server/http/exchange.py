@@ -67,7 +67,7 @@ class Exchange:
 
     @property
     def in_browser(self) -> bool:
-        """Whether somebody looks at the answer."""
+        """True if somebody looks at the answer."""
         return b"text/html" in self.headers.get(b"accept", b"")
 
     @property
@@ -130,7 +130,7 @@ class Exchange:
 
 
 def _is_sentence(answer: list[Message]) -> bool:
-    """Whether a response is Gradio's error about a value, which has status 500."""
+    """True if a response is Gradio's error about a value, which has status 500."""
     try:
         content = json.loads(b"".join(message.get("body", b"") for message in answer))
     except ValueError:

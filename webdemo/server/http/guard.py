@@ -1,4 +1,4 @@
-"""What every request passes before the page sees it: limits, where it comes from, and who sent it.
+"""The checks that every request passes before the page sees it: limits, where it comes from, and who sent it.
 
 Starlette's TrustedHostMiddleware and RequestBodyLimitMiddleware would do a part of it: the first answers
 without naming the setting, the second bounds no time. So both are done here.
@@ -352,7 +352,7 @@ class Guard:
             self.bindings.check("/".join(names[1:]).rstrip("/"), person, known=True)
 
     def _binds(self, person: str) -> Callable[[bytes], None]:
-        """What hears the answer to a call, whose result is then for who made it."""
+        """Returns a listener that ties the answer to a call to the person who made it."""
 
         def hear(answer: bytes) -> None:
             try:
@@ -369,7 +369,7 @@ def _is_upload(path: str) -> bool:
 
 
 def may_read_figures(settings: Settings, address: str, authorization: str) -> bool:
-    """Whether /metrics may be read: from this machine, or with the token."""
+    """True if /metrics may be read: from this machine, or with the token."""
     token = settings.metrics_token
     if token:
         return hmac.compare_digest(authorization.encode(), f"Bearer {token}".encode())

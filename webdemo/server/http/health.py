@@ -1,4 +1,4 @@
-"""Whether the server can do its work: a tiny generation says so."""
+"""The health check: a tiny generation shows that the server can do its work."""
 
 from __future__ import annotations
 
@@ -39,7 +39,7 @@ class Health:
 
     @property
     def ready(self) -> bool:
-        """Whether requests should be sent here."""
+        """True if requests should be sent here."""
         return self._works and not self.stopping
 
     def probe(self) -> None:
@@ -58,7 +58,7 @@ class Health:
         self.error = f"a run ended in {type(error).__name__}"
 
     def report(self) -> tuple[bool, dict[str, Any]]:
-        """Whether all is well, and what is what."""
+        """Returns whether all is well, and the state of each part."""
         self.probe()
         checks: dict[str, str] = {}
         for name, check in self.wants.items():

@@ -1,4 +1,4 @@
-"""What a call of the page may hold: known functions, plain values, and files that were uploaded here.
+"""The check of what a call of the page holds: known functions, plain values, and files that were uploaded here.
 
 Gradio copies any file that a value names as ``{"path": …, "meta": {"_type": "gradio.FileData"}}`` into the
 folder that it serves, whatever component the value is for, and fetches addresses of other hosts.

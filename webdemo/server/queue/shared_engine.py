@@ -31,7 +31,7 @@ class SharedEngine(LazyEngine):
         return request.model, request.sampler, request.steps
 
     def fits(self, requests: Sequence[Any], other: Any) -> bool:
-        """Whether the lengths are similar enough to share a pass."""
+        """True if the lengths are similar enough to share a pass."""
         lengths = [_seconds(request) for request in (*requests, other)]
         return max(lengths) <= NEARBY * min(lengths)
 

@@ -26,7 +26,7 @@ class Batcher(Protocol):
         """Requests of equal keys may share a pass; None for one that must run alone."""
 
     def fits(self, requests: Sequence[Any], other: Any) -> bool:
-        """Whether another request of the same key may join these."""
+        """True if another request of the same key may join these."""
 
     def run_together(
         self, items: Sequence[tuple[Any, CancelToken]]

@@ -26,7 +26,7 @@ CHECKED_ROWS = 200
 
 
 class Table(DeclarativeBase):
-    """What all tables share. Times are seconds since 1970."""
+    """The base of all tables. Times are seconds since 1970."""
 
 
 class Run(Table):
@@ -154,7 +154,7 @@ def sentences() -> Iterator[None]:
 
 
 def is_full(error: BaseException) -> bool:
-    """Whether a database's error says that its disk is full."""
+    """True if a database's error says that its disk is full."""
     return isinstance(error, SQLAlchemyError) and "full" in str(getattr(error, "orig", ""))
 
 

@@ -287,7 +287,7 @@ class History:
         return len(gone)
 
     def _clock_is_trusted(self, now: float, newest: float | None) -> bool:
-        """Whether ages of runs can be trusted: not for a while after the clock seems to have jumped."""
+        """True if ages of runs can be trusted: not for a while after the clock seems to have jumped."""
         last = max(self._cleaned, newest or 0.0)
         if last and now - last > LEAP_SECONDS:
             log.warning(

@@ -46,7 +46,7 @@ def visitors_folder() -> str:
 
 
 def owns(person: str, path: str) -> bool:
-    """Whether a path is below a person's folder, with all links on its way followed."""
+    """True if a path is below a person's folder, with all links on its way followed."""
     if "\0" in path or not os.path.isabs(path):
         return False
     return Path(os.path.realpath(path)).is_relative_to(os.path.realpath(folder_of(person)))

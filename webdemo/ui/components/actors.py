@@ -43,7 +43,7 @@ def live_variant() -> Variant | None:
 
 @dataclass(frozen=True)
 class Source:
-    """What a session chose an actor from.
+    """The motion from which a session chose an actor.
 
     Attributes:
         name: of the file or the result.
@@ -73,7 +73,7 @@ class Source:
 
     @property
     def end(self) -> float:
-        """Where the trim ends at first: the whole motion, or as much of it as a network takes."""
+        """The default end of the trim: that of the motion, or as much of it as a network takes."""
         return min(self.seconds, SECONDS[1])
 
     def actor(self, person: str, start: float, end: float) -> Clip:
@@ -113,7 +113,7 @@ class Source:
 
 @dataclass(frozen=True)
 class Found:
-    """How a file was read: one line, and its joints beside SMPL's."""
+    """A summary of how a file was read: one line, and its joints beside SMPL's."""
 
     line: str
     joints: tuple[tuple[str, str], ...] = field(repr=False)

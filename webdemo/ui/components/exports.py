@@ -44,7 +44,7 @@ class Kind:
     label: str
 
     def offered(self) -> bool:
-        """Whether this installation can write it."""
+        """True if this installation can write it."""
         return self.key in ("png", "json") or formats.can_write(f".{self.key}")
 
 
@@ -162,7 +162,7 @@ def _write_kind(kind: Kind, result: Result, folder: Path, name: str, prompt: str
 
 
 def _holds(kind: Kind, result: Result) -> bool:
-    """Whether files of a kind can hold the people of a result."""
+    """True if files of a kind can hold the people of a result."""
     one = isinstance(result.duets[0], Clip)
     return not one or kind.key in ("png", "json") or f".{kind.key}" in SUFFIXES
 

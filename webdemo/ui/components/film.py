@@ -38,7 +38,7 @@ READ_PLAYER = """(record, _) => {
 
 
 def suffix() -> str:
-    """What films are written as here: MP4, or GIF where its encoder is not installed."""
+    """The suffix of films that can be written here: MP4, or GIF if its encoder is not installed."""
     return ".mp4" if film.can_write(".mp4") else ".gif"
 
 

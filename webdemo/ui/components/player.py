@@ -84,7 +84,7 @@ class MotionPlayer(gr.HTML):
         return value
 
     def api_info(self) -> dict[str, Any]:
-        """What the component holds, for the API page."""
+        """Describes the component's value for the API page."""
         return {"type": "object", "description": "motion for the player, or null"}
 
     def example_payload(self) -> None:

@@ -54,7 +54,7 @@ def _sample(result: PredictResult, motion: Clip | Duet) -> dict[str, Any]:
 
 
 def method_name(result: PredictResult) -> str:
-    """What the page calls the method of a result."""
+    """The page's name for the method of a result."""
     model = str(result.manifest.get("model", ""))
     return label_of(model) or "Prediction"
 
@@ -81,7 +81,7 @@ def _speed(motion: Clip | Duet) -> Array:
 
 
 def ghost_of(motion: Clip | Duet, result: PredictResult) -> Clip | Duet | None:
-    """What really happened, as long as the shown motion: held where it is not known."""
+    """The recorded continuation, as long as the shown motion; its last pose is held where the recording ends."""
     if result.truth is None:
         return None
     real = stacked_positions(result.given)[:, : motion.num_frames]

@@ -1,4 +1,4 @@
-"""What the tabs that begin with a motion share: a field for a file, and chips for what else can be taken."""
+"""The input of tabs that begin with a motion: a field for a file, and chips for other sources."""
 
 from __future__ import annotations
 

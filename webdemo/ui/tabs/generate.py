@@ -128,7 +128,7 @@ class GenerateTab(JobTab):
 
     @staticmethod
     def asked_by(way: str) -> Updates:
-        """What is asked for, a sentence with examples or a class, and the guidance that suits it."""
+        """Shows the input that a method takes, a sentence with examples or a class, and sets its guidance."""
         guidance, by_class = method(way).default("guidance", GenerateRequest.guidance), takes_class(way)
         return gr.update(visible=not by_class), gr.update(visible=by_class), gr.update(value=guidance)
 

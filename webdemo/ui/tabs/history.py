@@ -142,7 +142,7 @@ class HistoryTab:
         )
 
     def choose(self, run: str | None) -> Updates:
-        """What went wrong with a run that was chosen, and what can be done with it."""
+        """Shows the error of a chosen run, and enables the actions that apply to it."""
         with shown_errors():
             entry = self._entry(run)
         line = status(entry.message, tone="warning") if entry and entry.message else status()
@@ -192,7 +192,7 @@ class HistoryTab:
         return line, gr.update(value=made[0] if made else "", visible=bool(made))
 
     def _act(self, run: str | None, act: Any) -> Updates:
-        """What was done, with no link shown."""
+        """Does something with a run and says so; hides the link."""
         try:
             if not run:
                 raise InputError("Choose a run first.")
@@ -298,7 +298,7 @@ def _parts(job: JobTab) -> Sequence[gr.components.Component]:
 
 
 def _signed_in(who: Visitor) -> str:
-    """Whose history this is, with a way out; nothing without accounts."""
+    """The name of the person who is signed in, with a button to sign out; empty without accounts."""
     if not who.account:
         return ""
     return (
@@ -338,7 +338,7 @@ def _method(asked: Mapping[str, Any]) -> str:
 
 
 def _able(entry: Entry | None) -> Updates:
-    """How the buttons of :data:`_ABLE` are for a run."""
+    """Enables the buttons of :data:`_ABLE` that apply to a run."""
     done = entry is not None and entry.state == "done"
     lets = {
         "open": done,

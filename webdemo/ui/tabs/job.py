@@ -1,4 +1,4 @@
-"""What every tab that makes motion has: sliders, a player, a run that can be cancelled, files."""
+"""The common part of the tabs that make motion: sliders, a player, a run that can be cancelled, files."""
 
 from __future__ import annotations
 
@@ -82,7 +82,7 @@ class JobTab(ABC):
 
     @abstractmethod
     def title(self, request: Any) -> str:
-        """What the player shows over the result and its files are called after."""
+        """The title that the player shows over the result, and from which its files are named."""
 
     # ---- layout ----------------------------------------------------------------------------------
 
@@ -230,7 +230,7 @@ class JobTab(ABC):
         return {"go": self.go}
 
     def more_outputs(self) -> dict[str, Any]:
-        """What else :meth:`run` updates, by the names that :meth:`_shown` gives."""
+        """Further components that :meth:`run` updates, by the names that :meth:`_shown` gives."""
         return {}
 
     def run(self, session: str, fields: Mapping[str, Any]) -> Iterator[Updates]:

@@ -1,4 +1,4 @@
-"""What comes next: a motion, a marker where the past ends, and what is predicted after it."""
+"""The tab of predictions: a motion, a marker where the past ends, and what is predicted after it."""
 
 from __future__ import annotations
 
@@ -57,7 +57,7 @@ def motion_of(source: Source) -> Clip | Duet:
 
 
 def given_source(result: PredictResult, name: str) -> Source:
-    """What a prediction was asked about, as a source again."""
+    """The motion of a prediction's request, as a source again."""
     given = result.given
     named = result.manifest.get("request", {}).get("motion", {}).get("name")
     return Source(named or name, given.people if isinstance(given, Duet) else (given,))
@@ -94,7 +94,7 @@ class PredictTab(JobTab):
         )  # fmt: skip
 
     def title(self, request: PredictRequest) -> str:
-        """Where the prediction begins, and of which motion."""
+        """The time at which the prediction begins, and the name of the motion."""
         name = request.motion.name if isinstance(request.motion, Clip) else request.motion.a.name
         return f"After {request.marker:.1f} s of {name}"
 

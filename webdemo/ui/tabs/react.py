@@ -174,7 +174,7 @@ class ReactTab(JobTab):
             self._go("React", self._live_button)
 
     def _import_choices(self) -> None:
-        """How the file was read, and what can be set about it."""
+        """The line on how the file was read, and its settings."""
         with gr.Accordion("How the file was read", open=False, elem_id="react-import"):
             with gr.Row(elem_classes="pd-pair"):
                 self.up = gr.Dropdown(
@@ -386,7 +386,7 @@ class ReactTab(JobTab):
 
 
 def _found(source: Source) -> str:
-    """How a source's file was read, as HTML: one line, then which of its joints is which of SMPL's."""
+    """Describes as HTML how a source's file was read: one line, then its joints beside SMPL's."""
     if source.found is None:
         return status("Taken from a result, so there was nothing to detect.")
     pairs = " · ".join(f"{text(theirs)} → {text(ours)}" for theirs, ours in source.found.joints)

@@ -1,1 +1,1 @@
-"""What the page says: words, read-outs, examples. Nothing here knows Gradio's components."""
+"""The text of the page: words, read-outs, examples. Nothing here knows Gradio's components."""

@@ -75,7 +75,7 @@ def comparison_panel(results: Mapping[str, Result]) -> str:
 
 
 def prediction_lines(lines: Mapping[str, str]) -> str:
-    """How far off each prediction was, a line each, after what each is called where there are several."""
+    """A line on the error of each prediction, after its name if there are several."""
     return "".join(
         f'<p class="pd-told">{f"<b>{text(name)}</b> " if name else ""}{text(line)}</p>'
         for name, line in lines.items()
@@ -87,7 +87,7 @@ def _tables(*tables: str) -> str:
 
 
 def _told(samples: Sequence[tuple[Summary | None, Summary]], heads: Sequence[str]) -> str:
-    """How each came out, in words; of many samples the tables say enough."""
+    """Describes each sample in words; empty for many samples, for which the tables say enough."""
     if not 0 < len(samples) <= _MOST_TOLD:  # a prediction has no read-outs
         return ""
     return told_lines({name: after for name, (_, after) in zip(heads, samples, strict=True)})

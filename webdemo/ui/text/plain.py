@@ -41,7 +41,7 @@ def told_lines(summaries: Mapping[str, Mapping[str, float]]) -> str:
 
 
 def legend() -> str:
-    """What each figure means, folded away."""
+    """A folded legend of the figures."""
     items = "".join(
         f"<div><dt>{text(measure.label)}</dt><dd>{text(measure.meaning)}</dd></div>" for measure in MEASURES
     )

@@ -1,4 +1,4 @@
-"""What the page says about progress, errors and numbers."""
+"""Sentences of the page on progress, errors and numbers."""
 
 from __future__ import annotations
 
@@ -50,7 +50,7 @@ def progress_line(progress: Progress) -> str:
 
 
 def _left(progress: Progress) -> str:
-    """How much longer the steps take at the pace so far, once there is a pace and it is worth a word."""
+    """The time left at the pace so far; empty while there is no pace, or if little is left."""
     if progress.step < max(_PACE_STEPS, progress.total / 10):
         return ""
     left = progress.elapsed * (progress.total / progress.step - 1)
@@ -63,7 +63,7 @@ def _about(duration: float) -> str:
 
 
 def cancelled_line(progress: Progress | None) -> str:
-    """What is said after a cancellation, with the last step that was done."""
+    """The sentence after a cancellation, with the last step that was done."""
     if progress is None or progress.stage != "sample":
         return "Cancelled before the first step."
     return f"Cancelled at step {progress.step} of {progress.total}."

@@ -22,7 +22,7 @@ _EMPTY = frozenset({"a", "an", "the", "and", "then"})
 
 @dataclass(frozen=True)
 class Judgement:
-    """What the rule of one sentence says of one motion.
+    """The verdict of one sentence's rule on one motion.
 
     Attributes:
         passed: whether every condition is fulfilled.

@@ -98,7 +98,7 @@ class RuleError(ValueError):
 
 
 def check(rule: str, motion: Motion) -> bool:
-    """Whether a motion fulfils one rule.
+    """True if a motion fulfils one rule.
 
     Raises:
         RuleError: if the rule uses a word that the language does not have.

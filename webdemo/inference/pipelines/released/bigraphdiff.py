@@ -108,7 +108,7 @@ class ReleasedBiGraphDiffPipeline:
 
 
 def _loss(kinect: list[Duet], shown: list[Duet]) -> str:
-    """How far the joints lie from the network's, relative to the pelvis, as a sentence."""
+    """Says in a sentence how far the joints lie from the network's, relative to the pelvis."""
     layout = LAYOUTS[NTU25.name]
     gaps = []
     for before, after in zip(kinect, shown, strict=True):

@@ -1,4 +1,4 @@
-"""What the pipelines of released checkpoints share: the check of their files, and the loss of the conversion."""
+"""The common part of the pipelines of released checkpoints: the check of files, and the loss of the conversion."""
 
 from __future__ import annotations
 
@@ -63,7 +63,7 @@ class Measured:
         return cleaned
 
     def note(self, cleanup: bool) -> str:
-        """What the clean-up changed, as a sentence."""
+        """Says in a sentence what the clean-up changed."""
         if not cleanup:
             return "The positions are as the network gave them."
         return (
