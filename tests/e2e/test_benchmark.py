@@ -18,7 +18,7 @@ from pathlib import Path
 sys.path.insert(0, {str(REPOSITORY)!r})
 from tests.ui.stub_engine import StubEngine
 from webdemo.ui.page import build_page, launch_options
-page = build_page(StubEngine(pause=0.01), files=Path(tempfile.mkdtemp(dir=Path(__file__).parent)))
+page = build_page(StubEngine(pause=0.1), files=Path(tempfile.mkdtemp(dir=Path(__file__).parent)))
 page.launch(server_name="127.0.0.1", server_port=int(os.environ["PASDEDEUX_PORT"]), **launch_options())
 """
 
@@ -29,6 +29,7 @@ def test_page_and_player_are_measured(
     """``chromium`` says whether there is a browser; the benchmark starts one of its own."""
     (tmp_path / "app.py").write_text(STUB_APP)
     monkeypatch.setattr(benchmark_browser, "ROOT", tmp_path)
+    monkeypatch.setattr(benchmark_browser, "WATCHED", 1.0)
     with ThreadPoolExecutor(1) as thread:  # Playwright takes one browser a thread, and the fixture has one
         figures = thread.submit(benchmark_browser.measure_browser).result()
     print(f"\n{figures}")
