@@ -99,7 +99,8 @@ def cache_folder() -> Path:
 
 def has_bfloat16() -> bool:
     """True if this processor multiplies matrices of bfloat16 numbers itself (AVX512-BF16 or AMX)."""
-    return bool(torch.cpu._is_avx512_bf16_supported() or torch.cpu._is_amx_tile_supported())
+    found = torch.cpu.get_capabilities()
+    return bool(found.get("avx512_bf16") or found.get("amx_bf16"))
 
 
 def compile_network(

@@ -17,7 +17,7 @@ from typing import Any
 
 import numpy as np
 
-from training.evaluate.judge.sentences import kept_out
+from motion.metrics.sentences import kept_out
 
 from .grammar import article, conjugate, expand
 from .phrases import ACTIONS, ENTRIES

@@ -19,10 +19,10 @@ from PIL import Image
 
 from motion import InputError
 from motion.formats.files import replacing
+from motion.metrics.sentences import Sentence, load_sentences
+from motion.metrics.sentences.kept import Motions
+from motion.metrics.sentences.scores import share
 from training.core.shell import exit_code
-from training.evaluate.judge.sentences import Sentence, load_sentences
-from training.evaluate.judge.sentences.motions import Motions
-from training.evaluate.judge.sentences.scores import share
 from webdemo.view.contact_sheet import contact_sheet
 
 KEY, PAIRS, CHOICES = "key.json", "pairs.json", "choices.json"

@@ -21,6 +21,7 @@ from motion import Duet, InputError
 from motion.formats.files import replacing
 from motion.metrics import contact_precision_recall
 from motion.metrics.generation import r_precision
+from motion.metrics.sentences.scores import share
 from motion.transforms import canonicalize
 from training.core.shell import exit_code
 from training.corpus.phrases import ENTRIES
@@ -29,7 +30,6 @@ from training.evaluate.judge.draw import Sampling, draw
 from training.evaluate.judge.prompts import choose, real_duet
 from training.evaluate.judge.report import physical
 from training.evaluate.judge.retrieval import POOL, Features
-from training.evaluate.judge.sentences.scores import share
 from training.prepare import load
 from webdemo.inference.engine import WEIGHTS
 from webdemo.inference.pipelines.intergen import InterGenPipeline

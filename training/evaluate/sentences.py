@@ -1,6 +1,6 @@
 """Scores motions of eighty sentences from elsewhere: ``python -m training.evaluate.sentences``.
 
-Draws four seeds of each sentence of :mod:`training.evaluate.judge.sentences` with any weights folder and
+Draws four seeds of each sentence of :mod:`motion.metrics.sentences` with any weights folder and
 judges them by the sentences' own rules. What was drawn is kept, so that a run that was stopped goes on, rules
 can be judged again in seconds, and the motions of two models can be looked at in pairs
 (:mod:`training.evaluate.blind`).
@@ -16,17 +16,17 @@ from typing import Any
 
 from motion import InputError
 from motion.formats.files import replacing
+from motion.metrics.sentences import load_sentences
+from motion.metrics.sentences.scores import score, table
 from training.core.shell import exit_code
 from training.evaluate.judge.draw import Sampling
-from training.evaluate.judge.sentences import load_sentences
-from training.evaluate.judge.sentences.motions import draw_missing, motions_folder
-from training.evaluate.judge.sentences.scores import score, table
+from training.evaluate.judge.kept_motions import draw_missing, motions_folder
 from webdemo.inference.engine import WEIGHTS
 from webdemo.inference.pipelines.intergen import InterGenPipeline
 
 
 def evaluate(options: argparse.Namespace) -> dict[str, Any]:
-    """Scores as :func:`training.evaluate.judge.sentences.scores.table` takes them; draws what is missing."""
+    """Scores as :func:`motion.metrics.sentences.scores.table` takes them; draws what is missing."""
     sentences = [s for s in load_sentences() if not options.only or {s.id, *s.tags} & set(options.only)]
     if not sentences:
         raise InputError(f"No sentence has the name or tag {', '.join(options.only)}: see sentences.json.")

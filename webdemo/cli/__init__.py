@@ -1,5 +1,6 @@
-"""The same jobs from a shell: ``python -m webdemo generate|react|predict|scene|render|info|benchmark|serve|user``.
+"""The same jobs from a shell: ``python -m webdemo COMMAND``.
 
+The commands are generate, react, predict, scene, render, score, info, benchmark, serve and user.
 The last line on stdout is one JSON object. An error is one line on stderr that says what is
 wrong and what to do, with exit code 2. A cancelled run (Ctrl+C) ends with 130, and one whose reader has gone
 with 141. No file is left half-written.
@@ -22,6 +23,7 @@ from .generation import add_generate, add_predict, add_react
 from .parser import Parser
 from .rendering import add_render
 from .scenes import add_scene
+from .scoring import add_score
 from .service import add_service
 
 __all__ = ["main"]
@@ -31,7 +33,7 @@ def main(argv: Sequence[str] | None = None) -> int:
     """Runs one command; returns the exit code."""
     parser = Parser(prog="python -m webdemo", description="Motion of two people, from a shell.")
     commands = parser.add_subparsers(required=True, metavar="COMMAND", parser_class=Parser)
-    for add in (add_generate, add_react, add_predict, add_scene, add_render, add_service):
+    for add in (add_generate, add_react, add_predict, add_scene, add_render, add_score, add_service):
         add(commands)
     began = time.perf_counter()
     try:

@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import Any
 
 from motion import InputError
-from webdemo.inference.methods import methods
+from webdemo.inference.methods import failed, methods
 
 
 def add_service(commands: Any) -> None:
@@ -51,9 +51,15 @@ def info(options: argparse.Namespace) -> dict[str, Any]:
     found = {
         "model": card,
         "methods": {
-            found.name: {"label": found.label, "tasks": found.tasks, "takes": sorted(found.takes)}
+            found.name: {
+                "label": found.label,
+                "tasks": found.tasks,
+                "takes": sorted(found.takes),
+                "summary": found.summary,
+            }
             for found in methods()
         },
+        "failed": failed(),
         "weights": sorted({file.parent.name for file in engine.weights.glob("*/*.safetensors")}),
         "formats": {s: {"read": can_read(s), "write": can_write(s)} for s in FORMATS},
         "versions": {name: version(name) for name in ("gradio", "torch", "numpy", "plotly", "diffusers")},

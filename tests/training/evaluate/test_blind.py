@@ -10,9 +10,9 @@ import pytest
 from PIL import Image
 
 from motion import Duet, InputError
+from motion.metrics.sentences import load_sentences
+from motion.metrics.sentences.kept import Motions
 from training.evaluate import blind
-from training.evaluate.judge.sentences import load_sentences
-from training.evaluate.judge.sentences.motions import Motions
 
 SENTENCES = load_sentences()[:3]
 

@@ -13,11 +13,11 @@ import numpy as np
 import pytest
 
 from motion import Duet, InputError
+from motion.metrics.sentences import Sentence, load_sentences
+from motion.metrics.sentences.scores import score, share, table
 from training.evaluate import sentences as command
+from training.evaluate.judge import kept_motions as keeping
 from training.evaluate.judge.draw import Sampling
-from training.evaluate.judge.sentences import Sentence, load_sentences
-from training.evaluate.judge.sentences import motions as keeping
-from training.evaluate.judge.sentences.scores import score, share, table
 
 from .puppets import play
 from .sentence_scripts import SCRIPTS

@@ -9,14 +9,14 @@ from functools import cache
 import numpy as np
 import pytest
 
+from motion.metrics.sentences import kept_out, load_sentences, without_sentences
+from motion.metrics.sentences.joints import Motion
+from motion.metrics.sentences.language import RuleError, check
+from motion.metrics.sentences.stretches import longest, stretches
 from motion.transforms import mirrored
 from training.corpus.captions import FAMILIES, Phrasebook
 from training.corpus.grammar import expand
 from training.corpus.phrases import ACTIONS, ENTRIES
-from training.evaluate.judge.sentences import kept_out, load_sentences, without_sentences
-from training.evaluate.judge.sentences.joints import Motion
-from training.evaluate.judge.sentences.language import RuleError, check
-from training.evaluate.judge.sentences.stretches import longest, stretches
 
 from .puppets import play
 from .sentence_scripts import SCRIPTS

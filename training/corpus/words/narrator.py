@@ -9,7 +9,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from training.evaluate.judge.sentences import kept_out
+from motion.metrics.sentences import kept_out
 
 from ..beats.play import Beat
 from ..wording import MANNERS

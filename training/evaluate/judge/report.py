@@ -7,20 +7,13 @@ from collections import defaultdict
 from collections.abc import Mapping, Sequence
 from typing import Any
 
-import numpy as np
 from scipy.stats import binomtest
 
 from motion import Duet
-from motion.metrics import bone_drift, foot_skate, jerk, penetration
+from motion.metrics.physical import PHYSICAL, physical
 
 from .rules import CHECKS, Task, judge
 
-PHYSICAL = {
-    "foot_skate": ("foot skate", "cm/s"),
-    "jerk": ("jerk", "m/s³"),
-    "penetration": ("penetration", "cm"),
-    "bone_drift": ("bone drift", "%"),
-}
 _WORDS = {
     "side": "the hand the words name moves",
     "contact": "hands or hand and body meet",
@@ -59,14 +52,6 @@ def score(duets: Sequence[Duet], tasks: Sequence[Task]) -> dict[str, Any]:
             "families": {name: [sum(found), len(found)] for name, found in sorted(families.items())},
         }
     return {"checks": checks, "physical": physical(duets), "verdicts": rows}
-
-
-def physical(duets: Sequence[Duet]) -> dict[str, float]:
-    """Means over duets of :mod:`motion.metrics`' foot skate, jerk, penetration and bone drift."""
-    values = [
-        (foot_skate(duet).speed, jerk(duet), penetration(duet).mean, bone_drift(duet)) for duet in duets
-    ]
-    return {key: round(float(mean), 4) for key, mean in zip(PHYSICAL, np.mean(values, axis=0), strict=True)}
 
 
 def _number(value: float) -> float | None:

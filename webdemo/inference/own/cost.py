@@ -20,9 +20,9 @@ from .outline import Outline
 
 FRAMES = 150
 """Frames of the motion whose seconds are estimated: five seconds."""
-LOADING = 3.2
+LOADING = 2.1
 """Largest memory while a network is loaded, as a multiple of its float32 weights; measured in docs/own-model.md."""
-RESERVE = 0.7e9
+RESERVE = 0.8e9
 """Bytes of PyTorch, OpenVINO and a motion's own tensors."""
 _SIDE = 512
 EFFICIENCY = 0.8

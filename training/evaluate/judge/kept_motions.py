@@ -4,52 +4,14 @@ from __future__ import annotations
 
 import sys
 import time
-import zlib
 from collections.abc import Sequence
-from dataclasses import dataclass
 from pathlib import Path
 
-import numpy as np
-
-from motion import Duet, InputError
-from motion.formats.files import replacing
+from motion.metrics.sentences import Sentence
+from motion.metrics.sentences.kept import FPS, Motions
 from training.evaluate.judge.draw import Sampling, draw
 from training.evaluate.judge.rules import Task
 from webdemo.inference.pipelines.intergen import InterGenPipeline
-
-from .catalogue import Sentence
-
-FPS = 30
-
-
-@dataclass(frozen=True)
-class Motions:
-    """A folder with one ``.npy`` of positions (2, T, 22, 3) for each sentence and seed.
-
-    Attributes:
-        folder: one for every weights folder and sampling, see :func:`motions_folder`.
-    """
-
-    folder: Path
-
-    def path(self, sentence: Sentence, seed: int) -> Path:
-        """The file of a sentence; its name changes with the words and the length."""
-        text = zlib.crc32(f"{sentence.words} {sentence.seconds}".encode())
-        return self.folder / f"{sentence.id}-{text:08x}-{seed}.npy"
-
-    def read(self, sentence: Sentence, seed: int) -> Duet:
-        """One motion; raises InputError if it has not been generated or cannot be read."""
-        path = self.path(sentence, seed)
-        try:
-            positions = np.load(path, allow_pickle=False)
-        except (OSError, ValueError) as error:
-            raise InputError(f"{path.name} is missing or damaged: draw the motions again.") from error
-        return Duet.from_positions(positions, fps=float(FPS))
-
-    def write(self, sentence: Sentence, seed: int, duet: Duet) -> None:
-        """Keeps one motion."""
-        with replacing(self.path(sentence, seed)) as temporary, temporary.open("wb") as file:
-            np.save(file, duet.positions.astype(np.float32))
 
 
 def motions_folder(cache: Path, digest: str, sampling: Sampling) -> Motions:

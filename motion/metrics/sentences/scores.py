@@ -8,7 +8,7 @@ from typing import Any
 from scipy.stats import binomtest
 
 from motion import Duet
-from training.evaluate.judge.report import PHYSICAL, physical
+from motion.metrics.physical import PHYSICAL, physical
 
 from .catalogue import Sentence
 

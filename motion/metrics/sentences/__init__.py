@@ -5,6 +5,6 @@ The sentences and their rules are data (``sentences.json``); :mod:`.language` re
 training captions.
 """
 
-from .catalogue import Judgement, Sentence, kept_out, load_sentences, without_sentences
+from .catalogue import Judgement, Sentence, kept_out, load_sentences, read_sentences, without_sentences
 
-__all__ = ["Judgement", "Sentence", "kept_out", "load_sentences", "without_sentences"]
+__all__ = ["Judgement", "Sentence", "kept_out", "load_sentences", "read_sentences", "without_sentences"]

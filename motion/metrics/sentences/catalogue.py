@@ -9,12 +9,15 @@ from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
 
-from motion import Duet
+import numpy as np
+
+from motion import SMPL22, Duet, InputError
 
 from .joints import Motion
 from .language import check
 
 SENTENCES = Path(__file__).with_name("sentences.json")
+_MOST_BYTES = 2 * 2**20
 ALIKE = 0.9
 """Share of words (Dice's coefficient) from which a caption is one of the sentences in other words."""
 _EMPTY = frozenset({"a", "an", "the", "and", "then"})
@@ -35,7 +38,7 @@ class Judgement:
     @property
     def share(self) -> float:
         """Conditions fulfilled, 0 to 1."""
-        return sum(fulfilled for _, fulfilled in self.parts) / len(self.parts)
+        return sum(fulfilled for _, fulfilled in self.parts) / max(len(self.parts), 1)
 
 
 @dataclass(frozen=True)
@@ -50,7 +53,7 @@ class Sentence:
         named: whether the words say who is who ("person A", "the first person", "B"); where they do not,
             either person may do what either one does.
         ordered: whether the motion played backwards must fail.
-        rule: conditions of :mod:`.language`, all of which must be fulfilled.
+        rule: conditions of :mod:`.language`, all of which must be fulfilled; () for one that is not judged.
         source: who wrote the words, where it was not this project.
     """
 
@@ -82,6 +85,60 @@ def load_sentences(path: Path = SENTENCES) -> tuple[Sentence, ...]:
     """All sentences, in the order of the file."""
     rows = json.loads(path.read_text(encoding="utf-8"))
     return tuple(Sentence(**row | {"tags": tuple(row["tags"]), "rule": tuple(row["rule"])}) for row in rows)
+
+
+def read_sentences(path: Path) -> tuple[Sentence, ...]:
+    """Sentences of somebody's own.
+
+    Args:
+        path: JSON in the form of ``sentences.json``, in which ``tags``, ``named``, ``ordered`` and ``rule`` may be left
+            out; or text with a sentence a line, of which the known ones bring their rules along.
+
+    Raises:
+        InputError: if the file is missing, too large, or a sentence or rule in it cannot be read.
+    """
+    try:
+        if path.stat().st_size > _MOST_BYTES:
+            raise InputError(f"{path.name} is larger than {_MOST_BYTES // 2**20} MB: split it.")
+        text = path.read_text(encoding="utf-8")
+    except (OSError, UnicodeDecodeError) as error:
+        raise InputError(
+            f"{path} cannot be read ({type(error).__name__}): name a text or JSON file."
+        ) from None
+    if path.suffix.lower() != ".json":
+        known = {sentence.words: sentence for sentence in load_sentences()}
+        lines = [line.strip() for line in text.splitlines() if line.strip()]
+        rows = [{"words": line} for line in lines if line not in known]
+        made = iter(_given(rows, path.name))
+        found = [known.get(line) or next(made) for line in lines]
+    else:
+        try:
+            rows = json.loads(text)
+        except ValueError as error:
+            raise InputError(f"{path.name} is not JSON ({error}): see docs/own-model.md.") from None
+        found = _given(rows, path.name)
+    if not found:
+        raise InputError(f"{path.name} holds no sentences: write one a line.")
+    return tuple(found)
+
+
+def _given(rows: object, name: str) -> list[Sentence]:
+    if not isinstance(rows, list) or not all(isinstance(row, dict) and row.get("words") for row in rows):
+        raise InputError(f"{name} must be a list of objects that have `words`: see docs/own-model.md.")
+    still = Motion(np.zeros((2, 30, SMPL22.num_joints, 3)) + SMPL22.rest_positions(), 30.0)
+    made = []
+    for i, row in enumerate(rows):
+        try:
+            row = {"id": f"sentence-{i + 1}", "seconds": 5.0, "named": False, "ordered": False} | row
+            row |= {"tags": tuple(row.get("tags", ())), "rule": tuple(row.get("rule", ()))}
+            sentence = Sentence(**row)
+            if not re.fullmatch(r"[\w-]{1,60}", sentence.id) or not 0 < float(sentence.seconds) <= 60:
+                raise ValueError("its id or its seconds cannot be used")
+            sentence.judge(still)
+        except (TypeError, ValueError, IndexError, RecursionError) as error:
+            raise InputError(f"Sentence {i + 1} of {name} cannot be used: {error}.") from None
+        made.append(sentence)
+    return made
 
 
 # ---- captions ------------------------------------------------------------------------------------------
