@@ -28,7 +28,7 @@ SEEDS = (1, 16)
 
 def add_score(commands: Any) -> None:
     """Adds ``score`` to the shell's commands."""
-    names = dict.fromkeys(found.name for task in ("generate", "react") for found in methods(task))  # type: ignore[arg-type]
+    names = dict.fromkeys(found.name for task in ("generate", "react") for found in methods(task))
     parser = commands.add_parser("score", help="judge a model on sentences that no training has seen")
     parser.add_argument("--model", default=SamplingRequest.model, help=" or ".join(names))
     parser.add_argument(

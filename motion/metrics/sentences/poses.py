@@ -88,9 +88,9 @@ def _wrist_speed(m: Motion, who: int) -> Array:
 def _of_side(values: Mask, side: str) -> Mask:
     """(2, T) by side to (T,): "any" one of them, "both" both, "left" and "right" that one and no other."""
     if side == "any":
-        return values.any(axis=0)
+        return np.logical_or.reduce(values)
     if side == "both":
-        return values.all(axis=0)
+        return np.logical_and.reduce(values)
     own = SIDES.index(side)
     return values[own] & ~values[1 - own]
 
@@ -104,26 +104,24 @@ def hand_up(m: Motion, who: int, side: str = "any", over: float = -0.1) -> Mask:
 @predicate
 def hands_high(m: Motion, who: int) -> Mask:
     """Both wrists are above the head joint."""
-    return (m.pair(who, "wrist")[..., 1] > m.joint(who, "head")[:, 1]).all(axis=0)
+    return np.logical_and.reduce(m.pair(who, "wrist")[..., 1] > m.joint(who, "head")[:, 1])
 
 
 @predicate
 def arms_down(m: Motion, who: int) -> Mask:
     """Both wrists hang 25 cm or more below the shoulders."""
-    return (_lift(m, who) < -0.25).all(axis=0)
+    return np.logical_and.reduce(_lift(m, who) < -0.25)
 
 
 @predicate
 def waves(m: Motion, who: int, side: str = "any", travel: float = 0.3) -> Mask:
     """A raised hand that moves to and fro: its wrist travels ``travel`` or more relative to the shoulder."""
     raised, speed = _lift(m, who) > -0.1, _wrist_speed(m, who)
-    moved = np.stack(
-        [
-            keep(raised[i], m.fps, lambda start, stop, i=i: speed[i][start:stop].sum() / m.fps > travel)
-            for i in (0, 1)
-        ]
-    )
-    return _of_side(moved, side)
+
+    def wave(own_raised: Mask, own_speed: Array) -> Mask:
+        return keep(own_raised, m.fps, lambda i, j: float(own_speed[i:j].sum()) / m.fps > travel)
+
+    return _of_side(np.stack([wave(raised[i], speed[i]) for i in (0, 1)]), side)
 
 
 @predicate
@@ -134,7 +132,7 @@ def talks(m: Motion, who: int, over: float = 0.06) -> Mask:
     """
     over_waist = m.pair(who, "wrist")[..., 1] > m.joint(who, "pelvis")[:, 1] + over
     busy = _wrist_speed(m, who) > 0.2
-    mask = (over_waist & busy).any(axis=0)
+    mask = np.logical_or.reduce(over_waist & busy)
     return keep(mask, m.fps, lambda i, j: j - i >= 0.5 * m.fps, pause=0.4)
 
 

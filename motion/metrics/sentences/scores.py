@@ -30,7 +30,7 @@ def score(sentences: Sequence[Sentence], duets: Sequence[Sequence[Duet]]) -> dic
     half = len(sentences) // 2
     tags: dict[str, list[int]] = {ALL: [0, 0]}
     other: dict[str, list[int]] = {ALL: [0, 0]}
-    rows = []
+    rows: list[dict[str, Any]] = []
     for i, (sentence, drawn) in enumerate(zip(sentences, duets, strict=True)):
         found = [sentence.judge(duet) for duet in drawn]
         _count(tags, sentence, [judgement.passed for judgement in found])
