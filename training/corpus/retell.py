@@ -32,8 +32,8 @@ def retold(scene: dict[str, Any], rng: np.random.Generator) -> dict[str, Any]:
     if len(captions) < 3:
         return scene
     alone = [narrator.alone(person, ALONE) for person in (0, 1)]
-    told = [{**row, "captions": narrator.beat(k, ONE_BEAT)} for k, row in enumerate(rows)]
-    return {**scene, "captions": captions, "alone": alone, "beats": told}
+    retold_rows = [{**row, "captions": narrator.beat(k, ONE_BEAT)} for k, row in enumerate(rows)]
+    return {**scene, "captions": captions, "alone": alone, "beats": retold_rows}
 
 
 def main(argv: list[str] | None = None) -> int:

@@ -249,8 +249,8 @@ class Data:
             if cut is not None:
                 one, past[i], words = cut
                 sentences, chosen = [words, "", ""], [any(chosen), False, False]
-            told = [s for s, wanted in zip(sentences, chosen, strict=True) if wanted] or sentences[:1]
-            mirror = mirrored(" ".join(told), row.get("hand"), draw[0])
+            named = [s for s, wanted in zip(sentences, chosen, strict=True) if wanted] or sentences[:1]
+            mirror = mirrored(" ".join(named), row.get("hand"), draw[0])
             label = self.reader.labels(row, mirror=mirror)
             labels.append(label if cut is None else torch.full_like(label, UNKNOWN))
             if mirror:

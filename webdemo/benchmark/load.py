@@ -1,4 +1,4 @@
-"""Many people at once: a server on loopback, mixed jobs, and what became of every one of them.
+"""Load test: many people send mixed jobs to a server on loopback, and every answer is checked.
 
 ``python -m webdemo benchmark --load --people 20 --minutes 5``.
 """
@@ -39,7 +39,7 @@ PROMPTS = (
     "One person punches and the other steps back.",
 )
 CLIP = ROOT / "static" / "examples" / "shake-hands.npz"
-"""What reactions and predictions are asked for with."""
+"""The file that is uploaded for reactions and predictions."""
 GOALS: dict[str, tuple[float, float]] = {
     "runs_lost": (0, 0),
     "runs_swapped": (0, 0),
@@ -50,9 +50,9 @@ GOALS: dict[str, tuple[float, float]] = {
     "memory_last_over_first_quarter": (0, 1.05),
     "batched_over_serial_throughput": (1.5, float("inf")),
 }
-"""What a server for a lab is meant to keep to: each figure's least and most."""
+"""The goals of a server for a lab: the least and the most of each figure."""
 REST_SECONDS = 10.0
-"""Before memory is read: the server returns what runs have left every few seconds."""
+"""Seconds before memory is read; the server frees the memory of ended runs every few seconds."""
 _API = "gradio_api"
 
 
@@ -64,8 +64,8 @@ class Tally:
         waits: seconds a unit of work that each person waited for each run.
         latencies: seconds from asking to the result.
         page: seconds that the page took to answer, each time it was asked.
-        memory: megabytes that the server had then.
-        errors: what was told instead of a result.
+        memory: megabytes that the server held at those times.
+        errors: the messages that came instead of a result.
     """
 
     done: int = 0
@@ -107,7 +107,7 @@ class Tally:
 
 
 def goals_missed(figures: Mapping[str, Any]) -> list[str]:
-    """The names of the :data:`GOALS` that figures do not keep to, or that were not measured."""
+    """The names of the :data:`GOALS` that the figures miss, or that were not measured."""
     return [
         name
         for name, (least, most) in GOALS.items()
@@ -116,11 +116,11 @@ def goals_missed(figures: Mapping[str, Any]) -> list[str]:
 
 
 def run_load(*, people: int, minutes: float, steps: int = 20, seed: int = 0) -> dict[str, Any]:
-    """Starts ``python app.py`` on a free port of 127.0.0.1 and lets people ask it for motion.
+    """Starts ``python app.py`` on a free port of 127.0.0.1 and sends it the requests of many people.
 
     Args:
-        people: how many ask at once, each again as soon as they have their result.
-        minutes: for how long; runs that are under way then are waited for.
+        people: number of people at once; each sends the next request when the result is there.
+        minutes: duration; runs that are under way at its end are finished.
         steps: the most denoising steps that a job has; jobs differ in prompt, length, samples and steps.
         seed: of the mix of jobs.
 
@@ -166,7 +166,7 @@ async def _load(
     limits = httpx.Limits(max_connections=None)
     async with httpx.AsyncClient(base_url=url, timeout=httpx.Timeout(60, read=None), limits=limits) as client:
         await _ready(client, server)
-        # Whatever is imported or made by the first run of a kind is there before memory is looked at.
+        # The first run of each kind imports and prepares things, so it comes before memory is read.
         warm_up = Tally()
         await asyncio.gather(*(
             _person(client, warm_up, i, random.Random(f"warm-up {seed} {i}"), steps, 0.0)
@@ -209,7 +209,7 @@ async def _ready(client: httpx.AsyncClient, server: subprocess.Popen[bytes]) -> 
 
 
 async def _memory(client: httpx.AsyncClient) -> float:
-    """Megabytes that the server holds, as its figures say; 0 where this system does not tell."""
+    """Megabytes that the server holds by its own figures; 0 if the system does not report them."""
     for line in (await client.get("metrics")).text.splitlines():
         if line.startswith("process_resident_memory_bytes "):
             return float(line.split()[1]) / 2**20
@@ -230,10 +230,10 @@ class Job:
     """A request that a simulated person sends.
 
     Attributes:
-        endpoint: where.
+        endpoint: name of the endpoint.
         data: its arguments; None stands for an uploaded :data:`CLIP`.
         asked: fields of the request that the result's manifest must hold.
-        work: in units.
+        work: units of work, see :mod:`webdemo.server.queue.wait_estimate`.
     """
 
     endpoint: str
@@ -264,13 +264,13 @@ def _prediction(dice: random.Random, steps: int) -> Job:
 
 
 KINDS = (_generation, _generation, _generation, _generation, _reaction, _prediction)
-"""How often each kind of job is asked for; a person's first is that of their number."""
+"""Jobs are drawn from these, so a kind that stands here twice is twice as frequent; a person's first is fixed."""
 
 
 async def _person(
     client: httpx.AsyncClient, tally: Tally, person: int, dice: random.Random, steps: int, until: float
 ) -> None:
-    """One person, who asks again whenever they have their result; once at least."""
+    """One person, who sends the next request after each result, and at least one."""
     cookies = {"cookie": f"{VISITOR_COOKIE}={new_token()}"}
     job = KINDS[-1 - person % len(KINDS)](dice, steps)
     await asyncio.sleep(dice.random())
@@ -296,7 +296,7 @@ async def _person(
 
 
 async def _ask(client: httpx.AsyncClient, cookies: dict[str, str], job: Job) -> tuple[str, Any]:
-    """("complete", result), ("error", sentence), or ("lost", None) where the answer broke off."""
+    """("complete", result), ("error", sentence), or ("lost", None) if the answer broke off."""
     call = f"{_API}/call/{job.endpoint}"
     try:
         data = list(job.data)
@@ -324,9 +324,9 @@ async def _ask(client: httpx.AsyncClient, cookies: dict[str, str], job: Job) -> 
 def measure_batching(
     *, requests: int = 8, steps: int = 50, seconds: float = 4.0, repeats: int = 3
 ) -> dict[str, float]:
-    """Throughput of requests that share passes against the same ones one after another, and how far apart
-    their motions are at most. Both are done in turn ``repeats`` times, and medians are told; processor time
-    is told as well, since on a machine that does something else the other time is that of both."""
+    """Throughput of requests that share passes over that of the same requests in turn, and the largest difference
+    of their motions. Both run alternately ``repeats`` times, and the figures are medians. The ratio is also given by
+    processor time, which other work on the machine does not change."""
     import numpy as np
 
     from webdemo.inference.batch import run_batch

@@ -55,7 +55,7 @@ def build_page(
         engine: answers the page's requests; nothing of it is loaded before the page is up.
         loader: loads the engine's networks; by default the first visit starts one.
         files: folder for the files that users take home; by default in the system's temporary folder.
-        owner: names the folder in ``files`` of whoever's event is answered; by default there is one for all.
+        owner: names the folder in ``files`` of the person whose event is answered; by default all share one.
         runs: the line that requests wait in; by default one of the page's own, one run at a time.
         history: runs that can be found again, in a tab of its own; none by default.
 

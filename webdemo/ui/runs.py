@@ -37,7 +37,7 @@ class Waiting(Progress):
     """A run in a line whose places are known: ``step`` is its place from 1, ``total`` how many wait.
 
     Attributes:
-        seconds_left: until it starts, as far as can be told; None where that is not known.
+        seconds_left: an estimate of the time until it starts; None if there is none.
     """
 
     seconds_left: float | None = None
@@ -108,7 +108,7 @@ class Runs:
             yield event
             if isinstance(event, Result):
                 return
-        # An engine that stops without a result was told to.
+        # An engine stops without a result only after a cancellation.
         raise Cancelled("The run ended without a result.")
 
     def _wait_for_place(self, token: CancelToken) -> Iterator[Progress]:

@@ -12,13 +12,13 @@ class Visitor:
     """The person behind a request.
 
     Attributes:
-        person: whose turn it is in the queue; people without a name are told apart by their address.
-        owner: whose history a run goes to; empty where nobody could find it again.
+        person: the key of their turn in the queue; the address, for people without a name.
+        owner: the key of the history that a run goes to; empty if nobody could find it again.
         reference: the request's id in the server's log; empty where the page is served alone.
         base: where the page is, such as "https://lab.example/motion/"; empty where that is not known.
         account: the name they signed in by; empty without accounts.
-        address: from which they come, where strangers are told apart by a cookie that they could throw away;
-            empty elsewhere.
+        address: the address they come from, if strangers are known by a cookie that they could throw away;
+            empty otherwise.
     """
 
     person: str = "local"
@@ -30,7 +30,7 @@ class Visitor:
 
 
 LOCAL = Visitor()
-"""Whoever uses a page that no server of ours stands around."""
+"""The user of a page that runs without the server."""
 
 
 def visitor() -> Visitor:

@@ -14,7 +14,7 @@ SIDED = ("wave", "raise-hand", "bye")
 
 
 def _two(rng: Rng) -> tuple[str, str]:
-    """Two gestures that can be told apart; bows twice as often, the only one that is not of the arms."""
+    """Draws two gestures that look different; bows, the only ones without arms, are drawn twice as often."""
     first = pick(rng, ("bow", *GESTURES))
     others = [name for name in GESTURES if name[:5] != first[:5] and {name, first} != {"wave", "bye"}]
     return first, pick(rng, ["bow", *others] if "bow" in others else others)

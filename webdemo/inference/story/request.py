@@ -196,7 +196,7 @@ class SceneRequest(SamplingRequest):
         """All fields; of a given motion the part that is kept, by its SHA-256."""
         own = {f.name for f in fields(SceneRequest)} - {f.name for f in fields(SamplingRequest)}
         plain = {f.name: getattr(self, f.name) for f in fields(self) if f.name not in own}
-        told = {
+        written = {
             "kind": "scene",
             "beats": [asdict(beat) for beat in self.beats],
             "paths": [asdict(path) for path in self.paths],
@@ -205,15 +205,15 @@ class SceneRequest(SamplingRequest):
         }
         if self.motion is not None:
             kept = self.kept(self.motion)
-            told["motion"] = {
+            written["motion"] = {
                 "name": self.motion.a.name[:100],
                 "frames": self.motion.num_frames,
                 "sha256": hashlib.sha256(
                     b"".join(np.ascontiguousarray(part).tobytes() for part in kept)
                 ).hexdigest(),
             }
-            told |= {"start": self.start, "end": self.end}
-        return told | plain
+            written |= {"start": self.start, "end": self.end}
+        return written | plain
 
     def kept(self, motion: Duet) -> tuple[np.ndarray, np.ndarray]:
         """The parts of a motion (2, T, 22, 3) before and after what is made."""
@@ -222,51 +222,51 @@ class SceneRequest(SamplingRequest):
         return positions[:, :first], positions[:, last:] if self.end is not None else positions[:, :0]
 
     @classmethod
-    def from_dict(cls, told: Mapping[str, Any], motion: Duet | None = None) -> SceneRequest:
+    def from_dict(cls, values: Mapping[str, Any], motion: Duet | None = None) -> SceneRequest:
         """The request that :meth:`to_dict` gave, with the motion that it was given.
 
         Raises:
             InputError: for values that are no longer taken.
         """
-        plain = {f.name: told[f.name] for f in fields(SamplingRequest) if f.name in told}
+        plain = {f.name: values[f.name] for f in fields(SamplingRequest) if f.name in values}
         return cls(
             **plain,
-            beats=tuple(beat_of(beat) for beat in told.get("beats", ())),
-            paths=tuple(path_of(path) for path in told.get("paths", ())),
-            poses=tuple(pose_of(pose) for pose in told.get("poses", ())),
-            loop=bool(told.get("loop", False)),
+            beats=tuple(beat_of(beat) for beat in values.get("beats", ())),
+            paths=tuple(path_of(path) for path in values.get("paths", ())),
+            poses=tuple(pose_of(pose) for pose in values.get("poses", ())),
+            loop=bool(values.get("loop", False)),
             motion=motion,
-            start=told.get("start"),
-            end=told.get("end"),
+            start=values.get("start"),
+            end=values.get("end"),
         )
 
 
-def beat_of(told: Mapping[str, Any]) -> Beat:
+def beat_of(values: Mapping[str, Any]) -> Beat:
     """A beat from its fields."""
-    return Beat(**{f.name: told[f.name] for f in fields(Beat) if told.get(f.name) is not None})
+    return Beat(**{f.name: values[f.name] for f in fields(Beat) if values.get(f.name) is not None})
 
 
-def path_of(told: Mapping[str, Any]) -> FloorPath:
+def path_of(values: Mapping[str, Any]) -> FloorPath:
     """A path from its fields; a point may be a mapping or ``[seconds, x, z]`` with or without a heading."""
-    return FloorPath(told.get("person", ""), tuple(map(point_of, told.get("points", ()))))
+    return FloorPath(values.get("person", ""), tuple(map(point_of, values.get("points", ()))))
 
 
-def point_of(told: Mapping[str, Any] | Sequence[float]) -> FloorPoint:
+def point_of(values: Mapping[str, Any] | Sequence[float]) -> FloorPoint:
     """A point of a path; raises InputError if it is none."""
-    if isinstance(told, Mapping):
-        return FloorPoint(**{f.name: told[f.name] for f in fields(FloorPoint) if f.name in told})
-    if len(told) == 2:
-        return FloorPoint(told[0], told[1])
-    if len(told) not in (3, 4):
+    if isinstance(values, Mapping):
+        return FloorPoint(**{f.name: values[f.name] for f in fields(FloorPoint) if f.name in values})
+    if len(values) == 2:
+        return FloorPoint(values[0], values[1])
+    if len(values) not in (3, 4):
         raise InputError("A point of a path is [x, z], [seconds, x, z] or [seconds, x, z, heading].")
-    seconds, x, z = told[:3]
-    return FloorPoint(x, z, seconds, told[3] if len(told) == 4 else None)
+    seconds, x, z = values[:3]
+    return FloorPoint(x, z, seconds, values[3] if len(values) == 4 else None)
 
 
-def pose_of(told: Mapping[str, Any]) -> Pose:
+def pose_of(values: Mapping[str, Any]) -> Pose:
     """A pose from its fields."""
     return Pose(
-        told.get("person", ""),
-        told.get("seconds", 0.0),
-        np.asarray(told.get("positions", ()), dtype=np.float64),
+        values.get("person", ""),
+        values.get("seconds", 0.0),
+        np.asarray(values.get("positions", ()), dtype=np.float64),
     )
