@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import hashlib
+import json
 from pathlib import Path
 
 import torch
@@ -14,6 +15,9 @@ from motion import InputError
 from motion.formats.files import replacing
 
 Parts = dict[str, nn.Module | torch.optim.Optimizer]
+
+RENAMED = {"unconditional": "cond_drop_prob"}
+"""Settings of older checkpoints by their present names."""
 
 
 def _tensors(parts: Parts) -> dict[str, Tensor]:
@@ -37,9 +41,22 @@ def _read(path: Path) -> tuple[dict[str, Tensor], dict[str, str]]:
     """Tensors and metadata of a checkpoint; raises InputError if it is missing or damaged."""
     try:
         with safe_open(path, framework="pt") as file:
-            return {key: file.get_tensor(key) for key in file.keys()}, file.metadata()  # noqa: SIM118
+            metadata = file.metadata() or {}
+            tensors = {key: file.get_tensor(key) for key in file.keys()}  # noqa: SIM118
     except (OSError, SafetensorError) as error:
         raise InputError(f"{path} is missing or damaged ({error}): delete it to begin anew.") from error
+    return tensors, metadata | {"settings": _renamed(metadata.get("settings", "{}"))}
+
+
+def _renamed(settings: str) -> str:
+    """Settings (JSON text) under their present names."""
+    try:
+        known = json.loads(settings)
+    except ValueError:  # the settings of no run agree with these
+        return settings
+    if not isinstance(known, dict) or not known.keys() & RENAMED.keys():
+        return settings
+    return json.dumps({RENAMED.get(name, name): value for name, value in known.items()}, sort_keys=True)
 
 
 def digest(path: Path) -> str:

@@ -13,11 +13,21 @@ from typing import Any
 import torch
 from torch import Tensor, nn
 
+from . import checkpoint
+from .checkpoint import Parts
+
 
 def warm_cosine(peak: float, step: int, *, warmup: int, steps: int) -> float:
     """The learning rate at ``step`` of ``steps``: a linear warm-up, then a cosine to 2 % of the peak."""
     warm = min(1.0, (step + 1) / warmup)
     return peak * warm * (0.51 + 0.49 * math.cos(math.pi * min(1.0, step / steps)))
+
+
+def adamw(parameters: Iterable[nn.Parameter], settings: Any) -> torch.optim.AdamW:
+    """The optimiser of most trainers, at the learning rate and weight decay of a run's settings."""
+    return torch.optim.AdamW(
+        parameters, lr=settings.learning_rate, weight_decay=settings.weight_decay, fused=True
+    )
 
 
 class Loop(ABC):
@@ -28,19 +38,43 @@ class Loop(ABC):
             ``learning_rate``, ``warmup`` and ``ema``.
         out: folder of the checkpoint and of ``log.jsonl``.
         step: steps done so far.
+        settings_json: the settings that a checkpoint must agree with.
     """
 
     settings: Any
     out: Path
     step: int
+    settings_json: str
+    model: nn.Module
+    ema: nn.Module
+    optimizer: torch.optim.Optimizer
+
+    @property
+    def checkpoint(self) -> Path:
+        """Path of the run's checkpoint."""
+        return self.out / "last.safetensors"
+
+    def parts(self) -> Parts:
+        """The contents of a checkpoint, by name; ``ema`` is the network that is exported."""
+        return {"model": self.model, "ema": self.ema, "optimizer": self.optimizer}
+
+    def restore(self, settings: dict[str, Any]) -> None:
+        """Resumes from the checkpoint, or begins at step 0 if there is none.
+
+        Raises:
+            InputError: if the checkpoint is damaged or was written under other settings.
+        """
+        self.settings_json = json.dumps(settings, sort_keys=True)
+        self.out.mkdir(parents=True, exist_ok=True)
+        self.step = checkpoint.restore(self.checkpoint, self.parts(), self.settings_json)
+
+    def save(self) -> None:
+        """Writes the checkpoint."""
+        checkpoint.save(self.checkpoint, self.parts(), self.step, self.settings_json)
 
     @abstractmethod
     def train_step(self) -> dict[str, float]:
         """Takes one optimiser step and counts it; returns the loss terms."""
-
-    @abstractmethod
-    def save(self) -> None:
-        """Writes the checkpoint."""
 
     def optimizer_step(
         self,

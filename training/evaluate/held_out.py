@@ -101,7 +101,7 @@ def main(argv: list[str] | None = None) -> int:
 
 def _run(options: argparse.Namespace) -> None:
     scenes = of_test_split(load(options.scenes))
-    settings = Settings(batch=16, unconditional=0.0, continued=0.0, words=options.alone)
+    settings = Settings(batch=16, cond_drop_prob=0.0, continued=0.0, words=options.alone)
     if len(scenes.rows) < settings.batch:
         raise InputError(f"The test split holds {len(scenes.rows)} scenes: build a corpus with 16 or more.")
     data = Data(scenes, settings, options.cache, "cpu")

@@ -11,7 +11,6 @@ Everything random is drawn from the seed and the step number, so a run that stop
 from __future__ import annotations
 
 import argparse
-import json
 from collections import Counter
 from collections.abc import Sequence
 from dataclasses import asdict, dataclass, field
@@ -28,8 +27,7 @@ from models.intergen.losses import InterGenLoss, LossWeights, simple_loss
 from models.motion_tokens import FEATURES
 from models.weights_io import save_network
 from motion import InputError
-from training.core import checkpoint
-from training.core.loop import Loop
+from training.core.loop import Loop, adamw
 from training.core.precision import mixed_precision
 from training.core.shell import add_run_options, chosen, exit_code
 from training.prepare import Scenes, load
@@ -121,7 +119,7 @@ class Settings:
     warmup: int = 200
     weight_decay: float = 1e-4
     ema: float = 0.998
-    unconditional: float = 0.1
+    cond_drop_prob: float = 0.1
     root_weight: float = 4.0
     t_bar: float = 0.7
     noisiest: float = 0.4
@@ -199,9 +197,7 @@ class Trainer(Loop):
         self.model.std.copy_(self.data.std)
         self.ema.load_state_dict(self.model.state_dict())
         self.ema.eval().requires_grad_(False)
-        self.optimizer = torch.optim.AdamW(
-            self.model.parameters(), lr=settings.learning_rate, weight_decay=settings.weight_decay, fused=True
-        )
+        self.optimizer = adamw(self.model.parameters(), settings)
         self.schedule = NoiseSchedule(device=device)
         self.loss = InterGenLoss(
             settings.weights, t_bar=round(settings.t_bar * self.schedule.timesteps), near_by="truth"
@@ -210,18 +206,7 @@ class Trainer(Loop):
         self.feature_weights = torch.ones(FEATURES, device=device)
         self.feature_weights[:3] = settings.root_weight**0.5
         self.feature_weights = self.feature_weights.repeat(scenes.layout.knots_per_token)
-        self.settings_json = json.dumps(asdict(settings), sort_keys=True)
-        out.mkdir(parents=True, exist_ok=True)
-        self.step = checkpoint.restore(self.checkpoint, self.parts(), self.settings_json)
-
-    @property
-    def checkpoint(self) -> Path:
-        """Path of the run's checkpoint."""
-        return self.out / "last.safetensors"
-
-    def parts(self) -> dict[str, torch.nn.Module | torch.optim.Optimizer]:
-        """The contents of a checkpoint, by name."""
-        return {"model": self.model, "ema": self.ema, "optimizer": self.optimizer}
+        self.restore(asdict(settings))
 
     def terms(self, batch: intergen_data.Batch, t: Tensor, noise: Tensor, keep: Tensor) -> dict[str, Tensor]:
         """Every loss term of one batch, weighted."""
@@ -243,7 +228,7 @@ class Trainer(Loop):
         size = len(batch.x0)
         t = draw_timesteps(size, self.schedule.timesteps, s.noisiest, generator).to(self.device)
         noise = torch.randn(batch.x0.shape, generator=generator).to(self.device)
-        keep = (torch.rand(size, generator=generator) >= s.unconditional).float().to(self.device)
+        keep = (torch.rand(size, generator=generator) >= s.cond_drop_prob).float().to(self.device)
         self.model.train()
         terms = self.terms(batch, t, noise, keep)
         total = torch.stack(list(terms.values())).sum()
@@ -251,10 +236,6 @@ class Trainer(Loop):
         kept = [self.ema.state_dict(), self.model.state_dict()]  # with what the batch norms have seen
         self.ema_update(*([v for v in state.values() if v.is_floating_point()] for state in kept))
         return {name: value.item() for name, value in terms.items()} | {"total": total.item()}
-
-    def save(self) -> None:
-        """Writes the checkpoint."""
-        checkpoint.save(self.checkpoint, self.parts(), self.step, self.settings_json)
 
     def export(self, folder: Path) -> None:
         """Writes the averaged network as the folder that is shipped."""

@@ -37,7 +37,6 @@ from models.weights_io import save_network
 from motion import InputError
 from motion.skeleton import SBU15
 from motion.transforms import canonicalize, mirrored, turn
-from training.core import checkpoint
 from training.core.loop import Loop
 from training.core.shell import add_run_options, chosen, exit_code
 from training.corpus.pairs import load_pairs
@@ -176,16 +175,11 @@ class Trainer(Loop):
             next((w for part, w in _IMPORTANCE.items() if part in name), 1.0) for name in SBU15.joint_names
         ]
         self.importance = torch.tensor(weights) / np.mean(weights)
-        self.settings_json = json.dumps(asdict(settings), sort_keys=True)
-        self.step = checkpoint.restore(out / "last.safetensors", self.parts(), self.settings_json)
+        self.restore(asdict(settings))
 
     def trained(self) -> list[torch.nn.Parameter]:
         """The parameters that the optimizer changes."""
         return [p for p in self.model.parameters() if p.requires_grad]
-
-    def parts(self) -> dict[str, torch.nn.Module | torch.optim.Optimizer]:
-        """The contents of a checkpoint, by name."""
-        return {"model": self.model, "ema": self.ema, "optimizer": self.optimizer}
 
     def _normalize(self) -> None:
         """Means and deviations of what the network reads and makes, over the training pairs as recorded."""
@@ -344,10 +338,6 @@ class Trainer(Loop):
             "best": (errors.amin(0).mean() / zero).item(),
             "moves": (path(made[0]) / path(batch.reactor)).item(),
         }
-
-    def save(self) -> None:
-        """Writes the checkpoint."""
-        checkpoint.save(self.out / "last.safetensors", self.parts(), self.step, self.settings_json)
 
 
 def _standing(pose: Array) -> Array:

@@ -11,7 +11,6 @@ is started again with the same command goes on exactly as if it had never stoppe
 from __future__ import annotations
 
 import argparse
-import json
 import time
 from collections.abc import Callable
 from dataclasses import asdict
@@ -27,7 +26,7 @@ from models.intergen.losses import InterGenLoss, simple_loss
 from models.known import Hold, Known
 from models.motion_tokens import FEATURES
 from training.core import checkpoint
-from training.core.loop import Loop
+from training.core.loop import Loop, adamw
 from training.core.precision import mixed_precision
 from training.core.samples import write_sheet
 from training.core.shell import add_run_options, chosen, exit_code
@@ -110,14 +109,8 @@ class Trainer(Loop):
         self.ema = build(settings, self.data).to(device).requires_grad_(False)
         self.ema.load_state_dict(self.model.state_dict())
         self.reader = self.data.reader.to(device)
-        self.optimizer = torch.optim.AdamW(
-            [*self.model.parameters(), *self.reader.parameters()],
-            lr=settings.learning_rate,
-            weight_decay=settings.weight_decay,
-            fused=True,
-        )
-        self.settings_json = json.dumps(asdict(settings), sort_keys=True)
-        self.step = checkpoint.restore(self.out / "last.safetensors", self.parts(), self.settings_json)
+        self.optimizer = adamw([*self.model.parameters(), *self.reader.parameters()], settings)
+        self.restore(asdict(settings))
         self.data.mean, self.data.std = self.model.mean.cpu(), self.model.std.cpu()
 
     def set_up(self, scenes: Scenes, settings: Settings, out: Path, device: str, cache: Path | None) -> None:
@@ -185,10 +178,6 @@ class Trainer(Loop):
         self.optimizer_step(total, self.optimizer, self.model.parameters())
         self.ema_update(self.ema.parameters(), self.model.parameters())
         return {name: value.item() for name, value in terms.items()} | {"total": total.item()}
-
-    def save(self) -> None:
-        """Writes the checkpoint."""
-        checkpoint.save(self.out / "last.safetensors", self.parts(), self.step, self.settings_json)
 
 
 def main(argv: list[str] | None = None) -> int:

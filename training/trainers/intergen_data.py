@@ -31,6 +31,7 @@ from training.trainers.reading import UNKNOWN, CaptionReader
 class Settings:
     """The settings of a run; a checkpoint of others is refused.
 
+    cond_drop_prob: probability that a scene's words are dropped, for classifier-free guidance.
     noisiest: share of samples whose timestep is drawn from the noisiest tenth, where it is decided what
         happens, see :func:`training.trainers.intergen.draw_timesteps`.
     words: the network reads words, a sentence for each person and what is given, see
@@ -52,7 +53,7 @@ class Settings:
     warmup: int = 300
     weight_decay: float = 2e-5
     ema: float = 0.9985
-    unconditional: float = 0.1
+    cond_drop_prob: float = 0.1
     root_weight: float = 4.0
     reading_weight: float = 0.1
     t_bar: float = 0.7
@@ -196,7 +197,7 @@ class Data:
         """
         found = zip(sentence_lists(row), draw[2:], strict=True)
         chosen = [sentences[int(u * len(sentences))] if sentences else "" for sentences, u in found]
-        if draw[0] < self.settings.unconditional:
+        if draw[0] < self.settings.cond_drop_prob:
             return chosen, [False] * 3
         if not self.settings.words or not all(chosen):
             return chosen, [True, False, False]

@@ -9,7 +9,6 @@ of :mod:`training.trainers.intergen` and stays as it is. What is given is held, 
 from __future__ import annotations
 
 import argparse
-import json
 from dataclasses import asdict, dataclass, replace
 from pathlib import Path
 
@@ -100,9 +99,7 @@ class FastTrainer(Trainer):
         fine = torch.from_numpy(top_timesteps(PASSES * settings.substeps, self.schedule.timesteps))
         self.timesteps = torch.cat([fine, torch.tensor([-1])]).to(device)  # −1: clean
         # A run on another trained network is another run.
-        of = json.dumps({"trained": checkpoint.digest(trained)} | asdict(settings), sort_keys=True)
-        self.settings_json = of
-        self.step = checkpoint.restore(self.out / "last.safetensors", self.parts(), of)
+        self.restore({"trained": checkpoint.digest(trained)} | asdict(settings))
 
     def parts(self) -> dict[str, torch.nn.Module | torch.optim.Optimizer]:
         """The contents of a checkpoint, by name."""

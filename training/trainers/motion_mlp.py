@@ -12,11 +12,12 @@ from dataclasses import asdict, dataclass
 from pathlib import Path
 
 import torch
-from torch import Tensor, nn
+from torch import Tensor
 
 from models.motion_mlp import MotionMLP, MotionMLPConfig
 from models.predictors import load_predictor, save_predictor
 from motion import InputError
+from training.core.loop import adamw
 from training.core.shell import add_run_options, chosen, exit_code
 from training.trainers.prediction.rollout import ADVANCE, check_own_pasts
 from training.trainers.prediction.trainer import PredictionTrainer
@@ -129,15 +130,9 @@ class Trainer(PredictionTrainer):
             self.model.fit_linear(sample.to(self.device))
         self.ema.load_state_dict(self.model.state_dict())
         self.ema.requires_grad_(False)
-        self.optimizer = torch.optim.AdamW(
-            self.model.parameters(), lr=s.learning_rate, weight_decay=s.weight_decay, fused=True
-        )
+        self.optimizer = adamw(self.model.parameters(), s)
         parents, children = zip(*self.windows.bones, strict=True)
         self.bones = list(parents), list(children)
-
-    def parts(self) -> dict[str, nn.Module | torch.optim.Optimizer]:
-        """The contents of a checkpoint, by name."""
-        return {"model": self.model, "ema": self.ema, "optimizer": self.optimizer}
 
     def terms(self, window: Tensor, recorded: Tensor, passes: int = 0) -> dict[str, Tensor]:
         """Weighted loss terms, in centimetres.

@@ -24,8 +24,7 @@ from models.agent.recogniser import FPS, OBSERVED, PREDICTED, Recogniser, Recogn
 from models.weights_io import save_network
 from motion import InputError
 from motion.transforms import mirrored
-from training.core import checkpoint
-from training.core.loop import Loop
+from training.core.loop import Loop, adamw
 from training.core.shell import add_run_options, chosen, exit_code
 from training.prepare import load_corpus
 from webdemo.inference.engine import WEIGHTS
@@ -158,21 +157,8 @@ class Trainer(Loop):
         self.ema.eval().requires_grad_(False)
         counts = torch.bincount(self.labels, minlength=len(GESTURES)).float()
         self.chances = (counts.clamp_min(1) ** -0.5)[self.labels]
-        self.optimizer = torch.optim.AdamW(
-            self.model.parameters(), lr=settings.learning_rate, weight_decay=settings.weight_decay, fused=True
-        )
-        self.settings_json = json.dumps(asdict(settings), sort_keys=True)
-        out.mkdir(parents=True, exist_ok=True)
-        self.step = checkpoint.restore(self.checkpoint, self.parts(), self.settings_json)
-
-    @property
-    def checkpoint(self) -> Path:
-        """Path of the run's checkpoint."""
-        return self.out / "last.safetensors"
-
-    def parts(self) -> dict[str, torch.nn.Module | torch.optim.Optimizer]:
-        """The contents of a checkpoint, by name."""
-        return {"model": self.model, "ema": self.ema, "optimizer": self.optimizer}
+        self.optimizer = adamw(self.model.parameters(), settings)
+        self.restore(asdict(settings))
 
     def train_step(self) -> dict[str, float]:
         """One optimiser step; returns the loss and the share of the batch that is named right."""
@@ -191,10 +177,6 @@ class Trainer(Loop):
         self.ema_update(self.ema.parameters(), self.model.parameters())
         right = (logits.argmax(1) == self.labels[rows]).float().mean()
         return {"loss": loss.item(), "right": right.item()}
-
-    def save(self) -> None:
-        """Writes the checkpoint."""
-        checkpoint.save(self.checkpoint, self.parts(), self.step, self.settings_json)
 
 
 def scores(model: Recogniser, windows: Tensor, labels: Tensor) -> dict[str, Any]:

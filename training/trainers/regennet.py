@@ -11,7 +11,6 @@ Everything random is drawn from the seed and the step number, so a run that stop
 from __future__ import annotations
 
 import argparse
-import json
 from dataclasses import asdict, dataclass
 from pathlib import Path
 
@@ -28,8 +27,7 @@ from models.regennet.compact import CompactReGenNet, CompactReGenNetConfig, load
 from models.weights_io import save_network
 from motion import InputError
 from motion.skeleton import FEET
-from training.core import checkpoint
-from training.core.loop import Loop
+from training.core.loop import Loop, adamw
 from training.core.precision import mixed_precision
 from training.core.shell import add_run_options, chosen, exit_code
 from training.prepare import Scenes, load
@@ -52,7 +50,7 @@ class Settings:
     """Settings of a run; a checkpoint of other settings is refused.
 
     offline: share of batches that see the whole actor.
-    unconditional: share of scenes whose words are dropped for classifier-free guidance.
+    cond_drop_prob: probability that a scene's words are dropped, for classifier-free guidance.
     jitter: metres of noise on the actor's joints, for robustness to noisy recordings.
     begin: share of scenes whose first reactor pose is given to the network.
     crop: share of scenes that begin at a random frame of their first half; their first pose is always given.
@@ -71,7 +69,7 @@ class Settings:
     warmup: int = 150
     weight_decay: float = 1e-3
     ema: float = 0.998
-    unconditional: float = 0.25
+    cond_drop_prob: float = 0.25
     offline: float = 0.3
     jitter: float = 0.005
     begin: float = 0.5
@@ -180,18 +178,11 @@ class Trainer(Loop):
         self.averaged = [
             p for p, q in zip(self.ema.parameters(), self.model.parameters(), strict=True) if q.requires_grad
         ]
-        self.optimizer = torch.optim.AdamW(
-            self.trained, lr=settings.learning_rate, weight_decay=settings.weight_decay, fused=True
-        )
+        self.optimizer = adamw(self.trained, settings)
         self.schedule = NoiseSchedule()
         self.weights = torch.ones(FEATURES)
         self.weights[:3] = settings.root_weight
-        self.settings_json = json.dumps(asdict(settings), sort_keys=True)
-        self.step = checkpoint.restore(out / "last.safetensors", self.parts(), self.settings_json)
-
-    def parts(self) -> dict[str, torch.nn.Module | torch.optim.Optimizer]:
-        """The contents of a checkpoint, by name."""
-        return {"model": self.model, "ema": self.ema, "optimizer": self.optimizer}
+        self.restore(asdict(settings))
 
     def terms(self, batch: Batch, generator: torch.Generator) -> dict[str, Tensor]:
         """Every loss term of one batch, weighted."""
@@ -200,7 +191,7 @@ class Trainer(Loop):
         t = draw_timesteps(size, self.schedule.timesteps, s.noisiest, generator)
         x0 = (batch.reactor - model.mean) / model.std
         xt = self.schedule.q_sample(x0, t, torch.randn(x0.shape, generator=generator))
-        keep = torch.rand(size, 1, generator=generator) >= s.unconditional
+        keep = torch.rand(size, 1, generator=generator) >= s.cond_drop_prob
         causal = bool(torch.rand(1, generator=generator) >= s.offline)
         start = torch.randint(150, (size,), generator=generator)
         start = start * (torch.rand(size, generator=generator) < 0.5)
@@ -246,10 +237,6 @@ class Trainer(Loop):
         self.optimizer_step(total, self.optimizer, self.trained)
         self.ema_update(self.averaged, self.trained)
         return {name: value.item() for name, value in terms.items()} | {"total": total.item()}
-
-    def save(self) -> None:
-        """Writes the checkpoint."""
-        checkpoint.save(self.out / "last.safetensors", self.parts(), self.step, self.settings_json)
 
 
 def main(argv: list[str] | None = None) -> int:

@@ -53,7 +53,7 @@ def test_sentences_for_each_person_are_read_and_left_out(scenes: Path, tmp_path:
 
 def test_person_sentences_change_sides_with_the_mirror(scenes: Path, tmp_path: Path) -> None:
     path = with_sentences_for_each(scenes, tmp_path / "each.safetensors")
-    data = begin(path, tmp_path, replace(SETTINGS, unconditional=0.0)).data
+    data = begin(path, tmp_path, replace(SETTINGS, cond_drop_prob=0.0)).data
     seen = set()
     data.features = lambda captions: (seen.update(captions), CaptionFeatures.batch(data.captions, captions))[
         1
@@ -80,7 +80,7 @@ def with_beats(scenes: Path, out: Path) -> Path:
 def test_a_later_beat_is_learned_with_what_came_before_it_given(scenes: Path, tmp_path: Path) -> None:
     path = with_beats(scenes, tmp_path / "beats.safetensors")
     given = Shares(person=0, past=0, span=0, poses=0, path=0, joints=0, more=0)
-    trainer = begin(path, tmp_path, replace(SETTINGS, continued=0.5, unconditional=0.0, given=given))
+    trainer = begin(path, tmp_path, replace(SETTINGS, continued=0.5, cond_drop_prob=0.0, given=given))
     read, cut, data = [], 0, trainer.data
 
     def features(captions: list[str]) -> tuple[torch.Tensor, torch.Tensor]:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 from abc import abstractmethod
 from dataclasses import asdict
 from pathlib import Path
@@ -10,9 +9,8 @@ from typing import Any
 
 import numpy as np
 import torch
-from torch import Tensor, nn
+from torch import Tensor
 
-from training.core import checkpoint
 from training.core.loop import Loop
 from training.trainers.prediction.rollout import with_own_past
 from training.trainers.prediction.windows import Windows
@@ -32,29 +30,15 @@ class PredictionTrainer(Loop):
         device: "cpu" or "cuda".
     """
 
-    model: nn.Module
-    ema: nn.Module
-
     def __init__(self, windows: Windows, settings: Any, out: Path, *, device: str = "cpu") -> None:
         self.windows, self.settings, self.out, self.device = windows, settings, out, device
         torch.manual_seed(settings.seed)
         self.build()
-        self.settings_json = json.dumps(asdict(settings), sort_keys=True)
-        out.mkdir(parents=True, exist_ok=True)
-        self.step = checkpoint.restore(self.checkpoint, self.parts(), self.settings_json)
-
-    @property
-    def checkpoint(self) -> Path:
-        """Path of the run's checkpoint."""
-        return self.out / "last.safetensors"
+        self.restore(asdict(settings))
 
     @abstractmethod
     def build(self) -> None:
         """Makes networks and optimisers; runs once, under the run's seed."""
-
-    @abstractmethod
-    def parts(self) -> dict[str, nn.Module | torch.optim.Optimizer]:
-        """Contents of a checkpoint; ``ema`` is the network that is exported."""
 
     def batch(self, part: int = 0) -> Tensor:
         """The windows (B, T, J, 3) of this step."""
@@ -73,7 +57,3 @@ class PredictionTrainer(Loop):
             return *with_own_past(self.ema, windows, s.past, s.future, passes), passes
         windows = windows[:, : s.past + s.future]
         return windows, windows, 0
-
-    def save(self) -> None:
-        """Writes the checkpoint."""
-        checkpoint.save(self.checkpoint, self.parts(), self.step, self.settings_json)

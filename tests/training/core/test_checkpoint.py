@@ -1,0 +1,57 @@
+"""Checkpoints: what is written comes back, and older names of settings are understood."""
+
+import json
+from pathlib import Path
+
+import pytest
+import torch
+from torch import nn
+
+from motion import InputError
+from training.core import checkpoint
+
+
+def parts(seed: int) -> checkpoint.Parts:
+    """A network and its optimiser after one step."""
+    torch.manual_seed(seed)
+    network = nn.Linear(3, 2)
+    optimizer = torch.optim.AdamW(network.parameters())
+    network(torch.ones(1, 3)).sum().backward()
+    optimizer.step()
+    return {"model": network, "optimizer": optimizer}
+
+
+def test_network_and_optimiser_come_back(tmp_path: Path) -> None:
+    path, settings = tmp_path / "last.safetensors", json.dumps({"batch": 4})
+    saved, other = parts(0), parts(1)
+    checkpoint.save(path, saved, 7, settings)
+    assert checkpoint.restore(path, other, settings) == 7
+    assert torch.equal(other["model"].state_dict()["weight"], saved["model"].state_dict()["weight"])
+    for name in ("exp_avg", "exp_avg_sq", "step"):
+        states = [part["optimizer"].state_dict()["state"][0][name] for part in (saved, other)]
+        assert torch.equal(*states)
+
+
+def test_no_checkpoint_is_step_zero(tmp_path: Path) -> None:
+    assert checkpoint.restore(tmp_path / "last.safetensors", parts(0), "{}") == 0
+
+
+@pytest.mark.parametrize(("now", "resumes"), [(0.1, True), (0.2, False)])
+def test_older_name_of_a_setting_is_read(tmp_path: Path, now: float, resumes: bool) -> None:
+    path = tmp_path / "last.safetensors"
+    older = json.dumps({"unconditional": 0.1, "batch": 4}, sort_keys=True)
+    checkpoint.save(path, parts(0), 3, older)
+    assert json.loads(checkpoint.metadata(path)["settings"]) == {"cond_drop_prob": 0.1, "batch": 4}
+    settings = json.dumps({"cond_drop_prob": now, "batch": 4}, sort_keys=True)
+    if resumes:
+        assert checkpoint.restore(path, parts(1), settings) == 3
+    else:
+        with pytest.raises(InputError, match="other settings"):
+            checkpoint.restore(path, parts(1), settings)
+
+
+def test_a_part_of_other_sizes_is_refused(tmp_path: Path) -> None:
+    path = tmp_path / "last.safetensors"
+    checkpoint.save(path, parts(0), 1, "{}")
+    with pytest.raises(InputError, match="other sizes"):
+        checkpoint.restore_part(path, "model", nn.Linear(4, 2))

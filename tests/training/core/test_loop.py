@@ -1,0 +1,59 @@
+"""The training loop: learning rate, averages, and a run that stops and resumes."""
+
+import json
+from pathlib import Path
+from types import SimpleNamespace
+
+import pytest
+import torch
+from torch import nn
+
+from training.core.loop import Loop, adamw, warm_cosine
+
+
+class Line(Loop):
+    """Fits a line to two points; every step is the same function of the weights."""
+
+    def __init__(self, out: Path, steps: int) -> None:
+        self.settings = SimpleNamespace(steps=steps, learning_rate=0.1, warmup=2, weight_decay=0.0, ema=0.9)
+        self.out = out
+        torch.manual_seed(0)
+        self.model, self.ema = nn.Linear(1, 1), nn.Linear(1, 1).requires_grad_(False)
+        self.ema.load_state_dict(self.model.state_dict())
+        self.optimizer = adamw(self.model.parameters(), self.settings)
+        self.restore({"steps": 20})
+
+    def train_step(self) -> dict[str, float]:
+        x = torch.tensor([[0.0], [1.0]])
+        loss = (self.model(x) - 3 * x - 1).square().mean()
+        self.optimizer_step(loss, self.optimizer, self.model.parameters())
+        self.ema_update(self.ema.parameters(), self.model.parameters())
+        return {"loss": loss.item()}
+
+
+def test_learning_rate_warms_up_and_falls_to_two_percent() -> None:
+    rates = [warm_cosine(1.0, step, warmup=10, steps=100) for step in range(101)]
+    assert rates[0] == pytest.approx(0.1, abs=0.01) and max(rates) == pytest.approx(1.0, abs=0.05)
+    assert rates[100] == pytest.approx(0.02) and rates[20:] == sorted(rates[20:], reverse=True)
+
+
+def test_a_run_that_stops_resumes_as_if_it_had_not(tmp_path: Path) -> None:
+    whole = Line(tmp_path / "whole", 20)
+    losses = [step["loss"] for step in whole.run(minutes=1)]
+    assert len(losses) == 20 and losses[-1] < losses[0] / 2
+    first = Line(tmp_path / "parts", 20)
+    begun = [first.train_step()["loss"] for _ in range(8)]
+    first.save()
+    second = Line(tmp_path / "parts", 20)
+    assert second.step == 8
+    assert begun + [step["loss"] for step in second.run(minutes=1)] == losses
+    assert torch.equal(second.ema.weight, whole.ema.weight)
+    assert not torch.equal(second.ema.weight, second.model.weight)
+
+
+def test_log_has_means_over_its_steps(tmp_path: Path) -> None:
+    run = Line(tmp_path, 20)
+    run.run_logged(minutes=1, every=10)
+    lines = [json.loads(line) for line in (tmp_path / "log.jsonl").read_text().splitlines()]
+    assert [line["step"] for line in lines] == [10, 20]
+    assert lines[0]["loss"] > lines[1]["loss"]
