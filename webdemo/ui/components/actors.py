@@ -51,6 +51,7 @@ class Source:
         chosen: "a", "b" …: which one is offered first.
         path: the file, so that it can be read anew with other choices; None for a result.
         found: how the file was read, None for a result.
+        notes: sentences about how well it could be read.
     """
 
     name: str
@@ -58,6 +59,7 @@ class Source:
     chosen: str = "a"
     path: Path | None = None
     found: Found | None = None
+    notes: tuple[str, ...] = ()
     _fitted: dict[Any, tuple[Clip, ...]] = field(default_factory=dict, repr=False, compare=False)
     """What was fitted last, by what was asked."""
 

@@ -20,6 +20,7 @@ from webdemo.inference.predict_request import (
 )
 from webdemo.inference.requests import Result
 from webdemo.ui.components.actors import Source, read_source, result_source
+from webdemo.ui.components.camera import CameraPanel, film_source
 from webdemo.ui.components.exports import Record
 from webdemo.ui.components.player import busy, show
 from webdemo.ui.components.prediction_view import (
@@ -144,6 +145,7 @@ class PredictTab(JobTab):
             with gr.Row(elem_classes="pd-chips"):
                 self.chips = example_chips(self.examples)
                 self.take = chip("Continue the last result", elem_id="predict-take")
+            self.camera = CameraPanel(elem_id="predict-camera")
             self._go("Predict")
 
     def _curves(self) -> None:
@@ -165,17 +167,22 @@ class PredictTab(JobTab):
             **QUIET,
         }
         self.file.upload(self.upload, inputs=self.file, **load)
+        self.camera.submit(self.read_film, inputs=self.camera, **load)
         for button, (name, path) in zip(self.chips, self.examples, strict=True):
             button.click(partial(self.load, partial(read_source, path, name)), **load)
         self.take.click(self.take_result, inputs=self.record, **load)
-        for button in (*self.chips, self.take):  # the file is no longer what is used
-            button.click(None, outputs=self.file, js="() => null", **QUIET)
+        others = [self.camera.submit, *(button.click for button in (*self.chips, self.take))]
+        gr.on(others, None, outputs=self.file, js="() => null", **QUIET)  # the file is no longer what is used
         self.file.clear(self.forget, outputs=self.changed, queue=False, **QUIET)
 
     def upload(self, path: str | None) -> Iterator[Updates]:
         """Reads an uploaded file and shows its motion."""
         if path is not None:
             yield from self.load(partial(read_source, path))
+
+    def read_film(self, landmarks: str | None) -> Iterator[Updates]:
+        """Makes the motion of a film the past."""
+        yield from self.load(partial(film_source, landmarks))
 
     def take_result(self, record: Record | None) -> Iterator[Updates]:
         """Makes the session's last result the past: the marker stands at its end."""
@@ -229,7 +236,7 @@ class PredictTab(JobTab):
             return status(f"{told} Give {PAST_SECONDS:g} s or more.", tone="warning")
         if source.seconds > LONGEST:
             return status(f"{told} Cut it to {LONGEST:g} s or less.", tone="warning")
-        return status(told)
+        return status(" ".join((told, *source.notes)), tone="warning" if source.notes else "quiet")
 
     @staticmethod
     def forget() -> Updates:

@@ -27,6 +27,7 @@ from webdemo.ui.components.actors import (
     result_source,
     with_method,
 )
+from webdemo.ui.components.camera import CameraPanel, film_source
 from webdemo.ui.components.compare import comparison_payload
 from webdemo.ui.components.exports import Record
 from webdemo.ui.components.live import LiveView
@@ -136,6 +137,7 @@ class ReactTab(JobTab):
                     person: chip(f"{person.upper()} of the last result", elem_id=f"react-take-{person}")
                     for person in ("a", "b")
                 }
+            self.camera = CameraPanel(elem_id="react-camera")
             with gr.Column(visible=False, min_width=0, elem_classes="pd-settings") as self.trim:
                 self.person = gr.Radio(
                     [("Person A", "a"), ("Person B", "b")], value="a", label="Which person",
@@ -218,6 +220,7 @@ class ReactTab(JobTab):
             **QUIET,
         }
         self.file.upload(self.upload, inputs=self.file, **load)
+        self.camera.submit(self.read_film, inputs=self.camera, **load)
         choices = [self.up, self.unit, self.fps, self.order]
         self.file.upload(lambda: (AUTO, AUTO, None, AUTO), outputs=choices, queue=False, **QUIET)
         gr.on(
@@ -228,8 +231,8 @@ class ReactTab(JobTab):
             button.click(partial(self.load, partial(read_source, path, name)), **load)
         for person, button in self.take.items():
             button.click(partial(self.take_result, person), inputs=self.record, **load)
-        for button in (*self.chips, *self.take.values()):  # the file is no longer what is used
-            button.click(None, outputs=self.file, js="() => null", **QUIET)
+        others = [self.camera.submit, *(button.click for button in (*self.chips, *self.take.values()))]
+        gr.on(others, None, outputs=self.file, js="() => null", **QUIET)  # the file is no longer what is used
         self.source.change(
             lambda source: gr.update(visible=source is not None and len(source.people) == 2, value=False),
             inputs=self.source, outputs=self.keep, queue=False, **QUIET,
@@ -257,6 +260,10 @@ class ReactTab(JobTab):
         """Reads an uploaded file and shows its actor."""
         if path is not None:
             yield from self.load(partial(read_source, path))
+
+    def read_film(self, landmarks: str | None) -> Iterator[Updates]:
+        """Makes the people of a film the actors."""
+        yield from self.load(partial(film_source, landmarks))
 
     def read_again(
         self, source: Source | None, up: str, unit: str, fps: float | None, order: str = AUTO
@@ -322,7 +329,7 @@ class ReactTab(JobTab):
             return status(f"{used} Take {shortest:g} s or more.", tone="warning")
         if end - start > longest + 0.05:
             return status(f"{used} Take {longest:g} s or less.", tone="warning")
-        return status(used)
+        return status(" ".join((used, *source.notes)), tone="warning" if source.notes else "quiet")
 
     def start(self, values: dict[gr.components.Component, Any], request: gr.Request) -> Iterator[Updates]:
         """Runs what the controls ask for; yields updates of the page."""

@@ -1,0 +1,161 @@
+// Entry point: a panel that turns a video or the webcam's picture into landmarks for the server.
+
+import { analyse } from "./analysis.js";
+import { Detector } from "./detector.js";
+import { drawPeople, drawSureness } from "./drawing.js";
+import { close, FilmError, LONGEST, openFilm } from "./film.js";
+import { closeWebcam, countDown, openWebcam, record } from "./webcam.js";
+
+const detectors = new Map(); // one for the page: the network takes a second to load and 100 MB
+
+/** `element` holds camera.html; `send(text)` hands landmarks to the page's Python side. */
+export async function mount(element, send, { folder }) {
+  if (!detectors.has(folder)) detectors.set(folder, new Detector(folder));
+  new Panel(element.querySelector(".pdcam"), send, detectors.get(folder));
+  const address = new URL("camera.css", import.meta.url).href;
+  if (document.querySelector(`link[href="${address}"]`)) return;
+  const link = Object.assign(document.createElement("link"), { rel: "stylesheet", href: address });
+  document.head.append(link);
+}
+
+class Panel {
+  constructor(root, send, detector) {
+    this.send = send;
+    this.detector = detector;
+    this.landmarks = null;
+    this.run = 0; // number of what is being done: a later one stops it
+    const find = (name) => root.querySelector(`.pdcam-${name}`);
+    for (const name of ["open", "body", "choose", "record", "file", "stage", "video", "drawing", "count", "strip", "progress", "begin", "stop", "cancel", "line", "people", "tilt", "lens", "again"])
+      this[name] = find(name);
+    this.root = root;
+    this.open.onclick = () => this.toggle();
+    this.choose.onclick = () => this.file.click();
+    this.file.onchange = () => {
+      const [file] = this.file.files;
+      this.file.value = "";
+      if (file) this.attempt(() => this.read(file, file.name));
+    };
+    this.record.onclick = () => this.attempt(() => this.prepare());
+    this.begin.onclick = () => this.attempt(() => this.film(), false);
+    this.cancel.onclick = () => {
+      this.rest();
+      this.say("Cancelled.");
+    };
+    this.again.onclick = () => this.hand();
+  }
+
+  toggle() {
+    this.body.hidden = !this.body.hidden;
+    this.open.setAttribute("aria-expanded", String(!this.body.hidden));
+    if (this.body.hidden) this.rest();
+  }
+
+  say(text, tone = "") {
+    this.line.textContent = text;
+    this.line.dataset.tone = tone;
+  }
+
+  /** Shows the buttons of a state: idle, ready (the webcam is on), recording or reading. */
+  state(name) {
+    this.root.dataset.state = name;
+    this.choose.hidden = this.record.hidden = name !== "idle";
+    this.begin.hidden = name !== "ready";
+    this.stop.hidden = name !== "recording";
+    this.cancel.hidden = name === "idle";
+    this.progress.hidden = name !== "reading";
+  }
+
+  /** Stops whatever is done and lets go of camera and film. */
+  rest() {
+    this.run++;
+    closeWebcam(this.video);
+    close(this.video);
+    this.stage.hidden = true;
+    this.count.textContent = "";
+    this.state("idle");
+  }
+
+  async attempt(job, fresh = true) {
+    if (fresh) this.rest();
+    const run = ++this.run;
+    try {
+      await job();
+    } catch (error) {
+      if (run !== this.run) return;
+      if (!(error instanceof FilmError)) console.error(error);
+      this.rest();
+      this.say(error instanceof FilmError ? error.message : "The video could not be read here: reload the page and try again.", "error");
+    }
+  }
+
+  async prepare() {
+    this.say("Opening the camera …");
+    const run = this.run;
+    await openWebcam(this.video);
+    if (run !== this.run) return closeWebcam(this.video);
+    this.strip.hidden = true;
+    this.show(true);
+    this.say(`Step back until you are seen from head to feet. You have three seconds after the start; ${LONGEST} s at most.`);
+    this.state("ready");
+  }
+
+  async film() {
+    const run = this.run;
+    const stopped = () => run !== this.run;
+    this.state("counting");
+    if (!(await countDown((left) => (this.count.textContent = left || ""), stopped))) return;
+    const { film, stop } = record(this.video.srcObject);
+    this.state("recording");
+    this.say("Recording …");
+    this.stop.onclick = stop;
+    const file = await film;
+    if (stopped()) return;
+    closeWebcam(this.video);
+    await this.read(file, "Webcam");
+  }
+
+  async read(file, name) {
+    const run = this.run;
+    const stopped = () => run !== this.run;
+    this.say("Opening the video …");
+    this.state("reading");
+    this.progress.value = 0;
+    await openFilm(this.video, file);
+    if (stopped()) return;
+    this.show(false);
+    this.strip.hidden = false;
+    this.say("Looking for people …");
+    const wanted = Number(this.people.value);
+    const began = performance.now();
+    const landmarks = await analyse(this.video, this.detector, {
+      people: wanted,
+      stopped,
+      each: (done, all, people, count) => {
+        this.progress.value = done / all;
+        drawPeople(this.drawing, people, this.video.videoWidth, this.video.videoHeight);
+        drawSureness(this.strip, done, all, people, count);
+        const left = ((performance.now() - began) / done) * (all - done) / 1000;
+        this.say(`Reading ${count === 2 ? "two people" : "one person"}: picture ${done} of ${all}${left > 3 ? `, about ${Math.ceil(left / 5) * 5} s left` : ""}`);
+      },
+    });
+    if (!landmarks) return;
+    this.state("idle");
+    this.landmarks = landmarks;
+    this.name = name;
+    this.again.disabled = false;
+    this.hand();
+  }
+
+  /** Sends what was found, with what is known of the camera. */
+  hand() {
+    const value = (input) => (input.value === "" ? null : Number(input.value));
+    this.say("The points are with the server: see the motion beside this.");
+    this.send(this.landmarks.pack({ name: this.name, tilt: value(this.tilt), lens: value(this.lens) }));
+  }
+
+  show(mirrored) {
+    this.stage.hidden = false;
+    this.stage.classList.toggle("pdcam-mirror", mirrored);
+    drawPeople(this.drawing, [], this.video.videoWidth, this.video.videoHeight);
+  }
+}

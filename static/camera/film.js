@@ -1,0 +1,79 @@
+// A film that somebody chose or recorded, as a video element that can be stepped through.
+
+export const LONGEST = 60; // seconds
+const SHORTEST = 0.5;
+const LARGEST = 1e9; // bytes
+const RATE = 15; // pictures a second that are looked at
+const PATIENCE = 8000; // milliseconds for a seek
+
+/** What is wrong with a film and what to do, in a sentence for the person. */
+export class FilmError extends Error {}
+
+/** Opens a file in a video element; throws a FilmError for what is no film or cannot be shown here. */
+export async function openFilm(video, file) {
+  if (file.type.startsWith("image/")) throw new FilmError("This is a photograph: choose a video of a second or more.");
+  if (file.size > LARGEST)
+    throw new FilmError(`The video has ${(file.size / 1e9).toFixed(1)} GB, more than the 1 GB allowed: cut it to ${LONGEST} s.`);
+  const address = URL.createObjectURL(file);
+  video.src = address;
+  video.load();
+  const opened = await first(video, { loadeddata: true, error: false }, 20000);
+  if (!opened || !video.videoWidth) {
+    close(video);
+    throw new FilmError("This browser cannot show the video (HEVC, for example): save it as MP4 with H.264 and choose it again.");
+  }
+  if (!Number.isFinite(video.duration)) await findEnd(video);
+  const { duration } = video;
+  if (!(duration >= SHORTEST)) {
+    close(video);
+    throw new FilmError("The video is a single picture or very short: choose one of a second or more.");
+  }
+  if (duration > LONGEST + 0.5) {
+    close(video);
+    throw new FilmError(`The video lasts ${Math.round(duration)} s: cut it to ${LONGEST} s or less.`);
+  }
+}
+
+/** Lets go of the film. */
+export function close(video) {
+  if (video.src.startsWith("blob:")) URL.revokeObjectURL(video.src);
+  video.removeAttribute("src");
+  video.load();
+}
+
+/** The times in seconds at which a film is looked at. */
+export function times(video) {
+  const count = Math.max(2, Math.floor(Math.min(video.duration, LONGEST) * RATE));
+  return Array.from({ length: count }, (_, i) => (i + 0.25) / RATE);
+}
+
+/** Shows the picture at a time. */
+export async function seek(video, time) {
+  const there = first(video, { seeked: true, error: false }, PATIENCE);
+  video.currentTime = Math.min(time, video.duration - 1e-3);
+  let shown = await there;
+  if (shown && video.readyState < 2) shown = await first(video, { canplay: true, error: false }, PATIENCE);
+  if (!shown) throw new FilmError("The video cannot be read to its end: save it anew as MP4 and choose it again.");
+}
+
+/** A recording says its length only after its end was looked for. */
+async function findEnd(video) {
+  const found = first(video, { durationchange: true }, PATIENCE);
+  video.currentTime = 1e7;
+  await found;
+  await seek(video, 0);
+}
+
+/** The value of the event that comes first; undefined after `patience` milliseconds. */
+function first(target, events, patience) {
+  return new Promise((resolve) => {
+    const names = Object.keys(events);
+    const done = (event) => {
+      clearTimeout(timer);
+      for (const name of names) target.removeEventListener(name, done);
+      resolve(event && events[event.type]);
+    };
+    const timer = setTimeout(done, patience);
+    for (const name of names) target.addEventListener(name, done);
+  });
+}

@@ -1,0 +1,125 @@
+"""Films of known motion give that motion back."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from motion import SMPL22, Duet, InputError
+from motion.metrics import foot_skate
+from motion.transforms import heading, resample
+from motion.video import people_of
+from motion.video.tracks import tracks_of
+
+from .filming import film, stepping
+
+
+def misplaced(found: np.ndarray, true: np.ndarray) -> float:
+    """Mean distance of joints in metres, both about their pelvis."""
+    frames = min(len(found), len(true))
+    return float(
+        np.linalg.norm(
+            found[:frames] - found[:frames, :1] - true[:frames] + true[:frames, :1], axis=-1
+        ).mean()
+    )
+
+
+@pytest.mark.parametrize(("tilt", "turned", "distance"), [(0, 0.3, 4.5), (22, -1.1, 3.2)])
+def test_pose_tilt_and_bones_come_back_from_any_camera(tilt: float, turned: float, distance: float) -> None:
+    true = stepping(1.5, heading=turned)
+    filmed = people_of(film([true], tilt=tilt, distance=distance, noise=0.02))
+    (person,) = filmed.people
+    assert misplaced(person.positions, resample(true, 15.0, 30.0)) < 0.06
+    assert filmed.tilt == pytest.approx(tilt, abs=4.0)
+    lengths = np.linalg.norm(
+        person.positions[:, [c for _, c in SMPL22.bones]] - person.positions[:, [p for p, _ in SMPL22.bones]],
+        axis=-1,
+    )
+    assert np.ptp(lengths, axis=0).max() < 1e-3
+    assert abs(person.positions[:, :, 1].min()) < 0.05
+    feet = foot_skate(Duet(person, person))
+    assert feet.contact > 0.9 and feet.speed < 3.0  # cm/s
+
+
+def test_a_walk_across_the_picture_covers_its_way() -> None:
+    true = stepping(3.0, speed=1.0, heading=np.pi / 2)
+    true[..., 0] -= 1.5
+    (person,) = people_of(film([true], distance=5.0, noise=0.02)).people
+    way = person.positions[-1, 0] - person.positions[0, 0]
+    assert way[0] == pytest.approx(true[-1, 0, 0] - true[0, 0, 0], abs=0.2)
+    assert abs(way[2]) < 0.2
+
+
+def test_two_people_keep_their_places_whatever_order_the_network_finds_them_in() -> None:
+    left, right = stepping(2.0, heading=np.pi / 2), stepping(2.0, heading=-np.pi / 2)
+    left[..., 0] -= 0.7
+    right[..., 0] += 0.7
+    filmed = people_of(film([right, left], order=3))
+    a, b = filmed.people
+    assert b.positions[0, 0, 0] - a.positions[0, 0, 0] == pytest.approx(1.4, abs=0.15)
+    assert np.abs(np.diff(a.positions[:, 0], axis=0)).max() < 0.05
+    assert float(heading(a.positions)[0]) == pytest.approx(np.pi / 2, abs=0.2)
+    assert float(heading(b.positions)[0]) == pytest.approx(-np.pi / 2, abs=0.2)
+    assert filmed.motion.num_frames == len(a.positions)
+
+
+def test_a_gap_is_marked_and_filled() -> None:
+    landmarks = film([stepping(3.0)])
+    kept = (landmarks.frames < 15) | (landmarks.frames > 26)
+    landmarks = replace(
+        landmarks, frames=landmarks.frames[kept], world=landmarks.world[kept], image=landmarks.image[kept],
+        seen=landmarks.seen[kept],
+    )  # fmt: skip
+    filmed = people_of(landmarks)
+    ((start, end),) = filmed.gaps
+    assert start == pytest.approx(1.0, abs=0.15) and end == pytest.approx(1.8, abs=0.15)
+    assert filmed.confidence[0, 40] < 0.05 < 0.9 < filmed.confidence[0, 5]
+    assert "Nobody was found" in filmed.notes[0]
+    assert np.abs(np.diff(filmed.people[0].positions, axis=0)).max() < 0.2
+
+
+def test_somebody_who_passes_by_for_a_moment_is_not_a_second_person() -> None:
+    one, other = stepping(2.0), stepping(2.0)
+    other[..., 0] += 1.2
+    landmarks = film([one, other])
+    short = np.array([n % 2 == 0 or frame < 6 for n, frame in enumerate(landmarks.frames)])
+    landmarks = replace(
+        landmarks, frames=landmarks.frames[short], world=landmarks.world[short], image=landmarks.image[short],
+        seen=landmarks.seen[short],
+    )  # fmt: skip
+    assert len(tracks_of(landmarks)) == 1
+
+
+@pytest.mark.parametrize(
+    ("change", "sentence"),
+    [
+        ("nobody", "Nobody was found"),
+        ("sideways", "lies on its side"),
+        ("upside down", "stands on its head"),
+        ("legs", "The legs are not in the picture"),
+        ("short", "less than half a second"),
+    ],
+)
+def test_a_film_that_cannot_be_used_is_refused_in_a_sentence(change: str, sentence: str) -> None:
+    landmarks = film([stepping(0.3 if change == "short" else 1.0)])
+    if change == "nobody":
+        empty = {name: getattr(landmarks, name)[:0] for name in ("frames", "world", "image", "seen")}
+        landmarks = replace(landmarks, **empty)
+    elif change == "sideways":
+        landmarks = replace(landmarks, image=landmarks.image[..., ::-1])
+    elif change == "upside down":
+        landmarks = replace(landmarks, image=1 - landmarks.image)
+    elif change == "legs":
+        seen = landmarks.seen.copy()
+        seen[:, 25:] = 0.1
+        landmarks = replace(landmarks, seen=seen)
+    with pytest.raises(InputError, match=sentence):
+        people_of(landmarks)
+
+
+@pytest.mark.parametrize("given", [{"lens": 10.0}, {"tilt": 80.0}])
+def test_an_impossible_camera_is_refused(given: dict[str, float]) -> None:
+    with pytest.raises(InputError, match="not possible"):
+        people_of(film([stepping(1.0)]), **given)
