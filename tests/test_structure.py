@@ -209,3 +209,20 @@ def test_functions_are_short_and_flat() -> None:
 def test_files_are_short() -> None:
     lines = {module: path.read_text().count("\n") for module, path in FILES.items()}
     assert not {module: count for module, count in lines.items() if count > LONGEST_FILE}, "split these"
+
+
+TESTED_FROM_OUTSIDE = {
+    "e2e",  # the page in a browser
+    "second_programs",  # files as other programs read them
+    "server/attacks",  # a server as an attacker sees it
+}
+"""Folders of tests that belong to no one package."""
+
+
+def test_tests_lie_where_their_packages_lie() -> None:
+    folders = {
+        path.parent.relative_to(ROOT / "tests").as_posix() for path in (ROOT / "tests").rglob("test_*.py")
+    }
+    mirrored = {name for name in folders if (ROOT / name).is_dir() or (ROOT / "webdemo" / name).is_dir()}
+    assert len(mirrored) > 20
+    assert folders - mirrored == TESTED_FROM_OUTSIDE & folders

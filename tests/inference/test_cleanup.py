@@ -1,0 +1,62 @@
+"""Clean-up of one person, for whole motions and frame by frame."""
+
+import numpy as np
+
+from motion import SMPL22
+from webdemo.inference.cleanup import clean_person, on_constant_bones
+from webdemo.inference.following import FollowingCleanup
+
+WRISTS = [SMPL22.index(name) for name in ("left_wrist", "right_wrist")]
+TOES = [SMPL22.index(name) for name in ("left_foot", "right_foot")]
+
+
+def trembling(frames: int = 60) -> np.ndarray:
+    """(T, 22, 3) a person who stands with bent elbows and knees while every joint shakes by millimetres."""
+    rng = np.random.default_rng(0)
+    rest = SMPL22.rest_positions() + np.array([0, 0.93, 0])
+    for side in ("left", "right"):
+        knee, wrist = SMPL22.index(f"{side}_knee"), SMPL22.index(f"{side}_wrist")
+        rest[knee] += [0, 0, 0.12]
+        rest[wrist] = rest[SMPL22.index(f"{side}_elbow")] + [0, 0.1, 0.2]
+    return rest + 0.004 * rng.normal(size=(frames, 22, 3))
+
+
+def lengths(positions: np.ndarray) -> np.ndarray:
+    parents, children = zip(*SMPL22.bones, strict=True)
+    return np.linalg.norm(positions[:, children] - positions[:, parents], axis=-1)
+
+
+def test_bones_become_constant_and_wrists_stay() -> None:
+    shaking = trembling()
+    steady = on_constant_bones(shaking)
+    assert lengths(shaking).std(axis=0).max() > 0.002
+    np.testing.assert_allclose(
+        lengths(steady), SMPL22.bone_lengths[1:].reshape(1, -1).repeat(60, 0), atol=1e-6
+    )
+    assert np.linalg.norm(steady[:, WRISTS] - shaking[:, WRISTS], axis=-1).max() < 0.02
+
+
+def test_standing_feet_slide_less() -> None:
+    shaking = trembling()
+    slide = [
+        np.abs(np.diff(x[:, TOES][..., [0, 2]], axis=0)).mean() for x in (shaking, clean_person(shaking))
+    ]
+    assert slide[1] < 0.5 * slide[0]
+
+
+def test_frame_by_frame_no_frame_depends_on_a_later_one() -> None:
+    shaking, contacts = trembling(20), np.full(4, 0.9)
+    whole, part = FollowingCleanup(), FollowingCleanup()
+    shown = [whole(frame, contacts) for frame in shaking]
+    np.testing.assert_array_equal([part(frame, contacts) for frame in shaking[:8]], shown[:8])
+
+
+def test_a_standing_foot_keeps_its_place_and_is_let_go() -> None:
+    shaking = trembling(40)
+    cleanup = FollowingCleanup()
+    stands = np.array([cleanup(frame, np.full(4, 0.9)) for frame in shaking[:20]])
+    assert np.ptp(stands[:, TOES][..., [0, 2]], axis=0).max() < 0.005
+    assert np.ptp(shaking[:20, TOES][..., [0, 2]], axis=0).max() > 0.01
+    loose = np.array([cleanup(frame, np.zeros(4)) for frame in shaking[20:]])
+    assert np.ptp(loose[5:, TOES][..., [0, 2]], axis=0).max() > 0.005
+    assert min(loose[:, TOES, 1].min(), stands[:, TOES, 1].min()) > -1e-6

@@ -1,0 +1,45 @@
+"""Skeletons: trees of joints with a T-pose."""
+
+import numpy as np
+import pytest
+
+from motion.skeleton import SKELETONS, SMPL22, Skeleton
+
+
+@pytest.mark.parametrize("skeleton", SKELETONS.values(), ids=list(SKELETONS))
+def test_every_skeleton_is_one_tree_that_mirrors_onto_itself(skeleton: Skeleton) -> None:
+    assert skeleton.parents.count(-1) == 1 and len(skeleton.bones) == skeleton.num_joints - 1
+    assert len(set(skeleton.joint_names)) == skeleton.num_joints
+    assert [skeleton.mirror[i] for i in skeleton.mirror] == list(range(skeleton.num_joints))
+    for parent, children in enumerate(skeleton.children):
+        assert all(skeleton.parents[child] == parent for child in children)
+
+
+def test_rest_pose_is_a_symmetric_t_pose() -> None:
+    rest = SMPL22.rest_positions()
+    np.testing.assert_allclose(rest[list(SMPL22.mirror)], rest * [-1, 1, 1], atol=1e-12)
+    joint = {name: rest[SMPL22.index(name)] for name in SMPL22.joint_names}
+    assert joint["left_wrist"][0] > 0.6 and joint["head"][1] > joint["pelvis"][1]
+    assert joint["left_foot"][2] > joint["left_ankle"][2]  # it faces +Z
+    lengths = [np.linalg.norm(rest[child] - rest[parent]) for parent, child in SMPL22.bones]
+    np.testing.assert_allclose(lengths, SMPL22.bone_lengths[1:])
+
+
+@pytest.mark.parametrize(
+    ("names", "parents", "offsets", "says"),
+    [
+        (("a", "b"), (-1,), np.zeros((1, 3)), "2 names but 1 parents"),
+        (("a", "b"), (-1, 0), np.zeros((3, 3)), r"must be \(2, 3\)"),
+        (("a", "b"), (1, -1), np.zeros((2, 3)), "before its children"),
+    ],
+)
+def test_what_is_no_tree_is_refused(
+    names: tuple[str, ...], parents: tuple[int, ...], offsets: np.ndarray, says: str
+) -> None:
+    with pytest.raises(ValueError, match=says):
+        Skeleton("test", names, parents, offsets)
+
+
+def test_an_unknown_joint_is_named_with_those_that_exist() -> None:
+    with pytest.raises(KeyError, match=r"tail.*pelvis"):
+        SMPL22.index("tail")
