@@ -49,6 +49,7 @@ const hooks = {
 export async function mount(element, props, watch, { plotly, empty }) {
   const root = element.querySelector(".pdd");
   const player = new Player(root);
+  root.player = player; // for what stands under it and follows its clock
   let shown;
   let heard = null;
   let opening = true;

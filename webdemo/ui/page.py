@@ -16,6 +16,7 @@ from webdemo.ui.tabs.history import LABEL as HISTORY
 from webdemo.ui.tabs.history import HistoryTab
 from webdemo.ui.tabs.predict import PredictTab
 from webdemo.ui.tabs.react import ReactTab
+from webdemo.ui.tabs.scene import SceneTab
 from webdemo.ui.text.panels import model_state
 
 from .api import ClassEndpoint, GenerateEndpoint, PredictEndpoint, ReactEndpoint, RenderEndpoint
@@ -26,7 +27,7 @@ from .scene_api import SceneEndpoint
 from .theme import HEAD, style_sheet, theme
 
 TITLE = "Pas de Deux"
-TABS = (GenerateTab, ReactTab, PredictTab)
+TABS = (GenerateTab, SceneTab, ReactTab, PredictTab)
 """A class a job, with a ``label`` and ``build(demo, record)``."""
 ENDPOINTS = (PredictEndpoint, GenerateEndpoint, ClassEndpoint, ReactEndpoint, RenderEndpoint, SceneEndpoint)
 """Gradio's client in the browser takes the page's first function for "/predict", so that one comes first."""
@@ -98,7 +99,7 @@ def build_page(
 def _build_tabs(page: PageContext, demo: gr.Blocks) -> None:
     """A tab for every job, and the history where there is one."""
     record = gr.State(None, time_to_live=3600)
-    jobs: dict[str, GenerateTab | ReactTab | PredictTab] = {}
+    jobs: dict[str, GenerateTab | SceneTab | ReactTab | PredictTab] = {}
     with gr.Tabs(elem_classes="pd-tabs") as tabs:
         for tab in TABS:
             with gr.Tab(tab.label, id=tab.label.lower()):

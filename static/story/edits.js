@@ -1,0 +1,105 @@
+// What can be done to a story, as functions from one story to another; nothing here knows the page.
+
+export const SHORTEST = 0.5;
+export const LONGEST = 30;
+const GUESS = 4; // seconds of a beat whose length has not been worked out yet
+
+/** A story without anything. */
+export const empty = () => ({ beats: [], paths: [], poses: [], loop: false, span: null, from: null });
+
+/** A story as the server gave it, with its own fields alone. */
+export function read(given) {
+  const story = empty();
+  for (const key of Object.keys(story)) story[key] = given?.[key] ?? story[key];
+  return story;
+}
+
+/** Seconds of a beat: as set, as worked out from its words, or a guess. */
+export const lengthOf = (beat) => beat.seconds ?? beat.auto ?? GUESS;
+
+/** Seconds at which the beats begin, and at which the last ends. */
+export function edges(story) {
+  const found = [0];
+  for (const beat of story.beats) found.push(found.at(-1) + lengthOf(beat));
+  return found;
+}
+
+const withBeats = (story, beats) => ({ ...story, beats });
+
+export function add(story, after) {
+  const beats = [...story.beats];
+  beats.splice(after + 1, 0, { words: "", a: "", b: "", seconds: null, seed: null });
+  return withBeats(story, beats);
+}
+
+export function remove(story, index) {
+  return withBeats(story, story.beats.filter((_, i) => i !== index));
+}
+
+/** Two beats of half the length with the same words; nothing where the halves would be too short. */
+export function split(story, index) {
+  const beat = story.beats[index];
+  const half = Math.round(5 * lengthOf(beat)) / 10;
+  if (half < SHORTEST) return story;
+  const beats = [...story.beats];
+  beats.splice(index, 1, { ...beat, seconds: half }, { ...beat, seconds: half });
+  return withBeats(story, beats);
+}
+
+export function move(story, index, by) {
+  const to = index + by;
+  if (to < 0 || to >= story.beats.length) return story;
+  const beats = [...story.beats];
+  [beats[index], beats[to]] = [beats[to], beats[index]];
+  return withBeats(story, beats);
+}
+
+/** Sets fields of a beat; new words without a set length get theirs worked out again. */
+export function change(story, index, fields) {
+  const beats = story.beats.map((beat, i) => {
+    if (i !== index) return beat;
+    const reworded = ["words", "a", "b"].some((key) => key in fields);
+    return { ...beat, ...fields, auto: reworded ? null : beat.auto };
+  });
+  return withBeats(story, beats);
+}
+
+export function stretch(story, index, seconds) {
+  const whole = Math.round(10 * Math.min(Math.max(seconds, SHORTEST), LONGEST)) / 10;
+  return change(story, index, { seconds: whole });
+}
+
+/** The path of a person; without points it is gone. */
+export function path(story, person, points) {
+  const others = story.paths.filter((found) => found.person !== person);
+  const paths = points.length ? [...others, { person, points }] : others;
+  return { ...story, paths: paths.sort((p, q) => (p.person < q.person ? -1 : 1)) };
+}
+
+export const pathOf = (story, person) => story.paths.find((found) => found.person === person)?.points ?? [];
+
+/** Keeps what a story was, so that it can be undone and redone. */
+export class Past {
+  constructor() {
+    this.before = [];
+    this.after = [];
+  }
+
+  keep(story) {
+    this.before.push(story);
+    if (this.before.length > 200) this.before.shift();
+    this.after = [];
+  }
+
+  undo(now) {
+    if (!this.before.length) return now;
+    this.after.push(now);
+    return this.before.pop();
+  }
+
+  redo(now) {
+    if (!this.after.length) return now;
+    this.before.push(now);
+    return this.after.pop();
+  }
+}

@@ -1,0 +1,131 @@
+// The floor seen from above: paths are drawn with the pointer, and their points moved with the pointer or the arrow keys.
+
+import { edges, path, pathOf } from "./edits.js";
+
+const EDGE = 8;
+const STEP = 0.35; // metres between two points of a drawn path
+const NAMES = { a: "A", b: "B" };
+const SVG = "http://www.w3.org/2000/svg";
+const make = (name, attributes, parent) => {
+  const node = document.createElementNS(SVG, name);
+  for (const [key, value] of Object.entries(attributes)) node.setAttribute(key, value);
+  parent?.append(node);
+  return node;
+};
+const inside = (value) => Math.round(100 * Math.min(Math.max(value, -EDGE), EDGE)) / 100;
+
+/** A point is [seconds or null, x, z] with or without a heading; the picture has x to the right and z upwards. */
+export class Floor {
+  constructor(root, editor) {
+    this.editor = editor;
+    this.svg = root.querySelector("svg");
+    this.root = root;
+    this.svg.addEventListener("pointerdown", (event) => this.begin(event));
+    this.svg.addEventListener("pointermove", (event) => this.drag(event));
+    this.svg.addEventListener("pointerup", () => this.end());
+    this.svg.addEventListener("pointercancel", () => this.end());
+    this.svg.addEventListener("keydown", (event) => this.key(event));
+  }
+
+  get person() {
+    return this.root.querySelector("[data-field=who]:checked").value;
+  }
+
+  at(event) {
+    const box = this.svg.getBoundingClientRect();
+    const x = ((event.clientX - box.left) / box.width) * 2 * EDGE - EDGE;
+    const z = EDGE - ((event.clientY - box.top) / box.height) * 2 * EDGE;
+    return [inside(x), inside(z)];
+  }
+
+  begin(event) {
+    if (event.button) return;
+    event.preventDefault();
+    this.svg.setPointerCapture(event.pointerId);
+    const { story, selected } = this.editor;
+    const [x, z] = this.at(event);
+    const point = event.target.dataset?.point;
+    if (point) {
+      const person = event.target.dataset.person;
+      this.held = { person, index: Number(point), points: pathOf(story, person).map((p) => [...p]) };
+      return;
+    }
+    const start = story.beats.length ? edges(story)[Math.max(selected, 0)] : 0;
+    this.held = { person: this.person, drawn: true, points: [[start, x, z]] };
+  }
+
+  drag(event) {
+    if (!this.held) return;
+    const [x, z] = this.at(event);
+    const { points, index, drawn } = this.held;
+    if (drawn) {
+      const [, lastX, lastZ] = points.at(-1);
+      if (Math.hypot(x - lastX, z - lastZ) < STEP) return;
+      points.push([null, x, z]);
+    } else {
+      points[index][1] = x;
+      points[index][2] = z;
+    }
+    this.draw(path(this.editor.story, this.held.person, points));
+  }
+
+  end() {
+    if (!this.held) return;
+    const { person, points, drawn } = this.held;
+    this.held = null;
+    if (drawn && points.length < 2) return this.draw(this.editor.story);
+    this.editor.edit(path(this.editor.story, person, points));
+  }
+
+  key(event) {
+    const { point, person } = event.target.dataset ?? {};
+    if (point === undefined) return;
+    const steps = { ArrowLeft: [-0.1, 0], ArrowRight: [0.1, 0], ArrowUp: [0, 0.1], ArrowDown: [0, -0.1] };
+    const points = pathOf(this.editor.story, person).map((p) => [...p]);
+    const index = Number(point);
+    if (event.key in steps) {
+      points[index][1] = inside(points[index][1] + steps[event.key][0]);
+      points[index][2] = inside(points[index][2] + steps[event.key][1]);
+    } else if (event.key === "Delete" || event.key === "Backspace") points.splice(index, 1);
+    else return;
+    event.preventDefault();
+    this.editor.edit(path(this.editor.story, person, points));
+    this.svg.querySelector(`[data-person="${person}"][data-point="${Math.min(index, points.length - 1)}"]`)?.focus();
+  }
+
+  /** A point after the last, half a metre on, for the keyboard. */
+  addPoint() {
+    const { story, selected } = this.editor;
+    const points = pathOf(story, this.person).map((p) => [...p]);
+    const last = points.at(-1);
+    const start = story.beats.length ? edges(story)[Math.max(selected, 0)] : 0;
+    points.push(last ? [null, last[1], inside(last[2] + 0.5)] : [start, 0, 0]);
+    this.editor.edit(path(story, this.person, points));
+  }
+
+  clear() {
+    this.editor.edit(path(this.editor.story, this.person, []));
+  }
+
+  draw(story) {
+    this.svg.replaceChildren();
+    for (let i = -EDGE; i <= EDGE; i += 1) {
+      const strong = i === 0 ? "pds-axis" : "pds-grid";
+      make("line", { x1: i, x2: i, y1: -EDGE, y2: EDGE, class: strong }, this.svg);
+      make("line", { y1: i, y2: i, x1: -EDGE, x2: EDGE, class: strong }, this.svg);
+    }
+    for (const { person, points } of story.paths) {
+      const group = make("g", { class: `pds-path pds-${person}` }, this.svg);
+      make("polyline", { points: points.map(([, x, z]) => `${x},${-z}`).join(" ") }, group);
+      points.forEach(([seconds, x, z], i) => {
+        const named = seconds === null ? "" : `, at ${seconds.toFixed(1)} s`;
+        const label = `Point ${i + 1} of the path of ${NAMES[person]}: x ${x}, z ${z}${named}`;
+        const dot = make("circle", {
+          cx: x, cy: -z, r: i ? 0.13 : 0.2, tabindex: 0, role: "button", "aria-label": label,
+          "data-point": i, "data-person": person,
+        }, group);
+        make("title", {}, dot).textContent = label;
+      });
+    }
+  }
+}

@@ -1,0 +1,350 @@
+// The story under the player: beats as blocks in three lanes, a span, paths on the floor. Its value is a story.
+
+import * as edits from "./edits.js";
+import { Floor } from "./floor.js";
+
+const LANES = [["words", "both"], ["a", "A"], ["b", "B"]];
+const PIXELS = 44; // a second, at least
+const MOST_TICKS = 80;
+
+const node = (name, className, text) => {
+  const made = document.createElement(name);
+  made.className = className;
+  if (text !== undefined) made.textContent = text;
+  return made;
+};
+
+class Editor {
+  constructor(root, props, changed) {
+    this.root = root;
+    this.props = props;
+    this.changed = changed;
+    this.story = edits.empty();
+    this.selected = 0;
+    this.past = new edits.Past();
+    this.floor = new Floor(root.querySelector(".pds-floor"), this);
+    root.addEventListener("click", (event) => this.press(event));
+    root.addEventListener("change", (event) => this.field(event));
+    root.addEventListener("keydown", (event) => this.key(event));
+    const ruler = this.find(".pds-ruler");
+    ruler.addEventListener("pointerdown", (event) => this.select(event, ruler));
+    this.timer = setInterval(() => this.tick(), 80);
+  }
+
+  find(selector) {
+    return this.root.querySelector(selector);
+  }
+
+  get player() {
+    return this.root.closest(".pd-results")?.querySelector(".pdd")?.player;
+  }
+
+  /** Seconds that the line shows: the story's, or the motion's where that is longer. */
+  get total() {
+    return Math.max(edits.edges(this.story).at(-1), this.props.motion?.seconds ?? 0, 1);
+  }
+
+  /** The value as the server gave it. */
+  load(story) {
+    if (story === this.given) return;
+    this.given = story;
+    if (JSON.stringify(edits.read(story)) === this.sent) return;
+    if (this.story.beats.length) this.past.keep(this.story);
+    this.story = edits.read(story);
+    this.selected = Math.min(Math.max(this.selected, 0), this.story.beats.length - 1);
+    this.draw();
+  }
+
+  /** Lengths that follow from the words, as the server worked them out. */
+  measure(lengths) {
+    if (!lengths || lengths.length !== this.story.beats.length) return;
+    const beats = this.story.beats.map((beat, i) => ({ ...beat, auto: lengths[i] }));
+    this.story = { ...this.story, beats };
+    if (!this.find("textarea")) this.draw();
+  }
+
+  /** A change by the user. */
+  edit(story) {
+    if (story === this.story) return this.draw();
+    this.past.keep(this.story);
+    this.show(story);
+  }
+
+  show(story) {
+    this.story = story;
+    this.selected = Math.min(Math.max(this.selected, 0), story.beats.length - 1);
+    this.draw();
+    this.sent = JSON.stringify(story);
+    this.given = story;
+    this.changed(story);
+  }
+
+  // ---- events ----------------------------------------------------------------------------------
+
+  press(event) {
+    const cell = event.target.closest?.(".pds-cell");
+    if (cell) return this.write(Number(cell.dataset.beat), cell.dataset.lane);
+    const act = event.target.closest?.("[data-act]")?.dataset.act;
+    if (!act) return;
+    const { story, selected } = this;
+    if (act === "add") {
+      this.selected = story.beats.length ? selected + 1 : 0;
+      this.edit(edits.add(story, selected));
+      this.write(this.selected, "words");
+    } else if (act === "undo" || act === "redo") {
+      const next = this.past[act](story);
+      if (next !== story) this.show(next);
+    } else if (act === "no-span") this.edit({ ...story, span: null });
+    else if (act === "add-point") this.floor.addPoint();
+    else if (act === "clear-path") this.floor.clear();
+    else if (story.beats.length) this.change(act);
+  }
+
+  /** What is done to the selected beat. */
+  change(act) {
+    const { story, selected } = this;
+    if (act === "split") this.edit(edits.split(story, selected));
+    else if (act === "delete") this.edit(edits.remove(story, selected));
+    else if (act === "again") this.edit(edits.change(story, selected, { seed: Math.floor(Math.random() * 2 ** 32) }));
+    else {
+      const by = act === "left" ? -1 : 1;
+      const next = edits.move(story, selected, by);
+      if (next !== story) this.selected += by;
+      this.edit(next);
+    }
+  }
+
+  field(event) {
+    const { field } = event.target.dataset;
+    const { story, selected } = this;
+    const value = Number(event.target.value);
+    if (field === "seconds" && story.beats.length) {
+      const free = event.target.value === "";
+      this.edit(free ? edits.change(story, selected, { seconds: null }) : edits.stretch(story, selected, value));
+    } else if (field === "loop") this.edit({ ...story, loop: event.target.checked });
+    else if (field === "from" || field === "to") {
+      const [from, to] = ["from", "to"].map((name) => Number(this.find(`[data-field=${name}]`).value));
+      if (to > from) this.edit({ ...story, span: [from, Math.min(to, this.total)] });
+    }
+  }
+
+  key(event) {
+    const cell = event.target.closest?.(".pds-cell");
+    const handle = event.target.closest?.(".pds-handle");
+    const arrow = { ArrowLeft: -1, ArrowRight: 1 }[event.key];
+    if (handle && arrow) {
+      const index = Number(handle.dataset.beat);
+      this.edit(edits.stretch(this.story, index, edits.lengthOf(this.story.beats[index]) + 0.5 * arrow));
+      this.find(`.pds-handle[data-beat="${index}"]`)?.focus();
+    } else if (cell && arrow) {
+      if (event.altKey) this.change(arrow < 0 ? "left" : "right");
+      else this.selected = Math.min(Math.max(this.selected + arrow, 0), this.story.beats.length - 1);
+      this.draw();
+      this.find(`.pds-cell[data-beat="${this.selected}"][data-lane="${cell.dataset.lane}"]`)?.focus();
+    } else if (cell && event.key === "Delete") this.change("delete");
+    else if ((event.ctrlKey || event.metaKey) && event.key.toLowerCase() === "z" && event.target.tagName !== "TEXTAREA") {
+      const next = this.past[event.shiftKey ? "redo" : "undo"](this.story);
+      if (next !== this.story) this.show(next);
+    } else return;
+    event.preventDefault();
+  }
+
+  /** Opens a field for the words of a lane over its block. */
+  write(index, lane) {
+    this.selected = index;
+    this.draw();
+    const cell = this.find(`.pds-cell[data-beat="${index}"][data-lane="${lane}"]`);
+    if (!cell) return;
+    const field = node("textarea", "pds-words");
+    field.value = this.story.beats[index][lane] ?? "";
+    field.rows = 2;
+    field.maxLength = 400;
+    field.setAttribute("aria-label", cell.getAttribute("aria-label"));
+    let open = true;
+    const close = (keep, focus) => {
+      if (!open) return;
+      open = false;
+      const words = field.value.trim();
+      field.remove();
+      const before = this.story.beats[index]?.[lane] ?? "";
+      if (keep && words !== before) this.edit(edits.change(this.story, index, { [lane]: words }));
+      if (focus) this.find(`.pds-cell[data-beat="${index}"][data-lane="${lane}"]`)?.focus();
+    };
+    field.addEventListener("keydown", (event) => {
+      event.stopPropagation();
+      if (event.key === "Enter" && !event.shiftKey) close(true, true);
+      else if (event.key === "Escape") close(false, true);
+      else return;
+      event.preventDefault();
+    });
+    field.addEventListener("blur", () => close(true, false));
+    cell.parentElement.append(field);
+    field.focus();
+    field.select();
+  }
+
+  /** A span on the ruler: a press seeks, a drag selects. */
+  select(event, ruler) {
+    if (event.button) return;
+    const box = ruler.getBoundingClientRect();
+    const at = (x) => Math.round(10 * Math.min(Math.max((x - box.left) / box.width, 0), 1) * this.total) / 10;
+    const first = at(event.clientX);
+    this.player?.seek(Math.round(30 * first));
+    ruler.setPointerCapture(event.pointerId);
+    let span = null;
+    const drag = (moved) => {
+      const now = at(moved.clientX);
+      span = Math.abs(now - first) >= edits.SHORTEST ? [Math.min(first, now), Math.max(first, now)] : null;
+      this.drawSpan(span);
+    };
+    const end = () => {
+      ruler.removeEventListener("pointermove", drag);
+      if (span) this.edit({ ...this.story, span });
+    };
+    ruler.addEventListener("pointermove", drag);
+    ruler.addEventListener("pointerup", end, { once: true });
+    ruler.addEventListener("pointercancel", end, { once: true });
+  }
+
+  stretchBy(event, index) {
+    event.preventDefault();
+    event.stopPropagation();
+    const handle = event.currentTarget;
+    const wide = this.find(".pds-lanes").clientWidth / this.total;
+    const [from, before, story] = [event.clientX, edits.lengthOf(this.story.beats[index]), this.story];
+    let next = story;
+    const drag = (moved) => {
+      next = edits.stretch(story, index, before + (moved.clientX - from) / wide);
+      this.find(".pds-hint").textContent = `Beat ${index + 1}: ${next.beats[index].seconds} s`;
+    };
+    const end = () => {
+      window.removeEventListener("pointermove", drag);
+      if (next !== story) this.edit(next);
+    };
+    handle.blur();
+    window.addEventListener("pointermove", drag);
+    window.addEventListener("pointerup", end, { once: true });
+  }
+
+  tick() {
+    if (!this.root.isConnected) return clearInterval(this.timer);
+    const frame = this.player?.frameShown;
+    if (frame == null || !this.root.offsetParent) return;
+    this.find(".pds-playhead").style.left = `${(100 * frame) / 30 / this.total}%`;
+  }
+
+  // ---- drawing ---------------------------------------------------------------------------------
+
+  draw() {
+    const { story, total } = this;
+    const starts = edits.edges(story);
+    this.find(".pds-line").style.minWidth = `${Math.round(PIXELS * total)}px`;
+    const lanes = this.find(".pds-lanes");
+    lanes.replaceChildren();
+    for (const [lane, name] of LANES) {
+      const row = node("div", `pds-lane pds-lane-${lane}`);
+      row.append(node("span", "pds-name", name));
+      story.beats.forEach((beat, i) => row.append(this.block(beat, i, lane, name, starts, total)));
+      lanes.append(row);
+    }
+    this.drawRuler(total);
+    this.drawTicks(total);
+    this.drawSpan(story.span);
+    this.floor.draw(story);
+    const beat = story.beats[this.selected];
+    this.find("[data-field=seconds]").value = beat ? edits.lengthOf(beat) : "";
+    this.find("[data-field=loop]").checked = story.loop;
+    this.find("[data-field=from]").value = story.span?.[0] ?? "";
+    this.find("[data-field=to]").value = story.span?.[1] ?? "";
+    for (const act of ["split", "left", "right", "again", "delete"]) {
+      this.find(`[data-act=${act}]`).disabled = !beat;
+    }
+    this.find("[data-act=undo]").disabled = !this.past.before.length;
+    this.find("[data-act=redo]").disabled = !this.past.after.length;
+    this.find("[data-act=no-span]").disabled = !story.span;
+    this.find(".pds-hint").textContent = beat ? this.told(beat) : "No beats yet: write a story and press Generate, or add one.";
+  }
+
+  told(beat) {
+    const length = `${edits.lengthOf(beat).toFixed(1)} s${beat.seconds == null ? ", from its words" : ""}`;
+    const seed = beat.seed == null ? "" : `, seed ${beat.seed}`;
+    return `Beat ${this.selected + 1}: ${length}${seed}. Click a block to change its words.`;
+  }
+
+  block(beat, index, lane, name, starts, total) {
+    const box = node("div", "pds-block");
+    box.style.left = `${(100 * starts[index]) / total}%`;
+    box.style.width = `${(100 * edits.lengthOf(beat)) / total}%`;
+    const words = beat[lane] ?? "";
+    const cell = node("button", `pds-cell${words ? "" : " pds-none"}`, words || "+");
+    cell.type = "button";
+    cell.dataset.beat = index;
+    cell.dataset.lane = lane;
+    cell.title = words;
+    cell.setAttribute("aria-label", `Beat ${index + 1}, ${name}: ${words || "no words"}`);
+    if (index === this.selected) cell.classList.add("pds-selected");
+    box.append(cell);
+    if (lane === "words") {
+      const handle = node("span", "pds-handle");
+      handle.tabIndex = 0;
+      handle.dataset.beat = index;
+      handle.setAttribute("role", "slider");
+      handle.setAttribute("aria-label", `Length of beat ${index + 1}`);
+      handle.setAttribute("aria-valuenow", edits.lengthOf(beat));
+      handle.setAttribute("aria-valuemin", edits.SHORTEST);
+      handle.setAttribute("aria-valuemax", edits.LONGEST);
+      handle.addEventListener("pointerdown", (event) => this.stretchBy(event, index));
+      box.append(handle);
+    }
+    return box;
+  }
+
+  drawRuler(total) {
+    const ruler = this.find(".pds-ruler");
+    ruler.replaceChildren();
+    const step = total > 60 ? 5 : total > 20 ? 2 : 1;
+    for (let second = 0; second <= total; second += step) {
+      const mark = node("span", "", String(second));
+      mark.style.left = `${(100 * second) / total}%`;
+      ruler.append(mark);
+    }
+  }
+
+  drawTicks(total) {
+    const ticks = this.find(".pds-ticks");
+    ticks.replaceChildren();
+    for (const contact of (this.props.motion?.contacts ?? []).slice(0, MOST_TICKS)) {
+      const tick = node("span", "");
+      tick.dataset.kind = contact.kind;
+      tick.title = `${contact.label}, ${contact.start.toFixed(1)} s`;
+      tick.style.left = `${(100 * contact.start) / total}%`;
+      tick.style.width = `${(100 * (contact.stop - contact.start)) / total}%`;
+      ticks.append(tick);
+    }
+  }
+
+  drawSpan(span) {
+    const shown = this.find(".pds-span");
+    shown.hidden = !span;
+    if (!span) return;
+    shown.style.left = `${(100 * span[0]) / this.total}%`;
+    shown.style.width = `${(100 * (span[1] - span[0])) / this.total}%`;
+  }
+}
+
+/** `element` holds story.html; `props` are the component's, watched by `watch`; `trigger` tells the server. */
+export function mount(element, props, watch, trigger) {
+  const root = element.querySelector(".pds");
+  const editor = new Editor(root, props, (story) => {
+    props.value = story;
+    trigger("input");
+  });
+  const sync = () => {
+    editor.load(props.value);
+    editor.measure(props.lengths);
+    editor.draw();
+  };
+  watch(["value", "lengths", "motion"], sync);
+  sync();
+  root.editor = editor;
+}

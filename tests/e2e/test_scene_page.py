@@ -1,0 +1,105 @@
+"""The Scene tab in a browser: a story is laid out, made, changed in place, undone, and a span is made again."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+
+os.environ.setdefault("GRADIO_ANALYTICS_ENABLED", "False")
+
+from tests.ui.stub_engine import StubEngine
+from webdemo.ui.page import build_page, launch_options
+
+pytestmark = pytest.mark.slow
+TIMEOUT = 60_000
+
+
+@pytest.fixture(scope="module")
+def site(tmp_path_factory: pytest.TempPathFactory) -> Iterator[str]:
+    page = build_page(StubEngine(), files=Path(tmp_path_factory.mktemp("files")))
+    _, url, _ = page.launch(prevent_thread_lock=True, quiet=True, server_name="127.0.0.1", **launch_options())
+    yield url
+    page.close()
+
+
+def test_a_story_from_sentence_to_futures(chromium, site: str) -> None:
+    page = chromium.new_page(viewport={"width": 1300, "height": 1500})
+    page.set_default_timeout(TIMEOUT)
+    errors: list[str] = []
+    page.on("pageerror", lambda error: errors.append(str(error)))
+    page.goto(site)
+    page.get_by_role("tab", name="Scene").click()
+    page.locator("#scene-prompt textarea").fill("They meet. Then they hug. Finally they bow.")
+    page.locator("#scene-generate").click()
+    page.wait_for_selector("#scene-status .pd-done")
+    page.wait_for_selector(".pds-cell")
+    assert page.locator(".pds-lane-words .pds-cell").all_inner_texts() == [
+        "They meet.",
+        "They hug.",
+        "They bow.",
+    ]
+
+    def story() -> dict:
+        return page.evaluate("document.querySelector('.pds').editor.story")
+
+    def words() -> list[str]:
+        return [beat["words"] for beat in story()["beats"]]
+
+    # Words are written in place, and reach the story's text.
+    page.locator('.pds-cell[data-beat="1"][data-lane="b"]').click()
+    page.locator(".pds-words").fill('waves "hello"')
+    page.keyboard.press("Enter")
+    assert story()["beats"][1]["b"] == 'waves "hello"'
+    page.wait_for_function(
+        "document.querySelector('#scene-text textarea')?.value.includes('waves') ||"
+        " document.querySelector('.pds').editor.story.beats[1].auto > 0"
+    )
+    # Moved, split, deleted, undone and redone.
+    page.get_by_role("button", name="Move the beat to the right").click()
+    assert words() == ["They meet.", "They bow.", "They hug."]
+    page.get_by_role("button", name="Split").click()
+    page.get_by_role("button", name="Delete").click()
+    page.get_by_role("button", name="Undo").click()
+    page.get_by_role("button", name="Undo").click()
+    page.get_by_role("button", name="Undo").click()
+    assert words() == ["They meet.", "They hug.", "They bow."]
+    page.get_by_role("button", name="Redo").click()
+    assert words() == ["They meet.", "They bow.", "They hug."]
+    # A beat is stretched from the keyboard.
+    before = page.evaluate("document.querySelector('.pds').editor.total")
+    page.locator('.pds-handle[data-beat="0"]').focus()
+    page.keyboard.press("ArrowRight")
+    assert page.evaluate("document.querySelector('.pds').editor.total") == before + 0.5
+    # A path is drawn on the floor and a point moved with the keys.
+    page.locator(".pds-floor summary").click()
+    page.locator(".pds-floor svg").scroll_into_view_if_needed()
+    box = page.locator(".pds-floor svg").bounding_box()
+    page.mouse.move(box["x"] + box["width"] / 2, box["y"] + box["height"] / 2)
+    page.mouse.down()
+    page.mouse.move(box["x"] + 0.6 * box["width"], box["y"] + box["height"] / 2, steps=5)
+    page.mouse.up()
+    (path,) = story()["paths"]
+    assert path["person"] == "a" and len(path["points"]) > 2 and path["points"][-1][1] > 1
+    page.locator('circle[data-point="1"]').focus()
+    page.keyboard.press("ArrowUp")
+    assert story()["paths"][0]["points"][1][2] == pytest.approx(path["points"][1][2] + 0.1)
+    page.get_by_role("button", name="Delete the path").click()
+    # A span is selected on the ruler and made again, and three futures follow.
+    ruler = page.locator(".pds-ruler").bounding_box()
+    page.mouse.move(ruler["x"] + 30, ruler["y"] + 10)
+    page.mouse.down()
+    page.mouse.move(ruler["x"] + 200, ruler["y"] + 10, steps=4)
+    page.mouse.up()
+    first, last = story()["span"]
+    assert last - first >= 0.5
+    page.locator("#scene-remake").click()
+    page.wait_for_function("window.__pasdedeux.player?.data?.samples.length === 1")
+    page.wait_for_selector("#scene-remake:not([disabled])")
+    page.locator("#scene-futures").click()
+    page.wait_for_function("window.__pasdedeux.player?.data?.samples.length === 3")
+    page.wait_for_selector("#scene-status .pd-done")
+    assert not errors
+    page.close()

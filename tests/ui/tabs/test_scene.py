@@ -1,0 +1,170 @@
+"""What the handlers of the Scene tab do, without a browser."""
+
+from pathlib import Path
+from typing import Any
+
+import gradio as gr
+import numpy as np
+import pytest
+
+from motion import Duet
+from webdemo.inference.story import Beat
+from webdemo.ui.components.exports import Record, Shelf
+from webdemo.ui.components.story import motion_marks, story_fields, story_value
+from webdemo.ui.context import PageContext
+from webdemo.ui.history import Entry, Opened
+from webdemo.ui.runs import Loader, Runs
+from webdemo.ui.tabs.scene import EXAMPLES, SceneTab
+
+from ..stub_engine import StubEngine
+
+SETTINGS = {"seed": 3, "samples": 1, "guidance": 4.3, "steps": 2, "damping": 0.7}
+PLACE = '{"frame": 60, "sample": 0}'
+
+
+@pytest.fixture
+def tab(tmp_path: Path) -> SceneTab:
+    engine = StubEngine()
+    tab = SceneTab(
+        PageContext(engine=engine, runs=Runs(engine), loader=Loader(engine), shelf=Shelf(tmp_path / "files"))
+    )
+    with gr.Blocks() as demo:
+        tab.build(demo)
+    return tab
+
+
+def shown(tab: SceneTab, updates: Any) -> list[dict[str, Any]]:
+    """What each update changes, by the output's name."""
+    return [
+        {name: value for name, value in zip(tab.outputs, update, strict=True) if value != gr.skip()}
+        for update in updates
+    ]
+
+
+def generate(
+    tab: SceneTab, prompt: str = "They meet. Then they hug.", story: Any = None
+) -> list[dict[str, Any]]:
+    return shown(tab, tab.run("session", {"prompt": prompt, "story": story, **SETTINGS}))
+
+
+def test_a_sentence_is_laid_out_and_made_beat_by_beat(tab: SceneTab) -> None:
+    updates = generate(tab)
+    (laid,) = [u["story"] for u in updates if "beats" in u.get("story", {})]
+    assert [beat["words"] for beat in laid["beats"]] == ["They meet.", "They hug."]
+    lengths = [
+        u["player"]["value"]["samples"][0]["frames"] for u in updates if "value" in u.get("player", {})
+    ]
+    assert lengths == sorted(lengths) and len(set(lengths)) == 2
+    assert 'words = "They hug."' in next(u["text"] for u in updates if "text" in u)
+    record = updates[-1]["record"]
+    assert (record.prompt, record.result.manifest["request"]["seed"]) == ("They meet. They hug.", 3)
+    assert updates[-1]["story"]["motion"]["seconds"] == record.result.duets[0].seconds
+
+
+def test_a_changed_line_is_what_is_made_until_the_sentence_changes(tab: SceneTab) -> None:
+    laid = tab.lay_out("They meet. Then they hug.")[1]
+    laid["beats"][1]["words"] = "They bow."
+    words = [b["words"] for b in generate(tab, story=laid)[-1]["record"].result.manifest["request"]["beats"]]
+    assert words == ["They meet.", "They bow."]
+    words = [
+        b["words"]
+        for b in generate(tab, "They wave.", laid)[-1]["record"].result.manifest["request"]["beats"]
+    ]
+    assert words == ["They wave."]
+
+
+@pytest.mark.parametrize(
+    ("story", "says"),
+    [
+        (None, "The story is empty"),
+        ({"beats": [{"words": "x", "seconds": 0.1}]}, "Beat 1"),
+        ({"beats": [{"words": "x"}] * 500}, "beats: keep to 60"),
+        ({"beats": [{"words": ["x"]}]}, "must be text"),
+        (
+            {"beats": [{"words": "x"}], "paths": [{"person": "a", "points": [[0, 99, 0]]}]},
+            "outside the floor",
+        ),
+        ({"beats": [{"words": "x"}], "paths": [{"person": "a", "points": [7]}]}, "damaged"),
+        ({"beats": [{"words": "x"}], "paths": 3}, "damaged"),
+    ],
+)
+def test_what_cannot_be_made_is_one_sentence(tab: SceneTab, story: Any, says: str) -> None:
+    last = generate(tab, "", story)[-1]
+    assert says in last["line"] and "pd-error" in last["line"]
+
+
+def test_an_edit_gives_lengths_and_text(tab: SceneTab) -> None:
+    line_up, text, line = tab.edited({"beats": [{"words": "They dance."}, {"words": "They nod."}]}, 4)
+    assert line_up["lengths"][0] > line_up["lengths"][1] and "seed = 4" in text and line == ""
+    line_up, text, line = tab.edited({"beats": [{"words": "They dance."}, {"words": ""}]}, 4)
+    assert text == gr.skip() and "Beat 2 has no words" in line
+
+
+def test_the_text_becomes_the_line(tab: SceneTab) -> None:
+    story, line, seed = tab.use_text('seed = 9\n[[beat]]\nwords = "They bow."\n', "x")
+    assert (story["beats"][0]["words"], story["from"], seed) == ("They bow.", "x", 9) and "1 beats" in line
+    story, line, seed = tab.use_text("[[beat]]\nwrods = 1\n", "x")
+    assert story == gr.skip() and "Line 2" in line
+
+
+def part(tab: SceneTab, which: str, record: Record | None, story: Any, words: str = "") -> dict[str, Any]:
+    fields = {"part": which, "story": story, "words": words, "guidance": 4.3, "steps": 2, "damping": 0.7,
+              "record": record, "earlier": [], "frame": 60, "sample": 0, "seed": 0}  # fmt: skip
+    return shown(tab, tab.run("session", fields))[-1]
+
+
+def test_a_span_is_made_again_and_gone_back_from(tab: SceneTab) -> None:
+    record = generate(tab)[-1]["record"]
+    laid = story_value((Beat("They meet."), Beat("They hug."))) | {"span": [1.0, 3.0]}
+    last = part(tab, "span", record, laid)
+    asked = last["record"].result.manifest["request"]
+    assert (asked["start"], asked["end"], asked["beats"][0]["words"]) == (1.0, 3.0, "They meet.")
+    old, new = (r.result.duets[0].positions for r in (record, last["record"]))
+    np.testing.assert_array_equal(old[:, 90:], new[:, 90:])
+    assert last["earlier"] == [record]
+    back = tab.go_back(last["earlier"])
+    assert back[2].result is record.result and back[4] == []
+    assert "no motion before" in tab.go_back([])[1]
+
+
+def test_futures_begin_at_the_playhead_and_one_is_taken(tab: SceneTab) -> None:
+    record = generate(tab)[-1]["record"]
+    last = part(tab, "futures", record, story_value((Beat("They meet."), Beat("They hug."))), "They bow.")
+    found = last["record"].result
+    assert found.manifest["request"]["start"] == 2.0 and len(found.duets) == 3
+    beats = last["story"]["value"]["beats"]
+    assert [(b["words"], b["seconds"]) for b in beats] == [("They meet.", 2.0), ("They bow.", 4.5)]
+    _, line, kept, _ = tab.take_shown(last["record"], '{"sample": 2}')
+    assert kept.result.duets == found.duets[2:] and "number 3" in line
+
+
+def test_parts_need_a_motion_and_a_span(tab: SceneTab) -> None:
+    record = generate(tab)[-1]["record"]
+    assert "There is no motion yet" in part(tab, "futures", None, None)["line"]
+    assert "No span is selected" in part(tab, "span", record, story_value((Beat("x"),)))["line"]
+    assert "There is no motion yet" in tab.take_last(None)[1]
+    assert tab.take_last(record)[0]["value"]["samples"]
+
+
+def test_a_kept_run_opens_with_its_story(tab: SceneTab) -> None:
+    result = generate(tab)[-1]["record"].result
+    entry = Entry(
+        id="x", kind="scene", title="t", created=0.0, state="done", message="", favourite=False, links=(),
+        request=result.manifest["request"],
+    )  # fmt: skip
+    found = tab.opened(Opened(entry=entry, result=result))
+    assert [b["words"] for b in found[tab.line_up]["value"]["beats"]] == ["They meet.", "They hug."]
+
+
+def test_every_example_is_a_story_of_several_beats(tab: SceneTab) -> None:
+    for _, sentences in EXAMPLES:
+        assert len(story_fields(tab.lay_out(sentences)[1])["beats"]) >= 4
+
+
+def test_contacts_are_marked_in_seconds() -> None:
+    still = np.zeros((2, 60, 22, 3))
+    marks = motion_marks(
+        Duet.from_positions(still, fps=30.0),
+        {"contacts": [{"start": 15, "stop": 30, "kind": "hands", "label": "x"}]},
+    )
+    assert marks == {"seconds": 2.0, "contacts": [{"start": 0.5, "stop": 1.0, "kind": "hands", "label": "x"}]}

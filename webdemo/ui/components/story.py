@@ -1,0 +1,151 @@
+"""The story under the player as a Gradio component: beats in lanes, a span, paths on the floor.
+
+Its value is a story as JSON, see :func:`story_value`. Like the player it is a ``gr.HTML`` with modules of its own
+(``static/story``) and constant templates: what a user typed travels as data.
+"""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Mapping
+from dataclasses import asdict
+from pathlib import Path
+from typing import Any
+
+import gradio as gr
+
+from motion import Duet, InputError
+from motion.metrics import compare
+from webdemo.inference.story import Beat, FloorPath, Pose, SceneRequest
+from webdemo.inference.story.beats import MOST_BEATS
+from webdemo.inference.story.request import beat_of, path_of, pose_of
+
+STORY_FOLDER = Path(__file__).resolve().parents[3] / "static" / "story"
+
+gr.set_static_paths([STORY_FOLDER])
+
+_ON_LOAD = """
+const config = window.gradio_config || {};
+const root = (config.root || new URL(".", document.baseURI).href).replace(/[/]$/, "");
+const encode = (path) => path.split("/").map(encodeURIComponent).join("/");
+const file = (path) => root + (config.api_prefix || "/gradio_api") + "/file=" + encode(path);
+import(file(%s)).then((story) => story.mount(element, props, watch, trigger));
+"""
+
+
+class StoryLine(gr.HTML):
+    """Shows a story and lets it be changed; every change is an ``input`` event.
+
+    Props beside the value: ``lengths``, seconds of the beats as they follow from the words; ``motion``, the
+    ``seconds`` and ``contacts`` of the motion that the player shows.
+    """
+
+    def __init__(
+        self, value: dict[str, Any] | None = None, *, elem_id: str | None = None, **kwargs: Any
+    ) -> None:
+        kwargs = {
+            "html_template": (STORY_FOLDER / "story.html").read_text(encoding="utf-8"),
+            "css_template": (STORY_FOLDER / "story.css").read_text(encoding="utf-8").replace("\n.", "\n& ."),
+            "js_on_load": _ON_LOAD % json.dumps((STORY_FOLDER / "main.js").as_posix()),
+            "apply_default_css": False,
+            "lengths": None,
+            "motion": None,
+            **kwargs,
+        }
+        super().__init__(value, elem_id=elem_id, **kwargs)
+
+    def preprocess(self, payload: Any) -> Any:
+        """The story as the browser sent it; it is checked by :func:`story_fields`."""
+        return payload
+
+    def postprocess(self, value: Any) -> Any:
+        """The story itself."""
+        return value
+
+    def api_info(self) -> dict[str, Any]:
+        """What the component holds, for the API page."""
+        return {"type": "object", "description": "a story, or null"}
+
+    def example_payload(self) -> None:
+        """None: the component takes no example."""
+        return None
+
+    def example_value(self) -> None:
+        """None: the component takes no example."""
+        return None
+
+    def get_block_name(self) -> str:
+        """Gradio's name of the front end that draws it."""
+        return "html"
+
+
+def story_value(
+    beats: tuple[Beat, ...],
+    paths: tuple[FloorPath, ...] = (),
+    poses: tuple[Pose, ...] = (),
+    loop: bool = False,
+) -> dict[str, Any]:
+    """A story as the component holds it."""
+    return {
+        "beats": [asdict(beat) | {"auto": beat.length} for beat in beats],
+        "paths": [
+            {
+                "person": path.person,
+                "points": [
+                    [p.seconds, p.x, p.z] + ([p.heading] if p.heading is not None else [])
+                    for p in path.points
+                ],
+            }
+            for path in paths
+        ],
+        "poses": [pose.to_dict() for pose in poses],
+        "loop": loop,
+        "span": None,
+    }
+
+
+def value_of(request: SceneRequest) -> dict[str, Any]:
+    """The story of a request."""
+    return story_value(request.beats, request.paths, request.poses, request.loop)
+
+
+def story_fields(value: Any) -> dict[str, Any]:
+    """The fields of a :class:`SceneRequest` that a story sets.
+
+    Raises:
+        InputError: if the browser sent something else.
+    """
+    if not isinstance(value, Mapping):
+        return {"beats": ()}
+    try:
+        beats = [
+            entry for entry in list(value.get("beats") or ())[: MOST_BEATS + 1] if isinstance(entry, Mapping)
+        ]
+        return {
+            "beats": tuple(beat_of(entry) for entry in beats),
+            "paths": tuple(path_of(entry) for entry in value.get("paths") or ()),
+            "poses": tuple(pose_of(entry) for entry in value.get("poses") or ()),
+            "loop": bool(value.get("loop")),
+        }
+    except InputError:
+        raise
+    except (TypeError, ValueError, AttributeError) as error:
+        raise InputError("The story on the page is damaged: reload the page and write it again.") from error
+
+
+def span_of(value: Any) -> tuple[float, float] | None:
+    """The selected span in seconds, if there is one."""
+    span = value.get("span") if isinstance(value, Mapping) else None
+    if not isinstance(span, list) or len(span) != 2 or not all(isinstance(v, (int, float)) for v in span):
+        return None
+    return float(span[0]), float(span[1])
+
+
+def motion_marks(duet: Duet, readout: Mapping[str, Any] | None = None) -> dict[str, Any]:
+    """What the line shows of a motion: its length and its contacts, in seconds."""
+    found = (readout or compare(None, duet)).get("contacts") or ()
+    contacts = [
+        {"start": c["start"] / duet.fps, "stop": c["stop"] / duet.fps, "kind": c["kind"], "label": c["label"]}
+        for c in found
+    ]
+    return {"seconds": duet.seconds, "contacts": contacts}

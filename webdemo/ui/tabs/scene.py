@@ -1,0 +1,452 @@
+"""A story in several beats → two people through time; parts made again, and ways on."""
+
+from __future__ import annotations
+
+import json
+import secrets
+from collections.abc import Iterator, Mapping
+from dataclasses import replace
+from functools import partial
+from typing import Any
+
+import gradio as gr
+
+from motion import Duet, InputError
+from webdemo.inference.requests import MAX_SEED, Progress, Result
+from webdemo.inference.story import Beat, SceneProgress, SceneRequest, read_words, split_sentence, write_story
+from webdemo.inference.story.beats import seconds_of, story_title
+from webdemo.ui.components.exports import Record
+from webdemo.ui.components.film import READ_PLAYER
+from webdemo.ui.components.player import show
+from webdemo.ui.components.story import (
+    StoryLine,
+    motion_marks,
+    span_of,
+    story_fields,
+    story_value,
+    value_of,
+)
+from webdemo.ui.components.upload import chip
+from webdemo.ui.history import Opened
+from webdemo.ui.text.panels import status
+from webdemo.ui.text.words import error_line
+from webdemo.view.payload import player_payload
+
+from .job import QUIET, JobTab, Updates
+
+EMPTY_TEXT = (
+    "Write a little story, or pick an example, and press Generate\n"
+    "It is laid out as beats under this player. You can change their words and lengths, make a span again,"
+    " and ask for several ways on."
+)
+EXAMPLES = (
+    (
+        "A greeting with a walk",
+        "Two people walk up to each other, then they shake hands. After that they talk to each other. "
+        "Finally they turn around and walk away from each other.",
+    ),
+    (
+        "A quarrel and a making up",
+        "One person pushes the other. Then the other turns away. After that they bow to each other. "
+        "Finally they hug.",
+    ),
+    (
+        "A dance of 40 s",
+        "Two people bow to each other. Then they dance together for ten seconds. Then they circle each other for ten "
+        "seconds. Then they dance together for ten seconds. Finally they bow to each other.",
+    ),
+)
+"""(name, story) of the examples."""
+FUTURES = 3
+FUTURE_SECONDS = 4.0
+"""Length of a future without words."""
+
+
+class SceneTab(JobTab):
+    """A story → a scene."""
+
+    label = "Scene"
+    prefix = "scene-"
+    restored = ("line_up",)
+
+    # ---- requests --------------------------------------------------------------------------------
+
+    def request(self, fields: Mapping[str, Any]) -> SceneRequest:
+        """The whole story; raises InputError where it cannot be made."""
+        plain = {f: fields[f] for f in ("seed", "guidance", "steps", "damping")}
+        return SceneRequest(**story_fields(fields["story"]), samples=int(fields["samples"]), **plain)
+
+    def part(self, fields: Mapping[str, Any], record: Record | None, *, ahead: bool) -> SceneRequest:
+        """The selected span again, or several futures from the player's frame on."""
+        duet = shown_duet(record, fields["sample"])
+        plain = {f: fields[f] for f in ("guidance", "steps", "damping")}
+        plain["seed"] = secrets.randbelow(MAX_SEED + 1)
+        words = str(fields["words"] or "").strip()
+        if ahead:
+            start = min(fields["frame"] / duet.fps, duet.seconds)
+            beats = split_sentence(words) or (Beat(seconds=FUTURE_SECONDS),)
+            return SceneRequest(beats=beats, motion=duet, start=start, samples=FUTURES, **plain)
+        span = span_of(fields["story"])
+        if span is None:
+            raise InputError("No span is selected: drag on the ruler over the beats, or type its seconds.")
+        start, end = max(0.0, span[0]), min(span[1], duet.seconds)
+        beats = split_sentence(words) or _beats_in(story_fields(fields["story"])["beats"], start, end)
+        return SceneRequest(beats=beats, motion=duet, start=start, end=end, **plain)
+
+    def title(self, request: SceneRequest) -> str:
+        """The words of its beats."""
+        return story_title(request.to_dict()["beats"])
+
+    # ---- layout ----------------------------------------------------------------------------------
+
+    def build(self, demo: gr.Blocks, record: gr.State | None = None) -> None:
+        """Lays out the tab inside ``demo`` and wires its events.
+
+        Args:
+            demo: the page.
+            record: keeps the session's last result.
+        """
+        with gr.Row(elem_classes="pd-lab", equal_height=False):
+            with gr.Column(elem_classes="pd-controls", min_width=0):
+                self._ask()
+                with gr.Column(elem_classes="pd-panel pd-settings", min_width=0):
+                    self.samples = self._samples()
+                    self._sampling()
+                with gr.Accordion("The story as text", open=False, elem_classes="pd-panel pd-about"):
+                    self.text = gr.Textbox(
+                        label="TOML to copy, change and keep", lines=8, max_lines=24, elem_id=self._id("text"),
+                    )  # fmt: skip
+                    self.use = gr.Button("Use this text", size="sm", elem_id=self._id("use-text"))
+            self._results(EMPTY_TEXT, self._story)
+        inputs = (self.prompt, self.line_up, self.seed, self.samples, self.guidance, self.steps, self.damping)
+        self._wire_run(self.start, [self.go.click, self.prompt.submit], inputs, record)
+        self._wire_parts()
+        self._wire_story()
+
+    def _ask(self) -> None:
+        with gr.Column(elem_classes="pd-panel pd-ask", min_width=0):
+            self.prompt = gr.Textbox(
+                label="What happens, one thing after another?",
+                placeholder=EXAMPLES[0][1],
+                lines=1,
+                max_lines=8,
+                elem_id=self._id("prompt"),
+            )
+            with gr.Row(elem_classes="pd-chips"):
+                self.chips = [
+                    chip(name, elem_id=self._id(f"example-{i}")) for i, (name, _) in enumerate(EXAMPLES)
+                ]
+                self.last = chip("Take the last result", elem_id=self._id("last"))
+            self._go("Generate")
+
+    def _story(self) -> None:
+        self.line_up = StoryLine(elem_id=self._id("story"), elem_classes="pd-story")
+        with gr.Column(elem_classes="pd-panel pd-parts", min_width=0):
+            self.words = gr.Textbox(
+                label="A part of it again, or ways on",
+                placeholder="Words for the part; empty: the span's own beats, or whatever may follow",
+                elem_id=self._id("part-words"),
+            )
+            with gr.Row(elem_classes="pd-chips"):
+                self.remake = gr.Button(
+                    "Make this span again", size="sm", min_width=0, elem_id=self._id("remake")
+                )
+                self.futures = gr.Button(
+                    f"{FUTURES} ways on from here", size="sm", min_width=0, elem_id=self._id("futures")
+                )
+                self.take = gr.Button("Take the one shown", size="sm", min_width=0, elem_id=self._id("take"))
+                self.back = gr.Button("The motion before", size="sm", min_width=0, elem_id=self._id("back"))
+        self.shown_at = gr.Textbox(visible=False)
+        self.earlier = gr.State([], time_to_live=3600)
+
+    def more_outputs(self) -> dict[str, Any]:
+        """The story with its text, and the motions that can be gone back to."""
+        return {"story": self.line_up, "text": self.text, "earlier": self.earlier}
+
+    def starts(self) -> dict[str, gr.Button]:
+        """All buttons that start a run."""
+        return {"go": self.go, "remake": self.remake, "futures": self.futures}
+
+    # ---- events ----------------------------------------------------------------------------------
+
+    def _wire_story(self) -> None:
+        for button, (_, sentences) in zip(self.chips, EXAMPLES, strict=True):
+            button.click(
+                partial(self.lay_out, sentences),
+                outputs=[self.prompt, self.line_up, self.text, self.line],
+                **QUIET,
+            )
+        self.line_up.input(
+            self.edited, inputs=[self.line_up, self.seed], outputs=[self.line_up, self.text, self.line],
+            queue=False, **QUIET,
+        )  # fmt: skip
+        self.use.click(
+            self.use_text,
+            inputs=[self.text, self.prompt],
+            outputs=[self.line_up, self.line, self.seed],
+            queue=False,
+            **QUIET,
+        )
+        self.take.click(
+            self.take_shown, inputs=[self.record, self.shown_at], js=READ_PLAYER,
+            outputs=[self.player, self.line, self.record, self.line_up], **QUIET,
+        )  # fmt: skip
+        self.last.click(
+            self.take_last, inputs=self.record,
+            outputs=[self.player, self.line, self.under, self.readouts, self.line_up], **QUIET,
+        )  # fmt: skip
+        self.back.click(
+            self.go_back, inputs=self.earlier,
+            outputs=[self.player, self.line, self.record, self.line_up, self.earlier], **QUIET,
+        )  # fmt: skip
+
+    def _wire_parts(self) -> None:
+        inputs = [
+            self.line_up, self.words, self.guidance, self.steps, self.damping, self.record, self.earlier, self.shown_at,
+        ]  # fmt: skip
+        for button, job in ((self.remake, self.start_span), (self.futures, self.start_futures)):
+            run = button.click(
+                job, inputs=inputs, outputs=list(self.outputs.values()), js=_READ_PLACE, concurrency_limit=None,
+                trigger_mode="once", **QUIET,
+            )  # fmt: skip
+            run.then(self.rest, outputs=[*self.starts().values(), self.stop], queue=False, **QUIET)
+            run.then(
+                self.export,
+                inputs=self.record,
+                outputs=[self.line, *self.downloads],
+                concurrency_limit=2,
+                **QUIET,
+            )
+
+    @staticmethod
+    def lay_out(sentences: str) -> Updates:
+        """A sentence, and the line with its beats."""
+        beats = split_sentence(sentences)
+        request = SceneRequest(beats=beats)
+        laid = story_value(beats) | {"from": sentences}
+        return sentences, laid, write_story(request), status(f"{len(beats)} beats: press Generate.")
+
+    @staticmethod
+    def edited(story: Any, seed: float | None) -> Updates:
+        """The lengths of the beats and the story's text after a change on the line."""
+        lengths: list[float] | None = None
+        try:
+            fields = story_fields(story)
+            lengths = [seconds_of(beat.sentence) for beat in fields["beats"]]
+            text = write_story(SceneRequest(**fields, seed=int(seed or 0)))
+        except Exception as error:
+            line = error_line(error) if isinstance(story, Mapping) and story.get("beats") else ""
+            return gr.update(lengths=lengths), gr.skip(), status(line, tone="warning") if line else status()
+        return gr.update(lengths=lengths), text, status()
+
+    @staticmethod
+    def use_text(text: str, prompt: str) -> Updates:
+        """The line as the text says."""
+        try:
+            fields = read_words(text)
+            request = SceneRequest(**fields)
+        except Exception as error:
+            return gr.skip(), status(error_line(error), tone="error"), gr.skip()
+        told = status(f"{len(request.beats)} beats, {request.seconds:g} s: press Generate.")
+        shown = story_value(fields["beats"], request.paths, request.poses, request.loop)
+        shown["from"] = prompt
+        return shown, told, request.seed if "seed" in fields else gr.skip()
+
+    def start(
+        self,
+        prompt: str,
+        story: Any,
+        seed: float | None,
+        samples: float,
+        guidance: float,
+        steps: float,
+        damping: float,
+        request: gr.Request,
+    ) -> Iterator[Updates]:
+        """Runs the story on the line, or first splits the sentence into one where the line is empty."""
+        fields = {
+            "prompt": prompt, "story": story, "seed": seed, "samples": samples, "guidance": guidance,
+            "steps": steps, "damping": damping,
+        }  # fmt: skip
+        yield from self.run(str(request.session_hash), fields)
+
+    def answer(self, session: str, fields: Mapping[str, Any]) -> Iterator[Updates]:
+        """Runs the story; parts appear as they are finished and stay if the run is cancelled."""
+        part = fields.get("part")
+        if part is not None:
+            wanted = self.part(fields, fields["record"], ahead=part == "futures")
+            earlier = [*fields["earlier"], fields["record"]][-10:]
+        else:
+            asked = {**fields, "story": _laid_out(fields)}
+            wanted, earlier = self.request(asked), []
+            yield self._updates(story=asked["story"], text=write_story(wanted))
+        title = fields["record"].prompt if part is not None else self.title(wanted)
+        result = yield from self.made(session, wanted, watch=partial(self._watch, title))
+        shown = self._shown(result, title) | {"earlier": earlier}
+        duet = result.duets[0]
+        assert isinstance(duet, Duet)
+        marks = motion_marks(duet, result.readouts[0])
+        line_up = gr.update(motion=marks)
+        if part == "futures":
+            line_up = gr.update(value=_went_on(fields["story"], wanted), motion=marks)
+        elif part is None:  # again, as a browser may show only the last of several updates
+            line_up = gr.update(value=asked["story"], motion=marks)
+            shown["text"] = write_story(wanted)
+        yield self._updates(**shown | {"story": line_up})
+
+    def start_span(
+        self, story: Any, words: str, guidance: float, steps: float, damping: float, record: Record | None,
+        earlier: list[Record], place: str, request: gr.Request,
+    ) -> Iterator[Updates]:  # fmt: skip
+        """Makes the selected span again."""
+        fields = _part_fields("span", story, words, guidance, steps, damping, record, earlier, place)
+        yield from self.run(str(request.session_hash), fields)
+
+    def start_futures(
+        self, story: Any, words: str, guidance: float, steps: float, damping: float, record: Record | None,
+        earlier: list[Record], place: str, request: gr.Request,
+    ) -> Iterator[Updates]:  # fmt: skip
+        """Makes several continuations from the player's frame on."""
+        fields = _part_fields("futures", story, words, guidance, steps, damping, record, earlier, place)
+        yield from self.run(str(request.session_hash), fields)
+
+    def _watch(self, title: str, event: Progress) -> dict[str, Any] | None:
+        """Shows a finished window at once."""
+        if not isinstance(event, SceneProgress) or event.sample:
+            return None
+        line = f"Beat {event.beat + 1} is there. Step {event.step} of {event.total}."
+        return {"player": show(player_payload(event.motion, title=title)), "line": status(line, tone="busy")}
+
+    def take_last(self, record: Record | None) -> Updates:
+        """Shows the session's last result here, of whichever tab, so that parts of it can be made again."""
+        try:
+            duet = shown_duet(record, 0)
+        except Exception as error:
+            return gr.skip(), status(error_line(error), tone="error"), gr.skip(), gr.skip(), gr.skip()
+        assert record is not None
+        shown = self._shown(record.result, record.prompt)
+        told = status("Select a span of it, or ask for ways on.")
+        return shown["player"], told, shown["under"], shown["readouts"], gr.update(motion=motion_marks(duet))
+
+    def take_shown(self, record: Record | None, shown: str) -> Updates:
+        """Keeps one of several futures as the motion."""
+        try:
+            sample = _place(shown)["sample"]
+            duet = shown_duet(record, sample)
+        except Exception as error:
+            return gr.skip(), status(error_line(error), tone="error"), gr.skip(), gr.skip()
+        assert record is not None
+        kept = Record(_one(record.result, sample), record.prompt)
+        told = status(f"Taken: number {sample + 1} is the motion now.", tone="done")
+        return (
+            self._shown(kept.result, record.prompt)["player"],
+            told,
+            kept,
+            gr.update(motion=motion_marks(duet)),
+        )
+
+    def go_back(self, earlier: list[Record]) -> Updates:
+        """The motion before the last part was made again."""
+        if not earlier:
+            return gr.skip(), status("There is no motion before this one."), gr.skip(), gr.skip(), gr.skip()
+        record, left = earlier[-1], earlier[:-1]
+        duet = record.result.duets[0]
+        assert isinstance(duet, Duet)
+        record = Record(record.result, record.prompt)
+        shown = self._shown(record.result, record.prompt)
+        told = status("This is the motion before.", tone="done")
+        return shown["player"], told, record, gr.update(motion=motion_marks(duet)), left
+
+    def opened(self, run: Opened) -> dict[gr.components.Component, Any]:
+        """Also the story that was asked for."""
+        found, duet = super().opened(run), run.result.duets[0]
+        if run.entry.kind == "scene" and isinstance(duet, Duet):
+            told = run.entry.request
+            motion = duet if "motion" in told else None
+            request = SceneRequest.from_dict(told, motion)
+            found[self.line_up] = gr.update(value=value_of(request), motion=motion_marks(duet))
+            found[self.text] = write_story(request)
+        return found
+
+
+_READ_PLACE = """(...values) => {
+  const player = window.__pasdedeux?.player;
+  const place = { frame: Math.round(player?.frameShown ?? 0), sample: player?.sampleIndex ?? 0 };
+  return [...values.slice(0, -1), JSON.stringify(place)];
+}"""
+"""JavaScript that tells which frame of which sample the player shows."""
+
+
+def _place(told: str) -> dict[str, int]:
+    """The frame and the sample that the player shows, as the browser told them."""
+    try:
+        found = json.loads(told)
+        return {key: max(0, int(found.get(key) or 0)) for key in ("frame", "sample")}
+    except (ValueError, TypeError, AttributeError, OverflowError):
+        return {"frame": 0, "sample": 0}
+
+
+def _part_fields(
+    part: str, story: Any, words: str, guidance: float, steps: float, damping: float, record: Record | None,
+    earlier: list[Record], place: str,
+) -> dict[str, Any]:  # fmt: skip
+    return {
+        "part": part, "story": story, "words": words, "guidance": guidance, "steps": steps, "damping": damping,
+        "record": record, "earlier": earlier, "seed": 0, **_place(place),
+    }  # fmt: skip
+
+
+def shown_duet(record: Record | None, sample: int) -> Duet:
+    """The motion of two people that the player shows; raises InputError if there is none."""
+    if record is None:
+        raise InputError("There is no motion yet: write a story and press Generate.")
+    duets = record.result.duets
+    duet = duets[min(max(sample, 0), len(duets) - 1)]
+    if not isinstance(duet, Duet):
+        raise InputError("The last result holds one person: generate a scene of two first.")
+    return duet
+
+
+def _one(result: Result, sample: int) -> Result:
+    """A result with one of its samples alone."""
+    sample = min(max(sample, 0), len(result.duets) - 1)
+    return replace(
+        result, duets=(result.duets[sample],), readouts=result.readouts[sample : sample + 1],
+        manifest={**result.manifest, "sample": sample},
+    )  # fmt: skip
+
+
+def _laid_out(fields: Mapping[str, Any]) -> Any:
+    """The story of the line; where it is empty, or the sentence is another one, the sentence split into beats."""
+    story, prompt = fields["story"], str(fields["prompt"] or "")
+    if isinstance(story, Mapping) and story.get("beats"):
+        reworded = story.get("from") is not None and prompt.strip() and prompt != story["from"]
+        if not reworded:
+            return story
+    found = read_words(prompt)
+    laid = story_value(
+        found["beats"], found.get("paths", ()), found.get("poses", ()), found.get("loop", False)
+    )
+    return laid | {"from": prompt}
+
+
+def _went_on(story: Any, wanted: SceneRequest) -> dict[str, Any]:
+    """The story up to where a continuation begins, and its beats."""
+    fields = story_fields(story)
+    start = wanted.start or 0.0
+    known = _beats_in(fields["beats"], 0.0, start) if fields["beats"] else ()
+    missing = start - sum(beat.length for beat in known)
+    if known and abs(missing) > 1e-6:  # a beat of which too little is left
+        known = (*known[:-1], replace(known[-1], seconds=round(known[-1].length + missing, 2)))
+    return story_value((*known, *wanted.beats), fields["paths"], fields["poses"]) | {"from": ""}
+
+
+def _beats_in(beats: tuple[Beat, ...], start: float, end: float) -> tuple[Beat, ...]:
+    """The beats of which a span holds at least half a second, with their lengths in it."""
+    found, at = [], 0.0
+    for beat in beats:
+        inside = min(at + beat.length, end) - max(at, start)
+        if inside >= 0.5:
+            found.append(Beat(beat.words, beat.a, beat.b, round(inside, 2)))
+        at += beat.length
+    return tuple(found) or (Beat(seconds=max(end - start, 0.5)),)
