@@ -2,22 +2,29 @@
 
 from __future__ import annotations
 
-import json
 import secrets
 from collections.abc import Iterator, Mapping
-from dataclasses import replace
 from functools import partial
 from typing import Any
 
 import gradio as gr
 
 from motion import Duet, InputError
-from webdemo.inference.requests import MAX_SEED, Progress, Result
+from webdemo.inference.requests import MAX_SEED, Progress
 from webdemo.inference.story import Beat, SceneProgress, SceneRequest, read_words, split_sentence, write_story
 from webdemo.inference.story.beats import seconds_of, story_title
 from webdemo.ui.components.exports import Record
 from webdemo.ui.components.film import READ_PLAYER
 from webdemo.ui.components.player import show
+from webdemo.ui.components.scene_parts import (
+    beats_in,
+    laid_out,
+    only_sample,
+    part_fields,
+    place_of,
+    shown_duet,
+    went_on,
+)
 from webdemo.ui.components.story import (
     StoryLine,
     motion_marks,
@@ -90,7 +97,7 @@ class SceneTab(JobTab):
         if span is None:
             raise InputError("No span is selected: drag on the ruler over the beats, or type its seconds.")
         start, end = max(0.0, span[0]), min(span[1], duet.seconds)
-        beats = split_sentence(words) or _beats_in(story_fields(fields["story"])["beats"], start, end)
+        beats = split_sentence(words) or beats_in(story_fields(fields["story"])["beats"], start, end)
         return SceneRequest(beats=beats, motion=duet, start=start, end=end, **plain)
 
     def title(self, request: SceneRequest) -> str:
@@ -277,7 +284,7 @@ class SceneTab(JobTab):
             wanted = self.part(fields, fields["record"], ahead=part == "futures")
             earlier = [*fields["earlier"], fields["record"]][-10:]
         else:
-            asked = {**fields, "story": _laid_out(fields)}
+            asked = {**fields, "story": laid_out(fields)}
             wanted, earlier = self.request(asked), []
             yield self._updates(story=asked["story"], text=write_story(wanted))
         title = fields["record"].prompt if part is not None else self.title(wanted)
@@ -288,7 +295,7 @@ class SceneTab(JobTab):
         marks = motion_marks(duet, result.readouts[0])
         line_up = gr.update(motion=marks)
         if part == "futures":
-            line_up = gr.update(value=_went_on(fields["story"], wanted), motion=marks)
+            line_up = gr.update(value=went_on(fields["story"], wanted), motion=marks)
         elif part is None:  # again, as a browser may show only the last of several updates
             line_up = gr.update(value=asked["story"], motion=marks)
             shown["text"] = write_story(wanted)
@@ -299,7 +306,7 @@ class SceneTab(JobTab):
         earlier: list[Record], place: str, request: gr.Request,
     ) -> Iterator[Updates]:  # fmt: skip
         """Makes the selected span again."""
-        fields = _part_fields("span", story, words, guidance, steps, damping, record, earlier, place)
+        fields = part_fields("span", story, words, guidance, steps, damping, record, earlier, place)
         yield from self.run(str(request.session_hash), fields)
 
     def start_futures(
@@ -307,7 +314,7 @@ class SceneTab(JobTab):
         earlier: list[Record], place: str, request: gr.Request,
     ) -> Iterator[Updates]:  # fmt: skip
         """Makes several continuations from the player's frame on."""
-        fields = _part_fields("futures", story, words, guidance, steps, damping, record, earlier, place)
+        fields = part_fields("futures", story, words, guidance, steps, damping, record, earlier, place)
         yield from self.run(str(request.session_hash), fields)
 
     def _watch(self, title: str, event: Progress) -> dict[str, Any] | None:
@@ -331,12 +338,12 @@ class SceneTab(JobTab):
     def take_shown(self, record: Record | None, shown: str) -> Updates:
         """Keeps one of several futures as the motion."""
         try:
-            sample = _place(shown)["sample"]
+            sample = place_of(shown)["sample"]
             duet = shown_duet(record, sample)
         except Exception as error:
             return gr.skip(), status(error_line(error), tone="error"), gr.skip(), gr.skip()
         assert record is not None
-        kept = Record(_one(record.result, sample), record.prompt)
+        kept = Record(only_sample(record.result, sample), record.prompt)
         told = status(f"Taken: number {sample + 1} is the motion now.", tone="done")
         return (
             self._shown(kept.result, record.prompt)["player"],
@@ -375,78 +382,3 @@ _READ_PLACE = """(...values) => {
   return [...values.slice(0, -1), JSON.stringify(place)];
 }"""
 """JavaScript that tells which frame of which sample the player shows."""
-
-
-def _place(told: str) -> dict[str, int]:
-    """The frame and the sample that the player shows, as the browser told them."""
-    try:
-        found = json.loads(told)
-        return {key: max(0, int(found.get(key) or 0)) for key in ("frame", "sample")}
-    except (ValueError, TypeError, AttributeError, OverflowError):
-        return {"frame": 0, "sample": 0}
-
-
-def _part_fields(
-    part: str, story: Any, words: str, guidance: float, steps: float, damping: float, record: Record | None,
-    earlier: list[Record], place: str,
-) -> dict[str, Any]:  # fmt: skip
-    return {
-        "part": part, "story": story, "words": words, "guidance": guidance, "steps": steps, "damping": damping,
-        "record": record, "earlier": earlier, "seed": 0, **_place(place),
-    }  # fmt: skip
-
-
-def shown_duet(record: Record | None, sample: int) -> Duet:
-    """The motion of two people that the player shows; raises InputError if there is none."""
-    if record is None:
-        raise InputError("There is no motion yet: write a story and press Generate.")
-    duets = record.result.duets
-    duet = duets[min(max(sample, 0), len(duets) - 1)]
-    if not isinstance(duet, Duet):
-        raise InputError("The last result holds one person: generate a scene of two first.")
-    return duet
-
-
-def _one(result: Result, sample: int) -> Result:
-    """A result with one of its samples alone."""
-    sample = min(max(sample, 0), len(result.duets) - 1)
-    return replace(
-        result, duets=(result.duets[sample],), readouts=result.readouts[sample : sample + 1],
-        manifest={**result.manifest, "sample": sample},
-    )  # fmt: skip
-
-
-def _laid_out(fields: Mapping[str, Any]) -> Any:
-    """The story of the line; where it is empty, or the sentence is another one, the sentence split into beats."""
-    story, prompt = fields["story"], str(fields["prompt"] or "")
-    if isinstance(story, Mapping) and story.get("beats"):
-        reworded = story.get("from") is not None and prompt.strip() and prompt != story["from"]
-        if not reworded:
-            return story
-    found = read_words(prompt)
-    laid = story_value(
-        found["beats"], found.get("paths", ()), found.get("poses", ()), found.get("loop", False)
-    )
-    return laid | {"from": prompt}
-
-
-def _went_on(story: Any, wanted: SceneRequest) -> dict[str, Any]:
-    """The story up to where a continuation begins, and its beats."""
-    fields = story_fields(story)
-    start = wanted.start or 0.0
-    known = _beats_in(fields["beats"], 0.0, start) if fields["beats"] else ()
-    missing = start - sum(beat.length for beat in known)
-    if known and abs(missing) > 1e-6:  # a beat of which too little is left
-        known = (*known[:-1], replace(known[-1], seconds=round(known[-1].length + missing, 2)))
-    return story_value((*known, *wanted.beats), fields["paths"], fields["poses"]) | {"from": ""}
-
-
-def _beats_in(beats: tuple[Beat, ...], start: float, end: float) -> tuple[Beat, ...]:
-    """The beats of which a span holds at least half a second, with their lengths in it."""
-    found, at = [], 0.0
-    for beat in beats:
-        inside = min(at + beat.length, end) - max(at, start)
-        if inside >= 0.5:
-            found.append(Beat(beat.words, beat.a, beat.b, round(inside, 2)))
-        at += beat.length
-    return tuple(found) or (Beat(seconds=max(end - start, 0.5)),)

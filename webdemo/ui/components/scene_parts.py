@@ -1,0 +1,91 @@
+"""Parts of a scene on the page: what the player shows, the beats in a span, the story after a continuation."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Mapping
+from dataclasses import replace
+from typing import Any
+
+from motion import Duet, InputError
+from webdemo.inference.requests import Result
+from webdemo.inference.story import Beat, SceneRequest, read_words
+
+from .exports import Record
+from .story import story_fields, story_value
+
+
+def place_of(told: str) -> dict[str, int]:
+    """The frame and the sample that the player shows, as the browser told them."""
+    try:
+        found = json.loads(told)
+        return {key: max(0, int(found.get(key) or 0)) for key in ("frame", "sample")}
+    except (ValueError, TypeError, AttributeError, OverflowError):
+        return {"frame": 0, "sample": 0}
+
+
+def part_fields(
+    part: str, story: Any, words: str, guidance: float, steps: float, damping: float, record: Record | None,
+    earlier: list[Record], place: str,
+) -> dict[str, Any]:  # fmt: skip
+    """The fields of a tab for a part, "span" or "futures", of the motion that the player shows."""
+    return {
+        "part": part, "story": story, "words": words, "guidance": guidance, "steps": steps, "damping": damping,
+        "record": record, "earlier": earlier, "seed": 0, **place_of(place),
+    }  # fmt: skip
+
+
+def shown_duet(record: Record | None, sample: int) -> Duet:
+    """The motion of two people that the player shows; raises InputError if there is none."""
+    if record is None:
+        raise InputError("There is no motion yet: write a story and press Generate.")
+    duets = record.result.duets
+    duet = duets[min(max(sample, 0), len(duets) - 1)]
+    if not isinstance(duet, Duet):
+        raise InputError("The last result holds one person: generate a scene of two first.")
+    return duet
+
+
+def only_sample(result: Result, sample: int) -> Result:
+    """A result with one of its samples alone."""
+    sample = min(max(sample, 0), len(result.duets) - 1)
+    return replace(
+        result, duets=(result.duets[sample],), readouts=result.readouts[sample : sample + 1],
+        manifest={**result.manifest, "sample": sample},
+    )  # fmt: skip
+
+
+def laid_out(fields: Mapping[str, Any]) -> Any:
+    """The story of the line; where it is empty, or the sentence is another one, the sentence split into beats."""
+    story, prompt = fields["story"], str(fields["prompt"] or "")
+    if isinstance(story, Mapping) and story.get("beats"):
+        reworded = story.get("from") is not None and prompt.strip() and prompt != story["from"]
+        if not reworded:
+            return story
+    found = read_words(prompt)
+    laid = story_value(
+        found["beats"], found.get("paths", ()), found.get("poses", ()), found.get("loop", False)
+    )
+    return laid | {"from": prompt}
+
+
+def went_on(story: Any, wanted: SceneRequest) -> dict[str, Any]:
+    """The story up to where a continuation begins, and its beats."""
+    fields = story_fields(story)
+    start = wanted.start or 0.0
+    known = beats_in(fields["beats"], 0.0, start) if fields["beats"] else ()
+    missing = start - sum(beat.length for beat in known)
+    if known and abs(missing) > 1e-6:  # a beat of which too little is left
+        known = (*known[:-1], replace(known[-1], seconds=round(known[-1].length + missing, 2)))
+    return story_value((*known, *wanted.beats), fields["paths"], fields["poses"]) | {"from": ""}
+
+
+def beats_in(beats: tuple[Beat, ...], start: float, end: float) -> tuple[Beat, ...]:
+    """The beats of which a span holds at least half a second, with their lengths in it."""
+    found, at = [], 0.0
+    for beat in beats:
+        inside = min(at + beat.length, end) - max(at, start)
+        if inside >= 0.5:
+            found.append(Beat(beat.words, beat.a, beat.b, round(inside, 2)))
+        at += beat.length
+    return tuple(found) or (Beat(seconds=max(end - start, 0.5)),)
