@@ -9,6 +9,7 @@ import pytest
 from motion import Duet
 from webdemo.inference import Cancelled, CancelToken, Engine, GenerateRequest, Result, SceneRequest
 from webdemo.inference.story import Beat, FloorPath, FloorPoint, Pose, SceneProgress
+from webdemo.inference.story.request import as_scene
 
 QUICK: dict[str, Any] = {"steps": 3}
 BEATS = (
@@ -140,3 +141,29 @@ def test_crossing_paths_are_noted(engine: Engine) -> None:
     )
     result = run(engine, SceneRequest(beats=BEATS[:1], paths=paths, **QUICK))
     assert any("The two paths come within" in note for note in result.notes)
+
+
+def test_a_sentence_of_several_beats_is_split_by_plain_generation_too(engine: Engine) -> None:
+    prompt = "First they wave, then they bow."
+    made = run(engine, GenerateRequest(prompt=prompt, seconds=4.0, **QUICK))
+    beats = (Beat("They wave.", seconds=1.9), Beat("They bow.", seconds=2.1))
+    assert "2 beats" in made.notes[0] and positions(made).shape[1] == 120
+    split = as_scene(GenerateRequest(prompt=prompt, seconds=4.0, **QUICK))
+    assert split is not None and [b.words for b in split.beats] == [b.words for b in beats]
+    np.testing.assert_array_equal(positions(made), positions(run(engine, split)))
+    whole = run(engine, GenerateRequest(prompt=prompt, seconds=4.0, split=False, **QUICK))
+    assert np.abs(positions(whole) - positions(made)).max() > 0.01 and not any(
+        "beats" in n for n in whole.notes
+    )
+
+
+@pytest.mark.parametrize(
+    ("prompt", "fields"),
+    [
+        ("They wave.", {}),
+        ("They wave, then they bow.", {"seconds": 2.0}),
+        ("shake hands. then bow.", {"model": "bigraphdiff"}),
+    ],
+)
+def test_what_has_one_beat_or_no_time_is_not_split(prompt: str, fields: dict[str, Any]) -> None:
+    assert as_scene(GenerateRequest(prompt=prompt, **fields)) is None

@@ -27,6 +27,9 @@ def add_generate(commands: Any) -> None:
     asked.add_argument("--prompt", help="what the two people do, in English")
     asked.add_argument("--class", dest="label", help="name of a class of BiGraphDiff, such as 'shake hands'")
     parser.add_argument("--seconds", type=float, default=GenerateRequest.seconds)
+    parser.add_argument(
+        "--no-split", action="store_true", help="give a sentence of several beats to the network at once"
+    )
     add_sampling(parser, "generate")
     parser.set_defaults(job=generate)
 
@@ -38,7 +41,9 @@ def generate(options: argparse.Namespace) -> dict[str, Any]:
         options.model = next(m.name for m in methods("generate") if "class" in m.takes)
     fields = sampling_fields(options)
     words = options.prompt if options.label is None else options.label
-    request = GenerateRequest(prompt=words, seconds=options.seconds, **fields)
+    request = GenerateRequest(
+        prompt=words, seconds=options.seconds, split=not options.no_split, **fields
+    )
     return write_result(run(request), options.out)
 
 

@@ -109,10 +109,13 @@ class GenerateRequest(SamplingRequest):
     Attributes:
         prompt: what the two people do, in English; for bigraphdiff the name of a class.
         seconds: length of the motion.
+        split: a sentence of several beats ("first …, then …") is made beat by beat, each in its share of the
+            seconds, by a model that makes scenes. Off, the whole sentence is given to the network at once.
     """
 
     prompt: str
     seconds: float = 5.0
+    split: bool = True
 
     def __post_init__(self) -> None:
         method = methods.method(self.model, "generate")

@@ -40,6 +40,8 @@ def request_of(opened: Opened) -> Request:
         kept = opened.result.duets[0]  # what was made of it is not read again
         return SceneRequest.from_dict(asked, kept if "motion" in asked and isinstance(kept, Duet) else None)
     given: dict[str, Any] = {f.name: asked[f.name] for f in fields(kind) if f.name in asked}
+    if kind is GenerateRequest:
+        given.setdefault("split", False)  # of a time before sentences were split
     if kind is ReactRequest:
         given["actor"] = actor_source(opened).people[0]
     if kind is PredictRequest:
@@ -60,7 +62,8 @@ def request_of_unfinished(entry: Entry) -> Request:
     if entry.kind != "generate":
         raise InputError("This run ended before its motion was kept: send the file again in its tab.")
     asked = entry.request
-    return GenerateRequest(**{f.name: asked[f.name] for f in fields(GenerateRequest) if f.name in asked})
+    given = {f.name: asked[f.name] for f in fields(GenerateRequest) if f.name in asked}
+    return GenerateRequest(**{"split": False, **given})
 
 
 def actor_source(opened: Opened) -> Source:

@@ -14,7 +14,7 @@ from models.text import MiniLM
 from webdemo.inference.cancel import CancelToken
 from webdemo.inference.requests import GenerateRequest, Progress, ReactRequest, Result
 from webdemo.inference.scenes import Scene
-from webdemo.inference.story.request import SceneRequest
+from webdemo.inference.story.request import SceneRequest, as_scene
 from webdemo.inference.timer import StageTimer
 
 from .scene import SceneMaker
@@ -45,9 +45,13 @@ class InterGenPipeline(TwoPersonPipeline[CompactInterGen]):
         passes: Passes | None = None,
         scene: Scene | None = None,
     ) -> Iterator[Progress | Result]:
-        """As :meth:`TwoPersonPipeline.run`; a scene of several beats is made window by window."""
+        """As :meth:`TwoPersonPipeline.run`; a scene, or a sentence of several beats, is made window by window."""
         if isinstance(request, SceneRequest):
             return self.scenes.run(request, cancel, timer, passes)
+        split = as_scene(request) if isinstance(request, GenerateRequest) and scene is None else None
+        if split is not None:
+            note = f"This was made as {len(split.beats)} beats, one after another; the tab Scene lets you change them."
+            return self.scenes.run(split, cancel, timer, passes, notes=(note,))
         return super().run(request, cancel, timer, passes, scene)
 
     def condition(self, prompt: str) -> tuple[Tensor, Tensor]:

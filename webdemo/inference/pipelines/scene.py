@@ -12,7 +12,7 @@ import json
 import math
 import threading
 from collections import OrderedDict
-from collections.abc import Generator, Iterator
+from collections.abc import Generator, Iterator, Sequence
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
@@ -49,6 +49,8 @@ FAR = 6.0
 @dataclass(frozen=True, kw_only=True)
 class WindowRequest(GenerateRequest):
     """The request of one window of a scene; its words may be missing."""
+
+    split: bool = False
 
     def __post_init__(self) -> None:
         self._check(methods.method(self.model, "scene"))
@@ -98,16 +100,28 @@ class SceneMaker:
         self.parts = Parts()
 
     def run(
-        self, request: SceneRequest, cancel: CancelToken, timer: StageTimer, passes: Passes | None = None
+        self,
+        request: SceneRequest,
+        cancel: CancelToken,
+        timer: StageTimer,
+        passes: Passes | None = None,
+        notes: Sequence[str] = (),
     ) -> Iterator[Progress | Result]:
         """Progress events, a :class:`SceneProgress` after each window, then one :class:`Result`.
+
+        Args:
+            request: what is asked for.
+            cancel: looked at before every step.
+            timer: of the run.
+            passes: as :meth:`TwoPersonPipeline.run` takes them.
+            notes: come first among the result's notes.
 
         Raises:
             Cancelled: within one denoising step; the windows that were finished are kept.
         """
         plan = windows(request)
         steps = request.steps * len(plan) * request.samples
-        done, duets, notes = 0, [], list(_notes(request))
+        done, duets, said = 0, [], [*notes, *_notes(request)]
         for sample in range(request.samples):
             scene = _blank(request)
             for window in plan:
@@ -116,7 +130,7 @@ class SceneMaker:
                     request, sample, window, scene, cancel, timer, passes, done, steps
                 )
                 scene[:, window.start : window.stop] = made.positions
-                notes += made.notes
+                said += made.notes
                 done += request.steps
                 finished = Duet.from_positions(scene[:, : window.stop], fps=FPS, roles=NAMES)
                 yield SceneProgress(
@@ -124,14 +138,14 @@ class SceneMaker:
                     beat=window.beat, motion=finished,
                 )  # fmt: skip
             duets.append(_duet(request, scene))
-        notes += _distance_note(duets, request)
+        said += _distance_note(duets, request)
         yield timer.progress("finish")
         yield Result(
             duets=tuple(duets),
             manifest={},
             readouts=tuple(compare(None, duet) for duet in duets),
             timings={**timer.stages, "total": round(timer.elapsed, 4)},
-            notes=tuple(dict.fromkeys(notes)),
+            notes=tuple(dict.fromkeys(said)),
         )
 
     def _window(

@@ -13,13 +13,15 @@ from motion import Duet, InputError
 from webdemo.inference import methods
 from webdemo.inference.actor import FPS
 from webdemo.inference.predict_request import check_motion
-from webdemo.inference.requests import SamplingRequest, _number
+from webdemo.inference.requests import GenerateRequest, SamplingRequest, _number
 
-from .beats import MOST_BEATS, SHORTEST, Beat
+from .beats import MOST_BEATS, SHORTEST, Beat, split_sentence
 from .wishes import MOST_POSES, FloorPath, FloorPoint, Pose, check_together
 
 MOST_SECONDS = 180.0
 """Of a scene."""
+LEAST_SHARE = 1.25
+"""Seconds for each beat of a sentence below which it is made in one."""
 MOST_MADE = 360.0
 """Seconds of motion that one request makes, over all samples."""
 
@@ -239,6 +241,23 @@ class SceneRequest(SamplingRequest):
             start=values.get("start"),
             end=values.get("end"),
         )
+
+
+def as_scene(request: GenerateRequest) -> SceneRequest | None:
+    """The scene of a sentence with several beats, which share the request's seconds; None if it is made in one."""
+    if not request.split or "scene" not in methods.method(request.model).tasks:
+        return None
+    beats = split_sentence(request.prompt)
+    if not 1 < len(beats) <= request.seconds / LEAST_SHARE:
+        return None
+    factor = request.seconds / sum(beat.length for beat in beats)
+    edges = np.round(np.cumsum([0.0, *(beat.length * factor for beat in beats)]) * FPS) / FPS
+    timed = tuple(
+        replace(beat, seconds=round(max(float(s), SHORTEST), 4))
+        for beat, s in zip(beats, np.diff(edges), strict=True)
+    )
+    plain = {f.name: getattr(request, f.name) for f in fields(SamplingRequest)}
+    return SceneRequest(beats=timed, **plain)
 
 
 def beat_of(values: Mapping[str, Any]) -> Beat:
