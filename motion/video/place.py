@@ -1,4 +1,4 @@
-"""Where a filmed person stands: from points in the picture and points about the hips to a path in metres.
+"""The path of a filmed person: from points in the picture and points about the hips to a path in metres.
 
 Axes of the camera: x to the right of the picture, y down, z away from it.
 """

@@ -1,4 +1,4 @@
-"""Who is who from picture to picture: the poses of a film as one track a person."""
+"""Follows people from picture to picture: the poses of a film as one track a person."""
 
 from __future__ import annotations
 

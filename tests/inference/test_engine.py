@@ -107,7 +107,7 @@ def test_both_samplers_and_no_guidance_run(engine: Engine) -> None:
         assert np.isfinite(result_of(engine, replace(REQUEST, **change)).duets[0].positions).all()
 
 
-def test_a_far_prompt_is_told_with_the_nearest_known_caption(engine: Engine) -> None:
+def test_a_far_prompt_gets_a_note_with_the_nearest_caption(engine: Engine) -> None:
     assert result_of(engine, REQUEST).notes == ()
     notes = result_of(engine, replace(REQUEST, prompt="quarterly tax law for submarines")).notes
     assert len(notes) == 1

@@ -88,7 +88,7 @@ def test_fifteen_joints_come_back_as_the_twenty_two_they_were_taken_from() -> No
     assert np.linalg.norm(found - REQUEST.actor.positions, axis=-1).mean() < 0.01
 
 
-def test_words_are_told_to_have_been_left_out(engine: Engine) -> None:
+def test_a_note_says_that_the_words_were_left_out(engine: Engine) -> None:
     assert "no words" in react(engine, prompt="They wave.").notes[0]
     assert react(engine).notes == ()
 

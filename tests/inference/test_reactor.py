@@ -83,7 +83,7 @@ def test_a_given_start_is_where_the_reaction_begins(engine: Engine, mode: str) -
     assert steps < np.linalg.norm(np.diff(free, axis=0), axis=-1).max() + 0.5  # no jump: it settles
 
 
-def test_a_start_is_told_to_the_network(network: CompactReGenNet) -> None:
+def test_the_first_pose_reaches_the_network(network: CompactReGenNet) -> None:
     """Beyond the half second of settling, too, the reaction is another one."""
     poses = torch.tensor(SMPL22.rest_positions()).float() + torch.tensor(
         [[[0.0, 1.0, 1.5]], [[0.0, 1.0, 3.0]]]
@@ -107,7 +107,7 @@ def test_a_start_is_told_to_the_network(network: CompactReGenNet) -> None:
         (waver(2.5).positions[0], "intergen", "no first pose"),
     ],
 )
-def test_bad_starts_are_told(start: np.ndarray, model: str, why: str) -> None:
+def test_bad_first_poses_are_refused(start: np.ndarray, model: str, why: str) -> None:
     with pytest.raises(InputError, match=why):
         ReactRequest(actor=waver(2.5), model=model, start=start)
 
@@ -215,7 +215,7 @@ def test_what_regennet_cannot_do_is_said_in_one_sentence(changed: dict, says: st
     assert "\n" not in str(error.value)
 
 
-def test_damping_is_told_as_it_is_used(engine: Engine) -> None:
+def test_the_manifest_has_the_damping_that_was_used(engine: Engine) -> None:
     assert react(engine, damping=0.5).manifest["request"]["damping"] == 0.0
     assert react(engine, damping=0.5, mode="offline").manifest["request"]["damping"] == 0.5
 
@@ -271,7 +271,7 @@ def test_text_alone_is_not_for_regennet(engine: Engine) -> None:
         engine.live(replace(REQUEST, mode="offline"))
 
 
-def test_damaged_weights_are_told(folder: Path, tmp_path: Path) -> None:
+def test_damaged_weights_are_reported(folder: Path, tmp_path: Path) -> None:
     meta = json.loads((folder / "regennet" / "config.json").read_text())
     broken = tmp_path / "regennet"
     broken.mkdir()

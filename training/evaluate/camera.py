@@ -1,4 +1,4 @@
-"""How well motion comes back from film: ``python -m training.evaluate.camera --data FOLDER --work FOLDER``.
+"""The accuracy of motion from film: ``python -m training.evaluate.camera --data FOLDER --work FOLDER``.
 
 Recorded clips are rendered (:mod:`.camera_scenes`), the page's own scripts find landmarks in the films
 (:mod:`.camera_browser`), :mod:`motion.video` makes clips of them, and those are compared with what was rendered after
@@ -32,7 +32,7 @@ _ANKLES = [SMPL22.index("left_ankle"), SMPL22.index("right_ankle")]
 
 @dataclass(frozen=True)
 class Score:
-    """How far a person is from the truth.
+    """The errors of a person against the truth.
 
     Attributes:
         joints: mean distance of the joints about the pelvis, mm.

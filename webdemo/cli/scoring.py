@@ -50,7 +50,7 @@ def add_score(commands: Any) -> None:
 
 @dataclass(frozen=True)
 class Scoring:
-    """How a model is asked for the motions.
+    """The settings of the requests to a model.
 
     Attributes:
         model: its name.
@@ -63,7 +63,7 @@ class Scoring:
     damping: float
 
     def request(self, sentence: Sentence, seed: int, actor: Duet | None) -> GenerateRequest | ReactRequest:
-        """What is asked of the model: both people, or the partner of an actor."""
+        """The request for both people, or for the partner of an actor."""
         found = method(self.model)
         fields: dict[str, Any] = asdict(self) | {"seed": seed}
         if actor is None:

@@ -143,7 +143,7 @@ def test_weights_come_back():
     assert torch.equal(again(*inputs()), network(*inputs()))
 
 
-def test_ancestral_sampling_removes_the_noise_that_it_is_told():
+def test_ancestral_sampling_removes_the_given_noise():
     """With the exact noise of a known x0 as the prediction, sampling ends at that x0."""
     scheduler = make_scheduler("ddpm", 100, prediction="epsilon")
     x0 = torch.linspace(-1, 1, 12).expand(1, 9, 12)

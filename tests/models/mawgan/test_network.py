@@ -102,7 +102,7 @@ def test_the_true_point_of_the_sphere_gives_the_true_future_back(past: int, futu
     assert torch.allclose(ratio, torch.tensor(0.3).exp().expand_as(ratio), atol=1e-4)
 
 
-def test_a_foretold_length_is_the_part_along_the_mean() -> None:
+def test_a_predicted_length_is_the_part_along_the_mean() -> None:
     torch.manual_seed(0)
     network = PredictiveMAWGAN(replace(SMALL, length=True, linear=True)).eval()
     assert network.generator.linear is not None
@@ -170,7 +170,7 @@ def test_a_linear_map_is_found_in_closed_form() -> None:
     assert generator.linear.in_features == 4 * 15 + 19 and generator.linear.out_features == 4 * 15
 
 
-def test_a_network_that_is_told_the_pose_sees_it(network: PredictiveMAWGAN) -> None:
+def test_a_network_conditioned_on_the_pose_sees_it(network: PredictiveMAWGAN) -> None:
     torch.manual_seed(0)
     told = PredictiveMAWGAN(replace(SMALL, pose=True)).eval()
     past = motion(1)

@@ -54,7 +54,7 @@ def test_coefficients_are_undone_by_decode(network: MotionMLP) -> None:
     assert torch.allclose(found, coefficients, atol=1e-4)
 
 
-def test_the_linear_part_foretells_waves() -> None:
+def test_the_linear_part_predicts_waves() -> None:
     network = MotionMLP(SMALL).eval()
     windows = waves(400)
     network.fit_linear(windows, ridge=1e-6)

@@ -28,7 +28,7 @@ def npy(array: np.ndarray) -> bytes:
     return buffer.getvalue()
 
 
-def test_arrays_are_told_as_they_are_and_kept_bit_for_bit() -> None:
+def test_arrays_are_reported_and_kept_bit_for_bit() -> None:
     found = import_motion(npy(standing()), name="a.npy")
     assert (found.up, found.unit, found.fps) == ("y", "m", 30.0)
     assert len(found.joints) == 22
@@ -84,12 +84,12 @@ def test_rigs_show_which_joint_is_which(rig: str) -> None:
     ("choices", "says"),
     [({"up": "w"}, "choose x, y or z"), ({"unit": "ell"}, "choose one of m"), ({"fps": 0.0}, "not possible")],
 )
-def test_wrong_choices_are_told(choices: dict, says: str) -> None:
+def test_wrong_choices_are_refused_in_words(choices: dict, says: str) -> None:
     with pytest.raises(InputError, match=says):
         ImportChoices(**choices)
 
 
-def test_a_rate_that_makes_a_clip_too_long_is_told() -> None:
+def test_a_rate_that_makes_a_clip_too_long_is_refused() -> None:
     with pytest.raises(InputError, match="give its true rate"):
         import_motion(npy(standing(700)), name="a.npy", choices=ImportChoices(fps=1.0))
 

@@ -37,7 +37,7 @@ def test_hand_distance_is_that_of_the_nearest_pair() -> None:
     np.testing.assert_allclose(hand_distance(duet(scene)), 0.3, atol=1e-5)
 
 
-def test_hand_to_body_is_told_for_each_person() -> None:
+def test_hand_to_body_is_measured_for_each_person() -> None:
     scene = face_to_face(2.0)
     chest = 0.5 * (scene[1, 0, SMPL22.index("spine2")] + scene[1, 0, SMPL22.index("spine3")])
     put_wrist(scene, 0, "right_wrist", chest - np.array([0, 0, 0.25]), slice(None))

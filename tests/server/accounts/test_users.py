@@ -88,7 +88,7 @@ def test_sign_ins_end(sign_ins: SignIns) -> None:
     assert sign_ins.person(token) is None
 
 
-def test_whoever_is_removed_is_out(sign_ins: SignIns) -> None:
+def test_a_removed_person_is_signed_out(sign_ins: SignIns) -> None:
     token = sign_ins.begin("ada", "correct horse", "1.2.3.4")
     sign_ins.users.remove("ada")
     assert token and sign_ins.person(token) is None

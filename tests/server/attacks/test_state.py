@@ -62,7 +62,7 @@ def test_a_changed_password_and_ruined_accounts_let_nobody_in(own: Target) -> No
     wait_for(lambda: own.ask("eve", "GET", "/config").status_code == 200 and own.healthy())
 
 
-def test_a_damaged_database_is_told_as_it_is(own: Target) -> None:
+def test_a_damaged_database_is_reported(own: Target) -> None:
     """Its middle is overwritten while the server runs: no SQL is shown, and the health says so."""
     functions = own.ask("ada", "GET", "/config").json()["dependencies"]
     refresh = next(function["id"] for function in functions if function["api_name"] == "refresh")

@@ -164,7 +164,7 @@ def test_what_pages_leave_behind_is_bounded(local: TestClient) -> None:
     assert mounted.state_holder.capacity == PAGES
 
 
-def test_a_browser_is_told_on_a_page_of_the_labs_own(local: TestClient) -> None:
+def test_a_browser_gets_an_error_page_of_the_lab(local: TestClient) -> None:
     for path, status, sentence in (
         ("/no/such/place", 404, "There is nothing here."),
         ("/" + "a" * 5000, 414, "The address is too long."),

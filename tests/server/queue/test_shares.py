@@ -33,7 +33,7 @@ def two(request: pytest.FixtureRequest, tmp_path: Path) -> Iterator[tuple[Shares
         database.close()
 
 
-def test_each_is_told_what_people_had_at_the_other(two: tuple[Shares, Shares]) -> None:
+def test_each_server_knows_what_people_used_at_the_other(two: tuple[Shares, Shares]) -> None:
     one, other = two
     for units in (3.0, 4.0):
         one.add("ada", units)
@@ -59,7 +59,7 @@ def test_what_was_long_ago_is_forgotten(two: tuple[Shares, Shares]) -> None:
     assert other.exchange() == {"eve": 1.0}
 
 
-def test_whoever_had_much_elsewhere_waits_longer(
+def test_a_person_who_used_much_elsewhere_waits_longer(
     monkeypatch: pytest.MonkeyPatch, two: tuple[Shares, Shares]
 ) -> None:
     one, other = two

@@ -90,7 +90,7 @@ def test_bad_data_is_one_sentence(folder: Path, capsys: pytest.CaptureFixture[st
 
 
 @pytest.mark.parametrize("name", ["mawgan-cmu", "motion-mlp-cmu"])
-def test_the_shipped_networks_of_the_table_foretell_who_swings_arms_and_legs(name: str) -> None:
+def test_the_shipped_networks_of_the_table_predict_swinging_arms_and_legs(name: str) -> None:
     """A made-up walk on the spot, which is in no file: nearer than the held pose, and no jump at the seam."""
     skeleton = cmu.CmuSkeleton.read(SKELETON)
     phase = 2 * np.pi * np.arange(cmu.WINDOW) / 60

@@ -73,7 +73,7 @@ def test_a_side_is_named_only_where_one_is_known() -> None:
             assert ("right" in mirror_caption(text)) == ("left" in text)
 
 
-def test_beats_are_told_in_their_order() -> None:
+def test_captions_name_beats_in_their_order() -> None:
     scene = [beat("bow / stand"), beat("jump / stand", 60, 120), beat("walk-away / stand", 120, 180)]
     texts = Narrator(np.random.default_rng(2), scene, "train").together(30)
     signs = (r"bow|bend", r"jump|leap|hop", r"leav|left|walk|go|away|depart|off\b|behind")

@@ -33,7 +33,7 @@ def scenes(tmp_path_factory: pytest.TempPathFactory) -> Scenes:
     return prepare.load(folder / "scenes.safetensors")
 
 
-def test_a_classifier_names_what_can_be_told_apart_and_no_more() -> None:
+def test_a_classifier_names_separable_classes_and_no_others() -> None:
     rng = np.random.default_rng(0)
     labels = torch.from_numpy(rng.integers(4, size=200))
     apart = torch.eye(4)[labels] + 0.1 * torch.from_numpy(rng.normal(size=(200, 4))).float()

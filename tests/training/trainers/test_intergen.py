@@ -278,7 +278,7 @@ def test_export_without_a_run_is_refused_in_one_line(
 
 
 @pytest.mark.parametrize("main", [prepare.main, intergen.main, export.main])
-def test_help_is_told(main: Callable[[list[str]], int], capsys: pytest.CaptureFixture[str]) -> None:
+def test_help_is_printed(main: Callable[[list[str]], int], capsys: pytest.CaptureFixture[str]) -> None:
     with pytest.raises(SystemExit) as ended:
         main(["--help"])
     assert ended.value.code == 0

@@ -163,12 +163,12 @@ def test_only_near_joints_count_in_the_distance_loss() -> None:
     ("wrong", "says"),
     [({"batch": 0}, "batch is 0"), ({"num_heads": 3}, "multiple"), ({"window": 0}, "window")],
 )
-def test_wrong_settings_are_told(wrong: dict, says: str) -> None:
+def test_wrong_settings_are_refused_in_words(wrong: dict, says: str) -> None:
     with pytest.raises(InputError, match=says):
         replace(SETTINGS, **wrong)
 
 
-def test_too_few_scenes_are_told(scenes: Scenes, words: Path, tmp_path: Path) -> None:
+def test_too_few_scenes_are_refused(scenes: Scenes, words: Path, tmp_path: Path) -> None:
     with pytest.raises(InputError, match="do not fill a batch"):
         Trainer(scenes, replace(SETTINGS, batch=500), tmp_path, words=words)
 

@@ -48,7 +48,7 @@ class CameraPanel(gr.HTML):
         super().__init__(None, elem_id=elem_id, **kwargs)
 
     def api_info(self) -> dict[str, Any]:
-        """What the component holds, for the API page."""
+        """Describes the component's value for the API page."""
         return {"type": "string", "description": "landmarks of a film, as the page packs them"}
 
     def example_payload(self) -> None:

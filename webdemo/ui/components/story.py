@@ -63,7 +63,7 @@ class StoryLine(gr.HTML):
         return value
 
     def api_info(self) -> dict[str, Any]:
-        """What the component holds, for the API page."""
+        """Describes the component's value for the API page."""
         return {"type": "object", "description": "a story, or null"}
 
     def example_payload(self) -> None:
@@ -142,7 +142,7 @@ def span_of(value: Any) -> tuple[float, float] | None:
 
 
 def motion_marks(duet: Duet, readout: Mapping[str, Any] | None = None) -> dict[str, Any]:
-    """What the line shows of a motion: its length and its contacts, in seconds."""
+    """The marks of a motion on the line: its length and its contacts, in seconds."""
     found = (readout or compare(None, duet)).get("contacts") or ()
     contacts = [
         {"start": c["start"] / duet.fps, "stop": c["stop"] / duet.fps, "kind": c["kind"], "label": c["label"]}

@@ -187,7 +187,7 @@ def test_in_a_sequence_one_person_does_both() -> None:
     assert action_time(pair[0], "bow", 30.0) == pytest.approx(20 / 30, abs=0.05)
 
 
-def test_what_cannot_be_told_is_not_counted() -> None:
+def test_undecidable_checks_are_not_counted() -> None:
     assert Task("", "sequence", {"order": ["wave", "raise-hand"]}).checks == ()
     assert Task("", "ordered", {"order": ["wave", "raise-hand"]}).checks == ("order",)
     assert Task("", "whisper", {"contact": []}).checks == ()
