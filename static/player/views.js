@@ -1,4 +1,4 @@
-// Camera presets, told from where the two people stand, and the view that holds everybody.
+// Camera presets, which follow from the places of the two people, and the view that holds everybody.
 
 import { FIELD_OF_VIEW, axesOf } from "./orbit.js";
 

@@ -153,7 +153,7 @@ def reach(
     twist: float = 0.55,
     shift: float = 0.2,
 ) -> Array:
-    """Brings one or both wrists to moving targets and lets go again.
+    """Brings one or both wrists to moving targets and back again.
 
     Where a target is farther than the arm, the trunk turns that shoulder forward and leans towards it,
     then the hips move; no more than needed at the frame of the fullest reach, and as the arm's weight.

@@ -175,7 +175,7 @@ class Data(intergen_data.Data):
 
 
 class Trainer(Loop):
-    """One training run, which goes on from wherever its checkpoint in ``out`` stands."""
+    """One training run, which resumes from its checkpoint in ``out``."""
 
     def __init__(self, scenes: Scenes, settings: Settings, out: Path, *, device: str = "cpu") -> None:
         self.settings, self.out, self.device = settings, out, device

@@ -79,7 +79,7 @@ def condition(model: CompactInterGen, batch: Batch) -> tuple[Tensor, Tensor]:
 
 
 class Trainer(Loop):
-    """One training run: :meth:`run` goes on from wherever its checkpoint stands.
+    """One training run, which resumes from its checkpoint.
 
     Args:
         init: whose weights and normaliser a new run begins with: a checkpoint of another run (its average),

@@ -60,7 +60,7 @@ class FastSettings:
 
 
 class FastTrainer(Trainer):
-    """One run, which goes on from wherever its checkpoint in ``out`` stands.
+    """One run, which resumes from its checkpoint in ``out``.
 
     Args:
         trained: a checkpoint of :mod:`training.trainers.intergen`.

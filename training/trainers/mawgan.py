@@ -45,7 +45,7 @@ from training.trainers.prediction.trainer import PredictionTrainer
 
 @dataclass(frozen=True)
 class Settings:
-    """Settings of a run; a checkpoint of other settings is refused.
+    """The settings of a run; a checkpoint of others is refused.
 
     width: channels of the predictor's first block (thesis: 512), halved in each further block; the critic's first
         has an eighth of it, halved likewise.

@@ -80,7 +80,7 @@ EARLIEST = 45
 
 @dataclass(frozen=True)
 class Settings:
-    """Settings of a run; a checkpoint of other settings is refused.
+    """The settings of a run; a checkpoint of others is refused.
 
     windows: number of windows cut from each scene. seen: the input, as in table 5.2: "predicted" (an observed second
     and two predicted ones), "recorded" (three recorded seconds) or "known" (the observed second, its last pose held).

@@ -47,7 +47,7 @@ NEAR = 1.0
 
 @dataclass(frozen=True)
 class Settings:
-    """Settings of a run; a checkpoint of other settings is refused.
+    """The settings of a run; a checkpoint of others is refused.
 
     offline: share of batches that see the whole actor.
     cond_drop_prob: probability that a scene's words are dropped, for classifier-free guidance.
@@ -129,7 +129,7 @@ def distance_loss(predicted: Tensor, reactor: Tensor, actor: Tensor, mask: Tenso
 
 
 class Trainer(Loop):
-    """One training run: :meth:`run` goes on from wherever its checkpoint stands.
+    """One training run, which resumes from its checkpoint.
 
     Args:
         words: a shipped InterGen's folder, whose text conditioner is taken over.

@@ -36,7 +36,7 @@ from .context import PageContext
 
 Answer = tuple[dict[str, Any], list[str]]
 PROGRESS = gr.Progress()
-"""A default value by which Gradio gives a job somewhere to tell its progress; ``job.status()`` has it."""
+"""A default value that makes Gradio report a job's progress in ``job.status()``."""
 
 
 _READING = threading.BoundedSemaphore(4)

@@ -121,7 +121,7 @@ class Runs:
 
 
 class Loader:
-    """Loads an engine's networks in a thread of its own, once, and tells how that went."""
+    """Loads an engine's networks in a thread of its own, once, and reports the outcome."""
 
     def __init__(self, engine: EngineLike) -> None:
         self.engine = engine

@@ -17,7 +17,7 @@ from training.trainers.prediction.windows import Windows
 
 
 class PredictionTrainer(Loop):
-    """One training run, which goes on from wherever its checkpoint stands.
+    """One training run, which resumes from its checkpoint.
 
     Everything random is drawn from the seed and the step number, so a run that stops and is started again
     with the same command goes on exactly as if it had never stopped.

@@ -30,7 +30,7 @@ class Table(DeclarativeBase):
 
 
 class Run(Table):
-    """One run, from when it was asked for.
+    """One run, from its request on.
 
     Attributes:
         id: unguessable; names its folder of motion files.

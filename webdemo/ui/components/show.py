@@ -17,7 +17,7 @@ from webdemo.view.curves import Curve
 from webdemo.view.payload import Payload, build_payload, player_payload, sample_payload
 
 ROUNDS = 3
-"""How often a motion nobody asked for plays before it rests: a page left open costs nothing."""
+"""Rounds that an example plays before it rests, so that a page left open costs nothing."""
 _CURVES = (("pelvis_distance", "Apart", "m"), ("hand_distance", "Hands", "m"))
 
 

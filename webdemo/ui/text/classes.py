@@ -11,7 +11,7 @@ from webdemo.inference.methods import WEIGHTS, method, methods
 
 
 def takes_class(name: str) -> bool:
-    """True if a method is asked by the name of a class and not by a sentence."""
+    """True if a method takes the name of a class instead of a sentence."""
     return "class" in method(name).takes
 
 
