@@ -104,7 +104,7 @@ def contact_events(duet: Duet) -> list[Contact]:
     meeting = _stretches(nearest < HANDS_TOUCH, duet.fps, loosely=nearest < HANDS_PART)
     found = [Contact(*ends, "hands", "hand on hand") for ends in meeting]
     for me, other in ((0, 1), (1, 0)):
-        mine, theirs = _shown(duet.roles[me]), _shown(duet.roles[other])
+        mine, theirs = "AB"[me], "AB"[other]
         on_body = hand_touching(duet, me, body)
         for start, stop in meeting:
             on_body[start:stop] = False  # one contact, not two
@@ -143,11 +143,6 @@ def touching(points: Array, target: Array, body: Capsules, *, margin: float) -> 
 def above_ground(body: Capsules, skeleton: Skeleton) -> Capsules:
     """The body without feet: feet side by side on the floor are no kick."""
     return body.part([sideless(skeleton.joint_names[end]) not in ("foot", "ankle") for end in body.ends])
-
-
-def _shown(role: str) -> str:
-    """A role in a sentence: letters large, words as they are."""
-    return role.upper() if len(role) == 1 else role
 
 
 def palms(positions: Array, skeleton: Skeleton = SMPL22) -> Array:

@@ -27,6 +27,7 @@ def test_a_result_is_kept_and_its_link_opens_it_with_all_controls(lab: str, open
     page = open_page(lab)
     page.set_default_timeout(SLOW)
     page.fill("#prompt textarea", "Two people walk up to each other.")
+    page.locator("#advanced button").first.click()
     for control, value in (("seed", "77"), ("steps", "12"), ("guidance", "4.5"), ("seconds", "2.5")):
         page.locator(f"#{control} input[type=number]").first.fill(value)
         page.locator(f"#{control} input[type=number]").first.press("Tab")
@@ -49,7 +50,9 @@ def test_a_result_is_kept_and_its_link_opens_it_with_all_controls(lab: str, open
     other.set_default_timeout(SLOW)
     other.wait_for_selector("#status .pd-done:has-text('Made on')")
     assert other.input_value("#prompt textarea") == "Two people walk up to each other."
-    for control, value in (("seed", "77"), ("steps", "12"), ("guidance", "4.5"), ("seconds", "2.5")):
+    expect(other.locator("#advanced")).to_contain_text("guidance 4.5, 12 steps, damping 0.7")
+    expect(other.locator("#changed")).not_to_contain_text("Settings changed")
+    for control, value in (("seed", "77"), ("seconds", "2.5")):
         assert other.locator(f"#{control} input[type=number]").first.input_value() == value
     other.wait_for_selector("#download-npz:not([disabled])")
 
@@ -120,6 +123,7 @@ def test_a_class_and_a_reaction_open_with_their_method(lab: str, open_page: Call
     page.wait_for_selector("#react-status :text('0.0 to')")
     page.click("#react-method input")
     page.get_by_role("option", name="ReGenNet, offline").click()
+    page.locator("#react-advanced button").first.click()
     page.locator("#react-steps input[type=number]").fill("7")
     page.locator("#react-steps input[type=number]").press("Tab")
     page.click("button#react-generate")
@@ -132,7 +136,7 @@ def test_a_class_and_a_reaction_open_with_their_method(lab: str, open_page: Call
     other.click("#history-open")
     other.wait_for_selector("#react-status .pd-done:has-text('Made on')")
     expect(other.locator("#react-method input")).to_have_value("ReGenNet, offline", timeout=SLOW)
-    expect(other.locator("#react-steps input[type=number]")).to_have_value("7")
+    expect(other.locator("#react-advanced")).to_contain_text("7 steps")
     other.click("button[role=tab]:has-text('History')")
     other.click("#history-list label:has-text('high five · BiGraphDiff')")
     other.click("#history-open")

@@ -210,7 +210,7 @@ def test_hostile_prompts_are_shown_literally_and_run_nothing(page: Page) -> None
         ask(page, prompt + " unknown")
         expect(page.locator(".pdd-title")).to_have_text(prompt + " unknown", timeout=SLOW)
         status(page, "done")
-        expect(page.locator("#readouts .pd-note")).to_contain_text("<b>hello</b>")
+        expect(page.locator("#status .pd-warning")).to_contain_text("<b>hello</b>")
     page.wait_for_timeout(200)
     assert page.evaluate("window.hacked ?? null") is None
     assert page.locator("img[src='x']").count() == 0
@@ -280,8 +280,8 @@ def test_the_phone_layout_has_the_player_high_and_no_sideways_scroll(phone: Page
     ask(phone, "two people walk")
     status(phone, "done")
     assert phone.evaluate("document.documentElement.scrollWidth") <= 390
-    top = {name: phone.locator(name).bounding_box()["y"] for name in ("#prompt", "#player", "#guidance")}
-    assert top["#prompt"] < top["#player"] < top["#guidance"]
+    top = {name: phone.locator(name).bounding_box()["y"] for name in ("#prompt", "#player", "#seed")}
+    assert top["#prompt"] < top["#player"] < top["#seed"]
     assert top["#player"] < 400
 
 

@@ -114,7 +114,7 @@ def test_a_live_reaction_comes_while_the_actor_plays_and_can_be_cancelled(
     page.click("button#react-live")
     page.wait_for_function(f"{known} >= 18")
     page.click("button#react-cancel")
-    expect(page.locator("#react-status .pd-warning")).to_contain_text("Cancelled at step", timeout=SLOW)
+    expect(page.locator("#react-status .pd-warning")).to_contain_text("Cancelled at frame", timeout=SLOW)
     page.wait_for_function(f"{known} === null && window.__pasdedeux.player.sample.frames < 120")
     people(page, 2)
 
@@ -128,6 +128,7 @@ def test_two_methods_are_seen_side_by_side_on_one_clock(page: Page, tmp_path: Pa
     (file, _) = write(walking(3.0), tmp_path / "walker.bvh")
     page.set_input_files("#react-file input[type=file]", file)
     people(page, 1)
+    choose(page, "#react-method", "InterGen, person to person")
     choose(page, "#react-other", "ReGenNet, online")
     page.click("button#react-generate")
     expect(page.locator("#react-status .pd-done")).to_contain_text("Both done", timeout=SLOW)

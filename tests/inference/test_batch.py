@@ -74,7 +74,7 @@ def test_damping_is_shared_by_those_of_one_length(engine: Engine, monkeypatch: p
     counted.clear()
     # One that is longer is corrected by itself, one without damping waits, a given person stays as they are.
     others = [request(seed=2, samples=2), request(seed=3, seconds=1.2), request(seed=4, damping=0.0)]
-    given = ReactRequest(actor=standing(30), steps=4, seed=5)
+    given = ReactRequest(actor=standing(30), model="intergen", steps=4, seed=5)
     found = ends(engine, [request(damping=0.7), *others, given])
     assert all(isinstance(end, Result) for end in found.values())
     assert sorted(counted) == [1] * alone + [4] * alone

@@ -118,7 +118,7 @@ class StubEngine:
         started = time.monotonic()
         self.requests.append(request)
         if isinstance(request, PredictRequest):
-            yield Progress(stage="sample", step=1, total=1)
+            yield Progress(stage="sample", step=1, total=1, unit="pass")
             yield drift(request)
             return
         if isinstance(request, SceneRequest):
@@ -136,8 +136,13 @@ class StubEngine:
                 raise RuntimeError("tensor sizes 3 and 4 do not match")
             time.sleep(self.pause)
             self.steps_done = step + 1
+            unit = "frame" if getattr(request, "mode", "") == "online" else "step"
             yield Progress(
-                stage="sample", step=step + 1, total=request.steps, elapsed=time.monotonic() - started
+                stage="sample",
+                step=step + 1,
+                total=request.steps,
+                elapsed=time.monotonic() - started,
+                unit=unit,
             )
         seeds = range(request.seed, request.seed + request.samples)
         if isinstance(request, ReactRequest):
@@ -194,4 +199,6 @@ class StubEngine:
                 time.sleep(0.01)
             if cancel is not None and cancel.cancelled:
                 raise Cancelled("The run was cancelled.")
-            yield LiveProgress(stage="sample", step=frame.index + 1, total=len(other), frame=frame)
+            yield LiveProgress(
+                stage="sample", step=frame.index + 1, total=len(other), unit="frame", frame=frame
+            )

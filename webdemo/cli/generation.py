@@ -12,7 +12,7 @@ import numpy as np
 
 from motion import Duet, InputError
 from webdemo.inference.actor import FPS, read_actor
-from webdemo.inference.methods import methods
+from webdemo.inference.methods import AUTOMATIC, automatic, methods
 from webdemo.inference.predict_request import LONGEST, PredictRequest, PredictResult
 from webdemo.inference.requests import GenerateRequest, ReactRequest, Result
 
@@ -84,8 +84,10 @@ def react(options: argparse.Namespace) -> dict[str, Any]:
         options.actor, person=options.person, start=options.start, end=options.end,
         keep_start=options.keep_start,
     )  # fmt: skip
-    fields = sampling_fields(options) | {"start": pose}
     mode = options.mode or ("online" if options.stream else ReactRequest.mode)
+    if options.model == AUTOMATIC:
+        options.model = automatic(options.prompt, options.role, mode).name
+    fields = sampling_fields(options) | {"start": pose}
     request = ReactRequest(actor=actor, prompt=options.prompt, role=options.role, mode=mode, **fields)
     if options.own_rig and options.actor.suffix.lower() != ".bvh":
         raise InputError(f"--own-rig needs the rig of a BVH file, and {options.actor.name} is none.")

@@ -9,8 +9,8 @@ from typing import Any, NoReturn
 
 from motion import InputError
 from webdemo.inference.method import Task
-from webdemo.inference.methods import method, methods
-from webdemo.inference.requests import SamplingRequest
+from webdemo.inference.methods import AUTOMATIC, method, methods
+from webdemo.inference.requests import ReactRequest, SamplingRequest
 
 
 class Parser(argparse.ArgumentParser):
@@ -23,12 +23,14 @@ class Parser(argparse.ArgumentParser):
 
 def names_of(task: Task) -> str:
     """The names of the methods of a task, for a help text."""
-    return " or ".join(found.name for found in methods(task))
+    names = [found.name for found in methods(task)]
+    return " or ".join([AUTOMATIC, *names] if task == "react" else names)
 
 
 def add_sampling(parser: argparse.ArgumentParser, task: Task) -> None:
     """The options of a :class:`SamplingRequest`, and where its result goes."""
-    default = {field.name: field.default for field in fields(SamplingRequest)}
+    asked = ReactRequest if task == "react" else SamplingRequest
+    default = {field.name: field.default for field in fields(asked)}
     parser.add_argument("--out", type=Path, required=True, help="file to write: .npz, .bvh, .glb …")
     parser.add_argument("--seed", type=int, default=default["seed"])
     parser.add_argument(

@@ -132,7 +132,8 @@ class GenerateRequest(SamplingRequest):
 class ReactRequest(SamplingRequest):
     """Generates a second person for a given one.
 
-    The methods are InterGen person to person (section 5.4), ReGenNet, InterFormer and the virtual agent.
+    The methods are InterGen person to person (section 5.4), ReGenNet, InterFormer and the virtual agent. The model
+    "automatic" becomes the one that :func:`~webdemo.inference.methods.automatic` chooses.
     ReGenNet samples with DDIM only. Online, frames cannot be corrected after they are shown, so ``damping`` is
     set to 0.
     InterFormer neither denoises nor takes text: it uses only ``seed``, ``samples`` and ``cleanup``.
@@ -151,6 +152,7 @@ class ReactRequest(SamplingRequest):
     """
 
     actor: Clip
+    model: str = methods.AUTOMATIC
     prompt: str = ""
     role: str = "a"
     mode: str = "offline"
@@ -159,6 +161,9 @@ class ReactRequest(SamplingRequest):
     def __post_init__(self) -> None:
         _words(self.prompt, needed=False)
         _choice("Role", self.role, ROLES)
+        if self.model == methods.AUTOMATIC:
+            chosen = methods.automatic(self.prompt, self.role, self.mode)
+            object.__setattr__(self, "model", chosen.name)
         method = methods.method(self.model, "react")
         modes = [variant.mode for variant in method.variants]
         if self.mode not in modes:
@@ -212,12 +217,14 @@ class Progress:
         step: finished steps of the stage.
         total: all steps of the stage.
         elapsed: seconds since the request began.
+        unit: what is counted: "step" for denoising steps, "frame", "pass".
     """
 
     stage: str
     step: int = 0
     total: int = 1
     elapsed: float = 0.0
+    unit: str = "step"
 
 
 @dataclass(frozen=True, kw_only=True)

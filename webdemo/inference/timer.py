@@ -30,9 +30,9 @@ class StageTimer:
         """Seconds since the run began."""
         return time.perf_counter() - self.began
 
-    def progress(self, stage: str, step: int = 0, total: int = 1) -> Progress:
+    def progress(self, stage: str, step: int = 0, total: int = 1, unit: str = "step") -> Progress:
         """A progress event with the time so far."""
-        return Progress(stage=stage, step=step, total=total, elapsed=self.elapsed)
+        return Progress(stage=stage, step=step, total=total, elapsed=self.elapsed, unit=unit)
 
     def lap(self, stage: str, since: float) -> float:
         """Adds the time since ``since`` to a stage; returns now."""

@@ -13,7 +13,7 @@ import gradio as gr
 from motion import InputError
 from motion.formats import read
 from webdemo.inference.actor import read_actor
-from webdemo.inference.methods import methods
+from webdemo.inference.methods import AUTOMATIC, methods
 from webdemo.inference.predict_request import LONGEST, PredictRequest, PredictResult
 from webdemo.inference.requests import (
     Cancelled,
@@ -113,7 +113,7 @@ class Endpoint:
             if isinstance(event, Result):
                 return event
             share = (event.step, event.total) if event.stage == "sample" else (0, 1)
-            progress(share, desc=progress_line(event), unit="steps")
+            progress(share, desc=progress_line(event), unit=event.unit)
         raise Cancelled("The run ended without a result.")
 
 
@@ -219,7 +219,9 @@ class ReactEndpoint(Endpoint):
                 gr.Number(0, label="its end, in seconds; 0 is the end of the file"),
                 gr.Textbox(ReactRequest.role, label="a: the given person acts first; b: they react"),
                 *self._sampling(),
-                gr.Textbox(ReactRequest.model, label=" or ".join(m.name for m in methods("react"))),
+                gr.Textbox(
+                    ReactRequest.model, label=" or ".join([AUTOMATIC, *(m.name for m in methods("react"))])
+                ),
                 gr.Textbox(ReactRequest.mode, label=f"offline; or online ({streaming})"),
                 gr.Checkbox(
                     False, label=f"start in the first pose of the other person in the file ({posed})"

@@ -14,7 +14,9 @@ from motion.formats import read
 from webdemo import cli
 from webdemo.inference import Engine, GenerateRequest, PredictRequest, ReactRequest
 from webdemo.inference.methods import (
+    AUTOMATIC,
     BUILT_IN,
+    automatic,
     failed,
     installed,
     label_of,
@@ -157,8 +159,15 @@ def test_a_method_for_a_task_does_that_task() -> None:
 
 def test_the_defaults_of_the_requests_are_the_first_methods() -> None:
     assert methods("generate")[0].name == GenerateRequest.model
-    assert methods("react")[0].name == ReactRequest.model
+    assert ReactRequest.model == AUTOMATIC
     assert methods("predict")[0].name == PredictRequest.model
+
+
+def test_automatic_hears_words_and_recognises_gestures_without_them() -> None:
+    assert automatic("They hug.", "a").name == methods("react")[0].name
+    assert automatic("  ", "a").name == "agent"
+    assert automatic("", "b").name == methods("react")[0].name, "the agent answers; it does not act first"
+    assert "online" in automatic("", "a", "online").modes
 
 
 def test_only_what_is_installed_is_offered(tmp_path: Path) -> None:

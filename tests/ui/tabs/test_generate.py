@@ -21,6 +21,7 @@ import gradio as gr
 from tests.ui.stub_engine import StubEngine
 from tests.ui.tab_events import built, changes
 from webdemo.inference.cancel import CancelToken
+from webdemo.inference.methods import method
 from webdemo.inference.requests import Cancelled, GenerateRequest, Progress, Result
 from webdemo.ui.components.exports import KINDS, Record, Shelf, file_name, for_download, write_files
 from webdemo.ui.components.film import make_film
@@ -62,13 +63,14 @@ def test_a_run_ends_with_a_motion_readouts_and_a_record(tab: GenerateTab) -> Non
 
 
 def test_a_class_is_asked_for_in_place_of_a_sentence(tab: GenerateTab) -> None:
-    last = run(tab, model="bigraphdiff", prompt="shake hands")[-1]
+    last = run(tab, model="bigraphdiff", class_name="shake hands")[-1]
     assert last["player"]["value"]["title"] == "shake hands"
     assert last["record"].result.manifest["request"]["model"] == "bigraphdiff"
-    unchosen = run(tab, model="bigraphdiff", prompt="")[-1]
+    unchosen = run(tab, model="bigraphdiff", class_name=None)[-1]
     assert "No class is chosen" in unchosen["line"] and "record" not in unchosen
     for way, sentence in (("intergen", True), ("bigraphdiff", False)):
-        *shown, guidance = tab.asked_by(way)
+        *shown, guidance, about = tab.asked_by(way)
+        assert method(way).summary in about
         assert [update["visible"] for update in shown] == [sentence, not sentence]
         assert (
             guidance["value"] == GenerateRequest(prompt="x").guidance if sentence else guidance["value"] < 4
@@ -141,10 +143,10 @@ def test_an_empty_seed_is_drawn_and_told(tab: GenerateTab) -> None:
     class Visit:
         session_hash = "me"
 
-    values = [FIELDS[key] for key in ("prompt", "seconds")]
     seeds = set()
     for _ in range(2):
-        steps = tab.start("intergen", values[0], None, values[1], None, 1, 2.5, 2, 0.7, Visit())
+        fields = {**FIELDS, "seed": None, "model": "intergen", "class_name": None}
+        steps = tab.start({part: fields[name] for name, part in tab.controls.items()}, Visit())
         last = [changes(tab.outputs, step) for step in steps][-1]
         seed = last["record"].result.manifest["request"]["seed"]
         assert f"<dd>{seed}</dd>" in last["readouts"]

@@ -25,7 +25,7 @@ from webdemo.ui.components.prediction_view import curves_figure, prediction_payl
 from webdemo.ui.tabs.predict import PredictTab, predict_choices
 from webdemo.view.payload import unpack_positions
 
-LOADED = ("source", "line", "player", "marker")
+LOADED = ("source", "given", "line", "player", "marker")
 
 
 @pytest.fixture

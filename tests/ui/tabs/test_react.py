@@ -30,7 +30,8 @@ from webdemo.ui.text.examples import example_clips
 from webdemo.view.payload import unpack_positions
 
 BOTH = [("Person A", "a"), ("Person B", "b")]
-LOADED = ("source", "line", "player", "trim", "person", "start", "end", "found")
+LOADED = ("source", "given", "line", "player", "trim", "person", "start", "end", "found")
+READ = (*LOADED, "up", "unit", "fps", "order")
 FIELDS = {"person": "a", "start": 0.0, "end": 10.0, "role": "a", "prompt": "they walk", "seed": 3,
           "samples": 1, "guidance": 2.5, "steps": 5, "damping": 0.7}  # fmt: skip
 
@@ -56,7 +57,7 @@ def test_an_upload_is_shown_at_once(tab: ReactTab, walker: Path) -> None:
     assert not last["person"]["visible"], "there is one person only"
     assert last["end"]["maximum"] == last["end"]["value"] == 4.0
     (sample,) = last["player"]["value"]["samples"]
-    assert sample["roles"] == ["actor"]
+    assert sample["roles"] == ["given"]
     assert sample["frames"] == 120
     assert last["player"]["value"]["title"] == "walker_a.bvh"
 
@@ -145,7 +146,7 @@ def test_a_result_of_a_result_keeps_the_name_of_the_file(tab: ReactTab, walker: 
         ("movie.mov", b"123", "cannot be read: use .npz, .bvh, .npy, .skeleton or .txt"),
     ],
 )
-def test_a_bad_file_is_one_sentence_and_leaves_the_last_actor(
+def test_a_bad_file_is_one_sentence_and_leaves_no_actor(
     tab: ReactTab, tmp_path: Path, name: str, content: bytes, sentence: str
 ) -> None:
     path = tmp_path / name
@@ -153,8 +154,8 @@ def test_a_bad_file_is_one_sentence_and_leaves_the_last_actor(
     last = upload(tab, path)[-1]
     assert sentence in last["line"]
     assert 'role="alert"' in last["line"]
-    assert last["player"]["busy"] == ""
-    assert set(last) == {"line", "player"}
+    assert last["player"]["busy"] == "" and last["player"]["value"] is None
+    assert last["source"] is None and not last["trim"]["visible"]
 
 
 @pytest.mark.parametrize(
@@ -222,7 +223,7 @@ def test_a_method_is_a_model_and_a_mode(
     run(tab, source, method=method)
     asked = tab.page.engine.requests[-1]
     assert (asked.model, asked.mode) == (model, mode)
-    role, steps_slider, damping = tab.fit_method(method)
+    role, steps_slider, _, damping, *_ = tab.fit_method(method)
     assert steps_slider["value"] == steps
     assert role["interactive"] is (model == "intergen")
     assert damping["interactive"] is (mode == "offline")
@@ -231,7 +232,7 @@ def test_a_method_is_a_model_and_a_mode(
 def test_the_steps_of_every_method_can_be_set(tab: ReactTab) -> None:
     """A value outside of the slider's range is refused by the page before the job begins."""
     for method in variants("react"):
-        _, steps, _ = tab.fit_method(method)
+        steps = tab.fit_method(method)[1]
         assert tab.steps.minimum <= steps["value"] <= tab.steps.maximum, method
 
 
@@ -253,11 +254,12 @@ def test_how_a_file_was_read_is_shown_and_can_be_changed(tab: ReactTab, walker: 
     last = upload(tab, walker)[-1]
     assert "22 joints matched, m, Y up, 30 frames a second" in last["found"]
     assert "left_wrist" in last["found"]
-    *_, again = [changes(LOADED, u) for u in tab.read_again(last["source"], "auto", "auto", 60)]
+    *_, again = [changes(READ, u) for u in tab.read_again(last["source"], "auto", "auto", 60)]
     assert "60 frames a second" in again["found"]
     assert again["source"].seconds == pytest.approx(2.0, abs=0.1)
-    *_, wrong = [changes(LOADED, u) for u in tab.read_again(last["source"], "auto", "auto", 5000)]
-    assert "not possible" in wrong["line"]
+    *_, wrong = [changes(READ, u) for u in tab.read_again(again["source"], "auto", "auto", 5000)]
+    assert "not possible" in wrong["line"] and "source" not in wrong
+    assert (wrong["up"], wrong["fps"]) == ("auto", 60), "the choices are again those that it was read with"
 
 
 def test_what_a_method_cannot_do_is_told(tab: ReactTab, walker: Path) -> None:
@@ -269,7 +271,7 @@ def test_what_a_method_cannot_do_is_told(tab: ReactTab, walker: Path) -> None:
 def test_two_methods_stand_side_by_side(tab: ReactTab, walker: Path) -> None:
     source = upload(tab, walker)[-1]["source"]
     steps = run(tab, source, method="intergen", other="regennet-online", steps=20, samples=2, prompt="")
-    assert any("ReGenNet, online. Denoising: step" in step.get("line", "") for step in steps)
+    assert any("ReGenNet, online. Generating: frame" in step.get("line", "") for step in steps)
     first, second = tab.page.engine.requests[-2:]
     assert (first.model, first.steps, second.model, second.mode, second.steps) == (
         "intergen", 20, "regennet", "online", 5,
@@ -334,7 +336,7 @@ def test_a_live_reaction_that_is_cancelled_tells_the_player(tab: ReactTab, walke
         if len(seen) == 5:
             tab.page.runs.cancel("me")
     assert seen[-2]["player"]["live"]["stop"]
-    assert "Cancelled at step" in seen[-1]["line"]
+    assert "Cancelled at frame" in seen[-1]["line"]
     assert "record" not in seen[-1]
 
 
@@ -364,5 +366,5 @@ def test_the_order_of_fifteen_joints_is_found_and_can_be_set(tab: ReactTab, tmp_
     np.save(path, walking(3.0).a.positions[:, joints])
     last = upload(tab, path)[-1]
     assert "in the order of K3HI" in last["found"]
-    *_, again = [changes(LOADED, u) for u in tab.read_again(last["source"], "auto", "auto", None, "sbu15")]
+    *_, again = [changes(READ, u) for u in tab.read_again(last["source"], "auto", "auto", None, "sbu15")]
     assert "in the order of SBU" in again["found"]

@@ -12,7 +12,7 @@ from motion.metrics import MEASURES
 from tests.ui.stub_engine import StubEngine, walking
 from webdemo.inference.requests import GenerateRequest, Progress, Result
 from webdemo.ui.components.show import result_payload
-from webdemo.ui.text.panels import model_card, model_state, readout_panel, status
+from webdemo.ui.text.panels import model_card, model_state, notes_lines, readout_panel, status
 from webdemo.ui.text.plain import told
 from webdemo.ui.text.words import cancelled_line, error_line, progress_line, text
 
@@ -34,7 +34,8 @@ def test_text_is_escaped_and_comes_back_the_same() -> None:
     status(HOSTILE, tone="error"),
     model_state("failed", HOSTILE),
     model_card({"name": HOSTILE, "summary": HOSTILE, HOSTILE: HOSTILE}),
-    readout_panel(Result(duets=result().duets, manifest={}, notes=(HOSTILE,))),
+    notes_lines(Result(duets=result().duets, manifest={}, notes=(HOSTILE,))),
+    readout_panel(Result(duets=result().duets, manifest={"request": {"kind": "react", "model": HOSTILE}})),
 ])  # fmt: skip
 def test_no_panel_lets_markup_or_templates_through(made: str) -> None:
     assert "<img" not in made
@@ -47,7 +48,7 @@ def test_readouts_show_before_after_and_change() -> None:
     for words in ("Before", "After", "Change", "Foot skate", "Jerk", "Penetration", "Bone drift", "Contacts"):
         assert words in made
     assert re.search(r"pd-better\">−\d+ %", made)
-    assert "nearest that it knows" in made
+    assert "nearest that it knows" in notes_lines(result())
 
 
 def test_readouts_are_told_in_words_too() -> None:
@@ -112,6 +113,9 @@ def test_the_player_measures_for_itself_without_readouts() -> None:
 def test_progress_and_cancellation_name_the_step() -> None:
     event = Progress(stage="sample", step=12, total=50)
     assert progress_line(event) == "Denoising: step 12 of 50"
+    frame = Progress(stage="sample", step=12, total=50, unit="frame")
+    assert progress_line(frame) == "Generating: frame 12 of 50"
+    assert cancelled_line(frame) == "Cancelled at frame 12 of 50."
     paced = Progress(stage="sample", step=12, total=50, elapsed=6.0)
     assert progress_line(paced) == "Denoising: step 12 of 50, about 20 s left"
     assert progress_line(Progress(stage="sample", step=2, total=50, elapsed=1.0)).endswith("of 50")

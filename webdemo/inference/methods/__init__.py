@@ -31,6 +31,8 @@ BUILT_IN = tuple(
 """In the order in which the page offers them; the first one for a task is that task's default."""
 PATHS_VARIABLE = "PASDEDEUX_METHODS"
 ENTRY_POINTS = "pasdedeux.methods"
+AUTOMATIC = "automatic"
+"""Stands for a model in a request for a reaction: :func:`automatic` chooses it."""
 WEIGHTS = Path(__file__).resolve().parents[3] / "models" / "weights"
 """The folder of all shipped weights."""
 
@@ -62,6 +64,19 @@ def method(name: str, task: Task | None = None) -> Method:
         return found
     wrong = f"There is no model {name!r:.40}" if found is None else f"{found.label} does not {task}"
     raise InputError(f"{wrong}: choose one of {', '.join(m.name for m in methods(task))}.")
+
+
+def automatic(prompt: str, role: str, mode: str = "offline") -> Method:
+    """The method for a reaction that nobody chose one for.
+
+    Words go to the default method, which follows them. Without words, a person who acts first is answered by the
+    virtual agent, which recognises the gesture itself. Frame by frame, the first method answers that can.
+    """
+    found = methods("react")
+    if mode != "offline":
+        return next((m for m in found if mode in m.modes), found[0])
+    recognises = not prompt.strip() and role == "a" and agent.METHOD.installed(WEIGHTS)
+    return agent.METHOD if recognises else found[0]
 
 
 def label_of(name: str) -> str:

@@ -111,7 +111,7 @@ class InterFormerPipeline:
             actors = seen.expand(request.samples, -1, -1, -1)
             for pose in self.decoder.poses_after(actors, first, noise):
                 reaction.append(here.to_world(pose.astype(np.float64)))
-                yield timer.progress("sample", len(reaction) - 1, total)
+                yield timer.progress("sample", len(reaction) - 1, total, "frame")
                 cancel.raise_if_cancelled()
         return np.stack(reaction, axis=1)
 

@@ -175,7 +175,7 @@ class PredictorPipeline:
         total = 1 + max(0, -(-(frames - round(FPS)) // (round(FPS) - _OVERLAP)))
         for step, longer in enumerate(self.passes(past, frames), start=1):
             whole = longer
-            yield timer.progress("sample", step, total)
+            yield timer.progress("sample", step, total, "pass")
             cancel.raise_if_cancelled()
         future = self._cut(whole, past.shape[1], frames)
         now = timer.lap("sample", now)

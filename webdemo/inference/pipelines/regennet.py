@@ -204,7 +204,7 @@ class ReGenNetPipeline:
         frames = self._live(request, condition)
         for frame in paced(frames) if plays else frames:
             live.append(frame)
-            done = timer.progress("sample", frame.index + 1, total)
+            done = timer.progress("sample", frame.index + 1, total, "frame")
             yield LiveProgress(frame=frame, **asdict(done)) if plays else done
             cancel.raise_if_cancelled()
         delays = [frame.seconds for frame in live]

@@ -11,6 +11,7 @@ from typing import Any
 from sqlalchemy.exc import SQLAlchemyError
 
 from motion import InputError
+from webdemo.inference.methods import methods
 from webdemo.inference.requests import Cancelled, Progress, Result
 from webdemo.inference.story.beats import story_title
 from webdemo.server.queue.places import Places
@@ -105,10 +106,17 @@ class Recorder:
 
 
 def title_of(asked: Mapping[str, Any]) -> str:
-    """Title of a run from its request's dictionary: its prompt, or the name of its input."""
-    if words := str(asked.get("prompt", "")).strip():
+    """Title of a run from its request's dictionary: the words that its method hears, or the name of its input."""
+    words = str(asked.get("prompt", "")).strip()
+    if words and _hears(str(asked.get("model", ""))):
         return words
     if beats := asked.get("beats"):
         return story_title(beats)
     given = asked.get("actor") or asked.get("motion") or {}
     return f"{'Reaction to' if 'actor' in asked else 'After'} {given.get('name') or 'a motion'}"
+
+
+def _hears(model: str) -> bool:
+    """Whether a method takes words or a class; one that is no longer registered may have."""
+    known = {found.name: found for found in methods()}
+    return model not in known or bool({"words", "class"} & known[model].takes)

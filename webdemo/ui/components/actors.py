@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import uuid
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from pathlib import Path
@@ -15,21 +16,37 @@ from motion.formats.importing import ImportChoices, import_motion
 from motion.retarget import to_smpl
 from webdemo.inference.actor import LETTERS, SECONDS, at_30_fps, choose_actor, other_pose
 from webdemo.inference.method import Variant
-from webdemo.inference.methods import installed, variants
+from webdemo.inference.methods import AUTOMATIC, automatic, installed, variants
 from webdemo.inference.requests import Result, SamplingRequest
 from webdemo.view.payload import Payload, player_payload
 
+from .show import GIVEN
+
 AUTO = "auto"
+ReadWith = tuple[str, str, float | None, str]
+"""Up axis, unit, frames a second and order of joints, as the page's controls give them."""
 
 
 def react_choices(weights: Path | None = None) -> list[tuple[str, str]]:
-    """(label, key) of the ways to react whose weights are there, in each of their modes."""
-    return [(v.label, v.key) for method in installed("react", weights) for v in method.variants]
+    """(label, key) of the ways to react whose weights are there, in each of their modes; automatic first."""
+    found = [(v.label, v.key) for method in installed("react", weights) for v in method.variants]
+    return [("Automatic", AUTOMATIC), *found]
 
 
-def reactor(key: str | None) -> Variant:
-    """A way to react, by key; the default for an empty one. Raises InputError for an unknown key."""
+def reactor(key: str | None, fields: Mapping[str, Any] | None = None) -> Variant:
+    """A way to react, by key; the default for an empty one.
+
+    Args:
+        key: of a variant, or "automatic".
+        fields: the page's; their ``prompt`` and ``role`` decide what is automatic.
+
+    Raises:
+        InputError: for an unknown key.
+    """
     known = variants("react")
+    if key == AUTOMATIC:
+        asked = fields or {}
+        key = automatic(str(asked.get("prompt") or ""), str(asked.get("role") or "a")).name
     if key and key not in known:
         raise InputError(f"There is no method {key!r:.40}: choose one of {', '.join(known)}.")
     return known[key] if key else next(iter(known.values()))
@@ -52,6 +69,8 @@ class Source:
         path: the file, so that it can be read anew with other choices; None for a result.
         found: how the file was read, None for a result.
         notes: sentences about how well it could be read.
+        read_with: what was known of the file: up axis, unit, rate, order of its joints.
+        key: differs between any two.
     """
 
     name: str
@@ -60,6 +79,8 @@ class Source:
     path: Path | None = None
     found: Found | None = None
     notes: tuple[str, ...] = ()
+    read_with: ReadWith = ("auto", "auto", None, "auto")
+    key: str = field(default_factory=lambda: uuid.uuid4().hex, compare=False)
     _fitted: dict[Any, tuple[Clip, ...]] = field(default_factory=dict, repr=False, compare=False)
     """What was fitted last, by what was asked."""
 
@@ -106,7 +127,7 @@ class Source:
         """The trimmed actor for the player; a part that is too long to react to is shown as it is."""
         too_long = end - start > SECONDS[1] + 0.05
         actor = self._part(person, start, end) if too_long else self.actor(person, start, end)
-        return player_payload(replace(actor, name="actor"), title=self.describe(person))
+        return player_payload(replace(actor, name=GIVEN), title=self.describe(person))
 
     def describe(self, person: str) -> str:
         """The name, and which person of two."""
@@ -121,15 +142,16 @@ class Found:
     joints: tuple[tuple[str, str], ...] = field(repr=False)
 
 
-def read_source(path: str | Path, name: str | None = None, choices: ImportChoices | None = None) -> Source:
+def read_source(path: str | Path, name: str | None = None, read_with: ReadWith | None = None) -> Source:
     """A motion file as a source; raises InputError where it cannot be read."""
     path = Path(path)
-    found = import_motion(path, choices=choices)
+    found = import_motion(path, choices=import_choices(*read_with) if read_with else None)
     return Source(
         name or path.name,
         tuple(at_30_fps(person) for person in found.people),
         path=path,
         found=Found(found.describe(), found.joints),
+        read_with=read_with or Source.read_with,
     )
 
 
@@ -153,7 +175,7 @@ def result_source(result: Result, title: str, person: str) -> Source:
 
 def with_method(fields: Mapping[str, Any], key: str) -> dict[str, Any]:
     """The page's fields for another method, with the steps it is meant for where the model is another."""
-    asked, other = reactor(fields.get("method")).method, reactor(key).method
+    asked, other = reactor(fields.get("method"), fields).method, reactor(key, fields).method
     steps = fields["steps"] if other == asked else other.default("steps", SamplingRequest.steps)
     return {**fields, "method": key, "steps": steps}
 
@@ -162,7 +184,8 @@ def chosen_actor(fields: Mapping[str, Any]) -> dict[str, Any]:
     """A request's fields from those of the page.
 
     ``source``, ``person``, ``start`` and ``end`` become ``actor``, ``method`` becomes ``model`` and ``mode``,
-    and ``keep`` becomes the start pose for a model that takes one.
+    and ``keep`` becomes the start pose for a model that takes one. Words that the method does not hear are left
+    out.
 
     Raises:
         InputError: where no source is chosen or the times do not fit.
@@ -170,10 +193,12 @@ def chosen_actor(fields: Mapping[str, Any]) -> dict[str, Any]:
     source: Source | None = fields["source"]
     if source is None:
         raise InputError("There is no actor yet: drop a motion file, or pick an example or a result.")
-    own = ("source", "person", "start", "end", "method", "live", "other", "keep")
+    own = ("source", "given", "person", "start", "end", "method", "live", "other", "keep")
     actor = source.actor(fields["person"], fields["start"], fields["end"])
-    chosen = reactor(fields.get("method"))
+    chosen = reactor(fields.get("method"), fields)
     kept = {name: value for name, value in fields.items() if name not in own}
+    if "words" not in chosen.method.takes:
+        kept["prompt"] = ""
     begins = fields.get("keep") and "first pose" in chosen.method.takes
     start = source.other_pose(fields["person"], fields["start"]) if begins else None
     return {"actor": actor, "model": chosen.method.name, "mode": chosen.mode, "start": start, **kept}

@@ -19,6 +19,7 @@ from webdemo.view.theme import THEMES
 
 from .exports import Record, file_name, without_place
 from .prediction_view import ghost_of, method_name, without_name
+from .show import with_shown_roles
 
 LONGEST = 60.0
 """Seconds of motion that the page films; the shell has no such limit."""
@@ -90,6 +91,7 @@ def _pane(result: Result, sample: Any, name: str) -> Pane:
     last = len(result.duets) - 1
     chosen = sample if isinstance(sample, int) and 0 <= sample <= last else 0
     motion: Clip | Duet = result.duets[chosen]
+    motion = with_shown_roles(motion, result.manifest)
     if not isinstance(result, PredictResult):
         return Pane(motion, name)
     motion = without_name(motion)

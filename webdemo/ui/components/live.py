@@ -16,6 +16,7 @@ from webdemo.ui.text.panels import status
 from webdemo.view.payload import Payload, pack_positions, player_payload
 
 from .player import show, stream
+from .show import GIVEN
 
 BATCH = 6
 """Frames a message: five messages a second."""
@@ -62,8 +63,8 @@ class LiveView:
         )
 
     def payload(self) -> Payload:
-        """The motion that the player shows at first."""
-        alone = player_payload(replace(self.actor, name="actor"), title=self.title)
+        """What the player shows at first."""
+        alone = player_payload(replace(self.actor, name=GIVEN), title=self.title)
         return {**alone, "id": self.id, "live": True}
 
     def message(self) -> dict[str, Any]:

@@ -16,6 +16,8 @@ from webdemo.inference.predict_request import PredictResult, with_people
 from webdemo.view.curves import Curve
 from webdemo.view.payload import Payload, build_payload, sample_payload
 
+from .show import with_shown_roles
+
 Array = NDArray[np.floating]
 _BLUE, _VIOLET, _GREY, _ORANGE = "#2468d8", "#8b3fc4", "#8e99aa", "#e07a10"
 _METHOD_COLOURS = (_BLUE, _VIOLET)
@@ -29,7 +31,10 @@ def prediction_payload(*results: PredictResult, title: str = "") -> Payload:
     Two results of one past, by different methods, stand side by side on one clock.
     """
     motion = without_name(results[0].duets[0])
-    samples = [_sample(result, without_name(result.duets[0])) for result in results]
+    samples = [
+        _sample(result, with_shown_roles(without_name(result.duets[0]), result.manifest))
+        for result in results
+    ]
     first = samples[0]
     if len(samples) > 1:
         curves = [

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Mapping
+from dataclasses import replace
 from functools import lru_cache
 from pathlib import Path
 from typing import Any
@@ -12,13 +14,46 @@ import numpy as np
 from motion import Clip, Duet
 from motion.formats import read
 from motion.metrics import Contact
-from webdemo.inference.requests import Result
+from webdemo.inference.requests import GenerateRequest, Result
+from webdemo.ui.text.classes import takes_class
 from webdemo.view.curves import Curve
 from webdemo.view.payload import Payload, build_payload, player_payload, sample_payload
 
 ROUNDS = 3
 """Rounds that an example plays before it rests, so that a page left open costs nothing."""
+GIVEN, MADE = "given", "generated"
+"""What is written beside the letters of the two people of a reaction."""
+_ONE_OF_TWO = re.compile(
+    r"\b(one|first|second|the other|another|someone|somebody|person|man|woman|boy|girl|he|she|him|her)\b"
+)
+_MUTUAL_CLASSES = frozenset(
+    ("arm around the shoulders", "bow to each other", "bump elbows", "bump fists", "cheer together",
+     "circle each other", "dance mirrored", "dance together", "fight with swords", "high five", "high ten",
+     "hold hands", "hug", "low five", "part from each other", "raise a hand together", "run together",
+     "shake hands", "spar", "talk", "walk hand in hand", "walk past each other", "walk side by side",
+     "walk up to each other", "wave goodbye", "wave to each other")
+)  # fmt: skip
 _CURVES = (("pelvis_distance", "Apart", "m"), ("hand_distance", "Hands", "m"))
+
+
+def shown_roles(manifest: Mapping[str, Any]) -> tuple[str, str]:
+    """What is written beside "A" and "B" for a result of this manifest; a letter alone adds nothing.
+
+    Of a reaction it is who was given; where both do the same, nobody acts first.
+    """
+    asked = manifest.get("request", {})
+    if asked.get("kind") == "react":
+        return (GIVEN, MADE) if asked.get("role", "a") == "a" else (MADE, GIVEN)
+    words = re.sub(r"\b(each other|one another)\b", "", str(asked.get("prompt", "")).lower())
+    directed = bool(_ONE_OF_TWO.search(words)) if words.strip() else False
+    if takes_class(str(asked.get("model") or GenerateRequest.model)):
+        directed = words not in _MUTUAL_CLASSES
+    return ("acts first", "answers") if directed else ("a", "b")
+
+
+def with_shown_roles(motion: Duet | Clip, manifest: Mapping[str, Any]) -> Duet | Clip:
+    """A motion of a result with the roles of :func:`shown_roles`; one person as they are."""
+    return replace(motion, roles=shown_roles(manifest)) if isinstance(motion, Duet) else motion
 
 
 def result_payload(result: Result, *, title: str = "") -> Payload:
@@ -27,7 +62,11 @@ def result_payload(result: Result, *, title: str = "") -> Payload:
     Samples whose read-outs hold no curves get those that the player measures itself.
     """
     samples = [
-        sample_payload(duet, label=str(i + 1), **_strip(duet, result.readouts[i : i + 1]))
+        sample_payload(
+            with_shown_roles(duet, result.manifest),
+            label=str(i + 1),
+            **_strip(duet, result.readouts[i : i + 1]),
+        )
         for i, duet in enumerate(result.duets)
     ]
     return build_payload(samples, skeleton=result.duets[0].skeleton, title=title)
@@ -57,4 +96,4 @@ def arrival_payload(path: Path) -> Payload | None:
     if not isinstance(duet, Duet):
         return None
     title = (duet.manifest or {}).get("request", {}).get("prompt", "")
-    return {**player_payload(duet, title=title), "rounds": ROUNDS}
+    return {**player_payload(with_shown_roles(duet, duet.manifest or {}), title=title), "rounds": ROUNDS}

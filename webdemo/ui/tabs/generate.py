@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Iterator, Mapping
+from collections.abc import Mapping
 from typing import Any
 
 import gradio as gr
@@ -12,11 +12,12 @@ from motion import InputError
 from webdemo.inference.actor import SECONDS
 from webdemo.inference.methods import installed, method
 from webdemo.inference.requests import GenerateRequest
+from webdemo.ui.components.settings import looked_up
 from webdemo.ui.components.show import arrival_payload
 from webdemo.ui.history import Opened
 from webdemo.ui.text.classes import installed_classes, takes_class
 from webdemo.ui.text.examples import CLIPS, EXAMPLES
-from webdemo.ui.text.panels import model_card, status
+from webdemo.ui.text.panels import method_line, model_card, status
 from webdemo.ui.text.words import error_line
 
 from .job import QUIET, JobTab, Updates
@@ -40,13 +41,16 @@ class GenerateTab(JobTab):
     """Text, or a class → two people."""
 
     label = "Generate"
-    restored = ("by_sentence", "class_name")
+    restored = ("by_sentence", "class_name", "about", "folded")
 
     def request(self, fields: Mapping[str, Any]) -> GenerateRequest:
         """See :meth:`JobTab.request`; raises InputError if no class is chosen."""
-        if takes_class(fields.get("model", GenerateRequest.model)) and not fields["prompt"]:
-            raise InputError("No class is chosen: choose what the two people do.")
-        return GenerateRequest(**fields)
+        asked = {name: value for name, value in fields.items() if name != "class_name"}
+        if takes_class(fields.get("model", GenerateRequest.model)):
+            asked["prompt"] = fields["class_name"]
+            if not asked["prompt"]:
+                raise InputError("No class is chosen: choose what the two people do.")
+        return GenerateRequest(**asked)
 
     def title(self, request: GenerateRequest) -> str:
         """The sentence or class."""
@@ -56,10 +60,10 @@ class GenerateTab(JobTab):
         """Also what was asked by: a sentence or a class."""
         asked = run.entry.request
         model = asked.get("model", GenerateRequest.model)
-        sentence, label, _ = self.asked_by(model)
+        sentence, label, _, about = self.asked_by(model)
         if takes_class(model):
             label = gr.update(value=asked.get("prompt"), visible=True)
-        return super().opened(run) | {self.by_sentence: sentence, self.class_name: label}
+        return super().opened(run) | {self.by_sentence: sentence, self.class_name: label, self.about: about}
 
     def build(self, demo: gr.Blocks, record: gr.State | None = None) -> None:
         """Lays out the tab inside ``demo`` and wires its events.
@@ -75,18 +79,22 @@ class GenerateTab(JobTab):
                 with gr.Accordion("About the model", open=False, elem_classes="pd-panel pd-about"):
                     self.card = gr.HTML(elem_id="model-card")
             self._results(first=arrival_payload(CLIPS / ARRIVAL))
-        inputs = (
-            self.model, self.prompt, self.class_name, self.seconds, self.seed, self.samples, self.guidance,
-            self.steps, self.damping,
-        )  # fmt: skip
-        self._wire_run(self.start, [self.go.click, self.prompt.submit], inputs, record)
+        self.controls = {
+            "model": self.model, "prompt": self.prompt, "class_name": self.class_name,
+            "seconds": self.seconds, "seed": self.seed, "samples": self.samples, "guidance": self.guidance,
+            "steps": self.steps, "damping": self.damping,
+        }  # fmt: skip
+        self._wire_run([self.go.click, self.prompt.submit], record)
         for chip, (_, sentence) in zip(self.chips, EXAMPLES, strict=True):
             focus = "document.querySelector('#prompt textarea').focus();"
             chip.click(
                 None, outputs=self.prompt, js=f"() => {{ {focus} return {json.dumps(sentence)}; }}", **QUIET
             )
-        fitted = [self.by_sentence, self.class_name, self.guidance]
-        self.model.input(self.asked_by, inputs=self.model, outputs=fitted, queue=False, **QUIET)
+        fitted = [self.by_sentence, self.class_name, self.guidance, self.about]
+        self.model.input(
+            None, inputs=self.model, outputs=fitted,
+            js=looked_up({name: self.asked_by(name) for _, name in generate_choices()}), **QUIET,
+        ).then(None, **self.tell_advanced)  # fmt: skip
         demo.load(self.describe_model, outputs=self.card, queue=False, **QUIET)
 
     def _ask(self) -> None:
@@ -102,6 +110,7 @@ class GenerateTab(JobTab):
                 elem_id="way",
                 elem_classes="pd-way",
             )
+            self.about = gr.HTML(method_line(method(GenerateRequest.model).summary), elem_id="about-method")
             with gr.Column(min_width=0, elem_classes="pd-sentence") as self.by_sentence:
                 self.prompt = gr.Textbox(
                     label="What do the two people do?",
@@ -128,9 +137,13 @@ class GenerateTab(JobTab):
 
     @staticmethod
     def asked_by(way: str) -> Updates:
-        """Shows the input that a method takes, a sentence with examples or a class, and sets its guidance."""
-        guidance, by_class = method(way).default("guidance", GenerateRequest.guidance), takes_class(way)
-        return gr.update(visible=not by_class), gr.update(visible=by_class), gr.update(value=guidance)
+        """What is asked for, a sentence with examples or a class, the guidance that suits it, and a line on it."""
+        found, by_class = method(way), takes_class(way)
+        guidance = found.default("guidance", GenerateRequest.guidance)
+        return (
+            gr.update(visible=not by_class), gr.update(visible=by_class), gr.update(value=guidance),
+            method_line(found.summary),
+        )  # fmt: skip
 
     def _settings(self) -> None:
         with gr.Column(elem_classes="pd-panel pd-settings", min_width=0):
@@ -141,32 +154,6 @@ class GenerateTab(JobTab):
                 )  # fmt: skip
                 self.samples = self._samples()
             self._sampling()
-
-    def start(
-        self,
-        way: str,
-        prompt: str,
-        class_name: str | None,
-        seconds: float,
-        seed: float | None,
-        samples: float,
-        guidance: float,
-        steps: float,
-        damping: float,
-        request: gr.Request,
-    ) -> Iterator[Updates]:
-        """Runs what the controls ask for; yields updates of the page."""
-        fields = {
-            "model": way,
-            "prompt": (class_name or "") if takes_class(way) else prompt,
-            "seconds": seconds,
-            "seed": seed,
-            "samples": samples,
-            "guidance": guidance,
-            "steps": steps,
-            "damping": damping,
-        }
-        yield from self.run(str(request.session_hash), fields)
 
     def describe_model(self) -> str:
         """The cards of both models for the page."""

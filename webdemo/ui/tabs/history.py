@@ -13,6 +13,7 @@ from webdemo.inference.methods import label_of, methods, variants
 from webdemo.inference.requests import Cancelled, Progress, Result
 from webdemo.ui.again import actor_source, request_of, request_of_unfinished, verdict
 from webdemo.ui.components.exports import KINDS, Record
+from webdemo.ui.components.settings import taken
 from webdemo.ui.context import PageContext
 from webdemo.ui.history import Entry, HistoryLike, Opened
 from webdemo.ui.text.panels import status
@@ -111,6 +112,14 @@ class HistoryTab:
         address = demo.load(self.open_address, inputs=named, outputs=self.opened, js=_NAMED, **quick)
         for chain in (chosen, address):
             for kind, job in self.jobs.items():
+                knobs = job.knobs
+                chain = chain.then(
+                    None,
+                    inputs=[job.asked, *knobs.values()],
+                    outputs=job.asked,
+                    js=taken(list(knobs)),
+                    **QUIET,
+                )
                 chain = chain.then(
                     self._exporter(kind, job), inputs=record, outputs=[job.line, *job.downloads], **quick
                 )
@@ -285,6 +294,7 @@ class HistoryTab:
             source = actor_source(opened)
             last = round(source.seconds, 1)
             changes[job.source._id] = source
+            changes[job.given._id] = source.key
             changes[job.trim._id] = gr.update(visible=True)
             changes[job.begin._id] = gr.update(maximum=last, value=0)
             changes[job.end._id] = gr.update(maximum=last, value=last)

@@ -5,7 +5,7 @@ from __future__ import annotations
 import secrets
 import time
 from abc import ABC, abstractmethod
-from collections.abc import Callable, Collection, Generator, Iterator, Mapping, Sequence
+from collections.abc import Callable, Generator, Iterator, Mapping, Sequence
 from typing import Any
 
 import gradio as gr
@@ -24,10 +24,11 @@ from webdemo.ui.components.exports import KINDS, Record, file_name, for_download
 from webdemo.ui.components.film import READ_PLAYER, make_film
 from webdemo.ui.components.film import suffix as film_suffix
 from webdemo.ui.components.player import EMPTY_TEXT, MotionPlayer, busy, show
+from webdemo.ui.components.settings import ADVANCED, OPENED, advanced_label, differs, snapshot
 from webdemo.ui.components.show import result_payload
 from webdemo.ui.context import PageContext
 from webdemo.ui.history import Opened
-from webdemo.ui.text.panels import readout_panel, status
+from webdemo.ui.text.panels import notes_lines, readout_panel, status
 from webdemo.ui.text.words import cancelled_line, error_line, progress_line, seconds
 from webdemo.view.payload import Payload
 
@@ -72,6 +73,10 @@ class JobTab(ABC):
     """Attributes that :meth:`opened` sets, besides the result and controls named as a request's fields."""
     dice: gr.Button | None = None
     """Draws a seed, where the tab's motion is random."""
+    folded: gr.Accordion | None = None
+    """Holds the sliders that are rarely needed, where the tab has them."""
+    controls: Mapping[str, gr.components.Component]
+    """What a run is given, by the names of its fields; set by ``build``."""
 
     def __init__(self, page: PageContext) -> None:
         self.page = page
@@ -100,6 +105,8 @@ class JobTab(ABC):
                 "Cancel", elem_id=self._id("cancel"), elem_classes="pd-stop", interactive=False, min_width=0
             )
         self.line = gr.HTML(status(), elem_id=self._id("status"), elem_classes="pd-line")
+        self.changed = gr.HTML("", elem_id=self._id("changed"), elem_classes="pd-line")
+        self.asked = gr.Textbox("", visible=False)
 
     def _samples(self) -> gr.Slider:
         return gr.Slider(
@@ -108,27 +115,35 @@ class JobTab(ABC):
         )  # fmt: skip
 
     def _sampling(self) -> None:
-        """Seed, guidance, steps and damping."""
+        """The seed; and guidance, steps and damping, folded under a line that tells their values."""
         with gr.Row(elem_classes="pd-seed"):
             self.seed = gr.Number(
-                value=SamplingRequest.seed, precision=0, label="Seed", info=_SEED_INFO,
+                value=SamplingRequest.seed, label="Seed", info=_SEED_INFO,
                 elem_id=self._id("seed"), elem_classes="pd-seed-field", min_width=0,
             )  # fmt: skip
             self.dice = gr.Button(
                 "Random", size="sm", elem_id=self._id("dice"), elem_classes="pd-dice", min_width=0
             )
-        self.guidance = gr.Slider(
-            *GUIDANCE, value=SamplingRequest.guidance, step=0.1, label="Guidance scale", info=_GUIDANCE_INFO,
-            elem_id=self._id("guidance"),
-        )  # fmt: skip
-        self.steps = gr.Slider(
-            *STEPS_SHOWN, value=SamplingRequest.steps, step=1, label="DDIM steps", info=_STEPS_INFO,
-            elem_id=self._id("steps"),
-        )  # fmt: skip
-        self.damping = gr.Slider(
-            *DAMPING, value=SamplingRequest.damping, step=0.05, label="Damping threshold",
-            info=_DAMPING_INFO, elem_id=self._id("damping"),
-        )  # fmt: skip
+        values = (SamplingRequest.guidance, SamplingRequest.steps, SamplingRequest.damping)
+        with gr.Accordion(
+            advanced_label(*values), open=False, elem_id=self._id("advanced"), elem_classes="pd-advanced"
+        ) as self.folded:
+            self.guidance = gr.Slider(
+                *GUIDANCE, value=values[0], step=0.1, label="Guidance scale", info=_GUIDANCE_INFO,
+                elem_id=self._id("guidance"),
+            )  # fmt: skip
+            self.steps = gr.Slider(
+                *STEPS_SHOWN, value=values[1], step=1, label="DDIM steps", info=_STEPS_INFO,
+                elem_id=self._id("steps"),
+            )  # fmt: skip
+            self.damping = gr.Slider(
+                *DAMPING, value=values[2], step=0.05, label="Damping threshold",
+                info=_DAMPING_INFO, elem_id=self._id("damping"),
+            )  # fmt: skip
+        sliders = [self.guidance, self.steps, self.damping]
+        # A folded slider tells nobody of its changes before it was seen, so others also use this.
+        self.tell_advanced = {"inputs": sliders, "outputs": self.folded, "js": ADVANCED, **QUIET}
+        gr.on([slider.change for slider in sliders], None, **self.tell_advanced)
 
     def _results(
         self,
@@ -169,15 +184,14 @@ class JobTab(ABC):
 
     def _wire_run(
         self,
-        start: Callable[..., Iterator[Updates]],
         triggers: Sequence[Any],
-        inputs: Collection[gr.components.Component],
         record: gr.State | None,
     ) -> None:
-        """Runs ``start`` with these inputs, or with one dictionary of them where they are a set.
+        """Runs :meth:`start` with the values of ``controls``.
 
         ``record`` keeps the result, in a state of its own by default.
         """
+        self.knobs = {name: part for name, part in self.controls.items() if not isinstance(part, gr.State)}
         self.record = record or gr.State(None, time_to_live=3600)
         self.outputs = {
             "player": self.player,
@@ -187,9 +201,17 @@ class JobTab(ABC):
             "under": self.under,
             "readouts": self.readouts,
             "record": self.record,
+            "asked": self.asked,
+            "changed": self.changed,
             **self.more_outputs(),
         }
-        self._wire_start(start, triggers, inputs)
+        self.compare: dict[str, Any] = {
+            "inputs": [self.asked, *self.knobs.values()], "outputs": self.changed,
+            "js": differs(list(self.knobs)), **QUIET,
+        }  # fmt: skip
+        changes: list[Any] = [getattr(part, "change") for part in self.knobs.values()]  # noqa: B009
+        gr.on(changes, None, **self.compare)
+        self._wire_start(self.start, triggers)
         self.stop.click(self.cancel, queue=False, **QUIET)
         self.film.click(
             self.make_film, inputs=[self.record, self.player_state], outputs=[self.line, self.filmed],
@@ -204,12 +226,11 @@ class JobTab(ABC):
         self,
         start: Callable[..., Iterator[Updates]],
         triggers: Sequence[Any],
-        inputs: Collection[gr.components.Component],
     ) -> None:
         run = gr.on(
             triggers,
             start,  # not called "generate": that name is the public endpoint's
-            inputs=inputs if isinstance(inputs, set) else list(inputs),
+            inputs=set(self.controls.values()),
             outputs=list(self.outputs.values()),
             concurrency_limit=None,  # runs wait in a line of their own, where they can be cancelled
             trigger_mode="once",
@@ -217,6 +238,7 @@ class JobTab(ABC):
         )
         # Only now would a press be taken: while the event goes on, Gradio drops it.
         run.then(self.rest, outputs=[*self.starts().values(), self.stop], queue=False, **QUIET)
+        run.then(None, **self.compare)  # what was changed while it ran
         run.then(
             self.export,
             inputs=self.record,
@@ -224,6 +246,13 @@ class JobTab(ABC):
             concurrency_limit=2,
             **QUIET,
         )
+
+    def start(self, values: dict[gr.components.Component, Any], request: gr.Request) -> Iterator[Updates]:
+        """Runs what the controls ask for; yields updates of the page."""
+        yield from self.run(str(request.session_hash), self._fields(values))
+
+    def _fields(self, values: Mapping[gr.components.Component, Any]) -> dict[str, Any]:
+        return {name: values[component] for name, component in self.controls.items()}
 
     def starts(self) -> dict[str, gr.Button]:
         """The buttons that start a run, by name: none of them can be pressed while one goes on."""
@@ -239,16 +268,21 @@ class JobTab(ABC):
         An empty seed is drawn. Whatever goes wrong ends as one sentence in the status line, with the last
         result still on show.
         """
+        asked = snapshot(fields, self.knobs)
         yield self._updates(
             player=busy("Starting …"),
             line=status("Starting …", tone="busy"),
+            changed="",
             stop=gr.update(interactive=True),
             **{name: gr.update(interactive=False) for name in self.starts()},
         )
         try:
-            if fields["seed"] is None:
+            if fields.get("seed", 0) is None:
                 fields = {**fields, "seed": secrets.randbelow(MAX_SEED + 1)}
-            yield from self.answer(session, fields)
+            for updates in self.answer(session, fields):
+                shown = dict(zip(self.outputs, updates, strict=True))
+                made = shown["record"] != gr.skip()
+                yield self._updates(**shown | {"asked": asked}) if made else updates
         except Cancelled as stopped:
             yield self._stopped(str(stopped), "warning")
         except Exception as error:
@@ -303,7 +337,8 @@ class JobTab(ABC):
         made = "Done" if count == 1 else f"{count} samples done"
         return {
             "player": show(result_payload(result, title=title)),
-            "line": status(f"{made} in {seconds(spent)}." if spent else f"{made}.", tone="done"),
+            "line": status(f"{made} in {seconds(spent)}." if spent else f"{made}.", tone="done")
+            + notes_lines(result),
             "under": gr.update(visible=True),
             "readouts": readout_panel(result),
             "record": Record(result, title),
@@ -313,8 +348,13 @@ class JobTab(ABC):
         """Updates that show a kept run here, by the components of this tab."""
         made = time.strftime("%Y-%m-%d %H:%M", time.gmtime(run.entry.created))
         shown = self._shown(run.result, run.entry.title)
-        shown["line"] = status(f"Made on {made} UTC.", tone="done")
-        return {self.outputs[name]: update for name, update in shown.items()}
+        shown["line"] = status(f"Made on {made} UTC.", tone="done") + notes_lines(run.result)
+        shown |= {"asked": OPENED, "changed": ""}
+        found = {self.outputs[name]: update for name, update in shown.items()}
+        values = [run.entry.request.get(name) for name in ("guidance", "steps", "damping")]
+        if self.folded is not None and None not in values:
+            found[self.folded] = gr.update(label=advanced_label(*values))
+        return found
 
     def _stopped(self, line: str, tone: str) -> Updates:
         return self._updates(player=busy(""), line=status(line, tone=tone))

@@ -29,11 +29,12 @@ from webdemo.ui.components.prediction_view import (
     told_errors,
     without_name,
 )
+from webdemo.ui.components.settings import looked_up
 from webdemo.ui.components.upload import chip, example_chips, file_field
 from webdemo.ui.context import PageContext
 from webdemo.ui.history import Opened
 from webdemo.ui.text.examples import example_clips
-from webdemo.ui.text.panels import comparison_panel, prediction_lines, status
+from webdemo.ui.text.panels import comparison_panel, method_line, notes_lines, prediction_lines, status
 from webdemo.ui.text.words import error_line, seconds
 from webdemo.view.payload import player_payload
 
@@ -79,6 +80,7 @@ class PredictTab(JobTab):
 
     label = "Predict"
     prefix = "predict-"
+    restored = ("given", "about")
 
     def __init__(self, page: PageContext, examples: list[tuple[str, Path]] | None = None) -> None:
         super().__init__(page)
@@ -131,12 +133,15 @@ class PredictTab(JobTab):
                             [("nothing", ""), *predict_choices()], value="", label="Compare with",
                             elem_id="predict-other", min_width=0, filterable=False,
                         )  # fmt: skip
+                    self.about = gr.HTML(self.told_about(PredictRequest.model), elem_id="predict-about")
             self._results(EMPTY_TEXT, self._curves)
         self.source = gr.State(None, time_to_live=3600)
-        self._wire_run(
-            self.start, [self.go.click],
-            (self.source, self.marker, self.seconds, self.model, self.other), record,
-        )  # fmt: skip
+        self.given = gr.Textbox("", visible=False)
+        self.controls = {
+            "source": self.source, "given": self.given, "marker": self.marker, "seconds": self.seconds,
+            "model": self.model, "other": self.other,
+        }  # fmt: skip
+        self._wire_run([self.go.click], record)
         self._wire_source()
 
     def _ask(self) -> None:
@@ -159,26 +164,31 @@ class PredictTab(JobTab):
     # ---- events ----------------------------------------------------------------------------------
 
     def _wire_source(self) -> None:
-        self.changed = [self.source, self.line, self.player, self.marker]
+        self.loaded = [self.source, self.given, self.line, self.player, self.marker]
         load: dict[str, Any] = {
-            "outputs": self.changed,
+            "outputs": self.loaded,
             "concurrency_limit": 2,
             "concurrency_id": "predict-read",
             **QUIET,
         }
-        self.file.upload(self.upload, inputs=self.file, **load)
-        self.camera.submit(self.read_film, inputs=self.camera, **load)
+        self.file.upload(self.upload, inputs=self.file, **load).then(None, **self.compare)
+        self.camera.submit(self.read_film, inputs=self.camera, **load).then(None, **self.compare)
         for button, (name, path) in zip(self.chips, self.examples, strict=True):
-            button.click(partial(self.load, partial(read_source, path, name)), **load)
-        self.take.click(self.take_result, inputs=self.record, **load)
+            read = partial(self.load, partial(read_source, path, name))
+            button.click(read, **load).then(None, **self.compare)
+        self.take.click(self.take_result, inputs=self.record, **load).then(None, **self.compare)
+        self.model.input(
+            None, inputs=self.model, outputs=self.about,
+            js=looked_up({name: [self.told_about(name)] for _, name in predict_choices()}), **QUIET,
+        )  # fmt: skip
         others = [self.camera.submit, *(button.click for button in (*self.chips, self.take))]
         gr.on(others, None, outputs=self.file, js="() => null", **QUIET)  # the file is no longer what is used
-        self.file.clear(self.forget, outputs=self.changed, queue=False, **QUIET)
+        self.file.clear(self.forget, outputs=self.loaded, queue=False, **QUIET)
 
     def upload(self, path: str | None) -> Iterator[Updates]:
-        """Reads an uploaded file and shows its motion."""
+        """Reads an uploaded file and shows its motion; one that cannot be read leaves no motion."""
         if path is not None:
-            yield from self.load(partial(read_source, path))
+            yield from self.load(partial(read_source, path), fresh=True)
 
     def read_film(self, landmarks: str | None) -> Iterator[Updates]:
         """Makes the motion of a film the past."""
@@ -194,18 +204,25 @@ class PredictTab(JobTab):
 
         yield from self.load(read, at_end=True)
 
-    def load(self, read: Callable[[], Source], *, at_end: bool = False) -> Iterator[Updates]:
-        """Updates of source, line, player and marker while a motion is read."""
-        yield gr.skip(), status("Reading the motion …", tone="busy"), busy("Reading the motion …"), gr.skip()
+    def load(
+        self, read: Callable[[], Source], *, at_end: bool = False, fresh: bool = False
+    ) -> Iterator[Updates]:
+        """Updates of source, its key, line, player and marker while a motion is read.
+
+        Where it is ``fresh`` and cannot be read, an earlier motion is forgotten.
+        """
+        same = (gr.skip(),) * 2
+        yield *same, status("Reading the motion …", tone="busy"), busy("Reading the motion …"), gr.skip()
         try:
             source = read()
             payload = player_payload(without_name(motion_of(source)), title=source.name)
         except Exception as error:
-            yield gr.skip(), status(error_line(error), tone="error"), busy(""), gr.skip()
+            told = status(error_line(error), tone="error")
+            yield (None, "", told, show(None), gr.skip()) if fresh else (*same, told, busy(""), gr.skip())
             return
         last = _last_marker(source)
         marker = last if at_end else max(PAST_SECONDS, round(last / 2, 1))
-        yield source, self._told(source), show(payload), self._marker(source, marker)
+        yield source, source.key, self._told(source), show(payload), self._marker(source, marker)
 
     @staticmethod
     def _marker(source: Source, value: float) -> Any:
@@ -223,9 +240,9 @@ class PredictTab(JobTab):
         """
         shown = button.click(lambda: gr.update(selected=tab), outputs=tabs, queue=False, **QUIET)
         shown.then(
-            self.take_result, inputs=self.record, outputs=self.changed, concurrency_limit=2,
+            self.take_result, inputs=self.record, outputs=self.loaded, concurrency_limit=2,
             concurrency_id="predict-read", **QUIET,
-        )  # fmt: skip
+        ).then(None, **self.compare)  # fmt: skip
         shown.then(None, outputs=self.file, js="() => null", **QUIET)
 
     @staticmethod
@@ -241,22 +258,12 @@ class PredictTab(JobTab):
     @staticmethod
     def forget() -> Updates:
         """The tab without a motion."""
-        return None, status(), show(None), gr.skip()
+        return None, "", status(), show(None), gr.skip()
 
-    def start(
-        self,
-        source: Source | None,
-        marker: float,
-        seconds: float,
-        model: str,
-        other: str,
-        request: gr.Request,
-    ) -> Iterator[Updates]:
-        """Runs what the controls ask for; yields updates of the page."""
-        fields = {
-            "source": source, "marker": marker, "seconds": seconds, "model": model, "other": other, "seed": 0,
-        }  # fmt: skip
-        yield from self.run(str(request.session_hash), fields)
+    @staticmethod
+    def told_about(model: str) -> str:
+        """One line on a method."""
+        return method_line(method(model).summary)
 
     def answer(self, session: str, fields: Mapping[str, Any]) -> Iterator[Updates]:
         """Runs one method, or two side by side."""
@@ -281,7 +288,7 @@ class PredictTab(JobTab):
         spent = " and ".join(seconds(total(result)) for result in made.values())
         yield self._updates(
             player=show(prediction_payload(*made.values(), title=title)),
-            line=status(f"Both done, in {spent}.", tone="done"),
+            line=status(f"Both done, in {spent}.", tone="done") + "".join(map(notes_lines, made.values())),
             under=gr.update(visible=True),
             readouts=prediction_lines(dict(zip(named, told_errors(*named.values()), strict=True)))
             + comparison_panel(named),
@@ -295,7 +302,7 @@ class PredictTab(JobTab):
         found, result = super().opened(run), run.result
         if isinstance(result, PredictResult):
             source = given_source(result, run.entry.title)
-            found[self.source] = source
+            found[self.source], found[self.given] = source, source.key
             found[self.marker] = self._marker(source, result.past_frames / result.duets[0].fps)
         return found
 

@@ -13,13 +13,12 @@ from motion import InputError
 from motion.formats.importing import AXES, ORDERS, UNITS
 from webdemo.inference.actor import SECONDS
 from webdemo.inference.live import LiveRequest
-from webdemo.inference.methods import variants
+from webdemo.inference.methods import AUTOMATIC, variants
 from webdemo.inference.requests import ReactRequest, Result
 from webdemo.ui.components.actors import (
     AUTO,
     Source,
     chosen_actor,
-    import_choices,
     live_variant,
     react_choices,
     reactor,
@@ -32,12 +31,13 @@ from webdemo.ui.components.compare import comparison_payload
 from webdemo.ui.components.exports import Record
 from webdemo.ui.components.live import LiveView
 from webdemo.ui.components.player import busy, show
+from webdemo.ui.components.settings import looked_up
 from webdemo.ui.components.show import result_payload
 from webdemo.ui.components.upload import chip, example_chips, file_field
 from webdemo.ui.context import PageContext
 from webdemo.ui.history import Opened
 from webdemo.ui.text.examples import example_clips
-from webdemo.ui.text.panels import comparison_panel, status
+from webdemo.ui.text.panels import comparison_panel, method_line, notes_lines, status
 from webdemo.ui.text.words import error_line, seconds, text
 
 from .job import QUIET, JobTab, Updates, total
@@ -46,6 +46,11 @@ EMPTY_TEXT = (
     "Choose one person: drop a motion file or pick an example\n"
     "React adds a second person who answers. Live does so while the first one plays."
 )
+_DETECTED = "detect"
+_AUTOMATIC = (
+    "With words, InterGen answers them; without words, the virtual agent recognises the gesture itself."
+)
+_WORDS = "What do the two people do? (optional)"
 _SHORTEST = 0.1
 """Seconds: the least that the trim's sliders differ in."""
 
@@ -60,7 +65,7 @@ class ReactTab(JobTab):
 
     label = "React"
     prefix = "react-"
-    restored = ("method", "other")
+    restored = ("method", "other", "about", "given", "person", "folded")
 
     def __init__(self, page: PageContext, examples: list[tuple[str, Path]] | None = None) -> None:
         super().__init__(page)
@@ -80,8 +85,9 @@ class ReactTab(JobTab):
         known = variants("react")
         its = (asked.get("model"), asked.get("mode"))
         method = next((key for key, v in known.items() if (v.method.name, v.mode) == its), next(iter(known)))
-        fitted = zip((self.role, self.steps, self.damping), self.fit_method(method), strict=True)
-        kept = (asked.get(name) for name in ("role", "steps", "damping"))
+        names = ("role", "steps", "guidance", "damping", "prompt", "about")
+        fitted = zip((getattr(self, name) for name in names), self.fit_method(method), strict=True)
+        kept = (asked.get(name) for name in names)
         return super().opened(run) | {
             self.method: gr.update(value=method),
             self.other: gr.update(value=""),
@@ -108,25 +114,28 @@ class ReactTab(JobTab):
                     self._sampling()
             self._results(EMPTY_TEXT)
         self.source = gr.State(None, time_to_live=3600)
+        self.given = gr.Textbox("", visible=False)
         self.controls = {
-            "source": self.source, "person": self.person, "start": self.begin, "end": self.end,
+            "source": self.source, "given": self.given, "person": self.person, "start": self.begin, "end": self.end,
             "role": self.role, "prompt": self.prompt, "seed": self.seed, "samples": self.samples,
             "guidance": self.guidance, "steps": self.steps, "damping": self.damping, "method": self.method,
             "other": self.other, "keep": self.keep,
         }  # fmt: skip
-        inputs = set(self.controls.values())
-        self._wire_run(self.start, [self.go.click, self.prompt.submit], inputs, record)
-        self._wire_start(self.start_live, [self.live.click], inputs)
+        self._wire_run([self.go.click, self.prompt.submit], record)
+        self._wire_start(self.start_live, [self.live.click])
         self._wire_actor()
-        methods = [self.method, self.other]
-        self.method.input(
-            self.fit_method, inputs=methods, outputs=[self.role, self.steps, self.damping],
-            queue=False, **QUIET,
-        )  # fmt: skip
-        self.other.input(
-            lambda *chosen: self.fit_method(*chosen)[0], inputs=methods, outputs=self.role,
-            queue=False, **QUIET,
-        )  # fmt: skip
+        self._wire_methods()
+
+    def _wire_methods(self) -> None:
+        """What can be set follows the chosen methods, in the browser: a late answer would undo what was set."""
+        keys = [key for _, key in react_choices()]
+        fits = {f"{key}/{other}": self.fit_method(key, other) for key in keys for other in ("", *keys)}
+        chosen = [self.method, self.other]
+        fitted = [self.role, self.steps, self.guidance, self.damping, self.prompt, self.about]
+        fit = self.method.input(None, inputs=chosen, outputs=fitted, js=looked_up(fits), **QUIET)
+        fit.then(None, **self.tell_advanced)
+        heard = {pair: (fit[0], fit[4]) for pair, fit in fits.items()}
+        self.other.input(None, inputs=chosen, outputs=[self.role, self.prompt], js=looked_up(heard), **QUIET)
 
     def _ask(self) -> None:
         with gr.Column(elem_classes="pd-panel pd-ask", min_width=0):
@@ -159,15 +168,16 @@ class ReactTab(JobTab):
                 )  # fmt: skip
             with gr.Row(elem_classes="pd-rows"):
                 self.method = gr.Dropdown(
-                    react_choices(), value=reactor("").key, label="Method",
+                    react_choices(), value=AUTOMATIC, label="Method",
                     elem_id="react-method", min_width=0, filterable=False,
                 )  # fmt: skip
                 self.other = gr.Dropdown(
                     [("nothing", ""), *react_choices()], value="", label="Compare with",
                     elem_id="react-other", min_width=0, filterable=False,
                 )  # fmt: skip
+            self.about = gr.HTML(self.fit_method(AUTOMATIC)[-1], elem_id="react-about")
             self.prompt = gr.Textbox(
-                label="What do the two people do? (optional)",
+                label=_WORDS,
                 placeholder="One person waves and the other waves back.",
                 lines=1,  # so that Enter generates; the style sheet gives it the height of three
                 max_lines=6,
@@ -180,20 +190,20 @@ class ReactTab(JobTab):
         with gr.Accordion("How the file was read", open=False, elem_id="react-import"):
             with gr.Row(elem_classes="pd-pair"):
                 self.up = gr.Dropdown(
-                    [("found", AUTO), *AXES], value=AUTO, label="Up axis", elem_id="react-up",
+                    [(_DETECTED, AUTO), *AXES], value=AUTO, label="Up axis", elem_id="react-up",
                     min_width=0,
                 )  # fmt: skip
                 self.unit = gr.Dropdown(
-                    [("found", AUTO), *UNITS], value=AUTO, label="Unit", elem_id="react-unit",
+                    [(_DETECTED, AUTO), *UNITS], value=AUTO, label="Unit", elem_id="react-unit",
                     min_width=0,
                 )  # fmt: skip
                 self.fps = gr.Number(
-                    value=None, label="Frames a second", placeholder="found", elem_id="react-fps",
+                    value=None, label="Frames a second", placeholder=_DETECTED, elem_id="react-fps",
                     min_width=0,
                 )  # fmt: skip
                 self.order = gr.Dropdown(
-                    [("found", AUTO), *((label, name) for name, label in ORDERS.items())],
-                    value=AUTO, label="Order of 15 joints", elem_id="react-order", min_width=0,
+                    [(_DETECTED, AUTO), *((label, name) for name, label in ORDERS.items())],
+                    value=AUTO, label="Data set of a 15-joint file", elem_id="react-order", min_width=0,
                 )  # fmt: skip
             self.found = gr.HTML(elem_id="react-found")
 
@@ -211,7 +221,8 @@ class ReactTab(JobTab):
 
     def _wire_actor(self) -> None:
         changed = [
-            self.source, self.line, self.player, self.trim, self.person, self.begin, self.end, self.found,
+            self.source, self.given, self.line, self.player, self.trim, self.person, self.begin, self.end,
+            self.found,
         ]  # fmt: skip
         load: dict[str, Any] = {
             "outputs": changed,
@@ -219,18 +230,21 @@ class ReactTab(JobTab):
             "concurrency_id": "react-read",
             **QUIET,
         }
-        self.file.upload(self.upload, inputs=self.file, **load)
-        self.camera.submit(self.read_film, inputs=self.camera, **load)
+        self.file.upload(self.upload, inputs=self.file, **load).then(None, **self.compare)
+        self.camera.submit(self.read_film, inputs=self.camera, **load).then(None, **self.compare)
         choices = [self.up, self.unit, self.fps, self.order]
         self.file.upload(lambda: (AUTO, AUTO, None, AUTO), outputs=choices, queue=False, **QUIET)
         gr.on(
             [self.up.input, self.unit.input, self.order.input, self.fps.submit, self.fps.blur],
-            self.read_again, inputs=[self.source, *choices], trigger_mode="always_last", **load,
-        )  # fmt: skip
+            self.read_again, inputs=[self.source, *choices], trigger_mode="always_last",
+            **{**load, "outputs": [*changed, *choices]},
+        ).then(None, **self.compare)  # fmt: skip
         for button, (name, path) in zip(self.chips, self.examples, strict=True):
-            button.click(partial(self.load, partial(read_source, path, name)), **load)
+            read = partial(self.load, partial(read_source, path, name))
+            button.click(read, **load).then(None, **self.compare)
         for person, button in self.take.items():
-            button.click(partial(self.take_result, person), inputs=self.record, **load)
+            taking = button.click(partial(self.take_result, person), inputs=self.record, **load)
+            taking.then(None, **self.compare)
         others = [self.camera.submit, *(button.click for button in (*self.chips, *self.take.values()))]
         gr.on(others, None, outputs=self.file, js="() => null", **QUIET)  # the file is no longer what is used
         self.source.change(
@@ -246,20 +260,33 @@ class ReactTab(JobTab):
 
     @staticmethod
     def fit_method(method: str, other: str = "") -> Updates:
-        """Updates of role, steps and damping: what a method does not have cannot be set."""
-        chosen = reactor(method)
-        both = [chosen, *([reactor(other)] if other else [])]
+        """Updates of role, steps, guidance, damping, words and the line on a method.
+
+        What a method does not have cannot be set.
+        """
+        words = {"prompt": "They move."}  # automatic: whatever is set may matter
+        chosen = reactor(method, words)
+        both = [chosen, *([reactor(other, words)] if other else [])]
         either = all("either role" in variant.method.takes for variant in both)
         forced: dict[str, Any] = {} if either else {"value": "a"}
-        role = gr.update(interactive=either, **forced)
-        damped = "damping" not in chosen.method.fixed and chosen.mode == "offline"
+        heard = any("words" in variant.method.takes for variant in both)
+        fixed = chosen.method.fixed
         steps = chosen.method.default("steps", ReactRequest.steps)
-        return role, gr.update(value=steps), gr.update(interactive=damped)
+        live = live_variant()
+        about = _AUTOMATIC if method == AUTOMATIC else chosen.method.summary
+        return (
+            gr.update(interactive=either, **forced),
+            gr.update(value=steps, interactive="steps" not in fixed),
+            gr.update(interactive="guidance" not in fixed),
+            gr.update(interactive="damping" not in fixed and chosen.mode == "offline"),
+            gr.update(interactive=heard, label=_WORDS if heard else f"{_WORDS} Not used: {chosen.label}"),
+            method_line(about) + (method_line(f"Live always answers with {live.label}.") if live else ""),
+        )
 
     def upload(self, path: str | None) -> Iterator[Updates]:
-        """Reads an uploaded file and shows its actor."""
+        """Reads an uploaded file and shows its actor; one that cannot be read leaves no actor."""
         if path is not None:
-            yield from self.load(partial(read_source, path))
+            yield from self.load(partial(read_source, path), fresh=True)
 
     def read_film(self, landmarks: str | None) -> Iterator[Updates]:
         """Makes the people of a film the actors."""
@@ -268,10 +295,13 @@ class ReactTab(JobTab):
     def read_again(
         self, source: Source | None, up: str, unit: str, fps: float | None, order: str = AUTO
     ) -> Iterator[Updates]:
-        """Reads the source's file anew with what the visitor knows of it."""
-        if source is not None and source.path is not None:
-            path, name = source.path, source.name
-            yield from self.load(lambda: read_source(path, name, import_choices(up, unit, fps, order)))
+        """Reads the source's file anew with what the visitor knows of it, or takes that back where it cannot."""
+        if source is None or source.path is None:
+            return
+        path, name, asked = source.path, source.name, (up, unit, fps, order)
+        for updates in self.load(lambda: read_source(path, name, asked)):
+            failed = updates[0] == gr.skip() and "pd-error" in updates[2]
+            yield *updates, *(source.read_with if failed else (gr.skip(),) * 4)
 
     def take_result(self, person: str, record: Record | None) -> Iterator[Updates]:
         """Makes a person of the session's last result the actor."""
@@ -283,19 +313,30 @@ class ReactTab(JobTab):
 
         yield from self.load(read)
 
-    def load(self, read: Callable[[], Source]) -> Iterator[Updates]:
-        """Updates of source, line, player, trim, person, start, end and found while an actor is read."""
-        same = (gr.skip(),) * 5
-        yield gr.skip(), status("Reading the motion …", tone="busy"), busy("Reading the motion …"), *same
+    def load(self, read: Callable[[], Source], *, fresh: bool = False) -> Iterator[Updates]:
+        """Updates of source, its key, line, player, trim, person, start, end and found while an actor is read.
+
+        Where it is ``fresh`` and cannot be read, an earlier actor is forgotten.
+        """
+        rest = (gr.skip(),) * 5
+        same = (gr.skip(),) * 2
+        yield *same, status("Reading the motion …", tone="busy"), busy("Reading the motion …"), *rest
         try:
             source = read()
             payload = source.preview(source.chosen, 0.0, source.end)
         except Exception as error:
-            yield gr.skip(), status(error_line(error), tone="error"), busy(""), *same
+            told = status(error_line(error), tone="error")
+            if fresh:
+                nobody = list(self.forget())
+                nobody[2] = told
+                yield tuple(nobody)
+            else:
+                yield *same, told, busy(""), *rest
             return
         last = max(round(source.seconds, 1), _SHORTEST)
         yield (
             source,
+            source.key,
             self._told(source, 0.0, source.end),
             show(payload),
             gr.update(visible=True),
@@ -308,7 +349,7 @@ class ReactTab(JobTab):
     @staticmethod
     def forget() -> Updates:
         """The tab without an actor; a result stays in the downloads."""
-        return None, status(), show(None), gr.update(visible=False), *(gr.skip(),) * 4
+        return None, "", status(), show(None), gr.update(visible=False), *(gr.skip(),) * 4
 
     def preview(self, source: Source | None, person: str, start: float, end: float) -> Updates:
         """Shows the actor as trimmed."""
@@ -331,18 +372,11 @@ class ReactTab(JobTab):
             return status(f"{used} Take {longest:g} s or less.", tone="warning")
         return status(" ".join((used, *source.notes)), tone="warning" if source.notes else "quiet")
 
-    def start(self, values: dict[gr.components.Component, Any], request: gr.Request) -> Iterator[Updates]:
-        """Runs what the controls ask for; yields updates of the page."""
-        yield from self.run(str(request.session_hash), self._fields(values))
-
     def start_live(
         self, values: dict[gr.components.Component, Any], request: gr.Request
     ) -> Iterator[Updates]:
         """Streams an online reaction while the actor plays; yields updates of the page."""
         yield from self.run(str(request.session_hash), {**self._fields(values), "live": True})
-
-    def _fields(self, values: Mapping[gr.components.Component, Any]) -> dict[str, Any]:
-        return {name: values[component] for name, component in self.controls.items()}
 
     def answer(self, session: str, fields: Mapping[str, Any]) -> Iterator[Updates]:
         """Runs one method, two side by side, or the live reaction."""
@@ -356,18 +390,18 @@ class ReactTab(JobTab):
     def _answer_both(self, session: str, fields: Mapping[str, Any]) -> Iterator[Updates]:
         """Runs two methods one after the other for the same actor, words and seed, and shows both."""
         keys = (fields["method"], fields["other"])
-        if keys[0] == keys[1]:
+        if reactor(keys[0], fields) == reactor(keys[1], fields):
             raise InputError("Both methods are the same: choose another one to compare with.")
         wanted = {key: self.request(with_method(fields, key)) for key in keys}
         made: dict[str, Result] = {}
         for key, request in wanted.items():
-            made[key] = yield from self.made(session, request, label=f"{reactor(key).label}. ")
+            made[key] = yield from self.made(session, request, label=f"{reactor(key, fields).label}. ")
         title = self.title(wanted[keys[0]])
-        named = {reactor(key).label: result for key, result in made.items()}
+        named = {reactor(key, fields).label: result for key, result in made.items()}
         spent = " and ".join(seconds(total(result)) for result in made.values())
         yield self._updates(
             player=show(comparison_payload(named, title=title)),
-            line=status(f"Both done, in {spent}.", tone="done"),
+            line=status(f"Both done, in {spent}.", tone="done") + "".join(map(notes_lines, made.values())),
             under=gr.update(visible=True),
             readouts=comparison_panel(named),
             record=Record(made[keys[0]], title, compared=made),
@@ -388,7 +422,8 @@ class ReactTab(JobTab):
             raise
         shown = self._shown(result, title)
         payload = {**result_payload(result, title=title), "continues": view.id}
-        line = status(f"Live reaction done: {view.delay}.", tone="done")
+        told = f"Live reaction by {live.label} done: {view.delay}."
+        line = status(told, tone="done") + notes_lines(result)
         yield self._updates(**{**shown, "player": show(payload), "line": line})
 
 

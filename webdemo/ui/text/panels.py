@@ -6,6 +6,7 @@ from collections.abc import Mapping, Sequence
 from typing import Any
 
 from motion.metrics import MEASURES, Measure
+from webdemo.inference.methods import label_of
 from webdemo.inference.requests import Result
 
 from .plain import legend, told_lines
@@ -32,6 +33,16 @@ def status(line: str = "", *, tone: str = "quiet") -> str:
     return f'<p class="pd-status pd-{tone}" role="{role}">{text(line)}</p>'
 
 
+def notes_lines(result: Result) -> str:
+    """What the user should read about a result, to stand right beside "Done"."""
+    return "".join(status(note, tone="warning") for note in result.notes)
+
+
+def method_line(summary: str) -> str:
+    """One line on a method, under the place where it is chosen."""
+    return f'<p class="pd-method">{text(summary)}</p>'
+
+
 def model_state(state: str, error: str | None = None) -> str:
     """The small mark in the header: whether the networks are loaded."""
     words = {
@@ -43,9 +54,9 @@ def model_state(state: str, error: str | None = None) -> str:
 
 
 def readout_panel(result: Result) -> str:
-    """Everything under the player: notes, how it came out, what was asked, measures, contacts, timings."""
+    """Everything under the player: how it came out, what was asked, measures, contacts, timings."""
     samples = [_sides(readout) for readout in result.readouts]
-    parts = [_notes(result.notes), _told(samples, _heads(len(samples))), _asked(result)]
+    parts = [_told(samples, _heads(len(samples))), _asked(result)]
     if samples:
         parts += [_tables(_quality_table(samples), _relation_table(samples, result)), legend()]
     parts.append(_timings(result.timings))
@@ -65,8 +76,7 @@ def comparison_panel(results: Mapping[str, Result]) -> str:
         manifest={},
     )
     samples = [_sides(readout) for readout in joined.readouts]
-    parts = [_notes(result.notes) for result in results.values()]
-    parts += [_told(samples, heads), *(_asked(result, name) for name, result in results.items())]
+    parts = [_told(samples, heads), *(_asked(result, name) for name, result in results.items())]
     if samples:
         tables = _quality_table(samples, heads), _relation_table(samples, joined, heads)
         parts += [_tables(*tables), legend()]
@@ -107,7 +117,7 @@ def _sides(readout: Mapping[str, Any]) -> tuple[Summary | None, Summary]:
 def _asked(result: Result, name: str | None = None) -> str:
     request = result.manifest.get("request", result.manifest)
     shown = [
-        ("Method", name),
+        ("Method", name or _method(request)),
         ("Actor", request.get("actor", {}).get("name")),
         ("Seed", request.get("seed")),
         ("Length", f"{result.duets[0].seconds:.1f} s" if result.duets else None),
@@ -123,12 +133,13 @@ def _asked(result: Result, name: str | None = None) -> str:
     return f'<dl class="pd-asked">{items}</dl>'
 
 
+def _method(request: Mapping[str, Any]) -> str | None:
+    """The method of a reaction, which may have been chosen by itself."""
+    return label_of(str(request.get("model"))) if request.get("kind") == "react" else None
+
+
 def _plain(value: Any) -> str | None:
     return None if value is None else f"{value:g}"
-
-
-def _notes(notes: Sequence[str]) -> str:
-    return "".join(f'<p class="pd-note" role="note">{text(note)}</p>' for note in notes)
 
 
 def _quality_table(

@@ -21,10 +21,11 @@ _STAGES = {
     "queue": "Waiting for another run to finish",
     "load": "Loading the model",
     "text": "Reading the prompt",
-    "sample": "Denoising",
     "finish": "Finishing the motion",
 }
 
+_SAMPLING = {"step": "Denoising", "pass": "Predicting"}
+"""What goes on where this unit is counted."""
 _PACE_STEPS = 3
 """Steps after which the pace is known, or a tenth of them all."""
 _SHORT = 3.0
@@ -43,10 +44,10 @@ def progress_line(progress: Progress) -> str:
         left = progress.seconds_left
         soon = "" if left is None else f", about {_about(left)} until it starts"
         return f"Waiting in line: place {progress.step} of {progress.total}{soon} …"
-    stage = _STAGES.get(progress.stage, progress.stage.capitalize())
     if progress.stage == "sample":
-        return f"{stage}: step {progress.step} of {progress.total}{_left(progress)}"
-    return f"{stage} …"
+        stage = _SAMPLING.get(progress.unit, "Generating")
+        return f"{stage}: {progress.unit} {progress.step} of {progress.total}{_left(progress)}"
+    return f"{_STAGES.get(progress.stage, progress.stage.capitalize())} …"
 
 
 def _left(progress: Progress) -> str:
@@ -66,7 +67,7 @@ def cancelled_line(progress: Progress | None) -> str:
     """The sentence after a cancellation, with the last step that was done."""
     if progress is None or progress.stage != "sample":
         return "Cancelled before the first step."
-    return f"Cancelled at step {progress.step} of {progress.total}."
+    return f"Cancelled at {progress.unit} {progress.step} of {progress.total}."
 
 
 def error_line(error: Exception) -> str:

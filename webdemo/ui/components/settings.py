@@ -1,0 +1,55 @@
+"""Controls that say what is true: whether they are as what is shown was made, and what is folded away."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Iterable, Mapping, Sequence
+from typing import Any
+
+from webdemo.ui.text.panels import status
+
+OPENED = "opened"
+"""Stands for the settings of a run that was opened with all controls as they were."""
+CHANGED = "Settings changed: run again to see what they do."
+
+ADVANCED = """(guidance, steps, damping) => ({
+  __type__: "update", label: `Advanced: guidance ${guidance}, ${steps} steps, damping ${damping}`,
+})"""
+"""JavaScript that gives the folded sliders' line; :func:`advanced_label` is the same in Python."""
+
+
+def advanced_label(guidance: float, steps: int, damping: float) -> str:
+    """The line over the folded sliders."""
+    return f"Advanced: guidance {guidance:g}, {steps} steps, damping {damping:g}"
+
+
+def snapshot(fields: Mapping[str, Any], names: Iterable[str]) -> str:
+    """The values of controls as :func:`differs` compares them."""
+    return json.dumps({name: fields.get(name) for name in names})
+
+
+def differs(names: Sequence[str]) -> str:
+    """JavaScript that says whether controls of these names differ from a snapshot, given before them."""
+    told = json.dumps(status(CHANGED, tone="warning"))
+    return f"""(asked, ...values) => {{
+  if (!asked || asked === "{OPENED}") return "";
+  const was = JSON.parse(asked);
+  const same = (name, i) => String(was[name] ?? "") === String(values[i] ?? "");
+  return {json.dumps(list(names))}.every(same) ? "" : {told};
+}}"""
+
+
+def taken(names: Sequence[str]) -> str:
+    """JavaScript that takes a snapshot of controls of these names where a run was just opened."""
+    return f"""(asked, ...values) => {{
+  if (asked !== "{OPENED}") return asked;
+  return JSON.stringify(Object.fromEntries({json.dumps(list(names))}.map((name, i) => [name, values[i] ?? null])));
+}}"""
+
+
+def looked_up(table: Mapping[str, Sequence[Any]]) -> str:
+    """JavaScript that answers with the updates of a table by the value, or values joined by "/", of its inputs.
+
+    The browser answers at once, so that no late update takes back what was set meanwhile.
+    """
+    return f"(...keys) => ({json.dumps(table)})[keys.map((key) => key ?? '').join('/')]"
