@@ -45,7 +45,16 @@ export class Controls {
       hover: (pointer) => player.hover(pointer),
       mayScroll: (event) => event.ctrlKey || root.contains(document.activeElement) || document.fullscreenElement === root,
     });
-    this.find(".pdd-touch").addEventListener("pointerdown", () => root.focus({ preventScroll: true }));
+    let pressed = null;
+    this.find(".pdd-touch").addEventListener("pointerdown", (event) => {
+      root.focus({ preventScroll: true });
+      pressed = [event.clientX, event.clientY];
+    });
+    this.find(".pdd-touch").addEventListener("click", ({ clientX, clientY }) => {
+      const moved = pressed && Math.hypot(clientX - pressed[0], clientY - pressed[1]);
+      const cell = moved < 5 ? player.grid.at(clientX, clientY) : -1;
+      if (cell >= 0) player.enlarge(cell);
+    });
   }
 
   /** A title and a tab a sample for a decoded payload. */

@@ -50,6 +50,7 @@ const unpackSample = (sample) => ({
   motion: unpackPositions(sample.positions),
   ghostMotion: sample.ghost ? unpackPositions(sample.ghost) : null,
   beside: sample.beside ? unpackSample(sample.beside) : null,
+  cells: sample.cells?.map(unpackSample) ?? null,
 });
 
 /** A payload as the player keeps it. */

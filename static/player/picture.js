@@ -6,11 +6,11 @@ export async function savePicture({ panes, stage, theme, caption, name }) {
   const images = await Promise.all(panes.map((pane) => pane.scene.picture()));
   const ratio = images[0].width / panes[0].host.clientWidth;
   const canvas = document.createElement("canvas");
-  [canvas.width, canvas.height] = [Math.round(ratio * stage.clientWidth), images[0].height];
+  [canvas.width, canvas.height] = [ratio * stage.clientWidth, ratio * stage.clientHeight].map(Math.round);
   const context = canvas.getContext("2d");
   context.fillStyle = css(theme.background);
   context.fillRect(0, 0, canvas.width, canvas.height);
-  images.forEach((image, i) => context.drawImage(image, ratio * panes[i].host.offsetLeft, 0));
+  images.forEach((image, i) => context.drawImage(image, ratio * panes[i].host.offsetLeft, ratio * panes[i].host.offsetTop));
   context.scale(ratio, ratio);
   const family = getComputedStyle(stage).fontFamily;
   const from = stage.getBoundingClientRect();

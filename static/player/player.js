@@ -1,9 +1,11 @@
 // The player: one element, one scene, one clock. main.js makes these; everything else is a part of it.
 
+import { aim } from "./address.js";
 import { Clock } from "./clock.js";
 import { Controls } from "./controls.js";
 import { decode } from "./decode.js";
 import * as live from "./live.js";
+import { Grid } from "./grid.js";
 import { loadBody } from "./loader.js";
 import { Orbit } from "./orbit.js";
 import { Tip } from "./overlay.js";
@@ -38,6 +40,8 @@ export class Player {
     this.orbit = new Orbit();
     this.panes = [];
     this.addPane();
+    this.grid = new Grid(this.find(".pdd-grid"), this.panes[0]);
+    this.focus = null; // the number of the cell of a grid that is seen large
     this.tip = new Tip(this.find(".pdd-tip"));
     this.strip = new Strip(root, { onSeek: (frame) => this.seek(frame) });
     this.show = { trails: false, ghosts: false, bodies: true, skeletons: false };
@@ -75,6 +79,14 @@ export class Player {
     this.wake();
   }
 
+  /** Lighter bodies for people who are seen small, many at a time. */
+  async dressGrid() {
+    if (!this.bodies) return;
+    const several = () => this.grid.cells.length > 0;
+    const bodies = several() ? await Promise.all(["a-small", "b-small"].map(loadBody)) : this.bodies;
+    if (several() === (bodies !== this.bodies)) this.panes[0].dress(bodies);
+  }
+
   addPane() {
     const panes = this.find(".pdd-panes");
     panes.append(panes.querySelector("template").content.cloneNode(true));
@@ -89,11 +101,13 @@ export class Player {
   }
 
   get sample() {
-    return this.data?.samples[this.sampleIndex] ?? null;
+    const sample = this.data?.samples[this.sampleIndex] ?? null;
+    return this.focus === null ? sample : sample?.cells?.[this.focus] ?? sample;
   }
 
   /** The panes that show something, the first always: a second one while motions stand side by side. */
   get shown() {
+    if (this.grid.cells.length) return this.grid.cells;
     return this.sample?.beside && this.panes[1]?.scene ? this.panes : this.panes.slice(0, 1);
   }
 
@@ -112,12 +126,15 @@ export class Player {
       this.root.dataset.state = "empty";
       this.strip.load(null);
       this.split(false);
+      this.focus = null;
+      this.grid.load(null);
       this.panes[0].load(null);
       this.refresh();
       return;
     }
     const goesOn = Boolean(payload.continues) && payload.continues === this.data?.id;
     this.data = decode(payload);
+    this.focus = null;
     if (!payload.rounds) remember();
     if (this.data.live) live.begin(this.data.samples[0]);
     this.skeleton = describe(this.data.names, this.data.parents);
@@ -129,6 +146,7 @@ export class Player {
     if (!goesOn) this.resetCamera();
     if (this.sample.live) this.clock.pause();
     else if (!goesOn) this.clock.play();
+    if (!payload.rounds && !this.sample.live) aim(this);
     this.refresh();
   }
 
@@ -170,12 +188,25 @@ export class Player {
     const { sample } = this;
     this.clock.load(sample);
     this.panes[0].load(sample, sample.caption);
+    const reshaped = this.grid.load(sample.cells ? sample : null);
+    this.find(".pdd-back").hidden = this.focus === null;
     this.panes[1]?.load(sample.beside ?? null, sample.beside?.caption);
     this.split(Boolean(sample.beside));
-    this.measure();
+    if (reshaped) {
+      this.resize();
+      this.dressGrid();
+    } else this.measure();
     this.strip.load(sample, this.theme.curve);
     this.controls.select(sample, this.sampleIndex);
     this.refresh();
+  }
+
+  /** A cell of a grid in the whole stage, or all of them again for null; at the same moment, from the same side. */
+  enlarge(cell) {
+    if (this.focus === cell || !this.data?.samples[this.sampleIndex].cells) return;
+    this.focus = cell;
+    this.select(this.sampleIndex);
+    this.orbit.cut(this.wanted());
   }
 
   // ---- actions -------------------------------------------------------------------------------
@@ -188,6 +219,7 @@ export class Player {
   act(action, argument) {
     const { clock } = this;
     const toggle = { follow: 1, trails: 1, ghosts: 1 }[action];
+    if (action === "grid" || (action === "close" && this.focus !== null)) return this.enlarge(null);
     if (action === "help" || action === "close") return this.controls.toggleHelp(action === "help" ? undefined : false);
     this.data && (this.data.rounds = null); // a visitor is at hand: it goes on
     if (action === "fullscreen") return this.toggleFullscreen();
@@ -249,6 +281,10 @@ export class Player {
   measure() {
     const { clientWidth: width, clientHeight: height } = this.panes[0].host;
     if (!width || !height) return; // in a closed tab there is no size yet
+    if (this.grid.cells.length) {
+      this.box = { width, height, inset: { top: 12, right: 8, bottom: 24, left: 8 } };
+      return;
+    }
     const inset = { top: 44, right: 24, bottom: 22, left: 24 };
     const tools = this.find(".pdd-tools").getBoundingClientRect();
     if (tools.width > tools.height) inset.bottom += tools.height; // on narrow stages they lie below
@@ -322,6 +358,7 @@ export class Player {
   }
 
   resize() {
+    this.grid.fit();
     for (const pane of this.panes) pane.scene?.resize();
     this.measure();
     this.strip.paint();

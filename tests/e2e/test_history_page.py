@@ -34,7 +34,7 @@ def test_a_result_is_kept_and_its_link_opens_it_with_all_controls(lab: str, open
     page.click("#generate")
     page.wait_for_selector("#status .pd-done")
     page.click("button[role=tab]:has-text('History')")
-    page.wait_for_selector("#history-list label:has-text('seed 77')")
+    page.wait_for_selector(".pdn-card:has-text('seed 77')")
     page.click("#history-link")
     box = page.locator("#history-address textarea, #history-address input")
     box.wait_for()
@@ -94,8 +94,9 @@ def test_a_prediction_opens_with_its_marker_and_its_ghost(
     page.wait_for_selector("#predict-status .pd-done")
 
     page.reload()
+    page.wait_for_selector("#predict-status .pd-done:has-text('Made on')")  # the last result is there again
     page.click("button[role=tab]:has-text('History')")
-    page.wait_for_selector("#history-list label:has-text('After walker.npy')")
+    page.wait_for_selector(".pdn-card:has-text('After walker.npy')")
     page.click("#history-open")
     page.wait_for_selector("#predict-status .pd-done:has-text('Made on')")
     sample = "window.__pasdedeux.player.sample"
@@ -132,17 +133,85 @@ def test_a_class_and_a_reaction_open_with_their_method(lab: str, open_page: Call
     other = open_page(lab)
     other.set_default_timeout(SLOW)
     other.click("button[role=tab]:has-text('History')")
-    other.click("#history-list label:has-text('Reaction to')")
+    other.click(".pdn-card:has-text('Reaction to')")
     other.click("#history-open")
     other.wait_for_selector("#react-status .pd-done:has-text('Made on')")
     expect(other.locator("#react-method input")).to_have_value("ReGenNet, offline", timeout=SLOW)
     expect(other.locator("#react-advanced")).to_contain_text("7 steps")
     other.click("button[role=tab]:has-text('History')")
-    other.click("#history-list label:has-text('high five · BiGraphDiff')")
+    other.click(".pdn-card:has-text('high five')")
     other.click("#history-open")
     other.wait_for_selector("#status .pd-done:has-text('Made on')")
     expect(other.locator("#class input")).to_have_value("high five", timeout=SLOW)
     expect(other.locator("#prompt")).to_be_hidden()
+
+
+def test_a_notebook_is_searched_written_in_and_taken_along(
+    lab: str, open_page: Callable, tmp_path: Path
+) -> None:
+    page = open_page(lab, accept_downloads=True)
+    page.set_default_timeout(SLOW)
+    prompts = ("They bow in the rehearsal.", "They salute in the rehearsal.")
+    for prompt in prompts:
+        page.fill("#prompt textarea", prompt)
+        page.click("#generate:enabled")
+        expect(page.locator("#player .pdd-title")).to_have_text(prompt, timeout=SLOW)
+    page.evaluate(
+        "(() => { const p = window.__pasdedeux.player; p.act('play'); p.seek(42); p.orbit.turn(0.5, 0.1); })()"
+    )
+    page.click("#link")
+    address = "document.querySelector('#address textarea, #address input')?.value"
+    page.wait_for_function(address)
+    link = page.evaluate(address)
+
+    page.click("button[role=tab]:has-text('History')")
+    cards = page.locator(".pdn-card")
+    page.fill("[data-find=words]", "rehearsal")
+    expect(cards).to_have_count(2, timeout=SLOW)
+    drawn = (
+        "[...document.querySelector('.pdn-thumb').getContext('2d').getImageData(0, 0, 88, 88).data].join()"
+    )
+    first = page.evaluate(drawn)
+    page.wait_for_function(f"({drawn}) !== {first!r}")  # it moves
+    page.click(".pdn-card >> nth=0 >> summary")
+    for field, value in (
+        ("title", "<b>The salute</b>"),
+        ("tags", "paper"),
+        ("note", "Hands late"),
+        ("frame", "40"),
+    ):
+        page.fill(f"[data-field={field}]", value)
+    page.click("[data-save]")
+    expect(cards.first).to_contain_text("<b>The salute</b>")
+    expect(cards.first).to_contain_text("Frame 40: Hands late")
+    page.fill("[data-find=words]", "rehearsal late salute")
+    expect(cards).to_have_count(1, timeout=SLOW)
+    page.fill("[data-find=words]", "rehearsal")
+    expect(cards).to_have_count(2, timeout=SLOW)
+
+    page.check(".pdn-card >> nth=1 >> [data-choose]")
+    page.click("#history-export")
+    page.wait_for_selector("#history-status :text('2 runs in one file')")
+    with page.expect_download(timeout=SLOW) as download:
+        page.click("#history-saved")
+    workspace = tmp_path / "workspace.zip"
+    download.value.save_as(workspace)
+    page.click("#history-remove")
+    expect(cards).to_have_count(0, timeout=SLOW)
+    page.click("#history-restore")
+    expect(cards).to_have_count(2, timeout=SLOW)
+    page.click("#history-workspace button >> nth=0")
+    page.set_input_files("#history-import input[type=file]", workspace)
+    page.wait_for_selector("#history-status :text('Imported 2 runs')")
+    page.fill("[data-find=words]", "in the rehearsal")
+    expect(cards).to_have_count(4, timeout=SLOW)
+
+    other = open_page(link)
+    other.set_default_timeout(SLOW)
+    other.wait_for_selector("#status .pd-done:has-text('Made on')")
+    other.wait_for_function("window.__pasdedeux.frame === 42 && !window.__pasdedeux.playing")
+    expect(other.locator("#player .pdd-title")).to_have_text("<b>The salute</b>")
+    assert abs(other.evaluate("window.__pasdedeux.player.orbit.yaw + 0.55")) < 0.01
 
 
 def test_a_forged_link_is_a_sentence(lab: str, open_page: Callable) -> None:
@@ -161,7 +230,7 @@ def test_the_buttons_fit_a_phone(lab: str, open_page: Callable) -> None:
     page.click("button[role=tab]:has-text('History')")
     page.wait_for_selector("#history-remove")
     cut = page.evaluate(
-        "[...document.querySelectorAll('.pd-history-buttons button')]"
+        "[...document.querySelectorAll('.pdn-actions button')]"
         ".filter(e => e.scrollWidth > e.clientWidth || e.getBoundingClientRect().right > 390).map(e => e.id)"
     )
     assert cut == []

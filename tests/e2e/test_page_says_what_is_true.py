@@ -161,13 +161,13 @@ def test_words_that_a_method_does_not_hear_are_greyed_and_frames_are_counted(
 
     choose(page, "#react-method", "ReGenNet, online")
     expect(page.locator("#react-prompt textarea")).to_be_enabled()
-    server.engine.pause = 0.3
+    server.engine.pause = 5.0  # so that a slow browser sees the run while it goes on
     try:
         page.click("button#react-generate")
         expect(page.locator("#react-status")).to_contain_text("Generating: frame", timeout=SLOW)
+        page.click("button#react-cancel")
     finally:
         server.engine.pause = 0.01
-    page.click("button#react-cancel")
     expect(page.locator("#react-status .pd-warning")).to_contain_text("Cancelled at frame", timeout=SLOW)
     page.click("button#react-live")
     expect(page.locator("#react-status .pd-done")).to_contain_text("by ReGenNet, online", timeout=SLOW)

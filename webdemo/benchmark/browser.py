@@ -215,7 +215,9 @@ def _wait_for_a_long_run(page: Any, browser: Any) -> float:
     page.wait_for_timeout(1000)
     share = _cores(browser, lambda: page.wait_for_timeout(1000 * WATCHED))
     if not stop.count():
-        raise InputError("The run ended before the waiting page was measured: this machine is too fast for it.")
+        raise InputError(
+            "The run ended before the waiting page was measured: this machine is too fast for it."
+        )
     page.locator("button#generate:enabled").wait_for(timeout=1000 * LONGEST_RUN)
     return share
 

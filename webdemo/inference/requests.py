@@ -238,6 +238,7 @@ class Result:
             measure with its value ``before`` and ``after`` the damping and clean-up where both exist.
         timings: seconds by stage.
         notes: sentences the user should read, such as a prompt far from all training captions.
+        run: its id in the history; "" where none keeps it.
     """
 
     duets: tuple[Duet | Clip, ...]
@@ -245,6 +246,7 @@ class Result:
     readouts: tuple[dict[str, Any], ...] = ()
     timings: dict[str, float] = field(default_factory=dict)
     notes: tuple[str, ...] = ()
+    run: str = ""
 
 
 class Cancelled(Exception):

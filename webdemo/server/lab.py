@@ -19,7 +19,7 @@ from webdemo.server.queue.shared_engine import SharedEngine
 from webdemo.server.queue.shares import Shares
 from webdemo.server.queue.turns import Batcher, QueueLimits
 from webdemo.server.store.database import Database
-from webdemo.server.store.history import History
+from webdemo.server.store.notebook import Notebook
 from webdemo.ui.runs import EngineLike
 
 from .settings import Settings
@@ -36,7 +36,7 @@ class Lab:
 
     settings: Settings
     database: Database
-    history: History
+    history: Notebook
     queue: FairQueue
     places: Places
     shares: Shares
@@ -99,8 +99,8 @@ def make_lab(
     )  # fmt: skip
 
 
-def _history(settings: Settings, database: Database, name: str) -> History:
-    return History(
+def _history(settings: Settings, database: Database, name: str) -> Notebook:
+    return Notebook(
         database, settings.motions, node=name, keep_days=settings.keep_days,
         keep_bytes=settings.keep_megabytes * 2**20, keep_favourites=settings.keep_favourites,
         link_days=settings.link_days, free_bytes=settings.free_megabytes * 2**20,

@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
+from pathlib import Path
 from typing import Any, Protocol
 
+from motion import Clip
 from webdemo.inference.requests import Result
 
 
@@ -16,13 +18,17 @@ class Entry:
     Attributes:
         id: by which its owner opens it.
         kind: "generate", "react", …: the tab that it came from.
-        title: the prompt, or what a reaction is to.
+        title: the name that its owner gave it, or the prompt, or what a reaction is to.
         state: "running", "done", "failed", "cancelled" or "interrupted".
         message: one sentence on what went wrong.
         created: seconds since 1970.
         request: what was asked, without motion.
         favourite: never removed for its age.
         links: how many links open it for others.
+        tags: words that its owner put on it.
+        note: what its owner wrote about it.
+        frame: the frame that the note is about.
+        thumbnail: as :func:`webdemo.view.thumbnail.thumbnail` makes it; "" where there is none.
     """
 
     id: str
@@ -34,33 +40,126 @@ class Entry:
     request: dict[str, Any] = field(default_factory=dict)
     favourite: bool = False
     links: int = 0
+    tags: tuple[str, ...] = ()
+    note: str = ""
+    frame: int | None = None
+    thumbnail: str = field(default="", repr=False)
+
+
+@dataclass(frozen=True, kw_only=True)
+class Search:
+    """A search in a history: runs that fit everything given.
+
+    Attributes:
+        words: each of them is in the title, note, tags or settings.
+        kind: of the run; "" for all.
+        model: name of its method; "" for all.
+        tag: one of its tags; "" for all.
+        starred: only those that are kept.
+        since: created at this time or later, in seconds since 1970.
+        until: created before this time.
+        limit: how many at most.
+        offset: how many of the newest are left out.
+    """
+
+    words: str = ""
+    kind: str = ""
+    model: str = ""
+    tag: str = ""
+    starred: bool = False
+    since: float | None = None
+    until: float | None = None
+    limit: int = 60
+    offset: int = 0
+
+
+@dataclass(frozen=True)
+class Found:
+    """The answer to a search.
+
+    Attributes:
+        entries: newest first, as many as were asked for.
+        total: how many fit.
+        tags: all tags of the owner's runs.
+        models: all methods of the owner's runs.
+    """
+
+    entries: Sequence[Entry]
+    total: int
+    tags: Sequence[str] = ()
+    models: Sequence[str] = ()
+
+
+@dataclass(frozen=True, kw_only=True)
+class Kept:
+    """The settings of a tab when a run was made, beside its request.
+
+    Attributes:
+        controls: values of the tab's controls, by name.
+        people: everybody in the file that was chosen.
+        compared: ids of the runs that stood beside it.
+    """
+
+    controls: Mapping[str, Any] = field(default_factory=dict)
+    people: tuple[Clip, ...] = field(default=(), repr=False)
+    compared: tuple[str, ...] = ()
 
 
 @dataclass(frozen=True, kw_only=True)
 class Opened:
-    """A run that was opened, with its result."""
+    """A run that was opened, with its result.
+
+    Attributes:
+        entry: the run.
+        result: of the run.
+        kept: how its tab was set.
+        beside: the runs that it was compared with, as far as they are still there.
+    """
 
     entry: Entry
     result: Result = field(repr=False)
+    kept: Kept = field(default_factory=Kept)
+    beside: tuple[Opened, ...] = field(default=(), repr=False)
 
 
 class HistoryLike(Protocol):
     """Runs that can be found again. Every method raises InputError with a sentence where it cannot."""
 
-    def entries(self, owner: str) -> Sequence[Entry]:
-        """The owner's runs, newest first."""
+    def search(self, owner: str, wanted: Search) -> Found:
+        """The owner's runs that fit."""
+
+    def entry(self, run: str, owner: str) -> Entry:
+        """One of the owner's runs."""
 
     def open(self, key: str, owner: str) -> Opened:
         """A run by its id, for its owner, or by a link, for anybody."""
 
+    def keep(self, run: str, owner: str, kept: Kept) -> None:
+        """Writes down how its tab was set."""
+
     def favour(self, run: str, owner: str, *, favourite: bool) -> None:
         """Marks a run as one to keep, or no longer."""
 
-    def remove(self, run: str, owner: str) -> None:
-        """Deletes a run, its files and its links."""
+    def describe(
+        self, run: str, owner: str, *, title: str | None = None, tags: str | None = None,
+        note: str | None = None, frame: int | None = None,
+    ) -> None:  # fmt: skip
+        """Names a run, tags it, or writes a note about one of its frames; what is None stays."""
+
+    def remove(self, runs: Sequence[str], owner: str) -> int:
+        """Takes runs out of the history; they can be restored for a while. Returns how many."""
+
+    def restore(self, runs: Sequence[str], owner: str) -> int:
+        """Brings removed runs back; returns how many."""
 
     def link(self, run: str, owner: str) -> tuple[str, float]:
         """A new link to a run: its key, and when it ends (seconds since 1970)."""
 
     def revoke(self, run: str, owner: str) -> int:
         """Ends all links to a run; returns how many there were."""
+
+    def export(self, owner: str, runs: Sequence[str], file: Path) -> int:
+        """Writes runs, or all of them for none given, into one file; returns how many."""
+
+    def take_in(self, owner: str, file: Path) -> int:
+        """Adds the runs of a file of :meth:`export` to the owner's; returns how many."""

@@ -62,10 +62,10 @@ def write_film(
     elevation: float | None = None,
     progress: Callable[[int, int], None] | None = None,
 ) -> Path:
-    """Writes a film of one motion, or of several side by side on one clock.
+    """Writes a film of one motion, or of several on one clock: up to three side by side, more in rows.
 
     Args:
-        panes: what is shown, from left to right.
+        panes: what is shown, from left to right and from top to bottom.
         path: ends in .mp4, .webm or .gif; a GIF has at most 25 frames a second.
         fps: frames a second; motion is interpolated to them.
         size: width and height in pixels.
@@ -88,10 +88,9 @@ def write_film(
     rate = min(fps, _GIF_FPS) if suffix == ".gif" else fps
     seconds = max(pane.motion.seconds for pane in panes)
     times = np.arange(max(1, round(seconds * rate))) / rate
-    width = size[0] // len(panes)
     views = cameras(
         [pane.motion for pane in panes],
-        size=(width, size[1]),
+        size=_cell(size, len(panes)),
         times=times,
         view=view,
         follow=follow,
@@ -119,12 +118,24 @@ def _check(suffix: str, fps: float, size: tuple[int, int], panes: Sequence[Pane]
         raise InputError("There is no motion to film: give at least one.")
     if not RATES[0] <= fps <= RATES[1]:
         raise InputError(f"{fps:g} frames a second are not possible: give {RATES[0]:g} to {RATES[1]:g}.")
-    if not all(SIZES[0] <= side <= SIZES[1] for side in size) or size[0] // len(panes) < SIZES[0]:
+    if not all(SIZES[0] <= side <= SIZES[1] for side in size) or _cell(size, len(panes))[0] < SIZES[0]:
         raise InputError(
             f"A picture of {size[0]}x{size[1]} is not possible: give {SIZES[0]} to {SIZES[1]} pixels each way."
         )
     if any(side % 2 for side in size):
         raise InputError(f"A film's width and height are even: give {size[0] & ~1}x{size[1] & ~1}.")
+
+
+def _shape(panes: int) -> tuple[int, int]:
+    """Columns and rows of a film."""
+    columns = panes if panes <= 3 else 2 if panes == 4 else 3
+    return columns, -(-panes // columns)
+
+
+def _cell(size: tuple[int, int], panes: int) -> tuple[int, int]:
+    """Width and height of each pane, in pixels."""
+    columns, rows = _shape(panes)
+    return size[0] // columns, size[1] // rows
 
 
 @dataclass(frozen=True)
@@ -145,28 +156,38 @@ class _Job:
         )
 
     def draw(self) -> Iterator[Picture]:
-        width = self.size[0] // len(self.panes)
-        stages = [
-            Stage(pane, self.style, (width, self.size[1])).pictures(self.times, self.views)
-            for pane in self.panes
-        ]
+        size = _cell(self.size, len(self.panes))
+        stages = [Stage(pane, self.style, size).pictures(self.times, self.views) for pane in self.panes]
         for seconds, shown in zip(self.times, zip(*stages, strict=True), strict=True):
-            whole = shown[0] if len(shown) == 1 else np.concatenate(shown, axis=1)
-            if whole.shape[1] < self.size[0]:
-                whole = np.pad(whole, ((0, 0), (0, self.size[0] - whole.shape[1]), (0, 0)), mode="edge")
+            whole = self._joined(shown)
             self._caption(whole, float(seconds))
             yield whole
+
+    def _joined(self, shown: Sequence[Picture]) -> Picture:
+        """The panes in their columns and rows; what is left over is as the last one's edge."""
+        columns, rows = _shape(len(shown))
+        blank = [np.broadcast_to(shown[-1][:1, :1], shown[-1].shape)] * (columns * rows - len(shown))
+        cells = [*shown, *blank]
+        lines = [np.concatenate(cells[k : k + columns], axis=1) for k in range(0, len(cells), columns)]
+        whole = np.concatenate(lines)
+        missing = (self.size[1] - whole.shape[0], self.size[0] - whole.shape[1])
+        return np.pad(whole, ((0, missing[0]), (0, missing[1]), (0, 0)), mode="edge")
 
     def _caption(self, whole: Picture, seconds: float) -> None:
         height, ink = self.size[1], self.style.colours.ink
         small = max(round(height / 48), 9)
-        width = self.size[0] // len(self.panes)
+        (width, tall), (columns, rows) = _cell(self.size, len(self.panes)), _shape(len(self.panes))
         for number, pane in enumerate(self.panes):
+            row, column = divmod(number, columns)
             if pane.caption:
                 label = words(pane.caption, ink, small)
-                paste(whole, label, round(width * (number + 0.5) - label.shape[1] / 2), small // 2)
-            if number:
-                whole[:, width * number, :3] = [round(255 * c) for c in ink]
+                place = round(width * (column + 0.5) - label.shape[1] / 2), tall * row + small // 2
+                paste(whole, label, *place)
+        line_ink = [round(255 * c) for c in ink]
+        for column in range(1, columns):
+            whole[:, width * column, :3] = line_ink
+        for row in range(1, rows):
+            whole[tall * row, :, :3] = line_ink
         line = f"{self.title}  ·  {seconds:.2f} s" if self.title else f"{seconds:.2f} s"
         paste(whole, words(line, ink, small), small, height - 2 * small)
 

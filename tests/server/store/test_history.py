@@ -121,7 +121,7 @@ def test_a_result_says_how_many_shared_its_pass(weights: Path) -> None:
 def test_others_see_nothing_but_by_a_link_that_lasts(history: History) -> None:
     run = kept(history)
     assert history.entries(OTHER) == []
-    for act in (history.open, history.remove, history.link, history.revoke):
+    for act in (history.open, history.delete, history.link, history.revoke):
         with pytest.raises(InputError, match="There is no such run"):
             act(run, OTHER)
     with pytest.raises(InputError):
@@ -132,7 +132,7 @@ def test_others_see_nothing_but_by_a_link_that_lasts(history: History) -> None:
     assert history.open(key, "").entry.id == run
     assert history.entries(ME)[0].links == 1
     with pytest.raises(InputError):
-        history.remove(key, OTHER)  # a link shows; it gives no power
+        history.delete(key, OTHER)  # a link shows; it gives no power
     assert history.revoke(run, ME) == 1
     with pytest.raises(InputError):
         history.open(key, OTHER)
@@ -154,7 +154,7 @@ def test_forged_keys_say_nothing(history: History, key: str) -> None:
     with pytest.raises(InputError, match="There is no such run, or its link has expired"):
         history.open(key, ME)
     with pytest.raises(InputError):
-        history.remove(key, ME)
+        history.delete(key, ME)
 
 
 def test_keys_are_unguessable(history: History) -> None:
@@ -267,7 +267,7 @@ def test_a_damaged_database_is_a_sentence_and_no_sql(history: History) -> None:
 def test_a_run_that_is_removed_while_it_runs_leaves_no_files(history: History) -> None:
     request = GenerateRequest(prompt="Two people walk.", seconds=1.0, steps=1)
     run = history.begin(ME, request, "removed")
-    history.remove(run, ME)
+    history.delete(run, ME)
     history.finish(run, made(request))
     assert history.entries(ME) == [] and not any(history.folder.iterdir())
 

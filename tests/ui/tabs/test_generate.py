@@ -54,7 +54,7 @@ def test_a_run_ends_with_a_motion_readouts_and_a_record(tab: GenerateTab) -> Non
     steps = run(tab)
     assert steps[0]["go"]["interactive"] is False
     assert steps[0]["stop"]["interactive"] is True
-    assert [button["interactive"] for button in tab.rest()] == [True, False]
+    assert [button["interactive"] for button in tab.rest()] == [True, True, False]
     last = steps[-1]
     assert last["player"]["value"]["title"] == "two people walk"
     assert last["player"]["busy"] == ""

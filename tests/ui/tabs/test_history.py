@@ -1,30 +1,26 @@
-"""The History tab's list: what is there, and what can be done with it."""
+"""The History tab: what the notebook shows, and what is done with what it tells."""
 
 from __future__ import annotations
 
 import time
 from collections.abc import Iterator
 from dataclasses import replace
+from pathlib import Path
 from types import SimpleNamespace
 from typing import Any
 
-import gradio as gr
+import numpy as np
 import pytest
 
-from motion import InputError
+from motion import SKELETONS, Clip, InputError
+from tests.ui.stub_engine import walking
 from webdemo.inference.requests import Progress, Result
-from webdemo.ui.history import Entry
-from webdemo.ui.tabs.history import _ABLE, HistoryTab, _signed_in
+from webdemo.ui.components.notebook import MOST_SHOWN, STEP, Told, facts, settings, shown
+from webdemo.ui.history import Entry, Found, Opened, Search
+from webdemo.ui.tabs.history import EMPTY, NOTHING_FOUND, HistoryTab, _signed_in, compared
 from webdemo.ui.visitor import Visitor
 
-
-def tab(*entries: Entry) -> HistoryTab:
-    """A tab of a history that holds just these runs."""
-    history: Any = SimpleNamespace(
-        entries=lambda owner: list(entries), revoke=lambda run, owner: len(entries)
-    )
-    page: Any = SimpleNamespace(history=history)
-    return HistoryTab(page, {}, tabs=None)  # type: ignore[arg-type] # no tab is opened here
+WHEN = time.strftime("%d %b %Y %H:%M", time.localtime(0))
 
 
 def entry(name: str) -> Entry:
@@ -33,21 +29,53 @@ def entry(name: str) -> Entry:
     )
 
 
-def test_an_empty_list_says_so_and_has_no_buttons() -> None:
-    chosen, empty, _, actions, *_ = tab().refresh(None)
-    assert chosen["choices"] == []
-    assert empty["visible"] is True
-    assert actions["visible"] is False
+class Book:
+    """A history that holds just these runs and writes down what is asked of it."""
+
+    def __init__(self, *entries: Entry) -> None:
+        self.entries, self.done = list(entries), []  # type: ignore[var-annotated]
+
+    def search(self, owner: str, wanted: Search) -> Found:
+        self.done.append(wanted)
+        return Found(self.entries, len(self.entries))
+
+    def entry(self, run: str, owner: str) -> Entry:
+        found = next((each for each in self.entries if each.id == run), None)
+        if found is None:
+            raise InputError("There is no such run in your history: reload the page.")
+        return found
+
+    def __getattr__(self, name: str) -> Any:
+        def act(*given: Any, **fields: Any) -> Any:
+            self.done.append((name, *given[:1], fields))
+            return {"revoke": len(self.entries), "link": ("key", 0.0), "export": 2}.get(name, 1)
+
+        return act
 
 
-def test_a_run_that_is_still_there_stays_chosen() -> None:
-    chosen, empty, _, actions, *_ = tab(entry("hug"), entry("wave")).refresh("wave")
-    when = time.strftime("%d %b %H:%M", time.localtime(0))
-    assert chosen["value"] == "wave"
-    assert chosen["choices"][0] == (f"They hug. · 5 s · seed 3 · {when}", "hug")
-    assert empty["visible"] is False
-    assert actions["visible"] is True
-    assert tab(entry("hug")).refresh("wave")[0]["value"] == "hug"
+def tab(book: Any, tmp_path: Path | None = None) -> HistoryTab:
+    page: Any = SimpleNamespace(history=book, shelf=SimpleNamespace(folder=lambda: tmp_path))
+    return HistoryTab(page, {}, tabs=None)  # type: ignore[arg-type] # no tab is opened here
+
+
+def press(history: HistoryTab, act: str, *ids: str, removed: tuple[str, ...] = (), **more: Any) -> Any:
+    event: Any = SimpleNamespace(_data={"act": act, "ids": list(ids), "search": {}, **more})
+    names = ("view", "who", "line", "address", "saved", "removed")
+    return SimpleNamespace(**dict(zip(names, history.act(list(removed), event), strict=True)))
+
+
+def test_a_card_tells_everything_of_a_run() -> None:
+    run = replace(
+        entry("hug"), links=2, favourite=True, tags=("paper",), note="Hands.", frame=4,
+        request={"kind": "react", "model": "regennet", "mode": "online", "seed": 12345678, "guidance": 4.5,
+                 "actor": {"name": "walker.bvh"}, "role": "b", "cleanup": True},
+    )  # fmt: skip
+    assert facts(run) == f"ReGenNet, online · seed 12345678 · {WHEN} · 2 links"
+    assert ["Given", "walker.bvh"] in settings(run) and ["The given person", "reacts"] in settings(run)
+    assert ["Seed", "12345678"] in settings(run) and ["Guidance", "4.5"] in settings(run)
+    (card,) = shown(Found([run], 1), empty="")["entries"]
+    assert (card["favourite"], card["tags"], card["note"], card["frame"]) == (True, ["paper"], "Hands.", 4)
+    assert facts(replace(run, state="failed", links=0)).endswith("✕ failed")
 
 
 @pytest.mark.parametrize(
@@ -62,46 +90,70 @@ def test_a_run_that_is_still_there_stays_chosen() -> None:
     ],
 )
 def test_what_has_several_methods_says_which(request_: dict[str, Any], method: str) -> None:
-    run = Entry(
-        id="a", kind=request_["kind"], title="One waves.", state="done", request=request_ | {"seed": 3}
-    )
-    label, _ = tab(run).refresh(None)[0]["choices"][0]
-    assert label.startswith(f"One waves. · {method}seed 3 · ")
+    run = replace(entry("wave"), kind=request_["kind"], request=request_ | {"seed": 3})
+    assert facts(run).startswith(f"{method}seed 3 · ")
 
 
-@pytest.mark.parametrize(("runs", "sentence"), [(1, "Its link no longer works."), (2, "2 links to it")])
-def test_ended_links_are_counted(runs: int, sentence: str) -> None:
-    assert sentence in tab(*(entry(str(i)) for i in range(runs))).revoke("0")[0]
-    line, address = tab().revoke(None)
-    assert "Choose a run first" in line and address["visible"] is False
+def test_the_list_is_searched_and_says_why_it_is_empty() -> None:
+    book = Book()
+    empty = tab(book).refresh([])[0]["value"]
+    assert empty["empty"] == EMPTY and empty["removed"] == 0
+    told = {"words": "hug", "starred": True, "since": 5.0, "until": "x", "kind": None, "tag": "a"}
+    found = press(tab(book), "search", search=told).view["value"]
+    assert found["empty"] == NOTHING_FOUND
+    assert book.done[-1] == Search(words="hug", starred=True, since=5.0, tag="a", limit=STEP)
+    press(tab(book), "search", limit=120)
+    assert book.done[-1].limit == 120
 
 
-def able(history: HistoryTab, run: str) -> dict[str, bool]:
-    """What can be done with a run."""
-    return dict(
-        zip(_ABLE, (update["interactive"] for update in history.choose(run)[-len(_ABLE) :]), strict=True)
-    )
+def test_runs_are_kept_named_removed_and_brought_back() -> None:
+    book = Book(entry("hug"), replace(entry("wave"), favourite=True))
+    history = tab(book)
+    assert "Kept" in press(history, "favour", "hug").line
+    assert "No longer kept" in press(history, "favour", "wave").line
+    fields = {"title": "Best", "tags": "a b", "note": "n", "frame": 3}
+    assert "Saved" in press(history, "describe", "hug", **fields).line
+    assert ("describe", "hug", fields) in book.done
+    gone = press(history, "remove", "hug")
+    assert "Removed one run, with its links" in gone.line and gone.removed == ["hug"]
+    assert gone.view["value"]["removed"] == 1
+    back = press(history, "restore", removed=("hug",))
+    assert "Brought one run back" in back.line and back.removed == []
+    linked = press(history, "link", "hug")
+    assert linked.address["value"] == "?run=key" and linked.address["visible"]
+    assert "2 links to it no longer work" in press(history, "revoke", "hug").line
 
 
-def test_buttons_are_as_the_run_lets_them_be() -> None:
-    linked = replace(entry("hug"), links=1, favourite=True)
-    lost = replace(entry("lost"), state="interrupted", message="Run it again.")
-    history = tab(linked, entry("wave"), lost, replace(entry("now"), state="running"))
-    assert [name for name, can in able(history, "hug").items() if not can] == ["remove"]  # it is kept
-    assert [name for name, can in able(history, "wave").items() if not can] == ["revoke"]
-    assert [name for name, can in able(history, "lost").items() if can] == ["favour", "again", "remove"]
-    assert [name for name, can in able(history, "now").items() if can] == ["favour"]
-    assert not any(able(history, "gone").values())
-    names = [history.choose(run)[2 + _ABLE.index("favour")]["value"] for run in ("hug", "wave")]
-    assert names == ["Stop keeping", "Keep"]
-    assert "Run it again." in history.choose("lost")[0] and "Run it again." not in history.choose("hug")[0]
+def test_an_export_says_what_is_in_it(tmp_path: Path) -> None:
+    book = Book(entry("hug"))
+    (tmp_path / "pas-de-deux-workspace.zip").write_bytes(b"x" * 2**20)
+    told = press(tab(book, tmp_path), "export", "hug")
+    assert "2 runs in one file of 1.0 MB." in told.line and told.saved["visible"]
+
+
+@pytest.mark.parametrize(
+    "data",
+    [
+        None, [], {"act": "drop", "ids": []}, {"act": "open", "ids": "hug"},
+        {"act": "open", "ids": ["a"] * (MOST_SHOWN + 1)},
+    ],
+)  # fmt: skip
+def test_what_a_notebook_never_sends_is_refused(data: Any) -> None:
+    with pytest.raises(InputError, match="something unknown"):
+        Told(data)
+
+
+@pytest.mark.parametrize(
+    ("ids", "sentence"), [((), "Choose a run first"), (("a", "b"), "Choose one run only")]
+)
+def test_what_takes_one_run_says_so(ids: tuple[str, ...], sentence: str) -> None:
+    assert sentence in press(tab(Book(entry("a"))), "favour", *ids).line
 
 
 def test_a_run_without_a_result_is_run_again() -> None:
     lost = replace(
         entry("lost"), state="interrupted", request={"prompt": "They hug.", "seconds": 2.0, "seed": 9}
     )
-    reaction = replace(lost, id="r", kind="react")
     asked: list[Any] = []
 
     def run(session: str, request: Any, *, alone: bool) -> Iterator[Any]:
@@ -109,33 +161,45 @@ def test_a_run_without_a_result_is_run_again() -> None:
         yield Progress(stage="text")
         yield Result(duets=(), manifest={})
 
-    history = tab(lost, reaction)
-    history.page.runs = SimpleNamespace(run=run)  # type: ignore[assignment]
+    history = tab(Book(lost, replace(lost, id="r", kind="react")))
+    history.page.runs = SimpleNamespace(run=run)  # type: ignore[misc, assignment]
     who: Any = SimpleNamespace(session_hash="s")
-    *_, (line, again, stop) = history.again("lost", who)
-    assert asked == [("They hug.", 2.0, 9, True)] and "its result is in the list" in line
-    assert again["interactive"] is True and stop["interactive"] is False
-    *_, (line, _, _) = history.again("r", who)
-    assert "send the file again" in line and len(asked) == 1
+
+    def again(run: str) -> str:
+        event: Any = SimpleNamespace(_data={"act": "again", "ids": [run], "search": {}})
+        return list(history.again(who, event))[-1]
+
+    assert "its result is in the list" in again("lost")
+    assert asked == [("They hug.", 2.0, 9, True)]
+    assert "send the file again" in again("r") and len(asked) == 1
 
 
 def test_a_history_that_cannot_be_read_is_a_sentence() -> None:
-    broken = tab()
+    broken = Book()
 
-    def entries(owner: str) -> list[Entry]:
+    def search(owner: str, wanted: Search) -> Found:
         raise InputError("The server's history cannot be read or written.")
 
-    broken.history.entries = entries  # type: ignore[method-assign]
-    for act in (broken.refresh, broken.choose):
-        with pytest.raises(gr.Error, match="cannot be read or written"):
-            act("hug")
+    broken.search = search  # type: ignore[method-assign]
+    assert tab(broken).refresh([])[0]["value"]["empty"].endswith("cannot be read or written.")
+    assert "cannot be read or written" in press(tab(broken), "search", search={"words": "a"}).line
 
 
-def test_one_signs_out_by_a_button_that_posts() -> None:
-    ada = Visitor(account="ada<", base="https://lab.example/motion/")
-    shown = _signed_in(ada)
-    assert (
-        '<form class="pd-status pd-account" method="post" action="https://lab.example/motion/logout">'
-        in shown
-    )
-    assert "ada&lt;" in shown and "href" not in shown
+def test_whose_history_it_is_is_said_where_there_are_accounts() -> None:
+    assert _signed_in(Visitor()) == ""
+    signed = _signed_in(Visitor(account="<ada>", base="http://lab/x/"))
+    assert "Signed in as &lt;ada&gt;" in signed and 'action="http://lab/x/logout"' in signed
+
+
+def test_chosen_runs_are_compared_in_a_grid() -> None:
+    result = Result(duets=(walking(1.0),), manifest={"model": "stub"})
+    runs = [Opened(entry=entry(name), result=replace(result, run="id")) for name in ("hug", "wave", "wave")]
+    shown_ = compared(runs)
+    names = [cell["caption"] for cell in shown_["player"]["value"]["samples"][0]["cells"]]
+    assert names == ["They hug., seed 3", "They wave., seed 3", "They wave., seed 3 #2"]
+    assert shown_["record"].result.run == "", "a link would show one of them alone"
+    with pytest.raises(InputError, match="two to 9 runs"):
+        compared(runs[:1])
+    fewer = Clip(np.zeros((30, 15, 3)), 30, SKELETONS["sbu15"])
+    with pytest.raises(InputError, match="different joints"):
+        compared([*runs, Opened(entry=entry("sit"), result=replace(result, duets=(fewer,)))])

@@ -1,4 +1,4 @@
-"""The tables: runs, the links that open them for others, and sign-ins."""
+"""The tables: runs, what is written on them, the links that open them for others, and sign-ins."""
 
 from __future__ import annotations
 
@@ -58,6 +58,34 @@ class Run(Table):
     favourite: Mapped[bool] = mapped_column(default=False)
     node: Mapped[str] = mapped_column(default="")
     links: Mapped[list[Link]] = relationship(back_populates="run", cascade="all, delete-orphan")
+    note: Mapped[Note | None] = relationship(back_populates="run", cascade="all, delete-orphan")
+
+
+class Note(Table):
+    """The owner's words on a run, and how its tab was set.
+
+    Attributes:
+        title: the name that the owner gave it; empty for that of the run.
+        tags: separated, begun and ended by a space.
+        frame: the frame that ``text`` is about.
+        thumbnail: of its motion.
+        kept: how its tab was set, as JSON.
+        part_of: the run whose grid or comparison this one is a part of; it has no card of its own then.
+        removed: when the owner took it out of the history; it is deleted a while later.
+    """
+
+    __tablename__ = "notes"
+
+    run_id: Mapped[str] = mapped_column(ForeignKey("runs.id", ondelete="CASCADE"), primary_key=True)
+    title: Mapped[str] = mapped_column(Text, default="")
+    tags: Mapped[str] = mapped_column(Text, default="")
+    text: Mapped[str] = mapped_column(Text, default="")
+    frame: Mapped[int | None] = mapped_column(default=None)
+    thumbnail: Mapped[str] = mapped_column(Text, default="")
+    kept: Mapped[str] = mapped_column(Text, default="")
+    part_of: Mapped[str] = mapped_column(default="", index=True)
+    removed: Mapped[float | None] = mapped_column(default=None, index=True)
+    run: Mapped[Run] = relationship(back_populates="note")
 
 
 class Link(Table):
@@ -121,7 +149,7 @@ class Database:
     def check(self) -> None:
         """Raises SQLAlchemyError if the database does not answer, or what people need cannot be read."""
         with self.engine.connect() as connection:
-            for table in (Run, Link, SignIn):
+            for table in (Run, Note, Link, SignIn):
                 connection.execute(select(table).limit(CHECKED_ROWS)).all()
             if self.engine.dialect.name == "sqlite" and time.monotonic() > self._sound_until:
                 (found,) = connection.exec_driver_sql("PRAGMA quick_check(1)").one()

@@ -11,6 +11,7 @@ import secrets
 import shutil
 import time
 from collections.abc import Callable, Sequence
+from dataclasses import replace
 from pathlib import Path
 from typing import Any, cast
 
@@ -23,7 +24,7 @@ from webdemo.inference.predict_request import PredictResult
 from webdemo.inference.requests import Result
 from webdemo.ui.history import Entry, Opened
 
-from .database import Database, Link, Run, sentence_of, sentences
+from .database import Database, Link, Note, Run, sentence_of, sentences
 
 log = logging.getLogger(__name__)
 
@@ -32,6 +33,8 @@ SHOWN = 200
 DAY = 86_400.0
 LEAP_SECONDS = 2 * DAY
 """A clock further than this past the newest run and the last cleaning is not trusted."""
+UNDO_SECONDS = 600.0
+"""For so long a removed run can be brought back."""
 WAIT_SECONDS = DAY
 """After a clock was not trusted, nothing is removed for this long: time to read the log and correct it."""
 _TRUTH = "truth.npz"
@@ -185,13 +188,14 @@ class History:
             return []
         query = (
             select(Run)
-            .where(Run.owner == owner)
-            .options(selectinload(Run.links))
+            .outerjoin(Note)
+            .where(Run.owner == owner, Note.removed.is_(None))
+            .options(selectinload(Run.links), selectinload(Run.note))
             .order_by(Run.created.desc())
             .limit(SHOWN)
         )
         with self.database.session() as session:
-            return [_entry(run) for run in session.scalars(query)]
+            return [entry_of(run) for run in session.scalars(query)]
 
     @sentences()
     def open(self, key: str, owner: str) -> Opened:
@@ -208,13 +212,13 @@ class History:
             if run is None or not owner or run.owner != owner:
                 link = session.get(Link, key)
                 run = link.run if link is not None and link.until > time.time() else None
-            if run is None:
+            if run is None or _removed(run):
                 raise InputError(_MISSING)
-            entry = _entry(run)
-            outcome = _fields(run.outcome)
+            entry = entry_of(run)
+            outcome = fields_of(run.outcome)
         if entry.state != "done":
             raise InputError(entry.message or f"This run has no result: it is {entry.state}.")
-        return Opened(entry=entry, result=self._read(entry.id, outcome))
+        return Opened(entry=entry, result=replace(self._read(entry.id, outcome), run=entry.id))
 
     @sentences()
     def favour(self, run: str, owner: str, *, favourite: bool) -> None:
@@ -230,8 +234,8 @@ class History:
             found.favourite = favourite
 
     @sentences()
-    def remove(self, run: str, owner: str) -> None:
-        """Deletes a run, its files and its links."""
+    def delete(self, run: str, owner: str) -> None:
+        """Deletes a run, its files and its links at once."""
         with self.database.session.begin() as session:
             session.delete(self._own(session, run, owner))
         shutil.rmtree(self.folder / run, ignore_errors=True)
@@ -266,11 +270,12 @@ class History:
         now = time.time()
         with self.database.session.begin() as session:
             old = select(Run.id, Run.size).where(~Run.favourite, Run.state != "running")
-            gone: dict[str, int] = {}
+            taken_out = select(Run.id, Run.size).join(Note).where(Note.removed < now - UNDO_SECONDS)
+            gone: dict[str, int] = dict(session.execute(taken_out).tuples().all())
             if self._clock_is_trusted(now, session.scalar(select(func.max(Run.created)))):
                 session.execute(delete(Link).where(Link.until < now))
                 outlived = session.execute(old.where(Run.created < now - self.keep_days * DAY))
-                gone = dict(outlived.tuples().all())
+                gone |= dict(outlived.tuples().all())
             total = (session.scalar(select(func.sum(Run.size))) or 0) - sum(gone.values())
             if total > self.keep_bytes:
                 for run, size in session.execute(old.order_by(Run.created)):
@@ -280,6 +285,7 @@ class History:
                         gone[run] = size
                         total -= size
             for run in gone:
+                session.execute(delete(Note).where(Note.run_id == run))
                 session.execute(delete(Link).where(Link.run_id == run))
                 session.execute(delete(Run).where(Run.id == run))
         for run in gone:
@@ -303,7 +309,7 @@ class History:
 
     def _own(self, session: Session, run: str, owner: str) -> Run:
         found = session.get(Run, run) if _KEY.match(run) else None
-        if found is None or not owner or found.owner != owner:
+        if found is None or not owner or found.owner != owner or _removed(found):
             raise InputError("There is no such run in your history: reload the page.")
         return found
 
@@ -351,7 +357,11 @@ class History:
         return Result(**whole)
 
 
-def _fields(text: str) -> dict[str, Any]:
+def _removed(run: Run) -> bool:
+    return run.note is not None and run.note.removed is not None
+
+
+def fields_of(text: str) -> dict[str, Any]:
     """A column's JSON; empty if it is damaged."""
     try:
         found = json.loads(text or "{}")
@@ -360,10 +370,12 @@ def _fields(text: str) -> dict[str, Any]:
     return found if isinstance(found, dict) else {}
 
 
-def _entry(run: Run) -> Entry:
-    now = time.time()
+def entry_of(run: Run) -> Entry:
+    """A row as the page takes it."""
+    now, note = time.time(), run.note or Note(title="", tags="", text="", frame=None, thumbnail="")
     return Entry(
-        id=run.id, kind=run.kind, title=run.title, state=run.state, message=run.message, created=run.created,
-        request=_fields(run.request), favourite=run.favourite,
-        links=sum(link.until > now for link in run.links),
+        id=run.id, kind=run.kind, title=note.title or run.title, state=run.state, message=run.message,
+        created=run.created, request=fields_of(run.request), favourite=run.favourite,
+        links=sum(link.until > now for link in run.links), tags=tuple(note.tags.split()), note=note.text,
+        frame=note.frame, thumbnail=note.thumbnail,
     )  # fmt: skip

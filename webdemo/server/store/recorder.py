@@ -80,22 +80,23 @@ class Recorder:
     def _end(self, run: str, owner: str, state: str, message: str) -> None:
         if state == "refused":  # it never was in the line
             with suppress(InputError):
-                self.history.remove(run, owner)
+                self.history.delete(run, owner)
                 return
         self.history.end(run, state, message)
 
     def _kept(self, run: str, result: Result) -> Result:
         if not run:
             return result
+        result = replace(result, run=run)
         try:
             self.history.finish(run, result)
         except InputError as error:
-            return replace(result, notes=(*result.notes, str(error)))
+            return replace(result, run="", notes=(*result.notes, str(error)))
         except Exception:  # whatever it is, the result itself is there
             log.exception("A result could not be kept.")
             self.history.end(run, "failed", "The result could not be kept in the history.")
             sentence = "The result could not be kept in the history: download its files now."
-            return replace(result, notes=(*result.notes, sentence))
+            return replace(result, run="", notes=(*result.notes, sentence))
         return result
 
     def _count(self, result: Result) -> None:
@@ -117,6 +118,6 @@ def title_of(asked: Mapping[str, Any]) -> str:
 
 
 def _hears(model: str) -> bool:
-    """Whether a method takes words or a class; one that is no longer registered may have."""
+    """True if a method takes words or a class; one that is no longer registered may have."""
     known = {found.name: found for found in methods()}
     return model not in known or bool({"words", "class"} & known[model].takes)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import csv
 import hashlib
 import json
 import logging
@@ -16,6 +17,7 @@ import zipfile
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
+from typing import Any
 
 from motion import Clip, Duet, InputError, formats
 from motion.formats.one_person import SUFFIXES
@@ -45,8 +47,11 @@ class Kind:
 
     def offered(self) -> bool:
         """True if this installation can write it."""
-        return self.key in ("png", "json") or formats.can_write(f".{self.key}")
+        return self.key in _PLAIN or formats.can_write(f".{self.key}")
 
+
+_PLAIN = ("png", "json", "csv")
+"""Kinds that are no motion."""
 
 KINDS = (
     Kind("npz", "Motion .npz"),
@@ -54,6 +59,7 @@ KINDS = (
     Kind("glb", "Animated .glb"),
     Kind("png", "Contact sheet"),
     Kind("json", "Manifest"),
+    Kind("csv", "Read-outs .csv"),
 )
 
 
@@ -66,12 +72,14 @@ class Record:
         prompt: names the files.
         exported: whether its files were written.
         compared: the results that stand side by side, by method; ``result`` is the first of them.
+        grid: columns, rows, names and title of the grid that they stand in; empty for none.
     """
 
     result: Result = field(repr=False)
     prompt: str
     exported: bool = False
     compared: Mapping[str, Result] = field(default_factory=dict, repr=False)
+    grid: Mapping[str, Any] = field(default_factory=dict)
 
 
 class Shelf:
@@ -115,6 +123,9 @@ def write_record(record: Record, folder: Path) -> dict[str, list[Path]]:
     for method, result in record.compared.items():
         for key, paths in write_files(result, folder, prompt=f"{method} {record.prompt}").items():
             files.setdefault(key, []).extend(paths)
+    if "csv" in files:  # one table for all
+        table = folder / f"{file_name(record.prompt, record.result.manifest)}.csv"
+        files["csv"] = [_write_table(record.compared, table)]
     return files
 
 
@@ -153,6 +164,8 @@ def _write_kind(kind: Kind, result: Result, folder: Path, name: str, prompt: str
         path = folder / f"{name}.json"
         path.write_text(json.dumps(result.manifest, indent=2, ensure_ascii=False), encoding="utf-8")
         return [path]
+    if kind.key == "csv":
+        return [_write_table({"": result}, folder / f"{name}.csv")]
     several = len(result.duets) > 1
     files: list[Path] = []
     for i, duet in enumerate(result.duets):
@@ -161,10 +174,38 @@ def _write_kind(kind: Kind, result: Result, folder: Path, name: str, prompt: str
     return files
 
 
+def _write_table(results: Mapping[str, Result], path: Path) -> Path:
+    """The read-outs of results, a row a sample; cells that a spreadsheet would compute begin with an apostrophe."""
+    rows = []
+    for name, result in results.items():
+        request = result.manifest.get("request", {})
+        for i, readout in enumerate(result.readouts):
+            after = readout.get("after") or {}
+            rows.append(
+                {"result": name, "sample": i + 1, "model": result.manifest.get("model")}
+                | {key: request.get(key) for key in ("prompt", "seed", "guidance", "steps", "damping")}
+                | dict(after.get("summary", after))
+            )
+    heads = list(dict.fromkeys(key for row in rows for key in row)) or ["result"]
+    with path.open("w", newline="", encoding="utf-8") as file:
+        writer = csv.DictWriter(file, heads)
+        writer.writeheader()
+        for row in rows:
+            writer.writerow({key: _safe(value) for key, value in row.items()})
+    return path
+
+
+def _safe(value: Any) -> Any:
+    formula = isinstance(value, str) and value.lstrip()[:1] in ("=", "+", "-", "@")
+    return f"'{value}" if formula else value
+
+
 def _holds(kind: Kind, result: Result) -> bool:
     """True if files of a kind can hold the people of a result."""
+    if kind.key == "csv" and not result.readouts:
+        return False
     one = isinstance(result.duets[0], Clip)
-    return not one or kind.key in ("png", "json") or f".{kind.key}" in SUFFIXES
+    return not one or kind.key in _PLAIN or f".{kind.key}" in SUFFIXES
 
 
 def _write_motion(duet: Duet | Clip, path: Path, *, title: str) -> list[Path]:

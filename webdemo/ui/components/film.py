@@ -31,6 +31,7 @@ READ_PLAYER = """(record, _) => {
   const bodies = show.bodies ?? false, skeletons = show.skeletons ?? !bodies;
   return [record, JSON.stringify({
     yaw: orbit.yaw, elevation: orbit.elevation, view: player.framed, follow: orbit.following,
+    frame: Math.round(player.clock.shown), distance: orbit.distance,
     trails: Boolean(show.trails), theme: player.themeName, sample: player.sampleIndex,
     look: bodies && skeletons ? "both" : bodies ? "bodies" : "skeletons",
   })];
@@ -56,7 +57,7 @@ def make_film(record: Record | None, shown: str, folder: Path) -> Path:
     """
     if record is None:
         raise InputError("There is no motion to film yet: make one first.")
-    told = _read(shown)
+    told = read_player(shown)
     results = record.compared or {"": record.result}
     panes = [
         _pane(result, told.get("sample"), name if record.compared else "") for name, result in results.items()
@@ -80,8 +81,8 @@ def make_film(record: Record | None, shown: str, folder: Path) -> Path:
             view=_one_of(told, "view", VIEWS, "threequarter"),
             follow=told.get("follow") is not False,
             title=record.prompt,
-            yaw=_number(told, "yaw", -1000.0, 1000.0),
-            elevation=_number(told, "elevation", -0.05, 1.5),
+            yaw=number_of(told, "yaw", -1000.0, 1000.0),
+            elevation=number_of(told, "elevation", -0.05, 1.5),
         )
     except InputError as error:
         raise without_place(error, folder) from None
@@ -99,7 +100,8 @@ def _pane(result: Result, sample: Any, name: str) -> Pane:
     return Pane(motion, caption, ghost_of(motion, result), result.past_frames)
 
 
-def _read(shown: str) -> Mapping[str, Any]:
+def read_player(shown: str) -> Mapping[str, Any]:
+    """Reads the answer of :data:`READ_PLAYER` as a dictionary; an empty one if it is none."""
     try:
         told = json.loads(shown[:2000])
     except (TypeError, ValueError):
@@ -112,7 +114,8 @@ def _one_of(told: Mapping[str, Any], key: str, known: tuple[str, ...], default: 
     return value if value in known else default
 
 
-def _number(told: Mapping[str, Any], key: str, low: float, high: float) -> float | None:
+def number_of(told: Mapping[str, Any], key: str, low: float, high: float) -> float | None:
+    """A finite number between bounds; None where there is none."""
     value = told.get(key)
     if isinstance(value, bool) or not isinstance(value, (int, float)) or not np.isfinite(value):
         return None

@@ -63,7 +63,7 @@ class LiveView:
         )
 
     def payload(self) -> Payload:
-        """What the player shows at first."""
+        """The motion that the player shows at first."""
         alone = player_payload(replace(self.actor, name=GIVEN), title=self.title)
         return {**alone, "id": self.id, "live": True}
 

@@ -22,7 +22,7 @@ from webdemo.view.payload import Payload, build_payload, player_payload, sample_
 ROUNDS = 3
 """Rounds that an example plays before it rests, so that a page left open costs nothing."""
 GIVEN, MADE = "given", "generated"
-"""What is written beside the letters of the two people of a reaction."""
+"""Labels of the two people of a reaction, beside their letters."""
 _ONE_OF_TWO = re.compile(
     r"\b(one|first|second|the other|another|someone|somebody|person|man|woman|boy|girl|he|she|him|her)\b"
 )
@@ -37,7 +37,7 @@ _CURVES = (("pelvis_distance", "Apart", "m"), ("hand_distance", "Hands", "m"))
 
 
 def shown_roles(manifest: Mapping[str, Any]) -> tuple[str, str]:
-    """What is written beside "A" and "B" for a result of this manifest; a letter alone adds nothing.
+    """Labels beside "A" and "B" for a result of this manifest; "a" and "b" add nothing.
 
     Of a reaction it is who was given; where both do the same, nobody acts first.
     """

@@ -3,24 +3,27 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
+from functools import partial
 from typing import Any
 
 import gradio as gr
 
 from motion import InputError
 from webdemo.inference.actor import SECONDS
-from webdemo.inference.methods import installed, method
+from webdemo.inference.methods import installed, label_of, method
 from webdemo.inference.requests import GenerateRequest
 from webdemo.ui.components.settings import looked_up
 from webdemo.ui.components.show import arrival_payload
+from webdemo.ui.components.sweep import Kind
 from webdemo.ui.history import Opened
 from webdemo.ui.text.classes import installed_classes, takes_class
 from webdemo.ui.text.examples import CLIPS, EXAMPLES
 from webdemo.ui.text.panels import method_line, model_card, status
 from webdemo.ui.text.words import error_line
 
-from .job import QUIET, JobTab, Updates
+from .job import QUIET, Updates
+from .sweeps import SweepTab
 
 
 def generate_choices() -> list[tuple[str, str]]:
@@ -33,11 +36,19 @@ def generate_choices() -> list[tuple[str, str]]:
     return choices
 
 
+def named_method(known: Mapping[str, str], given: str) -> str:
+    """The name of a method from its name or label; raises InputError for another."""
+    found = known.get(given.lower(), given)
+    if found not in known.values():
+        raise InputError(f"There is no method {given[:40]!r}: choose from {', '.join(known.values())}.")
+    return found
+
+
 ARRIVAL = "shake-hands.npz"
 """The example that plays before anything is asked for."""
 
 
-class GenerateTab(JobTab):
+class GenerateTab(SweepTab):
     """Text, or a class → two people."""
 
     label = "Generate"
@@ -85,6 +96,7 @@ class GenerateTab(JobTab):
             "steps": self.steps, "damping": self.damping,
         }  # fmt: skip
         self._wire_run([self.go.click, self.prompt.submit], record)
+        self._wire_sweeps()
         for chip, (_, sentence) in zip(self.chips, EXAMPLES, strict=True):
             focus = "document.querySelector('#prompt textarea').focus();"
             chip.click(
@@ -137,7 +149,7 @@ class GenerateTab(JobTab):
 
     @staticmethod
     def asked_by(way: str) -> Updates:
-        """What is asked for, a sentence with examples or a class, the guidance that suits it, and a line on it."""
+        """Shows the input that a method takes, sets its guidance and describes it in a line."""
         found, by_class = method(way), takes_class(way)
         guidance = found.default("guidance", GenerateRequest.guidance)
         return (
@@ -154,6 +166,30 @@ class GenerateTab(JobTab):
                 )  # fmt: skip
                 self.samples = self._samples()
             self._sampling()
+            self._sweeps()
+
+    def kinds(self) -> Sequence[Kind]:
+        """Also sentences, and methods."""
+        known = {method(name).label.lower(): name for _, name in generate_choices()}
+        models = Kind("model", "Methods", read=partial(named_method, known), split=r"[;\n]", named=label_of)
+        return (*super().kinds(), Kind("prompt", "Sentences", split=r"[;\n]"), models)
+
+    def presets(self) -> Mapping[str, tuple[str, str]]:
+        """Also a sentence beside a class, where there are classes."""
+        labels = [method(name).label for _, name in generate_choices()]
+        beside = {"Sentence beside class": ("model", "; ".join(labels))} if len(labels) > 1 else {}
+        return {**super().presets(), **beside}
+
+    def cell_fields(self, fields: Mapping[str, Any], cell: Mapping[str, Any]) -> dict[str, Any]:
+        """A method of classes gets the guidance that suits it, and the class that the sentence names."""
+        asked = {**fields, **cell}
+        if "model" in cell and takes_class(asked["model"]):
+            if "guidance" not in cell:
+                asked["guidance"] = method(asked["model"]).default("guidance", asked["guidance"])
+            names, _ = installed_classes()
+            said = str(asked.get("prompt") or "").lower()
+            asked["class_name"] = asked.get("class_name") or next((n for n in names if n in said), None)
+        return asked
 
     def describe_model(self) -> str:
         """The cards of both models for the page."""

@@ -1,47 +1,48 @@
-"""Runs of the past: open one with all its controls, keep it, link to it, run it again, remove it."""
+"""Runs of the past as a notebook: find one, open it with all its controls, name it, link to it, take it along."""
 
 from __future__ import annotations
 
-import time
 from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import replace
+from pathlib import Path
 from typing import Any
 
 import gradio as gr
 
 from motion import InputError
-from webdemo.inference.methods import label_of, methods, variants
 from webdemo.inference.requests import Cancelled, Progress, Result
-from webdemo.ui.again import actor_source, request_of, request_of_unfinished, verdict
+from webdemo.ui.again import request_of, request_of_unfinished, verdict
 from webdemo.ui.components.exports import KINDS, Record
+from webdemo.ui.components.notebook import NotebookView, Told, shown
 from webdemo.ui.components.settings import taken
+from webdemo.ui.components.sweep import MOST, loose
 from webdemo.ui.context import PageContext
-from webdemo.ui.history import Entry, HistoryLike, Opened
+from webdemo.ui.history import Found, HistoryLike, Opened, Search
 from webdemo.ui.text.panels import status
-from webdemo.ui.text.words import cancelled_line, error_line, progress_line, shown_errors, text
+from webdemo.ui.text.words import cancelled_line, error_line, link_line, progress_line, text
 from webdemo.ui.visitor import Visitor, visitor
 
 from .job import QUIET, JobTab, Updates
-from .react import ReactTab
+from .sweeps import grid_shown
 
 LABEL = "History"
-_EMPTY = (
+EMPTY = (
     "Nothing yet. What you make in the other tabs is kept here. Open it again with all its settings, "
     "share it by a link, or check that it comes out the same."
 )
+NOTHING_FOUND = "No run fits: take a filter away."
+LARGEST_IMPORT = 50 * 2**20
+"""Bytes of the largest upload."""
 _CONTROLS = ("prompt", "seconds", "seed", "samples", "guidance", "steps", "damping", "role", "model", "mode")
 """Fields of a request that a tab may have a control of the same name for."""
 _LAST = "last"
 _NAMED = f"""() => new URLSearchParams(window.location.search).get('run')
     || (sessionStorage.getItem('pas-de-deux-made') ? '{_LAST}' : '')"""
 """The run that the page's address names, or the last one where this browser tab has made any."""
-_KEEP, _UNKEEP = "Keep", "Stop keeping"
-_ABLE = ("open", "favour", "link", "revoke", "again", "remove")
-"""Buttons that are as the chosen run lets them be."""
-_MARKS = {"running": "⏳", "failed": "✕", "cancelled": "✕", "interrupted": "✕"}
 
 
 class HistoryTab:
-    """The list of a person's runs.
+    """The notebook of a person's runs.
 
     Args:
         page: what the tabs share; its history is there.
@@ -67,50 +68,46 @@ class HistoryTab:
         """
         with gr.Column(elem_classes="pd-panel pd-history", min_width=0):
             self.who = gr.HTML(elem_id="history-who")
-            self.list = gr.Radio([], show_label=False, container=False, elem_id="history-list",
-                                 elem_classes="pd-runs")  # fmt: skip
-            self.empty = gr.HTML(status(_EMPTY), elem_id="history-empty", visible=False)
-            with gr.Row(elem_classes="pd-go pd-history-buttons", visible=False) as self.actions:
-                self.buttons = {
-                    name: gr.Button(label, elem_id=f"history-{name}", size="sm", min_width=0,
-                                    interactive=name != "stop",
-                                    variant="primary" if name == "open" else "secondary")
-                    for name, label in (
-                        ("open", "Open"), ("favour", _KEEP), ("link", "Make a link"),
-                        ("revoke", "End its links"), ("again", "Run again"), ("stop", "Cancel"),
-                        ("remove", "Remove"),
-                    )
-                }  # fmt: skip
             self.line = gr.HTML(status(), elem_id="history-status", elem_classes="pd-line")
             self.address = gr.Textbox(label="Link", interactive=False, visible=False, buttons=["copy"],
                                       elem_id="history-address")  # fmt: skip
+            self.saved = gr.DownloadButton(
+                "Save the workspace", visible=False, elem_id="history-saved", size="sm"
+            )
+            self.view = NotebookView(elem_id="history-notebook")
+            with gr.Accordion(
+                "Export everything, or import a workspace", open=False, elem_id="history-workspace"
+            ):
+                self.everything = gr.Button("Export everything", size="sm", elem_id="history-export-all")
+                self.file = gr.File(
+                    label="Import: a .zip of Export", file_types=[".zip"], height=112, elem_id="history-import",
+                    elem_classes="pd-file",
+                )  # fmt: skip
+        self.removed = gr.State([])
         self._wire(demo, tab, record)
 
     def _wire(self, demo: gr.Blocks, tab: gr.Tab, record: gr.State) -> None:
         self.record = record
-        able = [self.buttons[name] for name in _ABLE]
-        seen = [self.list, self.empty, self.who, self.actions, *able]
-        told = [self.line, self.address]
         quick: dict[str, Any] = {"concurrency_limit": 8, "concurrency_id": "history", **QUIET}
-        tab.select(self.refresh, inputs=self.list, outputs=seen, **quick)
-        self.list.input(self.choose, inputs=self.list, outputs=[*told, *able], **quick)
-        for name, act in (
-            ("favour", self.favour), ("link", self.link), ("revoke", self.revoke), ("remove", self.remove)
-        ):  # fmt: skip
-            done = self.buttons[name].click(act, inputs=self.list, outputs=told, **quick)
-            done.then(self.refresh, inputs=self.list, outputs=seen, **quick)
-        again = self.buttons["again"].click(
-            self.again, inputs=self.list, outputs=[self.line, self.buttons["again"], self.buttons["stop"]],
-            concurrency_limit=None, trigger_mode="once", **QUIET,
-        )  # fmt: skip
-        again.then(self.refresh, inputs=self.list, outputs=seen, **quick)
-        self.buttons["stop"].click(self.cancel, queue=False, **QUIET)
+        told = [self.view, self.who, self.line, self.address, self.saved, self.removed]
+        tab.select(self.refresh, inputs=self.removed, outputs=told[:2], **quick)
+        self.view.select(self.act, inputs=self.removed, outputs=told, **quick)
+        self.everything.click(self.export_all, outputs=[self.line, self.saved], **quick)
+        self.file.upload(
+            self.take_in, inputs=[self.file, self.removed], outputs=[*told[:3], self.file], **quick
+        )
+        again = self.view.retry(
+            self.again, outputs=[self.line], concurrency_limit=None, trigger_mode="once", **QUIET
+        )
+        again.then(self.refresh, inputs=self.removed, outputs=told[:2], **quick)
+        self.view.stop(self.cancel, queue=False, **QUIET)
         parts = [self.tabs, record, self.line, *(c for job in self.jobs.values() for c in _parts(job))]
         self.opened = list({part._id: part for part in parts}.values())
         named = gr.Textbox(visible=False)
-        chosen = self.buttons["open"].click(self.open, inputs=self.list, outputs=self.opened, **quick)
+        chosen = self.view.submit(self.open, outputs=self.opened, **quick)
+        compared = self.view.like(self.compare, outputs=self.opened, **quick)
         address = demo.load(self.open_address, inputs=named, outputs=self.opened, js=_NAMED, **quick)
-        for chain in (chosen, address):
+        for chain in (chosen, compared, address):
             for kind, job in self.jobs.items():
                 knobs = job.knobs
                 chain = chain.then(
@@ -135,134 +132,162 @@ class HistoryTab:
 
     # ---- events ----------------------------------------------------------------------------------
 
-    def refresh(self, chosen: str | None) -> Updates:
-        """The list as it is now with the same run chosen, where it is still there, and its buttons."""
-        who = visitor()
-        with shown_errors():
-            entries = self.history.entries(who.owner)
-        choices = [(_label(entry), entry.id) for entry in entries]
-        kept = next((entry for entry in entries if entry.id == chosen), entries[0] if entries else None)
-        return (
-            gr.update(choices=choices, value=kept.id if kept else None),
-            gr.update(visible=not entries),
-            _signed_in(who),
-            gr.update(visible=bool(entries)),
-            *_able(kept),
-        )
+    def _found(self, search: Search, removed: Sequence[str]) -> dict[str, Any]:
+        found = self.history.search(visitor().owner, search)
+        filtered = search != Search(limit=search.limit)
+        return shown(found, empty=NOTHING_FOUND if filtered else EMPTY, removed=len(removed))
 
-    def choose(self, run: str | None) -> Updates:
-        """Shows the error of a chosen run, and enables the actions that apply to it."""
-        with shown_errors():
-            entry = self._entry(run)
-        line = status(entry.message, tone="warning") if entry and entry.message else status()
-        return line, gr.update(visible=False), *_able(entry)
-
-    def favour(self, run: str | None) -> Updates:
-        """Keeps a run from being removed for its age, or lets it go."""
-
-        def act(run: str, owner: str) -> str:
-            entry = self._entry(run)
-            wanted = entry is None or not entry.favourite
-            self.history.favour(run, owner, favourite=wanted)
-            return "Kept: it will not be removed because of its age." if wanted else "No longer kept."
-
-        return self._act(run, act)
-
-    def revoke(self, run: str | None) -> Updates:
-        """Ends a run's links."""
-
-        def act(run: str, owner: str) -> str:
-            ended = self.history.revoke(run, owner)
-            return "Its link no longer works." if ended == 1 else f"{ended} links to it no longer work."
-
-        return self._act(run, act)
-
-    def remove(self, run: str | None) -> Updates:
-        """Deletes a run."""
-
-        def act(run: str, owner: str) -> str:
-            self.history.remove(run, owner)
-            return "Removed, with its files and links."
-
-        return self._act(run, act)
-
-    def link(self, run: str | None) -> Updates:
-        """Makes a link to a run and shows it."""
-        made: list[str] = []
-
-        def act(run: str, owner: str) -> str:
-            key, until = self.history.link(run, owner)
-            made.append(f"{visitor().base}?run={key}")
-            last = time.strftime("%d %B %Y", time.localtime(until))
-            signed = " and can sign in here" if visitor().account else ""
-            return f"Anyone who has this link{signed} can see the motion until {last}, or until you end its links."
-
-        line, _ = self._act(run, act)
-        return line, gr.update(value=made[0] if made else "", visible=bool(made))
-
-    def _act(self, run: str | None, act: Any) -> Updates:
-        """Does something with a run and says so; hides the link."""
+    def refresh(self, removed: list[str]) -> Updates:
+        """The newest runs, and whose they are."""
         try:
-            if not run:
-                raise InputError("Choose a run first.")
-            line = status(act(run, visitor().owner), tone="done")
+            found = self._found(Search(), removed)
+        except Exception as error:
+            found = shown(Found((), 0), empty=error_line(error))
+        return gr.update(value=found), _signed_in(visitor())
+
+    def act(self, removed: list[str], event: gr.EventData) -> Updates:
+        """Does what was pressed in the notebook, and shows the list as it is then."""
+        line, address, saved = gr.skip(), gr.update(visible=False), gr.skip()
+        search = Search()
+        try:
+            told = Told(event._data)
+            search, owner = told.search, visitor().owner
+            if told.act == "link":
+                link, until = self._link(told.one, owner)
+                line, address = status(until, tone="done"), gr.update(value=link, visible=True)
+            elif told.act == "export":
+                line, saved = self._export(told.ids)
+            elif told.act == "remove":
+                count, removed = self.history.remove(told.ids, owner), told.ids
+                line = status(
+                    f"Removed {_runs(count)}, with {'its' if count == 1 else 'their'} links.", tone="done"
+                )
+            elif told.act == "restore":
+                count, removed = self.history.restore(removed, owner), []
+                line = status(f"Brought {_runs(count)} back.", tone="done")
+            elif told.act != "search":
+                line = status(self._one(told, owner), tone="done")
         except Exception as error:
             line = status(error_line(error), tone="error")
-        return line, gr.update(visible=False)
+        view, who = self.refresh(removed) if search == Search() else (gr.skip(), gr.skip())
+        if search != Search():
+            try:
+                view = gr.update(value=self._found(search, removed))
+            except Exception as error:
+                line = status(error_line(error), tone="error")
+        return view, who, line, address, saved, removed
 
-    def _entry(self, run: str | None) -> Entry | None:
-        """One of the visitor's own runs."""
-        return next((entry for entry in self.history.entries(visitor().owner) if entry.id == run), None)
+    def _one(self, told: Told, owner: str) -> str:
+        """Does something with one run and says so in a sentence."""
+        run = told.one
+        if told.act == "favour":
+            wanted = not self.history.entry(run, owner).favourite
+            self.history.favour(run, owner, favourite=wanted)
+            return "Kept: it will not be removed because of its age." if wanted else "No longer kept."
+        if told.act == "revoke":
+            ended = self.history.revoke(run, owner)
+            return "Its link no longer works." if ended == 1 else f"{ended} links to it no longer work."
+        if told.act == "describe":
+            self.history.describe(run, owner, **told.fields)
+            return "Saved."
+        raise InputError("The notebook sent something unknown: reload the page.")
 
-    def again(self, run: str | None, request: gr.Request) -> Iterator[Updates]:
+    def _link(self, run: str, owner: str) -> tuple[str, str]:
+        key, until = self.history.link(run, owner)
+        return f"{visitor().base}?run={key}", link_line(until)
+
+    def _export(self, runs: Sequence[str]) -> tuple[str, Any]:
+        file = self.page.shelf.folder() / "pas-de-deux-workspace.zip"
+        count = self.history.export(visitor().owner, runs, file)
+        size = file.stat().st_size
+        large = (
+            "" if size <= LARGEST_IMPORT else ", more than can be imported at once: export fewer runs as well"
+        )
+        line = f"{_runs(count).capitalize()} in one file of {size / 2**20:.1f} MB{large}."
+        return status(line, tone="done"), gr.update(value=str(file), visible=True)
+
+    def export_all(self) -> Updates:
+        """Writes every finished run into one file."""
+        try:
+            return self._export(())
+        except Exception as error:
+            return status(error_line(error), tone="error"), gr.update(visible=False)
+
+    def take_in(self, file: str | None, removed: list[str]) -> Updates:
+        """Adds the runs of an exported file."""
+        try:
+            count = self.history.take_in(visitor().owner, Path(file or ""))
+            line = status(f"Imported {_runs(count)}.", tone="done")
+        except Exception as error:
+            line = status(error_line(error), tone="error")
+        return *self.refresh(removed), line, None
+
+    def again(self, request: gr.Request, event: gr.EventData) -> Iterator[str]:
         """Runs a kept request once more and says whether it came out the same."""
         last: Progress | None = None
-        line, busy = "", (gr.update(interactive=False), gr.update(interactive=True))
+        line = ""
         try:
-            if not run:
-                raise InputError("Choose a run first.")
-            entry = self._entry(run)
-            if entry is not None and entry.state != "done":
+            run = Told(event._data).one
+            entry = self.history.entry(run, visitor().owner)
+            if entry.state != "done":
                 opened, wanted = None, request_of_unfinished(entry)
             else:
                 opened = self.history.open(run, visitor().owner)
                 wanted = request_of(opened)
-            for event in self.page.runs.run(_session(request), wanted, alone=True):
-                if isinstance(event, Result):
-                    said = (
-                        verdict(opened.result, event) if opened else "Run again: its result is in the list."
-                    )
+            for made in self.page.runs.run(_session(request), wanted, alone=True):
+                if isinstance(made, Result):
+                    said = verdict(opened.result, made) if opened else "Run again: its result is in the list."
                     line = status(said, tone="done")
                     break
-                last = event
-                yield status(progress_line(event), tone="busy"), *busy
+                last = made
+                yield status(progress_line(made), tone="busy")
         except Cancelled:
             line = status(cancelled_line(last), tone="warning")
         except Exception as error:
             line = status(error_line(error), tone="error")
-        yield line, gr.update(interactive=True), gr.update(interactive=False)
+        yield line
 
     def cancel(self, request: gr.Request) -> None:
         """Stops what runs again."""
         self.page.runs.cancel(_session(request))
 
-    def open(self, run: str | None) -> Updates:
+    def open(self, event: gr.EventData) -> Updates:
         """Shows a run in its tab, with all controls as they were."""
         try:
-            if not run:
-                raise InputError("Choose a run first.")
-            return self._shown(self.history.open(run, visitor().owner))
+            return self._shown(self.history.open(Told(event._data).one, visitor().owner))
         except Exception as error:
             return self._not_shown(error_line(error))
 
+    def compare(self, event: gr.EventData) -> Updates:
+        """Shows the first sample of several runs as a grid, in the tab of the first."""
+        try:
+            told = Told(event._data)
+            runs = [self.history.open(run, visitor().owner) for run in told.ids[: MOST + 1]]
+            job = self.jobs.get(runs[0].entry.kind) if runs else None
+            if job is None:
+                raise InputError("Choose two to nine runs first.")
+            shown = compared(runs)
+        except Exception as error:
+            return self._not_shown(error_line(error))
+        changes: dict[int, Any] = {
+            self.tabs._id: gr.update(selected=runs[0].entry.kind),
+            self.line._id: status(),
+            job.line._id: status(f"{len(runs)} runs of the history side by side.", tone="done"),
+            job.under._id: gr.update(visible=True),
+            job.asked._id: "",
+            job.changed._id: "",
+            **{job.outputs[name]._id: update for name, update in shown.items()},
+        }
+        return tuple(changes.get(part._id, gr.skip()) for part in self.opened)
+
     def open_address(self, run: str | None) -> Updates:
         """Opens the run that the page's address names, or the last one, so that a reload keeps it."""
-        if run == _LAST:
-            mine = self.history.entries(visitor().owner)
-            run = next((e.id for e in mine if e.state == "done" and e.kind in self.jobs), None)
-        if not run:
-            return (gr.skip(),) * len(self.opened)
         try:
+            if run == _LAST:
+                mine = self.history.search(visitor().owner, Search()).entries
+                run = next((e.id for e in mine if e.state == "done" and e.kind in self.jobs), None)
+            if not run:
+                return (gr.skip(),) * len(self.opened)
             return self._shown(self.history.open(run, visitor().owner))
         except Exception as error:
             return self._not_shown(error_line(error), first=True)
@@ -290,21 +315,39 @@ class HistoryTab:
             },
             **{part._id: update for part, update in job.opened(opened).items()},
         }
-        if "actor" in entry.request and isinstance(job, ReactTab):
-            source = actor_source(opened)
-            last = round(source.seconds, 1)
-            changes[job.source._id] = source
-            changes[job.given._id] = source.key
-            changes[job.trim._id] = gr.update(visible=True)
-            changes[job.begin._id] = gr.update(maximum=last, value=0)
-            changes[job.end._id] = gr.update(maximum=last, value=last)
         return tuple(changes.get(part._id, gr.skip()) for part in self.opened)
 
 
 def _parts(job: JobTab) -> Sequence[gr.components.Component]:
     """Everything of a tab that an opened run may set."""
     names = (*_CONTROLS, "source", "trim", "begin", "end", "marker", *job.restored)
-    return [*job.outputs.values(), *(getattr(job, name) for name in names if hasattr(job, name))]
+    parts = [*job.outputs.values(), *job.knobs.values()]
+    return parts + [getattr(job, name) for name in names if hasattr(job, name)]
+
+
+def compared(runs: Sequence[Opened]) -> dict[str, Any]:
+    """Updates that show runs as a grid.
+
+    Raises:
+        InputError: if their joints differ, or for fewer than two or more than nine runs.
+    """
+    if not 2 <= len(runs) <= MOST:
+        raise InputError(f"Choose two to {MOST} runs to compare, not {len(runs)}.")
+    joints = {run.result.duets[0].skeleton.joint_names for run in runs}
+    if len(joints) > 1:
+        raise InputError("These runs have different joints, so they cannot be compared: choose others.")
+    made: dict[str, Result] = {}
+    for run in runs:
+        name = run.entry.title[:60]
+        seed = run.entry.request.get("seed")
+        name = name if seed is None else f"{name}, seed {seed}"
+        number = sum(each.split(" #")[0] == name for each in made)
+        made[f"{name} #{number + 1}" if number else name] = replace(run.result, run="")
+    return grid_shown(loose([{}] * len(made), list(made)), made, f"{len(made)} runs compared")
+
+
+def _runs(count: int) -> str:
+    return "one run" if count == 1 else f"{count} runs"
 
 
 def _signed_in(who: Visitor) -> str:
@@ -320,43 +363,3 @@ def _signed_in(who: Visitor) -> str:
 def _session(request: gr.Request) -> str:
     """The session of this panel's own runs, which do not cancel those of the other tabs."""
     return f"again-{request.session_hash}"
-
-
-def _label(entry: Entry) -> str:
-    """One line for a run: when, what, by which method, how long, its seed, and marks."""
-    when = time.strftime("%d %b %H:%M", time.localtime(entry.created))
-    asked = entry.request
-    facts = [method] if (method := _method(asked)) else []
-    facts += [f"{asked['seconds']:g} s"] if "seconds" in asked else []
-    facts += [f"seed {asked['seed']}"] if "seed" in asked else []
-    marks = ("★ " if entry.favourite else "") + (f"{_MARKS[entry.state]} " if entry.state in _MARKS else "")
-    title = entry.title if len(entry.title) <= 80 else f"{entry.title[:79]}…"
-    told = f" · {entry.state}" if entry.state != "done" else ""
-    links = f" · {entry.links} link{'s' if entry.links > 1 else ''}" if entry.links else ""
-    return f"{marks}{title} · {' · '.join([*facts, when])}{told}{links}"
-
-
-def _method(asked: Mapping[str, Any]) -> str:
-    """The label of the method of a run; "" for the one that sentences go to by default."""
-    model, mode = str(asked.get("model", "")), asked.get("mode")
-    if asked.get("kind") == "generate" and model in ("", methods("generate")[0].name):
-        return ""
-    if asked.get("kind") == "react":
-        known = (v.label for v in variants("react").values() if (v.method.name, v.mode) == (model, mode))
-        return next(known, label_of(model))
-    return label_of(model)
-
-
-def _able(entry: Entry | None) -> Updates:
-    """Enables the buttons of :data:`_ABLE` that apply to a run."""
-    done = entry is not None and entry.state == "done"
-    lets = {
-        "open": done,
-        "link": done,
-        "revoke": entry is not None and entry.links > 0,
-        "again": entry is not None and entry.state != "running",
-        "favour": entry is not None,
-        "remove": entry is not None and entry.state != "running" and not entry.favourite,
-    }
-    named: dict[str, Any] = {"value": _UNKEEP if entry is not None and entry.favourite else _KEEP}
-    return tuple(gr.update(interactive=lets[each], **(named if each == "favour" else {})) for each in _ABLE)

@@ -2,14 +2,17 @@
 
 from __future__ import annotations
 
+import logging
 import secrets
 import time
 from abc import ABC, abstractmethod
 from collections.abc import Callable, Generator, Iterator, Mapping, Sequence
+from functools import partial
 from typing import Any
 
 import gradio as gr
 
+from motion import InputError
 from webdemo.inference.requests import (
     DAMPING,
     GUIDANCE,
@@ -20,25 +23,25 @@ from webdemo.inference.requests import (
     Result,
     SamplingRequest,
 )
-from webdemo.ui.components.exports import KINDS, Record, file_name, for_download, write_record
-from webdemo.ui.components.film import READ_PLAYER, make_film
-from webdemo.ui.components.film import suffix as film_suffix
-from webdemo.ui.components.player import EMPTY_TEXT, MotionPlayer, busy, show
+from webdemo.ui.components.exports import Record
+from webdemo.ui.components.player import busy, show
 from webdemo.ui.components.settings import ADVANCED, OPENED, advanced_label, differs, snapshot
 from webdemo.ui.components.show import result_payload
-from webdemo.ui.context import PageContext
-from webdemo.ui.history import Opened
+from webdemo.ui.history import Kept, Opened
 from webdemo.ui.text.panels import notes_lines, readout_panel, status
 from webdemo.ui.text.words import cancelled_line, error_line, progress_line, seconds
-from webdemo.view.payload import Payload
+from webdemo.ui.visitor import visitor
+
+from .results import QUIET, ResultsTab, Updates
+
+log = logging.getLogger(__name__)
+__all__ = ["QUIET", "JobTab", "Updates", "total"]
+
 
 STEPS_SHOWN = (1, 100)
 """What the slider offers; the API takes more."""
 PACE = 0.3
 """Seconds between two updates of the page while a run goes on."""
-QUIET: dict[str, Any] = {"api_visibility": "private", "show_progress": "hidden"}
-"""Options of events that are the page's own: no endpoint, no spinner over what they change."""
-
 _DAMPING_INFO = (
     "While t ≤ threshold × T, corrects feet, bones, overlap, touch and facing as the motion is generated; "
     "0 = off."
@@ -48,7 +51,6 @@ _STEPS_INFO = "Denoising steps: fewer are faster, more are finer."
 _SEED_INFO = "Same seed, same motion; empty for a new one."
 _SAMPLES_INFO = "Motions to generate."
 
-Updates = tuple[Any, ...]
 Watch = Callable[[Progress], dict[str, Any] | None]
 
 
@@ -57,7 +59,7 @@ def total(result: Result) -> float:
     return result.timings.get("total", sum(result.timings.values()))
 
 
-class JobTab(ABC):
+class JobTab(ResultsTab, ABC):
     """A tab that turns its controls into a request, runs it and shows the result.
 
     A subclass lays out its own controls between these parts and answers :meth:`request` and :meth:`title`.
@@ -67,8 +69,6 @@ class JobTab(ABC):
     """
 
     label: str
-    prefix = ""
-    """Before the ids of the tab's elements."""
     restored: tuple[str, ...] = ()
     """Attributes that :meth:`opened` sets, besides the result and controls named as a request's fields."""
     dice: gr.Button | None = None
@@ -76,10 +76,7 @@ class JobTab(ABC):
     folded: gr.Accordion | None = None
     """Holds the sliders that are rarely needed, where the tab has them."""
     controls: Mapping[str, gr.components.Component]
-    """What a run is given, by the names of its fields; set by ``build``."""
-
-    def __init__(self, page: PageContext) -> None:
-        self.page = page
+    """The inputs of a run, by the names of its fields; set by ``build``."""
 
     @abstractmethod
     def request(self, fields: Mapping[str, Any]) -> SamplingRequest:
@@ -90,9 +87,6 @@ class JobTab(ABC):
         """The title that the player shows over the result, and from which its files are named."""
 
     # ---- layout ----------------------------------------------------------------------------------
-
-    def _id(self, name: str) -> str:
-        return self.prefix + name
 
     def _go(self, verb: str, beside: Callable[[], None] = lambda: None) -> None:
         """The buttons that start a run and cancel it, with what ``beside`` lays out between them."""
@@ -145,41 +139,6 @@ class JobTab(ABC):
         self.tell_advanced = {"inputs": sliders, "outputs": self.folded, "js": ADVANCED, **QUIET}
         gr.on([slider.change for slider in sliders], None, **self.tell_advanced)
 
-    def _results(
-        self,
-        empty_text: str = EMPTY_TEXT,
-        below: Callable[[], None] = lambda: None,
-        first: Payload | None = None,
-    ) -> None:
-        """The player, and under it the files and read-outs of a result and what ``below`` lays out.
-
-        ``first`` is played before anything is asked for.
-        """
-        with gr.Column(elem_classes="pd-results", min_width=0):
-            with gr.Column(elem_classes="pd-panel pd-stage", min_width=0):
-                self.player = MotionPlayer(first, elem_id=self._id("player"), empty_text=empty_text)
-            with gr.Column(elem_classes="pd-panel pd-under", min_width=0, visible=False) as self.under:
-                with gr.Row(elem_classes="pd-downloads", elem_id=self._id("downloads")):
-                    self.downloads = [
-                        gr.DownloadButton(
-                            kind.label, size="sm", interactive=False, visible=kind.offered(), min_width=0,
-                            elem_id=self._id(f"download-{kind.key}"),
-                        )
-                        for kind in KINDS
-                    ]  # fmt: skip
-                    self.film = gr.Button("Make a film", size="sm", min_width=0, elem_id=self._id("film"))
-                    self.filmed = gr.DownloadButton(
-                        f"Film {film_suffix()}", size="sm", interactive=False, min_width=0,
-                        elem_id=self._id("download-film"),
-                    )  # fmt: skip
-                    self.player_state = gr.Textbox(visible=False)
-                    self.onward = gr.Button(
-                        "What comes next", size="sm", min_width=0, elem_id=self._id("continue"),
-                        elem_classes="pd-onward",
-                    )  # fmt: skip
-                self.readouts = gr.HTML(elem_id=self._id("readouts"))
-            below()
-
     # ---- events ----------------------------------------------------------------------------------
 
     def _wire_run(
@@ -191,7 +150,9 @@ class JobTab(ABC):
 
         ``record`` keeps the result, in a state of its own by default.
         """
-        self.knobs = {name: part for name, part in self.controls.items() if not isinstance(part, gr.State)}
+        self.knobs = {
+            name: part for name, part in self.controls.items() if not isinstance(part, gr.State | gr.HTML)
+        }
         self.record = record or gr.State(None, time_to_live=3600)
         self.outputs = {
             "player": self.player,
@@ -213,10 +174,7 @@ class JobTab(ABC):
         gr.on(changes, None, **self.compare)
         self._wire_start(self.start, triggers)
         self.stop.click(self.cancel, queue=False, **QUIET)
-        self.film.click(
-            self.make_film, inputs=[self.record, self.player_state], outputs=[self.line, self.filmed],
-            js=READ_PLAYER, concurrency_limit=1, concurrency_id="film", trigger_mode="once", **QUIET,
-        )  # fmt: skip
+        self._wire_results()
         if self.dice is not None:
             self.dice.click(
                 None, outputs=self.seed, js=f"() => Math.floor(Math.random() * {MAX_SEED + 1})", **QUIET
@@ -225,12 +183,14 @@ class JobTab(ABC):
     def _wire_start(
         self,
         start: Callable[..., Iterator[Updates]],
-        triggers: Sequence[Any],
+        triggers: Sequence[Any] | Callable[..., Any],
+        *,
+        more: Sequence[gr.components.Component] = (),
     ) -> None:
-        run = gr.on(
-            triggers,
+        listen = triggers if callable(triggers) else partial(gr.on, list(triggers))
+        run = listen(
             start,  # not called "generate": that name is the public endpoint's
-            inputs=set(self.controls.values()),
+            inputs={*self.controls.values(), *more},
             outputs=list(self.outputs.values()),
             concurrency_limit=None,  # runs wait in a line of their own, where they can be cancelled
             trigger_mode="once",
@@ -281,12 +241,33 @@ class JobTab(ABC):
                 fields = {**fields, "seed": secrets.randbelow(MAX_SEED + 1)}
             for updates in self.answer(session, fields):
                 shown = dict(zip(self.outputs, updates, strict=True))
-                made = shown["record"] != gr.skip()
-                yield self._updates(**shown | {"asked": asked}) if made else updates
+                if not isinstance(record := shown["record"], Record):
+                    yield updates
+                    continue
+                self._keep(record, fields)
+                yield self._updates(**shown | {"asked": asked})
         except Cancelled as stopped:
             yield self._stopped(str(stopped), "warning")
         except Exception as error:
             yield self._stopped(error_line(error), "error")
+
+    def _keep(self, record: Record, fields: Mapping[str, Any]) -> None:
+        """Writes down how the tab was set, so that the run opens as it was."""
+        if self.page.history is None or not record.result.run:
+            return
+        source = fields.get("source")
+        controls = {name: fields.get(name) for name in self.knobs if name != "given"}
+        kept = Kept(
+            controls=controls | ({"grid": dict(record.grid)} if record.grid else {}),
+            people=source.people if source is not None else (),
+            compared=tuple(result.run for result in record.compared.values())[1:],
+        )
+        try:
+            self.page.history.keep(record.result.run, visitor().owner, kept)
+            if record.grid:
+                self.page.history.describe(record.result.run, visitor().owner, title=record.prompt[:200])
+        except InputError as error:  # the motion itself is kept
+            log.warning("The settings of a run could not be kept: %s", error)
 
     def answer(self, session: str, fields: Mapping[str, Any]) -> Iterator[Updates]:
         """Runs what the fields ask for and shows it."""
@@ -351,7 +332,10 @@ class JobTab(ABC):
         shown["line"] = status(f"Made on {made} UTC.", tone="done") + notes_lines(run.result)
         shown |= {"asked": OPENED, "changed": ""}
         found = {self.outputs[name]: update for name, update in shown.items()}
-        values = [run.entry.request.get(name) for name in ("guidance", "steps", "damping")]
+        for name, value in run.kept.controls.items():
+            if name in self.knobs:
+                found[self.knobs[name]] = gr.update(value=value)
+        values: list[Any] = [run.entry.request.get(name) for name in ("guidance", "steps", "damping")]
         if self.folded is not None and None not in values:
             found[self.folded] = gr.update(label=advanced_label(*values))
         return found
@@ -370,35 +354,3 @@ class JobTab(ABC):
     def cancel(self, request: gr.Request) -> None:
         """Stops the session's run within one denoising step."""
         self.page.runs.cancel(str(request.session_hash))
-
-    def make_film(self, record: Record | None, shown: str) -> Iterator[Updates]:
-        """Films the last result as the player shows it and hands the film to its download button."""
-        yield status("Drawing the film …", tone="busy"), gr.update(value=None, interactive=False)
-        began = time.perf_counter()
-        try:
-            path = make_film(record, shown, self.page.shelf.folder())
-        except Exception as error:
-            yield status(error_line(error), tone="error"), gr.skip()
-            return
-        line = (
-            f"The film is ready, drawn in {seconds(time.perf_counter() - began)}: press Film {path.suffix}."
-        )
-        yield status(line, tone="done"), gr.update(value=path, interactive=True)
-
-    def export(self, record: Record | None) -> Updates:
-        """Writes the files of a new result and hands them to the download buttons."""
-        unchanged = (gr.skip(),) * (1 + len(KINDS))
-        if record is None or record.exported:
-            return unchanged
-        record.exported = True
-        try:
-            files = write_record(record, self.page.shelf.folder())
-            found = for_download(files, file_name(record.prompt, record.result.manifest))
-        except Exception as error:
-            off = gr.update(value=None, interactive=False)
-            return (status(f"The motion is ready, but its files are not. {error_line(error)}", tone="error"),
-                    *(off for _ in KINDS))  # fmt: skip
-        return (
-            gr.skip(),
-            *(gr.update(value=found.get(kind.key), interactive=kind.key in found) for kind in KINDS),
-        )

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import replace
 from functools import partial
 from pathlib import Path
@@ -25,6 +25,7 @@ from webdemo.ui.components.exports import Record
 from webdemo.ui.components.player import busy, show
 from webdemo.ui.components.prediction_view import (
     curves_figure,
+    method_name,
     prediction_payload,
     told_errors,
     without_name,
@@ -284,18 +285,26 @@ class PredictTab(JobTab):
             assert isinstance(result, PredictResult)
             made[model] = result
         title = self.title(wanted[models[0]])
-        named = {label_of(model): result for model, result in made.items()}
         spent = " and ".join(seconds(total(result)) for result in made.values())
         yield self._updates(
-            player=show(prediction_payload(*made.values(), title=title)),
+            **self._both(list(made.values()), title),
             line=status(f"Both done, in {spent}.", tone="done") + "".join(map(notes_lines, made.values())),
             under=gr.update(visible=True),
-            readouts=prediction_lines(dict(zip(named, told_errors(*named.values()), strict=True)))
-            + comparison_panel(named),
-            record=Record(made[models[0]], title, compared=made),
-            curves=gr.update(visible=True),
-            plot=curves_figure(*made.values()),
         )
+
+    @staticmethod
+    def _both(results: Sequence[PredictResult], title: str) -> dict[str, Any]:
+        """Updates that show two predictions of one past."""
+        named = {method_name(result): result for result in results}
+        made = {str(result.manifest.get("model")): result for result in results}
+        return {
+            "player": show(prediction_payload(*results, title=title)),
+            "readouts": prediction_lines(dict(zip(named, told_errors(*results), strict=True)))
+            + comparison_panel(named),
+            "record": Record(results[0], title, compared=made),
+            "curves": gr.update(visible=True),
+            "plot": curves_figure(*results),
+        }
 
     def opened(self, run: Opened) -> dict[gr.components.Component, Any]:
         """Also the motion that was asked about, so that the marker can be moved on it."""
@@ -304,6 +313,13 @@ class PredictTab(JobTab):
             source = given_source(result, run.entry.title)
             found[self.source], found[self.given] = source, source.key
             found[self.marker] = self._marker(source, result.past_frames / result.duets[0].fps)
+        others = [each.result for each in run.beside[:1] if isinstance(each.result, PredictResult)]
+        found[self.other] = gr.update(value=run.kept.controls.get("other") if others else "")
+        if others and isinstance(result, PredictResult):
+            found |= {
+                self.outputs[name]: update
+                for name, update in self._both([result, *others], run.entry.title).items()
+            }
         return found
 
     def _shown(self, result: Result, title: str) -> dict[str, Any]:

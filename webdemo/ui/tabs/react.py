@@ -2,60 +2,52 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from functools import partial
-from pathlib import Path
 from typing import Any
 
 import gradio as gr
 
 from motion import InputError
-from motion.formats.importing import AXES, ORDERS, UNITS
 from webdemo.inference.actor import SECONDS
 from webdemo.inference.live import LiveRequest
 from webdemo.inference.methods import AUTOMATIC, variants
 from webdemo.inference.requests import ReactRequest, Result
 from webdemo.ui.components.actors import (
-    AUTO,
-    Source,
     chosen_actor,
     live_variant,
     react_choices,
     reactor,
-    read_source,
-    result_source,
     with_method,
 )
-from webdemo.ui.components.camera import CameraPanel, film_source
+from webdemo.ui.components.camera import CameraPanel
 from webdemo.ui.components.compare import comparison_payload
 from webdemo.ui.components.exports import Record
 from webdemo.ui.components.live import LiveView
-from webdemo.ui.components.player import busy, show
+from webdemo.ui.components.player import show
 from webdemo.ui.components.settings import looked_up
 from webdemo.ui.components.show import result_payload
+from webdemo.ui.components.sweep import Kind
 from webdemo.ui.components.upload import chip, example_chips, file_field
-from webdemo.ui.context import PageContext
 from webdemo.ui.history import Opened
-from webdemo.ui.text.examples import example_clips
 from webdemo.ui.text.panels import comparison_panel, method_line, notes_lines, status
-from webdemo.ui.text.words import error_line, seconds, text
+from webdemo.ui.text.words import seconds
 
-from .job import QUIET, JobTab, Updates, total
+from .actor import ActorTab
+from .generate import named_method
+from .job import QUIET, Updates, total
 
 EMPTY_TEXT = (
     "Choose one person: drop a motion file or pick an example\n"
     "React adds a second person who answers. Live does so while the first one plays."
 )
-_DETECTED = "detect"
 _AUTOMATIC = (
     "With words, InterGen answers them; without words, the virtual agent recognises the gesture itself."
 )
 _WORDS = "What do the two people do? (optional)"
-_SHORTEST = 0.1
-"""Seconds: the least that the trim's sliders differ in."""
 
 
-class ReactTab(JobTab):
+class ReactTab(ActorTab):
     """One person → two people.
 
     Args:
@@ -67,10 +59,6 @@ class ReactTab(JobTab):
     prefix = "react-"
     restored = ("method", "other", "about", "given", "person", "folded")
 
-    def __init__(self, page: PageContext, examples: list[tuple[str, Path]] | None = None) -> None:
-        super().__init__(page)
-        self.examples = example_clips() if examples is None else examples
-
     def request(self, fields: Mapping[str, Any]) -> ReactRequest:
         """See :meth:`JobTab.request`."""
         return ReactRequest(**chosen_actor(fields))
@@ -81,21 +69,54 @@ class ReactTab(JobTab):
 
     def opened(self, run: Opened) -> dict[gr.components.Component, Any]:
         """Also the method, with what it lets be set."""
-        asked = run.entry.request
+        asked, controls = run.entry.request, run.kept.controls
         known = variants("react")
         its = (asked.get("model"), asked.get("mode"))
         method = next((key for key, v in known.items() if (v.method.name, v.mode) == its), next(iter(known)))
+        if controls.get("method") in (*known, AUTOMATIC):
+            method = str(controls["method"])
+        other = str(controls.get("other") or "") if run.beside else ""
         names = ("role", "steps", "guidance", "damping", "prompt", "about")
-        fitted = zip((getattr(self, name) for name in names), self.fit_method(method), strict=True)
-        kept = (asked.get(name) for name in names)
-        return super().opened(run) | {
+        fitted = zip((getattr(self, name) for name in names), self.fit_method(method, other), strict=True)
+        kept = (controls.get(name, asked.get(name)) for name in names)
+        found = super().opened(run) | {
             self.method: gr.update(value=method),
-            self.other: gr.update(value=""),
+            self.other: gr.update(value=other),
             **{
                 part: fit if value is None else {**fit, "value": value}
                 for (part, fit), value in zip(fitted, kept, strict=True)
             },
         }
+        return found | self._opened_actor(run) | self._opened_beside(run)
+
+    def kinds(self) -> Sequence[Kind]:
+        """Also words, and methods."""
+        known = {label.lower(): key for label, key in react_choices()}
+        labels = {key: label for label, key in react_choices()}
+        methods = Kind(
+            "method", "Methods", read=partial(named_method, known), split=r"[;\n]", named=labels.__getitem__
+        )
+        return (*super().kinds(), Kind("prompt", "Sentences", split=r"[;\n]"), methods)
+
+    def presets(self) -> Mapping[str, tuple[str, str]]:
+        """Also every method beside the others."""
+        labels = [label for label, key in react_choices() if key != AUTOMATIC]
+        return {**super().presets(), "Method beside method": ("method", "; ".join(labels))}
+
+    def cell_fields(self, fields: Mapping[str, Any], cell: Mapping[str, Any]) -> dict[str, Any]:
+        """A method gets its own number of steps, and its own role."""
+        asked = {**fields, **cell, "other": ""}
+        if "method" in cell and "steps" not in cell:
+            asked["steps"] = with_method(fields, cell["method"])["steps"]
+        return asked
+
+    def _opened_beside(self, run: Opened) -> dict[gr.components.Component, Any]:
+        """The comparison that the run was a part of, where its other side is still there."""
+        if not run.beside or "grid" in run.kept.controls:
+            return {}
+        results = {label(each): each.result for each in (run, *run.beside[:1])}
+        shown = self._both(results, run.entry.title)
+        return {self.outputs[name]: shown[name] for name in ("player", "readouts", "record")}
 
     # ---- layout ----------------------------------------------------------------------------------
 
@@ -112,6 +133,7 @@ class ReactTab(JobTab):
                 with gr.Column(elem_classes="pd-panel pd-settings", min_width=0):
                     self.samples = self._samples()
                     self._sampling()
+                    self._sweeps()
             self._results(EMPTY_TEXT)
         self.source = gr.State(None, time_to_live=3600)
         self.given = gr.Textbox("", visible=False)
@@ -123,11 +145,12 @@ class ReactTab(JobTab):
         }  # fmt: skip
         self._wire_run([self.go.click, self.prompt.submit], record)
         self._wire_start(self.start_live, [self.live.click])
+        self._wire_sweeps()
         self._wire_actor()
         self._wire_methods()
 
     def _wire_methods(self) -> None:
-        """What can be set follows the chosen methods, in the browser: a late answer would undo what was set."""
+        """Fits the settings to the chosen methods in the browser: a late answer would undo what was set."""
         keys = [key for _, key in react_choices()]
         fits = {f"{key}/{other}": self.fit_method(key, other) for key in keys for other in ("", *keys)}
         chosen = [self.method, self.other]
@@ -185,28 +208,6 @@ class ReactTab(JobTab):
             )
             self._go("React", self._live_button)
 
-    def _import_choices(self) -> None:
-        """The line on how the file was read, and its settings."""
-        with gr.Accordion("How the file was read", open=False, elem_id="react-import"):
-            with gr.Row(elem_classes="pd-pair"):
-                self.up = gr.Dropdown(
-                    [(_DETECTED, AUTO), *AXES], value=AUTO, label="Up axis", elem_id="react-up",
-                    min_width=0,
-                )  # fmt: skip
-                self.unit = gr.Dropdown(
-                    [(_DETECTED, AUTO), *UNITS], value=AUTO, label="Unit", elem_id="react-unit",
-                    min_width=0,
-                )  # fmt: skip
-                self.fps = gr.Number(
-                    value=None, label="Frames a second", placeholder=_DETECTED, elem_id="react-fps",
-                    min_width=0,
-                )  # fmt: skip
-                self.order = gr.Dropdown(
-                    [(_DETECTED, AUTO), *((label, name) for name, label in ORDERS.items())],
-                    value=AUTO, label="Data set of a 15-joint file", elem_id="react-order", min_width=0,
-                )  # fmt: skip
-            self.found = gr.HTML(elem_id="react-found")
-
     def _live_button(self) -> None:
         self.live = gr.Button(
             "Live", elem_id="react-live", elem_classes="pd-live", min_width=0,
@@ -218,45 +219,6 @@ class ReactTab(JobTab):
         return {**super().starts(), "live": self.live}
 
     # ---- events ----------------------------------------------------------------------------------
-
-    def _wire_actor(self) -> None:
-        changed = [
-            self.source, self.given, self.line, self.player, self.trim, self.person, self.begin, self.end,
-            self.found,
-        ]  # fmt: skip
-        load: dict[str, Any] = {
-            "outputs": changed,
-            "concurrency_limit": 2,
-            "concurrency_id": "react-read",
-            **QUIET,
-        }
-        self.file.upload(self.upload, inputs=self.file, **load).then(None, **self.compare)
-        self.camera.submit(self.read_film, inputs=self.camera, **load).then(None, **self.compare)
-        choices = [self.up, self.unit, self.fps, self.order]
-        self.file.upload(lambda: (AUTO, AUTO, None, AUTO), outputs=choices, queue=False, **QUIET)
-        gr.on(
-            [self.up.input, self.unit.input, self.order.input, self.fps.submit, self.fps.blur],
-            self.read_again, inputs=[self.source, *choices], trigger_mode="always_last",
-            **{**load, "outputs": [*changed, *choices]},
-        ).then(None, **self.compare)  # fmt: skip
-        for button, (name, path) in zip(self.chips, self.examples, strict=True):
-            read = partial(self.load, partial(read_source, path, name))
-            button.click(read, **load).then(None, **self.compare)
-        for person, button in self.take.items():
-            taking = button.click(partial(self.take_result, person), inputs=self.record, **load)
-            taking.then(None, **self.compare)
-        others = [self.camera.submit, *(button.click for button in (*self.chips, *self.take.values()))]
-        gr.on(others, None, outputs=self.file, js="() => null", **QUIET)  # the file is no longer what is used
-        self.source.change(
-            lambda source: gr.update(visible=source is not None and len(source.people) == 2, value=False),
-            inputs=self.source, outputs=self.keep, queue=False, **QUIET,
-        )  # fmt: skip
-        self.file.clear(self.forget, outputs=changed, queue=False, **QUIET)
-        trim = [self.source, self.person, self.begin, self.end]
-        gr.on(
-            [self.person.input, self.begin.release, self.end.release],
-            self.preview, inputs=trim, outputs=[self.line, self.player], trigger_mode="always_last", **QUIET,
-        )  # fmt: skip
 
     @staticmethod
     def fit_method(method: str, other: str = "") -> Updates:
@@ -283,95 +245,6 @@ class ReactTab(JobTab):
             method_line(about) + (method_line(f"Live always answers with {live.label}.") if live else ""),
         )
 
-    def upload(self, path: str | None) -> Iterator[Updates]:
-        """Reads an uploaded file and shows its actor; one that cannot be read leaves no actor."""
-        if path is not None:
-            yield from self.load(partial(read_source, path), fresh=True)
-
-    def read_film(self, landmarks: str | None) -> Iterator[Updates]:
-        """Makes the people of a film the actors."""
-        yield from self.load(partial(film_source, landmarks))
-
-    def read_again(
-        self, source: Source | None, up: str, unit: str, fps: float | None, order: str = AUTO
-    ) -> Iterator[Updates]:
-        """Reads the source's file anew with what the visitor knows of it, or takes that back where it cannot."""
-        if source is None or source.path is None:
-            return
-        path, name, asked = source.path, source.name, (up, unit, fps, order)
-        for updates in self.load(lambda: read_source(path, name, asked)):
-            failed = updates[0] == gr.skip() and "pd-error" in updates[2]
-            yield *updates, *(source.read_with if failed else (gr.skip(),) * 4)
-
-    def take_result(self, person: str, record: Record | None) -> Iterator[Updates]:
-        """Makes a person of the session's last result the actor."""
-
-        def read() -> Source:
-            if record is None:
-                raise InputError("There is no result yet: generate one first.")
-            return result_source(record.result, record.prompt, person)
-
-        yield from self.load(read)
-
-    def load(self, read: Callable[[], Source], *, fresh: bool = False) -> Iterator[Updates]:
-        """Updates of source, its key, line, player, trim, person, start, end and found while an actor is read.
-
-        Where it is ``fresh`` and cannot be read, an earlier actor is forgotten.
-        """
-        rest = (gr.skip(),) * 5
-        same = (gr.skip(),) * 2
-        yield *same, status("Reading the motion …", tone="busy"), busy("Reading the motion …"), *rest
-        try:
-            source = read()
-            payload = source.preview(source.chosen, 0.0, source.end)
-        except Exception as error:
-            told = status(error_line(error), tone="error")
-            if fresh:
-                nobody = list(self.forget())
-                nobody[2] = told
-                yield tuple(nobody)
-            else:
-                yield *same, told, busy(""), *rest
-            return
-        last = max(round(source.seconds, 1), _SHORTEST)
-        yield (
-            source,
-            source.key,
-            self._told(source, 0.0, source.end),
-            show(payload),
-            gr.update(visible=True),
-            gr.update(choices=source.choices, visible=len(source.people) > 1, value=source.chosen),
-            gr.update(maximum=last, value=0),
-            gr.update(maximum=last, value=min(round(source.end, 1), last)),
-            _found(source),
-        )
-
-    @staticmethod
-    def forget() -> Updates:
-        """The tab without an actor; a result stays in the downloads."""
-        return None, "", status(), show(None), gr.update(visible=False), *(gr.skip(),) * 4
-
-    def preview(self, source: Source | None, person: str, start: float, end: float) -> Updates:
-        """Shows the actor as trimmed."""
-        if source is None:
-            return gr.skip(), gr.skip()
-        try:
-            payload = source.preview(person, start, end)
-        except Exception as error:
-            return status(error_line(error), tone="error"), busy("")
-        return self._told(source, start, end), show(payload)
-
-    @staticmethod
-    def _told(source: Source, start: float, end: float) -> str:
-        end = min(end, source.seconds)
-        shortest, longest = SECONDS
-        used = f"{source.name}: {start:.1f} to {end:.1f} s of {source.seconds:.1f} s."
-        if end - start < shortest - 1e-6:
-            return status(f"{used} Take {shortest:g} s or more.", tone="warning")
-        if end - start > longest + 0.05:
-            return status(f"{used} Take {longest:g} s or less.", tone="warning")
-        return status(" ".join((used, *source.notes)), tone="warning" if source.notes else "quiet")
-
     def start_live(
         self, values: dict[gr.components.Component, Any], request: gr.Request
     ) -> Iterator[Updates]:
@@ -380,7 +253,9 @@ class ReactTab(JobTab):
 
     def answer(self, session: str, fields: Mapping[str, Any]) -> Iterator[Updates]:
         """Runs one method, two side by side, or the live reaction."""
-        if fields.get("live"):
+        if fields.get("grid"):
+            yield from super().answer(session, fields)
+        elif fields.get("live"):
             yield from self._answer_live(session, fields)
         elif fields.get("other"):
             yield from self._answer_both(session, fields)
@@ -400,12 +275,19 @@ class ReactTab(JobTab):
         named = {reactor(key, fields).label: result for key, result in made.items()}
         spent = " and ".join(seconds(total(result)) for result in made.values())
         yield self._updates(
-            player=show(comparison_payload(named, title=title)),
+            **self._both(named, title) | {"record": Record(made[keys[0]], title, compared=made)},
             line=status(f"Both done, in {spent}.", tone="done") + "".join(map(notes_lines, made.values())),
             under=gr.update(visible=True),
-            readouts=comparison_panel(named),
-            record=Record(made[keys[0]], title, compared=made),
         )
+
+    @staticmethod
+    def _both(named: Mapping[str, Result], title: str) -> dict[str, Any]:
+        """Updates that show two results, by the labels of their methods."""
+        return {
+            "player": show(comparison_payload(named, title=title)),
+            "readouts": comparison_panel(named),
+            "record": Record(next(iter(named.values())), title, compared=named),
+        }
 
     def _answer_live(self, session: str, fields: Mapping[str, Any]) -> Iterator[Updates]:
         """Streams one sample of the online method, whatever method is chosen."""
@@ -427,9 +309,9 @@ class ReactTab(JobTab):
         yield self._updates(**{**shown, "player": show(payload), "line": line})
 
 
-def _found(source: Source) -> str:
-    """Describes as HTML how a source's file was read: one line, then its joints beside SMPL's."""
-    if source.found is None:
-        return status("Taken from a result, so there was nothing to detect.")
-    pairs = " · ".join(f"{text(theirs)} → {text(ours)}" for theirs, ours in source.found.joints)
-    return f'{status(source.found.line)}<p class="pd-timings">{pairs}</p>'
+def label(run: Opened) -> str:
+    """The label of the method of a kept reaction, in its mode."""
+    asked = run.entry.request
+    its = (asked.get("model"), asked.get("mode"))
+    known = variants("react").values()
+    return next((v.label for v in known if (v.method.name, v.mode) == its), str(its[0]))

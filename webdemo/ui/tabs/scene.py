@@ -74,7 +74,7 @@ class SceneTab(JobTab):
 
     label = "Scene"
     prefix = "scene-"
-    restored = ("line_up",)
+    restored = ("line_up", "folded")
 
     # ---- requests --------------------------------------------------------------------------------
 
@@ -125,8 +125,11 @@ class SceneTab(JobTab):
                     )  # fmt: skip
                     self.use = gr.Button("Use this text", size="sm", elem_id=self._id("use-text"))
             self._results(EMPTY_TEXT, self._story)
-        inputs = (self.prompt, self.line_up, self.seed, self.samples, self.guidance, self.steps, self.damping)
-        self._wire_run(self.start, [self.go.click, self.prompt.submit], inputs, record)
+        self.controls = {
+            "prompt": self.prompt, "story": self.line_up, "seed": self.seed, "samples": self.samples,
+            "guidance": self.guidance, "steps": self.steps, "damping": self.damping,
+        }  # fmt: skip
+        self._wire_run([self.go.click, self.prompt.submit], record)
         self._wire_parts()
         self._wire_story()
 
@@ -258,24 +261,6 @@ class SceneTab(JobTab):
         shown = story_value(fields["beats"], request.paths, request.poses, request.loop)
         shown["from"] = prompt
         return shown, told, request.seed if "seed" in fields else gr.skip()
-
-    def start(
-        self,
-        prompt: str,
-        story: Any,
-        seed: float | None,
-        samples: float,
-        guidance: float,
-        steps: float,
-        damping: float,
-        request: gr.Request,
-    ) -> Iterator[Updates]:
-        """Runs the story on the line, or first splits the sentence into one where the line is empty."""
-        fields = {
-            "prompt": prompt, "story": story, "seed": seed, "samples": samples, "guidance": guidance,
-            "steps": steps, "damping": damping,
-        }  # fmt: skip
-        yield from self.run(str(request.session_hash), fields)
 
     def answer(self, session: str, fields: Mapping[str, Any]) -> Iterator[Updates]:
         """Runs the story; parts appear as they are finished and stay if the run is cancelled."""

@@ -34,7 +34,7 @@ def status(line: str = "", *, tone: str = "quiet") -> str:
 
 
 def notes_lines(result: Result) -> str:
-    """What the user should read about a result, to stand right beside "Done"."""
+    """The notes of a result, which stand right beside "Done"."""
     return "".join(status(note, tone="warning") for note in result.notes)
 
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 import errno
 import html
 import logging
+import time
 from collections.abc import Iterator
 from contextlib import contextmanager
 
@@ -25,7 +26,7 @@ _STAGES = {
 }
 
 _SAMPLING = {"step": "Denoising", "pass": "Predicting"}
-"""What goes on where this unit is counted."""
+"""The word for the work that is counted in a unit."""
 _PACE_STEPS = 3
 """Steps after which the pace is known, or a tenth of them all."""
 _SHORT = 3.0
@@ -93,6 +94,13 @@ def shown_errors() -> Iterator[None]:
         yield
     except Exception as error:
         raise gr.Error(error_line(error), print_exception=False) from None
+
+
+def link_line(until: float) -> str:
+    """A sentence on who can open a new link, and until when."""
+    last = time.strftime("%d %B %Y", time.localtime(until))
+    signed = " and can sign in here" if visitor().account else ""
+    return f"Anyone who has this link{signed} can see the motion until {last}, or until you end its links."
 
 
 def number(value: float, digits: int) -> str:

@@ -1,0 +1,206 @@
+// The notebook of runs: cards that can be searched, chosen, named, tagged and written on.
+// Python gives the entries (webdemo/ui/components/notebook.py) and is told what is pressed by one event.
+
+import { play } from "./thumbnail.js";
+
+const WAIT = 300; // ms after the last key before a search
+const KINDS = [["", "All jobs"], ["generate", "Generate"], ["scene", "Scene"], ["react", "React"], ["predict", "Predict"]];
+
+const element = (tag, className = "", text = "") => Object.assign(document.createElement(tag), { className, textContent: text });
+
+export class Notebook {
+  constructor(root, tell) {
+    this.root = root;
+    this.tell = tell;
+    this.find = (selector) => root.querySelector(selector);
+    this.chosen = new Set();
+    this.last = null;
+    this.entries = new Map();
+    root.addEventListener("click", (event) => this.press(event));
+    root.addEventListener("keydown", (event) => this.type(event));
+    for (const field of root.querySelectorAll("[data-find]")) {
+      field.addEventListener("input", () => {
+        clearTimeout(this.timer);
+        this.timer = setTimeout(() => this.search(), field.type === "search" ? WAIT : 0);
+      });
+    }
+    this.options("kind", KINDS);
+  }
+
+  options(name, pairs) {
+    const list = this.find(`[data-find=${name}]`);
+    const was = list.value;
+    list.replaceChildren(...pairs.map(([value, label]) => Object.assign(element("option", "", label), { value })));
+    list.value = pairs.some(([value]) => value === was) ? was : "";
+  }
+
+  /** What is searched for now; days are the visitor's own. */
+  wanted() {
+    const value = (name) => this.find(`[data-find=${name}]`).value;
+    const day = (name, plus) => {
+      const [year, month, date] = value(name).split("-").map(Number);
+      return date ? new Date(year, month - 1, date + plus).getTime() / 1000 : null;
+    };
+    return {
+      words: value("words"), kind: value("kind"), model: value("model"), tag: value("tag"),
+      starred: this.find("[data-find=starred]").checked, since: day("since", 0), until: day("until", 1),
+    };
+  }
+
+  search(limit = null) {
+    this.act("search", { limit });
+  }
+
+  act(act, more = {}) {
+    this.tell({ act, ids: [...this.chosen], search: this.wanted(), ...more });
+  }
+
+  /** Shows what Python found: { entries, total, limit, tags, models, removed }. */
+  load(found) {
+    this.found = found;
+    this.entries = new Map(found.entries.map((entry) => [entry.id, entry]));
+    for (const id of this.chosen) if (!this.entries.has(id)) this.chosen.delete(id);
+    if (!this.chosen.size && found.entries.length) this.chosen.add(found.entries[0].id);
+    this.options("tag", [["", "All tags"], ...found.tags.map((tag) => [tag, `#${tag}`])]);
+    this.options("model", [["", "All methods"], ...found.models]);
+    this.find(".pdn-list").replaceChildren(...found.entries.map((entry) => this.card(entry)));
+    const empty = this.find(".pdn-empty");
+    empty.hidden = found.entries.length > 0;
+    empty.textContent = found.empty;
+    this.find(".pdn-more").hidden = found.total <= found.entries.length;
+    this.show();
+  }
+
+  card(entry) {
+    const card = element("li", "pdn-card");
+    card.dataset.id = entry.id;
+    card.tabIndex = 0;
+    const box = Object.assign(element("input"), { type: "checkbox", ariaLabel: `Choose ${entry.title}` });
+    box.dataset.choose = "";
+    const picture = Object.assign(element("canvas", "pdn-thumb"), { width: 88, height: 88 });
+    picture.setAttribute("aria-hidden", "true");
+    play(picture, entry.thumbnail);
+    const text = element("div", "pdn-text");
+    const title = element("p", "pdn-title");
+    title.append(`${entry.favourite ? "★ " : ""}${entry.title}`);
+    const facts = element("p", "pdn-facts", entry.facts);
+    const tags = element("p", "pdn-tags");
+    for (const tag of entry.tags) tags.append(element("span", "", `#${tag}`));
+    text.append(title, facts, tags);
+    if (entry.message) text.append(element("p", "pdn-message", entry.message));
+    if (entry.note) text.append(element("p", "pdn-note", entry.frame === null ? entry.note : `Frame ${entry.frame + 1}: ${entry.note}`));
+    const more = element("details", "pdn-details");
+    more.append(element("summary", "", "Name, tags, note, settings"));
+    more.addEventListener("toggle", () => more.open && more.children.length === 1 && this.fill(more, entry));
+    text.append(more);
+    card.append(box, picture, text);
+    return card;
+  }
+
+  /** The rest of a card, made when it is opened. */
+  fill(more, entry) {
+    const field = (label, name, value, tag = "input") => {
+      const line = element("label", "", label);
+      const input = Object.assign(element(tag), { value });
+      input.dataset.field = name;
+      line.append(input);
+      return line;
+    };
+    const form = element("div", "pdn-form");
+    const frame = field("Frame of the note", "frame", entry.frame === null ? "" : String(entry.frame + 1));
+    Object.assign(frame.lastElementChild, { type: "number", min: "1" });
+    form.append(field("Name", "title", entry.title), field("Tags", "tags", entry.tags.join(" ")), field("Note", "note", entry.note, "textarea"), frame);
+    const save = Object.assign(element("button", "", "Save"), { type: "button" });
+    save.dataset.save = entry.id;
+    form.append(save);
+    const list = element("dl", "pdn-settings");
+    for (const [name, value] of entry.settings) {
+      const pair = element("div");
+      pair.append(element("dt", "", name), element("dd", "", value));
+      list.append(pair);
+    }
+    more.append(form, list);
+  }
+
+  press(event) {
+    const button = event.target.closest("button");
+    if (button?.dataset.save) return this.save(button.closest(".pdn-form"), button.dataset.save);
+    if (button?.dataset.act === "more") return this.search(this.found.entries.length + this.found.step);
+    if (button?.dataset.act) return this.act(button.dataset.act);
+    if (event.target.closest(".pdn-details")) return;
+    const card = event.target.closest(".pdn-card");
+    if (card) this.choose(card, { several: "choose" in event.target.dataset || event.ctrlKey || event.metaKey, range: event.shiftKey });
+  }
+
+  type(event) {
+    if (!event.target.matches(".pdn-card")) return;
+    if (event.key === "Enter") this.choose(event.target, {}), this.act("open");
+    else if (event.key === " ") this.choose(event.target, { several: true });
+    else if (event.key === "Delete") this.act("remove");
+    else if (event.key === "ArrowDown") event.target.nextElementSibling?.focus();
+    else if (event.key === "ArrowUp") event.target.previousElementSibling?.focus();
+    else return;
+    event.preventDefault();
+  }
+
+  choose(card, { several = false, range = false }) {
+    const { id } = card.dataset;
+    const ids = [...this.entries.keys()];
+    if (range && this.last) {
+      const [from, to] = [ids.indexOf(this.last), ids.indexOf(id)].sort((a, b) => a - b);
+      for (const each of ids.slice(from, to + 1)) this.chosen.add(each);
+    } else if (several) this.chosen.has(id) ? this.chosen.delete(id) : this.chosen.add(id);
+    else this.chosen = new Set([id]);
+    this.last = id;
+    this.show();
+  }
+
+  save(form, id) {
+    const value = (name) => form.querySelector(`[data-field=${name}]`).value;
+    const frame = Number(value("frame"));
+    this.act("describe", { ids: [id], title: value("title"), tags: value("tags"), note: value("note"), frame: frame >= 1 ? frame - 1 : null });
+  }
+
+  /** Brings marks and buttons to what is chosen. */
+  show() {
+    for (const card of this.root.querySelectorAll(".pdn-card")) {
+      const on = this.chosen.has(card.dataset.id);
+      card.classList.toggle("pdn-on", on);
+      card.querySelector("[data-choose]").checked = on;
+    }
+    const chosen = [...this.chosen].map((id) => this.entries.get(id)).filter(Boolean);
+    const [one] = chosen.length === 1 ? chosen : [null];
+    const done = chosen.filter((entry) => entry.state === "done");
+    const able = {
+      open: one?.state === "done", link: one?.state === "done", revoke: one?.links > 0,
+      again: one && one.state !== "running", stop: true, favour: Boolean(one),
+      compare: done.length > 1 && done.length === chosen.length && done.length <= 9,
+      export: done.length > 0 && done.length === chosen.length,
+      remove: chosen.length > 0 && chosen.every((entry) => entry.state !== "running" && !entry.favourite),
+    };
+    for (const [act, can] of Object.entries(able)) this.find(`[data-act=${act}]`).disabled = !can;
+    this.find("[data-act=favour]").textContent = one?.favourite ? "Stop keeping" : "★ Keep";
+    const undo = this.find("[data-act=restore]");
+    undo.hidden = !this.found?.removed;
+    undo.textContent = `Undo: bring ${this.found?.removed === 1 ? "it" : `${this.found?.removed} runs`} back`;
+    const total = this.found?.total ?? 0;
+    this.find(".pdn-count").textContent = `${chosen.length} of ${total} chosen`;
+    this.find(".pdn-actions").hidden = !total && !this.found?.removed;
+  }
+}
+
+/** `element` holds notebook.html; `props` are the component's, watched by `watch`; `trigger` tells Python. */
+export function mount(element, props, watch, trigger) {
+  const link = Object.assign(document.createElement("link"), { rel: "stylesheet", href: new URL("notebook.css", import.meta.url).href });
+  document.head.append(link);
+  const events = { open: "submit", compare: "like", again: "retry", stop: "stop" }; // the others are "select"
+  const notebook = new Notebook(element.querySelector(".pdn"), (told) => trigger(events[told.act] ?? "select", told));
+  let shown = null;
+  const sync = () => {
+    if (!props.value || props.value === shown) return;
+    shown = props.value;
+    notebook.load(props.value);
+  };
+  watch("value", sync);
+  sync();
+}

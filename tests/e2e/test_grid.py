@@ -1,0 +1,103 @@
+"""A grid in a real browser: one WebGL context, one clock, one camera, and a cell that opens large."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Callable, Iterator
+from pathlib import Path
+
+import pytest
+
+os.environ.setdefault("GRADIO_ANALYTICS_ENABLED", "False")
+
+import numpy as np
+from playwright.sync_api import Page, expect
+
+from tests.ui.stub_engine import StubEngine
+from webdemo.ui.page import build_page, launch_options
+
+from .playing import has_color, stage_pixels
+
+pytestmark = pytest.mark.e2e
+
+SLOW = 120_000
+"""Milliseconds that a busy machine may take to draw."""
+PLAYER = "window.__pasdedeux.player"
+COUNT_CONTEXTS = """
+window.contexts = 0;
+const original = HTMLCanvasElement.prototype.getContext;
+HTMLCanvasElement.prototype.getContext = function (kind, ...rest) {
+  const made = original.call(this, kind, ...rest);
+  if (/webgl/.test(kind) && made && !this.counted) { this.counted = true; window.contexts += 1; }
+  return made;
+};
+"""
+
+
+@pytest.fixture(scope="module")
+def url(tmp_path_factory: pytest.TempPathFactory) -> Iterator[str]:
+    page = build_page(StubEngine(), files=tmp_path_factory.mktemp("files"))
+    _, address, _ = page.launch(
+        prevent_thread_lock=True, quiet=True, server_name="127.0.0.1", **launch_options()
+    )
+    yield address
+    page.close()
+
+
+def sweep(page: Page, side: str, what: str, values: str) -> None:
+    page.click(f"#grid-{side} input")
+    page.get_by_role("option", name=what, exact=True).last.click()
+    page.fill(f"#grid-{side}-values textarea, #grid-{side}-values input", values)
+
+
+def test_nine_results_share_one_context_and_one_opens_large(
+    url: str, open_page: Callable[..., Page], tmp_path: Path
+) -> None:
+    page = open_page(
+        url, width=1280, height=900, accept_downloads=True,
+        before=lambda tab: tab.add_init_script(COUNT_CONTEXTS),
+    )  # fmt: skip
+    page.set_default_timeout(SLOW)
+    expect(page.locator("#model-state")).to_contain_text("Model ready", timeout=SLOW)
+    page.fill("#prompt textarea", "Two people shake hands.")
+    page.click("#grid button >> nth=0")
+    sweep(page, "across", "Seeds", "1-500")
+    page.click("#grid-make")
+    expect(page.locator("#status .pd-error")).to_contain_text("A grid has 1 to 9 cells", timeout=SLOW)
+    page.wait_for_function(f"{PLAYER}.scene.mode === 'fast'")
+    before = page.evaluate("window.contexts")
+
+    sweep(page, "across", "Seeds", "1-3")
+    sweep(page, "down", "Damping", "0, 0.4, 0.7")
+    page.click("#grid-make")
+    expect(page.locator("#status .pd-done")).to_contain_text("9 results done", timeout=SLOW)
+    page.wait_for_function(f"{PLAYER}.grid.cells.length === 9 && window.__pasdedeux.frame > 0")
+    assert page.evaluate("window.contexts") == before, "a cell has a context of its own"
+    expect(page.locator("#player .pdd-head:not(:empty)")).to_have_text(
+        ["seed 1", "seed 2", "seed 3", "damping 0", "damping 0.4", "damping 0.7"]
+    )
+    expect(page.locator("#readouts .pd-grid-table tbody tr")).to_have_count(9)
+    assert (
+        page.locator("#readouts .pd-better").count() > 0 and page.locator("#readouts .pd-worse").count() > 0
+    )
+    page.evaluate(f"{PLAYER}.act('play')")
+    page.wait_for_function("window.__pasdedeux.loops === 0")
+    page.wait_for_function(f"{PLAYER}.figures !== undefined || {PLAYER}.bodies")
+    pixels = stage_pixels(page)
+    rows = np.array_split(pixels, 3)
+    cells = [cell for row in rows for cell in np.array_split(row, 3, axis=1)]
+    assert all(has_color(cell, blue=blue) for cell in cells for blue in (True, False)), "an empty cell"
+
+    box = page.locator("#player .pdd-cell").nth(4).bounding_box()
+    assert box
+    page.mouse.click(box["x"] + 30, box["y"] + 30)
+    page.wait_for_function(f"{PLAYER}.focus === 4")
+    expect(page.locator("#player .pdd-caption").first).to_have_text("damping 0.4 · seed 2")
+    expect(page.locator("#player .pdd-strip")).to_be_visible()
+    page.click("#player .pdd-back")
+    page.wait_for_function(f"{PLAYER}.focus === null && {PLAYER}.grid.cells.length === 9")
+    expect(page.locator("#download-csv")).to_be_enabled(timeout=SLOW)
+    with page.expect_download(timeout=SLOW) as download:
+        page.click("#download-csv")
+    download.value.save_as(tmp_path / "grid.csv")
+    assert len((tmp_path / "grid.csv").read_text().splitlines()) == 10

@@ -1,0 +1,276 @@
+"""One file that holds the runs of a history: written from ours, and read as if by an enemy.
+
+A .zip with ``workspace.json`` (what was asked and written of each run) and ``NUMBER/1.npz …`` (its motions). What is
+read back is checked and made anew: motions go through the reader and the writer of uploads, and settings keep plain
+values of the expected kinds. No name in the file becomes a path.
+"""
+
+from __future__ import annotations
+
+import json
+import math
+import secrets
+import shutil
+import time
+import zipfile
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from motion import Clip, Duet, InputError, formats
+from webdemo.inference.story import SceneRequest
+from webdemo.view.thumbnail import thumbnail
+
+FORMAT = "pas-de-deux-workspace-1"
+MOST_RUNS = 1000
+MOST_SAMPLES = 16
+LARGEST_FILE = 50 * 2**20
+"""Bytes of one file inside when unpacked."""
+LARGEST_STORY = 100_000
+"""Characters of a scene's request."""
+LARGEST = 1000 * 2**20
+"""Bytes of all of them."""
+_KINDS = ("generate", "scene", "react", "predict")
+_CURVES = ("error", "speed", "true_speed")
+_WRONG = "This is no workspace of Pas de Deux, or it was changed by hand ({}): export it again."
+
+
+@dataclass(frozen=True)
+class Packed:
+    """A run on its way into a file: what its row says, what is written on it, and its folder of motions."""
+
+    row: Mapping[str, Any]
+    note: Mapping[str, Any]
+    folder: Path
+
+
+@dataclass(frozen=True)
+class Taken:
+    """A run out of a file: columns of its row and its note, and the folder where its files wait."""
+
+    row: dict[str, Any]
+    note: dict[str, Any]
+    folder: Path
+
+    def forget(self, home: Path) -> None:
+        """Removes its files, wherever they are by now."""
+        shutil.rmtree(self.folder, ignore_errors=True)
+        shutil.rmtree(home / self.row["id"], ignore_errors=True)
+
+
+def pack(runs: Sequence[Packed], file: Path) -> None:
+    """Writes runs into a file; raises InputError if their files are gone."""
+    told = []
+    with zipfile.ZipFile(file, "w", zipfile.ZIP_DEFLATED) as archive:
+        for number, run in enumerate(runs):
+            motions = sorted(run.folder.glob("*.npz"))
+            if not motions:
+                raise InputError(f"The files of “{run.row['title'][:60]}” are gone: remove that run first.")
+            for path in motions:
+                archive.write(path, f"{number}/{path.name}")
+            readouts = json.loads((run.folder / "readouts.json").read_text(encoding="utf-8"))
+            told.append({**run.row, "note": dict(run.note), "readouts": readouts})
+        archive.writestr("workspace.json", json.dumps({"format": FORMAT, "runs": told}))
+
+
+def unpack(file: Path, home: Path) -> list[Taken]:
+    """The runs of a file, their files in new folders below ``home`` whose names begin with a dot.
+
+    Raises:
+        InputError: if anything is not as :func:`pack` writes it; nothing is left behind then.
+    """
+    taken: list[Taken] = []
+    try:
+        with zipfile.ZipFile(file) as archive:
+            for number, told in enumerate(_told(archive)):
+                taken.append(_taken(archive, number, told, home))
+    except BaseException as error:
+        for run in taken:
+            run.forget(home)
+        if isinstance(error, InputError):
+            raise
+        if isinstance(error, (zipfile.BadZipFile, ValueError, KeyError, TypeError, EOFError, RuntimeError,
+                              NotImplementedError, RecursionError, AttributeError)):  # fmt: skip
+            raise InputError(_WRONG.format("it cannot be read")) from None
+        raise
+    return taken
+
+
+def _told(archive: zipfile.ZipFile) -> list[dict[str, Any]]:
+    files = archive.infolist()
+    if len(files) > MOST_RUNS * (MOST_SAMPLES + 2) or sum(each.file_size for each in files) > LARGEST:
+        raise InputError(f"The workspace is too large: import {MOST_RUNS:,} runs and 1 GB at most.")
+    told = json.loads(_content(archive, "workspace.json"))
+    if not isinstance(told, dict) or told.get("format") != FORMAT or not isinstance(told.get("runs"), list):
+        raise InputError(_WRONG.format("its list of runs is missing"))
+    if len(told["runs"]) > MOST_RUNS:
+        raise InputError(f"The workspace holds {len(told['runs']):,} runs: import {MOST_RUNS:,} at most.")
+    return [run if isinstance(run, dict) else {} for run in told["runs"]]
+
+
+def _content(archive: zipfile.ZipFile, name: str) -> bytes:
+    """A file's bytes, bounded whatever its header says."""
+    try:
+        with archive.open(name) as source:
+            content = source.read(LARGEST_FILE + 1)
+    except KeyError:
+        raise InputError(_WRONG.format(f"{name} is missing")) from None
+    if len(content) > LARGEST_FILE:
+        raise InputError(f"{name} in the workspace is too large: export it again.")
+    return content
+
+
+def _taken(archive: zipfile.ZipFile, number: int, told: Mapping[str, Any], home: Path) -> Taken:
+    run = secrets.token_urlsafe(18)
+    folder = home / f".{run}"
+    folder.mkdir(mode=0o700)
+    try:
+        motions = _motions(archive, number, folder)
+        readouts = [
+            _readout(each, motion) for each, motion in zip(told.get("readouts") or [], motions, strict=False)
+        ]
+        (folder / "readouts.json").write_text(json.dumps(readouts), encoding="utf-8")
+        kind = told.get("kind")
+        if kind not in _KINDS:
+            raise InputError(_WRONG.format(f"run {number + 1} is of no known kind"))
+        request = {**_plain(told.get("request")), "kind": kind}
+        if kind == "scene":
+            request = _scene(told.get("request"), motions[0])
+        row = {
+            "id": run, "kind": kind, "title": _text(told.get("title"), 500) or "Imported",
+            "created": min(_number(told.get("created"), time.time()), time.time()),
+            "favourite": False, "request": json.dumps(request),
+            "outcome": json.dumps(_outcome(told.get("outcome"), request, motions[0], folder)),
+            "size": sum(path.stat().st_size for path in folder.iterdir()),
+        }  # fmt: skip
+        return Taken(row, _note(told.get("note"), motions[0]), folder)
+    except BaseException:
+        shutil.rmtree(folder, ignore_errors=True)
+        raise
+
+
+def _motions(archive: zipfile.ZipFile, number: int, folder: Path) -> list[Duet | Clip]:
+    names = set(archive.namelist())
+    motions = []
+    for sample in range(1, MOST_SAMPLES + 1):
+        name = f"{number}/{sample}.npz"
+        if name not in names:
+            break
+        motions.append(_motion(archive, name, folder / f"{sample}.npz"))
+    if not motions:
+        raise InputError(_WRONG.format(f"run {number + 1} has no motion"))
+    for name in ("truth.npz", *(f"given-{i}.npz" for i in range(1, 7))):
+        if f"{number}/{name}" in names:
+            _motion(archive, f"{number}/{name}", folder / name)
+    return motions
+
+
+def _motion(archive: zipfile.ZipFile, name: str, path: Path) -> Duet | Clip:
+    """Reads a motion as an upload is read, and writes it anew."""
+    path.write_bytes(_content(archive, name))
+    try:
+        motion = formats.read(path)
+    finally:
+        path.unlink()
+    formats.write(motion, path)
+    return motion
+
+
+# ---- plain values ----------------------------------------------------------------------------------
+
+
+def _text(value: Any, most: int) -> str:
+    return value[:most] if isinstance(value, str) else ""
+
+
+def _number(value: Any, otherwise: float) -> float:
+    fits = isinstance(value, (int, float)) and not isinstance(value, bool) and math.isfinite(value)
+    return float(value) if fits else otherwise
+
+
+def _plain(value: Any) -> dict[str, Any]:
+    """The scalars of a dictionary, and dictionaries of scalars in it."""
+    if not isinstance(value, dict):
+        return {}
+    found: dict[str, Any] = {}
+    for name, each in list(value.items())[:60]:
+        if isinstance(each, dict):
+            found[str(name)[:60]] = {str(k)[:60]: v for k, v in list(each.items())[:20] if _is_scalar(v)}
+        elif _is_scalar(each):
+            found[str(name)[:60]] = each
+    return found
+
+
+def _scene(told: Any, motion: Duet | Clip) -> dict[str, Any]:
+    """The request of a scene, if one can be made of it."""
+    if not isinstance(told, dict) or not isinstance(motion, Duet) or len(json.dumps(told)) > LARGEST_STORY:
+        raise InputError(_WRONG.format("a scene has no story"))
+    return SceneRequest.from_dict(told, motion if "motion" in told else None).to_dict()
+
+
+def _is_scalar(value: Any) -> bool:
+    if isinstance(value, str):
+        return len(value) <= 1000
+    return value is None or isinstance(value, bool) or _number(value, math.nan) == value
+
+
+def _outcome(told: Any, request: Mapping[str, Any], motion: Duet | Clip, folder: Path) -> dict[str, Any]:
+    told = told if isinstance(told, dict) else {}
+    notes = told.get("notes")
+    outcome: dict[str, Any] = {
+        "manifest": {**_plain(told.get("manifest")), "request": dict(request)},
+        "timings": {k: v for k, v in _plain(told.get("timings")).items() if _number(v, math.nan) == v},
+        "notes": [_text(note, 1000) for note in notes[:20]] if isinstance(notes, list) else [],
+    }
+    kept = told.get("prediction")
+    if isinstance(kept, dict):
+        past = kept.get("past_frames")
+        if type(past) is not int or not 0 < past < motion.num_frames:
+            raise InputError(_WRONG.format("a prediction begins nowhere"))
+        curves = {name: _numbers(kept.get(name), motion.num_frames) for name in _CURVES}
+        outcome["prediction"] = {"past_frames": past, **curves}
+    elif (folder / "truth.npz").exists():
+        (folder / "truth.npz").unlink()
+    return outcome
+
+
+def _numbers(values: Any, most: int) -> list[float]:
+    values = values[:most] if isinstance(values, list) else []
+    return [_number(value, 0.0) for value in values]
+
+
+def _readout(told: Any, motion: Duet | Clip) -> dict[str, Any]:
+    """Measures, curves and contacts of a sample, as far as they are of the expected kinds."""
+    told = told if isinstance(told, dict) else {}
+    found: dict[str, Any] = {}
+    for side in ("before", "after"):
+        values = told.get(side)
+        if isinstance(values, dict):
+            plain = values.get("summary", values)
+            numbers = plain.items() if isinstance(plain, dict) else ()
+            found[side] = {str(k)[:60]: float(v) for k, v in numbers if _number(v, math.nan) == v}
+    curves = told.get("curves")
+    if isinstance(curves, dict):
+        found["curves"] = {str(k)[:60]: _numbers(v, motion.num_frames) for k, v in list(curves.items())[:10]}
+    if isinstance(told.get("contacts"), list):
+        found["contacts"] = [
+            {"start": each["start"], "stop": each["stop"], "kind": _text(each.get("kind"), 20),
+             "label": _text(each.get("label"), 100)}
+            for each in told["contacts"][:1000]
+            if isinstance(each, dict) and type(each.get("start")) is int and type(each.get("stop")) is int
+            and 0 <= each["start"] <= each["stop"] <= motion.num_frames
+        ]  # fmt: skip
+    return found
+
+
+def _note(told: Any, motion: Duet | Clip) -> dict[str, Any]:
+    told = told if isinstance(told, dict) else {}
+    frame = told.get("frame")
+    tags = _text(told.get("tags"), 300).split()
+    return {
+        "title": _text(told.get("title"), 200), "text": _text(told.get("text"), 4000),
+        "tags": f" {' '.join(tags)} " if tags else "",
+        "frame": frame if type(frame) is int and 0 <= frame < motion.num_frames else None,
+        "thumbnail": thumbnail(motion),
+    }  # fmt: skip

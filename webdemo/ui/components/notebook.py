@@ -1,0 +1,201 @@
+"""The notebook of runs in the browser: its value and its events."""
+
+from __future__ import annotations
+
+import json
+import time
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any
+
+import gradio as gr
+
+from motion import InputError
+from webdemo.inference.methods import label_of, methods, variants
+from webdemo.ui.history import Entry, Found, Search
+
+NOTEBOOK_FOLDER = Path(__file__).resolve().parents[3] / "static" / "notebook"
+STEP = 60
+"""Runs that are shown at first, and how many more at a time."""
+MOST_SHOWN = 500
+ACTS = (
+    "search", "open", "favour", "link", "revoke", "again", "stop", "compare", "export", "remove", "restore", "describe",
+)  # fmt: skip
+_SETTINGS = (
+    ("seconds", "Seconds"), ("seed", "Seed"), ("samples", "Samples"), ("guidance", "Guidance"), ("steps", "Steps"),
+    ("damping", "Damping"), ("sampler", "Sampler"), ("marker", "Past ends at"), ("cleanup", "Clean-up"),
+)  # fmt: skip
+_ROLES = {"a": "acts first", "b": "reacts"}
+_MARKS = {
+    "running": "⏳ running",
+    "failed": "✕ failed",
+    "cancelled": "✕ cancelled",
+    "interrupted": "✕ interrupted",
+}
+
+gr.set_static_paths([NOTEBOOK_FOLDER])
+
+_ON_LOAD = """
+const config = window.gradio_config || {};
+const root = (config.root || new URL(".", document.baseURI).href).replace(/[/]$/, "");
+const encode = (path) => path.split("/").map(encodeURIComponent).join("/");
+import(root + (config.api_prefix || "/gradio_api") + "/file=" + encode(%s))
+  .then((notebook) => notebook.mount(element, props, watch, trigger));
+"""
+
+
+class NotebookView(gr.HTML):
+    """The runs of a history as cards; its value is what :func:`shown` gives.
+
+    What a visitor does arrives as the event ``select``, whose data :func:`told` reads.
+
+    Args:
+        elem_id: id of the element in the page.
+    """
+
+    def __init__(self, *, elem_id: str | None = None, **kwargs: Any) -> None:
+        kwargs = {
+            "html_template": (NOTEBOOK_FOLDER / "notebook.html").read_text(encoding="utf-8"),
+            "js_on_load": _ON_LOAD % json.dumps((NOTEBOOK_FOLDER / "notebook.js").as_posix()),
+            "apply_default_css": False,
+            **kwargs,
+        }
+        super().__init__(None, elem_id=elem_id, **kwargs)
+
+    def preprocess(self, payload: Any) -> Any:
+        """The value itself."""
+        return payload
+
+    def postprocess(self, value: Any) -> Any:
+        """The value itself."""
+        return value
+
+    def api_info(self) -> dict[str, Any]:
+        """The kind of value, for the API page."""
+        return {"type": "object", "description": "runs of a history, or null"}
+
+    def example_payload(self) -> None:
+        """None: the component takes no example."""
+        return None
+
+    def example_value(self) -> None:
+        """None: the component takes no example."""
+        return None
+
+    def get_block_name(self) -> str:
+        """Gradio's name of the front end that draws it."""
+        return "html"
+
+
+def shown(found: Found, *, empty: str, removed: int = 0) -> dict[str, Any]:
+    """The value of a :class:`NotebookView`.
+
+    Args:
+        found: by a search.
+        empty: said where it found nothing.
+        removed: runs that can be brought back.
+    """
+    return {
+        "entries": [_card(entry) for entry in found.entries],
+        "total": found.total,
+        "tags": list(found.tags),
+        "models": [[name, label_of(name)] for name in found.models],
+        "empty": empty,
+        "removed": removed,
+        "step": STEP,
+    }
+
+
+def _card(entry: Entry) -> dict[str, Any]:
+    return {
+        "id": entry.id, "kind": entry.kind, "title": entry.title, "state": entry.state, "message": entry.message,
+        "favourite": entry.favourite, "links": entry.links, "tags": list(entry.tags), "note": entry.note,
+        "frame": entry.frame, "thumbnail": entry.thumbnail, "facts": facts(entry), "settings": settings(entry),
+    }  # fmt: skip
+
+
+def facts(entry: Entry) -> str:
+    """One line for a run: by which method, how long, its seed, when, and marks."""
+    asked = entry.request
+    found = [label] if (label := method_label(asked)) else []
+    found += [f"{asked['seconds']:g} s"] if isinstance(asked.get("seconds"), (int, float)) else []
+    found += [f"seed {asked['seed']}"] if "seed" in asked else []
+    found.append(time.strftime("%d %b %Y %H:%M", time.localtime(entry.created)))
+    found += [_MARKS[entry.state]] if entry.state in _MARKS else []
+    found += [f"{entry.links} link{'s' if entry.links > 1 else ''}"] if entry.links else []
+    return " · ".join(found)
+
+
+def settings(entry: Entry) -> list[list[str]]:
+    """(name, value) of everything that a run was asked with."""
+    asked = entry.request
+    found = [["Method", method_label(asked) or label_of(str(asked.get("model", "")))]]
+    given = asked.get("actor") or asked.get("motion")
+    if isinstance(given, Mapping):
+        found.append(["Given", str(given.get("name", ""))])
+    if "actor" in asked:
+        found.append(["The given person", _ROLES.get(str(asked.get("role")), "")])
+    for key, name in _SETTINGS:
+        value = asked.get(key)
+        if value is not None:
+            plain = isinstance(value, (int, float)) and not isinstance(value, bool)
+            found.append([name, f"{value:g}" if plain and key != "seed" else str(value)])
+    return [pair for pair in found if pair[1]]
+
+
+def method_label(asked: Mapping[str, Any]) -> str:
+    """The label of the method of a run; "" for the one that sentences go to by default."""
+    model, mode = str(asked.get("model", "")), asked.get("mode")
+    if asked.get("kind") == "generate" and model in ("", methods("generate")[0].name):
+        return ""
+    if asked.get("kind") == "react":
+        known = (v.label for v in variants("react").values() if (v.method.name, v.mode) == (model, mode))
+        return next(known, label_of(model))
+    return label_of(model)
+
+
+class Told:
+    """A visitor's action in the notebook, read from what a browser sent.
+
+    Attributes:
+        act: one of :data:`ACTS`.
+        ids: of the chosen runs.
+        search: what is searched for.
+        fields: name, tags, note and frame of a run that is described.
+
+    Raises:
+        InputError: for anything that the notebook does not send.
+    """
+
+    def __init__(self, data: Any) -> None:
+        data = data if isinstance(data, Mapping) else {}
+        ids, search = data.get("ids"), data.get("search")
+        if data.get("act") not in ACTS or not isinstance(ids, list) or len(ids) > MOST_SHOWN:
+            raise InputError("The notebook sent something unknown: reload the page.")
+        self.act: str = data["act"]
+        self.ids = [each for each in ids if isinstance(each, str)]
+        self.search = _search(search if isinstance(search, Mapping) else {}, data.get("limit"))
+        frame = data.get("frame")
+        self.fields: dict[str, Any] = {
+            name: data[name] for name in ("title", "tags", "note") if isinstance(data.get(name), str)
+        }
+        self.fields["frame"] = frame if type(frame) is int and 0 <= frame < 10**6 else None
+
+    @property
+    def one(self) -> str:
+        """The id of the only chosen run; raises InputError where there is none, or several."""
+        if len(self.ids) != 1:
+            raise InputError("Choose a run first." if not self.ids else "Choose one run only.")
+        return self.ids[0]
+
+
+def _search(told: Mapping[str, Any], limit: Any) -> Search:
+    words: dict[str, Any] = {
+        name: str(told.get(name) or "")[:200] for name in ("words", "kind", "model", "tag")
+    }
+    for name in ("since", "until"):
+        value = told.get(name)
+        if isinstance(value, (int, float)) and not isinstance(value, bool):
+            words[name] = float(value)
+    most = limit if type(limit) is int and STEP <= limit <= MOST_SHOWN else STEP
+    return Search(**words, starred=told.get("starred") is True, limit=most)

@@ -1,0 +1,208 @@
+"""A grid of results: settings that are swept along one or two axes, and their read-outs in a table."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+from itertools import product
+from typing import Any
+
+from motion import InputError
+from motion.metrics import MEASURES
+from webdemo.inference.requests import Result
+from webdemo.ui.text.words import number, text
+from webdemo.view.payload import Payload, build_payload
+
+from .show import result_payload
+
+MOST = 9
+"""Cells of a grid."""
+_RANGE = re.compile(r"(\d{1,10})\s*(?:-|–|\.\.|to)\s*(\d{1,10})\Z")
+
+
+@dataclass(frozen=True)
+class Kind:
+    """A setting that can be swept.
+
+    Attributes:
+        field: of a tab's settings.
+        label: on the page.
+        short: before a value, such as "seed"; "" where the value says enough.
+        read: a value from its text.
+        split: between the values.
+        named: a value as the grid shows it.
+    """
+
+    field: str
+    label: str
+    short: str = ""
+    read: Callable[[str], Any] = str
+    split: str = r"[,;\s]+"
+    named: Callable[[Any], str] = str
+
+
+@dataclass(frozen=True)
+class Axis:
+    """The values of one setting along a side of a grid."""
+
+    kind: Kind
+    values: tuple[Any, ...]
+
+    @property
+    def names(self) -> list[str]:
+        """The labels beside the cells."""
+        return [f"{self.kind.short} {self.kind.named(value)}".strip() for value in self.values]
+
+
+def read_axis(kind: Kind, given: str) -> Axis:
+    """The values that somebody typed: separated, or a range of whole numbers such as 1-4.
+
+    Raises:
+        InputError: for no value, one that does not fit the setting, or more than a grid holds.
+    """
+    parts = [part.strip() for part in re.split(kind.split, given[:5000].strip()) if part.strip()]
+    if kind.read is whole and (found := _RANGE.match(given.strip())):
+        first, last = int(found[1]), int(found[2])
+        _check(last - first + 1)
+        parts = [str(value) for value in range(first, last + 1)]
+    if not parts:
+        raise InputError(f"The grid has no values for {kind.label.lower()}: give some, or choose nothing.")
+    _check(len(parts))
+    return Axis(kind, tuple(dict.fromkeys(kind.read(part) for part in parts)))
+
+
+def whole(given: str) -> int:
+    """A whole number; raises InputError for anything else."""
+    if not re.fullmatch(r"\d{1,10}", given):
+        raise InputError(f"{given[:40]!r} is no whole number: write the grid's values as 1, 2, 3 or 1-3.")
+    return int(given)
+
+
+def real(given: str) -> float:
+    """A number; raises InputError for anything else."""
+    try:
+        return float(given)
+    except ValueError:
+        raise InputError(f"{given[:40]!r} is no number: write the grid's values as 0, 0.5, 1.") from None
+
+
+def _check(count: int) -> None:
+    if count < 1 or count > MOST:
+        raise InputError(f"A grid has 1 to {MOST} cells, not {count}: give fewer values.")
+
+
+@dataclass(frozen=True)
+class Grid:
+    """The cells of a grid, row after row.
+
+    Attributes:
+        columns: names over the columns.
+        rows: names beside the rows; one "" for a single row.
+        cells: the settings that each cell changes.
+    """
+
+    columns: list[str]
+    rows: list[str]
+    cells: list[dict[str, Any]]
+
+    @property
+    def names(self) -> list[str]:
+        """Of the cells."""
+        return [" · ".join(filter(None, (row, column))) for row in self.rows for column in self.columns]
+
+
+def grid_of(axes: Sequence[Axis]) -> Grid:
+    """The grid of one axis, in a row or in up to three, or of two.
+
+    Raises:
+        InputError: for no axis, one setting twice, or too many cells.
+    """
+    if not axes:
+        raise InputError("Choose what the grid compares: seeds, guidance, steps, damping, methods or words.")
+    if len(axes) == 2 and axes[0].kind.field == axes[1].kind.field:
+        raise InputError("Both sides of the grid are the same setting: choose two.")
+    if len(axes) == 1:
+        (axis,) = axes
+        return loose([{axis.kind.field: value} for value in axis.values], axis.names)
+    _check(len(axes[0].values) * len(axes[1].values))
+    across, down = axes
+    cells = [{down.kind.field: d, across.kind.field: a} for d, a in product(down.values, across.values)]
+    return Grid(across.names, down.names, cells)
+
+
+def loose(cells: list[dict[str, Any]], names: list[str]) -> Grid:
+    """A grid without a second axis: up to three cells in a row, then two or three rows; cells name themselves."""
+    _check(len(cells))
+    wide = len(cells) if len(cells) <= 3 else 2 if len(cells) == 4 else 3
+    return Named([""] * wide, [""] * -(-len(cells) // wide), cells, tuple(names))
+
+
+@dataclass(frozen=True)
+class Named(Grid):
+    """A grid whose cells have names of their own."""
+
+    own: tuple[str, ...] = ()
+
+    @property
+    def names(self) -> list[str]:
+        """Of the cells."""
+        return list(self.own)
+
+
+def grid_payload(grid: Grid, results: Sequence[Result], *, title: str = "") -> Payload:
+    """The player's value for the first sample of every cell's result, in the grid's order."""
+    cells = [
+        {**result_payload(result)["samples"][0], "caption": name}
+        for result, name in zip(results, grid.names, strict=True)
+    ]
+    longest = max(cells, key=lambda cell: float(cell["frames"]) / float(cell["fps"]))
+    whole_grid = {
+        **longest, "label": "1", "curves": [], "contacts": [], "ghost": None, "past_until": None, "caption": "",
+        "cells": cells, "columns": grid.columns, "rows": grid.rows,
+    }  # fmt: skip
+    return build_payload([whole_grid], skeleton=results[0].duets[0].skeleton, title=title)
+
+
+def read_outs(results: Mapping[str, Result]) -> dict[str, dict[str, float]]:
+    """Cell → measure → value, of the first sample after damping and clean-up."""
+    found = {}
+    for name, result in results.items():
+        after = (result.readouts[0].get("after") or {}) if result.readouts else {}
+        found[name] = dict(after.get("summary", after))
+    return found
+
+
+def grid_table(results: Mapping[str, Result]) -> str:
+    """A row a cell and a column a measure; the best and the worst of each measure of quality are marked."""
+    values = read_outs(results)
+    measures = [m for m in MEASURES if any(m.key in cell for cell in values.values())]
+    if not measures:
+        return ""
+    heads = "".join(
+        f'<th scope="col" title="{text(m.meaning)}">{text(m.label)} <small>{text(m.unit)}</small></th>'
+        for m in measures
+    )
+    rows = ""
+    for name, cell in values.items():
+        marked = "".join(
+            _cell(m.key, m.digits, cell, list(values.values()), bool(m.better)) for m in measures
+        )
+        rows += f'<tr><th scope="row">{text(name)}</th>{marked}</tr>'
+    return (
+        '<div class="pd-readouts"><div class="pd-table pd-grid-table"><table>'
+        "<caption>Read-outs of the grid, the best in green and the worst in red</caption>"
+        f"<thead><tr><td></td>{heads}</tr></thead><tbody>{rows}</tbody></table></div></div>"
+    )
+
+
+def _cell(
+    key: str, digits: int, mine: Mapping[str, float], everybody: list[dict[str, float]], ranked: bool
+) -> str:
+    if key not in mine:
+        return "<td>–</td>"
+    rounded = [round(cell[key], digits) for cell in everybody if key in cell]
+    value, mark = round(mine[key], digits), ""
+    if ranked and len(set(rounded)) > 1:
+        mark = "pd-better" if value == min(rounded) else "pd-worse" if value == max(rounded) else ""
+    return f'<td class="{mark}"><b>{number(value, digits)}</b></td>'

@@ -1,0 +1,243 @@
+"""The given person of the React tab: a file, an example or a result, read, trimmed and shown."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from dataclasses import replace
+from functools import partial
+from pathlib import Path
+from typing import Any
+
+import gradio as gr
+
+from motion import InputError
+from motion.formats.importing import AXES, ORDERS, UNITS
+from webdemo.inference.actor import SECONDS
+from webdemo.ui.again import actor_source
+from webdemo.ui.components.actors import (
+    AUTO,
+    Source,
+    read_source,
+    result_source,
+)
+from webdemo.ui.components.camera import CameraPanel, film_source
+from webdemo.ui.components.exports import Record
+from webdemo.ui.components.player import busy, show
+from webdemo.ui.context import PageContext
+from webdemo.ui.history import Opened
+from webdemo.ui.text.examples import example_clips
+from webdemo.ui.text.panels import status
+from webdemo.ui.text.words import error_line, text
+
+from .job import QUIET, Updates
+from .sweeps import SweepTab
+
+_DETECTED = "detect"
+_SHORTEST = 0.1
+"""Seconds: the least that the trim's sliders differ in."""
+
+
+class ActorTab(SweepTab):
+    """The part of the React tab that chooses who is given.
+
+    Args:
+        page: what the tabs share.
+        examples: (name, file) of the example actors; those that are shipped by default.
+    """
+
+    source: gr.State
+    given: gr.Textbox
+    file: gr.File
+    camera: CameraPanel
+    chips: list[gr.Button]
+    take: dict[str, gr.Button]
+    trim: gr.Column
+    person: gr.Radio
+    begin: gr.Slider
+    end: gr.Slider
+    keep: gr.Checkbox
+
+    def __init__(self, page: PageContext, examples: list[tuple[str, Path]] | None = None) -> None:
+        super().__init__(page)
+        self.examples = example_clips() if examples is None else examples
+
+    def _import_choices(self) -> None:
+        """The line on how the file was read, and its settings."""
+        with gr.Accordion("How the file was read", open=False, elem_id="react-import"):
+            with gr.Row(elem_classes="pd-pair"):
+                self.up = gr.Dropdown(
+                    [(_DETECTED, AUTO), *AXES], value=AUTO, label="Up axis", elem_id="react-up",
+                    min_width=0,
+                )  # fmt: skip
+                self.unit = gr.Dropdown(
+                    [(_DETECTED, AUTO), *UNITS], value=AUTO, label="Unit", elem_id="react-unit",
+                    min_width=0,
+                )  # fmt: skip
+                self.fps = gr.Number(
+                    value=None, label="Frames a second", placeholder=_DETECTED, elem_id="react-fps",
+                    min_width=0,
+                )  # fmt: skip
+                self.order = gr.Dropdown(
+                    [(_DETECTED, AUTO), *((label, name) for name, label in ORDERS.items())],
+                    value=AUTO, label="Data set of a 15-joint file", elem_id="react-order", min_width=0,
+                )  # fmt: skip
+            self.found = gr.HTML(elem_id="react-found")
+
+    def _opened_actor(self, run: Opened) -> dict[Any, Any]:
+        """The file that was chosen, who in it and which part; or the given person alone, where that was not kept."""
+        controls = run.kept.controls
+        source = actor_source(run)
+        begin, end = 0.0, round(source.seconds, 1)
+        if people := run.kept.people:
+            source = replace(source, people=people)
+            source = replace(source, chosen=str(controls.get("person") or "a"))
+            begin, end = float(controls.get("start", 0.0)), float(controls.get("end", end))
+        last = max(round(source.seconds, 1), _SHORTEST)
+        return {
+            self.source: source,
+            self.given: source.key,
+            self.trim: gr.update(visible=True),
+            self.person: gr.update(
+                choices=source.choices, visible=len(source.people) > 1, value=source.chosen
+            ),
+            self.begin: gr.update(maximum=last, value=begin),
+            self.end: gr.update(maximum=last, value=min(end, last)),
+        }
+
+    # ---- events ----------------------------------------------------------------------------------
+
+    def _wire_actor(self) -> None:
+        changed = [
+            self.source, self.given, self.line, self.player, self.trim, self.person, self.begin, self.end,
+            self.found,
+        ]  # fmt: skip
+        load: dict[str, Any] = {
+            "outputs": changed,
+            "concurrency_limit": 2,
+            "concurrency_id": "react-read",
+            **QUIET,
+        }
+        self.file.upload(self.upload, inputs=self.file, **load).then(None, **self.compare)
+        self.camera.submit(self.read_film, inputs=self.camera, **load).then(None, **self.compare)
+        choices = [self.up, self.unit, self.fps, self.order]
+        self.file.upload(lambda: (AUTO, AUTO, None, AUTO), outputs=choices, queue=False, **QUIET)
+        gr.on(
+            [self.up.input, self.unit.input, self.order.input, self.fps.submit, self.fps.blur],
+            self.read_again, inputs=[self.source, *choices], trigger_mode="always_last",
+            **{**load, "outputs": [*changed, *choices]},
+        ).then(None, **self.compare)  # fmt: skip
+        for button, (name, path) in zip(self.chips, self.examples, strict=True):
+            read = partial(self.load, partial(read_source, path, name))
+            button.click(read, **load).then(None, **self.compare)
+        for person, button in self.take.items():
+            taking = button.click(partial(self.take_result, person), inputs=self.record, **load)
+            taking.then(None, **self.compare)
+        others = [self.camera.submit, *(button.click for button in (*self.chips, *self.take.values()))]
+        gr.on(others, None, outputs=self.file, js="() => null", **QUIET)  # the file is no longer what is used
+        self.source.change(
+            lambda source: gr.update(visible=source is not None and len(source.people) == 2, value=False),
+            inputs=self.source, outputs=self.keep, queue=False, **QUIET,
+        )  # fmt: skip
+        self.file.clear(self.forget, outputs=changed, queue=False, **QUIET)
+        trim = [self.source, self.person, self.begin, self.end]
+        gr.on(
+            [self.person.input, self.begin.release, self.end.release],
+            self.preview, inputs=trim, outputs=[self.line, self.player], trigger_mode="always_last", **QUIET,
+        )  # fmt: skip
+
+    def upload(self, path: str | None) -> Iterator[Updates]:
+        """Reads an uploaded file and shows its actor; one that cannot be read leaves no actor."""
+        if path is not None:
+            yield from self.load(partial(read_source, path), fresh=True)
+
+    def read_film(self, landmarks: str | None) -> Iterator[Updates]:
+        """Makes the people of a film the actors."""
+        yield from self.load(partial(film_source, landmarks))
+
+    def read_again(
+        self, source: Source | None, up: str, unit: str, fps: float | None, order: str = AUTO
+    ) -> Iterator[Updates]:
+        """Reads the source's file anew with what the visitor knows of it, or takes that back where it cannot."""
+        if source is None or source.path is None:
+            return
+        path, name, asked = source.path, source.name, (up, unit, fps, order)
+        for updates in self.load(lambda: read_source(path, name, asked)):
+            failed = updates[0] == gr.skip() and "pd-error" in updates[2]
+            yield *updates, *(source.read_with if failed else (gr.skip(),) * 4)
+
+    def take_result(self, person: str, record: Record | None) -> Iterator[Updates]:
+        """Makes a person of the session's last result the actor."""
+
+        def read() -> Source:
+            if record is None:
+                raise InputError("There is no result yet: generate one first.")
+            return result_source(record.result, record.prompt, person)
+
+        yield from self.load(read)
+
+    def load(self, read: Callable[[], Source], *, fresh: bool = False) -> Iterator[Updates]:
+        """Updates of source, its key, line, player, trim, person, start, end and found while an actor is read.
+
+        Where it is ``fresh`` and cannot be read, an earlier actor is forgotten.
+        """
+        rest = (gr.skip(),) * 5
+        same = (gr.skip(),) * 2
+        yield *same, status("Reading the motion …", tone="busy"), busy("Reading the motion …"), *rest
+        try:
+            source = read()
+            payload = source.preview(source.chosen, 0.0, source.end)
+        except Exception as error:
+            told = status(error_line(error), tone="error")
+            if fresh:
+                nobody = list(self.forget())
+                nobody[2] = told
+                yield tuple(nobody)
+            else:
+                yield *same, told, busy(""), *rest
+            return
+        last = max(round(source.seconds, 1), _SHORTEST)
+        yield (
+            source,
+            source.key,
+            self._told(source, 0.0, source.end),
+            show(payload),
+            gr.update(visible=True),
+            gr.update(choices=source.choices, visible=len(source.people) > 1, value=source.chosen),
+            gr.update(maximum=last, value=0),
+            gr.update(maximum=last, value=min(round(source.end, 1), last)),
+            _found(source),
+        )
+
+    @staticmethod
+    def forget() -> Updates:
+        """The tab without an actor; a result stays in the downloads."""
+        return None, "", status(), show(None), gr.update(visible=False), *(gr.skip(),) * 4
+
+    def preview(self, source: Source | None, person: str, start: float, end: float) -> Updates:
+        """Shows the actor as trimmed."""
+        if source is None:
+            return gr.skip(), gr.skip()
+        try:
+            payload = source.preview(person, start, end)
+        except Exception as error:
+            return status(error_line(error), tone="error"), busy("")
+        return self._told(source, start, end), show(payload)
+
+    @staticmethod
+    def _told(source: Source, start: float, end: float) -> str:
+        end = min(end, source.seconds)
+        shortest, longest = SECONDS
+        used = f"{source.name}: {start:.1f} to {end:.1f} s of {source.seconds:.1f} s."
+        if end - start < shortest - 1e-6:
+            return status(f"{used} Take {shortest:g} s or more.", tone="warning")
+        if end - start > longest + 0.05:
+            return status(f"{used} Take {longest:g} s or less.", tone="warning")
+        return status(" ".join((used, *source.notes)), tone="warning" if source.notes else "quiet")
+
+
+def _found(source: Source) -> str:
+    """Describes as HTML how a source's file was read: one line, then its joints beside SMPL's."""
+    if source.found is None:
+        return status("Taken from a result, so there was nothing to detect.")
+    pairs = " · ".join(f"{text(theirs)} → {text(ours)}" for theirs, ours in source.found.joints)
+    return f'{status(source.found.line)}<p class="pd-timings">{pairs}</p>'

@@ -1,0 +1,147 @@
+"""The results of a tab: the player, and under it files, a film, a link and read-outs."""
+
+from __future__ import annotations
+
+import logging
+import time
+from collections.abc import Callable, Iterator
+from typing import Any
+
+import gradio as gr
+
+from motion import InputError
+from webdemo.ui.components.address import link_address
+from webdemo.ui.components.exports import KINDS, Record, file_name, for_download, write_record
+from webdemo.ui.components.film import READ_PLAYER, make_film
+from webdemo.ui.components.film import suffix as film_suffix
+from webdemo.ui.components.player import EMPTY_TEXT, MotionPlayer
+from webdemo.ui.context import PageContext
+from webdemo.ui.text.panels import status
+from webdemo.ui.text.words import error_line, link_line, seconds
+from webdemo.ui.visitor import visitor
+from webdemo.view.payload import Payload
+
+log = logging.getLogger(__name__)
+
+
+QUIET: dict[str, Any] = {"api_visibility": "private", "show_progress": "hidden"}
+"""Options of events that are the page's own: no endpoint, no spinner over what they change."""
+
+Updates = tuple[Any, ...]
+
+
+class ResultsTab:
+    """The part of a tab that shows a result and hands it out.
+
+    Args:
+        page: what the tabs share.
+    """
+
+    prefix = ""
+    """Before the ids of the tab's elements."""
+    record: gr.State
+    """Keeps the session's last result."""
+    line: gr.HTML
+    """Says how a run went."""
+
+    def __init__(self, page: PageContext) -> None:
+        self.page = page
+
+    def _id(self, name: str) -> str:
+        return self.prefix + name
+
+    def _results(
+        self,
+        empty_text: str = EMPTY_TEXT,
+        below: Callable[[], None] = lambda: None,
+        first: Payload | None = None,
+    ) -> None:
+        """The player, and under it the files and read-outs of a result and what ``below`` lays out.
+
+        ``first`` is played before anything is asked for.
+        """
+        with gr.Column(elem_classes="pd-results", min_width=0):
+            with gr.Column(elem_classes="pd-panel pd-stage", min_width=0):
+                self.player = MotionPlayer(first, elem_id=self._id("player"), empty_text=empty_text)
+            with gr.Column(elem_classes="pd-panel pd-under", min_width=0, visible=False) as self.under:
+                with gr.Row(elem_classes="pd-downloads", elem_id=self._id("downloads")):
+                    self.downloads = [
+                        gr.DownloadButton(
+                            kind.label, size="sm", interactive=False, visible=kind.offered(), min_width=0,
+                            elem_id=self._id(f"download-{kind.key}"),
+                        )
+                        for kind in KINDS
+                    ]  # fmt: skip
+                    self.film = gr.Button("Make a film", size="sm", min_width=0, elem_id=self._id("film"))
+                    self.filmed = gr.DownloadButton(
+                        f"Film {film_suffix()}", size="sm", interactive=False, min_width=0,
+                        elem_id=self._id("download-film"),
+                    )  # fmt: skip
+                    self.player_state = gr.Textbox(visible=False)
+                    self.link = gr.Button(
+                        "Link to this view", size="sm", min_width=0, elem_id=self._id("link"),
+                        elem_classes="pd-onward", visible=self.page.history is not None,
+                    )  # fmt: skip
+                    self.onward = gr.Button(
+                        "What comes next", size="sm", min_width=0, elem_id=self._id("continue"),
+                        elem_classes="pd-onward",
+                    )  # fmt: skip
+                self.address = gr.Textbox(
+                    label="Link", interactive=False, visible=False, buttons=["copy"],
+                    elem_id=self._id("address"),
+                )  # fmt: skip
+                self.readouts = gr.HTML(elem_id=self._id("readouts"))
+            below()
+
+    def _wire_results(self) -> None:
+        self.film.click(
+            self.make_film, inputs=[self.record, self.player_state], outputs=[self.line, self.filmed],
+            js=READ_PLAYER, concurrency_limit=1, concurrency_id="film", trigger_mode="once", **QUIET,
+        )  # fmt: skip
+        self.link.click(
+            self.make_link, inputs=[self.record, self.player_state], outputs=[self.line, self.address],
+            js=READ_PLAYER, **QUIET,
+        )  # fmt: skip
+
+    def make_film(self, record: Record | None, shown: str) -> Iterator[Updates]:
+        """Films the last result as the player shows it and hands the film to its download button."""
+        yield status("Drawing the film …", tone="busy"), gr.update(value=None, interactive=False)
+        began = time.perf_counter()
+        try:
+            path = make_film(record, shown, self.page.shelf.folder())
+        except Exception as error:
+            yield status(error_line(error), tone="error"), gr.skip()
+            return
+        line = (
+            f"The film is ready, drawn in {seconds(time.perf_counter() - began)}: press Film {path.suffix}."
+        )
+        yield status(line, tone="done"), gr.update(value=path, interactive=True)
+
+    def make_link(self, record: Record | None, shown: str) -> Updates:
+        """Makes a link to the shown run, at the moment and from the side that the player shows."""
+        try:
+            if self.page.history is None or record is None or not record.result.run:
+                raise InputError("This motion is not in your history: make it once more.")
+            key, until = self.page.history.link(record.result.run, visitor().owner)
+        except Exception as error:
+            return status(error_line(error), tone="error"), gr.update(visible=False)
+        address = link_address(visitor().base, key, shown)
+        return status(link_line(until), tone="done"), gr.update(value=address, visible=True)
+
+    def export(self, record: Record | None) -> Updates:
+        """Writes the files of a new result and hands them to the download buttons."""
+        unchanged = (gr.skip(),) * (1 + len(KINDS))
+        if record is None or record.exported:
+            return unchanged
+        record.exported = True
+        try:
+            files = write_record(record, self.page.shelf.folder())
+            found = for_download(files, file_name(record.prompt, record.result.manifest))
+        except Exception as error:
+            off = gr.update(value=None, interactive=False)
+            return (status(f"The motion is ready, but its files are not. {error_line(error)}", tone="error"),
+                    *(off for _ in KINDS))  # fmt: skip
+        return (
+            gr.skip(),
+            *(gr.update(value=found.get(kind.key), interactive=kind.key in found) for kind in KINDS),
+        )

@@ -1,0 +1,53 @@
+"""A motion as a moving thumbnail: a few joints, seen from the side, in about a kilobyte.
+
+The browser's side of this format is ``static/notebook/thumbnail.js``.
+"""
+
+from __future__ import annotations
+
+import base64
+
+import numpy as np
+from numpy.typing import NDArray
+
+from motion import SMPL22, Clip, Duet, stacked_positions
+
+FRAMES = 20
+"""Moments of the motion that a thumbnail holds."""
+JOINTS = tuple(
+    SMPL22.index(name)
+    for name in (
+        "pelvis", "neck", "head", "left_shoulder", "right_shoulder", "left_elbow", "right_elbow", "left_wrist",
+        "right_wrist", "left_knee", "right_knee", "left_ankle", "right_ankle",
+    )
+)  # fmt: skip
+_LEVELS = 255
+
+
+def thumbnail(motion: Duet | Clip) -> str:
+    """People, frames and places of :data:`JOINTS` in a square, as base64 of bytes; "" for other skeletons.
+
+    The first byte is the number of people and the second that of frames; then follow x and y (down) of every joint
+    (person, frame, joint), 0 to 255. People are seen from the side of the line between them.
+    """
+    if motion.skeleton.joint_names != SMPL22.joint_names:
+        return ""
+    people = stacked_positions(motion).astype(np.float64)
+    moments = np.linspace(0, people.shape[1] - 1, FRAMES).round().astype(int)
+    seen = people[:, moments][:, :, JOINTS]
+    flat = np.stack([_across(people, seen), -seen[..., 1]], axis=-1)
+    low, high = flat.min(axis=(0, 1, 2)), flat.max(axis=(0, 1, 2))
+    size = max(float((high - low).max()), 1.0) * 1.1
+    places = (flat - (low + high) / 2) / size + 0.5
+    levels = np.clip(np.rint(places * _LEVELS), 0, _LEVELS).astype(np.uint8)
+    return base64.b64encode(bytes([len(people), FRAMES]) + levels.tobytes()).decode("ascii")
+
+
+def _across(people: NDArray[np.float64], seen: NDArray[np.float64]) -> NDArray[np.float64]:
+    """(people, frames, joints) metres along the line from A to B on the floor, with a little of what lies across."""
+    pelvis = people[:, :, 0].mean(axis=1)
+    line = (pelvis[1] - pelvis[0] if len(people) > 1 else np.array([0.0, 0.0, 1.0]))[[0, 2]]
+    length = float(np.linalg.norm(line))
+    along = line / length if length > 1e-6 else np.array([0.0, 1.0])
+    ground = seen[..., [0, 2]]
+    return ground @ along + 0.35 * (ground @ np.array([-along[1], along[0]]))
