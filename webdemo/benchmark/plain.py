@@ -8,6 +8,7 @@ import torch
 from torch import Tensor
 
 from models.diffusion import denoise, guide, make_scheduler
+from models.diffusion.schedule import Spacing
 from models.intergen.network import Block, InterGenDenoiser
 from models.intergen.words import WordBlock, WordDenoiser
 from models.layers import sinusoids
@@ -21,8 +22,10 @@ class PlainSampler:
     prompt is encoded anew at every step: how the papers' equations read, and what the ratios are against.
     """
 
-    def __init__(self, denoiser: InterGenDenoiser, pipeline: Any, request: Any) -> None:
-        self.denoiser, self.pipeline, self.request = denoiser, pipeline, request
+    def __init__(
+        self, denoiser: InterGenDenoiser, pipeline: Any, request: Any, *, spacing: Spacing = "top"
+    ) -> None:
+        self.denoiser, self.pipeline, self.request, self.spacing = denoiser, pipeline, request, spacing
 
     def run(self) -> Tensor:
         """Samples one motion; returns it in network space."""
@@ -35,16 +38,17 @@ class PlainSampler:
             nothing = torch.zeros_like(condition)
             return guide(self.forward(x, t, condition), self.forward(x, t, nothing), request.guidance)
 
-        return denoise(predict, noise, make_scheduler("ddim", request.steps, spacing="top"))
+        return denoise(predict, noise, make_scheduler("ddim", request.steps, spacing=self.spacing))
 
     def forward(self, x: Tensor, t: Tensor, condition: Tensor) -> Tensor:
         """InterGen's denoiser, with or without words, one person at a time: (1, T, 2F) → (1, T, 2F)."""
         net = self.denoiser
         words = net.text_of_each(condition) if isinstance(net, WordDenoiser) else None
         embs = net.embed(t, condition).expand(2, 1, -1)[:, None]
+        roles = net.role_embedding if net.config.role_embedding else (0.0, 0.0)
         states = [
-            net.motion_embed(person) + sinusoids(x.shape[1], net.config.latent_dim) + net.role_embedding[i]
-            for i, person in enumerate(x.chunk(2, dim=-1))
+            net.motion_embed(person) + sinusoids(x.shape[1], net.config.latent_dim) + role
+            for person, role in zip(x.chunk(2, dim=-1), roles, strict=True)
         ]
         for block in cast(list[Block], net.blocks):
             before, after = states, []

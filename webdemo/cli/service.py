@@ -24,6 +24,9 @@ def add_service(commands: Any) -> None:
     bench.add_argument(
         "--load", action="store_true", help="instead: load a server on loopback with many people"
     )
+    bench.add_argument(
+        "--model", help="instead: a released InterGen of the settings beside a plain run of it"
+    )
     bench.add_argument("--people", type=int, default=20, help="with --load")
     bench.add_argument("--minutes", type=float, default=5.0, help="with --load")
     bench.set_defaults(job=benchmark)
@@ -72,6 +75,12 @@ def benchmark(options: argparse.Namespace) -> dict[str, Any]:
     """Speed figures of :mod:`webdemo.benchmark`, or how a server bears many people."""
     from webdemo.benchmark.suite import run_benchmark
 
+    if options.model:
+        from webdemo.benchmark.released import measure_released
+
+        return measure_released(
+            options.model, seconds=options.seconds, steps=options.steps, repeats=options.repeats
+        )
     if options.load:
         from webdemo.benchmark.load import goals_missed, measure_batching, run_load
 

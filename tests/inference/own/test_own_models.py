@@ -103,7 +103,7 @@ def test_released_files_become_a_motion_in_the_shell(
         ('method = "intergen"\nfiles = 3', "must be a list of paths"),
         ('method = "intergen"\nweights = "a"', "unknown key 'weights'"),
         ("", "give it either `method` with `files`, or `pipeline`"),
-        ('method = "intergen"\nprecision = "int3"', "choose auto, float32 or bfloat16"),
+        ('method = "intergen"\nprecision = "int3"', "choose one of auto, float32, bfloat16, int8"),
     ],
 )
 def test_a_wrong_table_fails_alone(settings: Path, files: Path, change: str, sentence: str) -> None:
@@ -203,3 +203,16 @@ def test_a_model_that_does_not_fit_is_refused(
     monkeypatch.setattr("webdemo.inference.own.released.total_memory", lambda: 1e6)
     register_settings()
     assert "choose a smaller model" in why("my-run")
+
+
+def test_the_benchmark_times_it_beside_a_plain_run(
+    settings: Path, files: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    use(settings, TABLE.replace("label", 'precision = "int8"\nlabel'), files)
+    assert (
+        cli.main(["benchmark", "--model", "my-run", "--seconds", "1", "--steps", "2", "--repeats", "1"]) == 0
+    )
+    figures = json.loads(capsys.readouterr().out.splitlines()[-1])
+    assert figures["released_plain_over_ours"] > 0 and figures["released_plain_over_ours_goal"] == 3
+    assert cli.main(["benchmark", "--model", "intergen"]) == 2
+    assert "no released InterGen" in capsys.readouterr().err

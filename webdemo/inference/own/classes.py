@@ -5,6 +5,7 @@ from __future__ import annotations
 import importlib
 import importlib.util
 import logging
+import re
 import sys
 from collections.abc import Iterator
 from dataclasses import replace
@@ -26,6 +27,7 @@ from .entries import Entry
 
 log = logging.getLogger(__name__)
 
+_FOLDERS = re.compile(r"(?<![\w.])/(?:[^\s/'\":]+/)+")
 TASKS = ("generate", "react", "predict")
 INPUTS = ("words", "actor", "first pose", "either role", "past")
 
@@ -96,7 +98,7 @@ def find_class(place: str, folder: Path) -> Any:
 
 def _from_file(path: Path) -> Any:
     if not path.is_file():
-        raise InputError(f"there is no file {path}.")
+        raise InputError(f"there is no file {path.name}.")
     if str(path.parent) not in sys.path:  # so that the file can import others beside it
         sys.path.append(str(path.parent))
     spec = importlib.util.spec_from_file_location(f"pasdedeux_own_{path.stem}", path)
@@ -119,7 +121,9 @@ def _texts(found: Any, attribute: str, otherwise: tuple[str, ...], known: tuple[
 
 
 def _named(error: BaseException) -> str:
-    return f"{type(error).__name__}: {error}"[:300].rstrip(".")
+    """The error for a sentence, on one line and without the folders of this machine; the log has all of it."""
+    text = " ".join(f"{type(error).__name__}: {error}".split())
+    return _FOLDERS.sub("", text)[:300].rstrip(".")
 
 
 def _load(found: Any, name: str, folder: Path) -> Pipeline:

@@ -22,6 +22,7 @@ SETTINGS_FILE = "pasdedeux.toml"
 ROLES = ("checkpoint", "mean", "std", "vocabulary")
 """What a file of a released network is."""
 KEYS = ("method", "files", "pipeline", "label", "labels", "precision", "schedule")
+PRECISIONS = ("auto", "float32", "bfloat16", "int8")
 _NAME = re.compile(r"[a-z0-9][a-z0-9._-]{0,39}")
 _CHECKPOINTS = (".ckpt", ".pt", ".pth", ".tar", ".bin", ".safetensors")
 _VOCABULARIES = (".txt.gz", ".json")
@@ -39,7 +40,7 @@ class Entry:
         pipeline: ``file.py:Class`` or ``package.module:Class``; "" for released files.
         folder: what paths are relative to.
         labels: names of the action classes of a network that was trained with them, in their order.
-        precision: numbers of the matrix products: "auto", "float32" or "bfloat16".
+        precision: numbers of the matrix products, one of :data:`PRECISIONS`.
         schedule: noise schedule of BiGraphDiff, "linear" or "cosine".
     """
 
@@ -63,7 +64,7 @@ class Entry:
             raise InputError(f"`files` names no {role} file: add it to [models.{self.name}].")
         path = self.files[role]
         if not path.exists():
-            raise InputError(f"There is no file {path}: correct `files` of [models.{self.name}].")
+            raise InputError(f"There is no file {path.name}: correct `files` of [models.{self.name}].")
         return path
 
 
@@ -124,8 +125,8 @@ def _entry(name: str, table: Any, folder: Path) -> Entry:
     if bool(texts["method"]) == bool(texts["pipeline"]):
         raise InputError("give it either `method` with `files`, or `pipeline`.")
     precision, schedule = texts["precision"] or "auto", texts["schedule"] or "linear"
-    if precision not in ("auto", "float32", "bfloat16"):
-        raise InputError(f"`precision` {precision!r} is unknown: choose auto, float32 or bfloat16.")
+    if precision not in PRECISIONS:
+        raise InputError(f"`precision` {precision!r} is unknown: choose one of {', '.join(PRECISIONS)}.")
     if schedule not in ("linear", "cosine"):
         raise InputError(f"`schedule` {schedule!r} is unknown: choose linear or cosine.")
     labels = table.get("labels", [])

@@ -50,11 +50,15 @@ class ReleasedInterGenPipeline(TwoPersonPipeline[ReleasedInterGen]):
             self.model.denoiser, f"{self.digest} {precision}", precision=precision
         )
 
+    def condition(self, prompt: str) -> tuple[Tensor, None]:
+        """The condition (1, 768) of a prompt."""
+        return self.model.condition([prompt]), None
+
     def conditioning(self, request: GenerateRequest | ReactRequest) -> Conditioning:
         """The text vector; nothing without text."""
         if not request.prompt.strip():
             return Conditioning(self.model.no_condition(), 1.0)
-        return Conditioning(self.model.condition([request.prompt]), request.guidance)
+        return Conditioning(self.condition(request.prompt)[0], request.guidance)
 
     def run(
         self,
