@@ -73,3 +73,9 @@ def test_a_pose_is_read_from_a_file_beside_the_story(tmp_path: Path) -> None:
     np.testing.assert_allclose(pose.positions, two[1, 2], atol=1e-6)
     with pytest.raises(InputError, match=r"Line 5: x.npz has frames 0 to 2, not 7"):
         read_story(text.replace("frame = 2", "frame = 7"), tmp_path)
+
+
+@pytest.mark.parametrize("path", sorted((Path(__file__).parents[3] / "docs" / "stories").glob("*.toml")))
+def test_the_example_stories_can_be_made(path: Path) -> None:
+    request = SceneRequest(**read_story(path.read_text(encoding="utf-8"), path.parent))
+    assert len(request.beats) >= 3

@@ -1,0 +1,66 @@
+"""What the scores of scenes are made of: stories, rules in their own time, seams, paths."""
+
+import numpy as np
+import pytest
+
+from motion import SMPL22, Duet
+from training.evaluate.scenes import MEET, NEAR, PART, obeyed, path_error, seams, stories, table, wave_path
+
+REST = SMPL22.rest_positions() + np.array([0, 0.98, 0])
+
+
+def apart(gaps: np.ndarray) -> Duet:
+    """Two people who stand as far apart as the gaps (frames,) say, a at the origin."""
+    a = np.repeat(REST[None], len(gaps), axis=0)
+    b = a + gaps[:, None, None] * np.array([0, 0, 1.0])
+    return Duet.from_positions(np.stack([a, b]), fps=30.0)
+
+
+def test_stories_have_three_to_six_beats_and_differ() -> None:
+    found = stories(60)
+    assert {len(story) for story in found} == {3, 4, 5, 6} and found == stories(60)
+    assert all(story[0] == MEET and story[-1] == PART and len(set(story)) == len(story) for story in found)
+    assert {act for story in found for act in story} == {MEET, PART, *NEAR}
+
+
+def test_a_beat_is_judged_in_its_own_time() -> None:
+    come = apart(np.concatenate([np.linspace(4, 1.2, 90), np.full(90, 1.2)]))
+    assert obeyed(come, (MEET,), (0, 90)) == [True]
+    assert obeyed(come, (MEET, MEET), (0, 90, 180)) == [True, False]
+
+
+def test_a_jolt_at_a_seam_is_seen() -> None:
+    rng = np.random.default_rng(0)
+    gaps = 1.2 + 0.002 * rng.normal(size=180).cumsum()
+    calm = seams(apart(gaps), (0, 90, 180))
+    gaps[90:] += 0.5
+    jolt = seams(apart(gaps), (0, 90, 180))
+    assert calm["ratio"][0] < 1 < jolt["ratio"][0]
+    assert jolt["foot"][0] > 0.4 > calm["foot"][0]
+
+
+def test_the_distance_from_a_path_is_measured() -> None:
+    path = wave_path(4.0)
+    times = np.arange(120) / 30
+    duet = apart(np.full(120, 1.0))
+    on = np.array([path.place(t) or (0, 0) for t in times])
+    positions = duet.positions.copy()
+    positions[0] += np.stack([on[:, 0], 0 * on[:, 0], on[:, 1]], -1)[:, None] - positions[0, :, :1] * [
+        1,
+        0,
+        1,
+    ]
+    assert path_error(Duet.from_positions(positions, fps=30.0), path).max() < 1e-5
+    positions[0, :, :, 0] += 0.2
+    assert path_error(Duet.from_positions(positions, fps=30.0), path).mean() == pytest.approx(0.2, abs=1e-5)
+
+
+def test_the_table_counts() -> None:
+    row = {"words": ["x", "y"], "obeyed": [True, False], "seconds": 6.0, "spent": 3.0, "ratio": [0.5], "foot": [0.1],
+           "usual_foot": [0.08]}  # fmt: skip
+    scores = {"settings": {"steps": 25}, "stories": [row, {**row, "obeyed": [True, True]}], "path_cm": [[1.0, 4.0]],
+              "outside": [0.0], "loop_cm": [[0.5, 0.6]]}  # fmt: skip
+    shown = table(scores)
+    assert (
+        "| x | 100 % (2/2" in shown and "75 % (3/4" in shown and "| 30 s |" in shown and "50 % (1/2" in shown
+    )

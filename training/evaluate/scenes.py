@@ -1,0 +1,262 @@
+"""Whether scenes do what their stories say, beat by beat: ``python -m training.evaluate.scenes --out scenes.json``.
+
+Generates stories of three to six beats from acts that have a geometric rule each, and judges every rule in the beat's
+own time. Beside it: jerk and feet at the seams, drawn paths, spans that are made again, and loops.
+"""
+
+from __future__ import annotations
+
+import argparse
+import json
+import random
+import sys
+import time
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from motion import Duet
+from motion.formats.files import replacing
+from motion.metrics.sentences.joints import Motion
+from motion.metrics.sentences.language import check
+from motion.metrics.sentences.scores import share
+from motion.skeleton import FEET
+from training.core.shell import exit_code
+from webdemo.inference import Engine, Result
+from webdemo.inference.actor import FPS
+from webdemo.inference.engine import WEIGHTS
+from webdemo.inference.story import Beat, FloorPath, FloorPoint, SceneRequest
+
+Array = NDArray[np.floating]
+Make = Callable[[SceneRequest], tuple[Duet, float]]
+
+MARGIN = 9
+"""Frames beyond a beat's edges that still belong to it."""
+AROUND = 4
+"""Frames on each side of a seam."""
+
+
+@dataclass(frozen=True)
+class Act:
+    """A beat that can be judged: its words and its conditions (:mod:`motion.metrics.sentences.language`)."""
+
+    words: str
+    rules: tuple[str, ...]
+
+
+MEET = Act("Two people walk up to each other.", ("happens(either(walks_to(a), walks_to(b)))",))
+PART = Act(
+    "They turn around and walk away from each other.", ("happens(walks_away(a))", "happens(walks_away(b))")
+)
+NEAR = (
+    Act("They shake hands.", ("happens(hands_meet())",)),
+    Act("They give each other a high five.", ("happens(hands_meet())",)),
+    Act("They hug each other.", ("happens(hugs())",)),
+    Act("They bow to each other.", ("happens(bows(a))", "happens(bows(b))")),
+    Act("One person waves with the right hand.", ("happens(hand_up(a, 'right'))",)),
+    Act("The other person waves back with the right hand.", ("happens(hand_up(b, 'right'))",)),
+    Act("One person walks in a circle around the other.", ("happens(either(orbits(a), orbits(b)))",)),
+    Act("They bump fists.", ("happens(hands_meet())",)),
+)
+"""Acts of people who stand near each other."""
+
+
+def stories(count: int, seed: int = 0) -> list[tuple[Act, ...]]:
+    """Stories of three to six acts: people meet, do one to four things, and part."""
+    rng, found = random.Random(seed), []
+    for i in range(count):
+        found.append((MEET, *rng.sample(NEAR, 1 + i % 4), PART))
+    return found
+
+
+def obeyed(duet: Duet, story: Sequence[Act], edges: Sequence[int]) -> list[bool]:
+    """Whether each act's conditions hold in its own time."""
+    found = []
+    for act, start, stop in zip(story, edges[:-1], edges[1:], strict=True):
+        part = duet.positions[:, max(0, start - MARGIN) : stop + MARGIN]
+        motion = Motion(part, duet.fps)
+        found.append(
+            any(all(check(rule, m) for rule in act.rules) for m in (motion, motion.swapped()))
+            if "One person" not in act.words and "other person" not in act.words
+            else all(check(rule, motion) for rule in act.rules)
+        )
+    return found
+
+
+def seams(duet: Duet, edges: Sequence[int]) -> dict[str, list[float]]:
+    """Jerk (m/s³) at the seams beside its 95th percentile elsewhere, and the longest step of a foot (m) there."""
+    jerk = np.linalg.norm(np.diff(duet.positions, n=3, axis=1), axis=-1).mean((0, 2)) * FPS**3
+    steps = np.linalg.norm(np.diff(duet.positions[:, :, list(FEET)], axis=1), axis=-1).max((0, 2))
+    near = np.zeros(len(jerk), dtype=bool)
+    for edge in edges[1:-1]:
+        near[max(0, edge - AROUND - 2) : edge + AROUND] = True
+    usual, usual_step = float(np.percentile(jerk[~near], 95)), float(np.percentile(steps, 99))
+    return {
+        "ratio": [float(jerk[e - AROUND - 2 : e + AROUND].mean()) / usual for e in edges[1:-1]],
+        "foot": [float(steps[e - AROUND : e + AROUND].max()) for e in edges[1:-1]],
+        "usual_foot": [usual_step],
+    }
+
+
+def wave_path(seconds: float) -> FloorPath:
+    """A winding way of 0.8 m/s for person a, a point every quarter of a second, as it is drawn on the page."""
+    times = np.arange(0.0, seconds - 0.1, 0.25)
+    points = (FloorPoint(round(float(np.sin(0.7 * t)), 3), round(0.6 * float(t), 3), float(t)) for t in times)
+    return FloorPath("a", tuple(points))
+
+
+def path_error(duet: Duet, path: FloorPath) -> Array:
+    """(frames,) metres between person a's pelvis and the drawn way, from its first point to its last."""
+    found = []
+    for frame, place in enumerate(duet.a.positions[:, 0][:, [0, 2]]):
+        wanted = path.place(frame / FPS)
+        if wanted is not None:
+            found.append(float(np.linalg.norm(place - np.array(wanted))))
+    return np.asarray(found)
+
+
+def evaluate(options: argparse.Namespace) -> dict[str, Any]:
+    """All figures."""
+    engine = Engine(options.weights)
+
+    def make(request: SceneRequest) -> tuple[Duet, float]:
+        began = time.perf_counter()
+        *_, result = engine.run(request)
+        assert isinstance(result, Result)
+        duet = result.duets[0]
+        assert isinstance(duet, Duet)
+        return duet, time.perf_counter() - began
+
+    plain = {"steps": options.steps}
+    rows = _stories(make, options, plain)
+    return {"settings": {"scenes": options.scenes, **plain}, "stories": rows, **_parts(make, options, plain)}
+
+
+def _stories(make: Make, options: argparse.Namespace, plain: dict[str, Any]) -> list[dict[str, Any]]:
+    rows: list[dict[str, Any]] = []
+    for i, story in enumerate(stories(options.scenes)):
+        request = SceneRequest(beats=tuple(Beat(act.words) for act in story), seed=i, **plain)
+        duet, spent = make(request)
+        rows.append(
+            {
+                "words": [act.words for act in story],
+                "obeyed": obeyed(duet, story, request.edges),
+                "seconds": duet.seconds,
+                "spent": round(spent, 2),
+                **seams(duet, request.edges),
+            }
+        )
+        print(f"\r{i + 1} of {options.scenes} scenes", end="", file=sys.stderr, flush=True)
+    print(file=sys.stderr)
+    return rows
+
+
+def _parts(make: Make, options: argparse.Namespace, plain: dict[str, Any]) -> dict[str, Any]:
+    """Paths, spans and loops."""
+    paths, spans, loops = [], [], []
+    walk = (Beat("One person walks and the other follows.", seconds=5.0),) * 2
+    for seed in range(options.parts):
+        path = wave_path(10.0)
+        duet, _ = make(SceneRequest(beats=walk, paths=(path,), seed=seed, **plain))
+        paths.append(path_error(duet, path))
+        span = SceneRequest(beats=(Beat("They wave."),), motion=duet, start=3.0, end=6.0, seed=seed, **plain)
+        remade, _ = make(span)
+        outside = np.abs(remade.positions - duet.positions)
+        outside[:, 90:180] = 0
+        spans.append((float(outside.max()), seams(remade, (0, 90, 180, remade.num_frames))["ratio"]))
+        loop, _ = make(
+            SceneRequest(beats=(Beat("They dance together.", seconds=6.0),), loop=True, seed=seed, **plain)
+        )
+        x = loop.positions.astype(np.float64)
+        ahead = 2 * x[:, -1] - x[:, -2]
+        loops.append(
+            (
+                float(np.linalg.norm(x[:, 0] - ahead, axis=-1).max()),
+                float(np.linalg.norm((x[:, 1] - x[:, 0]) - (x[:, -1] - x[:, -2]), axis=-1).max()),
+            )
+        )
+    return {
+        "path_cm": [[round(100 * float(e.mean()), 2), round(100 * float(e.max()), 2)] for e in paths],
+        "outside": [value for value, _ in spans],
+        "span_jerk": [ratio for _, ratios in spans for ratio in ratios],
+        "loop_cm": [[round(100 * gap, 2), round(100 * speed, 2)] for gap, speed in loops],
+    }
+
+
+def table(scores: dict[str, Any]) -> str:
+    """The figures as Markdown."""
+    rows = scores["stories"]
+    flags = [flag for row in rows for flag in row["obeyed"]]
+    by_words: dict[str, list[bool]] = {}
+    for row in rows:
+        for words, flag in zip(row["words"], row["obeyed"], strict=True):
+            by_words.setdefault(words, []).append(flag)
+    ratios = [ratio for row in rows for ratio in row["ratio"]]
+    feet = [foot for row in rows for foot in row["foot"]]
+    usual = float(np.mean([row["usual_foot"][0] for row in rows]))
+    spent, made = sum(row["spent"] for row in rows), sum(row["seconds"] for row in rows)
+    path = np.mean([p[0] for p in scores["path_cm"]]), max(p[1] for p in scores["path_cm"])
+    loop = tuple(max(pair[i] for pair in scores["loop_cm"]) for i in range(2))
+    checks = {
+        "beats that obey their rule in their own time": share(sum(flags), len(flags)),
+        "scenes in which every beat does": share(sum(all(r["obeyed"]) for r in rows), len(rows)),
+        "seams with less jerk than the 95th percentile elsewhere": share(
+            sum(r < 1 for r in ratios), len(ratios)
+        ),
+        "longest step of a foot at a seam, median and worst": (
+            f"{100 * np.median(feet):.1f} and {100 * max(feet):.1f} cm a frame"
+        ),
+        "the same anywhere, 99th percentile": f"{100 * usual:.1f} cm a frame",
+        "distance from a drawn path, mean and worst": f"{path[0]:.1f} and {path[1]:.1f} cm",
+        "largest difference outside a remade span": f"{max(scores['outside']):g} m",
+        "loop: worst gap in place and in speed": f"{loop[0]:.1f} cm and {loop[1]:.1f} cm a frame",
+        "time for a minute of motion, on this machine": f"{60 * spent / made:.0f} s",
+    }
+    out = [
+        f"{len(rows)} scenes, {len(flags)} beats, {made:.0f} s of motion; DDIM-{scores['settings']['steps']}.",
+        "",
+        "| Check | Result |",
+        "|---|---|",
+        *(f"| {name} | {value} |" for name, value in checks.items()),
+        "",
+        "| Beat | Obeyed |",
+        "|---|---|",
+    ]
+    out += [f"| {words} | {share(sum(found), len(found))} |" for words, found in sorted(by_words.items())]
+    return "\n".join(out) + "\n"
+
+
+def main(argv: list[str] | None = None) -> int:
+    """Runs the command; returns its exit code."""
+    parser = argparse.ArgumentParser(
+        prog="python -m training.evaluate.scenes", description="Judge scenes beat by beat."
+    )
+    parser.add_argument("--weights", type=Path, default=WEIGHTS, help="folder of all weights")
+    parser.add_argument("--out", type=Path, required=True, help="JSON file for all figures")
+    parser.add_argument("--table", type=Path, help="Markdown file for the table, which is printed too")
+    parser.add_argument("--scenes", type=int, default=60, help="how many stories (60)")
+    parser.add_argument("--parts", type=int, default=10, help="how many paths, spans and loops (10)")
+    parser.add_argument("--steps", type=int, default=50, help="DDIM steps (50)")
+    options = parser.parse_args(argv)
+    if min(options.scenes, options.parts, options.steps) < 1:
+        parser.error("--scenes, --parts and --steps must be at least 1.")
+
+    def job() -> None:
+        scores = evaluate(options)
+        shown = table(scores)
+        with replacing(options.out) as temporary:
+            temporary.write_text(json.dumps(scores, indent=1) + "\n")
+        if options.table:
+            with replacing(options.table) as temporary:
+                temporary.write_text(shown)
+        print(shown)
+
+    return exit_code(job)
+
+
+if __name__ == "__main__":
+    sys.exit(main())
