@@ -23,11 +23,14 @@ LANDMARKS = "package/pose_landmark_lite.tflite"
 
 def with_input(network: bytes, *, mean: float, deviation: float) -> bytes:
     """A network with metadata that says: the input is a picture, of which ``mean`` is taken and divided."""
+    from mediapipe.tasks.metadata import schema_py_generated
     from mediapipe.tasks.python.metadata.metadata_writers import metadata_writer
 
     writer = metadata_writer.MetadataWriter.create(bytearray(network))
     writer.add_image_input([mean], [deviation])
-    writer.add_feature_output()
+    outputs = schema_py_generated.Model.GetRootAsModel(network, 0).Subgraphs(0).OutputsLength()
+    for number in range(outputs):
+        writer.add_feature_output(f"o{number}", "x")  # names that nobody reads, but one for each output is needed
     made, _ = writer.populate()
     return bytes(made)
 

@@ -6,11 +6,11 @@ import { drawPeople, drawSureness } from "./drawing.js";
 import { close, FilmError, LONGEST, openFilm } from "./film.js";
 import { closeWebcam, countDown, openWebcam, record } from "./webcam.js";
 
-const detectors = new Map(); // one for the page: the network takes a second to load and 100 MB
+const detectors = new Map(); // two for the page, the second for a second person: each takes a second to load and 100 MB
 
 /** `element` holds camera.html; `send(text)` hands landmarks to the page's Python side. */
 export async function mount(element, send, { folder }) {
-  if (!detectors.has(folder)) detectors.set(folder, new Detector(folder));
+  if (!detectors.has(folder)) detectors.set(folder, [new Detector(folder), new Detector(folder)]);
   new Panel(element.querySelector(".pdcam"), send, detectors.get(folder));
   const address = new URL("camera.css", import.meta.url).href;
   if (document.querySelector(`link[href="${address}"]`)) return;
@@ -19,9 +19,9 @@ export async function mount(element, send, { folder }) {
 }
 
 class Panel {
-  constructor(root, send, detector) {
+  constructor(root, send, detectors) {
     this.send = send;
-    this.detector = detector;
+    this.detectors = detectors;
     this.landmarks = null;
     this.run = 0; // number of what is being done: a later one stops it
     const find = (name) => root.querySelector(`.pdcam-${name}`);
@@ -42,6 +42,7 @@ class Panel {
       this.say("Cancelled.");
     };
     this.again.onclick = () => this.hand();
+    this.open.disabled = false; // before, nobody would hear
   }
 
   toggle() {
@@ -127,7 +128,7 @@ class Panel {
     this.say("Looking for people …");
     const wanted = Number(this.people.value);
     const began = performance.now();
-    const landmarks = await analyse(this.video, this.detector, {
+    const landmarks = await analyse(this.video, this.detectors, {
       people: wanted,
       stopped,
       each: (done, all, people, count) => {

@@ -11,23 +11,31 @@ export class Detector {
     this.opened = null;
   }
 
-  /** Loads the network at the first call; follows as many people from now on and nobody of before. */
-  async begin(people) {
+  /**
+   * Loads the network at the first call. Follows as many people from now on and nobody of before; pictures that are
+   * `still` have nothing to do with each other.
+   */
+  async begin(people, { still = false } = {}) {
     this.opened ??= this._open(people).catch((error) => {
       this.close();
       throw error;
     });
     await this.opened;
-    await this._ask({ job: "begin", people });
+    await this._ask({ job: "begin", people, still });
   }
 
-  /** The people in a video's or a canvas' present picture, at a time in seconds. */
-  async detect(source, time) {
-    const [width, height] = [source.videoWidth || source.width, source.videoHeight || source.height];
+  /** The people in a video's present picture, or in a window [x, y, width, height] of it, at a time in seconds. */
+  async detect(source, time, window = null) {
+    const [all, tall] = [source.videoWidth || source.width, source.videoHeight || source.height];
+    const [x, y, width, height] = (window ?? [0, 0, all, tall]).map(Math.round);
     const scale = Math.min(1, LONGEST_SIDE / Math.max(width, height));
     const size = { resizeWidth: Math.round(width * scale), resizeHeight: Math.round(height * scale) };
-    const picture = await createImageBitmap(source, scale < 1 ? size : {});
-    return this._ask({ job: "detect", picture, time: 1000 * time }, [picture]);
+    const picture = await createImageBitmap(source, x, y, width, height, scale < 1 ? size : {});
+    const found = await this._ask({ job: "detect", picture, time: 1000 * time }, [picture]);
+    return found.map((person) => ({
+      ...person,
+      image: person.image.map(([u, v]) => [(x + u * width) / all, (y + v * height) / tall]),
+    }));
   }
 
   close() {

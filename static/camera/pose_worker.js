@@ -29,9 +29,12 @@ async function open({ folder, people }) {
   });
 }
 
-/** Forgets whom it followed, and follows as many people from now on. */
-async function begin({ people }) {
-  follows = people === 1; // of several people it loses all but one when it follows them, so it looks for them anew
+/**
+ * Forgets whom it followed. From now on it follows as many people, or where it looks at pictures that are `still`,
+ * finds them anew in each.
+ */
+async function begin({ people, still }) {
+  follows = !still;
   await landmarker.setOptions({ numPoses: people, runningMode: follows ? "VIDEO" : "IMAGE" });
   offset = latest + 1000;
 }

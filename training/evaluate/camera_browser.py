@@ -18,13 +18,14 @@ _RUN = """async ([name, people]) => {
   const { Detector } = await import("/detector.js");
   const { openFilm } = await import("/film.js");
   const { analyse } = await import("/analysis.js");
-  window.detector ??= new Detector(new URL("/mediapipe/", location.href).href);
+  const folder = new URL("/mediapipe/", location.href).href;
+  window.detectors ??= [new Detector(folder), new Detector(folder)];
   const video = document.createElement("video");
   video.muted = true;
   const blob = await (await fetch(`/films/${name}`)).blob();
   await openFilm(video, new File([blob], name, { type: "video/mp4" }));
   const began = performance.now();
-  const landmarks = await analyse(video, window.detector, { people });
+  const landmarks = await analyse(video, window.detectors, { people });
   return [landmarks.pack(), (performance.now() - began) / landmarks.times.length];
 }"""
 
