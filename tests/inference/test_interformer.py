@@ -51,7 +51,7 @@ def test_the_actor_stays_and_the_reactor_has_constant_bones_without_popping(engi
     assert np.abs(np.diff(reactor, axis=0)).max() < 0.1
 
 
-def test_without_a_start_somebody_stands_before_the_actor_out_of_their_way(engine: Engine) -> None:
+def test_without_a_first_pose_somebody_stands_before_the_actor_out_of_their_way(engine: Engine) -> None:
     duet = react(engine).duets[0]
     ahead = heading_matrix(np.radians(50)) @ np.array([0.0, 0.0, 1.0])
     way = (duet.a.positions[:, 0] - duet.a.positions[0, 0]) @ ahead
@@ -59,10 +59,10 @@ def test_without_a_start_somebody_stands_before_the_actor_out_of_their_way(engin
     assert gap > max(1.0, way.max() + 0.5)
 
 
-def test_a_given_start_is_where_the_reaction_begins(engine: Engine) -> None:
-    start = react(engine).duets[0].b.positions[0].astype(float) + np.array([0.2, 0.0, 0.1])
-    found = react(engine, start=start, cleanup=False).duets[0].b.positions[0]
-    np.testing.assert_allclose(found, start, atol=1e-4)
+def test_a_reaction_begins_in_the_given_first_pose(engine: Engine) -> None:
+    pose = react(engine).duets[0].b.positions[0].astype(float) + np.array([0.2, 0.0, 0.1])
+    found = react(engine, first_pose=pose, cleanup=False).duets[0].b.positions[0]
+    np.testing.assert_allclose(found, pose, atol=1e-4)
 
 
 def test_a_seed_repeats_and_noise_makes_another_reaction(engine: Engine) -> None:

@@ -73,12 +73,12 @@ def test_online_the_future_changes_no_frame_by_a_bit(engine: Engine, until: int,
 
 
 @pytest.mark.parametrize("mode", ["online", "offline"])
-def test_a_given_start_is_where_the_reaction_begins(engine: Engine, mode: str) -> None:
-    start = waver(2.5).positions[0] + np.array([0.3, 0.0, 1.2])
+def test_a_reaction_begins_in_the_given_first_pose(engine: Engine, mode: str) -> None:
+    pose = waver(2.5).positions[0] + np.array([0.3, 0.0, 1.2])
     free = react(engine, mode=mode, cleanup=False).duets[0].b.positions
-    held = react(engine, mode=mode, cleanup=False, start=start).duets[0].b.positions
-    assert np.abs(free[0] - start).max() > 0.1
-    assert np.abs(held[0] - start).max() < 1e-4
+    held = react(engine, mode=mode, cleanup=False, first_pose=pose).duets[0].b.positions
+    assert np.abs(free[0] - pose).max() > 0.1
+    assert np.abs(held[0] - pose).max() < 1e-4
     steps = np.linalg.norm(np.diff(held, axis=0), axis=-1).max()
     assert steps < np.linalg.norm(np.diff(free, axis=0), axis=-1).max() + 0.5  # no jump: it settles
 
@@ -99,7 +99,7 @@ def test_the_first_pose_reaches_the_network(network: CompactReGenNet) -> None:
 
 
 @pytest.mark.parametrize(
-    ("start", "model", "why"),
+    ("pose", "model", "why"),
     [
         (np.zeros((21, 3)), "regennet", "22 joints"),
         (np.full((22, 3), np.nan), "regennet", "finite|NaN"),
@@ -107,9 +107,9 @@ def test_the_first_pose_reaches_the_network(network: CompactReGenNet) -> None:
         (waver(2.5).positions[0], "intergen", "no first pose"),
     ],
 )
-def test_bad_first_poses_are_refused(start: np.ndarray, model: str, why: str) -> None:
+def test_bad_first_poses_are_refused(pose: np.ndarray, model: str, why: str) -> None:
     with pytest.raises(InputError, match=why):
-        ReactRequest(actor=waver(2.5), model=model, start=start)
+        ReactRequest(actor=waver(2.5), model=model, first_pose=pose)
 
 
 def test_offline_sees_the_future(engine: Engine) -> None:

@@ -87,7 +87,7 @@ def react(options: argparse.Namespace) -> dict[str, Any]:
     mode = options.mode or ("online" if options.stream else ReactRequest.mode)
     if options.model == AUTOMATIC:
         options.model = automatic(options.prompt, options.role, mode).name
-    fields = sampling_fields(options) | {"start": pose}
+    fields = sampling_fields(options) | {"first_pose": pose}
     request = ReactRequest(actor=actor, prompt=options.prompt, role=options.role, mode=mode, **fields)
     if options.own_rig and options.actor.suffix.lower() != ".bvh":
         raise InputError(f"--own-rig needs the rig of a BVH file, and {options.actor.name} is none.")

@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import hashlib
 import math
+from collections.abc import Mapping
 from dataclasses import asdict, dataclass, field, fields
 from typing import Any
 
@@ -147,7 +148,7 @@ class ReactRequest(SamplingRequest):
             ReGenNet's and InterFormer's given person always acts first.
         mode: "offline": the network sees the given person's whole motion; "online" (ReGenNet): each frame
             depends only on the given person's frames so far.
-        start: (22, 3) metres, the generated person's first pose in the actor's world; free by default. Not for
+        first_pose: (22, 3) metres, the generated person's first pose in the actor's world; free by default. Not for
             InterGen and the virtual agent.
     """
 
@@ -156,7 +157,7 @@ class ReactRequest(SamplingRequest):
     prompt: str = ""
     role: str = "a"
     mode: str = "offline"
-    start: NDArray[np.floating] | None = field(default=None, compare=False)
+    first_pose: NDArray[np.floating] | None = field(default=None, compare=False)
 
     def __post_init__(self) -> None:
         _words(self.prompt, needed=False)
@@ -173,31 +174,31 @@ class ReactRequest(SamplingRequest):
                 f"{method.label} makes the person who reacts: choose role a, or {_others('either role')}."
             )
         object.__setattr__(self, "actor", check_actor(self.actor, method.seconds))
-        if self.start is not None:
-            self._check_start(method)
+        if self.first_pose is not None:
+            self._check_first_pose(method)
         self._check(method)
         if self.mode == "online":  # a frame that was already sent cannot be corrected
             object.__setattr__(self, "damping", 0.0)
 
-    def _check_start(self, method: Method) -> None:
+    def _check_first_pose(self, method: Method) -> None:
         if "first pose" not in method.takes:
             raise InputError(
                 f"{method.label} takes no first pose: leave it out, or choose {_others('first pose')}."
             )
-        start = np.asarray(self.start, dtype=np.float64)
-        if start.shape != (22, 3) or not np.isfinite(start).all():
+        pose = np.asarray(self.first_pose, dtype=np.float64)
+        if pose.shape != (22, 3) or not np.isfinite(pose).all():
             raise InputError(
-                "The start pose must be finite and of 22 joints, in metres of the actor's world."
+                "The first pose must be finite and of 22 joints, in metres of the actor's world."
             )
         # Checked like an actor who holds this pose for a second.
-        check_actor(Clip(np.repeat(start[None], 30, axis=0), 30.0), (0.0, 2.0))
-        object.__setattr__(self, "start", start.round(5))  # as in the manifest
+        check_actor(Clip(np.repeat(pose[None], 30, axis=0), 30.0), (0.0, 2.0))
+        object.__setattr__(self, "first_pose", pose.round(5))  # as in the manifest
 
     def to_dict(self) -> dict[str, Any]:
         """All fields except the motion, which its SHA-256 represents."""
-        plain = {f.name: getattr(self, f.name) for f in fields(self) if f.name not in ("actor", "start")}
-        if self.start is not None:
-            plain["start"] = np.asarray(self.start).tolist()
+        plain = {f.name: getattr(self, f.name) for f in fields(self) if f.name not in ("actor", "first_pose")}
+        if self.first_pose is not None:
+            plain["first_pose"] = np.asarray(self.first_pose).tolist()
         clip = self.actor
         actor = {
             "name": clip.name[:100],
@@ -247,6 +248,12 @@ class Result:
     timings: dict[str, float] = field(default_factory=dict)
     notes: tuple[str, ...] = ()
     run: str = ""
+
+
+def with_current_names(request: Mapping[str, Any]) -> dict[str, Any]:
+    """The fields of a stored request by their present names; ``first_pose`` of a reaction was once ``start``."""
+    older = {"start": "first_pose"} if request.get("kind") == "react" else {}
+    return {older.get(name, name): value for name, value in request.items()}
 
 
 class Cancelled(Exception):

@@ -12,7 +12,13 @@ import numpy as np
 from motion import Duet, InputError
 from webdemo.inference.actor import ROLES
 from webdemo.inference.predict_request import PredictRequest, PredictResult
-from webdemo.inference.requests import GenerateRequest, ReactRequest, Result, SamplingRequest
+from webdemo.inference.requests import (
+    GenerateRequest,
+    ReactRequest,
+    Result,
+    SamplingRequest,
+    with_current_names,
+)
 from webdemo.inference.story import SceneRequest
 from webdemo.ui.components.actors import Source
 
@@ -30,7 +36,7 @@ def request_of(opened: Opened) -> Request:
     Raises:
         InputError: for a kind that keeps too little of what it was made from, or fields that no longer fit.
     """
-    asked = opened.entry.request
+    asked = with_current_names(opened.entry.request)
     kind = _KINDS.get(opened.entry.kind)
     if kind is None:
         raise InputError(
@@ -111,6 +117,7 @@ def _changed(old: Mapping[str, Any], new: Mapping[str, Any]) -> list[str]:
         for name in sorted({*before, *after})
         if before.get(name) != after.get(name)
     ]
-    if json.dumps(old.get("request"), sort_keys=True) != json.dumps(new.get("request"), sort_keys=True):
+    asked = (with_current_names(manifest.get("request") or {}) for manifest in (old, new))
+    if len({json.dumps(request, sort_keys=True) for request in asked}) > 1:
         found.append("the request")
     return found

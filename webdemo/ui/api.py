@@ -263,7 +263,7 @@ class ReactEndpoint(Endpoint):
             )
             return ReactRequest(
                 actor=clip, prompt=prompt, role=role, seed=seed, samples=samples, guidance=guidance,
-                steps=steps, damping=damping, sampler=sampler, model=model, mode=mode, start=pose,
+                steps=steps, damping=damping, sampler=sampler, model=model, mode=mode, first_pose=pose,
             )  # fmt: skip
 
         return self._answer(request, prompt.strip() or f"Reaction to {Path(actor or '').stem}", progress)

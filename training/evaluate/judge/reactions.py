@@ -19,9 +19,9 @@ _PERSON_TO_PERSON = {"model": "intergen", "mode": "offline"}
 METHODS: dict[str, dict[str, Any]] = {
     "ReGenNet, online": _ONLINE,
     "ReGenNet, offline": _OFFLINE,
-    "ReGenNet, online, first pose given": _ONLINE | {"start": True},
-    "ReGenNet, offline, first pose given": _OFFLINE | {"start": True},
-    "InterFormer, first pose given": {"model": "interformer", "start": True},
+    "ReGenNet, online, first pose given": _ONLINE | {"first_pose": True},
+    "ReGenNet, offline, first pose given": _OFFLINE | {"first_pose": True},
+    "InterFormer, first pose given": {"model": "interformer", "first_pose": True},
     "InterGen, person to person": _PERSON_TO_PERSON | {"steps": 20, "guidance": 1.0, "damping": 0.0},
     "Virtual agent": {"model": "agent", "steps": 20, "damping": 0.0},
 }
@@ -52,15 +52,15 @@ def react(engine: Engine, recorded: Duet, seed: int, chosen: Mapping[str, Any], 
     Args:
         recorded: 30 fps on SMPL's 22 joints, a second or more. Of person b only the first pose is used, by methods that
             take one.
-        chosen: fields of the request; ``start``, if true, gives the first pose.
+        chosen: fields of the request; ``first_pose``, if true, gives the recorded one.
         prompt: the sentence, for a method that takes text.
     """
     fields = dict(chosen)
-    start = recorded.b.positions[0] if fields.pop("start", False) else None
+    pose = recorded.b.positions[0] if fields.pop("first_pose", False) else None
     if fields["model"] in WORDLESS:
         prompt = ""
     actor = Clip(recorded.a.positions[:LONGEST], recorded.fps)
-    request = ReactRequest(actor=actor, prompt=prompt, seed=seed, start=start, **fields)
+    request = ReactRequest(actor=actor, prompt=prompt, seed=seed, first_pose=pose, **fields)
     return next(event for event in engine.run(request) if isinstance(event, Result)).duets[0]
 
 

@@ -67,7 +67,11 @@ class InterFormerPipeline:
         now = time.perf_counter()
         placement = Placement.of(request.actor, "a")
         actor = placement.to_network(request.actor.positions)
-        first_pose = self._first_pose(actor) if request.start is None else placement.to_network(request.start)
+        first_pose = (
+            self._first_pose(actor)
+            if request.first_pose is None
+            else placement.to_network(request.first_pose)
+        )
         made = yield from self._sample(request, actor, first_pose, cancel, timer)
         now = timer.lap("sample", now)
         yield timer.progress("finish")

@@ -99,9 +99,9 @@ class ReGenNetPipeline:
 
     def _begin(self, request: ReactRequest, placement: Placement) -> Tensor | None:
         """(samples, 67) the network's input for the reactor's first pose, if one is given."""
-        if request.start is None:
+        if request.first_pose is None:
             return None
-        pose = torch.from_numpy(placement.to_network(request.start)).float()
+        pose = torch.from_numpy(placement.to_network(request.first_pose)).float()
         return self.model.begin_row(pose).expand(request.samples, -1)
 
     # ---- offline ---------------------------------------------------------------------------------
@@ -146,8 +146,8 @@ class ReGenNetPipeline:
             raw, made = (model.positions(one, frames)[0].double().numpy() for one in (uncorrected, x))
         if not np.isfinite(made).all():
             return raw, made
-        if request.start is not None:
-            first, place = placement.to_network(request.start), np.arange(frames)
+        if request.first_pose is not None:
+            first, place = placement.to_network(request.first_pose), np.arange(frames)
             raw, made = (one + settle(first - one[:, :1], place) for one in (raw, made))
         finish = clean_person if request.cleanup else np.asarray
         return placement.to_world(raw), placement.to_world(np.stack([finish(person) for person in made]))
@@ -183,9 +183,9 @@ class ReGenNetPipeline:
             given = torch.from_numpy(placement.to_network(frame)).float()
             made, contacts = stream.step(given, noise=noise)
             raw = made.double().numpy()
-            if request.start is not None:
+            if request.first_pose is not None:
                 if off is None:
-                    off = placement.to_network(request.start) - raw
+                    off = placement.to_network(request.first_pose) - raw
                 raw = raw + settle(off, np.array([index]))[:, 0]
             shown = raw
             if request.cleanup and np.isfinite(raw).all():

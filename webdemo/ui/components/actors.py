@@ -184,8 +184,7 @@ def chosen_actor(fields: Mapping[str, Any]) -> dict[str, Any]:
     """A request's fields from those of the page.
 
     ``source``, ``person``, ``start`` and ``end`` become ``actor``, ``method`` becomes ``model`` and ``mode``,
-    and ``keep`` becomes the start pose for a model that takes one. Words that the method does not hear are left
-    out.
+    and ``keep`` becomes the first pose for a model that takes one. Words are left out if the method takes none.
 
     Raises:
         InputError: where no source is chosen or the times do not fit.
@@ -200,5 +199,5 @@ def chosen_actor(fields: Mapping[str, Any]) -> dict[str, Any]:
     if "words" not in chosen.method.takes:
         kept["prompt"] = ""
     begins = fields.get("keep") and "first pose" in chosen.method.takes
-    start = source.other_pose(fields["person"], fields["start"]) if begins else None
-    return {"actor": actor, "model": chosen.method.name, "mode": chosen.mode, "start": start, **kept}
+    pose = source.other_pose(fields["person"], fields["start"]) if begins else None
+    return {"actor": actor, "model": chosen.method.name, "mode": chosen.mode, "first_pose": pose, **kept}

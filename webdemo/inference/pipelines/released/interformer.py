@@ -54,7 +54,7 @@ class ReleasedInterFormerPipeline(InterFormerPipeline):
         for event in super().run(request, cancel, timer):
             if isinstance(event, Result):
                 notes = [CONVERTED]
-                notes += [STARTED] if request.start is None else []
+                notes += [STARTED] if request.first_pose is None else []
                 notes += [ALIKE] if request.samples > 1 else []
                 event = replace(event, notes=(*event.notes, *notes))
             yield event

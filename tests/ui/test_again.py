@@ -1,0 +1,47 @@
+"""A stored run once more, under names of this version and of older ones."""
+
+from types import SimpleNamespace
+from typing import Any
+
+import numpy as np
+import pytest
+
+from motion import SMPL22, Clip, Duet
+from webdemo.inference.requests import ReactRequest, Result
+from webdemo.ui.again import request_of, verdict
+
+STANDING = SMPL22.rest_positions() + np.array([0, 0.98, 0])
+
+
+def duet() -> Duet:
+    a, b = (Clip(np.repeat(STANDING[None] + [0, 0, z], 60, axis=0).astype("f4"), 30.0) for z in (0.0, 1.0))
+    return Duet(a, b)
+
+
+@pytest.fixture
+def request_() -> ReactRequest:
+    return ReactRequest(actor=duet().a, model="regennet", first_pose=STANDING + np.array([0, 0, 1.0]), seed=3)
+
+
+@pytest.mark.parametrize("key", ["first_pose", "start"])
+def test_the_first_pose_of_a_stored_reaction_is_read(request_: ReactRequest, key: str) -> None:
+    stored = request_.to_dict()
+    stored[key] = stored.pop("first_pose")
+    opened: Any = SimpleNamespace(
+        entry=SimpleNamespace(kind="react", request=stored, title="A reaction"),
+        result=SimpleNamespace(duets=(duet(),)),
+    )
+    found = request_of(opened)
+    assert isinstance(found, ReactRequest) and found.first_pose is not None
+    np.testing.assert_array_equal(found.first_pose, request_.first_pose)
+    assert found.to_dict() == request_.to_dict()
+
+
+def test_an_older_name_is_no_other_request(request_: ReactRequest) -> None:
+    new = request_.to_dict()
+    old = {("start" if name == "first_pose" else name): value for name, value in new.items()}
+    moved = Duet(duet().a, Clip(duet().b.positions + np.float32(0.01), 30.0))
+    results = [Result(duets=(d,), manifest={"request": r}) for d, r in ((duet(), old), (moved, new))]
+    assert "the request" not in verdict(*results)
+    changed = Result(duets=(moved,), manifest={"request": new | {"seed": 4}})
+    assert "the request" in verdict(results[0], changed)
