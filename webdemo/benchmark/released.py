@@ -1,4 +1,4 @@
-"""How much faster a released InterGen of the settings is than a plain run of the same file."""
+"""The speed of a released InterGen of the settings, over that of a plain run of the same file."""
 
 from __future__ import annotations
 

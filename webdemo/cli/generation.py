@@ -41,9 +41,7 @@ def generate(options: argparse.Namespace) -> dict[str, Any]:
         options.model = next(m.name for m in methods("generate") if "class" in m.takes)
     fields = sampling_fields(options)
     words = options.prompt if options.label is None else options.label
-    request = GenerateRequest(
-        prompt=words, seconds=options.seconds, split=not options.no_split, **fields
-    )
+    request = GenerateRequest(prompt=words, seconds=options.seconds, split=not options.no_split, **fields)
     return write_result(run(request), options.out)
 
 

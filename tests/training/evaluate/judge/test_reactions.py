@@ -53,8 +53,8 @@ def test_words_and_the_first_pose_reach_only_methods_that_take_them(engine: Engi
     react(Listening(), duet, 0, WITH_WORDS["InterFormer, first pose given, no words"], prompt="They hug.")
     react(Listening(), duet, 0, WITH_WORDS["ReGenNet, online"], prompt="They hug.")
     assert [request.prompt for request in asked] == ["", "They hug."]
-    np.testing.assert_allclose(asked[0].start, duet.b.positions[0])
-    assert asked[1].start is None
+    np.testing.assert_allclose(asked[0].first_pose, duet.b.positions[0])
+    assert asked[1].first_pose is None
 
 
 def test_what_the_recorded_person_settles_is_not_counted() -> None:
