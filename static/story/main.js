@@ -262,10 +262,10 @@ class Editor {
     this.find("[data-act=undo]").disabled = !this.past.before.length;
     this.find("[data-act=redo]").disabled = !this.past.after.length;
     this.find("[data-act=no-span]").disabled = !story.span;
-    this.find(".pds-hint").textContent = beat ? this.told(beat) : "No beats yet: write a story and press Generate, or add one.";
+    this.find(".pds-hint").textContent = beat ? this.summary(beat) : "No beats yet: write a story and press Generate, or add one.";
   }
 
-  told(beat) {
+  summary(beat) {
     const length = `${edits.lengthOf(beat).toFixed(1)} s${beat.seconds == null ? ", from its words" : ""}`;
     const seed = beat.seed == null ? "" : `, seed ${beat.seed}`;
     return `Beat ${this.selected + 1}: ${length}${seed}. Click a block to change its words.`;

@@ -1,4 +1,4 @@
-"""Whether scenes do what their stories say, beat by beat: ``python -m training.evaluate.scenes --out scenes.json``.
+"""Scores of scenes against their stories, beat by beat: ``python -m training.evaluate.scenes --out scenes.json``.
 
 Generates stories of three to six beats from acts that have a geometric rule each, and judges every rule in the beat's
 own time. Beside it: jerk and feet at the seams, drawn paths, spans that are made again, and loops.
@@ -74,7 +74,7 @@ def stories(count: int, seed: int = 0) -> list[tuple[Act, ...]]:
 
 
 def obeyed(duet: Duet, story: Sequence[Act], edges: Sequence[int]) -> list[bool]:
-    """Whether each act's conditions hold in its own time."""
+    """Checks that each act's conditions hold in its own time."""
     found = []
     for act, start, stop in zip(story, edges[:-1], edges[1:], strict=True):
         part = duet.positions[:, max(0, start - MARGIN) : stop + MARGIN]

@@ -139,7 +139,7 @@ def test_errors_are_one_sentence_and_the_next_run_works(
     assert "record" in run(tab)[-1]
 
 
-def test_an_empty_seed_is_drawn_and_told(tab: GenerateTab) -> None:
+def test_an_empty_seed_is_drawn_and_shown(tab: GenerateTab) -> None:
     class Visit:
         session_hash = "me"
 
@@ -206,7 +206,7 @@ def test_cancel_token_is_seen_in_other_threads() -> None:
         token.raise_if_cancelled()
 
 
-def test_loading_is_told_until_it_is_done_or_failed() -> None:
+def test_loading_is_shown_until_it_is_done_or_failed() -> None:
     marks = list(watch_loading(Loader(StubEngine(load=0.2)), interval=0.02))
     assert "Loading model" in marks[0]
     assert "Model ready" in marks[-1]
@@ -248,7 +248,7 @@ def test_export_fills_the_buttons_once(tab: GenerateTab) -> None:
     assert all(update == gr.skip() for update in tab.export(None))
 
 
-def test_a_full_disk_is_told_and_leaves_nothing(tab: GenerateTab, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_full_disk_is_reported_and_leaves_nothing(tab: GenerateTab, monkeypatch: pytest.MonkeyPatch) -> None:
     def full(*_: Any, **__: Any) -> None:
         raise OSError(28, "No space left on device")
 

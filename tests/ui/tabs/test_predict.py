@@ -117,7 +117,7 @@ def test_curves_compare_with_the_last_pose() -> None:
     assert len(curves_figure(alone).data) == 1 and "Nothing follows" in str(curves_figure(alone).layout)
 
 
-def test_errors_are_told_in_words_with_what_the_last_pose_gives(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_errors_are_described_in_words_beside_those_of_the_last_pose(monkeypatch: pytest.MonkeyPatch) -> None:
     result = drift(PredictRequest(motion=walking(4.0), marker=2.0, seconds=1.0))
     monkeypatch.setattr("webdemo.ui.components.prediction_view.still_error", lambda _: np.full(30, 60.0))
     (near,) = told_errors(replace(result, error=(30.0,) * 30))

@@ -262,7 +262,7 @@ def test_how_a_file_was_read_is_shown_and_can_be_changed(tab: ReactTab, walker: 
     assert (wrong["up"], wrong["fps"]) == ("auto", 60), "the choices are again those that it was read with"
 
 
-def test_what_a_method_cannot_do_is_told(tab: ReactTab, walker: Path) -> None:
+def test_a_method_says_what_it_cannot_do(tab: ReactTab, walker: Path) -> None:
     source = upload(tab, walker)[-1]["source"]
     *_, last = run(tab, source, method="regennet", role="b")
     assert "choose role a" in last["line"]

@@ -13,7 +13,7 @@ from tests.ui.stub_engine import StubEngine, walking
 from webdemo.inference.requests import GenerateRequest, Progress, Result
 from webdemo.ui.components.show import result_payload
 from webdemo.ui.text.panels import model_card, model_state, notes_lines, readout_panel, status
-from webdemo.ui.text.plain import told
+from webdemo.ui.text.plain import in_words
 from webdemo.ui.text.words import cancelled_line, error_line, progress_line, text
 
 HOSTILE = "<img src=x onerror=alert(1)> ${alert(2)} {{value}} `x` \"quoted\" 'single'"
@@ -51,20 +51,20 @@ def test_readouts_show_before_after_and_change() -> None:
     assert "nearest that it knows" in notes_lines(result())
 
 
-def test_readouts_are_told_in_words_too() -> None:
+def test_readouts_are_described_in_words_too() -> None:
     made = html.unescape(readout_panel(result()))
     assert re.search(
         r"The two are \d\.\d m apart on average, \d\.\d m at the closest, and do not touch", made
     )
     good = {"distance": 0.93, "distance_min": 0.91, "contact_seconds": 2.3}
-    assert told(good) == "The two are 0.9 m apart on average, 0.9 m at the closest, and touch for 2.3 s."
-    assert told({"foot_skate": 3, "penetration_max": 0.5, "jerk": 20}) == (
+    assert in_words(good) == "The two are 0.9 m apart on average, 0.9 m at the closest, and touch for 2.3 s."
+    assert in_words({"foot_skate": 3, "penetration_max": 0.5, "jerk": 20}) == (
         "Standing feet stay in place, the bodies do not overlap, the motion is smooth."
     )
-    assert told({"foot_skate": 30, "penetration_max": 9, "jerk": 200}) == (
+    assert in_words({"foot_skate": 30, "penetration_max": 9, "jerk": 200}) == (
         "Standing feet slide, the bodies run into each other, the motion shakes."
     )
-    assert told({}) == ""
+    assert in_words({}) == ""
 
 
 def test_every_figure_is_explained() -> None:
@@ -149,7 +149,9 @@ def test_errors_become_sentences(error: Exception, start: str) -> None:
         (0.0, 0.5, 'pd-worse">+0.50<'),
     ],
 )
-def test_a_change_is_told_only_where_the_figures_shown_differ(before: float, after: float, said: str) -> None:
+def test_a_change_is_shown_only_where_the_figures_shown_differ(
+    before: float, after: float, said: str
+) -> None:
     readout = {"before": {"penetration": before}, "after": {"penetration": after}}
     made = readout_panel(Result(duets=(walking(1.0),), manifest={}, readouts=(readout,)))
     row = next(row for row in made.split("<tr") if "Penetration" in row)

@@ -61,7 +61,7 @@ class Taken:
 
 def pack(runs: Sequence[Packed], file: Path) -> None:
     """Writes runs into a file; raises InputError if their files are gone."""
-    told = []
+    stored = []
     with zipfile.ZipFile(file, "w", zipfile.ZIP_DEFLATED) as archive:
         for number, run in enumerate(runs):
             motions = sorted(run.folder.glob("*.npz"))
@@ -70,8 +70,8 @@ def pack(runs: Sequence[Packed], file: Path) -> None:
             for path in motions:
                 archive.write(path, f"{number}/{path.name}")
             readouts = json.loads((run.folder / "readouts.json").read_text(encoding="utf-8"))
-            told.append({**run.row, "note": dict(run.note), "readouts": readouts})
-        archive.writestr("workspace.json", json.dumps({"format": FORMAT, "runs": told}))
+            stored.append({**run.row, "note": dict(run.note), "readouts": readouts})
+        archive.writestr("workspace.json", json.dumps({"format": FORMAT, "runs": stored}))
 
 
 def unpack(file: Path, home: Path) -> list[Taken]:
@@ -83,8 +83,8 @@ def unpack(file: Path, home: Path) -> list[Taken]:
     taken: list[Taken] = []
     try:
         with zipfile.ZipFile(file) as archive:
-            for number, told in enumerate(_told(archive)):
-                taken.append(_taken(archive, number, told, home))
+            for number, stored in enumerate(_stored_runs(archive)):
+                taken.append(_taken(archive, number, stored, home))
     except BaseException as error:
         for run in taken:
             run.forget(home)
@@ -97,16 +97,20 @@ def unpack(file: Path, home: Path) -> list[Taken]:
     return taken
 
 
-def _told(archive: zipfile.ZipFile) -> list[dict[str, Any]]:
+def _stored_runs(archive: zipfile.ZipFile) -> list[dict[str, Any]]:
     files = archive.infolist()
     if len(files) > MOST_RUNS * (MOST_SAMPLES + 2) or sum(each.file_size for each in files) > LARGEST:
         raise InputError(f"The workspace is too large: import {MOST_RUNS:,} runs and 1 GB at most.")
-    told = json.loads(_content(archive, "workspace.json"))
-    if not isinstance(told, dict) or told.get("format") != FORMAT or not isinstance(told.get("runs"), list):
+    stored = json.loads(_content(archive, "workspace.json"))
+    if (
+        not isinstance(stored, dict)
+        or stored.get("format") != FORMAT
+        or not isinstance(stored.get("runs"), list)
+    ):
         raise InputError(_WRONG.format("its list of runs is missing"))
-    if len(told["runs"]) > MOST_RUNS:
-        raise InputError(f"The workspace holds {len(told['runs']):,} runs: import {MOST_RUNS:,} at most.")
-    return [run if isinstance(run, dict) else {} for run in told["runs"]]
+    if len(stored["runs"]) > MOST_RUNS:
+        raise InputError(f"The workspace holds {len(stored['runs']):,} runs: import {MOST_RUNS:,} at most.")
+    return [run if isinstance(run, dict) else {} for run in stored["runs"]]
 
 
 def _content(archive: zipfile.ZipFile, name: str) -> bytes:
@@ -121,30 +125,31 @@ def _content(archive: zipfile.ZipFile, name: str) -> bytes:
     return content
 
 
-def _taken(archive: zipfile.ZipFile, number: int, told: Mapping[str, Any], home: Path) -> Taken:
+def _taken(archive: zipfile.ZipFile, number: int, stored: Mapping[str, Any], home: Path) -> Taken:
     run = secrets.token_urlsafe(18)
     folder = home / f".{run}"
     folder.mkdir(mode=0o700)
     try:
         motions = _motions(archive, number, folder)
         readouts = [
-            _readout(each, motion) for each, motion in zip(told.get("readouts") or [], motions, strict=False)
+            _readout(each, motion)
+            for each, motion in zip(stored.get("readouts") or [], motions, strict=False)
         ]
         (folder / "readouts.json").write_text(json.dumps(readouts), encoding="utf-8")
-        kind = told.get("kind")
+        kind = stored.get("kind")
         if kind not in _KINDS:
             raise InputError(_WRONG.format(f"run {number + 1} is of no known kind"))
-        request = {**_plain(told.get("request")), "kind": kind}
+        request = {**_plain(stored.get("request")), "kind": kind}
         if kind == "scene":
-            request = _scene(told.get("request"), motions[0])
+            request = _scene(stored.get("request"), motions[0])
         row = {
-            "id": run, "kind": kind, "title": _text(told.get("title"), 500) or "Imported",
-            "created": min(_number(told.get("created"), time.time()), time.time()),
+            "id": run, "kind": kind, "title": _text(stored.get("title"), 500) or "Imported",
+            "created": min(_number(stored.get("created"), time.time()), time.time()),
             "favourite": False, "request": json.dumps(request),
-            "outcome": json.dumps(_outcome(told.get("outcome"), request, motions[0], folder)),
+            "outcome": json.dumps(_outcome(stored.get("outcome"), request, motions[0], folder)),
             "size": sum(path.stat().st_size for path in folder.iterdir()),
         }  # fmt: skip
-        return Taken(row, _note(told.get("note"), motions[0]), folder)
+        return Taken(row, _note(stored.get("note"), motions[0]), folder)
     except BaseException:
         shutil.rmtree(folder, ignore_errors=True)
         raise
@@ -202,11 +207,15 @@ def _plain(value: Any) -> dict[str, Any]:
     return found
 
 
-def _scene(told: Any, motion: Duet | Clip) -> dict[str, Any]:
+def _scene(stored: Any, motion: Duet | Clip) -> dict[str, Any]:
     """The request of a scene, if one can be made of it."""
-    if not isinstance(told, dict) or not isinstance(motion, Duet) or len(json.dumps(told)) > LARGEST_STORY:
+    if (
+        not isinstance(stored, dict)
+        or not isinstance(motion, Duet)
+        or len(json.dumps(stored)) > LARGEST_STORY
+    ):
         raise InputError(_WRONG.format("a scene has no story"))
-    return SceneRequest.from_dict(told, motion if "motion" in told else None).to_dict()
+    return SceneRequest.from_dict(stored, motion if "motion" in stored else None).to_dict()
 
 
 def _is_scalar(value: Any) -> bool:
@@ -215,15 +224,15 @@ def _is_scalar(value: Any) -> bool:
     return value is None or isinstance(value, bool) or _number(value, math.nan) == value
 
 
-def _outcome(told: Any, request: Mapping[str, Any], motion: Duet | Clip, folder: Path) -> dict[str, Any]:
-    told = told if isinstance(told, dict) else {}
-    notes = told.get("notes")
+def _outcome(stored: Any, request: Mapping[str, Any], motion: Duet | Clip, folder: Path) -> dict[str, Any]:
+    stored = stored if isinstance(stored, dict) else {}
+    notes = stored.get("notes")
     outcome: dict[str, Any] = {
-        "manifest": {**_plain(told.get("manifest")), "request": dict(request)},
-        "timings": {k: v for k, v in _plain(told.get("timings")).items() if _number(v, math.nan) == v},
+        "manifest": {**_plain(stored.get("manifest")), "request": dict(request)},
+        "timings": {k: v for k, v in _plain(stored.get("timings")).items() if _number(v, math.nan) == v},
         "notes": [_text(note, 1000) for note in notes[:20]] if isinstance(notes, list) else [],
     }
-    kept = told.get("prediction")
+    kept = stored.get("prediction")
     if isinstance(kept, dict):
         past = kept.get("past_frames")
         if type(past) is not int or not 0 < past < motion.num_frames:
@@ -240,36 +249,36 @@ def _numbers(values: Any, most: int) -> list[float]:
     return [_number(value, 0.0) for value in values]
 
 
-def _readout(told: Any, motion: Duet | Clip) -> dict[str, Any]:
+def _readout(stored: Any, motion: Duet | Clip) -> dict[str, Any]:
     """Measures, curves and contacts of a sample, as far as they are of the expected kinds."""
-    told = told if isinstance(told, dict) else {}
+    stored = stored if isinstance(stored, dict) else {}
     found: dict[str, Any] = {}
     for side in ("before", "after"):
-        values = told.get(side)
+        values = stored.get(side)
         if isinstance(values, dict):
             plain = values.get("summary", values)
             numbers = plain.items() if isinstance(plain, dict) else ()
             found[side] = {str(k)[:60]: float(v) for k, v in numbers if _number(v, math.nan) == v}
-    curves = told.get("curves")
+    curves = stored.get("curves")
     if isinstance(curves, dict):
         found["curves"] = {str(k)[:60]: _numbers(v, motion.num_frames) for k, v in list(curves.items())[:10]}
-    if isinstance(told.get("contacts"), list):
+    if isinstance(stored.get("contacts"), list):
         found["contacts"] = [
             {"start": each["start"], "stop": each["stop"], "kind": _text(each.get("kind"), 20),
              "label": _text(each.get("label"), 100)}
-            for each in told["contacts"][:1000]
+            for each in stored["contacts"][:1000]
             if isinstance(each, dict) and type(each.get("start")) is int and type(each.get("stop")) is int
             and 0 <= each["start"] <= each["stop"] <= motion.num_frames
         ]  # fmt: skip
     return found
 
 
-def _note(told: Any, motion: Duet | Clip) -> dict[str, Any]:
-    told = told if isinstance(told, dict) else {}
-    frame = told.get("frame")
-    tags = _text(told.get("tags"), 300).split()
+def _note(stored: Any, motion: Duet | Clip) -> dict[str, Any]:
+    stored = stored if isinstance(stored, dict) else {}
+    frame = stored.get("frame")
+    tags = _text(stored.get("tags"), 300).split()
     return {
-        "title": _text(told.get("title"), 200), "text": _text(told.get("text"), 4000),
+        "title": _text(stored.get("title"), 200), "text": _text(stored.get("text"), 4000),
         "tags": f" {' '.join(tags)} " if tags else "",
         "frame": frame if type(frame) is int and 0 <= frame < motion.num_frames else None,
         "thumbnail": thumbnail(motion),

@@ -21,14 +21,14 @@ def link_address(base: str, key: str, shown: str) -> str:
         key: of the link.
         shown: what ``READ_PLAYER`` gave; whatever is unknown in it is left out.
     """
-    told: Mapping[str, Any] = read_player(shown)
+    state: Mapping[str, Any] = read_player(shown)
     asked: dict[str, Any] = {"run": key}
     for name in ("frame", "sample"):
-        value = told.get(name)
+        value = state.get(name)
         if type(value) is int and 0 <= value < _LONGEST:
             asked[name] = value
     for name, (low, high) in _LIMITS.items():
-        value = number_of(told, name, low, high)
+        value = number_of(state, name, low, high)
         if value is not None:
             asked[name] = f"{value:.3f}"
     return f"{base}?{urlencode(asked)}"

@@ -57,10 +57,11 @@ def make_film(record: Record | None, shown: str, folder: Path) -> Path:
     """
     if record is None:
         raise InputError("There is no motion to film yet: make one first.")
-    told = read_player(shown)
+    state = read_player(shown)
     results = record.compared or {"": record.result}
     panes = [
-        _pane(result, told.get("sample"), name if record.compared else "") for name, result in results.items()
+        _pane(result, state.get("sample"), name if record.compared else "")
+        for name, result in results.items()
     ]
     if max(pane.motion.seconds for pane in panes) > LONGEST:
         raise InputError(
@@ -68,9 +69,9 @@ def make_film(record: Record | None, shown: str, folder: Path) -> Path:
         )
     path = folder / f"{file_name(record.prompt, record.result.manifest)}{suffix()}"
     style = Style(
-        look=_one_of(told, "look", LOOKS, "bodies"),
-        trails=told.get("trails") is True,
-        theme=_one_of(told, "theme", tuple(THEMES), "light"),
+        look=_one_of(state, "look", LOOKS, "bodies"),
+        trails=state.get("trails") is True,
+        theme=_one_of(state, "theme", tuple(THEMES), "light"),
     )
     try:
         return film.write_film(
@@ -78,11 +79,11 @@ def make_film(record: Record | None, shown: str, folder: Path) -> Path:
             path,
             style=style,
             size=film.SIZE if suffix() == ".mp4" else (640, 360),
-            view=_one_of(told, "view", VIEWS, "threequarter"),
-            follow=told.get("follow") is not False,
+            view=_one_of(state, "view", VIEWS, "threequarter"),
+            follow=state.get("follow") is not False,
             title=record.prompt,
-            yaw=number_of(told, "yaw", -1000.0, 1000.0),
-            elevation=number_of(told, "elevation", -0.05, 1.5),
+            yaw=number_of(state, "yaw", -1000.0, 1000.0),
+            elevation=number_of(state, "elevation", -0.05, 1.5),
         )
     except InputError as error:
         raise without_place(error, folder) from None
@@ -103,20 +104,20 @@ def _pane(result: Result, sample: Any, name: str) -> Pane:
 def read_player(shown: str) -> Mapping[str, Any]:
     """Reads the answer of :data:`READ_PLAYER` as a dictionary; an empty one if it is none."""
     try:
-        told = json.loads(shown[:2000])
+        state = json.loads(shown[:2000])
     except (TypeError, ValueError):
         return {}
-    return told if isinstance(told, dict) else {}
+    return state if isinstance(state, dict) else {}
 
 
-def _one_of(told: Mapping[str, Any], key: str, known: tuple[str, ...], default: str) -> str:
-    value = told.get(key)
+def _one_of(state: Mapping[str, Any], key: str, known: tuple[str, ...], default: str) -> str:
+    value = state.get(key)
     return value if value in known else default
 
 
-def number_of(told: Mapping[str, Any], key: str, low: float, high: float) -> float | None:
+def number_of(state: Mapping[str, Any], key: str, low: float, high: float) -> float | None:
     """A finite number between bounds; None where there is none."""
-    value = told.get(key)
+    value = state.get(key)
     if isinstance(value, bool) or not isinstance(value, (int, float)) or not np.isfinite(value):
         return None
     return float(min(max(value, low), high))

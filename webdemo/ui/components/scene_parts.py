@@ -15,10 +15,10 @@ from .exports import Record
 from .story import story_fields, story_value
 
 
-def place_of(told: str) -> dict[str, int]:
-    """The frame and the sample that the player shows, as the browser told them."""
+def place_of(shown: str) -> dict[str, int]:
+    """The frame and the sample that the player shows, as the browser reports them."""
     try:
-        found = json.loads(told)
+        found = json.loads(shown)
         return {key: max(0, int(found.get(key) or 0)) for key in ("frame", "sample")}
     except (ValueError, TypeError, AttributeError, OverflowError):
         return {"frame": 0, "sample": 0}

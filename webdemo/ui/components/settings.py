@@ -30,12 +30,12 @@ def snapshot(fields: Mapping[str, Any], names: Iterable[str]) -> str:
 
 def differs(names: Sequence[str]) -> str:
     """JavaScript that says whether controls of these names differ from a snapshot, given before them."""
-    told = json.dumps(status(CHANGED, tone="warning"))
+    changed = json.dumps(status(CHANGED, tone="warning"))
     return f"""(asked, ...values) => {{
   if (!asked || asked === "{OPENED}") return "";
   const was = JSON.parse(asked);
   const same = (name, i) => String(was[name] ?? "") === String(values[i] ?? "");
-  return {json.dumps(list(names))}.every(same) ? "" : {told};
+  return {json.dumps(list(names))}.every(same) ? "" : {changed};
 }}"""
 
 

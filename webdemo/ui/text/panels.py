@@ -9,15 +9,15 @@ from motion.metrics import MEASURES, Measure
 from webdemo.inference.methods import label_of
 from webdemo.inference.requests import Result
 
-from .plain import legend, told_lines
+from .plain import legend, lines_in_words
 from .words import number, seconds, text
 
 Summary = Mapping[str, float]
 
 QUALITY = tuple(measure for measure in MEASURES if measure.better)
 RELATION = tuple(measure for measure in MEASURES if not measure.better)
-_MOST_TOLD = 4
-"""Samples: more than these are not told in words."""
+_MOST_IN_WORDS = 4
+"""Samples: more than these are not described in words."""
 
 
 def status(line: str = "", *, tone: str = "quiet") -> str:
@@ -56,7 +56,7 @@ def model_state(state: str, error: str | None = None) -> str:
 def readout_panel(result: Result) -> str:
     """Everything under the player: how it came out, what was asked, measures, contacts, timings."""
     samples = [_sides(readout) for readout in result.readouts]
-    parts = [_told(samples, _heads(len(samples))), _asked(result)]
+    parts = [_in_words(samples, _heads(len(samples))), _asked(result)]
     if samples:
         parts += [_tables(_quality_table(samples), _relation_table(samples, result)), legend()]
     parts.append(_timings(result.timings))
@@ -76,7 +76,7 @@ def comparison_panel(results: Mapping[str, Result]) -> str:
         manifest={},
     )
     samples = [_sides(readout) for readout in joined.readouts]
-    parts = [_told(samples, heads), *(_asked(result, name) for name, result in results.items())]
+    parts = [_in_words(samples, heads), *(_asked(result, name) for name, result in results.items())]
     if samples:
         tables = _quality_table(samples, heads), _relation_table(samples, joined, heads)
         parts += [_tables(*tables), legend()]
@@ -87,7 +87,7 @@ def comparison_panel(results: Mapping[str, Result]) -> str:
 def prediction_lines(lines: Mapping[str, str]) -> str:
     """A line on the error of each prediction, after its name if there are several."""
     return "".join(
-        f'<p class="pd-told">{f"<b>{text(name)}</b> " if name else ""}{text(line)}</p>'
+        f'<p class="pd-in-words">{f"<b>{text(name)}</b> " if name else ""}{text(line)}</p>'
         for name, line in lines.items()
     )
 
@@ -96,11 +96,11 @@ def _tables(*tables: str) -> str:
     return f'<div class="pd-tables">{"".join(tables)}</div>'
 
 
-def _told(samples: Sequence[tuple[Summary | None, Summary]], heads: Sequence[str]) -> str:
+def _in_words(samples: Sequence[tuple[Summary | None, Summary]], heads: Sequence[str]) -> str:
     """Describes each sample in words; empty for many samples, for which the tables say enough."""
-    if not 0 < len(samples) <= _MOST_TOLD:  # a prediction has no read-outs
+    if not 0 < len(samples) <= _MOST_IN_WORDS:  # a prediction has no read-outs
         return ""
-    return told_lines({name: after for name, (_, after) in zip(heads, samples, strict=True)})
+    return lines_in_words({name: after for name, (_, after) in zip(heads, samples, strict=True)})
 
 
 def _heads(count: int) -> list[str]:

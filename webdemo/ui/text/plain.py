@@ -24,17 +24,17 @@ _VERDICTS = (("foot_skate", _FEET), ("penetration_max", _OVERLAP), ("jerk", _SHA
 10 cm/s and a jerk of 25 m/s³ (docs/scores.md)."""
 
 
-def told(values: Mapping[str, float]) -> str:
+def in_words(values: Mapping[str, float]) -> str:
     """A summary of :data:`motion.metrics.MEASURES` in words; "" where nothing of it is known."""
     sentences = [_between(values), _quality(values)]
     return " ".join(sentence for sentence in sentences if sentence)
 
 
-def told_lines(summaries: Mapping[str, Mapping[str, float]]) -> str:
+def lines_in_words(summaries: Mapping[str, Mapping[str, float]]) -> str:
     """The same as HTML, a line each, after what each is called where there are several."""
-    lines = {name: told(values) for name, values in summaries.items()}
+    lines = {name: in_words(values) for name, values in summaries.items()}
     return "".join(
-        f'<p class="pd-told">{f"<b>{text(name)}</b> " if len(lines) > 1 else ""}{text(line)}</p>'
+        f'<p class="pd-in-words">{f"<b>{text(name)}</b> " if len(lines) > 1 else ""}{text(line)}</p>'
         for name, line in lines.items()
         if line
     )
