@@ -168,3 +168,13 @@ def test_openvino_reports_nothing_over_the_network() -> None:
         "sys.exit(any(m.startswith('openvino_telemetry') and sys.modules[m] for m in sys.modules))"
     )
     assert subprocess.run([sys.executable, "-c", code], timeout=100).returncode == 0
+
+
+def test_eight_bits_stay_near(tmp_path: Path) -> None:
+    plain, coarse = network(), network()
+    if not compile_network(coarse, "coarse", tmp_path, precision="int8"):
+        pytest.skip("OpenVINO is not installed.")
+    given = inputs(plain, 2, 9)
+    expected = plain(*given)
+    off = (coarse(*given) - expected).abs().max() / expected.abs().max()
+    assert 1e-4 < off < 1e-1  # 8 bits cannot be exact: they are at work

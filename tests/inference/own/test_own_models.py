@@ -18,6 +18,7 @@ from webdemo import cli
 from webdemo.inference import Engine, GenerateRequest, ReactRequest, Result
 from webdemo.inference.methods import failed, method, register_settings
 from webdemo.inference.own import cost, entries
+from webdemo.inference.pipelines.released import common
 
 TABLE = """
 [models.my-run]
@@ -216,3 +217,15 @@ def test_the_benchmark_times_it_beside_a_plain_run(
     assert figures["released_plain_over_ours"] > 0 and figures["released_plain_over_ours_goal"] == 3
     assert cli.main(["benchmark", "--model", "intergen"]) == 2
     assert "no released InterGen" in capsys.readouterr().err
+
+
+def test_numbers_that_are_too_coarse_give_way_to_float32(monkeypatch: pytest.MonkeyPatch) -> None:
+    asked = []
+
+    def compile_network(network: object, key: str, *, precision: str = "f32") -> bool:
+        asked.append((key, precision))
+        return precision == "f32"
+
+    monkeypatch.setattr(common, "compile_network", compile_network)
+    assert common.compiled_near(torch.nn.Identity(), "weights", "bf16")
+    assert asked == [("weights bf16", "bf16"), ("weights f32", "f32")]

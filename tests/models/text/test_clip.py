@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import gzip
 import json
 
 import pytest
@@ -9,7 +10,15 @@ import torch
 from torch import nn
 
 from models.errors import WeightsError
-from models.text.clip import ClipTextEncoder, ClipTokenizer, VocabularyError, from_checkpoint, from_released
+from models.text import clip
+from models.text.clip import (
+    ClipTextEncoder,
+    ClipTokenizer,
+    VocabularyError,
+    find_vocabulary,
+    from_checkpoint,
+    from_released,
+)
 from tests.models.reference_arrays import Reference, assert_equal
 
 
@@ -119,3 +128,23 @@ def test_missing_or_foreign_vocabularies_are_said(tmp_path):
     (tmp_path / "tokenizer.json").write_text("{")
     with pytest.raises(VocabularyError, match="cannot be read"):
         ClipTokenizer(tmp_path)
+
+
+def test_clips_own_file_of_merges_is_read(tmp_path):
+    path = tmp_path / "bpe_simple_vocab_16e6.txt.gz"
+    path.write_bytes(gzip.compress(b'"version: 0.2\nh i</w>\nt h\nth e</w>\n'))
+    rows = ClipTokenizer(path, context_length=8)(["Hi  the a", "é"])
+    start, end = 512 + 3, 512 + 4
+    # Printable bytes come first in CLIP's list: "!" is 0, "a" 64; with the end of a word 256 more.
+    assert rows[0].tolist() == [start, 512, 514, 256 + 64, end, 0, 0, 0]
+    # Two bytes, 0xC3 and 0xA9; CLIP leaves out 0xAD between the two runs of printable ones.
+    assert rows[1].tolist()[:4] == [start, 127, 256 + 102, end]
+    path.write_bytes(gzip.compress(b"title\nthree words here\n"))
+    with pytest.raises(VocabularyError, match="is not CLIP's vocabulary"):
+        ClipTokenizer(path)
+
+
+def test_a_missing_package_gets_one_sentence(monkeypatch):
+    monkeypatch.setattr(clip, "VOCABULARY_PACKAGE", "a-package-that-nobody-has")
+    with pytest.raises(VocabularyError, match="pip install --no-deps open-clip-torch"):
+        find_vocabulary()

@@ -9,8 +9,9 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 from scipy.ndimage import gaussian_filter1d
+from torch import nn
 
-from models.compiled import Precision, has_bfloat16
+from models.compiled import Precision, compile_network, has_bfloat16
 from motion import Duet
 from webdemo.inference.cleanup import clean_person
 from webdemo.inference.own.entries import Entry
@@ -40,6 +41,17 @@ def precision_of(entry: Entry) -> Precision:
         return "bf16" if has_bfloat16() else "f32"
     named: dict[str, Precision] = {"float32": "f32", "bfloat16": "bf16", "int8": "int8"}
     return named[entry.precision]
+
+
+def compiled_near(network: nn.Module, key: str, precision: Precision) -> bool:
+    """Lets OpenVINO run a network with coarser numbers if its outputs stay near, in float32 otherwise.
+
+    Returns:
+        whether it is compiled, as :func:`models.compiled.compile_network`.
+    """
+    if precision != "f32" and compile_network(network, f"{key} {precision}", precision=precision):
+        return True
+    return compile_network(network, f"{key} f32")
 
 
 class Measured:

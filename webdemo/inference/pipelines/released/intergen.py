@@ -8,7 +8,6 @@ from dataclasses import replace
 import torch
 from torch import Tensor
 
-from models.compiled import compile_network
 from models.intergen.released import ReleasedInterGen, load_released
 from models.text.clip import find_vocabulary
 from motion.representation import NUM_FEATURES
@@ -20,7 +19,7 @@ from webdemo.inference.requests import GenerateRequest, Progress, ReactRequest, 
 from webdemo.inference.scenes import Reaction, Scene
 from webdemo.inference.timer import StageTimer
 
-from .common import Measured, digest, precision_of
+from .common import Measured, compiled_near, digest, precision_of
 
 CONVERTED = (
     "InterGen's 262 numbers a person and frame became 22 joints: its positions were taken, its own rotations and "
@@ -45,10 +44,7 @@ class ReleasedInterGenPipeline(TwoPersonPipeline[ReleasedInterGen]):
         checkpoint, mean, std = (entry.file(role) for role in ("checkpoint", "mean", "std"))
         self.model = load_released(checkpoint, mean, std, vocabulary)
         self.name, self.digest, self.meta = entry.name, digest((checkpoint, mean, std)), {}
-        precision = precision_of(entry)
-        self.compiled = compile_network(
-            self.model.denoiser, f"{self.digest} {precision}", precision=precision
-        )
+        self.compiled = compiled_near(self.model.denoiser, self.digest, precision_of(entry))
 
     def condition(self, prompt: str) -> tuple[Tensor, None]:
         """The condition (1, 768) of a prompt."""
