@@ -8,12 +8,22 @@ import torch
 import torch.nn.functional as F
 from torch import Tensor, nn
 
+TRACED_ROWS = 1024
+"""Positions and timesteps that a traced network knows: all 1000 timesteps, and more tokens than any motion has."""
+
 
 def sinusoids_at(positions: Tensor, width: int) -> Tensor:
     """Rows of the sinusoid table (Vaswani et al. 2017, section 3.5): (N,) positions → (N, width), float32.
 
-    Sine on even channels, cosine on odd ones, base 10000.
+    Sine on even channels, cosine on odd ones, base 10000. Where a network is traced, whole positions are looked up in
+    a table of :data:`TRACED_ROWS` rows: a translation to bfloat16 would round the angles, of which 999 is 1000.
     """
+    if torch.jit.is_tracing() and not positions.is_floating_point():
+        return _rows(torch.arange(TRACED_ROWS, device=positions.device), width)[positions]
+    return _rows(positions, width)
+
+
+def _rows(positions: Tensor, width: int) -> Tensor:
     exponents = torch.arange(0, width, 2, device=positions.device, dtype=torch.float32)
     frequencies = torch.exp(exponents * (-math.log(10000.0) / width))
     angles = positions[:, None].float() * frequencies
