@@ -108,7 +108,10 @@ def test_the_other_person_of_a_file_says_where_to_begin(
     code, said, _ = react(capsys, *words, "--model", "regennet")
     assert code == 0
     np.testing.assert_allclose(asked[-1].first_pose, standing(120).positions[30], atol=1e-5)
-    assert json.loads(said.splitlines()[-1])["manifest"]["request"]["first_pose"] == asked[-1].first_pose.tolist()
+    assert (
+        json.loads(said.splitlines()[-1])["manifest"]["request"]["first_pose"]
+        == asked[-1].first_pose.tolist()
+    )
     code, _, said = react(capsys, *words)
     assert code == 2 and "InterGen takes no first pose" in said
     one = write(standing(120), tmp_path / "one.npz")[0]

@@ -29,8 +29,8 @@ from webdemo.inference.methods import (
 )
 from webdemo.ui.api import GenerateEndpoint, ReactEndpoint
 from webdemo.ui.components.actors import react_choices
+from webdemo.ui.components.notebook import method_label
 from webdemo.ui.tabs.generate import generate_choices
-from webdemo.ui.tabs.history import _method
 
 TOY_METHOD = """
 from webdemo.inference.method import Method
@@ -117,8 +117,8 @@ def test_a_method_of_two_files_is_everywhere(
     )
     assert answer["manifest"]["model"] == "toy"
     # in the history
-    assert _method({"kind": "generate", "model": "toy"}) == "Toy twins"
-    assert _method({"kind": "react", "model": "toy", "mode": "offline"}) == "Toy twins"
+    assert method_label({"kind": "generate", "model": "toy"}) == "Toy twins"
+    assert method_label({"kind": "react", "model": "toy", "mode": "offline"}) == "Toy twins"
 
 
 def test_without_it_the_toy_is_nowhere() -> None:

@@ -248,7 +248,9 @@ def test_export_fills_the_buttons_once(tab: GenerateTab) -> None:
     assert all(update == gr.skip() for update in tab.export(None))
 
 
-def test_a_full_disk_is_reported_and_leaves_nothing(tab: GenerateTab, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_full_disk_is_reported_and_leaves_nothing(
+    tab: GenerateTab, monkeypatch: pytest.MonkeyPatch
+) -> None:
     def full(*_: Any, **__: Any) -> None:
         raise OSError(28, "No space left on device")
 
