@@ -226,3 +226,15 @@ def test_tests_lie_where_their_packages_lie() -> None:
     mirrored = {name for name in folders if (ROOT / name).is_dir() or (ROOT / "webdemo" / name).is_dir()}
     assert len(mirrored) > 20
     assert folders - mirrored == TESTED_FROM_OUTSIDE & folders
+
+
+def test_docstrings_open_with_a_noun_or_a_verb() -> None:
+    clause = re.compile(r"(What|Where|How|Whether|Which|Whose|When|Who|Why)\b")
+    kinds = (ast.Module, ast.ClassDef, *FUNCTIONS)
+    found = {
+        f"{module}: {docstring.splitlines()[0]}"
+        for module, path in FILES.items()
+        for node in ast.walk(ast.parse(path.read_text()))
+        if isinstance(node, kinds) and clause.match(docstring := ast.get_docstring(node) or "")
+    }
+    assert not found, "say what it is or does"
