@@ -8,6 +8,7 @@ import pytest
 
 from motion import Duet
 from webdemo.inference import Cancelled, CancelToken, Engine, GenerateRequest, Result, SceneRequest
+from webdemo.inference.batch import run_batch
 from webdemo.inference.story import Beat, FloorPath, FloorPoint, Pose, SceneProgress
 from webdemo.inference.story.request import as_scene
 
@@ -167,3 +168,15 @@ def test_a_sentence_of_several_beats_is_split_by_plain_generation_too(engine: En
 )
 def test_what_has_one_beat_or_no_time_is_not_split(prompt: str, fields: dict[str, Any]) -> None:
     assert as_scene(GenerateRequest(prompt=prompt, **fields)) is None
+
+
+def test_a_scene_shares_its_passes_with_other_requests(engine: Engine) -> None:
+    scene = SceneRequest(beats=BEATS[:2], seed=31, **QUICK)
+    plain = GenerateRequest(prompt="They hug.", seconds=2.0, seed=32, **QUICK)
+    found = {
+        i: event
+        for i, event in run_batch(engine, [(scene, CancelToken()), (plain, CancelToken())])
+        if isinstance(event, Result)
+    }
+    for i, request in enumerate((scene, plain)):
+        np.testing.assert_allclose(positions(found[i]), positions(run(engine, request)), atol=2e-3)

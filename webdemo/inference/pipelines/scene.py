@@ -171,7 +171,8 @@ class SceneMaker:
             if isinstance(event, Result):
                 made = setting.made(event.duets[0].positions)
                 found = Made(made, tuple(_of_beat(note, request, window) for note in event.notes))
-                self.parts.keep(key, found)
+                if passes is None:  # sharing a pass changes the rounding, and kept windows give the same bytes
+                    self.parts.keep(key, found)
                 return found
             if event.stage == "sample":
                 yield replace(event, step=done + event.step, total=steps)
