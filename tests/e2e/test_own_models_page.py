@@ -40,7 +40,7 @@ def generate(page: Page, label: str, words: str) -> None:
     for slider, value in (("#seconds", "1"), ("#steps", "4")):
         field = page.locator(f"{slider} input[type=number]")
         if not field.is_visible():  # the advanced settings are folded
-            page.get_by_text("settings", exact=False).first.click()
+            page.locator("#advanced button").first.click()
         field.fill(value)
         field.press("Tab")
     page.locator("button#generate").click()
