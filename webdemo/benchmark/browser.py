@@ -31,7 +31,7 @@ LONGEST_START = 120.0
 LONGEST_RUN = 120.0
 WATCHED = 3.0
 """Seconds over which frames a second and processor time are read."""
-LONG_RUN = {"seconds": 10, "samples": 4, "steps": 100}
+LONG_RUN = {"seconds": 10, "samples": 8}
 """A run that outlasts the measurement of the waiting page."""
 
 _STAGE_STYLE = """#player .pdd-stage {{ width: {0}px !important; min-width: {0}px !important;
