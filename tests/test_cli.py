@@ -18,6 +18,7 @@ import app
 from motion.formats import read, read_pair
 from tests.inference import conftest as tiny
 from webdemo import cli
+from webdemo.cli import service
 from webdemo.inference import engine, methods
 
 weights = tiny.weights
@@ -249,7 +250,7 @@ def test_a_reader_who_has_gone_is_no_traceback(run: Run, monkeypatch: pytest.Mon
     def told(options: Any) -> dict[str, Any]:
         raise BrokenPipeError
 
-    monkeypatch.setattr(cli, "info", told)
+    monkeypatch.setattr(service, "info", told)
     assert run("info") == (141, "", "")
 
 

@@ -92,7 +92,9 @@ def test_a_model_comes_with_its_own_number_of_steps(
 ) -> None:
     words = ["--actor", pair, "--person", "a", "--out", tmp_path / "x.npz"]
     for more, expected in (
-        ([], ("intergen", "offline", 50)),
+        ([], ("agent", "offline", 50)),
+        (["--prompt", "They wave."], ("intergen", "offline", 50)),
+        (["--mode", "online"], ("regennet", "online", 5)),
         (["--model", "regennet"], ("regennet", "offline", 5)),
         (["--model", "regennet", "--mode", "online", "--steps", 7], ("regennet", "online", 7)),
     ):
@@ -112,7 +114,7 @@ def test_the_other_person_of_a_file_says_where_to_begin(
         json.loads(said.splitlines()[-1])["manifest"]["request"]["first_pose"]
         == asked[-1].first_pose.tolist()
     )
-    code, _, said = react(capsys, *words)
+    code, _, said = react(capsys, *words, "--model", "intergen")
     assert code == 2 and "InterGen takes no first pose" in said
     one = write(standing(120), tmp_path / "one.npz")[0]
     code, _, said = react(capsys, "--actor", one, "--keep-start", "--model", "regennet", "--out", words[-1])
@@ -180,8 +182,8 @@ def test_a_stream_prints_every_frame_before_the_answer(
         (["--person", "c"], "Person 'c' is not known: pair.npz has a or b"),
         (["--person", "a", "--end", "0.5"], "0.50 s: give 1 s or more"),
         (["--person", "a", "--start", "9"], "after the end of the motion"),
-        (["--person", "a", "--mode", "online"], "choose offline"),
-        (["--person", "a", "--stream"], "choose offline"),
+        (["--person", "a", "--model", "intergen", "--mode", "online"], "choose offline"),
+        (["--person", "a", "--model", "intergen", "--stream"], "choose offline"),
         (
             ["--person", "a", "--model", "regennet", "--sampler", "dpm++"],
             "does not sample with dpm++: choose ddim",
