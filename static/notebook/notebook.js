@@ -3,6 +3,7 @@
 
 import { play } from "./thumbnail.js";
 
+const MOST_RETRIES = 3;
 const WAIT = 300; // ms after the last key before a search
 const KINDS = [["", "All jobs"], ["generate", "Generate"], ["scene", "Scene"], ["react", "React"], ["predict", "Predict"]];
 
@@ -15,6 +16,8 @@ export class Notebook {
     this.find = (selector) => root.querySelector(selector);
     this.chosen = new Set();
     this.last = null;
+    this.retries = 0;
+    this.found = null;
     this.entries = new Map();
     root.addEventListener("click", (event) => this.press(event));
     root.addEventListener("keydown", (event) => this.type(event));
@@ -57,6 +60,10 @@ export class Notebook {
 
   /** Shows what Python found: { entries, total, limit, tags, models, removed }. */
   load(found) {
+    const wanted = this.wanted();
+    const same = Object.keys(wanted).every((name) => (wanted[name] || null) === (found.search[name] || null));
+    if (!same && this.retries++ < MOST_RETRIES) return this.search(); // a late answer to an earlier search
+    this.retries = 0;
     this.found = found;
     this.entries = new Map(found.entries.map((entry) => [entry.id, entry]));
     for (const id of this.chosen) if (!this.entries.has(id)) this.chosen.delete(id);

@@ -171,7 +171,9 @@ class SceneMaker:
             if isinstance(event, Result):
                 made = setting.made(event.duets[0].positions)
                 found = Made(made, tuple(_of_beat(note, request, window) for note in event.notes))
-                if passes is None:  # sharing a pass changes the rounding, and kept windows give the same bytes
+                if (
+                    passes is None
+                ):  # sharing a pass changes the rounding, and kept windows give the same bytes
                     self.parts.keep(key, found)
                 return found
             if event.stage == "sample":

@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import time
 from collections.abc import Mapping
+from dataclasses import asdict
 from pathlib import Path
 from typing import Any
 
@@ -87,14 +88,16 @@ class NotebookView(gr.HTML):
         return "html"
 
 
-def shown(found: Found, *, empty: str, removed: int = 0) -> dict[str, Any]:
+def shown(found: Found, *, empty: str, removed: int = 0, search: Search | None = None) -> dict[str, Any]:
     """The value of a :class:`NotebookView`.
 
     Args:
         found: by a search.
         empty: said where it found nothing.
         removed: runs that can be brought back.
+        search: what was searched for; everything by default. The browser drops an answer to another search.
     """
+    asked = asdict(search or Search())
     return {
         "entries": [_card(entry) for entry in found.entries],
         "total": found.total,
@@ -103,6 +106,7 @@ def shown(found: Found, *, empty: str, removed: int = 0) -> dict[str, Any]:
         "empty": empty,
         "removed": removed,
         "step": STEP,
+        "search": {name: asked[name] for name in asked if name not in ("limit", "offset")},
     }
 
 

@@ -135,7 +135,8 @@ class HistoryTab:
     def _found(self, search: Search, removed: Sequence[str]) -> dict[str, Any]:
         found = self.history.search(visitor().owner, search)
         filtered = search != Search(limit=search.limit)
-        return shown(found, empty=NOTHING_FOUND if filtered else EMPTY, removed=len(removed))
+        empty = NOTHING_FOUND if filtered else EMPTY
+        return shown(found, empty=empty, removed=len(removed), search=search)
 
     def refresh(self, removed: list[str]) -> Updates:
         """The newest runs, and whose they are."""
