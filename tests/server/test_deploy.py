@@ -46,6 +46,9 @@ def test_the_image_runs_without_rights_and_has_what_it_needs() -> None:
     assert torch is not None and torch[0] in (ROOT / "README.md").read_text()
 
 
+IMAGE = {"python_version": "3.11", "sys_platform": "linux", "platform_machine": "x86_64"}
+
+
 def test_the_image_installs_what_is_locked() -> None:
     """Everything by its hash, no address of any index, and what the requirements ask for."""
     text = (ROOT / "requirements.lock").read_text()
@@ -61,7 +64,8 @@ def test_the_image_installs_what_is_locked() -> None:
             continue
         wanted = Requirement(line)
         assert re.search("<|==", line), f"{line} has no upper bound"
-        if wanted.name != "torch":
+        here = wanted.marker is None or wanted.marker.evaluate(IMAGE)
+        if wanted.name != "torch" and here:
             assert wanted.specifier.contains(locked[canonicalize_name(wanted.name)]), line
 
 
