@@ -21,6 +21,7 @@ import shutil
 import sys
 import tempfile
 import threading
+from abc import ABC, abstractmethod
 from collections.abc import Iterator, Mapping
 from contextlib import ExitStack, contextmanager, suppress
 from pathlib import Path
@@ -61,7 +62,7 @@ class Compilable(Protocol):
         ...
 
 
-class TwoPersonInputs:
+class TwoPersonInputs(ABC):
     """The inputs of a denoiser of two people: x (B, T, 2F), t (B,), cond (B, C) and mask (B, T, 2), as
     :class:`Compilable` asks for them."""
 
@@ -71,9 +72,9 @@ class TwoPersonInputs:
         return {"x": (0, 1), "t": (0,), "cond": (0,), "mask": (0, 1)}
 
     @property
+    @abstractmethod
     def widths(self) -> tuple[int, int]:
         """2F and C."""
-        raise NotImplementedError
 
     def filled(self, x: Tensor, t: Tensor, cond: Tensor, mask: Tensor | None = None) -> tuple[Tensor, ...]:
         """See :class:`Compilable`; without a mask, all tokens are real."""
