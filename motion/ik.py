@@ -100,6 +100,27 @@ def fit_skeleton(
     return SkeletonFit(forward_kinematics(rotations, root, skeleton), rotations, error)
 
 
+def pose_bodies(
+    positions: Array, joints: Layout | str, *, body: Skeleton | None = None
+) -> tuple[Array, Array, Skeleton, float]:
+    """Poses a body frame by frame, from the directions of its bones: fast, and without regard to other frames.
+
+    Args:
+        positions: (T, J, 3) metres in the layout's order, finite.
+        joints: a layout or its name.
+        body: the person's body; measured over the frames by default.
+
+    Returns:
+        (T, 22, 3, 3) local rotations, (T, 3) the root's path, the body, and the ratio of its legs to SMPL22's.
+    """
+    layout = find_layout(joints)
+    target = np.asarray(positions, dtype=np.float64)[:, layout.columns]
+    if body is None:
+        body = _measured_body(target, layout, _noise(target, layout))
+    rotations, root = _start(target, layout, body)
+    return rotations, root, body, _leg_length(body.offsets) / _leg_length(SMPL22.offsets)
+
+
 def _check_fit(positions: Array, layout: Layout, skeleton: Skeleton) -> None:
     """Raises InputError for what :func:`fit_skeleton` cannot fit."""
     if skeleton.parents != SMPL22.parents:

@@ -65,7 +65,20 @@ def unpack_film(text: str) -> Sent:
         fields = json.loads(text)
     except (ValueError, RecursionError):
         raise InputError(_BROKEN) from None
-    if not isinstance(fields, dict) or fields.get("landmarks") != VERSION:
+    if not isinstance(fields, dict):
+        raise InputError(_BROKEN)
+    lens = camera_number(fields.get("lens"))
+    tilt = camera_number(fields.get("tilt"))
+    return Sent(landmarks_of(fields), _name(fields.get("name")), tilt, LENS if lens is None else lens)
+
+
+def landmarks_of(fields: dict[str, Any]) -> Landmarks:
+    """The landmarks in the fields of a text that was read as JSON.
+
+    Raises:
+        InputError: where they are not what the page sends.
+    """
+    if fields.get("landmarks") != VERSION:
         raise InputError(_BROKEN)
     width, height = (_side(fields.get(name)) for name in ("width", "height"))
     times = _numbers(fields.get("times"), "<u4") / 1000.0
@@ -82,7 +95,7 @@ def unpack_film(text: str) -> Sent:
     )
     if (len(world), len(image), len(seen)) != (3 * points * poses, 2 * points * poses, points * poses):
         raise InputError(_BROKEN)
-    landmarks = Landmarks(
+    return Landmarks(
         width,
         height,
         times,
@@ -91,13 +104,14 @@ def unpack_film(text: str) -> Sent:
         image.reshape(poses, points, 2) / _IMAGE,
         seen.reshape(poses, points) / 255.0,
     )
-    lens = _number(fields.get("lens"))
-    return Sent(
-        landmarks, _name(fields.get("name")), _number(fields.get("tilt")), LENS if lens is None else lens
-    )
 
 
-def _number(value: Any) -> float | None:
+def camera_number(value: Any) -> float | None:
+    """A number of degrees, or None where it is not known.
+
+    Raises:
+        InputError: where it is neither.
+    """
     if value is None:
         return None
     if isinstance(value, bool) or not isinstance(value, (int, float)) or not math.isfinite(value):

@@ -45,12 +45,12 @@ _SEEN = 0.5
 """A point that is seen less surely than this counts as hidden."""
 _LEGS = [INDEX[f"{side}_{part}"] for side in ("left", "right") for part in ("knee", "ankle")]
 
-_POINT_OF = {
+POINT_OF = {
     "left_hip": "left_hip", "left_knee": "left_knee", "left_ankle": "left_ankle",
     "left_foot": "left_foot_index", "left_shoulder": "left_shoulder", "left_elbow": "left_elbow",
     "left_wrist": "left_wrist",
 }  # fmt: skip
-_POINT_OF |= {ours.replace("left", "right"): its.replace("left", "right") for ours, its in _POINT_OF.items()}
+POINT_OF |= {ours.replace("left", "right"): its.replace("left", "right") for ours, its in POINT_OF.items()}
 
 
 def _layout() -> Layout:
@@ -60,7 +60,7 @@ def _layout() -> Layout:
         offsets[SMPL22.index(name)] = offset
         if name.startswith("left"):
             offsets[SMPL22.index(name.replace("left", "right"))] = np.array(offset) * [-1, 1, 1]
-    names = [*_POINT_OF, "head"]
+    names = [*POINT_OF, "head"]
     return Layout("mediapipe", tuple(SMPL22.index(name) for name in names), offsets, variety=0.15)
 
 
@@ -181,22 +181,25 @@ def _in_camera(track: Track, landmarks: Landmarks, focal: float) -> Array:
     return np.concatenate([pixels * z[..., None] / focal, z[..., None]], axis=-1)
 
 
+def layout_points(points: Array, seen: Array) -> tuple[Array, Array]:
+    """(T, 15, 3) the points of :data:`LAYOUT` along the axes right, up and towards the camera, and (T, 15) seen.
+
+    Args:
+        points: (T, 33, 3) metres along the camera's axes.
+        seen: (T, 33) weights.
+    """
+    columns = [INDEX[name] for name in POINT_OF.values()]
+    ears = [INDEX["left_ear"], INDEX["right_ear"]]
+    chosen, trust = (
+        np.concatenate([values[:, columns], values[:, ears].mean(axis=1, keepdims=True)], axis=1)
+        for values in (points, seen)
+    )
+    return chosen * np.array([1.0, -1.0, -1.0]), trust
+
+
 def _fit(points: Array, track: Track) -> Array:
     """(T, 22, 3) the pose on SMPL22's bones, along the axes: right, up, towards the camera."""
-    chosen = np.concatenate(
-        [
-            points[:, [INDEX[name] for name in _POINT_OF.values()]],
-            points[:, [INDEX["left_ear"], INDEX["right_ear"]]].mean(axis=1, keepdims=True),
-        ],
-        axis=1,
-    ) * np.array([1.0, -1.0, -1.0])
-    seen = np.concatenate(
-        [
-            track.seen[:, [INDEX[name] for name in _POINT_OF.values()]],
-            track.seen[:, [INDEX["left_ear"], INDEX["right_ear"]]].mean(axis=1, keepdims=True),
-        ],
-        axis=1,
-    )
+    chosen, seen = layout_points(points, track.seen)
     trust = np.clip(seen, 0.02, 1.0)[..., None] ** 2 * np.array([1.0, 1.0, _DEPTH_TRUST])
     trust[~track.found] = 0.0
     fit = fit_skeleton(chosen, LAYOUT, weights=trust, fps=track.fps, noise=_NOISE)
@@ -217,7 +220,7 @@ def _finished(positions: Array, fps: float) -> Array:
 
 def _confidence(track: Track, frames: int) -> Array:
     """(frames,) how much of the body was seen, at 30 frames a second."""
-    shown = track.seen[:, [INDEX[name] for name in _POINT_OF.values()]].mean(axis=1)
+    shown = track.seen[:, [INDEX[name] for name in POINT_OF.values()]].mean(axis=1)
     return np.interp(np.arange(frames) / FPS, np.arange(len(track)) / track.fps, shown)
 
 

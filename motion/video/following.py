@@ -1,0 +1,176 @@
+"""A filmed person, picture by picture: what :mod:`.people` does for a film, without the pictures to come.
+
+The first pictures measure the body and by how much the camera looks down; from then on every picture gives a pose at
+once. Noise is filtered by the 1 € filter (Casiez et al., 2012), which lags little while somebody moves fast.
+"""
+
+from __future__ import annotations
+
+from collections import deque
+
+import numpy as np
+from numpy.typing import NDArray
+
+from motion.errors import InputError
+from motion.ik import pose_bodies
+from motion.kinematics import forward_kinematics
+from motion.skeleton import SMPL22
+
+from .landmarks import INDEX, TORSO, Landmarks
+from .people import LAYOUT, LENSES, TILTS, layout_points
+from .place import LENS, body_tilt, focal_length, towards, translation, upright
+
+Array = NDArray[np.floating]
+
+MEASURED = 8
+"""Pictures with a person that come before the first pose."""
+LOST = 0.5
+"""Seconds without the person after which whoever is nearest to the middle is followed."""
+_SEEN = 0.5
+"""A point that is seen less surely than this counts as hidden."""
+_POSE = (2.5, 3.0)
+"""1 € filter of the joints about the pelvis: lowest cut-off in Hz, and its growth with the speed in m/s."""
+_PATH = (1.2, 1.0)
+"""The same for the path of the pelvis, whose depth is uncertain."""
+_FLOOR = 45
+"""Pictures over which the lowest place of the feet is the floor."""
+_TOES = [SMPL22.index(f"{side}_foot") for side in ("left", "right")]
+_LEGS = [INDEX[f"{side}_{part}"] for side in ("left", "right") for part in ("knee", "ankle")]
+
+
+class OneEuro:
+    """The 1 € filter on an array of values.
+
+    Args:
+        lowest: cut-off frequency in Hz of values that rest.
+        slope: growth of the cut-off with the speed of the values.
+    """
+
+    def __init__(self, lowest: float, slope: float) -> None:
+        self.lowest, self.slope = lowest, slope
+        self._value: Array | None = None
+        self._speed: Array = np.zeros(1)
+
+    def __call__(self, value: Array, seconds: float) -> Array:
+        """The filtered value, ``seconds`` after the one before."""
+        if self._value is None:
+            self._value, self._speed = value, np.zeros_like(value)
+            return value
+        seconds = max(seconds, 1e-3)
+        speed = (value - self._value) / seconds
+        self._speed = self._speed + _share(1.0, seconds) * (speed - self._speed)
+        pace = np.linalg.norm(self._speed, axis=-1, keepdims=True)
+        share = _share(self.lowest + self.slope * pace, seconds)
+        self._value = self._value + share * (value - self._value)
+        return self._value
+
+
+def _share(cutoff: Array | float, seconds: float) -> Array:
+    """Share of a new value in an exponential filter of a cut-off frequency."""
+    return 1 / (1 + 1 / (2 * np.pi * np.asarray(cutoff) * seconds))
+
+
+class FollowedPerson:
+    """Turns the landmarks of one person into poses, one picture after the other.
+
+    Args:
+        lens: degrees that the camera sees from corner to corner.
+        tilt: degrees by which it looks down; found from the first pictures by default.
+
+    Raises:
+        InputError: for a lens or tilt that is not possible.
+    """
+
+    def __init__(self, *, lens: float = LENS, tilt: float | None = None) -> None:
+        if not LENSES[0] <= lens <= LENSES[1]:
+            raise InputError(f"A lens of {lens:g}° is not possible: give {LENSES[0]:g} to {LENSES[1]:g}.")
+        if tilt is not None and not TILTS[0] <= tilt <= TILTS[1]:
+            raise InputError(f"A tilt of {tilt:g}° is not possible: give {TILTS[0]:g} to {TILTS[1]:g}.")
+        self.lens, self.tilt = lens, tilt
+        self._measured: list[tuple[Array, Array]] = []
+        self._turn: Array | None = None
+        self._body = SMPL22
+        self._size = 1.0
+        self._pose, self._path = OneEuro(*_POSE), OneEuro(*_PATH)
+        self._low: deque[float] = deque(maxlen=_FLOOR)
+        self._origin = np.zeros(3)
+        self._last: tuple[float, Array] | None = None
+        self.seen = 0.0
+
+    @property
+    def hint(self) -> str:
+        """A sentence about what the camera should see better; empty where it sees enough."""
+        if self._last is None:
+            return ""
+        return "Step back until you are seen from head to feet." if self.seen < _SEEN else ""
+
+    def add(self, landmarks: Landmarks, picture: int) -> Array | None:
+        """The pose (22, 3) in metres, Y up, floor at 0; None while nobody is found or measured.
+
+        Args:
+            landmarks: of one picture or more.
+            picture: index of the picture; its time must be later than that of the one before.
+        """
+        time = float(landmarks.times[picture])
+        poses = np.flatnonzero(landmarks.frames == picture)
+        if not len(poses):
+            return None
+        chosen = self._choose(landmarks, poses, time)
+        before = self._last[0] if self._last else time
+        self._last = (time, landmarks.pixels[chosen])
+        self.seen = float(landmarks.seen[chosen][_LEGS].mean())
+        try:
+            points, seen = _in_camera(landmarks, chosen, self.lens)
+            if self._turn is None:
+                self._measure(points, seen)
+                return None
+            pose = self._finished(points, seen, time - before, self._turn)
+        except np.linalg.LinAlgError:  # all points in one place
+            return None
+        return pose if np.isfinite(pose).all() else None
+
+    def _choose(self, landmarks: Landmarks, poses: NDArray[np.integer], time: float) -> int:
+        """The pose nearest to where the person was; at first the one nearest to the middle of the picture."""
+        middle = landmarks.pixels[poses][:, TORSO].mean(axis=1)
+        if self._last is None or time - self._last[0] > LOST:
+            goal = np.array([landmarks.width, landmarks.height]) / 2
+        else:
+            goal = self._last[1][TORSO].mean(axis=0)
+        return int(poses[np.linalg.norm(middle - goal, axis=-1).argmin()])
+
+    def _measure(self, points: Array, seen: Array) -> None:
+        """Keeps a picture for the measuring of body and tilt, and measures once there are enough."""
+        self._measured.append((points, seen))
+        if len(self._measured) < MEASURED:
+            return
+        stack, trust = (np.stack(values) for values in zip(*self._measured, strict=True))
+        if self.tilt is None:
+            self.tilt = float(np.clip(np.degrees(body_tilt(stack, trust)), *TILTS))
+        self._turn = upright(np.radians(self.tilt)) @ np.diag([1.0, -1.0, -1.0])
+        chosen, _ = layout_points(stack, trust)
+        _, root, self._body, self._size = pose_bodies(chosen, LAYOUT)
+        self._origin = np.asarray(root[-1] @ self._turn.T / self._size) * [1, 0, 1]
+        self._measured.clear()
+
+    def _finished(self, points: Array, seen: Array, seconds: float, turn: Array) -> Array:
+        """A pose on SMPL22's bones in the world."""
+        chosen, _ = layout_points(points[None], seen[None])
+        rotations, root, _, _ = pose_bodies(chosen, LAYOUT, body=self._body)
+        posed = forward_kinematics(rotations, root / self._size, SMPL22)[0] @ turn.T
+        path = self._path(posed[:1] - self._origin, seconds)
+        posed = self._pose(posed - posed[:1], seconds) + path
+        self._low.append(float(posed[_TOES, 1].min()))
+        posed[:, 1] -= float(np.percentile(self._low, 20))
+        return posed
+
+
+def _in_camera(landmarks: Landmarks, pose: int, lens: float) -> tuple[Array, Array]:
+    """(33, 3) points in metres along the camera's axes, and (33,) how surely they are seen."""
+    size = np.array([landmarks.width, landmarks.height])
+    focal = focal_length(landmarks.width, landmarks.height, lens)
+    pixels = (landmarks.pixels[pose] - size / 2)[None]
+    seen = landmarks.seen[pose][None]
+    world = np.einsum("tij,tpj->tpi", towards(pixels, focal), landmarks.world[pose][None])
+    depth = translation(world, pixels, seen, focal)[:, 2:]
+    z = np.maximum(world[..., 2] + depth, 0.2)
+    return np.concatenate([pixels * z[..., None] / focal, z[..., None]], axis=-1)[0], seen[0]
