@@ -13,6 +13,7 @@ from motion.kinematics import forward_kinematics
 from motion.metrics import compare
 from motion.transforms import heading_matrix
 from webdemo.inference.live import LiveFrame, LiveProgress, LiveRequest, paced
+from webdemo.inference.partner import Belief
 from webdemo.inference.predict_request import PredictRequest, PredictResult, with_people
 from webdemo.inference.requests import Cancelled, GenerateRequest, Progress, ReactRequest, Result
 from webdemo.inference.story import SceneProgress, SceneRequest
@@ -83,6 +84,16 @@ def _about_z(angle: float) -> np.ndarray:
     return np.array([[cos, -sin, 0], [sin, cos, 0], [0, 0, 1.0]])
 
 
+class Mirror:
+    """A live partner who does what the person does, a metre and a half further on and turned around."""
+
+    def __init__(self) -> None:
+        self.belief = Belief("watches", "The stub watches.", (("wave", 0.75), ("bow", 0.2)))
+
+    def step(self, pose: np.ndarray) -> np.ndarray:
+        return pose * [-1, 1, -1] + [0, 0, 1.5]
+
+
 class StubEngine:
     """Answers as the real engine does, after ``steps`` pauses of ``pause`` seconds.
 
@@ -111,6 +122,9 @@ class StubEngine:
             "parameters": 0,
             "weights": "none",
         }
+
+    def partner(self, name: str, *, seed: int = 0) -> Mirror:
+        return Mirror()
 
     def run(
         self, request: GenerateRequest | ReactRequest | PredictRequest, cancel: Any = None

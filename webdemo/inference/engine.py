@@ -26,6 +26,7 @@ from .live import LiveFrame
 from .method import Pipeline
 from .methods import WEIGHTS
 from .own.classes import fenced
+from .partner import PARTNERS, LivePartner
 from .predict_request import PredictRequest
 from .requests import GenerateRequest, Progress, ReactRequest, Result, SamplingRequest
 from .story.request import SceneRequest
@@ -111,6 +112,24 @@ class Engine:
         pipeline: Any = self.pipeline(request.model)
         _take_threads(pipeline)
         return pipeline.live(request)
+
+    def partner(self, name: str, *, seed: int = 0) -> LivePartner:
+        """Somebody who answers a stream of poses, one of :data:`webdemo.inference.partner.PARTNERS`.
+
+        Raises:
+            InputError: if there is no such partner, or its weights are missing or altered.
+        """
+        if name not in PARTNERS:
+            raise InputError(f"There is no live partner {name!r:.40}: choose {' or '.join(PARTNERS)}.")
+        from .pipelines.live_agent import LiveAgent
+        from .pipelines.live_partner import ReactingPartner
+
+        reacting: Any = self.pipeline("regennet")
+        moves = ReactingPartner(reacting, seed=seed)
+        if name == "regennet":
+            return moves
+        agent: Any = self.pipeline("agent")
+        return LiveAgent(agent.eye, moves)
 
     def pipeline(self, name: str) -> Pipeline:
         """The pipeline that runs the requests of a method; loads it first if necessary.

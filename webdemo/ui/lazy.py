@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import Any
 
 from webdemo.inference.cancel import CancelToken
+from webdemo.inference.partner import LivePartner
 from webdemo.inference.requests import Progress, Result
 
 
@@ -49,3 +50,7 @@ class LazyEngine:
         if not self.ready:
             yield Progress(stage="load")
         yield from self._made().run(request, cancel=cancel)
+
+    def partner(self, name: str, *, seed: int = 0) -> LivePartner:
+        """Somebody who answers a stream of poses; the first one may have to load the networks."""
+        return self._made().partner(name, seed=seed)

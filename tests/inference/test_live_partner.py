@@ -1,0 +1,196 @@
+"""A partner for a stream without an end: causal, without jumps, and an agent that answers only once it is sure."""
+
+from __future__ import annotations
+
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+
+from motion import InputError
+from motion.transforms import heading_matrix
+from webdemo.inference.engine import Engine
+from webdemo.inference.pipelines import live_partner
+from webdemo.inference.pipelines.agent import BETWEEN, FIRST, Eye, Look
+from webdemo.inference.pipelines.live_agent import ANSWER, IGNORED, LiveAgent
+from webdemo.inference.pipelines.live_partner import ReactingPartner
+
+from .people import waver
+from .test_reactor import bones_off, engine, folder
+
+__all__ = ["engine", "folder"]
+LABELS = ("nothing", "wave", "bow")
+SENTENCES = ("They wait.", "Two people wave.", "Two people bow.")
+
+
+@pytest.fixture
+def short_segments(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(live_partner, "SEGMENT", 40)
+    monkeypatch.setattr(live_partner, "REPLAY", 12)
+
+
+def answers(engine: Engine, person: np.ndarray, *, words_at: int | None = None, seed: int = 1) -> np.ndarray:
+    partner = engine.partner("regennet", seed=seed)
+    assert isinstance(partner, ReactingPartner)
+    made = []
+    for index, pose in enumerate(person):
+        if index == words_at:
+            partner.take_words("Two people wave.")
+        made.append(partner.step(pose))
+    return np.stack(made)
+
+
+@pytest.mark.usefixtures("short_segments")
+def test_no_frame_depends_on_a_later_one_over_several_segments(engine: Engine) -> None:
+    person = waver(4.0).positions
+    until = 83
+    changed = person.copy()
+    changed[until:] = changed[until:] @ heading_matrix(2.0).T + [0.4, 0.1, -0.8]
+    first, second = answers(engine, person, words_at=60), answers(engine, changed, words_at=60)
+    assert np.array_equal(first[:until], second[:until])
+    assert not np.array_equal(first[until:], second[until:])
+    assert np.array_equal(answers(engine, person, words_at=60), first)
+    assert not np.array_equal(answers(engine, person, words_at=60, seed=2), first)
+
+
+@pytest.mark.usefixtures("short_segments")
+def test_a_new_segment_goes_on_where_the_last_one_was(engine: Engine) -> None:
+    person = np.repeat(waver(2.0).positions, 2, axis=0)
+    made = answers(engine, person)
+    steps = np.linalg.norm(np.diff(made, axis=0), axis=-1).max(axis=1)[5:]  # at first it finds its place
+    assert counted(engine, person) >= 5
+    assert steps.max() < 1.5 * np.percentile(steps, 95) + 0.02
+    assert np.isfinite(made).all() and bones_off(made) < 1e-6
+
+
+def counted(engine: Engine, person: np.ndarray) -> int:
+    """The number of segments that a person's stream takes."""
+    partner = ReactingPartner(engine.pipeline("regennet"))  # type: ignore[arg-type]
+    for pose in person:
+        partner.step(pose)
+    return partner._segments
+
+
+@pytest.mark.usefixtures("short_segments")
+def test_words_change_what_comes_after_them_alone(engine: Engine) -> None:
+    person = waver(2.0).positions[:39]  # one segment
+    without, words = answers(engine, person), answers(engine, person, words_at=20)
+    assert np.array_equal(without[:22], words[:22]), "the replay of twelve frames takes two"
+    assert not np.allclose(without[23:], words[23:], atol=1e-3)
+    assert np.abs(np.diff(words, axis=0)[19:24]).max() < 0.1
+
+
+def test_nobody_is_walked_through(engine: Engine, monkeypatch: pytest.MonkeyPatch) -> None:
+    """The network's partner goes straight on through the person; the one that is shown stops before them."""
+    monkeypatch.setattr(live_partner, "PUSHED", 100.0)
+    person = np.repeat(waver(1.0).positions[:1], 90, axis=0)
+    forward = person[0, 0] * [1, 0, 1]
+    frames = iter(range(1000))
+
+    def walks(self: object, pose: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        return person[0] - forward + [0, 0, 2.0 - 0.05 * next(frames)] + forward, np.zeros(4)
+
+    monkeypatch.setattr(live_partner.Segment, "step", walks)
+    made = answers(engine, person)
+    apart = (made[:, 0] - person[:, 0])[:, [0, 2]]
+    assert apart[:, 1].min() == pytest.approx(live_partner.NEAREST, abs=1e-6)
+    assert np.abs(np.diff(made, axis=0)).max() < 0.06
+
+
+def test_somebody_who_has_gone_far_is_answered_near_them(engine: Engine) -> None:
+    person = waver(1.0).positions
+    far = person + np.array([9.0, 0, 0])
+    made = answers(engine, np.concatenate([person, far]))
+    assert np.linalg.norm(made[30:, 0] - far[:, 0], axis=-1).max() < 4.0
+    assert np.array_equal(made[:30], answers(engine, person))
+
+
+def test_who_is_not_known_cannot_answer(engine: Engine) -> None:
+    with pytest.raises(InputError, match="no live partner 'intergen': choose regennet or agent"):
+        engine.partner("intergen")
+
+
+class Scripted(Eye):
+    """An eye that sees what a test says, one row of probabilities after the other; the last one goes on."""
+
+    def __init__(self, *rows: tuple[float, ...]) -> None:
+        self.rows = list(rows)
+        self.recogniser = SimpleNamespace(config=SimpleNamespace(labels=LABELS, sentences=SENTENCES))
+
+    def looks(self, positions: np.ndarray) -> list[Look]:
+        assert len(positions) == 30
+        return [Look(30, np.array(self.rows.pop(0) if len(self.rows) > 1 else self.rows[0]))]
+
+
+class Recorded:
+    """Stands before the person, and keeps which words it was given in which frame."""
+
+    def __init__(self) -> None:
+        self.frame = 0
+        self.words: list[tuple[int, str]] = []
+
+    def take_words(self, prompt: str) -> None:
+        self.words.append((self.frame, prompt))
+
+    def step(self, pose: np.ndarray) -> np.ndarray:
+        self.frame += 1
+        return STANDING @ heading_matrix(np.pi).T + [0, 0, 1.5]
+
+
+STANDING = waver(1.0).positions[0] @ heading_matrix(-np.radians(50)).T
+STANDING = STANDING - STANDING[0] * [1, 0, 1]
+NOTHING, MAYBE, WAVE, BOW = (1.0, 0.0, 0.0), (0.1, 0.5, 0.4), (0.02, 0.95, 0.03), (0.02, 0.02, 0.96)
+
+
+def watched(
+    *rows: tuple[float, ...], frames: int, turned: int | None = None
+) -> tuple[LiveAgent, Recorded, list[str]]:
+    """The agent after it has watched somebody, what it was told, and its state in every frame."""
+    partner = Recorded()
+    agent = LiveAgent(Scripted(*rows), partner)  # type: ignore[arg-type]
+    states = []
+    for index in range(frames):
+        away = turned is not None and index >= turned
+        agent.step(STANDING @ heading_matrix(np.pi).T if away else STANDING)
+        states.append(agent.belief.state)
+    return agent, partner, states
+
+
+def test_the_agent_answers_once_it_is_sure_and_not_before() -> None:
+    agent, partner, states = watched(MAYBE, WAVE, WAVE, frames=FIRST + 2 * BETWEEN)
+    (_, waits), (frame, answer) = partner.words
+    assert (waits, answer) == (SENTENCES[0], SENTENCES[1])
+    assert frame == FIRST + 2 * BETWEEN, "the third look was the first that was sure"
+    assert states[: frame - 1] == ["watches"] * (frame - 1) and states[-1] == "answers"
+    assert "wave" in agent.belief.text and agent.belief.chances[0][0] == "wave"
+    _, partner, states = watched(MAYBE, frames=200)
+    assert len(partner.words) == 1 and set(states) == {"watches"}, "it is never sure"
+
+
+def test_a_second_gesture_interrupts_the_first() -> None:
+    _, partner, _ = watched(WAVE, WAVE, BOW, BOW, frames=FIRST + 4 * BETWEEN)
+    assert [words for _, words in partner.words] == [SENTENCES[0], SENTENCES[1], SENTENCES[2]]
+    frames = [frame for frame, _ in partner.words]
+    assert frames[2] - frames[1] == 2 * BETWEEN
+
+
+def test_a_gesture_that_goes_on_is_not_answered_anew() -> None:
+    _, partner, states = watched(WAVE, frames=FIRST + 30 * BETWEEN)
+    assert [words for _, words in partner.words] == [SENTENCES[0], SENTENCES[1]]
+    assert states[-1] == "answers"
+
+
+def test_the_answer_ends_when_nothing_more_is_done() -> None:
+    agent, partner, states = watched(WAVE, WAVE, NOTHING, frames=FIRST + BETWEEN + ANSWER + BETWEEN)
+    began, ended = (frame for frame, _ in partner.words[1:])
+    assert partner.words[-1][1] == SENTENCES[0]
+    assert ANSWER <= ended - began < ANSWER + BETWEEN
+    assert states[-1] == "watches" and "no gesture" in agent.belief.text
+
+
+def test_somebody_who_turns_away_is_waited_for() -> None:
+    agent, partner, states = watched(WAVE, frames=FIRST + 10 * BETWEEN, turned=FIRST + 2 * BETWEEN)
+    assert agent.belief.state == "ignored" and "looks away" in agent.belief.text
+    assert partner.words[-1][1] == SENTENCES[0]
+    first = states.index("ignored")
+    assert IGNORED <= first + 1 - (FIRST + 2 * BETWEEN) <= IGNORED + BETWEEN

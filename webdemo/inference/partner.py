@@ -1,0 +1,48 @@
+"""A partner who answers a stream of poses whose end is not known: one pose in, one pose out.
+
+This module does not import torch: the server and the page use it before any network is loaded.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Protocol
+
+import numpy as np
+from numpy.typing import NDArray
+
+Array = NDArray[np.floating]
+
+PARTNERS: Mapping[str, str] = {
+    "regennet": "ReGenNet, online",
+    "agent": "Virtual agent",
+}
+"""Live partners by name, with their labels."""
+
+
+@dataclass(frozen=True)
+class Belief:
+    """A partner's view of the person at this moment.
+
+    Attributes:
+        state: "follows" for a partner who does not recognise anything; otherwise "watches", "answers" or
+            "ignored".
+        text: a sentence about it.
+        chances: the likeliest gestures with their probabilities, the likeliest first.
+    """
+
+    state: str
+    text: str
+    chances: tuple[tuple[str, float], ...] = ()
+
+
+class LivePartner(Protocol):
+    """Answers one person. Each pose is computed before the next one of the person is known."""
+
+    @property
+    def belief(self) -> Belief:
+        """The partner's view of the person now."""
+
+    def step(self, pose: Array) -> Array:
+        """The partner's pose (22, 3) for the person's pose (22, 3), both in metres at 30 fps, floor at 0."""

@@ -1,0 +1,125 @@
+"""The virtual agent of Chopin's thesis (chapter 5) in front of a stream: it sees only what has happened so far.
+
+Every half second it takes the last second of the person, predicts two more and recognises the gesture (see
+:mod:`.agent`). Until it is sure, it stands with the person. When it is sure, the online ReGenNet receives the
+sentence of the gesture and answers frame by frame; the thesis plays a prerecorded motion instead. A second gesture
+interrupts the answer, and a person who turns away ends it.
+"""
+
+from __future__ import annotations
+
+from collections import deque
+
+import numpy as np
+from numpy.typing import NDArray
+
+from models.agent.recogniser import OBSERVED
+from motion.transforms import facing
+from webdemo.inference.actor import FPS
+from webdemo.inference.partner import Belief
+
+from .agent import BETWEEN, FIRST, Decision, Eye, Look
+from .live_partner import ReactingPartner
+
+Array = NDArray[np.floating]
+
+MEMORY = 6
+"""Looks that count together: the last three seconds."""
+ANSWER = 75
+"""Frames of an answer after which the agent stops when it sees no gesture any more."""
+LONGEST_ANSWER = 150
+"""Frames after which an answer ends unless the gesture is recognised again."""
+AWAY = -0.2
+"""Cosine between the person's direction and the way to the agent below which the person looks away."""
+IGNORED = 45
+"""Frames of looking away after which the agent counts as ignored."""
+SHOWN = 3
+"""Gestures that are named with their probabilities."""
+
+
+class LiveAgent:
+    """Recognises what one person does and answers.
+
+    Args:
+        eye: recognises a gesture.
+        partner: moves the agent.
+    """
+
+    def __init__(self, eye: Eye, partner: ReactingPartner) -> None:
+        self.eye, self.partner = eye, partner
+        self.labels, self.sentences = eye.recogniser.config.labels, eye.recogniser.config.sentences
+        partner.take_words(self.sentences[0])
+        self.frame = 0
+        self.gesture: int | None = None
+        self._seen: deque[Array] = deque(maxlen=OBSERVED)
+        self._looks: deque[Look] = deque(maxlen=MEMORY)
+        self._away = 0
+        self._began = 0
+        self.belief = Belief("watches", "The agent watches.")
+
+    def step(self, pose: Array) -> Array:
+        """See :class:`webdemo.inference.partner.LivePartner`."""
+        self.frame += 1
+        self._seen.append(np.asarray(pose, dtype=np.float64))
+        shown = self.partner.step(pose)
+        self._away = self._away + 1 if _looks_away(pose, shown) else 0
+        if self.frame >= FIRST and (self.frame - FIRST) % BETWEEN == 0:
+            self._look()
+        return shown
+
+    def _look(self) -> None:
+        """Takes a look, and begins, changes or ends the answer from the next frame on."""
+        (look,) = self.eye.looks(np.stack(self._seen))
+        self._looks.append(Look(self.frame, look.chances))
+        if self._away >= IGNORED:
+            self._looks.clear()
+            self._rest()
+            self.belief = Belief("ignored", "The person looks away, so the agent waits.")
+            return
+        decision = self.eye.decide(list(self._looks))
+        if decision.sure and decision.place is not None:
+            self._answer(decision.place)
+        elif self.gesture is not None and self._over(look):
+            self._rest()
+        self.belief = self._believes(decision, look)
+
+    def _answer(self, place: int) -> None:
+        """Begins the answer to a gesture; one that is being answered goes on."""
+        self._looks.clear()
+        self._began = self.frame
+        if place != self.gesture:
+            self.gesture = place
+            self.partner.take_words(self.sentences[place])
+
+    def _over(self, look: Look) -> bool:
+        """True if the answer has lasted long enough."""
+        lasted = self.frame - self._began
+        return lasted >= LONGEST_ANSWER or (lasted >= ANSWER and look.chances[0] > 0.5)
+
+    def _rest(self) -> None:
+        """Stands and watches again."""
+        if self.gesture is not None:
+            self.gesture = None
+            self.partner.take_words(self.sentences[0])
+
+    def _believes(self, decision: Decision, look: Look) -> Belief:
+        """The agent's belief in words."""
+        chances = decision.look.chances if decision.place is not None else look.chances
+        order = np.argsort(-chances)[:SHOWN]
+        named = tuple((self.labels[i], float(chances[i])) for i in order)
+        if self.gesture is not None:
+            label, sentence = self.labels[self.gesture], self.sentences[self.gesture]
+            text = f"Sure of “{label}” since {self._began / FPS:.1f} s, so the agent answers: {sentence}"
+            return Belief("answers", text, named)
+        if decision.place is None:
+            return Belief("watches", "The agent sees no gesture that asks for an answer.", named)
+        label = self.labels[decision.place]
+        return Belief("watches", f"Perhaps “{label}”, but the agent is not sure yet.", named)
+
+
+def _looks_away(pose: Array, other: Array) -> bool:
+    """True if a person (22, 3) faces away from another."""
+    way = (other[0] - pose[0])[[0, 2]]
+    ahead = np.asarray(facing(np.asarray(pose, dtype=np.float64)))[[0, 2]]
+    distance = float(np.linalg.norm(way))
+    return distance > 0.3 and float(ahead @ way) < AWAY * distance * float(np.linalg.norm(ahead))
