@@ -26,6 +26,7 @@ from webdemo.server.http.page_html import PageCache
 from webdemo.server.http.page_sessions import keep_states_lean, kept_in_cache
 from webdemo.server.http.payloads import Payloads
 from webdemo.server.lab import Lab, engine_of, make_lab
+from webdemo.server.live.routes import live_routes
 from webdemo.server.queue.places import SEEN_EVERY
 from webdemo.server.queue.shares import SHARE_EVERY
 from webdemo.server.queue.turns import Batcher
@@ -42,6 +43,8 @@ log = logging.getLogger(__name__)
 
 CLEAN_EVERY = 900.0
 """Seconds between two cleanings of the history."""
+SWEEP_EVERY = 5.0
+"""Seconds between two looks for idle live streams."""
 TIDY_EVERY = 60.0
 """Seconds between two cleanings of temporary files."""
 GIVE_BACK_EVERY = 5.0
@@ -85,6 +88,7 @@ def create_app(
     app.state.tidy = lambda: scratch.clean(kept_in_cache(page)) if scratch is not None else None
     visitors = Visitors(settings, lab.sign_ins)
     _add_routes(app, lab)
+    app.include_router(live_routes(lab.streams))
     if lab.sign_ins is not None:
         app.include_router(login_routes(settings, lab.sign_ins, visitors))
     app.add_middleware(CORSMiddleware)  # no other site may read anything; Gradio's own would let some
@@ -144,6 +148,7 @@ async def _lifespan(app: FastAPI) -> AsyncIterator[None]:
         asyncio.create_task(_every(GIVE_BACK_EVERY, lab.history.settle)),
         asyncio.create_task(_every(SEEN_EVERY, lab.places.refresh)),
         asyncio.create_task(_every(SHARE_EVERY, lab.share)),
+        asyncio.create_task(_every(SWEEP_EVERY, lab.streams.sweep)),
     ]
     try:
         yield

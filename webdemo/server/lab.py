@@ -13,6 +13,7 @@ from webdemo.server.cluster.instance_lock import InstanceLock
 from webdemo.server.http.guard import OpenAnswers
 from webdemo.server.http.health import Health
 from webdemo.server.http.metrics import Figures
+from webdemo.server.live.streams import Streams
 from webdemo.server.queue.places import Places
 from webdemo.server.queue.queue import FairQueue
 from webdemo.server.queue.shared_engine import SharedEngine
@@ -20,6 +21,7 @@ from webdemo.server.queue.shares import Shares
 from webdemo.server.queue.turns import Batcher, QueueLimits
 from webdemo.server.store.database import Database
 from webdemo.server.store.notebook import Notebook
+from webdemo.ui.lazy import LazyEngine
 from webdemo.ui.runs import EngineLike
 
 from .settings import Settings
@@ -43,6 +45,7 @@ class Lab:
     health: Health
     figures: Figures
     answers: OpenAnswers
+    streams: Streams
     sign_ins: SignIns | None = None
     node: InstanceLock | None = None
 
@@ -54,6 +57,7 @@ class Lab:
         """Accepts no more runs and waits for running ones, at most for the grace period of the settings."""
         until = time.monotonic() + self.settings.grace_seconds
         self.health.stopping = True
+        self.streams.stop()
         left = self.queue.close(self.settings.grace_seconds)
         until = max(until, time.monotonic() + ANSWER_SECONDS)
         while self.answers.count and time.monotonic() < until:  # results are still written and sent
@@ -90,11 +94,15 @@ def make_lab(
         engine, _limits(settings, engine), batcher=batcher, figures=figures, broken=health.broken,
         served=shares.add,
     )  # fmt: skip
-    figures.watch(waiting=lambda: queue.waiting, running=lambda: queue.running, ready=lambda: health.ready)
+    streams = _streams(settings, engine)
+    figures.watch(
+        waiting=lambda: queue.waiting, running=lambda: queue.running, ready=lambda: health.ready,
+        live=lambda: streams.count,
+    )  # fmt: skip
     return Lab(
         settings=settings, database=database, history=_history(settings, database, name), queue=queue,
         places=Places(database, name, settings.running + settings.waiting), shares=shares, health=health,
-        figures=figures, answers=OpenAnswers(), node=node,
+        figures=figures, answers=OpenAnswers(), streams=streams, node=node,
         sign_ins=SignIns(database, users, settings.session_hours) if users is not None else None,
     )  # fmt: skip
 
@@ -105,6 +113,12 @@ def _history(settings: Settings, database: Database, name: str) -> Notebook:
         keep_bytes=settings.keep_megabytes * 2**20, keep_favourites=settings.keep_favourites,
         link_days=settings.link_days, free_bytes=settings.free_megabytes * 2**20,
     )  # fmt: skip
+
+
+def _streams(settings: Settings, engine: EngineLike) -> Streams:
+    """The live streams; with an engine elsewhere, their networks run in this process."""
+    partners: Any = engine if hasattr(engine, "partner") else LazyEngine()
+    return Streams(partners, most=settings.live, address=max(1, settings.live // 2))
 
 
 def _limits(settings: Settings, engine: EngineLike) -> QueueLimits:

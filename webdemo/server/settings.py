@@ -100,6 +100,12 @@ class Settings(BaseSettings):
     batch: int = Field(8, ge=1, le=64, description="motions in one pass through the network")
     grace_seconds: float = Field(60, ge=0, description="how long runs may take to finish at a shutdown")
 
+    # ---- live streams
+    live: int = Field(
+        default_factory=lambda: 2 * (os.cpu_count() or 1), ge=0, le=200,
+        description="live streams at the same time; 0: none",
+    )  # fmt: skip
+
     # ---- where the networks run
     engine: Literal["local", "ray"] = Field(
         "local", description="local: in this process; ray: in replicas of Ray Serve"

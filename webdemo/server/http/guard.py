@@ -57,6 +57,7 @@ _ROUTES = frozenset(
         "login",
         "logout",
         "healthz",
+        "live",
         "metrics",
         "config",
         "theme.css",
@@ -78,6 +79,12 @@ _ANSWERS = frozenset(f"{API}{name}" for name in ("queue/data", "call", "run", "a
 """Paths that send the results of runs."""
 _CALLS = frozenset(f"{API}{name}" for name in ("queue/join", "call"))
 """Paths whose responses hold the id of a call, with which its result is fetched."""
+LIVE = "/live/"
+"""Path of the messages of live streams."""
+_MESSAGE = f"{LIVE}ID"
+"""Their label in metrics and log."""
+_LIVE_WEIGHT = 0.05
+"""The number of requests that a message of a live stream counts as: some fifteen come in a second."""
 _MOST_FIELDS = 50
 """Parameters of an address."""
 
@@ -196,7 +203,8 @@ class Guard:
         self.figures.requests.labels(route, method, str(status)).inc()
         self.figures.answer_seconds.labels(route).observe(exchange.first_byte)
         # Neither the query nor the whole path: both can hold the key of a run or of a file.
-        log.info(
+        log.log(
+            logging.DEBUG if route == _MESSAGE else logging.INFO,  # a live stream sends some fifteen a second
             "request",
             extra={"method": method, "route": route, "status": status,
                    "first_byte_seconds": round(exchange.first_byte, 4), "seconds": round(exchange.seconds, 4)},
@@ -283,6 +291,8 @@ class Guard:
         counts as the largest allowed."""
         path, declared = scope["path"], declared_length(headers)
         most = self._most(path)
+        if path.startswith(LIVE):
+            return _LIVE_WEIGHT
         if not _is_upload(path) or declared > most:
             return 1.0
         return 1.0 + (declared if b"content-length" in headers else most) / 2**20
@@ -383,6 +393,8 @@ def _route(path: str) -> str:
         if word == "queue" and rest in ("join", "data"):
             return f"{API}queue/{rest}"
         return f"{API}{word}" if word in _API_ROUTES else "(other)"
+    if path.startswith(LIVE):
+        return _MESSAGE
     first = "/" + path[1:].partition("/")[0]
     return first if path == "/" or first in _ROUTES else "(other)"
 

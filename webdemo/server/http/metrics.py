@@ -45,18 +45,25 @@ class Figures:
         self.refused = Counter("pasdedeux_refused", "Requests refused", ["reason"], registry=registry)
         self._waiting = Gauge("pasdedeux_queue_waiting", "Runs that wait", registry=registry)
         self._running = Gauge("pasdedeux_queue_running", "Runs that run", registry=registry)
+        self._live = Gauge("pasdedeux_live_streams", "Live streams", registry=registry)
         self._ready = Gauge("pasdedeux_ready", "1 where a tiny generation works", registry=registry)
         self._memory = Gauge("pasdedeux_memory_peak_bytes", "Most memory so far", registry=registry)
         unit = 1 if sys.platform == "darwin" else 1024
         self._memory.set_function(lambda: resource.getrusage(resource.RUSAGE_SELF).ru_maxrss * unit)
 
     def watch(
-        self, *, waiting: Callable[[], int], running: Callable[[], int], ready: Callable[[], bool]
+        self,
+        *,
+        waiting: Callable[[], int],
+        running: Callable[[], int],
+        ready: Callable[[], bool],
+        live: Callable[[], int],
     ) -> None:
         """Takes the gauges' values from these whenever the figures are read."""
         self._waiting.set_function(waiting)
         self._running.set_function(running)
         self._ready.set_function(ready)
+        self._live.set_function(live)
 
     def text(self) -> bytes:
         """All figures in Prometheus' text format."""

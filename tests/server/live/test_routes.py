@@ -1,0 +1,73 @@
+"""The addresses of live streams, behind the same checks as everything else."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import pytest
+from fastapi.testclient import TestClient
+
+from tests.server.clients import lab_of, sign_in
+from webdemo.server.http.guard import _LIVE_WEIGHT
+from webdemo.view.payload import unpack_positions
+
+from .test_streams import poses
+
+WANTED = {"partner": "agent"}
+
+
+@pytest.fixture
+def client(local: TestClient) -> Iterator[TestClient]:
+    yield local
+    streams = lab_of(local).streams
+    for stream in list(streams._open.values()):
+        streams.close(stream)
+
+
+def test_a_stream_from_its_start_to_its_end(client: TestClient) -> None:
+    opened = client.post("/live", json=WANTED).json()
+    assert opened["payload"]["id"] == f"stream-{opened['id']}"
+    address = f"/live/{opened['id']}"
+    answer = client.post(address, content=poses([0.0, 0.1])).json()
+    assert unpack_positions(answer["frames"]).shape == (2, 4, 22, 3)
+    assert client.get("/metrics").text.count("pasdedeux_live_streams 1.0") == 1
+    assert client.delete(address).json() == {"frames": 4}
+    ended = client.post(address, content=poses([0.2]))
+    assert ended.status_code == 410 and "press Start" in ended.json()["detail"]
+
+
+def test_what_cannot_be_done_is_answered_with_a_sentence(client: TestClient) -> None:
+    for fields, part in (
+        ({}, "no live partner"),
+        ({"partner": ["agent"]}, "no live partner"),
+        ({**WANTED, "lens": 7}, "lens of 7°"),
+        ({**WANTED, "tilt": 1e9}, "tilt of"),
+        ({**WANTED, "lens": "wide"}, "reload the page"),
+        ({**WANTED, "seed": -1}, "seed"),
+    ):
+        answer = client.post("/live", json=fields)
+        assert answer.status_code == 422 and part in answer.json()["detail"], fields
+    assert lab_of(client).streams.count == 0
+    key = client.post("/live", json=WANTED).json()["id"]
+    assert client.post(f"/live/{key}", content=b"[1]").status_code == 422
+    assert client.post("/live/unknown", content=b"{}").status_code == 404
+    assert client.get(f"/live/{key}").status_code in (404, 405)
+
+
+def test_another_sites_page_cannot_open_one(client: TestClient) -> None:
+    for headers in ({"origin": "http://evil.example"}, {"sec-fetch-site": "cross-site"}):
+        assert client.post("/live", json=WANTED, headers=headers).status_code == 403
+
+
+def test_a_message_is_a_small_part_of_a_request() -> None:
+    assert 60 * 30 * _LIVE_WEIGHT <= 120, "thirty messages a second leave half of the 240 requests a minute"
+
+
+def test_whoever_has_an_account_signs_in_first_and_has_their_own(shared: TestClient) -> None:
+    assert shared.post("/live", json=WANTED).status_code == 401
+    ada, eve = sign_in(shared, "ada"), sign_in(shared, "eve")
+    key = shared.post("/live", json=WANTED, headers=ada).json()["id"]
+    assert shared.post(f"/live/{key}", content=poses([0.0]), headers=eve).status_code == 404
+    assert shared.delete(f"/live/{key}", headers=eve).status_code == 404
+    assert shared.post(f"/live/{key}", content=poses([0.0]), headers=ada).status_code == 200
+    assert shared.delete(f"/live/{key}", headers=ada).status_code == 200

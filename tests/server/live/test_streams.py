@@ -1,0 +1,228 @@
+"""Live streams: who gets one, when one ends, and what a stream answers."""
+
+from __future__ import annotations
+
+import base64
+import json
+import threading
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from motion import SMPL22, InputError
+from tests.motion.video.filming import film, packed, stepping
+from tests.server.lab import stub_module
+from webdemo.server.live import stream as stream_module
+from webdemo.server.live import streams as streams_module
+from webdemo.server.live.messages import MOST_BYTES, MOST_PICTURES, read_message
+from webdemo.server.live.stream import LiveStream, Resampled
+from webdemo.server.live.streams import StreamEnded, StreamRefused, Streams, StreamUnknown
+from webdemo.ui.visitor import Visitor
+from webdemo.view.payload import unpack_positions
+
+ADA, EVE = Visitor("ada", "ada"), Visitor("eve", "eve")
+STUB = stub_module()
+
+
+class Clock:
+    """A time that a test sets."""
+
+    now = 1000.0
+
+    def __call__(self) -> float:
+        return self.now
+
+
+def streams(most: int = 3, address: int = 2) -> Streams:
+    return Streams(STUB.StubEngine(), most=most, address=address, clock=Clock())
+
+
+def poses(times: list[float], metres: float = 0.0) -> bytes:
+    """A message with a person who stands in the rest pose, higher by so many metres a second."""
+    rest = SMPL22.rest_positions() + np.array([0, 1.0, 0])
+    positions = np.stack([rest + np.array([0, metres * time, 0]) for time in times])
+    data = base64.b64encode(np.rint(1000 * positions).astype("<i2").tobytes()).decode()
+    return json.dumps({"times": times, "poses": data}).encode()
+
+
+def stream() -> LiveStream:
+    return LiveStream("id", "ada", "", STUB.Mirror(), clock=Clock())
+
+
+def test_a_person_has_one_stream_and_a_server_has_so_many() -> None:
+    some = streams()
+    first = some.open(ADA, "agent")
+    second = some.open(ADA, "agent")
+    with pytest.raises(StreamEnded, match="Another live stream of yours"):
+        some.find(first.id, ADA)
+    assert some.find(second.id, ADA) is second
+    for name in "xy":
+        some.open(Visitor(name, name), "regennet")
+    with pytest.raises(StreamRefused, match="3 people are live already"):
+        some.open(EVE, "agent")
+    some.open(ADA, "agent")  # in place of their own
+    some.close(some.find(some.open(Visitor("x", "x"), "agent").id, Visitor("x", "x")))
+    assert some.open(EVE, "agent")
+
+
+def test_a_stream_is_its_persons_alone() -> None:
+    some = streams()
+    key = some.open(ADA, "agent").id
+    with pytest.raises(StreamUnknown):
+        some.find(key, EVE)
+    with pytest.raises(StreamUnknown):
+        some.find("no such stream", ADA)
+    with pytest.raises(InputError, match="no live partner 'nobody'"):
+        some.open(ADA, "nobody")
+    assert some.find(key, ADA), "a stream goes on when another one is refused"
+
+
+def test_one_address_cannot_take_all_places() -> None:
+    some = streams()
+    for name in ("a", "b"):
+        some.open(Visitor(name, name, address="203.0.113.9"), "agent")
+    with pytest.raises(StreamRefused, match="2 people from your network"):
+        some.open(Visitor("c", "c", address="203.0.113.9"), "agent")
+    assert some.open(Visitor("d", "d", address="203.0.113.10"), "agent")
+
+
+def test_idle_and_old_streams_are_closed() -> None:
+    some = streams()
+    clock = some.clock
+    idle = some.open(ADA, "agent")
+    clock.now += streams_module.IDLE + 0.1
+    assert some.count == 1
+    busy = some.open(EVE, "agent")
+    assert some.count == 1
+    with pytest.raises(StreamEnded, match="Nothing came for 10 seconds"):
+        some.find(idle.id, ADA)
+    for _ in range(int(streams_module.LONGEST / 5) + 1):
+        clock.now += 5
+        busy.heard = clock.now
+    with pytest.raises(StreamEnded, match="10 minutes at most"):
+        some.find(busy.id, EVE)
+
+
+def test_a_server_that_stops_ends_its_streams() -> None:
+    some = streams()
+    key = some.open(ADA, "agent").id
+    some.stop()
+    with pytest.raises(StreamEnded, match="stopping"):
+        some.find(key, ADA)
+    with pytest.raises(StreamRefused, match="stopping"):
+        some.open(ADA, "agent")
+    with pytest.raises(StreamRefused, match="switched off"):
+        streams(most=0).open(ADA, "agent")
+
+
+def test_a_partner_that_cannot_be_made_takes_no_place() -> None:
+    class Broken:
+        def partner(self, name: str, *, seed: int = 0) -> object:
+            raise InputError("The weights are missing.")
+
+    some = Streams(Broken(), most=1, address=1, clock=Clock())  # type: ignore[arg-type]
+    for _ in range(3):
+        with pytest.raises(InputError, match="weights are missing"):
+            some.open(ADA, "agent")
+
+
+def test_poses_at_any_pace_become_thirty_a_second() -> None:
+    even = Resampled()
+    made = [
+        float(pose[0, 0])
+        for time in (0.0, 0.1, 0.117, 0.3, 0.3, 0.2)
+        for pose in even.add(time, np.full((22, 3), time))
+    ]
+    assert made == pytest.approx(np.arange(10) / 30)
+    (after,) = even.add(5.0, np.full((22, 3), 5.0))  # a pause is not filled
+    assert after[0, 0] == 5.0
+    assert len(list(even.add(5.1, np.full((22, 3), 5.1)))) == 3
+
+
+def test_a_stream_answers_each_frame_once() -> None:
+    one = stream()
+    first = one.answer(read_message(poses([0.0, 1 / 30], 0.5)))
+    second = one.answer(read_message(poses([2 / 30, 0.1], 0.5)))
+    assert (first["start"], second["start"]) == (0, 2)
+    both = np.concatenate([unpack_positions(a["frames"]) for a in (first, second)], axis=1)
+    assert both.shape == (2, 4, 22, 3)
+    assert both[0, :, 0, 1] == pytest.approx(1.0 + 0.5 * np.arange(4) / 30, abs=2e-3)
+    assert both[1] == pytest.approx(both[0] * [-1, 1, -1] + [0, 0, 1.5], abs=2e-3)
+    assert first["belief"]["text"] == "The stub watches."
+    assert first["belief"]["chances"] == [["wave", 0.75], ["bow", 0.2]]
+    assert one.answer(read_message(b"{}"))["frames"] is None
+    assert one.counts.frames == one.counts.pictures == 4
+
+
+def test_landmarks_become_the_persons_poses() -> None:
+    filmed = film([stepping(1.5, heading=0.3)], tilt=0, noise=0.01)
+    one = stream()
+    answers = []
+    for picture, time in enumerate(filmed.times):
+        chosen = replace(
+            filmed, times=np.array([time]), frames=np.zeros(1, int), world=filmed.world[[picture]],
+            image=filmed.image[[picture]], seen=filmed.seen[[picture]],
+        )  # fmt: skip
+        answers.append(one.answer(read_message(packed(chosen).encode())))
+    frames = [unpack_positions(a["frames"]) for a in answers if a["frames"]]
+    person = np.concatenate(frames, axis=1)[0]
+    assert len(person) == pytest.approx(30 * 1.5 - 2 * 8, abs=3)
+    assert 1.4 < person[..., 1].max() < 2.0 and abs(person[..., 1].min()) < 0.06
+    one.clock.now += stream_module.LOST + 0.1
+    empty = replace(filmed, times=np.array([3.0]), frames=np.zeros(0, int), world=filmed.world[:0],
+                    image=filmed.image[:0], seen=filmed.seen[:0])  # fmt: skip
+    assert "step into the picture" in one.answer(read_message(packed(empty).encode()))["hint"]
+
+
+def test_two_messages_at_once_are_refused() -> None:
+    held, goes_on = threading.Event(), threading.Event()
+
+    class Slow(STUB.Mirror):
+        def step(self, pose: np.ndarray) -> np.ndarray:
+            held.set()
+            goes_on.wait(20)
+            return super().step(pose)
+
+    one = LiveStream("id", "ada", "", Slow())
+    first = threading.Thread(target=one.answer, args=(read_message(poses([0.0])),))
+    first.start()
+    assert held.wait(20)
+    with pytest.raises(InputError, match="one after the other"):
+        one.answer(read_message(poses([0.1])))
+    goes_on.set()
+    first.join(20)
+    assert one.answer(read_message(poses([0.1])))["start"] == 1
+
+
+@pytest.mark.parametrize(
+    "body",
+    [
+        b"[]",
+        b"{" * 5000,
+        b"\xff",
+        b" " * (MOST_BYTES + 1),
+        b'{"dropped": -1}',
+        b'{"dropped": true}',
+        b'{"poses": "", "times": []}',
+        b'{"poses": "AAAA", "times": [0]}',
+        b'{"poses": "%%%", "times": [0]}',
+        b'{"poses": 7, "times": [0]}',
+        b'{"poses": "", "times": [NaN]}',
+        b'{"landmarks": 2}',
+        poses([0.2, 0.1]),
+        poses([i / 30 for i in range(MOST_PICTURES + 1)]),
+        poses([0.0]).replace(b"[0.0]", b'["0"]'),
+    ],
+)
+def test_what_no_page_sends_is_refused_in_a_sentence(body: bytes) -> None:
+    with pytest.raises(InputError, match="reload the page"):
+        read_message(body)
+
+
+def test_points_that_lie_in_one_place_do_no_harm() -> None:
+    filmed = film([stepping(1.0)])
+    for part in (replace(filmed, image=np.full_like(filmed.image, 0.5), world=np.zeros_like(filmed.world)),
+                 replace(filmed, seen=np.zeros_like(filmed.seen), image=np.zeros_like(filmed.image))):  # fmt: skip
+        answer = stream().answer(read_message(packed(part).encode()))
+        assert answer["frames"] is None or np.isfinite(unpack_positions(answer["frames"])).all()

@@ -1,0 +1,171 @@
+"""One live stream: a person's poses at the pace at which they come, and the partner's at 30 frames a second."""
+
+from __future__ import annotations
+
+import threading
+import time
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass, field
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from motion import InputError
+from motion.video import Landmarks
+from motion.video.following import FollowedPerson
+from webdemo.inference.actor import FPS
+from webdemo.inference.partner import Belief, LivePartner
+from webdemo.view.payload import pack_positions
+
+from .messages import Message, Poses
+
+Array = NDArray[np.floating]
+
+LONGEST_GAP = 0.5
+"""Seconds without a pose over which the person's motion is interpolated; a longer pause is left out."""
+LOST = 1.0
+"""Seconds without anybody in the picture after which the page says so."""
+
+
+@dataclass
+class Counts:
+    """A stream's work so far.
+
+    Attributes:
+        pictures: that arrived.
+        frames: that were answered.
+        dropped: pictures that the page could not send in time.
+        seconds: of computing, for all frames together.
+        longest: seconds of the slowest message.
+    """
+
+    pictures: int = 0
+    frames: int = 0
+    dropped: int = 0
+    seconds: float = 0.0
+    longest: float = 0.0
+
+    @property
+    def milliseconds(self) -> float:
+        """Mean time of computing a frame."""
+        return 1000 * self.seconds / self.frames if self.frames else 0.0
+
+
+class Resampled:
+    """Poses at uneven times → poses at 30 fps, between the last two that have come."""
+
+    def __init__(self) -> None:
+        self._time = 0.0
+        self._pose: Array = np.zeros((0, 3))
+        self._next = 0.0
+
+    def add(self, time: float, pose: Array) -> Iterator[Array]:
+        """The poses at 30 fps up to a time; none for a time that does not come after the last one."""
+        if not len(self._pose) or time - self._time > LONGEST_GAP:
+            self._time, self._pose, self._next = time, pose, time + 1 / FPS
+            yield pose
+            return
+        if time <= self._time:
+            return
+        while self._next <= time + 1e-6:
+            share = (self._next - self._time) / (time - self._time)
+            yield self._pose + min(share, 1.0) * (pose - self._pose)
+            self._next += 1 / FPS
+        self._time, self._pose = time, pose
+
+
+@dataclass(eq=False)
+class LiveStream:
+    """A person and the partner who answers them.
+
+    Attributes:
+        id: unguessable.
+        person: whose it is.
+        address: where they come from, where that limits them.
+        partner: answers.
+        clock: gives the time; seconds.
+        counts: what has been done.
+        ended: why there is no more, for the page; empty while it runs.
+    """
+
+    id: str
+    person: str
+    address: str
+    partner: LivePartner
+    lens: float | None = None
+    tilt: float | None = None
+    clock: Callable[[], float] = time.monotonic
+    counts: Counts = field(default_factory=Counts)
+    ended: str = ""
+
+    def __post_init__(self) -> None:
+        camera = {name: value for name in ("lens", "tilt") if (value := getattr(self, name)) is not None}
+        self._camera = FollowedPerson(**camera)
+        self._even = Resampled()
+        self._busy = threading.Lock()
+        self.began = self.heard = self.found = self.clock()
+
+    def answer(self, message: Message) -> dict[str, Any]:
+        """The answer to a message: both people's new frames, and what is to be said.
+
+        Raises:
+            InputError: if the message before is still being answered, or the stream has ended.
+        """
+        if not self._busy.acquire(blocking=False):
+            raise InputError("The live stream was sent two messages at once: send one after the other.")
+        try:
+            if self.ended:
+                raise InputError(self.ended)
+            self.heard = began = self.clock()
+            frames = list(self._frames(message))
+            spent = self.clock() - began
+        finally:
+            self._busy.release()
+        self.heard = self.clock()
+        counts = self.counts
+        counts.dropped += message.dropped
+        if frames:
+            counts.seconds += spent
+            counts.longest = max(counts.longest, spent)
+        start, counts.frames = counts.frames, counts.frames + len(frames)
+        return {
+            "start": start,
+            "frames": pack_positions(np.stack(frames, axis=1)) if frames else None,
+            "belief": _plain(self.partner.belief),
+            "hint": self._hint(),
+            "milliseconds": round(1000 * spent, 1),
+            "mean_milliseconds": round(counts.milliseconds, 1),
+        }
+
+    def _frames(self, message: Message) -> Iterator[Array]:
+        """(2, 22, 3) the person and the partner, for each frame at 30 fps that a message completes."""
+        for time_, pose in self._poses(message.content):
+            self.counts.pictures += 1
+            for given in self._even.add(time_, pose):
+                yield np.stack([given, self.partner.step(given)])
+
+    def _poses(self, content: Landmarks | Poses | None) -> Iterator[tuple[float, Array]]:
+        if content is None:
+            return
+        if isinstance(content, Poses):
+            yield from zip(content.times.tolist(), content.positions, strict=True)
+            self.found = self.clock()
+            return
+        for picture, time_ in enumerate(content.times):
+            pose = self._camera.add(content, picture)
+            if (content.frames == picture).any():
+                self.found = self.clock()
+            if pose is not None:
+                yield float(time_), pose
+
+    def _hint(self) -> str:
+        """What the person in front of the camera should do; empty where all is well."""
+        if self.clock() - self.found > LOST:
+            return "Nobody is seen: step into the picture, from head to feet."
+        return self._camera.hint
+
+
+def _plain(belief: Belief) -> dict[str, Any]:
+    chances = [[label, round(chance, 3)] for label, chance in belief.chances]
+    return {"state": belief.state, "text": belief.text, "chances": chances}

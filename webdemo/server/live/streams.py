@@ -1,0 +1,187 @@
+"""All live streams of a server: who may have one, how many there are, and when one ends."""
+
+from __future__ import annotations
+
+import logging
+import secrets
+import threading
+import time
+from collections.abc import Callable
+from concurrent.futures import ThreadPoolExecutor
+from typing import Any, Protocol
+
+from motion import InputError
+from webdemo.inference.partner import PARTNERS, LivePartner
+from webdemo.ui.visitor import Visitor
+
+from .stream import LiveStream
+
+log = logging.getLogger(__name__)
+
+IDLE = 10.0
+"""Seconds without a message after which a stream is closed."""
+LONGEST = 600.0
+"""Seconds that a stream may last."""
+KEPT = 256
+"""Ended streams whose reason is kept for their page."""
+OTHER_TAB = "Another live stream of yours has begun, so this one ended: press Start to go on here."
+TOO_LONG = f"A live stream lasts {LONGEST / 60:.0f} minutes at most: press Start to go on."
+SILENT = f"Nothing came for {IDLE:.0f} seconds, so the live stream was closed: press Start to go on."
+STOPPING = "The server is stopping: press Start again in a minute."
+UNKNOWN = "The server does not know this live stream any more: press Start to go on."
+
+
+class StreamRefused(InputError):
+    """There is no room for another live stream."""
+
+
+class StreamEnded(InputError):
+    """A live stream has ended."""
+
+
+class StreamUnknown(InputError):
+    """There is no such live stream: it is another person's, or the server was started anew."""
+
+
+class Partners(Protocol):
+    """An engine that has live partners."""
+
+    def partner(self, name: str, *, seed: int = 0) -> LivePartner:
+        """Somebody who answers a stream of poses."""
+
+
+class Streams:
+    """Opens streams, finds them again and closes those that are idle.
+
+    Each person may have one: opening another ends the first. A stream has at most one message in work, and messages
+    are answered in the order in which they came, so the streams take turns.
+
+    Args:
+        engine: has the partners.
+        most: streams at the same time.
+        address: streams at the same time from one address, where people are known by a cookie alone.
+        clock: gives the time; seconds.
+    """
+
+    def __init__(
+        self, engine: Partners, *, most: int, address: int, clock: Callable[[], float] = time.monotonic
+    ) -> None:
+        self.engine, self.most, self.address, self.clock = engine, most, address, clock
+        self.workers = ThreadPoolExecutor(max_workers=2, thread_name_prefix="live")
+        self._lock = threading.Lock()
+        self._open: dict[str, LiveStream] = {}
+        self._ended: dict[str, str] = {}
+        self._coming = 0
+        self._stopping = False
+
+    @property
+    def count(self) -> int:
+        """Number of open streams."""
+        return len(self._open)
+
+    def open(
+        self,
+        visitor: Visitor,
+        partner: str,
+        *,
+        seed: int = 0,
+        lens: float | None = None,
+        tilt: float | None = None,
+    ) -> LiveStream:
+        """A new stream; the networks may have to be loaded first.
+
+        Raises:
+            StreamRefused: if there are too many.
+            InputError: for a partner, lens or tilt that is not known.
+        """
+        if partner not in PARTNERS:
+            raise InputError(f"There is no live partner {partner!r:.40}: choose {' or '.join(PARTNERS)}.")
+        self.sweep()
+        with self._lock:
+            self._admit(visitor)
+            self._coming += 1
+        try:
+            made = self.engine.partner(partner, seed=seed)
+            stream = LiveStream(
+                secrets.token_urlsafe(16), visitor.person, visitor.address, made, lens, tilt, self.clock
+            )
+            with self._lock:
+                self._open[stream.id] = stream
+        finally:
+            with self._lock:
+                self._coming -= 1
+        return stream
+
+    def _admit(self, visitor: Visitor) -> None:
+        """Ends the person's other stream; raises StreamRefused if there is no room for a new one."""
+        if self._stopping:
+            raise StreamRefused(STOPPING)
+        if not self.most:
+            raise StreamRefused("Live streams are switched off on this server: film a video and press React.")
+        for stream in [stream for stream in self._open.values() if stream.person == visitor.person]:
+            self._end(stream, OTHER_TAB)
+        near = sum(stream.address == visitor.address for stream in self._open.values())
+        if visitor.address and near >= self.address:
+            raise StreamRefused(
+                f"{near} people from your network are live already: try again when one of them has stopped."
+            )
+        if len(self._open) + self._coming >= self.most:
+            raise StreamRefused(
+                f"{self.most} people are live already, as many as this server allows: try again in a few minutes."
+            )
+
+    def find(self, key: str, visitor: Visitor) -> LiveStream:
+        """A person's stream.
+
+        Raises:
+            StreamEnded: if it has ended.
+            StreamUnknown: if there is none of this id, or it is another person's.
+        """
+        self.sweep()
+        with self._lock:
+            stream = self._open.get(key)
+            if stream is None or stream.person != visitor.person:
+                reason = self._ended.get(key)
+                raise StreamUnknown(UNKNOWN) if reason is None else StreamEnded(reason)
+        return stream
+
+    def close(self, stream: LiveStream) -> None:
+        """Ends a stream that its person has stopped."""
+        with self._lock:
+            self._end(stream, UNKNOWN)
+
+    def sweep(self) -> None:
+        """Ends streams that are idle or too old."""
+        now = self.clock()
+        with self._lock:
+            for stream in list(self._open.values()):
+                if now - stream.heard > IDLE:
+                    self._end(stream, SILENT)
+                elif now - stream.began > LONGEST:
+                    self._end(stream, TOO_LONG)
+
+    def stop(self) -> None:
+        """Ends all streams and takes no more."""
+        with self._lock:
+            self._stopping = True
+            for stream in list(self._open.values()):
+                self._end(stream, STOPPING)
+        self.workers.shutdown(wait=False, cancel_futures=True)
+
+    def _end(self, stream: LiveStream, reason: str) -> None:
+        """The caller holds the lock."""
+        stream.ended = reason
+        if self._open.pop(stream.id, None) is None:
+            return
+        self._ended[stream.id] = reason
+        while len(self._ended) > KEPT:
+            del self._ended[next(iter(self._ended))]
+        counts = stream.counts
+        log.info("live", extra=_figures(counts))
+
+
+def _figures(counts: Any) -> dict[str, Any]:
+    return {
+        "frames": counts.frames, "pictures": counts.pictures, "dropped": counts.dropped,
+        "milliseconds_per_frame": round(counts.milliseconds, 2), "longest_milliseconds": round(1000 * counts.longest),
+    }  # fmt: skip
