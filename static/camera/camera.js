@@ -1,17 +1,15 @@
 // Entry point: a panel that turns a video or the webcam's picture into landmarks for the server.
 
 import { analyse } from "./analysis.js";
-import { Detector } from "./detector.js";
+import { detectorsOf } from "./detector.js";
 import { drawPeople, drawSureness } from "./drawing.js";
 import { close, FilmError, LONGEST, openFilm } from "./film.js";
+import { takesTurns, takeTurn } from "./turns.js";
 import { closeWebcam, countDown, openWebcam, record } from "./webcam.js";
-
-const detectors = new Map(); // two for the page, the second for a second person: each takes a second to load and 100 MB
 
 /** `element` holds camera.html; `send(text)` hands landmarks to the page's Python side. */
 export async function mount(element, send, { folder }) {
-  if (!detectors.has(folder)) detectors.set(folder, [new Detector(folder), new Detector(folder)]);
-  new Panel(element.querySelector(".pdcam"), send, detectors.get(folder));
+  new Panel(element.querySelector(".pdcam"), send, detectorsOf(folder));
   const address = new URL("camera.css", import.meta.url).href;
   if (document.querySelector(`link[href="${address}"]`)) return;
   const link = Object.assign(document.createElement("link"), { rel: "stylesheet", href: address });
@@ -42,6 +40,7 @@ class Panel {
       this.say("Cancelled.");
     };
     this.again.onclick = () => this.hand();
+    takesTurns(this);
     this.open.disabled = false; // before, nobody would hear
   }
 
@@ -49,6 +48,10 @@ class Panel {
     this.body.hidden = !this.body.hidden;
     this.open.setAttribute("aria-expanded", String(!this.body.hidden));
     if (this.body.hidden) this.rest();
+  }
+
+  get busy() {
+    return this.root.dataset.state !== "idle";
   }
 
   say(text, tone = "") {
@@ -78,6 +81,7 @@ class Panel {
 
   async attempt(job, fresh = true) {
     if (fresh) this.rest();
+    takeTurn(this);
     const run = ++this.run;
     try {
       await job();

@@ -2,6 +2,14 @@
 
 const LONGEST_SIDE = 960; // pixels of what is looked at: more costs time and finds nothing more
 
+const shared = new Map(); // two for the page, the second for a second person: each takes a second to load and 100 MB
+
+/** The page's two detectors with MediaPipe's files at an address. */
+export function detectorsOf(folder) {
+  if (!shared.has(folder)) shared.set(folder, [new Detector(folder), new Detector(folder)]);
+  return shared.get(folder);
+}
+
 export class Detector {
   /** `folder` is the address of MediaPipe's files, with a slash at its end. */
   constructor(folder) {

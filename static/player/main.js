@@ -52,13 +52,17 @@ export async function mount(element, props, watch, { plotly, empty }) {
   root.player = player; // for what stands under it and follows its clock
   let shown;
   let heard = null;
+  let covered = false;
   let opening = true;
   const sync = () => {
     const waits = opening && props.value ? "Opening the 3D view …" : "";
     player.controls.setBusy(props.busy || waits, props.progress);
     player.cover(Boolean(props.busy));
+    const uncovered = covered && !props.busy;
+    covered = Boolean(props.busy);
     const id = props.value?.id ?? null;
-    if (player.scene && id !== shown) {
+    // A live stream (stream.js) stands in for the value until that is given anew, be it the same.
+    if (player.scene && (id !== shown || (uncovered && player.data?.stream))) {
       shown = id;
       player.load(props.value || null);
     }

@@ -135,7 +135,7 @@ export class Player {
     const goesOn = Boolean(payload.continues) && payload.continues === this.data?.id;
     this.data = decode(payload);
     this.focus = null;
-    if (!payload.rounds) remember();
+    if (!payload.rounds && !payload.stream) remember();
     if (this.data.live) live.begin(this.data.samples[0]);
     this.skeleton = describe(this.data.names, this.data.parents);
     this.root.dataset.state = "ready";
@@ -146,7 +146,7 @@ export class Player {
     if (!goesOn) this.resetCamera();
     if (this.sample.live) this.clock.pause();
     else if (!goesOn) this.clock.play();
-    if (!payload.rounds && !this.sample.live) aim(this);
+    if (!payload.rounds && !payload.stream && !this.sample.live) aim(this);
     this.refresh();
   }
 

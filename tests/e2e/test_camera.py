@@ -107,3 +107,13 @@ def test_a_video_and_then_the_webcam_become_an_actor_who_gets_a_partner(filming:
     people(filming, 1)
     assert filming.evaluate("document.querySelector('#react-camera video').srcObject") is None
     partner(filming)
+
+    filming.click("#react-stream .pdcam-open")
+    filming.select_option("#react-stream .pdlive-source", "webcam")
+    filming.click("#react-stream .pdcam-begin")
+    expect(filming.locator("#react-stream .pdlive-figures")).to_contain_text(
+        "ms to the partner", timeout=SLOW
+    )
+    people(filming, 2)
+    filming.click("#react-stream .pdcam-stop")
+    assert filming.evaluate("document.querySelector('#react-stream video').srcObject") is None

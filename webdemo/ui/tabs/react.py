@@ -24,6 +24,7 @@ from webdemo.ui.components.camera import CameraPanel
 from webdemo.ui.components.compare import comparison_payload
 from webdemo.ui.components.exports import Record
 from webdemo.ui.components.live import LiveView
+from webdemo.ui.components.live_panel import LivePanel
 from webdemo.ui.components.player import show
 from webdemo.ui.components.settings import looked_up
 from webdemo.ui.components.show import result_payload
@@ -170,6 +171,7 @@ class ReactTab(ActorTab):
                     for person in ("a", "b")
                 }
             self.camera = CameraPanel(elem_id="react-camera")
+            LivePanel(elem_id="react-stream")
             with gr.Column(visible=False, min_width=0, elem_classes="pd-settings") as self.trim:
                 self.person = gr.Radio(
                     [("Person A", "a"), ("Person B", "b")], value="a", label="Which person",

@@ -1,0 +1,230 @@
+// Entry point: a panel in which somebody moves and a partner answers at once.
+
+import { detectorsOf } from "../camera/detector.js";
+import { drawPeople } from "../camera/drawing.js";
+import { FilmError } from "../camera/film.js";
+import { takesTurns, takeTurn } from "../camera/turns.js";
+import { Stream } from "../player/stream.js";
+import { Connection, LiveError } from "./connection.js";
+import { Person, Video, Webcam } from "./sources.js";
+
+const WAITING = 8; // messages that wait for the server; older ones are dropped
+const TOGETHER = 6; // messages that are sent as one
+const FIGURES = 500; // milliseconds between two updates of the figures
+const NAMES = { agent: "agent", regennet: "reactor" };
+
+/** `element` holds live.html; `address` is that of the live streams, `mediapipe` of the detector's files. */
+export function mount(element, { address, mediapipe }) {
+  new Panel(element, address, mediapipe);
+  for (const name of ["../camera/camera.css", "live.css"]) {
+    const href = new URL(name, import.meta.url).href;
+    if (document.querySelector(`link[href="${href}"]`)) continue;
+    document.head.append(Object.assign(document.createElement("link"), { rel: "stylesheet", href }));
+  }
+}
+
+class Panel {
+  constructor(element, address, mediapipe) {
+    Object.assign(this, { element, address, mediapipe, run: 0 });
+    this.root = element.querySelector(".pdlive");
+    const find = (name) => this.root.querySelector(`.${name}`);
+    for (const name of ["open", "body", "stage", "video", "drawing", "file", "begin", "stop", "line"]) this[name] = find(`pdcam-${name}`);
+    for (const name of ["source", "partner", "belief", "text", "chances", "figures"]) this[name] = find(`pdlive-${name}`);
+    this.open.onclick = () => this.toggle();
+    this.begin.onclick = () => (this.source.value === "video" ? this.file.click() : this.start());
+    this.file.onchange = () => {
+      const [file] = this.file.files;
+      this.file.value = "";
+      if (file) this.start(file);
+    };
+    this.stop.onclick = () => this.rest("Stopped. What happened can be played again.");
+    window.addEventListener("pagehide", () => this.rest());
+    takesTurns(this);
+    this.open.disabled = false; // before, nobody would hear
+  }
+
+  get busy() {
+    return this.root.dataset.state !== "idle";
+  }
+
+  /** The player beside the panel. */
+  get player() {
+    const near = this.element.closest('[role="tabpanel"]') ?? document;
+    return near.querySelector(".pdd")?.player ?? null;
+  }
+
+  toggle() {
+    this.body.hidden = !this.body.hidden;
+    this.open.setAttribute("aria-expanded", String(!this.body.hidden));
+    if (this.body.hidden) this.rest();
+  }
+
+  say(text, tone = "") {
+    this.line.textContent = text;
+    this.line.dataset.tone = tone;
+  }
+
+  state(name) {
+    this.root.dataset.state = name;
+    this.begin.hidden = name !== "idle";
+    this.stop.hidden = name === "idle";
+    this.source.disabled = this.partner.disabled = name !== "idle";
+  }
+
+  /** Ends the stream and lets go of camera and film. */
+  rest(text = "", tone = "") {
+    this.run++;
+    this.live?.source.end();
+    this.live?.connection.close();
+    this.live?.stream?.end();
+    this.live = null;
+    this.stage.hidden = this.belief.hidden = true;
+    this.state("idle");
+    this.say(text, tone);
+  }
+
+  async start(file = null) {
+    this.rest();
+    takeTurn(this);
+    const run = this.run;
+    const over = () => run !== this.run;
+    this.state("live");
+    this.figures.textContent = "";
+    try {
+      const { player } = this;
+      if (!player) throw new FilmError("The 3D view is not there yet: wait a moment and press Start again.");
+      const source = this.sourceOf(file, player);
+      const partner = this.partner.value;
+      const connection = new Connection(this.address, { partner, ...source.camera }, {
+        lost: (gone) => this.say(gone ? "The connection was lost: trying again …" : "Connected again.", gone ? "error" : ""),
+      });
+      this.live = { source, connection, stream: null };
+      this.say(source.video ? "Opening camera and partner …" : "Opening the partner …");
+      const [payload] = await Promise.all([connection.open(), source.begin()]);
+      if (over()) return;
+      this.live.stream = new Stream(player, payload, ["you", NAMES[partner]]);
+      if (source.video) {
+        this.stage.hidden = false;
+        this.stage.classList.toggle("pdcam-mirror", source.mirrored);
+        drawPeople(this.drawing, [], source.video.videoWidth, source.video.videoHeight);
+        this.say("Stand still for a second, seen from head to feet.");
+      }
+      await this.follow(over);
+    } catch (error) {
+      if (over()) return;
+      const known = error instanceof FilmError || error instanceof LiveError;
+      if (!known) console.error(error);
+      this.rest(known ? error.message : "The live stream broke off: reload the page and try again.", "error");
+    }
+  }
+
+  sourceOf(file, player) {
+    const chosen = this.source.value;
+    if (chosen === "clip") return new Person(player);
+    const [detector] = detectorsOf(this.mediapipe);
+    return chosen === "video" ? new Video(this.video, detector, file) : new Webcam(this.video, detector);
+  }
+
+  /** Looks and sends until the source is at its end. */
+  async follow(over) {
+    const { source } = this.live;
+    const waiting = [];
+    this.tally = { taken: [], delays: [], server: 0, lost: 0, shown: 0 };
+    let wake = () => {};
+    let ended = false;
+    const sending = (async () => {
+      while (!over() && !(ended && !waiting.length)) {
+        if (!waiting.length) await new Promise((resolve) => (wake = resolve));
+        else await this.exchange(waiting.splice(0, TOGETHER), over);
+      }
+    })();
+    sending.catch(() => (ended = true)); // awaited below
+    while (!over() && !ended) {
+      const seen = await source.next();
+      if (!seen) break;
+      if (seen.people) drawPeople(this.drawing, seen.people, source.video.videoWidth, source.video.videoHeight);
+      waiting.push(seen);
+      if (waiting.length > WAITING) {
+        waiting.shift();
+        this.tally.lost++;
+      }
+      wake();
+    }
+    ended = true;
+    wake();
+    await sending;
+    if (!over()) this.rest("The end. What happened can be played again.");
+  }
+
+  /** Sends what has been seen, and shows what is answered. */
+  async exchange(seen, over) {
+    const { connection, stream } = this.live;
+    const answer = await connection.send(together(seen.map(({ message }) => message)));
+    if (over()) return;
+    if (!answer) return; // the stream was opened anew
+    if (!stream.shown) return this.rest("Something else is shown now, so the live stream ended.");
+    const now = performance.now();
+    const { tally } = this;
+    tally.taken.push(...seen.map(({ taken }) => taken));
+    tally.server = answer.milliseconds;
+    if (answer.frames) {
+      stream.add(answer.frames, answer.belief.state === "answers" ? "answers" : "");
+      const shownAfter = (1000 * stream.lag) / 30;
+      tally.delays.push(now - seen.at(-1).taken + shownAfter);
+    }
+    this.believe(answer.belief);
+    this.say(answer.hint || (stream.known ? "Live." : "Stand still for a second, seen from head to feet."), answer.hint ? "error" : "");
+    this.measure(now);
+  }
+
+  believe({ state, text, chances }) {
+    this.belief.hidden = !text;
+    this.belief.dataset.state = state;
+    if (this.text.textContent !== text) this.text.textContent = text;
+    this.chances.replaceChildren(
+      ...chances.map(([label, chance]) => {
+        const item = document.createElement("li");
+        item.style.setProperty("--share", `${100 * chance}%`);
+        for (const part of [label, `${Math.round(100 * chance)} %`]) item.append(Object.assign(document.createElement("span"), { textContent: part }));
+        return item;
+      }),
+    );
+  }
+
+  measure(now) {
+    const { tally } = this;
+    if (now - tally.shown < FIGURES) return;
+    tally.shown = now;
+    tally.taken = tally.taken.slice(-60);
+    tally.delays = tally.delays.slice(-30);
+    const { taken, delays } = tally;
+    const span = (taken.at(-1) - taken[0]) / 1000;
+    const rate = span > 0 ? (taken.length - 1) / span : 0;
+    const delay = [...delays].sort((a, b) => a - b)[delays.length >> 1];
+    const missed = this.live.source.missed + tally.lost;
+    const parts = [
+      `${rate.toFixed(0)} pictures a second`,
+      delay === undefined ? "" : `${Math.round(delay)} ms to the partner (server ${Math.round(tally.server)} ms)`,
+      missed ? `${missed} pictures left out` : "",
+    ];
+    this.figures.textContent = parts.filter(Boolean).join(" · ");
+    this.root.dataset.delay = delay === undefined ? "" : String(Math.round(delay));
+    this.root.dataset.rate = rate.toFixed(1);
+  }
+}
+
+/** Several messages as one: the pictures or poses one after the other. */
+function together(messages) {
+  if (messages.length === 1) return messages[0];
+  const joined = { ...messages[0] };
+  const bytes = (text) => Uint8Array.from(atob(text), (c) => c.charCodeAt(0));
+  for (const name of ["times", "counts", "world", "image", "seen", "poses"]) {
+    const values = messages.map((message) => message[name]);
+    if (Array.isArray(values[0])) joined[name] = values.flat();
+    else if (values[0] !== undefined) {
+      const parts = values.map(bytes);
+      joined[name] = btoa(parts.map((part) => String.fromCharCode(...part)).join(""));
+    }
+  }
+  return joined;
+}

@@ -1,0 +1,133 @@
+// Whom a partner answers: the webcam's picture, a video while it plays, or a person of the player.
+
+import { FilmError, close as closeFilm, openFilm } from "../camera/film.js";
+import { Landmarks } from "../camera/landmarks.js";
+import { closeWebcam, openWebcam } from "../camera/webcam.js";
+
+const FASTEST = 33; // milliseconds from picture to picture
+const LENS = 70; // degrees from corner to corner
+const BATCH = 2; // poses of a clip in a message
+const nap = (ms) => new Promise((resolve) => setTimeout(resolve, ms));
+
+/** Pictures of a video element, looked at as fast as can be. */
+class Pictures {
+  constructor(video, detector) {
+    this.video = video;
+    this.detector = detector;
+    this.shown = 0;
+    this.looked = 0;
+    this.latest = -1;
+  }
+
+  async begin() {
+    await this.detector.begin(1);
+    this.began = performance.now();
+    const count = (now, { presentedFrames }) => {
+      this.first ??= presentedFrames;
+      this.shown = presentedFrames - this.first + 1;
+      if (!this.over) this.video.requestVideoFrameCallback?.(count);
+    };
+    this.video.requestVideoFrameCallback?.(count);
+  }
+
+  /** Pictures that were shown and not looked at. */
+  get missed() {
+    return Math.max(0, this.shown - this.looked);
+  }
+
+  /** The next picture: who is in it, when it was taken, and the message about it; null after the last one. */
+  async next() {
+    const { video } = this;
+    while (!this.over) {
+      if (video.ended) return null;
+      const wait = FASTEST - (performance.now() - (this.at ?? -FASTEST));
+      if (wait > 0) await nap(wait);
+      if (video.readyState >= 2 && video.currentTime !== this.latest) break;
+      await nap(5);
+    }
+    if (this.over) return null;
+    this.latest = video.currentTime;
+    this.at = performance.now();
+    const time = (this.at - this.began) / 1000;
+    const people = await this.detector.detect(video, time);
+    if (this.over) return null;
+    this.looked++;
+    const landmarks = new Landmarks(video.videoWidth, video.videoHeight);
+    landmarks.add(time, people);
+    return { people, taken: this.at, message: JSON.parse(landmarks.pack()) };
+  }
+}
+
+export class Webcam extends Pictures {
+  mirrored = true;
+  camera = { lens: LENS };
+
+  async begin() {
+    await openWebcam(this.video);
+    if (this.over) return closeWebcam(this.video);
+    await super.begin();
+  }
+
+  end() {
+    this.over = true;
+    closeWebcam(this.video);
+  }
+}
+
+export class Video extends Pictures {
+  mirrored = false;
+  camera = { lens: LENS };
+
+  constructor(video, detector, file) {
+    super(video, detector);
+    this.file = file;
+  }
+
+  async begin() {
+    await openFilm(this.video, this.file);
+    this.video.currentTime = 0;
+    await super.begin();
+    if (!this.over) await this.video.play();
+  }
+
+  end() {
+    this.over = true;
+    this.video.pause();
+    closeFilm(this.video);
+  }
+}
+
+/** A person of the player, pose by pose at the pace of their motion. */
+export class Person {
+  camera = {};
+  missed = 0;
+
+  constructor(player) {
+    const sample = player?.sample;
+    if (!sample || sample.live || !sample.motion) throw new FilmError("Nobody is chosen yet: press an example above, or drop a motion file.");
+    Object.assign(this, { motion: sample.motion, fps: sample.fps, place: 0 });
+  }
+
+  async begin() {
+    this.began = performance.now();
+  }
+
+  async next() {
+    const { frames } = this.motion;
+    if (this.over || this.place >= frames) return null;
+    const last = Math.min(this.place + BATCH, frames);
+    const due = this.began + (1000 * (last - 1)) / this.fps;
+    const wait = due - performance.now();
+    if (wait > 0) await nap(wait);
+    if (this.over) return null;
+    const width = 3 * this.motion.joints;
+    const poses = Int16Array.from(this.motion.values.subarray(width * this.place, width * last), (metres) => Math.max(-32767, Math.min(32767, Math.round(1000 * metres))));
+    const times = Array.from({ length: last - this.place }, (_, i) => (this.place + i) / this.fps);
+    this.place = last;
+    return { taken: performance.now(), message: { times, poses: btoa(String.fromCharCode(...new Uint8Array(poses.buffer))) } };
+  }
+
+  end() {
+    this.over = true;
+  }
+}

@@ -1,0 +1,85 @@
+// A motion that arrives while it happens, without an end: the player shows the latest frames of two people.
+
+import { unpackPositions } from "./decode.js";
+
+const KEPT = 1800; // frames that can be looked at again
+const DROPPED = 600; // of the oldest, when there are more
+const BEHIND = 8; // frames: a clock that lags more jumps
+const BUFFER = 2; // frames that it keeps in hand
+
+export class Stream {
+  /** `template` is a payload of one person; `roles` are the names of the two. */
+  constructor(player, template, roles) {
+    this.player = player;
+    this.template = template;
+    this.roles = roles;
+    this.known = 0;
+  }
+
+  /** Whether the player still shows this stream. */
+  get shown() {
+    return !this.known || this.player.data?.id === this.template.id;
+  }
+
+  /** Frames by which the picture lags behind what has come. */
+  get lag() {
+    return this.known ? Math.max(0, this.known - 1 - this.player.clock.frame) : 0;
+  }
+
+  /** Takes new frames, packed as in webdemo/view/payload.py, and a line about them. */
+  add(packed, text) {
+    const { player } = this;
+    if (!this.known) this._begin(packed);
+    else this._append(unpackPositions(packed));
+    const { clock, sample } = player;
+    sample.live = { text };
+    sample.frames = clock.frames = this.known;
+    clock.limit = this.known - 1;
+    if (clock.playing && clock.limit - clock.frame > BEHIND) clock.frame = clock.limit - BUFFER;
+    player.find(".pdd-range").max = String(this.known - 1);
+    player.wake();
+  }
+
+  /** Nothing more comes: what is there can be played again. */
+  end() {
+    const { player, known } = this;
+    if (!known || !this.shown) return;
+    const { sample } = player;
+    const { values, people, frames, joints } = sample.motion;
+    const width = 3 * joints;
+    const cut = new Float32Array(people * width * known);
+    for (let person = 0; person < people; person++) cut.set(values.subarray(width * frames * person, width * (frames * person + known)), width * known * person);
+    sample.motion = { values: cut, people, frames: known, joints };
+    sample.live = null;
+    player.select(0);
+  }
+
+  _begin(packed) {
+    const { player, roles } = this;
+    const sample = { ...this.template.samples[0], roles, positions: packed, frames: packed.shape[1], curves: [] };
+    player.load({ ...this.template, samples: [sample], stream: true });
+    const { values, people, frames, joints } = player.sample.motion;
+    const room = new Float32Array(people * KEPT * 3 * joints);
+    for (let person = 0; person < people; person++) room.set(values.subarray(3 * joints * frames * person, 3 * joints * frames * (person + 1)), 3 * joints * KEPT * person);
+    player.sample.motion = { values: room, people, frames: KEPT, joints };
+    this.known = frames;
+    player.clock.loop = true;
+    player.clock.play();
+  }
+
+  _append({ values, people, frames, joints }) {
+    const { clock, sample } = this.player;
+    const width = 3 * joints;
+    const room = sample.motion.values;
+    if (this.known + frames > KEPT) {
+      for (let person = 0; person < people; person++) {
+        const from = width * KEPT * person;
+        room.copyWithin(from, from + width * DROPPED, from + width * this.known);
+      }
+      this.known -= DROPPED;
+      clock.frame = Math.max(0, clock.frame - DROPPED);
+    }
+    for (let person = 0; person < people; person++) room.set(values.subarray(width * frames * person, width * frames * (person + 1)), width * (KEPT * person + this.known));
+    this.known += frames;
+  }
+}
