@@ -6,6 +6,7 @@
 from __future__ import annotations
 
 import asyncio
+import contextlib
 import json
 import os
 import random
@@ -16,7 +17,7 @@ import subprocess
 import sys
 import tempfile
 import time
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any
@@ -130,33 +131,46 @@ def run_load(*, people: int, minutes: float, steps: int = 20, seed: int = 0) -> 
     if not 1 <= people <= 200 or not 0 < minutes <= 60 or not 2 <= steps <= 100:
         raise InputError("A load has 1 to 200 people, up to 60 minutes and 2 to 100 steps.")
     with tempfile.TemporaryDirectory(prefix="pas-de-deux-load-") as folder:
-        with socket.socket() as probe:
-            probe.bind(("127.0.0.1", 0))
-            port = probe.getsockname()[1]
-        env = os.environ | {
-            "PASDEDEUX_HOST": "127.0.0.1", "PASDEDEUX_PORT": str(port), "PASDEDEUX_DATA": folder,
-            "PASDEDEUX_QUEUE": str(max(64, people)), "PASDEDEUX_FREE_MEGABYTES": "0",
-            "PASDEDEUX_LOG_LEVEL": "warning",
-        }  # fmt: skip
-        with open(Path(folder) / "log", "w+", encoding="utf-8") as log:
-            server = subprocess.Popen(
-                [sys.executable, "app.py"], cwd=ROOT, env=env, stdout=subprocess.DEVNULL, stderr=log
-            )
-            try:
-                figures = asyncio.run(
-                    _load(f"http://127.0.0.1:{port}/", server, people, minutes, steps, seed)
-                )
-            finally:
-                server.send_signal(signal.SIGTERM)
-                try:
-                    server.wait(timeout=90)
-                except subprocess.TimeoutExpired:
-                    server.kill()
-            log.seek(0)
-            figures["log_lines_of_errors"] = sum('"level": "error"' in line for line in log)
+        with serving(Path(folder), queue=max(64, people)) as (url, server):
+            figures = asyncio.run(_load(url, server, people, minutes, steps, seed))
+        figures["log_lines_of_errors"] = errors_logged(Path(folder))
     for name, value in figures.items():
         print(f"{name:32} {round(value, 3) if isinstance(value, float) else value}")
     return figures
+
+
+@contextlib.contextmanager
+def serving(folder: Path, **settings: object) -> Iterator[tuple[str, subprocess.Popen[bytes]]]:
+    """``python app.py`` on a free port of 127.0.0.1, with its data and its log in a folder: the address, and it.
+
+    Args:
+        folder: an empty one.
+        settings: of the server.
+    """
+    with socket.socket() as probe:
+        probe.bind(("127.0.0.1", 0))
+        port = probe.getsockname()[1]
+    chosen = {"host": "127.0.0.1", "port": port, "data": folder, "free_megabytes": 0, "log_level": "warning"}
+    env = os.environ | {
+        f"PASDEDEUX_{name.upper()}": str(value) for name, value in (chosen | settings).items()
+    }
+    with open(folder / "log", "w", encoding="utf-8") as log:
+        server = subprocess.Popen(
+            [sys.executable, "app.py"], cwd=ROOT, env=env, stdout=subprocess.DEVNULL, stderr=log
+        )
+        try:
+            yield f"http://127.0.0.1:{port}/", server
+        finally:
+            server.send_signal(signal.SIGTERM)
+            try:
+                server.wait(timeout=90)
+            except subprocess.TimeoutExpired:
+                server.kill()
+
+
+def errors_logged(folder: Path) -> int:
+    """The number of errors in the log of a server whose folder this was."""
+    return (folder / "log").read_text(encoding="utf-8").count('"level": "error"')
 
 
 async def _load(
@@ -165,7 +179,7 @@ async def _load(
     tally = Tally()
     limits = httpx.Limits(max_connections=None)
     async with httpx.AsyncClient(base_url=url, timeout=httpx.Timeout(60, read=None), limits=limits) as client:
-        await _ready(client, server)
+        await ready(client, server)
         # The first run of each kind imports and prepares things, so it comes before memory is read.
         warm_up = Tally()
         await asyncio.gather(*(
@@ -194,7 +208,12 @@ async def _load(
     }
 
 
-async def _ready(client: httpx.AsyncClient, server: subprocess.Popen[bytes]) -> None:
+async def ready(client: httpx.AsyncClient, server: subprocess.Popen[bytes]) -> None:
+    """Waits until a server can generate.
+
+    Raises:
+        InputError: where it does not come up.
+    """
     until = time.monotonic() + START_SECONDS
     while time.monotonic() < until:
         if server.poll() is not None:

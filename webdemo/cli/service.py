@@ -27,8 +27,9 @@ def add_service(commands: Any) -> None:
     bench.add_argument(
         "--model", help="instead: a released InterGen of the settings beside a plain run of it"
     )
-    bench.add_argument("--people", type=int, default=20, help="with --load")
-    bench.add_argument("--minutes", type=float, default=5.0, help="with --load")
+    bench.add_argument("--live", action="store_true", help="instead: many people with live partners")
+    bench.add_argument("--people", type=int, default=20, help="with --load or --live")
+    bench.add_argument("--minutes", type=float, default=5.0, help="with --load or --live")
     bench.set_defaults(job=benchmark)
     serve_parser = commands.add_parser("serve", help="serve the page, like `python app.py`")
     serve_parser.add_argument("--host", help="address to listen on (127.0.0.1: this machine alone)")
@@ -81,6 +82,10 @@ def benchmark(options: argparse.Namespace) -> dict[str, Any]:
         return measure_released(
             options.model, seconds=options.seconds, steps=options.steps, repeats=options.repeats
         )
+    if options.live:
+        from webdemo.benchmark.live import run_live
+
+        return run_live(people=options.people, minutes=options.minutes)
     if options.load:
         from webdemo.benchmark.load import goals_missed, measure_batching, run_load
 
