@@ -160,7 +160,7 @@ class LiveStream:
                 yield float(time_), pose
 
     def _hint(self) -> str:
-        """What the person in front of the camera should do; empty where all is well."""
+        """Advice for the person in front of the camera; empty where all is well."""
         if self.clock() - self.found > LOST:
             return "Nobody is seen: step into the picture, from head to feet."
         return self._camera.hint
