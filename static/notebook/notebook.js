@@ -182,6 +182,7 @@ export class Notebook {
       open: one?.state === "done", link: one?.state === "done", revoke: one?.links > 0,
       again: one && one.state !== "running", stop: true, favour: Boolean(one),
       compare: done.length > 1 && done.length === chosen.length && done.length <= 9,
+      study: done.length > 0 && done.length === chosen.length,
       export: done.length > 0 && done.length === chosen.length,
       remove: chosen.length > 0 && chosen.every((entry) => entry.state !== "running" && !entry.favourite),
     };
@@ -200,7 +201,7 @@ export class Notebook {
 export function mount(element, props, watch, trigger) {
   const link = Object.assign(document.createElement("link"), { rel: "stylesheet", href: new URL("notebook.css", import.meta.url).href });
   document.head.append(link);
-  const events = { open: "submit", compare: "like", again: "retry", stop: "stop" }; // the others are "select"
+  const events = { open: "submit", compare: "like", study: "edit", again: "retry", stop: "stop" }; // the others are "select"
   const notebook = new Notebook(element.querySelector(".pdn"), (told) => trigger(events[told.act] ?? "select", told));
   let shown = null;
   const sync = () => {

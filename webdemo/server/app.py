@@ -25,6 +25,7 @@ from webdemo.server.http.guard import Guard, may_read_figures
 from webdemo.server.http.page_html import PageCache
 from webdemo.server.http.page_sessions import keep_states_lean, kept_in_cache
 from webdemo.server.http.payloads import Payloads
+from webdemo.server.http.study_pages import study_routes
 from webdemo.server.lab import Lab, engine_of, make_lab
 from webdemo.server.live.routes import live_routes
 from webdemo.server.queue.places import SEEN_EVERY
@@ -81,7 +82,7 @@ def create_app(
     lab = make_lab(settings, engine, batcher, node)
     page = build_page(
         engine, loader=Loader(engine), runs=Recorder(lab.queue, lab.history, lab.places), history=lab.history,
-        files=Path(get_upload_folder()), owner=visitors_folder,
+        studies=lab.studies, files=Path(get_upload_folder()), owner=visitors_folder,
     )  # fmt: skip
     app = FastAPI(title="Pas de Deux", docs_url=None, redoc_url=None, openapi_url=None, lifespan=_lifespan)
     app.state.lab = lab
@@ -89,6 +90,7 @@ def create_app(
     visitors = Visitors(settings, lab.sign_ins)
     _add_routes(app, lab)
     app.include_router(live_routes(lab.streams))
+    app.include_router(study_routes(settings, lab.studies))
     if lab.sign_ins is not None:
         app.include_router(login_routes(settings, lab.sign_ins, visitors))
     app.add_middleware(CORSMiddleware)  # no other site may read anything; Gradio's own would let some

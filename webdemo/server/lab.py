@@ -21,6 +21,7 @@ from webdemo.server.queue.shares import Shares
 from webdemo.server.queue.turns import Batcher, QueueLimits
 from webdemo.server.store.database import Database
 from webdemo.server.store.notebook import Notebook
+from webdemo.server.store.studies import Studies
 from webdemo.ui.lazy import LazyEngine
 from webdemo.ui.runs import EngineLike
 
@@ -39,6 +40,7 @@ class Lab:
     settings: Settings
     database: Database
     history: Notebook
+    studies: Studies
     queue: FairQueue
     places: Places
     shares: Shares
@@ -101,6 +103,7 @@ def make_lab(
     )  # fmt: skip
     return Lab(
         settings=settings, database=database, history=_history(settings, database, name), queue=queue,
+        studies=studies_of(settings, database),
         places=Places(database, name, settings.running + settings.waiting), shares=shares, health=health,
         figures=figures, answers=OpenAnswers(), streams=streams, node=node,
         sign_ins=SignIns(database, users, settings.session_hours) if users is not None else None,
@@ -119,6 +122,14 @@ def _streams(settings: Settings, engine: EngineLike) -> Streams:
     """The live streams; with an engine elsewhere, their networks run in this process."""
     partners: Any = engine if hasattr(engine, "partner") else LazyEngine()
     return Streams(partners, most=settings.live, address=max(1, settings.live // 2))
+
+
+def studies_of(settings: Settings, database: Database) -> Studies:
+    """The blind studies of a lab."""
+    return Studies(
+        database, settings.data / "studies", most_bytes=settings.keep_megabytes * 2**20,
+        address_people=settings.address_people,
+    )  # fmt: skip
 
 
 def _limits(settings: Settings, engine: EngineLike) -> QueueLimits:

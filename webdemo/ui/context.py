@@ -8,6 +8,7 @@ from webdemo.ui.components.exports import Shelf
 
 from .history import HistoryLike
 from .runs import EngineLike, Loader, RunsLike
+from .studies import StudiesLike
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -20,6 +21,7 @@ class PageContext:
         loader: loads the networks in the background.
         shelf: where files for downloads are put.
         history: runs that can be found again; None where nothing is kept.
+        studies: blind studies of those runs; None where nothing is kept.
     """
 
     engine: EngineLike
@@ -27,3 +29,4 @@ class PageContext:
     loader: Loader
     shelf: Shelf
     history: HistoryLike | None = None
+    studies: StudiesLike | None = None

@@ -24,6 +24,7 @@ from .context import PageContext
 from .history import HistoryLike
 from .runs import EngineLike, Loader, Runs, RunsLike
 from .scene_api import SceneEndpoint
+from .studies import StudiesLike
 from .theme import HEAD, style_sheet, theme
 
 TITLE = "Pas de Deux"
@@ -49,6 +50,7 @@ def build_page(
     owner: Callable[[], str] | None = None,
     runs: RunsLike | None = None,
     history: HistoryLike | None = None,
+    studies: StudiesLike | None = None,
 ) -> gr.Blocks:
     """Builds the page for an engine.
 
@@ -59,6 +61,7 @@ def build_page(
         owner: names the folder in ``files`` of the person whose event is answered; by default all share one.
         runs: the line that requests wait in; by default one of the page's own, one run at a time.
         history: runs that can be found again, in a tab of its own; none by default.
+        studies: blind studies of those runs; none by default.
 
     Returns:
         the page; launch it with :func:`launch_options`.
@@ -69,6 +72,7 @@ def build_page(
         loader=loader or Loader(engine),
         shelf=Shelf(files, owner=owner),
         history=history,
+        studies=studies,
     )
 
     def leave(request: gr.Request) -> None:

@@ -155,6 +155,23 @@ def build_payload(samples: Sequence[dict[str, Any]], *, skeleton: Any, title: st
     return {"id": digest.hexdigest(), **payload}
 
 
+def grid_sample(
+    cells: Sequence[dict[str, Any]], columns: Sequence[str], rows: Sequence[str]
+) -> dict[str, Any]:
+    """Samples of :func:`sample_payload` as the cells of a grid: one clock, as long as the longest, and one camera.
+
+    Args:
+        cells: row after row; ``caption`` names each.
+        columns: names over the columns.
+        rows: names beside the rows; one "" for a single row.
+    """
+    longest = max(cells, key=lambda cell: float(cell["frames"]) / float(cell["fps"]))
+    return {
+        **longest, "label": "1", "curves": [], "contacts": [], "ghost": None, "past_until": None, "caption": "",
+        "cells": list(cells), "columns": list(columns), "rows": list(rows),
+    }  # fmt: skip
+
+
 def player_payload(
     motions: Duet | Clip | Sequence[Duet | Clip],
     *,

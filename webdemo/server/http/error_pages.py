@@ -59,6 +59,8 @@ def sign_in_card(*, action: str, wanted: str, name: str = "", error: str = "") -
     why = (
         "to see the motion that you were sent"
         if wanted.startswith("/?run=")
+        else "to vote in the study that you were invited to"
+        if wanted.startswith("/study/")
         else "to generate motion of two people"
     )
     focus = ("", " autofocus") if name else (" autofocus", "")

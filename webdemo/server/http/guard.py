@@ -56,6 +56,7 @@ _ROUTES = frozenset(
     for name in (
         "login",
         "logout",
+        "study",
         "healthz",
         "live",
         "metrics",
@@ -162,7 +163,9 @@ class Guard:
             exchange.body = await self._body(scope, exchange.headers, receive, visitor)
         else:
             self._check_names(scope, visitor.person)
-        if scope["path"] == "/" and VISITOR_COOKIE.encode() not in exchange.headers.get(b"cookie", b""):
+        if (
+            scope["path"] == "/" or scope["path"].startswith("/study/")
+        ) and VISITOR_COOKIE.encode() not in exchange.headers.get(b"cookie", b""):
             exchange.cookie = self._visitor_cookie(scope)
         if scope["method"] == "POST" and route in _CALLS:
             exchange.heard = self._binds(visitor.person)

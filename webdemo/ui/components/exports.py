@@ -21,6 +21,7 @@ from typing import Any
 
 from motion import Clip, Duet, InputError, formats
 from motion.formats.one_person import SUFFIXES
+from motion.formats.spreadsheet import safe_cell
 from webdemo.inference.requests import Result
 from webdemo.view.sheet import write_sheet
 
@@ -191,13 +192,8 @@ def _write_table(results: Mapping[str, Result], path: Path) -> Path:
         writer = csv.DictWriter(file, heads)
         writer.writeheader()
         for row in rows:
-            writer.writerow({key: _safe(value) for key, value in row.items()})
+            writer.writerow({key: safe_cell(value) for key, value in row.items()})
     return path
-
-
-def _safe(value: Any) -> Any:
-    formula = isinstance(value, str) and value.lstrip()[:1] in ("=", "+", "-", "@")
-    return f"'{value}" if formula else value
 
 
 def _holds(kind: Kind, result: Result) -> bool:

@@ -12,7 +12,7 @@ from motion import InputError
 from motion.metrics import MEASURES
 from webdemo.inference.requests import Result
 from webdemo.ui.text.words import number, text
-from webdemo.view.payload import Payload, build_payload
+from webdemo.view.payload import Payload, build_payload, grid_sample
 
 from .show import result_payload
 
@@ -156,11 +156,7 @@ def grid_payload(grid: Grid, results: Sequence[Result], *, title: str = "") -> P
         {**result_payload(result)["samples"][0], "caption": name}
         for result, name in zip(results, grid.names, strict=True)
     ]
-    longest = max(cells, key=lambda cell: float(cell["frames"]) / float(cell["fps"]))
-    whole_grid = {
-        **longest, "label": "1", "curves": [], "contacts": [], "ghost": None, "past_until": None, "caption": "",
-        "cells": cells, "columns": grid.columns, "rows": grid.rows,
-    }  # fmt: skip
+    whole_grid = grid_sample(cells, grid.columns, grid.rows)
     return build_payload([whole_grid], skeleton=results[0].duets[0].skeleton, title=title)
 
 

@@ -23,6 +23,7 @@ from webdemo.ui.text.words import cancelled_line, error_line, link_line, progres
 from webdemo.ui.visitor import Visitor, visitor
 
 from .job import QUIET, JobTab, Updates
+from .study import StudyPanel
 from .sweeps import grid_shown
 
 LABEL = "History"
@@ -74,6 +75,9 @@ class HistoryTab:
             self.saved = gr.DownloadButton(
                 "Save the workspace", visible=False, elem_id="history-saved", size="sm"
             )
+            self.study = StudyPanel(self.page) if self.page.studies is not None else None
+            if self.study is not None:
+                self.study.build()
             self.view = NotebookView(elem_id="history-notebook")
             with gr.Accordion(
                 "Export everything, or import a workspace", open=False, elem_id="history-workspace"
@@ -101,6 +105,8 @@ class HistoryTab:
         )
         again.then(self.refresh, inputs=self.removed, outputs=told[:2], **quick)
         self.view.stop(self.cancel, queue=False, **QUIET)
+        if self.study is not None:
+            self.study.wire(tab, self.view.edit)
         parts = [self.tabs, record, self.line, *(c for job in self.jobs.values() for c in _parts(job))]
         self.opened = list({part._id: part for part in parts}.values())
         named = gr.Textbox(visible=False)
