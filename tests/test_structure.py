@@ -11,13 +11,14 @@ import pytest
 
 ROOT = Path(__file__).resolve().parents[1]
 PACKAGES = ("motion", "models", "webdemo", "training")
-TORCH_FREE = ("motion", "webdemo.view", "webdemo.ui")
+TORCH_FREE = ("motion", "webdemo.view", "webdemo.study", "webdemo.ui")
 """The page draws before the networks load, so nothing it needs may wait for torch."""
 
 FLOORS: dict[str, set[str]] = {
     "motion": set(),
     "models": {"motion"},
     "webdemo.view": {"motion"},
+    "webdemo.study": {"motion"},
     "webdemo.inference": {"motion", "models"},
     "training": {"motion", "models", "webdemo.view", "webdemo.inference"},
 }

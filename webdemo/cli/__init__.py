@@ -1,6 +1,6 @@
 """The same jobs from a shell: ``python -m webdemo COMMAND``.
 
-The commands are generate, react, predict, scene, render, score, info, benchmark, serve and user.
+The commands are generate, react, predict, scene, render, score, study, info, benchmark, serve and user.
 The last line on stdout is one JSON object. An error is one line on stderr that says what is
 wrong and what to do, with exit code 2. A cancelled run (Ctrl+C) ends with 130, and one whose reader has gone
 with 141. No file is left half-written.
@@ -25,6 +25,7 @@ from .rendering import add_render
 from .scenes import add_scene
 from .scoring import add_score
 from .service import add_service
+from .studies import add_study
 
 __all__ = ["main"]
 
@@ -33,7 +34,16 @@ def main(argv: Sequence[str] | None = None) -> int:
     """Runs one command; returns the exit code."""
     parser = Parser(prog="python -m webdemo", description="Motion of two people, from a shell.")
     commands = parser.add_subparsers(required=True, metavar="COMMAND", parser_class=Parser)
-    for add in (add_generate, add_react, add_predict, add_scene, add_render, add_score, add_service):
+    for add in (
+        add_generate,
+        add_react,
+        add_predict,
+        add_scene,
+        add_render,
+        add_score,
+        add_study,
+        add_service,
+    ):
         add(commands)
     began = time.perf_counter()
     try:

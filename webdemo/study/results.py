@@ -1,4 +1,4 @@
-"""What people's answers say: wins of each set, agreement, and who was not attentive."""
+"""Results of a study: wins of each set, agreement between people, and who was not attentive."""
 
 from __future__ import annotations
 
@@ -42,7 +42,7 @@ class Vote:
 
     @property
     def side(self) -> str:
-        """What was pressed: left, right, tie or skip."""
+        """The pressed answer: left, right, tie or skip."""
         if self.answer not in (FIRST, SECOND):
             return self.answer
         return "right" if (self.answer == SECOND) != self.swapped else "left"

@@ -74,7 +74,7 @@ class StudiesLike(Protocol):
         """The owner's studies, newest first."""
 
     def result(self, study: str, owner: str, person: str = "") -> StudyResult:
-        """What people answered; hidden from an owner who is voting and has not finished."""
+        """The count of all answers; hidden from an owner who is voting and has not finished."""
 
     def close(self, study: str, owner: str, *, closed: bool) -> None:
         """Ends the voting, or opens it again."""

@@ -14,6 +14,7 @@ from sqlalchemy import delete, func, select
 from sqlalchemy.orm import Session
 
 from motion import Clip, Duet, InputError, formats
+from motion.formats.files import replacing
 from webdemo.study import Pair, StudyResult, matched_pairs, tally
 from webdemo.study.pairs import FIRST, as_shown, check_sources, shuffled
 from webdemo.study.results import write_votes
@@ -81,8 +82,15 @@ class Studies(Voting):
             return [_entry(row, *_counts(session, row.id)) for row in rows] if owner else []
 
     @sentences()
+    def everybodys(self) -> Sequence[tuple[str, StudyEntry]]:
+        """All studies with their owners, newest first, for the person who runs the lab."""
+        with self.database.session() as session:
+            rows = session.scalars(select(Study).order_by(Study.created.desc()))
+            return [(row.owner, _entry(row, *_counts(session, row.id))) for row in rows]
+
+    @sentences()
     def result(self, study: str, owner: str, person: str = "") -> StudyResult:
-        """What people answered.
+        """The count of all answers.
 
         Raises:
             InputError: as well while the owner, as ``person``, has voted on some of the pairs and not on all.
@@ -117,7 +125,8 @@ class Studies(Voting):
             self._check_finished(session, row, person)
             votes = votes_of(session, row.id)
             sets, pairs = json.loads(row.sets), pairs_of(row)
-        write_votes(sets, pairs, votes, file)
+        with replacing(file) as temporary:
+            write_votes(sets, pairs, votes, temporary)
         return len(votes)
 
     # ---- parts -----------------------------------------------------------------------------------

@@ -26,14 +26,14 @@ from .database import Ballot, Database, Rater, Study, sentences
 SOONEST = 1.5
 """Seconds after a pair was sent before which no person can have seen it."""
 _ANSWERED = {"1": FIRST, "2": SECOND, "=": TIE, "skip": SKIP}
-"""What is pressed → the answer where nothing is swapped."""
+"""Pressed keys and the answers that they stand for where nothing is swapped."""
 _MISSING = "There is no such study, or it was deleted: ask the person who invited you."
 _CLOSED = "This study is closed: nobody can vote any more."
 
 
 @dataclass(frozen=True)
 class Invitation:
-    """What a person who was invited sees before and between the pairs.
+    """The progress of a person who was invited.
 
     Attributes:
         question: to be answered.

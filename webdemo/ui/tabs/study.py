@@ -219,7 +219,7 @@ class StudyPanel:
         )
 
     def _result(self, study: StudyEntry) -> tuple[str, str | None]:
-        """What people said, and all votes in a file; a sentence and no file while there is nothing to see."""
+        """The result as HTML, and all votes in a file; a sentence and no file while there is nothing to see."""
         who = visitor()
         try:
             result = self.studies.result(study.id, who.owner, who.person)

@@ -1,4 +1,4 @@
-"""What people said in a blind study, as a table."""
+"""The result of a blind study as a table."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ def count(number: int, what: str) -> str:
 
 
 def result_html(study: StudyEntry, result: StudyResult) -> str:
-    """What people said: a row a comparison, and how far they agree."""
+    """The result: a row a comparison, and how far they agree."""
     state = "The voting has ended" if study.closed else "The voting goes on"
     lines = [
         f"“{study.question}” {count(study.pairs, 'pair')}, {count(study.checks, 'attention check')}. {state}."

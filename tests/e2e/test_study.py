@@ -1,0 +1,85 @@
+"""A blind study in a browser, from a grid to the result: the owner, a voter with the link, the owner again."""
+
+from __future__ import annotations
+
+import csv
+from collections.abc import Callable
+from pathlib import Path
+
+import pytest
+from playwright.sync_api import Page, expect
+
+pytestmark = [pytest.mark.e2e, pytest.mark.slow]
+SLOW = 120_000
+CELLS = "window.__pasdedeux?.player?.grid?.cells.length"
+LINK = "document.querySelector('{} textarea, {} input')?.value"
+
+
+@pytest.fixture(scope="module")
+def lab(start_server: Callable[..., str], tmp_path_factory: pytest.TempPathFactory) -> str:
+    data = str(tmp_path_factory.mktemp("lab"))
+    env = {"STUB_PAUSE": "0", "PASDEDEUX_FREE_MEGABYTES": "0"}
+    return start_server([str(Path("tests/server/lab.py")), "{port}", data], seconds=180, env=env)
+
+
+def link_in(page: Page, box: str) -> str:
+    address = LINK.format(box, box)
+    page.wait_for_function(address)
+    return page.evaluate(address)
+
+
+def vote(page: Page, number: int, total: int, key: str) -> None:
+    expect(page.locator(".pst-progress")).to_have_text(f"Pair {number} of {total}", timeout=SLOW)
+    expect(page.locator("[data-answer='1']")).to_be_enabled(timeout=SLOW)
+    page.keyboard.press(key)
+
+
+def test_a_grid_is_linked_compared_and_voted_on(lab: str, open_page: Callable, tmp_path: Path) -> None:
+    small = {"width": 900, "height": 700}
+    owner = open_page(lab, **small, accept_downloads=True)
+    owner.set_default_timeout(SLOW)
+    owner.fill("#prompt textarea", "Two people shake hands.")
+    owner.get_by_role("button", name="Plain beside damped").first.click()
+    expect(owner.locator("#status .pd-done")).to_contain_text("2 results done", timeout=SLOW)
+    owner.click("#link")
+    linked = open_page(link_in(owner, "#address"), **small)
+    linked.wait_for_function(f"{CELLS} === 2", timeout=SLOW)
+    expect(linked.locator("#player .pdd-cell-text")).to_have_text(["damping 0", "damping 0.7"])
+    linked.close()
+
+    owner.get_by_role("tab", name="History").click()
+    owner.click("#history-study")
+    expect(owner.locator("#study-way input")).to_have_value(
+        "Damping: damping 0 (1) against damping 0.7 (1)", timeout=SLOW
+    )
+    owner.locator("#study-checks input[type=number]").fill("1")
+    owner.locator("#study-checks input[type=number]").press("Tab")
+    owner.click("#study-make")
+    expect(owner.locator("#study-status")).to_contain_text("The study has one pair", timeout=SLOW)
+    invitation = link_in(owner, "#study-link")
+    expect(owner.locator("#study-result")).to_contain_text("Nobody has voted yet")
+
+    voter = open_page(invitation, **small, color_scheme="dark")
+    expect(voter.locator("h1")).to_have_text("Which does what the sentence says?")
+    voter.wait_for_function(f"{CELLS} === 2 && window.__pasdedeux.frame > 0", timeout=SLOW)
+    expect(voter.locator(".pdd-head:not(:empty)")).to_have_text(["1", "2"])
+    expect(voter.locator(".pdd-title")).to_have_text("Two people shake hands.")
+    assert "damping" not in voter.content()
+    vote(voter, 1, 2, "=")
+    vote(voter, 2, 2, "s")
+    expect(voter.locator(".pst-thanks")).to_contain_text("your votes are counted", timeout=SLOW)
+    voter.reload()
+    expect(voter.locator(".pst-progress")).to_have_text("All 2 pairs done", timeout=SLOW)
+    voter.context.close()
+
+    owner.click("#study-refresh")
+    # "=" and "skip" are both wrong for an attention check, so the votes of this person do not count.
+    expect(owner.locator("#study-result")).to_contain_text(
+        "0 votes of 0 people count, 1 more left out", timeout=SLOW
+    )
+    with owner.expect_download(timeout=SLOW) as download:
+        owner.click("#study-csv")
+    download.value.save_as(tmp_path / "votes.csv")
+    rows = list(csv.DictReader((tmp_path / "votes.csv").open()))
+    assert sorted(row["pressed"] for row in rows) == ["skip", "tie"]
+    assert {row["rater_counts"] for row in rows} == {"no"}
