@@ -6,7 +6,7 @@ any size; their shadow is the bodies' outline under a lamp overhead.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -104,6 +104,70 @@ def write_sheet(
         else:
             _vector(motion, style, moments, views, tile, title, temporary, suffix[1:])
     return path
+
+
+def write_grid_sheet(
+    motions: Mapping[str, Clip | Duet],
+    path: str | Path,
+    *,
+    moments: int = 6,
+    width: int = WIDTH,
+    title: str = "",
+    style: Style | None = None,
+    view: str = "threequarter",
+) -> Path:
+    """Writes a row of moments for each of several motions, at the same times and under the same camera, as .png.
+
+    Args:
+        motions: by the name that stands over each row.
+        path: ends in .png.
+        moments: pictures in a row, evenly spaced over the longest motion; a shorter one rests in its last frame.
+        width: of the whole in pixels.
+        title: stands above.
+        style: how people are drawn.
+        view: one of :data:`~webdemo.view.camera.VIEWS`.
+
+    Raises:
+        InputError: for no motions, or what cannot be written; no file is left.
+    """
+    path, style = Path(path), style or Style(names=False)
+    if not motions or path.suffix.lower() != ".png":
+        raise InputError("A sheet of several motions ends in .png and holds one motion or more.")
+    tile = (width // moments, round(width / moments * _TALL))
+    times = np.linspace(0.0, max((m.num_frames - 1) / m.fps for m in motions.values()), moments)
+    ways = cameras(list(motions.values()), size=tile, times=times, view=view, follow=False)
+    views = [replace(way, distance=_NEARER * way.distance) for way in ways]
+    rows = [_row(motion, name, style, times, views) for name, motion in motions.items()]
+    small = _text_size(tile)
+    head = np.full((2 * small if title else 0, rows[0].shape[1], 4), 255, dtype=np.uint8)
+    head[..., :3] = [round(255 * c) for c in style.colours.horizon]
+    sheet = np.concatenate([head, *rows])
+    if title:
+        paste(sheet, words(title, style.colours.ink, small), small // 2, small // 4)
+    with replacing(path) as temporary:
+        Image.fromarray(sheet).convert("RGB").save(temporary, format="PNG")
+    return path
+
+
+def _row(
+    motion: Clip | Duet, name: str, style: Style, times: Array, views: Sequence[Camera]
+) -> NDArray[np.uint8]:
+    """Pictures of a motion beside each other, its name above and the times below."""
+    tile, ink = views[0].size, style.colours.ink
+    small = _text_size(tile)
+    row = np.full((tile[1] + 4 * small, tile[0] * len(times), 4), 255, dtype=np.uint8)
+    row[..., :3] = [round(255 * c) for c in style.colours.horizon]
+    paste(row, words(name, ink, small), small // 2, small // 4)
+    for place, picture in enumerate(Stage(Pane(motion), style, tile).pictures(times, views)):
+        left = place * tile[0]
+        row[2 * small : 2 * small + tile[1], left : left + tile[0]] = picture
+        paste(
+            row,
+            words(f"{times[place]:.2f} s", ink, small),
+            left + small // 2,
+            tile[1] + 2 * small + small // 4,
+        )
+    return row
 
 
 def _places(count: int, tile: tuple[int, int], head: int) -> list[tuple[int, int]]:

@@ -171,6 +171,31 @@ def _changed(file: Path, change: Callable[[dict[str, Any], dict[str, bytes]], No
     return made.getvalue()
 
 
+GRID = {"columns": ["seed 1", "seed 2"], "rows": [""], "names": ["seed 1", "seed 2"], "title": "Two seeds"}
+
+
+def test_a_grid_and_its_cells_go_out_and_come_in_together(notebook: Notebook, tmp_path: Path) -> None:
+    first, second = kept(notebook, "one", seed=1), kept(notebook, "one", seed=2)
+    people = stub_module().walking(1.0).people
+    notebook.keep(first, ME, Kept(controls={"seed": 1, "grid": GRID}, people=people, compared=(second,)))
+    file = tmp_path / "workspace.zip"
+    assert notebook.export(ME, [first], file) == 2, "its cell goes with it"
+    assert notebook.take_in(OTHER, file) == 2
+    (card,) = notebook.search(OTHER, Search()).entries
+    opened = notebook.open(card.id, OTHER)
+    assert opened.kept.controls == {"seed": 1, "grid": GRID} and len(opened.kept.people) == 2
+    assert [each.entry.request["seed"] for each in opened.beside] == [2]
+    notebook.remove([second], ME)
+    alone = tmp_path / "alone.zip"
+    assert notebook.export(ME, [first], alone) == 1 and notebook.take_in(OTHER, alone) == 1
+    newest = notebook.search(OTHER, Search()).entries
+    assert "grid" not in notebook.open(next(e.id for e in newest if e.id != card.id), OTHER).kept.controls
+
+
+def _controls(**controls: Any) -> Callable[[dict[str, Any], dict[str, bytes]], None]:
+    return lambda told, files: told["runs"][0].update(kept={"controls": controls, "compared": []})
+
+
 HOSTILE: dict[str, Callable[[dict[str, Any], dict[str, bytes]], Any]] = {
     "no motion": lambda told, files: files.clear(),
     "a motion that is none": lambda told, files: files.update({"0/1.npz": b"PK\x03\x04 nothing"}),
@@ -180,6 +205,15 @@ HOSTILE: dict[str, Callable[[dict[str, Any], dict[str, bytes]], Any]] = {
     "a run that is none": lambda told, files: told.update(runs=[[]]),
     "an unknown kind": lambda told, files: told["runs"][0].update(kind="../../x"),
     "too many runs": lambda told, files: told.update(runs=[{}] * 1001),
+    "a grid without names": _controls(grid={"columns": 3}),
+    "a grid of 500 cells": _controls(
+        grid={"columns": ["x"] * 500, "rows": [""], "names": list(map(str, range(500)))}
+    ),
+    "a grid with equal names": _controls(grid={"columns": ["x"] * 2, "rows": [""], "names": ["x", "x"]}),
+    "a part that is not there": lambda told, files: told["runs"][0].update(kept={"compared": [7]}),
+    "a part of itself": lambda told, files: told["runs"][0].update(kept={"compared": [0]}),
+    "parts that are no numbers": lambda told, files: told["runs"][0].update(kept={"compared": ["0", None]}),
+    "too many parts": lambda told, files: told["runs"][0].update(kept={"compared": [0] * 500}),
     "a prediction from nowhere": lambda told, files: told["runs"][0]["outcome"].update(
         prediction={"past_frames": 10**9}
     ),
@@ -222,6 +256,10 @@ def test_what_a_workspace_claims_is_not_believed(notebook: Notebook, tmp_path: P
             "id": mine, "owner": OTHER, "state": "running", "favourite": True, "created": 1e18, "size": -5,
             "title": "<script>", "readouts": [{"after": {"foot_skate": "<b>", "jerk": 1e999}, "curves": [1]}],
         }  # fmt: skip
+        told["runs"][0]["kept"] = {
+            "controls": {"seed": "<b>", "person": ["a"], "steps": 7, "note": "x"},
+            "compared": None,
+        }
         told["runs"][0]["request"] |= {"prompt": ["no", "text"], "actor": [1], "seed": {"deep": {"er": 1}}}
 
     file.write_bytes(_changed(file, claim))
@@ -231,6 +269,7 @@ def test_what_a_workspace_claims_is_not_believed(notebook: Notebook, tmp_path: P
     assert "actor" not in new.request and "prompt" not in new.request and new.request["seed"] == {}
     opened = notebook.open(new.id, ME)
     assert opened.result.readouts[0]["after"] == {}
+    assert opened.kept.controls == {"steps": 7}
     assert notebook.search(OTHER, Search()).total == 0
     assert replace(opened.entry, id="") != replace(notebook.entry(mine, ME), id="")
     assert not list(tmp_path.rglob("evil*"))

@@ -3,12 +3,17 @@
 from __future__ import annotations
 
 import csv
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
+import gradio as gr
 import pytest
+from PIL import Image
 
 from motion import InputError
+from motion.formats import write
+from tests.ui.stub_engine import walking
 from tests.ui.tab_events import built, changes
 from webdemo.inference.requests import GenerateRequest, Result
 from webdemo.ui.components.exports import Record, write_record
@@ -16,7 +21,9 @@ from webdemo.ui.components.film import make_film
 from webdemo.ui.components.sweep import grid_of, grid_table, read_axis
 from webdemo.ui.history import Entry, Kept, Opened
 from webdemo.ui.tabs.generate import GenerateTab
+from webdemo.ui.tabs.predict import PredictTab
 from webdemo.ui.tabs.react import ReactTab
+from webdemo.ui.tabs.scene import SceneTab
 from webdemo.ui.tabs.sweeps import DAMPING, GUIDANCE, SEED
 
 FIELDS = {
@@ -88,6 +95,8 @@ def test_a_grid_is_made_shown_measured_and_written(tab: GenerateTab, tmp_path: P
     assert [row["result"] for row in rows] == list(record.compared)
     assert float(rows[0]["foot_skate"]) >= 0 and rows[3]["seed"] == "2"
     assert len(files["npz"]) == 4
+    (sheet,) = files["png"]
+    assert Image.open(sheet).height > 4 * 200, "all four rows are on one sheet"
     film = make_film(record, '{"theme": "dark"}', tmp_path)
     assert film.stat().st_size > 1000
     for swept, sentence in (
@@ -98,6 +107,53 @@ def test_a_grid_is_made_shown_measured_and_written(tab: GenerateTab, tmp_path: P
     seen = len(tab.page.engine.requests)
     assert "Damping threshold must be" in run(tab, "damping", "0, 7", "", "")[-1]["line"]
     assert len(tab.page.engine.requests) == seen, "nothing runs where one cell cannot"
+
+
+def test_predictions_by_several_methods_make_a_grid_with_their_pasts(tmp_path: Path) -> None:
+    tab = built(PredictTab, tmp_path / "files")
+    *_, loaded = tab.upload(str(write(walking(4.0), tmp_path / "walkers.npz")[0]))
+    field, values = tab.presets()["Method beside method"]
+    fields = {
+        "source": loaded[0],
+        "given": "",
+        "marker": 2.0,
+        "seconds": 1.0,
+        "model": "motion-mlp",
+        "other": "mawgan",
+    }
+    last = [
+        changes(tab.outputs, each)
+        for each in tab.run("me", {**fields, "grid": [field, values, "marker", "1.5 2"]})
+    ][-1]
+    (sample,) = last["player"]["value"]["samples"]
+    assert [cell["past_until"] for cell in sample["cells"]] == [45] * 3 + [60] * 3
+    assert all(cell["ghost"] for cell in sample["cells"])
+    assert "<b>from 1.5 s · " in last["readouts"]
+    assert last["readouts"].count("mm off on average") == 6 and last["curves"] == gr.update(visible=False)
+    record: Record = last["record"]
+    entry = Entry(id="x", kind="predict", title="t", state="done", request=record.result.manifest["request"])
+    opened = [Opened(entry=entry, result=each) for each in record.compared.values()]
+    kept = Kept(controls={"grid": dict(record.grid), "other": "mawgan"})
+    again = tab.opened(replace(opened[0], kept=kept, beside=tuple(opened[1:])))
+    assert len(again[tab.player]["value"]["samples"][0]["cells"]) == 6
+
+
+def test_a_story_under_several_settings_makes_a_grid(tmp_path: Path) -> None:
+    tab = built(SceneTab, tmp_path)
+    story = {
+        "prompt": "Two people bow. Then they hug.",
+        "story": None,
+        "seed": 1,
+        "samples": 3,
+        "guidance": 3.0,
+    }
+    fields = {**story, "steps": 2, "damping": 0.7, "grid": ["damping", "0, 0.7", "seed", "1 2"]}
+    last = [changes(tab.outputs, each) for each in tab.run("me", fields)][-1]
+    asked = tab.page.engine.requests  # type: ignore[attr-defined]
+    assert [(r.damping, r.seed, r.samples, len(r.beats)) for r in asked] == [
+        (0.0, 1, 1, 2), (0.7, 1, 1, 2), (0.0, 2, 1, 2), (0.7, 2, 1, 2),
+    ]  # fmt: skip
+    assert len(last["player"]["value"]["samples"][0]["cells"]) == 4
 
 
 def test_the_best_and_the_worst_are_marked() -> None:

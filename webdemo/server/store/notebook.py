@@ -21,6 +21,7 @@ from webdemo.view.thumbnail import thumbnail
 
 from .database import Note, Run, sentences
 from .history import History, entry_of, fields_of
+from .kept_settings import MOST_BESIDE
 from .workspace import Packed, pack, unpack
 
 log = logging.getLogger(__name__)
@@ -29,8 +30,6 @@ LONGEST_TITLE, LONGEST_NOTE, LONGEST_TAGS = 200, 4000, 300
 LONGEST_PERSON = 60.0
 """Seconds of a chosen file that are kept with a run."""
 MOST_PEOPLE = 6
-MOST_BESIDE = 8
-"""Runs of a grid beside its first."""
 LARGEST_KEPT = 20_000
 """Characters of the settings of a tab."""
 
@@ -269,4 +268,4 @@ def _packed(run: Run, folder: Path) -> Packed:
     }  # fmt: skip
     note = run.note
     written = {"title": note.title, "tags": note.tags, "text": note.text, "frame": note.frame} if note else {}
-    return Packed(row, written, folder)
+    return Packed(row, written, folder, fields_of(note.kept) if note else {})

@@ -1,8 +1,9 @@
 """One file that holds the runs of a history: written from ours, and read as if by an enemy.
 
-A .zip with ``workspace.json`` (what was asked and written of each run) and ``NUMBER/1.npz …`` (its motions). What is
-read back is checked and made anew: motions go through the reader and the writer of uploads, and settings keep plain
-values of the expected kinds. No name in the file becomes a path.
+A .zip with ``workspace.json`` (what was asked and written of each run, how its tab was set and the numbers of the runs
+that stand beside it) and ``NUMBER/1.npz …`` (its motions). What is read back is checked and made anew: motions go
+through the reader and the writer of uploads, and settings keep plain values of the expected kinds. No name in the file
+becomes a path.
 """
 
 from __future__ import annotations
@@ -14,13 +15,15 @@ import shutil
 import time
 import zipfile
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
 from motion import Clip, Duet, InputError, formats
 from webdemo.inference.story import SceneRequest
 from webdemo.view.thumbnail import thumbnail
+
+from .kept_settings import groups, plain_controls
 
 FORMAT = "pas-de-deux-workspace-1"
 MOST_RUNS = 1000
@@ -38,20 +41,36 @@ _WRONG = "This is no workspace of Pas de Deux, or it was changed by hand ({}): e
 
 @dataclass(frozen=True)
 class Packed:
-    """A run on its way into a file: what its row says, what is written on it, and its folder of motions."""
+    """A run on its way into a file.
+
+    Attributes:
+        row: columns of its row.
+        note: columns of its note.
+        folder: its motions; called after its id.
+        kept: settings of its tab, and ids of the runs beside it.
+    """
 
     row: Mapping[str, Any]
     note: Mapping[str, Any]
     folder: Path
+    kept: Mapping[str, Any] = field(default_factory=dict)
 
 
 @dataclass(frozen=True)
 class Taken:
-    """A run out of a file: columns of its row and its note, and the folder where its files wait."""
+    """A run out of a file.
+
+    Attributes:
+        row: columns of its row.
+        note: columns of its note.
+        folder: its files wait here.
+        motion: the first of its samples.
+    """
 
     row: dict[str, Any]
     note: dict[str, Any]
     folder: Path
+    motion: Duet | Clip
 
     def forget(self, home: Path) -> None:
         """Removes its files, wherever they are by now."""
@@ -62,6 +81,7 @@ class Taken:
 def pack(runs: Sequence[Packed], file: Path) -> None:
     """Writes runs into a file; raises InputError if their files are gone."""
     stored = []
+    numbers = {run.folder.name: number for number, run in enumerate(runs)}
     with zipfile.ZipFile(file, "w", zipfile.ZIP_DEFLATED) as archive:
         for number, run in enumerate(runs):
             motions = sorted(run.folder.glob("*.npz"))
@@ -70,7 +90,9 @@ def pack(runs: Sequence[Packed], file: Path) -> None:
             for path in motions:
                 archive.write(path, f"{number}/{path.name}")
             readouts = json.loads((run.folder / "readouts.json").read_text(encoding="utf-8"))
-            stored.append({**run.row, "note": dict(run.note), "readouts": readouts})
+            beside = [numbers[other] for other in run.kept.get("compared", ()) if other in numbers]
+            kept = {"controls": run.kept.get("controls", {}), "compared": beside}
+            stored.append({**run.row, "note": dict(run.note), "readouts": readouts, "kept": kept})
         archive.writestr("workspace.json", json.dumps({"format": FORMAT, "runs": stored}))
 
 
@@ -83,8 +105,10 @@ def unpack(file: Path, home: Path) -> list[Taken]:
     taken: list[Taken] = []
     try:
         with zipfile.ZipFile(file) as archive:
-            for number, stored in enumerate(_stored_runs(archive)):
+            stored_runs = _stored_runs(archive)
+            for number, stored in enumerate(stored_runs):
                 taken.append(_taken(archive, number, stored, home))
+            _put_beside(stored_runs, taken)
     except BaseException as error:
         for run in taken:
             run.forget(home)
@@ -95,6 +119,23 @@ def unpack(file: Path, home: Path) -> list[Taken]:
             raise InputError(_WRONG.format("it cannot be read")) from None
         raise
     return taken
+
+
+def _put_beside(stored: Sequence[Mapping[str, Any]], taken: Sequence[Taken]) -> None:
+    """Gives runs their tab's settings again, and makes those beside them their parts."""
+    kept = [run["kept"] if isinstance(run.get("kept"), dict) else {} for run in stored]
+    beside = groups([each.get("compared") for each in kept], [run.motion for run in taken])
+    for number, run in enumerate(taken):
+        others = [taken[other] for other in beside.get(number, ())]
+        told = {
+            "controls": plain_controls(kept[number].get("controls")),
+            "compared": [o.row["id"] for o in others],
+        }
+        if "grid" in told["controls"] and not others:  # its other cells were removed before
+            del told["controls"]["grid"]
+        run.note["kept"] = json.dumps(told)
+        for other in others:
+            other.note["part_of"] = run.row["id"]
 
 
 def _stored_runs(archive: zipfile.ZipFile) -> list[dict[str, Any]]:
@@ -149,7 +190,7 @@ def _taken(archive: zipfile.ZipFile, number: int, stored: Mapping[str, Any], hom
             "outcome": json.dumps(_outcome(stored.get("outcome"), request, motions[0], folder)),
             "size": sum(path.stat().st_size for path in folder.iterdir()),
         }  # fmt: skip
-        return Taken(row, _note(stored.get("note"), motions[0]), folder)
+        return Taken(row, _note(stored.get("note"), motions[0]), folder, motions[0])
     except BaseException:
         shutil.rmtree(folder, ignore_errors=True)
         raise

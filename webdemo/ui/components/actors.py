@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 import uuid
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
@@ -12,6 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from motion import Clip, Duet, InputError
+from motion.formats import write
 from motion.formats.importing import ImportChoices, import_motion
 from motion.retarget import to_smpl
 from webdemo.inference.actor import LETTERS, SECONDS, at_30_fps, choose_actor, other_pose
@@ -132,6 +134,15 @@ class Source:
     def describe(self, person: str) -> str:
         """The name, and which person of two."""
         return f"{self.name}, person {person.upper()}" if len(self.people) > 1 else self.name
+
+
+def kept_file(source: Source, folder: Path) -> str | None:
+    """A .npz of one person or two of a source, called after it, for the field that the file was dropped on."""
+    if len(source.people) > 2:
+        return None
+    motion = Duet(*source.people) if len(source.people) == 2 else source.people[0]
+    name = re.sub(r"[^\w-]+", "-", Path(source.name).stem)[:60].strip("-") or "motion"
+    return str(write(motion, folder / f"{name}.npz")[0])
 
 
 @dataclass(frozen=True)

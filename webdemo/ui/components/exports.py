@@ -14,7 +14,8 @@ import threading
 import time
 import unicodedata
 import zipfile
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Collection, Iterator, Mapping
+from contextlib import contextmanager
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
@@ -23,7 +24,7 @@ from motion import Clip, Duet, InputError, formats
 from motion.formats.one_person import SUFFIXES
 from motion.formats.spreadsheet import safe_cell
 from webdemo.inference.requests import Result
-from webdemo.view.sheet import write_sheet
+from webdemo.view.sheet import write_grid_sheet, write_sheet
 
 log = logging.getLogger(__name__)
 
@@ -117,21 +118,32 @@ class Shelf:
 
 
 def write_record(record: Record, folder: Path) -> dict[str, list[Path]]:
-    """:func:`write_files` for all results of a record; names of compared ones begin with their method."""
+    """:func:`write_files` for all results of a record; names of compared ones begin with their method.
+
+    Compared results have one table of read-outs, and a grid one contact sheet.
+    """
     if not record.compared:
         return write_files(record.result, folder, prompt=record.prompt)
     files: dict[str, list[Path]] = {}
+    joint = ("csv", "png") if record.grid else ("csv",)
     for method, result in record.compared.items():
-        for key, paths in write_files(result, folder, prompt=f"{method} {record.prompt}").items():
+        written = write_files(result, folder, prompt=f"{method} {record.prompt}", leave_out=joint)
+        for key, paths in written.items():
             files.setdefault(key, []).extend(paths)
-    if "csv" in files:  # one table for all
-        table = folder / f"{file_name(record.prompt, record.result.manifest)}.csv"
-        files["csv"] = [_write_table(record.compared, table)]
+    name = folder / file_name(record.prompt, record.result.manifest)
+    with _writing(folder):
+        if any(result.readouts for result in record.compared.values()):
+            files["csv"] = [_write_table(record.compared, name.with_suffix(".csv"))]
+        if record.grid:
+            motions = {cell: result.duets[0] for cell, result in record.compared.items()}
+            files["png"] = [write_grid_sheet(motions, name.with_suffix(".png"), title=record.prompt)]
     return files
 
 
-def write_files(result: Result, folder: Path, *, prompt: str) -> dict[str, list[Path]]:
-    """Writes a result in every kind that this installation can write.
+def write_files(
+    result: Result, folder: Path, *, prompt: str, leave_out: Collection[str] = ()
+) -> dict[str, list[Path]]:
+    """Writes a result in every kind that this installation can write, but for those that are left out.
 
     Returns:
         the files by the key of their kind, in the order of the samples; a BVH pair is two files.
@@ -140,17 +152,23 @@ def write_files(result: Result, folder: Path, *, prompt: str) -> dict[str, list[
         OSError: where the disk is full or cannot be written; the folder is removed.
     """
     name = file_name(prompt, result.manifest)
+    with _writing(folder):
+        return {
+            kind.key: _write_kind(kind, result, folder, name, prompt)
+            for kind in KINDS
+            if kind.offered() and kind.key not in leave_out and _holds(kind, result)
+        }
+
+
+@contextmanager
+def _writing(folder: Path) -> Iterator[None]:
+    """Lets one writer work at a time, and removes the folder of one that fails."""
     try:
         with _WRITING:
-            files = {
-                kind.key: _write_kind(kind, result, folder, name, prompt)
-                for kind in KINDS
-                if kind.offered() and _holds(kind, result)
-            }
+            yield
     except BaseException as error:
         shutil.rmtree(folder, ignore_errors=True)
         raise (without_place(error, folder) if isinstance(error, Exception) else error) from None
-    return files
 
 
 def without_place(error: Exception, folder: Path) -> Exception:

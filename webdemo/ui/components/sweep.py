@@ -10,10 +10,12 @@ from typing import Any
 
 from motion import InputError
 from motion.metrics import MEASURES
+from webdemo.inference.predict_request import PredictResult
 from webdemo.inference.requests import Result
 from webdemo.ui.text.words import number, text
 from webdemo.view.payload import Payload, build_payload, grid_sample
 
+from .prediction_view import prediction_payload
 from .show import result_payload
 
 MOST = 9
@@ -119,7 +121,7 @@ def grid_of(axes: Sequence[Axis]) -> Grid:
         InputError: for no axis, one setting twice, or too many cells.
     """
     if not axes:
-        raise InputError("Choose what the grid compares: seeds, guidance, steps, damping, methods or words.")
+        raise InputError("Choose what the grid compares, such as seeds or methods, and give its values.")
     if len(axes) == 2 and axes[0].kind.field == axes[1].kind.field:
         raise InputError("Both sides of the grid are the same setting: choose two.")
     if len(axes) == 1:
@@ -153,11 +155,16 @@ class Named(Grid):
 def grid_payload(grid: Grid, results: Sequence[Result], *, title: str = "") -> Payload:
     """The player's value for the first sample of every cell's result, in the grid's order."""
     cells = [
-        {**result_payload(result)["samples"][0], "caption": name}
-        for result, name in zip(results, grid.names, strict=True)
+        {**_first_sample(result), "caption": name} for result, name in zip(results, grid.names, strict=True)
     ]
     whole_grid = grid_sample(cells, grid.columns, grid.rows)
     return build_payload([whole_grid], skeleton=results[0].duets[0].skeleton, title=title)
+
+
+def _first_sample(result: Result) -> dict[str, Any]:
+    """The player's value for the first sample; a prediction with its past and what really followed."""
+    payload = prediction_payload(result) if isinstance(result, PredictResult) else result_payload(result)
+    return payload["samples"][0]
 
 
 def read_outs(results: Mapping[str, Result]) -> dict[str, dict[str, float]]:

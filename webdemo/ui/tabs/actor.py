@@ -17,6 +17,7 @@ from webdemo.ui.again import actor_source
 from webdemo.ui.components.actors import (
     AUTO,
     Source,
+    kept_file,
     read_source,
     result_source,
 )
@@ -90,10 +91,13 @@ class ActorTab(SweepTab):
         begin, end = 0.0, round(source.seconds, 1)
         if people := run.kept.people:
             source = replace(source, people=people)
-            source = replace(source, chosen=str(controls.get("person") or "a"))
+            letters = [letter for _, letter in source.choices]
+            source = replace(source, chosen=controls["person"] if controls.get("person") in letters else "a")
             begin, end = float(controls.get("start", 0.0)), float(controls.get("end", end))
         last = max(round(source.seconds, 1), _SHORTEST)
         return {
+            self.file: kept_file(source, self.page.shelf.folder()) if run.kept.people else None,
+            self.found: _found(source),
             self.source: source,
             self.given: source.key,
             self.trim: gr.update(visible=True),
@@ -238,6 +242,6 @@ class ActorTab(SweepTab):
 def _found(source: Source) -> str:
     """Describes as HTML how a source's file was read: one line, then its joints beside SMPL's."""
     if source.found is None:
-        return status("Taken from a result, so there was nothing to detect.")
+        return status("Taken from a result or the history, so there was nothing to detect.")
     pairs = " · ".join(f"{text(theirs)} → {text(ours)}" for theirs, ours in source.found.joints)
     return f'{status(source.found.line)}<p class="pd-timings">{pairs}</p>'

@@ -19,7 +19,7 @@ from webdemo.inference.predict_request import (
     PredictResult,
 )
 from webdemo.inference.requests import Result
-from webdemo.ui.components.actors import Source, read_source, result_source
+from webdemo.ui.components.actors import Source, kept_file, read_source, result_source
 from webdemo.ui.components.camera import CameraPanel, film_source
 from webdemo.ui.components.exports import Record
 from webdemo.ui.components.player import busy, show
@@ -31,6 +31,7 @@ from webdemo.ui.components.prediction_view import (
     without_name,
 )
 from webdemo.ui.components.settings import looked_up
+from webdemo.ui.components.sweep import Kind, grid_table, real
 from webdemo.ui.components.upload import chip, example_chips, file_field
 from webdemo.ui.context import PageContext
 from webdemo.ui.history import Opened
@@ -39,7 +40,9 @@ from webdemo.ui.text.panels import comparison_panel, method_line, notes_lines, p
 from webdemo.ui.text.words import error_line, seconds
 from webdemo.view.payload import player_payload
 
-from .job import QUIET, JobTab, Updates, total
+from .generate import named_method
+from .job import QUIET, Updates, total
+from .sweeps import SweepTab
 
 EMPTY_TEXT = (
     "Choose a motion: drop a file or pick an example\n"
@@ -71,7 +74,7 @@ def _last_marker(source: Source) -> float:
     return max(int(source.seconds * 10 + 1e-6) / 10, PAST_SECONDS)
 
 
-class PredictTab(JobTab):
+class PredictTab(SweepTab):
     """A past → its future.
 
     Args:
@@ -81,7 +84,7 @@ class PredictTab(JobTab):
 
     label = "Predict"
     prefix = "predict-"
-    restored = ("given", "about")
+    restored = ("file", "given", "about")
 
     def __init__(self, page: PageContext, examples: list[tuple[str, Path]] | None = None) -> None:
         super().__init__(page)
@@ -101,6 +104,24 @@ class PredictTab(JobTab):
         """The time at which the prediction begins, and the name of the motion."""
         name = request.motion.name if isinstance(request.motion, Clip) else request.motion.a.name
         return f"After {request.marker:.1f} s of {name}"
+
+    def kinds(self) -> Sequence[Kind]:
+        """Methods, where the past ends, and the length."""
+        known = {label.lower(): name for label, name in predict_choices()}
+        models = Kind("model", "Methods", read=partial(named_method, known), split=r"[;\n]", named=label_of)
+        marker = Kind("marker", "Past ends at (s)", "from", real, named=lambda value: f"{value:g} s")
+        length = Kind("seconds", "Seconds to predict", read=real, named=lambda value: f"{value:g} s")
+        return (models, marker, length)
+
+    def presets(self) -> Mapping[str, tuple[str, str]]:
+        """All methods beside each other."""
+        return {"Method beside method": ("model", "; ".join(label for label, _ in predict_choices()))}
+
+    def beside_grid(self, made: Mapping[str, Result]) -> dict[str, Any]:
+        """The errors of all cells over their read-outs; the curves of one prediction are hidden."""
+        results = [result for result in made.values() if isinstance(result, PredictResult)]
+        errors = dict(zip(made, told_errors(*results), strict=True)) if len(results) == len(made) else {}
+        return {"curves": gr.update(visible=False), "readouts": prediction_lines(errors) + grid_table(made)}
 
     # ---- layout ----------------------------------------------------------------------------------
 
@@ -135,6 +156,7 @@ class PredictTab(JobTab):
                             elem_id="predict-other", min_width=0, filterable=False,
                         )  # fmt: skip
                     self.about = gr.HTML(self.told_about(PredictRequest.model), elem_id="predict-about")
+                    self._sweeps()
             self._results(EMPTY_TEXT, self._curves)
         self.source = gr.State(None, time_to_live=3600)
         self.given = gr.Textbox("", visible=False)
@@ -143,6 +165,7 @@ class PredictTab(JobTab):
             "model": self.model, "other": self.other,
         }  # fmt: skip
         self._wire_run([self.go.click], record)
+        self._wire_sweeps()
         self._wire_source()
 
     def _ask(self) -> None:
@@ -268,7 +291,7 @@ class PredictTab(JobTab):
 
     def answer(self, session: str, fields: Mapping[str, Any]) -> Iterator[Updates]:
         """Runs one method, or two side by side."""
-        if fields.get("other"):
+        if fields.get("other") and not fields.get("grid"):
             yield from self._answer_both(session, fields)
         else:
             yield from super().answer(session, fields)
@@ -312,8 +335,10 @@ class PredictTab(JobTab):
         if isinstance(result, PredictResult):
             source = given_source(result, run.entry.title)
             found[self.source], found[self.given] = source, source.key
+            found[self.file] = kept_file(source, self.page.shelf.folder())
             found[self.marker] = self._marker(source, result.past_frames / result.duets[0].fps)
-        others = [each.result for each in run.beside[:1] if isinstance(each.result, PredictResult)]
+        beside = () if "grid" in run.kept.controls else run.beside[:1]
+        others = [each.result for each in beside if isinstance(each.result, PredictResult)]
         found[self.other] = gr.update(value=run.kept.controls.get("other") if others else "")
         if others and isinstance(result, PredictResult):
             found |= {

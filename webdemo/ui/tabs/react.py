@@ -58,7 +58,7 @@ class ReactTab(ActorTab):
 
     label = "React"
     prefix = "react-"
-    restored = ("method", "other", "about", "given", "person", "folded")
+    restored = ("file", "found", "method", "other", "about", "given", "person", "folded")
 
     def request(self, fields: Mapping[str, Any]) -> ReactRequest:
         """See :meth:`JobTab.request`."""

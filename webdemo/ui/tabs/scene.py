@@ -39,7 +39,8 @@ from webdemo.ui.text.panels import status
 from webdemo.ui.text.words import error_line
 from webdemo.view.payload import player_payload
 
-from .job import QUIET, JobTab, Updates
+from .job import QUIET, Updates
+from .sweeps import SweepTab
 
 EMPTY_TEXT = (
     "Write a little story, or pick an example, and press Generate\n"
@@ -69,7 +70,7 @@ FUTURE_SECONDS = 4.0
 """Length of a future without words."""
 
 
-class SceneTab(JobTab):
+class SceneTab(SweepTab):
     """A story → a scene."""
 
     label = "Scene"
@@ -100,6 +101,10 @@ class SceneTab(JobTab):
         beats = split_sentence(words) or beats_in(story_fields(fields["story"])["beats"], start, end)
         return SceneRequest(beats=beats, motion=duet, start=start, end=end, **plain)
 
+    def cell_fields(self, fields: Mapping[str, Any], cell: Mapping[str, Any]) -> dict[str, Any]:
+        """The story as it is laid out, with the cell's settings."""
+        return {**fields, "story": laid_out(fields), **cell}
+
     def title(self, request: SceneRequest) -> str:
         """The words of its beats."""
         return story_title(request.to_dict()["beats"])
@@ -119,6 +124,7 @@ class SceneTab(JobTab):
                 with gr.Column(elem_classes="pd-panel pd-settings", min_width=0):
                     self.samples = self._samples()
                     self._sampling()
+                    self._sweeps()
                 with gr.Accordion("The story as text", open=False, elem_classes="pd-panel pd-about"):
                     self.text = gr.Textbox(
                         label="TOML to copy, change and keep", lines=8, max_lines=24, elem_id=self._id("text"),
@@ -130,6 +136,7 @@ class SceneTab(JobTab):
             "guidance": self.guidance, "steps": self.steps, "damping": self.damping,
         }  # fmt: skip
         self._wire_run([self.go.click, self.prompt.submit], record)
+        self._wire_sweeps()
         self._wire_parts()
         self._wire_story()
 
@@ -175,7 +182,7 @@ class SceneTab(JobTab):
 
     def starts(self) -> dict[str, gr.Button]:
         """All buttons that start a run."""
-        return {"go": self.go, "remake": self.remake, "futures": self.futures}
+        return {**super().starts(), "remake": self.remake, "futures": self.futures}
 
     # ---- events ----------------------------------------------------------------------------------
 
@@ -264,6 +271,9 @@ class SceneTab(JobTab):
 
     def answer(self, session: str, fields: Mapping[str, Any]) -> Iterator[Updates]:
         """Runs the story; parts appear as they are finished and stay if the run is cancelled."""
+        if fields.get("grid"):
+            yield from super().answer(session, fields)
+            return
         part = fields.get("part")
         if part is not None:
             wanted = self.part(fields, fields["record"], ahead=part == "futures")

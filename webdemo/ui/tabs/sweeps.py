@@ -56,6 +56,10 @@ class SweepTab(JobTab):
         """The tab's fields for a cell."""
         return {**fields, **cell}
 
+    def beside_grid(self, made: Mapping[str, Result]) -> dict[str, Any]:
+        """Further updates of the tab when it shows a grid of these results."""
+        return {}
+
     # ---- layout ----------------------------------------------------------------------------------
 
     def _sweeps(self) -> None:
@@ -129,7 +133,7 @@ class SweepTab(JobTab):
         spent = sum(map(total, made.values()))
         notes = {note: None for result in made.values() for note in notes_lines(result).splitlines() if note}
         yield self._updates(
-            **grid_shown(grid, made, title),
+            **grid_shown(grid, made, title) | self.beside_grid(made),
             line=status(f"{len(wanted)} results done in {seconds(spent)}.", tone="done") + "".join(notes),
             under=gr.update(visible=True),
         )
@@ -147,7 +151,8 @@ class SweepTab(JobTab):
             if whole_grid
             else Named([""] * len(results), [""], [], tuple(names))
         )
-        shown = grid_shown(grid, dict(zip(names, results, strict=True)), str(about["title"]))
+        made = dict(zip(names, results, strict=True))
+        shown = grid_shown(grid, made, str(about["title"])) | self.beside_grid(made)
         return found | {self.outputs[name]: update for name, update in shown.items()}
 
 
