@@ -92,8 +92,8 @@ def matched_pairs(sets: Sequence[Sequence[Stimulus]]) -> list[Pair]:
         )
     motions = [each.motion for each_set in sets for each in each_set]
     for pair in pairs:
-        first, second = (motions[number] for number in pair.motions)
-        if first.skeleton.joint_names != second.skeleton.joint_names or type(first) is not type(second):
+        one, other = (motions[number] for number in pair.motions)
+        if one.skeleton.joint_names != other.skeleton.joint_names or type(one) is not type(other):
             raise InputError(
                 "Some of these motions have different joints or numbers of people, so they cannot be compared: "
                 "choose others."

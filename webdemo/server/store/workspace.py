@@ -127,7 +127,7 @@ def _put_beside(stored: Sequence[Mapping[str, Any]], taken: Sequence[Taken]) -> 
     beside = groups([each.get("compared") for each in kept], [run.motion for run in taken])
     for number, run in enumerate(taken):
         others = [taken[other] for other in beside.get(number, ())]
-        told = {
+        told: dict[str, Any] = {
             "controls": plain_controls(kept[number].get("controls")),
             "compared": [o.row["id"] for o in others],
         }

@@ -104,7 +104,7 @@ def uploaded(paths: Sequence[str]) -> list[Stimulus]:
         try:
             source = read_source(path)
             people = source.people
-            motion = Duet(*people[:2]) if len(people) > 1 else people[0]
+            motion = Duet(people[0], people[1]) if len(people) > 1 else people[0]
         except InputError as error:
             raise InputError(f"{path.name}: {error}") from None
         found.append(Stimulus("", motion, name=path.stem))
