@@ -60,7 +60,7 @@ function next({ pair, ticket: sent, wait, done, total }) {
   find(".pst-progress").textContent = `Pair ${done + 1} of ${total}`;
   const [sample] = pair.samples;
   if (innerWidth < NARROW) {
-    Object.assign(sample, { columns: [""], rows: ["1", "2"] });
+    Object.assign(sample, { columns: [""], rows: ["", ""] });
     buttons[0].lastChild.data = "The upper one";
     buttons[2].lastChild.data = "The lower one";
   }

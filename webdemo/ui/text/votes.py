@@ -47,7 +47,8 @@ def _people(number: int) -> str:
 def _agreement(result: StudyResult) -> str:
     if result.agreement is None:
         return "No pair has votes of two people yet, so their agreement is not known."
-    alpha = "not defined, since all votes are the same" if result.alpha is None else f"{result.alpha:.2f}"
+    known = result.alpha is not None
+    alpha = f"{result.alpha:.2f}".replace("-", "−") if known else "not defined, since all votes are the same"
     return f"Agreement: Krippendorff's α {alpha}; {result.agreement:.0%} of all pairs of votes on a pair are the same."
 
 
