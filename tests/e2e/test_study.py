@@ -1,4 +1,4 @@
-"""A blind study in a browser, from a grid to the result: the owner, a voter with the link, the owner again."""
+"""A grid's link, a comparison and a blind study in a browser: the owner, a voter with the link, the owner again."""
 
 from __future__ import annotations
 
@@ -47,7 +47,25 @@ def test_a_grid_is_linked_compared_and_voted_on(lab: str, open_page: Callable, t
     expect(linked.locator("#player .pdd-cell-text")).to_have_text(["damping 0", "damping 0.7"])
     linked.close()
 
+    owner.fill("#prompt textarea", "They bow.")
+    owner.click("#generate:enabled")
+    expect(owner.locator("#player .pdd-title")).to_have_text("They bow.", timeout=SLOW)
     owner.get_by_role("tab", name="History").click()
+    owner.check(".pdn-card >> nth=1 >> [data-choose]")
+    owner.click("#history-compare")
+    owner.wait_for_function(f"{CELLS} === 2")
+    expect(owner.locator("#player .pdd-cell-text").first).to_have_text("They bow., seed 0")
+    owner.locator("#player .pdd-cell").nth(1).scroll_into_view_if_needed()
+    box = owner.locator("#player .pdd-cell").nth(1).bounding_box()
+    assert box
+    owner.mouse.click(box["x"] + 30, box["y"] + 30)
+    owner.wait_for_function("window.__pasdedeux.player.focus === 1")
+    owner.click("#player .pdd-back")
+    owner.wait_for_function(f"{CELLS} === 2 && window.__pasdedeux.player.focus === null")
+
+    owner.get_by_role("tab", name="History").click()
+    owner.click(".pdn-card:has-text('grid of 2') .pdn-thumb")
+    expect(owner.locator(".pdn-count")).to_have_text("1 of 2 chosen")
     owner.click("#history-study")
     expect(owner.locator("#study-way input")).to_have_value(
         "Damping: damping 0 (1) against damping 0.7 (1)", timeout=SLOW

@@ -74,7 +74,10 @@ def matched_pairs(sets: Sequence[Sequence[Stimulus]]) -> list[Pair]:
         InputError: for fewer than two sets, too many pairs or none at all, or motions that cannot be compared.
     """
     if not 2 <= len(sets) <= MOST_SETS:
-        raise InputError(f"A study compares 2 to {MOST_SETS} sets of motions, not {len(sets)}.")
+        raise InputError(
+            f"A study compares 2 to {MOST_SETS} sets of motions, not {len(sets)}: choose runs that differ in a "
+            "setting, tag them, or upload motions as another set."
+        )
     if sum(map(len, sets)) > MOST_STIMULI:
         raise InputError(f"A study holds {MOST_STIMULI} motions at most: choose fewer runs.")
     starts = np.cumsum([0, *map(len, sets)]).tolist()

@@ -6,6 +6,7 @@ import os
 import re
 import time
 import zipfile
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -17,7 +18,7 @@ os.environ.setdefault("GRADIO_ANALYTICS_ENABLED", "False")
 import gradio as gr
 
 from motion import InputError
-from motion.formats import write
+from motion.formats import read, write
 from motion.layouts import LAYOUTS
 from tests.ui.stub_engine import walking
 from tests.ui.tab_events import built, changes
@@ -25,6 +26,7 @@ from webdemo.inference.live import LiveRequest
 from webdemo.inference.methods import variants
 from webdemo.inference.requests import ReactRequest
 from webdemo.ui.components.live import BATCH, REPEATED
+from webdemo.ui.history import Entry, Kept, Opened
 from webdemo.ui.tabs.react import ReactTab
 from webdemo.ui.text.examples import example_clips
 from webdemo.view.payload import unpack_positions
@@ -368,3 +370,21 @@ def test_the_order_of_fifteen_joints_is_found_and_can_be_set(tab: ReactTab, tmp_
     assert "in the order of K3HI" in last["found"]
     *_, again = [changes(READ, u) for u in tab.read_again(last["source"], "auto", "auto", None, "sbu15")]
     assert "in the order of SBU" in again["found"]
+
+
+def test_an_opened_run_brings_back_its_file_its_person_and_its_part(tab: ReactTab) -> None:
+    pair = walking(3.0)
+    request = ReactRequest(actor=replace(pair.b.cut(15, 75), name="sub/ject 1.bvh"), steps=1)
+    *_, result = tab.page.engine.run(request)
+    entry = Entry(id="x", kind="react", title="t", state="done", request=request.to_dict())
+    kept = Kept(controls={"person": "b", "start": 0.5, "end": 2.5}, people=pair.people)
+    found = tab.opened(Opened(entry=entry, result=result, kept=kept))
+    assert found[tab.person] == gr.update(choices=BOTH, visible=True, value="b")
+    assert (found[tab.begin]["value"], found[tab.end]["value"]) == (0.5, 2.5)
+    assert Path(found[tab.file]).name == "ject-1.npz"
+    restored = read(found[tab.file])
+    np.testing.assert_allclose(restored.positions, pair.positions, atol=1e-6)
+    by_link = tab.opened(Opened(entry=entry, result=result, kept=Kept(controls={"person": "x"})))
+    assert by_link[tab.file] is None and by_link[tab.begin]["value"] == 0.0
+    wrong = tab.opened(Opened(entry=entry, result=result, kept=replace(kept, controls={"person": ["b"]})))
+    assert wrong[tab.person]["value"] == "a", "a workspace made by hand"

@@ -49,7 +49,7 @@ def test_settings_that_differ_are_offered_with_the_sets_that_they_make() -> None
     offered = labels(runs)
     assert offered[0].startswith("Method: ") and "BiGraphDiff (2)" in offered[0]
     assert "Guidance: guidance 2.5 (3) against guidance 4 (1)" in offered
-    assert offered[-1] == "All 4 motions as one set, against uploaded ones"
+    assert offered[-1] == "One set of all chosen motions (4), against uploaded ones"
     assert not any(label.startswith(("Steps", "Tag")) for label in offered)
     assert next(i for i, label in enumerate(offered) if label.startswith("Seed")) > 1, (
         "seeds are rarely meant"

@@ -154,6 +154,7 @@ def test_a_story_under_several_settings_makes_a_grid(tmp_path: Path) -> None:
         (0.0, 1, 1, 2), (0.7, 1, 1, 2), (0.0, 2, 1, 2), (0.7, 2, 1, 2),
     ]  # fmt: skip
     assert len(last["player"]["value"]["samples"][0]["cells"]) == 4
+    assert [beat["words"] for beat in last["story"]["value"]["beats"]] == [b.words for b in asked[0].beats]
 
 
 def test_the_best_and_the_worst_are_marked() -> None:

@@ -70,7 +70,7 @@ def ways(found: Sequence[Candidate]) -> list[tuple[str, str]]:
         if 2 <= len(made) <= MOST_SETS:
             counts = " against ".join(f"{label[:40]} ({len(each)})" for label, each in made.items())
             offered.append((f"{name}: {counts}", name))
-    return [*offered, (f"All {len(found)} motions as one set, against uploaded ones", ONE_SET)]
+    return [*offered, (f"One set of all chosen motions ({len(found)}), against uploaded ones", ONE_SET)]
 
 
 def sets_by(found: Sequence[Candidate], setting: str) -> dict[str, list[Stimulus]]:

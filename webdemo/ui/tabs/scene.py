@@ -10,7 +10,7 @@ from typing import Any
 import gradio as gr
 
 from motion import Duet, InputError
-from webdemo.inference.requests import MAX_SEED, Progress
+from webdemo.inference.requests import MAX_SEED, Progress, Result
 from webdemo.inference.story import Beat, SceneProgress, SceneRequest, read_words, split_sentence, write_story
 from webdemo.inference.story.beats import seconds_of, story_title
 from webdemo.ui.components.exports import Record
@@ -104,6 +104,11 @@ class SceneTab(SweepTab):
     def cell_fields(self, fields: Mapping[str, Any], cell: Mapping[str, Any]) -> dict[str, Any]:
         """The story as it is laid out, with the cell's settings."""
         return {**fields, "story": laid_out(fields), **cell}
+
+    def beside_grid(self, made: Mapping[str, Result]) -> dict[str, Any]:
+        """The story of the first cell, without its motion: the cells differ in it."""
+        request = SceneRequest.from_dict(next(iter(made.values())).manifest["request"])
+        return {"story": gr.update(value=value_of(request)), "text": write_story(request)}
 
     def title(self, request: SceneRequest) -> str:
         """The words of its beats."""
