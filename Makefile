@@ -16,7 +16,8 @@ demo: $(VENV)/.runtime
 test: $(VENV)/.tests
 	$(BIN)/ruff check .
 	$(BIN)/mypy
-	$(BIN)/python -m pytest
+	OMP_NUM_THREADS=1 $(BIN)/python -m pytest -n 2 --dist loadfile --ignore tests/e2e
+	$(BIN)/python -m pytest tests/e2e
 	! $(BIN)/python -c 'import ray' 2>/dev/null || $(BIN)/python -m pytest -m ray tests/server/cluster
 
 lint: $(VENV)/.tests

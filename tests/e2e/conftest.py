@@ -19,6 +19,7 @@ from urllib.parse import urlsplit
 
 import pytest
 
+from .plain import serve
 from .playing import press
 
 REPOSITORY = Path(__file__).resolve().parents[2]
@@ -64,24 +65,6 @@ def chromium():
         browser.close()
 
 
-@pytest.fixture
-def watch_hosts() -> Iterator[Callable]:
-    """``watch_hosts(page)`` records every request's host; the test fails on any but this machine."""
-    foreign: list[str] = []
-
-    def watch(page) -> None:
-        def note(url: str) -> None:
-            parts = urlsplit(url)
-            if parts.scheme in ("http", "https", "ws", "wss") and (parts.hostname or "") not in LOOPBACK:
-                foreign.append(url)
-
-        page.on("request", lambda request: note(request.url))
-        page.on("websocket", lambda websocket: note(websocket.url))
-
-    yield watch
-    assert not foreign, f"the page asked other hosts: {sorted(set(foreign))}"
-
-
 @pytest.fixture(scope="session")
 def _shared_context(chromium):
     """One profile for most pages, so that the browser's cache spares loading the page's scripts anew."""
@@ -90,32 +73,84 @@ def _shared_context(chromium):
     context.close()
 
 
-@pytest.fixture
-def open_page(chromium, _shared_context, watch_hosts) -> Iterator[Callable]:
-    """``open_page(url, width=…, height=…)`` gives a watched page; errors of scripts and of policy fail the test.
+class Tabs:
+    """Watched tabs of the browser: errors of scripts and of policy, and requests to other hosts, are noted."""
 
-    ``before(page)`` runs before the page loads; other options make a browser profile of its own.
-    """
-    opened = []
-    errors: list[str] = []
+    def __init__(self, chromium, shared_context) -> None:
+        self.chromium, self.shared_context = chromium, shared_context
+        self.opened: list = []
+        self.errors: list[str] = []
+        self.foreign: list[str] = []
 
-    def open_(url: str, *, width: int = 1280, height: int = 800, before: Callable | None = None, **options):
-        context = chromium.new_context(**options) if options else _shared_context
+    def open(
+        self, url: str, *, width: int = 1280, height: int = 800, before: Callable | None = None, **options
+    ):
+        """A tab at an address.
+
+        Args:
+            url: the address.
+            width, height: of the window in pixels.
+            before: is called with the tab before it loads.
+            options: make a browser profile of its own.
+        """
+        context = self.chromium.new_context(**options) if options else self.shared_context
         page = context.new_page()
         page.set_viewport_size({"width": width, "height": height})
-        opened.append(context if options else page)
-        watch_hosts(page)
-        page.on("pageerror", lambda error: errors.append(str(error)))
-        page.on("console", lambda said: _note_policy(said.text, errors))
+        self.opened.append(context if options else page)
+        self.watch(page)
         if before:
             before(page)
         page.goto(url)
         return page
 
-    yield open_
-    for context_or_page in opened:
-        context_or_page.close()
-    assert not errors, f"errors in the page: {errors}"
+    def watch(self, page) -> None:
+        """Notes what goes wrong in a tab."""
+        page.on("request", lambda request: self._note_host(request.url))
+        page.on("websocket", lambda websocket: self._note_host(websocket.url))
+        page.on("pageerror", lambda error: self.errors.append(str(error)))
+        page.on("console", lambda said: _note_policy(said.text, self.errors))
+
+    def check(self) -> None:
+        """Fails where something was noted since the last check."""
+        errors, foreign = self.errors[:], sorted(set(self.foreign))
+        self.errors.clear()
+        self.foreign.clear()
+        assert not errors, f"errors in the page: {errors}"
+        assert not foreign, f"the page asked other hosts: {foreign}"
+
+    def close(self) -> None:
+        """Closes all tabs."""
+        for context_or_page in self.opened:
+            context_or_page.close()
+
+    def _note_host(self, url: str) -> None:
+        parts = urlsplit(url)
+        if parts.scheme in ("http", "https", "ws", "wss") and (parts.hostname or "") not in LOOPBACK:
+            self.foreign.append(url)
+
+
+@pytest.fixture
+def open_page(chromium, _shared_context) -> Iterator[Callable]:
+    """:meth:`Tabs.open`, for tabs that are closed after the test."""
+    tabs = Tabs(chromium, _shared_context)
+    yield tabs.open
+    tabs.close()
+    tabs.check()
+
+
+@pytest.fixture(scope="module")
+def kept_tabs(chromium, _shared_context) -> Iterator[Tabs]:
+    """Tabs that the tests of a module share, since a page takes seconds to load and to draw for the first time."""
+    tabs = Tabs(chromium, _shared_context)
+    yield tabs
+    tabs.close()
+
+
+@pytest.fixture
+def open_kept(kept_tabs: Tabs) -> Iterator[Callable]:
+    """:meth:`Tabs.open`, for tabs that stay open until the module's tests are over."""
+    yield kept_tabs.open
+    kept_tabs.check()
 
 
 def _note_policy(said: str, errors: list[str]) -> None:
@@ -166,20 +201,47 @@ def start_server() -> Iterator[Callable[..., str]]:
 
 @pytest.fixture(scope="session")
 def player_url(start_server) -> str:
+    """The player in a Gradio page with nothing else."""
     return start_server(["tests/e2e/harness.py", "{port}"])
 
 
-@pytest.fixture
-def player(open_page, player_url):
-    """``player(button)`` opens the page, presses one of the harness' buttons and waits for motion."""
+@pytest.fixture(scope="session")
+def plain_url() -> Iterator[str]:
+    """The player in a page without Gradio."""
+    with serve() as url:
+        yield url
 
-    def open_(button: str | None = "load", *, theme: str = "light", **options):
-        page = open_page(f"{player_url}?__theme={theme}", **options)
-        page.wait_for_selector(".pdd-styled", timeout=90_000)
-        page.wait_for_function("window.__pasdedeux.mode !== null", timeout=90_000)
-        if button:
-            press(page, button)
-            page.wait_for_function("window.__pasdedeux.frame > 0", timeout=90_000)
-        return page
+
+@pytest.fixture
+def player(open_kept, kept_tabs: Tabs, plain_url):
+    """``player(button)`` makes a new player in the plain page, presses a button and waits for motion."""
+
+    def open_(button: str | None = "load", *, theme: str = "light", width: int = 1280, height: int = 800):
+        if not kept_tabs.opened:
+            open_kept(plain_url)
+            _opened(kept_tabs.opened[0], None)
+        (page,) = kept_tabs.opened
+        page.set_viewport_size({"width": width, "height": height})
+        page.evaluate("theme => window.restart(theme)", theme)
+        return _opened(page, button)
 
     return open_
+
+
+@pytest.fixture
+def player_in_page(open_page, player_url):
+    """The same as ``player`` in a Gradio page of its own."""
+
+    def open_(button: str | None = "load", *, theme: str = "light", **options):
+        return _opened(open_page(f"{player_url}?__theme={theme}", **options), button)
+
+    return open_
+
+
+def _opened(page, button: str | None):
+    page.wait_for_selector(".pdd-styled", timeout=90_000)
+    page.wait_for_function("window.__pasdedeux.mode !== null", timeout=90_000)
+    if button:
+        press(page, button)
+        page.wait_for_function("window.__pasdedeux.frame > 0", timeout=90_000)
+    return page

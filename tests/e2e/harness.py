@@ -4,7 +4,9 @@ from __future__ import annotations
 
 import os
 import sys
+from collections.abc import Callable
 from pathlib import Path
+from typing import Any
 
 os.environ.setdefault("GRADIO_ANALYTICS_ENABLED", "False")
 sys.path.insert(0, str(Path(__file__).resolve().parents[2]))
@@ -97,6 +99,29 @@ def side_by_side() -> dict[str, object]:
     return build_payload([sample], skeleton=SMPL22)
 
 
+def ask_nobody() -> dict[str, object]:
+    """A short motion that plays twice and then rests, as the one that is there before anything is asked."""
+    return {**player_payload(walking_duet(1.0)), "rounds": 2}
+
+
+UPDATES: dict[str, Callable[[], dict[str, Any]]] = {
+    "load": lambda: show(
+        player_payload(walking_duet(), title="two people walk up to each other and shake hands")
+    ),
+    "several": lambda: show(
+        player_payload([walking_duet(phase=0.8 * i) for i in range(4)], title="four takes")
+    ),
+    "hostile": lambda: show(player_payload(walking_duet(roles=HOSTILE), title=" ".join(HOSTILE))),
+    "predicted": lambda: show(player_payload(walking_duet(), ghost=walking_duet(phase=0.5), past_until=60)),
+    "busy": lambda: busy("Step 12 of 50 ${1+1}", progress=0.24),
+    "clear": lambda: show(None),
+    "far": lambda: show(player_payload(apart_duet())),
+    "beside": lambda: show(side_by_side()),
+    "arrival": lambda: show(ask_nobody()),
+}
+"""What the harness' buttons do to the player, by their names."""
+
+
 def build() -> gr.Blocks:
     with gr.Blocks(title="Player") as page:
         with gr.Tab("first"):
@@ -104,43 +129,11 @@ def build() -> gr.Blocks:
         with gr.Tab("second"):
             late = MotionPlayer(elem_id="late", empty_text="Nothing here yet")
         with gr.Row():
-            load = gr.Button("load")
-            several = gr.Button("several")
-            hostile = gr.Button("hostile")
-            predicted = gr.Button("predicted")
-            working = gr.Button("busy")
-            clear = gr.Button("clear")
-            load_late = gr.Button("load second")
-            far = gr.Button("far")
-            beside = gr.Button("beside")
-            arrival = gr.Button("arrival")
-            hide = gr.Button("hide")
-            unhide = gr.Button("show")
-        duet = walking_duet()
-        load.click(
-            lambda: show(player_payload(duet, title="two people walk up to each other and shake hands")),
-            None,
-            player,
-        )
-        several.click(
-            lambda: show(player_payload([walking_duet(phase=0.8 * i) for i in range(4)], title="four takes")),
-            None,
-            player,
-        )
-        hostile.click(
-            lambda: show(player_payload(walking_duet(roles=HOSTILE), title=" ".join(HOSTILE))), None, player
-        )
-        predicted.click(
-            lambda: show(player_payload(duet, ghost=walking_duet(phase=0.5), past_until=60)), None, player
-        )
-        working.click(lambda: busy("Step 12 of 50 ${1+1}", progress=0.24), None, player)
-        clear.click(lambda: show(None), None, player)
-        load_late.click(lambda: show(player_payload(duet)), None, late)
-        far.click(lambda: show(player_payload(apart_duet())), None, player)
-        beside.click(lambda: show(side_by_side()), None, player)
-        arrival.click(lambda: show({**player_payload(walking_duet(1.0)), "rounds": 2}), None, player)
-        hide.click(lambda: gr.update(visible=False), None, player)
-        unhide.click(lambda: gr.update(visible=True), None, player)
+            for name, update in UPDATES.items():
+                gr.Button(name).click(update, None, player)
+            gr.Button("load second").click(lambda: show(player_payload(walking_duet())), None, late)
+            gr.Button("hide").click(lambda: gr.update(visible=False), None, player)
+            gr.Button("show").click(lambda: gr.update(visible=True), None, player)
     return page
 
 

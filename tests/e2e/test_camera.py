@@ -10,7 +10,7 @@ from pathlib import Path
 import pytest
 from playwright.sync_api import Page, expect
 
-from .conftest import FLAGS
+from .conftest import FLAGS, Tabs
 
 pytestmark = [pytest.mark.e2e, pytest.mark.slow]
 
@@ -27,7 +27,7 @@ def lab(start_server: Callable[..., str], tmp_path_factory: pytest.TempPathFacto
 
 
 @pytest.fixture
-def filming(chromium, lab: str, tmp_path: Path, watch_hosts: Callable) -> Iterator[Page]:
+def filming(chromium, lab: str, tmp_path: Path) -> Iterator[Page]:
     """The React tab in a browser whose webcam shows the film over and over."""
     flags = [
         "--use-fake-ui-for-media-stream",
@@ -37,15 +37,14 @@ def filming(chromium, lab: str, tmp_path: Path, watch_hosts: Callable) -> Iterat
     browser = chromium.browser_type.launch(executable_path=shutil.which("chromium"), args=[*FLAGS, *flags])
     page = browser.new_page(viewport={"width": 1280, "height": 900})
     page.set_default_timeout(SLOW)
-    refused: list[str] = []
-    page.on("console", lambda said: refused.append(said.text) if "Content Security" in said.text else None)
-    watch_hosts(page)
+    tabs = Tabs(chromium, None)
+    tabs.watch(page)
     page.goto(lab)
     page.get_by_role("tab", name="React").click()
     page.click("#react-camera .pdcam-open")
     yield page
     browser.close()
-    assert not refused, refused
+    tabs.check()
 
 
 def as_mjpeg(film: Path, path: Path) -> Path:

@@ -172,11 +172,11 @@ def test_bodies_keep_their_colours_in_the_dark(player):
     assert pixels[5:40, 200:400].mean() < 60
 
 
-def test_without_bodies_there_are_skeletons(open_page, player_url):
+def test_without_bodies_there_are_skeletons(open_page, plain_url):
     def without_bodies(page):
         page.route("**/bodies/*.json", lambda route: route.abort())
 
-    page = open_page(player_url, before=without_bodies)
+    page = open_page(plain_url, before=without_bodies)
     page.wait_for_selector(".pdd-styled", timeout=30_000)
     page.wait_for_function("window.__pasdedeux.mode !== null", timeout=30_000)
     press(page, "load")

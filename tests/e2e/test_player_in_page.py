@@ -4,14 +4,15 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from playwright.sync_api import expect
 
 from .playing import drag, has_color, hook, pause, press, stage_pixels, until, yaw
 
 pytestmark = pytest.mark.e2e
 
 
-def test_theme_follows_the_page(player):
-    page = player()
+def test_theme_follows_the_page(player_in_page):
+    page = player_in_page()
     light = stage_pixels(page)[5:40, 200:400].mean()
     page.evaluate("document.body.classList.add('dark')")
     until(page, "document.querySelector('.pdd').dataset.theme === 'dark'")
@@ -24,8 +25,8 @@ def test_theme_follows_the_page(player):
     until(page, "document.querySelector('.pdd').dataset.theme === 'light'")
 
 
-def test_hiding_and_showing_leaves_no_loop_behind(player):
-    page = player()
+def test_hiding_and_showing_leaves_no_loop_behind(player_in_page):
+    page = player_in_page()
     for _ in range(3):
         press(page, "hide")
         page.wait_for_selector(".pdd", state="detached")
@@ -37,8 +38,8 @@ def test_hiding_and_showing_leaves_no_loop_behind(player):
     pause(page)
 
 
-def test_a_closed_tab_gets_its_motion_when_it_opens(player):
-    page = player()
+def test_a_closed_tab_gets_its_motion_when_it_opens(player_in_page):
+    page = player_in_page()
     pause(page)
     press(page, "load second")
     page.get_by_role("tab", name="second").click()
@@ -49,8 +50,8 @@ def test_a_closed_tab_gets_its_motion_when_it_opens(player):
     assert hook(page, "loops") == 1
 
 
-def test_a_closed_tab_says_what_to_do_when_it_opens(player):
-    page = player(None)
+def test_a_closed_tab_says_what_to_do_when_it_opens(player_in_page):
+    page = player_in_page(None)
     page.get_by_role("tab", name="second").click()
     page.wait_for_selector("#late .pdd-empty-text:visible:has-text('Nothing here yet')")
     assert page.locator("#late .pdd-empty-more").inner_text() == ""
@@ -65,8 +66,8 @@ def test_the_empty_state_does_not_wait_for_the_3d_view(open_page, player_url):
     assert hook(page, "mode") is None
 
 
-def test_full_screen_and_back(player):
-    page = player()
+def test_full_screen_and_back(player_in_page):
+    page = player_in_page()
     height = "document.querySelector('.pdd-stage').clientHeight"
     before = page.evaluate(height)
     page.locator("[data-act=fullscreen]").click()
@@ -77,8 +78,8 @@ def test_full_screen_and_back(player):
 
 
 @pytest.mark.parametrize("size", [(360, 740), (390, 844), (1280, 800), (1920, 1080)])
-def test_fits_the_screen(player, size):
-    page = player("several", width=size[0], height=size[1])
+def test_fits_the_screen(player_in_page, size):
+    page = player_in_page("several", width=size[0], height=size[1])
     inside = page.evaluate("""() => {
         const box = document.querySelector('.pdd').getBoundingClientRect();
         return [...document.querySelectorAll('.pdd-stage, .pdd-foot, .pdd-tools, .pdd-range')]
@@ -90,8 +91,8 @@ def test_fits_the_screen(player, size):
     assert has_color(stage_pixels(page), blue=True) or size[0] < 400
 
 
-def test_touch_turns_the_scene(player):
-    page = player(width=390, height=844, has_touch=True, is_mobile=True)
+def test_touch_turns_the_scene(player_in_page):
+    page = player_in_page(width=390, height=844, has_touch=True, is_mobile=True)
     before = yaw(page)
     box = page.locator(".pdd-touch").bounding_box()
     session = page.context.new_cdp_session(page)
@@ -109,7 +110,7 @@ def test_touch_turns_the_scene(player):
     assert hook(page, "playing")
 
 
-def test_falls_back_to_restyle(player):
+def test_falls_back_to_restyle(player_in_page):
     """Another plotly may name its inside otherwise; the picture must be the same, only slower."""
 
     def rename(page):
@@ -119,7 +120,7 @@ def test_falls_back_to_restyle(player):
 
         page.route("**/plotly.min.js", answer)
 
-    page = player(before=rename)
+    page = player_in_page(before=rename)
     assert hook(page, "mode") == "restyle"
     before = np.array(hook(page, "eye"))
     drag(page, 200, 0)
@@ -141,7 +142,7 @@ def test_a_motion_that_waits_for_the_3d_view_is_announced(open_page, player_url)
     press(page, "load")
     busy = page.locator(".pdd-busy-text").first
     page.wait_for_function("/3D view/.test(document.querySelector('.pdd-busy-text')?.textContent)")
-    assert busy.is_visible()
+    expect(busy).to_be_visible(timeout=60_000)
     assert not page.locator(".pdd-empty").first.is_visible(), "it does not ask for what is there"
     for route in held:
         route.continue_()

@@ -34,7 +34,7 @@ from webdemo.server.queue.turns import Batcher
 from webdemo.server.store.personal_files import keep_files_apart, visitors_folder
 from webdemo.server.store.recorder import Recorder
 from webdemo.server.store.scratch import Scratch
-from webdemo.ui.page import build_page, launch_options
+from webdemo.ui.page import build_page, launch_options, start_queue
 from webdemo.ui.runs import EngineLike, Loader
 
 from .memory import give_back
@@ -107,7 +107,7 @@ def _mount(app: FastAPI, page: gr.Blocks, settings: Settings) -> None:
     """Mounts the page in the application and closes what Gradio leaves open when mounted."""
     page.state_session_capacity = PAGES
     page.max_threads = settings.queue + 64  # each waiting run holds a thread
-    page.queue(default_concurrency_limit=4, max_size=2 * settings.queue + 64)
+    start_queue(page, max_size=2 * settings.queue + 64)
     options = launch_options() | {
         "allowed_paths": [],
         "server_name": settings.host,

@@ -76,6 +76,13 @@ def test_gradios_own_check_of_files_is_on(local: TestClient) -> None:
     assert mounted.get_blocks().has_launched
 
 
+def test_an_idle_queue_is_looked_into_seldom(local: TestClient) -> None:
+    """Gradio's own looks every millisecond, which takes a tenth of a core."""
+    (mounted,) = [r.app for r in local.app.routes if hasattr(getattr(r, "app", None), "state_holder")]
+    queue = mounted.get_blocks()._queue
+    assert queue.sleep_when_free >= 0.01 and queue.progress_update_sleep_when_free >= 0.05
+
+
 def test_behind_an_unsaid_proxy_nobody_gets_in(local: TestClient) -> None:
     other = TestClient(local.app, base_url=HERE, client=("203.0.113.9", 5))
     answer = other.get("/config")

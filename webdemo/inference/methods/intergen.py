@@ -18,7 +18,7 @@ def load(folder: Path) -> Pipeline:
 METHOD = Method(
     name="intergen",
     label="InterGen",
-    summary="Generates two people from a sentence, or a partner for a given person whose whole motion it sees.",
+    summary="Generates two people from a sentence, or a partner for one person from the whole motion.",
     tasks=("generate", "react", "scene"),
     takes=frozenset({"words", "actor", "either role"}),
     modes={"offline": "InterGen, person to person"},
