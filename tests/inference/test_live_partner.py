@@ -42,15 +42,15 @@ def answers(engine: Engine, person: np.ndarray, *, words_at: int | None = None, 
 
 @pytest.mark.usefixtures("short_segments")
 def test_no_frame_depends_on_a_later_one_over_several_segments(engine: Engine) -> None:
-    person = waver(4.0).positions
-    until = 83
+    person = waver(2.5).positions
+    until = 63
     changed = person.copy()
     changed[until:] = changed[until:] @ heading_matrix(2.0).T + [0.4, 0.1, -0.8]
-    first, second = answers(engine, person, words_at=60), answers(engine, changed, words_at=60)
+    first, second = answers(engine, person, words_at=45), answers(engine, changed, words_at=45)
     assert np.array_equal(first[:until], second[:until])
     assert not np.array_equal(first[until:], second[until:])
-    assert np.array_equal(answers(engine, person, words_at=60), first)
-    assert not np.array_equal(answers(engine, person, words_at=60, seed=2), first)
+    assert np.array_equal(answers(engine, person, words_at=45), first)
+    assert not np.array_equal(answers(engine, person, words_at=45, seed=2), first)
 
 
 @pytest.mark.usefixtures("short_segments")

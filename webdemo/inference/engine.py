@@ -16,7 +16,7 @@ from collections.abc import Iterator
 from dataclasses import replace
 from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
-from typing import Any
+from typing import Any, cast
 
 from motion import Duet, InputError
 
@@ -49,6 +49,7 @@ class Engine:
         self._lock = threading.Lock()
         self._loading: dict[str, threading.RLock] = {}
         self._pipelines: dict[str, Pipeline] = {}
+        self._warm: set[str] = set()
 
     @property
     def ready(self) -> bool:
@@ -122,14 +123,20 @@ class Engine:
         if name not in PARTNERS:
             raise InputError(f"There is no live partner {name!r:.40}: choose {' or '.join(PARTNERS)}.")
         from .pipelines.live_agent import LiveAgent
-        from .pipelines.live_partner import ReactingPartner
+        from .pipelines.live_partner import ReactingPartner, warm_up
 
         reacting: Any = self.pipeline("regennet")
-        moves = ReactingPartner(reacting, seed=seed)
-        if name == "regennet":
-            return moves
-        agent: Any = self.pipeline("agent")
-        return LiveAgent(agent.eye, moves)
+        eye = None if name == "regennet" else cast(Any, self.pipeline("agent")).eye
+        _take_threads(reacting)
+
+        def made() -> LivePartner:
+            partner = ReactingPartner(reacting, seed=seed)
+            return partner if eye is None else LiveAgent(eye, partner)
+
+        if name not in self._warm:  # PyTorch's first passes take a second
+            warm_up(made())
+            self._warm.add(name)
+        return made()
 
     def pipeline(self, name: str) -> Pipeline:
         """The pipeline that runs the requests of a method; loads it first if necessary.

@@ -20,7 +20,7 @@ from motion import SMPL22, Clip
 from webdemo.inference.actor import FPS, Placement
 from webdemo.inference.following import FollowingCleanup
 from webdemo.inference.noise import sample_noise
-from webdemo.inference.partner import Belief
+from webdemo.inference.partner import Belief, LivePartner
 from webdemo.inference.requests import ReactRequest
 
 from .regennet import ReGenNetPipeline, settle
@@ -42,6 +42,13 @@ PUSHED = 0.5
 FARTHEST = 6.0
 """Metres between the two from which on the partner begins anew: training scenes are not wider."""
 _FLAT = np.array([1.0, 0.0, 1.0])
+
+
+def warm_up(partner: LivePartner) -> None:
+    """Has a partner answer somebody who stands still for two seconds; what is first takes longest."""
+    standing = SMPL22.rest_positions()
+    for _ in range(2 * int(FPS)):
+        partner.step(standing - [0, standing[:, 1].min(), 0])
 
 
 class Segment:
