@@ -99,8 +99,11 @@ class Panel {
         lost: (gone) => this.say(gone ? "The connection was lost: trying again …" : "Connected again.", gone ? "error" : ""),
       });
       this.live = { source, connection, stream: null };
-      this.say(source.video ? "Opening camera and partner …" : "Opening the partner …");
-      const [payload] = await Promise.all([connection.open(), source.begin()]);
+      this.say(source.video ? "Opening the camera and the partner …" : "Opening the partner …");
+      await source.begin(); // takes seconds, in which nothing could be sent
+      if (over()) return;
+      const payload = await connection.open();
+      await source.play?.();
       if (over()) return;
       this.live.stream = new Stream(player, payload, ["you", NAMES[partner]]);
       if (source.video) {

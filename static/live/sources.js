@@ -21,7 +21,8 @@ class Pictures {
 
   async begin() {
     await this.detector.begin(1);
-    this.began = performance.now();
+    await this.detector.detect(this.video, 0); // the first picture takes seconds
+    this.began = performance.now() - 100;
     const count = (now, { presentedFrames }) => {
       this.first ??= presentedFrames;
       this.shown = presentedFrames - this.first + 1;
@@ -87,6 +88,9 @@ export class Video extends Pictures {
     await openFilm(this.video, this.file);
     this.video.currentTime = 0;
     await super.begin();
+  }
+
+  async play() {
     if (!this.over) await this.video.play();
   }
 

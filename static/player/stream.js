@@ -14,6 +14,7 @@ export class Stream {
     this.template = template;
     this.roles = roles;
     this.known = 0;
+    this.started = false;
   }
 
   /** Whether the player still shows this stream. */
@@ -23,7 +24,8 @@ export class Stream {
 
   /** Frames by which the picture lags behind what has come. */
   get lag() {
-    return this.known ? Math.max(0, this.known - 1 - this.player.clock.frame) : 0;
+    const { clock } = this.player;
+    return this.started && clock.playing ? Math.max(0, this.known - 1 - clock.frame) : 0;
   }
 
   /** Takes new frames, packed as in webdemo/view/payload.py, and a line about them. */
@@ -35,6 +37,10 @@ export class Stream {
     sample.live = { text };
     sample.frames = clock.frames = this.known;
     clock.limit = this.known - 1;
+    if (!this.started && this.known > 1) {
+      this.started = clock.loop = true;
+      clock.play();
+    }
     if (clock.playing && clock.limit - clock.frame > BEHIND) clock.frame = clock.limit - BUFFER;
     player.find(".pdd-range").max = String(this.known - 1);
     player.wake();
@@ -63,8 +69,6 @@ export class Stream {
     for (let person = 0; person < people; person++) room.set(values.subarray(3 * joints * frames * person, 3 * joints * frames * (person + 1)), 3 * joints * KEPT * person);
     player.sample.motion = { values: room, people, frames: KEPT, joints };
     this.known = frames;
-    player.clock.loop = true;
-    player.clock.play();
   }
 
   _append({ values, people, frames, joints }) {

@@ -114,5 +114,6 @@ def test_a_video_and_then_the_webcam_become_an_actor_who_gets_a_partner(filming:
         "ms to the partner", timeout=SLOW
     )
     people(filming, 2)
+    filming.wait_for_function("window.__pasdedeux.playing && window.__pasdedeux.frame > 5")
     filming.click("#react-stream .pdcam-stop")
     assert filming.evaluate("document.querySelector('#react-stream video').srcObject") is None

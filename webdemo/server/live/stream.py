@@ -22,7 +22,7 @@ from .messages import Message, Poses
 
 Array = NDArray[np.floating]
 
-LONGEST_GAP = 0.5
+LONGEST_GAP = 1.0
 """Seconds without a pose over which the person's motion is interpolated; a longer pause is left out."""
 LOST = 1.0
 """Seconds without anybody in the picture after which the page says so."""

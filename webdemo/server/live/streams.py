@@ -18,7 +18,7 @@ from .stream import LiveStream
 
 log = logging.getLogger(__name__)
 
-IDLE = 10.0
+IDLE = 20.0
 """Seconds without a message after which a stream is closed."""
 LONGEST = 600.0
 """Seconds that a stream may last."""
