@@ -1,8 +1,8 @@
 """The virtual agent in front of a stream: ``python -m training.evaluate.live --data DIR``.
 
 The recorded actors of the test lists of SBU and K3HI play as a stream: a second in their first pose, the clip, two
-seconds in their last pose. Counted is what the agent answers first, and when. The offline agent, which decides with
-the same looks, sees the clip alone.
+seconds in their last pose. Counted is what the agent answers first, and when. The offline agent decides on the same
+frames; it weighs all looks since the start, and the live one those of the last three seconds.
 """
 
 from __future__ import annotations
@@ -46,11 +46,16 @@ class Answer:
     milliseconds: float = 0.0
 
 
+def as_stream(person: Array) -> Array:
+    """A person (T, 22, 3) with stillness before and after."""
+    return np.concatenate([np.repeat(person[:1], BEFORE, 0), person, np.repeat(person[-1:], AFTER, 0)])
+
+
 def live(engine: Engine, person: Array) -> Answer:
     """The first answer to a person (T, 22, 3) who plays as a stream."""
     agent = engine.partner("agent")
     assert isinstance(agent, LiveAgent)
-    stream = np.concatenate([np.repeat(person[:1], BEFORE, 0), person, np.repeat(person[-1:], AFTER, 0)])
+    stream = as_stream(person)
     began = time.perf_counter()
     for frame, pose in enumerate(stream):
         agent.step(pose)
@@ -61,11 +66,11 @@ def live(engine: Engine, person: Array) -> Answer:
 
 
 def offline(engine: Engine, person: Array) -> Answer:
-    """The offline agent's decision on the clip."""
+    """The offline agent's decision on the same stream."""
     eye = engine.pipeline("agent").eye  # type: ignore[attr-defined]
-    decision = eye.decide(eye.looks(person))
+    decision = eye.decide(eye.looks(as_stream(person)))
     label = eye.recogniser.config.labels[decision.place] if decision.sure else None
-    return Answer(label, decision.look.frame / FPS)
+    return Answer(label, (decision.look.frame - BEFORE) / FPS)
 
 
 def row(name: str, answers: Sequence[Answer], wanted: Sequence[str]) -> str:

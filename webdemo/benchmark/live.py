@@ -68,7 +68,7 @@ def run_live(*, people: int, minutes: float, partner: str = "agent") -> dict[str
 
 
 async def _measure(url: str, server: Any, people: int, seconds: float, partner: str) -> dict[str, Any]:
-    poses = np.rint(1000 * read_actor(CLIP)[0].positions).astype("<i2")
+    poses = np.rint(1000 * read_actor(CLIP, person="a")[0].positions).astype("<i2")
     limits = httpx.Limits(max_connections=None)
     async with httpx.AsyncClient(base_url=url, timeout=60, limits=limits) as client:
         await ready(client, server)
