@@ -52,6 +52,7 @@ async function go(what, body = {}) {
     say(error.message === "Failed to fetch" ? "The server cannot be reached: check the network, then answer again." : error.message);
     show({ busy: "" });
     enable(ticket !== null);
+    find(".pst-stage").hidden = find(".pst-answers").hidden = ticket === null;
   }
 }
 
@@ -82,7 +83,7 @@ function end({ total, result }) {
     const row = find("tbody").insertRow();
     const decided = each.wins + each.losses;
     for (const text of [
-      `${each.first} against ${each.second}`, `${each.wins} to ${each.losses}, ${each.ties} ties`,
+      `${each.first} against ${each.second}`, `${each.wins} to ${each.losses}, ${each.ties} ${each.ties === 1 ? "tie" : "ties"}`,
       decided ? share(each.share) : "–", decided ? `${share(each.low)} to ${share(each.high)}` : "–",
     ]) row.insertCell().textContent = text;
   }

@@ -210,4 +210,16 @@ SCRIPTS = [
     get("a script in a run's key", f"/?run={SCRIPT}", 200, headers={"accept": "text/html"}, never=(SCRIPT,)),
 ]  # fmt: skip
 
-KNOWN = [*PATHS, *OTHERS_THINGS, *FORGED, *UPLOADS, *OTHER_SITES, *STRANGERS, *SCRIPTS]
+STUDIES = [
+    get("a study by another's run", "/study/{run}", 404, holds="no such study"),
+    get("a script in a study's key", f"/study/{SCRIPT}", 404, headers={"accept": "text/html"}, never=(SCRIPT,)),
+    get("a step out of a study", "/study/..%2f..%2fapp.py", 404),
+    get("the motions of studies", f"{API}/file={{data}}/studies/", 403, 404),
+    post("a vote by a program", "/study/{run}/vote", 403, body={"ticket": "x", "answer": "1"}, holds="own page"),
+    post("a vote from another site", "/study/{run}/vote", 403, headers={"origin": "https://example.invalid"},
+         body={"ticket": "x", "answer": "1"}, holds="Another site"),
+    post("a vote by a stranger", "/study/{run}/vote", 401, who="stranger", at="closed",
+         body={"ticket": "x", "answer": "1"}),
+]  # fmt: skip
+
+KNOWN = [*PATHS, *OTHERS_THINGS, *FORGED, *UPLOADS, *OTHER_SITES, *STRANGERS, *SCRIPTS, *STUDIES]

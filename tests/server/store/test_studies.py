@@ -203,6 +203,7 @@ def test_people_with_few_pairs_each_cover_all_of_them(studies: Studies) -> None:
 
 def test_a_closed_study_takes_no_votes_and_a_deleted_one_is_gone(studies: Studies) -> None:
     study = new(studies)
+    vote_all(studies, study.key, "done")
     shown = studies.hand_out(study.key, "ada")
     assert shown is not None
     studies.clock.now += SOONEST  # type: ignore[attr-defined]
@@ -213,6 +214,7 @@ def test_a_closed_study_takes_no_votes_and_a_deleted_one_is_gone(studies: Studie
     ):
         with pytest.raises(InputError, match="closed: nobody can vote"):
             act()
+    assert studies.hand_out(study.key, "done") is None, "whoever has voted on all pairs is thanked"
     studies.close(study.id, ME, closed=False)
     studies.vote(study.key, "ada", shown.ticket, "1")
     folder = studies.folder / study.id

@@ -157,14 +157,18 @@ class Voting:
     def _hand_out(self, key: str, person: str, address: str) -> Shown | None:
         with self.database.session.begin() as session:
             row = self._invited(session, key)
-            if row.closed:
-                raise InputError(_CLOSED)
-            rater = rater_of(session, row, person) or self._new_rater(session, row, person, address)
+            rater = rater_of(session, row, person)
+            if rater is None:
+                if row.closed:
+                    raise InputError(_CLOSED)
+                rater = self._new_rater(session, row, person, address)
             sent = session.scalars(select(Ballot).where(Ballot.rater_id == rater.id))
             seen = {ballot.pair: ballot for ballot in sent}
             left = [number for number in plan_of(rater) if number not in seen or not seen[number].answer]
             if not left:
                 return None
+            if row.closed:
+                raise InputError(_CLOSED)
             ballot = seen.get(left[0])
             if ballot is None:
                 ballot = Ballot(

@@ -207,7 +207,10 @@ class StudyPanel:
         if not mine:
             return gr.update(visible=False), gr.update(choices=[], value=None), *((gr.skip(),) * 4)
         found = mine.get(study or "") or next(iter(mine.values()))
-        choices = [(f"{each.title} ({count(each.votes, 'vote')})", each.id) for each in mine.values()]
+        choices = [
+            (f"{each.title} ({', '.join(each.sets)[:60]}; {count(each.votes, 'vote')})", each.id)
+            for each in mine.values()
+        ]
         html, file = self._result(found)
         return (
             gr.update(visible=True),

@@ -16,10 +16,9 @@ def count(number: int, what: str) -> str:
 
 def result_html(study: StudyEntry, result: StudyResult) -> str:
     """The result: a row a comparison, and how far they agree."""
+    checks = count(study.checks, "attention check") if study.checks else "no attention checks"
     state = "The voting has ended" if study.closed else "The voting goes on"
-    lines = [
-        f"“{study.question}” {count(study.pairs, 'pair')}, {count(study.checks, 'attention check')}. {state}."
-    ]
+    lines = [f"“{study.question}” {count(study.pairs, 'pair')}, {checks}. {state}."]
     if not study.votes:
         return status(f"{lines[0]} Nobody has voted yet.")
     left_out = f", {result.excluded} more left out by the attention checks" if result.excluded else ""
