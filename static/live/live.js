@@ -145,6 +145,7 @@ class Panel {
     while (!over() && !ended) {
       const seen = await source.next();
       if (!seen) break;
+      if (!this.root.offsetParent) return this.rest("You left this tab, so the live stream ended.");
       if (seen.people) drawPeople(this.drawing, seen.people, source.video.videoWidth, source.video.videoHeight);
       waiting.push(seen);
       if (waiting.length > WAITING) {

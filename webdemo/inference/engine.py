@@ -127,7 +127,6 @@ class Engine:
 
         reacting: Any = self.pipeline("regennet")
         eye = None if name == "regennet" else cast(Any, self.pipeline("agent")).eye
-        _take_threads(reacting)
 
         def made() -> LivePartner:
             partner = ReactingPartner(reacting, seed=seed)

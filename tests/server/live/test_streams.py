@@ -59,7 +59,7 @@ def test_a_person_has_one_stream_and_a_server_has_so_many() -> None:
     assert some.find(second.id, ADA) is second
     for name in "xy":
         some.open(Visitor(name, name), "regennet")
-    with pytest.raises(StreamRefused, match="3 people are live already"):
+    with pytest.raises(StreamRefused, match=r"as this server allows \(3\)"):
         some.open(EVE, "agent")
     some.open(ADA, "agent")  # in place of their own
     some.close(some.find(some.open(Visitor("x", "x"), "agent").id, Visitor("x", "x")))
@@ -85,6 +85,26 @@ def test_one_address_cannot_take_all_places() -> None:
     with pytest.raises(StreamRefused, match="2 people from your network"):
         some.open(Visitor("c", "c", address="203.0.113.9"), "agent")
     assert some.open(Visitor("d", "d", address="203.0.113.10"), "agent")
+
+
+def test_a_busy_server_takes_nobody_else_in() -> None:
+    some = streams()
+    clock = some.clock
+
+    class Slow(STUB.Mirror):
+        def step(self, pose: np.ndarray) -> np.ndarray:
+            clock.now += 0.02  # 0.6 seconds a second
+            return super().step(pose)
+
+    some.engine.partner = lambda name, seed=0: Slow()
+    stream = some.open(ADA, "agent")
+    for second in range(60):
+        some.answer(stream.id, ADA, read_message(poses([second, second + 0.1])))
+    assert some.pace == pytest.approx(0.02, rel=0.05)
+    with pytest.raises(StreamRefused, match="too busy for another live partner beside 1"):
+        some.open(EVE, "agent")
+    some.close(some.find(stream.id, ADA))
+    assert some.open(EVE, "agent"), "one is always let in"
 
 
 def test_idle_and_old_streams_are_closed() -> None:

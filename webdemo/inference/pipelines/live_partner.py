@@ -22,6 +22,7 @@ from webdemo.inference.following import FollowingCleanup
 from webdemo.inference.noise import sample_noise
 from webdemo.inference.partner import Belief, LivePartner
 from webdemo.inference.requests import ReactRequest
+from webdemo.inference.threads import take_threads
 
 from .regennet import ReGenNetPipeline, settle
 
@@ -141,6 +142,7 @@ class ReactingPartner:
 
     def step(self, pose: Array) -> Array:
         """See :class:`webdemo.inference.partner.LivePartner`."""
+        take_threads(plain_denoiser=False)  # a stream's messages come to any of several threads
         pose = np.asarray(pose, dtype=np.float64)
         if self._shown and np.linalg.norm((pose[0] - self._shown[-1][0]) * _FLAT) > FARTHEST:
             self._begin_anew()

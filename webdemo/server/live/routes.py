@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import asyncio
 from collections.abc import Callable
+from concurrent.futures import Executor
 from functools import partial
 from typing import Any
 
@@ -30,26 +31,26 @@ def live_routes(streams: Streams) -> APIRouter:
 
     @router.post("/live")
     async def begin(request: Request) -> Response:
-        return await _answered(streams, partial(_begin, streams, _visitor(request), await request.body()))
+        return await _answered(None, partial(_begin, streams, _visitor(request), await request.body()))
 
     @router.post("/live/{key}")
     async def frames(key: str, request: Request) -> Response:
         return await _answered(
-            streams, partial(_frames, streams, key, _visitor(request), await request.body())
+            streams.worker, partial(_frames, streams, key, _visitor(request), await request.body())
         )
 
     @router.delete("/live/{key}")
     async def end(key: str, request: Request) -> Response:
-        return await _answered(streams, partial(_end, streams, key, _visitor(request)))
+        return await _answered(None, partial(_end, streams, key, _visitor(request)))
 
     return router
 
 
-async def _answered(streams: Streams, job: Callable[[], dict[str, Any]]) -> Response:
-    """Does a job in a worker's turn; errors are sentences."""
+async def _answered(worker: Executor | None, job: Callable[[], dict[str, Any]]) -> Response:
+    """Does a job in a worker's turn, or in a thread of its own; errors are sentences."""
     status, answer = 200, {}
     try:
-        answer = await asyncio.get_running_loop().run_in_executor(streams.workers, job)
+        answer = await asyncio.get_running_loop().run_in_executor(worker, job)
     except StreamRefused as error:
         status, answer = 503, {"detail": str(error)}
     except StreamUnknown as error:
@@ -79,8 +80,7 @@ def _begin(streams: Streams, visitor: Visitor, body: bytes) -> dict[str, Any]:
 
 
 def _frames(streams: Streams, key: str, visitor: Visitor, body: bytes) -> dict[str, Any]:
-    stream = streams.find(key, visitor)
-    return stream.answer(read_message(body))
+    return streams.answer(key, visitor, read_message(body))
 
 
 def _end(streams: Streams, key: str, visitor: Visitor) -> dict[str, Any]:

@@ -11,9 +11,11 @@ from concurrent.futures import ThreadPoolExecutor
 from typing import Any, Protocol
 
 from motion import InputError
+from webdemo.inference.actor import FPS
 from webdemo.inference.partner import PARTNERS, LivePartner
 from webdemo.ui.visitor import Visitor
 
+from .messages import Message
 from .stream import LiveStream
 
 log = logging.getLogger(__name__)
@@ -22,6 +24,10 @@ IDLE = 20.0
 """Seconds without a message after which a stream is closed."""
 LONGEST = 600.0
 """Seconds that a stream may last."""
+BUSIEST = 1.0
+"""Seconds of computing for a second of all streams: with more, no partner would answer in time."""
+_PACE = 0.1
+"""Share of the latest message in the mean time of a frame."""
 KEPT = 256
 """Ended streams whose reason is kept for their page."""
 OTHER_TAB = "Another live stream of yours has begun, so this one ended: press Start to go on here."
@@ -53,21 +59,27 @@ class Partners(Protocol):
 class Streams:
     """Opens streams, finds them again and closes those that are idle.
 
-    Each person may have one: opening another ends the first. A stream has at most one message in work, and messages
-    are answered in the order in which they came, so the streams take turns.
+    Each person may have one: opening another ends the first. A stream has at most one message in work, and one thread
+    answers messages in the order in which they came, so the streams take turns. Several threads would be no faster,
+    since they would wait for Python's interpreter lock.
 
     Args:
         engine: has the partners.
         most: streams at the same time.
         address: streams at the same time from one address, where people are known by a cookie alone.
         clock: gives the time; seconds.
+
+    Attributes:
+        worker: the thread that answers messages.
+        pace: recent seconds of computing a frame.
     """
 
     def __init__(
         self, engine: Partners, *, most: int, address: int, clock: Callable[[], float] = time.monotonic
     ) -> None:
         self.engine, self.most, self.address, self.clock = engine, most, address, clock
-        self.workers = ThreadPoolExecutor(max_workers=2, thread_name_prefix="live")
+        self.worker = ThreadPoolExecutor(max_workers=1, thread_name_prefix="live")
+        self.pace = 0.0
         self._lock = threading.Lock()
         self._open: dict[str, LiveStream] = {}
         self._ended: dict[str, str] = {}
@@ -125,9 +137,14 @@ class Streams:
             raise StreamRefused(
                 f"{near} people from your network are live already: try again when one of them has stopped."
             )
-        if len(self._open) + self._coming >= self.most:
+        count = len(self._open) + self._coming
+        if count >= self.most:
             raise StreamRefused(
-                f"{self.most} people are live already, as many as this server allows: try again in a few minutes."
+                f"As many people are live as this server allows ({self.most}): try again in a few minutes."
+            )
+        if count and (count + 1) * FPS * self.pace > BUSIEST:
+            raise StreamRefused(
+                f"The server is too busy for another live partner beside {count}: try again in a few minutes."
             )
 
     def find(self, key: str, visitor: Visitor) -> LiveStream:
@@ -144,6 +161,19 @@ class Streams:
                 reason = self._ended.get(key)
                 raise StreamUnknown(UNKNOWN) if reason is None else StreamEnded(reason)
         return stream
+
+    def answer(self, key: str, visitor: Visitor, message: Message) -> dict[str, Any]:
+        """The answer of a person's stream to a message.
+
+        Raises:
+            InputError: as :meth:`find` and :meth:`LiveStream.answer`.
+        """
+        stream = self.find(key, visitor)
+        before = stream.counts.frames
+        answer = stream.answer(message)
+        if frames := stream.counts.frames - before:
+            self.pace += _PACE * (answer["milliseconds"] / 1000 / frames - self.pace)
+        return answer
 
     def close(self, stream: LiveStream) -> None:
         """Ends a stream that its person has stopped."""
@@ -166,7 +196,6 @@ class Streams:
             self._stopping = True
             for stream in list(self._open.values()):
                 self._end(stream, STOPPING)
-        self.workers.shutdown(wait=False, cancel_futures=True)
 
     def _end(self, stream: LiveStream, reason: str) -> None:
         """The caller holds the lock."""
