@@ -1,6 +1,6 @@
 // A live stream on the server: one message after the other, each answered with the partner's frames.
 
-const PATIENCE = 30000; // milliseconds in which a lost connection may come back
+const PATIENCE = 60000; // milliseconds in which a lost connection may come back
 const AGAIN = 1000; // milliseconds between two attempts
 const SLOWEST = 15000; // milliseconds for an answer; the networks may have to be loaded for the first
 

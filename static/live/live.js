@@ -157,7 +157,9 @@ class Panel {
     ended = true;
     wake();
     await sending;
-    if (!over()) this.rest("The end. What happened can be played again.");
+    if (over()) return;
+    if (!this.live.stream.known) throw new FilmError("Nobody was seen long enough: a partner needs a person in eight pictures, a second or two.");
+    this.rest("The end. What happened can be played again.");
   }
 
   /** Sends what has been seen, and shows what is answered. */
