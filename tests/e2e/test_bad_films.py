@@ -108,19 +108,18 @@ def test_nobody_and_too_many_people(page: Page) -> None:
 def encoded(path: Path, codec: str, times: list[float], size: tuple[int, int] = (64, 48)) -> bytes:
     """A film with a grey picture at each of the times."""
     av = pytest.importorskip("av")
-    try:
-        with av.open(str(path), "w") as film:
-            stream = film.add_stream(codec, rate=30)
-            stream.width, stream.height, stream.pix_fmt = *size, "yuv420p"
-            for time in times:
-                picture = av.VideoFrame.from_ndarray(
-                    np.full((size[1], size[0], 3), 128, np.uint8), format="rgb24"
-                )
-                picture.pts, picture.time_base = round(30 * time), Fraction(1, 30)
-                film.mux(stream.encode(picture))
-            film.mux(stream.encode(None))
-    except av.error.FFmpegError as error:
-        pytest.skip(f"this PyAV cannot make a film with {codec}: {error}")
+    if codec not in av.codecs_available:
+        pytest.skip(f"this PyAV cannot make a film with {codec}")
+    with av.open(str(path), "w") as film:
+        stream = film.add_stream(codec, rate=30)
+        stream.width, stream.height, stream.pix_fmt = *size, "yuv420p"
+        for time in times:
+            picture = av.VideoFrame.from_ndarray(
+                np.full((size[1], size[0], 3), 128, np.uint8), format="rgb24"
+            )
+            picture.pts, picture.time_base = round(30 * time), Fraction(1, 30)
+            film.mux(stream.encode(picture))
+        film.mux(stream.encode(None))
     return path.read_bytes()
 
 
@@ -133,7 +132,7 @@ OPENS = "await openFilm(document.querySelector('video'), document.querySelector(
         ("libx264", [0.0], "The video is a single picture or very short"),
         ("libx264", [0.0, 1.0, 75.0], "The video lasts 75 s: cut it to 60 s or less."),
         ("libx265", [i / 30 for i in range(30)], "This browser cannot show the video (HEVC, for example)"),
-        ("libx264", [0.0, 0.01, 0.5, 0.6, 1.4, 2.0], "nothing was wrong"),
+        ("libx264", [0.0, 0.1, 0.5, 0.6, 1.4, 2.0], "nothing was wrong"),
     ],
     ids=["one frame", "75 seconds", "HEVC", "uneven times"],
 )
