@@ -30,6 +30,9 @@ _SOFT = 3e-4
 """Weight of the size of the move against the equations, whose squared coefficients sum to about 0.5. A known number
 is met within 0.1 % of the move, and a control point on which a known frame barely depends hardly moves."""
 
+_RETURN = 0.02
+"""Weight of a bend's size against its curvature; the bend dies out over (4 / 0.02)^¼ ≈ 4 knots, half a second."""
+
 
 @dataclass
 class Known:
@@ -114,7 +117,9 @@ class Hold:
         basis = layout.basis(self.tokens)
         columns = rows.transpose(2, 3).reshape(-1, frames)
         masks = known.mask.transpose(2, 3).reshape(-1, frames)
+        stiff = _stiffness(basis.shape[1])
         self._groups: list[tuple[Tensor, Tensor, Tensor | None]] = []
+        self._bends: list[tuple[Tensor, Tensor, Tensor | None]] = []
         for at, mask in _alike(masks):
             if mask.all():  # nothing is left to move
                 control = torch.stack(
@@ -122,13 +127,13 @@ class Hold:
                 )
                 fitted = ((control - mean) / std).transpose(1, 2).reshape(len(masks), -1)
                 self._groups.append((at, fitted[at], None))
+                self._bends.append(self._groups[-1])
                 continue
-            seen = basis[mask].double()
-            normal = seen.T @ seen + _SOFT * torch.eye(len(basis.T), dtype=torch.double)
-            gain = torch.linalg.solve(normal, seen.T)
-            move = torch.eye(len(normal), dtype=torch.double) - gain @ seen
-            offset = columns[at][:, mask].double() @ gain.T
-            self._groups.append((at, offset.float(), move.float()))
+            seen, wanted = basis[mask].double(), columns[at][:, mask].double()
+            unit = torch.eye(len(basis.T), dtype=torch.double)
+            for found, cost in ((self._groups, unit), (self._bends, stiff)):
+                gain = torch.linalg.solve(seen.T @ seen + _SOFT * cost, seen.T)
+                found.append((at, (wanted @ gain.T).float(), (unit - gain @ seen).float()))
 
     @property
     def frozen(self) -> Tensor:
@@ -143,10 +148,22 @@ class Hold:
 
     def __call__(self, x: Tensor) -> Tensor:
         """x (B, tokens, 2·token_features) with the known part written in; any B if one motion is known."""
+        return self._write(x, self._groups)
+
+    def bend(self, x: Tensor) -> Tensor:
+        """As :meth:`__call__`, with a move that has little curvature and dies out over about half a second.
+
+        Where a network's motion does not arrive at what is known, the least move of the control points leaves a
+        jolt beside it. This one spreads the difference in place and speed (Witkin and Popović 1995, "Motion
+        Warping"), for the motion that is shown; the samples on the way to it are held as in training.
+        """
+        return self._write(x, self._bends)
+
+    def _write(self, x: Tensor, groups: list[tuple[Tensor, Tensor, Tensor | None]]) -> Tensor:
         control = unpack(x, self.layout)  # (B, 2, K, 70)
         columns = control.transpose(2, 3).reshape(-1, self.batch * 2 * FEATURES, control.shape[2])
         held = columns.clone()
-        for at, offset, move in self._groups:
+        for at, offset, move in groups:
             offset = offset.to(x)
             held[:, at] = offset if move is None else offset + columns[:, at] @ move.to(x).T
         return pack(held.view(control.transpose(2, 3).shape).transpose(2, 3), self.layout)
@@ -164,6 +181,12 @@ class Hold:
         values, counts, heading, times = bins.split([FEATURES, FEATURES, 2, 1], -1)
         seen = [values / counts.clamp_min(1), counts > 0, heading / times.clamp_min(1), times > 0]
         return pack(torch.cat([part.to(sums) for part in seen], -1), self.layout)
+
+
+def _stiffness(knots: int) -> Tensor:
+    """(K, K) the cost of a move: its squared curvature, and a little of its squared size."""
+    curvature = torch.eye(knots, dtype=torch.double).diff(n=2, dim=0)
+    return curvature.T @ curvature + _RETURN * torch.eye(knots, dtype=torch.double)
 
 
 def _alike(masks: Tensor) -> list[tuple[Tensor, Tensor]]:

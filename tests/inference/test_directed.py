@@ -79,9 +79,20 @@ def test_clean_up_is_taken_back_at_given_frames_and_fades() -> None:
     made, given = np.zeros((40, 22, 3)), np.ones((2, 22, 3))
     found = with_given(made, np.array([30, 10]), given * np.array([2.0, 1.0])[:, None, None])
     assert (found[10] == 1).all() and (found[30] == 2).all()
-    assert (found[[10 - FADE - 1, 10 + FADE + 1, 30 - FADE - 1, 39]] == 0).all()
-    assert (np.diff(found[10 : 10 + FADE + 2, 0, 0]) < 0).all()
+    assert (found[20] == 0).all(), "half-way between them"
+    assert (with_given(made, np.array([10]), given[:1])[10 + FADE + 1 :] == 0).all()
+    assert (np.diff(found[10:21, 0, 0]) < 0).all()
     assert (with_given(made, np.array([0]), given[:1])[1:7, 0, 0] > 0).all()
+
+
+def test_a_difference_in_speed_fades_without_a_jolt() -> None:
+    """A past that moves on leads into what was made with no jump of speed."""
+    made = np.zeros((60, 22, 3))
+    past = 0.02 * np.ones((20, 22, 3)) * np.arange(20)[:, None, None]
+    moved = with_given(made, np.arange(20), past)[:, 0, 0]
+    steps = np.diff(moved)
+    assert abs(steps[19] - steps[18]) < 0.25 * 0.02
+    assert moved[20 + FADE :].max() == 0
 
 
 @pytest.mark.parametrize(

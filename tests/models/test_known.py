@@ -153,3 +153,20 @@ def test_packed_features_lie_beside_the_tokens_they_are_of():
     a, b = features[0].chunk(2, -1)
     assert a.abs().max() == 0
     assert b.abs().sum(-1).nonzero().flatten().tolist() == [TOKENS - 2, TOKENS - 1]
+
+
+def test_a_bend_meets_the_past_with_less_of_a_jolt_than_the_least_move():
+    motion, x = people(), torch.zeros(1, TOKENS, 2 * LAYOUT.token_features)
+    known = Known.nothing(FRAMES)
+    for person in range(2):
+        known.add_person(person, motion[person, :20])
+    hold = Hold(known, LAYOUT, MEAN, STD)
+    least, bent = positions(hold(x))[0], positions(hold.bend(x))[0]
+    for made in (least, bent):
+        assert torch.linalg.vector_norm(made[:, :20] - motion[:, :20], dim=-1).max() < 0.02
+    jolts = [
+        torch.linalg.vector_norm(made[:, 18:26].diff(n=2, dim=1), dim=-1).mean() for made in (least, bent)
+    ]
+    assert jolts[1] < 0.7 * jolts[0]
+    moved = bent - positions(x)[0]
+    assert moved[:, -1].abs().max() < 0.2 * moved.abs().max(), "far from what is known the motion stays"

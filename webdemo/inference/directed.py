@@ -25,7 +25,7 @@ MOST_DISTANCE = 20.0
 """Metres from the origin that a given place may have."""
 MOST_SPEED = 5.0
 """Metres a second between two places of a path."""
-FADE = 6
+FADE = 12
 """Frames over which what clean-up changed at a given frame is taken back beside it."""
 _BONE_ERROR = 0.3
 _HIPS = (SMPL22.index("left_hip"), SMPL22.index("right_hip"))
@@ -87,15 +87,30 @@ class Directed(Scene):
 
 
 def with_given(positions: Array, frames: Array, given: Array) -> Array:
-    """Positions (T, 22, 3) that are ``given`` (N, 22, 3) at ``frames`` (N,), and led there over :data:`FADE` frames."""
+    """Positions (T, 22, 3) that are ``given`` (N, 22, 3) at ``frames`` (N,).
+
+    Beside them the difference in place, and where two frames in a row are given also in speed, dies out over
+    :data:`FADE` frames, or half of the way to the next given one, along a polynomial of degree 5 (Bollo 2018,
+    "Inertialization").
+    """
     order = np.argsort(frames)
     frames, given = frames[order], np.asarray(given)[order]
+    apart = given - positions[frames]
     time = np.arange(len(positions))
     after = np.searchsorted(frames, time).clip(max=len(frames) - 1)
     before = (after - 1).clip(min=0)
     nearest = np.where(np.abs(frames[after] - time) < np.abs(time - frames[before]), after, before)
-    weight = (1 - np.abs(frames[nearest] - time) / (FADE + 1)).clip(min=0)
-    moved = positions + weight[:, None, None] * (given - positions[frames])[nearest]
+    away = time - frames[nearest]
+    inner = (nearest - np.sign(away)).clip(0, len(frames) - 1)
+    speed = np.where(
+        (frames[inner] == frames[nearest] - np.sign(away))[:, None, None], apart[nearest] - apart[inner], 0.0
+    )
+    gap = np.where((frames[0] < time) & (time < frames[-1]), frames[after] - frames[before], 2 * (FADE + 1))
+    fade = (0.5 * gap).clip(0.5, FADE + 1)
+    s = (np.abs(away) / fade).clip(max=1.0)
+    place = 1 - s**3 * (10 - 15 * s + 6 * s**2)
+    lead = fade * s * (1 - s) ** 3 * (1 + 3 * s)
+    moved = positions + place[:, None, None] * apart[nearest] + lead[:, None, None] * speed
     moved[frames] = given
     return moved
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import time
 from abc import ABC, abstractmethod
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import Any, Generic, Protocol, TypeVar, cast
 
@@ -85,6 +85,18 @@ class OwnPasses:
         return damping(x0, timestep)
 
 
+class Given(Protocol):
+    """Writes the known part of a motion into samples (B, tokens, features)."""
+
+    def __call__(self, x: Tensor) -> Tensor:
+        """A sample with the known part in its place."""
+        ...
+
+    def bend(self, x: Tensor) -> Tensor:
+        """A prediction that leads up to the known part."""
+        ...
+
+
 class _Steps:
     """The functions that the sampling loop calls at every step: the guided prediction, then its correction.
 
@@ -107,12 +119,13 @@ class _Steps:
         damping: Damping,
         condition: Tensor,
         guidance: float,
-        given: Callable[[Tensor], Tensor] | None,
+        given: Given | None,
         known: Tensor | None,
     ) -> None:
         self.passes, self.damping = passes, damping
         self.condition, self.guidance = condition, guidance
-        self.given = given or (lambda x: x)
+        self.given = given or _as_is
+        self.bend = given.bend if given else _as_is
         self.seen = {} if known is None else {"known": known}
 
     def predict(self, x: Tensor, t: Tensor) -> Tensor:
@@ -120,8 +133,8 @@ class _Steps:
         return self.passes.guided(self.given(x), t, self.condition, scale=self.guidance, **self.seen)
 
     def correct(self, x0: Tensor, timestep: int) -> Tensor:
-        """The prediction with what is given in its place and corrected by the damping."""
-        self.uncorrected = self.given(x0)
+        """The prediction, bent onto what is given and corrected by the damping."""
+        self.uncorrected = self.bend(x0)
         return self.given(self.passes.correct(self.damping, self.uncorrected, timestep))
 
 
@@ -226,5 +239,5 @@ class TwoPersonPipeline(ABC, Generic[Network]):
         return tuple(scene.duet(pair, finish) for pair in positions)
 
 
-def _as_is(person: np.ndarray) -> np.ndarray:
-    return person
+def _as_is(x: Any) -> Any:
+    return x
