@@ -30,7 +30,9 @@ def with_input(network: bytes, *, mean: float, deviation: float) -> bytes:
     writer.add_image_input([mean], [deviation])
     outputs = schema_py_generated.Model.GetRootAsModel(network, 0).Subgraphs(0).OutputsLength()
     for number in range(outputs):
-        writer.add_feature_output(f"o{number}", "x")  # names that nobody reads, but one for each output is needed
+        writer.add_feature_output(
+            f"o{number}", "x"
+        )  # names that nobody reads, but one for each output is needed
     made, _ = writer.populate()
     return bytes(made)
 
