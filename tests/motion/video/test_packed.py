@@ -33,7 +33,7 @@ def test_a_film_comes_through_as_it_was_sent() -> None:
     [
         {"landmarks": 2}, {"width": 8}, {"width": True}, {"width": "1280"}, {"height": 10**9}, {"times": None},
         {"times": ""}, {"times": "AAAA"}, {"counts": "////"}, {"world": "not base64!"}, {"seen": [1, 2]},
-        {"image": FIELDS["image"][:-8]}, {"tilt": "12"}, {"lens": True}, {"tilt": float("nan")},
+        {"image": FIELDS["image"][:-8]}, {"tilt": "12"}, {"lens": True}, {"tilt": float("nan")}, {"lens": 10**400},
         {"times": base64.b64encode(np.zeros(len(FILM.times), "<u4").tobytes()).decode()},
         {"times": base64.b64encode((np.arange(len(FILM.times)) * 90_000).astype("<u4").tobytes()).decode()},
     ],

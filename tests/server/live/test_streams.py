@@ -233,6 +233,8 @@ def test_two_messages_at_once_are_refused() -> None:
         poses([0.2, 0.1]),
         poses([i / 30 for i in range(MOST_PICTURES + 1)]),
         poses([0.0]).replace(b"[0.0]", b'["0"]'),
+        poses([0.0]).replace(b"[0.0]", b"[NaN]"),
+        poses([0.0]).replace(b"[0.0]", b"[" + b"9" * 400 + b"]"),
     ],
 )
 def test_what_no_page_sends_is_refused_in_a_sentence(body: bytes) -> None:

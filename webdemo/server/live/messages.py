@@ -5,7 +5,6 @@ from __future__ import annotations
 import base64
 import binascii
 import json
-import math
 from dataclasses import dataclass
 from typing import Any
 
@@ -22,6 +21,8 @@ MOST_BYTES = 100_000
 """Of a message: a picture with one person takes 900."""
 MOST_PICTURES = 32
 """Pictures or poses in a message."""
+MOST_SECONDS = 86_400.0
+"""Of a stream's own clock."""
 FARTHEST = 50.0
 """Metres from the origin."""
 _BROKEN = "The live stream sent something that cannot be read: reload the page and start again."
@@ -93,7 +94,7 @@ def _poses(fields: dict[str, Any]) -> Poses:
     times = fields.get("times")
     if not isinstance(times, list) or not 1 <= len(times) <= MOST_PICTURES:
         raise InputError(_BROKEN)
-    if not all(type(t) in (int, float) and math.isfinite(t) and t >= 0 for t in times):
+    if not all(type(t) in (int, float) and 0 <= t <= MOST_SECONDS for t in times):
         raise InputError(_BROKEN)
     try:
         data = base64.b64decode(fields["poses"], validate=True)
