@@ -16,7 +16,7 @@ from tests.server.lab import stub_module
 from webdemo.server.live import stream as stream_module
 from webdemo.server.live import streams as streams_module
 from webdemo.server.live.messages import MOST_BYTES, MOST_PICTURES, read_message
-from webdemo.server.live.stream import LiveStream, Resampled
+from webdemo.server.live.stream import MOST_FRAMES, LiveStream, Resampled
 from webdemo.server.live.streams import StreamEnded, StreamRefused, Streams, StreamUnknown
 from webdemo.ui.visitor import Visitor
 from webdemo.view.payload import unpack_positions
@@ -240,6 +240,13 @@ def test_two_messages_at_once_are_refused() -> None:
 def test_what_no_page_sends_is_refused_in_a_sentence(body: bytes) -> None:
     with pytest.raises(InputError, match="reload the page"):
         read_message(body)
+
+
+def test_a_message_that_spans_half_a_minute_is_not_computed_whole() -> None:
+    one = stream()
+    answer = one.answer(read_message(poses([float(second) for second in range(32)])))
+    assert MOST_FRAMES <= one.counts.frames < MOST_FRAMES + 30
+    assert answer["start"] == 0
 
 
 def test_points_that_lie_in_one_place_do_no_harm() -> None:

@@ -24,6 +24,8 @@ Array = NDArray[np.floating]
 
 LONGEST_GAP = 1.0
 """Seconds without a pose over which the person's motion is interpolated; a longer pause is left out."""
+MOST_FRAMES = 120
+"""Frames after which the rest of a message is left out, so that other streams get their turn."""
 LOST = 1.0
 """Seconds without anybody in the picture after which the page says so."""
 
@@ -140,10 +142,14 @@ class LiveStream:
 
     def _frames(self, message: Message) -> Iterator[Array]:
         """(2, 22, 3) the person and the partner, for each frame at 30 fps that a message completes."""
+        made = 0
         for time_, pose in self._poses(message.content):
             self.counts.pictures += 1
             for given in self._even.add(time_, pose):
                 yield np.stack([given, self.partner.step(given)])
+                made += 1
+            if made >= MOST_FRAMES:
+                return
 
     def _poses(self, content: Landmarks | Poses | None) -> Iterator[tuple[float, Array]]:
         if content is None:
