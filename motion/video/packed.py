@@ -113,7 +113,7 @@ def camera_number(value: Any) -> float | None:
     """
     if value is None:
         return None
-    if isinstance(value, bool) or not isinstance(value, (int, float)) or not abs(value) <= 360:
+    if isinstance(value, bool) or not isinstance(value, (int, float)) or not abs(value) <= 1e12:
         raise InputError(_BROKEN)
     return float(value)
 
