@@ -155,7 +155,7 @@ class Hold:
 
         Where a network's motion does not arrive at what is known, the least move of the control points leaves a
         jolt beside it. This one spreads the difference in place and speed (Witkin and Popović 1995, "Motion
-        Warping"), for the motion that is shown; the samples on the way to it are held as in training.
+        Warping"). It is for predictions of x0; what the network is given is held as in training.
         """
         return self._write(x, self._bends)
 

@@ -95,8 +95,9 @@ def write_sheet(
     columns = min(len(moments), _COLUMNS)
     tile = (width // columns, round(width / columns * _TALL))
     times = np.arange(motion.num_frames) / motion.fps
-    ways = cameras([motion], size=tile, times=times, view=view)
-    views = [replace(ways[frame], distance=_NEARER * ways[frame].distance) for frame in moments]
+    # Each moment stands alone: a camera that followed from frame to frame would lag behind people who part.
+    ways = [cameras([motion], size=tile, times=times[[frame]], view=view)[0] for frame in moments]
+    views = [_holding(way, motion, frame) for way, frame in zip(ways, moments, strict=True)]
     with replacing(path) as temporary:
         if suffix == ".png":
             sheet = _raster(motion, style, moments, views, tile, title)
@@ -147,6 +148,17 @@ def write_grid_sheet(
     with replacing(path) as temporary:
         Image.fromarray(sheet).convert("RGB").save(temporary, format="PNG")
     return path
+
+
+def _holding(way: Camera, motion: Clip | Duet, frame: int) -> Camera:
+    """The camera as near as it can go with every joint of a moment in the picture."""
+    joints = stacked_positions(motion)[:, frame].reshape(-1, 3)
+    for nearer in (_NEARER, 1.0, 1.2, 1.5):
+        found = replace(way, distance=nearer * way.distance)
+        pixels = found.project(joints)[0]
+        if (pixels > 0).all() and (pixels < way.size).all():
+            break
+    return found
 
 
 def _row(

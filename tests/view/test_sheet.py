@@ -1,0 +1,21 @@
+"""Contact sheets hold everybody."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from motion import SMPL22, Duet
+from webdemo.view.camera import cameras
+from webdemo.view.sheet import _holding
+
+
+def test_people_who_part_quickly_stay_in_each_moment() -> None:
+    rest = SMPL22.rest_positions() + np.array([0, 0.98, 0])
+    way = np.linspace(0.4, 4.0, 90)
+    people = [rest + side * way[:, None, None] * np.array([0, 0, 1.0]) for side in (-1, 1)]
+    duet = Duet.from_positions(np.stack(people).astype(np.float32), fps=30.0)
+    size = (200, 230)
+    for frame in (0, 45, 89):
+        found = _holding(cameras([duet], size=size, times=np.array([frame / 30]))[0], duet, frame)
+        pixels = found.project(duet.positions[:, frame].reshape(-1, 3))[0]
+        assert (pixels > 0).all() and (pixels < size).all()
