@@ -87,10 +87,14 @@ def attend(
         (N, T, d), the heads side by side.
     """
     n, _, d = q.shape
-    k, v = F.pad(k, (0, 0, 0, 1)), F.pad(v, (0, 0, 0, 1))
-    q, k, v = (x.view(n, -1, num_heads, d // num_heads).transpose(1, 2) for x in (q, k, v))
-    mask = None if keep is None else F.pad(keep, (0, 1), value=True)[:, None, None]
-    out = F.scaled_dot_product_attention(q, k, v, attn_mask=mask, dropout_p=dropout)
+    # Under autocast a CPU would attend in bfloat16, which takes longer for sequences this short.
+    with torch.autocast("cpu", enabled=False):
+        if q.is_cpu:
+            q, k, v = q.float(), k.float(), v.float()
+        k, v = F.pad(k, (0, 0, 0, 1)), F.pad(v, (0, 0, 0, 1))
+        q, k, v = (x.view(n, -1, num_heads, d // num_heads).transpose(1, 2) for x in (q, k, v))
+        mask = None if keep is None else F.pad(keep, (0, 1), value=True)[:, None, None]
+        out = F.scaled_dot_product_attention(q, k, v, attn_mask=mask, dropout_p=dropout)
     return out.transpose(1, 2).reshape(n, -1, d)
 
 

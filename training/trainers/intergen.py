@@ -18,7 +18,6 @@ from pathlib import Path
 
 import torch
 from torch import Tensor
-from torch.nn.attention import SDPBackend, sdpa_kernel
 
 from models.diffusion import NoiseSchedule
 from models.intergen.compact import CompactConfig, CompactInterGen, load_folder
@@ -146,8 +145,7 @@ class Trainer(Loop):
         if hold is not None:
             xt = hold(xt)
         seen = {} if hold is None or not self.settings.words else {"known": hold.features.to(xt)}
-        # The fused attention kernel's backward pass is slow for sequences this short.
-        with mixed_precision(self.device), sdpa_kernel(SDPBackend.MATH):
+        with mixed_precision(self.device):
             cond, vectors = condition(self.model, batch)
             predicted = self.model.denoiser(xt, t, cond, batch.mask, **seen)
         predicted = predicted.float() if hold is None else hold(predicted.float())
@@ -192,6 +190,7 @@ def main(argv: list[str] | None = None) -> int:
     )
     parser.add_argument("--threads", type=int, help="of torch on the CPU (as many as there are cores)")
     parser.add_argument("--device", default="cuda" if torch.cuda.is_available() else "cpu")
+    parser.add_argument("--compile", action="store_true", help="compile the network (needs a C++ compiler)")
     add_run_options(parser, Settings, leave_out=("weights", "given"))
     options = parser.parse_args(argv)
     if options.threads:
@@ -202,6 +201,8 @@ def main(argv: list[str] | None = None) -> int:
 def _run(options: argparse.Namespace) -> None:
     settings = chosen(options, Settings)
     trainer = Trainer(load(options.scenes), settings, options.out, init=options.init, device=options.device)
+    if options.compile:
+        trainer.model.denoiser.compile(dynamic=True)
     drawn = time.monotonic()
 
     def draw() -> None:

@@ -15,7 +15,6 @@ from pathlib import Path
 import torch
 from torch import Tensor
 from torch.func import functional_call
-from torch.nn.attention import SDPBackend, sdpa_kernel
 
 from models.diffusion import guide, top_timesteps
 from models.intergen.fast import PASSES, FastChange
@@ -173,7 +172,7 @@ class FastTrainer(Trainer):
             cond = condition(self.model, batch)[0].float()
         target = self.target(x, place, cond, scale, batch.mask, hold)
         known = None if hold is None else hold.features
-        with mixed_precision(self.device), sdpa_kernel(SDPBackend.MATH):
+        with mixed_precision(self.device):
             changed = self.change.tensors(self.model.denoiser)
             made = functional_call(self.student, changed, (x, t, cond, batch.mask, known, scale))
         made = made.float() if hold is None else hold(made.float())

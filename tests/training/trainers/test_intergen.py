@@ -13,6 +13,7 @@ from safetensors import SafetensorError
 from safetensors.torch import load_file
 
 from models.intergen.compact import load_folder
+from models.intergen.words import WordDenoiser
 from models.motion_tokens import decode
 from motion import InputError
 from tests.training.trainers.runs import SETTINGS, begin, prepared, take, write_corpus
@@ -266,6 +267,16 @@ def test_a_run_can_be_given_threads(scenes: Path, tmp_path: Path, monkeypatch: p
     words = ["--scenes", str(scenes), "--out", str(tmp_path), *SIZES, "--steps", "0", "--threads", "1"]
     assert intergen.main(words) == 0
     assert asked == [1]
+
+
+def test_a_run_can_be_compiled(scenes: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    asked = []
+    monkeypatch.setattr(torch.nn.Module, "compile", lambda self, **options: asked.append((self, options)))
+    words = ["--scenes", str(scenes), "--out", str(tmp_path), *SIZES, "--steps", "0"]
+    assert intergen.main(words) == 0 and not asked
+    assert intergen.main([*words, "--compile"]) == 0
+    ((network, options),) = asked
+    assert isinstance(network, WordDenoiser) and options == {"dynamic": True}
 
 
 def test_export_without_a_run_is_refused_in_one_line(

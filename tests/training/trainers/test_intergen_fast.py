@@ -1,5 +1,6 @@
 """The trainer of the fast mode: its target is the way of the trained network, and its folder can be drawn from."""
 
+from contextlib import nullcontext
 from dataclasses import replace
 from pathlib import Path
 
@@ -53,7 +54,7 @@ def test_the_target_leads_where_the_trained_network_goes(
 ) -> None:
     """All passes with targets for predictions are the whole sampling with PASSES · substeps DDIM steps."""
     trainer = fast(scenes, run, tmp_path)
-    monkeypatch.setattr(intergen_fast.torch, "autocast", lambda *_: torch.enable_grad())  # in float32
+    monkeypatch.setattr(intergen_fast, "mixed_precision", lambda _: nullcontext())  # in float32
     batch = trainer.data.batch(0)
     cond = condition(trainer.model, batch)[0].detach()
     noise = torch.randn(batch.x0.shape, generator=torch.Generator().manual_seed(3))
