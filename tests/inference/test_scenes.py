@@ -5,10 +5,12 @@ from typing import Any
 
 import numpy as np
 import pytest
+import torch
 
 from motion import Duet
 from webdemo.inference import Cancelled, CancelToken, Engine, GenerateRequest, Result, SceneRequest
 from webdemo.inference.batch import run_batch
+from webdemo.inference.pipelines.scene import WindowRequest
 from webdemo.inference.story import Beat, FloorPath, FloorPoint, Pose, SceneProgress
 from webdemo.inference.story.request import as_scene
 
@@ -180,3 +182,20 @@ def test_a_scene_shares_its_passes_with_other_requests(engine: Engine) -> None:
     }
     for i, request in enumerate((scene, plain)):
         np.testing.assert_allclose(positions(found[i]), positions(run(engine, request)), atol=2e-3)
+
+
+def test_a_network_that_reads_them_is_given_each_persons_own_words(reading_engine: Engine) -> None:
+    pipeline = reading_engine.pipeline("intergen")
+    beats = [Beat(a="waves with both hands"), Beat(b="waves with both hands"), Beat("They wave.")]
+    asked = [WindowRequest(prompt="One waves.", seconds=2.0, alone=beat.alone) for beat in beats]
+    first, second, neither = (pipeline.conditioning(each).condition for each in asked)
+    assert first[:, 1].any() and not first[:, 2].any()
+    assert torch.equal(first[:, 1], second[:, 2]) and not second[:, 1].any()
+    assert not neither[:, 1:].any() and torch.allclose(
+        neither[:, 0], first[:, 0, : neither.shape[2]], atol=1e-5
+    )
+    motions = [
+        positions(run(reading_engine, SceneRequest(beats=(beat,), **QUICK)))
+        for beat in (Beat("They wave.", seconds=2.0), Beat("They wave.", b="waves slowly", seconds=2.0))
+    ]
+    assert np.abs(motions[0] - motions[1]).max() > 1e-3

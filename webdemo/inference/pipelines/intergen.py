@@ -10,14 +10,14 @@ from torch import Tensor
 
 from models.compiled import compile_network
 from models.intergen.compact import CaptionBank, CompactInterGen, load_captions, load_folder
-from models.text import MiniLM
+from models.text import MiniLM, TokenFeatures
 from webdemo.inference.cancel import CancelToken
 from webdemo.inference.requests import GenerateRequest, Progress, ReactRequest, Result
 from webdemo.inference.scenes import Scene
 from webdemo.inference.story.request import SceneRequest, as_scene
 from webdemo.inference.timer import StageTimer
 
-from .scene import SceneMaker
+from .scene import SceneMaker, WindowRequest
 from .two_person import Conditioning, Passes, TwoPersonPipeline
 
 
@@ -60,6 +60,16 @@ class InterGenPipeline(TwoPersonPipeline[CompactInterGen]):
         with torch.no_grad():
             return self.model.condition(tokens), tokens.pooled()[0]
 
+    def _of_each(self, request: WindowRequest) -> Tensor:
+        """The condition of a sentence for both people and of those for each, of which one may be missing."""
+        tokens = self.encoder([request.prompt, *(sentence or request.prompt for sentence in request.alone)])
+        there = torch.tensor([True, *map(bool, request.alone)])
+        parts = [
+            TokenFeatures(tokens.features[i : i + 1], tokens.mask[i : i + 1] & there[i]) for i in range(3)
+        ]
+        with torch.no_grad():
+            return self.model.condition(*parts)
+
     def notes(self, vector: Tensor) -> tuple[str, ...]:
         """Warns the user of a prompt that is far from all that was trained on."""
         near = self.bank.nearest(vector)
@@ -76,4 +86,6 @@ class InterGenPipeline(TwoPersonPipeline[CompactInterGen]):
             return Conditioning(self.model.no_condition(), 1.0)
         condition, vector = self.condition(request.prompt)
         (touch,) = self.model.touches(condition)
+        if self.model.config.words and isinstance(request, WindowRequest) and any(request.alone):
+            condition = self._of_each(request)
         return Conditioning(condition, request.guidance, touch, self.notes(vector))

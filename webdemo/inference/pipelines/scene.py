@@ -48,9 +48,15 @@ FAR = 6.0
 
 @dataclass(frozen=True, kw_only=True)
 class WindowRequest(GenerateRequest):
-    """The request of one window of a scene; its words may be missing."""
+    """The request of one window of a scene; its words may be missing.
+
+    Attributes:
+        alone: what each person does, as sentences of their own, for a model that reads them; "" where the words for
+            both say it. The prompt has them, too.
+    """
 
     split: bool = False
+    alone: tuple[str, str] = ("", "")
 
     def __post_init__(self) -> None:
         self._check(methods.method(self.model, "scene"))
@@ -182,8 +188,9 @@ class SceneMaker:
 
 
 def _asked(request: SceneRequest, sample: int, window: Window, frames: int) -> WindowRequest:
+    beat = request.beats[window.beat]
     return WindowRequest(
-        prompt=request.beats[window.beat].sentence, seconds=frames / FPS, seed=window_seed(request, sample, window),
+        prompt=beat.sentence, alone=beat.alone, seconds=frames / FPS, seed=window_seed(request, sample, window),
         guidance=request.guidance, steps=request.steps, damping=request.damping, sampler=request.sampler,
         model=request.model, cleanup=request.cleanup,
     )  # fmt: skip

@@ -105,7 +105,13 @@ class Beat:
         ]
         own = ", while ".join(alone)
         parts = [part.strip().rstrip(".") for part in (self.words, own) if part.strip()]
-        return " ".join(f"{part[:1].upper()}{part[1:]}." for part in parts)
+        return " ".join(_sentence(part) for part in parts)
+
+    @property
+    def alone(self) -> tuple[str, str]:
+        """What a and b do as a sentence each, for a model that reads both; "" where it is not said separately."""
+        clauses = [_of_person(text, "one person") if text else "" for text in (self.a, self.b)]
+        return (_sentence(clauses[0]), _sentence(clauses[1]))
 
     @property
     def length(self) -> float:
@@ -148,6 +154,11 @@ def story_title(beats: Sequence[Mapping[str, Any]]) -> str:
     words = [beat.sentence or "…" for beat in found]
     title = " ".join(words)
     return title if len(title) <= TITLE else f"{title[:TITLE].rsplit(' ', 1)[0]} …"
+
+
+def _sentence(clause: str) -> str:
+    """A clause as a sentence; "" stays as it is."""
+    return f"{clause[:1].upper()}{clause[1:]}." if clause else ""
 
 
 def _of_person(text: str, who: str) -> str:
