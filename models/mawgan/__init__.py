@@ -1,10 +1,7 @@
-"""PredictiveMA-WGAN (Chopin, thesis, chapter 2): the network, on the sphere of :mod:`.srvf`."""
+"""PredictiveMA-WGAN (Chopin, thesis, chapter 2): network and losses, on the sphere of :mod:`.srvf`."""
 
-from .network import (
-    Critic,
-    MAWGANConfig,
+from .losses import (
     MAWGANLossWeights,
-    PredictiveMAWGAN,
     bone_loss,
     critic_loss,
     gradient_penalty,
@@ -13,10 +10,8 @@ from .network import (
     reconstruction_loss,
     skeleton_loss,
     speed_loss,
-    to_curves,
-    to_positions,
-    without_flicker,
 )
+from .network import Critic, MAWGANConfig, PredictiveMAWGAN, to_curves, to_positions, without_flicker
 
 __all__ = [
     "Critic",
