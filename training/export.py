@@ -24,12 +24,14 @@ from training.trainers.intergen import new_model
 from training.trainers.intergen_data import Data, settings_of
 from training.trainers.touch import with_touches
 
-BANK_PER_FAMILY = 40
+BANK_PER_FAMILY = 25
+BANK_PER_ACTS = 3
+"""Captions of single beats in the bank, for each pair of acts: scenes of beats are one family, and hold them all."""
 FAR_QUANTILE = 0.02
 
 
-def caption_bank(scenes: Scenes, per_family: int = BANK_PER_FAMILY) -> CaptionBank:
-    """Captions of every family with their sentence vectors.
+def caption_bank(scenes: Scenes) -> CaptionBank:
+    """Captions of every family and of every kind of beat, with their sentence vectors.
 
     ``far`` is set so that of the test split's captions, whose phrasings were not trained on, 2 % would be
     called far.
@@ -37,8 +39,11 @@ def caption_bank(scenes: Scenes, per_family: int = BANK_PER_FAMILY) -> CaptionBa
     encoder = MiniLM()
     chosen: dict[str, list[str]] = {}
     for row in scenes.split("train"):
-        known = chosen.setdefault(row["family"], [])
-        known += [c for c in row["captions"][:2] if c not in known and len(known) < per_family]
+        kinds = [(row["family"], row["captions"][:2], BANK_PER_FAMILY)]
+        kinds += [("/".join(b["acts"]), b["captions"][:1], BANK_PER_ACTS) for b in row.get("beats") or ()]
+        for kind, captions, most in kinds:
+            known = chosen.setdefault(kind, [])
+            known += [c for c in captions if c not in known and len(known) < most]
     captions = sorted({c for known in chosen.values() for c in known})
     unseen = sorted({c for row in scenes.split("test") for c in row["captions"]})[:2000]
     if not captions or not unseen:
