@@ -113,7 +113,7 @@ export class Controls {
   }
 
   /** Brings everything to what is true of the player now. */
-  show({ camera, clock, orbit, sample, show }) {
+  show({ camera, clock, orbit, posing, sample, show }) {
     const { root } = this;
     const frame = clock.shown;
     const range = this.find(".pdd-range");
@@ -133,6 +133,7 @@ export class Controls {
     press("trails", show.trails);
     this.find("[data-act=figure]").dataset.figure = show.bodies ? (show.skeletons ? "both" : "body") : "skeleton";
     press("ghosts", show.ghosts);
+    press("pose", Boolean(posing));
     press("fullscreen", document.fullscreenElement === root || root.classList.contains("pdd-full"));
     for (const button of root.querySelectorAll("[data-camera]")) button.setAttribute("aria-pressed", String(button.dataset.camera === camera));
     this.showPart(sample, frame);

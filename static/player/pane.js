@@ -58,7 +58,7 @@ export class Pane {
   }
 
   /** Draws `pose` of this pane's motion, or the floor alone for null. */
-  paint(pose, { orbit, matrix, theme, themeName, clock, skeleton, show }) {
+  paint(pose, { orbit, matrix, theme, themeName, clock, skeleton, show, pinned }) {
     const { scene } = this;
     const [width, height] = [this.host.clientWidth, this.host.clientHeight];
     const put = (name, layer) => scene.set(name, layer);
@@ -84,7 +84,7 @@ export class Pane {
       });
       this.drop(["bonesA", "jointsA", "bonesB", "jointsB"].slice(2 * thin.length));
       this.paintShadow(pose, skeleton, bodies, theme);
-      this.paintExtras(put, lens, { theme, clock, skeleton, show });
+      this.paintExtras(put, lens, { theme, clock, skeleton, show, pinned });
       this.spots = pose.map((points) => points.map((p) => project(p, matrix, width, height, FIELD_OF_VIEW)));
       this.labels.place(pose.map((points) => {
         const above = figure.headCenter(points, skeleton);
@@ -123,13 +123,14 @@ export class Pane {
     scene.setTriangles("ground", { positions: ground.positions, colors: ground.colors, places: ground.places });
   }
 
-  paintExtras(put, lens, { theme, clock, skeleton, show }) {
+  paintExtras(put, lens, { theme, clock, skeleton, show, pinned = [] }) {
     const { scene, sample, painted } = this;
     if (show.trails) put("trails", figure.trails((f) => this.poseAt(f), clock.shown, clock.fps, skeleton, theme));
     else if (painted.trails) scene.hide("trails");
     painted.trails = show.trails;
     const other = sample.ghostMotion ? poseAt(sample.ghostMotion, clock.shown) : [];
     const moments = show.ghosts ? figure.ghostFrames(clock.frames).map((f) => this.poseAt(f)) : [];
+    if (pinned.some(Boolean)) moments.push(pinned);
     const pale = moments.length + other.length > 0;
     if (pale) put("ghosts", figure.ghosts(moments, other, skeleton, theme, lens));
     else if (painted.ghosts) scene.hide("ghosts");

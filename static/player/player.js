@@ -3,7 +3,7 @@
 import { aim } from "./address.js";
 import { Clock } from "./clock.js";
 import { Controls } from "./controls.js";
-import { decode } from "./decode.js";
+import { decode, toScene } from "./decode.js";
 import * as live from "./live.js";
 import { Grid } from "./grid.js";
 import { loadBody } from "./loader.js";
@@ -12,6 +12,7 @@ import { Tip } from "./overlay.js";
 import { THEMES, themeName } from "./palette.js";
 import { Pane } from "./pane.js";
 import { savePicture } from "./picture.js";
+import { Posing } from "./posing.js";
 import { describe } from "./skeleton.js";
 import { Strip } from "./strip.js";
 import { fit, heading, moments, preset } from "./views.js";
@@ -19,6 +20,7 @@ import { fit, heading, moments, preset } from "./views.js";
 const SPEEDS = [0.25, 0.5, 1, 1.5, 2];
 const FPS_WINDOW = 1500; // ms
 const STILL_AFTER = 250; // ms
+const MOVES = new Set(["play", "step", "back", "forward", "first", "last", "sample"]); // to another moment or motion
 export const loops = { running: 0 }; // animation loops alive on the page; a leak shows here
 
 /** Marks this browser tab as one that has made something, which a reload then brings back (ui/tabs/history.py). */
@@ -46,6 +48,8 @@ export class Player {
     this.strip = new Strip(root, { onSeek: (frame) => this.seek(frame) });
     this.show = { trails: false, ghosts: false, bodies: true, skeletons: false };
     this.data = null;
+    this.director = null; // keeps poses: see direct()
+    this.posing = null;
     this.sampleIndex = 0;
     this.times = [];
     this.dirty = true;
@@ -120,6 +124,7 @@ export class Player {
 
   /** Shows a payload of webdemo/view/payload.py, or the empty state for null. */
   load(payload) {
+    this.endPosing();
     if (!payload?.samples?.length) {
       this.data = null;
       this.clock.pause();
@@ -212,8 +217,47 @@ export class Player {
   // ---- actions -------------------------------------------------------------------------------
 
   seek(frame) {
+    if (!this.mayLeave()) return;
     this.clock.seek(frame);
     this.wake();
+  }
+
+  /**
+   * Lets people be posed: `director` has `posesAt(frame)`, which gives each person's kept pose in world axes or null, and
+   * `keepPoses(frame, [{ person: "a" or "b", positions }])`.
+   */
+  direct(director) {
+    this.director = director;
+    for (const part of this.root.querySelectorAll("[data-act=pose], [data-help=pose]")) part.hidden = false;
+  }
+
+  /** Stops at the frame that is shown and lays handles over the people, or takes them away. */
+  togglePosing() {
+    if (this.posing) return this.endPosing();
+    const frame = Math.round(this.clock.shown);
+    if (!this.director || !this.skeleton?.wears || this.grid.cells.length || this.sample.beside || this.sample.live) return;
+    this.clock.pause();
+    this.clock.seek(frame);
+    this.posing = new Posing(this, this.posesAt(frame));
+    this.refresh();
+  }
+
+  /** The poses that are kept at a frame: points [x, y, z] in scene axes, or null. */
+  posesAt(frame) {
+    return (this.director?.posesAt(frame) ?? []).map((points) => points && points.map((p) => toScene(...p)));
+  }
+
+  endPosing() {
+    this.posing?.close();
+    this.posing = null;
+    if (this.data) this.refresh();
+  }
+
+  /** Whether another moment may be shown: not while a pose is neither kept nor given up. */
+  mayLeave() {
+    if (this.posing?.changed.some(Boolean)) this.posing.remind();
+    else if (this.posing) this.endPosing();
+    return !this.posing;
   }
 
   act(action, argument) {
@@ -224,7 +268,10 @@ export class Player {
     this.data && (this.data.rounds = null); // a visitor is at hand: it goes on
     if (action === "fullscreen") return this.toggleFullscreen();
     if (!this.data) return;
-    if (action === "play") clock.playing ? clock.pause() : clock.play();
+    if (action === "pose") return this.togglePosing();
+    if (MOVES.has(action) && !this.mayLeave()) return;
+    if (action === "pause") clock.pause();
+    else if (action === "play") clock.playing ? clock.pause() : clock.play();
     else if (action === "loop") clock.loop = !clock.loop;
     else if (action === "step" || action === "back" || action === "forward") {
       clock.pause();
@@ -423,11 +470,17 @@ export class Player {
   paint(pose) {
     const { orbit, theme, themeName, clock, skeleton, show } = this;
     const matrix = orbit.matrix();
-    for (const pane of this.shown) pane.paint(pose && pane.poseAt(clock.shown), { orbit, matrix, theme, themeName, clock, skeleton, show });
+    const posed = this.posing?.pose;
+    const pinned = pose && !posed && !clock.playing ? this.posesAt(Math.round(clock.shown)) : [];
+    for (const pane of this.shown) {
+      const people = posed ?? (pose && pane.poseAt(clock.shown));
+      pane.paint(people, { orbit, matrix, theme, themeName, clock, skeleton, show, pinned });
+    }
+    this.posing?.place(this.panes[0].spots);
     if (pose) this.showTip();
     this.controls.show(this);
     this.strip.show(clock.shown);
-    this.pose = pose;
+    this.pose = posed ?? pose;
     this.frameShown = clock.shown;
   }
 
@@ -436,7 +489,7 @@ export class Player {
   }
 
   showTip() {
-    if (!this.pointer || !this.data) return this.tip.hide();
+    if (!this.pointer || !this.data || this.posing) return this.tip.hide();
     const shifted = ({ host, spots }) => spots.map((points) => points.map(([x, y, depth]) => [x + host.offsetLeft, y, depth]));
     this.tip.show(this.pointer, this.shown.flatMap(shifted), (person, joint) => {
       const frame = this.clock.shown;

@@ -35,7 +35,7 @@ export function smoothStep(value, low, high) {
 }
 
 /** Rotation by the length of a vector about its direction (Rodrigues). */
-function rotation(vector) {
+export function rotation(vector) {
   const angle = norm(vector);
   const [x, y, z] = times(vector, 1 / Math.max(angle, 1e-12));
   const [s, c] = [Math.sin(angle), 1 - Math.cos(angle)];
@@ -54,7 +54,7 @@ function rotationVector(m) {
 }
 
 /** The smallest rotation of one unit vector onto another. */
-function swing(from, to) {
+export function swing(from, to) {
   const axis = cross(from, to);
   const cosine = dot(from, to);
   if (cosine < -1 + 1e-8) {

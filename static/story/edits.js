@@ -76,6 +76,39 @@ export function path(story, person, points) {
   return { ...story, paths: paths.sort((p, q) => (p.person < q.person ? -1 : 1)) };
 }
 
+const FPS = 30;
+const FRAME = 1e4; // moments are kept to a ten-thousandth of a second, as the server writes them
+const AROUND = 1; // seconds on both sides of a pose that are made again with it
+
+/** The moment of a frame, and the frame of a moment. */
+export const momentOf = (frame) => Math.round((FRAME * frame) / FPS) / FRAME;
+export const frameOf = (seconds) => Math.round(FPS * seconds);
+
+const inOrder = (poses) => poses.sort((p, q) => p.seconds - q.seconds || (p.person < q.person ? -1 : 1));
+
+/** A person's pose at a frame; another one that they had there is gone. */
+export function pose(story, person, frame, positions) {
+  const others = story.poses.filter((found) => found.person !== person || frameOf(found.seconds) !== frame);
+  return { ...story, poses: inOrder([...others, { person, seconds: momentOf(frame), positions }]) };
+}
+
+export const poseAt = (story, person, frame) => story.poses.find((p) => p.person === person && frameOf(p.seconds) === frame);
+
+export function movePose(story, index, frame) {
+  const poses = story.poses.map((found, i) => (i === index ? { ...found, seconds: momentOf(Math.max(frame, 0)) } : found));
+  return { ...story, poses: inOrder(poses) };
+}
+
+export function removePose(story, index) {
+  return { ...story, poses: story.poses.filter((_, i) => i !== index) };
+}
+
+/** The span that is made again for a pose: a second on both sides, within a motion of so many seconds. */
+export function spanAround(seconds, total) {
+  const [from, to] = [Math.max(seconds - AROUND, 0), Math.min(seconds + AROUND, total)];
+  return [Math.floor(10 * from) / 10, Math.min(Math.ceil(10 * to) / 10, total)];
+}
+
 export const pathOf = (story, person) => story.paths.find((found) => found.person === person)?.points ?? [];
 
 /** Keeps what a story was, so that it can be undone and redone. */

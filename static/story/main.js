@@ -2,6 +2,7 @@
 
 import * as edits from "./edits.js";
 import { Floor } from "./floor.js";
+import { Pins } from "./pins.js";
 
 const LANES = [["words", "both"], ["a", "A"], ["b", "B"]];
 const PIXELS = 44; // a second, at least
@@ -22,7 +23,9 @@ class Editor {
     this.story = edits.empty();
     this.selected = 0;
     this.past = new edits.Past();
+    this.note = null; // stands in for the hint until the next change
     this.floor = new Floor(root.querySelector(".pds-floor"), this);
+    this.pins = new Pins(this);
     root.addEventListener("click", (event) => this.press(event));
     root.addEventListener("change", (event) => this.field(event));
     root.addEventListener("keydown", (event) => this.key(event));
@@ -37,6 +40,21 @@ class Editor {
 
   get player() {
     return this.root.closest(".pd-results")?.querySelector(".pdd")?.player;
+  }
+
+  /** As the player asks for them: each person's kept pose at a frame, or null. */
+  posesAt(frame) {
+    return ["a", "b"].map((person) => edits.poseAt(this.story, person, frame)?.positions ?? null);
+  }
+
+  /** What was posed in the player becomes a part of the story, and the time around it is selected. */
+  keepPoses(frame, poses) {
+    const motion = this.props.motion?.seconds;
+    let story = this.story;
+    for (const { person, positions } of poses) story = edits.pose(story, person, frame, positions);
+    if (motion) story = { ...story, span: edits.spanAround(edits.momentOf(frame), motion) };
+    this.edit(story);
+    this.tell("The pose is pinned: press Make this span again, and the motion passes through it.");
   }
 
   /** Seconds that the line shows: the story's, or the motion's where that is longer. */
@@ -67,6 +85,7 @@ class Editor {
   edit(story) {
     if (story === this.story) return this.draw();
     this.past.keep(this.story);
+    this.note = null;
     this.show(story);
   }
 
@@ -132,6 +151,7 @@ class Editor {
     const cell = event.target.closest?.(".pds-cell");
     const handle = event.target.closest?.(".pds-handle");
     const arrow = { ArrowLeft: -1, ArrowRight: 1 }[event.key];
+    if (this.pins.key(event)) return event.preventDefault();
     if (handle && arrow) {
       const index = Number(handle.dataset.beat);
       this.edit(edits.stretch(this.story, index, edits.lengthOf(this.story.beats[index]) + 0.5 * arrow));
@@ -228,7 +248,9 @@ class Editor {
 
   tick() {
     if (!this.root.isConnected) return clearInterval(this.timer);
-    const frame = this.player?.frameShown;
+    const { player } = this;
+    if (player && player.director !== this) player.direct(this);
+    const frame = player?.frameShown;
     if (frame == null || !this.root.offsetParent) return;
     this.find(".pds-playhead").style.left = `${(100 * frame) / 30 / this.total}%`;
   }
@@ -236,8 +258,10 @@ class Editor {
   // ---- drawing ---------------------------------------------------------------------------------
 
   draw() {
+    if (this.pins.held) return; // it is drawn when that is over
     const { story, total } = this;
     const starts = edits.edges(story);
+    const focused = this.root.contains(document.activeElement) && document.activeElement.dataset.key;
     this.find(".pds-line").style.minWidth = `${Math.round(PIXELS * total)}px`;
     const lanes = this.find(".pds-lanes");
     lanes.replaceChildren();
@@ -245,12 +269,15 @@ class Editor {
       const row = node("div", `pds-lane pds-lane-${lane}`);
       row.append(node("span", "pds-name", name));
       story.beats.forEach((beat, i) => row.append(this.block(beat, i, lane, name, starts, total)));
+      row.append(...this.pins.of(lane, total));
       lanes.append(row);
     }
+    if (focused) this.find(`[data-key="${focused}"]`)?.focus({ preventScroll: true });
     this.drawRuler(total);
     this.drawTicks(total);
     this.drawSpan(story.span);
     this.floor.draw(story);
+    this.player?.refresh(); // it shows poses
     const beat = story.beats[this.selected];
     this.find("[data-field=seconds]").value = beat ? edits.lengthOf(beat) : "";
     this.find("[data-field=loop]").checked = story.loop;
@@ -262,7 +289,19 @@ class Editor {
     this.find("[data-act=undo]").disabled = !this.past.before.length;
     this.find("[data-act=redo]").disabled = !this.past.after.length;
     this.find("[data-act=no-span]").disabled = !story.span;
-    this.find(".pds-hint").textContent = beat ? this.summary(beat) : "No beats yet: write a story and press Generate, or add one.";
+    const said = beat ? this.summary(beat) : "No beats yet: write a story and press Generate, or add one.";
+    this.find(".pds-hint").textContent = this.note ?? said;
+  }
+
+  focusPin(person, frame) {
+    const index = this.story.poses.indexOf(edits.poseAt(this.story, person, frame));
+    this.find(`.pds-pin[data-pose="${index}"]`)?.focus({ preventScroll: true });
+  }
+
+  /** Says something in place of the hint, until the next change. */
+  tell(note) {
+    this.note = note;
+    this.find(".pds-hint").textContent = note;
   }
 
   summary(beat) {
@@ -280,6 +319,7 @@ class Editor {
     cell.type = "button";
     cell.dataset.beat = index;
     cell.dataset.lane = lane;
+    cell.dataset.key = `${lane} ${index}`;
     cell.title = words;
     cell.setAttribute("aria-label", `Beat ${index + 1}, ${name}: ${words || "no words"}`);
     if (index === this.selected) cell.classList.add("pds-selected");
@@ -288,6 +328,7 @@ class Editor {
       const handle = node("span", "pds-handle");
       handle.tabIndex = 0;
       handle.dataset.beat = index;
+      handle.dataset.key = `length ${index}`;
       handle.setAttribute("role", "slider");
       handle.setAttribute("aria-label", `Length of beat ${index + 1}`);
       handle.setAttribute("aria-valuenow", edits.lengthOf(beat));

@@ -5,7 +5,9 @@ from __future__ import annotations
 import os
 from collections.abc import Iterator
 from pathlib import Path
+from typing import Any
 
+import numpy as np
 import pytest
 
 os.environ.setdefault("GRADIO_ANALYTICS_ENABLED", "False")
@@ -25,13 +27,31 @@ def site(tmp_path_factory: pytest.TempPathFactory) -> Iterator[str]:
     page.close()
 
 
-def test_a_story_from_sentence_to_futures(chromium, site: str) -> None:
+@pytest.fixture(scope="module")
+def page(chromium, site: str) -> Iterator[Any]:
+    """The tab Scene, which the tests share."""
     page = chromium.new_page(viewport={"width": 1300, "height": 1500})
     page.set_default_timeout(TIMEOUT)
     errors: list[str] = []
     page.on("pageerror", lambda error: errors.append(str(error)))
     page.goto(site)
     page.get_by_role("tab", name="Scene").click()
+    yield page
+    page.close()
+    assert not errors
+
+
+def story(page: Any) -> dict[str, Any]:
+    return page.evaluate("document.querySelector('.pds').editor.story")
+
+
+def rest(page: Any) -> None:
+    """Waits until a run is over."""
+    page.wait_for_selector("#scene-remake:not([disabled])")
+    page.wait_for_selector("#scene-status .pd-done")
+
+
+def test_a_story_from_sentence_to_futures(page: Any) -> None:
     page.locator("#scene-prompt textarea").fill("They meet. Then they hug. Finally they bow.")
     page.locator("#scene-generate").click()
     page.wait_for_selector("#scene-status .pd-done")
@@ -42,17 +62,14 @@ def test_a_story_from_sentence_to_futures(chromium, site: str) -> None:
         "They bow.",
     ]
 
-    def story() -> dict:
-        return page.evaluate("document.querySelector('.pds').editor.story")
-
     def words() -> list[str]:
-        return [beat["words"] for beat in story()["beats"]]
+        return [beat["words"] for beat in story(page)["beats"]]
 
     # Words are written in place, and reach the story's text.
     page.locator('.pds-cell[data-beat="1"][data-lane="b"]').click()
     page.locator(".pds-words").fill('waves "hello"')
     page.keyboard.press("Enter")
-    assert story()["beats"][1]["b"] == 'waves "hello"'
+    assert story(page)["beats"][1]["b"] == 'waves "hello"'
     page.wait_for_function(
         "document.querySelector('#scene-text textarea')?.value.includes('waves') ||"
         " document.querySelector('.pds').editor.story.beats[1].auto > 0"
@@ -81,11 +98,11 @@ def test_a_story_from_sentence_to_futures(chromium, site: str) -> None:
     page.mouse.down()
     page.mouse.move(box["x"] + 0.6 * box["width"], box["y"] + box["height"] / 2, steps=5)
     page.mouse.up()
-    (path,) = story()["paths"]
+    (path,) = story(page)["paths"]
     assert path["person"] == "a" and len(path["points"]) > 2 and path["points"][-1][1] > 1
     page.locator('circle[data-point="1"]').focus()
     page.keyboard.press("ArrowUp")
-    assert story()["paths"][0]["points"][1][2] == pytest.approx(path["points"][1][2] + 0.1)
+    assert story(page)["paths"][0]["points"][1][2] == pytest.approx(path["points"][1][2] + 0.1)
     page.get_by_role("button", name="Delete the path").click()
     # A span is selected on the ruler and made again, and three futures follow.
     ruler = page.locator(".pds-ruler").bounding_box()
@@ -93,13 +110,72 @@ def test_a_story_from_sentence_to_futures(chromium, site: str) -> None:
     page.mouse.down()
     page.mouse.move(ruler["x"] + 200, ruler["y"] + 10, steps=4)
     page.mouse.up()
-    first, last = story()["span"]
+    first, last = story(page)["span"]
     assert last - first >= 0.5
     page.locator("#scene-remake").click()
     page.wait_for_function("window.__pasdedeux.player?.data?.samples.length === 1")
     page.wait_for_selector("#scene-remake:not([disabled])")
     page.locator("#scene-futures").click()
     page.wait_for_function("window.__pasdedeux.player?.data?.samples.length === 3")
-    page.wait_for_selector("#scene-status .pd-done")
-    assert not errors
-    page.close()
+    rest(page)
+
+
+def test_a_dragged_hand_becomes_a_pose_that_the_motion_passes_through(page: Any) -> None:
+    page.locator("#scene-prompt textarea").fill("They meet. Then they hug.")
+    page.locator("#scene-generate").click()
+    page.wait_for_selector("#scene-generate[disabled]")
+    rest(page)
+    page.wait_for_function("window.__pasdedeux.player.data?.samples.length === 1")
+    page.wait_for_function("document.querySelectorAll('.pds-lane-words .pds-cell').length === 2")
+    page.evaluate("window.__pasdedeux.player.act('pause'); window.__pasdedeux.player.seek(60)")
+    page.wait_for_function("window.__pasdedeux.frame === 60")
+    page.locator(".pdd:visible").focus()
+    page.keyboard.press("e")
+    handle = page.locator('.pdd-handle[data-person="0"][data-joint="21"]')
+    box = handle.bounding_box()
+    page.mouse.move(box["x"] + 15, box["y"] + 15)
+    page.mouse.down()
+    page.mouse.move(box["x"] + 40, box["y"] - 60, steps=6)
+    page.mouse.up()
+    wanted = np.array(page.evaluate("window.__pasdedeux.positions[0]"))
+    page.keyboard.press("Enter")
+    (pose,) = story(page)["poses"]
+    assert (pose["person"], pose["seconds"]) == ("a", 2.0)
+    assert np.abs(np.array(pose["positions"]) - wanted).max() < 1e-4
+    assert story(page)["span"] == [1.0, 3.0]
+    # It is in the story's text, and a contradiction is one sentence.
+    page.get_by_role("button", name="The story as text").click()
+    page.wait_for_function("document.querySelector('#scene-text textarea')?.value.includes('[[pose]]')")
+    # Its pin is dragged, the drag given up, moved with the keys, undone.
+    pin = page.locator(".pds-lane-a .pds-pin")
+    box = pin.bounding_box()
+    page.mouse.move(box["x"] + 13, box["y"] + 15)
+    page.mouse.down()
+    page.mouse.move(box["x"] + 113, box["y"] + 15, steps=4)
+    page.keyboard.press("Escape")
+    page.mouse.up()
+    assert story(page)["poses"][0]["seconds"] == 2.0
+    page.mouse.move(box["x"] + 13, box["y"] + 15)
+    page.mouse.down()
+    page.mouse.move(box["x"] + 113, box["y"] + 15, steps=4)
+    page.mouse.up()
+    assert story(page)["poses"][0]["seconds"] > 3
+    page.get_by_role("button", name="Undo", exact=True).last.click()
+    pin.focus()
+    page.keyboard.press("ArrowRight")
+    page.keyboard.press("ArrowRight")
+    assert story(page)["poses"][0]["seconds"] == 2.0667
+    page.evaluate("window.__pasdedeux.player.seek(0)")
+    pin.click()
+    page.wait_for_function("window.__pasdedeux.frame === 62")
+    # The span is made again, and the motion passes through the pose.
+    page.locator("#scene-remake").click()
+    page.wait_for_selector("#scene-remake[disabled]")
+    rest(page)
+    page.evaluate("window.__pasdedeux.player.act('pause'); window.__pasdedeux.player.seek(62)")
+    page.wait_for_function("window.__pasdedeux.frame === 62 && window.__pasdedeux.loops === 0")
+    made = np.array(page.evaluate("window.__pasdedeux.positions[0]"))
+    assert np.linalg.norm(made - wanted, axis=-1).max() < 0.03
+    pin.focus()
+    page.keyboard.press("Delete")
+    assert story(page)["poses"] == []

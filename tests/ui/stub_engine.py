@@ -187,6 +187,8 @@ class StubEngine:
             if request.motion is not None:
                 before, after = request.kept(request.motion)
                 whole[:, :first], whole[:, last : last + after.shape[1]] = before, after
+            for pose in request.poses:
+                whole["ab".index(pose.person), round(pose.seconds * FPS)] = pose.positions
             for beat, stop in enumerate(request.edges[1:]):
                 time.sleep(self.pause)
                 if cancel is not None and cancel.cancelled:

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from motion import Duet
-from webdemo.inference.story import Beat
+from webdemo.inference.story import Beat, FloorPath, FloorPoint, Pose
 from webdemo.ui.components.exports import Record, Shelf
 from webdemo.ui.components.story import motion_marks, story_fields, story_value
 from webdemo.ui.context import PageContext
@@ -168,3 +168,39 @@ def test_contacts_are_marked_in_seconds() -> None:
         {"contacts": [{"start": 15, "stop": 30, "kind": "hands", "label": "x"}]},
     )
     assert marks == {"seconds": 2.0, "contacts": [{"start": 0.5, "stop": 1.0, "kind": "hands", "label": "x"}]}
+
+
+def test_a_span_keeps_the_poses_and_the_way_that_fall_into_it(tab: SceneTab) -> None:
+    record = generate(tab)[-1]["record"]
+    duet = record.result.duets[0]
+    own = [
+        Pose("a", 2.0, duet.a.positions[60]), Pose("b", 3.0, duet.b.positions[90]), Pose("b", 1.0, duet.b.positions[30])
+    ]  # fmt: skip
+    way = FloorPath(
+        "b", tuple(FloorPoint(0.0, float(duet.b.positions[30 * t, 0, 2]), float(t)) for t in range(5))
+    )
+    laid = story_value((Beat("They meet."), Beat("They hug.")), (way,), tuple(own)) | {"span": [1.5, 3.0]}
+    asked = part(tab, "span", record, laid)["record"].result.manifest["request"]
+    assert [(pose["person"], pose["seconds"]) for pose in asked["poses"]] == [("a", 2.0)]
+    assert [point["seconds"] for point in asked["paths"][0]["points"]] == [2.0]
+    # What lies behind the frame that futures begin at is given to them.
+    last = part(tab, "futures", record, laid)
+    told = last["story"]["value"]
+    assert sorted(pose["seconds"] for pose in told["poses"]) == [1.0, 2.0, 3.0]
+    last = last["record"].result.manifest["request"]
+    assert [pose["seconds"] for pose in last["poses"]] == [2.0, 3.0]
+    assert [point["seconds"] for point in last["paths"][0]["points"]] == [2.0, 3.0, 4.0]
+    # A story that has become shorter has no poses behind its end.
+    late = story_value((Beat("They meet."), Beat("They hug.")), (), (Pose("a", 7.0, duet.a.positions[60]),))
+    assert part(tab, "futures", record, late, "They bow.")["story"]["value"]["poses"] == []
+
+
+def test_a_pose_off_the_path_is_one_sentence(tab: SceneTab) -> None:
+    record = generate(tab)[-1]["record"]
+    place = record.result.duets[0].a.positions[60]
+    way = FloorPath("a", (FloorPoint(3.0, 3.0, 1.0), FloorPoint(3.0, 3.5, 3.0)))
+    beats = (Beat("They meet."), Beat("They hug."))
+    line = tab.edited(story_value(beats, (way,), (Pose("a", 2.0, place),)), 1)[2]
+    assert "off their path" in line
+    line = tab.edited(story_value(beats, (), (Pose("a", 2.0, place), Pose("a", 2.01, place))), 1)[2]
+    assert "keep one" in line

@@ -8,8 +8,9 @@ from dataclasses import replace
 from typing import Any
 
 from motion import Duet, InputError
+from webdemo.inference.actor import FPS
 from webdemo.inference.requests import Result
-from webdemo.inference.story import Beat, SceneRequest, read_words
+from webdemo.inference.story import Beat, FloorPath, Pose, SceneRequest, read_words
 
 from .exports import Record
 from .story import story_fields, story_value
@@ -77,7 +78,8 @@ def went_on(story: Any, wanted: SceneRequest) -> dict[str, Any]:
     missing = start - sum(beat.length for beat in known)
     if known and abs(missing) > 1e-6:  # a beat of which too little is left
         known = (*known[:-1], replace(known[-1], seconds=round(known[-1].length + missing, 2)))
-    return story_value((*known, *wanted.beats), fields["paths"], fields["poses"]) | {"from": ""}
+    paths, poses = wishes_in(fields, 0.0, wanted.total_seconds, wanted.total_seconds)
+    return story_value((*known, *wanted.beats), paths, poses) | {"from": ""}
 
 
 def beats_in(beats: tuple[Beat, ...], start: float, end: float) -> tuple[Beat, ...]:
@@ -89,3 +91,24 @@ def beats_in(beats: tuple[Beat, ...], start: float, end: float) -> tuple[Beat, .
             found.append(Beat(beat.words, beat.a, beat.b, round(inside, 2)))
         at += beat.length
     return tuple(found) or (Beat(seconds=max(end - start, 0.5)),)
+
+
+def wishes_in(
+    story: Mapping[str, Any], start: float, end: float, total: float
+) -> tuple[tuple[FloorPath, ...], tuple[Pose, ...]]:
+    """The points of paths and the poses of a story of ``total`` seconds that fall into a part of it.
+
+    Args:
+        story: the fields of :func:`~webdemo.ui.components.story.story_fields`.
+        start, end: of the part in seconds; its last frame lies before ``end``.
+        total: seconds of the motion.
+    """
+    first, last = round(start * FPS), round(end * FPS)
+    poses = tuple(pose for pose in story["poses"] if first <= round(pose.seconds * FPS) < last)
+    paths = []
+    for path in story["paths"]:
+        timed = path.timed(total).points
+        inside = tuple(p for p in timed if first <= round((p.seconds or 0.0) * FPS) < last)
+        if inside:
+            paths.append(FloorPath(path.person, inside))
+    return tuple(paths), poses

@@ -116,7 +116,7 @@ def story_fields(value: Any) -> dict[str, Any]:
         InputError: if the browser sent something else.
     """
     if not isinstance(value, Mapping):
-        return {"beats": ()}
+        return {"beats": (), "paths": (), "poses": (), "loop": False}
     try:
         beats = [
             entry for entry in list(value.get("beats") or ())[: MOST_BEATS + 1] if isinstance(entry, Mapping)

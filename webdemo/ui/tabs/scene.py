@@ -24,6 +24,7 @@ from webdemo.ui.components.scene_parts import (
     place_of,
     shown_duet,
     went_on,
+    wishes_in,
 )
 from webdemo.ui.components.story import (
     StoryLine,
@@ -86,20 +87,25 @@ class SceneTab(SweepTab):
 
     def part(self, fields: Mapping[str, Any], record: Record | None, *, ahead: bool) -> SceneRequest:
         """The selected span again, or several futures from the player's frame on."""
-        duet = shown_duet(record, fields["sample"])
+        duet, story = shown_duet(record, fields["sample"]), story_fields(fields["story"])
         plain = {f: fields[f] for f in ("guidance", "steps", "damping")}
         plain["seed"] = secrets.randbelow(MAX_SEED + 1)
         words = str(fields["words"] or "").strip()
         if ahead:
             start = min(fields["frame"] / duet.fps, duet.seconds)
             beats = split_sentence(words) or (Beat(seconds=FUTURE_SECONDS),)
-            return SceneRequest(beats=beats, motion=duet, start=start, samples=FUTURES, **plain)
+            length = start + sum(beat.length for beat in beats)
+            paths, poses = wishes_in(story, start, length, length)
+            return SceneRequest(
+                beats=beats, paths=paths, poses=poses, motion=duet, start=start, samples=FUTURES, **plain
+            )
         span = span_of(fields["story"])
         if span is None:
             raise InputError("No span is selected: drag on the ruler over the beats, or type its seconds.")
         start, end = max(0.0, span[0]), min(span[1], duet.seconds)
-        beats = split_sentence(words) or beats_in(story_fields(fields["story"])["beats"], start, end)
-        return SceneRequest(beats=beats, motion=duet, start=start, end=end, **plain)
+        beats = split_sentence(words) or beats_in(story["beats"], start, end)
+        paths, poses = wishes_in(story, start, end, duet.seconds)
+        return SceneRequest(beats=beats, paths=paths, poses=poses, motion=duet, start=start, end=end, **plain)
 
     def cell_fields(self, fields: Mapping[str, Any], cell: Mapping[str, Any]) -> dict[str, Any]:
         """The story as it is laid out, with the cell's settings."""

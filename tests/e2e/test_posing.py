@@ -1,0 +1,133 @@
+"""People who are posed in the player: the arithmetic of pulling, and hands, keys and fingers that pull."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import pytest
+
+from motion import SMPL22
+
+from .playing import pause, until
+
+pytestmark = pytest.mark.e2e
+
+PULL = """async ([pose, joint, target]) => {
+    const { pull } = await import("/player/reach.js");
+    return pull(pose, joint, target);
+}"""
+DIRECT = """() => {
+    window.kept = [];
+    window.__pasdedeux.player.direct({
+        posesAt: () => [null, null],
+        keepPoses: (frame, poses) => window.kept.push({ frame, poses }),
+    });
+}"""
+WRIST, ANKLE, HEAD = (SMPL22.index(name) for name in ("right_wrist", "left_ankle", "head"))
+
+
+def lengths(pose: np.ndarray) -> np.ndarray:
+    parents, children = np.array(SMPL22.bones).T
+    return np.linalg.norm(pose[children] - pose[parents], axis=-1)
+
+
+@pytest.fixture
+def still(player) -> Any:
+    """A player that stands at frame 60 and may be posed."""
+    page = player()
+    pause(page)
+    page.evaluate(DIRECT)
+    page.evaluate("window.__pasdedeux.player.seek(60)")
+    until(page, "window.__pasdedeux.frame === 60 && window.__pasdedeux.loops === 0")
+    return page
+
+
+def positions(page: Any, person: int = 0) -> np.ndarray:
+    until(page, "window.__pasdedeux.loops === 0")
+    return np.array(page.evaluate(f"window.__pasdedeux.positions[{person}]"))
+
+
+def test_bones_keep_their_lengths_and_joints_go_where_they_reach(still: Any) -> None:
+    pose = positions(still)[:, [2, 0, 1]]  # scene axes: z up
+    rng = np.random.default_rng(0)
+    for name in ("left_wrist", "right_wrist", "left_ankle", "right_ankle", "pelvis", "head"):
+        joint = SMPL22.index(name)
+        for reach in (0.0, 0.05, 0.3, 3.0):
+            way = rng.normal(size=3)
+            target = pose[joint] + reach * way / np.linalg.norm(way)
+            pulled = np.array(still.evaluate(PULL, [pose.tolist(), joint, target.tolist()]))
+            np.testing.assert_allclose(lengths(pulled), lengths(pose), atol=1e-9)
+            assert pulled[:, 2].min() > min(pose[:, 2].min(), 0.0), "nobody is pushed through the floor"
+            if reach == 0:
+                np.testing.assert_allclose(pulled, pose, atol=2e-3)
+    # A hand that is bent back to the chest is reached exactly; hips that sink leave the feet where they stand.
+    target = pose[SMPL22.index("right_shoulder")] + [0.25, 0.1, -0.2]
+    pulled = np.array(still.evaluate(PULL, [pose.tolist(), WRIST, target.tolist()]))
+    np.testing.assert_allclose(pulled[WRIST], target, atol=1e-9)
+    pulled = np.array(still.evaluate(PULL, [pose.tolist(), 0, (pose[0] - [0, 0, 0.25]).tolist()]))
+    np.testing.assert_allclose(pulled[ANKLE], pose[ANKLE], atol=1e-9)
+    ahead = np.cross(pose[1] - pose[2], [0, 0, 1])
+    knee = SMPL22.index("left_knee")
+    assert (pulled[knee] - pose[knee]) @ ahead > 0, "knees bend forward"
+    # The head bends the spine, not more than people can.
+    pulled = np.array(still.evaluate(PULL, [pose.tolist(), HEAD, (pose[HEAD] + 9 * ahead).tolist()]))
+    bent = np.linalg.norm(pulled[HEAD] - pose[HEAD])
+    assert 0.2 < bent < 0.75
+
+
+def test_a_hand_is_dragged_given_up_and_kept(still: Any) -> None:
+    before = positions(still)
+    still.locator("[data-act=pose]").click()
+    box = still.locator(f'.pdd-handle[data-person="0"][data-joint="{WRIST}"]').bounding_box()
+    x, y = box["x"] + box["width"] / 2, box["y"] + box["height"] / 2
+
+    def drag() -> None:
+        still.mouse.move(x, y)
+        still.mouse.down()
+        still.mouse.move(x + 30, y - 90, steps=4)
+
+    drag()
+    assert np.abs(positions(still) - before).max() > 0.1
+    still.keyboard.press("Escape")
+    still.mouse.up()
+    np.testing.assert_allclose(positions(still), before)
+    assert still.locator(".pdd-posing").is_visible(), "the drag was given up, not the pose"
+    drag()
+    still.mouse.up()
+    dragged = positions(still)
+    assert np.linalg.norm(dragged[WRIST] - before[WRIST]) > 0.1
+    np.testing.assert_allclose(positions(still, 1), np.array(still.evaluate(
+        "window.__pasdedeux.player.everybody(60)[1].map(([z, x, y]) => [x, y, z])")))  # fmt: skip
+    # Another moment is not shown before it is kept or given up.
+    still.keyboard.press("Home")
+    still.locator(".pdd-range").fill("90")
+    assert "Keep the pose or cancel" in still.locator(".pdd-posing output").inner_text()
+    np.testing.assert_allclose(positions(still), dragged)
+    assert still.locator(".pdd-range").input_value() == "60"
+    still.get_by_role("button", name="Keep the pose").click()
+    (kept,) = still.evaluate("window.kept")
+    assert kept["frame"] == 60 and [pose["person"] for pose in kept["poses"]] == ["a"]
+    np.testing.assert_allclose(kept["poses"][0]["positions"], dragged, atol=1e-5)
+    assert not still.locator(".pdd-posing").is_visible()
+    np.testing.assert_allclose(positions(still), before)
+
+
+def test_a_joint_is_moved_with_the_keys(still: Any) -> None:
+    before = positions(still, 1)
+    still.locator(".pdd").focus()
+    still.keyboard.press("e")
+    still.locator(f'.pdd-handle[data-person="1"][data-joint="{WRIST}"]').focus()
+    still.keyboard.press("ArrowUp")
+    still.keyboard.press("ArrowUp")
+    moved = positions(still, 1)
+    assert 0.02 < np.linalg.norm(moved[WRIST] - before[WRIST]) < 0.05
+    still.keyboard.press("Control+z")
+    still.keyboard.press("Control+z")
+    np.testing.assert_allclose(positions(still, 1), before)
+    still.keyboard.press("Shift+Alt+ArrowRight")
+    carried = positions(still, 1) - before
+    np.testing.assert_allclose(carried, carried[:1].repeat(22, axis=0), atol=1e-9)
+    still.keyboard.press("Escape")
+    np.testing.assert_allclose(positions(still, 1), before)
+    assert still.evaluate("window.kept") == []
