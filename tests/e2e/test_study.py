@@ -3,11 +3,15 @@
 from __future__ import annotations
 
 import csv
+import re
 from collections.abc import Callable
 from pathlib import Path
 
 import pytest
 from playwright.sync_api import Page, expect
+
+from motion.formats import write
+from tests.ui.stub_engine import walking
 
 pytestmark = [pytest.mark.e2e, pytest.mark.slow]
 SLOW = 120_000
@@ -103,3 +107,29 @@ def test_a_grid_is_linked_compared_and_voted_on(lab: str, open_page: Callable, t
     rows = list(csv.DictReader((tmp_path / "votes.csv").open()))
     assert sorted(row["pressed"] for row in rows) == ["skip", "tie"]
     assert {row["rater_counts"] for row in rows} == {"no"}
+
+
+def test_two_sets_of_files_are_a_study_without_any_run(lab: str, open_page: Callable, tmp_path: Path) -> None:
+    files: dict[str, list[str]] = {"ours": [], "theirs": []}
+    for side, paths in files.items():
+        for name in ("hug", "wave"):
+            (tmp_path / side).mkdir(exist_ok=True)
+            paths.append(str(write(walking(1.0), tmp_path / side / f"{name}.npz")[0]))
+    page = open_page(lab, width=720, height=640)
+    page.set_default_timeout(SLOW)
+    page.get_by_role("tab", name="History").click()
+    page.click("#study > button")
+    page.click("#study-begin")
+    expect(page.locator("#study-make")).to_be_visible()
+    expect(page.locator("#study-way")).not_to_be_visible()
+    page.set_input_files("#study-files input[type=file]", files["ours"])
+    expect(page.locator("#study-files")).to_contain_text("wave", timeout=SLOW)
+    page.click("#study-make")
+    expect(page.locator("#study-status .pd-error")).to_contain_text(
+        "upload files for another set", timeout=SLOW
+    )
+    page.set_input_files("#study-more-files input[type=file]", files["theirs"])
+    expect(page.locator("#study-more-files")).to_contain_text("wave", timeout=SLOW)
+    page.click("#study-make")
+    expect(page.locator("#study-status .pd-done")).to_contain_text("The study has 2 pairs", timeout=SLOW)
+    expect(page.locator("#study-which input")).to_have_value(re.compile("Recorded, Uploaded"))

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from html import unescape
 from pathlib import Path
 from types import SimpleNamespace
 from typing import Any
@@ -14,7 +15,7 @@ from motion import InputError
 from motion.formats import write
 from tests.ui.stub_engine import walking
 from webdemo.inference.requests import Result
-from webdemo.study import Comparison, StudyResult
+from webdemo.study import Comparison, StudyResult, matched_pairs
 from webdemo.ui.components.study_sets import MOST_FILES, ONE_SET, candidates, sets_by, uploaded, ways
 from webdemo.ui.history import Entry, Opened
 from webdemo.ui.studies import NewStudy, StudyEntry
@@ -22,6 +23,7 @@ from webdemo.ui.tabs.study import QUESTIONS, StudyPanel
 from webdemo.ui.text.votes import result_html
 
 PAIR = walking(0.5)
+NO_FILES = (None, "Recorded", None, "Uploaded")
 
 
 def run(
@@ -146,7 +148,7 @@ def test_a_study_is_made_of_chosen_runs_and_its_link_is_shown() -> None:
     assert fold == gr.update(open=True) and "2 of your runs" in line and making == gr.update(visible=True)
     assert way["value"] == "Guidance"
     line, _, reading, which, link, html, table, closing = study.create(
-        ids, "Guidance", QUESTIONS[1], None, "Recorded", "", 0, 2, True, False
+        ids, "Guidance", QUESTIONS[1], "", 0, 2, True, False, *NO_FILES
     )
     assert "The study has 2 pairs" in line and link == "study/key" and reading == gr.update(visible=True)
     (made,) = study.studies.made  # type: ignore[attr-defined]
@@ -168,12 +170,58 @@ def test_what_cannot_be_studied_is_a_sentence(ids: tuple[str, ...], says: str) -
     assert says in line and "pd-error" in line and rest == [gr.skip()] * 3
 
 
-def test_two_sets_of_one_name_are_a_sentence(tmp_path: Path) -> None:
-    write(PAIR, tmp_path / "x.npz")
+def test_two_uploaded_sets_make_a_study_without_any_run(tmp_path: Path) -> None:
+    ours, theirs = [], []
+    for folder, files in (("ours", ours), ("theirs", theirs)):
+        (tmp_path / folder).mkdir()
+        for name in ("hug", "wave"):
+            files.append(str(write(PAIR, tmp_path / folder / f"{name}.npz")[0]))
+    study = panel()
+    fold, line, making, way, ids = study.files_alone()
+    assert fold == gr.update(open=True) and "Upload two sets" in line and ids == []
+    assert making == gr.update(visible=True) and way == gr.update(visible=False), (
+        "there is nothing to choose from"
+    )
+    line, making, *_ = study.create(
+        ids, "", "Which?", "", 0, 1, True, False, ours, " Ours ", theirs, "Theirs"
+    )
+    assert "The study has" in line and making == gr.update(visible=False)
+    (made,) = study.studies.made  # type: ignore[attr-defined]
+    assert {name: [each.key for each in given] for name, given in made.sets.items()} == {
+        "Ours": ["hug", "wave"], "Theirs": ["hug", "wave"],
+    }  # fmt: skip
+    assert [pair.motions for pair in matched_pairs(list(made.sets.values()))] == [(0, 2), (1, 3)]
+
+
+def test_runs_and_two_uploaded_sets_are_three_sets(tmp_path: Path) -> None:
+    file = str(write(PAIR, tmp_path / "they-hug.npz")[0])
     study = panel(run("a"))
-    files = [str(tmp_path / "x.npz")]
-    line, *_ = study.create(["a"], ONE_SET, "?", files, "Chosen runs", "", 0, 0, True, False)
-    assert "There is a set" in line and not study.studies.made  # type: ignore[attr-defined]
+    study.create(["a"], ONE_SET, "Which?", "", 0, 0, True, False, [file], "Recorded", [file], "Theirs")
+    (made,) = study.studies.made  # type: ignore[attr-defined]
+    assert list(made.sets) == ["Chosen runs", "Recorded", "Theirs"]
+
+
+@pytest.mark.parametrize(
+    ("ids", "names", "says"),
+    [
+        ([], (None, None), "no motions to compare: upload files for both sets"),
+        ([], ("Mine", None), "the only motions: upload files for another set"),
+        (["a"], (None, None), "the only motions: upload files for another set"),
+        ([], ("Mine", "Mine"), "There is a set 'Mine' already"),
+        (["a"], (None, "Chosen runs"), "There is a set 'Chosen runs' already"),
+        ([], ("Mine", "  "), "An uploaded set has no name"),
+        (["gone"], ("Mine", None), "There is no such run"),
+    ],
+)
+def test_uploaded_sets_that_make_no_study_are_a_sentence(
+    ids: list[str], names: tuple[str | None, str | None], says: str, tmp_path: Path
+) -> None:
+    file = str(write(PAIR, tmp_path / "x.npz")[0])
+    study = panel(run("a"))
+    given = [part for name in names for part in ([file] if name else None, name or "Unused")]
+    line, *rest = study.create(ids, ONE_SET, "?", "", 0, 0, True, False, *given)
+    assert says in unescape(line) and "pd-error" in line and rest == [gr.skip()] * 7
+    assert not study.studies.made  # type: ignore[attr-defined]
 
 
 def test_a_result_says_wins_interval_agreement_and_who_was_left_out() -> None:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Collection, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 
@@ -89,6 +89,31 @@ def sets_by(found: Sequence[Candidate], setting: str) -> dict[str, list[Stimulus
             name = value if setting in _SPEAKING else f"{setting.lower()} {value}"
             made.setdefault(name, []).append(each.stimulus)
     return made
+
+
+def uploaded_sets(
+    given: Sequence[tuple[Sequence[str] | None, str]], taken: Collection[str] = ()
+) -> dict[str, list[Stimulus]]:
+    """Uploaded sets by their names.
+
+    Args:
+        given: the files of each set, none where it is not wanted, and its name.
+        taken: names that other sets have.
+
+    Raises:
+        InputError: for a set without a name or with one that another has, and as :func:`uploaded`.
+    """
+    found: dict[str, list[Stimulus]] = {}
+    for files, called in given:
+        name = " ".join((called or "").split())
+        if not files:
+            continue
+        if not name:
+            raise InputError("An uploaded set has no name: give it one.")
+        if name in taken or name in found:
+            raise InputError(f"There is a set {name!r:.60} already: give the uploaded one another name.")
+        found[name] = uploaded(files)
+    return found
 
 
 def uploaded(paths: Sequence[str]) -> list[Stimulus]:

@@ -17,7 +17,7 @@ from webdemo.ui.components.study_sets import (
     Candidate,
     candidates,
     sets_by,
-    uploaded,
+    uploaded_sets,
     ways,
 )
 from webdemo.ui.components.upload import FILE_TYPES
@@ -37,10 +37,22 @@ QUESTIONS = (
     "In which do the two people respond to each other better?",
 )
 _INTRO = (
-    "Choose runs of two or more methods or settings in the list below and press <b>Blind study</b>. People with the "
-    "link see pairs side by side, in random order and on random sides, without names or settings."
+    "Choose runs of two or more methods or settings in the list below and press <b>Blind study</b>, or begin with two "
+    "sets of files. People with the link see pairs side by side, in random order and on random sides, without names or "
+    "settings."
 )
+_FILES_ALONE = "Upload two sets of motions. Files of the same name in both stand beside each other."
 _DELETE = "(study) => confirm('Delete this study with all its votes? This cannot be undone.') ? study : ''"
+
+
+def _upload(label: str, name: str, elem_id: str) -> tuple[gr.File, gr.Textbox]:
+    """A field for the files of a set, and one for its name."""
+    with gr.Column(min_width=0):
+        files = gr.File(
+            label=label, file_types=FILE_TYPES, height=112, file_count="multiple", elem_id=elem_id,
+            elem_classes="pd-file",
+        )  # fmt: skip
+        return files, gr.Textbox(name, label="Name of this set", elem_id=f"{elem_id}-name")
 
 
 class StudyPanel:
@@ -63,6 +75,7 @@ class StudyPanel:
         """Lays out the panel, folded until runs are chosen for it."""
         with gr.Accordion("Blind study: let people vote", open=False, elem_id="study") as self.fold:
             gr.HTML(f'<p class="pd-method">{_INTRO}</p>')
+            self.begin = gr.Button("Begin with files alone", size="sm", elem_id="study-begin")
             self.line = gr.HTML(status(), elem_id="study-status", elem_classes="pd-line")
             with gr.Column(visible=False, min_width=0) as self.making:
                 self._making()
@@ -78,15 +91,11 @@ class StudyPanel:
                 info="Choose one, or write your own.", elem_id="study-question", min_width=0,
             )  # fmt: skip
         with gr.Row(elem_classes="pd-pair"):
-            self.files = gr.File(
-                label="Recorded or other motions as one more set (optional)", file_types=FILE_TYPES, height=112,
-                file_count="multiple", elem_id="study-files", elem_classes="pd-file",
-            )  # fmt: skip
-            with gr.Column(min_width=0):
-                self.recorded = gr.Textbox(
-                    "Recorded", label="Name of the uploaded set", elem_id="study-recorded"
-                )
-                self.title = gr.Textbox(label="Name of the study (for you alone)", elem_id="study-title")
+            self.uploads = [
+                _upload("Recorded or other motions as one more set (optional)", "Recorded", "study-files"),
+                _upload("Another set of motions (optional)", "Uploaded", "study-more-files"),
+            ]
+        self.title = gr.Textbox(label="Name of the study (for you alone)", elem_id="study-title")
         with gr.Row(elem_classes="pd-pair"):
             self.each = gr.Slider(
                 0, MOST_PAIRS, value=0, step=1, label="Pairs for each person", info="0 = all of them.",
@@ -131,10 +140,13 @@ class StudyPanel:
         """
         quick: dict[str, Any] = {"concurrency_limit": 4, "concurrency_id": "studies", **QUIET}
         shown = [self.reading, self.which, self.link, self.result, self.table, self.closing]
-        choose(self.choose, outputs=[self.fold, self.line, self.making, self.way, self.chosen], **quick)
+        begun = [self.fold, self.line, self.making, self.way, self.chosen]
+        choose(self.choose, outputs=begun, **quick)
+        self.begin.click(self.files_alone, outputs=begun, **quick)
+        uploads = [part for upload in self.uploads for part in upload]
         fields = [
-            self.chosen, self.way, self.question, self.files, self.recorded, self.title, self.each, self.checks,
-            self.sentence, self.reveal,
+            self.chosen, self.way, self.question, self.title, self.each, self.checks, self.sentence, self.reveal,
+            *uploads,
         ]  # fmt: skip
         self.make.click(
             self.create, inputs=fields, outputs=[self.line, self.making, *shown], trigger_mode="once", **quick
@@ -158,8 +170,19 @@ class StudyPanel:
             gr.update(open=True),
             status(line),
             gr.update(visible=True),
-            gr.update(choices=offered, value=offered[0][1]),
+            gr.update(choices=offered, value=offered[0][1], visible=True),
             ids,
+        )
+
+    @staticmethod
+    def files_alone() -> Updates:
+        """Offers a study of two uploaded sets, without any run."""
+        return (
+            gr.update(open=True),
+            status(_FILES_ALONE),
+            gr.update(visible=True),
+            gr.update(visible=False),
+            [],
         )
 
     def _candidates(self, ids: Sequence[str]) -> list[Candidate]:
@@ -171,19 +194,22 @@ class StudyPanel:
         return candidates([self.history.open(run, owner) for run in ids])
 
     def create(
-        self, ids: list[str], way: str, question: str, files: list[str] | None, recorded: str, title: str,
-        each: float, checks: float, sentence: bool, reveal: bool,
+        self, ids: list[str], way: str, question: str, title: str, each: float, checks: float, sentence: bool,
+        reveal: bool, *uploads: Any,
     ) -> Updates:  # fmt: skip
-        """Makes the study and shows its link."""
+        """Makes the study and shows its link; ``uploads`` are files and name of each uploaded set in turn."""
         try:
-            sets: dict[str, Sequence[Stimulus]] = dict(sets_by(self._candidates(ids), way or ONE_SET))
-            if files:
-                name = " ".join((recorded or "").split()) or "Recorded"
-                if name in sets:
-                    raise InputError(
-                        f"There is a set {name!r:.60} already: give the uploaded one another name."
-                    )
-                sets[name] = uploaded(files)
+            sets: dict[str, Sequence[Stimulus]] = {}
+            if ids:
+                sets |= sets_by(self._candidates(ids), way or ONE_SET)
+            sets |= uploaded_sets(list(zip(uploads[::2], uploads[1::2], strict=True)), sets)
+            if len(sets) < 2:
+                raise InputError(
+                    "A study compares two sets, but these are the only motions: upload files for another set, or "
+                    "choose runs that differ in the list."
+                    if sets
+                    else "There are no motions to compare: upload files for both sets, or choose runs in the list."
+                )
             study = self.studies.create(
                 visitor().owner,
                 NewStudy(
