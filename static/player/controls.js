@@ -146,7 +146,7 @@ export class Controls {
     chip.hidden = !given && !sample?.live;
     if (sample?.live) {
       chip.dataset.part = "live";
-      chip.textContent = ["live", sample.live.text].filter(Boolean).join(" · ");
+      chip.textContent = [sample.live.second ? "streaming" : "live", sample.live.text].filter(Boolean).join(" · ");
     } else if (given) {
       chip.dataset.part = frame < given ? "given" : "predicted";
       chip.textContent = frame < given ? "given" : "predicted";

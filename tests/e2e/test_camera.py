@@ -107,13 +107,11 @@ def test_a_video_and_then_the_webcam_become_an_actor_who_gets_a_partner(filming:
     assert filming.evaluate("document.querySelector('#react-camera video').srcObject") is None
     partner(filming)
 
-    filming.click("#react-stream .pdcam-open")
-    filming.select_option("#react-stream .pdlive-source", "webcam")
-    filming.click("#react-stream .pdcam-begin")
-    expect(filming.locator("#react-stream .pdlive-figures")).to_contain_text(
-        "ms to the partner", timeout=SLOW
-    )
+    filming.click("#react-live .pdcam-open")
+    filming.select_option("#react-live .pdlive-source", "webcam")
+    filming.click("#react-live .pdcam-begin")
+    expect(filming.locator("#react-live .pdlive-figures")).to_contain_text("ms to the partner", timeout=SLOW)
     people(filming, 2)
     filming.wait_for_function("window.__pasdedeux.playing && window.__pasdedeux.frame > 5")
-    filming.click("#react-stream .pdcam-stop")
-    assert filming.evaluate("document.querySelector('#react-stream video').srcObject") is None
+    filming.click("#react-live .pdcam-stop")
+    assert filming.evaluate("document.querySelector('#react-live video').srcObject") is None

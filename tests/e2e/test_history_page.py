@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 from playwright.sync_api import expect
 
+from motion.formats import write
 from tests.ui.stub_engine import walking
 
 pytestmark = [pytest.mark.e2e, pytest.mark.slow]
@@ -144,6 +145,29 @@ def test_a_class_and_a_reaction_open_with_their_method(lab: str, open_page: Call
     other.wait_for_selector("#status .pd-done:has-text('Made on')")
     expect(other.locator("#class input")).to_have_value("high five", timeout=SLOW)
     expect(other.locator("#prompt")).to_be_hidden()
+
+
+def test_a_run_opens_with_the_very_file_that_was_uploaded(
+    lab: str, open_page: Callable, tmp_path: Path
+) -> None:
+    file = write(walking(2.0).a, tmp_path / "my walk.bvh")[0]
+    page = open_page(lab, accept_downloads=True)
+    page.set_default_timeout(SLOW)
+    page.click("button[role=tab]:has-text('React')")
+    page.set_input_files("#react-file input[type=file]", str(file))
+    page.wait_for_selector("#react-status :text('0.0 to')")
+    page.click("button#react-generate")
+    page.wait_for_selector("#react-status .pd-done:has-text('Done')")
+    other = open_page(lab, accept_downloads=True)
+    other.set_default_timeout(SLOW)
+    other.click("button[role=tab]:has-text('History')")
+    other.click(".pdn-card:has-text('my walk.bvh')")
+    other.click("#history-open")
+    other.wait_for_selector("#react-status .pd-done:has-text('Made on')")
+    expect(other.locator("#react-file")).to_contain_text("my walk", timeout=SLOW)
+    with other.expect_download(timeout=SLOW) as download:
+        other.click("#react-file a[download]")
+    assert Path(download.value.path()).read_bytes() == file.read_bytes()
 
 
 def test_a_notebook_is_searched_written_in_and_taken_along(

@@ -10,7 +10,7 @@ from playwright.sync_api import Page, expect
 
 pytestmark = [pytest.mark.e2e, pytest.mark.slow]
 
-PANEL = "#react-stream"
+PANEL = "#react-live"
 SLOW = 120_000
 
 

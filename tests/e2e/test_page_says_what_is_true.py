@@ -97,11 +97,17 @@ def test_controls_that_differ_from_what_is_shown_say_so(page: Page, server: Simp
     expect(changed).not_to_contain_text(CHANGED)
 
     folded = page.locator("#advanced")
-    expect(folded).to_contain_text("Advanced: guidance 4.3, 50 steps, damping 0.7")
+    expect(folded).to_contain_text("Guidance 4.3, 50 steps, damping 0.7")
+    for width in (1440, 1024, 390):  # its line never wraps, and its arrow stays in the panel
+        page.set_viewport_size({"width": width, "height": 844})
+        button, panel = (part.bounding_box() for part in (folded.locator("button").first, folded))
+        assert button and panel and button["height"] < 30
+        assert button["x"] + button["width"] <= panel["x"] + panel["width"] + 1, width
+    page.set_viewport_size({"width": 1280, "height": 800})
     expect(page.locator("#steps")).to_be_hidden()
     folded.locator("button").first.click()
     set_number(page, "#steps", "12")
-    expect(folded).to_contain_text("Advanced: guidance 4.3, 12 steps, damping 0.7")
+    expect(folded).to_contain_text("Guidance 4.3, 12 steps, damping 0.7")
     expect(changed).to_contain_text(CHANGED)
 
     seen = len(server.engine.requests)
@@ -133,7 +139,7 @@ def test_a_reaction_chooses_its_method_and_greys_words_that_are_not_heard(
     assert names_above_heads(page, "#react-player") == ["A · given"]
     expect(page.locator("#react-method input")).to_have_value("Automatic")
     expect(page.locator("#react-about")).to_contain_text("without words, the virtual agent")
-    expect(page.locator("#react-about")).to_contain_text("Live always answers with ReGenNet, online")
+    expect(page.locator("#react-about")).to_contain_text("Stream always uses ReGenNet, online")
 
     page.click("button#react-generate")
     expect(page.locator("#react-readouts .pd-asked")).to_contain_text("Virtual agent", timeout=SLOW)
@@ -169,7 +175,7 @@ def test_words_that_a_method_does_not_hear_are_greyed_and_frames_are_counted(
     finally:
         server.engine.pause = 0.01
     expect(page.locator("#react-status .pd-warning")).to_contain_text("Cancelled at frame", timeout=SLOW)
-    page.click("button#react-live")
+    page.click("button#react-stream")
     expect(page.locator("#react-status .pd-done")).to_contain_text("by ReGenNet, online", timeout=SLOW)
 
 

@@ -88,15 +88,15 @@ def test_a_result_of_the_other_tab_is_taken_and_bad_files_are_a_sentence(page: P
     expect(page.locator("#react-status")).to_contain_text("two people walk: 0.0 to 5.0 s", timeout=SLOW)
 
 
-def test_a_live_reaction_comes_while_the_actor_plays_and_can_be_cancelled(
+def test_a_streamed_reaction_comes_while_the_actor_plays_and_can_be_cancelled(
     page: Page, engine: StubEngine, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(engine, "live_waits_at", 72)  # so that a slow browser sees the run while it goes on
     (file, _) = write(walking(4.0), tmp_path / "walker.bvh")
     page.set_input_files("#react-file input[type=file]", file)
     people(page, 1)
-    page.click("button#react-live")
-    expect(page.locator("#react-player .pdd-chip")).to_contain_text("live · delay", timeout=SLOW)
+    page.click("button#react-stream")
+    expect(page.locator("#react-player .pdd-chip")).to_contain_text("streaming · delay", timeout=SLOW)
     people(page, 2)
     known = "(window.__pasdedeux.player.sample.live?.known ?? null)"
     page.wait_for_function(f"{known} === 72 && window.__pasdedeux.frame > 20")
@@ -111,7 +111,7 @@ def test_a_live_reaction_comes_while_the_actor_plays_and_can_be_cancelled(
     expect(page.locator("#react-download-npz")).to_be_enabled(timeout=SLOW)
 
     engine.live_waits_at = 72
-    page.click("button#react-live")
+    page.click("button#react-stream")
     page.wait_for_function(f"{known} >= 18")
     page.click("button#react-cancel")
     expect(page.locator("#react-status .pd-warning")).to_contain_text("Cancelled at frame", timeout=SLOW)

@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any, Protocol
 
 from motion import Clip
+from motion.formats import can_read
 from webdemo.inference.requests import Result
 
 
@@ -90,6 +92,29 @@ class Found:
     models: Sequence[str] = ()
 
 
+_LONGEST_NAME = 100
+
+
+def clean_name(name: str) -> str:
+    """A file's name without folders and without signs that mean something to a system; "" for no motion's name."""
+    last = Path(name.replace("\\", "/").rsplit("/", 1)[-1])
+    stem = re.sub(r"[^\w .()+-]", "-", last.stem)[:_LONGEST_NAME].strip(" .-")
+    return f"{stem or 'motion'}{last.suffix.lower()}" if can_read(last.suffix) else ""
+
+
+@dataclass(frozen=True)
+class Original:
+    """A file that somebody uploaded, as it was.
+
+    Attributes:
+        path: where its bytes are.
+        name: what its owner calls it.
+    """
+
+    path: Path
+    name: str
+
+
 @dataclass(frozen=True, kw_only=True)
 class Kept:
     """The settings of a tab when a run was made, beside its request.
@@ -98,11 +123,13 @@ class Kept:
         controls: values of the tab's controls, by name.
         people: everybody in the file that was chosen.
         compared: ids of the runs that stood beside it.
+        original: the file that the people were read from; None where there was none or it is not kept.
     """
 
     controls: Mapping[str, Any] = field(default_factory=dict)
     people: tuple[Clip, ...] = field(default=(), repr=False)
     compared: tuple[str, ...] = ()
+    original: Original | None = None
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from scipy.spatial.transform import Rotation
 
 from motion import SMPL22, Clip, InputError, formats
 from motion.formats.bvh import read_bvh
@@ -44,6 +45,34 @@ def test_a_partner_stands_on_the_rig_where_they_stood(name, options):
     ]
     away = np.linalg.norm(found[:, limbs] - (OTHER.positions[:, limbs] - np.array([0, floor, 0])), axis=-1)
     assert away.mean() < 0.03 and away.max() < 0.09
+
+
+@pytest.mark.parametrize("name", RIGS)
+def test_neck_and_head_keep_their_posture_on_the_rig(name):
+    nods = _nodding(OTHER)
+    assert np.ptp(_apart(nods.positions, OTHER.positions, "neck", "head")) > 20.0
+    found = retarget(read_bvh(bvh_on_rig(nods, _reference(name), name="rig.bvh")), plant=False).positions
+    for first, second in (("spine3", "neck"), ("neck", "head"), ("pelvis", "neck")):
+        assert _apart(found, nods.positions, first, second).max() < 5.0, (first, second)
+
+
+def _nodding(clip):
+    """The clip with a head that sinks by 25 degrees to the front and to the side, and comes up again."""
+    positions = clip.positions.astype(np.float64)
+    bone = positions[:, SMPL22.index("head")] - positions[:, SMPL22.index("neck")]
+    angle = np.radians(25.0) * np.sin(np.linspace(0.0, np.pi, len(bone)))[:, None]
+    across = positions[:, SMPL22.index("left_hip")] - positions[:, SMPL22.index("right_hip")]
+    axis = across / np.linalg.norm(across, axis=-1, keepdims=True) + [0.0, 0.0, 0.5]
+    turned = Rotation.from_rotvec(angle * axis / np.linalg.norm(axis, axis=-1, keepdims=True)).apply(bone)
+    positions[:, SMPL22.index("head")] += turned - bone
+    return Clip(positions, clip.fps)
+
+
+def _apart(found, wanted, first, second):
+    """(T,) degrees between the directions from one joint to another."""
+    ends = [p[:, SMPL22.index(second)] - p[:, SMPL22.index(first)] for p in (found, wanted)]
+    a, b = (end / np.linalg.norm(end, axis=-1, keepdims=True) for end in ends)
+    return np.degrees(np.arccos(np.clip(np.sum(a * b, axis=-1), -1.0, 1.0)))
 
 
 def test_what_is_no_rig_or_no_body_is_one_sentence(tmp_path):

@@ -25,6 +25,7 @@ from webdemo.inference.requests import Result
 from webdemo.ui.history import Entry, Opened
 
 from .database import Database, Link, Note, Run, sentence_of, sentences
+from .originals import bytes_of
 
 log = logging.getLogger(__name__)
 
@@ -325,7 +326,7 @@ class History:
             (half / "readouts.json").write_text(
                 json.dumps(list(result.readouts), default=float), encoding="utf-8"
             )
-            size = sum(path.stat().st_size for path in half.iterdir())
+            size = bytes_of(half)
             os.replace(half, self.folder / run)
         except BaseException:
             shutil.rmtree(half, ignore_errors=True)

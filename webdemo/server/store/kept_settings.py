@@ -10,9 +10,9 @@ from motion import Clip, Duet, InputError
 
 MOST_BESIDE = 8
 """Runs of a grid beside its first."""
-_NUMBERS = ("seconds", "seed", "samples", "guidance", "steps", "damping", "start", "end", "marker")
+_NUMBERS = ("seconds", "seed", "samples", "guidance", "steps", "damping", "start", "end", "marker", "fps")
 _SWITCHES = ("keep",)
-_TEXTS = ("prompt", "class_name", "model", "method", "other", "person", "role")
+_TEXTS = ("prompt", "class_name", "model", "method", "other", "person", "role", "up", "unit", "order")
 _LONGEST = 5000
 _GRID = "This is no workspace of Pas de Deux, or it was changed by hand ({}): export it again."
 

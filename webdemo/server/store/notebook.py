@@ -9,6 +9,7 @@ from collections.abc import Sequence
 from contextlib import suppress
 from dataclasses import replace
 from pathlib import Path
+from typing import Any
 
 from sqlalchemy import ColumnElement, func, or_, select, update
 from sqlalchemy.exc import SQLAlchemyError
@@ -22,6 +23,7 @@ from webdemo.view.thumbnail import thumbnail
 from .database import Note, Run, sentences
 from .history import History, entry_of, fields_of
 from .kept_settings import MOST_BESIDE
+from .originals import LARGEST_SHARE, bytes_of, keep_original, kept_original
 from .workspace import Packed, pack, unpack
 
 log = logging.getLogger(__name__)
@@ -84,8 +86,9 @@ class Notebook(History):
             with suppress(InputError):  # it was removed meanwhile
                 beside.append(super().open(str(other), whose))
         found = Kept(
-            controls=kept.get("controls", {}), people=tuple(people), compared=tuple(kept.get("compared", ()))
-        )
+            controls=kept.get("controls", {}), people=tuple(people), compared=tuple(kept.get("compared", ())),
+            original=kept_original(kept.get("file"), self.folder / opened.entry.id) if mine else None,
+        )  # fmt: skip
         return replace(opened, kept=found, beside=tuple(beside))
 
     # ---- writing ---------------------------------------------------------------------------------
@@ -102,20 +105,35 @@ class Notebook(History):
 
     @sentences()
     def keep(self, run: str, owner: str, kept: Kept) -> None:
-        """Writes down how the tab was set; people of a file too long to react to are left out."""
-        plain = json.dumps({"controls": dict(kept.controls), "compared": list(kept.compared)})
-        if len(plain) > LARGEST_KEPT:
+        """Writes down how the tab was set; people of a file too long to react to are left out.
+
+        The file itself is copied beside the run where it is not too large and its owner's runs leave room.
+        """
+        told: dict[str, Any] = {"controls": dict(kept.controls), "compared": list(kept.compared)}
+        if len(json.dumps(told)) > LARGEST_KEPT:
             return
-        with self.database.session.begin() as session:
+        with self.database.session() as session:
             self._own(session, run, owner)
-            _note(session, run).kept = plain
+            used = session.scalar(select(func.sum(Run.size)).where(Run.owner == owner)) or 0
+        folder = self.folder / run
+        if kept.original is not None:
+            told["file"] = keep_original(kept.original, folder, LARGEST_SHARE * self.keep_bytes - used)
+        self._keep_people(kept, folder)
+        with self.database.session.begin() as session:
+            mine = self._own(session, run, owner)
+            with suppress(OSError):
+                mine.size = bytes_of(folder)
+            _note(session, run).kept = json.dumps(told)
             for other in kept.compared[:MOST_BESIDE]:
                 self._own(session, other, owner)
                 _note(session, other).part_of = run
+
+    @staticmethod
+    def _keep_people(kept: Kept, folder: Path) -> None:
         if len(kept.people) <= MOST_PEOPLE and all(p.seconds <= LONGEST_PERSON for p in kept.people):
             for i, person in enumerate(kept.people):
                 with suppress(OSError, InputError):
-                    formats.write(person, self.folder / run / f"given-{i + 1}.npz")
+                    formats.write(person, folder / f"given-{i + 1}.npz")
 
     @sentences()
     def describe(

@@ -1,9 +1,9 @@
 """One file that holds the runs of a history: written from ours, and read as if by an enemy.
 
 A .zip with ``workspace.json`` (what was asked and written of each run, how its tab was set and the numbers of the runs
-that stand beside it) and ``NUMBER/1.npz …`` (its motions). What is read back is checked and made anew: motions go
-through the reader and the writer of uploads, and settings keep plain values of the expected kinds. No name in the file
-becomes a path.
+that stand beside it), ``NUMBER/1.npz …`` (its motions) and ``NUMBER/original`` (the file that it was made from). What
+is read back is checked and made anew: motions go through the reader and the writer of uploads, and settings keep plain
+values of the expected kinds. Original files are copied and not read. No name in the file becomes a path.
 """
 
 from __future__ import annotations
@@ -24,6 +24,7 @@ from webdemo.inference.story import SceneRequest
 from webdemo.view.thumbnail import thumbnail
 
 from .kept_settings import groups, plain_controls
+from .originals import LARGEST_ORIGINAL, ORIGINAL, bytes_of, kept_original
 
 FORMAT = "pas-de-deux-workspace-1"
 MOST_RUNS = 1000
@@ -92,6 +93,9 @@ def pack(runs: Sequence[Packed], file: Path) -> None:
             readouts = json.loads((run.folder / "readouts.json").read_text(encoding="utf-8"))
             beside = [numbers[other] for other in run.kept.get("compared", ()) if other in numbers]
             kept = {"controls": run.kept.get("controls", {}), "compared": beside}
+            if original := kept_original(run.kept.get("file"), run.folder):
+                archive.write(original.path, f"{number}/{ORIGINAL}")
+                kept["file"] = original.name
             stored.append({**run.row, "note": dict(run.note), "readouts": readouts, "kept": kept})
         archive.writestr("workspace.json", json.dumps({"format": FORMAT, "runs": stored}))
 
@@ -131,6 +135,8 @@ def _put_beside(stored: Sequence[Mapping[str, Any]], taken: Sequence[Taken]) -> 
             "controls": plain_controls(kept[number].get("controls")),
             "compared": [o.row["id"] for o in others],
         }
+        if original := kept_original(kept[number].get("file"), run.folder):
+            told["file"] = original.name
         if "grid" in told["controls"] and not others:  # its other cells were removed before
             del told["controls"]["grid"]
         run.note["kept"] = json.dumps(told)
@@ -154,14 +160,14 @@ def _stored_runs(archive: zipfile.ZipFile) -> list[dict[str, Any]]:
     return [run if isinstance(run, dict) else {} for run in stored["runs"]]
 
 
-def _content(archive: zipfile.ZipFile, name: str) -> bytes:
+def _content(archive: zipfile.ZipFile, name: str, most: int = LARGEST_FILE) -> bytes:
     """A file's bytes, bounded whatever its header says."""
     try:
         with archive.open(name) as source:
-            content = source.read(LARGEST_FILE + 1)
+            content = source.read(most + 1)
     except KeyError:
         raise InputError(_WRONG.format(f"{name} is missing")) from None
-    if len(content) > LARGEST_FILE:
+    if len(content) > most:
         raise InputError(f"{name} in the workspace is too large: export it again.")
     return content
 
@@ -188,7 +194,7 @@ def _taken(archive: zipfile.ZipFile, number: int, stored: Mapping[str, Any], hom
             "created": min(_number(stored.get("created"), time.time()), time.time()),
             "favourite": False, "request": json.dumps(request),
             "outcome": json.dumps(_outcome(stored.get("outcome"), request, motions[0], folder)),
-            "size": sum(path.stat().st_size for path in folder.iterdir()),
+            "size": bytes_of(folder),
         }  # fmt: skip
         return Taken(row, _note(stored.get("note"), motions[0]), folder, motions[0])
     except BaseException:
@@ -209,6 +215,8 @@ def _motions(archive: zipfile.ZipFile, number: int, folder: Path) -> list[Duet |
     for name in ("truth.npz", *(f"given-{i}.npz" for i in range(1, 7))):
         if f"{number}/{name}" in names:
             _motion(archive, f"{number}/{name}", folder / name)
+    if f"{number}/{ORIGINAL}" in names:
+        (folder / ORIGINAL).write_bytes(_content(archive, f"{number}/{ORIGINAL}", LARGEST_ORIGINAL))
     return motions
 
 

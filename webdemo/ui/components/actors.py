@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 import re
+import shutil
 import uuid
 from collections.abc import Mapping
+from contextlib import suppress
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any
@@ -20,6 +22,7 @@ from webdemo.inference.actor import LETTERS, SECONDS, at_30_fps, choose_actor, o
 from webdemo.inference.method import Variant
 from webdemo.inference.methods import AUTOMATIC, automatic, installed, variants
 from webdemo.inference.requests import Result, SamplingRequest
+from webdemo.ui.history import Original, clean_name
 from webdemo.view.payload import Payload, player_payload
 
 from .show import GIVEN
@@ -27,6 +30,8 @@ from .show import GIVEN
 AUTO = "auto"
 ReadWith = tuple[str, str, float | None, str]
 """Up axis, unit, frames a second and order of joints, as the page's controls give them."""
+READ_WITH = ("up", "unit", "fps", "order")
+"""The names of these controls."""
 
 
 def react_choices(weights: Path | None = None) -> list[tuple[str, str]]:
@@ -136,6 +141,46 @@ class Source:
         return f"{self.name}, person {person.upper()}" if len(self.people) > 1 else self.name
 
 
+NOT_KEPT = (
+    "The file {!r} was not kept with this run: it was too large, or the run is older than that. A .npz of its motion "
+    "stands in its place."
+)
+
+
+def given_again(source: Source, original: Original | None, folder: Path) -> tuple[Source, str | None, str]:
+    """A source of the history, a file for the field that its own was dropped on, and a sentence where that is another.
+
+    Args:
+        source: its people.
+        original: the file that they were read from, where it was kept.
+        folder: for the file.
+    """
+    if original is not None:
+        with suppress(OSError):
+            path = Path(shutil.copyfile(original.path, folder / original.name))
+            return replace(source, path=path), str(path), ""
+    return (
+        source,
+        kept_file(source, folder),
+        NOT_KEPT.format(source.name[:80]) if clean_name(source.name) else "",
+    )
+
+
+def rig_of(source: Source | None) -> Path | None:
+    """The BVH file of one person that a source was read from as it is; None for any other source.
+
+    Where somebody said which axis is up or what the unit is, the file's own world is another, and so are examples.
+    """
+    if (
+        source is None
+        or source.path is None
+        or source.path.suffix.lower() != ".bvh"
+        or len(source.people) != 1
+    ):
+        return None
+    return source.path if source.read_with == Source.read_with else None
+
+
 def kept_file(source: Source, folder: Path) -> str | None:
     """A .npz of one person or two of a source, called after it, for the field that the file was dropped on."""
     if len(source.people) > 2:
@@ -203,7 +248,7 @@ def chosen_actor(fields: Mapping[str, Any]) -> dict[str, Any]:
     source: Source | None = fields["source"]
     if source is None:
         raise InputError("There is no actor yet: drop a motion file, or pick an example or a result.")
-    own = ("source", "given", "person", "start", "end", "method", "live", "other", "keep")
+    own = ("source", "given", "person", "start", "end", "method", "stream", "other", "keep")
     actor = source.actor(fields["person"], fields["start"], fields["end"])
     chosen = reactor(fields.get("method"), fields)
     kept = {name: value for name, value in fields.items() if name not in own}

@@ -21,8 +21,11 @@ from pathlib import Path
 from typing import Any
 
 from motion import Clip, Duet, InputError, formats
+from motion.formats.bvh_rig import bvh_on_rig
+from motion.formats.files import write_files as replace_all
 from motion.formats.one_person import SUFFIXES
 from motion.formats.spreadsheet import safe_cell
+from webdemo.inference.actor import ROLES
 from webdemo.inference.requests import Result
 from webdemo.view.sheet import write_grid_sheet, write_sheet
 
@@ -49,11 +52,13 @@ class Kind:
 
     def offered(self) -> bool:
         """True if this installation can write it."""
-        return self.key in _PLAIN or formats.can_write(f".{self.key}")
+        return self.key in (*_PLAIN, RIG) or formats.can_write(f".{self.key}")
 
 
 _PLAIN = ("png", "json", "csv")
 """Kinds that are no motion."""
+RIG = "rig"
+"""The key of the partner on the rig of an uploaded file; its button shows only where there is one."""
 
 KINDS = (
     Kind("npz", "Motion .npz"),
@@ -62,6 +67,7 @@ KINDS = (
     Kind("png", "Contact sheet"),
     Kind("json", "Manifest"),
     Kind("csv", "Read-outs .csv"),
+    Kind(RIG, "On your rig .bvh"),
 )
 
 
@@ -75,6 +81,7 @@ class Record:
         exported: whether its files were written.
         compared: the results that stand side by side, by method; ``result`` is the first of them.
         grid: columns, rows, names and title of the grid that they stand in; empty for none.
+        rig: the uploaded BVH file of one person that the result is a reaction to; None for anything else.
     """
 
     result: Result = field(repr=False)
@@ -82,6 +89,7 @@ class Record:
     exported: bool = False
     compared: Mapping[str, Result] = field(default_factory=dict, repr=False)
     grid: Mapping[str, Any] = field(default_factory=dict)
+    rig: Path | None = None
 
 
 class Shelf:
@@ -115,6 +123,33 @@ class Shelf:
                     shutil.rmtree(folder)
             except OSError as error:  # another process may be quicker
                 log.info("Could not remove %s: %s", folder, error)
+
+
+def write_on_rig(record: Record, folder: Path) -> list[Path]:
+    """The partners of a record on the rig of the file that they react to, and that file as it is.
+
+    Returns:
+        one .bvh a sample of every result, then a copy of the file; nothing where there is no rig.
+
+    Raises:
+        InputError: where the rig cannot be moved.
+    """
+    if record.rig is None:
+        return []
+    results = record.compared or {"": record.result}
+    files: dict[Path, bytes] = {}
+    for method, result in results.items():
+        asked = result.manifest.get("request", {})
+        name = file_name(f"{method} {record.prompt}", result.manifest)
+        for i, duet in enumerate(result.duets):
+            if not isinstance(duet, Duet):
+                continue
+            partner = duet.people[1 - ROLES.index(asked.get("role", ROLES[0]))]
+            number = f"-{i + 1}" if len(result.duets) > 1 else ""
+            files[folder / f"{name}{number}-on-your-rig.bvh"] = bvh_on_rig(partner, record.rig)
+    files[folder / record.rig.name] = record.rig.read_bytes()
+    with _writing(folder):
+        return replace_all(files)
 
 
 def write_record(record: Record, folder: Path) -> dict[str, list[Path]]:
@@ -216,6 +251,8 @@ def _write_table(results: Mapping[str, Result], path: Path) -> Path:
 
 def _holds(kind: Kind, result: Result) -> bool:
     """True if files of a kind can hold the people of a result."""
+    if kind.key == RIG:  # see write_on_rig
+        return False
     if kind.key == "csv" and not result.readouts:
         return False
     one = isinstance(result.duets[0], Clip)

@@ -52,7 +52,7 @@ class LiveView:
             return {"player": show(self.payload())}
         if event.step % BATCH and event.step < event.total:
             return {}
-        line = f"Live: {event.step / self.actor.fps:.1f} of {self.actor.seconds:.1f} s, {self.delay}"
+        line = f"Streaming: {event.step / self.actor.fps:.1f} of {self.actor.seconds:.1f} s, {self.delay}"
         return {"player": stream(self.message()), "line": status(line, tone="busy")}
 
     @property

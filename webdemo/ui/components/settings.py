@@ -13,14 +13,14 @@ OPENED = "opened"
 CHANGED = "Settings changed: run again to see what they do."
 
 ADVANCED = """(guidance, steps, damping) => ({
-  __type__: "update", label: `Advanced: guidance ${guidance}, ${steps} steps, damping ${damping}`,
+  __type__: "update", label: `Guidance ${guidance}, ${steps} steps, damping ${damping}`,
 })"""
 """JavaScript that gives the folded sliders' line; :func:`advanced_label` is the same in Python."""
 
 
 def advanced_label(guidance: float, steps: int, damping: float) -> str:
     """The line over the folded sliders."""
-    return f"Advanced: guidance {guidance:g}, {steps} steps, damping {damping:g}"
+    return f"Guidance {guidance:g}, {steps} steps, damping {damping:g}"
 
 
 def snapshot(fields: Mapping[str, Any], names: Iterable[str]) -> str:

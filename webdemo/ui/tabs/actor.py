@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Collection, Iterator, Mapping
 from dataclasses import replace
 from functools import partial
 from pathlib import Path
@@ -16,8 +16,9 @@ from webdemo.inference.actor import SECONDS
 from webdemo.ui.again import actor_source
 from webdemo.ui.components.actors import (
     AUTO,
+    ReadWith,
     Source,
-    kept_file,
+    given_again,
     read_source,
     result_source,
 )
@@ -84,20 +85,28 @@ class ActorTab(SweepTab):
                 )  # fmt: skip
             self.found = gr.HTML(elem_id="react-found")
 
-    def _opened_actor(self, run: Opened) -> dict[Any, Any]:
-        """The file that was chosen, who in it and which part; or the given person alone, where that was not kept."""
+    def _opened_actor(self, run: Opened, line: str) -> dict[Any, Any]:
+        """The file that was chosen, who in it and which part; or the given person alone, where that was not kept.
+
+        ``line`` is the status line, to which is added that another file stands in the place of the chosen one.
+        """
         controls = run.kept.controls
         source = actor_source(run)
         begin, end = 0.0, round(source.seconds, 1)
+        file, told = None, ""
         if people := run.kept.people:
             source = replace(source, people=people)
             letters = [letter for _, letter in source.choices]
             source = replace(source, chosen=controls["person"] if controls.get("person") in letters else "a")
             begin, end = float(controls.get("start", 0.0)), float(controls.get("end", end))
+            source = replace(source, read_with=_known_choices(controls))
+            source, file, told = given_again(source, run.kept.original, self.page.shelf.folder())
         last = max(round(source.seconds, 1), _SHORTEST)
         return {
-            self.file: kept_file(source, self.page.shelf.folder()) if run.kept.people else None,
+            self.file: file,
+            self.line: line + (status(told) if told else ""),
             self.found: _found(source),
+            **dict(zip((self.up, self.unit, self.fps, self.order), source.read_with, strict=True)),
             self.source: source,
             self.given: source.key,
             self.trim: gr.update(visible=True),
@@ -239,8 +248,26 @@ class ActorTab(SweepTab):
         return status(" ".join((used, *source.notes)), tone="warning" if source.notes else "quiet")
 
 
+def _known_choices(controls: Mapping[str, Any]) -> ReadWith:
+    """How a kept run's file was read; what its control does not offer is found anew."""
+
+    def offered(name: str, values: Collection[str]) -> str:
+        value = controls.get(name)
+        return value if isinstance(value, str) and value in values else AUTO
+
+    fps = controls.get("fps")
+    return (
+        offered("up", AXES),
+        offered("unit", UNITS),
+        float(fps) if isinstance(fps, (int, float)) else None,
+        offered("order", ORDERS),
+    )
+
+
 def _found(source: Source) -> str:
     """Describes as HTML how a source's file was read: one line, then its joints beside SMPL's."""
+    if source.found is None and source.path is not None:
+        return status("Opened from the history. Change a setting here to read the file anew.")
     if source.found is None:
         return status("Taken from a result or the history, so there was nothing to detect.")
     pairs = " · ".join(f"{text(theirs)} → {text(ours)}" for theirs, ours in source.found.joints)

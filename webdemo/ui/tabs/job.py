@@ -23,11 +23,12 @@ from webdemo.inference.requests import (
     Result,
     SamplingRequest,
 )
+from webdemo.ui.components.actors import READ_WITH
 from webdemo.ui.components.exports import Record
 from webdemo.ui.components.player import busy, show
 from webdemo.ui.components.settings import ADVANCED, OPENED, advanced_label, differs, snapshot
 from webdemo.ui.components.show import result_payload
-from webdemo.ui.history import Kept, Opened
+from webdemo.ui.history import Kept, Opened, Original
 from webdemo.ui.text.panels import notes_lines, readout_panel, status
 from webdemo.ui.text.words import cancelled_line, error_line, progress_line, seconds
 from webdemo.ui.visitor import visitor
@@ -244,6 +245,7 @@ class JobTab(ResultsTab, ABC):
                 if not isinstance(record := shown["record"], Record):
                     yield updates
                     continue
+                self.complete(record, fields)
                 self._keep(record, fields)
                 yield self._updates(**shown | {"asked": asked})
         except Cancelled as stopped:
@@ -251,16 +253,24 @@ class JobTab(ResultsTab, ABC):
         except Exception as error:
             yield self._stopped(error_line(error), "error")
 
+    def complete(self, record: Record, fields: Mapping[str, Any]) -> None:
+        """Adds to a record what its files need beside the result."""
+
     def _keep(self, record: Record, fields: Mapping[str, Any]) -> None:
         """Writes down how the tab was set, so that the run opens as it was."""
         if self.page.history is None or not record.result.run:
             return
         source = fields.get("source")
         controls = {name: fields.get(name) for name in self.knobs if name != "given"}
+        original = None
+        if source is not None:
+            controls |= dict(zip(READ_WITH, source.read_with, strict=True))
+            original = Original(source.path, source.name) if source.path is not None else None
         kept = Kept(
             controls=controls | ({"grid": dict(record.grid)} if record.grid else {}),
             people=source.people if source is not None else (),
             compared=tuple(result.run for result in record.compared.values())[1:],
+            original=original,
         )
         try:
             self.page.history.keep(record.result.run, visitor().owner, kept)

@@ -19,7 +19,7 @@ from webdemo.inference.predict_request import (
     PredictResult,
 )
 from webdemo.inference.requests import Result
-from webdemo.ui.components.actors import Source, kept_file, read_source, result_source
+from webdemo.ui.components.actors import Source, given_again, read_source, result_source
 from webdemo.ui.components.camera import CameraPanel, film_source
 from webdemo.ui.components.exports import Record
 from webdemo.ui.components.player import busy, show
@@ -334,8 +334,9 @@ class PredictTab(SweepTab):
         found, result = super().opened(run), run.result
         if isinstance(result, PredictResult):
             source = given_source(result, run.entry.title)
+            source, found[self.file], told = given_again(source, run.kept.original, self.page.shelf.folder())
             found[self.source], found[self.given] = source, source.key
-            found[self.file] = kept_file(source, self.page.shelf.folder())
+            found[self.line] += status(told) if told else ""
             found[self.marker] = self._marker(source, result.past_frames / result.duets[0].fps)
         beside = () if "grid" in run.kept.controls else run.beside[:1]
         others = [each.result for each in beside if isinstance(each.result, PredictResult)]

@@ -14,10 +14,12 @@ from webdemo.inference.live import LiveRequest
 from webdemo.inference.methods import AUTOMATIC, variants
 from webdemo.inference.requests import ReactRequest, Result
 from webdemo.ui.components.actors import (
+    READ_WITH,
     chosen_actor,
     live_variant,
     react_choices,
     reactor,
+    rig_of,
     with_method,
 )
 from webdemo.ui.components.camera import CameraPanel
@@ -40,7 +42,7 @@ from .job import QUIET, Updates, total
 
 EMPTY_TEXT = (
     "Choose one person: drop a motion file or pick an example\n"
-    "React adds a second person who answers. Live does so while the first one plays."
+    "React adds a second person who answers. Stream shows the answer as it is made, frame by frame."
 )
 _AUTOMATIC = (
     "With words, InterGen answers them; without words, the virtual agent recognises the gesture itself."
@@ -58,7 +60,7 @@ class ReactTab(ActorTab):
 
     label = "React"
     prefix = "react-"
-    restored = ("file", "found", "method", "other", "about", "given", "person", "folded")
+    restored = ("file", "found", "method", "other", "about", "given", "person", "folded", *READ_WITH)
 
     def request(self, fields: Mapping[str, Any]) -> ReactRequest:
         """See :meth:`JobTab.request`."""
@@ -88,7 +90,14 @@ class ReactTab(ActorTab):
                 for (part, fit), value in zip(fitted, kept, strict=True)
             },
         }
-        return found | self._opened_actor(run) | self._opened_beside(run)
+        found |= self._opened_actor(run, found[self.line]) | self._opened_beside(run)
+        self.complete(found[self.outputs["record"]], {"source": found[self.source]})
+        return found
+
+    def complete(self, record: Record, fields: Mapping[str, Any]) -> None:
+        """The rig of an uploaded file, for the partner on it."""
+        if not record.grid:
+            record.rig = rig_of(fields.get("source"))
 
     def kinds(self) -> Sequence[Kind]:
         """Also words, and methods."""
@@ -145,7 +154,7 @@ class ReactTab(ActorTab):
             "other": self.other, "keep": self.keep,
         }  # fmt: skip
         self._wire_run([self.go.click, self.prompt.submit], record)
-        self._wire_start(self.start_live, [self.live.click])
+        self._wire_start(self.start_stream, [self.stream.click])
         self._wire_sweeps()
         self._wire_actor()
         self._wire_methods()
@@ -171,7 +180,7 @@ class ReactTab(ActorTab):
                     for person in ("a", "b")
                 }
             self.camera = CameraPanel(elem_id="react-camera")
-            LivePanel(elem_id="react-stream")
+            LivePanel(elem_id="react-live")
             with gr.Column(visible=False, min_width=0, elem_classes="pd-settings") as self.trim:
                 self.person = gr.Radio(
                     [("Person A", "a"), ("Person B", "b")], value="a", label="Which person",
@@ -208,17 +217,17 @@ class ReactTab(ActorTab):
                 max_lines=6,
                 elem_id="react-prompt",
             )
-            self._go("React", self._live_button)
+            self._go("React", self._stream_button)
 
-    def _live_button(self) -> None:
-        self.live = gr.Button(
-            "Live", elem_id="react-live", elem_classes="pd-live", min_width=0,
+    def _stream_button(self) -> None:
+        self.stream = gr.Button(
+            "Stream", elem_id="react-stream", min_width=0,
             visible=live_variant() is not None,
         )  # fmt: skip
 
     def starts(self) -> dict[str, gr.Button]:
-        """The buttons *React* and *Live*."""
-        return {**super().starts(), "live": self.live}
+        """The buttons *React* and *Stream*."""
+        return {**super().starts(), "stream": self.stream}
 
     # ---- events ----------------------------------------------------------------------------------
 
@@ -244,21 +253,21 @@ class ReactTab(ActorTab):
             gr.update(interactive="guidance" not in fixed),
             gr.update(interactive="damping" not in fixed and chosen.mode == "offline"),
             gr.update(interactive=heard, label=_WORDS if heard else f"{_WORDS} Not used: {chosen.label}"),
-            method_line(about) + (method_line(f"Live always answers with {live.label}.") if live else ""),
+            method_line(about) + (method_line(f"Stream always uses {live.label}.") if live else ""),
         )
 
-    def start_live(
+    def start_stream(
         self, values: dict[gr.components.Component, Any], request: gr.Request
     ) -> Iterator[Updates]:
         """Streams an online reaction while the actor plays; yields updates of the page."""
-        yield from self.run(str(request.session_hash), {**self._fields(values), "live": True})
+        yield from self.run(str(request.session_hash), {**self._fields(values), "stream": True})
 
     def answer(self, session: str, fields: Mapping[str, Any]) -> Iterator[Updates]:
-        """Runs one method, two side by side, or the live reaction."""
+        """Runs one method, two side by side, or a streamed reaction."""
         if fields.get("grid"):
             yield from super().answer(session, fields)
-        elif fields.get("live"):
-            yield from self._answer_live(session, fields)
+        elif fields.get("stream"):
+            yield from self._answer_streamed(session, fields)
         elif fields.get("other"):
             yield from self._answer_both(session, fields)
         else:
@@ -291,11 +300,11 @@ class ReactTab(ActorTab):
             "record": Record(next(iter(named.values())), title, compared=named),
         }
 
-    def _answer_live(self, session: str, fields: Mapping[str, Any]) -> Iterator[Updates]:
+    def _answer_streamed(self, session: str, fields: Mapping[str, Any]) -> Iterator[Updates]:
         """Streams one sample of the online method, whatever method is chosen."""
         live = live_variant()
         if live is None:
-            raise InputError("No installed method can react live: choose a method and press React.")
+            raise InputError("No installed method can stream a reaction: choose a method and press React.")
         wanted = LiveRequest(**chosen_actor({**with_method(fields, live.key), "samples": 1}))
         title = self.title(wanted)
         view = LiveView(wanted.actor, title)
@@ -306,7 +315,7 @@ class ReactTab(ActorTab):
             raise
         shown = self._shown(result, title)
         payload = {**result_payload(result, title=title), "continues": view.id}
-        told = f"Live reaction by {live.label} done: {view.delay}."
+        told = f"Streamed by {live.label}: {view.delay}."
         line = status(told, tone="done") + notes_lines(result)
         yield self._updates(**{**shown, "player": show(payload), "line": line})
 

@@ -5,13 +5,22 @@ from __future__ import annotations
 import logging
 import time
 from collections.abc import Callable, Iterator
+from pathlib import Path
 from typing import Any
 
 import gradio as gr
 
 from motion import InputError
 from webdemo.ui.components.address import link_address
-from webdemo.ui.components.exports import KINDS, Record, file_name, for_download, write_record
+from webdemo.ui.components.exports import (
+    KINDS,
+    RIG,
+    Record,
+    file_name,
+    for_download,
+    write_on_rig,
+    write_record,
+)
 from webdemo.ui.components.film import READ_PLAYER, make_film
 from webdemo.ui.components.film import suffix as film_suffix
 from webdemo.ui.components.player import EMPTY_TEXT, MotionPlayer
@@ -67,8 +76,8 @@ class ResultsTab:
                 with gr.Row(elem_classes="pd-downloads", elem_id=self._id("downloads")):
                     self.downloads = [
                         gr.DownloadButton(
-                            kind.label, size="sm", interactive=False, visible=kind.offered(), min_width=0,
-                            elem_id=self._id(f"download-{kind.key}"),
+                            kind.label, size="sm", interactive=False, min_width=0,
+                            visible=kind.offered() and kind.key != RIG, elem_id=self._id(f"download-{kind.key}"),
                         )
                         for kind in KINDS
                     ]  # fmt: skip
@@ -136,12 +145,29 @@ class ResultsTab:
         record.exported = True
         try:
             files = write_record(record, self.page.shelf.folder())
-            found = for_download(files, file_name(record.prompt, record.result.manifest))
+            name = file_name(record.prompt, record.result.manifest)
+            line, on_rig = self._on_rig(record)
+            found = for_download(files | ({RIG: on_rig} if on_rig else {}), name)
         except Exception as error:
             off = gr.update(value=None, interactive=False)
             return (status(f"The motion is ready, but its files are not. {error_line(error)}", tone="error"),
                     *(off for _ in KINDS))  # fmt: skip
         return (
-            gr.skip(),
-            *(gr.update(value=found.get(kind.key), interactive=kind.key in found) for kind in KINDS),
+            line,
+            *(_offered(kind.key, found.get(kind.key)) for kind in KINDS),
         )
+
+    def _on_rig(self, record: Record) -> tuple[Any, list[Path]]:
+        """A change of the status line, and the partner on the uploaded rig; the others of its files do not need it."""
+        try:
+            return gr.skip(), write_on_rig(record, self.page.shelf.folder())
+        except Exception as error:
+            told = f"The motion is ready, but not on the rig of your file. {error_line(error)}"
+            return status(told, tone="warning"), []
+
+
+def _offered(kind: str, file: Path | None) -> dict[str, Any]:
+    """An update of a download's button; that of the uploaded rig is seen only where there is one."""
+    if kind == RIG:
+        return gr.update(value=file, interactive=file is not None, visible=file is not None)
+    return gr.update(value=file, interactive=file is not None)
