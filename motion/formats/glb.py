@@ -7,6 +7,7 @@ them. One animation turns all joints and moves both roots. glTF's axes are ours:
 from __future__ import annotations
 
 import json
+from collections.abc import Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -57,8 +58,13 @@ class Buffer:
         return len(self.gltf.accessors) - 1
 
 
-def write_glb(duet: Duet, path: str | Path) -> list[Path]:
+def write_glb(duet: Duet, path: str | Path, *, body: Body | None = None) -> list[Path]:
     """Writes one .glb with both people, named by their roles, and one animation.
+
+    Args:
+        duet: on SMPL22.
+        path: of the file.
+        body: worn by both, such as one of :func:`motion.character.character_body`; a body each by default.
 
     Returns:
         the path, in a list as for every format.
@@ -70,10 +76,10 @@ def write_glb(duet: Duet, path: str | Path) -> list[Path]:
         raise InputError(
             f"glTF needs a rest pose, and {duet.skeleton.name} has none: retarget to SMPL22 first."
         )
-    return write_files({Path(path): glb_bytes(duet)})
+    return write_files({Path(path): glb_bytes(duet, body)})
 
 
-def glb_bytes(duet: Duet) -> bytes:
+def glb_bytes(duet: Duet, body: Body | None = None) -> bytes:
     """The file's bytes."""
     import pygltflib as gl
 
@@ -87,15 +93,17 @@ def glb_bytes(duet: Duet) -> bytes:
         gltf.asset.extras = {"manifest": json.loads(json.dumps(duet.manifest, default=str))}
     buffer = Buffer(gltf)
     times = buffer.add((np.arange(duet.num_frames) / duet.fps).astype(np.float32), gl.SCALAR, bounds=True)
-    for name, clip, role in zip(BODIES, duet.people, duet.roles, strict=True):
-        _add_person(buffer, clip, role, load_body(name), times)
+    for name, clip, role, zones in zip(BODIES, duet.people, duet.roles, COLOURS, strict=True):
+        _add_person(buffer, clip, role, body or load_body(name), zones, times)
     buffer.data += bytes(-len(buffer.data) % 4)
     gltf.buffers.append(gl.Buffer(byteLength=len(buffer.data)))
     gltf.set_binary_blob(bytes(buffer.data))
     return b"".join(gltf.save_to_bytes())
 
 
-def _add_person(buffer: Buffer, clip: Clip, role: str, body: Body, times: int) -> None:
+def _add_person(
+    buffer: Buffer, clip: Clip, role: str, body: Body, colours: Mapping[str, str], times: int
+) -> None:
     import pygltflib as gl
 
     gltf = buffer.gltf
@@ -121,7 +129,7 @@ def _add_person(buffer: Buffer, clip: Clip, role: str, body: Body, times: int) -
     gltf.skins.append(
         gl.Skin(name=role, joints=joints, skeleton=first, inverseBindMatrices=buffer.add(columns, gl.MAT4))
     )
-    gltf.meshes.append(gl.Mesh(name=f"{role}_body", primitives=_surface(buffer, body, role)))
+    gltf.meshes.append(gl.Mesh(name=f"{role}_body", primitives=_surface(buffer, body, role, colours)))
     # A skinned mesh belongs at the top: what stands above it does not move it.
     gltf.nodes.append(gl.Node(name=f"{role}_body", mesh=len(gltf.meshes) - 1, skin=len(gltf.skins) - 1))
     gltf.scenes[0].nodes += [holder, len(gltf.nodes) - 1]
@@ -157,7 +165,7 @@ def _quaternions(rotations: Array) -> Array:
     return quaternions * signs[:, None]
 
 
-def _surface(buffer: Buffer, body: Body, role: str) -> list[pygltflib.Primitive]:
+def _surface(buffer: Buffer, body: Body, role: str, colours: Mapping[str, str]) -> list[pygltflib.Primitive]:
     """The body's surface in its pose of binding: a primitive and a material for skin, top, shoes and so on."""
     import pygltflib as gl
     import trimesh
@@ -178,7 +186,7 @@ def _surface(buffer: Buffer, body: Body, role: str) -> list[pygltflib.Primitive]
         faces = body.faces[body.face_zones == zone]
         if not len(faces):
             continue
-        colour = [*linear(COLOURS[BODIES.index(body.name)][name]), 1.0]
+        colour = [*linear(colours.get(name, colours["top"])), 1.0]
         surface = gl.PbrMetallicRoughness(baseColorFactor=colour, metallicFactor=0.0, roughnessFactor=0.8)
         buffer.gltf.materials.append(gl.Material(name=f"{role}_{name}", pbrMetallicRoughness=surface))
         indices = buffer.add(faces.astype(np.uint16).reshape(-1), gl.SCALAR, target=gl.ELEMENT_ARRAY_BUFFER)

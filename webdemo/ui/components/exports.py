@@ -51,8 +51,8 @@ class Kind:
     label: str
 
     def offered(self) -> bool:
-        """True if this installation can write it."""
-        return self.key in (*_PLAIN, RIG) or formats.can_write(f".{self.key}")
+        """True if this installation can write it for every result."""
+        return self.key in _PLAIN or formats.can_write(f".{self.key}")
 
 
 _PLAIN = ("png", "json", "csv")
@@ -251,8 +251,6 @@ def _write_table(results: Mapping[str, Result], path: Path) -> Path:
 
 def _holds(kind: Kind, result: Result) -> bool:
     """True if files of a kind can hold the people of a result."""
-    if kind.key == RIG:  # see write_on_rig
-        return False
     if kind.key == "csv" and not result.readouts:
         return False
     one = isinstance(result.duets[0], Clip)

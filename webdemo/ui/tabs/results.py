@@ -77,7 +77,7 @@ class ResultsTab:
                     self.downloads = [
                         gr.DownloadButton(
                             kind.label, size="sm", interactive=False, min_width=0,
-                            visible=kind.offered() and kind.key != RIG, elem_id=self._id(f"download-{kind.key}"),
+                            visible=kind.offered(), elem_id=self._id(f"download-{kind.key}"),
                         )
                         for kind in KINDS
                     ]  # fmt: skip
