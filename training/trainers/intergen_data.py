@@ -147,11 +147,27 @@ def later_beats(row: dict[str, Any]) -> list[dict[str, Any]]:
     return [beat for beat in (row.get("beats") or ())[1:] if beat["captions"] and not beat.get("minor")]
 
 
+def acts_of(row: dict[str, Any]) -> set[str]:
+    """What either person does in a scene of beats, besides standing; empty for other scenes."""
+    return {act for beat in row.get("beats") or () for act in beat["acts"]} - {"stand"}
+
+
 def balanced(rows: list[dict[str, Any]]) -> list[dict[str, Any]]:
-    """The rows, those of rare families up to three times, so that long scenes do not make a family rare."""
-    counts = Counter(row["family"] for row in rows)
-    usual = float(np.quantile(list(counts.values()), 0.75))
-    return [row for row in rows for _ in range(min(max(round(usual / counts[row["family"]]), 1), 3))]
+    """The rows, those of rare families and of rare acts in scenes of beats up to three times.
+
+    A family is rare beside those that are commoner than three in four, so that long scenes do not make it rare. An act
+    is rare beside the commonest tenth: scenes of beats hold many acts, most of them ways of coming and going.
+    """
+    families = Counter(row["family"] for row in rows)
+    acts = Counter(act for row in rows for act in acts_of(row))
+    usual = float(np.quantile(list(families.values()), 0.75))
+    usual_act = float(np.quantile(list(acts.values()) or [0], 0.9))
+
+    def repeats(row: dict[str, Any]) -> int:
+        rarest = min((acts[act] for act in acts_of(row)), default=0)
+        return min(max(round(usual_act / rarest if rarest else usual / families[row["family"]]), 1), 3)
+
+    return [row for row in rows for _ in range(repeats(row))]
 
 
 class Data:

@@ -2,6 +2,7 @@
 
 from dataclasses import replace
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -12,7 +13,7 @@ from training import prepare
 from training.core.text_features import CaptionFeatures
 from training.trainers import intergen
 from training.trainers.given import Shares
-from training.trainers.intergen_data import LEAST, SENTENCES
+from training.trainers.intergen_data import LEAST, SENTENCES, balanced
 from training.trainers.reading import UNKNOWN
 
 
@@ -67,11 +68,11 @@ def with_beats(scenes: Path, out: Path) -> Path:
     """The prepared scenes, each of three beats: an unnamed one in the middle is minor."""
     loaded = prepare.load(scenes)
     for row in loaded.rows:
-        beat = {"start": 0, "end": 10, "captions": ["They wait."]}
+        beat = {"start": 0, "end": 10, "acts": ["stand", "stand"], "captions": ["They wait."]}
         row["beats"] = [
             beat,
             beat | {"minor": True},
-            beat | {"start": 12, "end": 40, "captions": ["They bow."]},
+            beat | {"start": 12, "end": 40, "acts": ["bow", "bow"], "captions": ["They bow."]},
         ]
     prepare.save(loaded, out)
     return out
@@ -115,3 +116,18 @@ def test_a_beat_that_was_cut_off_is_left_out(scenes: Path, tmp_path: Path) -> No
     assert data.continued(row, [0.0] * 4)[1:] == (8, "They bow.")
     row["beats"][1]["captions"] = []
     assert data.continued(row, [0.0] * 4) is None
+
+
+def test_rare_families_and_rare_acts_are_drawn_up_to_three_times() -> None:
+    def row(family: str, *acts: str) -> dict[str, Any]:
+        return {"family": family, "beats": [{"acts": [act, "stand"]} for act in acts]}
+
+    common = [row("beats", "walk") for _ in range(60)] + [row("hug") for _ in range(60)]
+    rare = [row("beats", "walk", "jump") for _ in range(40)] + [row("beats", "crawl") for _ in range(4)]
+    scarce = [row("whisper") for _ in range(40)]
+    rows = [*common, *rare, *scarce]
+    drawn = balanced(rows)
+    repeats = [
+        sum(other is each for other in drawn) for each in (rows[0], rows[60], rare[0], rare[-1], scarce[0])
+    ]
+    assert repeats == [1, 1, 2, 3, 2]
