@@ -18,6 +18,7 @@ from models.intergen.compact import CompactInterGen, Touch
 from models.regennet.compact import CompactReGenNet
 from models.text import MiniLM
 from training.core.handedness import mirrored
+from training.core.precision import mixed_precision
 from training.corpus.grammar import mirror_caption
 from training.prepare import Scenes
 
@@ -27,9 +28,11 @@ RARE = 8
 _SWAP = {"left": "right", "right": "left"}
 
 
-def touch_of(row: dict[str, Any], *, mirror: bool = False) -> Touch:
-    """The joints that touch in a scene of :mod:`training.prepare`, or in its mirror image."""
+def touch_of(row: dict[str, Any], *, mirror: bool = False, beat: dict[str, Any] | None = None) -> Touch:
+    """The joints that touch in a scene of :mod:`training.prepare`, or in one beat of it, or in the mirror image."""
     entries = (row["events"] or {}).get("contact") or ()
+    if beat is not None:
+        entries = [entry for entry in entries if beat["start"] <= entry["start"] < beat["end"]]
     pairs = {(entry["a"], entry["b"]) for entry in entries}
     return tuple(sorted((_mirror(a), _mirror(b)) if mirror else (a, b) for a, b in pairs))
 
@@ -40,13 +43,16 @@ def _mirror(joint: str) -> str:
 
 
 def examples(rows: list[dict[str, Any]]) -> list[tuple[str, Touch]]:
-    """(caption, touch) of every way in which the trainer may show these scenes."""
+    """(caption, touch) of every way in which the trainer may show these scenes and their single beats."""
     found = set()
     for row in rows:
-        for caption in row["captions"]:
+        captioned = [(caption, None) for caption in row["captions"]]
+        captioned += [(caption, beat) for beat in row.get("beats") or () for caption in beat["captions"]]
+        for caption, beat in captioned:
             for draw in (0.0, 0.9):
                 mirror = mirrored(caption, row.get("hand"), draw)
-                found.add((mirror_caption(caption) if mirror else caption, touch_of(row, mirror=mirror)))
+                touch = touch_of(row, mirror=mirror, beat=beat)
+                found.add((mirror_caption(caption) if mirror else caption, touch))
     return sorted(found)
 
 
@@ -56,13 +62,14 @@ def conditions(model: CompactInterGen | CompactReGenNet, captions: list[str]) ->
     encoder, parts = MiniLM(), []
     order = sorted(range(len(captions)), key=lambda i: len(captions[i]))
     for start in range(0, len(order), 128):
-        tokens = encoder([captions[i] for i in order[start : start + 128]])
-        parts.append(model.conditioner(tokens.features, tokens.mask))
+        with mixed_precision("cpu"):
+            tokens = encoder([captions[i] for i in order[start : start + 128]])
+            parts.append(model.conditioner(tokens.features.float(), tokens.mask).float())
     return torch.cat(parts)[torch.tensor(order).argsort()]
 
 
 def with_touches(
-    model: Network, scenes: Scenes, *, most: int = 8_000, steps: int = 1500, seed: int = 0
+    model: Network, scenes: Scenes, *, most: int = 24_000, steps: int = 3000, seed: int = 0
 ) -> tuple[Network, float]:
     """The same network with a fitted touch reader, and its accuracy on test captions.
 

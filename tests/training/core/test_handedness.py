@@ -54,3 +54,23 @@ def test_captions_stand_for_the_touch_that_is_shown():
     assert touch_of({"events": {"contact": [{"a": "right_wrist", "b": "spine3"}]}}, mirror=True) == (
         ("left_wrist", "spine3"),
     )
+
+
+def test_the_captions_of_a_beat_stand_for_what_touches_in_it():
+    beats = [
+        {"start": 0, "end": 40, "captions": ["They shake hands."]},
+        {"start": 40, "end": 90, "captions": ["They bow."]},
+    ]
+    touch = {"a": "right_wrist", "b": "right_wrist", "start": 20, "end": 35}
+    row = {
+        "captions": ["They shake hands and bow."],
+        "hand": "right",
+        "events": {"contact": [touch]},
+        "beats": beats,
+    }
+    right = (("right_wrist", "right_wrist"),)
+    assert examples([row]) == [
+        ("They bow.", ()),
+        ("They shake hands and bow.", right),
+        ("They shake hands.", right),
+    ]
