@@ -47,8 +47,8 @@ def character_body(character: Character) -> Body:
     owner = np.array([_owner(rig, joint, ours) for joint in range(len(rig.parents))])
     joints = rig.positions[0] @ upright.T
     places = np.full((SMPL22.num_joints, 3), np.nan)
-    for theirs, joint in ours.items():
-        places[joint] = joints[theirs]
+    for theirs, mine in ours.items():
+        places[mine] = joints[theirs]
     moves = _moves(places, bone_rotations(retarget(rig, fps=rig.fps, plant=False).positions)[0])
     vertices = character.vertices @ upright.T
     if np.abs(vertices - places[0]).max() > 10 * _LARGEST:
@@ -61,8 +61,7 @@ def character_body(character: Character) -> Body:
         posed += weights[:, joint, None] * turned
     if np.abs(posed - _REST[0]).max() > _LARGEST:
         raise InputError(f"The mesh of {character.name} is no person of a usual build: check its weights.")
-    posed, faces, weights = _coarser(posed, character.faces, weights)
-    return _body(character.name, posed, faces, weights)
+    return _body(character.name, *_coarser(posed, character.faces, weights))
 
 
 def _rig(character: Character) -> RigMotion:

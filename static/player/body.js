@@ -132,7 +132,7 @@ export class Figure {
   expand(colors, scale, alpha) {
     const { body, vertices, light, shine, positions, colors: out } = this;
     const { faces, faceZones, zones } = body;
-    const palette = zones.map((zone) => linear(colors[zone]));
+    const palette = zones.map((zone) => linear(colors[zone] ?? colors.top));
     for (let corner = 0, p = 0, q = 0; corner < faces.length; corner++, p += 3, q += 4) {
       const v = faces[corner];
       const base = palette[faceZones[(corner / 3) | 0]];

@@ -131,7 +131,7 @@ export class Controls {
     press("loop", clock.loop);
     press("follow", orbit.following);
     press("trails", show.trails);
-    this.find("[data-act=figure]").dataset.figure = show.bodies ? (show.skeletons ? "both" : "body") : "skeleton";
+    this.find("[data-act=figure]").dataset.figure = show.character ? "character" : show.bodies ? (show.skeletons ? "both" : "body") : "skeleton";
     press("ghosts", show.ghosts);
     press("pose", Boolean(posing));
     press("fullscreen", document.fullscreenElement === root || root.classList.contains("pdd-full"));

@@ -66,6 +66,8 @@ export async function mount(element, props, watch, { plotly, empty }) {
       shown = id;
       player.load(props.value || null);
     }
+    const worn = props.character ?? null;
+    if (player.scene && worn?.id !== player.character?.id) player.wear(worn);
     const message = props.live ?? null;
     const key = message && `${message.id} ${message.start} ${message.stop}`;
     if (player.scene && key !== heard) {
@@ -75,7 +77,7 @@ export async function mount(element, props, watch, { plotly, empty }) {
   };
   player.controls.setEmptyText(empty);
   sync();
-  watch(["value", "busy", "progress", "live"], sync);
+  watch(["value", "busy", "progress", "live", "character"], sync);
   try {
     const styles = loadStyles(new URL("player.css", import.meta.url).href);
     const styled = styles.finally(() => root.classList.add("pdd-styled")); // the empty state is there at once

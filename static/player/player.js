@@ -1,6 +1,7 @@
 // The player: one element, one scene, one clock. main.js makes these; everything else is a part of it.
 
 import { aim } from "./address.js";
+import { decodeBody } from "./body.js";
 import { Clock } from "./clock.js";
 import { Controls } from "./controls.js";
 import { decode, toScene } from "./decode.js";
@@ -46,7 +47,8 @@ export class Player {
     this.focus = null; // the number of the cell of a grid that is seen large
     this.tip = new Tip(this.find(".pdd-tip"));
     this.strip = new Strip(root, { onSeek: (frame) => this.seek(frame) });
-    this.show = { trails: false, ghosts: false, bodies: true, skeletons: false };
+    this.show = { trails: false, ghosts: false, bodies: true, skeletons: false, character: false };
+    this.character = null; // an uploaded one, whom both people may wear
     this.data = null;
     this.director = null; // keeps poses: see direct()
     this.posing = null;
@@ -79,13 +81,13 @@ export class Player {
       console.error(error);
       return;
     }
-    for (const pane of this.panes) pane.dress(this.bodies);
+    await this.changeClothes();
     this.wake();
   }
 
   /** Lighter bodies for people who are seen small, many at a time. */
   async dressGrid() {
-    if (!this.bodies) return;
+    if (!this.bodies || this.show.character) return;
     const several = () => this.grid.cells.length > 0;
     const bodies = several() ? await Promise.all(["a-small", "b-small"].map(loadBody)) : this.bodies;
     if (several() === (bodies !== this.bodies)) this.panes[0].dress(bodies);
@@ -95,7 +97,8 @@ export class Player {
     const panes = this.find(".pdd-panes");
     panes.append(panes.querySelector("template").content.cloneNode(true));
     const pane = new Pane(panes.lastElementChild);
-    if (this.bodies) pane.dress(this.bodies);
+    const bodies = this.show?.character ? [this.character.body, this.character.body] : this.bodies;
+    if (bodies) pane.dress(bodies);
     this.panes.push(pane);
     return pane;
   }
@@ -288,10 +291,30 @@ export class Player {
     this.refresh();
   }
 
-  /** Bodies, skeletons, both: each in its turn. */
+  /** Puts an uploaded character on both people, as motion/character.py packs it, or takes it off for null. */
+  wear(stored) {
+    this.character = stored && { id: stored.id, body: decodeBody(stored) };
+    Object.assign(this.show, { character: Boolean(stored), ...(stored && { bodies: true, skeletons: false }) });
+    this.changeClothes();
+    this.refresh();
+  }
+
+  /** Bodies for the panes: the uploaded character's, or those that ship. */
+  async changeClothes() {
+    const { character, show } = this;
+    if (this.scene?.mode !== "fast") return;
+    const bodies = show.character ? [character.body, character.body] : this.bodies;
+    if (bodies) for (const pane of this.panes) pane.dress(bodies);
+    if (!show.character) await this.dressGrid();
+  }
+
+  /** Bodies, skeletons, both and, where there is one, the uploaded character: each in its turn. */
   nextFigure() {
-    const { bodies, skeletons } = this.show;
-    if (bodies && skeletons) this.show.skeletons = false;
+    const { bodies, skeletons, character } = this.show;
+    if (character || (bodies && skeletons && this.character)) {
+      Object.assign(this.show, { character: !character, bodies: true, skeletons: false });
+      this.changeClothes();
+    } else if (bodies && skeletons) this.show.skeletons = false;
     else if (bodies) Object.assign(this.show, { bodies: false, skeletons: true });
     else this.show.bodies = true;
   }

@@ -10,6 +10,9 @@ import numpy as np
 import pytest
 
 from motion.body import load_body, skin
+from motion.character import character_body, packed_body
+from motion.formats.glb_reader import read_character
+from tests.motion.formats.characters import a_pose, glb_character
 
 from .playing import has_color, hook, pause, press, stage_pixels, until
 
@@ -182,3 +185,28 @@ def test_without_bodies_there_are_skeletons(open_page, plain_url):
     press(page, "load")
     until(page, "window.__pasdedeux.frame > 0")
     assert bones_drawn(page)
+
+
+def test_both_wear_an_uploaded_character_until_the_figure_button_takes_it_off(player):
+    body = character_body(read_character(glb_character("unreal", places=a_pose()), name="x.glb"))
+    page = player()
+    until(page, DRESSED)
+    pause(page)
+    page.evaluate("body => window.__pasdedeux.player.wear(body)", {"id": "x", **packed_body(body)})
+    page.locator(".pdd-range").fill("93")
+    until(page, "window.__pasdedeux.frame === 93 && window.__pasdedeux.loops === 0")
+    duet = runpy.run_path(str(Path(__file__).with_name("harness.py")))["walking_duet"]()
+    for person in range(2):
+        drawn = page.evaluate(f"[...window.__pasdedeux.player.panes[0].figures[{person}].vertices]")
+        drawn = np.reshape(drawn, (-1, 3))[:, [1, 2, 0]]
+        assert np.abs(drawn - skin(body, duet.positions[person][93:94])[0]).max() < 0.002
+    assert shown_layers(page)["bodyA"]["triangles"] == len(body.faces)
+    page.locator(".pdd").focus()
+    for state in ("character", "body", "skeleton", "both", "character"):
+        until(page, f"document.querySelector('[data-act=figure]').dataset.figure === '{state}'")
+        until(page, "window.__pasdedeux.loops === 0")
+        worn = page.evaluate("window.__pasdedeux.player.panes[0].figures[0].body.zones.includes('character')")
+        assert worn == (state == "character")
+        page.keyboard.press("s")
+    page.evaluate("window.__pasdedeux.player.wear(null)")
+    until(page, "document.querySelector('[data-act=figure]').dataset.figure !== 'character'")

@@ -18,6 +18,8 @@ os.environ.setdefault("GRADIO_ANALYTICS_ENABLED", "False")
 import av
 import gradio as gr
 
+from tests.motion.formats.characters import glb_character
+from tests.motion.formats.skinned import Skinned
 from tests.ui.stub_engine import StubEngine
 from tests.ui.tab_events import built, changes
 from webdemo.inference.cancel import CancelToken
@@ -366,3 +368,32 @@ def test_build_page_offers_an_endpoint_a_job(tmp_path: Path) -> None:
         "/render",
         "/scene",
     ]
+
+
+def test_both_wear_an_uploaded_character_in_this_result_and_the_next(
+    tab: GenerateTab, tmp_path: Path
+) -> None:
+    file = tmp_path / "robot.glb"
+    file.write_bytes(glb_character("unreal"))
+    line, body, player, offered = tab.put_on(str(file), None)
+    assert "Both wear robot.glb" in line and body.zones == ("character",) and offered == gr.skip()
+    assert player["character"]["zones"] == ["character"] and player["character"]["id"]
+    record = result_of(tab)
+    _, *updates = tab.export(record, body)
+    later = updates[[kind.key for kind in KINDS].index("glb")]["value"]
+    plain = Record(record.result, "They walk.")
+    _, _, _, offered = tab.put_on(str(file), plain)
+    assert offered["interactive"] and plain.body is not None
+    for path in (later, offered["value"]):
+        made = Skinned(Path(path))
+        assert [len(mesh.primitives) for mesh in made.gltf.meshes] == [1, 1], (
+            "one surface each, of one material"
+        )
+        assert len(made.surface(0)[0][0]) == len(body.vertices)
+
+
+@pytest.mark.parametrize("content", [b"no character", glb_character()[:3000], glb_character(skins=[])])
+def test_a_file_that_is_no_character_is_a_sentence(tab: GenerateTab, tmp_path: Path, content: bytes) -> None:
+    (tmp_path / "x.glb").write_bytes(content)
+    line, *rest = tab.put_on(str(tmp_path / "x.glb"), None)
+    assert "pd-error" in line and "x.glb" in line and rest == [gr.skip()] * 3

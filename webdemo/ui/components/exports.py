@@ -21,8 +21,10 @@ from pathlib import Path
 from typing import Any
 
 from motion import Clip, Duet, InputError, formats
+from motion.body import Body
 from motion.formats.bvh_rig import bvh_on_rig
 from motion.formats.files import write_files as replace_all
+from motion.formats.glb import write_glb
 from motion.formats.one_person import SUFFIXES
 from motion.formats.spreadsheet import safe_cell
 from webdemo.inference.actor import ROLES
@@ -81,6 +83,7 @@ class Record:
         exported: whether its files were written.
         compared: the results that stand side by side, by method; ``result`` is the first of them.
         grid: columns, rows, names and title of the grid that they stand in; empty for none.
+        body: an uploaded character whom both people wear in the .glb; None for the bodies that ship.
         rig: the uploaded BVH file of one person that the result is a reaction to; None for anything else.
     """
 
@@ -90,6 +93,7 @@ class Record:
     compared: Mapping[str, Result] = field(default_factory=dict, repr=False)
     grid: Mapping[str, Any] = field(default_factory=dict)
     rig: Path | None = None
+    body: Body | None = field(default=None, repr=False)
 
 
 class Shelf:
@@ -152,17 +156,32 @@ def write_on_rig(record: Record, folder: Path) -> list[Path]:
         return replace_all(files)
 
 
+def write_character(record: Record, folder: Path) -> list[Path]:
+    """The .glb files of a record alone, for a character that is put on later."""
+    others = tuple(kind.key for kind in KINDS if kind.key != "glb")
+    results = record.compared or {"": record.result}
+    return [
+        path
+        for method, result in results.items()
+        for path in write_files(
+            result, folder, prompt=f"{method} {record.prompt}".strip(), leave_out=others, body=record.body
+        ).get("glb", ())
+    ]
+
+
 def write_record(record: Record, folder: Path) -> dict[str, list[Path]]:
     """:func:`write_files` for all results of a record; names of compared ones begin with their method.
 
     Compared results have one table of read-outs, and a grid one contact sheet.
     """
     if not record.compared:
-        return write_files(record.result, folder, prompt=record.prompt)
+        return write_files(record.result, folder, prompt=record.prompt, body=record.body)
     files: dict[str, list[Path]] = {}
     joint = ("csv", "png") if record.grid else ("csv",)
     for method, result in record.compared.items():
-        written = write_files(result, folder, prompt=f"{method} {record.prompt}", leave_out=joint)
+        written = write_files(
+            result, folder, prompt=f"{method} {record.prompt}", leave_out=joint, body=record.body
+        )
         for key, paths in written.items():
             files.setdefault(key, []).extend(paths)
     name = folder / file_name(record.prompt, record.result.manifest)
@@ -176,9 +195,11 @@ def write_record(record: Record, folder: Path) -> dict[str, list[Path]]:
 
 
 def write_files(
-    result: Result, folder: Path, *, prompt: str, leave_out: Collection[str] = ()
+    result: Result, folder: Path, *, prompt: str, leave_out: Collection[str] = (), body: Body | None = None
 ) -> dict[str, list[Path]]:
     """Writes a result in every kind that this installation can write, but for those that are left out.
+
+    ``body`` is worn by both people in the .glb.
 
     Returns:
         the files by the key of their kind, in the order of the samples; a BVH pair is two files.
@@ -189,7 +210,7 @@ def write_files(
     name = file_name(prompt, result.manifest)
     with _writing(folder):
         return {
-            kind.key: _write_kind(kind, result, folder, name, prompt)
+            kind.key: _write_kind(kind, result, folder, name, prompt, body)
             for kind in KINDS
             if kind.offered() and kind.key not in leave_out and _holds(kind, result)
         }
@@ -213,7 +234,9 @@ def without_place(error: Exception, folder: Path) -> Exception:
     return error
 
 
-def _write_kind(kind: Kind, result: Result, folder: Path, name: str, prompt: str) -> list[Path]:
+def _write_kind(
+    kind: Kind, result: Result, folder: Path, name: str, prompt: str, body: Body | None
+) -> list[Path]:
     if kind.key == "json":
         path = folder / f"{name}.json"
         path.write_text(json.dumps(result.manifest, indent=2, ensure_ascii=False), encoding="utf-8")
@@ -224,7 +247,7 @@ def _write_kind(kind: Kind, result: Result, folder: Path, name: str, prompt: str
     files: list[Path] = []
     for i, duet in enumerate(result.duets):
         path = folder / (f"{name}-{i + 1}.{kind.key}" if several else f"{name}.{kind.key}")
-        files += _write_motion(duet, path, title=prompt)
+        files += _write_motion(duet, path, title=prompt, body=body)
     return files
 
 
@@ -257,7 +280,9 @@ def _holds(kind: Kind, result: Result) -> bool:
     return not one or kind.key in _PLAIN or f".{kind.key}" in SUFFIXES
 
 
-def _write_motion(duet: Duet | Clip, path: Path, *, title: str) -> list[Path]:
+def _write_motion(duet: Duet | Clip, path: Path, *, title: str, body: Body | None) -> list[Path]:
+    if path.suffix == ".glb" and body is not None and isinstance(duet, Duet):
+        return write_glb(duet, path, body=body)
     if path.suffix == ".png":
         return [write_sheet(duet, path, title=title)]
     return [Path(written) for written in formats.write(duet, path)]

@@ -8,12 +8,15 @@ template, it travels as data and the browser sets it as text.
 from __future__ import annotations
 
 import json
+import uuid
 from pathlib import Path
 from typing import Any
 
 import gradio as gr
 import plotly
 
+from motion.body import Body
+from motion.character import packed_body
 from webdemo.view.payload import Payload, player_payload
 
 PLAYER_FOLDER = Path(__file__).resolve().parents[3] / "static" / "player"
@@ -71,6 +74,7 @@ class MotionPlayer(gr.HTML):
             "busy": "",
             "progress": None,
             "live": None,
+            "character": None,
             **kwargs,
         }
         super().__init__(value, elem_id=elem_id, **kwargs)
@@ -120,4 +124,10 @@ def stream(message: dict[str, Any]) -> dict[str, Any]:
     return gr.update(live=message)
 
 
-__all__ = ["EMPTY_TEXT", "MotionPlayer", "busy", "player_payload", "show", "stream"]
+def wear(body: Body) -> dict[str, Any]:
+    """An update that puts an uploaded character on both people."""
+    packed = packed_body(body)
+    return gr.update(character={"id": uuid.uuid4().hex, **packed})
+
+
+__all__ = ["EMPTY_TEXT", "MotionPlayer", "busy", "player_payload", "show", "stream", "wear"]

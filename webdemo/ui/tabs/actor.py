@@ -249,7 +249,7 @@ class ActorTab(SweepTab):
 
 
 def _known_choices(controls: Mapping[str, Any]) -> ReadWith:
-    """How a kept run's file was read; what its control does not offer is found anew."""
+    """The settings with which a kept run's file was read; what its control does not offer is found anew."""
 
     def offered(name: str, values: Collection[str]) -> str:
         value = controls.get(name)

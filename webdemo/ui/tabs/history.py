@@ -10,6 +10,7 @@ from typing import Any
 import gradio as gr
 
 from motion import InputError
+from motion.body import Body
 from webdemo.inference.requests import Cancelled, Progress, Result
 from webdemo.ui.again import request_of, request_of_unfinished, verdict
 from webdemo.ui.components.exports import KINDS, Record
@@ -124,15 +125,18 @@ class HistoryTab:
                     **QUIET,
                 )
                 chain = chain.then(
-                    self._exporter(kind, job), inputs=record, outputs=[job.line, *job.downloads], **quick
+                    self._exporter(kind, job),
+                    inputs=[record, job.worn],
+                    outputs=[job.line, *job.downloads],
+                    **quick,
                 )
 
     def _exporter(self, kind: str, job: JobTab) -> Any:
-        def export(record: Record | None) -> Updates:
+        def export(record: Record | None, worn: Body | None) -> Updates:
             """Writes the files of an opened run for the tab that shows it."""
             if record is None or record.result.manifest.get("request", {}).get("kind", "generate") != kind:
                 return (gr.skip(),) * (1 + len(KINDS))
-            return job.export(record)
+            return job.export(record, worn)
 
         return export
 

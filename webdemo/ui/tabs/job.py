@@ -202,7 +202,7 @@ class JobTab(ResultsTab, ABC):
         run.then(None, **self.compare)  # what was changed while it ran
         run.then(
             self.export,
-            inputs=self.record,
+            inputs=[self.record, self.worn],
             outputs=[self.line, *self.downloads],
             concurrency_limit=2,
             **QUIET,

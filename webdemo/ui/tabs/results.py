@@ -11,6 +11,9 @@ from typing import Any
 import gradio as gr
 
 from motion import InputError
+from motion.body import Body
+from motion.character import character_body
+from motion.formats.glb_reader import read_character
 from webdemo.ui.components.address import link_address
 from webdemo.ui.components.exports import (
     KINDS,
@@ -18,12 +21,13 @@ from webdemo.ui.components.exports import (
     Record,
     file_name,
     for_download,
+    write_character,
     write_on_rig,
     write_record,
 )
 from webdemo.ui.components.film import READ_PLAYER, make_film
 from webdemo.ui.components.film import suffix as film_suffix
-from webdemo.ui.components.player import EMPTY_TEXT, MotionPlayer
+from webdemo.ui.components.player import EMPTY_TEXT, MotionPlayer, wear
 from webdemo.ui.context import PageContext
 from webdemo.ui.text.panels import status
 from webdemo.ui.text.words import error_line, link_line, seconds
@@ -35,6 +39,8 @@ log = logging.getLogger(__name__)
 
 QUIET: dict[str, Any] = {"api_visibility": "private", "show_progress": "hidden"}
 """Options of events that are the page's own: no endpoint, no spinner over what they change."""
+
+_GLB = [kind.key for kind in KINDS].index("glb")
 
 Updates = tuple[Any, ...]
 
@@ -87,6 +93,11 @@ class ResultsTab:
                         elem_id=self._id("download-film"),
                     )  # fmt: skip
                     self.player_state = gr.Textbox(visible=False)
+                    self.character = gr.UploadButton(
+                        "Wear a character .glb", file_types=[".glb"], size="sm", min_width=0,
+                        elem_id=self._id("character"), elem_classes="pd-character",
+                    )  # fmt: skip
+                    self.worn = gr.State(None, time_to_live=3600)
                     self.link = gr.Button(
                         "Link to this view", size="sm", min_width=0, elem_id=self._id("link"),
                         elem_classes="pd-onward", visible=self.page.history is not None,
@@ -111,6 +122,30 @@ class ResultsTab:
             self.make_link, inputs=[self.record, self.player_state], outputs=[self.line, self.address],
             js=READ_PLAYER, **QUIET,
         )  # fmt: skip
+
+        self.character.upload(
+            self.put_on, inputs=[self.character, self.record],
+            outputs=[self.line, self.worn, self.player, self.downloads[_GLB]],
+            concurrency_limit=1, concurrency_id="character", trigger_mode="once", **QUIET,
+        )  # fmt: skip
+
+    def put_on(self, path: str, record: Record | None) -> Updates:
+        """Puts an uploaded character on both people, here and in the .glb of this result and of later ones."""
+        try:
+            body = character_body(read_character(path))
+            file = None
+            if record is not None:
+                record.body = body
+                written = write_character(record, self.page.shelf.folder())
+                name = file_name(record.prompt, record.result.manifest)
+                file = for_download({"glb": written}, name)["glb"] if written else None
+        except Exception as error:
+            return status(error_line(error), tone="error"), *((gr.skip(),) * 3)
+        told = (
+            f"Both wear {body.name}, in the .glb as well. The figure button of the player shows bodies again."
+        )
+        offered = _offered("glb", file) if file is not None else gr.skip()
+        return status(told, tone="done"), body, wear(body), offered
 
     def make_film(self, record: Record | None, shown: str) -> Iterator[Updates]:
         """Films the last result as the player shows it and hands the film to its download button."""
@@ -137,12 +172,12 @@ class ResultsTab:
         address = link_address(visitor().base, key, shown)
         return status(link_line(until), tone="done"), gr.update(value=address, visible=True)
 
-    def export(self, record: Record | None) -> Updates:
-        """Writes the files of a new result and hands them to the download buttons."""
+    def export(self, record: Record | None, worn: Body | None = None) -> Updates:
+        """Writes the files of a new result and hands them to the download buttons; both people wear ``worn``."""
         unchanged = (gr.skip(),) * (1 + len(KINDS))
         if record is None or record.exported:
             return unchanged
-        record.exported = True
+        record.exported, record.body = True, worn
         try:
             files = write_record(record, self.page.shelf.folder())
             name = file_name(record.prompt, record.result.manifest)

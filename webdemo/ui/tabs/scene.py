@@ -240,7 +240,7 @@ class SceneTab(SweepTab):
             run.then(self.rest, outputs=[*self.starts().values(), self.stop], queue=False, **QUIET)
             run.then(
                 self.export,
-                inputs=self.record,
+                inputs=[self.record, self.worn],
                 outputs=[self.line, *self.downloads],
                 concurrency_limit=2,
                 **QUIET,
