@@ -102,6 +102,10 @@ class TokenFeatures:
         weights = self.mask[..., None].to(self.features.dtype)
         return F.normalize((self.features * weights).sum(1) / weights.sum(1), dim=-1)
 
+    def missing(self) -> TokenFeatures:
+        """Features of the same shape without any token: no sentence."""
+        return TokenFeatures(torch.zeros_like(self.features), torch.zeros_like(self.mask))
+
 
 class MiniLM(nn.Module):
     """The frozen token encoder: prompts → `TokenFeatures`. Loads in about 0.3 s; 10 ms a prompt."""

@@ -199,3 +199,13 @@ def test_a_network_that_reads_them_is_given_each_persons_own_words(reading_engin
         for beat in (Beat("They wave.", seconds=2.0), Beat("They wave.", b="waves slowly", seconds=2.0))
     ]
     assert np.abs(motions[0] - motions[1]).max() > 1e-3
+
+
+def test_names_in_a_plain_sentence_say_who_does_what(reading_engine: Engine) -> None:
+    pipeline = reading_engine.pipeline("intergen")
+    named, _ = pipeline.condition("Person A waves while person B claps.")
+    a, b = (pipeline.condition("x", (s, s))[0] for s in ("One person waves.", "One person claps."))
+    assert torch.allclose(named[:, 1, :4], a[:, 1, :4], atol=1e-5)
+    assert torch.allclose(named[:, 2, :4], b[:, 2, :4], atol=1e-5)
+    nobody, _ = pipeline.condition("One waves while the other claps.")
+    assert not nobody[:, 1:].any()

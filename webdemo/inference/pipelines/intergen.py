@@ -10,11 +10,12 @@ from torch import Tensor
 
 from models.compiled import compile_network
 from models.intergen.compact import CaptionBank, CompactInterGen, load_captions, load_folder
-from models.text import MiniLM, TokenFeatures
+from models.text import MiniLM
 from webdemo.inference.cancel import CancelToken
 from webdemo.inference.requests import GenerateRequest, Progress, ReactRequest, Result
 from webdemo.inference.scenes import Scene
 from webdemo.inference.story.request import SceneRequest, as_scene
+from webdemo.inference.story.roles import of_each
 from webdemo.inference.timer import StageTimer
 
 from .scene import SceneMaker, WindowRequest
@@ -54,21 +55,20 @@ class InterGenPipeline(TwoPersonPipeline[CompactInterGen]):
             return self.scenes.run(split, cancel, timer, passes, notes=(note,))
         return super().run(request, cancel, timer, passes, scene)
 
-    def condition(self, prompt: str) -> tuple[Tensor, Tensor]:
-        """The condition (1, …) of a prompt and its unit sentence vector (384,)."""
-        tokens = self.encoder([prompt])
-        with torch.no_grad():
-            return self.model.condition(tokens), tokens.pooled()[0]
+    def condition(self, prompt: str, alone: tuple[str, str] = ("", "")) -> tuple[Tensor, Tensor]:
+        """The condition (1, …) of a prompt and its unit sentence vector (384,).
 
-    def _of_each(self, request: WindowRequest) -> Tensor:
-        """The condition of a sentence for both people and of those for each, of which one may be missing."""
-        tokens = self.encoder([request.prompt, *(sentence or request.prompt for sentence in request.alone)])
-        there = torch.tensor([True, *map(bool, request.alone)])
-        parts = [
-            TokenFeatures(tokens.features[i : i + 1], tokens.mask[i : i + 1] & there[i]) for i in range(3)
-        ]
+        Args:
+            alone: what a and b do, in a sentence each. By default it is taken from the prompt, where that says it by
+                their names. Only a network with ``words`` reads it.
+        """
+        tokens = self.encoder([prompt])
+        parts = [tokens]
+        alone = alone if any(alone) else of_each(prompt)
+        if self.model.config.words and any(alone):
+            parts += [self.encoder([sentence]) if sentence else tokens.missing() for sentence in alone]
         with torch.no_grad():
-            return self.model.condition(*parts)
+            return self.model.condition(*parts), tokens.pooled()[0]
 
     def notes(self, vector: Tensor) -> tuple[str, ...]:
         """Warns the user of a prompt that is far from all that was trained on."""
@@ -84,8 +84,7 @@ class InterGenPipeline(TwoPersonPipeline[CompactInterGen]):
         """The text vector and the touches that the text asks for; nothing without text."""
         if not request.prompt.strip():  # without an intent both halves of the guidance are the same
             return Conditioning(self.model.no_condition(), 1.0)
-        condition, vector = self.condition(request.prompt)
+        alone = request.alone if isinstance(request, WindowRequest) else ("", "")
+        condition, vector = self.condition(request.prompt, alone)
         (touch,) = self.model.touches(condition)
-        if self.model.config.words and isinstance(request, WindowRequest) and any(request.alone):
-            condition = self._of_each(request)
         return Conditioning(condition, request.guidance, touch, self.notes(vector))
