@@ -26,7 +26,7 @@ _OBJECT = re.compile(
 
 
 def of_each(sentence: str) -> tuple[str, str]:
-    """What person a and person b do, as a sentence each; "" for who is not said to do anything.
+    """A sentence for person a and one for person b; "" for who is not said to do anything.
 
     Both are "" where the sentence names nobody, or also says what both do: then the whole sentence says it best.
     """
