@@ -59,7 +59,7 @@ def _clauses(sentence: str) -> list[str]:
 
 
 def _from_outside(words: str, who: str) -> str:
-    """What a person does, with the names left out: the one who does it is "they", the other one "the other person"."""
+    """The words without the names: who does it is "them", and the other one "the other person"."""
     other = "b" if who == "a" else "a"
     words = re.sub(rf"person\s+{other}\b", "the other person", words, flags=re.IGNORECASE)
     words = re.sub(rf"person\s+{who}'s\b", "their", words, flags=re.IGNORECASE)
