@@ -148,7 +148,7 @@ def later_beats(row: dict[str, Any]) -> list[dict[str, Any]]:
 
 
 def acts_of(row: dict[str, Any]) -> set[str]:
-    """What either person does in a scene of beats, besides standing; empty for other scenes."""
+    """The acts of either person in a scene of beats, besides standing; none for other scenes."""
     return {act for beat in row.get("beats") or () for act in beat["acts"]} - {"stand"}
 
 
