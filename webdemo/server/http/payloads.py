@@ -80,7 +80,7 @@ class Payloads:
 def _check_value(value: Any, component: Any, person: str) -> None:
     if value is None:
         return
-    if isinstance(component, gr.File):
+    if isinstance(component, gr.File | gr.UploadButton):
         for file in value if isinstance(value, list) else [value]:
             _check_file(file, person)
         return
