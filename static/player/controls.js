@@ -22,7 +22,7 @@ export class Controls {
     });
     root.addEventListener("keydown", (event) => {
       if (belongsToControl(event)) return;
-      const asked = actionFor(event);
+      const asked = player.futures.actionFor(event) ?? actionFor(event);
       if (!asked) return;
       event.preventDefault();
       event.stopPropagation();
@@ -52,8 +52,11 @@ export class Controls {
     });
     this.find(".pdd-touch").addEventListener("click", ({ clientX, clientY }) => {
       const moved = pressed && Math.hypot(clientX - pressed[0], clientY - pressed[1]);
-      const cell = moved < 5 ? player.grid.at(clientX, clientY) : -1;
-      if (cell >= 0) player.enlarge(cell);
+      if (!(moved < 5)) return;
+      const cell = player.grid.at(clientX, clientY);
+      if (cell >= 0) return player.enlarge(cell);
+      const box = player.stage.getBoundingClientRect();
+      player.futures.hit(clientX - box.left, clientY - box.top);
     });
   }
 

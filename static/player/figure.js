@@ -94,7 +94,7 @@ export function trails(poseAt, frame, fps, skeleton, theme) {
   return out;
 }
 
-/** Pale figures: moments along the way, in which somebody may be missing, and a second motion where the payload has one. */
+/** Pale figures: moments along the way, in which somebody may be missing, and others with their [points, colour]. */
 export function ghosts(moments, other, skeleton, theme, lens) {
   const out = { points: [], colors: [], sizes: [] };
   const add = (points, color, width) => {
@@ -106,7 +106,7 @@ export function ghosts(moments, other, skeleton, theme, lens) {
     }
   };
   for (const pose of moments) pose.forEach((points, p) => points && add(points, mix(theme.background, theme.people[p].middle, 0.38), 3));
-  for (const points of other) add(points, theme.ghost, 5);
+  for (const [points, color] of other) add(points, color, 5);
   return out;
 }
 

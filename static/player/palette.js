@@ -54,6 +54,9 @@ export const THEMES = {
   },
 };
 
+/** Tints of futures that stand side by side; apart from both people's, and from each other for all common eyes. */
+export const FUTURES = ["#1f9d72", "#b13fc9", "#c2a40a"].map(hex);
+
 export const css = (c) => `rgb(${c.slice(0, 3).map((v) => Math.round(255 * v)).join(",")})`;
 
 /** Gradio marks its dark theme with a class on body. */

@@ -6,6 +6,7 @@ import * as figure from "./figure.js";
 import { Ground } from "./ground.js";
 import { FIELD_OF_VIEW } from "./orbit.js";
 import { Labels, project } from "./overlay.js";
+import { FUTURES } from "./palette.js";
 import { Scene } from "./scene.js";
 
 const ABOVE_HEAD = 0.2; // metres
@@ -58,7 +59,7 @@ export class Pane {
   }
 
   /** Draws `pose` of this pane's motion, or the floor alone for null. */
-  paint(pose, { orbit, matrix, theme, themeName, clock, skeleton, show, pinned }) {
+  paint(pose, { orbit, matrix, theme, themeName, clock, skeleton, show, pinned, futures }) {
     const { scene } = this;
     const [width, height] = [this.host.clientWidth, this.host.clientHeight];
     const put = (name, layer) => scene.set(name, layer);
@@ -84,7 +85,11 @@ export class Pane {
       });
       this.drop(["bonesA", "jointsA", "bonesB", "jointsB"].slice(2 * thin.length));
       this.paintShadow(pose, skeleton, bodies, theme);
-      this.paintExtras(put, lens, { theme, clock, skeleton, show, pinned });
+      const ghosts = futures?.at(clock.shown) ?? [];
+      const company = show.bodies ? futures?.mesh(ghosts, theme, lens, scene.scale) : null;
+      if (company) scene.setTriangles("futures", company);
+      else this.drop(["futures"]);
+      this.paintExtras(put, lens, { theme, clock, skeleton, show, pinned, ghosts: company ? [] : ghosts });
       this.spots = pose.map((points) => points.map((p) => project(p, matrix, width, height, FIELD_OF_VIEW)));
       this.labels.place(pose.map((points) => {
         const above = figure.headCenter(points, skeleton);
@@ -123,12 +128,14 @@ export class Pane {
     scene.setTriangles("ground", { positions: ground.positions, colors: ground.colors, places: ground.places });
   }
 
-  paintExtras(put, lens, { theme, clock, skeleton, show, pinned = [] }) {
+  paintExtras(put, lens, { theme, clock, skeleton, show, pinned = [], ghosts = [] }) {
     const { scene, sample, painted } = this;
     if (show.trails) put("trails", figure.trails((f) => this.poseAt(f), clock.shown, clock.fps, skeleton, theme));
     else if (painted.trails) scene.hide("trails");
     painted.trails = show.trails;
-    const other = sample.ghostMotion ? poseAt(sample.ghostMotion, clock.shown) : [];
+    const paired = sample.ghostMotion ? poseAt(sample.ghostMotion, clock.shown) : [];
+    const other = paired.map((points) => [points, theme.ghost]);
+    for (const { index, people } of ghosts) other.push(...people.map((points) => [points, FUTURES[index % FUTURES.length]]));
     const moments = show.ghosts ? figure.ghostFrames(clock.frames).map((f) => this.poseAt(f)) : [];
     if (pinned.some(Boolean)) moments.push(pinned);
     const pale = moments.length + other.length > 0;

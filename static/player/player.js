@@ -5,6 +5,7 @@ import { decodeBody } from "./body.js";
 import { Clock } from "./clock.js";
 import { Controls } from "./controls.js";
 import { decode, toScene } from "./decode.js";
+import { Futures } from "./futures.js";
 import * as live from "./live.js";
 import { Grid } from "./grid.js";
 import { loadBody } from "./loader.js";
@@ -45,6 +46,7 @@ export class Player {
     this.addPane();
     this.grid = new Grid(this.find(".pdd-grid"), this.panes[0]);
     this.focus = null; // the number of the cell of a grid that is seen large
+    this.futures = new Futures(this);
     this.tip = new Tip(this.find(".pdd-tip"));
     this.strip = new Strip(root, { onSeek: (frame) => this.seek(frame) });
     this.show = { trails: false, ghosts: false, bodies: true, skeletons: false, character: false };
@@ -82,7 +84,14 @@ export class Player {
       return;
     }
     await this.changeClothes();
+    this.dressFutures();
     this.wake();
+  }
+
+  /** Bodies for the ghosts of futures, once they are there. */
+  async dressFutures() {
+    if (!this.bodies || !this.futures.samples.length) return;
+    this.futures.dress(await Promise.all(["a-small", "b-small"].map(loadBody)));
   }
 
   /** Lighter bodies for people who are seen small, many at a time. */
@@ -130,6 +139,7 @@ export class Player {
     this.endPosing();
     if (!payload?.samples?.length) {
       this.data = null;
+      this.futures.load(null);
       this.clock.pause();
       this.root.dataset.state = "empty";
       this.strip.load(null);
@@ -150,6 +160,8 @@ export class Player {
     this.rounds = 0;
     if (!goesOn) this.clock.frame = Math.min(this.data.samples[0].past_until ?? 0, this.data.samples[0].frames - 1);
     this.controls.load(this.data);
+    this.futures.load(this.data);
+    this.dressFutures();
     this.select(0);
     if (!goesOn) this.resetCamera();
     if (this.sample.live) this.clock.pause();
@@ -226,8 +238,8 @@ export class Player {
   }
 
   /**
-   * Lets people be posed: `director` has `posesAt(frame)`, which gives each person's kept pose in world axes or null, and
-   * `keepPoses(frame, [{ person: "a" or "b", positions }])`.
+   * Lets people be posed and futures be taken: `director` has `posesAt(frame)`, which gives each person's kept pose in
+   * world axes or null, `keepPoses(frame, [{ person: "a" or "b", positions }])` and `takeFuture(index)`.
    */
   direct(director) {
     this.director = director;
@@ -272,6 +284,7 @@ export class Player {
     if (action === "fullscreen") return this.toggleFullscreen();
     if (!this.data) return;
     if (action === "pose") return this.togglePosing();
+    if (action === "take") return this.futures.take(argument);
     if (MOVES.has(action) && !this.mayLeave()) return;
     if (action === "pause") clock.pause();
     else if (action === "play") clock.playing ? clock.pause() : clock.play();
@@ -343,7 +356,8 @@ export class Player {
   /** What the camera should look at, and from how far, to hold everybody in all views about this moment. */
   wanted(view = this.orbit.glide?.to ?? this.orbit) {
     const now = this.everybody(this.clock.shown);
-    const soon = moments(this.clock.shown, this.clock).flatMap((frame) => this.everybody(frame));
+    const all = (frame) => [...this.everybody(frame), ...this.futures.at(frame).flatMap(({ people }) => people)];
+    const soon = moments(this.clock.shown, this.clock).flatMap(all);
     return fit(now, soon, this.skeleton, view, this.box);
   }
 
@@ -491,14 +505,15 @@ export class Player {
   }
 
   paint(pose) {
-    const { orbit, theme, themeName, clock, skeleton, show } = this;
+    const { futures, orbit, theme, themeName, clock, skeleton, show } = this;
     const matrix = orbit.matrix();
     const posed = this.posing?.pose;
     const pinned = pose && !posed && !clock.playing ? this.posesAt(Math.round(clock.shown)) : [];
     for (const pane of this.shown) {
       const people = posed ?? (pose && pane.poseAt(clock.shown));
-      pane.paint(people, { orbit, matrix, theme, themeName, clock, skeleton, show, pinned });
+      pane.paint(people, { orbit, matrix, theme, themeName, clock, skeleton, show, pinned, futures });
     }
+    futures.place(clock.shown, matrix);
     this.posing?.place(this.panes[0].spots);
     if (pose) this.showTip();
     this.controls.show(this);

@@ -57,6 +57,11 @@ class Editor {
     this.tell("The pose is pinned: press Make this span again, and the motion passes through it.");
   }
 
+  /** The player's sample is to be the motion from now on: as the button *Take the one shown* does. */
+  takeFuture() {
+    this.root.closest(".pd-results")?.querySelector(".pd-take")?.click();
+  }
+
   /** Seconds that the line shows: the story's, or the motion's where that is longer. */
   get total() {
     return Math.max(edits.edges(this.story).at(-1), this.props.motion?.seconds ?? 0, 1);

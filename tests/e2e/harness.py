@@ -111,6 +111,9 @@ UPDATES: dict[str, Callable[[], dict[str, Any]]] = {
     "several": lambda: show(
         player_payload([walking_duet(phase=0.8 * i) for i in range(4)], title="four takes")
     ),
+    "futures": lambda: show(
+        {**player_payload([walking_duet(4.0), apart_duet(4.0), walking_duet(4.0, phase=1.0)]), "futures": 30}
+    ),
     "hostile": lambda: show(player_payload(walking_duet(roles=HOSTILE), title=" ".join(HOSTILE))),
     "predicted": lambda: show(player_payload(walking_duet(), ghost=walking_duet(phase=0.5), past_until=60)),
     "busy": lambda: busy("Step 12 of 50 ${1+1}", progress=0.24),

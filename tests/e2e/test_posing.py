@@ -9,7 +9,7 @@ import pytest
 
 from motion import SMPL22
 
-from .playing import pause, until
+from .playing import pause, press, until
 
 pytestmark = pytest.mark.e2e
 
@@ -22,6 +22,7 @@ DIRECT = """() => {
     window.__pasdedeux.player.direct({
         posesAt: () => [null, null],
         keepPoses: (frame, poses) => window.kept.push({ frame, poses }),
+        takeFuture: (index) => window.kept.push(index),
     });
 }"""
 WRIST, ANKLE, HEAD = (SMPL22.index(name) for name in ("right_wrist", "left_ankle", "head"))
@@ -131,3 +132,33 @@ def test_a_joint_is_moved_with_the_keys(still: Any) -> None:
     still.keyboard.press("Escape")
     np.testing.assert_allclose(positions(still, 1), before)
     assert still.evaluate("window.kept") == []
+
+
+def test_ways_on_stand_beside_each_other_and_one_is_taken(still: Any) -> None:
+    press(still, "futures")
+    until(still, "window.__pasdedeux.player.futures.ghosts.length === 3")
+    still.evaluate("window.__pasdedeux.player.act('pause'); window.__pasdedeux.player.seek(20)")
+    until(still, "window.__pasdedeux.frame === 20 && window.__pasdedeux.loops === 0")
+    numbers = still.locator(".pdd-futures button")
+    triangles = "window.__pasdedeux.player.scene.objects.futures.triangleCount"
+    assert still.evaluate(triangles) == 0 and not numbers.first.is_visible(), "one past for all"
+    still.evaluate("window.__pasdedeux.player.seek(100)")
+    until(still, "window.__pasdedeux.frame === 100 && window.__pasdedeux.loops === 0")
+    assert still.evaluate(triangles) > 1000 and still.evaluate(
+        "window.__pasdedeux.player.scene.objects.futures.hasAlpha"
+    )
+    assert numbers.all_inner_texts() == ["1", "2", "3"]
+    # A click on a ghost, on a number, and a key.
+    spot = still.evaluate("""() => {
+        const { player } = window.__pasdedeux;
+        const [x, y] = player.futures.spots.find(({ index }) => index === 1).spots[0][9];
+        const box = player.stage.getBoundingClientRect();
+        return [box.left + x, box.top + y];
+    }""")
+    still.mouse.click(*spot)
+    numbers.nth(2).click()
+    still.locator(".pdd").focus()
+    still.keyboard.press("1")
+    still.keyboard.press("4")  # a camera
+    assert still.evaluate("window.kept") == [1, 2, 0]
+    assert still.evaluate("window.__pasdedeux.player.sampleIndex") == 0

@@ -1,12 +1,13 @@
 """Scores of scenes against their stories, beat by beat: ``python -m training.evaluate.scenes --out scenes.json``.
 
 Generates stories of three to six beats from acts that have a geometric rule each, and judges every rule in the beat's
-own time. Beside it: jerk and feet at the seams, drawn paths, spans that are made again, and loops.
+own time. Beside it: jerk and feet at the seams, drawn paths, headings, spans that are made again, poses, and loops.
 """
 
 from __future__ import annotations
 
 import argparse
+import itertools
 import json
 import random
 import sys
@@ -19,17 +20,18 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from motion import Duet
+from motion import SMPL22, Duet
 from motion.formats.files import replacing
 from motion.metrics.sentences.joints import Motion
 from motion.metrics.sentences.language import check
 from motion.metrics.sentences.scores import share
 from motion.skeleton import FEET
+from motion.transforms import heading
 from training.core.shell import exit_code
 from webdemo.inference import Engine, Result
 from webdemo.inference.actor import FPS
 from webdemo.inference.engine import WEIGHTS
-from webdemo.inference.story import Beat, FloorPath, FloorPoint, SceneRequest
+from webdemo.inference.story import Beat, FloorPath, FloorPoint, Pose, SceneRequest
 
 Array = NDArray[np.floating]
 Make = Callable[[SceneRequest], tuple[Duet, float]]
@@ -119,6 +121,30 @@ def path_error(duet: Duet, path: FloorPath) -> Array:
     return np.asarray(found)
 
 
+def raised(pose: Array, side: str = "right") -> Array:
+    """A pose (22, 3) with an arm stretched upwards and a little forward, on bones of the same lengths."""
+    chain = [SMPL22.index(f"{side}_{part}") for part in ("shoulder", "elbow", "wrist")]
+    facing = float(heading(pose[None])[0])
+    way = np.array([0.3 * np.sin(facing), 1.0, 0.3 * np.cos(facing)])
+    found = pose.astype(np.float64)
+    for upper, lower in itertools.pairwise(chain):
+        length = np.linalg.norm(pose[lower] - pose[upper])
+        found[lower] = found[upper] + way / np.linalg.norm(way) * length
+    return found
+
+
+def turning_path() -> FloorPath:
+    """A way for person a that asks for a heading every two seconds, a quarter turn after another."""
+    return FloorPath("a", tuple(FloorPoint(0.1 * i, 0.2 * i, 2.0 * i, 90.0 * i) for i in range(4)))
+
+
+def heading_error(duet: Duet, path: FloorPath) -> Array:
+    """(points,) degrees between where person a faces and what the path's points ask for."""
+    asked = [(round((p.seconds or 0.0) * FPS), p.heading) for p in path.points if p.heading is not None]
+    facing = np.degrees(heading(duet.a.positions[[frame for frame, _ in asked]]))
+    return np.abs((facing - np.array([angle for _, angle in asked]) + 180) % 360 - 180)
+
+
 def evaluate(options: argparse.Namespace) -> dict[str, Any]:
     """All figures."""
     engine = Engine(options.weights)
@@ -179,12 +205,42 @@ def _parts(make: Make, options: argparse.Namespace, plain: dict[str, Any]) -> di
                 float(np.linalg.norm((x[:, 1] - x[:, 0]) - (x[:, -1] - x[:, -2]), axis=-1).max()),
             )
         )
-    return {
+    return _wishes(make, options, plain) | {
         "path_cm": [[round(100 * float(e.mean()), 2), round(100 * float(e.max()), 2)] for e in paths],
         "outside": [value for value, _ in spans],
         "span_jerk": [ratio for _, ratios in spans for ratio in ratios],
         "loop_cm": [[round(100 * gap, 2), round(100 * speed, 2)] for gap, speed in loops],
     }
+
+
+def _wishes(make: Make, options: argparse.Namespace, plain: dict[str, Any]) -> dict[str, Any]:
+    """Poses that a span is made again through, as the page does, and headings along a way."""
+    poses, headings = [], []
+    beats = (
+        Beat("Two people walk up to each other.", seconds=3.0),
+        Beat("They talk to each other.", seconds=4.0),
+    )
+    for seed in range(options.parts):
+        duet, _ = make(SceneRequest(beats=beats, seed=seed, **plain))
+        frame = 120
+        wanted = raised(duet.a.positions[frame])
+        span = SceneRequest(
+            beats=beats[1:], poses=(Pose("a", frame / FPS, wanted),), motion=duet, start=frame / FPS - 1,
+            end=frame / FPS + 1, seed=seed, **plain,
+        )  # fmt: skip
+        remade, _ = make(span)
+        miss = np.linalg.norm(remade.a.positions[frame] - wanted, axis=-1)
+        moved = np.linalg.norm(remade.a.positions[frame] - duet.a.positions[frame], axis=-1)
+        alone = Duet.from_positions(np.stack([remade.a.positions] * 2), fps=FPS)  # the other has no pose
+        ratio = seams(alone, (0, frame, remade.num_frames))["ratio"][0]
+        edges = seams(remade, (0, frame - 30, frame + 30, remade.num_frames))["ratio"]
+        poses.append({"miss_cm": 100 * float(miss.max()), "moved_cm": 100 * float(moved.max()),
+                      "jerk": ratio, "edges": edges})  # fmt: skip
+        way = turning_path()
+        walk = (Beat("One person walks and turns, while the other person stands.", seconds=6.5),)
+        turned, _ = make(SceneRequest(beats=walk, paths=(way,), seed=seed, **plain))
+        headings.append([float(e) for e in heading_error(turned, way)])
+    return {"poses": poses, "heading_degrees": headings}
 
 
 def table(scores: dict[str, Any]) -> str:
@@ -213,6 +269,15 @@ def table(scores: dict[str, Any]) -> str:
         "the same anywhere, 99th percentile": f"{100 * usual:.1f} cm a frame",
         "distance from a drawn path, mean and worst": f"{path[0]:.1f} and {path[1]:.1f} cm",
         "largest difference outside a remade span": f"{max(scores['outside']):g} m",
+        "headings asked for on a way, mean and worst error": (
+            f"{np.mean(scores['heading_degrees']):.1f} and {np.max(scores['heading_degrees']):.1f} degrees"
+        ),
+        "poses in a span made again: farthest joint from its place": (
+            f"{max(p['miss_cm'] for p in scores['poses']):.2g} cm"
+        ),
+        "jerk around a pose, beside the 95th percentile elsewhere": (
+            f"{min(p['jerk'] for p in scores['poses']):.1f} to {max(p['jerk'] for p in scores['poses']):.1f} times"
+        ),
         "loop: worst gap in place and in speed": f"{loop[0]:.1f} cm and {loop[1]:.1f} cm a frame",
         "time for a minute of motion, on this machine": f"{60 * spent / made:.0f} s",
     }
@@ -239,7 +304,7 @@ def main(argv: list[str] | None = None) -> int:
     parser.add_argument("--out", type=Path, required=True, help="JSON file for all figures")
     parser.add_argument("--table", type=Path, help="Markdown file for the table, which is printed too")
     parser.add_argument("--scenes", type=int, default=60, help="how many stories (60)")
-    parser.add_argument("--parts", type=int, default=10, help="how many paths, spans and loops (10)")
+    parser.add_argument("--parts", type=int, default=10, help="how many paths, spans, poses and loops (10)")
     parser.add_argument("--steps", type=int, default=50, help="DDIM steps (50)")
     options = parser.parse_args(argv)
     if min(options.scenes, options.parts, options.steps) < 1:

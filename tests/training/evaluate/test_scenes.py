@@ -4,7 +4,22 @@ import numpy as np
 import pytest
 
 from motion import SMPL22, Duet
-from training.evaluate.scenes import MEET, NEAR, PART, obeyed, path_error, seams, stories, table, wave_path
+from motion.transforms import heading_matrix
+from training.evaluate.scenes import (
+    MEET,
+    NEAR,
+    PART,
+    heading_error,
+    obeyed,
+    path_error,
+    raised,
+    seams,
+    stories,
+    table,
+    turning_path,
+    wave_path,
+)
+from webdemo.inference.story import Pose
 
 REST = SMPL22.rest_positions() + np.array([0, 0.98, 0])
 
@@ -55,12 +70,33 @@ def test_the_distance_from_a_path_is_measured() -> None:
     assert path_error(Duet.from_positions(positions, fps=30.0), path).mean() == pytest.approx(0.2, abs=1e-5)
 
 
+def test_the_raised_arm_is_a_pose_that_a_story_takes() -> None:
+    pose = raised(REST)
+    Pose("a", 1.0, pose).check(2.0)
+    assert pose[SMPL22.index("right_wrist"), 1] > REST[SMPL22.index("head"), 1] + 0.2
+    parents, children = np.array(SMPL22.bones).T
+    lengths = [np.linalg.norm(p[children] - p[parents], axis=-1) for p in (pose, REST)]
+    np.testing.assert_allclose(*lengths)
+
+
+def test_headings_are_compared_the_short_way_round() -> None:
+    way = turning_path()
+    positions = apart(np.full(200, 1.0)).positions.astype(np.float64)
+    for point in way.points:
+        turn = heading_matrix(np.radians((point.heading or 0.0) + 350))
+        positions[0, round((point.seconds or 0.0) * 30)] = REST @ turn.T
+    found = heading_error(Duet.from_positions(positions, fps=30.0), way)
+    np.testing.assert_allclose(found, 10.0, atol=1e-3)
+
+
 def test_the_table_counts() -> None:
     row = {"words": ["x", "y"], "obeyed": [True, False], "seconds": 6.0, "spent": 3.0, "ratio": [0.5], "foot": [0.1],
            "usual_foot": [0.08]}  # fmt: skip
     scores = {"settings": {"steps": 25}, "stories": [row, {**row, "obeyed": [True, True]}], "path_cm": [[1.0, 4.0]],
-              "outside": [0.0], "loop_cm": [[0.5, 0.6]]}  # fmt: skip
+              "outside": [0.0], "loop_cm": [[0.5, 0.6]], "heading_degrees": [[2.0, 4.0]],
+              "poses": [{"miss_cm": 0.5, "jerk": 1.2}, {"miss_cm": 1.5, "jerk": 2.2}]}  # fmt: skip
     shown = table(scores)
+    assert "3.0 and 4.0 degrees" in shown and "| 1.5 cm |" in shown and "1.2 to 2.2 times" in shown
     assert (
         "| x | 100 % (2/2" in shown and "75 % (3/4" in shown and "| 30 s |" in shown and "50 % (1/2" in shown
     )

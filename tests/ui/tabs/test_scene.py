@@ -12,7 +12,7 @@ from webdemo.inference.story import Beat, FloorPath, FloorPoint, Pose
 from webdemo.ui.components.exports import Record, Shelf
 from webdemo.ui.components.story import motion_marks, story_fields, story_value
 from webdemo.ui.context import PageContext
-from webdemo.ui.history import Entry, Opened
+from webdemo.ui.history import Entry, Kept, Opened
 from webdemo.ui.runs import Loader, Runs
 from webdemo.ui.tabs.scene import EXAMPLES, SceneTab
 
@@ -134,8 +134,12 @@ def test_futures_begin_at_the_playhead_and_one_is_taken(tab: SceneTab) -> None:
     assert found.manifest["request"]["start"] == 2.0 and len(found.duets) == 3
     beats = last["story"]["value"]["beats"]
     assert [(b["words"], b["seconds"]) for b in beats] == [("They meet.", 2.0), ("They bow.", 4.5)]
-    _, line, kept, _ = tab.take_shown(last["record"], '{"sample": 2}')
-    assert kept.result.duets == found.duets[2:] and "number 3" in line
+    assert last["player"]["value"]["futures"] == 60
+    player, line, kept, _, earlier = tab.take_shown(last["record"], [record], '{"sample": 2}')
+    assert kept.result.duets == found.duets[2:] and "number 3" in line and "futures" not in player["value"]
+    # The choice can be gone back to.
+    assert earlier == [record, last["record"]]
+    assert tab.go_back(earlier)[0]["value"]["futures"] == 60
 
 
 def test_parts_need_a_motion_and_a_span(tab: SceneTab) -> None:
@@ -154,6 +158,24 @@ def test_a_kept_run_opens_with_its_story(tab: SceneTab) -> None:
     )  # fmt: skip
     found = tab.opened(Opened(entry=entry, result=result))
     assert [b["words"] for b in found[tab.line_up]["value"]["beats"]] == ["They meet.", "They hug."]
+
+
+def test_a_kept_part_opens_with_the_whole_story(tab: SceneTab) -> None:
+    record = generate(tab)[-1]["record"]
+    pose = Pose("a", 2.0, record.result.duets[0].a.positions[60])
+    laid = story_value((Beat("They meet."), Beat("They hug.")), (), (pose,)) | {"span": [1.0, 3.0]}
+    kept = Kept(controls=tab.kept_more({"part": "span", "story": laid}))
+    for which, words in (("span", ["They meet.", "They hug."]), ("futures", ["They meet.", "…"])):
+        result = part(tab, which, record, laid)["record"].result
+        entry = Entry(
+            id="x", kind="scene", title="t", created=0.0, state="done", message="", favourite=False, links=(),
+            request=result.manifest["request"],
+        )  # fmt: skip
+        found = tab.opened(Opened(entry=entry, result=result, kept=kept))
+        story = found[tab.line_up]["value"]
+        assert [beat["words"] or "…" for beat in story["beats"]] == words
+        assert [pose["seconds"] for pose in story["poses"]] == [2.0]
+        assert words[-1] == "…" or "[[pose]]" in found[tab.text]
 
 
 def test_every_example_is_a_story_of_several_beats(tab: SceneTab) -> None:

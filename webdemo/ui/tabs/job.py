@@ -267,7 +267,7 @@ class JobTab(ResultsTab, ABC):
             controls |= dict(zip(READ_WITH, source.read_with, strict=True))
             original = Original(source.path, source.name) if source.path is not None else None
         kept = Kept(
-            controls=controls | ({"grid": dict(record.grid)} if record.grid else {}),
+            controls=controls | self.kept_more(fields) | ({"grid": dict(record.grid)} if record.grid else {}),
             people=source.people if source is not None else (),
             compared=tuple(result.run for result in record.compared.values())[1:],
             original=original,
@@ -278,6 +278,10 @@ class JobTab(ResultsTab, ABC):
                 self.page.history.describe(record.result.run, visitor().owner, title=record.prompt[:200])
         except InputError as error:  # the motion itself is kept
             log.warning("The settings of a run could not be kept: %s", error)
+
+    def kept_more(self, fields: Mapping[str, Any]) -> dict[str, Any]:
+        """What else is written down of a run, beside the values of the controls."""
+        return {}
 
     def answer(self, session: str, fields: Mapping[str, Any]) -> Iterator[Updates]:
         """Runs what the fields ask for and shows it."""

@@ -14,7 +14,6 @@ from webdemo.inference.requests import MAX_SEED, Progress, Result
 from webdemo.inference.story import Beat, SceneProgress, SceneRequest, read_words, split_sentence, write_story
 from webdemo.inference.story.beats import seconds_of, story_title
 from webdemo.ui.components.exports import Record
-from webdemo.ui.components.film import READ_PLAYER
 from webdemo.ui.components.player import show
 from webdemo.ui.components.scene_parts import (
     beats_in,
@@ -69,6 +68,8 @@ EXAMPLES = (
 FUTURES = 3
 FUTURE_SECONDS = 4.0
 """Length of a future without words."""
+MOST_EARLIER = 10
+"""Motions that can be gone back to."""
 
 
 class SceneTab(SweepTab):
@@ -182,7 +183,10 @@ class SceneTab(SweepTab):
                 self.futures = gr.Button(
                     f"{FUTURES} ways on from here", size="sm", min_width=0, elem_id=self._id("futures")
                 )
-                self.take = gr.Button("Take the one shown", size="sm", min_width=0, elem_id=self._id("take"))
+                self.take = gr.Button(
+                    "Take the one shown", size="sm", min_width=0, elem_id=self._id("take"),
+                    elem_classes="pd-take",
+                )  # fmt: skip
                 self.back = gr.Button("The motion before", size="sm", min_width=0, elem_id=self._id("back"))
         self.shown_at = gr.Textbox(visible=False)
         self.earlier = gr.State([], time_to_live=3600)
@@ -216,8 +220,8 @@ class SceneTab(SweepTab):
             **QUIET,
         )
         self.take.click(
-            self.take_shown, inputs=[self.record, self.shown_at], js=READ_PLAYER,
-            outputs=[self.player, self.line, self.record, self.line_up], **QUIET,
+            self.take_shown, inputs=[self.record, self.earlier, self.shown_at], js=_READ_PLACE,
+            outputs=[self.player, self.line, self.record, self.line_up, self.earlier], **QUIET,
         )  # fmt: skip
         self.last.click(
             self.take_last, inputs=self.record,
@@ -245,6 +249,19 @@ class SceneTab(SweepTab):
                 concurrency_limit=2,
                 **QUIET,
             )
+
+    def _shown(self, result: Result, title: str) -> dict[str, Any]:
+        """As every tab shows a result; several ways on from a moment say which moment that is."""
+        shown = super()._shown(result, title)
+        asked = result.manifest.get("request", {})
+        ahead = asked.get("kind") == "scene" and "motion" in asked and asked.get("end") is None
+        if ahead and len(result.duets) > 1:
+            shown["player"]["value"]["futures"] = round(asked["start"] * result.duets[0].fps)
+        return shown
+
+    def kept_more(self, fields: Mapping[str, Any]) -> dict[str, Any]:
+        """Of a part also the whole story."""
+        return {"story": fields["story"]} if fields.get("part") else {}
 
     @staticmethod
     def lay_out(sentences: str) -> Updates:
@@ -288,7 +305,7 @@ class SceneTab(SweepTab):
         part = fields.get("part")
         if part is not None:
             wanted = self.part(fields, fields["record"], ahead=part == "futures")
-            earlier = [*fields["earlier"], fields["record"]][-10:]
+            earlier = [*fields["earlier"], fields["record"]][-MOST_EARLIER:]
         else:
             asked = {**fields, "story": laid_out(fields)}
             wanted, earlier = self.request(asked), []
@@ -341,14 +358,16 @@ class SceneTab(SweepTab):
         told = status("Select a span of it, or ask for ways on.")
         return shown["player"], told, shown["under"], shown["readouts"], gr.update(motion=motion_marks(duet))
 
-    def take_shown(self, record: Record | None, shown: str) -> Updates:
-        """Keeps one of several futures as the motion."""
+    def take_shown(self, record: Record | None, earlier: list[Record], shown: str) -> Updates:
+        """Keeps one of several futures as the motion; the choice can be gone back to."""
         try:
             sample = place_of(shown)["sample"]
             duet = shown_duet(record, sample)
         except Exception as error:
-            return gr.skip(), status(error_line(error), tone="error"), gr.skip(), gr.skip()
+            return gr.skip(), status(error_line(error), tone="error"), gr.skip(), gr.skip(), gr.skip()
         assert record is not None
+        if len(record.result.duets) == 1:
+            return gr.skip(), status("This is the motion already."), gr.skip(), gr.skip(), gr.skip()
         kept = Record(only_sample(record.result, sample), record.prompt)
         told = status(f"Taken: number {sample + 1} is the motion now.", tone="done")
         return (
@@ -356,6 +375,7 @@ class SceneTab(SweepTab):
             told,
             kept,
             gr.update(motion=motion_marks(duet)),
+            [*earlier, record][-MOST_EARLIER:],
         )
 
     def go_back(self, earlier: list[Record]) -> Updates:
@@ -377,8 +397,14 @@ class SceneTab(SweepTab):
             told = run.entry.request
             motion = duet if "motion" in told else None
             request = SceneRequest.from_dict(told, motion)
-            found[self.line_up] = gr.update(value=value_of(request), motion=motion_marks(duet))
-            found[self.text] = write_story(request)
+            whole = run.kept.controls.get("story")  # a part's own request knows nothing of what is around it
+            if motion is None or not whole:
+                story, text = value_of(request), write_story(request)
+            else:
+                story = went_on(whole, request) if request.end is None else whole
+                text = self.edited(story, request.seed)[1]
+            found[self.line_up] = gr.update(value=story, motion=motion_marks(duet))
+            found[self.text] = text
         return found
 
 

@@ -1,0 +1,151 @@
+// Several ways on from a moment: the samples of such a payload share what came before it. From that moment on the one
+// that is chosen stands there as ever, and the others as ghosts in tints of their own. A click on a ghost, its number or
+// the number's key takes it; the player's director is told.
+
+import { Figure } from "./body.js";
+import { poseAt } from "./decode.js";
+import { FIELD_OF_VIEW } from "./orbit.js";
+import { project } from "./overlay.js";
+import { FUTURES, css, mix } from "./palette.js";
+
+const ALPHA = 0.34;
+const TINTED = 0.72; // of a ghost's colours
+const NEAR = 14; // pixels about a bone that still hit the ghost
+const OVER = [0.2, 46]; // metres and pixels from heads to numbers: names lie between
+const APART = 34; // pixels between numbers at least
+
+export class Futures {
+  constructor(player) {
+    this.player = player;
+    this.host = player.find(".pdd-futures");
+    this.samples = [];
+    this.ghosts = [];
+    this.host.addEventListener("click", (event) => {
+      const number = event.target.closest("[data-future]");
+      if (number) this.take(Number(number.dataset.future));
+    });
+  }
+
+  /** Takes over the samples of a decoded payload, where they are futures. */
+  load(data) {
+    const open = data?.futures != null && data.samples.length > 1;
+    this.samples = open ? data.samples : [];
+    this.from = open ? data.futures : null;
+    this.host.hidden = true;
+    this.host.replaceChildren(...this.samples.map((_, i) => {
+      const number = document.createElement("button");
+      number.type = "button";
+      number.textContent = String(i + 1);
+      number.dataset.future = i;
+      number.title = `Take this way on (${i + 1})`;
+      number.setAttribute("aria-label", `Take way ${i + 1}`);
+      number.style.background = css(FUTURES[i % FUTURES.length]);
+      return number;
+    }));
+  }
+
+  /** Bodies for ghosts, A's and B's. */
+  dress(bodies) {
+    this.ghosts = this.samples.map(() => bodies.map((body) => new Figure(body)));
+    this.player.refresh();
+  }
+
+  /** Ghosts at a frame: [{ index, people }], and none before the moment. */
+  at(frame) {
+    if (!this.samples.length || frame < this.from || this.player.posing) return [];
+    return this.samples.flatMap((sample, index) => (
+      index === this.player.sampleIndex ? [] : [{ index, people: poseAt(sample.motion, frame) }]
+    ));
+  }
+
+  /** One mesh of all ghosts for a scene: what setTriangles() takes, or null where they have no bodies. */
+  mesh(found, theme, lens, scale) {
+    if (!found.length || !this.ghosts.length) return null;
+    const parts = found.flatMap(({ index, people }) => people.map((points, person) => {
+      const ghost = this.ghosts[index][person];
+      ghost.pose(points);
+      ghost.shade(tinted(theme.bodies[person], index), theme.lamps, lens, scale, ALPHA);
+      return ghost;
+    }));
+    return { positions: joined(parts.map((p) => p.positions)), colors: joined(parts.map((p) => p.colors)), alpha: ALPHA };
+  }
+
+  /** Puts the numbers over the heads of their pairs. */
+  place(frame, matrix) {
+    const { player, samples } = this;
+    this.spots = [];
+    this.host.hidden = !samples.length || frame < this.from || Boolean(player.posing);
+    if (this.host.hidden) return;
+    const { clientWidth: width, clientHeight: height } = player.panes[0].host;
+    const { head } = player.skeleton;
+    const wanted = samples.map((sample, index) => {
+      const people = poseAt(sample.motion, frame);
+      const spots = people.map((points) => points.map((p) => project(p, matrix, width, height, FIELD_OF_VIEW)));
+      if (index !== player.sampleIndex) this.spots.push({ index, spots });
+      const middle = [0, 1, 2].map((i) => people.reduce((sum, points) => sum + points[head][i], 0) / people.length);
+      return { index, at: project([middle[0], middle[1], middle[2] + OVER[0]], matrix, width, height, FIELD_OF_VIEW) };
+    });
+    let right = -Infinity;
+    const inOrder = [...wanted].sort((p, q) => p.at[0] - q.at[0]);
+    const crowd = inOrder.map(({ at }) => (right = Math.max(at[0], right + APART)));
+    const middleOf = (values) => values.reduce((sum, v) => sum + v, 0) / values.length;
+    const back = middleOf(crowd) - middleOf(inOrder.map(({ at }) => at[0]));
+    inOrder.forEach(({ index, at }, i) => {
+      const x = Math.min(Math.max(crowd[i] - back, 18), width - 18);
+      const number = this.host.children[index];
+      number.style.transform = `translate(${x.toFixed(1)}px, ${Math.max(at[1] - OVER[1], 18).toFixed(1)}px) translate(-50%, -50%)`;
+      number.setAttribute("aria-pressed", String(index === player.sampleIndex));
+    });
+  }
+
+  /** Takes the ghost under a place in the stage, if there is one; says whether there was. */
+  hit(x, y) {
+    let best = { away: NEAR, index: null };
+    for (const { index, spots } of this.spots ?? []) {
+      for (const person of spots) {
+        for (const { from, to } of this.player.skeleton.bones) {
+          const away = distance([x, y], person[from], person[to]);
+          if (away < best.away) best = { away, index };
+        }
+      }
+    }
+    if (best.index !== null) this.take(best.index);
+    return best.index !== null;
+  }
+
+  /** What a key asks for: 1, 2, … take a future while there are some. */
+  actionFor(event) {
+    if (event.ctrlKey || event.metaKey || event.altKey || this.player.posing) return null;
+    const index = Number(event.key) - 1;
+    return index in this.samples && event.key !== " " ? ["take", index] : null;
+  }
+
+  take(index) {
+    const { player } = this;
+    if (!(index in this.samples)) return;
+    player.select(index);
+    player.director?.takeFuture(index);
+  }
+}
+
+const tinted = (zones, index) => Object.fromEntries(
+  Object.entries(zones).map(([zone, color]) => [zone, mix(color, FUTURES[index % FUTURES.length], TINTED)]),
+);
+
+function joined(arrays) {
+  const out = new Float32Array(arrays.reduce((sum, a) => sum + a.length, 0));
+  let at = 0;
+  for (const array of arrays) {
+    out.set(array, at);
+    at += array.length;
+  }
+  return out;
+}
+
+/** From a place to a line between two others, in pixels. */
+function distance([x, y], a, b) {
+  const [dx, dy] = [b[0] - a[0], b[1] - a[1]];
+  const along = ((x - a[0]) * dx + (y - a[1]) * dy) / (dx * dx + dy * dy || 1);
+  const t = Math.min(Math.max(along, 0), 1);
+  return Math.hypot(a[0] + t * dx - x, a[1] + t * dy - y);
+}
