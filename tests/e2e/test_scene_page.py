@@ -118,6 +118,11 @@ def test_a_story_from_sentence_to_futures(page: Any) -> None:
     page.locator("#scene-futures").click()
     page.wait_for_function("window.__pasdedeux.player?.data?.samples.length === 3")
     rest(page)
+    # They stand beside each other from the moment on, and a press on a number takes one.
+    page.evaluate("window.__pasdedeux.player.act('pause'); window.__pasdedeux.player.act('last')")
+    page.get_by_role("button", name="Take way 2").click()
+    page.wait_for_function("window.__pasdedeux.player.data.samples.length === 1")
+    assert "number 2" in page.locator("#scene-status").inner_text()
 
 
 def test_a_dragged_hand_becomes_a_pose_that_the_motion_passes_through(page: Any) -> None:

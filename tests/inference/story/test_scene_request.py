@@ -10,10 +10,24 @@ import pytest
 from motion import SMPL22, Duet, InputError
 from webdemo.inference.story import Beat, FloorPath, FloorPoint, Pose, SceneRequest
 from webdemo.inference.story.plan import AFTER, MOST_FRAMES, PAST, window_seed, windows
-from webdemo.inference.story.wishes import meeting
+from webdemo.inference.story.wishes import bent_wrong, meeting
 
 REST = SMPL22.rest_positions() + np.array([0, 0.98, 0])
 WAVE = Beat("They wave.", seconds=3.0)
+
+
+def bent(joint: str, angle: float) -> np.ndarray:
+    """The T-pose with a knee bent backwards, or an elbow, by an angle in radians."""
+    pose, middle = REST.copy(), SMPL22.index(joint)
+    first, end = SMPL22.parents[middle], SMPL22.children[middle][0]
+    upper = pose[middle] - pose[first]
+    axis = np.array([1.0, 0, 0]) if "knee" in joint else np.cross(upper, [0, 1.0, 0]) / np.linalg.norm(upper)
+    aside = axis * (axis @ upper)
+    turned = aside + np.cos(angle) * (upper - aside) + np.sin(angle) * np.cross(axis, upper)
+    by = pose[middle] + turned * np.linalg.norm(pose[end] - pose[middle]) / np.linalg.norm(upper) - pose[end]
+    for moved in (end, *SMPL22.children[end]):
+        pose[moved] += by
+    return pose
 
 
 def still(frames: int = 150) -> Duet:
@@ -54,6 +68,14 @@ def path(*points: tuple[float, ...], person: str = "a") -> FloorPath:
             "4.0 m",
         ),
         ({"beats": (WAVE,), "poses": (Pose("a", 1, REST * 2),)}, "bones"),
+        (
+            {"beats": (WAVE,), "poses": (Pose("a", 1, bent("left_knee", -np.pi / 2)),)},
+            "the left knee is bent forward",
+        ),
+        (
+            {"beats": (WAVE,), "poses": (Pose("a", 1, bent("right_elbow", np.pi)),)},
+            "the right elbow is bent too far",
+        ),
         ({"beats": (WAVE,), "poses": (Pose("a", 9, REST),)}, "the scene lasts 3 s"),
         (
             {"beats": (WAVE,), "poses": (Pose("a", 1, REST),), "paths": (path((0, 2, 0), (2, 2, 0)),)},
@@ -68,6 +90,14 @@ def path(*points: tuple[float, ...], person: str = "a") -> FloorPath:
 def test_what_cannot_be_made_is_refused_in_one_sentence(fields: dict[str, Any], says: str) -> None:
     with pytest.raises(InputError, match=says):
         SceneRequest(**fields)
+
+
+@pytest.mark.parametrize("angle", [0.0, 0.5, 1.6, 2.9])
+def test_people_sit_and_squat(angle: float) -> None:
+    """Knees that bend backwards are taken, whichever way a person faces."""
+    pose = bent("left_knee", angle)
+    assert bent_wrong(pose) is None
+    assert bent_wrong(pose[:, [2, 1, 0]] * [-1, 1, 1]) is None, "facing another way"
 
 
 def test_lengths_are_set_and_fill_a_span() -> None:

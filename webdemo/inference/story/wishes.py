@@ -15,6 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from motion import SMPL22, Clip, InputError
+from motion.kinematics import swing
 from webdemo.inference.actor import FPS, ROLES, check_actor
 
 Array = NDArray[np.floating]
@@ -29,6 +30,10 @@ MOST_POINTS = 600
 MOST_POSES = 40
 NEAR = 0.45
 """Metres between two people's paths below which they would walk into each other."""
+_FOLDED = 3.07
+"""Radians by which a knee or an elbow bends at most; those of generated fights come to 2.99."""
+_FORWARD = 0.45
+"""Sine of the angle by which a knee may seem to bend forward, as its hinge is only guessed."""
 _SAME_PLACE = 0.25
 """Metres by which a pose may be off the path of the same person."""
 
@@ -175,6 +180,10 @@ class Pose:
             raise InputError(
                 f"The pose of person {self.person} at {self.seconds:g} s has bones of other lengths."
             )
+        if (wrong := bent_wrong(positions)) is not None:
+            raise InputError(
+                f"In the pose of person {self.person} at {self.seconds:g} s {wrong}: bend it as far as people can."
+            )
         if np.abs(positions[0, [0, 2]]).max() > FLOOR:
             raise InputError(f"The pose of person {self.person} at {self.seconds:g} s is outside the floor.")
         return replace(self, positions=positions.round(5))
@@ -186,6 +195,31 @@ class Pose:
             "seconds": self.seconds,
             "positions": np.asarray(self.positions).tolist(),
         }
+
+
+def bent_wrong(positions: Array) -> str | None:
+    """What people cannot bend so in a pose (22, 3), as a clause; None if they can.
+
+    Knees and elbows fold to :data:`_FOLDED` at most, and knees do not bend forward: their hinge is the pelvis' axis
+    to the left, turned along with the thigh.
+    """
+    at = {name: np.asarray(positions, dtype=np.float64)[i] for i, name in enumerate(SMPL22.joint_names)}
+    left = _unit(at["left_hip"] - at["right_hip"])
+    up = at["spine1"] - (at["left_hip"] + at["right_hip"]) / 2
+    down = -_unit(up - left * (up @ left))
+    for side in ("left", "right"):
+        for first, middle, end in (("hip", "knee", "ankle"), ("shoulder", "elbow", "wrist")):
+            upper = _unit(at[f"{side}_{middle}"] - at[f"{side}_{first}"])
+            lower = _unit(at[f"{side}_{end}"] - at[f"{side}_{middle}"])
+            if upper @ lower < math.cos(_FOLDED):
+                return f"the {side} {middle} is bent too far"
+            if middle == "knee" and np.cross(upper, lower) @ (swing(down, upper) @ left) < -_FORWARD:
+                return f"the {side} knee is bent forward"
+    return None
+
+
+def _unit(vector: Array) -> Array:
+    return vector / max(float(np.linalg.norm(vector)), 1e-9)
 
 
 def check_together(paths: Sequence[FloorPath], poses: Sequence[Pose]) -> None:
