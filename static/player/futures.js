@@ -11,7 +11,7 @@ import { FUTURES, css, mix } from "./palette.js";
 const ALPHA = 0.34;
 const TINTED = 0.72; // of a ghost's colours
 const NEAR = 14; // pixels about a bone that still hit the ghost
-const OVER = [0.2, 46]; // metres and pixels from heads to numbers: names lie between
+const OVER = [0.2, 80]; // metres and pixels from heads to numbers: names lie between
 const APART = 34; // pixels between numbers at least
 
 export class Futures {
