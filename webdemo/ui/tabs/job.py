@@ -280,7 +280,7 @@ class JobTab(ResultsTab, ABC):
             log.warning("The settings of a run could not be kept: %s", error)
 
     def kept_more(self, fields: Mapping[str, Any]) -> dict[str, Any]:
-        """What else is written down of a run, beside the values of the controls."""
+        """Further entries of a run's record, beside the values of the controls."""
         return {}
 
     def answer(self, session: str, fields: Mapping[str, Any]) -> Iterator[Updates]:
