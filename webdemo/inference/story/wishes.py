@@ -198,7 +198,7 @@ class Pose:
 
 
 def bent_wrong(positions: Array) -> str | None:
-    """What people cannot bend so in a pose (22, 3), as a clause; None if they can.
+    """A clause that names what nobody bends as this pose (22, 3) does; None if people can.
 
     Knees and elbows fold to :data:`_FOLDED` at most, and knees do not bend forward: their hinge is the pelvis' axis
     to the left, turned along with the thigh.
