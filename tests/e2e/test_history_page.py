@@ -51,7 +51,7 @@ def test_a_result_is_kept_and_its_link_opens_it_with_all_controls(lab: str, open
     other.set_default_timeout(SLOW)
     other.wait_for_selector("#status .pd-done:has-text('Made on')")
     assert other.input_value("#prompt textarea") == "Two people walk up to each other."
-    expect(other.locator("#advanced")).to_contain_text("guidance 4.5, 12 steps, damping 0.7")
+    expect(other.locator("#advanced")).to_contain_text("Guidance 4.5, 12 steps, damping 0.7")
     expect(other.locator("#changed")).not_to_contain_text("Settings changed")
     for control, value in (("seed", "77"), ("seconds", "2.5")):
         assert other.locator(f"#{control} input[type=number]").first.input_value() == value
