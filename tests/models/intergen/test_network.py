@@ -8,6 +8,7 @@ import torch
 from models.diffusion import make_scheduler, sample_steps
 from models.errors import WeightsError
 from models.intergen import InterGenConfig, InterGenDenoiser, from_checkpoint, from_released
+from models.intergen.network import attend
 from tests.models.reference_arrays import Reference, assert_equal
 
 SMALL = InterGenConfig(input_features=9, latent_dim=16, ff_size=24, num_layers=2, num_heads=2, cond_dim=5)
@@ -174,6 +175,16 @@ def test_bfloat16_training_step_stays_near_float32():
     loss.backward()
     assert (found.float() - expected).abs().max() < 0.05 * expected.abs().max()
     assert all(torch.isfinite(p.grad).all() for p in network.parameters())
+
+
+def test_attention_is_in_float32_under_autocast():
+    """In bfloat16, which has 8 bits, the two would be a thousand times farther apart."""
+    draw = torch.Generator().manual_seed(0)
+    q, k, v = (torch.randn(2, 5, 8, generator=draw) for _ in range(3))
+    with torch.autocast("cpu", dtype=torch.bfloat16):
+        found = attend(q, k, v, None, num_heads=2)
+    assert found.dtype == torch.float32
+    torch.testing.assert_close(found, attend(q, k, v, None, num_heads=2), atol=1e-6, rtol=0)
 
 
 def test_wrong_weights_are_named(ref):

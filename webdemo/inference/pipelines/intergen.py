@@ -64,9 +64,8 @@ class InterGenPipeline(TwoPersonPipeline[CompactInterGen]):
         """
         tokens = self.encoder([prompt])
         parts = [tokens]
-        alone = alone if any(alone) else of_each(prompt)
-        if self.model.config.words and any(alone):
-            parts += [self.encoder([sentence]) if sentence else tokens.missing() for sentence in alone]
+        if self.model.config.words and any(own := alone if any(alone) else of_each(prompt)):
+            parts += [self.encoder([sentence]) if sentence else tokens.missing() for sentence in own]
         with torch.no_grad():
             return self.model.condition(*parts), tokens.pooled()[0]
 
