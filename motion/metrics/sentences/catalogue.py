@@ -148,23 +148,23 @@ def _words(text: str) -> frozenset[str]:
 
 
 @cache
-def _known() -> tuple[frozenset[str], ...]:
-    return tuple(_words(sentence.words) for sentence in load_sentences())
+def _known(path: Path) -> tuple[tuple[str, frozenset[str]], ...]:
+    return tuple((sentence.words, _words(sentence.words)) for sentence in load_sentences(path))
 
 
-def kept_out(caption: str) -> str | None:
-    """The sentence that a caption repeats, or None.
+def kept_out(caption: str, path: Path = SENTENCES) -> str | None:
+    """The sentence of a file, by default of the eighty, that a caption repeats, or None.
 
     A caption repeats a sentence where they share nine tenths of their words, articles, "and", "then", case,
     order and punctuation aside.
     """
     words = _words(caption)
-    for sentence, known in zip(load_sentences(), _known(), strict=True):
+    for sentence, known in _known(path):
         if 2 * len(words & known) >= ALIKE * (len(words) + len(known)):
-            return sentence.words
+            return sentence
     return None
 
 
-def without_sentences(captions: Iterable[str]) -> list[str]:
-    """The captions that may be trained on: those that repeat none of the sentences."""
-    return [caption for caption in captions if kept_out(caption) is None]
+def without_sentences(captions: Iterable[str], path: Path = SENTENCES) -> list[str]:
+    """The captions that may be trained on: those that repeat none of a file's sentences."""
+    return [caption for caption in captions if kept_out(caption, path) is None]
