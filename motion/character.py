@@ -9,6 +9,7 @@ such as fingers, move with the nearest one above them that it has.
 from __future__ import annotations
 
 import base64
+from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
@@ -29,10 +30,34 @@ ZONE = "character"
 MOST_DRAWN = 12_000
 """Vertices that a character keeps; a finer mesh is made coarser."""
 _STRETCH = (0.4, 2.5)
+_FOOT_STRETCH = (0.2, 2.5)
+"""Soles lie between 2.5 and 30 cm under the ankle."""
+_LEVEL = np.array([1.0, 0.0, 1.0])
 _LARGEST = 3.0
 """Metres from the pelvis beyond which a part of the mesh is no part of a person."""
 _CHAIN = ("knee", "ankle", "foot", "shoulder", "elbow", "wrist")
 _REST = SMPL22.rest_positions()
+
+
+def _named(*names: str) -> list[int]:
+    return [SMPL22.index(name) for name in names]
+
+
+_SPINE = _named("spine1", "spine2", "spine3")
+_TRUNK = [*_named("pelvis", "left_collar", "right_collar", "neck", "head"), *_SPINE]
+_MARKS = [
+    _named("left_hip", "right_hip"),
+    _named("left_shoulder", "right_shoulder"),
+    _named("neck"),
+    _named("head"),
+]
+"""Joints whose middles say how far the trunk's surface is moved at their height."""
+_APART = 0.02
+"""Metres between the heights of two of these, at least."""
+_ROOTS = (("left_hip", 1, 1.0), ("right_hip", 1, 1.0), ("left_shoulder", 0, -1.0), ("right_shoulder", 0, 1.0))
+"""Where limbs begin, and the axis and the direction in which the trunk lies from there."""
+_BLEND = 0.05
+"""Metres from where a limb begins to where the surface is all of the trunk."""
 
 
 def character_body(character: Character) -> Body:
@@ -42,23 +67,30 @@ def character_body(character: Character) -> Body:
         InputError: if no human body is found among its joints, or its mesh is nowhere near it.
     """
     rig = _rig(character)
-    upright = up_rotation(rig, match_joints(rig)) * leg_scale(rig)
+    parts = match_joints(rig)
+    upright = up_rotation(rig, parts) * leg_scale(rig)
     ours = {rig.joint_names.index(theirs): SMPL22.index(name) for theirs, name in matched_names(rig)}
+    ours |= _spread(parts.spine[1:])
     owner = np.array([_owner(rig, joint, ours) for joint in range(len(rig.parents))])
     joints = rig.positions[0] @ upright.T
     places = np.full((SMPL22.num_joints, 3), np.nan)
     for theirs, mine in ours.items():
         places[mine] = joints[theirs]
-    moves = _moves(places, bone_rotations(retarget(rig, fps=rig.fps, plant=False).positions)[0])
+    world = bone_rotations(retarget(rig, fps=rig.fps, plant=False).positions)[0]
     vertices = character.vertices @ upright.T
     if np.abs(vertices - places[0]).max() > 10 * _LARGEST:
         raise InputError(f"The mesh of {character.name} is far away from its skeleton: apply its transforms.")
     weights = np.zeros((len(vertices), SMPL22.num_joints))
     np.add.at(weights, (np.arange(len(vertices))[:, None], owner[character.slots]), character.weights)
-    posed = np.zeros_like(vertices)
-    for joint in np.flatnonzero(weights.any(axis=0)):
-        turned = (vertices - places[joint]) @ moves[joint].T + _REST[joint]
-        posed += weights[:, joint, None] * turned
+    moves, pivots = _moves(places, world), np.stack([places, _REST])
+    for side in ("left", "right"):
+        _ground(side, vertices, weights, moves, pivots, world)
+    shares = _of_limbs(weights, vertices @ world[0], places @ world[0])
+    posed = (1.0 - shares.sum(axis=1, keepdims=True)) * _trunk(vertices @ world[0], places @ world[0])
+    for joint in np.flatnonzero(shares.any(axis=0)):
+        turned = (vertices - pivots[0, joint]) @ moves[joint].T + pivots[1, joint]
+        posed += shares[:, joint, None] * turned
+    posed[:, 1] = np.maximum(posed[:, 1], _REST[:, 1].min())  # of a heel that moves with the shin a little
     if np.abs(posed - _REST[0]).max() > _LARGEST:
         raise InputError(f"The mesh of {character.name} is no person of a usual build: check its weights.")
     return _body(character.name, *_coarser(posed, character.faces, weights))
@@ -72,6 +104,12 @@ def _rig(character: Character) -> RigMotion:
     return RigMotion(
         character.joint_names, character.parents, offsets, positions, None, 30.0, name=character.name
     )
+
+
+def _spread(spine: Sequence[int]) -> dict[int, int]:
+    """SMPL22's joints of a rig's spine of any length: the last carries the shoulders in both."""
+    shares = np.linspace(0, 2, len(spine)) if len(spine) > 1 else np.array([2.0])
+    return {joint: _SPINE[round(share)] for joint, share in zip(spine, shares, strict=False)}
 
 
 def _owner(rig: RigMotion, joint: int, ours: dict[int, int]) -> int:
@@ -98,6 +136,65 @@ def _moves(places: Array, world: Array) -> Array:
         stretch = float(np.clip(target / length, *_STRETCH))
         moves[joint] = turn @ (np.eye(3) + (stretch - 1.0) * np.outer(along, along))
     return moves
+
+
+def _of_limbs(weights: Array, vertices: Array, places: Array) -> Array:
+    """(V, 22) shares of the joints of the limbs: of their roots only what lies beyond these, seen from the trunk.
+
+    ``vertices`` (V, 3) and ``places`` (22, 3) face +Z.
+    """
+    shares = weights.copy()
+    shares[:, _TRUNK] = 0.0
+    for name, axis, side in _ROOTS:
+        root = SMPL22.index(name)
+        shares[:, root] *= 1.0 - np.clip(side * (vertices[:, axis] - places[root, axis]) / _BLEND, 0.0, 1.0)
+    return shares
+
+
+def _trunk(vertices: Array, places: Array) -> Array:
+    """(V, 3) the trunk's surface in the T-pose; ``vertices`` (V, 3) and ``places`` (22, 3) face +Z before it, too.
+
+    It is moved as one, more or less far by its height, so that no gaps open between parts that hang on one joint each.
+    """
+    heights: list[float] = []
+    shifts: list[Array] = []
+    for mark in _MARKS:
+        place = places[mark].mean(axis=0)
+        if np.isfinite(place).all() and (not heights or place[1] > heights[-1] + _APART):
+            heights.append(float(place[1]))
+            shifts.append(_REST[mark].mean(axis=0) - place)
+    moved = [np.interp(vertices[:, 1], heights, [shift[axis] for shift in shifts]) for axis in range(3)]
+    return vertices + np.stack(moved, axis=1)
+
+
+def _ground(side: str, vertices: Array, weights: Array, moves: Array, pivots: Array, world: Array) -> None:
+    """Turns and stretches a foot as one, in place, so that its sole is flat and as low as SMPL22's ball of the foot.
+
+    Args:
+        side: "left" or "right".
+        vertices: (V, 3) in the pose of binding.
+        weights: (V, 22) of each joint.
+        moves: (22, 3, 3) as :func:`_moves` gives them.
+        pivots: (2, 22, 3) what each part is turned about, before and after.
+        world: (22, 3, 3) how each bone is turned in the pose of binding.
+    """
+    ankle, ball = SMPL22.index(f"{side}_ankle"), SMPL22.index(f"{side}_foot")
+    back = world[ankle].T
+    surface = (vertices[weights[:, [ankle, ball]].sum(axis=1) > 0.5] - pivots[0, ankle]) @ back.T
+    if not len(surface) or surface[:, 1].min() > -1e-3:
+        return
+    scale = np.ones(3)
+    scale[1] = np.clip((_REST[ball] - _REST[ankle])[1] / surface[:, 1].min(), *_FOOT_STRETCH)
+    turn: Array = np.eye(3)
+    bone, wanted = (
+        (back @ (pivots[0, ball] - pivots[0, ankle])) * _LEVEL,
+        (_REST[ball] - _REST[ankle]) * _LEVEL,
+    )
+    if (length := float(np.linalg.norm(bone))) > 1e-2:  # not so where the rig has no toes
+        turn = swing(bone / length, wanted / np.linalg.norm(wanted))
+        scale[[0, 2]] = np.clip(np.linalg.norm(wanted) / length, *_STRETCH)
+    moves[[ankle, ball]] = turn @ np.diag(scale) @ back
+    pivots[:, ball] = pivots[:, ankle]
 
 
 def _next(places: Array, joint: int) -> int | None:

@@ -17,6 +17,7 @@ from PIL import Image
 import app
 from motion.formats import read, read_pair
 from tests.inference import conftest as tiny
+from tests.motion.formats.characters import glb_character
 from webdemo import cli
 from webdemo.cli import service
 from webdemo.inference import engine, methods
@@ -165,6 +166,18 @@ def test_render_draws_what_generate_wrote(run: Run, tmp_path: Path, suffix: str)
         assert picture.format == "PNG"
         assert picture.width == 1600
         assert len(picture.getcolors(1 << 20)) > 10
+
+
+def test_render_puts_a_character_on_everybody(run: Run, tmp_path: Path) -> None:
+    motion = answer(generate(run, tmp_path / "duet.npz")[1])["files"][0]
+    (tmp_path / "robot.glb").write_bytes(glb_character())
+    drawn = []
+    for name, worn in (("plain.png", ()), ("worn.png", ("--character", tmp_path / "robot.glb"))):
+        code, *_ = run("render", motion, "--out", tmp_path / name, "--frames", 1, *worn)
+        assert code == 0
+        drawn.append(np.asarray(Image.open(tmp_path / name)).astype(int))
+    assert (np.abs(drawn[0] - drawn[1]) > 60).any(axis=-1).mean() > 0.005
+    assert "no glTF binary file" in refused(run("render", motion, "--character", motion))
 
 
 def test_render_refuses_in_one_line(run: Run, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

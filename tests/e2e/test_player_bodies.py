@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import runpy
 from itertools import pairwise
 from pathlib import Path
@@ -13,6 +14,7 @@ from motion.body import load_body, skin
 from motion.character import character_body, packed_body
 from motion.formats.glb_reader import read_character
 from tests.motion.formats.characters import a_pose, glb_character
+from webdemo.ui.components.film import READ_PLAYER
 
 from .playing import has_color, hook, pause, press, stage_pixels, until
 
@@ -207,6 +209,8 @@ def test_both_wear_an_uploaded_character_until_the_figure_button_takes_it_off(pl
         until(page, "window.__pasdedeux.loops === 0")
         worn = page.evaluate("window.__pasdedeux.player.panes[0].figures[0].body.zones.includes('character')")
         assert worn == (state == "character")
+        _, told = page.evaluate(f"({READ_PLAYER})(null, '')")
+        assert json.loads(told)["character"] == worn, "a film is told, too"
         page.keyboard.press("s")
     page.evaluate("window.__pasdedeux.player.wear(null)")
     until(page, "document.querySelector('[data-act=figure]').dataset.figure !== 'character'")

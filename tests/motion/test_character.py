@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import base64
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -13,7 +14,7 @@ from motion import SMPL22, Clip, Duet, InputError, character
 from motion.body import skin
 from motion.character import character_body, packed_body
 from motion.formats.glb import write_glb
-from motion.formats.glb_reader import read_character
+from motion.formats.glb_reader import Character, read_character
 from tests.motion.bodies import marching
 from tests.motion.formats.characters import THICK, a_pose, glb_character
 from tests.motion.formats.rigs import RIGS
@@ -61,6 +62,47 @@ def test_the_surface_moves_with_the_person() -> None:
     positions = DUET.a.positions.astype(np.float64)
     for frame, surface in zip(positions, skin(body, positions), strict=True):
         assert np.nanmax(off_bones(surface, frame, body.bones[:, 0])) < 2.5 * THICK
+
+
+@pytest.mark.parametrize("unit", [1.0, 100.0])
+def test_soles_stand_on_the_floor(unit: float) -> None:
+    deep = REST.copy()
+    for side in ("left", "right"):  # toe joints in the middle of thick shoes
+        deep[SMPL22.index(f"{side}_foot")] += [0.0, 0.03, 0.02]
+    body = character_body(read_character(glb_character(places=deep, unit=unit), name="x.glb"))
+    lowest = skin(body, DUET.a)[..., 1].min(axis=1)
+    assert np.abs(lowest).max() < 0.01, "boxes reach 4 cm below the joints, and stand on the floor"
+
+
+def test_what_hangs_on_neighbouring_joints_stays_together() -> None:
+    found = read_character(glb_character(places=REST * [1.0, 1.1, 0.2]), name="x.glb")
+    whole = character_body(found)
+    for name in ("Hips", "Spine", "Spine1", "Spine2", "Neck"):
+        joint = found.joint_names.index(f"mixamorig:{name}")
+        after = replace(found, slots=np.where(found.slots == joint, _child(found, joint), found.slots))
+        np.testing.assert_allclose(character_body(after).vertices, whole.vertices, atol=1e-9, err_msg=name)
+
+
+def _child(found: Character, joint: int) -> int:
+    """The next joint of the trunk."""
+    return next(c for c, parent in enumerate(found.parents) if parent == joint and "Left" not in found.joint_names[c]
+                and "Right" not in found.joint_names[c])  # fmt: skip
+
+
+def test_thighs_meet_the_pelvis_above_the_hips() -> None:
+    found = read_character(glb_character(places=REST * [1.5, 1.1, 0.2]), name="x.glb")
+    hips, thigh = (found.joint_names.index(f"mixamorig:{name}") for name in ("Hips", "LeftUpLeg"))
+    high = found.vertices[:, 1] > found.joints[thigh, 1] + 0.06
+    its = high & (found.slots[:, 0] == hips)
+    assert its.any()
+    after = replace(found, slots=np.where(its[:, None], thigh, found.slots))
+    np.testing.assert_allclose(character_body(after).vertices, character_body(found).vertices, atol=1e-9)
+
+
+@pytest.mark.parametrize(("length", "names"), [(1, "3"), (2, "13"), (3, "123"), (5, "11233")])
+def test_the_last_joint_of_any_spine_carries_the_shoulders(length: int, names: str) -> None:
+    wanted = [SMPL22.index(f"spine{number}") for number in names]
+    assert list(character._spread(range(length)).values()) == wanted
 
 
 def test_joints_that_smpl_lacks_move_with_the_one_above() -> None:

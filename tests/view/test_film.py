@@ -11,9 +11,12 @@ import pytest
 from PIL import Image
 
 from motion import Clip, Duet, InputError
+from motion.character import character_body
+from motion.formats.glb_reader import read_character
 from motion.skeleton import SBU15
 from motion.transforms import turn
 from tests.motion.bodies import marching
+from tests.motion.formats.characters import glb_character
 from webdemo.view import film
 from webdemo.view.camera import VIEWS, Camera, cameras
 from webdemo.view.sheet import chosen_frames, write_sheet
@@ -106,6 +109,27 @@ def test_people_are_seen_in_every_look_and_theme(look, theme):
     (picture,) = stage.pictures(times, cameras([DUET], size=SMALL, times=times))
     assert picture.shape == (120, 160, 4) and (picture[..., 3] == 255).all()
     assert _look(picture, True) > 0.003 and _look(picture, False) > 0.003
+
+
+@pytest.mark.parametrize("suffix", [".gif", ".png", ".svg"])
+@pytest.mark.parametrize("theme", THEMES)
+def test_films_and_sheets_wear_the_character(tmp_path, suffix, theme):
+    body = character_body(read_character(glb_character(), name="boxes.glb"))
+    paths = []
+    for name, worn in (("plain", None), ("worn", body)):
+        style = Style(names=False, theme=theme, body=worn)
+        path = tmp_path / f"{name}{suffix}"
+        if suffix == ".gif":
+            film.write_film([Pane(DUET.cut(0, 2))], path, size=SMALL, style=style)
+        else:
+            write_sheet(DUET, path, frames=1, width=200, style=style)
+        paths.append(path)
+    if suffix == ".svg":
+        assert len({path.read_text().count("<path") for path in paths}) == 2
+        return
+    plain, worn = (np.asarray(Image.open(path).convert("RGB")).astype(int) for path in paths)
+    assert (np.abs(plain - worn).max(axis=-1) > 60).mean() > 0.005, "another body stands there"
+    assert _look(worn, True) > 0.005 and _look(worn, False) > 0.005, "in each person's colour"
 
 
 def test_other_skeletons_and_one_person_are_drawn():

@@ -22,6 +22,9 @@ def add_render(commands: Any) -> None:
         "--beside", type=Path, action="append", default=[], help="film: a motion to show beside it"
     )
     parser.add_argument("--look", default="bodies", help="bodies, skeletons or both")
+    parser.add_argument(
+        "--character", type=Path, metavar="FILE.glb", help="a skinned character for everybody to wear"
+    )
     parser.add_argument("--theme", default="light", help="light or dark")
     parser.add_argument("--view", default="threequarter", help="threequarter, front, side, top, a or b")
     parser.add_argument("--title", help="title in the picture; the file's name by default")
@@ -42,6 +45,8 @@ def add_render(commands: Any) -> None:
 
 def render(options: argparse.Namespace) -> dict[str, Any]:
     """Draws a film or a contact sheet of a motion file; a BVH pair may be given as two files, or by its first."""
+    from motion.character import character_body
+    from motion.formats.glb_reader import read_character
     from webdemo.view import film, sheet
     from webdemo.view.stage import Pane, Style
 
@@ -49,6 +54,13 @@ def render(options: argparse.Namespace) -> dict[str, Any]:
     out = options.out or options.file.with_suffix(".png")
     title = options.file.stem if options.title is None else options.title
     suffix = out.suffix.lower()
+    style = Style(
+        look=options.look,
+        trails=options.trails and suffix in film.SUFFIXES,
+        names=suffix in film.SUFFIXES,
+        theme=options.theme,
+        body=character_body(read_character(options.character)) if options.character else None,
+    )
     if suffix in film.SUFFIXES:
         beside = [_motion(path, None) for path in options.beside]
         names = [options.file.stem, *(path.stem for path in options.beside)] if beside else [""]
@@ -57,7 +69,7 @@ def render(options: argparse.Namespace) -> dict[str, Any]:
             out,
             fps=options.fps,
             size=_size(options.size),
-            style=Style(look=options.look, trails=options.trails, theme=options.theme),
+            style=style,
             view=options.view,
             follow=not options.still_camera,
             title=title,
@@ -69,7 +81,7 @@ def render(options: argparse.Namespace) -> dict[str, Any]:
             frames=_moments(options.frames),
             width=options.width,
             title=title,
-            style=Style(look=options.look, names=False, theme=options.theme),
+            style=style,
             view=options.view,
         )
     else:

@@ -11,7 +11,9 @@ from typing import Any
 import gradio as gr
 
 from motion import InputError
+from motion.character import character_body
 from motion.formats import read
+from motion.formats.glb_reader import read_character
 from webdemo.inference.actor import read_actor
 from webdemo.inference.methods import AUTOMATIC, methods
 from webdemo.inference.predict_request import LONGEST, PredictRequest, PredictResult
@@ -326,6 +328,9 @@ class RenderEndpoint:
                 gr.Number(FPS, label="frames a second of a film, 1 to 60"),
                 gr.Number(SIZE[0], label="width in pixels: even, 64 to 1920"),
                 gr.Number(SIZE[1], label="height of a film in pixels: even, 64 to 1080"),
+                gr.File(
+                    label="a skinned character for everybody to wear: .glb, up to 50 MB; may be left out"
+                ),
             ]
             gr.Button().click(
                 self.render, inputs=inputs, outputs=gr.File(label="the film or sheet"), api_name="render",
@@ -334,7 +339,7 @@ class RenderEndpoint:
 
     def render(
         self, motion: str, kind: str, look: str, theme: str, view: str, trails: bool, fps: float, width: float,
-        height: float,
+        height: float, character: str | None = None,
     ) -> str:  # fmt: skip
         """A film or a contact sheet of a motion file. An error is one sentence that says what to change."""
         folder = self.page.shelf.folder()
@@ -345,9 +350,10 @@ class RenderEndpoint:
                 raise InputError("Pictures have 1920x1080 pixels at most here: ask for less.")
             with _READING:
                 found = read(Path(motion), longest=LONGEST_FILM)
+                body = character_body(read_character(Path(character))) if character else None
             name, suffix = Path(motion).stem, f".{kind.lower().lstrip('.')}"
             out = folder / f"{file_name(name, {})}{suffix}"
-            style = Style(look=look, theme=theme, trails=trails, names=suffix not in SHEETS)
+            style = Style(look=look, theme=theme, trails=trails, names=suffix not in SHEETS, body=body)
             if suffix in SHEETS:
                 return str(write_sheet(found, out, width=int(width), title=name, style=style, view=view))
             size = (int(width), int(height))

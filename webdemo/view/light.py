@@ -43,7 +43,7 @@ def shaded(body: Body, vertices: Array, worn: Worn, lamps: Lamps, camera: Camera
     Args:
         body: whose faces and zones.
         vertices: (V, 3) where they are, metres.
-        worn: the colour of each zone.
+        worn: the colour of each zone; that of the top for others.
         lamps: of the theme.
         camera: from which it is seen.
     """
@@ -65,7 +65,7 @@ def shaded(body: Body, vertices: Array, worn: Worn, lamps: Lamps, camera: Camera
         [(1 - above) * grounded * opened**2, above * opened**2, front, behind], axis=1
     )  # of ground, sky, key and rim
     light = shares @ np.array([lamps.ground, lamps.sky, lamps.key, lamps.rim])
-    palette = np.array([worn[zone] for zone in body.zones]) ** _GAMMA
+    palette = np.array([worn.get(zone, worn["top"]) for zone in body.zones]) ** _GAMMA
     glow = (lamps.shine * shine * opened)[body.faces, None]
     colours = palette[body.face_zones][:, None] * light[body.faces] + glow
     return np.clip(colours, 0.0, 1.0) ** (1 / _GAMMA)

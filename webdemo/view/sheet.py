@@ -15,7 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 from PIL import Image
 
-from motion.body import BODIES, load_body, skin
+from motion.body import skin
 from motion.clip import Clip, Duet, stacked_positions
 from motion.errors import InputError
 from motion.formats.files import replacing
@@ -273,8 +273,8 @@ def _draw_tile(axes, motion: Clip | Duet, pose: Array, camera: Camera, corner: A
     add(LineCollection, grid, colors=[theme.grid], linewidths=0.5)
     dressed = style.look != "skeletons" and motion.skeleton.joint_names == SMPL22.joint_names
     triangles, depths, colours = [], [], []
-    for person, points in enumerate(pose if dressed else ()):
-        body = load_body(BODIES[person], small=True)
+    bodies = style.worn(len(pose), small=True) if dressed else ()
+    for person, (body, points) in enumerate(zip(bodies, pose, strict=False)):
         surface = skin(body, points[None])[0].astype(np.float64)
         pixels, depth = camera.project(surface)
         corners = pixels[body.faces]

@@ -64,6 +64,7 @@ class Style:
         trails: whether pelvis and wrists leave a line of their last second.
         names: whether roles stand above the heads.
         theme: "light" or "dark".
+        body: worn by everybody, such as one of :func:`motion.character.character_body`; a body each by default.
 
     Raises:
         InputError: for another look or theme.
@@ -73,6 +74,7 @@ class Style:
     trails: bool = False
     names: bool = True
     theme: str = "light"
+    body: Body | None = field(default=None, repr=False)
 
     def __post_init__(self) -> None:
         if self.look not in LOOKS:
@@ -84,6 +86,10 @@ class Style:
     def colours(self) -> Theme:
         """The colours of its theme."""
         return THEMES[self.theme]
+
+    def worn(self, people: int, *, small: bool) -> tuple[Body, ...]:
+        """The body of each of so many people; ``small`` gives a third of the triangles where there is a choice."""
+        return tuple(self.body or load_body(name, small=small) for name in BODIES[:people])
 
 
 @dataclass
@@ -108,9 +114,7 @@ class Stage:
         dressed = self.style.look != "skeletons" and motion.skeleton.joint_names == SMPL22.joint_names
         # Most of a small picture's triangles would be smaller than its pixels.
         small = self.size[1] < 400
-        self.bodies = (
-            tuple(load_body(name, small=small) for name in BODIES[: len(self.people)]) if dressed else ()
-        )
+        self.bodies = self.style.worn(len(self.people), small=small) if dressed else ()
 
     def pictures(self, times: Array, cameras: Sequence[Camera]) -> Iterator[Picture]:
         """The pictures (height, width, 4) at moments in seconds, without captions, each from its camera."""

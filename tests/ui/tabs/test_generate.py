@@ -18,6 +18,8 @@ os.environ.setdefault("GRADIO_ANALYTICS_ENABLED", "False")
 import av
 import gradio as gr
 
+from motion.character import character_body
+from motion.formats.glb_reader import read_character
 from tests.motion.formats.characters import glb_character
 from tests.motion.formats.skinned import Skinned
 from tests.ui.stub_engine import StubEngine
@@ -295,6 +297,20 @@ def test_a_film_is_what_the_player_shows(tab: GenerateTab, monkeypatch: pytest.M
     assert asked["title"] == "two people walk"
 
 
+@pytest.mark.parametrize("shown", [True, False, None, "yes"])
+def test_a_film_wears_the_character_while_the_player_shows_it(
+    tab: GenerateTab, monkeypatch: pytest.MonkeyPatch, shown: Any
+) -> None:
+    asked: dict[str, Any] = {}
+    monkeypatch.setattr(
+        "webdemo.ui.components.film.film.write_film", lambda *_, **options: asked.update(options)
+    )
+    record = result_of(tab)
+    record.body = character_body(read_character(glb_character(), name="x.glb"))
+    make_film(record, json.dumps({"character": shown}), tab.page.shelf.folder())
+    assert asked["style"].body is (record.body if shown is True else None)
+
+
 def test_a_film_of_nothing_is_one_sentence(tab: GenerateTab) -> None:
     *_, (line, _) = tab.make_film(None, "{}")
     assert "make one first" in line
@@ -375,16 +391,20 @@ def test_both_wear_an_uploaded_character_in_this_result_and_the_next(
 ) -> None:
     file = tmp_path / "robot.glb"
     file.write_bytes(glb_character("unreal"))
-    line, body, player, offered = tab.put_on(str(file), None)
-    assert "Both wear robot.glb" in line and body.zones == ("character",) and offered == gr.skip()
+    line, body, player, *offered = tab.put_on(str(file), None)
+    assert "Both wear robot.glb" in line and body.zones == ("character",) and offered == [gr.skip()] * 2
     assert player["character"]["zones"] == ["character"] and player["character"]["id"]
     record = result_of(tab)
     _, *updates = tab.export(record, body)
-    later = updates[[kind.key for kind in KINDS].index("glb")]["value"]
-    plain = Record(record.result, "They walk.")
-    _, _, _, offered = tab.put_on(str(file), plain)
-    assert offered["interactive"] and plain.body is not None
-    for path in (later, offered["value"]):
+    later = [updates[[kind.key for kind in KINDS].index(key)]["value"] for key in ("glb", "png")]
+    plain = Record(record.result, "two people walk")
+    _, *bare = tab.export(Record(record.result, "two people walk"))
+    _, _, _, *offered = tab.put_on(str(file), plain)
+    assert all(each["interactive"] for each in offered) and plain.body is not None
+    sheets = [Path(path).read_bytes() for path in (later[1], offered[1]["value"])]
+    stock = bare[[kind.key for kind in KINDS].index("png")]["value"]
+    assert sheets[0] == sheets[1] != Path(stock).read_bytes(), "the contact sheet shows it, too"
+    for path in (later[0], offered[0]["value"]):
         made = Skinned(Path(path))
         assert [len(mesh.primitives) for mesh in made.gltf.meshes] == [1, 1], (
             "one surface each, of one material"
@@ -396,4 +416,4 @@ def test_both_wear_an_uploaded_character_in_this_result_and_the_next(
 def test_a_file_that_is_no_character_is_a_sentence(tab: GenerateTab, tmp_path: Path, content: bytes) -> None:
     (tmp_path / "x.glb").write_bytes(content)
     line, *rest = tab.put_on(str(tmp_path / "x.glb"), None)
-    assert "pd-error" in line and "x.glb" in line and rest == [gr.skip()] * 3
+    assert "pd-error" in line and "x.glb" in line and rest == [gr.skip()] * 4

@@ -30,6 +30,7 @@ from motion.formats.spreadsheet import safe_cell
 from webdemo.inference.actor import ROLES
 from webdemo.inference.requests import Result
 from webdemo.view.sheet import write_grid_sheet, write_sheet
+from webdemo.view.stage import Style
 
 log = logging.getLogger(__name__)
 
@@ -59,6 +60,8 @@ class Kind:
 
 _PLAIN = ("png", "json", "csv")
 """Kinds that are no motion."""
+WORN = ("glb", "png")
+"""Kinds that show an uploaded character."""
 RIG = "rig"
 """The key of the partner on the rig of an uploaded file; its button shows only where there is one."""
 
@@ -83,7 +86,8 @@ class Record:
         exported: whether its files were written.
         compared: the results that stand side by side, by method; ``result`` is the first of them.
         grid: columns, rows, names and title of the grid that they stand in; empty for none.
-        body: an uploaded character whom both people wear in the .glb; None for the bodies that ship.
+        body: an uploaded character whom both people wear in the files of :data:`WORN` and in films; None for the
+            bodies that ship.
         rig: the uploaded BVH file of one person that the result is a reaction to; None for anything else.
     """
 
@@ -156,42 +160,38 @@ def write_on_rig(record: Record, folder: Path) -> list[Path]:
         return replace_all(files)
 
 
-def write_character(record: Record, folder: Path) -> list[Path]:
-    """The .glb files of a record alone, for a character that is put on later."""
-    others = tuple(kind.key for kind in KINDS if kind.key != "glb")
-    results = record.compared or {"": record.result}
-    return [
-        path
-        for method, result in results.items()
-        for path in write_files(
-            result, folder, prompt=f"{method} {record.prompt}".strip(), leave_out=others, body=record.body
-        ).get("glb", ())
-    ]
+def write_character(record: Record, folder: Path) -> dict[str, list[Path]]:
+    """The files of a record that show its character, for one that is put on later; see :func:`write_record`."""
+    return write_record(record, folder, leave_out=[kind.key for kind in KINDS if kind.key not in WORN])
 
 
-def write_record(record: Record, folder: Path) -> dict[str, list[Path]]:
+def write_record(record: Record, folder: Path, *, leave_out: Collection[str] = ()) -> dict[str, list[Path]]:
     """:func:`write_files` for all results of a record; names of compared ones begin with their method.
 
     Compared results have one table of read-outs, and a grid one contact sheet.
     """
     if not record.compared:
-        return write_files(record.result, folder, prompt=record.prompt, body=record.body)
+        return write_files(record.result, folder, prompt=record.prompt, body=record.body, leave_out=leave_out)
     files: dict[str, list[Path]] = {}
-    joint = ("csv", "png") if record.grid else ("csv",)
+    joint = {"csv", "png"} if record.grid else {"csv"}
     for method, result in record.compared.items():
-        written = write_files(
-            result, folder, prompt=f"{method} {record.prompt}", leave_out=joint, body=record.body
-        )
+        prompt = f"{method} {record.prompt}"
+        written = write_files(result, folder, prompt=prompt, leave_out={*joint, *leave_out}, body=record.body)
         for key, paths in written.items():
             files.setdefault(key, []).extend(paths)
     name = folder / file_name(record.prompt, record.result.manifest)
     with _writing(folder):
-        if any(result.readouts for result in record.compared.values()):
+        if "csv" not in leave_out and any(result.readouts for result in record.compared.values()):
             files["csv"] = [_write_table(record.compared, name.with_suffix(".csv"))]
-        if record.grid:
+        if record.grid and "png" not in leave_out:
             motions = {cell: result.duets[0] for cell, result in record.compared.items()}
-            files["png"] = [write_grid_sheet(motions, name.with_suffix(".png"), title=record.prompt)]
+            style, path = _sheet_style(record.body), name.with_suffix(".png")
+            files["png"] = [write_grid_sheet(motions, path, title=record.prompt, style=style)]
     return files
+
+
+def _sheet_style(body: Body | None) -> Style:
+    return Style(names=False, body=body)
 
 
 def write_files(
@@ -199,7 +199,7 @@ def write_files(
 ) -> dict[str, list[Path]]:
     """Writes a result in every kind that this installation can write, but for those that are left out.
 
-    ``body`` is worn by both people in the .glb.
+    ``body`` is worn by both people in the kinds of :data:`WORN`.
 
     Returns:
         the files by the key of their kind, in the order of the samples; a BVH pair is two files.
@@ -284,7 +284,7 @@ def _write_motion(duet: Duet | Clip, path: Path, *, title: str, body: Body | Non
     if path.suffix == ".glb" and body is not None and isinstance(duet, Duet):
         return write_glb(duet, path, body=body)
     if path.suffix == ".png":
-        return [write_sheet(duet, path, title=title)]
+        return [write_sheet(duet, path, title=title, style=_sheet_style(body))]
     return [Path(written) for written in formats.write(duet, path)]
 
 

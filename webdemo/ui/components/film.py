@@ -33,7 +33,7 @@ READ_PLAYER = """(record, _) => {
     yaw: orbit.yaw, elevation: orbit.elevation, view: player.framed, follow: orbit.following,
     frame: Math.round(player.clock.shown), distance: orbit.distance,
     trails: Boolean(show.trails), theme: player.themeName, sample: player.sampleIndex,
-    look: bodies && skeletons ? "both" : bodies ? "bodies" : "skeletons",
+    look: bodies && skeletons ? "both" : bodies ? "bodies" : "skeletons", character: Boolean(show.character),
   })];
 }"""
 """JavaScript that tells how the player shows the motion: what :func:`make_film` takes."""
@@ -72,6 +72,7 @@ def make_film(record: Record | None, shown: str, folder: Path) -> Path:
         look=_one_of(state, "look", LOOKS, "bodies"),
         trails=state.get("trails") is True,
         theme=_one_of(state, "theme", tuple(THEMES), "light"),
+        body=record.body if state.get("character") is True else None,
     )
     try:
         return film.write_film(

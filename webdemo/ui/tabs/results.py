@@ -18,6 +18,7 @@ from webdemo.ui.components.address import link_address
 from webdemo.ui.components.exports import (
     KINDS,
     RIG,
+    WORN,
     Record,
     file_name,
     for_download,
@@ -40,7 +41,8 @@ log = logging.getLogger(__name__)
 QUIET: dict[str, Any] = {"api_visibility": "private", "show_progress": "hidden"}
 """Options of events that are the page's own: no endpoint, no spinner over what they change."""
 
-_GLB = [kind.key for kind in KINDS].index("glb")
+_WORN = [[kind.key for kind in KINDS].index(key) for key in WORN]
+"""The downloads that show an uploaded character."""
 
 Updates = tuple[Any, ...]
 
@@ -125,27 +127,27 @@ class ResultsTab:
 
         self.character.upload(
             self.put_on, inputs=[self.character, self.record],
-            outputs=[self.line, self.worn, self.player, self.downloads[_GLB]],
+            outputs=[self.line, self.worn, self.player, *(self.downloads[number] for number in _WORN)],
             concurrency_limit=1, concurrency_id="character", trigger_mode="once", **QUIET,
         )  # fmt: skip
 
     def put_on(self, path: str, record: Record | None) -> Updates:
-        """Puts an uploaded character on both people, here and in the .glb of this result and of later ones."""
+        """Puts an uploaded character on both people, here and in the files of this result and of later ones."""
         try:
             body = character_body(read_character(path))
-            file = None
+            files: dict[str, Path] = {}
             if record is not None:
                 record.body = body
                 written = write_character(record, self.page.shelf.folder())
-                name = file_name(record.prompt, record.result.manifest)
-                file = for_download({"glb": written}, name)["glb"] if written else None
+                files = for_download(written, file_name(record.prompt, record.result.manifest))
         except Exception as error:
-            return status(error_line(error), tone="error"), *((gr.skip(),) * 3)
+            return status(error_line(error), tone="error"), *((gr.skip(),) * (2 + len(WORN)))
         told = (
-            f"Both wear {body.name}, in the .glb as well. The figure button of the player shows bodies again."
+            f"Both wear {body.name}, in films, in the .glb and on the contact sheet as well. "
+            "The figure button of the player shows bodies again."
         )
-        offered = _offered("glb", file) if file is not None else gr.skip()
-        return status(told, tone="done"), body, wear(body), offered
+        offered = (_offered(key, files[key]) if key in files else gr.skip() for key in WORN)
+        return status(told, tone="done"), body, wear(body), *offered
 
     def make_film(self, record: Record | None, shown: str) -> Iterator[Updates]:
         """Films the last result as the player shows it and hands the film to its download button."""
