@@ -8,19 +8,22 @@ from __future__ import annotations
 import json
 import os
 import re
+import threading
 import time
 from collections.abc import Callable, Iterator
 from pathlib import Path
 from types import SimpleNamespace
+from typing import Any
 
 import pytest
 
 os.environ.setdefault("GRADIO_ANALYTICS_ENABLED", "False")
 
-from playwright.sync_api import Page, expect
+from playwright.sync_api import Page, Route, expect
 
 from tests.ui.stub_engine import StubEngine
 from webdemo.ui.page import build_page, launch_options
+from webdemo.ui.tabs import results
 
 pytestmark = pytest.mark.e2e
 
@@ -40,6 +43,8 @@ SLOW = 60_000
 """Milliseconds that a busy machine may take to draw."""
 STEP = 0.01
 """Seconds that a step of the stub takes, where a test does not look at the steps."""
+LONG_STEP = 1.0
+"""Seconds that a step takes where a run must still go on when a browser on a busy machine is ready to press."""
 
 
 @pytest.fixture(scope="module")
@@ -176,7 +181,7 @@ def test_cancel_stops_at_a_step_and_keeps_the_last_motion(page: Page, server: Si
     ask(page, "two people hug")
     status(page, "done")
     before = shown_id(page)
-    server.engine.pause = 0.4
+    server.engine.pause = LONG_STEP
     try:
         ask(page, "two people dance for long")
         wait_for_line(page, r"step \d+ of")
@@ -188,12 +193,46 @@ def test_cancel_stops_at_a_step_and_keeps_the_last_motion(page: Page, server: Si
     assert line.endswith("of 50.")
     done = server.engine.steps_done
     assert abs(int(line.split()[3]) - done) <= 1
-    time.sleep(1.0)
+    time.sleep(2 * LONG_STEP)
     assert server.engine.steps_done == done, "the loop went on"
     assert shown_id(page) == before
     expect(page.locator(".pdd-busy")).to_be_hidden()
     ask(page, "two people hug again")
     status(page, "done")
+
+
+def test_a_run_can_be_cancelled_whose_first_updates_arrive_together(
+    page: Page, server: SimpleNamespace, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Gradio holds back what comes before the answer to a press, and then applies only the last of it."""
+    written = threading.Event()
+    write_record = results.write_record
+
+    def slowly(*given: Any) -> Any:
+        written.wait(SLOW / 1000)
+        return write_record(*given)
+
+    def late(route: Route) -> None:
+        answer = route.fetch()
+        time.sleep(2)
+        route.fulfill(response=answer)
+
+    monkeypatch.setattr(results, "write_record", slowly)  # so that the page goes on listening to the server
+    try:
+        ask(page, "two people hug")
+        status(page, "done")
+        expect(page.locator("button#generate")).to_be_enabled(timeout=SLOW)
+        page.route("**/queue/join*", late)
+        server.engine.pause = LONG_STEP
+        ask(page, "two people dance for long")
+        wait_for_line(page, r"step \d+ of")
+        expect(page.locator("button#generate")).to_be_disabled()
+        page.click("button#cancel", timeout=5000)
+        assert status(page, "warning").startswith("Cancelled at step")
+    finally:
+        written.set()
+        server.engine.pause = STEP
+        page.unroute("**/queue/join*")
 
 
 def test_errors_are_sentences_and_the_next_request_works(page: Page) -> None:
@@ -262,7 +301,7 @@ def test_downloads_are_files(page: Page, tmp_path: Path) -> None:
 
 
 def test_two_sessions_do_not_cancel_each_other(page: Page, phone: Page, server: SimpleNamespace) -> None:
-    server.engine.pause = 0.4
+    server.engine.pause = LONG_STEP
     try:
         ask(page, "the first of two")
         wait_for_line(page, r"step \d+ of")

@@ -9,6 +9,7 @@ import threading
 import time
 import zipfile
 from pathlib import Path
+from types import SimpleNamespace
 from typing import Any
 
 import pytest
@@ -114,6 +115,22 @@ def test_cancel_ends_within_one_step_and_touches_no_result(tab: GenerateTab) -> 
     assert "readouts" not in rest[-1]
     assert "step" in seen[-1]["line"]
     assert not tab.page.runs.cancel("me"), "nothing is left to cancel"
+
+
+def test_every_update_of_a_run_says_what_lasts(tab: GenerateTab) -> None:
+    tab.page.engine.pause = 0.1
+    for step in run(tab):
+        assert step["stop"] == gr.update(interactive=True)
+        assert all(step[name] == gr.update(interactive=False) for name in tab.starts())
+
+
+def test_a_run_is_cancelled_before_its_request_was_read(tab: GenerateTab) -> None:
+    steps = tab.run("me", FIELDS)
+    next(steps)
+    tab.cancel(SimpleNamespace(session_hash="me"))
+    assert "Cancelled before the first step." in changes(tab.outputs, list(steps)[-1])["line"]
+    assert tab.page.engine.steps_done == 0
+    assert "record" in run(tab)[-1], "the next run goes on"
 
 
 @pytest.mark.parametrize(

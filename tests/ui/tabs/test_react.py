@@ -320,6 +320,8 @@ def test_streamed_frames_come_in_small_messages_and_end_in_a_result(tab: ReactTa
     assert opening["samples"][0]["positions"]["shape"] == [1, 60, 22, 3]
     messages = [step["player"]["live"] for step in steps if step.get("player", {}).get("live")]
     assert len(messages) == 10
+    streaming = [step["player"] for step in steps if "live" in step.get("player", {})]
+    assert all(player["value"] is opening for player in streaming), "the first of several may be lost"
     seen = np.full((60, 22, 3), np.nan)
     for message in messages:
         assert message["id"] == opening["id"]

@@ -28,6 +28,7 @@ from webdemo.ui.components.exports import Record
 from webdemo.ui.components.player import busy, show
 from webdemo.ui.components.settings import ADVANCED, OPENED, advanced_label, differs, snapshot
 from webdemo.ui.components.show import result_payload
+from webdemo.ui.context import PageContext
 from webdemo.ui.history import Kept, Opened, Original
 from webdemo.ui.text.panels import notes_lines, readout_panel, status
 from webdemo.ui.text.words import cancelled_line, error_line, progress_line, seconds
@@ -86,6 +87,11 @@ class JobTab(ResultsTab, ABC):
     @abstractmethod
     def title(self, request: Any) -> str:
         """The title that the player shows over the result, and from which its files are named."""
+
+    def __init__(self, page: PageContext) -> None:
+        super().__init__(page)
+        self._cancelled: set[str] = set()
+        """Sessions whose last run here was cancelled."""
 
     # ---- layout ----------------------------------------------------------------------------------
 
@@ -228,15 +234,26 @@ class JobTab(ResultsTab, ABC):
 
         An empty seed is drawn. Whatever goes wrong ends as one sentence in the status line, with the last
         result still on show.
+
+        Each update holds what has to last as long as the run does: buttons, and a motion that is shown before
+        the result. Gradio's page changes an update in place into the one after it, so that of those that
+        arrive together it applies only the last, and the first alone may be among the others.
         """
-        asked = snapshot(fields, self.knobs)
-        yield self._updates(
-            player=busy("Starting …"),
-            line=status("Starting …", tone="busy"),
-            changed="",
-            stop=gr.update(interactive=True),
+        lasting: dict[str, Any] = {
+            "stop": gr.update(interactive=True),
             **{name: gr.update(interactive=False) for name in self.starts()},
-        )
+        }
+        motion: dict[str, Any] = {}
+        for updates in self._steps(session, fields):
+            shown = dict(zip(self.outputs, updates, strict=True)) | lasting
+            motion = {"value": shown["player"]["value"]} if "value" in shown["player"] else motion
+            yield self._updates(**shown | {"player": motion | shown["player"]})
+
+    def _steps(self, session: str, fields: Mapping[str, Any]) -> Iterator[Updates]:
+        """The updates of a run, each with what it changes."""
+        self._cancelled.discard(session)
+        asked = snapshot(fields, self.knobs)
+        yield self._updates(player=busy("Starting …"), line=status("Starting …", tone="busy"), changed="")
         try:
             if fields.get("seed", 0) is None:
                 fields = {**fields, "seed": secrets.randbelow(MAX_SEED + 1)}
@@ -309,6 +326,8 @@ class JobTab(ResultsTab, ABC):
         shown_at = 0.0
         try:
             for event in self.page.runs.run(session, wanted):
+                if session in self._cancelled:  # also before the run was known, or between two of a grid
+                    raise Cancelled
                 if isinstance(event, Result):
                     return event
                 new_stage = last is None or event.stage != last.stage
@@ -366,5 +385,6 @@ class JobTab(ResultsTab, ABC):
         return tuple(changed.get(name, gr.skip()) for name in self.outputs)
 
     def cancel(self, request: gr.Request) -> None:
-        """Stops the session's run within one denoising step."""
+        """Stops the session's run within one denoising step, or as soon as what it needs was read."""
+        self._cancelled.add(str(request.session_hash))
         self.page.runs.cancel(str(request.session_hash))
