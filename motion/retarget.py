@@ -122,7 +122,7 @@ def leg_scale(rig: RigMotion) -> float:
             bone = rig.positions[:, limb[upper]] - rig.positions[:, limb[lower]]
             total += float(np.median(np.linalg.norm(bone, axis=-1))) / 2
     if not total > 0.05:
-        raise InputError("The legs of this rig have no length: export it with its OFFSETs.")
+        raise InputError(f"{rig.name or 'The rig'} has legs of no length: export it with its bones.")
     return _LEG / total
 
 

@@ -15,6 +15,7 @@ from .bvh import read_bvh, read_bvh_people
 from .bvh_writer import write_bvh
 from .crowd import Crowd, Motion, gathered
 from .glb import write_glb
+from .glb_motion import read_glb_people
 from .kinect import read_kinect
 from .npz import read_npy, read_npz, write_npy, write_npz
 from .one_person import write_clip
@@ -42,10 +43,33 @@ class Format:
     needs: str | None = None
 
 
-def _read_bvh_clip(
+RIGS = (".bvh", ".glb")
+"""Suffixes of files that hold rigs of any kind."""
+
+
+def read_rigs(
+    source: str | Path | bytes, *, name: str | None = None, fps: float, file_fps: float | None = None
+) -> tuple[RigMotion, ...]:
+    """The people in a file of one of :data:`RIGS`, on their own rigs.
+
+    Args:
+        source: a path, or the file's bytes; then ``name`` must end in its suffix.
+        name: what to call it in messages.
+        fps: the rate that is wanted in the end.
+        file_fps: the file's true rate, where it is not what the file says.
+
+    Raises:
+        InputError: one sentence saying what is wrong with the file.
+    """
+    if Path(name or str(source)).suffix.lower() == ".glb":
+        return read_glb_people(source, name=name)
+    return read_bvh_people(source, name=name, fps=fps, file_fps=file_fps)
+
+
+def _read_rig_clips(
     source: str | Path | bytes, *, name: str | None = None, fps: float | None = None, everyone: bool = False
 ) -> Motion:
-    rigs = read_bvh_people(source, name=name, fps=fps or 30.0)
+    rigs = read_rigs(source, name=name, fps=fps or 30.0)
     people = tuple(own_clip(rig) or retarget(rig, fps=fps or 30.0) for rig in rigs)
     return gathered(people, people[0].name, everyone=everyone)
 
@@ -63,11 +87,11 @@ FORMATS: dict[str, Format] = {
     f.suffix: f
     for f in (
         Format(".npz", "NumPy archive", read_npz, write_npz),
-        Format(".bvh", "Biovision BVH", _read_bvh_clip, write_bvh),
+        Format(".bvh", "Biovision BVH", _read_rig_clips, write_bvh),
         Format(".npy", "NumPy array", read_npy, write_npy),
         Format(".skeleton", "Kinect v2 text", read_kinect),
         Format(".txt", "Kinect text", read_kinect),
-        Format(".glb", "glTF binary", None, write_glb, needs="pygltflib"),
+        Format(".glb", "glTF binary", _read_rig_clips, write_glb, needs="pygltflib"),
     )
 }
 

@@ -20,8 +20,18 @@ MAX_FRAMES = 72_000
 """Ten minutes at 120 frames a second."""
 
 
-def read_bytes(source: str | Path | bytes, name: str | None = None) -> tuple[bytes, str]:
+def read_bytes(
+    source: str | Path | bytes,
+    name: str | None = None,
+    *,
+    remedy: str = "cut the motion or lower its frame rate",
+) -> tuple[bytes, str]:
     """A file's bytes and what to call it in messages.
+
+    Args:
+        source: a path, or the bytes themselves.
+        name: what to call it in messages; its own name by default.
+        remedy: what makes a file smaller.
 
     Raises:
         InputError: if it cannot be read or is larger than 50 MB.
@@ -39,8 +49,7 @@ def read_bytes(source: str | Path | bytes, name: str | None = None) -> tuple[byt
             raise InputError(f"{label} cannot be read ({error.strerror}): check the path.") from None
     if size > MAX_BYTES:
         raise InputError(
-            f"{label} has {size / 2**20:.0f} MB, more than the {MAX_BYTES // 2**20} MB allowed: "
-            "cut the motion or lower its frame rate."
+            f"{label} has {size / 2**20:.0f} MB, more than the {MAX_BYTES // 2**20} MB allowed: {remedy}."
         )
     if not data:
         raise InputError(f"{label} is empty: export it again.")

@@ -13,7 +13,6 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 import numpy as np
-import scipy  # its parts are loaded with their first use
 from numpy.typing import NDArray
 
 from motion.body import BODIES, Body, bone_rotations, load_body
@@ -25,6 +24,7 @@ from motion.kinematics import local_rotations
 from motion.skeleton import SMPL22
 
 from .files import write_files
+from .glb_nodes import quaternions
 
 if TYPE_CHECKING:
     import pygltflib
@@ -145,7 +145,7 @@ def _add_person(
     animate(first, "translation", positions[:, 0], gl.VEC3)
     rotations = local_rotations(world)
     for joint in range(SMPL22.num_joints):
-        animate(first + joint, "rotation", _quaternions(rotations[:, joint]), gl.VEC4)
+        animate(first + joint, "rotation", quaternions(rotations[:, joint]), gl.VEC4)
 
 
 def _offsets(positions: Array, world: Array) -> Array:
@@ -155,14 +155,6 @@ def _offsets(positions: Array, world: Array) -> Array:
         bones = (positions[:, joint] - positions[:, parent])[:, None] @ world[:, parent]
         offsets[joint] = bones[:, 0].mean(axis=0)
     return offsets
-
-
-def _quaternions(rotations: Array) -> Array:
-    """(T, 4) x y z w of (T, 3, 3), without flips of sign between frames."""
-    quaternions = scipy.spatial.transform.Rotation.from_matrix(rotations).as_quat()
-    flips = np.sum(quaternions[1:] * quaternions[:-1], axis=-1) < 0
-    signs = np.where(np.concatenate([[0], np.cumsum(flips)]) % 2, -1.0, 1.0)
-    return quaternions * signs[:, None]
 
 
 def _surface(buffer: Buffer, body: Body, role: str, colours: Mapping[str, str]) -> list[pygltflib.Primitive]:

@@ -17,8 +17,7 @@ from motion.layouts import LAYOUTS
 from motion.retarget import retarget, retarget_duet, to_smpl, up_axis
 from motion.rigs import RigMotion, matched_names
 
-from . import own_clip, read_everyone
-from .bvh import read_bvh_people
+from . import RIGS, own_clip, read_everyone, read_rigs
 from .crowd import clips_of
 from .files import MAX_SECONDS
 
@@ -117,8 +116,8 @@ def import_motion(
     """
     choices = choices or ImportChoices()
     label = name or Path(str(source)).name
-    if Path(label).suffix.lower() == ".bvh":
-        rigs = read_bvh_people(source, name=name, fps=_FPS, file_fps=choices.fps)
+    if Path(label).suffix.lower() in RIGS:
+        rigs = read_rigs(source, name=name, fps=_FPS, file_fps=choices.fps)
         return _import_rigs(rigs, choices)
     people = tuple(
         _ordered(clip, choices.order, label) for clip in clips_of(read_everyone(source, name=name))

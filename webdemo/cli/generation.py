@@ -48,7 +48,7 @@ def generate(options: argparse.Namespace) -> dict[str, Any]:
 def add_react(commands: Any) -> None:
     """Adds ``react`` to the shell's commands."""
     parser = commands.add_parser("react", help="generate a second person for a given one")
-    parser.add_argument("--actor", type=Path, required=True, help="the given person: .bvh, .npz, .npy …")
+    parser.add_argument("--actor", type=Path, required=True, help="the given person: .bvh, .glb, .npz …")
     parser.add_argument("--person", help="which person, a to f, if the file holds several")
     parser.add_argument("--start", type=float, default=0.0, help="first second of the file to use")
     parser.add_argument("--end", type=float, help="last second of the file to use; the end by default")
@@ -135,7 +135,7 @@ def _stream(request: ReactRequest) -> None:
 def add_predict(commands: Any) -> None:
     """Adds ``predict`` to the shell's commands."""
     parser = commands.add_parser("predict", help="predict what comes after a motion of one person or two")
-    parser.add_argument("--past", type=Path, required=True, help="the motion: .bvh, .npz, .npy …")
+    parser.add_argument("--past", type=Path, required=True, help="the motion: .bvh, .glb, .npz …")
     parser.add_argument("--marker", type=float, help="second at which the past ends; the end by default")
     parser.add_argument(
         "--seconds", type=float, default=PredictRequest.seconds, help="how many seconds to predict"

@@ -12,7 +12,7 @@ from motion import InputError
 def add_render(commands: Any) -> None:
     """Adds ``render`` to the shell's commands."""
     parser = commands.add_parser("render", help="draw a film or a contact sheet of any motion file")
-    parser.add_argument("file", type=Path, help="motion file: .npz, .bvh, .npy …")
+    parser.add_argument("file", type=Path, help="motion file: .npz, .bvh, .glb …")
     parser.add_argument("second", type=Path, nargs="?", help="the other person, if each has a file")
     parser.add_argument(
         "--out", type=Path,

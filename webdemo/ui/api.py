@@ -214,7 +214,7 @@ class ReactEndpoint(Endpoint):
         posed = " or ".join(m.name for m in found if "first pose" in m.takes)
         with gr.Row(visible=False):
             inputs = [
-                gr.File(label="the given person: .bvh, .npz or .npy, up to 50 MB"),
+                gr.File(label="the given person: .bvh, .glb, .npz or .npy, up to 50 MB"),
                 gr.Textbox("", label="what the two people do, in English; may be empty"),
                 gr.Textbox("", label="a to f, if the file holds several people"),
                 gr.Number(0, label="start of the part to use, in seconds"),
@@ -278,7 +278,7 @@ class PredictEndpoint(Endpoint):
         """Adds the endpoint to the page that is being built."""
         with gr.Row(visible=False):
             inputs = [
-                gr.File(label="the motion of one person or two: .bvh, .npz or .npy, up to 50 MB"),
+                gr.File(label="the motion of one person or two: .bvh, .glb, .npz or .npy, up to 50 MB"),
                 gr.Number(0, label="the second at which the past ends; 0 is the end of the file"),
                 gr.Number(PredictRequest.seconds, label="how much to predict in seconds, 0.5 to 4"),
                 gr.Textbox(PredictRequest.model, label=" or ".join(m.name for m in methods("predict"))),
@@ -319,7 +319,7 @@ class RenderEndpoint:
         """Adds the endpoint to the page that is being built."""
         with gr.Row(visible=False):
             inputs = [
-                gr.File(label="the motion of one person or two: .bvh, .npz or .npy, up to 50 MB"),
+                gr.File(label="the motion of one person or two: .bvh, .glb, .npz or .npy, up to 50 MB"),
                 gr.Textbox("mp4", label="film: mp4, webm or gif; contact sheet: png, svg or pdf"),
                 gr.Textbox(Style.look, label=" or ".join(LOOKS)),
                 gr.Textbox(Style.theme, label="light or dark"),

@@ -15,6 +15,7 @@ from motion.formats import FORMATS
 from motion.formats.importing import AXES, ORDERS, UNITS, ImportChoices, import_motion
 from tests.motion.bodies import marching
 
+from .characters import glb_motion
 from .rigs import RIGS, bvh_text
 from .test_kinect import sbu_text, skeleton_text
 
@@ -47,6 +48,8 @@ VALID = {
         mocap_framerate=np.float64(120),
         gender=np.array("x"),
     ),
+    "walk.glb": glb_motion(ROTATIONS, POSITIONS[:, 0], unit=100.0),
+    "bones.glb": glb_motion(ROTATIONS, POSITIONS[:, 0], skinned=False, way="CUBICSPLINE"),
     "22.npy": array_file(POSITIONS.astype(np.float32)),
     "15.npy": array_file(SKELETONS_15),
     "take.bvh": BVH.encode(),
@@ -60,6 +63,7 @@ PIECES = [
     b"{", b"}", b"nan ", b"inf", b"1e999 ", b"-", b",", b"\0", b"\xff\xfe", b"999999999", b"\n", b"\r",
     b"   ", b"ROOT x\n{\n", b"JOINT x\n", b"End Site", b"CHANNELS 6 ", b"MOTION\n", b"Frames: 1000000000\n",
     b"PK\x05\x06", b"PK\x01\x02", b"\x93NUMPY", "é\u2028".encode(), b"(9999999, 22, 3)",
+    b"4294967295", b"-1, ", b"1e30", b"[]", b'"node": 0, ', b'"LINEAR"', b"null", b'"count": 99999999, ',
 ]  # fmt: skip
 EDITS = st.lists(
     st.tuples(
@@ -108,7 +112,16 @@ def test_what_is_damaged_below_is_read_when_whole(name: str) -> None:
 @pytest.mark.parametrize("suffix", [suffix for suffix, known in FORMATS.items() if known.reader])
 def test_noise_is_a_sentence(suffix: str) -> None:
     heads = st.sampled_from(
-        [b"", b"HIERARCHY\nROOT a\n{\n", b"\x93NUMPY\x01\0", b"PK\x03\x04", b"3\n2\n", b"1,0.5,", b"\xff\xfe"]
+        [
+            b"",
+            b"HIERARCHY\nROOT a\n{\n",
+            b"\x93NUMPY\x01\0",
+            b"PK\x03\x04",
+            b"3\n2\n",
+            b"1,0.5,",
+            b"\xff\xfe",
+            b"glTF\2\0\0\0",
+        ]
     )
 
     @PATIENT

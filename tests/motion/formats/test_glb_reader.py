@@ -14,7 +14,7 @@ from hypothesis import strategies as st
 
 from motion import InputError
 from motion.character import character_body
-from motion.formats import glb_reader
+from motion.formats import glb_file
 from motion.formats.glb_reader import read_character
 
 from .characters import glb_character
@@ -90,7 +90,7 @@ def test_deep_descriptions_are_a_sentence(monkeypatch: pytest.MonkeyPatch) -> No
     )
     with pytest.raises(InputError, match="is damaged"):
         read_character(data, name="box.glb")
-    monkeypatch.setattr(glb_reader, "LARGEST_JSON", 100)
+    monkeypatch.setattr(glb_file, "LARGEST_JSON", 100)
     with pytest.raises(InputError, match="its description has more"):
         read_character(VALID, name="box.glb")
 

@@ -22,6 +22,7 @@ from motion import Clip, InputError
 from motion.formats import read, write
 from motion.layouts import LAYOUTS
 from tests.motion.bodies import marching
+from tests.motion.formats.characters import glb_character, glb_motion
 from tests.motion.formats.rigs import RIGS, bvh_text
 from tests.ui.stub_engine import walking
 from tests.ui.tab_events import built, changes
@@ -67,6 +68,16 @@ def test_an_upload_is_shown_at_once(tab: ReactTab, walker: Path) -> None:
     assert sample["roles"] == ["given"]
     assert sample["frames"] == 120
     assert last["player"]["value"]["title"] == "walker_a.bvh"
+
+
+def test_an_animated_character_is_an_actor(tab: ReactTab, tmp_path: Path) -> None:
+    positions, rotations = marching(60)
+    (tmp_path / "walk.glb").write_bytes(glb_motion(rotations, positions[:, 0], unit=100.0))
+    last = upload(tab, tmp_path / "walk.glb")[-1]
+    assert "22 joints matched, m, Y up, 30 frames a second" in last["found"]
+    answered = run(tab, last["source"], prompt="")[-1]["record"]
+    given = answered.result.duets[0].a
+    assert np.linalg.norm(given.positions - positions, axis=-1).max() < 0.06, "as they are in the file"
 
 
 def test_two_people_in_a_file_are_a_choice_and_a_long_file_is_cut(tab: ReactTab, walkers: Path) -> None:
@@ -150,7 +161,8 @@ def test_a_result_of_a_result_keeps_the_name_of_the_file(tab: ReactTab, walker: 
         ("broken.bvh", b"HIERARCHY\nROOT hips\n{", "broken.bvh"),
         ("empty.npz", b"", "empty.npz is empty"),
         ("words.npz", b"PK\x03\x04 nothing", "not a whole .npz"),
-        ("movie.mov", b"123", "cannot be read: use .npz, .bvh, .npy, .skeleton or .txt"),
+        ("robot.glb", glb_character(), "robot.glb has no animation"),
+        ("movie.mov", b"123", "cannot be read: use .npz, .bvh, .npy, .skeleton, .txt or .glb"),
     ],
 )
 def test_a_bad_file_is_one_sentence_and_leaves_no_actor(

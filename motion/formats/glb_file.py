@@ -1,0 +1,236 @@
+"""glTF binary files, read as if sent by an enemy.
+
+Every count, size, index and depth is checked before anything is made of it; addresses of other files, compressed and
+sparse data are refused.
+"""
+
+from __future__ import annotations
+
+import json
+import struct
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
+from pathlib import Path
+from typing import Any, NoReturn
+
+import numpy as np
+from numpy.typing import NDArray
+
+from motion.errors import InputError
+
+from .files import read_bytes
+
+MOST_JOINTS = 512
+MOST_NODES = 5_000
+MOST_ITEMS = 20_000
+"""Entries of each list of the file."""
+LARGEST_JSON = 4 * 2**20
+_MAGIC, _JSON, _BIN = 0x46546C67, 0x4E4F534A, 0x004E4942
+_TYPES = {5120: "<i1", 5121: "<u1", 5122: "<i2", 5123: "<u2", 5125: "<u4", 5126: "<f4"}
+_WIDTHS = {"SCALAR": 1, "VEC2": 2, "VEC3": 3, "VEC4": 4, "MAT4": 16}
+_FARTHEST = 1e6
+_LOOKS = ("KHR_materials", "KHR_texture", "EXT_texture", "KHR_lights")
+"""Beginnings of the names of extensions that change only how things look."""
+_LISTS = ("nodes", "meshes", "skins", "animations", "accessors", "bufferViews", "buffers")
+
+
+@contextmanager
+def opened(
+    source: str | Path | bytes, name: str | None, purpose: str, *, harmless: Sequence[str] = ()
+) -> Iterator[GlbFile]:
+    """A file whose parts are read in the block; what is wrong with it is one sentence there as well.
+
+    Args:
+        source: a path, or the file's bytes.
+        name: what to call the file in messages; its own name by default.
+        purpose: what it cannot be, such as "used as a character".
+        harmless: beginnings of the names of extensions that it may need.
+
+    Raises:
+        InputError: one sentence that says what is wrong with the file and what to do.
+    """
+    data, label = read_bytes(source, name, remedy="reduce its mesh or leave out its pictures")
+    try:
+        yield GlbFile(data, label, purpose, harmless)
+    except (
+        KeyError,
+        IndexError,
+        TypeError,
+        ValueError,
+        OverflowError,
+        RecursionError,
+        AttributeError,
+    ) as error:
+        if isinstance(error, InputError):
+            raise
+        raise InputError(f"{label} is damaged: export it again as glTF binary (.glb).") from None
+
+
+class GlbFile:
+    """The parts of a file that have been checked.
+
+    Args:
+        data: the whole file.
+        label: what to call it in messages.
+        purpose: what it cannot be where something is wrong with it.
+        harmless: beginnings of the names of extensions that it may need.
+
+    Attributes:
+        told: its description.
+        blob: its numbers.
+    """
+
+    def __init__(self, data: bytes, label: str, purpose: str, harmless: Sequence[str] = ()) -> None:
+        self.label, self.purpose = label, purpose
+        self.told, self.blob = self._chunks(data)
+        for key in _LISTS:
+            if not isinstance(self.told.get(key, []), list) or len(self.told.get(key, [])) > MOST_ITEMS:
+                self.refuse(f"its list of {key} is too long or none")
+        needed = [str(each)[:40] for each in list(self.told.get("extensionsRequired", []))]
+        if needed := [each for each in needed if not each.startswith((*_LOOKS, *harmless))]:
+            self.refuse(
+                f"it needs {', '.join(needed[:3])}", "export it without compression or other extensions"
+            )
+
+    def refuse(
+        self, what: str, remedy: str = "export it again as glTF binary (.glb) with its skin"
+    ) -> NoReturn:
+        """Raises the sentence."""
+        raise InputError(f"{self.label} cannot be {self.purpose} because {what}: {remedy}.")
+
+    def _chunks(self, data: bytes) -> tuple[dict[str, Any], bytes]:
+        if len(data) < 20 or struct.unpack_from("<I", data)[0] != _MAGIC:
+            raise InputError(f"{self.label} is no glTF binary file: export it as .glb.")
+        if (version := struct.unpack_from("<I", data, 4)[0]) != 2:
+            self.refuse(f"it is of glTF version {version}", "export it as glTF 2.0")
+        found: dict[int, bytes] = {}
+        at = 12
+        while at + 8 <= len(data):
+            length, kind = struct.unpack_from("<II", data, at)
+            if length > len(data) - at - 8:
+                self.refuse("it is cut off")
+            found.setdefault(kind, data[at + 8 : at + 8 + length])
+            at += 8 + length + (-length % 4)
+        if len(found.get(_JSON, b"")) > LARGEST_JSON:
+            self.refuse(
+                f"its description has more than {LARGEST_JSON // 2**20} MB", "export the character alone"
+            )
+        told = json.loads(found.get(_JSON, b"").decode("utf-8"))
+        if not isinstance(told, dict):
+            self.refuse("its description is none")
+        return told, found.get(_BIN, b"")
+
+    # ---- numbers -----------------------------------------------------------------------------------
+
+    def index(self, value: Any, length: int, what: str) -> int:
+        """A checked index into a list of this length."""
+        if type(value) is not int or not 0 <= value < length:
+            self.refuse(f"{what} {value!r:.20} is not there")
+        return value
+
+    def numbers(self, accessor: Any, kind: str, most: int, what: str) -> NDArray:
+        """The rows of an accessor of this kind, at most so many."""
+        stored = self.told["accessors"][self.index(accessor, len(self.told["accessors"]), "accessor")]
+        if stored.get("sparse") is not None or stored.get("type") != kind or "bufferView" not in stored:
+            self.refuse(f"its {what} are stored in a way that is not read here")
+        count, component = stored["count"], stored["componentType"]
+        if type(count) is not int or not 0 < count <= most:
+            self.refuse(
+                f"it has {count!r:.20} {what}, and {most:,} are the limit",
+                "reduce the mesh or the skeleton first",
+            )
+        if component not in _TYPES:
+            self.refuse(f"its {what} are of an unknown kind")
+        views = self.told["bufferViews"]
+        view = views[self.index(stored["bufferView"], len(views), "buffer view")]
+        if view.get("buffer", 0) != 0 or self.told["buffers"][0].get("uri") is not None:
+            self.refuse("it keeps its data in other files", "export it as one .glb file")
+        dtype = np.dtype(_TYPES[component])
+        row = dtype.itemsize * _WIDTHS[kind]
+        start = self._size(view.get("byteOffset", 0)) + self._size(stored.get("byteOffset", 0))
+        stride = self._size(view.get("byteStride", 0)) or row
+        end = self._size(view.get("byteOffset", 0)) + self._size(view["byteLength"])
+        if not row <= stride <= 252 or start + stride * (count - 1) + row > min(end, len(self.blob)):
+            self.refuse(f"its {what} lie outside of the file")
+        rows = np.ndarray((count, _WIDTHS[kind]), dtype, self.blob, start, (stride, dtype.itemsize))
+        if dtype.kind == "f" and not (np.isfinite(rows).all() and np.abs(rows).max() < _FARTHEST):
+            self.refuse(f"its {what} are not finite or very far away")
+        if dtype.kind != "f" and stored.get("normalized"):
+            return rows / float(np.iinfo(dtype).max)
+        return rows.copy()
+
+    def _size(self, value: Any) -> int:
+        if type(value) is not int or not 0 <= value < 2**31:
+            self.refuse("a size in it is no size")
+        return value
+
+    # ---- nodes and skins ---------------------------------------------------------------------------
+
+    def node_parents(self) -> list[int]:
+        """Index of each node's parent, -1 for none; a node has one parent and is not above itself."""
+        nodes = self.told.get("nodes", [])
+        if len(nodes) > MOST_NODES:
+            self.refuse(
+                f"it has {len(nodes):,} nodes", f"export the character alone, with {MOST_NODES:,} at most"
+            )
+        parents = [-1] * len(nodes)
+        for number, node in enumerate(nodes):
+            for child in node.get("children", []):
+                if parents[self.index(child, len(nodes), "node")] >= 0:
+                    self.refuse("a node in it has two parents")
+                parents[child] = number
+        for number in range(len(nodes)):
+            seen, at = 0, number
+            while at >= 0:
+                seen, at = seen + 1, parents[at]
+                if seen > len(nodes):
+                    self.refuse("its nodes go round in a circle")
+        return parents
+
+    def skin_joints(self, skin: Any) -> list[int]:
+        """The checked nodes of a skin's joints."""
+        joints = skin["joints"]
+        if (
+            not isinstance(joints, list)
+            or not 0 < len(joints) <= MOST_JOINTS
+            or len(set(joints)) < len(joints)
+        ):
+            self.refuse(f"its skin has no joints, or more than {MOST_JOINTS}")
+        return [self.index(joint, len(self.told["nodes"]), "joint") for joint in joints]
+
+    def bind_matrices(self, skin: Any, count: int) -> NDArray[np.floating]:
+        """(J, 4, 4) the joints of a skin when the mesh is as it is stored."""
+        if skin.get("inverseBindMatrices") is None:
+            self.refuse("its skin has no bind pose")
+        stored = self.numbers(skin["inverseBindMatrices"], "MAT4", MOST_JOINTS, "bind matrices")
+        if len(stored) < count:
+            self.refuse("some of its joints have no bind matrix")
+        inverse = stored[:count].astype(np.float64).reshape(-1, 4, 4).swapaxes(1, 2)
+        if not (np.abs(np.linalg.det(inverse[:, :3, :3])) > 1e-12).all():
+            self.refuse("its bind matrices cannot be inverted")
+        found: NDArray[np.floating] = np.linalg.inv(inverse)
+        return found
+
+    def joint_name(self, node: int) -> str:
+        """The name of a node, or one made of its number."""
+        return str(self.told["nodes"][node].get("name", f"joint_{node}"))[:100]
+
+
+def in_order(nodes: Sequence[int], parents: Sequence[int]) -> tuple[list[int], list[int]]:
+    """Nodes with those above before those below, and for each the place of the nearest above it; -1 for none."""
+    ordered = sorted(nodes, key=lambda node: _depth(parents, node))
+    rank = {node: place for place, node in enumerate(ordered)}
+    above = []
+    for node in ordered:
+        at = parents[node]
+        while at >= 0 and at not in rank:
+            at = parents[at]
+        above.append(rank[at] if at >= 0 else -1)
+    return ordered, above
+
+
+def _depth(parents: Sequence[int], node: int) -> int:
+    depth = 0
+    while parents[node] >= 0:
+        node, depth = parents[node], depth + 1
+    return depth

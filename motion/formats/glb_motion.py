@@ -1,0 +1,172 @@
+"""Motion out of glTF binary files: an animated character, or several, of any rig."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+
+from motion.errors import InputError
+from motion.retarget import leg_scale
+from motion.rigs import RigMotion, match_joints
+
+from .bvh_numbers import MAX_NUMBERS
+from .files import check_duration
+from .glb_file import GlbFile, opened
+from .glb_nodes import Channel, Rig, bind_pose, channels, moves, people, placed, with_those_above
+
+Array = NDArray[np.floating]
+
+MESHES = ("KHR_draco_mesh_compression", "KHR_mesh_quantization")
+"""Extensions that change only how meshes are stored."""
+MOST_PEOPLE = 6
+_RATES = (10.0, 240.0)
+_RATE = 30.0
+_MOST = 60.0
+_AT_ONCE = 400_000
+"""Nodes that are placed at once, over all frames of a block."""
+_FARTHEST = 1e6
+_UNITS = (1.0, 0.01, 0.001, 0.0254)
+_LEGS = (0.6, 1.7)
+"""Length of an average person's legs over that of people's."""
+
+
+def read_glb_people(source: str | Path | bytes, *, name: str | None = None) -> tuple[RigMotion, ...]:
+    """The animated people in a .glb file, who share one clock, one unit and one world.
+
+    Key frames are read at the rate of the densest channel, at 60 a second at most; keys further apart than a tenth of
+    a second are filled in at 30. Names of joints lose the beginning that they share.
+
+    Args:
+        source: a path, or the file's bytes.
+        name: what to call the file in messages; its own name by default.
+
+    Raises:
+        InputError: one sentence that says what is wrong with the file and what to do.
+    """
+    with opened(source, name, "read as motion", harmless=MESHES) as file:
+        parents = file.node_parents()
+        if not file.told.get("animations"):
+            raise InputError(
+                f"{file.label} has no animation: export it with one, or put it on both people with "
+                "“Wear a character”."
+            )
+        found = [_Person(file, parents, rig) for rig in people(file, parents)]
+        whole = [person for person in found if person.problem is None]
+        if not whole:
+            assert found[0].problem is not None
+            raise found[0].problem
+        if len(whole) > MOST_PEOPLE:
+            file.refuse(f"it holds {len(whole)} people", f"export {MOST_PEOPLE} at most")
+        moved = [_only(file, set(person.nodes)) for person in whole]
+        moments, rate, every = _clock(file, moved, sum(len(person.nodes) for person in whole))
+        places = [person.at(its, moments) for person, its in zip(whole, moved, strict=True)]
+        scale = _metres_per_unit(whole[0].motion(places[0], rate))
+        return tuple(
+            person.motion(scale * its, rate / every, scale, every)
+            for person, its in zip(whole, places, strict=True)
+        )
+
+
+class _Person:
+    """One skeleton of a file; ``problem`` says why it is not a person's."""
+
+    def __init__(self, file: GlbFile, parents: Sequence[int], rig: Rig) -> None:
+        self.file, self.parents, self.rig = file, parents, rig
+        self.nodes = with_those_above(rig.nodes, parents)
+        names = [file.joint_name(node) for node in rig.nodes]
+        shared = _shared_beginning(names)
+        self.names = tuple(each.removeprefix(shared) for each in names)
+        self.problem: InputError | None = None
+        rest = self._joints(placed(file, self.nodes, parents), 1)
+        try:
+            match_joints(self.motion(rest, _RATE))
+        except InputError as error:
+            self.problem = error
+
+    def motion(self, positions: Array, fps: float, scale: float = 1.0, every: int = 1) -> RigMotion:
+        """Its joints where they are (T, J, 3), with the pose of binding as their rest pose."""
+        bound = bind_pose(self.file, self.rig)
+        rest = positions[0] if bound is None else bound[:, :3, 3]
+        above = np.array(self.rig.above)
+        found = RigMotion(
+            self.names, self.rig.above, rest - np.where(above[:, None] < 0, 0.0, rest[np.maximum(above, 0)]),
+            positions, None, fps, scale, self.file.label, every=every,
+        )  # fmt: skip
+        lengths = np.linalg.norm(found.offsets[above >= 0], axis=-1).sum()
+        longer = found.bone_lengths.sum() / lengths if lengths > 1e-9 else 1.0
+        return replace(found, offsets=found.offsets * longer)
+
+    def at(self, moved: Sequence[Channel], moments: Array) -> Array:
+        """(T, J, 3) float32 places of the joints at moments in seconds, in the file's unit."""
+        block = max(1, _AT_ONCE // len(self.nodes))
+        positions = np.empty((len(moments), len(self.names), 3), dtype=np.float32)
+        for start in range(0, len(moments), block):
+            part = moments[start : start + block]
+            world = placed(self.file, self.nodes, self.parents, moved, part)
+            positions[start : start + block] = self._joints(world, len(part))
+        if not np.isfinite(positions).all() or np.abs(positions).max() > _FARTHEST:
+            self.file.refuse("its joints fly away")
+        return positions
+
+    def _joints(self, world: dict[int, Array], frames: int) -> Array:
+        places = [np.broadcast_to(world[node][:, :3, 3], (frames, 3)) for node in self.rig.nodes]
+        return np.stack(places, axis=1)
+
+
+def _metres_per_unit(rig: RigMotion) -> float:
+    """The file's unit: metres, as glTF has it, or another in which the legs have a person's length, if not theirs."""
+    scale = leg_scale(rig)
+    return next((unit for unit in _UNITS if _LEGS[0] <= scale / unit <= _LEGS[1]), scale)
+
+
+def _shared_beginning(names: Sequence[str]) -> str:
+    """The beginning of all names, such as "actor_"; empty where they differ before the first mark."""
+    first, last = min(names), max(names)
+    same = next((i for i, (one, other) in enumerate(zip(first, last, strict=False)) if one != other), 0)
+    return first[: max(first[:same].rfind(mark) for mark in "_:|. -") + 1]
+
+
+def _only(file: GlbFile, nodes: set[int]) -> list[Channel]:
+    """The channels of the one animation that moves these nodes."""
+    moving = [each for each in file.told["animations"] if moves(each, nodes)]
+    if not moving:
+        raise InputError(
+            f"{file.label} has an animation, but it moves no joint of the skeleton: export it again."
+        )
+    if len(moving) > 1:
+        names = ", ".join(str(each.get("name", "one without a name"))[:40] for each in moving[:3])
+        more = " …" if len(moving) > 3 else ""
+        raise InputError(
+            f"{file.label} holds {len(moving)} animations of one person ({names}{more}): "
+            "export one of them alone."
+        )
+    return channels(file, moving[0], nodes)
+
+
+def _clock(file: GlbFile, moved: Sequence[Sequence[Channel]], nodes: int) -> tuple[Array, float, int]:
+    """The moments that are read, in seconds, the file's frames a second, and of how many of them one is read."""
+    known = [each for its in moved for each in its]
+    begin = min(float(each.times[0]) for each in known)
+    seconds = max(float(each.times[-1]) for each in known) - begin
+    rate = _rate(known)
+    every = max(1, math.ceil(rate / _MOST - 1e-6))
+    check_duration(round(seconds * rate) + 1, rate, file.label)
+    count = int(seconds * rate / every + 1e-3) + 1
+    if 3 * count * nodes > MAX_NUMBERS:
+        file.refuse(f"it holds {nodes} nodes in {count:,} frames", "cut the motion or lower its frame rate")
+    return begin + np.arange(count) * every / rate, rate, every
+
+
+def _rate(moved: Sequence[Channel]) -> float:
+    """Frames a second of the densest channel."""
+    steps = [float(np.median(np.diff(each.times))) for each in moved if len(each.times) > 2]
+    step = min((each for each in steps if each > 0), default=1.0)
+    rate = 1.0 / step
+    if not _RATES[0] <= rate <= _RATES[1]:
+        return _RATE if rate < _RATES[0] else _RATES[1]
+    return float(round(rate)) if abs(rate - round(rate)) < 5e-3 * rate else round(rate, 4)

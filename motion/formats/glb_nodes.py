@@ -1,0 +1,256 @@
+"""The nodes of a glTF file: where they stand at rest and while an animation moves them."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from .glb_file import MOST_JOINTS, GlbFile, in_order
+
+Array = NDArray[np.floating]
+
+MOST_KEYS = 6_000_000
+"""Key frames of all channels together."""
+_PATHS = {"translation": ("VEC3", 3), "rotation": ("VEC4", 4), "scale": ("VEC3", 3)}
+_DEFAULTS = {"translation": (0.0, 0.0, 0.0), "rotation": (0.0, 0.0, 0.0, 1.0), "scale": (1.0, 1.0, 1.0)}
+
+
+@dataclass(frozen=True, eq=False)
+class Rig:
+    """One person's joints in a file, parents first.
+
+    Attributes:
+        nodes: the joints' nodes.
+        above: index of the nearest joint above each, -1 for none.
+        skins: those that the joints are of; empty for a file without any.
+    """
+
+    nodes: tuple[int, ...]
+    above: tuple[int, ...]
+    skins: tuple[int, ...]
+
+
+@dataclass(frozen=True, eq=False)
+class Channel:
+    """Key frames of one property of a node.
+
+    Attributes:
+        node: which moves.
+        path: "translation", "rotation" or "scale".
+        times: (K,) seconds, in order.
+        values: (K, 3 or 4); (K, 3, 3 or 4) with their tangents for a spline.
+        way: "LINEAR", "STEP" or "CUBICSPLINE".
+    """
+
+    node: int
+    path: str
+    times: Array = field(repr=False)
+    values: Array = field(repr=False)
+    way: str
+
+    def at(self, moments: Array) -> Array:
+        """(T, 3 or 4) at moments (T,) in seconds; before the first key and after the last it rests."""
+        times = self.times
+        keys = self.values[:, 1] if self.way == "CUBICSPLINE" else self.values
+        if len(times) == 1:
+            return np.repeat(keys, len(moments), axis=0)
+        after = np.clip(np.searchsorted(times, moments, side="right"), 1, len(times) - 1)
+        before = after - 1
+        span = np.maximum(times[after] - times[before], 1e-9)
+        share = np.clip((moments - times[before]) / span, 0.0, 1.0)[:, None]
+        if self.way == "STEP":
+            return np.where(share > 0.999, keys[after], keys[before])  # times are rounded
+        one, other = keys[before], keys[after]
+        if self.way == "CUBICSPLINE":
+            leaving, arriving = self.values[before, 2] * span[:, None], self.values[after, 0] * span[:, None]
+            square, cube = share**2, share**3
+            return (
+                (2 * cube - 3 * square + 1) * one + (cube - 2 * square + share) * leaving
+                + (3 * square - 2 * cube) * other + (cube - square) * arriving
+            )  # fmt: skip
+        if self.path != "rotation":
+            return one + share * (other - one)
+        return _slerp(one, other, share)
+
+
+def _slerp(one: Array, other: Array, share: Array) -> Array:
+    one, other = _unit(one), _unit(other)
+    cosine = np.sum(one * other, axis=-1, keepdims=True)
+    other = np.where(cosine < 0, -other, other)
+    angle = np.arccos(np.clip(np.abs(cosine), 0.0, 1.0))
+    sine = np.sin(angle)
+    near = sine < 1e-4
+    safe = np.where(near, 1.0, sine)
+    first = np.where(near, 1.0 - share, np.sin((1.0 - share) * angle) / safe)
+    second = np.where(near, share, np.sin(share * angle) / safe)
+    return first * one + second * other
+
+
+def _unit(vectors: Array) -> Array:
+    return vectors / np.maximum(np.linalg.norm(vectors, axis=-1, keepdims=True), 1e-12)
+
+
+def people(file: GlbFile, parents: Sequence[int]) -> list[Rig]:
+    """The skeletons of a file: skins that share joints are one; without skins all nodes are."""
+    skins = file.told.get("skins", [])
+    groups: list[tuple[set[int], list[int]]] = []
+    for number, skin in enumerate(skins):
+        joints = set(file.skin_joints(skin))
+        its = [group for group in groups if group[0] & joints]
+        merged = joints.union(*(group[0] for group in its)), [n for group in its for n in group[1]] + [number]
+        groups = [group for group in groups if group not in its] + [merged]
+    if not groups:
+        bare = {n for n, node in enumerate(file.told.get("nodes", [])) if node.get("mesh") is None}
+        groups = [(bare, [])]
+    if not groups[0][0] or any(len(joints) > MOST_JOINTS for joints, _ in groups):
+        file.refuse(f"it has no joints, or more than {MOST_JOINTS}")
+    found = []
+    for joints, its_skins in groups:
+        ordered, above = in_order(sorted(joints), parents)
+        found.append(Rig(tuple(ordered), tuple(above), tuple(sorted(its_skins))))
+    return found
+
+
+def with_those_above(nodes: Sequence[int], parents: Sequence[int]) -> list[int]:
+    """Nodes and all above them, those above first."""
+    needed: set[int] = set()
+    for node in nodes:
+        while node >= 0 and node not in needed:
+            needed.add(node)
+            node = parents[node]
+    return in_order(sorted(needed), parents)[0]
+
+
+def bind_pose(file: GlbFile, rig: Rig) -> Array | None:
+    """(J, 4, 4) the joints while the mesh is as it is stored, in the mesh's axes; None where a skin does not say."""
+    found: dict[int, Array] = {}
+    for number in rig.skins:
+        skin = file.told["skins"][number]
+        joints = file.skin_joints(skin)
+        if skin.get("inverseBindMatrices") is None:
+            return None
+        found |= dict(zip(joints, file.bind_matrices(skin, len(joints)), strict=True))
+    return np.stack([found[node] for node in rig.nodes]) if found else None
+
+
+def moves(animation: Any, nodes: set[int]) -> bool:
+    """True if an animation has channels of these nodes."""
+    targets = (channel["target"] for channel in animation["channels"])
+    return any(target.get("path") in _PATHS and target.get("node") in nodes for target in targets)
+
+
+def channels(file: GlbFile, animation: Any, nodes: set[int]) -> list[Channel]:
+    """The channels of an animation that move these nodes, at most one for each property."""
+    count = len(file.told.get("nodes", []))
+    samplers, told = animation["samplers"], animation["channels"]
+    found: dict[tuple[int, str], Channel] = {}
+    keys = 0
+    for channel in told:
+        target = channel["target"]
+        if target.get("node") is None or target.get("path") not in _PATHS:
+            continue
+        node, path = file.index(target["node"], count, "node"), target["path"]
+        if node not in nodes:
+            continue
+        sampler = samplers[file.index(channel["sampler"], len(samplers), "sampler")]
+        way = sampler.get("interpolation", "LINEAR")
+        if way not in ("LINEAR", "STEP", "CUBICSPLINE"):
+            file.refuse(f"it moves in a way {way!r:.20} that is not known")
+        kind, width = _PATHS[path]
+        times = file.numbers(sampler["input"], "SCALAR", MOST_KEYS - keys, "key frames")[:, 0].astype(
+            np.float64
+        )
+        values = file.numbers(sampler["output"], kind, 3 * MOST_KEYS, "key frames").astype(np.float64)
+        keys += len(values)
+        if keys >= MOST_KEYS:
+            file.refuse(f"it has more than {MOST_KEYS:,} key frames", "lower its frame rate")
+        if way == "CUBICSPLINE":
+            if len(values) != 3 * len(times):
+                file.refuse("its key frames do not fit their times")
+            values = values.reshape(-1, 3, width)
+        if len(values) != len(times) or (np.diff(times) < 0).any() or times[0] < 0:
+            file.refuse("its key frames do not fit their times")
+        found[node, path] = Channel(node, path, times, values, way)
+    return list(found.values())
+
+
+def local_parts(file: GlbFile, node: int) -> dict[str, Array]:
+    """Translation (3,), rotation (4,) and scale (3,) of a node at rest."""
+    told = file.told["nodes"][node]
+    if told.get("matrix") is not None:
+        matrix = _numbers(file, told["matrix"], 16).reshape(4, 4).T
+        turn, scale = split(matrix[None, :3, :3])
+        return {"translation": matrix[:3, 3], "rotation": quaternions(turn)[0], "scale": scale[0]}
+    return {path: _numbers(file, told.get(path, usual), len(usual)) for path, usual in _DEFAULTS.items()}
+
+
+def _numbers(file: GlbFile, values: Any, count: int) -> Array:
+    found = np.array(values, dtype=np.float64)
+    if found.shape != (count,) or not np.isfinite(found).all() or np.abs(found).max() > 1e9:
+        file.refuse("a node in it stands nowhere")
+    return found
+
+
+def matrices(parts: dict[str, Array]) -> Array:
+    """(T, 4, 4) of translations (T or 1, 3), rotations (T or 1, 4) and scales (T or 1, 3)."""
+    frames = max(len(part) for part in parts.values())
+    x, y, z, w = np.moveaxis(_unit(parts["rotation"]), -1, 0)
+    turn = np.stack([
+        1 - 2 * (y * y + z * z), 2 * (x * y - z * w), 2 * (x * z + y * w),
+        2 * (x * y + z * w), 1 - 2 * (x * x + z * z), 2 * (y * z - x * w),
+        2 * (x * z - y * w), 2 * (y * z + x * w), 1 - 2 * (x * x + y * y),
+    ], axis=-1).reshape(-1, 3, 3)  # fmt: skip
+    found = np.zeros((frames, 4, 4))
+    found[:, :3, :3] = turn * parts["scale"][:, None]
+    found[:, :3, 3] = parts["translation"]
+    found[:, 3, 3] = 1.0
+    return found
+
+
+def placed(
+    file: GlbFile, nodes: Sequence[int], parents: Sequence[int], moved: Sequence[Channel] = (),
+    moments: Array | None = None,
+) -> dict[int, Array]:  # fmt: skip
+    """World matrices (T, 4, 4) of nodes with those above them, at moments in seconds; (1, 4, 4) at rest.
+
+    Args:
+        file: whose nodes.
+        nodes: as :func:`with_those_above` gives them.
+        parents: of each node of the file.
+        moved: channels of these nodes.
+        moments: (T,) seconds.
+    """
+    world: dict[int, Array] = {}
+    by_node: dict[int, list[Channel]] = {}
+    for each in moved:
+        by_node.setdefault(each.node, []).append(each)
+    for node in nodes:
+        parts = {path: part[None] for path, part in local_parts(file, node).items()}
+        if moments is not None:
+            parts |= {each.path: each.at(moments) for each in by_node.get(node, ())}
+        local = matrices(parts)
+        world[node] = world[parents[node]] @ local if parents[node] >= 0 else local
+    return world
+
+
+def split(linear: Array) -> tuple[Array, Array]:
+    """Rotations (T, 3, 3) and scales (T, 3) of (T, 3, 3), the nearest ones where they are sheared."""
+    left, _, right = np.linalg.svd(linear)
+    flips = np.ones((len(linear), 3))
+    flips[:, 2] = np.linalg.det(left @ right)
+    turn = (left * flips[:, None]) @ right
+    return turn, np.einsum("tji,tji->ti", turn, linear)
+
+
+def quaternions(rotations: Array) -> Array:
+    """(T, 4) x y z w of (T, 3, 3), without flips of sign between frames."""
+    from scipy.spatial.transform import Rotation
+
+    found = Rotation.from_matrix(rotations).as_quat()
+    flips = np.sum(found[1:] * found[:-1], axis=-1) < 0
+    signs = np.where(np.concatenate([[0], np.cumsum(flips)]) % 2, -1.0, 1.0)
+    return found * signs[:, None]

@@ -1,0 +1,196 @@
+"""Motion out of glTF binary: any rig, any unit, any way of key frames, and what is wrong said in a sentence."""
+
+from __future__ import annotations
+
+import time
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from scipy.spatial.transform import Rotation
+
+from motion import SMPL22, Clip, Duet, InputError
+from motion.formats import glb_motion as reader
+from motion.formats import glb_nodes, read, read_everyone, write
+from motion.formats.glb_motion import read_glb_people
+from motion.formats.glb_nodes import Channel
+from motion.formats.importing import ImportChoices, import_motion
+from motion.retarget import retarget
+from tests.motion.bodies import marching
+
+from .characters import glb_character, glb_motion, unpacked
+from .rigs import RIGS
+
+POSITIONS, ROTATIONS = marching(30)
+ROOT = POSITIONS[:, 0]
+Z_UP = Rotation.from_euler("x", 90, degrees=True).as_matrix()
+NAMED = [rig for rig, names in RIGS.items() if set(names) == set(SMPL22.joint_names)]
+WALK = glb_motion(ROTATIONS, ROOT)
+
+
+@pytest.mark.parametrize("rig", NAMED)
+@pytest.mark.parametrize(
+    "given",
+    [
+        {},
+        {"unit": 100.0, "turn": Z_UP},
+        {"start": 2.5},
+        {"skinned": False},
+        {"way": "CUBICSPLINE"},
+        {"way": "STEP"},
+    ],
+    ids=["plain", "a turned armature in centimetres", "later", "bones alone", "splines", "steps"],
+)
+def test_joints_stand_where_they_do_in_the_file(rig: str, given: dict[str, Any]) -> None:
+    (found,) = read_glb_people(glb_motion(ROTATIONS, ROOT, rig, **given), name="walk.glb")
+    order = [
+        next(i for i, name in enumerate(found.joint_names) if RIGS[rig][ours].endswith(name))
+        for ours in SMPL22.joint_names
+    ]
+    assert found.fps == 30 and found.metres_per_unit == 1.0
+    np.testing.assert_allclose(found.positions[:, order], POSITIONS, atol=1e-4)
+    clip = retarget(found, plant=False)
+    assert np.linalg.norm(clip.positions - POSITIONS, axis=-1).max() < 0.06
+    imported = import_motion(glb_motion(ROTATIONS, ROOT, rig, **given), name="walk.glb")
+    assert imported.describe() == "22 joints matched, m, Y up, 30 frames a second"
+
+
+def test_a_file_in_centimetres_is_found_to_be() -> None:
+    told, _ = unpacked(glb_motion(ROTATIONS, ROOT, unit=100.0))
+    told["nodes"][0]["scale"] = [1, 1, 1]
+    found = import_motion(glb_motion(ROTATIONS, ROOT, unit=100.0, nodes=told["nodes"]), name="walk.glb")
+    assert found.unit == "cm"
+    assert np.linalg.norm(found.people[0].positions - POSITIONS, axis=-1).max() < 0.1
+
+
+@pytest.mark.parametrize(
+    ("fps", "count", "told"), [(24.0, 37, 24), (60.0, 15, 60), (120.0, 8, 120), (2.0, 436, 30)]
+)
+def test_frame_rates_are_those_of_the_keys(fps: float, count: int, told: float) -> None:
+    found = import_motion(glb_motion(ROTATIONS, ROOT, fps=fps), name="walk.glb")
+    assert found.fps == told and found.people[0].fps == 30
+    assert abs(found.people[0].num_frames - count) <= 1, "as long as in the file"
+    faster = import_motion(
+        glb_motion(ROTATIONS, ROOT, fps=fps), name="walk.glb", choices=ImportChoices(fps=2 * told)
+    )
+    assert abs(2 * faster.people[0].num_frames - count) <= 3
+
+
+def test_our_own_file_comes_back_as_it_was(tmp_path: Path) -> None:
+    duet = Duet(Clip(POSITIONS, 30), Clip(POSITIONS + np.float32([0, 0, 2]), 30), ("actor", "reactor"))
+    write(duet, tmp_path / "duet.glb")
+    found = read(tmp_path / "duet.glb")
+    assert isinstance(found, Duet) and found.fps == 30
+    np.testing.assert_allclose(found.positions, duet.positions, atol=1e-4)
+
+
+def test_several_people_share_one_clock_and_one_world() -> None:
+    data = glb_motion(ROTATIONS, ROOT, people=3)
+    people = read_glb_people(data, name="crowd.glb")
+    assert [len(person.positions) for person in people] == [30] * 3
+    for number, person in enumerate(people):
+        np.testing.assert_allclose(person.positions[:, 0], ROOT + np.array([2 * number, 0, 0]), atol=1e-4)
+    assert len(read_everyone(data, name="crowd.glb").people) == 3
+
+
+def test_a_prop_with_bones_is_no_person() -> None:
+    told, _ = unpacked(glb_motion(ROTATIONS, ROOT, people=2))
+    for node in told["nodes"][25:47]:
+        node["name"] = "rope"
+    nodes = told["nodes"]
+    assert len(read_glb_people(glb_motion(ROTATIONS, ROOT, people=2, nodes=nodes), name="x.glb")) == 1
+
+
+def test_a_spline_goes_through_its_keys_along_its_tangents() -> None:
+    times = np.array([0.0, 1.0, 3.0])
+    values = np.stack([times**2, times**2, times**2], axis=1)
+    slope = np.stack([2 * times] * 3, axis=1)
+    channel = Channel(0, "translation", times, np.stack([slope, values, slope], axis=1), "CUBICSPLINE")
+    moments = np.linspace(-1, 4, 41)
+    wanted = np.clip(moments, 0, 3) ** 2
+    np.testing.assert_allclose(channel.at(moments)[:, 0], wanted, atol=1e-9)
+
+
+def test_rotations_take_the_short_way_at_one_speed() -> None:
+    ends = Rotation.from_euler("y", [[0], [170]], degrees=True).as_quat() * [[1], [-1]]
+    channel = Channel(0, "rotation", np.array([0.0, 2.0]), ends, "LINEAR")
+    found = Rotation.from_quat(channel.at(np.array([0.5, 1.0, 1.5]))).as_euler("yxz", degrees=True)[:, 0]
+    np.testing.assert_allclose(found, [42.5, 85, 127.5], atol=1e-6)
+
+
+def _animated(**fields: Any) -> dict[str, Any]:
+    return {"animations": [unpacked(WALK)[0]["animations"][0] | fields]}
+
+
+def _sampled(**fields: Any) -> dict[str, Any]:
+    (told,) = unpacked(WALK)[0]["animations"]
+    return _animated(samplers=[each | fields for each in told["samplers"]])
+
+
+TOLD = unpacked(WALK)[0]
+WRONG: dict[str, tuple[dict[str, Any], str]] = {
+    "no animation": ({"animations": []}, "has no animation: export it with one, or put it on"),
+    "two animations": ({"animations": 2 * TOLD["animations"]}, r"2 animations of one person \(walk 0, walk 0\)"),
+    "nothing moves": (_animated(channels=[]), "moves no joint"),
+    "only weights": (
+        _animated(channels=[{"sampler": 0, "target": {"node": 1, "path": "weights"}}]), "moves no joint",
+    ),
+    "keys of another number": (_sampled(output=0), "do not fit|not read here"),
+    "keys that are not there": (_sampled(input=999), "is not there"),
+    "another way": (_sampled(interpolation="BEZIER"), "is not known"),
+    "splines of one value": (_sampled(interpolation="CUBICSPLINE"), "do not fit"),
+    "a sampler that is not there": (_animated(samplers=[]), "is not there"),
+    "a node nowhere": ({"nodes": [each | {"translation": [1e999, 0, 0]} for each in TOLD["nodes"]]}, "nowhere|damaged"),
+    "a node of no length": ({"nodes": [each | {"translation": [1, 2]} for each in TOLD["nodes"]]}, "nowhere"),
+    "no person": ({"nodes": [each | {"name": "rope"} for each in TOLD["nodes"]]}, "no joint that looks like"),
+    "everything in one place": ({"nodes": [{**each, "scale": [0, 0, 0]} for each in TOLD["nodes"]]}, "of no length"),
+    "wrong kinds": ({"animations": [7]}, "is damaged"),
+    "compression": ({"extensionsRequired": ["EXT_meshopt_compression"]}, "EXT_meshopt"),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("name", WRONG)
+def test_what_is_wrong_is_one_sentence(name: str) -> None:
+    changes, says = WRONG[name]
+    with pytest.raises(InputError, match=says) as error:
+        read_glb_people(glb_motion(ROTATIONS, ROOT, **changes), name="walk.glb")
+    assert "\n" not in str(error.value) and str(error.value).startswith("walk.glb")
+
+
+def test_a_character_alone_says_where_it_can_be_worn() -> None:
+    with pytest.raises(InputError, match=r"robot\.glb has no animation.*Wear a character"):
+        import_motion(glb_character(), name="robot.glb")
+
+
+def test_compressed_meshes_do_no_harm() -> None:
+    data = glb_motion(
+        ROTATIONS, ROOT, extensionsRequired=["KHR_draco_mesh_compression", "KHR_texture_basisu"]
+    )
+    assert len(read_glb_people(data, name="walk.glb")) == 1
+
+
+def test_long_motions_are_refused_before_they_are_read(monkeypatch: pytest.MonkeyPatch) -> None:
+    with pytest.raises(InputError, match="more than the 600 s allowed"):
+        read_glb_people(glb_motion(ROTATIONS[:4], ROOT[:4], fps=1 / 300), name="walk.glb")
+    monkeypatch.setattr(glb_nodes, "MOST_KEYS", 100)
+    with pytest.raises(InputError, match="key frames"):
+        read_glb_people(WALK, name="walk.glb")
+    monkeypatch.undo()
+    monkeypatch.setattr(reader, "MAX_NUMBERS", 100)
+    with pytest.raises(InputError, match="lower its frame rate"):
+        read_glb_people(WALK, name="walk.glb")
+
+
+def test_large_files_are_told_of_meshes_not_of_frames(tmp_path: Path) -> None:
+    with (tmp_path / "large.glb").open("wb") as file:
+        file.truncate(51 * 2**20)
+    with pytest.raises(InputError, match="reduce its mesh"):
+        read_glb_people(tmp_path / "large.glb")
+
+
+def test_many_animations_are_refused_before_they_are_read() -> None:
+    began = time.process_time()
+    with pytest.raises(InputError, match="animations of one person"):
+        read_glb_people(glb_motion(ROTATIONS, ROOT, animations=TOLD["animations"][:1] * 200), name="walk.glb")
+    assert time.process_time() - began < 2
