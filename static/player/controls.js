@@ -116,7 +116,7 @@ export class Controls {
   }
 
   /** Brings everything to what is true of the player now. */
-  show({ camera, clock, orbit, posing, sample, show }) {
+  show({ clock, framing, orbit, posing, sample, show }) {
     const { root } = this;
     const frame = clock.shown;
     const range = this.find(".pdd-range");
@@ -138,7 +138,7 @@ export class Controls {
     press("ghosts", show.ghosts);
     press("pose", Boolean(posing));
     press("fullscreen", document.fullscreenElement === root || root.classList.contains("pdd-full"));
-    for (const button of root.querySelectorAll("[data-camera]")) button.setAttribute("aria-pressed", String(button.dataset.camera === camera));
+    for (const button of root.querySelectorAll("[data-camera]")) button.setAttribute("aria-pressed", String(button.dataset.camera === framing.preset));
     this.showPart(sample, frame);
   }
 

@@ -67,7 +67,7 @@ export async function mount(element, props, watch, { plotly, empty }) {
       player.load(props.value || null);
     }
     const worn = props.character ?? null;
-    if (player.scene && worn?.id !== player.character?.id) player.wear(worn);
+    if (player.scene && worn?.id !== player.clothes.character?.id) player.clothes.wear(worn);
     const message = props.live ?? null;
     const key = message && `${message.id} ${message.start} ${message.stop}`;
     if (player.scene && key !== heard) {

@@ -1,14 +1,14 @@
 // The player: one element, one scene, one clock. main.js makes these; everything else is a part of it.
 
 import { aim } from "./address.js";
-import { decodeBody } from "./body.js";
 import { Clock } from "./clock.js";
+import { Clothes } from "./clothes.js";
 import { Controls } from "./controls.js";
 import { decode, toScene } from "./decode.js";
+import { Framing } from "./framing.js";
 import { Futures } from "./futures.js";
 import * as live from "./live.js";
 import { Grid } from "./grid.js";
-import { loadBody } from "./loader.js";
 import { Orbit } from "./orbit.js";
 import { Tip } from "./overlay.js";
 import { THEMES, themeName } from "./palette.js";
@@ -17,7 +17,6 @@ import { savePicture } from "./picture.js";
 import { Posing } from "./posing.js";
 import { describe } from "./skeleton.js";
 import { Strip } from "./strip.js";
-import { fit, heading, moments, preset } from "./views.js";
 
 const SPEEDS = [0.25, 0.5, 1, 1.5, 2];
 const FPS_WINDOW = 1500; // ms
@@ -42,6 +41,9 @@ export class Player {
     this.controls = new Controls(root);
     this.clock = new Clock();
     this.orbit = new Orbit();
+    this.show = { trails: false, ghosts: false, bodies: true, skeletons: false, character: false };
+    this.clothes = new Clothes(this);
+    this.framing = new Framing(this);
     this.panes = [];
     this.addPane();
     this.grid = new Grid(this.find(".pdd-grid"), this.panes[0]);
@@ -49,8 +51,6 @@ export class Player {
     this.futures = new Futures(this);
     this.tip = new Tip(this.find(".pdd-tip"));
     this.strip = new Strip(root, { onSeek: (frame) => this.seek(frame) });
-    this.show = { trails: false, ghosts: false, bodies: true, skeletons: false, character: false };
-    this.character = null; // an uploaded one, whom both people may wear
     this.data = null;
     this.director = null; // keeps poses: see direct()
     this.posing = null;
@@ -58,8 +58,6 @@ export class Player {
     this.times = [];
     this.dirty = true;
     this.handle = 0;
-    this.camera = "threequarter";
-    this.box = { width: 960, height: 640, inset: { top: 44, right: 64, bottom: 22, left: 24 } };
     this.root.dataset.theme = this.themeName = themeName();
   }
 
@@ -69,45 +67,15 @@ export class Player {
     this.scene = this.panes[0].scene;
     this.listen();
     this.wake();
-    this.dress();
+    this.clothes.open();
     return this;
-  }
-
-  /** Puts bodies on the people; they stay skeletons where none can be had, or plotly is too slow for them. */
-  async dress() {
-    if (this.scene.mode !== "fast") return;
-    const small = matchMedia("(max-width: 700px)").matches;
-    try {
-      this.bodies = await Promise.all(["a", "b"].map((name) => loadBody(small ? `${name}-small` : name)));
-    } catch (error) {
-      console.error(error);
-      return;
-    }
-    await this.changeClothes();
-    this.dressFutures();
-    this.wake();
-  }
-
-  /** Bodies for the ghosts of futures, once they are there. */
-  async dressFutures() {
-    if (!this.bodies || !this.futures.samples.length) return;
-    this.futures.dress(await Promise.all(["a-small", "b-small"].map(loadBody)));
-  }
-
-  /** Lighter bodies for people who are seen small, many at a time. */
-  async dressGrid() {
-    if (!this.bodies || this.show.character) return;
-    const several = () => this.grid.cells.length > 0;
-    const bodies = several() ? await Promise.all(["a-small", "b-small"].map(loadBody)) : this.bodies;
-    if (several() === (bodies !== this.bodies)) this.panes[0].dress(bodies);
   }
 
   addPane() {
     const panes = this.find(".pdd-panes");
     panes.append(panes.querySelector("template").content.cloneNode(true));
     const pane = new Pane(panes.lastElementChild);
-    const bodies = this.show?.character ? [this.character.body, this.character.body] : this.bodies;
-    if (bodies) pane.dress(bodies);
+    if (this.clothes.worn) pane.dress(this.clothes.worn);
     this.panes.push(pane);
     return pane;
   }
@@ -161,9 +129,9 @@ export class Player {
     if (!goesOn) this.clock.frame = Math.min(this.data.samples[0].past_until ?? 0, this.data.samples[0].frames - 1);
     this.controls.load(this.data);
     this.futures.load(this.data);
-    this.dressFutures();
+    this.clothes.dressFutures();
     this.select(0);
-    if (!goesOn) this.resetCamera();
+    if (!goesOn) this.framing.reset();
     if (this.sample.live) this.clock.pause();
     else if (!goesOn) this.clock.play();
     if (!payload.rounds && !payload.stream && !this.sample.live) aim(this);
@@ -198,7 +166,7 @@ export class Player {
       pane.load(this.sample?.beside ?? null, this.sample?.beside?.caption);
     }
     this.resize();
-    if (this.data) this.resetCamera();
+    if (this.data) this.framing.reset();
   }
 
   /** Another sample of the same payload, at the same moment and under the same camera. */
@@ -214,8 +182,8 @@ export class Player {
     this.split(Boolean(sample.beside));
     if (reshaped) {
       this.resize();
-      this.dressGrid();
-    } else this.measure();
+      this.clothes.dressGrid();
+    } else this.framing.measure();
     this.strip.load(sample, this.theme.curve);
     this.controls.select(sample, this.sampleIndex);
     this.refresh();
@@ -226,7 +194,7 @@ export class Player {
     if (this.focus === cell || !this.data?.samples[this.sampleIndex].cells) return;
     this.focus = cell;
     this.select(this.sampleIndex);
-    this.orbit.cut(this.wanted());
+    this.orbit.cut(this.framing.wanted());
   }
 
   // ---- actions -------------------------------------------------------------------------------
@@ -296,40 +264,12 @@ export class Player {
     else if (action === "last") clock.seek(clock.frames - 1);
     else if (action === "faster") this.setSpeed(SPEEDS[Math.min(Math.max(SPEEDS.indexOf(clock.speed) + argument, 0), SPEEDS.length - 1)]);
     else if (action === "sample") this.select(this.sampleIndex + argument);
-    else if (action === "camera") this.goTo(argument);
+    else if (action === "camera") this.framing.goTo(argument);
     else if (action === "picture") this.savePicture();
     else if (toggle && action === "follow") this.orbit.following = !this.orbit.following;
-    else if (action === "figure") this.nextFigure();
+    else if (action === "figure") this.clothes.next();
     else if (toggle) this.show[action] = !this.show[action];
     this.refresh();
-  }
-
-  /** Puts an uploaded character on both people, as motion/character.py packs it, or takes it off for null. */
-  wear(stored) {
-    this.character = stored && { id: stored.id, body: decodeBody(stored) };
-    Object.assign(this.show, { character: Boolean(stored), ...(stored && { bodies: true, skeletons: false }) });
-    this.changeClothes();
-    this.refresh();
-  }
-
-  /** Bodies for the panes: the uploaded character's, or those that ship. */
-  async changeClothes() {
-    const { character, show } = this;
-    if (this.scene?.mode !== "fast") return;
-    const bodies = show.character ? [character.body, character.body] : this.bodies;
-    if (bodies) for (const pane of this.panes) pane.dress(bodies);
-    if (!show.character) await this.dressGrid();
-  }
-
-  /** Bodies, skeletons, both and, where there is one, the uploaded character: each in its turn. */
-  nextFigure() {
-    const { bodies, skeletons, character } = this.show;
-    if (character || (bodies && skeletons && this.character)) {
-      Object.assign(this.show, { character: !character, bodies: true, skeletons: false });
-      this.changeClothes();
-    } else if (bodies && skeletons) this.show.skeletons = false;
-    else if (bodies) Object.assign(this.show, { bodies: false, skeletons: true });
-    else this.show.bodies = true;
   }
 
   /** While a message covers the scene nothing is drawn. */
@@ -341,44 +281,6 @@ export class Player {
   setSpeed(speed) {
     this.clock.speed = speed;
     this.controls.show(this);
-  }
-
-  /** Glides to a preset; at once where `now` is null. */
-  goTo(name, now = performance.now()) {
-    this.camera = name;
-    const view = preset(name, heading(this.everybody(this.clock.shown), this.skeleton));
-    const wanted = this.wanted(view);
-    if (!this.orbit.following || now === null) this.orbit.jump(wanted.target);
-    this.orbit.goTo({ ...view, distance: wanted.distance }, now);
-    this.refresh();
-  }
-
-  /** What the camera should look at, and from how far, to hold everybody in all views about this moment. */
-  wanted(view = this.orbit.glide?.to ?? this.orbit) {
-    const now = this.everybody(this.clock.shown);
-    const all = (frame) => [...this.everybody(frame), ...this.futures.at(frame).flatMap(({ people }) => people)];
-    const soon = moments(this.clock.shown, this.clock).flatMap(all);
-    return fit(now, soon, this.skeleton, view, this.box);
-  }
-
-  /** The room for people in a view, in pixels: what names, captions and tools leave of it. */
-  measure() {
-    const { clientWidth: width, clientHeight: height } = this.panes[0].host;
-    if (!width || !height) return; // in a closed tab there is no size yet
-    if (this.grid.cells.length) {
-      this.box = { width, height, inset: { top: 12, right: 8, bottom: 24, left: 8 } };
-      return;
-    }
-    const inset = { top: 44, right: 24, bottom: 22, left: 24 };
-    const tools = this.find(".pdd-tools").getBoundingClientRect();
-    if (tools.width > tools.height) inset.bottom += tools.height; // on narrow stages they lie below
-    else inset.right += tools.width;
-    if (this.sample?.caption) inset.bottom = Math.max(inset.bottom, 48);
-    this.box = { width, height, inset };
-  }
-
-  resetCamera() {
-    this.goTo("threequarter", null);
   }
 
   async toggleFullscreen() {
@@ -422,7 +324,7 @@ export class Player {
 
   /** A hand has turned the view: it is no longer that of a preset. */
   turned() {
-    this.camera = null;
+    this.framing.preset = null;
     this.wake();
   }
 
@@ -444,7 +346,7 @@ export class Player {
   resize() {
     this.grid.fit();
     for (const pane of this.panes) pane.scene?.resize();
-    this.measure();
+    this.framing.measure();
     this.strip.paint();
     this.refresh();
   }
@@ -481,7 +383,7 @@ export class Player {
     const before = this.clock.frame;
     this.clock.advance(now);
     const pose = this.data && this.everybody(this.clock.shown);
-    const wanted = pose && this.wanted();
+    const wanted = pose && this.framing.wanted();
     if (this.clock.frame < before) {
       this.orbit.cut(wanted); // the loop begins anew
       this.rounds++;

@@ -108,10 +108,10 @@ def test_everybody_is_in_view_over_the_whole_clip(player, button, size):
         const wrong = [];
         for (const camera of ["threequarter", "front", "side", "top"]) {
             clock.seek(0);
-            player.goTo(camera, null);
+            player.framing.goTo(camera, null);
             for (let frame = 0; frame < clock.frames; frame++) {
                 clock.seek(frame);
-                orbit.step(0, 1 / clock.fps, player.wanted());
+                orbit.step(0, 1 / clock.fps, player.framing.wanted());
                 if (frame % 10) continue;
                 player.paint(player.everybody(frame));
                 for (const pane of player.shown) {
@@ -194,7 +194,7 @@ def test_both_wear_an_uploaded_character_until_the_figure_button_takes_it_off(pl
     page = player()
     until(page, DRESSED)
     pause(page)
-    page.evaluate("body => window.__pasdedeux.player.wear(body)", {"id": "x", **packed_body(body)})
+    page.evaluate("body => window.__pasdedeux.player.clothes.wear(body)", {"id": "x", **packed_body(body)})
     page.locator(".pdd-range").fill("93")
     until(page, "window.__pasdedeux.frame === 93 && window.__pasdedeux.loops === 0")
     duet = runpy.run_path(str(Path(__file__).with_name("harness.py")))["walking_duet"]()
@@ -212,5 +212,5 @@ def test_both_wear_an_uploaded_character_until_the_figure_button_takes_it_off(pl
         _, told = page.evaluate(f"({READ_PLAYER})(null, '')")
         assert json.loads(told)["character"] == worn, "a film is told, too"
         page.keyboard.press("s")
-    page.evaluate("window.__pasdedeux.player.wear(null)")
+    page.evaluate("window.__pasdedeux.player.clothes.wear(null)")
     until(page, "document.querySelector('[data-act=figure]').dataset.figure !== 'character'")

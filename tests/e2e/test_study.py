@@ -133,3 +133,8 @@ def test_two_sets_of_files_are_a_study_without_any_run(lab: str, open_page: Call
     page.click("#study-make")
     expect(page.locator("#study-status .pd-done")).to_contain_text("The study has 2 pairs", timeout=SLOW)
     expect(page.locator("#study-which input")).to_have_value(re.compile("Recorded, Uploaded"))
+    page.click("#study-begin")
+    expect(page.locator("#study-make")).to_be_visible()
+    for name in ("#study-files", "#study-more-files"):
+        expect(page.locator(f"{name} input[type=file]")).to_be_attached()
+        expect(page.locator(name)).not_to_contain_text("wave")

@@ -8,24 +8,22 @@ from __future__ import annotations
 
 import contextlib
 import os
-import pickle
 import subprocess
 import sys
 from collections.abc import Callable, Generator, Iterator, Sequence
-from dataclasses import dataclass
 from fractions import Fraction
 from importlib.util import find_spec
 from pathlib import Path
 from typing import cast
 
 import numpy as np
-from numpy.typing import NDArray
 from PIL import Image
 
 from motion.errors import InputError
 from motion.formats.files import replacing
 
-from .camera import Camera, cameras
+from .camera import cameras
+from .parcel import Job, packed, unpacked
 from .stage import Pane, Picture, Stage, Style, paste, words
 
 SUFFIXES = (".mp4", ".webm", ".gif")
@@ -97,7 +95,7 @@ def write_film(
         yaw=yaw,
         elevation=elevation,
     )
-    job = _Job(tuple(panes), style, size, times, views, title)
+    job = Job(tuple(panes), style, size, times, views, title)
     with replacing(path) as temporary, contextlib.closing(_pictures(job)) as pictures:
         counted = _counted(pictures, len(times), progress)
         if suffix == ".gif":
@@ -138,67 +136,53 @@ def _cell(size: tuple[int, int], panes: int) -> tuple[int, int]:
     return size[0] // columns, size[1] // rows
 
 
-@dataclass(frozen=True)
-class _Job:
-    """All that a process needs to draw."""
-
-    panes: tuple[Pane, ...]
-    style: Style
-    size: tuple[int, int]
-    times: NDArray[np.floating]
-    views: list[Camera]
-    title: str
-
-    def part(self, first: int, step: int) -> _Job:
-        """Every ``step``-th picture."""
-        return _Job(
-            self.panes, self.style, self.size, self.times[first::step], self.views[first::step], self.title
-        )
-
-    def draw(self) -> Iterator[Picture]:
-        size = _cell(self.size, len(self.panes))
-        stages = [Stage(pane, self.style, size).pictures(self.times, self.views) for pane in self.panes]
-        for seconds, shown in zip(self.times, zip(*stages, strict=True), strict=True):
-            whole = self._joined(shown)
-            self._caption(whole, float(seconds))
-            yield whole
-
-    def _joined(self, shown: Sequence[Picture]) -> Picture:
-        """The panes in their columns and rows; what is left over is as the last one's edge."""
-        columns, rows = _shape(len(shown))
-        blank = [np.broadcast_to(shown[-1][:1, :1], shown[-1].shape)] * (columns * rows - len(shown))
-        cells = [*shown, *blank]
-        lines = [np.concatenate(cells[k : k + columns], axis=1) for k in range(0, len(cells), columns)]
-        whole = np.concatenate(lines)
-        missing = (self.size[1] - whole.shape[0], self.size[0] - whole.shape[1])
-        return np.pad(whole, ((0, missing[0]), (0, missing[1]), (0, 0)), mode="edge")
-
-    def _caption(self, whole: Picture, seconds: float) -> None:
-        height, ink = self.size[1], self.style.colours.ink
-        small = max(round(height / 48), 9)
-        (width, tall), (columns, rows) = _cell(self.size, len(self.panes)), _shape(len(self.panes))
-        for number, pane in enumerate(self.panes):
-            row, column = divmod(number, columns)
-            if pane.caption:
-                label = words(pane.caption, ink, small)
-                place = round(width * (column + 0.5) - label.shape[1] / 2), tall * row + small // 2
-                paste(whole, label, *place)
-        line_ink = [round(255 * c) for c in ink]
-        for column in range(1, columns):
-            whole[:, width * column, :3] = line_ink
-        for row in range(1, rows):
-            whole[tall * row, :, :3] = line_ink
-        line = f"{self.title}  ·  {seconds:.2f} s" if self.title else f"{seconds:.2f} s"
-        paste(whole, words(line, ink, small), small, height - 2 * small)
+def _draw(job: Job) -> Iterator[Picture]:
+    """The pictures of a job, (height, width, 4) each."""
+    size = _cell(job.size, len(job.panes))
+    stages = [Stage(pane, job.style, size).pictures(job.times, job.views) for pane in job.panes]
+    for seconds, shown in zip(job.times, zip(*stages, strict=True), strict=True):
+        whole = _joined(job, shown)
+        _caption(job, whole, float(seconds))
+        yield whole
 
 
-def _pictures(job: _Job) -> Generator[Picture, None, None]:
+def _joined(job: Job, shown: Sequence[Picture]) -> Picture:
+    """The panes in their columns and rows; what is left over is as the last one's edge."""
+    columns, rows = _shape(len(shown))
+    blank = [np.broadcast_to(shown[-1][:1, :1], shown[-1].shape)] * (columns * rows - len(shown))
+    cells = [*shown, *blank]
+    lines = [np.concatenate(cells[k : k + columns], axis=1) for k in range(0, len(cells), columns)]
+    whole = np.concatenate(lines)
+    missing = (job.size[1] - whole.shape[0], job.size[0] - whole.shape[1])
+    return np.pad(whole, ((0, missing[0]), (0, missing[1]), (0, 0)), mode="edge")
+
+
+def _caption(job: Job, whole: Picture, seconds: float) -> None:
+    height, ink = job.size[1], job.style.colours.ink
+    small = max(round(height / 48), 9)
+    (width, tall), (columns, rows) = _cell(job.size, len(job.panes)), _shape(len(job.panes))
+    for number, pane in enumerate(job.panes):
+        row, column = divmod(number, columns)
+        if pane.caption:
+            label = words(pane.caption, ink, small)
+            place = round(width * (column + 0.5) - label.shape[1] / 2), tall * row + small // 2
+            paste(whole, label, *place)
+    line_ink = [round(255 * c) for c in ink]
+    for column in range(1, columns):
+        whole[:, width * column, :3] = line_ink
+    for row in range(1, rows):
+        whole[tall * row, :, :3] = line_ink
+    line = f"{job.title}  ·  {seconds:.2f} s" if job.title else f"{seconds:.2f} s"
+    paste(whole, words(line, ink, small), small, height - 2 * small)
+
+
+def _pictures(job: Job) -> Generator[Picture, None, None]:
     """All pictures in their order, drawn here or by one process a core."""
     workers = min(
         len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1, 4
     )
     if workers < 2 or len(job.times) <= _FEW:
-        yield from job.draw()
+        yield from _draw(job)
         return
     count = 4 * job.size[0] * job.size[1]
     with contextlib.ExitStack() as running:
@@ -206,7 +190,7 @@ def _pictures(job: _Job) -> Generator[Picture, None, None]:
         for number in range(workers):
             worker = running.enter_context(_worker())
             assert worker.stdin is not None and worker.stdout is not None
-            worker.stdin.write(pickle.dumps(job.part(number, workers)))
+            worker.stdin.write(packed(job.part(number, workers)))
             worker.stdin.close()
             outputs.append(worker.stdout)
         for frame in range(len(job.times)):
@@ -243,11 +227,10 @@ def _worker() -> Iterator[subprocess.Popen[bytes]]:
 def draw_for_parent() -> None:
     """Draws the job on standard input and writes raw pictures to standard output.
 
-    Only :func:`_pictures` starts this, in a child process whose input is a pipe from it: nothing that a user sent is
-    ever unpickled.
+    Only :func:`_pictures` starts this, in a child process whose input is a pipe from it.
     """
-    job = pickle.load(sys.stdin.buffer)
-    for picture in job.draw():
+    job = unpacked(sys.stdin.buffer.read())
+    for picture in _draw(job):
         sys.stdout.buffer.write(picture.tobytes())
     sys.stdout.buffer.flush()
 

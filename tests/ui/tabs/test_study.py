@@ -147,7 +147,7 @@ def test_a_study_is_made_of_chosen_runs_and_its_link_is_shown() -> None:
     fold, line, making, way, ids = study.choose(chosen("a", "b"))
     assert fold == gr.update(open=True) and "2 of your runs" in line and making == gr.update(visible=True)
     assert way["value"] == "Guidance"
-    line, _, reading, which, link, html, table, closing = study.create(
+    line, _, _, _, reading, which, link, html, table, closing = study.create(
         ids, "Guidance", QUESTIONS[1], "", 0, 2, True, False, *NO_FILES
     )
     assert "The study has 2 pairs" in line and link == "study/key" and reading == gr.update(visible=True)
@@ -182,10 +182,11 @@ def test_two_uploaded_sets_make_a_study_without_any_run(tmp_path: Path) -> None:
     assert making == gr.update(visible=True) and way == gr.update(visible=False), (
         "there is nothing to choose from"
     )
-    line, making, *_ = study.create(
+    line, making, *files, _, _, _, _, _, _ = study.create(
         ids, "", "Which?", "", 0, 1, True, False, ours, " Ours ", theirs, "Theirs"
     )
     assert "The study has" in line and making == gr.update(visible=False)
+    assert files == [None, None], "the next study is not made of them"
     (made,) = study.studies.made  # type: ignore[attr-defined]
     assert {name: [each.key for each in given] for name, given in made.sets.items()} == {
         "Ours": ["hug", "wave"], "Theirs": ["hug", "wave"],
@@ -220,7 +221,7 @@ def test_uploaded_sets_that_make_no_study_are_a_sentence(
     study = panel(run("a"))
     given = [part for name in names for part in ([file] if name else None, name or "Unused")]
     line, *rest = study.create(ids, ONE_SET, "?", "", 0, 0, True, False, *given)
-    assert says in unescape(line) and "pd-error" in line and rest == [gr.skip()] * 7
+    assert says in unescape(line) and "pd-error" in line and rest == [gr.skip()] * 9
     assert not study.studies.made  # type: ignore[attr-defined]
 
 

@@ -30,7 +30,7 @@ READ_PLAYER = """(record, _) => {
   const { orbit, show } = player;
   const bodies = show.bodies ?? false, skeletons = show.skeletons ?? !bodies;
   return [record, JSON.stringify({
-    yaw: orbit.yaw, elevation: orbit.elevation, view: player.framed, follow: orbit.following,
+    yaw: orbit.yaw, elevation: orbit.elevation, view: player.framing.preset, follow: orbit.following,
     frame: Math.round(player.clock.shown), distance: orbit.distance,
     trails: Boolean(show.trails), theme: player.themeName, sample: player.sampleIndex,
     look: bodies && skeletons ? "both" : bodies ? "bodies" : "skeletons", character: Boolean(show.character),

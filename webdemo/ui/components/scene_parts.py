@@ -3,17 +3,22 @@
 from __future__ import annotations
 
 import json
+import secrets
 from collections.abc import Mapping
 from dataclasses import replace
 from typing import Any
 
 from motion import Duet, InputError
 from webdemo.inference.actor import FPS
-from webdemo.inference.requests import Result
-from webdemo.inference.story import Beat, FloorPath, Pose, SceneRequest, read_words
+from webdemo.inference.requests import MAX_SEED, Result
+from webdemo.inference.story import Beat, FloorPath, Pose, SceneRequest, read_words, split_sentence
 
 from .exports import Record
-from .story import story_fields, story_value
+from .story import span_of, story_fields, story_value
+
+FUTURES = 3
+FUTURE_SECONDS = 4.0
+"""Length of a future without words."""
 
 
 def place_of(shown: str) -> dict[str, int]:
@@ -34,6 +39,33 @@ def part_fields(
         "part": part, "story": story, "words": words, "guidance": guidance, "steps": steps, "damping": damping,
         "record": record, "earlier": earlier, "seed": 0, **place_of(place),
     }  # fmt: skip
+
+
+def part_request(fields: Mapping[str, Any]) -> SceneRequest:
+    """What the fields of :func:`part_fields` ask for: the selected span again, or several futures.
+
+    Raises:
+        InputError: without a motion or a span.
+    """
+    duet, story = shown_duet(fields["record"], fields["sample"]), story_fields(fields["story"])
+    plain = {f: fields[f] for f in ("guidance", "steps", "damping")}
+    plain["seed"] = secrets.randbelow(MAX_SEED + 1)
+    words = str(fields["words"] or "").strip()
+    if fields["part"] == "futures":
+        start = min(fields["frame"] / duet.fps, duet.seconds)
+        beats = split_sentence(words) or (Beat(seconds=FUTURE_SECONDS),)
+        length = start + sum(beat.length for beat in beats)
+        paths, poses = wishes_in(story, start, length, length)
+        return SceneRequest(
+            beats=beats, paths=paths, poses=poses, motion=duet, start=start, samples=FUTURES, **plain
+        )
+    span = span_of(fields["story"])
+    if span is None:
+        raise InputError("No span is selected: drag on the ruler over the beats, or type its seconds.")
+    start, end = max(0.0, span[0]), min(span[1], duet.seconds)
+    beats = split_sentence(words) or beats_in(story["beats"], start, end)
+    paths, poses = wishes_in(story, start, end, duet.seconds)
+    return SceneRequest(beats=beats, paths=paths, poses=poses, motion=duet, start=start, end=end, **plain)
 
 
 def shown_duet(record: Record | None, sample: int) -> Duet:

@@ -2,33 +2,31 @@
 
 from __future__ import annotations
 
-import secrets
 from collections.abc import Iterator, Mapping
 from functools import partial
 from typing import Any
 
 import gradio as gr
 
-from motion import Duet, InputError
-from webdemo.inference.requests import MAX_SEED, Progress, Result
-from webdemo.inference.story import Beat, SceneProgress, SceneRequest, read_words, split_sentence, write_story
+from motion import Duet
+from webdemo.inference.requests import Progress, Result
+from webdemo.inference.story import SceneProgress, SceneRequest, read_words, split_sentence, write_story
 from webdemo.inference.story.beats import seconds_of, story_title
 from webdemo.ui.components.exports import Record
 from webdemo.ui.components.player import show
 from webdemo.ui.components.scene_parts import (
-    beats_in,
+    FUTURES,
     laid_out,
     only_sample,
     part_fields,
+    part_request,
     place_of,
     shown_duet,
     went_on,
-    wishes_in,
 )
 from webdemo.ui.components.story import (
     StoryLine,
     motion_marks,
-    span_of,
     story_fields,
     story_value,
     value_of,
@@ -65,9 +63,6 @@ EXAMPLES = (
     ),
 )
 """(name, story) of the examples."""
-FUTURES = 3
-FUTURE_SECONDS = 4.0
-"""Length of a future without words."""
 MOST_EARLIER = 10
 """Motions that can be gone back to."""
 
@@ -85,28 +80,6 @@ class SceneTab(SweepTab):
         """The whole story; raises InputError where it cannot be made."""
         plain = {f: fields[f] for f in ("seed", "guidance", "steps", "damping")}
         return SceneRequest(**story_fields(fields["story"]), samples=int(fields["samples"]), **plain)
-
-    def part(self, fields: Mapping[str, Any], record: Record | None, *, ahead: bool) -> SceneRequest:
-        """The selected span again, or several futures from the player's frame on."""
-        duet, story = shown_duet(record, fields["sample"]), story_fields(fields["story"])
-        plain = {f: fields[f] for f in ("guidance", "steps", "damping")}
-        plain["seed"] = secrets.randbelow(MAX_SEED + 1)
-        words = str(fields["words"] or "").strip()
-        if ahead:
-            start = min(fields["frame"] / duet.fps, duet.seconds)
-            beats = split_sentence(words) or (Beat(seconds=FUTURE_SECONDS),)
-            length = start + sum(beat.length for beat in beats)
-            paths, poses = wishes_in(story, start, length, length)
-            return SceneRequest(
-                beats=beats, paths=paths, poses=poses, motion=duet, start=start, samples=FUTURES, **plain
-            )
-        span = span_of(fields["story"])
-        if span is None:
-            raise InputError("No span is selected: drag on the ruler over the beats, or type its seconds.")
-        start, end = max(0.0, span[0]), min(span[1], duet.seconds)
-        beats = split_sentence(words) or beats_in(story["beats"], start, end)
-        paths, poses = wishes_in(story, start, end, duet.seconds)
-        return SceneRequest(beats=beats, paths=paths, poses=poses, motion=duet, start=start, end=end, **plain)
 
     def cell_fields(self, fields: Mapping[str, Any], cell: Mapping[str, Any]) -> dict[str, Any]:
         """The story as it is laid out, with the cell's settings."""
@@ -304,7 +277,7 @@ class SceneTab(SweepTab):
             return
         part = fields.get("part")
         if part is not None:
-            wanted = self.part(fields, fields["record"], ahead=part == "futures")
+            wanted = part_request(fields)
             earlier = [*fields["earlier"], fields["record"]][-MOST_EARLIER:]
         else:
             asked = {**fields, "story": laid_out(fields)}

@@ -149,8 +149,9 @@ class StudyPanel:
             *uploads,
         ]  # fmt: skip
         self.make.click(
-            self.create, inputs=fields, outputs=[self.line, self.making, *shown], trigger_mode="once", **quick
-        )
+            self.create, inputs=fields, outputs=[self.line, self.making, *uploads[::2], *shown],
+            trigger_mode="once", **quick,
+        )  # fmt: skip
         tab.select(self.show, inputs=self.which, outputs=shown, **quick)
         gr.on([self.which.input, self.refresh.click], self.show, inputs=self.which, outputs=shown, **quick)
         self.closing.click(self.close, inputs=self.which, outputs=[self.line, *shown], **quick)
@@ -197,7 +198,10 @@ class StudyPanel:
         self, ids: list[str], way: str, question: str, title: str, each: float, checks: float, sentence: bool,
         reveal: bool, *uploads: Any,
     ) -> Updates:  # fmt: skip
-        """Makes the study and shows its link; ``uploads`` are files and name of each uploaded set in turn."""
+        """Makes the study, empties the fields for files and shows its link.
+
+        ``uploads`` are files and name of each uploaded set in turn.
+        """
         try:
             sets: dict[str, Sequence[Stimulus]] = {}
             if ids:
@@ -218,9 +222,10 @@ class StudyPanel:
                 ),
             )  # fmt: skip
         except Exception as error:
-            return status(error_line(error), tone="error"), *((gr.skip(),) * 7)
+            return status(error_line(error), tone="error"), *((gr.skip(),) * (7 + len(uploads) // 2))
         line = f"The study has {count(study.pairs, 'pair')}. Send the link to the people who are to vote."
-        return status(line, tone="done"), gr.update(visible=False), *self.show(study.id)
+        emptied = (None for _ in uploads[::2])  # or the next study would be made of them, too
+        return status(line, tone="done"), gr.update(visible=False), *emptied, *self.show(study.id)
 
     def show(self, study: str | None) -> Updates:
         """A study's link and result; the newest where none is named."""
