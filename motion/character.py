@@ -9,7 +9,6 @@ such as fingers, move with the nearest one above them that it has.
 from __future__ import annotations
 
 import base64
-from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
@@ -20,7 +19,7 @@ from .errors import InputError
 from .formats.glb_reader import Character
 from .kinematics import swing
 from .retarget import leg_scale, retarget, up_rotation
-from .rigs import RigMotion, match_joints, matched_names
+from .rigs import RigMotion, match_joints, pairs_of
 from .skeleton import SMPL22
 
 Array = NDArray[np.floating]
@@ -43,8 +42,7 @@ def _named(*names: str) -> list[int]:
     return [SMPL22.index(name) for name in names]
 
 
-_SPINE = _named("spine1", "spine2", "spine3")
-_TRUNK = [*_named("pelvis", "left_collar", "right_collar", "neck", "head"), *_SPINE]
+_TRUNK = _named("pelvis", "spine1", "spine2", "spine3", "neck", "head", "left_collar", "right_collar")
 _MARKS = [
     _named("left_hip", "right_hip"),
     _named("left_shoulder", "right_shoulder"),
@@ -69,8 +67,7 @@ def character_body(character: Character) -> Body:
     rig = _rig(character)
     parts = match_joints(rig)
     upright = up_rotation(rig, parts) * leg_scale(rig)
-    ours = {rig.joint_names.index(theirs): SMPL22.index(name) for theirs, name in matched_names(rig)}
-    ours |= _spread(parts.spine[1:])
+    ours = pairs_of(rig)
     owner = np.array([_owner(rig, joint, ours) for joint in range(len(rig.parents))])
     joints = rig.positions[0] @ upright.T
     places = np.full((SMPL22.num_joints, 3), np.nan)
@@ -104,12 +101,6 @@ def _rig(character: Character) -> RigMotion:
     return RigMotion(
         character.joint_names, character.parents, offsets, positions, None, 30.0, name=character.name
     )
-
-
-def _spread(spine: Sequence[int]) -> dict[int, int]:
-    """SMPL22's joints of a rig's spine of any length: the last carries the shoulders in both."""
-    shares = np.linspace(0, 2, len(spine)) if len(spine) > 1 else np.array([2.0])
-    return {joint: _SPINE[round(share)] for joint, share in zip(spine, shares, strict=False)}
 
 
 def _owner(rig: RigMotion, joint: int, ours: dict[int, int]) -> int:

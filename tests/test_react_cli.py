@@ -225,4 +225,4 @@ def test_the_partner_comes_on_the_rig_of_the_file_too(
     code, _, said = react(
         capsys, "--actor", write(standing(60), tmp_path / "x.npz")[0], "--own-rig", "--out", rig
     )
-    assert code == 2 and "needs the rig of a BVH" in said
+    assert code == 2 and "rig of a BVH or .glb file, and x.npz is none" in said

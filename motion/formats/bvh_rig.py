@@ -10,7 +10,6 @@ from __future__ import annotations
 import re
 from dataclasses import replace
 from pathlib import Path
-from typing import cast
 
 import numpy as np
 from numpy.typing import NDArray
@@ -18,37 +17,19 @@ from scipy.spatial.transform import Rotation
 
 from motion.body import bone_rotations
 from motion.clip import Clip
-from motion.errors import InputError
-from motion.kinematics import swing
-from motion.retarget import floor_on_smpl, leg_scale, retarget, up_rotation
+from motion.retarget import floor_on_smpl, retarget, up_rotation
 from motion.rigs import RigMotion, match_joints, matched_names
 from motion.skeleton import SMPL22
 
 from .bvh import read_bvh, read_rotations
 from .bvh_hierarchy import Joint
-from .files import ascii_bytes, read_bytes, write_files
+from .files import ascii_bytes, read_bytes
+from .rig_pose import check_smpl, local_of, posed, root_path
 
 Array = NDArray[np.floating]
 
 _ENOUGH = 600
 """Frames of the file from which the rig is learned."""
-_NEXT = {
-    "collar": "shoulder",
-    "shoulder": "elbow",
-    "elbow": "wrist",
-    "hip": "knee",
-    "knee": "ankle",
-    "ankle": "foot",
-}
-
-
-def write_on_rig(clip: Clip, reference: str | Path, path: str | Path) -> list[Path]:
-    """Writes one person as BVH on the rig of another BVH file.
-
-    Raises:
-        InputError: as :func:`bvh_on_rig`, and where the file cannot be written.
-    """
-    return write_files({Path(path): bvh_on_rig(clip, reference)})
 
 
 def bvh_on_rig(clip: Clip, reference: str | Path | bytes, *, name: str | None = None) -> bytes:
@@ -65,10 +46,7 @@ def bvh_on_rig(clip: Clip, reference: str | Path | bytes, *, name: str | None = 
     Raises:
         InputError: for another skeleton, or a file that is no BVH of one person.
     """
-    if clip.skeleton.joint_names != SMPL22.joint_names:
-        raise InputError(
-            f"A rig is moved by SMPL's 22 joints, not by {clip.skeleton.name}: retarget the motion."
-        )
+    check_smpl(clip)
     rig = read_bvh(reference, name=name)
     joints, turned, values = read_rotations(reference, name=name, most=_ENOUGH)
     frames = len(turned)
@@ -77,9 +55,14 @@ def bvh_on_rig(clip: Clip, reference: str | Path | bytes, *, name: str | None = 
     upright = up_rotation(rig, match_joints(rig))
     pairs = {rig.joint_names.index(theirs): SMPL22.index(ours) for theirs, ours in matched_names(rig)}
     constants = _learned(rig, turned, upright, pairs)
-    world, local = _posed(rig, clip, pairs, constants, turned)
+    # Fingers and the like stay as they are on average.
+    usual = np.stack([_mean_rotation(turned[:, joint]) for joint in range(len(joints))])
+    usual[[joint for joint, parent in enumerate(rig.parents) if parent < 0]] = np.eye(3)
+    world = posed(rig, rig.offsets, clip, pairs, constants, usual)
+    local = local_of(world, rig.parents)
     local[:, 0] = upright.T @ world[:, 0]
-    root = _root_path(rig, clip, world, upright) / rig.metres_per_unit
+    path = root_path(rig, rig.offsets, clip, world, floor_on_smpl(rig))
+    root = path @ upright / rig.metres_per_unit
     return _text(reference, name, joints, local, root, values, clip.fps)
 
 
@@ -101,56 +84,6 @@ def _learned(rig: RigMotion, turned: Array, upright: Array, pairs: dict[int, int
         joint: _mean_rotation(np.swapaxes(own[:, ours], -1, -2) @ (upright @ world[:, joint]))
         for joint, ours in pairs.items()
     }
-
-
-def _posed(
-    rig: RigMotion, clip: Clip, pairs: dict[int, int], constants: dict[int, Array], turned: Array
-) -> tuple[Array, Array]:
-    """World (Y up) and local rotations (T, J, 3, 3) of the rig in the clip's pose."""
-    positions = clip.positions.astype(np.float64)
-    body = bone_rotations(positions)
-    count = len(rig.parents)
-    world, local = np.empty((len(positions), count, 3, 3)), np.empty((len(positions), count, 3, 3))
-    by_name = {SMPL22.joint_names[ours]: joint for joint, ours in pairs.items()}
-    for joint, parent in enumerate(rig.parents):
-        if joint in pairs:
-            ours = SMPL22.joint_names[pairs[joint]]
-            world[:, joint] = body[:, pairs[joint]] @ constants[joint]
-            side, _, part = ours.rpartition("_")
-            after = by_name.get(f"{side}_{_NEXT.get(part)}")
-            if (
-                after is not None
-                and rig.parents[after] == joint
-                and np.linalg.norm(rig.offsets[after]) > 1e-4
-            ):
-                bone = world[:, joint] @ (rig.offsets[after] / np.linalg.norm(rig.offsets[after]))
-                wanted = positions[:, pairs[after]] - positions[:, pairs[joint]]
-                wanted /= np.maximum(np.linalg.norm(wanted, axis=-1, keepdims=True), 1e-9)
-                world[:, joint] = swing(bone, wanted) @ world[:, joint]
-        elif parent >= 0:  # fingers and the like stay as they are on average
-            world[:, joint] = world[:, parent] @ _mean_rotation(turned[:, joint])
-        else:
-            world[:, joint] = np.eye(3)
-        local[:, joint] = (
-            world[:, joint] if parent < 0 else np.swapaxes(world[:, parent], -1, -2) @ world[:, joint]
-        )
-    return world, local
-
-
-def _root_path(rig: RigMotion, clip: Clip, world: Array, upright: Array) -> Array:
-    """(T, 3) metres in the file's axes where the root is, so that the hips are where the person's are."""
-    places = np.zeros((len(world), len(rig.parents), 3))
-    for joint, parent in enumerate(rig.parents):
-        if parent >= 0:
-            places[:, joint] = places[:, parent] + world[:, parent] @ rig.offsets[joint]
-    parts = match_joints(rig)
-    hips = cast(list[int], [parts.left["hip"], parts.right["hip"]])  # found, or match_joints had raised
-    ours = [SMPL22.index("left_hip"), SMPL22.index("right_hip")]
-    scale = leg_scale(rig)
-    middle = clip.positions[:, ours].astype(np.float64).mean(axis=1) + np.array(
-        [0.0, floor_on_smpl(rig), 0.0]
-    )
-    return (middle / scale - places[:, hips].mean(axis=1)) @ upright
 
 
 def _text(

@@ -58,13 +58,12 @@ class Buffer:
         return len(self.gltf.accessors) - 1
 
 
-def write_glb(duet: Duet, path: str | Path, *, body: Body | None = None) -> list[Path]:
+def write_glb(duet: Duet, path: str | Path) -> list[Path]:
     """Writes one .glb with both people, named by their roles, and one animation.
 
     Args:
         duet: on SMPL22.
         path: of the file.
-        body: worn by both, such as one of :func:`motion.character.character_body`; a body each by default.
 
     Returns:
         the path, in a list as for every format.
@@ -76,10 +75,10 @@ def write_glb(duet: Duet, path: str | Path, *, body: Body | None = None) -> list
         raise InputError(
             f"glTF needs a rest pose, and {duet.skeleton.name} has none: retarget to SMPL22 first."
         )
-    return write_files({Path(path): glb_bytes(duet, body)})
+    return write_files({Path(path): glb_bytes(duet)})
 
 
-def glb_bytes(duet: Duet, body: Body | None = None) -> bytes:
+def glb_bytes(duet: Duet) -> bytes:
     """The file's bytes."""
     import pygltflib as gl
 
@@ -94,7 +93,7 @@ def glb_bytes(duet: Duet, body: Body | None = None) -> bytes:
     buffer = Buffer(gltf)
     times = buffer.add((np.arange(duet.num_frames) / duet.fps).astype(np.float32), gl.SCALAR, bounds=True)
     for name, clip, role, zones in zip(BODIES, duet.people, duet.roles, COLOURS, strict=True):
-        _add_person(buffer, clip, role, body or load_body(name), zones, times)
+        _add_person(buffer, clip, role, load_body(name), zones, times)
     buffer.data += bytes(-len(buffer.data) % 4)
     gltf.buffers.append(gl.Buffer(byteLength=len(buffer.data)))
     gltf.set_binary_blob(bytes(buffer.data))
@@ -178,7 +177,7 @@ def _surface(buffer: Buffer, body: Body, role: str, colours: Mapping[str, str]) 
         faces = body.faces[body.face_zones == zone]
         if not len(faces):
             continue
-        colour = [*linear(colours.get(name, colours["top"])), 1.0]
+        colour = [*linear(colours[name]), 1.0]
         surface = gl.PbrMetallicRoughness(baseColorFactor=colour, metallicFactor=0.0, roughnessFactor=0.8)
         buffer.gltf.materials.append(gl.Material(name=f"{role}_{name}", pbrMetallicRoughness=surface))
         indices = buffer.add(faces.astype(np.uint16).reshape(-1), gl.SCALAR, target=gl.ELEMENT_ARRAY_BUFFER)

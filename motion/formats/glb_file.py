@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import json
 import struct
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from pathlib import Path
 from typing import Any, NoReturn
@@ -214,6 +214,16 @@ class GlbFile:
     def joint_name(self, node: int) -> str:
         """The name of a node, or one made of its number."""
         return str(self.told["nodes"][node].get("name", f"joint_{node}"))[:100]
+
+
+def packed(told: Mapping[str, Any], blob: bytes) -> bytes:
+    """A file of a description and its numbers."""
+    text = json.dumps(told, separators=(",", ":")).encode("utf-8")
+    text += b" " * (-len(text) % 4)
+    blob += bytes(-len(blob) % 4)
+    size = 12 + 8 + len(text) + 8 + len(blob)
+    head = struct.pack("<III", _MAGIC, 2, size) + struct.pack("<II", len(text), _JSON)
+    return head + text + struct.pack("<II", len(blob), _BIN) + blob
 
 
 def in_order(nodes: Sequence[int], parents: Sequence[int]) -> tuple[list[int], list[int]]:

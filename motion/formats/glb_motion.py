@@ -65,7 +65,7 @@ def read_glb_people(source: str | Path | bytes, *, name: str | None = None) -> t
         moved = [_only(file, set(person.nodes)) for person in whole]
         moments, rate, every = _clock(file, moved, sum(len(person.nodes) for person in whole))
         places = [person.at(its, moments) for person, its in zip(whole, moved, strict=True)]
-        scale = _metres_per_unit(whole[0].motion(places[0], rate))
+        scale = metres_per_unit(whole[0].motion(places[0], rate))
         return tuple(
             person.motion(scale * its, rate / every, scale, every)
             for person, its in zip(whole, places, strict=True)
@@ -118,7 +118,7 @@ class _Person:
         return np.stack(places, axis=1)
 
 
-def _metres_per_unit(rig: RigMotion) -> float:
+def metres_per_unit(rig: RigMotion) -> float:
     """The file's unit: metres, as glTF has it, or another in which the legs have a person's length, if not theirs."""
     scale = leg_scale(rig)
     return next((unit for unit in _UNITS if _LEGS[0] <= scale / unit <= _LEGS[1]), scale)

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import base64
 from dataclasses import replace
-from pathlib import Path
 
 import numpy as np
 import pytest
@@ -13,12 +12,11 @@ from scipy.spatial.transform import Rotation
 from motion import SMPL22, Clip, Duet, InputError, character
 from motion.body import skin
 from motion.character import character_body, packed_body
-from motion.formats.glb import write_glb
 from motion.formats.glb_reader import Character, read_character
+from motion.rigs import RigMotion, pairs_of
 from tests.motion.bodies import marching
 from tests.motion.formats.characters import THICK, a_pose, glb_character
 from tests.motion.formats.rigs import RIGS
-from tests.motion.formats.skinned import Skinned
 
 REST = SMPL22.rest_positions()
 Z_UP = Rotation.from_euler("x", 90, degrees=True).as_matrix()
@@ -99,10 +97,20 @@ def test_thighs_meet_the_pelvis_above_the_hips() -> None:
     np.testing.assert_allclose(character_body(after).vertices, character_body(found).vertices, atol=1e-9)
 
 
-@pytest.mark.parametrize(("length", "names"), [(1, "3"), (2, "13"), (3, "123"), (5, "11233")])
-def test_the_last_joint_of_any_spine_carries_the_shoulders(length: int, names: str) -> None:
-    wanted = [SMPL22.index(f"spine{number}") for number in names]
-    assert list(character._spread(range(length)).values()) == wanted
+@pytest.mark.parametrize(("length", "numbers"), [(1, "3"), (2, "13"), (3, "123"), (5, "11233")])
+def test_the_last_joint_of_any_spine_carries_the_shoulders(length: int, numbers: str) -> None:
+    ours = [name for name in SMPL22.joint_names if not name.startswith("spine")]
+    names = ("pelvis", *(f"back{number}" for number in range(length)), *ours[1:])
+    above = {name: SMPL22.joint_names[SMPL22.parents[SMPL22.index(name)]] for name in ours[1:]}
+    parents = [-1, *range(length)]
+    parents += [length if above[name] == "spine3" else names.index(above[name]) for name in ours[1:]]
+    offsets = np.zeros((len(names), 3))
+    rig = RigMotion(names, tuple(parents), offsets, offsets[None], None, 30.0)
+    found = pairs_of(rig)
+    assert [SMPL22.joint_names[found[1 + number]] for number in range(length)] == [
+        f"spine{n}" for n in numbers
+    ]
+    assert {found[names.index(name)] for name in ours} == {SMPL22.index(name) for name in ours}
 
 
 def test_joints_that_smpl_lacks_move_with_the_one_above() -> None:
@@ -141,15 +149,3 @@ def test_the_player_gets_the_body_as_it_is() -> None:
     faces = np.frombuffer(base64.b64decode(packed["faces"]), "<u2").reshape(-1, 3)
     np.testing.assert_array_equal(faces, body.faces)
     assert packed["zones"] == ["character"] and len(packed["turns"]) == 22
-
-
-def test_both_people_are_exported_on_the_character_under_nodes_of_their_own(tmp_path: Path) -> None:
-    body = character_body(read_character(glb_character(places=a_pose()), name="x.glb"))
-    found = Skinned(write_glb(DUET, tmp_path / "x.glb", body=body)[0])
-    top = [found.gltf.nodes[number].name for number in found.gltf.scenes[0].nodes]
-    assert top == ["actor", "actor_body", "reactor", "reactor_body"]
-    colours = {tuple(each.pbrMetallicRoughness.baseColorFactor) for each in found.gltf.materials}
-    assert len(colours) == 2, "each in the colour of their own"
-    for person, clip in enumerate(DUET.people):
-        places, _ = found.surface(person)
-        np.testing.assert_allclose(places, skin(body, clip), atol=2e-3)

@@ -72,7 +72,8 @@ def main() -> None:
             lowest[name] = min(lowest[name], low)
         scene.frame_set(round(bvh_actions[0][0]) + frame)
         for mine, theirs in zip(own, (joints(o) for o in stick), strict=True):
-            apart = max(apart, *((mine[name] - theirs[name]).length for name in mine))
+            shared = mine.keys() & theirs.keys()  # few where both wear a character with names of its own
+            apart = max([apart, *((mine[name] - theirs[name]).length for name in shared)])
     found = {
         "blender": bpy.app.version_string,
         "armatures": {o.name: len(o.data.bones) for o in people},

@@ -19,7 +19,8 @@ from gradio_client.exceptions import AppError
 from PIL import Image
 
 from motion.formats import read
-from tests.motion.formats.characters import glb_character
+from tests.motion.bodies import marching
+from tests.motion.formats.characters import glb_character, glb_motion
 from webdemo.ui.page import build_page, launch_options
 
 from .stub_engine import StubEngine, walking
@@ -106,6 +107,20 @@ def test_react_takes_a_file_and_gives_files(client: Client, walkers: Path) -> No
     motion = next(Path(path) for path in files if path.endswith(".npz"))
     assert re.fullmatch("reaction-to-walkers-seed0-[0-9a-f]{4}.npz", motion.name)
     np.testing.assert_array_equal(read(motion).a.positions, walking(12.0).b.positions[30:90])
+
+
+def test_react_gives_the_partner_on_the_rig_of_the_file(client: Client, walkers: Path) -> None:
+    positions, rotations = marching(60)
+    robot = walkers.with_name("walk.glb")
+    robot.write_bytes(glb_motion(rotations, positions[:, 0]))
+    answer, files = client.predict(actor=handle_file(robot), own_rig=True, steps=2, api_name="/react")
+    partner, original = answer["files"]["rig"]
+    assert partner.endswith("-on-your-rig.glb") and original == "walk.glb"
+    found = {Path(path).name: Path(path) for path in files}
+    assert found[original].read_bytes() == robot.read_bytes()
+    assert read(found[partner]).num_frames == 60
+    with pytest.raises(AppError, match=r"rig of a BVH or \.glb file, and walkers\.npz is none"):
+        client.predict(actor=handle_file(walkers), person="a", end=3, own_rig=True, api_name="/react")
 
 
 def test_errors_of_react_are_sentences(client: Client, walkers: Path, walker: Path) -> None:

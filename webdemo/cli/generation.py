@@ -10,7 +10,8 @@ from typing import Any
 
 import numpy as np
 
-from motion import Duet, InputError
+from motion import Duet
+from motion.formats.on_rig import check_rig, on_rig
 from webdemo.inference.actor import FPS, read_actor
 from webdemo.inference.methods import AUTOMATIC, automatic, methods
 from webdemo.inference.predict_request import LONGEST, PredictRequest, PredictResult
@@ -69,7 +70,7 @@ def add_react(commands: Any) -> None:
     )  # fmt: skip
     parser.add_argument(
         "--own-rig", action="store_true",
-        help="of a BVH: also the partner on that file's rig, as NAME_rig.bvh, in its unit and rest pose",
+        help="of a .bvh or .glb: also the partner on that file's rig, as NAME_rig, in its unit and rest pose",
     )  # fmt: skip
     add_sampling(parser, "react")
     parser.set_defaults(job=react)
@@ -87,8 +88,8 @@ def react(options: argparse.Namespace) -> dict[str, Any]:
         options.model = automatic(options.prompt, options.role, mode).name
     fields = sampling_fields(options) | {"first_pose": pose}
     request = ReactRequest(actor=actor, prompt=options.prompt, role=options.role, mode=mode, **fields)
-    if options.own_rig and options.actor.suffix.lower() != ".bvh":
-        raise InputError(f"--own-rig needs the rig of a BVH file, and {options.actor.name} is none.")
+    if options.own_rig:
+        check_rig(options.actor)
     if options.stream:
         _stream(request)
     result = run(request)
@@ -100,17 +101,17 @@ def react(options: argparse.Namespace) -> dict[str, Any]:
 
 def _on_own_rig(result: Result, request: ReactRequest, options: argparse.Namespace) -> list[str]:
     """Writes the one who was made, of every sample, on the rig of the given file."""
-    from motion.formats.bvh_rig import write_on_rig
+    from motion.formats.files import write_files
 
-    paths: list[Path] = []
+    files: dict[Path, bytes] = {}
     for i, duet in enumerate(result.duets):
         number = f"_{i + 1}" if len(result.duets) > 1 else ""
         assert isinstance(duet, Duet)
         given_is_a = np.array_equal(duet.a.positions, request.actor.positions)
         made = duet.b if given_is_a else duet.a
-        path = options.out.with_name(f"{options.out.stem}{number}_rig.bvh")
-        paths += write_on_rig(made, options.actor, path)
-    return [str(path) for path in paths]
+        name = f"{options.out.stem}{number}_rig{options.actor.suffix.lower()}"
+        files[options.out.with_name(name)] = on_rig(made, options.actor)
+    return [str(path) for path in write_files(files)]
 
 
 def _stream(request: ReactRequest) -> None:

@@ -14,6 +14,7 @@ from motion import InputError
 from motion.character import character_body
 from motion.formats import read
 from motion.formats.glb_reader import read_character
+from motion.formats.on_rig import check_rig
 from webdemo.inference.actor import read_actor
 from webdemo.inference.methods import AUTOMATIC, methods
 from webdemo.inference.predict_request import LONGEST, PredictRequest, PredictResult
@@ -24,7 +25,14 @@ from webdemo.inference.requests import (
     Result,
     SamplingRequest,
 )
-from webdemo.ui.components.exports import file_name, without_place, write_files
+from webdemo.ui.components.exports import (
+    RIG,
+    Record,
+    file_name,
+    without_place,
+    write_files,
+    write_on_rig,
+)
 from webdemo.ui.components.film import LONGEST as LONGEST_FILM
 from webdemo.ui.text.classes import class_method
 from webdemo.ui.text.words import error_line, progress_line
@@ -85,14 +93,25 @@ class Endpoint:
         )
 
     def _answer(
-        self, make: Callable[[], SamplingRequest | PredictRequest], title: str, progress: gr.Progress
+        self,
+        make: Callable[[], SamplingRequest | PredictRequest],
+        title: str,
+        progress: gr.Progress,
+        rig: Path | None = None,
     ) -> Answer:
-        """Runs a request and writes its files, called after ``title``; every error is one sentence."""
+        """Runs a request and writes its files, called after ``title``; every error is one sentence.
+
+        ``rig`` is the file on whose rig the partner is wanted as well.
+        """
         try:
             with _READING:
                 request = make()
+                if rig is not None:
+                    check_rig(rig)
             result = self._run(request, progress)
             files = write_files(result, self.page.shelf.folder(), prompt=title)
+            if rig is not None:
+                files[RIG] = write_on_rig(Record(result, title, rig=rig), self.page.shelf.folder())
         except Cancelled:
             raise gr.Error("The run was cancelled: send the request again.", print_exception=False) from None
         except Exception as error:
@@ -228,6 +247,9 @@ class ReactEndpoint(Endpoint):
                 gr.Checkbox(
                     False, label=f"start in the first pose of the other person in the file ({posed})"
                 ),
+                gr.Checkbox(
+                    False, label="also the new person on the rig of the file: a .bvh or .glb of one person"
+                ),
             ]
             self._publish(self.react, "react", inputs)
 
@@ -248,13 +270,15 @@ class ReactEndpoint(Endpoint):
         model: str,
         mode: str,
         keep_start: bool = False,
+        own_rig: bool = False,
         progress: gr.Progress = PROGRESS,
     ) -> Answer:
         """A second person for a given one, who stays exactly as they are (at 30 frames a second).
 
         Returns the manifest, read-outs, timings, notes and file names; and the files: for every sample a
         two-person .npz, two .bvh (and a .glb where the server writes them), a contact sheet .png, and one
-        manifest .json. An error is one sentence that says what to change.
+        manifest .json. With own_rig there is also the new person of every sample on the rig of the file, and that
+        file as it is. An error is one sentence that says what to change.
         """
 
         def request() -> ReactRequest:
@@ -268,7 +292,8 @@ class ReactEndpoint(Endpoint):
                 steps=steps, damping=damping, sampler=sampler, model=model, mode=mode, first_pose=pose,
             )  # fmt: skip
 
-        return self._answer(request, prompt.strip() or f"Reaction to {Path(actor or '').stem}", progress)
+        title = prompt.strip() or f"Reaction to {Path(actor or '').stem}"
+        return self._answer(request, title, progress, Path(actor) if own_rig and actor else None)
 
 
 class PredictEndpoint(Endpoint):

@@ -82,7 +82,10 @@ def glb_character(
     nodes: list[dict[str, Any]] = []
     for joint in kept:
         below = [kept.index(other) for other in kept if _above(other, kept) == joint]
-        nodes.append({"name": RIGS[rig][SMPL22.joint_names[joint]], "children": below})
+        start = places[above] if (above := _above(joint, kept)) >= 0 else np.zeros(3)
+        offset = unit * turn @ (places[joint] - start)
+        name = RIGS[rig][SMPL22.joint_names[joint]]
+        nodes.append({"name": name, "children": below, "translation": offset.tolist()})
     nodes.append({"mesh": 0, "skin": 0})
     attributes = {"POSITION": 0, "JOINTS_0": 1, "WEIGHTS_0": 2}
     told: dict[str, Any] = {

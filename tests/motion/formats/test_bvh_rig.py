@@ -8,7 +8,8 @@ from scipy.spatial.transform import Rotation
 
 from motion import SMPL22, Clip, InputError, formats
 from motion.formats.bvh import read_bvh
-from motion.formats.bvh_rig import bvh_on_rig, write_on_rig
+from motion.formats.bvh_rig import bvh_on_rig
+from motion.formats.on_rig import on_rig
 from motion.retarget import retarget
 from motion.skeleton import SBU15
 from motion.transforms import turn
@@ -82,5 +83,6 @@ def test_what_is_no_rig_or_no_body_is_one_sentence(tmp_path):
         bvh_on_rig(OTHER, b"no rig", name="x.bvh")
     path = tmp_path / "rig.bvh"
     path.write_bytes(_reference("mixamo"))
-    (made,) = write_on_rig(OTHER, path, tmp_path / "partner.bvh")
-    assert formats.read(made).num_frames == 40
+    assert formats.read(on_rig(OTHER, path), name="partner.bvh").num_frames == 40
+    with pytest.raises(InputError, match=r"rig of a BVH or \.glb file, and x\.npz is none"):
+        on_rig(OTHER, tmp_path / "x.npz")

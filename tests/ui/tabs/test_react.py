@@ -471,6 +471,22 @@ def test_a_partner_is_taken_on_the_rig_of_an_uploaded_bvh(tab: ReactTab, tmp_pat
     assert found < 0.1, "it is the partner, in the rig's own world"
 
 
+def test_a_partner_is_taken_on_the_skeleton_of_an_uploaded_glb(tab: ReactTab, tmp_path: Path) -> None:
+    rig = tmp_path / "robot.glb"
+    positions, rotations = marching(90)
+    rig.write_bytes(glb_motion(rotations, positions[:, 0], "unreal", unit=100.0))
+    *_, last = run(tab, upload(tab, rig)[-1]["source"], end=2.0)
+    _, *updates = tab.export(last["record"])
+    update = updates[[kind.key for kind in KINDS].index("rig")]
+    with zipfile.ZipFile(update["value"]) as archive:
+        files = {name: archive.read(name) for name in archive.namelist()}
+    assert files.pop("robot.glb") == rig.read_bytes(), "the original stands beside it, untouched"
+    ((name, content),) = files.items()
+    assert name.endswith("-on-your-rig.glb")
+    partner = last["record"].result.duets[0].b.positions
+    assert np.abs(read(content, name=name).positions - partner).mean() < 0.1, "it is the partner"
+
+
 def test_only_a_rig_that_was_read_as_it_is_is_offered(tab: ReactTab, walker: Path, walkers: Path) -> None:
     source = upload(tab, walker)[-1]["source"]
     assert rig_of(source) == walker

@@ -15,7 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from motion import Clip, Duet, InputError
-from motion.formats import write
+from motion.formats import RIGS, write
 from motion.formats.importing import ImportChoices, import_motion
 from motion.retarget import to_smpl
 from webdemo.inference.actor import LETTERS, SECONDS, at_30_fps, choose_actor, other_pose
@@ -167,14 +167,14 @@ def given_again(source: Source, original: Original | None, folder: Path) -> tupl
 
 
 def rig_of(source: Source | None) -> Path | None:
-    """The BVH file of one person that a source was read from as it is; None for any other source.
+    """The BVH or .glb file of one person that a source was read from as it is; None for any other source.
 
     Where somebody said which axis is up or what the unit is, the file's own world is another, and so are examples.
     """
     if (
         source is None
         or source.path is None
-        or source.path.suffix.lower() != ".bvh"
+        or source.path.suffix.lower() not in RIGS
         or len(source.people) != 1
     ):
         return None

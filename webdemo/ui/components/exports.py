@@ -20,11 +20,15 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
-from motion import Clip, Duet, InputError, formats
+import numpy as np
+
+from motion import SMPL22, Clip, Duet, InputError, formats
 from motion.body import Body
-from motion.formats.bvh_rig import bvh_on_rig
+from motion.character import character_body
 from motion.formats.files import write_files as replace_all
-from motion.formats.glb import write_glb
+from motion.formats.glb_reader import read_character
+from motion.formats.glb_rig import glb_wearing
+from motion.formats.on_rig import on_rig
 from motion.formats.one_person import SUFFIXES
 from motion.formats.spreadsheet import safe_cell
 from webdemo.inference.actor import ROLES
@@ -72,8 +76,33 @@ KINDS = (
     Kind("png", "Contact sheet"),
     Kind("json", "Manifest"),
     Kind("csv", "Read-outs .csv"),
-    Kind(RIG, "On your rig .bvh"),
+    Kind(RIG, "On your rig"),
 )
+
+
+@dataclass(frozen=True)
+class Worn:
+    """An uploaded character.
+
+    Attributes:
+        body: it on SMPL22, as the player and films draw it.
+        file: a copy of the file, on whose own skeleton both people are exported.
+    """
+
+    body: Body = field(repr=False)
+    file: Path
+
+    @classmethod
+    def read(cls, path: Path, folder: Path) -> Worn:
+        """The character in a .glb file, of which a folder keeps a copy.
+
+        Raises:
+            InputError: for a file that is no character, or one whose skeleton cannot be moved.
+        """
+        body = character_body(read_character(path))
+        still = Clip(SMPL22.rest_positions()[None].astype(np.float32), 30.0)
+        glb_wearing(Duet(still, still), path)
+        return cls(body, Path(shutil.copyfile(path, folder / path.name)))
 
 
 @dataclass
@@ -86,9 +115,9 @@ class Record:
         exported: whether its files were written.
         compared: the results that stand side by side, by method; ``result`` is the first of them.
         grid: columns, rows, names and title of the grid that they stand in; empty for none.
-        body: an uploaded character whom both people wear in the files of :data:`WORN` and in films; None for the
+        worn: an uploaded character whom both people wear in the files of :data:`WORN` and in films; None for the
             bodies that ship.
-        rig: the uploaded BVH file of one person that the result is a reaction to; None for anything else.
+        rig: the uploaded .bvh or .glb file of one person that the result is a reaction to; None for anything else.
     """
 
     result: Result = field(repr=False)
@@ -97,7 +126,7 @@ class Record:
     compared: Mapping[str, Result] = field(default_factory=dict, repr=False)
     grid: Mapping[str, Any] = field(default_factory=dict)
     rig: Path | None = None
-    body: Body | None = field(default=None, repr=False)
+    worn: Worn | None = None
 
 
 class Shelf:
@@ -137,7 +166,7 @@ def write_on_rig(record: Record, folder: Path) -> list[Path]:
     """The partners of a record on the rig of the file that they react to, and that file as it is.
 
     Returns:
-        one .bvh a sample of every result, then a copy of the file; nothing where there is no rig.
+        one file a sample of every result, then a copy of the file; nothing where there is no rig.
 
     Raises:
         InputError: where the rig cannot be moved.
@@ -154,7 +183,8 @@ def write_on_rig(record: Record, folder: Path) -> list[Path]:
                 continue
             partner = duet.people[1 - ROLES.index(asked.get("role", ROLES[0]))]
             number = f"-{i + 1}" if len(result.duets) > 1 else ""
-            files[folder / f"{name}{number}-on-your-rig.bvh"] = bvh_on_rig(partner, record.rig)
+            path = folder / f"{name}{number}-on-your-rig{record.rig.suffix.lower()}"
+            files[path] = on_rig(partner, record.rig)
     files[folder / record.rig.name] = record.rig.read_bytes()
     with _writing(folder):
         return replace_all(files)
@@ -171,12 +201,12 @@ def write_record(record: Record, folder: Path, *, leave_out: Collection[str] = (
     Compared results have one table of read-outs, and a grid one contact sheet.
     """
     if not record.compared:
-        return write_files(record.result, folder, prompt=record.prompt, body=record.body, leave_out=leave_out)
+        return write_files(record.result, folder, prompt=record.prompt, worn=record.worn, leave_out=leave_out)
     files: dict[str, list[Path]] = {}
     joint = {"csv", "png"} if record.grid else {"csv"}
     for method, result in record.compared.items():
         prompt = f"{method} {record.prompt}"
-        written = write_files(result, folder, prompt=prompt, leave_out={*joint, *leave_out}, body=record.body)
+        written = write_files(result, folder, prompt=prompt, leave_out={*joint, *leave_out}, worn=record.worn)
         for key, paths in written.items():
             files.setdefault(key, []).extend(paths)
     name = folder / file_name(record.prompt, record.result.manifest)
@@ -185,21 +215,21 @@ def write_record(record: Record, folder: Path, *, leave_out: Collection[str] = (
             files["csv"] = [_write_table(record.compared, name.with_suffix(".csv"))]
         if record.grid and "png" not in leave_out:
             motions = {cell: result.duets[0] for cell, result in record.compared.items()}
-            style, path = _sheet_style(record.body), name.with_suffix(".png")
+            style, path = _sheet_style(record.worn), name.with_suffix(".png")
             files["png"] = [write_grid_sheet(motions, path, title=record.prompt, style=style)]
     return files
 
 
-def _sheet_style(body: Body | None) -> Style:
-    return Style(names=False, body=body)
+def _sheet_style(worn: Worn | None) -> Style:
+    return Style(names=False, body=worn.body if worn else None)
 
 
 def write_files(
-    result: Result, folder: Path, *, prompt: str, leave_out: Collection[str] = (), body: Body | None = None
+    result: Result, folder: Path, *, prompt: str, leave_out: Collection[str] = (), worn: Worn | None = None
 ) -> dict[str, list[Path]]:
     """Writes a result in every kind that this installation can write, but for those that are left out.
 
-    ``body`` is worn by both people in the kinds of :data:`WORN`.
+    ``worn`` is on both people in the kinds of :data:`WORN`.
 
     Returns:
         the files by the key of their kind, in the order of the samples; a BVH pair is two files.
@@ -210,7 +240,7 @@ def write_files(
     name = file_name(prompt, result.manifest)
     with _writing(folder):
         return {
-            kind.key: _write_kind(kind, result, folder, name, prompt, body)
+            kind.key: _write_kind(kind, result, folder, name, prompt, worn)
             for kind in KINDS
             if kind.offered() and kind.key not in leave_out and _holds(kind, result)
         }
@@ -235,7 +265,7 @@ def without_place(error: Exception, folder: Path) -> Exception:
 
 
 def _write_kind(
-    kind: Kind, result: Result, folder: Path, name: str, prompt: str, body: Body | None
+    kind: Kind, result: Result, folder: Path, name: str, prompt: str, worn: Worn | None
 ) -> list[Path]:
     if kind.key == "json":
         path = folder / f"{name}.json"
@@ -247,7 +277,7 @@ def _write_kind(
     files: list[Path] = []
     for i, duet in enumerate(result.duets):
         path = folder / (f"{name}-{i + 1}.{kind.key}" if several else f"{name}.{kind.key}")
-        files += _write_motion(duet, path, title=prompt, body=body)
+        files += _write_motion(duet, path, title=prompt, worn=worn)
     return files
 
 
@@ -280,11 +310,11 @@ def _holds(kind: Kind, result: Result) -> bool:
     return not one or kind.key in _PLAIN or f".{kind.key}" in SUFFIXES
 
 
-def _write_motion(duet: Duet | Clip, path: Path, *, title: str, body: Body | None) -> list[Path]:
-    if path.suffix == ".glb" and body is not None and isinstance(duet, Duet):
-        return write_glb(duet, path, body=body)
+def _write_motion(duet: Duet | Clip, path: Path, *, title: str, worn: Worn | None) -> list[Path]:
+    if path.suffix == ".glb" and worn is not None and isinstance(duet, Duet):
+        return replace_all({path: glb_wearing(duet, worn.file)})
     if path.suffix == ".png":
-        return [write_sheet(duet, path, title=title, style=_sheet_style(body))]
+        return [write_sheet(duet, path, title=title, style=_sheet_style(worn))]
     return [Path(written) for written in formats.write(duet, path)]
 
 

@@ -72,7 +72,7 @@ def make_film(record: Record | None, shown: str, folder: Path) -> Path:
         look=_one_of(state, "look", LOOKS, "bodies"),
         trails=state.get("trails") is True,
         theme=_one_of(state, "theme", tuple(THEMES), "light"),
-        body=record.body if state.get("character") is True else None,
+        body=record.worn.body if record.worn and state.get("character") is True else None,
     )
     try:
         return film.write_film(

@@ -10,10 +10,9 @@ from typing import Any
 import gradio as gr
 
 from motion import InputError
-from motion.body import Body
 from webdemo.inference.requests import Cancelled, Progress, Result
 from webdemo.ui.again import request_of, request_of_unfinished, verdict
-from webdemo.ui.components.exports import KINDS, Record
+from webdemo.ui.components.exports import KINDS, Record, Worn
 from webdemo.ui.components.notebook import NotebookView, Told, shown
 from webdemo.ui.components.settings import taken
 from webdemo.ui.components.sweep import MOST, loose
@@ -132,7 +131,7 @@ class HistoryTab:
                 )
 
     def _exporter(self, kind: str, job: JobTab) -> Any:
-        def export(record: Record | None, worn: Body | None) -> Updates:
+        def export(record: Record | None, worn: Worn | None) -> Updates:
             """Writes the files of an opened run for the tab that shows it."""
             if record is None or record.result.manifest.get("request", {}).get("kind", "generate") != kind:
                 return (gr.skip(),) * (1 + len(KINDS))

@@ -11,15 +11,13 @@ from typing import Any
 import gradio as gr
 
 from motion import InputError
-from motion.body import Body
-from motion.character import character_body
-from motion.formats.glb_reader import read_character
 from webdemo.ui.components.address import link_address
 from webdemo.ui.components.exports import (
     KINDS,
     RIG,
     WORN,
     Record,
+    Worn,
     file_name,
     for_download,
     write_character,
@@ -134,20 +132,20 @@ class ResultsTab:
     def put_on(self, path: str, record: Record | None) -> Updates:
         """Puts an uploaded character on both people, here and in the files of this result and of later ones."""
         try:
-            body = character_body(read_character(path))
+            worn = Worn.read(Path(path), self.page.shelf.folder())
             files: dict[str, Path] = {}
             if record is not None:
-                record.body = body
+                record.worn = worn
                 written = write_character(record, self.page.shelf.folder())
                 files = for_download(written, file_name(record.prompt, record.result.manifest))
         except Exception as error:
             return status(error_line(error), tone="error"), *((gr.skip(),) * (2 + len(WORN)))
         told = (
-            f"Both wear {body.name}, in films, in the .glb and on the contact sheet as well. "
+            f"Both wear {worn.body.name}, in films, in the .glb and on the contact sheet as well. "
             "The figure button of the player shows bodies again."
         )
         offered = (_offered(key, files[key]) if key in files else gr.skip() for key in WORN)
-        return status(told, tone="done"), body, wear(body), *offered
+        return status(told, tone="done"), worn, wear(worn.body), *offered
 
     def make_film(self, record: Record | None, shown: str) -> Iterator[Updates]:
         """Films the last result as the player shows it and hands the film to its download button."""
@@ -174,12 +172,12 @@ class ResultsTab:
         address = link_address(visitor().base, key, shown)
         return status(link_line(until), tone="done"), gr.update(value=address, visible=True)
 
-    def export(self, record: Record | None, worn: Body | None = None) -> Updates:
+    def export(self, record: Record | None, worn: Worn | None = None) -> Updates:
         """Writes the files of a new result and hands them to the download buttons; both people wear ``worn``."""
         unchanged = (gr.skip(),) * (1 + len(KINDS))
         if record is None or record.exported:
             return unchanged
-        record.exported, record.body = True, worn
+        record.exported, record.worn = True, worn
         try:
             files = write_record(record, self.page.shelf.folder())
             name = file_name(record.prompt, record.result.manifest)

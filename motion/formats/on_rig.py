@@ -1,0 +1,40 @@
+"""A person's motion on the rig of another file, whichever kind that is."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from motion.clip import Clip
+from motion.errors import InputError
+
+from . import RIGS, read_rigs
+from .bvh_rig import bvh_on_rig
+from .glb_rig import glb_on_rig
+
+
+def on_rig(clip: Clip, reference: Path) -> bytes:
+    """One person's motion as a file of the reference's kind, on its rig and in its world.
+
+    Args:
+        clip: on SMPL22, metres.
+        reference: a .bvh or .glb of one person.
+
+    Raises:
+        InputError: as :func:`check_rig`, and where the rig cannot be moved.
+    """
+    _check_kind(reference)
+    return glb_on_rig(clip, reference) if reference.suffix.lower() == ".glb" else bvh_on_rig(clip, reference)
+
+
+def check_rig(reference: Path) -> None:
+    """Raises InputError for a file that is no .bvh or .glb of one person, before a partner is made."""
+    _check_kind(reference)
+    if (count := len(read_rigs(reference, fps=30.0))) > 1:
+        raise InputError(f"A partner is taken on the rig of one person, and {reference.name} holds {count}.")
+
+
+def _check_kind(reference: Path) -> None:
+    if reference.suffix.lower() not in RIGS:
+        raise InputError(
+            f"A partner is taken on the rig of a BVH or .glb file, and {reference.name} is none."
+        )
