@@ -209,3 +209,33 @@ def test_names_in_a_plain_sentence_say_who_does_what(reading_engine: Engine) -> 
     assert torch.allclose(named[:, 2, :4], b[:, 2, :4], atol=1e-5)
     nobody, _ = pipeline.condition("One waves while the other claps.")
     assert not nobody[:, 1:].any()
+
+
+def test_words_that_send_people_are_followed(engine: Engine) -> None:
+    beats = (Beat("They shake hands.", seconds=2.0), Beat("They walk away from each other.", seconds=4.0))
+    planned = run(engine, SceneRequest(beats=beats, seed=3, **QUICK))
+    free = run(engine, SceneRequest(beats=beats, seed=3, planned=False, **QUICK))
+    assert apart(planned)[-1] > 3.0 and apart(planned)[-1] > apart(free)[-1] + 0.5
+    np.testing.assert_array_equal(positions(planned)[:, :60], positions(free)[:, :60])
+    assert any("person A walks away" in note for note in planned.notes)
+    assert not any("From the words" in note for note in free.notes)
+
+
+def test_a_path_that_is_given_takes_the_place_of_the_words(engine: Engine) -> None:
+    beats = (Beat("They bow.", seconds=2.0), Beat("Person A walks away.", seconds=3.0))
+    path = FloorPath("a", (FloorPoint(1.5, 0.0, 2.5), FloorPoint(1.5, 1.0, 4.9)))
+    made = positions(run(engine, SceneRequest(beats=beats, paths=(path,), **QUICK)))
+    assert np.linalg.norm(made[0, 147, 0, [0, 2]] - [1.5, 1.0]) < 0.15
+
+
+def test_a_bystander_stands_while_the_other_acts(engine: Engine) -> None:
+    request = GenerateRequest(prompt="Person A kneels down.", seconds=3.0, seed=1, **QUICK)
+    made, free = (positions(run(engine, r)) for r in (request, replace(request, planned=False)))
+    assert made[1, :, 0, 1].min() > 0.85, "b stands"
+    assert np.ptp(made[1, ::15, 0], axis=0).max() < 0.05 < np.ptp(free[1, ::15, 0], axis=0).max()
+    assert (made[1, ::15, 20:22, 1] < made[1, ::15, :1, 1] + 0.1).all(), "with hanging arms"
+
+
+def apart(result: Result) -> np.ndarray:
+    roots = positions(result)[:, :, 0][..., [0, 2]]
+    return np.linalg.norm(roots[0] - roots[1], axis=-1)

@@ -47,7 +47,7 @@ def run_benchmark(*, seconds: float, steps: int, repeats: int, browser: bool = F
     engine = Engine()
     (load,) = timed(engine.warm_up, 1)
     request = GenerateRequest(
-        prompt="Two people walk up to each other and shake hands.", seconds=seconds, steps=steps
+        prompt="Two people walk up to each other and shake hands.", seconds=seconds, steps=steps, split=False
     )
     pipeline: Any = engine.pipeline(request.model)
     by_torch = load_folder(engine.weights / request.model)[0].denoiser

@@ -31,6 +31,9 @@ def add_generate(commands: Any) -> None:
     parser.add_argument(
         "--no-split", action="store_true", help="give a sentence of several beats to the network at once"
     )
+    parser.add_argument(
+        "--no-plan", action="store_true", help="do not read from the words where people go and who stands by"
+    )
     add_sampling(parser, "generate")
     parser.set_defaults(job=generate)
 
@@ -42,7 +45,8 @@ def generate(options: argparse.Namespace) -> dict[str, Any]:
         options.model = next(m.name for m in methods("generate") if "class" in m.takes)
     fields = sampling_fields(options)
     words = options.prompt if options.label is None else options.label
-    request = GenerateRequest(prompt=words, seconds=options.seconds, split=not options.no_split, **fields)
+    fields |= {"split": not options.no_split, "planned": not options.no_plan}
+    request = GenerateRequest(prompt=words, seconds=options.seconds, **fields)
     return write_result(run(request), options.out)
 
 

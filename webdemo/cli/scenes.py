@@ -29,6 +29,9 @@ def add_scene(commands: Any) -> None:
         "--end", type=float, help="with --motion: second at which the motion goes on unchanged"
     )
     parser.add_argument("--out", type=Path, required=True, help="file to write: .npz, .bvh, .glb …")
+    parser.add_argument(
+        "--no-plan", action="store_true", help="do not read from the words where people go and who stands by"
+    )
     default = "the story's own if not given"
     parser.add_argument("--seed", type=int, help=default)
     parser.add_argument("--samples", type=int, help=f"how many scenes or futures to generate; {default}")
@@ -47,6 +50,8 @@ def scene(options: argparse.Namespace) -> dict[str, Any]:
     for field in fields(SamplingRequest):
         if getattr(options, field.name, None) is not None:
             asked[field.name] = getattr(options, field.name)
+    if options.no_plan:
+        asked["planned"] = False
     motion = _motion(options.motion) if options.motion is not None else None
     request = SceneRequest(**asked, motion=motion, start=options.start, end=options.end)
     return write_result(run(request), options.out)

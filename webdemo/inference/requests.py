@@ -112,11 +112,14 @@ class GenerateRequest(SamplingRequest):
         seconds: length of the motion.
         split: a sentence of several beats ("first …, then …") is made beat by beat, each in its share of the
             seconds, by a model that makes scenes. Off, the whole sentence is given to the network at once.
+        planned: as in a scene: where the words send people, and who stands by, is read from them and given. Only
+            with ``split``.
     """
 
     prompt: str
     seconds: float = 5.0
     split: bool = True
+    planned: bool = True
 
     def __post_init__(self) -> None:
         method = methods.method(self.model, "generate")

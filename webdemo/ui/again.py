@@ -47,7 +47,11 @@ def request_of(opened: Opened) -> Request:
         return SceneRequest.from_dict(asked, kept if "motion" in asked and isinstance(kept, Duet) else None)
     given: dict[str, Any] = {f.name: asked[f.name] for f in fields(kind) if f.name in asked}
     if kind is GenerateRequest:
-        given.setdefault("split", False)  # of a time before sentences were split
+        given = {
+            "split": False,
+            "planned": False,
+            **given,
+        }  # of a time before sentences were split or planned
     if kind is ReactRequest:
         given["actor"] = actor_source(opened).people[0]
     if kind is PredictRequest:
@@ -69,7 +73,7 @@ def request_of_unfinished(entry: Entry) -> Request:
         raise InputError("This run ended before its motion was kept: send the file again in its tab.")
     asked = entry.request
     given = {f.name: asked[f.name] for f in fields(GenerateRequest) if f.name in asked}
-    return GenerateRequest(**{"split": False, **given})
+    return GenerateRequest(**{"split": False, "planned": False, **given})
 
 
 def actor_source(opened: Opened) -> Source:

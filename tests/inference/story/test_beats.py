@@ -1,40 +1,10 @@
-"""Sentences are split into beats that can be read alone, and lengths follow from the words."""
+"""The lengths of beats follow from their words, and bad beats are named."""
 
 import pytest
 
 from motion import InputError
-from webdemo.inference.story import Beat, split_sentence
+from webdemo.inference.story import Beat
 from webdemo.inference.story.beats import seconds_of
-
-
-@pytest.mark.parametrize(
-    ("sentence", "beats"),
-    [
-        ("Two people hug.", ["Two people hug."]),
-        ("First they shake hands, then they both walk away.", ["They shake hands.", "They both walk away."]),
-        (
-            "Person A bows and then walks to person B. Finally both wave.",
-            ["Person A bows.", "Person A walks to person B.", "Both wave."],
-        ),
-        (
-            "They walk up to each other, shake hands and part again.",
-            ["They walk up to each other.", "They shake hands.", "They part again."],
-        ),
-        ("They bump fists, and person A then goes away.", ["They bump fists.", "Person A goes away."]),
-        ("They hug before they walk away", ["They hug.", "They walk away."]),
-        # one thing, or things at the same time
-        ("Two joggers run next to each other.", ["Two joggers run next to each other."]),
-        ("One falls to the ground and the other helps him up.", None),
-        ("They hold hands and walk.", None),
-        ("First person A bows.", ["First person A bows."]),
-    ],
-)
-def test_a_sentence_is_split_where_one_thing_follows_another(sentence: str, beats: list[str] | None) -> None:
-    assert [beat.words for beat in split_sentence(sentence)] == (beats or [sentence])
-
-
-def test_nothing_gives_no_beats() -> None:
-    assert split_sentence("  \n ") == ()
 
 
 def test_lengths_follow_from_the_words() -> None:

@@ -51,8 +51,10 @@ class InterGenPipeline(TwoPersonPipeline[CompactInterGen]):
             return self.scenes.run(request, cancel, timer, passes)
         split = as_scene(request) if isinstance(request, GenerateRequest) and scene is None else None
         if split is not None:
-            note = f"This was made as {len(split.beats)} beats, one after another; the tab Scene lets you change them."
-            return self.scenes.run(split, cancel, timer, passes, notes=(note,))
+            notes = [
+                f"This was made as {len(split.beats)} beats, one after another; the tab Scene lets you change them."
+            ]
+            return self.scenes.run(split, cancel, timer, passes, notes=notes if len(split.beats) > 1 else ())
         return super().run(request, cancel, timer, passes, scene)
 
     def condition(self, prompt: str, alone: tuple[str, str] = ("", "")) -> tuple[Tensor, Tensor]:

@@ -34,6 +34,8 @@ from webdemo.inference.story.request import SceneRequest
 from webdemo.inference.story.wishes import meeting
 from webdemo.inference.timer import StageTimer
 
+from .scene_floor import plan_note, planned
+
 if TYPE_CHECKING:
     from .intergen import InterGenPipeline
     from .two_person import Passes
@@ -127,7 +129,7 @@ class SceneMaker:
         """
         plan = windows(request)
         steps = request.steps * len(plan) * request.samples
-        done, duets, said = 0, [], [*notes, *_notes(request)]
+        done, duets, said = 0, [], [*notes, *_notes(request), *plan_note(request)]
         for sample in range(request.samples):
             scene = _blank(request)
             for window in plan:
@@ -271,7 +273,11 @@ class _Setting:
             if window.after:
                 behind = range(past + length, past + length + window.after)
                 parts.append(KnownFrames(person, behind, placement.to_network(after[person])))
-        parts += _wishes(request, window, placement)
+        wished = _wishes(request, window, placement)
+        parts += wished
+        if request.planned and not window.after:
+            taken = {part.person for part in wished}
+            parts += [part for part in planned(request, window, scene, placement) if part.person not in taken]
         frames = max(past + length + window.after, round(SECONDS[0] * FPS))
         return cls(window, frames, tuple(parts), placement)
 

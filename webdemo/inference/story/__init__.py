@@ -3,9 +3,10 @@
 Importing this package imports no torch.
 """
 
-from .beats import Beat, split_sentence
+from .beats import Beat
 from .progress import SceneProgress
 from .request import SceneRequest
+from .splitting import split_sentence
 from .toml import read_story, read_words, write_story
 from .wishes import FloorPath, FloorPoint, Pose
 

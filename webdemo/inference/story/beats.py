@@ -45,35 +45,11 @@ _STATED = re.compile(r"\bfor (?:about )?(\d+(?:\.\d+)?|[a-z]+) seconds?\b", re.I
 _COUNT = ("one", "two", "three", "four", "five", "six", "seven", "eight", "nine", "ten")
 _NUMBERS = {name: i for i, name in enumerate(_COUNT, 1)}
 
-_MARK = r"(?:and\s+)?(?:then|finally|afterwards?|after\s+that|at\s+last|at\s+the\s+end|lastly)"
-_LOOSE_MARK = r"(?:next|later|now)"
-"""Marks of time only at the beginning of a clause: "next to each other" is a place."""
-_BREAK = re.compile(
-    rf"(?:[.;!,]\s*|\s+){_MARK}\b,?\s*|[.;!,]\s+(?:and\s+)?{_LOOSE_MARK}\b,?\s+(?!to\b)|(?<=[.!])\s+"
-    r"|,?\s+before\s+(?=(?:they|he|she)\b)",
-    re.IGNORECASE,
-)
-_LATE_MARK = re.compile(
-    r"(?:,\s+(?:and\s+)?|\s+and\s+)(?P<who>person\s+[ab]|the\s+(?:other|first|second)(?:\s+person)?|they|he|she|both)\s+(?P<mark>then|finally|afterwards)\s+",
-    re.IGNORECASE,
-)
-_VERB = (
-    r"(?:walk|go|come|run|turn|bow|wave|shake|hug|embrac|danc|kick|push|punch|jump|sit|kneel|get|stand|talk|part|leav|circl"
-    r"|hold|clap|point|pat|tap|nod|step|stop|help|hand|give|take|wait|meet|greet|stroll|high[- ]five|raise|let)\w*"
-)
-_LIST = re.compile(rf",\s+(?={_VERB}\b)|,?\s+and\s+(?={_VERB}\b)", re.IGNORECASE)
-_OPENING = re.compile(
-    r"^(?:first(?:ly)?|at first|to begin with|in the beginning)\b(?!\s+person),?\s*", re.IGNORECASE
-)
-_STARTS_WITH_MARK = re.compile(rf"^(?:{_MARK}\b,?|{_LOOSE_MARK},)\s*", re.IGNORECASE)
 _SUBJECT = re.compile(
     r"^(?:the\s+(?:two|first|second|other|actor|reactor|man|woman|people|couple|latter|former)\b(?:\s+(?:people|persons?|man|woman|one))?"
     r"|two\s+\w+|both(?:\s+of\s+them|\s+people)?|they|he|she|one(?:\s+(?:person|of\s+them|man|woman))?"
     r"|person\s+[ab]|(?:a|an|another|each|every)\s+\w+|someone|somebody|everyone|everybody|people|each)\b",
     re.IGNORECASE,
-)
-_MANY = re.compile(
-    r"^(?:the\s+two|two|both|they|people|the\s+people|the\s+couple|everyone|everybody)\b", re.IGNORECASE
 )
 
 
@@ -185,36 +161,3 @@ def seconds_of(sentence: str) -> float:
         if re.search(pattern, sentence, re.IGNORECASE):
             length *= factor
     return min(max(round(2 * length) / 2, 1.5), 10.0)
-
-
-def split_sentence(text: str) -> tuple[Beat, ...]:
-    """The beats of a sentence such as "First …, then …. Finally …"; one beat if it names one thing.
-
-    A part that names nobody is given the last subject, so that each part can be read alone.
-    """
-    text = " ".join(text.split())
-    parts, subject = [], ""
-    for part in _clauses(_OPENING.sub("", text)):
-        part = _STARTS_WITH_MARK.sub("", _OPENING.sub("", part.strip())).strip(" ,;.!")
-        part = re.sub(r"^and\s+|\s+and$", "", part, flags=re.IGNORECASE)
-        if not part:
-            continue
-        found = _SUBJECT.match(part)
-        if found:
-            subject = "they" if _MANY.match(part) else found[0]
-        elif subject:
-            part = f"{subject} {part[:1].lower()}{part[1:]}"
-        parts.append(f"{part[:1].upper()}{part[1:]}.")
-    return tuple(Beat(part) for part in parts) if len(parts) > 1 else ((Beat(text),) if text else ())
-
-
-def _clauses(text: str) -> list[str]:
-    """The text cut where one thing follows another: at marks of time, at full stops, and in lists of three or more."""
-    found: list[str] = []
-    clauses = _BREAK.split(_LATE_MARK.sub(lambda m: f", {m['mark']} {m['who']} ", text))
-    for i, clause in enumerate(clauses):
-        listed = _LIST.split(clause)
-        goes_on = i + 1 < len(clauses) and not clauses[i + 1][:1].isupper()
-        in_a_list = bool(re.search(rf",\s+{_VERB}\b", clause, re.IGNORECASE))
-        found += listed if in_a_list and (len(listed) > 2 or goes_on) else [clause]
-    return found

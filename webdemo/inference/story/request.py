@@ -15,7 +15,9 @@ from webdemo.inference.actor import FPS
 from webdemo.inference.predict_request import check_motion
 from webdemo.inference.requests import GenerateRequest, SamplingRequest, _number
 
-from .beats import MOST_BEATS, SHORTEST, Beat, split_sentence
+from .beats import MOST_BEATS, SHORTEST, Beat
+from .idle import is_planned
+from .splitting import split_sentence
 from .wishes import MOST_POSES, FloorPath, FloorPoint, Pose, check_together
 
 MOST_SECONDS = 180.0
@@ -40,6 +42,8 @@ class SceneRequest(SamplingRequest):
         paths: on the floor, one for a person at most; seconds count from the scene's beginning.
         poses: likewise.
         loop: the end meets the beginning; not with ``motion``.
+        planned: where the words of a beat send people becomes a path (:mod:`.floor`), and who stands by is held in
+            place (:mod:`.idle`), unless a path or pose says it.
         motion: a given motion of two people on SMPL22's joints, of up to three minutes.
         start: second of the given motion at which the beats begin; its end by default.
         end: second at which the given motion goes on.
@@ -49,6 +53,7 @@ class SceneRequest(SamplingRequest):
     paths: tuple[FloorPath, ...] = ()
     poses: tuple[Pose, ...] = field(default=(), compare=False)
     loop: bool = False
+    planned: bool = True
     motion: Duet | None = None
     start: float | None = None
     end: float | None = None
@@ -204,6 +209,7 @@ class SceneRequest(SamplingRequest):
             "paths": [asdict(path) for path in self.paths],
             "poses": [pose.to_dict() for pose in self.poses],
             "loop": self.loop,
+            "planned": self.planned,
         }
         if self.motion is not None:
             kept = self.kept(self.motion)
@@ -237,6 +243,7 @@ class SceneRequest(SamplingRequest):
             paths=tuple(path_of(path) for path in values.get("paths", ())),
             poses=tuple(pose_of(pose) for pose in values.get("poses", ())),
             loop=bool(values.get("loop", False)),
+            planned=bool(values.get("planned", False)),  # scenes of before did without
             motion=motion,
             start=values.get("start"),
             end=values.get("end"),
@@ -244,11 +251,16 @@ class SceneRequest(SamplingRequest):
 
 
 def as_scene(request: GenerateRequest) -> SceneRequest | None:
-    """The scene of a sentence with several beats, which share the request's seconds; None if it is made in one."""
+    """The scene of a sentence with several beats, which share the request's seconds, or of one with a plan.
+
+    None if the sentence is given to the network as it is.
+    """
     if not request.split or "scene" not in methods.method(request.model).tasks:
         return None
     beats = split_sentence(request.prompt)
-    if not 1 < len(beats) <= request.seconds / LEAST_SHARE:
+    if len(beats) > request.seconds / LEAST_SHARE:
+        beats = (Beat(request.prompt),)
+    if len(beats) < 2 and not (request.planned and is_planned(request.prompt)):
         return None
     factor = request.seconds / sum(beat.length for beat in beats)
     edges = np.round(np.cumsum([0.0, *(beat.length * factor for beat in beats)]) * FPS) / FPS
@@ -257,7 +269,7 @@ def as_scene(request: GenerateRequest) -> SceneRequest | None:
         for beat, s in zip(beats, np.diff(edges), strict=True)
     )
     plain = {f.name: getattr(request, f.name) for f in fields(SamplingRequest)}
-    return SceneRequest(beats=timed, **plain)
+    return SceneRequest(beats=timed, planned=request.planned, **plain)
 
 
 def beat_of(values: Mapping[str, Any]) -> Beat:

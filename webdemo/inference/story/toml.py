@@ -34,8 +34,9 @@ from motion import Duet, InputError
 from motion.formats import read
 from webdemo.inference.requests import SamplingRequest
 
-from .beats import Beat, split_sentence
+from .beats import Beat
 from .request import SceneRequest, beat_of, path_of
+from .splitting import split_sentence
 from .wishes import FloorPath, Pose
 
 if sys.version_info >= (3, 11):
@@ -49,7 +50,8 @@ _LOOKS_LIKE_TOML = re.compile(r"^\s*(?:\[\[?\s*\w+\s*\]|\w+\s*=)", re.MULTILINE)
 _NUMBER, _TEXT = (int, float), (str,)
 _TOP: dict[str, tuple[type, ...]] = {
     "seed": (int,), "samples": (int,), "guidance": _NUMBER, "steps": (int,), "damping": _NUMBER, "sampler": _TEXT,
-    "model": _TEXT, "cleanup": (bool,), "loop": (bool,), "beat": (list,), "path": (list,), "pose": (list,),
+    "model": _TEXT, "cleanup": (bool,), "loop": (bool,),
+    "planned": (bool,), "beat": (list,), "path": (list,), "pose": (list,),
 }  # fmt: skip
 _BEAT: dict[str, tuple[type, ...]] = {
     "words": _TEXT,
@@ -103,6 +105,7 @@ def read_story(text: str, folder: Path | None = None) -> dict[str, Any]:
         "paths": tuple(_path(entry, i, lines) for i, entry in enumerate(found.get("path", ()))),
         "poses": tuple(_pose(entry, i, lines, folder) for i, entry in enumerate(found.get("pose", ()))),
         "loop": found.get("loop", False),
+        "planned": found.get("planned", SceneRequest.planned),
     }
 
 
@@ -126,6 +129,8 @@ def write_story(request: SceneRequest) -> str:
         value = getattr(request, f.name)
         if f.name != "seed" and value != f.default:
             out.append(f"{f.name} = {json.dumps(value)}")
+    if not request.planned:
+        out.append("planned = false")
     if request.loop:
         out.append("loop = true")
     for beat in request.beats:

@@ -1,0 +1,114 @@
+"""Moves as places: people arrive, part, pass and circle at a body's pace."""
+
+import math
+
+import numpy as np
+import pytest
+
+from webdemo.inference.actor import FPS
+from webdemo.inference.story.floor import ABREAST, CLOSE, FARTHEST, MOST, Standing, Way2D, plan, starting
+from webdemo.inference.story.moves import moves
+
+FACING = Standing(np.array([[0.0, 0.0], [0.0, 1.2]]), np.array([0.0, math.pi]))
+
+
+def ways(
+    sentence: str, seconds: float = 4.0, standing: Standing | None = None
+) -> tuple[Standing, dict[int, Way2D]]:
+    found = moves(sentence)
+    begin = starting(found, seconds) if standing is None else standing
+    planned = plan(found, begin, round(seconds * FPS), first=standing is None)
+    return begin, {way.person: way for way in planned}
+
+
+def gaps(found: dict[int, Way2D]) -> np.ndarray:
+    """Metres between the two at the frames that both have."""
+    frames = sorted(set(found[0].frames) & set(found[1].frames))
+    at = [found[i].places[[list(found[i].frames).index(f) for f in frames]] for i in (0, 1)]
+    return np.linalg.norm(at[0] - at[1], axis=1)
+
+
+def test_those_who_walk_up_to_each_other_end_close() -> None:
+    _, found = ways("They walk up to each other.")
+    assert gaps(found)[0] > 1.7 and abs(gaps(found)[-1] - CLOSE) < 0.05
+    _, found = ways("Person B walks up to person A.")
+    assert np.ptp(found[0].places, axis=0).max() == 0 and abs(gaps(found)[-1] - CLOSE) < 0.05
+
+
+def test_those_who_part_turn_and_get_away_but_not_out_of_sight() -> None:
+    _, found = ways("They walk away from each other.", standing=FACING)
+    assert 3.0 < gaps(found)[-1] <= FARTHEST + 0.5
+    headings = found[0].headings
+    assert headings is not None and math.cos(headings[1]) < -0.99, "a walks with the back to b"
+
+
+def test_who_walks_past_keeps_clear_and_gets_beyond() -> None:
+    begin, found = ways("Person A walks past person B.")
+    assert gaps(found).min() > 0.5
+    assert found[0].places[-1, 1] > begin.places[1, 1] + 1.0
+
+
+@pytest.mark.parametrize(
+    ("words", "degrees"), [("walks around", 180), ("walks once all the way around", 330)]
+)
+def test_who_walks_around_goes_around(words: str, degrees: float) -> None:
+    begin, found = ways(f"Person A {words} person B.", seconds=8.0)
+    line = found[0].places - begin.places[1]
+    turned = np.degrees(np.unwrap(np.arctan2(line[:, 0], line[:, 1])))
+    assert abs(turned[-1] - turned[0]) >= degrees
+
+
+def test_those_who_walk_side_by_side_keep_abreast() -> None:
+    for standing in (None, FACING):
+        _, found = ways("They walk side by side.", standing=standing)
+        assert gaps(found)[-1] == pytest.approx(ABREAST, abs=0.02)
+        ahead = [way.places[-1] - way.places[-3] for way in found.values()]
+        assert ahead[0] @ ahead[1] / np.prod(np.linalg.norm(ahead, axis=1)) > 0.99
+        headings = [way.headings for way in found.values()]
+        assert headings[0] is not None and headings[1] is not None
+        assert math.cos(headings[0][-1] - headings[1][-1]) > 0.98
+
+
+def test_who_steps_back_goes_on_facing_the_other() -> None:
+    _, found = ways("Person A steps back.", standing=FACING)
+    assert found[0].places[-1, 1] < -0.5
+    assert found[0].headings is not None and np.abs(found[0].headings).max() < 1e-6
+
+
+def test_who_is_followed_walks_ahead() -> None:
+    _, found = ways("Person A follows person B.", seconds=5.0)
+    assert found[1].places[-1, 1] > 2.0 and found[0].places[-1, 1] > 1.0 and gaps(found).min() > 0.7
+
+
+def test_who_stands_in_somebodys_back_begins_there() -> None:
+    begin, found = ways("Person A sneaks up behind person B.")
+    assert begin.towards(1) @ [math.sin(begin.headings[1]), math.cos(begin.headings[1])] < -0.99
+    assert 0.4 < gaps(found)[-1] < 0.8
+
+
+def test_a_walk_takes_a_step_to_stop() -> None:
+    walking = Standing(FACING.places, FACING.headings, np.array([[1.2, 0.0], [0.0, 0.0]]))
+    _, found = ways("Both stop.", standing=walking)
+    assert 0.2 < found[0].places[-1, 0] < 0.6 and np.ptp(found[0].places, axis=0).max() == 0
+    assert found[1].places[-1].tolist() == [0.0, 1.2]
+
+
+@pytest.mark.parametrize("seconds", [0.5, 1.0, 2.0, 6.0, 20.0])
+@pytest.mark.parametrize(
+    "sentence",
+    [
+        "They walk up to each other.", "They run off.", "Person A walks past person B.", "She walks once around him.",
+        "They circle each other.", "They walk side by side.", "Person A chases person B.", "Both step back.",
+        "They turn around.", "Person A sneaks up behind person B.", "They walk side by side until one of them stops.",
+        "Person A spins all the way round.", "They turn to face each other.",
+    ],
+)  # fmt: skip
+@pytest.mark.parametrize("near", [0.0, 0.3, 3.0, None])
+def test_every_way_is_one_that_people_can_go(sentence: str, seconds: float, near: float | None) -> None:
+    standing = None if near is None else Standing(np.array([[0.0, 0.0], [near, 0.0]]), np.zeros(2))
+    for way in ways(sentence, seconds, standing)[1].values():
+        frames = np.asarray(way.frames)
+        assert np.isfinite(way.places).all() and (np.diff(frames) > 0).all()
+        assert frames[0] >= 0 and frames[-1] < round(seconds * FPS)
+        speed = np.linalg.norm(np.diff(way.places, axis=0), axis=1) / np.diff(frames) * FPS
+        assert (speed <= 1.6 * MOST).all(), speed.max()

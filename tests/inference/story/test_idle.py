@@ -1,0 +1,53 @@
+"""Bystanders: who they are, and how they stand."""
+
+import numpy as np
+import pytest
+
+from motion import SMPL22
+from motion.transforms import heading
+from webdemo.inference.story.idle import idle, is_planned, standing
+
+
+@pytest.mark.parametrize(
+    ("sentence", "found"),
+    [
+        ("Person A sits down.", "b"),
+        ("Person B bows.", "a"),
+        ("A boy jumps as his sister looks on.", "b"),
+        ("She waves, but he does not wave back.", "b"),
+        ("He offers a hand and she ignores him.", "b"),
+        ("One wants a high five and is left hanging.", "b"),
+        ("The first person stands still until the second person has come up to them.", "a"),
+        # who is touched, spoken of together, or busy
+        ("Person A pats person B on the back.", ""),
+        ("They bow.", ""),
+        ("They wave at each other.", ""),
+        ("Person A waves and person B waves back.", ""),
+        ("Person A dances while person B sits and watches.", ""),
+        ("Person A offers person B a hand.", ""),
+        ("Two people hug.", ""),
+        ("", ""),
+    ],
+)
+def test_only_bystanders_stand_by(sentence: str, found: str) -> None:
+    assert "".join(sorted(idle(sentence))) == found
+
+
+def test_plain_sentences_have_no_plan() -> None:
+    assert is_planned("They walk away.") and is_planned("Person A kneels.")
+    assert not is_planned("They shake hands.") and not is_planned("Two people hug.")
+
+
+def test_a_bystander_stands_on_the_floor_and_sways() -> None:
+    poses = standing(np.array([1.0, -2.0]), 0.7, np.arange(20) / 2, seed=3)
+    parents, children = np.array(SMPL22.bones).T
+    lengths = np.linalg.norm(poses[:, children] - poses[:, parents], axis=-1)
+    np.testing.assert_allclose(lengths, np.tile(SMPL22.bone_lengths[children], (20, 1)), atol=1e-9)
+    toes = poses[:, [SMPL22.index("left_foot"), SMPL22.index("right_foot")]]
+    assert np.abs(toes[..., 1] - 0.02).max() < 0.02 and np.ptp(toes[..., [0, 2]], axis=0).max() < 0.02
+    assert np.linalg.norm(poses[:, 0][:, [0, 2]] - [1.0, -2.0], axis=1).max() < 0.1
+    assert np.abs(heading(poses) - 0.7).max() < 0.05
+    wrists = poses[:, [SMPL22.index("left_wrist"), SMPL22.index("right_wrist")]]
+    assert (wrists[..., 1] < poses[:, :1, 1] + 0.1).all(), "the arms hang"
+    assert np.ptp(wrists, axis=0).max() > 0.005, "nobody stands like a statue"
+    assert not np.allclose(poses, standing(np.array([1.0, -2.0]), 0.7, np.arange(20) / 2, seed=4))

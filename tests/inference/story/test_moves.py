@@ -1,0 +1,75 @@
+"""Verbs of motion become moves, and nothing else does."""
+
+import pytest
+
+from webdemo.inference.story.moves import Way, goes, moves
+
+
+def told(sentence: str) -> str:
+    return " ".join(f"{move.person}:{move.way.name.lower()}" for move in moves(sentence))
+
+
+@pytest.mark.parametrize(
+    ("sentence", "found"),
+    [
+        ("They walk up to each other.", "a:to b:to"),
+        ("A woman strolls over to her neighbour.", "a:to b:stay"),
+        ("They go their separate ways.", "a:away b:away"),
+        ("Person B storms off.", "b:away a:stay"),
+        ("He heads home while she waits.", "a:away b:stay"),
+        ("Person A backs away from person B.", "a:back"),
+        ("They take a step back.", "a:back b:back"),
+        ("The first person walks past the second person.", "a:past b:stay"),
+        ("She walks all the way around him.", "a:round b:stay"),
+        ("They circle each other.", "a:round b:round"),
+        ("They jog side by side.", "a:along b:along"),
+        ("Both wander on together.", "a:along b:along"),
+        ("Person A chases person B.", "b:away a:after"),
+        ("He sneaks up behind her.", "a:behind b:stay"),
+        ("They turn their backs.", "a:turn b:turn"),
+        ("They turn to face each other.", "a:face b:face"),
+        ("They stand back to back.", "a:backs b:backs"),
+        ("walk together", "a:along b:along"),
+        # moved by touch, by words alone, or not at all
+        ("Person A leads person B by the hand.", ""),
+        ("They shake hands.", ""),
+        ("Person A does not walk away.", ""),
+        ("She wants to walk away.", ""),
+        ("They look around.", ""),
+        ("He holds out a hand.", ""),
+        ("They turn up the music.", ""),
+        ("A passes B a cup.", ""),
+        ("They pass the ball.", ""),
+    ],
+)
+def test_words_send_people_where_they_say(sentence: str, found: str) -> None:
+    assert told(sentence) == found
+
+
+def test_speed_and_turns_follow_from_the_words() -> None:
+    def speed(words: str) -> float:
+        return moves(words)[0].speed
+
+    assert (
+        speed("They run off.")
+        > speed("They hurry off.")
+        > speed("They walk off.")
+        > speed("They slowly walk off.")
+    )
+    assert moves("She walks once around him.")[0].turns == 1.0 > moves("She walks around him.")[0].turns
+
+
+def test_who_is_on_the_ground_is_not_held_in_place() -> None:
+    assert told("Person A sits on the floor while person B walks past.") == "b:past"
+
+
+def test_a_halt_is_a_move_but_sends_nobody_away() -> None:
+    assert told("Both stop.") == "a:stay b:stay" and not goes(moves("Both stop."))
+
+
+def test_until_ends_what_went_on_before() -> None:
+    found = {
+        (move.person, move.way): move.until
+        for move in moves("They walk side by side until one of them stops.")
+    }
+    assert found["a", Way.ALONG] and not found["a", Way.STAY]

@@ -1,0 +1,69 @@
+"""Sentences are split into beats that can be read alone."""
+
+import pytest
+
+from webdemo.inference.story import split_sentence
+
+
+@pytest.mark.parametrize(
+    ("sentence", "beats"),
+    [
+        ("Two people hug.", ["Two people hug."]),
+        ("First they shake hands, then they both walk away.", ["They shake hands.", "They both walk away."]),
+        (
+            "Person A bows and then walks to person B. Finally both wave.",
+            ["Person A bows.", "Person A walks to person B.", "Both wave."],
+        ),
+        (
+            "They walk up to each other, shake hands and part again.",
+            ["They walk up to each other.", "They shake hands.", "They part again."],
+        ),
+        ("They bump fists, and person A then goes away.", ["They bump fists.", "Person A goes away."]),
+        ("They hug before they walk away", ["They hug.", "They walk away."]),
+        # who comes or goes does it before or after the rest
+        (
+            "A man slaps his friend on the back and strolls off.",
+            ["Person A slaps his friend on the back.", "Person A strolls off."],
+        ),
+        ("She walks over to him and pats him.", ["Person A walks over to him.", "Person A pats him."]),
+        (
+            "The two hug goodbye, and he leaves while she stays.",
+            ["They hug goodbye.", "Person A leaves while person B stays."],
+        ),
+        ("After a quick high five they run off.", ["A quick high five.", "They run off."]),
+        ("high-five, walk", ["High-five.", "Walk."]),
+        (
+            "He holds out a hand. She looks at it, turns round and leaves.",
+            [
+                "Person A holds out a hand.",
+                "Person B looks at it.",
+                "Person B turns round.",
+                "Person B leaves.",
+            ],
+        ),
+        (
+            "A guard stands at his post; a visitor walks up to him, bows and then waits.",
+            [
+                "Person A stands at his post and person B walks up to him.",
+                "Person B bows.",
+                "Person B waits.",
+            ],
+        ),
+        # one thing, or things at the same time
+        ("Two joggers run next to each other.", ["Two joggers run next to each other."]),
+        ("One falls to the ground and the other helps him up.", None),
+        ("They hold hands and walk.", None),
+        ("Two people walk up to each other and shake hands.", None),
+        ("They stroll along and chat.", None),
+        ("She turns round and walks away.", None),
+        ("A man walks past another man and waves to him as he goes.", None),
+        ("Person A pushes person B away and leaves.", None),
+        ("First person A bows.", ["First person A bows."]),
+    ],
+)
+def test_a_sentence_is_split_where_one_thing_follows_another(sentence: str, beats: list[str] | None) -> None:
+    assert [beat.words for beat in split_sentence(sentence)] == (beats or [sentence])
+
+
+def test_nothing_gives_no_beats() -> None:
+    assert split_sentence("  \n ") == ()

@@ -1,0 +1,122 @@
+"""The ways that the words of a beat send its people, as the network is given them."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+from numpy.typing import NDArray
+
+from motion.transforms import heading
+from webdemo.inference.actor import FPS, Placement
+from webdemo.inference.directed import KnownFrames, KnownPath, Part
+from webdemo.inference.story.floor import HALT, Standing, Way2D, plan, starting
+from webdemo.inference.story.idle import idle, standing
+from webdemo.inference.story.moves import Way, goes, moves
+from webdemo.inference.story.plan import Window
+from webdemo.inference.story.request import SceneRequest
+
+Array = NDArray[np.floating]
+
+
+POSED = 15
+"""Frames between two poses of somebody who stands by."""
+SETTLES = 24
+"""Frames after which who stood in another way before stands so."""
+_UPRIGHT = 0.8
+"""Height in metres of the pelvis of people who stand."""
+
+
+def planned(request: SceneRequest, window: Window, scene: Array, placement: Placement) -> list[Part]:
+    """The places and bystanders that the words of a window's beat ask for, in the network's frame.
+
+    Args:
+        request: the scene's request.
+        window: the window.
+        scene: (2, T, 22, 3), whose frames before the window are there.
+        placement: from the scene's world to the network's frame.
+    """
+    words = request.beats[window.beat].sentence
+    found, still = moves(words), idle(words)
+    start, stop = request.edges[window.beat], request.edges[window.beat + 1]
+    if not start and (request.paths or request.poses or not (goes(found) or still)):
+        return []
+    before = scene[:, max(start - 4, 0) : start]
+    stand = _stand(before) if start else _beginning(request)
+    parts: list[Part] = []
+    for person in range(2):
+        if "ab"[person] in still and (not start or before[person, -1, 0, 1] > _UPRIGHT):
+            parts += _posed(person, stand, window, start, stop, placement, request.seed)
+    posed = {part.person for part in parts}
+    for way in plan(found, stand, stop - start, first=not start):
+        if way.person not in posed:
+            parts += _path(way, window, start, placement)
+    return parts
+
+
+def plan_note(request: SceneRequest) -> list[str]:
+    """A sentence on where the words of a scene send its people; nothing where they send nobody."""
+    said = []
+    for number, beat in enumerate(request.beats, 1):
+        ways = [
+            f"person {m.person.upper()} {m.way.value}" for m in moves(beat.sentence) if m.way is not Way.STAY
+        ]
+        if ways:
+            said.append(
+                (f"in beat {number} " if len(request.beats) > 1 else "") + " and ".join(dict.fromkeys(ways))
+            )
+    if not request.planned or not said:
+        return []
+    return [
+        f"From the words: {'; '.join(said)}. A path that you draw in the tab Scene takes the place of this."
+    ]
+
+
+def _beginning(request: SceneRequest) -> Standing:
+    """Places before the first beat, so that the first moves of the story can begin."""
+    for beat in request.beats:
+        found = moves(beat.sentence)
+        if goes(found):
+            return starting(found, beat.length)
+    return starting((), request.beats[0].length)
+
+
+def _posed(
+    person: int, stand: Standing, window: Window, start: int, stop: int, placement: Placement, seed: int
+) -> list[Part]:
+    """The poses of a bystander that fall into a window."""
+    frames = np.arange(start + (SETTLES if start else 0), stop, POSED)
+    frames = frames[(frames >= window.start) & (frames < window.stop)]
+    if not len(frames):
+        return []
+    place = stand.places[person] + (HALT * stand.speeds[person] if start else 0.0)
+    poses = standing(place, float(stand.headings[person]), frames / FPS, seed=seed + person)
+    shift = window.past - window.start
+    return [KnownFrames(person, (frames + shift).tolist(), placement.to_network(poses))]
+
+
+def _path(way: Way2D, window: Window, start: int, placement: Placement) -> list[Part]:
+    """The part of a way that falls into a window."""
+    base = math.atan2(placement.turn[2, 0], placement.turn[0, 0])
+    frames = np.asarray(way.frames) + start
+    inside = (frames >= window.start) & (frames < window.stop)
+    places = np.stack([way.places[:, 0], np.zeros(len(frames)), way.places[:, 1]], axis=1)
+    known = np.isfinite(way.headings) if way.headings is not None else np.zeros(len(frames), dtype=bool)
+    parts: list[Part] = []
+    for turned in (True, False):
+        chosen = inside & (known == turned)
+        if chosen.any():
+            headings = way.headings[chosen] - base if turned and way.headings is not None else None
+            at = (frames[chosen] - window.start + window.past).tolist()
+            parts.append(
+                KnownPath(way.person, at, placement.to_network(places[chosen])[:, [0, 2]], headings, turned)
+            )
+    return parts
+
+
+def _stand(poses: Array) -> Standing:
+    """Places and speeds of the two people at the last of some frames (2, N, 22, 3)."""
+    poses = np.asarray(poses, dtype=np.float64)
+    places = poses[:, :, 0][..., [0, 2]]
+    speeds = (places[:, -1] - places[:, 0]) / max(poses.shape[1] - 1, 1) * FPS
+    return Standing(places[:, -1], heading(poses[:, -1]), speeds)

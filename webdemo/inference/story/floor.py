@@ -1,0 +1,381 @@
+"""The floor of a beat: the moves of two people as places and headings over time.
+
+The floor is seen from above, in metres of the scene's world; headings are radians from +Z towards +X. A place is
+given once a second and the network does the walking between; where people touch, the way is left free.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+
+import numpy as np
+from numpy.typing import NDArray
+
+from webdemo.inference.actor import FPS
+
+from .moves import Move, Way
+
+Array = NDArray[np.floating]
+
+EVERY = 30
+"""Frames between two given places."""
+CLOSE = 0.9
+"""Metres from each other at which people who walk up to each other are left to the network."""
+NEAR_BY = 0.6
+"""Metres from the other at which one who came up behind them stands."""
+ABREAST = 0.8
+"""Metres between two people who walk side by side."""
+LINKED = 0.5
+"""Metres between two people who walk hand in hand or arm in arm."""
+BEHIND = 1.2
+"""Metres by which one follows the other."""
+ASIDE = 0.7
+"""Metres beside the other at which one walks past."""
+WIDE = 0.9
+"""Radius in metres of a walk around the other, at least."""
+MOST = 2.6
+"""Metres a second of the fastest run that is planned."""
+FARTHEST = 5.0
+"""Metres apart to which people walk; the training scenes hold next to nothing beyond."""
+TURNING = 0.9
+"""Seconds of a half turn."""
+_EASE = 0.5
+"""Seconds in which a walk gets up its speed, and slows down again."""
+HALT = 0.3
+"""Seconds of its speed that a walk takes to stop."""
+_START = {Way.TO: 2.8, Way.BEHIND: 2.6, Way.AWAY: 1.1, Way.PAST: 2.2, Way.ROUND: 1.2, Way.BACK: 0.9}
+"""Metres between two people at the beginning of a first beat with a move."""
+
+
+@dataclass(frozen=True)
+class Standing:
+    """The places of two people who stand.
+
+    Attributes:
+        places: (2, 2) x and z in metres.
+        headings: (2,) radians.
+        speeds: (2, 2) metres a second.
+    """
+
+    places: Array
+    headings: Array
+    speeds: Array = field(default_factory=lambda: np.zeros((2, 2)))
+
+    def gap(self) -> float:
+        """Metres between them."""
+        return float(np.linalg.norm(self.places[0] - self.places[1]))
+
+    def towards(self, who: int) -> Array:
+        """The direction (2,) from one to the other; ahead, where they stand on one spot."""
+        line = self.places[1 - who] - self.places[who]
+        length = float(np.linalg.norm(line))
+        return line / length if length > 0.05 else _direction(float(self.headings[who]))
+
+
+@dataclass(frozen=True, eq=False)
+class Way2D:
+    """The places and headings of one person at some frames of a beat.
+
+    Attributes:
+        person: 0 for a, 1 for b.
+        frames: N frames of the beat, in order.
+        places: (N, 2) metres.
+        headings: (N,) radians; None where they may look where they like.
+    """
+
+    person: int
+    frames: Sequence[int]
+    places: Array
+    headings: Array | None
+
+
+@dataclass
+class _Track:
+    """The planned way of one person, frame by frame; NaN where it is free."""
+
+    place: Array
+    heading: float
+    places: Array
+    headings: Array
+    frame: int = 0
+    going: Array = field(default_factory=lambda: np.zeros(2))
+
+    def walk(
+        self, line: Array, seconds: float, *, heading: Array | float | None = None, ease: bool = True
+    ) -> None:
+        """Walks along points (N, 2) within some seconds; faces where it goes, or where ``heading`` says."""
+        frames = max(1, min(round(seconds * FPS), len(self.places) - self.frame))
+        steps = np.linalg.norm(np.diff(line, axis=0), axis=1)
+        along = np.concatenate([[0.0], np.cumsum(steps)])
+        time = np.arange(1, frames + 1) / frames
+        done = _eased(time, _EASE / max(seconds, 1e-6)) if ease else time
+        far = min(along[-1], MOST * frames / FPS)
+        at = np.stack([np.interp(done * far, along, line[:, axis]) for axis in (0, 1)], axis=1)
+        stop = self.frame + frames
+        self.places[self.frame : stop] = at
+        if heading is None:
+            ahead = np.diff(np.concatenate([self.place[None], at]), axis=0)
+            facing = np.arctan2(ahead[:, 0], ahead[:, 1])
+            still = np.linalg.norm(ahead, axis=1) < 1e-4
+            facing[still] = _filled(facing, ~still, self.heading)[still]
+            facing = self._turned_into(np.unwrap(facing))
+        else:
+            facing = np.broadcast_to(np.asarray(heading, dtype=float), (frames,)).copy()
+        self.headings[self.frame : stop] = facing
+        self.place, self.heading, self.frame = at[-1], float(facing[-1]), stop
+
+    def _turned_into(self, facing: Array) -> Array:
+        """Headings that begin at the person's own and are turned at a body's pace."""
+        found, now, most = np.empty(len(facing)), self.heading, math.pi / TURNING / FPS
+        for i, wanted in enumerate(facing):
+            now += float(np.clip(_wrapped(wanted - now), -most, most))
+            found[i] = now
+        return found
+
+    def turn(self, angle: float) -> None:
+        """Turns on the spot by so many radians."""
+        frames = max(1, min(round(abs(angle) / math.pi * TURNING * FPS), len(self.places) - self.frame))
+        stop = self.frame + frames
+        self.places[self.frame : stop] = self.place
+        self.headings[self.frame : stop] = self.heading + angle * _eased(
+            np.arange(1, frames + 1) / frames, 0.4
+        )
+        self.heading, self.frame = self.heading + angle, stop
+
+    def stay(self, seconds: float | None = None, *, facing: bool = False) -> None:
+        """Stays for some seconds, or to the end of the beat."""
+        stop = (
+            len(self.places) if seconds is None else min(len(self.places), self.frame + round(seconds * FPS))
+        )
+        self.places[self.frame : stop] = self.place
+        if facing:
+            self.headings[self.frame : stop] = self.heading
+        self.frame = max(stop, self.frame)
+
+    def left(self) -> float:
+        """Seconds until the beat ends."""
+        return (len(self.places) - self.frame) / FPS
+
+
+def starting(moves: Sequence[Move], seconds: float) -> Standing:
+    """Places before a first beat: a at the origin, facing +Z, and b so that their moves can begin."""
+    ways = {move.way: move for move in reversed(moves)}
+    if Way.ALONG in ways:
+        gap = LINKED if ways[Way.ALONG].linked else ABREAST
+        return Standing(np.array([[0.0, 0.0], [-gap, 0.0]]), np.zeros(2))
+    if Way.AFTER in ways:
+        lead = 1 if ways[Way.AFTER].person == "a" else -1
+        return Standing(np.array([[0.0, 0.0], [0.0, lead * BEHIND]]), np.zeros(2))
+    if Way.BACKS in ways:
+        return Standing(np.array([[0.0, 0.0], [0.0, -0.6]]), np.array([0.0, math.pi]))
+    gap = next((_START[move.way] for move in moves if move.way in _START), 1.4)
+    for way in (Way.TO, Way.BEHIND):
+        if way in ways:
+            gap = float(np.clip(CLOSE + 0.6 * seconds * ways[way].speed, 1.8, 3.6))
+    turned = next((m.person for m in moves if m.way is Way.FACE), "")
+    turned = turned or next(("b" if m.person == "a" else "a" for m in moves if m.way is Way.BEHIND), "")
+    ahead = -1.0 if turned == "a" else 1.0
+    facing_b = 0.0 if turned else math.pi
+    return Standing(np.array([[0.0, 0.0], [0.0, ahead * gap]]), np.array([0.0, facing_b]))
+
+
+def plan(moves: Sequence[Move], standing: Standing, frames: int, *, first: bool = False) -> list[Way2D]:
+    """The ways of both people through a beat of so many frames, from where they stand.
+
+    A person without moves has no way. In a ``first`` beat the ways also say where the two begin.
+    """
+    tracks = [
+        _Track(
+            np.asarray(standing.places[i], dtype=float), float(standing.headings[i]),
+            np.full((frames, 2), np.nan), np.full(frames, np.nan),
+        )
+        for i in range(2)
+    ]  # fmt: skip
+    own = [[move for move in moves if move.person == person] for person in "ab"]
+    for who in (0, 1) if not any(m.way is Way.AFTER for m in own[0]) else (1, 0):
+        _walked(who, own, tracks, standing)
+    return [
+        way
+        for who, track in enumerate(tracks)
+        if (way := _sampled(who, track, standing if first else None)) is not None
+    ]
+
+
+def _walked(who: int, own: Sequence[Sequence[Move]], tracks: Sequence[_Track], standing: Standing) -> None:
+    """Lays out the moves of one person in order."""
+    track, theirs = tracks[who], [move.way for move in own[1 - who]]
+    listed = list(own[who])
+    going = [move for move in listed if move.way not in (Way.STAY, Way.TURN, Way.FACE)]
+    for i, move in enumerate(listed):
+        if track.left() <= 0.1:
+            return
+        if move.late and i == 0:
+            track.frame = round(0.35 * track.left() * FPS)
+        if move.way is Way.TURN and any(later.way in (Way.AWAY, Way.PAST) for later in listed[i + 1 :]):
+            continue  # who walks away has turned
+        seconds = track.left() if len(going) < 2 else track.left() / (len(listed) - i)
+        if move.until:
+            seconds *= 0.55
+        _moved(move, who, track, standing, theirs, seconds)
+    if track.frame and listed and listed[-1].way in (Way.AWAY, Way.BACK, Way.PAST, Way.ROUND):
+        track.stay()
+
+
+def _moved(
+    move: Move, who: int, track: _Track, standing: Standing, theirs: Sequence[Way], seconds: float
+) -> None:
+    """Lays out one move."""
+    to = standing.towards(who)
+    other = np.asarray(standing.places[1 - who], dtype=float)
+    gap, here = float(np.linalg.norm(other - track.place)), track.place
+    both = move.way in theirs
+    match move.way:
+        case Way.STAY | Way.BACKS:
+            if not track.frame:  # who was walking takes a step to stop
+                track.place = track.place + HALT * standing.speeds[who]
+                track.frame = (
+                    min(round(2 * HALT * FPS), len(track.places) - 1)
+                    if np.linalg.norm(standing.speeds[who]) > 0.3
+                    else 0
+                )
+            watched = Way.TURN in theirs or Way.FACE in theirs
+            track.stay(None if seconds >= track.left() else seconds, facing=watched or move.way is Way.BACKS)
+        case Way.TURN:
+            track.turn(2 * math.pi * move.turns)
+            track.stay(facing=True)
+        case Way.FACE:
+            line = other - here
+            track.turn(_wrapped(math.atan2(line[0], line[1]) - track.heading))
+            track.stay(facing=True)
+        case Way.TO | Way.BEHIND:
+            way = (gap - CLOSE) / (2 if both else 1)
+            if move.way is Way.BEHIND:
+                way += CLOSE - NEAR_BY
+            if way > 0.25:
+                track.walk(np.stack([here, here + way * to]), _time(way, move.speed, seconds))
+            if not both:
+                track.stay()
+        case Way.AWAY:
+            room = (FARTHEST - gap + max(0.0, move.speed - 1.1)) / (2 if both else 1)
+            away = -to if not np.linalg.norm(track.going) else track.going
+            way = min(max(seconds - 0.4, 0.5) * move.speed, max(room, 1.2))
+            track.walk(
+                np.stack([here, here + way * away]), min(seconds, way / (0.8 * move.speed) + 2 * _EASE)
+            )
+        case Way.BACK:
+            way = min(0.9, 0.6 * seconds)
+            track.walk(
+                np.stack([here, here - way * to]), min(seconds, way / 0.7), heading=math.atan2(to[0], to[1])
+            )
+            track.stay(facing=True)
+        case Way.PAST:
+            beyond = max(1.3, min(gap, seconds * move.speed - gap))
+            aside = ASIDE * np.array([to[1], -to[0]])
+            line = np.stack(
+                [here, here + 0.5 * gap * to + 0.7 * aside, other + aside, other + beyond * to + aside]
+            )
+            track.walk(_smoothed(line), min(seconds, (gap + beyond) / min(move.speed, MOST) + _EASE))
+        case Way.ROUND:
+            _around(move, track, other, seconds, both, standing)
+        case Way.ALONG:
+            _along(who, move, track, standing, seconds)
+        case Way.AFTER:
+            _after(move, track, to, other, seconds, theirs)
+
+
+def _around(move: Move, track: _Track, other: Array, seconds: float, both: bool, standing: Standing) -> None:
+    """A walk around the other, or of both around the middle between them."""
+    middle = standing.places.mean(axis=0) if both else other
+    out = track.place - middle
+    start, radius = math.atan2(out[0], out[1]), float(np.linalg.norm(out))
+    wanted = 2 * math.pi * move.turns * (1.1 if move.turns >= 1 else 1.25)
+    end_radius = max(radius, WIDE / 2 if both else WIDE)
+    speed = max(move.speed, 1.3)
+    wanted = min(wanted, speed * max(seconds - 0.4, 0.5) / max((radius + end_radius) / 2, 0.4))
+    angles = start + np.linspace(0, wanted, 60)
+    radii = radius + (end_radius - radius) * np.clip(np.linspace(0, 5, 60), 0, 1)
+    line = middle + radii[:, None] * np.stack([np.sin(angles), np.cos(angles)], axis=1)
+    track.walk(line, seconds)
+
+
+def _along(who: int, move: Move, track: _Track, standing: Standing, seconds: float) -> None:
+    """A walk side by side: both turn into one direction across the line between them."""
+    between = standing.towards(0)
+    ahead = np.array([between[1], -between[0]])
+    facing = _direction(standing.headings[0]) + _direction(standing.headings[1])
+    if ahead @ facing < 0:
+        ahead = -ahead
+    middle = standing.places.mean(axis=0)
+    side = between * ((LINKED if move.linked else ABREAST) / 2) * (-1 if who == 0 else 1)
+    way = min(max(seconds - 0.4, 0.5) * move.speed, 7.0)
+    line = np.stack([track.place, middle + side + min(0.8, 0.4 * way) * ahead, middle + side + way * ahead])
+    track.walk(_smoothed(line), seconds)
+    track.going = ahead
+
+
+def _after(move: Move, track: _Track, to: Array, other: Array, seconds: float, theirs: Sequence[Way]) -> None:
+    """A walk after the other, who walks ahead."""
+    gone = min(max(seconds - 0.4, 0.5) * move.speed, 4.0) if Way.AWAY in theirs else 0.0
+    way = float(np.linalg.norm(other - track.place)) - BEHIND + gone
+    if way > 0.25:
+        track.stay(0.4)
+        track.walk(np.stack([track.place, track.place + way * to]), min(seconds - 0.4, track.left()))
+
+
+def _sampled(who: int, track: _Track, standing: Standing | None) -> Way2D | None:
+    """The way at every :data:`EVERY` frames and at the last one that is planned, and where it begins."""
+    if standing is not None:
+        track.places[0], track.headings[0] = standing.places[who], standing.headings[who]
+    known = np.flatnonzero(np.isfinite(track.places[:, 0]))
+    if not len(known):
+        return None
+    wanted = {
+        *known[known % EVERY == EVERY - 1].tolist(),
+        int(known[-1]),
+        *([0] if standing is not None else []),
+    }
+    frames = sorted(wanted)
+    headings = track.headings[frames]
+    facing = np.isfinite(headings)
+    return Way2D(
+        who, frames, track.places[frames], np.where(facing, headings, np.nan) if facing.any() else None
+    )
+
+
+def _time(way: float, speed: float, most: float) -> float:
+    """Seconds in which a way is walked, at a run if there is little time."""
+    return min(most, max(way / speed + _EASE, way / MOST))
+
+
+def _eased(time: Array, share: float) -> Array:
+    """Progress 0 to 1 that takes a share of the time to get up its speed, and as much to slow down."""
+    share = min(share, 0.5)
+    speed = np.clip(np.minimum(time / share, (1 - time) / share + 1e-3), 0.02, 1.0)
+    done = np.cumsum(speed)
+    return done / done[-1]
+
+
+def _smoothed(line: Array) -> Array:
+    """Points on a curve that rounds the corners of a line (Chaikin's, four times)."""
+    for _ in range(4):
+        first, last = line[:1], line[-1:]
+        near, far = 0.75 * line[:-1] + 0.25 * line[1:], 0.25 * line[:-1] + 0.75 * line[1:]
+        line = np.concatenate([first, np.stack([near, far], axis=1).reshape(-1, 2), last])
+    return line
+
+
+def _filled(values: Array, known: Array, first: float) -> Array:
+    """The values with the last known one where they are not known."""
+    at = np.maximum.accumulate(np.where(known, np.arange(len(values)), -1))
+    return np.where(at >= 0, values[at.clip(0)], first)
+
+
+def _direction(heading: float) -> Array:
+    return np.array([math.sin(heading), math.cos(heading)])
+
+
+def _wrapped(angle: float) -> float:
+    """The same angle from -π to π."""
+    return (angle + math.pi) % (2 * math.pi) - math.pi

@@ -1,0 +1,134 @@
+"""A sentence of several things, split into beats that can be read alone."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Sequence
+
+from .beats import Beat
+from .clauses import Clause, Reader
+from .moves import MOVED, Way, is_bare, way_of
+
+_MARK = r"(?:and\s+)?(?:then|finally|afterwards?|after\s+that|at\s+last|at\s+the\s+end|lastly)"
+_LOOSE_MARK = r"(?:next|later|now)"
+"""Marks of time only at the beginning of a clause: "next to each other" is a place."""
+_BREAK = re.compile(
+    rf"(?:[.;!,]\s*|\s+){_MARK}\b,?\s*|[.;!,]\s+(?:and\s+)?{_LOOSE_MARK}\b,?\s+(?!to\b)|(?<=[.!])\s+"
+    r"|,?\s+before\s+(?=(?:they|he|she)\b)",
+    re.IGNORECASE,
+)
+_LATE_MARK = re.compile(
+    r"(?:,\s+(?:and\s+)?|\s+and\s+)(?P<who>person\s+[ab]|the\s+(?:other|first|second)(?:\s+person)?|they|he|she|both)\s+(?P<mark>then|finally|afterwards)\s+",
+    re.IGNORECASE,
+)
+_VERB = (
+    r"(?:walk|go|come|run|turn|bow|wave|shake|hug|embrac|danc|kick|push|punch|jump|sit|kneel|get|stand|talk|part|leav|circl"
+    r"|hold|clap|point|pat|tap|nod|step|stop|help|hand|give|take|wait|meet|greet|stroll|high[- ]five|raise|let)\w*"
+)
+_LIST = re.compile(rf",\s+(?={_VERB}\b)|,?\s+and\s+(?={_VERB}\b)", re.IGNORECASE)
+_OPENING = re.compile(
+    r"^(?:first(?:ly)?|at first|to begin with|in the beginning)\b(?!\s+person),?\s*", re.IGNORECASE
+)
+_STARTS_WITH_MARK = re.compile(rf"^(?:{_MARK}\b,?|{_LOOSE_MARK},)\s*", re.IGNORECASE)
+_NAMES = re.compile(r"(?:person [ab]|the (?:first|second) person)\b", re.IGNORECASE)
+
+_MOMENT = re.compile(
+    r"\b(?:shak|high[- ]fiv|low[- ]fiv|fist|bump|hug|embrac|bow|kiss|slap|pat\b|pats\b|tap|nod|curts|salut|greet)\w*"
+)
+"""Acts that are over when a walk begins."""
+ARRIVES = (Way.TO, Way.BEHIND)
+"""Ways that are over before what the person does next; two who walk up to each other and shake hands do it in one."""
+DEPARTS = (Way.AWAY, Way.PAST, Way.ROUND, Way.ALONG, Way.AFTER, *ARRIVES)
+"""Ways that begin when what the person did before is over."""
+
+
+def split_sentence(text: str) -> tuple[Beat, ...]:
+    """The beats of a sentence such as "First …, then …. Finally …"; one beat if it names one thing.
+
+    Who comes or goes does the one after the other, also where the words only say "and". In a story of several
+    beats single people are called person A and person B, so that each beat can be read alone.
+    """
+    text = " ".join(text.split())
+    reader = Reader()
+    parts: list[str] = []
+    for part in _clauses(_OPENING.sub("", text)):
+        part = _STARTS_WITH_MARK.sub("", _OPENING.sub("", part.strip())).strip(" ,;.!")
+        part = re.sub(r"^and\s+|\s+and$", "", part, flags=re.IGNORECASE)
+        if part:
+            groups = _acts(reader.read(part))
+            parts += [_told(part, groups)] if len(groups) == 1 else [_worded(group) for group in groups]
+    if len(parts) < 2:
+        return (Beat(text),) if text else ()
+    return tuple(Beat(part) for part in parts)
+
+
+def _acts(found: Sequence[Clause]) -> list[list[Clause]]:
+    """The clauses in groups that happen one after another."""
+    if any(MOVED.search(clause.words) for clause in found):
+        return [list(found)]
+    groups: list[list[Clause]] = []
+    for i, clause in enumerate(found):
+        beside = (
+            clause.at_once
+            or clause.until
+            or any(later.at_once and later.who == clause.who for later in found[i + 1 : i + 2])
+        )
+        if not groups or beside or not _follows(groups[-1], clause, found[i + 1 : i + 2]):
+            groups[-1:] = [[*(groups[-1] if groups else []), clause]]
+        else:
+            groups.append([clause])
+    return groups
+
+
+def _follows(group: Sequence[Clause], clause: Clause, after: Sequence[Clause]) -> bool:
+    """True if a clause begins when a group is over."""
+    way, before = way_of(clause.words), [way_of(done.words) for done in group]
+    if way is Way.TURN and after and way_of(after[0].words) is Way.AWAY:
+        way = Way.AWAY
+    if way is None and not after and is_bare(clause):
+        return bool(_MOMENT.search(group[-1].words))
+    if way in DEPARTS:
+        return any(done is None for done in before)
+    arrived = [done for done, move in zip(group, before, strict=True) if move in ARRIVES and done.who != "ab"]
+    return bool(arrived) and way is None and any(set(done.who) & set(clause.who) for done in arrived)
+
+
+def _told(part: str, groups: Sequence[Sequence[Clause]]) -> str:
+    """A part as a sentence: as it is if it names both or a person; otherwise with the name of who is meant."""
+    found = groups[0] if groups else []
+    named = bool(found) and found[0].stated and (found[0].who == "ab" or _NAMES.match(part))
+    if (
+        not found
+        or not found[0].subject
+        or (named and not any(c.who != "ab" and c.stated for c in found[1:]))
+    ):
+        return f"{part[:1].upper()}{part[1:]}."
+    return _worded(found)
+
+
+def _worded(found: Sequence[Clause]) -> str:
+    """Clauses as one sentence."""
+    names = {"a": "person A", "b": "person B", "ab": "they"}
+    text, last = "", ""
+    for clause in found:
+        own = re.sub(r"\bperson ([ab])\b", lambda m: f"person {m[1].upper()}", clause.words)
+        joint = " until " if clause.until else " while " if clause.at_once and clause.who != last else " and "
+        joint = ", " if not last else joint
+        who = (
+            "" if not clause.subject or (clause.who == last and not clause.until) else f"{names[clause.who]} "
+        )
+        text += f"{joint if text else ''}{who}{own}"
+        last = clause.who if clause.subject else ""
+    return f"{text[:1].upper()}{text[1:]}."
+
+
+def _clauses(text: str) -> list[str]:
+    """The text cut where one thing follows another: at marks of time, at full stops, and in lists of three or more."""
+    found: list[str] = []
+    clauses = _BREAK.split(_LATE_MARK.sub(lambda m: f", {m['mark']} {m['who']} ", text))
+    for i, clause in enumerate(clauses):
+        listed = _LIST.split(clause)
+        goes_on = i + 1 < len(clauses) and not clauses[i + 1][:1].isupper()
+        in_a_list = bool(re.search(rf",\s+{_VERB}\b", clause, re.IGNORECASE))
+        found += listed if in_a_list and (len(listed) > 2 or goes_on) else [clause]
+    return found
