@@ -12,8 +12,8 @@ from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
+import scipy  # its parts are loaded with their first use
 from numpy.typing import NDArray
-from scipy.spatial.transform import Rotation
 
 from motion.body import bone_rotations
 from motion.clip import Clip
@@ -111,7 +111,7 @@ def _text(
 
 def _angles(rotations: Array, axes: str) -> Array:
     """(T, A) degrees about these axes in their order; a joint with fewer than three comes as near as it can."""
-    found = Rotation.from_matrix(rotations)
+    found = scipy.spatial.transform.Rotation.from_matrix(rotations)
     if len(axes) == 3:
         return np.unwrap(found.as_euler(axes, degrees=True), axis=0, period=360.0)
     return np.degrees(found.as_rotvec())[:, ["XYZ".index(axis) for axis in axes]]

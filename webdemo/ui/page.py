@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import Any
 
 import gradio as gr
+from gradio.queueing import Queue
 
 from motion.formats.files import MAX_BYTES
 from webdemo.ui.components.exports import Shelf
@@ -106,8 +107,16 @@ def start_queue(page: gr.Blocks, max_size: int) -> None:
     """Gives a page its queue of events, which is looked into less often than Gradio's own while nothing waits.
 
     Gradio looks every millisecond, and every ten for progress. An idle server then takes a tenth of a core.
+    ``page.queue()`` would make a whole application besides, which launching or mounting the page makes anew.
     """
-    page.queue(default_concurrency_limit=4, max_size=max_size)
+    page._queue = Queue(
+        live_updates=True,
+        concurrency_count=page.max_threads,
+        update_intervals=1,
+        max_size=max_size,
+        blocks=page,
+        default_concurrency_limit=4,
+    )
     page._queue.sleep_when_free = _LOOK
     page._queue.progress_update_sleep_when_free = 5 * _LOOK
 
