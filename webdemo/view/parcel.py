@@ -24,7 +24,7 @@ from .stage import Pane, Style
 
 @dataclass(frozen=True)
 class Job:
-    """What a process needs to draw some pictures of a film.
+    """All that a process needs to draw some pictures of a film.
 
     Attributes:
         panes: the motions, from left to right and from top to bottom.

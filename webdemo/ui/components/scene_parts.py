@@ -42,7 +42,7 @@ def part_fields(
 
 
 def part_request(fields: Mapping[str, Any]) -> SceneRequest:
-    """What the fields of :func:`part_fields` ask for: the selected span again, or several futures.
+    """The request of the fields of :func:`part_fields`: the selected span again, or several futures.
 
     Raises:
         InputError: without a motion or a span.
