@@ -53,6 +53,43 @@ def test_bodies_stand_where_python_puts_them(player, width):
         assert np.abs(drawn - expected).max() < 0.002, "metres; positions travel in steps of 0.1 mm"
 
 
+def lit_over_shaded(pixels: np.ndarray) -> float:
+    """How much brighter the left of the blue shirt is than its right, as a share; the key lamp stands on the left."""
+    strength, bright = pixels[..., 2] - pixels[..., 0], pixels.sum(axis=-1)
+    ends = []
+    for row in range(len(pixels)):
+        blue = np.flatnonzero(strength[row] > 50)
+        if len(blue) > 24:
+            third = len(blue) // 3
+            ends.append((bright[row, blue[:third]].mean(), bright[row, blue[-third:]].mean()))
+    assert len(ends) > 30, "the body is seen"
+    left, right = np.mean(ends, axis=0)
+    return float(left / right - 1)
+
+
+def test_bodies_are_brighter_on_the_side_of_the_lamp(player):
+    page = player()
+    until(page, DRESSED)
+    pause(page)
+    page.locator(".pdd-range").fill("93")
+    until(page, "window.__pasdedeux.frame === 93 && window.__pasdedeux.loops === 0")
+    lit = lit_over_shaded(stage_pixels(page))
+    page.evaluate("""() => {
+        const { player } = window.__pasdedeux;
+        const [figure] = player.panes[0].figures;
+        Object.getPrototypeOf(figure).shade = function (colors, lamps, lens, scale, alpha) {
+            this.light.fill(0.7);
+            this.shine.fill(0);
+            this.expand(colors, scale, alpha);
+        };
+        player.refresh();
+    }""")
+    until(page, "window.__pasdedeux.loops === 0")
+    flat = lit_over_shaded(stage_pixels(page))
+    print(lit, flat)
+    assert lit > 0.15 and abs(flat) < 0.05
+
+
 def test_one_key_shows_skeletons_and_the_next_press_both(player):
     page = player()
     until(page, DRESSED)
