@@ -31,12 +31,14 @@ import numpy as np
 import torch
 from torch import Tensor, nn
 
+from motion.cores import usable_cores
+
 log = logging.getLogger(__name__)
 
 Precision = Literal["f32", "bf16", "int8"]
 TOLERANCE: dict[Precision, float] = {"f32": 1e-4, "bf16": 5e-2, "int8": 1e-1}
 """Largest accepted difference from the plain network, relative to the largest output; measured: 5e-6 in float32."""
-THREADS = min(torch.get_num_threads(), 8)
+THREADS = min(torch.get_num_threads(), usable_cores(), 8)
 """Threads of a pass: PyTorch's default, up to 8; more do not help with products of a few hundred rows."""
 STREAMS = min(THREADS, 2)
 """Passes that run in parallel, each with a share of the threads. A single pass of several rows is split into as many

@@ -69,7 +69,7 @@ def test_child_processes_draw_what_one_process_draws(monkeypatch: pytest.MonkeyP
     times = np.arange(film._FEW + 1) / 30
     views = cameras([DUET], size=(64, 64), times=times, view="front", follow=True)
     whole = job(panes=(Pane(DUET),), size=(64, 64), times=times, views=views)
-    monkeypatch.setattr("os.sched_getaffinity", lambda _: {0, 1}, raising=False)
+    monkeypatch.setattr(film, "usable_cores", lambda: 2)
     drawn = list(film._pictures(whole))
     assert len(drawn) == len(times)
     for child, here in zip(drawn[:4], film._draw(whole), strict=False):

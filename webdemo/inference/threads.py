@@ -11,8 +11,10 @@ from pathlib import Path
 
 import torch
 
-CORES = torch.get_num_threads()
-"""PyTorch's default number of threads: one per core, or ``OMP_NUM_THREADS``."""
+from motion.cores import usable_cores
+
+CORES = min(torch.get_num_threads(), usable_cores())
+"""PyTorch's default number of threads, one per core or ``OMP_NUM_THREADS``; no more than the process may use."""
 
 
 def free_cores(load: Path = Path("/proc/loadavg")) -> int:

@@ -24,6 +24,7 @@ from pydantic_settings import (
 )
 
 from motion import InputError
+from motion.cores import usable_cores
 
 PREFIX = "PASDEDEUX_"
 FILE = "pasdedeux.toml"
@@ -102,7 +103,7 @@ class Settings(BaseSettings):
 
     # ---- live streams
     live: int = Field(
-        default_factory=lambda: 2 * (os.cpu_count() or 1), ge=0, le=200,
+        default_factory=lambda: 2 * usable_cores(), ge=0, le=200,
         description="live streams at the same time; 0: none",
     )  # fmt: skip
 

@@ -19,6 +19,7 @@ from typing import cast
 import numpy as np
 from PIL import Image
 
+from motion.cores import usable_cores
 from motion.errors import InputError
 from motion.formats.files import replacing
 
@@ -178,9 +179,7 @@ def _caption(job: Job, whole: Picture, seconds: float) -> None:
 
 def _pictures(job: Job) -> Generator[Picture, None, None]:
     """All pictures in their order, drawn here or by one process a core."""
-    workers = min(
-        len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1, 4
-    )
+    workers = min(usable_cores(), 4)
     if workers < 2 or len(job.times) <= _FEW:
         yield from _draw(job)
         return

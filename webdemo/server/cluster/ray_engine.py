@@ -22,6 +22,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from motion import InputError
+from motion.cores import usable_cores
 from webdemo.inference.cancel import CancelToken
 from webdemo.inference.methods import methods
 from webdemo.inference.requests import Progress, Result, SamplingRequest
@@ -250,7 +251,7 @@ class RayEngine:
                 where = {
                     "address": "local", "include_dashboard": False, "_node_ip_address": LOOPBACK,
                     "object_store_memory": STORE_BYTES,
-                    "num_cpus": max(os.cpu_count() or 1, math.ceil(cores)),
+                    "num_cpus": max(usable_cores(), math.ceil(cores)),
                 }  # fmt: skip
             with keeping_sigterm():
                 ray.init(namespace=NAMESPACE, configure_logging=False, log_to_driver=False, **where)
