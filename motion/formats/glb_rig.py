@@ -105,7 +105,8 @@ class _Skeleton:
 
     Attributes:
         rig: the joints' nodes.
-        rest: the pose of binding as a motion of one frame in metres; each offset is in its parent's own axes.
+        rest: the pose of binding as a motion of one frame, in metres.
+        bones: (J, 3) metres from the parent to each joint, in the parent's own axes.
         turns: (J, 3, 3) the joints' rotations in it.
         holders: (J, 3, 3) world rotation of the node above each joint, against the nearest joint above; of none,
             against the world.
@@ -115,6 +116,7 @@ class _Skeleton:
 
     rig: Rig
     rest: RigMotion = field(repr=False)
+    bones: Array = field(repr=False)
     turns: Array = field(repr=False)
     holders: Array = field(repr=False)
     base: Array = field(repr=False)
@@ -138,8 +140,8 @@ class _Skeleton:
         usual = np.where(
             above[:, None, None] < 0, stands @ self.turns, np.swapaxes(self.turns[above], -1, -2) @ self.turns
         )
-        world = posed(rest, rest.offsets, clip, pairs, constants, usual)
-        path = root_path(rest, rest.offsets, clip, world, lift) @ upright / rest.metres_per_unit
+        world = posed(rest, self.bones, clip, pairs, constants, usual)
+        path = root_path(rest, self.bones, clip, world, lift) @ upright / rest.metres_per_unit
         world = upright.T @ world
         found: dict[tuple[int, str], Array] = {}
         for joint, node in enumerate(rig.nodes):
@@ -181,20 +183,24 @@ def _in_binding(file: GlbFile, parents: Sequence[int], rig: Rig) -> _Skeleton:
     turns = split((still if bound is None else bound)[:, :3, :3])[0]
     facing = split(still[:, :3, :3])[0]
     count = len(rig.nodes)
-    offsets, places, holders = np.zeros((count, 3)), np.zeros((count, 3)), np.empty((count, 3, 3))
+    bones, offsets, holders = np.zeros((count, 3)), np.zeros((count, 3)), np.empty((count, 3, 3))
+    places = np.zeros((count, 3))
     for joint, (node, above) in enumerate(zip(rig.nodes, rig.above, strict=True)):
         holder = split(world[parents[node]][:, :3, :3])[0][0] if parents[node] >= 0 else np.eye(3)
         holders[joint] = holder if above < 0 else facing[above].T @ holder
         if above >= 0:
-            offsets[joint] = facing[above].T @ (still[joint, :3, 3] - still[above, :3, 3])
-            places[joint] = places[above] + turns[above] @ offsets[joint]
+            bones[joint] = facing[above].T @ (still[joint, :3, 3] - still[above, :3, 3])
+            offsets[joint] = turns[above] @ bones[joint]
+            places[joint] = places[above] + offsets[joint]
     names = tuple(file.joint_name(node) for node in rig.nodes)
     rest = RigMotion(names, rig.above, offsets, places[None], None, 30.0, name=file.label)
     scale = metres_per_unit(rest)
     rest = RigMotion(names, rig.above, scale * offsets, scale * places[None], None, 30.0, scale, file.label)
     root = rest.path_to_root(match_joints(rest).pelvis)[-1]
     above = parents[rig.nodes[root]]
-    return _Skeleton(rig, rest, turns, holders, world[above][0] if above >= 0 else np.eye(4), root)
+    return _Skeleton(
+        rig, rest, scale * bones, turns, holders, world[above][0] if above >= 0 else np.eye(4), root
+    )
 
 
 def _lift(skeleton: _Skeleton, reference: str | Path | bytes, name: str | None) -> float:

@@ -99,7 +99,7 @@ def glb_character(
 def glb_motion(
     rotations: np.ndarray, root: np.ndarray, rig: str | dict[str, str] = "mixamo", *, fps: float = 30.0,
     unit: float = 1.0, turn: np.ndarray | None = None, start: float = 0.0, way: str = "LINEAR", skinned: bool = True,
-    people: int = 1, **changes: Any,
+    people: int = 1, axes: np.ndarray | None = None, **changes: Any,
 ) -> bytes:  # fmt: skip
     """An animated character of boxes on SMPL22's bones, as Blender writes Mixamo's: the armature turned and scaled.
 
@@ -114,8 +114,10 @@ def glb_motion(
         way: how it is interpolated.
         skinned: whether there is a mesh; without one the joints are plain nodes.
         people: how many of them stand 2 m apart, each with a skeleton and an animation of their own.
+        axes: (22, 3, 3) the joints' own axes in the pose of binding, which are those of the armature by default.
         changes: entries of the file's description that replace those that are right.
     """
+    axes = np.tile(np.eye(3), (22, 1, 1)) if axes is None else axes
     names = RIGS[rig] if isinstance(rig, str) else rig
     turn = np.eye(3) if turn is None else turn
     rest = SMPL22.rest_positions().astype(float)
@@ -138,6 +140,10 @@ def glb_motion(
         slope = fps * np.gradient(values, axis=0)
         return np.stack([slope, values, slope], axis=1).reshape(-1, values.shape[-1])
 
+    inverse = np.tile(np.eye(4), (22, 1, 1))
+    inverse[:, :3, :3] = axes.swapaxes(1, 2)
+    inverse[:, :3, 3] = -unit * np.einsum("jba,jb->ja", axes, rest @ turn.T)
+    bound = add(inverse.swapaxes(1, 2).reshape(-1, 16), "MAT4")
     count = len(SMPL22.joint_names)
     nodes: list[dict[str, Any]] = []
     animations, skins, top = [], [], []
@@ -170,7 +176,7 @@ def glb_motion(
                     channels.append({"sampler": len(samplers) - 1, "target": target})
         animations.append({"name": f"walk {person}", "samplers": samplers, "channels": channels})
         if skinned:
-            skins.append({"joints": list(range(first, first + count)), "inverseBindMatrices": 4})
+            skins.append({"joints": list(range(first, first + count)), "inverseBindMatrices": bound})
             nodes.append({"mesh": 0, "skin": person})
             top.append(len(nodes) - 1)
     told |= {"nodes": nodes, "animations": animations, "skins": skins, "scene": 0, "scenes": [{"nodes": top}],

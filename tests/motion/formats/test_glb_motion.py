@@ -39,8 +39,17 @@ WALK = glb_motion(ROTATIONS, ROOT)
         {"skinned": False},
         {"way": "CUBICSPLINE"},
         {"way": "STEP"},
+        {"axes": Rotation.random(22, random_state=0).as_matrix()},
     ],
-    ids=["plain", "a turned armature in centimetres", "later", "bones alone", "splines", "steps"],
+    ids=[
+        "plain",
+        "a turned armature in centimetres",
+        "later",
+        "bones alone",
+        "splines",
+        "steps",
+        "axes of their own",
+    ],
 )
 def test_joints_stand_where_they_do_in_the_file(rig: str, given: dict[str, Any]) -> None:
     (found,) = read_glb_people(glb_motion(ROTATIONS, ROOT, rig, **given), name="walk.glb")

@@ -12,7 +12,9 @@ FILE_TYPES = [".bvh", ".glb", ".npz", ".npy", ".skeleton", ".txt"]
 
 def file_field(label: str, *, elem_id: str) -> gr.File:
     """A field that takes a motion file."""
-    named = f"{label}: {' '.join(FILE_TYPES)}"
+    named = (
+        f"{label}: {' '.join(FILE_TYPES[:4])} …"  # all of them would lie under the cross that takes it away
+    )
     return gr.File(label=named, file_types=FILE_TYPES, height=112, elem_id=elem_id, elem_classes="pd-file")
 
 
