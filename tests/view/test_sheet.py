@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from motion import SMPL22, Duet
+from motion import SMPL22, Clip, Duet
+from motion.body import load_body, skin
 from webdemo.view.camera import cameras
 from webdemo.view.sheet import _holding
 
@@ -19,3 +20,12 @@ def test_people_who_part_quickly_stay_in_each_moment() -> None:
         found = _holding(cameras([duet], size=size, times=np.array([frame / 30]))[0], duet, frame)
         pixels = found.project(duet.positions[:, frame].reshape(-1, 3))[0]
         assert (pixels > 0).all() and (pixels < size).all()
+
+
+def test_heads_are_not_cut_off() -> None:
+    rest = (SMPL22.rest_positions() + np.array([0, 0.98, 0]))[None]
+    clip = Clip(np.repeat(rest, 4, axis=0).astype(np.float32), 30.0)
+    size = (250, 288)
+    found = _holding(cameras([clip], size=size, times=np.array([0.0]))[0], clip, 0)
+    crown = found.project(skin(load_body("a"), clip.positions[:1].astype(float))[0])[0]
+    assert (crown > 0).all() and (crown < size).all()

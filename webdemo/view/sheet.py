@@ -36,6 +36,8 @@ _TALL = 1.15
 """Height of a picture over its width."""
 _NEARER = 0.85
 """A moment needs no room to move in."""
+_CROWN = 0.2
+"""Metres from the joint of the head to the top of the hair."""
 _VECTOR: dict[Any, Any] = {"svg.fonttype": "none", "pdf.fonttype": 42, "svg.hashsalt": "pas de deux"}
 
 
@@ -151,8 +153,9 @@ def write_grid_sheet(
 
 
 def _holding(way: Camera, motion: Clip | Duet, frame: int) -> Camera:
-    """The camera as near as it can go with every joint of a moment in the picture."""
+    """The camera as near as it can go with everybody in the picture at a moment, from the soles to the crown."""
     joints = stacked_positions(motion)[:, frame].reshape(-1, 3)
+    joints = np.concatenate([joints, joints + np.array([0.0, _CROWN, 0.0])])
     for nearer in (_NEARER, 1.0, 1.2, 1.5):
         found = replace(way, distance=nearer * way.distance)
         pixels = found.project(joints)[0]
