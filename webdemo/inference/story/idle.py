@@ -95,7 +95,7 @@ def standing(place: Array, angle: float, seconds: Array, *, seed: int = 0) -> Ar
     turns[:, SMPL22.index("neck")] = _about(0, 0.05 + 0.02 * sway[1])
     turns[:, SMPL22.index("head")] = heading_matrix(0.1 * sway[2])
     for side, sign, arm in (("left", 1.0, sway[3]), ("right", -1.0, sway[1])):
-        turns[:, SMPL22.index(f"{side}_shoulder")] = _about(2, -sign * (1.3 + 0.015 * arm)) @ _about(
+        turns[:, SMPL22.index(f"{side}_shoulder")] = _about(2, -sign * (1.4 + 0.015 * arm)) @ _about(
             0, 0.05 + 0.03 * arm
         )
         turns[:, SMPL22.index(f"{side}_elbow")] = heading_matrix(-sign * (0.3 + 0.06 * arm))
