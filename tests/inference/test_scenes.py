@@ -236,6 +236,22 @@ def test_a_bystander_stands_while_the_other_acts(engine: Engine) -> None:
     assert (made[1, ::15, 20:22, 1] < made[1, ::15, :1, 1] + 0.1).all(), "with hanging arms"
 
 
+def test_who_kneels_down_begins_on_their_feet(engine: Engine) -> None:
+    made = positions(run(engine, GenerateRequest(prompt="They kneel down.", seconds=3.0, **QUICK)))
+    assert made[:, 0, 0, 1].min() > 0.9
+
+
+def test_a_span_and_a_loop_are_left_to_the_network(engine: Engine, story: Result) -> None:
+    given = story.duets[0]
+    assert isinstance(given, Duet)
+    words = Beat("They walk away from each other.")
+    span = SceneRequest(beats=(words,), motion=given, start=2.0, end=5.0, **QUICK)
+    assert not [note for note in run(engine, span).notes if "From the words" in note]
+    np.testing.assert_array_equal(
+        positions(run(engine, span)), positions(run(engine, replace(span, planned=False)))
+    )
+
+
 def apart(result: Result) -> np.ndarray:
     roots = positions(result)[:, :, 0][..., [0, 2]]
     return np.linalg.norm(roots[0] - roots[1], axis=-1)

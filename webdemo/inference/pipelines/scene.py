@@ -275,7 +275,7 @@ class _Setting:
                 parts.append(KnownFrames(person, behind, placement.to_network(after[person])))
         wished = _wishes(request, window, placement)
         parts += wished
-        if request.planned and not window.after:
+        if request.planned and request.end is None and not request.loop:
             taken = {part.person for part in wished}
             parts += [part for part in planned(request, window, scene, placement) if part.person not in taken]
         frames = max(past + length + window.after, round(SECONDS[0] * FPS))

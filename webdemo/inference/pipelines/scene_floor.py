@@ -11,7 +11,7 @@ from motion.transforms import heading
 from webdemo.inference.actor import FPS, Placement
 from webdemo.inference.directed import KnownFrames, KnownPath, Part
 from webdemo.inference.story.floor import HALT, Standing, Way2D, plan, starting
-from webdemo.inference.story.idle import idle, standing
+from webdemo.inference.story.idle import goes_down, idle, is_planned, standing
 from webdemo.inference.story.moves import Way, goes, moves
 from webdemo.inference.story.plan import Window
 from webdemo.inference.story.request import SceneRequest
@@ -39,7 +39,7 @@ def planned(request: SceneRequest, window: Window, scene: Array, placement: Plac
     words = request.beats[window.beat].sentence
     found, still = moves(words), idle(words)
     start, stop = request.edges[window.beat], request.edges[window.beat + 1]
-    if not start and (request.paths or request.poses or not (goes(found) or still)):
+    if not start and (request.paths or request.poses or not is_planned(words)):
         return []
     before = scene[:, max(start - 4, 0) : start]
     stand = _stand(before) if start else _beginning(request)
@@ -47,6 +47,11 @@ def planned(request: SceneRequest, window: Window, scene: Array, placement: Plac
     for person in range(2):
         if "ab"[person] in still and (not start or before[person, -1, 0, 1] > _UPRIGHT):
             parts += _posed(person, stand, window, start, stop, placement, request.seed)
+        elif not start and window.part == 0 and "ab"[person] in goes_down(words):
+            poses = standing(
+                stand.places[person], float(stand.headings[person]), np.zeros(1), seed=request.seed
+            )
+            parts.append(KnownFrames(person, [0], placement.to_network(poses)))
     posed = {part.person for part in parts}
     for way in plan(found, stand, stop - start, first=not start):
         if way.person not in posed:
@@ -65,7 +70,7 @@ def plan_note(request: SceneRequest) -> list[str]:
             said.append(
                 (f"in beat {number} " if len(request.beats) > 1 else "") + " and ".join(dict.fromkeys(ways))
             )
-    if not request.planned or not said:
+    if not request.planned or request.loop or request.end is not None or not said:
         return []
     return [
         f"From the words: {'; '.join(said)}. A path that you draw in the tab Scene takes the place of this."

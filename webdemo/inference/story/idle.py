@@ -41,6 +41,10 @@ _TOUCH = re.compile(
     r"\b(?:hug|embrac|pat|pats|tap|hit|slap|grab|hold|tak|giv|pull|push|shov|lift|carr|help|kiss|cover|comfort|touch|"
     r"lay|lean|tickl|shak|strok|catch|throw|kick|punch|lead|drag|support|tackl|trip|pass|hand|high[- ]fiv|fist)\w*"
 )
+_DOWN = re.compile(
+    r"\b(?:(?:sit|kneel|lie|crouch|squat|get|go|drop|sink|fall)s? (?:\w+ )?down\b|falls?\b|collapses?\b|faints?\b"
+    r"|(?:drop|sink|fall|go|get)(?:s|es)? (?:\w+ ){0,3}?(?:ground|floor|knees?)\b)"
+)
 _IN_VAIN = re.compile(r"\b(?:left hanging|in vain|gets? no answer|(?:is|are) ignored)\b")
 
 
@@ -61,8 +65,13 @@ def idle(sentence: str) -> frozenset[str]:
 
 
 def is_planned(sentence: str) -> bool:
-    """True if a beat's words say where people go, or that somebody stands by."""
-    return goes(moves(sentence)) or bool(idle(sentence))
+    """True if a beat's words say where people go, who stands by, or who begins on their feet."""
+    return goes(moves(sentence)) or bool(idle(sentence)) or bool(goes_down(sentence))
+
+
+def goes_down(sentence: str) -> frozenset[str]:
+    """The people who sit, kneel or lie down or fall in a beat's sentence, and so are on their feet before."""
+    return frozenset(who for clause in clauses(sentence) if _DOWN.search(clause.words) for who in clause.who)
 
 
 def _stands_by(own: list[Clause], others: list[Clause]) -> bool:
