@@ -27,13 +27,15 @@ from .glb_file import GlbFile, opened, packed
 from .glb_motion import MESHES, metres_per_unit, read_glb_people
 from .glb_nodes import Rig, bind_pose, people, placed, quaternions, split, with_those_above
 from .glb_reader import read_character
-from .rig_pose import check_smpl, posed, root_path
+from .rig_pose import check_smpl, posed, reached, root_path
 
 Array = NDArray[np.floating]
 
 _REST = SMPL22.rest_positions()
 _SOLE = float(_REST[SMPL22.index("left_ankle"), 1] - _REST[SMPL22.index("left_foot"), 1])
 """Metres from SMPL22's ankle down to the floor."""
+_REACH = (0.2, 0.6)
+"""Metres from a wrist to the nearest joint of the other person: there it is all, and not at all, where it was made."""
 _LIFTS = (-0.05, 0.3)
 
 
@@ -85,13 +87,10 @@ def glb_wearing(duet: Duet, reference: str | Path | bytes, *, name: str | None =
         lift = _lift(skeleton, reference, name)
         told, blob = copy.deepcopy(file.told), bytearray(file.blob)
         first, *_ = starts = _twice(told, file.node_parents(), duet.roles)
-        moves = [
-            {
-                (node + start - first, path): values
-                for (node, path), values in skeleton.moved(clip, lift).items()
-            }
-            for clip, start in zip(duet.people, starts, strict=True)
-        ]
+        moves = []
+        for clip, other, start in zip(duet.people, duet.people[::-1], starts, strict=True):
+            moved = skeleton.moved(clip, lift, near=_near(clip, other))
+            moves.append({(node + start - first, path): values for (node, path), values in moved.items()})
         told["animations"] = [_animation(told, blob, moves, duet.a.fps, "duet")]
         if duet.manifest:
             manifest = json.loads(json.dumps(duet.manifest, default=str))
@@ -122,13 +121,16 @@ class _Skeleton:
     base: Array = field(repr=False)
     root: int
 
-    def moved(self, clip: Clip, lift: float, upright: Array | None = None) -> dict[tuple[int, str], Array]:
+    def moved(
+        self, clip: Clip, lift: float, upright: Array | None = None, near: Mapping[str, Array] | None = None
+    ) -> dict[tuple[int, str], Array]:
         """Values of the channels of a person's motion, by node and path.
 
         Args:
             clip: on SMPL22.
             lift: metres by which the person stands above the floor at 0.
             upright: (3, 3) rotation that turns the file's world to Y up; it is by default.
+            near: (T,) share of the way that each wrist goes to where the person's is, by side.
         """
         upright = np.eye(3) if upright is None else upright
         rig, rest = self.rig, self.rest
@@ -141,6 +143,8 @@ class _Skeleton:
             above[:, None, None] < 0, stands @ self.turns, np.swapaxes(self.turns[above], -1, -2) @ self.turns
         )
         world = posed(rest, self.bones, clip, pairs, constants, usual)
+        if near is not None:
+            world = reached(rest, self.bones, clip, pairs, usual, world, lift, near)
         path = root_path(rest, self.bones, clip, world, lift) @ upright / rest.metres_per_unit
         world = upright.T @ world
         found: dict[tuple[int, str], Array] = {}
@@ -152,6 +156,17 @@ class _Skeleton:
         back = np.linalg.inv(self.base)
         found[rig.nodes[self.root], "translation"] = path @ back[:3, :3].T + back[:3, 3]
         return found
+
+
+def _near(clip: Clip, other: Clip) -> dict[str, Array]:
+    """(T,) by side: 1 while a wrist is near enough to the other person to touch them, 0 while it is far away."""
+    found = {}
+    for side in ("left", "right"):
+        wrist = clip.positions[:, None, SMPL22.index(f"{side}_wrist")]
+        away = np.linalg.norm(other.positions - wrist, axis=-1).min(axis=1).astype(np.float64)
+        share = np.clip((_REACH[1] - away) / (_REACH[1] - _REACH[0]), 0.0, 1.0)
+        found[side] = share**2 * (3 - 2 * share)
+    return found
 
 
 def _skeleton(file: GlbFile) -> _Skeleton:

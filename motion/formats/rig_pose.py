@@ -66,8 +66,7 @@ def posed(
         if after is None or rig.parents[after] != joint or np.linalg.norm(bones[after]) < 1e-4:
             continue
         bone = world[:, joint] @ (bones[after] / np.linalg.norm(bones[after]))
-        wanted = positions[:, pairs[after]] - positions[:, pairs[joint]]
-        wanted /= np.maximum(np.linalg.norm(wanted, axis=-1, keepdims=True), 1e-9)
+        wanted = _unit(positions[:, pairs[after]] - positions[:, pairs[joint]])
         world[:, joint] = swing(bone, wanted) @ world[:, joint]
     return world
 
@@ -81,6 +80,71 @@ def local_of(world: Array, parents: tuple[int, ...]) -> Array:
     return local
 
 
+def reached(
+    rig: RigMotion, bones: Array, clip: Clip, pairs: Mapping[int, int], usual: Array, world: Array, lift: float,
+    near: Mapping[str, Array],
+) -> Array:  # fmt: skip
+    """The rotations of :func:`posed` with wrists where the person's are; hands stay as turned as they were.
+
+    Args:
+        rig, bones, clip, pairs, usual: as for :func:`posed`.
+        world: (T, J, 3, 3) as it gives them.
+        lift: as for :func:`root_path`.
+        near: (T,) share of the way that each wrist goes there, 0 to 1, by side.
+
+    Returns:
+        (T, J, 3, 3) world rotations, Y up.
+    """
+    path = root_path(rig, bones, clip, world, lift)
+    places = _placed(rig, bones, world) + path[:, None]
+    parts, world = match_joints(rig), np.array(world)
+    for side, limb in (("left", parts.left), ("right", parts.right)):
+        chain = cast(list[int], [limb[part] for part in ("shoulder", "elbow", "wrist")])
+        shoulder, elbow, wrist = (places[:, joint] for joint in chain)
+        goal = clip.positions[:, SMPL22.index(f"{side}_wrist")] + np.array([0.0, lift, 0.0])
+        share = near[side][:, None]
+        bent, end = _bent(shoulder, elbow, wrist, wrist + share * (goal / leg_scale(rig) - wrist))
+        upper = swing(_unit(elbow - shoulder), _unit(bent - shoulder))
+        forearm = np.einsum("tij,tj->ti", upper, wrist - elbow)
+        lower = swing(_unit(forearm), _unit(end - bent)) @ upper
+        world[:, chain[0]] = upper @ world[:, chain[0]]
+        world[:, chain[1]] = lower @ world[:, chain[1]]
+    for joint, parent in enumerate(rig.parents):
+        if joint not in pairs and parent >= 0:
+            world[:, joint] = world[:, parent] @ usual[joint]
+    return world
+
+
+def _bent(shoulder: Array, elbow: Array, wrist: Array, goal: Array) -> tuple[Array, Array]:
+    """(T, 3) elbows and wrists of arms of the same length that reach for a goal in the plane in which they bend."""
+    upper, lower = (
+        np.linalg.norm(bone, axis=-1, keepdims=True) for bone in (elbow - shoulder, wrist - elbow)
+    )
+    away = np.linalg.norm(goal - shoulder, axis=-1, keepdims=True)
+    far = np.clip(away, np.abs(upper - lower) + 1e-4, 0.9999 * (upper + lower))
+    along = _unit(goal - shoulder)
+    out: Array = elbow - shoulder
+    out = out - np.sum(out * along, axis=-1, keepdims=True) * along
+    # A straight arm bends down.
+    down = np.array([0.0, -1.0, 0.0]) + along * along[:, 1:2]
+    out = _unit(np.where(np.linalg.norm(out, axis=-1, keepdims=True) > 1e-3 * upper, out, down))
+    cosine = np.clip((upper**2 + far**2 - lower**2) / np.maximum(2 * upper * far, 1e-9), -1.0, 1.0)
+    return shoulder + upper * (cosine * along + np.sqrt(1 - cosine**2) * out), shoulder + far * along
+
+
+def _unit(vectors: Array) -> Array:
+    return vectors / np.maximum(np.linalg.norm(vectors, axis=-1, keepdims=True), 1e-9)
+
+
+def _placed(rig: RigMotion, bones: Array, world: Array) -> Array:
+    """(T, J, 3) places of the joints with their roots at the origin."""
+    places = np.zeros((len(world), len(rig.parents), 3))
+    for joint, parent in enumerate(rig.parents):
+        if parent >= 0:
+            places[:, joint] = places[:, parent] + world[:, parent] @ bones[joint]
+    return places
+
+
 def root_path(rig: RigMotion, bones: Array, clip: Clip, world: Array, lift: float) -> Array:
     """(T, 3) metres, Y up, where the root of the body is, so that the hips are where the person's are.
 
@@ -89,10 +153,7 @@ def root_path(rig: RigMotion, bones: Array, clip: Clip, world: Array, lift: floa
         world: as it gives them.
         lift: metres by which the person stands above the floor at 0.
     """
-    places = np.zeros((len(world), len(rig.parents), 3))
-    for joint, parent in enumerate(rig.parents):
-        if parent >= 0:
-            places[:, joint] = places[:, parent] + world[:, parent] @ bones[joint]
+    places = _placed(rig, bones, world)
     parts = match_joints(rig)
     hips = cast(list[int], [parts.left["hip"], parts.right["hip"]])  # found, or match_joints had raised
     ours = [SMPL22.index("left_hip"), SMPL22.index("right_hip")]

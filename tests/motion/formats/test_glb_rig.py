@@ -23,7 +23,12 @@ from .skinned import Skinned
 
 POSITIONS, ROTATIONS = marching(30)
 OTHER = Clip(turn(marching(40, seed=3)[0], 2.0) + np.float64([0.3, 0.0, 1.0]), 30)
-DUET = Duet(Clip(POSITIONS, 30), Clip(OTHER.positions[:30], 30), ("actor", "reactor"), {"model": "x"})
+DUET = Duet(
+    Clip(POSITIONS, 30),
+    Clip(OTHER.positions[:30] + np.float32([0, 0, 3]), 30),
+    ("actor", "reactor"),
+    {"model": "x"},
+)
 Z_UP = Rotation.from_euler("x", 90, degrees=True).as_matrix()
 AXES = Rotation.random(22, random_state=0).as_matrix()
 LIMBS = ("elbow", "wrist", "knee", "ankle")
@@ -94,6 +99,22 @@ def test_bones_stay_as_long_as_the_character_s() -> None:
         if parent >= 0:
             length = np.linalg.norm(joints[:, joint] - joints[:, parent], axis=-1)
             np.testing.assert_allclose(length, np.linalg.norm(places[joint] - places[parent]), atol=1e-4)
+
+
+def test_hands_that_touch_meet_on_longer_arms() -> None:
+    standing = SMPL22.rest_positions() + np.array([0.0, 0.9562, 0.0])
+    wrist, elbow, shoulder = (SMPL22.index(f"right_{part}") for part in ("wrist", "elbow", "shoulder"))
+    person = np.repeat(standing[None], 30, axis=0)
+    upper, lower = (SMPL22.bone_lengths[joint] for joint in (elbow, wrist))
+    ahead = np.array([0.3, 0.0, 0.954])  # towards the other's hand
+    person[:, elbow] = person[:, shoulder] + upper * ahead
+    person[:, wrist] = person[:, elbow] + lower * ahead
+    gap = person[0, wrist, 2] * 2 + 0.08
+    duet = Duet(Clip(person, 30), Clip(turn(person, np.pi) + np.array([0.0, 0.0, gap]), 30))
+    apart = np.linalg.norm(duet.a.positions[0, wrist] - duet.b.positions[0, wrist])
+    data = glb_wearing(duet, glb_character("unreal", places=a_pose()), name="x.glb")
+    hands = [in_our_order(data, "unreal", person)[:, wrist] for person in range(2)]
+    np.testing.assert_allclose(np.linalg.norm(hands[0] - hands[1], axis=-1), apart, atol=0.01)
 
 
 def test_thick_soles_stand_on_the_floor() -> None:
