@@ -3,12 +3,7 @@
 from __future__ import annotations
 
 import os
-import re
-import time
-import zipfile
-from dataclasses import replace
 from pathlib import Path
-from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
@@ -18,44 +13,23 @@ os.environ.setdefault("GRADIO_ANALYTICS_ENABLED", "False")
 
 import gradio as gr
 
-from motion import Clip, InputError
-from motion.formats import read, write
+from motion.formats import write
 from motion.layouts import LAYOUTS
 from tests.motion.bodies import marching
 from tests.motion.formats.characters import glb_character, glb_motion
-from tests.motion.formats.rigs import RIGS, bvh_text
 from tests.ui.stub_engine import walking
 from tests.ui.tab_events import built, changes
-from webdemo.inference.live import LiveRequest
-from webdemo.inference.methods import variants
-from webdemo.inference.requests import ReactRequest
-from webdemo.ui.components.actors import read_source, rig_of
-from webdemo.ui.components.exports import KINDS
-from webdemo.ui.components.live import BATCH, REPEATED
-from webdemo.ui.history import Entry, Kept, Opened, Original, clean_name
 from webdemo.ui.tabs.react import ReactTab
 from webdemo.ui.text.examples import example_clips
-from webdemo.view.payload import unpack_positions
+
+from .reacting import FIELDS, LOADED, READ, run, upload
 
 BOTH = [("Person A", "a"), ("Person B", "b")]
-LOADED = ("source", "given", "line", "player", "trim", "person", "start", "end", "found")
-READ = (*LOADED, "up", "unit", "fps", "order")
-FIELDS = {"person": "a", "start": 0.0, "end": 10.0, "role": "a", "prompt": "they walk", "seed": 3,
-          "samples": 1, "guidance": 2.5, "steps": 5, "damping": 0.7}  # fmt: skip
 
 
 @pytest.fixture
 def tab(tmp_path: Path) -> ReactTab:
     return built(ReactTab, tmp_path / "files")
-
-
-def upload(tab: ReactTab, path: Path) -> list[dict[str, Any]]:
-    return [changes(LOADED, updates) for updates in tab.upload(str(path))]
-
-
-def run(tab: ReactTab, source: Any, **changed: Any) -> list[dict[str, Any]]:
-    fields = {"source": source, **FIELDS, **changed}
-    return [changes(tab.outputs, updates) for updates in tab.run("me", fields)]
 
 
 def test_an_upload_is_shown_at_once(tab: ReactTab, walker: Path) -> None:
@@ -227,34 +201,6 @@ def test_examples_are_the_files_of_a_folder(tab: ReactTab, tmp_path: Path) -> No
     assert last["source"].name == "Reach out"
 
 
-@pytest.mark.parametrize(
-    ("method", "model", "mode", "steps"),
-    [
-        ("intergen", "intergen", "offline", 50),
-        ("regennet", "regennet", "offline", 5),
-        ("regennet-online", "regennet", "online", 5),
-    ],
-)
-def test_a_method_is_a_model_and_a_mode(
-    tab: ReactTab, walker: Path, method: str, model: str, mode: str, steps: int
-) -> None:
-    source = upload(tab, walker)[-1]["source"]
-    run(tab, source, method=method)
-    asked = tab.page.engine.requests[-1]
-    assert (asked.model, asked.mode) == (model, mode)
-    role, steps_slider, _, damping, *_ = tab.fit_method(method)
-    assert steps_slider["value"] == steps
-    assert role["interactive"] is (model == "intergen")
-    assert damping["interactive"] is (mode == "offline")
-
-
-def test_the_steps_of_every_method_can_be_set(tab: ReactTab) -> None:
-    """A value outside of the slider's range is refused by the page before the job begins."""
-    for method in variants("react"):
-        steps = tab.fit_method(method)[1]
-        assert tab.steps.minimum <= steps["value"] <= tab.steps.maximum, method
-
-
 def test_the_second_person_can_begin_as_the_files_other_stands(
     tab: ReactTab, walkers: Path, walker: Path
 ) -> None:
@@ -281,95 +227,6 @@ def test_how_a_file_was_read_is_shown_and_can_be_changed(tab: ReactTab, walker: 
     assert (wrong["up"], wrong["fps"]) == ("auto", 60), "the choices are again those that it was read with"
 
 
-def test_a_method_says_what_it_cannot_do(tab: ReactTab, walker: Path) -> None:
-    source = upload(tab, walker)[-1]["source"]
-    *_, last = run(tab, source, method="regennet", role="b")
-    assert "choose role a" in last["line"]
-
-
-def test_two_methods_stand_side_by_side(tab: ReactTab, walker: Path) -> None:
-    source = upload(tab, walker)[-1]["source"]
-    steps = run(tab, source, method="intergen", other="regennet-online", steps=20, samples=2, prompt="")
-    assert any("ReGenNet, online. Generating: frame" in step.get("line", "") for step in steps)
-    first, second = tab.page.engine.requests[-2:]
-    assert (first.model, first.steps, second.model, second.mode, second.steps) == (
-        "intergen", 20, "regennet", "online", 5,
-    )  # fmt: skip
-    assert first.seed == second.seed
-    assert first.actor.positions.tobytes() == second.actor.positions.tobytes()
-    last = steps[-1]
-    samples = last["player"]["value"]["samples"]
-    assert [(s["caption"], s["beside"]["caption"]) for s in samples] == [
-        ("InterGen, person to person", "ReGenNet, online")
-    ] * 2
-    assert [curve["label"] for curve in samples[0]["curves"]] == ["Apart, left", "Apart, right"]
-    for head in ("InterGen, person to person, 2", "ReGenNet, online, 1"):
-        assert head in last["readouts"]
-    _, *buttons = tab.export(last["record"])
-    with zipfile.ZipFile(buttons[0]["value"]) as archive:
-        assert [re.sub("-[0-9a-f]{4}-", "-", name) for name in sorted(archive.namelist())] == [
-            f"{method}-reaction-to-walker-a-bvh-seed3-{i}.npz"
-            for method in ("intergen", "regennet-online")
-            for i in (1, 2)
-        ]
-
-
-def test_a_method_is_not_compared_with_itself_and_roles_fit_both(tab: ReactTab, walker: Path) -> None:
-    source = upload(tab, walker)[-1]["source"]
-    last = run(tab, source, method="intergen", other="intergen")[-1]
-    assert "choose another one" in last["line"]
-    assert tab.fit_method("intergen", "regennet")[0]["interactive"] is False
-    assert tab.fit_method("intergen", "")[0]["interactive"] is True
-
-
-def test_streamed_frames_come_in_small_messages_and_end_in_a_result(tab: ReactTab, walker: Path) -> None:
-    source = upload(tab, walker)[-1]["source"]
-    began = time.monotonic()
-    steps = run(tab, source, stream=True, end=2.0, samples=4, prompt="")
-    assert time.monotonic() - began > 1.9, "the actor plays in real time"
-    opening = next(step["player"]["value"] for step in steps if "value" in step.get("player", {}))
-    assert opening["live"]
-    assert opening["samples"][0]["positions"]["shape"] == [1, 60, 22, 3]
-    messages = [step["player"]["live"] for step in steps if step.get("player", {}).get("live")]
-    assert len(messages) == 10
-    streaming = [step["player"] for step in steps if "live" in step.get("player", {})]
-    assert all(player["value"] is opening for player in streaming), "the first of several may be lost"
-    seen = np.full((60, 22, 3), np.nan)
-    for message in messages:
-        assert message["id"] == opening["id"]
-        part = unpack_positions(message["frames"])[0]
-        assert len(part) <= BATCH + REPEATED
-        seen[message["start"] : message["start"] + len(part)] = part
-    result = steps[-1]["record"].result
-    np.testing.assert_allclose(seen, result.duets[0].b.positions, atol=1e-3)
-    assert steps[-1]["player"]["value"]["continues"] == opening["id"]
-    assert "longest" in steps[-1]["line"]
-    asked = tab.page.engine.requests[-1]
-    assert (asked.model, asked.mode, asked.samples, asked.steps) == ("regennet", "online", 1, 5)
-
-
-def test_a_streamed_reaction_that_is_cancelled_tells_the_player(tab: ReactTab, walker: Path) -> None:
-    source = upload(tab, walker)[-1]["source"]
-    fields = {"source": source, **FIELDS, "stream": True}
-    seen: list[dict[str, Any]] = []
-    for updates in tab.run("me", fields):
-        seen.append(changes(tab.outputs, updates))
-        if len(seen) == 5:
-            tab.page.runs.cancel("me")
-    assert seen[-2]["player"]["live"]["stop"]
-    assert "Cancelled at frame" in seen[-1]["line"]
-    assert "record" not in seen[-1]
-
-
-def test_a_live_request_is_online() -> None:
-    actor = walking(2.0).a
-    with pytest.raises(InputError, match="online"):
-        LiveRequest(actor=actor, model="regennet", mode="offline")
-    live = LiveRequest(actor=actor, model="regennet", steps=5)
-    plain = ReactRequest(actor=actor, model="regennet", steps=5, mode="online")
-    assert live.to_dict() == plain.to_dict(), "its manifest reproduces the same motion"
-
-
 def test_one_of_more_than_two_people_is_chosen(tab: ReactTab, tmp_path: Path) -> None:
     path = tmp_path / "three.npz"
     people = np.concatenate([walking(3.0).positions, walking(3.0, 5).positions[:1]])
@@ -389,120 +246,3 @@ def test_the_order_of_fifteen_joints_is_found_and_can_be_set(tab: ReactTab, tmp_
     assert "in the order of K3HI" in last["found"]
     *_, again = [changes(READ, u) for u in tab.read_again(last["source"], "auto", "auto", None, "sbu15")]
     assert "in the order of SBU" in again["found"]
-
-
-def test_an_opened_run_brings_back_its_file_its_person_and_its_part(tab: ReactTab) -> None:
-    pair = walking(3.0)
-    request = ReactRequest(actor=replace(pair.b.cut(15, 75), name="sub/ject 1.bvh"), steps=1)
-    *_, result = tab.page.engine.run(request)
-    entry = Entry(id="x", kind="react", title="t", state="done", request=request.to_dict())
-    kept = Kept(controls={"person": "b", "start": 0.5, "end": 2.5}, people=pair.people)
-    found = tab.opened(Opened(entry=entry, result=result, kept=kept))
-    assert found[tab.person] == gr.update(choices=BOTH, visible=True, value="b")
-    assert (found[tab.begin]["value"], found[tab.end]["value"]) == (0.5, 2.5)
-    assert Path(found[tab.file]).name == "ject-1.npz"
-    restored = read(found[tab.file])
-    np.testing.assert_allclose(restored.positions, pair.positions, atol=1e-6)
-    by_link = tab.opened(Opened(entry=entry, result=result, kept=Kept(controls={"person": "x"})))
-    assert by_link[tab.file] is None and by_link[tab.begin]["value"] == 0.0
-    wrong = tab.opened(Opened(entry=entry, result=result, kept=replace(kept, controls={"person": ["b"]})))
-    assert wrong[tab.person]["value"] == "a", "a workspace made by hand"
-
-
-def test_an_opened_run_brings_back_the_very_file_that_was_uploaded(tab: ReactTab, walker: Path) -> None:
-    source = upload(tab, walker)[-1]["source"]
-    *_, last = run(tab, source)
-    result = last["record"].result
-    entry = Entry(id="x", kind="react", title="t", state="done", request=result.manifest["request"])
-    original = Original(walker, "my walk.bvh")
-    kept = Kept(controls={"up": "y", "unit": "cm", "fps": 60.0}, people=source.people, original=original)
-    found = tab.opened(Opened(entry=entry, result=result, kept=kept))
-    assert Path(found[tab.file]).name == "my walk.bvh"
-    assert Path(found[tab.file]).read_bytes() == walker.read_bytes()
-    assert [found[part] for part in (tab.up, tab.unit, tab.fps, tab.order)] == ["y", "cm", 60.0, "auto"]
-    assert "not kept" not in found[tab.line] and "read the file anew" in found[tab.found]
-    *_, again = [changes(READ, u) for u in tab.read_again(found[tab.source], "auto", "m", None)]
-    assert again["source"].people[0].num_frames == source.people[0].num_frames
-    for gone in (None, Original(walker.with_name("gone.bvh"), "my walk.bvh")):
-        found = tab.opened(Opened(entry=entry, result=result, kept=replace(kept, original=gone)))
-        assert Path(found[tab.file]).suffix == ".npz"
-        assert "was not kept with this run" in found[tab.line] and walker.name in found[tab.line]
-
-
-def test_an_upload_is_kept_with_its_run_and_an_example_is_not(
-    tab: ReactTab, walker: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    told: list[Kept] = []
-    history: Any = SimpleNamespace(keep=lambda run, owner, kept: told.append(kept))
-    monkeypatch.setattr(tab, "page", replace(tab.page, history=history))
-    source = upload(tab, walker)[-1]["source"]
-    *_, last = run(tab, replace(source, read_with=("y", "auto", None, "auto")))
-    record = last["record"]
-    tab._keep(replace(record, result=replace(record.result, run="x")), {"source": source})
-    assert told[-1].original == Original(walker, walker.name)
-    assert told[-1].controls["up"] == "auto"
-    name, path = example_clips()[0]
-    *_, shown = [changes(LOADED, u) for u in tab.load(lambda: read_source(path, name))]
-    tab._keep(replace(record, result=replace(record.result, run="x")), {"source": shown["source"]})
-    assert clean_name(told[-1].original.name if told[-1].original else "") == ""
-
-
-def test_a_partner_is_taken_on_the_rig_of_an_uploaded_bvh(tab: ReactTab, tmp_path: Path) -> None:
-    rig = tmp_path / "my rig.bvh"
-    positions, rotations = marching(90)
-    rig.write_text(bvh_text(rotations, positions[:, 0], RIGS["mixamo"]), encoding="utf-8")
-    source = upload(tab, rig)[-1]["source"]
-    *_, last = run(tab, source, end=2.0, samples=2)
-    assert last["record"].rig == rig
-    _, *updates = tab.export(last["record"])
-    update = updates[[kind.key for kind in KINDS].index("rig")]
-    assert update["interactive"] and update["visible"]
-    with zipfile.ZipFile(update["value"]) as archive:
-        files = {name: archive.read(name) for name in archive.namelist()}
-    assert files.pop("my rig.bvh") == rig.read_bytes(), "the original stands beside it, untouched"
-    head = rig.read_text().split("MOTION")[0]
-    assert len(files) == 2
-    for content in files.values():
-        assert content.decode().split("MOTION")[0] == head, "units, names and rest pose are those of the rig"
-        made = read(content, name="made.bvh")
-        assert isinstance(made, Clip) and made.num_frames == 60
-    partner = last["record"].result.duets[0].b.positions
-    found = min(np.abs(read(c, name="x.bvh").positions - partner).mean() for c in files.values())
-    assert found < 0.1, "it is the partner, in the rig's own world"
-
-
-def test_a_partner_is_taken_on_the_skeleton_of_an_uploaded_glb(tab: ReactTab, tmp_path: Path) -> None:
-    rig = tmp_path / "robot.glb"
-    positions, rotations = marching(90)
-    rig.write_bytes(glb_motion(rotations, positions[:, 0], "unreal", unit=100.0))
-    *_, last = run(tab, upload(tab, rig)[-1]["source"], end=2.0)
-    _, *updates = tab.export(last["record"])
-    update = updates[[kind.key for kind in KINDS].index("rig")]
-    with zipfile.ZipFile(update["value"]) as archive:
-        files = {name: archive.read(name) for name in archive.namelist()}
-    assert files.pop("robot.glb") == rig.read_bytes(), "the original stands beside it, untouched"
-    ((name, content),) = files.items()
-    assert name.endswith("-on-your-rig.glb")
-    partner = last["record"].result.duets[0].b.positions
-    assert np.abs(read(content, name=name).positions - partner).mean() < 0.1, "it is the partner"
-
-
-def test_only_a_rig_that_was_read_as_it_is_is_offered(tab: ReactTab, walker: Path, walkers: Path) -> None:
-    source = upload(tab, walker)[-1]["source"]
-    assert rig_of(source) == walker
-    assert rig_of(None) is None and rig_of(replace(source, read_with=("z", "auto", None, "auto"))) is None
-    assert rig_of(upload(tab, walkers)[-1]["source"]) is None
-    *_, last = run(tab, replace(source, path=None), end=2.0)
-    _, *updates = tab.export(last["record"])
-    update = updates[[kind.key for kind in KINDS].index("rig")]
-    assert not update["visible"] and update["value"] is None
-
-
-def test_a_rig_that_cannot_be_moved_is_a_sentence_and_the_other_files_are_there(
-    tab: ReactTab, walker: Path
-) -> None:
-    *_, last = run(tab, upload(tab, walker)[-1]["source"], end=2.0)
-    last["record"].rig = walker.with_name("gone.bvh")
-    line, *updates = tab.export(last["record"])
-    assert "not on the rig of your file. gone.bvh cannot be read" in line
-    assert updates[0]["interactive"]

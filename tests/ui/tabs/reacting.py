@@ -1,0 +1,29 @@
+"""A tab React that is used: a file is uploaded, a run is made."""
+
+from __future__ import annotations
+
+import os
+from pathlib import Path
+from typing import Any
+
+os.environ.setdefault("GRADIO_ANALYTICS_ENABLED", "False")
+
+
+from tests.ui.tab_events import changes
+from webdemo.ui.tabs.react import ReactTab
+
+LOADED = ("source", "given", "line", "player", "trim", "person", "start", "end", "found")
+READ = (*LOADED, "up", "unit", "fps", "order")
+FIELDS = {"person": "a", "start": 0.0, "end": 10.0, "role": "a", "prompt": "they walk", "seed": 3,
+          "samples": 1, "guidance": 2.5, "steps": 5, "damping": 0.7}  # fmt: skip
+
+
+def upload(tab: ReactTab, path: Path) -> list[dict[str, Any]]:
+    """What each update of an upload changes, by the names of :data:`LOADED`."""
+    return [changes(LOADED, updates) for updates in tab.upload(str(path))]
+
+
+def run(tab: ReactTab, source: Any, **changed: Any) -> list[dict[str, Any]]:
+    """What each update of a run with :data:`FIELDS`, some of them changed, changes."""
+    fields = {"source": source, **FIELDS, **changed}
+    return [changes(tab.outputs, updates) for updates in tab.run("me", fields)]

@@ -1,0 +1,150 @@
+"""The methods of the tab React: one, two side by side, and streamed."""
+
+from __future__ import annotations
+
+import os
+import re
+import time
+import zipfile
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+os.environ.setdefault("GRADIO_ANALYTICS_ENABLED", "False")
+
+
+from motion import InputError
+from tests.ui.stub_engine import walking
+from tests.ui.tab_events import built, changes
+from webdemo.inference.live import LiveRequest
+from webdemo.inference.methods import variants
+from webdemo.inference.requests import ReactRequest
+from webdemo.ui.components.live import BATCH, REPEATED
+from webdemo.ui.tabs.react import ReactTab
+from webdemo.view.payload import unpack_positions
+
+from .reacting import FIELDS, run, upload
+
+
+@pytest.fixture
+def tab(tmp_path: Path) -> ReactTab:
+    return built(ReactTab, tmp_path / "files")
+
+
+@pytest.mark.parametrize(
+    ("method", "model", "mode", "steps"),
+    [
+        ("intergen", "intergen", "offline", 50),
+        ("regennet", "regennet", "offline", 5),
+        ("regennet-online", "regennet", "online", 5),
+    ],
+)
+def test_a_method_is_a_model_and_a_mode(
+    tab: ReactTab, walker: Path, method: str, model: str, mode: str, steps: int
+) -> None:
+    source = upload(tab, walker)[-1]["source"]
+    run(tab, source, method=method)
+    asked = tab.page.engine.requests[-1]
+    assert (asked.model, asked.mode) == (model, mode)
+    role, steps_slider, _, damping, *_ = tab.fit_method(method)
+    assert steps_slider["value"] == steps
+    assert role["interactive"] is (model == "intergen")
+    assert damping["interactive"] is (mode == "offline")
+
+
+def test_the_steps_of_every_method_can_be_set(tab: ReactTab) -> None:
+    """A value outside of the slider's range is refused by the page before the job begins."""
+    for method in variants("react"):
+        steps = tab.fit_method(method)[1]
+        assert tab.steps.minimum <= steps["value"] <= tab.steps.maximum, method
+
+
+def test_a_method_says_what_it_cannot_do(tab: ReactTab, walker: Path) -> None:
+    source = upload(tab, walker)[-1]["source"]
+    *_, last = run(tab, source, method="regennet", role="b")
+    assert "choose role a" in last["line"]
+
+
+def test_two_methods_stand_side_by_side(tab: ReactTab, walker: Path) -> None:
+    source = upload(tab, walker)[-1]["source"]
+    steps = run(tab, source, method="intergen", other="regennet-online", steps=20, samples=2, prompt="")
+    assert any("ReGenNet, online. Generating: frame" in step.get("line", "") for step in steps)
+    first, second = tab.page.engine.requests[-2:]
+    assert (first.model, first.steps, second.model, second.mode, second.steps) == (
+        "intergen", 20, "regennet", "online", 5,
+    )  # fmt: skip
+    assert first.seed == second.seed
+    assert first.actor.positions.tobytes() == second.actor.positions.tobytes()
+    last = steps[-1]
+    samples = last["player"]["value"]["samples"]
+    assert [(s["caption"], s["beside"]["caption"]) for s in samples] == [
+        ("InterGen, person to person", "ReGenNet, online")
+    ] * 2
+    assert [curve["label"] for curve in samples[0]["curves"]] == ["Apart, left", "Apart, right"]
+    for head in ("InterGen, person to person, 2", "ReGenNet, online, 1"):
+        assert head in last["readouts"]
+    _, *buttons = tab.export(last["record"])
+    with zipfile.ZipFile(buttons[0]["value"]) as archive:
+        assert [re.sub("-[0-9a-f]{4}-", "-", name) for name in sorted(archive.namelist())] == [
+            f"{method}-reaction-to-walker-a-bvh-seed3-{i}.npz"
+            for method in ("intergen", "regennet-online")
+            for i in (1, 2)
+        ]
+
+
+def test_a_method_is_not_compared_with_itself_and_roles_fit_both(tab: ReactTab, walker: Path) -> None:
+    source = upload(tab, walker)[-1]["source"]
+    last = run(tab, source, method="intergen", other="intergen")[-1]
+    assert "choose another one" in last["line"]
+    assert tab.fit_method("intergen", "regennet")[0]["interactive"] is False
+    assert tab.fit_method("intergen", "")[0]["interactive"] is True
+
+
+def test_streamed_frames_come_in_small_messages_and_end_in_a_result(tab: ReactTab, walker: Path) -> None:
+    source = upload(tab, walker)[-1]["source"]
+    began = time.monotonic()
+    steps = run(tab, source, stream=True, end=2.0, samples=4, prompt="")
+    assert time.monotonic() - began > 1.9, "the actor plays in real time"
+    opening = next(step["player"]["value"] for step in steps if "value" in step.get("player", {}))
+    assert opening["live"]
+    assert opening["samples"][0]["positions"]["shape"] == [1, 60, 22, 3]
+    messages = [step["player"]["live"] for step in steps if step.get("player", {}).get("live")]
+    assert len(messages) == 10
+    streaming = [step["player"] for step in steps if "live" in step.get("player", {})]
+    assert all(player["value"] is opening for player in streaming), "the first of several may be lost"
+    seen = np.full((60, 22, 3), np.nan)
+    for message in messages:
+        assert message["id"] == opening["id"]
+        part = unpack_positions(message["frames"])[0]
+        assert len(part) <= BATCH + REPEATED
+        seen[message["start"] : message["start"] + len(part)] = part
+    result = steps[-1]["record"].result
+    np.testing.assert_allclose(seen, result.duets[0].b.positions, atol=1e-3)
+    assert steps[-1]["player"]["value"]["continues"] == opening["id"]
+    assert "longest" in steps[-1]["line"]
+    asked = tab.page.engine.requests[-1]
+    assert (asked.model, asked.mode, asked.samples, asked.steps) == ("regennet", "online", 1, 5)
+
+
+def test_a_streamed_reaction_that_is_cancelled_tells_the_player(tab: ReactTab, walker: Path) -> None:
+    source = upload(tab, walker)[-1]["source"]
+    fields = {"source": source, **FIELDS, "stream": True}
+    seen: list[dict[str, Any]] = []
+    for updates in tab.run("me", fields):
+        seen.append(changes(tab.outputs, updates))
+        if len(seen) == 5:
+            tab.page.runs.cancel("me")
+    assert seen[-2]["player"]["live"]["stop"]
+    assert "Cancelled at frame" in seen[-1]["line"]
+    assert "record" not in seen[-1]
+
+
+def test_a_live_request_is_online() -> None:
+    actor = walking(2.0).a
+    with pytest.raises(InputError, match="online"):
+        LiveRequest(actor=actor, model="regennet", mode="offline")
+    live = LiveRequest(actor=actor, model="regennet", steps=5)
+    plain = ReactRequest(actor=actor, model="regennet", steps=5, mode="online")
+    assert live.to_dict() == plain.to_dict(), "its manifest reproduces the same motion"
