@@ -57,7 +57,12 @@ def foot_contacts(
 
 
 def plant_feet(
-    positions: Array, contacts: NDArray[np.bool_], *, blend: int = 5, skeleton: Skeleton = SMPL22
+    positions: Array,
+    contacts: NDArray[np.bool_],
+    *,
+    blend: int = 5,
+    skeleton: Skeleton = SMPL22,
+    held: NDArray[np.bool_] | None = None,
 ) -> Array:
     """Holds standing feet where they stand and keeps every foot above the floor.
 
@@ -69,6 +74,7 @@ def plant_feet(
         positions: (T, J, 3) metres on a skeleton of constant bones, floor at 0.
         contacts: (T, 4) bool, as :func:`foot_contacts` gives.
         blend: frames over which a correction fades.
+        held: (T,) frames whose feet are right: a contact that includes some of them is pinned to its place there.
 
     Returns:
         (T, J, 3) with the bone lengths of the input.
@@ -85,6 +91,7 @@ def plant_feet(
             contacts[:, 2 * side + 1],
             foot_length,
             blend,
+            np.zeros(len(result), dtype=bool) if held is None else held,
         )
         ankles.append(goals[0])
         toes.append(goals[1])
@@ -148,10 +155,11 @@ def _foot_goals(
     toe_stands: NDArray[np.bool_],
     foot_length: float,
     blend: int,
+    held: NDArray[np.bool_],
 ) -> tuple[Array, Array]:
     """Targets of the ankle and the toe of one foot: (T, 3) each, at the distance of the bone's length."""
-    toe_shift = _pin(toe, toe_stands, blend, (0.0, 0.0))
-    ankle_shift = _pin(ankle, ankle_stands, blend, _REST_ANKLE)
+    toe_shift = _pin(toe, toe_stands, blend, (0.0, 0.0), held)
+    ankle_shift = _pin(ankle, ankle_stands, blend, _REST_ANKLE, held)
     # Where only one end is pinned, the other moves with it.
     toe_weight, ankle_weight = _fade(toe_stands, blend), _fade(ankle_stands, blend)
     total = np.maximum(toe_weight + ankle_weight, 1e-9)
@@ -166,13 +174,19 @@ def _foot_goals(
     return new_toe + bone, new_toe
 
 
-def _pin(joint: Array, stands: NDArray[np.bool_], blend: int, heights: tuple[float, float]) -> Array:
+def _pin(
+    joint: Array,
+    stands: NDArray[np.bool_],
+    blend: int,
+    heights: tuple[float, float],
+    held: NDArray[np.bool_],
+) -> Array:
     """(T, 3) shift that holds a joint still through each contact and fades between contacts."""
     shift = np.zeros_like(joint)
     runs: list[tuple[int, int]] = []
     for start, stop in _runs(stands):
         runs.extend(_split(joint, start, stop, blend))
-    goals = [_goal(joint[start:stop], heights) for start, stop in runs]
+    goals = [_goal(joint[start:stop], held[start:stop], heights) for start, stop in runs]
     runs = _with_room_to_step(joint, runs, goals)
     for (start, stop), goal in zip(runs, goals, strict=True):
         shift[start:stop] = goal - joint[start:stop]
@@ -190,9 +204,9 @@ def _pin(joint: Array, stands: NDArray[np.bool_], blend: int, heights: tuple[flo
     return shift
 
 
-def _goal(place: Array, heights: tuple[float, float]) -> Array:
-    """(3,) the place that a standing joint is held at, given where it was (frames, 3)."""
-    goal = np.median(place, axis=0)
+def _goal(place: Array, held: NDArray[np.bool_], heights: tuple[float, float]) -> Array:
+    """(3,) the place that a standing joint is pinned to, given where it was (frames, 3) and the frames that stay."""
+    goal = np.median(place[held] if held.any() else place, axis=0)
     goal[1] = np.clip(goal[1], *heights)
     return goal
 

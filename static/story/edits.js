@@ -24,16 +24,38 @@ export function edges(story) {
   return found;
 }
 
-const withBeats = (story, beats) => ({ ...story, beats });
+/** The story with other beats, of which number i was number `origins[i]`, or is new (-1): poses stay with their beats.
+ *
+ * A pose keeps its time since its beat began, or comes to the beat's end where that is earlier now. A beat that is
+ * deleted takes its poses along; those behind the last beat keep their time since its end.
+ */
+function withBeats(story, beats, origins = beats.map((_, i) => i)) {
+  const [before, after] = [edges(story), edges({ beats })];
+  const poses = story.poses.flatMap((found) => {
+    const from = before.findLastIndex((start) => start <= found.seconds + 1e-4);
+    if (from === before.length - 1) {
+      return [{ ...found, seconds: momentOf(frameOf(found.seconds + after.at(-1) - before.at(-1))) }];
+    }
+    let to = origins.indexOf(from);
+    if (to < 0) return [];
+    let since = found.seconds - before[from];
+    if (origins[to + 1] === from && since >= lengthOf(beats[to])) since -= lengthOf(beats[to++]); // it was split
+    const latest = frameOf(after[to + 1]) - 1;
+    return [{ ...found, seconds: momentOf(Math.min(frameOf(after[to] + since), latest)) }];
+  });
+  return { ...story, beats, poses: inOrder(poses) };
+}
+
+const numbers = (story) => story.beats.map((_, i) => i);
 
 export function add(story, after) {
   const beats = [...story.beats];
   beats.splice(after + 1, 0, { words: "", a: "", b: "", seconds: null, seed: null });
-  return withBeats(story, beats);
+  return withBeats(story, beats, numbers(story).toSpliced(after + 1, 0, -1));
 }
 
 export function remove(story, index) {
-  return withBeats(story, story.beats.filter((_, i) => i !== index));
+  return withBeats(story, story.beats.toSpliced(index, 1), numbers(story).toSpliced(index, 1));
 }
 
 /** Two beats of half the length with the same words; nothing where the halves would be too short. */
@@ -43,25 +65,25 @@ export function split(story, index) {
   if (half < SHORTEST) return story;
   const beats = [...story.beats];
   beats.splice(index, 1, { ...beat, seconds: half }, { ...beat, seconds: half });
-  return withBeats(story, beats);
+  return withBeats(story, beats, numbers(story).toSpliced(index, 1, index, index));
 }
 
 export function move(story, index, by) {
   const to = index + by;
   if (to < 0 || to >= story.beats.length) return story;
-  const beats = [...story.beats];
-  [beats[index], beats[to]] = [beats[to], beats[index]];
-  return withBeats(story, beats);
+  const [beats, origins] = [[...story.beats], numbers(story)];
+  for (const list of [beats, origins]) [list[index], list[to]] = [list[to], list[index]];
+  return withBeats(story, beats, origins);
 }
 
-/** Sets fields of a beat; new words without a set length get theirs worked out again. */
+/** Sets fields of a beat; the length that follows from its words stays until the server has worked it out again. */
 export function change(story, index, fields) {
-  const beats = story.beats.map((beat, i) => {
-    if (i !== index) return beat;
-    const reworded = ["words", "a", "b"].some((key) => key in fields);
-    return { ...beat, ...fields, auto: reworded ? null : beat.auto };
-  });
-  return withBeats(story, beats);
+  return withBeats(story, story.beats.map((beat, i) => (i === index ? { ...beat, ...fields } : beat)));
+}
+
+/** Lengths that follow from the words, as the server worked them out. */
+export function measured(story, lengths) {
+  return withBeats(story, story.beats.map((beat, i) => ({ ...beat, auto: lengths[i] })));
 }
 
 export function stretch(story, index, seconds) {

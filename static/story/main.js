@@ -1,5 +1,6 @@
 // The story under the player: beats as blocks in three lanes, a span, paths on the floor. Its value is a story.
 
+import { Draft } from "./draft.js";
 import * as edits from "./edits.js";
 import { Floor } from "./floor.js";
 import { Pins } from "./pins.js";
@@ -23,6 +24,7 @@ class Editor {
     this.story = edits.empty();
     this.selected = 0;
     this.past = new edits.Past();
+    this.draft = new Draft();
     this.note = null; // stands in for the hint until the next change
     this.floor = new Floor(root.querySelector(".pds-floor"), this);
     this.pins = new Pins(this);
@@ -71,18 +73,19 @@ class Editor {
   load(story) {
     if (story === this.given) return;
     this.given = story;
+    const changed = this.draft.given(story);
     if (JSON.stringify(edits.read(story)) === this.sent) return;
     if (this.story.beats.length) this.past.keep(this.story);
     this.story = edits.read(story);
     this.selected = Math.min(Math.max(this.selected, 0), this.story.beats.length - 1);
-    this.draw();
+    if (changed) this.edit(changed);
+    else this.draw();
   }
 
   /** Lengths that follow from the words, as the server worked them out. */
   measure(lengths) {
     if (!lengths || lengths.length !== this.story.beats.length) return;
-    const beats = this.story.beats.map((beat, i) => ({ ...beat, auto: lengths[i] }));
-    this.story = { ...this.story, beats };
+    this.story = edits.measured(this.story, lengths);
     if (!this.find("textarea")) this.draw();
   }
 
@@ -100,6 +103,7 @@ class Editor {
     this.draw();
     this.sent = JSON.stringify(story);
     this.given = story;
+    this.draft.keep(story);
     this.changed(story);
   }
 

@@ -116,10 +116,16 @@ def test_a_heading_is_held(engine: Engine) -> None:
 @pytest.mark.parametrize("beats", [BEATS, BEATS[:1]])
 def test_a_loop_meets_its_beginning(engine: Engine, beats: tuple[Beat, ...]) -> None:
     found = positions(run(engine, SceneRequest(beats=beats, loop=True, **QUICK)))
-    around = np.concatenate([found[:, -3:], found[:, :3]], axis=1)
-    step = np.linalg.norm(np.diff(around, axis=1), axis=-1)
-    inside = np.linalg.norm(np.diff(found, axis=1), axis=-1)
-    assert step[:, 2].max() < inside.max() + 0.01
+    closing = np.diff(np.concatenate([found[:, -2:], found[:, :2]], axis=1), n=2, axis=1)
+    assert np.linalg.norm(closing, axis=-1).max() < 0.01
+    assert np.linalg.norm(closing.sum(1), axis=-1).max() < 0.01
+    assert np.abs(np.diff(found, n=2, axis=1)).max() > 0.01, "elsewhere people move"
+
+
+def test_a_pose_at_the_beginning_of_a_loop_stays(engine: Engine, story: Result) -> None:
+    pose = Pose("a", 0.1, positions(story)[0, 3].astype(np.float64))
+    found = positions(run(engine, SceneRequest(beats=BEATS, poses=(pose,), loop=True, **QUICK)))
+    np.testing.assert_allclose(found[0, 3], pose.positions, atol=1e-4)
 
 
 def test_what_was_finished_before_a_cancellation_stays(engine: Engine) -> None:

@@ -279,6 +279,9 @@ def table(scores: dict[str, Any]) -> str:
             f"{min(p['jerk'] for p in scores['poses']):.1f} to {max(p['jerk'] for p in scores['poses']):.1f} times"
         ),
         "loop: worst gap in place and in speed": f"{loop[0]:.1f} cm and {loop[1]:.1f} cm a frame",
+        "jerk at the edges of a span made again, beside the 95th percentile elsewhere": (
+            f"{min(scores['span_jerk']):.1f} to {max(scores['span_jerk']):.1f} times"
+        ),
         "time for a minute of motion, on this machine": f"{60 * spent / made:.0f} s",
     }
     out = [

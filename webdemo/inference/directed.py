@@ -18,6 +18,7 @@ from models.known import Hold, Known
 from motion import SMPL22, Duet, InputError
 
 from .actor import FPS
+from .joining import joined
 from .scenes import Finish, Scene
 
 Array = NDArray[np.floating]
@@ -75,14 +76,14 @@ class Directed(Scene):
     parts: Sequence[Part]
 
     def duet(self, pair: Array, finish: Finish) -> Duet:
-        """As :meth:`Scene.duet`; what clean-up changed at given frames is taken back."""
+        """As :meth:`Scene.duet`; what is given is met exactly, and what was made leads there smoothly."""
         people = [finish(person) for person in pair]
         for person in range(2):
             given = [p for p in self.parts if isinstance(p, KnownFrames) and p.person == person]
             if given:
                 at = np.concatenate([np.asarray(p.frames) for p in given])
                 wanted = np.concatenate([p.positions for p in given])
-                people[person] = with_given(people[person], at, wanted)
+                people[person] = with_given(joined(people[person], at, wanted), at, wanted)
         return super().duet(np.stack(people), lambda person: person)
 
 

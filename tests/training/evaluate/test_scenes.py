@@ -93,9 +93,10 @@ def test_the_table_counts() -> None:
     row = {"words": ["x", "y"], "obeyed": [True, False], "seconds": 6.0, "spent": 3.0, "ratio": [0.5], "foot": [0.1],
            "usual_foot": [0.08]}  # fmt: skip
     scores = {"settings": {"steps": 25}, "stories": [row, {**row, "obeyed": [True, True]}], "path_cm": [[1.0, 4.0]],
-              "outside": [0.0], "loop_cm": [[0.5, 0.6]], "heading_degrees": [[2.0, 4.0]],
+              "outside": [0.0], "span_jerk": [0.25, 1.5], "loop_cm": [[0.5, 0.6]], "heading_degrees": [[2.0, 4.0]],
               "poses": [{"miss_cm": 0.5, "jerk": 1.2}, {"miss_cm": 1.5, "jerk": 2.2}]}  # fmt: skip
     shown = table(scores)
+    assert "0.2 to 1.5 times" in shown
     assert "3.0 and 4.0 degrees" in shown and "| 1.5 cm |" in shown and "1.2 to 2.2 times" in shown
     assert (
         "| x | 100 % (2/2" in shown and "75 % (3/4" in shown and "| 30 s |" in shown and "50 % (1/2" in shown

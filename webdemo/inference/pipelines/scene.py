@@ -26,6 +26,7 @@ from webdemo.inference import methods
 from webdemo.inference.actor import FPS, MEDIAN_START_DISTANCE, ROLES, SECONDS, Placement
 from webdemo.inference.cancel import CancelToken
 from webdemo.inference.directed import Directed, KnownFrames, KnownPath, Part, directed
+from webdemo.inference.joining import closed
 from webdemo.inference.requests import GenerateRequest, Progress, Result
 from webdemo.inference.scenes import NAMES
 from webdemo.inference.story.plan import Window, window_seed, windows
@@ -145,6 +146,8 @@ class SceneMaker:
                     stage="sample", step=done, total=steps, elapsed=timer.elapsed, sample=sample,
                     beat=window.beat, motion=finished,
                 )  # fmt: skip
+            if request.loop:
+                _close(request, scene)
             duets.append(_duet(request, scene))
         said += _distance_note(duets, request)
         yield timer.progress("finish")
@@ -213,6 +216,13 @@ def _duet(request: SceneRequest, scene: Array) -> Duet:
     if request.motion is None:
         return Duet.from_positions(scene, fps=FPS, roles=NAMES)
     return replace(request.motion.with_positions(scene), manifest=None)
+
+
+def _close(request: SceneRequest, scene: Array) -> None:
+    """Leads the end of a loop (2, T, 22, 3) into its beginning; poses that were asked for stay."""
+    for person, role in enumerate(ROLES):
+        posed = np.array([round(p.seconds * FPS) for p in request.poses if p.person == role], dtype=int)
+        scene[person] = closed(scene[person], posed)
 
 
 def _notes(request: SceneRequest) -> Iterator[str]:

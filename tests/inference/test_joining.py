@@ -1,0 +1,69 @@
+"""What is made leads to given frames, and a loop's end to its beginning, without a jolt and on constant bones."""
+
+import numpy as np
+
+from motion import SMPL22
+from motion.kinematics import fit_rotations, forward_kinematics
+from motion.skeleton import FEET
+from motion.transforms import heading_matrix
+from webdemo.inference.joining import REACH, closed, joined
+
+PARENTS, CHILDREN = np.array(SMPL22.bones).T
+FRAMES = 90
+
+
+def mover(shift: float = 0.0, speed: float = 0.4) -> np.ndarray:
+    """(FRAMES, 22, 3) a person who floats on and swings the arms; another shift, another phase of the arms."""
+    rest = fit_rotations(SMPL22.rest_positions())
+    rotations = np.repeat(rest[None], FRAMES, axis=0)
+    for side, joint in enumerate(("left_shoulder", "right_shoulder")):
+        angle = 0.8 * np.sin(np.arange(FRAMES) / 8 + 2 * shift + side)
+        rotations[:, SMPL22.index(joint)] = np.stack([heading_matrix(a) for a in angle])
+    pelvis = np.array([0.3 * shift, 1.3, 0.0]) + np.arange(FRAMES)[:, None] / 30 * [0, 0, speed]
+    return forward_kinematics(rotations, pelvis)
+
+
+def lengths(positions: np.ndarray) -> np.ndarray:
+    return np.linalg.norm(positions[:, CHILDREN] - positions[:, PARENTS], axis=-1)
+
+
+def jerk(positions: np.ndarray) -> np.ndarray:
+    return np.linalg.norm(np.diff(positions, n=3, axis=0), axis=-1).max(-1)
+
+
+def test_given_frames_are_led_to_without_a_jolt_on_the_same_bones() -> None:
+    made, given = mover(1.0), mover()
+    ends = np.r_[0:30, 75:FRAMES]
+    hard = made.copy()
+    hard[ends] = given[ends]
+    found = joined(made, ends[::-1], given[ends[::-1]])
+    np.testing.assert_allclose(found[ends], given[ends], atol=1e-9)
+    untouched = slice(30 + REACH, 75 - REACH)
+    np.testing.assert_allclose(found[untouched], made[untouched], atol=1e-9)
+    np.testing.assert_allclose(lengths(found), lengths(made), atol=1e-6)
+    assert jerk(found).max() < 0.05 * jerk(hard).max()
+
+
+def test_a_foot_that_stands_at_given_frames_stays_there() -> None:
+    standing = np.repeat((SMPL22.rest_positions() + np.array([0, 0.98, 0]))[None], FRAMES, axis=0)
+    feet = joined(standing + np.array([0.06, 0, 0]), np.arange(30), standing[:30])[:, list(FEET)]
+    assert np.abs(feet - standing[:1, list(FEET)])[..., 0].max() < 0.02
+
+
+def test_a_loop_closes_in_place_and_speed_and_keeps_what_is_fixed() -> None:
+    """In half a second the arms take another phase and the pelvis comes back 30 cm."""
+    open_ended = mover(speed=0.1)
+    found = closed(open_ended, np.array([4]))
+    ahead = 2 * found[-1] - found[-2]
+    speed = (found[1] - found[0]) - (found[-1] - found[-2])
+    assert np.linalg.norm(open_ended[0] - 2 * open_ended[-1] + open_ended[-2], axis=-1).max() > 0.3
+    assert np.linalg.norm(found[0] - ahead, axis=-1).max() < 0.01
+    assert np.linalg.norm(speed, axis=-1).max() < 0.01
+    np.testing.assert_array_equal(found[4], open_ended[4])
+    np.testing.assert_allclose(found[REACH:-REACH], open_ended[REACH:-REACH], atol=1e-9)
+    np.testing.assert_allclose(lengths(found), lengths(open_ended), atol=1e-6)
+
+
+def test_the_shortest_loop_closes() -> None:
+    short = closed(mover(speed=0.1)[:15], np.zeros(0, dtype=int))
+    assert short.shape == (15, 22, 3) and np.isfinite(short).all()
