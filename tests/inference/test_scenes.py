@@ -242,6 +242,11 @@ def test_a_bystander_stands_while_the_other_acts(engine: Engine) -> None:
     assert (made[1, ::15, 20:22, 1] < made[1, ::15, :1, 1] + 0.1).all(), "with hanging arms"
 
 
+def test_those_who_meet_later_begin_apart(engine: Engine) -> None:
+    beats = (Beat("They wait.", seconds=1.5), Beat("They walk up to each other.", seconds=3.0))
+    assert apart(run(engine, SceneRequest(beats=beats, **QUICK)))[0] > 1.7
+
+
 def test_who_kneels_down_begins_on_their_feet(engine: Engine) -> None:
     made = positions(run(engine, GenerateRequest(prompt="They kneel down.", seconds=3.0, **QUICK)))
     assert made[:, 0, 0, 1].min() > 0.9

@@ -24,6 +24,8 @@ from webdemo.inference.methods import method
 from webdemo.inference.requests import GenerateRequest, ReactRequest, Result, SamplingRequest
 
 SEEDS = (1, 16)
+_VERSION = 2
+"""Of how a sentence becomes a motion: motions that were kept are not those of another version."""
 
 
 @dataclass(frozen=True)
@@ -33,20 +35,24 @@ class Scoring:
     Attributes:
         model: its name.
         steps, guidance, damping: as in :class:`SamplingRequest`.
+        plain: sentences are given to the network as they are, neither split nor planned.
     """
 
     model: str
     steps: int
     guidance: float
     damping: float
+    plain: bool = False
 
     def request(self, sentence: Sentence, seed: int, actor: Duet | None) -> GenerateRequest | ReactRequest:
         """The request for both people, or for the partner of an actor."""
         found = method(self.model)
         fields: dict[str, Any] = asdict(self) | {"seed": seed}
+        plain = fields.pop("plain")
         if actor is None:
             shortest, longest = found.seconds
             seconds = min(max(sentence.seconds, shortest), longest)
+            fields |= {"split": not plain, "planned": not plain}
             return GenerateRequest(prompt=sentence.words, seconds=seconds, **fields)
         sampler = SamplingRequest.sampler if "ddim" in found.samplers else found.samplers[0]
         heard = sentence.words if "words" in found.takes else ""
@@ -61,6 +67,7 @@ def score_model(options: argparse.Namespace) -> dict[str, Any]:
         found.default("steps", SamplingRequest.steps) if options.steps is None else options.steps,
         found.default("guidance", SamplingRequest.guidance) if options.guidance is None else options.guidance,
         options.damping,
+        options.plain,
     )
     sentences = _chosen(options)
     if not SEEDS[0] <= options.seeds <= SEEDS[1]:
@@ -83,7 +90,8 @@ def score_model(options: argparse.Namespace) -> dict[str, Any]:
     scores["about"] = (
         f"{found.label}: {len(sentences)} sentences, {len(ruled)} of them with a rule, seeds 0 to "
         f"{options.seeds - 1}; {scoring.steps} steps, guidance {scoring.guidance:g}, "
-        f"damping {scoring.damping:g}, weights {weights}."
+        f"damping {scoring.damping:g}, weights {weights}"
+        f"{'; sentences neither split nor planned' if scoring.plain else ''}."
     )
     print(table(scores))
     if options.out is not None:
@@ -121,7 +129,7 @@ def _check(found: Method) -> None:
 def _folder(folder: Path | None, scoring: Scoring, digest: str) -> Motions | None:
     if folder is None:
         return None
-    state = json.dumps(asdict(scoring) | {"weights": digest}, sort_keys=True)
+    state = json.dumps(asdict(scoring) | {"weights": digest, "version": _VERSION}, sort_keys=True)
     return Motions(folder / f"{scoring.model}-{hashlib.sha256(state.encode()).hexdigest()[:12]}")
 
 

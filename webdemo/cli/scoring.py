@@ -27,6 +27,11 @@ def add_score(commands: Any) -> None:
     )
     parser.add_argument("--damping", type=float, default=SamplingRequest.damping)
     parser.add_argument("--only", nargs="+", default=[], metavar="NAME", help="only these sentences or tags")
+    parser.add_argument(
+        "--plain",
+        action="store_true",
+        help="give the sentences to the network as they are: no beats, no plan",
+    )
     parser.add_argument("--motions", type=Path, help="folder that keeps the motions, so that a run can go on")
     parser.add_argument("--out", type=Path, help="JSON file for all verdicts")
     parser.set_defaults(job=score)

@@ -75,6 +75,16 @@ def test_who_steps_back_goes_on_facing_the_other() -> None:
     assert found[0].headings is not None and np.abs(found[0].headings).max() < 1e-6
 
 
+def test_who_steps_aside_leaves_the_line() -> None:
+    _, found = ways("Person A steps aside.", standing=FACING)
+    assert abs(found[0].places[-1, 0]) > 0.7 and abs(found[0].places[-1, 1]) < 0.05
+
+
+def test_a_chase_is_a_run_of_both() -> None:
+    walked, run = (ways(f"Person A {verb} person B.", seconds=4.0)[1] for verb in ("follows", "chases"))
+    assert run[1].places[2, 1] > walked[1].places[2, 1] + 0.5
+
+
 def test_who_is_followed_walks_ahead() -> None:
     _, found = ways("Person A follows person B.", seconds=5.0)
     assert found[1].places[-1, 1] > 2.0 and found[0].places[-1, 1] > 1.0 and gaps(found).min() > 0.7

@@ -30,6 +30,13 @@ def told(sentence: str) -> str:
         ("They turn to face each other.", "a:face b:face"),
         ("They stand back to back.", "a:backs b:backs"),
         ("walk together", "a:along b:along"),
+        ("two soldiers marching, shoulder to shoulder", "a:along b:along"),
+        ("Person B walks beside person A.", "a:along b:along"),
+        ("She steps aside to let him pass.", "a:aside"),
+        ("boy chases girl", "b:away a:after"),
+        ("They set off together.", "a:along b:along"),
+        ("He makes off.", "a:away b:stay"),
+        ("She goes back to him.", "a:to b:stay"),
         # moved by touch, by words alone, or not at all
         ("Person A leads person B by the hand.", ""),
         ("They shake hands.", ""),
@@ -40,6 +47,9 @@ def told(sentence: str) -> str:
         ("They turn up the music.", ""),
         ("A passes B a cup.", ""),
         ("They pass the ball.", ""),
+        ("She keeps blocking his way.", ""),
+        ("He steps over her.", ""),
+        ("They jump up into the air.", ""),
     ],
 )
 def test_words_send_people_where_they_say(sentence: str, found: str) -> None:

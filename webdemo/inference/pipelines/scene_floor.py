@@ -11,7 +11,7 @@ from motion.transforms import heading
 from webdemo.inference.actor import FPS, Placement
 from webdemo.inference.directed import KnownFrames, KnownPath, Part
 from webdemo.inference.story.floor import HALT, Standing, Way2D, plan, starting
-from webdemo.inference.story.idle import goes_down, idle, is_planned, standing
+from webdemo.inference.story.idle import goes_down, idle, is_planned, standing, touches
 from webdemo.inference.story.moves import Way, goes, moves
 from webdemo.inference.story.plan import Window
 from webdemo.inference.story.request import SceneRequest
@@ -39,8 +39,10 @@ def planned(request: SceneRequest, window: Window, scene: Array, placement: Plac
     words = request.beats[window.beat].sentence
     found, still = moves(words), idle(words)
     start, stop = request.edges[window.beat], request.edges[window.beat + 1]
-    if not start and (request.paths or request.poses or not is_planned(words)):
+    if not start and (request.paths or request.poses):
         return []
+    if not start and not is_planned(words):
+        return _apart(request, window, placement)
     before = scene[:, max(start - 4, 0) : start]
     stand = _stand(before) if start else _beginning(request)
     parts: list[Part] = []
@@ -84,6 +86,23 @@ def _beginning(request: SceneRequest) -> Standing:
         if goes(found):
             return starting(found, beat.length)
     return starting((), request.beats[0].length)
+
+
+def _apart(request: SceneRequest, window: Window, placement: Placement) -> list[Part]:
+    """The places where two people begin who only walk up to each other in a later beat; free if they touch before."""
+    for beat in request.beats[1:]:
+        found = moves(beat.sentence)
+        if goes(found):
+            if (
+                not any(move.way is Way.TO for move in found)
+                or window.part
+                or touches(request.beats[0].sentence)
+            ):
+                return []
+            stand = starting(found, beat.length)
+            ways = [Way2D(i, [0], stand.places[i : i + 1], stand.headings[i : i + 1]) for i in (0, 1)]
+            return [part for way in ways for part in _path(way, window, 0, placement)]
+    return []
 
 
 def _posed(

@@ -25,13 +25,20 @@ _PLURAL = (
     rf"|two (?:\w+ )??{_PEOPLE}|a couple|a pair|people|everybody|everyone|each(?: of them)?"
 )
 _NAMED = r"person [ab]"
-_FIRST = r"(?:the )?(?:first|former)(?: person| one| man| woman)?|the actor|one of (?:them|the two)"
+_KIND = (
+    r"(?:man|woman|boy|girl|guy|lady|gentleman|person|child|kid|friend|dancer|fighter|boxer|player|stranger|partner|"
+    r"teacher|student|mother|father|mom|mum|dad|daddy|brother|sister|daughter|son|grandpa|grandma|waiter|guest|host|"
+    r"visitor|guard|boss|worker|neighbou?r|cop|policeman|thief|soldier|doctor|nurse|patient|coach|king|queen|servant|"
+    r"knight|clown|baby|toddler|teenager|colleague|customer|teammate|opponent|couple|stranger|human|character)"
+)
+_HOW = r"(?:old|young|little|small|tall|big|angry|happy|sad|tired|drunk|elderly|nervous|shy|proud)"
+_FIRST = rf"(?:the )?(?:first|former)(?: {_KIND}| one)?|the actor|one of (?:them|the two)"
 _SECOND = (
-    r"(?:the )?(?:second|latter)(?: person| one| man| woman)?|the (?:reactor|other)(?: person| one| man| woman)?"
-    r"|another(?: \w+)?|someone else|somebody else|the partner"
+    rf"(?:the )?(?:second|latter)(?: {_KIND}| one)?|the (?:reactor|other)(?: {_KIND}| one)?|other (?:{_KIND}|one)"
+    rf"|another(?: {_KIND})?|someone else|somebody else|the partner"
 )
 _NOUN = (
-    r"one (?:man|woman|boy|girl|person|of \w+)|one|(?:an?|the|his|her|their|some) (?:\w+ ){0,2}?\w+(?= \w+)"
+    rf"one {_KIND}|one|(?:{_HOW} )?{_KIND}|(?:an?|the|his|her|their|some) (?:\w+ ){{0,2}}?\w+(?= \w+)"
     r"|someone|somebody|he|she|it"
 )
 _LEADING = re.compile(
@@ -40,7 +47,7 @@ _LEADING = re.compile(
 )
 _OBJECT = re.compile(rf"\b(?:{_NAMED}|the (?:first|second|other)(?: person| one)?|the \w+|him|her)$")
 _ADVERB = (
-    r"(?:(?:first|then|finally|afterwards|next|now|later|suddenly|slowly|quickly|eagerly|meanwhile|also|just|simply|"
+    r"(?:(?:first|then|finally|afterwards|next|now|later|suddenly|slowly|quickly|eagerly|meanwhile|halfway|soon|eventually|there|also|just|simply|"
     r"carefully|\w+ly),? )*"
 )
 _SUBJECT = re.compile(
@@ -122,16 +129,45 @@ class _Cast:
         return found
 
 
+_NAMES_OF_PAIRS = re.compile(rf"(?:^|(?<=[,;.] )){_KIND} and {_KIND}(?= (?!\w+s\b)\w+)")
+_A_WHILE = re.compile(
+    r"\bafter (?:a|some|a few|several) (?:short |little )?(?:moment|while|bit|second|time|minute)s?,? "
+)
+_NO_NAME = re.compile(
+    r"(?:They|He|She|It|One|Two|Both|The|An?|First|Then|Finally|While|As|When|After|Before|Person|Someone|Somebody|Each|"
+    r"People|Everyone|Everybody|Another|His|Her|Their|Suddenly|Without|With|Holding|I|We|You)\b"
+)
+
+
+def named(text: str) -> str:
+    """The text with people called A and B, 1 and 2, or by a name, called so in a way that clauses understand."""
+    if re.search(r"\b[Bb]\b", text) and not re.search(r"\bperson [ab]\b", text, re.IGNORECASE):
+        text = re.sub(r"\b[Bb]\b(?=\s+[a-z]|'s\b|[.,;!?]|$)", "person B", text)
+        text = re.sub(r"\bA\b(?=,|'s\b|\s+(?:\w+s|\w+ing|\w+ed)\b|[.;!?]|$)", "person A", text)
+        text = re.sub(r"\ba(?=[.,;!?]|$)", "person A", text)
+        text = re.sub(r"\bA\b(?= (?:and|in|on|at|by|with|to|from|then|is|has|does)\b)", "person A", text)
+    text = re.sub(r"\b(?:[Pp]erson (?:one|1)|[Pp]1|[Pp]layer 1)\b", "person A", text)
+    text = re.sub(r"\b(?:[Pp]erson (?:two|2)|[Pp]2|[Pp]layer 2)\b", "person B", text)
+    return re.sub(
+        r"(?<![A-Za-z'])([A-Z][a-z]+)(?= (?:\w+s|\w+ing|and|is|has)\b|'s\b|[.,;]|$)",
+        lambda m: m[0] if _NO_NAME.match(m[0]) or _CAPITAL_VERB.match(m[0]) else f"the {m[0].lower()}",
+        text,
+    )
+
+
+_CAPITAL_VERB = re.compile(
+    r"\w+(?:ing|ly|es)$|[A-Z]{2}|(?:High|Low|Fist|Hug|Bow|Wave|Walk|Run|Shake|Kick|Push|Race|Dance|Jump)\b"
+)
+
+
 def plain(text: str) -> str:
     """The sentence in lower case, people called A and B by their full names, and pairs as "they"."""
-    if re.search(r"\bB\b", text):
-        text = re.sub(r"(?<![Pp]erson )\b([AB])\b(?='s\b|\s+[a-z]|[.,;!?]|$)", r"person \1", text)
-        text = re.sub(r"(^|[.;,]\s+)person A(?=\s+(?:man|woman|boy|girl|person|\w+er)\b)", r"\1a", text)
+    text = named(text)
     text = " ".join(text.lower().split()).strip(" .!?;")
-    text = re.sub(r"\b(?:person (?:one|1)|p1|player 1)\b", "person a", text)
-    text = re.sub(r"\b(?:person (?:two|2)|p2|player 2)\b", "person b", text)
+    text = _A_WHILE.sub("", text)
+    text = re.sub(r", (?=(?:side by side|shoulder to shoulder|hand in hand|arm in arm)\b)", " ", text)
     text = re.sub(rf"\band lets? ({_NAMED}|the other(?: person)?) (\w+)", r"and \1 \2s", text)
-    return _PAIRED.sub("they", text)
+    return _PAIRED.sub("they", _NAMES_OF_PAIRS.sub("they", text))
 
 
 class Reader:

@@ -27,12 +27,14 @@ NEAR_BY = 0.6
 """Metres from the other at which one who came up behind them stands."""
 ABREAST = 0.8
 """Metres between two people who walk side by side."""
-LINKED = 0.5
+LINKED = 0.45
 """Metres between two people who walk hand in hand or arm in arm."""
 BEHIND = 1.2
 """Metres by which one follows the other."""
 ASIDE = 0.7
 """Metres beside the other at which one walks past."""
+SIDESTEP = 0.8
+"""Metres of a step aside."""
 WIDE = 0.9
 """Radius in metres of a walk around the other, at least."""
 MOST = 2.6
@@ -154,6 +156,12 @@ class _Track:
             self.headings[self.frame : stop] = self.heading
         self.frame = max(stop, self.frame)
 
+    def halt(self, speed: Array) -> None:
+        """Takes a step to stop, for a person who was walking at a speed (2,) when the beat began."""
+        if not self.frame and np.linalg.norm(speed) > 0.3:
+            self.frame = min(round(2 * HALT * FPS), len(self.places) - 1)
+            self.place = self.place + HALT * speed
+
     def left(self) -> float:
         """Seconds until the beat ends."""
         return (len(self.places) - self.frame) / FPS
@@ -233,13 +241,7 @@ def _moved(
     both = move.way in theirs
     match move.way:
         case Way.STAY | Way.BACKS:
-            if not track.frame:  # who was walking takes a step to stop
-                track.place = track.place + HALT * standing.speeds[who]
-                track.frame = (
-                    min(round(2 * HALT * FPS), len(track.places) - 1)
-                    if np.linalg.norm(standing.speeds[who]) > 0.3
-                    else 0
-                )
+            track.halt(standing.speeds[who])
             watched = Way.TURN in theirs or Way.FACE in theirs
             track.stay(None if seconds >= track.left() else seconds, facing=watched or move.way is Way.BACKS)
         case Way.TURN:
@@ -264,11 +266,13 @@ def _moved(
             track.walk(
                 np.stack([here, here + way * away]), min(seconds, way / (0.8 * move.speed) + 2 * _EASE)
             )
-        case Way.BACK:
-            way = min(0.9, 0.6 * seconds)
-            track.walk(
-                np.stack([here, here - way * to]), min(seconds, way / 0.7), heading=math.atan2(to[0], to[1])
+        case Way.BACK | Way.ASIDE:
+            step = (
+                -min(0.9, 0.6 * seconds) * to
+                if move.way is Way.BACK
+                else SIDESTEP * np.array([to[1], -to[0]])
             )
+            track.walk(np.stack([here, here + step]), min(seconds, 1.3), heading=math.atan2(to[0], to[1]))
             track.stay(facing=True)
         case Way.PAST:
             beyond = max(1.3, min(gap, seconds * move.speed - gap))

@@ -22,7 +22,8 @@ Array = NDArray[np.floating]
 
 _NOTHING = re.compile(
     r"\b(?:stands?|standing|stays?|waits?|watch(?:es|ing)?|looks? on|observ\w+|remains?|listens?|ignor\w+|nothing|"
-    r"motionless|upright|refus\w+|declin\w+|keeps? still|without (?:moving|reacting|answering)|"
+    r"motionless|upright|unmoved|idle|rooted|pays? no attention|"
+    r"star(?:es?|ing)|gaz\w+|just looks?|refus\w+|declin\w+|keeps? still|without (?:moving|reacting|answering)|"
     r"do(?:es)? ?n[o']t (?:\w+ )?(?:move|react|answer|respond|budge|follow|return|take|shake|wave|bow|clap|join|accept"
     r"|\w+ back))\b"
 )
@@ -33,7 +34,7 @@ _BUSY = re.compile(
 )
 _ALONE = re.compile(
     r"\b(?:(?:jump|leap|hop|fall|kneel|crawl|roll|spin|squat|crouch|stretch|bow|clap|applaud|beckon|salut|nod|shrug|"
-    r"collaps|cheer|danc|faint|yawn)\w*|sits?|sitting|lies|lying|wav(?:es?|ing)|points?|pointing|rais\w+|lowers?|"
+    r"collaps|cheer|danc|faint|yawn|curts|stamp|scratch|juggl|exercis|shiver|trembl|sob|laugh|pray|meditat|march)\w*|sits?|sitting|lies|lying|wav(?:es?|ing)|points?|pointing|rais\w+|lowers?|"
     r"lifts? (?:his|her|their|the|both)|gets? (?:up|down)|stands? up|trips?)\b"
 )
 """Acts that need nobody else."""
@@ -67,6 +68,11 @@ def idle(sentence: str) -> frozenset[str]:
 def is_planned(sentence: str) -> bool:
     """True if a beat's words say where people go, who stands by, or who begins on their feet."""
     return goes(moves(sentence)) or bool(idle(sentence)) or bool(goes_down(sentence))
+
+
+def touches(sentence: str) -> bool:
+    """True if the words of a beat are of a touch."""
+    return bool(_TOUCH.search(sentence.lower()))
 
 
 def goes_down(sentence: str) -> frozenset[str]:

@@ -22,6 +22,7 @@ class Way(Enum):
     ALONG = "walks side by side with the other"
     AFTER = "follows the other"
     TURN = "turns around"
+    ASIDE = "steps aside"
     FACE = "turns to the other"
     BACKS = "stands with their back to the other's"
     STAY = "stays in place"
@@ -52,7 +53,9 @@ class Move:
 
 _GO = (
     r"(?:walk|go|goes|going|stroll|wander|run|jog|rush|hurr[yi]|sprint|dash|march|strid|stomp|storm|step|mov|head|creep|"
-    r"sneak|tiptoe|wade|shuffl|limp|stagger|skip|danc|drift|saunter|trot|charg|stumbl)\w*"
+    r"sneak|tiptoe|wade|shuffl|limp|stagger|skip|danc|drift|saunter|trot|charg|stumbl|ambl|pac(?:e|ing)|bolt|scurr[yi]|"
+    r"dart|trudg|plod|glid|swagger|slip|roam|parad|scamper|hobbl|totter|stalk|pranc|inch|race|racing|spring|squeez|"
+    r"brush)\w*"
 )
 _OTHER = r"(?:person [ab]|(?:the|his|her|their|an?|another) (?:\w+ )?\w+|him|her|them|each other|one another)"
 _PERSON = (
@@ -65,7 +68,11 @@ _WAYS: tuple[tuple[Way, tuple[str, ...]], ...] = (
     (Way.BACKS, (r"\b(?:stand|sit|lean|wait)\w* (?:\w+ )?back[- ]to[- ]back\b", r"^back[- ]to[- ]back\b")),
     (
         Way.AFTER,
-        (r"\b(?:follow|chas|pursu)\w*", rf"\b{_GO} (?:\w+ )?after {_OTHER}", rf"\bwalk\w* behind {_OTHER}"),
+        (
+            r"\b(?:follow|chas|pursu|trail|shadow)\w*|\btags? along\b|\btails\b",
+            rf"\b{_GO} (?:\w+ )?after {_OTHER}",
+            rf"\bwalk\w* behind {_OTHER}",
+        ),
     ),
     (
         Way.BEHIND,
@@ -78,6 +85,7 @@ _WAYS: tuple[tuple[Way, tuple[str, ...]], ...] = (
         Way.PAST,
         (
             rf"\b(?:{_GO}|com\w+) (?:\w+ )?(?:past\b|(?<!side )by\b(?! the (?:hand|arm)| side))",
+            r"\bovertak\w+",
             rf"\bpass(?:es|ing)? (?:by\b|{_PERSON}(?! (?:an?|the)\b))",
         ),
     ),
@@ -93,13 +101,24 @@ _WAYS: tuple[tuple[Way, tuple[str, ...]], ...] = (
     (
         Way.BACK,
         (
-            r"\b(?:back|step|mov|shrink|jump|hop|walk|go|retreat|recoil|stagger|stumbl|edg)\w*"
+            r"\b(?:back|step|mov|shrink|jump|hop|walk|go|tak|retreat|recoil|stagger|stumbl|edg|flinch|lean)\w*"
             r" (?:(?:a|one|two|\w+) (?:step|pace)s? )?(?:away backwards|backwards?|back(?! to(?!\w)| into)\b"
             r"|off a step)",
             r"\bbacks? (?:away|off|up)\b",
             r"\bbacking (?:away|off)",
             r"\bretreats?\b",
             r"\brecoils?\b",
+            r"\b(?:shies|shy|shrinks?|flinch\w*) away\b",
+        ),
+    ),
+    (
+        Way.ASIDE,
+        (
+            r"\b(?:step|mov|jump|dodg|leap|hop|slip|duck)\w* (?:\w+ )?(?:aside|sideways)\b",
+            r"\b(?:step|mov|jump|dodg|leap|hop)\w* to (?:the|one|his|her|their) (?:\w+ )?side\b",
+            r"\bout of the way\b",
+            r"\bmakes? way\b(?! (?:to|over|up))",
+            r"\bsidesteps?\b",
         ),
     ),
     (
@@ -107,16 +126,22 @@ _WAYS: tuple[tuple[Way, tuple[str, ...]], ...] = (
         (
             rf"\b{_GO} (?:\w+ ){{0,2}}?(?:away|off|out\b(?! (?:a|the|his|her|their) (?:hand|arm))|home|elsewhere)\b",
             r"\bleav(?:e|es|ing)\b(?! \w+ (?:hand|arm))",
-            r"\b(?:depart|separat|escap)\w*",
+            r"\b(?:depart|separat|escap|withdr[ae]w|disappear|vanish)\w*",
+            r"\b(?:mak|tak)(?:e|es|ing) off\b",
+            r"\btak(?:es?|ing) (?:his|her|their) leave\b",
+            r"\bon (?:his|her|their) heels?\b",
+            r"\bgets? away\b",
             r"\bpart(?:s|ing)?(?: again| ways| company)?$",
-            r"\b(?:their|his|her|own) (?:separate |own |different )?ways?\b",
+            r"\b(?:go|goes|going|walk|head|run)\w* (?:\w+ )?(?:their|his|her) (?:separate |own |different )?ways?\b",
             r"\bopposite directions\b",
             rf"\b{_GO} apart\b",
             r"\bheads? for\b",
-            r"\b(?:go|goes|walks?|heads?|runs?|gets?) back to\b",
+            rf"\b(?:go|goes|walks?|heads?|runs?|gets?) back to (?!{_PERSON})",
             r"\bsplit up\b",
             r"\bflees?\b",
             r"\bexits?\b",
+            r"\bsets? off\b(?! together| side)",
+            r"\bcarr(?:y|ies) on\b",
             r"\b(?:run|walk|go|jog)s? on ahead\b",
             r"\bgoes on\b",
         ),
@@ -125,20 +150,28 @@ _WAYS: tuple[tuple[Way, tuple[str, ...]], ...] = (
         Way.ALONG,
         (
             rf"\b{_GO} (?:\w+ ){{0,3}}?(?:side by side|next to (?:each other|one another)|abreast|in step|hand in hand|"
-            r"arm in arm|together|alongside)",
+            r"arm in arm|together|alongside|beside|shoulder to shoulder|"
+            r"with (?:each other|him|her|them|person [ab]|the other)|in (?:the )?(?:same direction|parallel))",
+            r"\baccompan\w+",
+            r"\bsets? off (?:together|side by side)\b",
+            r"\bkeep\w* (?:pace|up) with\b",
             rf"\b(?:side by side|next to each other|hand in hand|arm in arm)\b.*\b{_GO}",
-            rf"\b{_GO} (?:on|along|around|about)\b",
+            rf"\b{_GO} (?:on|along)\b",
         ),
     ),
     (
         Way.TO,
         (
-            rf"\b(?:{_GO}|com\w+|return\w*) (?:\w+ ){{0,2}}?(?:up to|over to|towards?|closer|nearer|over\b|up\b|running"
+            rf"\b(?:{_GO}|com\w+|return\w*) (?:\w+ ){{0,2}}?(?:up to|over to|towards?|closer|nearer|running"
+            r"|over\b(?! (?:him|her|it|the|person))"
             rf"|in\b|to {_OTHER}|right up)",
             r"\bcom(?:e|es|ing) (?:up |over |closer|nearer|running|back|along)",
             r"\bcomes? (?:over|closer|nearer)?$",
             r"\b(?:approach|meets?|joins?)\w*",
-            r"\bclos\w+ in\b",
+            r"\bclos\w+ (?:in|the (?:gap|distance))\b",
+            r"\bgets? (?:closer|nearer)\b",
+            r"\badvanc(?:e|es|ing)\b",
+            r"\bmak(?:es?|ing) (?:his|her|their) way (?:over|up|to)\b",
         ),
     ),
     (
@@ -146,19 +179,24 @@ _WAYS: tuple[tuple[Way, tuple[str, ...]], ...] = (
         (
             rf"\bturn\w* (?:all the way )?(?:{_AROUND} )?(?:to|towards) (?!go|leave|walk)",
             r"\bface each other\b",
+            rf"\bturns? to {_PERSON}",
         ),
     ),
     (
         Way.TURN,
         (
+            r"\babout[- ]face\b",
+            r"^turns?$",
             rf"\bturn\w* (?:\w+ ){{0,3}}?(?:{_AROUND}\b|away|back\b|{_HIS} backs?)",
-            r"\b(?:spin|pirouette|twirl)\w*\b",
+            r"\b(?:spin|pirouette|twirl|whirl|pivot|swivel|rotat)\w*\b",
         ),
     ),
     (
         Way.STAY,
         (
             r"\b(?:stay|stand|wait|remain|watch|look|freez|stop|paus|halt|linger)\w*",
+            r"\bholds? still\b",
+            r"\brooted\b",
             r"\bdo(?:es)? ?n[o']t (?:move|react|budge|follow)\b",
             r"\bon the spot\b",
             r"\brefus\w+ to (?:come|move|follow|budge)",
@@ -170,7 +208,8 @@ _WAYS: tuple[tuple[Way, tuple[str, ...]], ...] = (
 _PATTERNS = tuple((way, re.compile("|".join(patterns))) for way, patterns in _WAYS)
 _NOT = re.compile(r"\b(?:do(?:es)?n't|not|without|never|refus\w+ to|wants? to|tries to|let(?:s|ting)?)\b")
 MOVED = re.compile(
-    r"\b(?:danc|waltz|lead|drag|pull|carr|guid|push|shov|fight|kick|punch|wrestl|help|support|escort)\w*"
+    r"\b(?:danc|waltz|lead|drag|pull|carr(?!(?:y|ies) on)|guid|push|shov|fight|kick|punch|wrestl|help|support|"
+    r"escort)\w*"
 )
 """Acts in which one moves the other: where they go follows from their touch."""
 _FLOOR = re.compile(
@@ -178,18 +217,19 @@ _FLOOR = re.compile(
 )
 """Acts that take a person off their feet or to the ground, for which no place is held."""
 _BARE = re.compile(r"(?:walk|run|jog|stroll|skip|march)s?(?:ing)?(?: together| a bit| a little)?")
+_WITH = re.compile(r"\b(?:beside|next to|alongside|with|accompan\w+|together|by side)\b")
 _LINKED = re.compile(
     r"\b(?:hand in hand|arm in arm|(?:hold|link|join|tak)\w* (?:\w+ )?(?:hands?|arms?)|arms? around)\b"
 )
 _HALT = re.compile(r"\b(?:stop|halt|stand still|wait|freeze|stay|remain|pause)s?\b")
 _SPEEDS = (
-    (r"\b(?:run|sprint|dash|charg|chas|race|fle[ed])\w*", 2.2),
+    (r"\b(?:run|sprint|dash|charg|chas|rac(?:e|ing)|fle[ed]|bolt|dart|scamper)\w*", 2.2),
     (r"\b(?:jog|hurr|rush|storm|trot)\w*|\bquick\w*|\bfast\b", 1.7),
-    (r"\b(?:stroll|saunter|wander)\w*|\bslow\w*|\bcalm\w*|\bcareful\w*", 0.8),
-    (r"\b(?:creep|sneak|tiptoe|shuffl|limp|edg)\w*", 0.6),
+    (r"\b(?:stroll|saunter|wander|ambl|drift|trudg|plod|roam)\w*|\bslow\w*|\bcalm\w*|\bcareful\w*", 0.8),
+    (r"\b(?:creep|sneak|tiptoe|shuffl|limp|edg|inch|hobbl|totter)\w*", 0.6),
 )
 _FULL = re.compile(
-    r"\b(?:once|all the way|full|whole|complete\w*|360|(?:round )?and round|several times|twice)\b"
+    r"\b(?:in (?:a )?circles?|once|all the way|full|whole|complete\w*|360|(?:round )?and round|several times|twice)\b"
 )
 
 
@@ -207,6 +247,10 @@ def way_of(words: str) -> Way | None:
 
 
 _GOING = {Way.AWAY, Way.PAST, Way.ROUND, Way.ALONG, Way.TO, Way.BEHIND}
+
+
+_OF_ONE = {Way.AFTER, Way.BEHIND, Way.PAST, Way.ROUND, Way.TO}
+_EACH = re.compile(r"\b(?:each other|one another|meets?)\b")
 
 
 def is_bare(clause: Clause) -> bool:
@@ -243,8 +287,10 @@ def moves(sentence: str) -> tuple[Move, ...]:
         made += _of_clause(clause, late=late)
     for person, other in ("ab", "ba"):
         ways = {move.way for move in made if move.person == other}
-        if any(move.way is Way.AFTER for move in made if move.person == person) and not ways & _GOING:
-            made.insert(0, Move(other, Way.AWAY, until=any(clause.until for clause in found)))
+        after = next((move for move in made if move.person == person and move.way is Way.AFTER), None)
+        if after is not None and not ways & _GOING:
+            until = any(clause.until for clause in found)
+            made.insert(0, Move(other, Way.AWAY, after.speed, until=until))
     if _LINKED.search(sentence.lower()):
         made = [replace(move, linked=True) for move in made]
     for i, clause in enumerate(found):
@@ -255,7 +301,7 @@ def moves(sentence: str) -> tuple[Move, ...]:
             tuple(made) if len({move.person for move in made}) == 2 and _HALT.search(sentence.lower()) else ()
         )
     low = {who for clause in found if _FLOOR.search(clause.words) for who in clause.who}
-    backs = any(move.way is Way.BACK for move in made)
+    backs = any(move.way in (Way.BACK, Way.ASIDE) for move in made)
     for person in "ab":
         if all(move.person != person for move in made) and person not in low and not backs:
             made.append(Move(person, Way.STAY))
@@ -263,20 +309,18 @@ def moves(sentence: str) -> tuple[Move, ...]:
 
 
 def _of_clause(clause: Clause, *, late: bool) -> list[Move]:
-    way = way_of(clause.words)
-    if way is None:
+    way, who = way_of(clause.words), clause.who
+    if way is None or (_FLOOR.search(clause.words) and way in (Way.STAY, Way.TURN)):
         return []
-    if (
-        way in (Way.ALONG, Way.AFTER)
-        and clause.who != "ab"
-        and re.search(r"\b(?:on|along|around|about)$", clause.words)
-    ):
-        way = Way.AWAY
-    if _FLOOR.search(clause.words) and way in (Way.STAY, Way.TURN):
-        return []
+    if not clause.subject and way in _OF_ONE and not _EACH.search(clause.words):
+        who = "a"
+    if way is Way.ALONG and _WITH.search(clause.words):
+        who = "ab"
+    elif way is Way.ALONG and who != "ab":
+        way = Way.AWAY  # "the other one walks on"
     speed = next((value for pattern, value in _SPEEDS if re.search(pattern, clause.words)), 1.1)
     turns = 1.0 if _FULL.search(clause.words) else 0.5
-    return [Move(person, way, speed, turns, late=late) for person in clause.who]
+    return [Move(person, way, speed, turns, late=late) for person in who]
 
 
 def _ended(move: Move, before: Clause) -> Move:

@@ -6,7 +6,7 @@ import re
 from collections.abc import Sequence
 
 from .beats import Beat
-from .clauses import Clause, Reader
+from .clauses import Clause, Reader, named
 from .moves import MOVED, Way, is_bare, way_of
 
 _MARK = r"(?:and\s+)?(?:then|finally|afterwards?|after\s+that|at\s+last|at\s+the\s+end|lastly)"
@@ -51,7 +51,7 @@ def split_sentence(text: str) -> tuple[Beat, ...]:
     text = " ".join(text.split())
     reader = Reader()
     parts: list[str] = []
-    for part in _clauses(_OPENING.sub("", text)):
+    for part in _clauses(_OPENING.sub("", named(text))):
         part = _STARTS_WITH_MARK.sub("", _OPENING.sub("", part.strip())).strip(" ,;.!")
         part = re.sub(r"^and\s+|\s+and$", "", part, flags=re.IGNORECASE)
         if part:
