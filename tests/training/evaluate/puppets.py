@@ -211,6 +211,7 @@ def _gesture(verb: str, side: str, time: Array) -> Array:
     swing = np.sin(2 * np.pi * 1.5 * time)
     middle, sway = {
         "up": ((0.05 * out, 0.45, 0.05), (0.0, 0.0, 0.0)),
+        "phone": ((-0.05 * out, 0.12, 0.08), (0.0, 0.0, 0.0)),
         "wave": ((0.1 * out, 0.25, 0.15), (0.15, 0.0, 0.0)),
         "beckon": ((0.0, -0.1, 0.3), (0.0, 0.1, 0.1)),
         "talk": ((-0.05 * out, -0.2, 0.25), (0.1, 0.06, 0.08)),
