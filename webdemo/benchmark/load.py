@@ -272,7 +272,24 @@ def _generation(dice: random.Random, steps: int) -> Job:
 
 def _reaction(dice: random.Random, steps: int) -> Job:
     seed, seconds = dice.randrange(2**32), 2.0
-    data = (None, "", "a", 0, seconds, "a", seed, 1, 3.0, steps, 0.7, "ddim", "intergen", "offline", False)
+    data = (
+        None,
+        "",
+        "a",
+        0,
+        seconds,
+        "a",
+        seed,
+        1,
+        3.0,
+        steps,
+        0.7,
+        "ddim",
+        "intergen",
+        "offline",
+        False,
+        False,
+    )
     return Job("react", data, {"kind": "react", "seed": seed, "steps": steps}, seconds * steps + 10)
 
 
