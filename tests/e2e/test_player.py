@@ -174,7 +174,7 @@ def test_when_the_loop_begins_anew_both_are_in_view_at_once(player):
         const player = window.__pasdedeux.player, paint = player.paint;
         player.paint = function (pose) {
             paint.call(this, pose);
-            if (this.clock.frame < 100) window.off ??= this.wanted().distance - this.orbit.distance;
+            if (this.clock.frame < 100) window.off ??= this.framing.wanted().distance - this.orbit.distance;
         };
     }""")
     page.locator(".pdd-play").click()

@@ -77,7 +77,7 @@ def test_bodies_are_brighter_on_the_side_of_the_lamp(player):
     page.evaluate("""() => {
         const { player } = window.__pasdedeux;
         const [figure] = player.panes[0].figures;
-        Object.getPrototypeOf(figure).shade = function (colors, lamps, lens, scale, alpha) {
+        figure.shade = function (colors, lamps, lens, scale, alpha) {
             this.light.fill(0.7);
             this.shine.fill(0);
             this.expand(colors, scale, alpha);

@@ -9,7 +9,7 @@ from motion import SMPL22, Duet, InputError
 from motion.transforms import heading_matrix
 from webdemo.inference import Engine, GenerateRequest
 from webdemo.inference.cancel import CancelToken
-from webdemo.inference.directed import FADE, KnownFrames, KnownPath, Part, directed, with_given
+from webdemo.inference.directed import FADE, Directed, KnownFrames, KnownPath, Part, directed, with_given
 from webdemo.inference.timer import StageTimer
 
 FRAMES = 60
@@ -83,6 +83,18 @@ def test_clean_up_is_taken_back_at_given_frames_and_fades() -> None:
     assert (with_given(made, np.array([10]), given[:1])[10 + FADE + 1 :] == 0).all()
     assert (np.diff(found[10:21, 0, 0]) < 0).all()
     assert (with_given(made, np.array([0]), given[:1])[1:7, 0, 0] > 0).all()
+
+
+def test_a_single_pose_moves_only_what_is_near_it() -> None:
+    made = np.stack([walker(), walker(speed=0.8)]).astype(np.float32)
+    pose = made[0, 30:31].copy()
+    pose[..., 1:, 0] += 0.05
+    frames = FRAMES
+    scene = Directed(frames, None, parts=[KnownFrames(0, [30], pose)])
+    found = scene.duet(made, lambda person: person).positions
+    np.testing.assert_allclose(found[0, 30], pose[0], atol=1e-6)
+    away = np.abs(np.arange(frames) - 30) > FADE
+    np.testing.assert_allclose(found[0, away], made[0, away], atol=1e-6)
 
 
 def test_a_difference_in_speed_fades_without_a_jolt() -> None:
