@@ -15,6 +15,7 @@ from motion.kinematics import fit_rotations, forward_kinematics, project_to_skel
 from .actor import FPS
 
 Array = NDArray[np.floating]
+Frames = NDArray[np.integer]
 
 REACH = 15
 """Frames beside a join that may move, half a second."""
@@ -28,7 +29,7 @@ _CALM, _QUIET = 30.0, 0.8
 _ROUNDS = 2
 
 
-def joined(positions: Array, frames: Array, given: Array) -> Array:
+def joined(positions: Array, frames: Frames, given: Array) -> Array:
     """Positions (T, 22, 3) that are ``given`` (N, 22, 3) at ``frames`` (N,) but for planted feet, and lead there.
 
     Only frames within :data:`REACH` of a given one are smoothed. Feet that stand at given frames stay there.
@@ -46,7 +47,7 @@ def joined(positions: Array, frames: Array, given: Array) -> Array:
     return plant_feet(found, foot_contacts(found, FPS), held=away == 0)
 
 
-def closed(positions: Array, fixed: Array) -> Array:
+def closed(positions: Array, fixed: Frames) -> Array:
     """A loop of one person (T, 22, 3): its end meets its beginning in place and speed.
 
     Where a loop closes, the hips go on at an even speed and the limbs nearly rest.
@@ -59,7 +60,7 @@ def closed(positions: Array, fixed: Array) -> Array:
     time = np.arange(total)
     away = np.abs(time + 0.5 - middle) + 0.5  # 1 at the first frame and the last, which lie in the middle
     moves = ~np.isin((time - middle) % total, fixed)
-    given = np.roll(np.asarray(positions, dtype=np.float64), middle, axis=0)
+    given: Array = np.roll(np.asarray(positions, dtype=np.float64), middle, axis=0)
     found = given
     for reach in (REACH, _AGAIN):
         free = np.flatnonzero((away <= min(reach, middle - 2)) & moves)
@@ -74,7 +75,7 @@ def closed(positions: Array, fixed: Array) -> Array:
 
 
 def _turned(
-    positions: Array, free: Array, away: Array, *, closes: int | None = None, reach: int = REACH
+    positions: Array, free: Frames, away: Array, *, closes: int | None = None, reach: int = REACH
 ) -> Array:
     """Positions (T, 22, 3) with the path of the pelvis and the joints' rotations smoothed at the frames ``free``."""
     if not len(free):
@@ -90,10 +91,10 @@ def _turned(
     return found
 
 
-def _straightened(positions: Array, free: Array, away: Array, closes: int, reach: int) -> Array:
+def _straightened(positions: Array, free: Frames, away: Array, closes: int, reach: int) -> Array:
     """Smooths places where rotations could not be told apart, and brings them back onto constant bones."""
     pelvis = positions[:, :1]
-    limbs = (positions - pelvis).reshape(len(positions), -1)
+    limbs: Array = (positions - pelvis).reshape(len(positions), -1)
     limbs = _smoothed(limbs, free, away, closes=closes, reach=reach, rests=True)
     way = _smoothed(pelvis[:, 0], free, away, closes=closes, reach=reach)
     found = positions.copy()
@@ -102,7 +103,7 @@ def _straightened(positions: Array, free: Array, away: Array, closes: int, reach
 
 
 def _smoothed(
-    values: Array, free: Array, away: Array, *, closes: int | None, reach: int, rests: bool = False
+    values: Array, free: Frames, away: Array, *, closes: int | None, reach: int, rests: bool = False
 ) -> Array:
     """Values (T, N) whose frames ``free`` (M,) were moved so that third differences are small.
 
