@@ -49,6 +49,14 @@ def test_a_job_arrives_as_it_was_sent() -> None:
     assert same(sent, unpacked(packed(sent)))
 
 
+def test_a_motion_that_says_how_it_was_made_can_be_drawn() -> None:
+    made = dataclasses.replace(
+        DUET, manifest={"seed": 3, "request": {"prompt": "they “hug”", "beats": [1, None]}}
+    )
+    (pane,) = unpacked(packed(job(panes=(Pane(made, "one"),)))).panes
+    assert isinstance(pane.motion, Duet) and pane.motion.manifest == made.manifest
+
+
 def test_only_known_classes_and_plain_data_are_sent() -> None:
     with pytest.raises(TypeError, match="cannot hold Fraction"):
         packed(job(title=Fraction(1, 2)))

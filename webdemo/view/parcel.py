@@ -72,6 +72,8 @@ def packed(job: Job) -> bytes:
         if is_dataclass(value) and KINDS.get(type(value).__name__) is type(value):
             parts = {part.name: tree(getattr(value, part.name)) for part in fields(value) if part.init}
             return {"kind": type(value).__name__, "parts": parts}
+        if isinstance(value, dict):  # such as the manifest of a motion
+            return {"mapping": [[tree(key), tree(each)] for key, each in value.items()]}
         if isinstance(value, tuple | list):
             return {type(value).__name__: [tree(each) for each in value]}
         if value is None or isinstance(value, str | int | float):
@@ -99,6 +101,8 @@ def unpacked(data: bytes) -> Job:
                 return KINDS[told["kind"]](**{name: value(part) for name, part in told["parts"].items()})
             if "array" in told:
                 return parcel[told["array"]]
+            if "mapping" in told:
+                return {value(key): value(each) for key, each in told["mapping"]}
             ((shape, members),) = told.items()
             return {"tuple": tuple, "list": list}[shape](value(each) for each in members)
 
