@@ -76,17 +76,20 @@ class GlbFile:
         harmless: beginnings of the names of extensions that it may need.
 
     Attributes:
-        told: its description.
+        document: its description.
         blob: its numbers.
     """
 
     def __init__(self, data: bytes, label: str, purpose: str, harmless: Sequence[str] = ()) -> None:
         self.label, self.purpose = label, purpose
-        self.told, self.blob = self._chunks(data)
+        self.document, self.blob = self._chunks(data)
         for key in _LISTS:
-            if not isinstance(self.told.get(key, []), list) or len(self.told.get(key, [])) > MOST_ITEMS:
+            if (
+                not isinstance(self.document.get(key, []), list)
+                or len(self.document.get(key, [])) > MOST_ITEMS
+            ):
                 self.refuse(f"its list of {key} is too long or none")
-        needed = [str(each)[:40] for each in list(self.told.get("extensionsRequired", []))]
+        needed = [str(each)[:40] for each in list(self.document.get("extensionsRequired", []))]
         if needed := [each for each in needed if not each.startswith((*_LOOKS, *harmless))]:
             self.refuse(
                 f"it needs {', '.join(needed[:3])}", "export it without compression or other extensions"
@@ -115,10 +118,10 @@ class GlbFile:
             self.refuse(
                 f"its description has more than {LARGEST_JSON // 2**20} MB", "export the character alone"
             )
-        told = json.loads(found.get(_JSON, b"").decode("utf-8"))
-        if not isinstance(told, dict):
+        document = json.loads(found.get(_JSON, b"").decode("utf-8"))
+        if not isinstance(document, dict):
             self.refuse("its description is none")
-        return told, found.get(_BIN, b"")
+        return document, found.get(_BIN, b"")
 
     # ---- numbers -----------------------------------------------------------------------------------
 
@@ -130,7 +133,7 @@ class GlbFile:
 
     def numbers(self, accessor: Any, kind: str, most: int, what: str) -> NDArray:
         """The rows of an accessor of this kind, at most so many."""
-        stored = self.told["accessors"][self.index(accessor, len(self.told["accessors"]), "accessor")]
+        stored = self.document["accessors"][self.index(accessor, len(self.document["accessors"]), "accessor")]
         if stored.get("sparse") is not None or stored.get("type") != kind or "bufferView" not in stored:
             self.refuse(f"its {what} are stored in a way that is not read here")
         count, component = stored["count"], stored["componentType"]
@@ -141,9 +144,9 @@ class GlbFile:
             )
         if component not in _TYPES:
             self.refuse(f"its {what} are of an unknown kind")
-        views = self.told["bufferViews"]
+        views = self.document["bufferViews"]
         view = views[self.index(stored["bufferView"], len(views), "buffer view")]
-        if view.get("buffer", 0) != 0 or self.told["buffers"][0].get("uri") is not None:
+        if view.get("buffer", 0) != 0 or self.document["buffers"][0].get("uri") is not None:
             self.refuse("it keeps its data in other files", "export it as one .glb file")
         dtype = np.dtype(_TYPES[component])
         row = dtype.itemsize * _WIDTHS[kind]
@@ -168,7 +171,7 @@ class GlbFile:
 
     def node_parents(self) -> list[int]:
         """Index of each node's parent, -1 for none; a node has one parent and is not above itself."""
-        nodes = self.told.get("nodes", [])
+        nodes = self.document.get("nodes", [])
         if len(nodes) > MOST_NODES:
             self.refuse(
                 f"it has {len(nodes):,} nodes", f"export the character alone, with {MOST_NODES:,} at most"
@@ -196,7 +199,7 @@ class GlbFile:
             or len(set(joints)) < len(joints)
         ):
             self.refuse(f"its skin has no joints, or more than {MOST_JOINTS}")
-        return [self.index(joint, len(self.told["nodes"]), "joint") for joint in joints]
+        return [self.index(joint, len(self.document["nodes"]), "joint") for joint in joints]
 
     def bind_matrices(self, skin: Any, count: int) -> NDArray[np.floating]:
         """(J, 4, 4) the joints of a skin when the mesh is as it is stored."""
@@ -213,12 +216,12 @@ class GlbFile:
 
     def joint_name(self, node: int) -> str:
         """The name of a node, or one made of its number."""
-        return str(self.told["nodes"][node].get("name", f"joint_{node}"))[:100]
+        return str(self.document["nodes"][node].get("name", f"joint_{node}"))[:100]
 
 
-def packed(told: Mapping[str, Any], blob: bytes) -> bytes:
+def packed(document: Mapping[str, Any], blob: bytes) -> bytes:
     """A file of a description and its numbers."""
-    text = json.dumps(told, separators=(",", ":")).encode("utf-8")
+    text = json.dumps(document, separators=(",", ":")).encode("utf-8")
     text += b" " * (-len(text) % 4)
     blob += bytes(-len(blob) % 4)
     size = 12 + 8 + len(text) + 8 + len(blob)

@@ -50,7 +50,7 @@ def read_glb_people(source: str | Path | bytes, *, name: str | None = None) -> t
     """
     with opened(source, name, "read as motion", harmless=MESHES) as file:
         parents = file.node_parents()
-        if not file.told.get("animations"):
+        if not file.document.get("animations"):
             raise InputError(
                 f"{file.label} has no animation: export it with one, or put it on both people with "
                 "“Wear a character”."
@@ -133,7 +133,7 @@ def _shared_beginning(names: Sequence[str]) -> str:
 
 def _only(file: GlbFile, nodes: set[int]) -> list[Channel]:
     """The channels of the one animation that moves these nodes."""
-    moving = [each for each in file.told["animations"] if moves(each, nodes)]
+    moving = [each for each in file.document["animations"] if moves(each, nodes)]
     if not moving:
         raise InputError(
             f"{file.label} has an animation, but it moves no joint of the skeleton: export it again."

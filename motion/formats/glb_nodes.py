@@ -96,7 +96,7 @@ def _unit(vectors: Array) -> Array:
 
 def people(file: GlbFile, parents: Sequence[int]) -> list[Rig]:
     """The skeletons of a file: skins that share joints are one; without skins all nodes are."""
-    skins = file.told.get("skins", [])
+    skins = file.document.get("skins", [])
     groups: list[tuple[set[int], list[int]]] = []
     for number, skin in enumerate(skins):
         joints = set(file.skin_joints(skin))
@@ -104,7 +104,7 @@ def people(file: GlbFile, parents: Sequence[int]) -> list[Rig]:
         merged = joints.union(*(group[0] for group in its)), [n for group in its for n in group[1]] + [number]
         groups = [group for group in groups if group not in its] + [merged]
     if not groups:
-        bare = {n for n, node in enumerate(file.told.get("nodes", [])) if node.get("mesh") is None}
+        bare = {n for n, node in enumerate(file.document.get("nodes", [])) if node.get("mesh") is None}
         groups = [(bare, [])]
     if not groups[0][0] or any(len(joints) > MOST_JOINTS for joints, _ in groups):
         file.refuse(f"it has no joints, or more than {MOST_JOINTS}")
@@ -129,7 +129,7 @@ def bind_pose(file: GlbFile, rig: Rig) -> Array | None:
     """(J, 4, 4) the joints while the mesh is as it is stored, in the mesh's axes; None where a skin does not say."""
     found: dict[int, Array] = {}
     for number in rig.skins:
-        skin = file.told["skins"][number]
+        skin = file.document["skins"][number]
         joints = file.skin_joints(skin)
         if skin.get("inverseBindMatrices") is None:
             return None
@@ -145,11 +145,11 @@ def moves(animation: Any, nodes: set[int]) -> bool:
 
 def channels(file: GlbFile, animation: Any, nodes: set[int]) -> list[Channel]:
     """The channels of an animation that move these nodes, at most one for each property."""
-    count = len(file.told.get("nodes", []))
-    samplers, told = animation["samplers"], animation["channels"]
+    count = len(file.document.get("nodes", []))
+    samplers, entries = animation["samplers"], animation["channels"]
     found: dict[tuple[int, str], Channel] = {}
     keys = 0
-    for channel in told:
+    for channel in entries:
         target = channel["target"]
         if target.get("node") is None or target.get("path") not in _PATHS:
             continue
@@ -180,12 +180,12 @@ def channels(file: GlbFile, animation: Any, nodes: set[int]) -> list[Channel]:
 
 def local_parts(file: GlbFile, node: int) -> dict[str, Array]:
     """Translation (3,), rotation (4,) and scale (3,) of a node at rest."""
-    told = file.told["nodes"][node]
-    if told.get("matrix") is not None:
-        matrix = _numbers(file, told["matrix"], 16).reshape(4, 4).T
+    stored = file.document["nodes"][node]
+    if stored.get("matrix") is not None:
+        matrix = _numbers(file, stored["matrix"], 16).reshape(4, 4).T
         turn, scale = split(matrix[None, :3, :3])
         return {"translation": matrix[:3, 3], "rotation": quaternions(turn)[0], "scale": scale[0]}
-    return {path: _numbers(file, told.get(path, usual), len(usual)) for path, usual in _DEFAULTS.items()}
+    return {path: _numbers(file, stored.get(path, usual), len(usual)) for path, usual in _DEFAULTS.items()}
 
 
 def _numbers(file: GlbFile, values: Any, count: int) -> Array:

@@ -64,7 +64,7 @@ def read_character(source: str | Path | bytes, *, name: str | None = None) -> Ch
 def _character(file: GlbFile) -> Character:
     """The skin with the most triangles, and all meshes bound to it."""
     parents = file.node_parents()
-    nodes, skins, meshes = (file.told.get(key, []) for key in ("nodes", "skins", "meshes"))
+    nodes, skins, meshes = (file.document.get(key, []) for key in ("nodes", "skins", "meshes"))
     bound: dict[int, list[Mapping[str, Any]]] = {}
     for node in nodes:
         if node.get("skin") is not None and node.get("mesh") is not None:

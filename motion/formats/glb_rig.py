@@ -59,12 +59,12 @@ def glb_on_rig(clip: Clip, reference: str | Path | bytes, *, name: str | None = 
         raise InputError(f"{moved[0].name} holds {len(moved)} people: a partner needs the rig of one.")
     with opened(reference, name, "used as a rig", harmless=MESHES) as file:
         skeleton = _skeleton(file)
-        told, blob = copy.deepcopy(file.told), bytearray(file.blob)
+        document, blob = copy.deepcopy(file.document), bytearray(file.blob)
         upright, lift = up_rotation(moved[0]), floor_on_smpl(moved[0])
-        told["animations"] = [
-            _animation(told, blob, [skeleton.moved(clip, lift, upright)], clip.fps, "partner")
+        document["animations"] = [
+            _animation(document, blob, [skeleton.moved(clip, lift, upright)], clip.fps, "partner")
         ]
-        return packed(told, bytes(blob))
+        return packed(document, bytes(blob))
 
 
 def glb_wearing(duet: Duet, reference: str | Path | bytes, *, name: str | None = None) -> bytes:
@@ -85,17 +85,17 @@ def glb_wearing(duet: Duet, reference: str | Path | bytes, *, name: str | None =
     with opened(reference, name, "used as a character") as file:
         skeleton = _skeleton(file)
         lift = _lift(skeleton, reference, name)
-        told, blob = copy.deepcopy(file.told), bytearray(file.blob)
-        first, *_ = starts = _twice(told, file.node_parents(), duet.roles)
+        document, blob = copy.deepcopy(file.document), bytearray(file.blob)
+        first, *_ = starts = _twice(document, file.node_parents(), duet.roles)
         moves = []
         for clip, other, start in zip(duet.people, duet.people[::-1], starts, strict=True):
             moved = skeleton.moved(clip, lift, near=_near(clip, other))
             moves.append({(node + start - first, path): values for (node, path), values in moved.items()})
-        told["animations"] = [_animation(told, blob, moves, duet.a.fps, "duet")]
+        document["animations"] = [_animation(document, blob, moves, duet.a.fps, "duet")]
         if duet.manifest:
             manifest = json.loads(json.dumps(duet.manifest, default=str))
-            told["asset"] = {**told.get("asset", {}), "extras": {"manifest": manifest}}
-        return packed(told, bytes(blob))
+            document["asset"] = {**document.get("asset", {}), "extras": {"manifest": manifest}}
+        return packed(document, bytes(blob))
 
 
 @dataclass(frozen=True, eq=False)
@@ -236,11 +236,11 @@ def _lift(skeleton: _Skeleton, reference: str | Path | bytes, name: str | None) 
     return float(np.clip(deep * longer * leg_scale(rest) - _SOLE, *_LIFTS))
 
 
-def _twice(told: dict[str, Any], parents: Sequence[int], roles: Sequence[str]) -> list[int]:
+def _twice(document: dict[str, Any], parents: Sequence[int], roles: Sequence[str]) -> list[int]:
     """Gives a description all its nodes twice, each copy under a node with its role; where the copies begin."""
-    nodes, skins = told["nodes"], told.get("skins", [])
+    nodes, skins = document["nodes"], document.get("skins", [])
     count, skin_count = len(nodes), len(skins)
-    scene = told.get("scenes", [{}])[told.get("scene", 0)]
+    scene = document.get("scenes", [{}])[document.get("scene", 0)]
     top = scene.get("nodes", [number for number, parent in enumerate(parents) if parent < 0])
     # What stands above a skinned mesh does not move it, so that it belongs at the top.
     skinned = [n for n, node in enumerate(nodes) if node.get("skin") is not None and not node.get("children")]
@@ -260,7 +260,7 @@ def _twice(told: dict[str, Any], parents: Sequence[int], roles: Sequence[str]) -
     for role, start in zip(roles, starts, strict=True):
         nodes.append({"name": role, "children": [start + node for node in top if node not in skinned]})
         shown += [len(nodes) - 1, *(start + node for node in skinned)]
-    told |= {"scene": 0, "scenes": [{"name": "duet", "nodes": shown}]}
+    document |= {"scene": 0, "scenes": [{"name": "duet", "nodes": shown}]}
     return starts
 
 
@@ -273,25 +273,25 @@ def _shifted(node: dict[str, Any], nodes: int, skins: int) -> dict[str, Any]:
 
 
 def _animation(
-    told: dict[str, Any], blob: bytearray, moves: Sequence[Mapping[tuple[int, str], Array]], fps: float, name: str
+    document: dict[str, Any], blob: bytearray, moves: Sequence[Mapping[tuple[int, str], Array]], fps: float, name: str
 ) -> dict[str, Any]:  # fmt: skip
     """An animation of these channels, whose values are added to the file; nodes lose what they were turned by."""
 
     def add(values: Array, kind: str, **bounds: Any) -> int:
         blob.extend(bytes(-len(blob) % 4))
         data = values.astype("<f4").tobytes()
-        told["bufferViews"].append({"buffer": 0, "byteOffset": len(blob), "byteLength": len(data)})
+        document["bufferViews"].append({"buffer": 0, "byteOffset": len(blob), "byteLength": len(data)})
         blob.extend(data)
-        told["accessors"].append(
+        document["accessors"].append(
             {
-                "bufferView": len(told["bufferViews"]) - 1,
+                "bufferView": len(document["bufferViews"]) - 1,
                 "componentType": 5126,
                 "count": len(values),
                 "type": kind,
             }
             | bounds
         )
-        return len(told["accessors"]) - 1
+        return len(document["accessors"]) - 1
 
     times = (np.arange(len(next(iter(moves[0].values())))) / fps).astype(np.float32)
     clock = add(times, "SCALAR", min=[float(times[0])], max=[float(times[-1])])
@@ -300,8 +300,8 @@ def _animation(
         kind = "VEC4" if path == "rotation" else "VEC3"
         samplers.append({"input": clock, "output": add(values, kind), "interpolation": "LINEAR"})
         channels.append({"sampler": len(samplers) - 1, "target": {"node": node, "path": path}})
-        _decomposed(told["nodes"][node])
-    told["buffers"][0]["byteLength"] = len(blob)
+        _decomposed(document["nodes"][node])
+    document["buffers"][0]["byteLength"] = len(blob)
     return {"name": name, "samplers": samplers, "channels": channels}
 
 

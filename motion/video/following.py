@@ -25,7 +25,7 @@ Array = NDArray[np.floating]
 MEASURED = 8
 """Pictures with a person that come before the first pose."""
 LOST = 0.5
-"""Seconds without the person after which whoever is nearest to the middle is followed."""
+"""Seconds without the person after which the person nearest to the middle is followed."""
 _SEEN = 0.5
 """A point that is seen less surely than this counts as hidden."""
 _POSE = (2.5, 3.0)

@@ -1,7 +1,7 @@
 """Futures of two people against what really followed: ``python -m training.evaluate.futures --data DIR``.
 
 The recorded pairs of the test lists of SBU and K3HI, which no training saw: the first second is given, the rest is
-foretold. Both people's futures, which know of each other, stand beside those of each person predicted alone.
+predicted. Both people's futures, which know of each other, stand beside those of each person predicted alone.
 """
 
 from __future__ import annotations
@@ -27,7 +27,7 @@ Array = NDArray[np.floating]
 Foretell = Callable[[Duet, str], list[Array]]
 
 PAST, FUTURE, LEAST = 30, 30, 10
-"""Frames that are given, that are foretold, and that must have followed."""
+"""Frames that are given, that are predicted, and that must have followed."""
 SAMPLES = 3
 
 
@@ -73,7 +73,7 @@ def methods(engine: Engine, steps: int) -> dict[str, Foretell]:
 
     return {
         "both together, without words": lambda past, _: both(past, ""),
-        "both together, told what they do": both,
+        "both together, with a sentence": both,
         "each alone (motion-mlp)": lambda past, _: alone(past, "motion-mlp"),
         "each alone (stands still)": lambda past, _: alone(past, "still"),
     }
@@ -103,12 +103,12 @@ def main(argv: list[str] | None = None) -> int:
     def job() -> None:
         scenes = held_out(load_pairs(options.data, options.cache))
         found: dict[str, Array] = {}
-        for name, foretell in methods(Engine(options.weights), options.steps).items():
+        for name, predict in methods(Engine(options.weights), options.steps).items():
             rows = []
             for scene in scenes:
                 past = Duet.from_positions(scene.positions[:, :PAST], fps=FPS)
                 truth = scene.positions[:, PAST : PAST + FUTURE]
-                futures = foretell(past, scene.captions[0])
+                futures = predict(past, scene.captions[0])
                 rows.append(np.mean([errors(f[:, : truth.shape[1]], truth) for f in futures], axis=0))
             found[name] = np.array(rows)
         print(table(found))

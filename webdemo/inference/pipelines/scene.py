@@ -25,7 +25,7 @@ from motion.transforms import heading, heading_matrix
 from webdemo.inference import methods
 from webdemo.inference.actor import FPS, MEDIAN_START_DISTANCE, ROLES, SECONDS, Placement
 from webdemo.inference.cancel import CancelToken
-from webdemo.inference.directed import Directed, KnownFrames, KnownPath, Part, directed
+from webdemo.inference.directed import Directed, KnownFrames, Part, directed
 from webdemo.inference.joining import closed
 from webdemo.inference.requests import GenerateRequest, Progress, Result
 from webdemo.inference.scenes import NAMES
@@ -35,7 +35,7 @@ from webdemo.inference.story.request import SceneRequest
 from webdemo.inference.story.wishes import meeting
 from webdemo.inference.timer import StageTimer
 
-from .scene_floor import plan_note, planned
+from .scene_floor import known_paths, plan_note, planned
 
 if TYPE_CHECKING:
     from .intergen import InterGenPipeline
@@ -375,7 +375,6 @@ def _wishes(request: SceneRequest, window: Window, placement: Placement) -> list
             parts.append(
                 KnownFrames(person, [frame + shift], placement.to_network(np.asarray(pose.positions)[None]))
             )
-    base = math.atan2(placement.turn[2, 0], placement.turn[0, 0])
     for path in request.paths:
         person = ROLES.index(path.person)
         wanted: dict[int, tuple[float, float, float | None]] = {}
@@ -387,19 +386,8 @@ def _wishes(request: SceneRequest, window: Window, placement: Placement) -> list
         if last is not None and window.stop - 1 not in wanted:
             wanted[window.stop - 1] = (*last, None)
         frames = [frame for frame in sorted(wanted) if (person, frame) not in posed]
-        for turned in (True, False):
-            own = [f for f in frames if (wanted[f][2] is not None) == turned]
-            if not own:
-                continue
-            places = np.array([[wanted[f][0], 0.0, wanted[f][1]] for f in own])
-            headings = np.radians([wanted[f][2] or 0.0 for f in own]) - base if turned else None
-            parts.append(
-                KnownPath(
-                    person,
-                    [f + shift for f in own],
-                    placement.to_network(places)[:, [0, 2]],
-                    headings,
-                    turned,
-                )
-            )
+        headings = np.array([math.nan if wanted[f][2] is None else wanted[f][2] for f in frames], dtype=float)
+        places = np.array([wanted[f][:2] for f in frames], dtype=float).reshape(-1, 2)
+        at = np.array(frames, dtype=int) + shift
+        parts += known_paths(person, at, places, np.radians(headings), placement)
     return parts

@@ -226,7 +226,7 @@ def _who(piece: str, cast: _Cast, last: str) -> tuple[str, str, bool]:
     if match["second"]:
         turned = (
             "other" in match["second"] and last == "b"
-        )  # the other of the two is who was not spoken of last
+        )  # the other of the two is the person who was not mentioned last
         who = "a" if turned else "b"
         cast.words[match["second"].split()[-1]] = who
         return who, rest, True

@@ -1,4 +1,4 @@
-"""Those who do nothing: who stands by in a sentence, and how people stand.
+"""Bystanders: the people who do nothing in a sentence, and how they stand.
 
 Networks that were trained on people who mostly do the same let a bystander sit down, bow or wave along. A bystander
 is therefore given a standing pose twice a second, and the network makes the movement between.
@@ -52,8 +52,8 @@ _IN_VAIN = re.compile(r"\b(?:left hanging|in vain|gets? no answer|(?:is|are) ign
 def idle(sentence: str) -> frozenset[str]:
     """The people, "a" and "b", who stand by and do nothing else in a beat's sentence.
 
-    That is who is said to wait, to watch or not to answer; and who is not spoken of while the other does something
-    that needs nobody else, such as sitting down.
+    These are people who are said to wait, to watch or not to answer, or who are not mentioned while the other does
+    something that needs nobody else, such as sitting down.
     """
     found = clauses(sentence)
     vain = {"ab".replace(c.who, "") for c in found if _IN_VAIN.search(c.words) and c.who != "ab"}

@@ -266,7 +266,7 @@ def goes(found: Sequence[Move]) -> bool:
 def moves(sentence: str) -> tuple[Move, ...]:
     """The moves of a beat's sentence, for each person in order; () where its words move nobody.
 
-    Whoever is not spoken of while the other walks stays where they are. A sentence in which one moves the other by
+    A person who is not mentioned while the other walks stays in place. A sentence in which one moves the other by
     touch, as in leading or pushing, has no moves: the network places those two better.
     """
     found = clauses(sentence)

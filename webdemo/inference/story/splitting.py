@@ -56,7 +56,7 @@ def split_sentence(text: str) -> tuple[Beat, ...]:
         part = re.sub(r"^and\s+|\s+and$", "", part, flags=re.IGNORECASE)
         if part:
             groups = _acts(reader.read(part))
-            parts += [_told(part, groups)] if len(groups) == 1 else [_worded(group) for group in groups]
+            parts += [_in_words(part, groups)] if len(groups) == 1 else [_worded(group) for group in groups]
     if len(parts) < 2:
         return (Beat(text),) if text else ()
     return tuple(Beat(part) for part in parts)
@@ -93,7 +93,7 @@ def _follows(group: Sequence[Clause], clause: Clause, after: Sequence[Clause]) -
     return bool(arrived) and way is None and any(set(done.who) & set(clause.who) for done in arrived)
 
 
-def _told(part: str, groups: Sequence[Sequence[Clause]]) -> str:
+def _in_words(part: str, groups: Sequence[Sequence[Clause]]) -> str:
     """A part as a sentence: as it is if it names both or a person; otherwise with the name of who is meant."""
     found = groups[0] if groups else []
     named = bool(found) and found[0].stated and (found[0].who == "ab" or _NAMES.match(part))

@@ -120,7 +120,7 @@ class Study(Table):
     Attributes:
         id: unguessable; names its folder.
         owner: whose it is.
-        key: unguessable; whoever knows it can vote.
+        key: unguessable; anyone who knows it can vote.
         title: the owner's name for it.
         question: that people answer for every pair.
         sets: names of what is compared, as JSON.

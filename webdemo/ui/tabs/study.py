@@ -103,7 +103,7 @@ class StudyPanel:
             )  # fmt: skip
             self.checks = gr.Slider(
                 0, MOST_CHECKS, value=2, step=1, label="Attention checks",
-                info="A motion beside its own shuffled copy. Whoever fails more than a third is left out.",
+                info="A motion beside its own shuffled copy. Voters who fail more than a third are left out.",
                 elem_id="study-checks",
             )  # fmt: skip
         with gr.Row(elem_classes="pd-pair"):
