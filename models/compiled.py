@@ -13,8 +13,8 @@ from __future__ import annotations
 
 import hashlib
 import importlib
+import io
 import logging
-import mmap
 import os
 import queue
 import shutil
@@ -31,6 +31,7 @@ import numpy as np
 import torch
 from torch import Tensor, nn
 
+from models.mapped import let_go, mapped
 from motion.cores import usable_cores
 
 log = logging.getLogger(__name__)
@@ -43,6 +44,8 @@ THREADS = min(torch.get_num_threads(), usable_cores(), 8)
 STREAMS = min(THREADS, 2)
 """Passes that run in parallel, each with a share of the threads. A single pass of several rows is split into as many
 parts: these synchronise once, at the end, while threads that share each product synchronise a hundred times."""
+FILE = "network.blob"
+"""A compiled network in its folder of the cache."""
 KEPT = 6
 """Translations in the cache folder, of 60 MB each; the least recently used are removed first."""
 
@@ -130,7 +133,7 @@ def compile_network(
     except ImportError:
         return False
     try:
-        folder = (cache or cache_folder()) / _name(network, key, openvino)
+        folder = (cache or cache_folder()) / _name(network, key, openvino, precision)
         compiled = _cached(openvino, network, folder, precision) or _translated(
             openvino, network, folder, precision
         )
@@ -147,32 +150,13 @@ class Compiled:
 
     Args:
         network: whose ``forward`` it is.
-        model: its translation: OpenVINO's model.
+        model: its translation: a model that OpenVINO has compiled.
         weights: the memory that the model's weights lie in, if they are mapped from a file.
         precision: see :func:`compile_network`.
     """
 
-    def __init__(
-        self,
-        openvino: Any,
-        network: Any,
-        model: Any,
-        weights: mmap.mmap | None = None,
-        precision: Precision = "f32",
-    ) -> None:
-        self.filled, self.weights = network.filled, weights
-        if precision == "int8":
-            _quantise(model)
-        self.model = openvino.Core().compile_model(
-            model,
-            "CPU",
-            {
-                "INFERENCE_PRECISION_HINT": "bf16" if precision == "bf16" else "f32",
-                "NUM_STREAMS": STREAMS,
-                "INFERENCE_NUM_THREADS": THREADS,
-                "ENABLE_CPU_PINNING": False,  # a thread that is bound to a busy core waits there
-            },
-        )
+    def __init__(self, network: Any, model: Any, weights: Any = None, precision: Precision = "f32") -> None:
+        self.filled, self.model, self.weights = network.filled, model, weights
         self._requests: queue.SimpleQueue[Any] = queue.SimpleQueue()
         self._lock, self._under_way = threading.Lock(), 0
         example = network.example()
@@ -181,8 +165,7 @@ class Compiled:
             off = float((self(*example) - expected).abs().max() / expected.abs().max().clamp_min(1.0))
         if not off <= TOLERANCE[precision]:  # NaN, too
             raise ArithmeticError(f"the compiled network is off by {off:.1e}")
-        if weights is not None and hasattr(weights, "madvise"):
-            weights.madvise(mmap.MADV_DONTNEED)  # OpenVINO has laid out a copy for itself
+        let_go()  # OpenVINO has laid out a copy for itself
 
     def __call__(self, *args: Any, **kwargs: Any) -> Tensor:
         """As the network's own ``forward``; without gradients."""
@@ -237,20 +220,40 @@ def _openvino() -> Any:
     return importlib.import_module("openvino")
 
 
-def _name(network: nn.Module, key: str, openvino: Any) -> str:
-    """The cache's name for a network's translation."""
-    parts = (type(network).__qualname__, key, openvino.get_version(), torch.__version__)
+def _options(precision: Precision) -> dict[str, Any]:
+    """OpenVINO's options for a network."""
+    return {
+        "INFERENCE_PRECISION_HINT": "bf16" if precision == "bf16" else "f32",
+        "NUM_STREAMS": STREAMS,
+        "INFERENCE_NUM_THREADS": THREADS,
+        "ENABLE_CPU_PINNING": False,  # a thread that is bound to a busy core waits there
+    }
+
+
+def _name(network: nn.Module, key: str, openvino: Any, precision: Precision) -> str:
+    """The cache's name for a network's translation, which is for one kind of processor."""
+    core = openvino.Core()
+    processor = [
+        str(core.get_property("CPU", name)) for name in ("FULL_DEVICE_NAME", "OPTIMIZATION_CAPABILITIES")
+    ]
+    parts = (
+        type(network).__qualname__,
+        key,
+        precision,
+        openvino.get_version(),
+        torch.__version__,
+        *processor,
+    )
     return hashlib.sha256("\n".join(parts).encode()).hexdigest()[:24]
 
 
 def _cached(openvino: Any, network: nn.Module, folder: Path, precision: Precision) -> Compiled | None:
     """Loads the network's cached translation; None if there is none, or if its outputs differ from the network's."""
     try:
-        with (folder / "network.bin").open("rb") as file:
-            weights = mmap.mmap(file.fileno(), 0, access=mmap.ACCESS_COPY)  # OpenVINO wants it writable
+        weights = mapped(folder / FILE)
         tensor = openvino.Tensor(np.frombuffer(weights, np.uint8), shared_memory=True)
-        model = openvino.Core().read_model((folder / "network.xml").read_bytes(), tensor)
-        compiled = Compiled(openvino, network, model, weights, precision=precision)
+        model = openvino.Core().import_model(tensor, "CPU", _options(precision))
+        compiled = Compiled(network, model, weights, precision=precision)
     except (OSError, ValueError, RuntimeError, ArithmeticError) as error:
         if folder.exists():
             log.warning("The cached compilation of %s cannot be used: %s", type(network).__name__, error)
@@ -262,14 +265,15 @@ def _cached(openvino: Any, network: nn.Module, folder: Path, precision: Precisio
 
 def _translated(openvino: Any, network: nn.Module, folder: Path, precision: Precision) -> Compiled:
     """The network translated, and kept where that can be."""
-    model = _translate(openvino, network)
+    translation = _translate(openvino, network)
+    if precision == "int8":
+        _quantise(translation)
+    model = openvino.Core().compile_model(translation, "CPU", _options(precision))
     try:
-        _keep(openvino, model, folder)
+        _keep(model, folder)
     except (OSError, RuntimeError):  # a folder that cannot be written, a full disk
-        return Compiled(openvino, network, model, precision=precision)
-    return _cached(openvino, network, folder, precision) or Compiled(
-        openvino, network, model, precision=precision
-    )
+        return Compiled(network, model, precision=precision)
+    return _cached(openvino, network, folder, precision) or Compiled(network, model, precision=precision)
 
 
 def _translate(openvino: Any, network: Any) -> Any:
@@ -315,16 +319,18 @@ def _quantise(model: Any) -> None:
         op.input(1).replace_source_output(scaled.output(0))
 
 
-def _keep(openvino: Any, model: Any, folder: Path) -> None:
-    """Writes a translation whole or not at all, and drops those that were not used for longest."""
+def _keep(model: Any, folder: Path) -> None:
+    """Writes a compiled model whole or not at all, and drops those that were not used for longest."""
     folder.parent.mkdir(parents=True, exist_ok=True)
     made = Path(tempfile.mkdtemp(prefix=".new-", dir=folder.parent))
     try:
-        openvino.save_model(model, made / "network.xml", compress_to_fp16=False)
+        stream = io.BytesIO()
+        model.export_model(stream)
+        (made / FILE).write_bytes(stream.getbuffer())
         shutil.rmtree(folder, ignore_errors=True)
         made.rename(folder)
     finally:
         shutil.rmtree(made, ignore_errors=True)
-    kept = sorted(folder.parent.glob("[!.]*/network.xml"), key=lambda file: file.parent.stat().st_mtime)
-    for file in kept[:-KEPT]:
-        shutil.rmtree(file.parent, ignore_errors=True)
+    kept = sorted(folder.parent.glob("[!.]*"), key=lambda kept: kept.stat().st_mtime)
+    for old in kept[:-KEPT]:
+        shutil.rmtree(old, ignore_errors=True)

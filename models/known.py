@@ -14,6 +14,8 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 from dataclasses import dataclass
+from functools import cached_property
+from typing import NamedTuple
 
 import numpy as np
 import torch
@@ -96,6 +98,20 @@ class Known:
             self.heading_mask[:, person, at] = True
 
 
+class Group(NamedTuple):
+    """Columns (B·2·70) of K control points that are known at the same frames: x becomes ``offset + move @ x``.
+
+    Attributes:
+        at: (N,) which columns.
+        offset: (N, K).
+        move: (K, K); None where all frames are known, and nothing of x is left.
+    """
+
+    at: Tensor
+    offset: Tensor
+    move: Tensor | None
+
+
 class Hold:
     """Writes the known part of motions into samples, in a network's space.
 
@@ -106,6 +122,7 @@ class Hold:
 
     Attributes:
         features: (B, tokens, 2·knots_per_token·:data:`KNOWN_FEATURES`) what a network sees of the known part.
+        groups: how the columns of control points in which something is known are moved, those of one mask together.
     """
 
     def __init__(self, known: Known, layout: TokenLayout, mean: Tensor, std: Tensor) -> None:
@@ -117,30 +134,35 @@ class Hold:
         basis = layout.basis(self.tokens)
         columns = rows.transpose(2, 3).reshape(-1, frames)
         masks = known.mask.transpose(2, 3).reshape(-1, frames)
-        stiff = _stiffness(basis.shape[1])
-        self._groups: list[tuple[Tensor, Tensor, Tensor | None]] = []
-        self._bends: list[tuple[Tensor, Tensor, Tensor | None]] = []
-        for at, mask in _alike(masks):
-            if mask.all():  # nothing is left to move
-                control = torch.stack(
-                    [layout.fit(self.tokens) @ person for person in known.rows.flatten(0, 1)]
-                )
-                fitted = ((control - mean) / std).transpose(1, 2).reshape(len(masks), -1)
-                self._groups.append((at, fitted[at], None))
-                self._bends.append(self._groups[-1])
+        self._masks, self._wanted, self._basis = _alike(masks), columns, basis
+        self._whole: Tensor | None = None
+        if any(mask.all() for _, mask in self._masks):
+            control = torch.stack([layout.fit(self.tokens) @ person for person in known.rows.flatten(0, 1)])
+            self._whole = ((control - mean) / std).transpose(1, 2).reshape(len(masks), -1)
+        self.groups: list[Group] = self._solved(torch.eye(basis.shape[1], dtype=torch.double))
+
+    def _solved(self, cost: Tensor) -> list[Group]:
+        """The moves of least cost that write what is known; columns that are known throughout are replaced."""
+        unit, found = torch.eye(len(cost), dtype=torch.double), []
+        for at, mask in self._masks:
+            if self._whole is not None and mask.all():
+                found.append(Group(at, self._whole[at], None))
                 continue
-            seen, wanted = basis[mask].double(), columns[at][:, mask].double()
-            unit = torch.eye(len(basis.T), dtype=torch.double)
-            for found, cost in ((self._groups, unit), (self._bends, stiff)):
-                gain = torch.linalg.solve(seen.T @ seen + _SOFT * cost, seen.T)
-                found.append((at, (wanted @ gain.T).float(), (unit - gain @ seen).float()))
+            seen, wanted = self._basis[mask].double(), self._wanted[at][:, mask].double()
+            gain = torch.linalg.solve(seen.T @ seen + _SOFT * cost, seen.T)
+            found.append(Group(at, (wanted @ gain.T).float(), (unit - gain @ seen).float()))
+        return found
+
+    @cached_property
+    def _bends(self) -> list[Group]:
+        return self._solved(_stiffness(self._basis.shape[1]))
 
     @property
     def frozen(self) -> Tensor:
         """(B, tokens, 2·token_features) true where a number is fixed and must not change."""
         knots = self.tokens * self.layout.knots_per_token
         whole = torch.zeros(self.batch * 2 * FEATURES, dtype=torch.bool)
-        for at, _, move in self._groups:
+        for at, _, move in self.groups:
             if move is None:
                 whole[at] = True
         whole = whole.view(self.batch, 2, 1, FEATURES).expand(-1, -1, knots, -1)
@@ -148,7 +170,7 @@ class Hold:
 
     def __call__(self, x: Tensor) -> Tensor:
         """x (B, tokens, 2·token_features) with the known part written in; any B if one motion is known."""
-        return self._write(x, self._groups)
+        return self._write(x, self.groups)
 
     def bend(self, x: Tensor) -> Tensor:
         """As :meth:`__call__`, with a move that has little curvature and dies out over about half a second.
@@ -159,7 +181,7 @@ class Hold:
         """
         return self._write(x, self._bends)
 
-    def _write(self, x: Tensor, groups: list[tuple[Tensor, Tensor, Tensor | None]]) -> Tensor:
+    def _write(self, x: Tensor, groups: list[Group]) -> Tensor:
         control = unpack(x, self.layout)  # (B, 2, K, 70)
         columns = control.transpose(2, 3).reshape(-1, self.batch * 2 * FEATURES, control.shape[2])
         held = columns.clone()

@@ -119,6 +119,18 @@ def skin(body: Body, motion: Clip | Array) -> Array:
     return surface
 
 
+def vertex_normals(vertices: Array, faces: NDArray[np.integer]) -> Array:
+    """(V, 3) unit normals of a surface with vertices (V, 3) and faces (F, 3); zeros where all faces have no area."""
+    a, b, c = (vertices[faces[:, corner]] for corner in range(3))
+    flat = np.cross(b - a, c - a)
+    total = np.empty_like(vertices)
+    for axis in range(3):
+        total[:, axis] = np.bincount(
+            faces.ravel(), weights=np.repeat(flat[:, axis], 3), minlength=len(vertices)
+        )
+    return total / np.maximum(np.linalg.norm(total, axis=1, keepdims=True), 1e-12)
+
+
 def bone_rotations(motion: Clip | Array) -> Array:
     """World rotation of each bone against SMPL22's T-pose, from joint positions only.
 

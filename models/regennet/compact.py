@@ -278,6 +278,7 @@ class CompactStream:
         self.length = 0
         self._last: Tensor | None = None
         self._recent: list[Tensor] = []
+        self._interval: tuple[Tensor, Tensor]  # the frames up to the next row, set with the first frame
 
     @torch.no_grad()
     def step(self, actor: Tensor, *, noise: Iterator[Tensor]) -> tuple[Tensor, Tensor]:
@@ -304,9 +305,10 @@ class CompactStream:
                 self._recent.append(self._denoise(seen, next(noise)))
             self._recent = self._recent[-1 - LEAD :]
             self._last = pose
+            control = torch.stack(self._recent, dim=1) * self.model.std + self.model.mean
+            self._interval = decode(control, self.model.layout)
         self.length += 1
-        control = torch.stack(self._recent, dim=1) * self.model.std + self.model.mean
-        positions, contacts = decode(control, self.model.layout)
+        positions, contacts = self._interval
         return positions[:, within], contacts[:, within]
 
     def _denoise(self, seen: Tensor, x: Tensor) -> Tensor:

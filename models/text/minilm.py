@@ -21,6 +21,7 @@ import torch.nn.functional as F
 from torch import Tensor, nn
 
 from models.errors import as_tensors, count_layers, load_strictly, shape_of
+from models.mapped import mapped_tensors
 from motion.errors import InputError
 
 TOKEN_WIDTH = 384
@@ -112,14 +113,13 @@ class MiniLM(nn.Module):
 
     def __init__(self) -> None:
         super().__init__()
-        from safetensors.torch import load_file
         from tokenizers import Tokenizer
 
         files = {name: checked(find_file(name), sha256) for name, sha256 in SHA256.items()}
         self.tokenizer = Tokenizer.from_file(str(files["tokenizer.json"]))
         self.tokenizer.enable_truncation(MAX_TOKENS)
         self.tokenizer.enable_padding()
-        weights = load_file(files["model.safetensors"])
+        weights = mapped_tensors(files["model.safetensors"])
         words = weights["embeddings.word_embeddings.weight"]
         self.words = nn.Embedding.from_pretrained(words)
         # Every token is of the first of BERT's two segments, so that segment's vector joins the positions.
@@ -137,15 +137,22 @@ class MiniLM(nn.Module):
             into.load_state_dict(_bert_layer(weights, f"encoder.layer.{i}."), assign=True)
         self.requires_grad_(False).eval()
 
+    def tokens(self, prompts: Sequence[str]) -> tuple[Tensor, Tensor]:
+        """Ids (B, L) int64 and mask (B, L) bool on the CPU; a prompt longer than 128 tokens is cut there."""
+        encodings = self.tokenizer.encode_batch(list(prompts))
+        ids = torch.tensor([e.ids for e in encodings])
+        return ids, torch.tensor([e.attention_mask for e in encodings]).bool()
+
     @torch.no_grad()
+    def encode(self, ids: Tensor, mask: Tensor) -> Tensor:
+        """Per-token features (B, L, 384) of ids and mask (B, L)."""
+        h = self.norm(self.words(ids) + self.positions[: ids.shape[1]])
+        return self.encoder(h, src_key_padding_mask=~mask)
+
     def forward(self, prompts: Sequence[str]) -> TokenFeatures:
         """Per-token features; a prompt longer than 128 tokens is cut there."""
-        encodings = self.tokenizer.encode_batch(list(prompts))
-        device = self.positions.device
-        ids = torch.tensor([e.ids for e in encodings], device=device)
-        mask = torch.tensor([e.attention_mask for e in encodings], device=device).bool()
-        h = self.norm(self.words(ids) + self.positions[: ids.shape[1]])
-        return TokenFeatures(self.encoder(h, src_key_padding_mask=~mask), mask)
+        ids, mask = (tensor.to(self.positions.device) for tensor in self.tokens(prompts))
+        return TokenFeatures(self.encode(ids, mask), mask)
 
 
 def _linear(weights: Mapping[str, Tensor], name: str) -> dict[str, Tensor]:

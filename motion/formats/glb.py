@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
-from motion.body import BODIES, Body, bone_rotations, load_body
+from motion.body import BODIES, Body, bone_rotations, load_body, vertex_normals
 from motion.clip import Clip, Duet
 from motion.colours import BODIES as COLOURS
 from motion.colours import linear
@@ -159,9 +159,8 @@ def _offsets(positions: Array, world: Array) -> Array:
 def _surface(buffer: Buffer, body: Body, role: str, colours: Mapping[str, str]) -> list[pygltflib.Primitive]:
     """The body's surface in its pose of binding: a primitive and a material for skin, top, shoes and so on."""
     import pygltflib as gl
-    import trimesh
 
-    normals = trimesh.Trimesh(body.vertices, body.faces, process=False).vertex_normals.copy()
+    normals = vertex_normals(body.vertices, body.faces)
     normals[np.linalg.norm(normals, axis=1) < 0.5] = (0.0, 1.0, 0.0)  # of a vertex whose faces have no area
     weights = body.weights / body.weights.sum(axis=1, keepdims=True)
     attributes = gl.Attributes(

@@ -102,8 +102,9 @@ def test_a_cache_that_is_of_no_use_is_made_anew(damage: str, tmp_path: Path) -> 
     assert compile_network(before, "weights", tmp_path)
     (folder,) = tmp_path.iterdir()
     if damage != "other weights":
-        weights = (folder / "network.bin").read_bytes()
-        (folder / "network.bin").write_bytes(weights[:100] if damage == "cut" else b"")
+        file = folder / compiled.FILE
+        whole = file.read_bytes()
+        file.write_bytes(whole[: len(whole) // 2] if damage == "cut" else b"")
     made, plain = network(), network()
     assert compile_network(made, "weights", tmp_path)
     given = inputs(plain, 2, 9)

@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 import torch
+from scipy.interpolate import BSpline
 
 from models.motion_tokens import (
     FEATURES,
@@ -106,3 +107,13 @@ def test_canonical_control_points_are_those_of_the_canonical_motion(angle: float
     expected = torch.from_numpy(canonicalize(positions.numpy(), person=0)).float()
     assert torch.linalg.vector_norm(found - expected, dim=-1).max() < 0.01
     torch.testing.assert_close(contacts, torch.ones_like(contacts), atol=1e-3, rtol=0)
+
+
+def test_the_basis_is_that_of_scipy() -> None:
+    for tokens, every in ((3, 4), (12, 4), (7, 5)):
+        layout = TokenLayout(frames_per_knot=every)
+        intervals = tokens * layout.knots_per_token - 3
+        knots = np.arange(-3, intervals + 4, dtype=float)
+        times = np.arange(layout.num_frames(tokens)) / every
+        expected = BSpline.design_matrix(times, knots, 3).toarray()
+        np.testing.assert_allclose(layout.basis(tokens).numpy(), expected, atol=1e-7)

@@ -4,9 +4,10 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+import trimesh
 from scipy.spatial.transform import Rotation
 
-from motion.body import BODIES, FOLDER, bone_rotations, load_body, skin
+from motion.body import BODIES, FOLDER, bone_rotations, load_body, skin, vertex_normals
 from motion.clip import Clip
 from motion.errors import InputError
 from motion.kinematics import forward_kinematics, global_rotations
@@ -119,3 +120,10 @@ def test_other_joints_and_other_names_are_refused():
         skin(load_body("a"), clip)
     with pytest.raises(InputError, match="no body"):
         load_body("c")
+
+
+def test_normals_of_a_sphere_point_outwards() -> None:
+    ball = trimesh.creation.icosphere(3)
+    normals = vertex_normals(np.array(ball.vertices), np.array(ball.faces))
+    np.testing.assert_allclose(np.linalg.norm(normals, axis=1), 1)
+    assert np.einsum("vi,vi->v", normals, ball.vertices).min() > 0.99

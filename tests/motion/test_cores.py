@@ -13,7 +13,7 @@ from motion.cores import usable_cores
 
 
 @pytest.mark.parametrize(
-    ("told", "cores"),
+    ("quota", "cores"),
     [
         ("max 100000", 8),
         ("150000 100000", 2),
@@ -25,11 +25,11 @@ from motion.cores import usable_cores
     ],
 )
 def test_a_quota_is_rounded_up(
-    told: str | None, cores: int, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+    quota: str | None, cores: int, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(os, "sched_getaffinity", lambda _: set(range(8)), raising=False)
-    if told is not None:
-        (tmp_path / "cpu.max").write_text(told)
+    if quota is not None:
+        (tmp_path / "cpu.max").write_text(quota)
     assert usable_cores(tmp_path / "cpu.max") == cores
 
 

@@ -117,8 +117,8 @@ def test_flipped_and_missing_joints_are_outvoted() -> None:
     assert np.linalg.norm(fit.positions - truth, axis=-1).max() < 0.08
     weights = np.ones((60, 22, 1))
     weights[20:23, wrist] = 0
-    told = fit_skeleton(spoilt, SMPL22.joint_names, weights=weights)
-    assert np.linalg.norm(told.positions - truth, axis=-1)[:, wrist].max() < 0.03
+    weighted = fit_skeleton(spoilt, SMPL22.joint_names, weights=weights)
+    assert np.linalg.norm(weighted.positions - truth, axis=-1)[:, wrist].max() < 0.03
 
 
 def test_a_knee_that_bends_backwards_is_straightened() -> None:

@@ -1,4 +1,4 @@
-"""Frozen MiniLM features of every caption, computed once and kept beside the prepared scenes."""
+"""Frozen MiniLM features of captions: computed once and kept beside the prepared scenes, or in each step on a GPU."""
 
 from __future__ import annotations
 
@@ -7,6 +7,7 @@ from collections.abc import Sequence
 from pathlib import Path
 
 import torch
+import torch.nn.functional as F
 from safetensors import SafetensorError
 from safetensors.torch import load_file, save_file
 from torch import Tensor
@@ -47,6 +48,35 @@ class CaptionFeatures:
         mask = place < lengths[:, None]
         where = (self.starts[rows][:, None] + place).clamp_max(len(self.features) - 1)
         return self.features[where].float() * mask[..., None], mask
+
+    def features_of(self, text: Tensor, mask: Tensor) -> Tensor:
+        """The features of a batch, which are what :meth:`batch` gave."""
+        return text
+
+
+class CaptionTokens:
+    """Captions as MiniLM's token ids, whose features are computed in each step.
+
+    A GPU does so in a few milliseconds, and features of a million captions need not be kept.
+
+    Args:
+        device: where the encoder runs.
+    """
+
+    def __init__(self, device: str) -> None:
+        self.device, self.encoder = device, MiniLM().to(device)
+
+    def batch(self, captions: Sequence[str]) -> tuple[Tensor, Tensor]:
+        """(B, L) ids and (B, L) mask, true where a token is real, on the CPU."""
+        ids, mask = self.encoder.tokens(captions)
+        spare = -ids.shape[1] % 8
+        return F.pad(ids, (0, spare)), F.pad(mask, (0, spare))
+
+    @torch.no_grad()
+    def features_of(self, text: Tensor, mask: Tensor) -> Tensor:
+        """(B, L, 384) float32 features of ids and mask (B, L)."""
+        with mixed_precision(self.device):
+            return self.encoder.encode(text, mask).float() * mask[..., None]
 
 
 @torch.no_grad()

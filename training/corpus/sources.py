@@ -1,8 +1,8 @@
 """The single-person recordings that the corpus is made of, on one skeleton, read once and cached.
 
 The data folder holds ``bandai-namco/`` (Bandai Namco Research Motion datasets 1 and 2, CC BY-NC 4.0) and
-``reactidle/`` (ReActIdle, MIT), each unpacked or as a ``.tar.xz``; archives are read in place. The unpacked
-sets of :mod:`training.corpus.vocabulary` widen what a body can do, where they are there.
+``reactidle/`` (ReActIdle, MIT), each unpacked or as a ``.tar.xz``; archives are read in place. The sets of
+:mod:`training.corpus.vocabulary` widen what a body can do, where they are there.
 """
 
 from __future__ import annotations
@@ -36,7 +36,7 @@ FPS = 30.0
 MAX_FRAMES = 600
 TEST_SHARE = 0.08
 MIN_CLIPS_FOR_TEST = 6
-_CACHE_VERSION = 7  # raise when the reader or the retargeting changes its results
+_CACHE_VERSION = 8  # raise when the reader or the retargeting changes its results
 
 _FOLDERS = ("bandai-namco", "reactidle")
 _ACTIONS = {"byebye": "bye", "dance-short": "dance"}
@@ -77,6 +77,8 @@ def load_sources(data_dir: str | Path, *, cache_dir: str | Path | None = None) -
         except (zipfile.BadZipFile, EOFError, OSError, ValueError, KeyError):
             logger.warning("The cache %s is damaged; the recordings are read again.", cache)
     clips = _read_all(root, found)
+    if not clips:
+        raise InputError(f"No recording in {root} can be read: unpack its archives again.")
     _save_cache(cache, clips)
     return clips
 

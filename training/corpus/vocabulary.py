@@ -6,9 +6,13 @@ and slowed to what a body does (:func:`humanly`). The other sets are recordings.
 
 from __future__ import annotations
 
+import lzma
+import tarfile
 from collections.abc import Iterator
+from contextlib import contextmanager
 from dataclasses import dataclass, replace
 from pathlib import Path
+from tempfile import TemporaryDirectory
 
 import numpy as np
 from numpy.typing import NDArray
@@ -164,29 +168,51 @@ def read_vocabulary(
 
 
 def files(root: Path) -> list[Path]:
-    """The files below a data folder that :func:`read_vocabulary` reads."""
-    suffixes = {"mesh2motion": "*-animations.glb", "deepmimic": "*.txt"}
+    """The files below a data folder that :func:`read_vocabulary` reads; of a set that is still packed, its archives."""
     return [
-        path for dataset in CUTS for path in sorted((root / dataset).rglob(suffixes.get(dataset, "*.bvh")))
+        path
+        for dataset in CUTS
+        for path in _clip_files(root / dataset, dataset) or sorted((root / dataset).glob("*.tar.xz"))
     ]
+
+
+def _clip_files(folder: Path, dataset: str) -> list[Path]:
+    suffixes = {"mesh2motion": "*-animations.glb", "deepmimic": "*.txt"}
+    return sorted(folder.rglob(suffixes.get(dataset, "*.bvh")))
 
 
 def _clips(folder: Path, dataset: str, wanted: set[str]) -> dict[str, RigMotion]:
     """The rigs of a data set's files by clip; a file that cannot be read is as good as missing."""
     found: dict[str, RigMotion] = {}
-    for path in files(folder.parent):
-        if path.parent != folder and folder not in path.parents:
-            continue
-        try:
-            if dataset == "mesh2motion":
-                found |= {name: rig for name, rig in read_animations(path).items() if name in wanted}
-            elif path.stem in wanted and dataset == "deepmimic":
-                found[path.stem] = read_deepmimic(path.read_bytes(), name=path.name)
-            elif path.stem in wanted:
-                found[path.stem] = _without_first(read_bvh(path))
-        except InputError:
-            continue
+    with unpacked(folder, dataset) as place:
+        for path in _clip_files(place, dataset):
+            try:
+                if dataset == "mesh2motion":
+                    found |= {name: rig for name, rig in read_animations(path).items() if name in wanted}
+                elif path.stem in wanted and dataset == "deepmimic":
+                    found[path.stem] = read_deepmimic(path.read_bytes(), name=path.name)
+                elif path.stem in wanted:
+                    found[path.stem] = _without_first(read_bvh(path))
+            except InputError:
+                continue
     return found
+
+
+@contextmanager
+def unpacked(folder: Path, dataset: str) -> Iterator[Path]:
+    """The folder of a data set, or one with the files of its ``.tar.xz`` archives for as long as they are read."""
+    archives = [] if _clip_files(folder, dataset) else sorted(folder.glob("*.tar.xz"))
+    if not archives:
+        yield folder
+        return
+    with TemporaryDirectory() as place:
+        for archive in archives:
+            try:
+                with tarfile.open(archive, "r:xz") as packed:
+                    packed.extractall(place, filter="data")
+            except (tarfile.TarError, lzma.LZMAError, EOFError, OSError):
+                continue
+        yield Path(place)
 
 
 def _without_first(rig: RigMotion) -> RigMotion:

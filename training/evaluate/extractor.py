@@ -128,7 +128,7 @@ def fit(scenes: Scenes, settings: Settings, cache: Path, *, device: str = "cpu")
     )
     began, shown = time.monotonic(), 0.0
     for step in range(settings.steps):
-        batch = data.batch(step)
+        batch = data.on_device(data.batch(step))
         with mixed_precision(device):
             motion = model.motion(batch.x0, batch.mask[..., 0].bool())
             text = model.text(TokenFeatures(batch.text, batch.text_mask))

@@ -28,6 +28,7 @@ from training.corpus.pairs import load_pairs
 from training.evaluate.deep_gru import accuracy, deep_features, diversity_score, fit, frechet_distance
 from training.evaluate.judge.reactions import METHODS, installed, react
 from webdemo.inference import Engine
+from webdemo.inference.methods import WEIGHTS
 
 Array = NDArray[np.floating]
 
@@ -191,6 +192,7 @@ def main(argv: list[str] | None = None) -> int:
     parser.add_argument("--table", type=Path, help="Markdown file for the tables, which are printed too")
     parser.add_argument("--datasets", nargs="+", choices=list(DATASETS), default=list(DATASETS))
     parser.add_argument("--methods", nargs="*", choices=list(METHODS), default=installed())
+    parser.add_argument("--weights", type=Path, default=WEIGHTS, help="folder that holds a folder a model")
     parser.add_argument("--seeds", type=int, default=3, help="classifiers, each with a seed of its own")
     parser.add_argument("--samples", type=int, default=3, help="reactions to every actor")
     options = parser.parse_args(argv)
@@ -198,7 +200,7 @@ def main(argv: list[str] | None = None) -> int:
 
 
 def _run(options: argparse.Namespace) -> None:
-    engine, scores = Engine(), {}
+    engine, scores = Engine(options.weights), {}
     for dataset in options.datasets:
         train, test, classes = recorded(options.data, options.cache, dataset)
         made = {"Zero velocity": [[zero_velocity(reaction, 0) for reaction in test]]}

@@ -27,6 +27,7 @@ from models.intergen.losses import InterGenLoss, LossWeights, simple_loss
 from models.motion_tokens import FEATURES
 from models.weights_io import save_network
 from motion import InputError
+from training.core.ahead import moved
 from training.core.loop import Loop, adamw
 from training.core.precision import mixed_precision
 from training.core.shell import add_run_options, chosen, exit_code
@@ -223,7 +224,7 @@ class Trainer(Loop):
 
     def train_step(self) -> dict[str, float]:
         """One optimiser step; returns the loss terms."""
-        s, batch = self.settings, self.data.batch(self.step)
+        s, batch = self.settings, moved(self.data.batch(self.step), self.device)
         generator = intergen_data.seeded(s.seed, 3, self.step)
         size = len(batch.x0)
         t = draw_timesteps(size, self.schedule.timesteps, s.noisiest, generator).to(self.device)

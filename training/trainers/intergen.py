@@ -12,9 +12,10 @@ from __future__ import annotations
 
 import argparse
 import time
-from collections.abc import Callable
-from dataclasses import asdict
+from collections.abc import Callable, Iterator
+from dataclasses import asdict, dataclass, replace
 from pathlib import Path
+from typing import Any
 
 import torch
 from torch import Tensor
@@ -25,12 +26,14 @@ from models.intergen.losses import InterGenLoss, simple_loss
 from models.known import Hold, Known
 from models.motion_tokens import FEATURES
 from training.core import checkpoint
+from training.core.ahead import drawn_ahead, moved
 from training.core.loop import Loop, adamw
 from training.core.precision import mixed_precision
 from training.core.samples import write_sheet
 from training.core.shell import add_run_options, chosen, exit_code
 from training.prepare import Scenes, load
 from training.trainers.given import known_parts
+from training.trainers.held import Held
 from training.trainers.intergen_data import Batch, Data, Settings, seeded
 
 
@@ -77,6 +80,15 @@ def condition(model: CompactInterGen, batch: Batch) -> tuple[Tensor, Tensor]:
     return text.view(size, 3, *rows.shape[1:]) * batch.read[:, :, None, None], rows[:size, 0]
 
 
+@dataclass
+class Drawn:
+    """All that a step draws besides noise and dropout: a batch, timesteps (B,), and what is given."""
+
+    batch: Batch
+    t: Tensor
+    hold: Hold | Held | None
+
+
 class Trainer(Loop):
     """One training run, which resumes from its checkpoint.
 
@@ -85,6 +97,7 @@ class Trainer(Loop):
             or a folder that was shipped.
         cache: where features of captions are kept, ``out`` by default; runs on the same scenes can share it.
         build: makes the untrained network.
+        workers: processes that draw batches ahead; 0 draws each when it is needed.
     """
 
     def __init__(
@@ -97,8 +110,9 @@ class Trainer(Loop):
         device: str = "cpu",
         cache: Path | None = None,
         build: Callable[[Settings, Data], CompactInterGen] = new_model,
+        workers: int = 0,
     ) -> None:
-        self.set_up(scenes, settings, out, device, cache)
+        self.set_up(scenes, settings, out, device, cache, workers)
         self.model = build(settings, self.data).to(device)
         if init is not None:
             if init.is_dir():
@@ -112,9 +126,19 @@ class Trainer(Loop):
         self.restore(asdict(settings))
         self.data.mean, self.data.std = self.model.mean.cpu(), self.model.std.cpu()
 
-    def set_up(self, scenes: Scenes, settings: Settings, out: Path, device: str, cache: Path | None) -> None:
+    def set_up(
+        self,
+        scenes: Scenes,
+        settings: Settings,
+        out: Path,
+        device: str,
+        cache: Path | None,
+        workers: int,
+    ) -> None:
         """Prepares data, noise schedule and losses."""
         self.scenes, self.settings, self.out, self.device = scenes, settings, out, device
+        self.workers = workers
+        self._ahead: Iterator[Any] | None = None
         out.mkdir(parents=True, exist_ok=True)
         torch.manual_seed(settings.seed)
         self.data = Data(scenes, settings, cache or out, device)
@@ -133,15 +157,36 @@ class Trainer(Loop):
 
     def known(self, batch: Batch, generator: torch.Generator) -> Known | None:
         """The given parts of each motion, drawn by the settings' shares."""
-        control, frames = self.model.control(batch.x0).cpu(), batch.frame_mask.sum(1).int().tolist()
+        control = self.data.control(batch.x0)
+        frames = batch.frame_mask.sum(1).int().tolist()
         return known_parts(
             control, frames, batch.past.tolist(), self.scenes.layout, self.settings.given, generator
         )
 
-    def terms(self, batch: Batch, t: Tensor, noise: Tensor, known: Known | None) -> dict[str, Tensor]:
+    def hold(self, known: Known | None) -> Hold | Held | None:
+        """The given parts, to be written into motions, in the form that suits the device."""
+        if known is None:
+            return None
+        hold = Hold(known, self.scenes.layout, self.data.mean, self.data.std)
+        return hold if self.device == "cpu" else Held.of(hold)
+
+    def draw(self, step: int) -> Drawn:
+        """All that a step draws, on the CPU; the same for the same seed and step."""
+        batch, generator = self.data.batch(step), seeded(self.settings.seed, 3, step)
+        t = draw_timesteps(len(batch.x0), self.schedule.timesteps, self.settings.noisiest, generator)
+        return Drawn(batch, t, self.hold(self.known(batch, generator)))
+
+    def next_draw(self) -> Any:
+        """The draw of this step, on the device."""
+        if self.workers and self._ahead is None:
+            steps = range(self.step, self.settings.steps)
+            self._ahead = drawn_ahead(self.draw, steps, self.workers, self.device)
+        drawn = moved(self.draw(self.step), self.device) if self._ahead is None else next(self._ahead)
+        return replace(drawn, batch=self.data.on_device(drawn.batch))
+
+    def terms(self, batch: Batch, t: Tensor, noise: Tensor, hold: Hold | Held | None) -> dict[str, Tensor]:
         """Every loss term of one batch, weighted."""
         xt = self.schedule.q_sample(batch.x0, t, noise)
-        hold = None if known is None else Hold(known, self.scenes.layout, self.data.mean, self.data.std)
         if hold is not None:
             xt = hold(xt)
         seen = {} if hold is None or not self.settings.words else {"known": hold.features.to(xt)}
@@ -163,19 +208,26 @@ class Trainer(Loop):
 
     def train_step(self) -> dict[str, float]:
         """One optimiser step; returns the loss terms."""
-        batch = self.data.batch(self.step)
-        generator = seeded(self.settings.seed, 3, self.step)
-        size = len(batch.x0)
-        t = draw_timesteps(size, self.schedule.timesteps, self.settings.noisiest, generator).to(self.device)
-        noise = torch.randn(batch.x0.shape, generator=generator).to(self.device)
-        known = self.known(batch, generator)
+        drawn = self.next_draw()
         torch.manual_seed(seeded(self.settings.seed, 4, self.step).initial_seed())  # dropout
         self.model.train()
-        terms = self.terms(batch, t, noise, known)
-        total = torch.stack(list(terms.values())).sum()
-        self.optimizer_step(total, self.optimizer, self.model.parameters())
-        self.ema_update(self.ema.parameters(), self.model.parameters())
-        return {name: value.item() for name, value in terms.items()} | {"total": total.item()}
+        noise = self.noise(drawn.batch.x0)
+        return self.step_on(self.terms(drawn.batch, drawn.t, noise, drawn.hold), self.model)
+
+    def noise(self, x0: Tensor) -> Tensor:
+        """Gaussian noise like x0, drawn on the device."""
+        seed = seeded(self.settings.seed, 5, self.step).initial_seed()
+        generator = torch.Generator(self.device).manual_seed(seed)
+        return torch.randn(x0.shape, generator=generator, device=self.device)
+
+    def step_on(self, terms: dict[str, Tensor], trained: torch.nn.Module) -> dict[str, float]:
+        """Takes a step that lowers the sum of these terms; returns them and the sum."""
+        values = torch.stack(list(terms.values()))
+        total = values.sum()
+        self.optimizer_step(total, self.optimizer, trained.parameters())
+        self.ema_update(self.ema.parameters(), trained.parameters())
+        numbers = torch.cat([values, total[None]]).tolist()  # the GPU is waited for once
+        return dict(zip([*terms, "total"], numbers, strict=True))
 
 
 def main(argv: list[str] | None = None) -> int:
@@ -190,6 +242,7 @@ def main(argv: list[str] | None = None) -> int:
     )
     parser.add_argument("--threads", type=int, help="of torch on the CPU (as many as there are cores)")
     parser.add_argument("--device", default="cuda" if torch.cuda.is_available() else "cpu")
+    parser.add_argument("--workers", type=int, default=0, help="processes that draw batches ahead (0)")
     parser.add_argument("--compile", action="store_true", help="compile the network (needs a C++ compiler)")
     add_run_options(parser, Settings, leave_out=("weights", "given"))
     options = parser.parse_args(argv)
@@ -200,7 +253,14 @@ def main(argv: list[str] | None = None) -> int:
 
 def _run(options: argparse.Namespace) -> None:
     settings = chosen(options, Settings)
-    trainer = Trainer(load(options.scenes), settings, options.out, init=options.init, device=options.device)
+    trainer = Trainer(
+        load(options.scenes),
+        settings,
+        options.out,
+        init=options.init,
+        device=options.device,
+        workers=options.workers,
+    )
     if options.compile:
         trainer.model.denoiser.compile(dynamic=True)
     drawn = time.monotonic()

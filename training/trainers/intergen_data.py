@@ -6,7 +6,7 @@ import json
 from bisect import bisect
 from collections import Counter
 from collections.abc import Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from itertools import accumulate
 from pathlib import Path
 from typing import Any
@@ -16,11 +16,12 @@ import torch
 from torch import Tensor
 
 from models.intergen.losses import LossWeights
-from models.motion_tokens import canonical_control, mirror_control, pack
+from models.motion_tokens import canonical_control, mirror_control, pack, unpack
 from motion import SMPL22, InputError
 from training.core import checkpoint
+from training.core.ahead import moved
 from training.core.handedness import mirrored
-from training.core.text_features import CaptionFeatures
+from training.core.text_features import CaptionFeatures, CaptionTokens
 from training.corpus.grammar import mirror_caption
 from training.prepare import Scenes, normalizer, sentence_lists
 from training.trainers.given import Shares
@@ -119,7 +120,8 @@ class Batch:
         x0: (B, tokens, 2·F) normalised motion.
         mask: (B, tokens, 2), 1 where a token is real.
         frame_mask: (B, T), 1 where a frame is real.
-        text: (N, L, 384) features of N sentences, those for both people of all B first.
+        text: (N, L, 384) features of N sentences, those for both people of all B first; until
+            :meth:`Data.on_device`, (N, L) ids where the encoder runs in each step.
         text_mask: (N, L) bool.
         places: (N,) 3 times a sentence's row, plus 0 for both people, 1 for a, 2 for b.
         read: (B, 3), 1 where a sentence is read; those for both people are there even if they are not.
@@ -152,8 +154,12 @@ def acts_of(row: dict[str, Any]) -> set[str]:
     return {act for beat in row.get("beats") or () for act in beat["acts"]} - {"stand"}
 
 
+REPEATS = 5
+"""How often a rare scene is drawn where a common one is drawn once."""
+
+
 def balanced(rows: list[dict[str, Any]]) -> list[dict[str, Any]]:
-    """The rows, those of rare families and of rare acts in scenes of beats up to three times.
+    """The rows, those of rare families and of rare acts in scenes of beats up to :data:`REPEATS` times.
 
     A family is rare beside those that are commoner than three in four, so that long scenes do not make it rare. An act
     is rare beside the commonest tenth: scenes of beats hold many acts, most of them ways of coming and going.
@@ -165,13 +171,21 @@ def balanced(rows: list[dict[str, Any]]) -> list[dict[str, Any]]:
 
     def repeats(row: dict[str, Any]) -> int:
         rarest = min((acts[act] for act in acts_of(row)), default=0)
-        return min(max(round(usual_act / rarest if rarest else usual / families[row["family"]]), 1), 3)
+        return min(max(round(usual_act / rarest if rarest else usual / families[row["family"]]), 1), REPEATS)
 
     return [row for row in rows for _ in range(repeats(row))]
 
 
 class Data:
-    """Draws batches of similar lengths; batch ``step`` is the same in every run of the same seed."""
+    """Draws batches of similar lengths, on the CPU; batch ``step`` is the same in every run of the same seed.
+
+    Args:
+        cache: where the features of sentences are kept.
+        device: where the text encoder runs: on a CPU once for all sentences, on a GPU in each step.
+        captions: whether the batches have words.
+    """
+
+    captions: CaptionFeatures | CaptionTokens
 
     def __init__(
         self, scenes: Scenes, settings: Settings, cache: Path, device: str, *, captions: bool = True
@@ -185,7 +199,8 @@ class Data:
             if settings.words and settings.continued:
                 known |= {c for row in self.rows for beat in later_beats(row) for c in beat["captions"]}
             known |= {mirror_caption(c) for c in known}
-            self.captions = CaptionFeatures(sorted(known), cache, device=device)
+            on_cpu = torch.device(device).type == "cpu"
+            self.captions = CaptionFeatures(sorted(known), cache) if on_cpu else CaptionTokens(device)
         self.mean, self.std = normalizer(scenes, SMPL22.mirror)
         self.tokens = torch.tensor([row["tokens"] for row in self.rows])
         self.reader = CaptionReader(scenes.rows, settings.cond_dim)
@@ -248,6 +263,10 @@ class Data:
         """The text encoder's output for captions: features (B, …) and their mask."""
         return self.captions.batch(captions)
 
+    def control(self, x0: Tensor) -> Tensor:
+        """Normalised motion (B, tokens, 2·F) → control points (B, 2, K, 70) in metres."""
+        return unpack(x0, self.scenes.layout) * self.std + self.mean
+
     def batch(self, step: int) -> Batch:
         """The batch of a step; the same for the same seed and step."""
         settings, layout = self.settings, self.scenes.layout
@@ -287,4 +306,9 @@ class Data:
         x0 = pack((control - self.mean) / self.std, layout)
         where = torch.tensor([*range(0, 3 * len(rows), 3), *places])
         tensors = (x0, mask, frame_mask, text, text_mask, where, read, past, torch.stack(labels))
-        return Batch(*(tensor.to(self.device) for tensor in tensors))
+        return Batch(*tensors)
+
+    def on_device(self, batch: Batch) -> Batch:
+        """A batch on the device, with the features of its sentences."""
+        batch = moved(batch, self.device)
+        return replace(batch, text=self.captions.features_of(batch.text, batch.text_mask))

@@ -25,6 +25,7 @@ from training.core import checkpoint
 from training.core.precision import mixed_precision
 from training.core.shell import add_run_options, chosen, exit_code
 from training.prepare import Scenes, load
+from training.trainers.held import Held
 from training.trainers.intergen import Trainer, condition, new_model
 from training.trainers.intergen_data import Batch, seeded, settings_of
 
@@ -58,6 +59,16 @@ class FastSettings:
             )
 
 
+@dataclass
+class FastDrawn:
+    """All that a step draws besides noise: a batch, which passes (B,), scales (B,), and what is given."""
+
+    batch: Batch
+    place: Tensor
+    scale: Tensor
+    hold: Hold | Held | None
+
+
 class FastTrainer(Trainer):
     """One run, which resumes from its checkpoint in ``out``.
 
@@ -74,12 +85,15 @@ class FastTrainer(Trainer):
         *,
         device: str = "cpu",
         cache: Path | None = None,
+        workers: int = 0,
     ) -> None:
         taken = ("batch", "steps", "learning_rate", "warmup", "ema", "seed")
         known = settings_of(trained)
         if not known.words:
             raise InputError(f"{trained} holds a network that reads no words: train one with --words.")
-        self.set_up(scenes, replace(known, **{k: getattr(settings, k) for k in taken}), out, device, cache)
+        self.set_up(
+            scenes, replace(known, **{k: getattr(settings, k) for k in taken}), out, device, cache, workers
+        )
         self.fast = settings
         self.model = new_model(self.settings, self.data).to(device)
         checkpoint.restore_part(trained, "ema", self.model)
@@ -88,7 +102,7 @@ class FastTrainer(Trainer):
         denoiser = self.model.denoiser
         assert isinstance(denoiser, WordDenoiser)
         self.student = WordDenoiser(denoiser.config, denoiser.known_embed.in_features, guidance_input=True)
-        self.student.eval()  # without dropout, as the trained network
+        self.student.to(device).eval()  # without dropout, as the trained network
         self.change, self.ema = (FastChange(denoiser, settings.rank).to(device) for _ in range(2))
         self.ema.load_state_dict(self.change.state_dict())
         self.ema.requires_grad_(False)
@@ -112,7 +126,7 @@ class FastTrainer(Trainer):
 
     @torch.no_grad()
     def target(
-        self, x: Tensor, place: Tensor, cond: Tensor, scale: Tensor, mask: Tensor, hold: Hold | None
+        self, x: Tensor, place: Tensor, cond: Tensor, scale: Tensor, mask: Tensor, hold: Hold | Held | None
     ) -> Tensor:
         """The clean motion that one DDIM step must aim at to arrive where the trained network does.
 
@@ -143,26 +157,22 @@ class FastTrainer(Trainer):
         ratio = last_noise / noise
         return (x - ratio * first) / (last_signal - ratio * signal)
 
+    def draw(self, step: int) -> FastDrawn:  # type: ignore[override]  # its own steps alone take it
+        """All that a step draws, on the CPU; the same for the same seed and step."""
+        batch, generator = self.data.batch(step), seeded(self.settings.seed, 3, step)
+        size, low = len(batch.x0), self.fast.lowest
+        place = torch.randint(PASSES, (size,), generator=generator)
+        scale = torch.rand(size, generator=generator) * (self.fast.highest - low) + low
+        return FastDrawn(batch, place, scale, self.hold(self.known(batch, generator)))
+
     def train_step(self) -> dict[str, float]:
-        """Takes one optimizer step; returns each loss by name."""
-        batch = self.data.batch(self.step)
-        generator = seeded(self.settings.seed, 3, self.step)
-        size = len(batch.x0)
-        place = torch.randint(PASSES, (size,), generator=generator).to(self.device)
-        scale = (
-            torch.rand(size, generator=generator) * (self.fast.highest - self.fast.lowest) + self.fast.lowest
-        )
-        noise = torch.randn(batch.x0.shape, generator=generator).to(self.device)
-        known = self.known(batch, generator)
-        hold = None if known is None else Hold(known, self.scenes.layout, self.data.mean, self.data.std)
-        terms = self.distilled(batch, place, scale.to(self.device), noise, hold)
-        total = torch.stack(list(terms.values())).sum()
-        self.optimizer_step(total, self.optimizer, self.change.parameters())
-        self.ema_update(self.ema.parameters(), self.change.parameters())
-        return {name: value.item() for name, value in terms.items()} | {"total": total.item()}
+        """Takes one optimiser step; returns each loss by name."""
+        drawn = self.next_draw()
+        terms = self.distilled(drawn.batch, drawn.place, drawn.scale, self.noise(drawn.batch.x0), drawn.hold)
+        return self.step_on(terms, self.change)
 
     def distilled(
-        self, batch: Batch, place: Tensor, scale: Tensor, noise: Tensor, hold: Hold | None
+        self, batch: Batch, place: Tensor, scale: Tensor, noise: Tensor, hold: Hold | Held | None
     ) -> dict[str, Tensor]:
         """Every loss term of one batch: the passes ``place`` (B,) against :meth:`target`, at scales (B,)."""
         t = self.timesteps[place * self.fast.substeps]
@@ -184,6 +194,7 @@ def main(argv: list[str] | None = None) -> int:
     parser = argparse.ArgumentParser(description="Make a trained InterGen fast.")
     parser.add_argument("--run", type=Path, required=True, help="--out of the training of the network")
     parser.add_argument("--scenes", type=Path, required=True, help="file of `python -m training.prepare`")
+    parser.add_argument("--workers", type=int, default=0, help="processes that draw batches ahead (0)")
     parser.add_argument("--threads", type=int, help="of torch on the CPU (as many as there are cores)")
     parser.add_argument("--device", default="cuda" if torch.cuda.is_available() else "cpu")
     add_run_options(parser, FastSettings)
@@ -199,6 +210,7 @@ def main(argv: list[str] | None = None) -> int:
             options.out,
             device=options.device,
             cache=options.run,
+            workers=options.workers,
         )
         trainer.run_logged(minutes=options.minutes)
 

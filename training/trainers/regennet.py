@@ -5,12 +5,16 @@ timestep and words; x0 prediction and the interaction loss of eq. 3–4. One net
 batches are masked causally (online), the others see all of the actor (offline), see
 :mod:`models.regennet.compact`. The words' conditioner is that of a shipped InterGen and stays as it is.
 
+Online, a share of the scenes is learned after the network's own past instead of the recorded one, from some step on:
+see :mod:`training.trainers.regennet_past`.
+
 Everything random is drawn from the seed and the step number, so a run that stops goes on as if it had not.
 """
 
 from __future__ import annotations
 
 import argparse
+from contextlib import nullcontext
 from dataclasses import asdict, dataclass
 from pathlib import Path
 
@@ -21,7 +25,7 @@ from torch.nn.attention import SDPBackend, sdpa_kernel
 from models.diffusion import NoiseSchedule
 from models.errors import load_strictly
 from models.intergen.compact import load_folder as load_intergen
-from models.intergen.losses import bone_lengths, facing
+from models.intergen.losses import bone_lengths, facing, joint_distances
 from models.motion_tokens import FEATURES, NUM_CONTACTS
 from models.regennet.compact import CompactReGenNet, CompactReGenNetConfig, load_folder
 from models.weights_io import save_network
@@ -34,6 +38,7 @@ from training.prepare import Scenes, load
 from training.trainers.intergen import draw_timesteps
 from training.trainers.intergen_data import seeded
 from training.trainers.regennet_data import Batch, Conditions, Data, knot_positions, seen_rows
+from training.trainers.regennet_past import Past, make_past, plan
 from training.trainers.touch import with_touches
 
 SUMMARY = (
@@ -41,6 +46,8 @@ SUMMARY = (
     "online or offline. Research and non-commercial use only."
 )
 """Summary of the weights on the page."""
+APART = 0.45
+"""Metres between the pelvises of two people who hug; the loss on walking through one another counts below it."""
 NEAR = 1.0
 """Metres: the loss on distances counts joints of the two people that are nearer than this."""
 
@@ -56,6 +63,10 @@ class Settings:
     crop: share of scenes that begin at a random frame of their first half; their first pose is always given.
     noisiest: share of samples from the noisiest tenth of the timesteps, see training.trainers.intergen.
     recorded: weight of a recorded pair: there are minutes of recorded and hours of composed motion.
+    own: share of the online scenes whose past the network made itself, from ``own_after`` steps on, growing over
+        ``own_growth`` steps.
+    rollout: denoising steps of that past at most; sampler: those of the sampler that is imitated.
+    apart: weight of the loss on pelvises that come nearer to each other than the recorded ones.
     """
 
     latent_dim: int = 192
@@ -82,13 +93,22 @@ class Settings:
     foot_contact: float = 30.0
     interaction: float = 1.0
     distance: float = 5.0
+    apart: float = 10.0
+    own: float = 0.5
+    own_after: int = 2000
+    own_growth: int = 1000
+    rollout: int = 4
+    sampler: int = 5
     t_bar: float = 0.7
     seed: int = 0
 
     def __post_init__(self) -> None:
-        for name in ("latent_dim", "ff_size", "num_layers", "num_heads", "window", "batch", "warmup"):
+        sizes = ("latent_dim", "ff_size", "num_layers", "num_heads", "window", "batch", "warmup")
+        for name in (*sizes, "own_growth", "rollout"):
             if getattr(self, name) < 1:
                 raise InputError(f"{name} is {getattr(self, name)}: give 1 or more.")
+        if self.sampler < 2:
+            raise InputError(f"A past of one's own takes a sampler of 2 steps or more, not {self.sampler}.")
         if self.latent_dim % self.num_heads:
             raise InputError(
                 f"latent_dim {self.latent_dim} cannot be shared by {self.num_heads} heads: give a multiple."
@@ -122,10 +142,43 @@ def interaction_loss(predicted: Tensor, reactor: Tensor, actor: Tensor, mask: Te
 
 def distance_loss(predicted: Tensor, reactor: Tensor, actor: Tensor, mask: Tensor) -> Tensor:
     """Squared error of the distances of the two people's joints that are truly near, m² → (B,)."""
-    mode = "donot_use_mm_for_euclid_dist"
-    true = torch.cdist(actor, reactor, compute_mode=mode)
-    error = (torch.cdist(actor, predicted, compute_mode=mode) - true).square() * (true < NEAR)
+    true = joint_distances(actor, reactor)
+    error = (joint_distances(actor, predicted) - true).square() * (true < NEAR)
     return masked_mean(error.sum((-1, -2)) / (true < NEAR).sum((-1, -2)).clamp_min(1), mask)
+
+
+def motion_losses(
+    predicted: Tensor, wanted: Tensor, actor: Tensor, mask: Tensor, stands: Tensor
+) -> dict[str, Tensor]:
+    """The losses on positions, not weighted, each (B,).
+
+    Args:
+        predicted, wanted: (B, K, 70) control points in metres.
+        actor: (B, K − 2, 22, 3) positions at the knots.
+        mask: (B, K − 2), 1 at knots that count.
+        stands: (B, K − 2, 4), true where the reactor's feet stand.
+    """
+    made, reactor = knot_positions(predicted), knot_positions(wanted)
+    step = made[:, 1:, list(FEET)] - made[:, :-1, list(FEET)]
+    between = mask[:, 1:]
+    return {
+        "velocity": masked_mean((made.diff(dim=1) - reactor.diff(dim=1)).square().mean((-1, -2)), between),
+        "bone_length": masked_mean((bone_lengths(made) - bone_lengths(reactor)).square().mean(-1), mask),
+        "foot_contact": masked_mean((step.square().sum(-1) * stands[:, 1:]).mean(-1), between),
+        "interaction": interaction_loss(made, reactor, actor, mask),
+        "distance": distance_loss(made, reactor, actor, mask),
+        "apart": apart_loss(made, reactor, actor, mask),
+    }
+
+
+def apart_loss(predicted: Tensor, reactor: Tensor, actor: Tensor, mask: Tensor) -> Tensor:
+    """Squared metres by which the pelvises come nearer on the floor than :data:`APART` or, where the recorded ones
+    are nearer still, than those: positions (B, K, 22, 3) → (B,)."""
+
+    def gap(person: Tensor) -> Tensor:
+        return (person[..., 0, ::2] - actor[..., 0, ::2]).square().sum(-1).add(1e-8).sqrt()
+
+    return masked_mean((gap(reactor).clamp_max(APART) - gap(predicted)).clamp_min(0).square(), mask)
 
 
 class Trainer(Loop):
@@ -135,12 +188,20 @@ class Trainer(Loop):
         words: a shipped InterGen's folder, whose text conditioner is taken over.
         init: a shipped ReGenNet's folder, whose weights, normalisers and text conditioner a new run begins
             with; ``words`` then counts nothing.
+        device: "cpu" or "cuda".
     """
 
     def __init__(
-        self, scenes: Scenes, settings: Settings, out: Path, *, words: Path, init: Path | None = None
+        self,
+        scenes: Scenes,
+        settings: Settings,
+        out: Path,
+        *,
+        words: Path,
+        init: Path | None = None,
+        device: str = "cpu",
     ) -> None:
-        self.settings, self.out = settings, out
+        self.settings, self.out, self.device = settings, out, device
         out.mkdir(parents=True, exist_ok=True)
         torch.manual_seed(settings.seed)
         if init is None:
@@ -162,8 +223,11 @@ class Trainer(Loop):
             crop=settings.crop,
             recorded=settings.recorded,
             seed=settings.seed,
+            device=device,
         )
-        self.conditions = Conditions(self.data.captions(), conditioner, out, source.digest)
+        self.conditions = Conditions(
+            self.data.captions(), conditioner.to(device), out, source.digest, device=device
+        )
         self.model = CompactReGenNet(self.config)
         if init is None:
             self.model.conditioner.load_state_dict(conditioner.state_dict())
@@ -171,72 +235,109 @@ class Trainer(Loop):
         else:
             known = {k: v for k, v in shipped.state_dict().items() if not k.startswith("touch_reader.")}
             load_strictly(self.model, known, network=init.name)
-        self.model.conditioner.requires_grad_(False)
-        self.ema = CompactReGenNet(self.config).requires_grad_(False)
+        self.model.to(device).conditioner.requires_grad_(False)
+        self.ema = CompactReGenNet(self.config).to(device).requires_grad_(False)
         self.ema.load_state_dict(self.model.state_dict())
         self.trained = [p for p in self.model.parameters() if p.requires_grad]
         self.averaged = [
             p for p, q in zip(self.ema.parameters(), self.model.parameters(), strict=True) if q.requires_grad
         ]
         self.optimizer = adamw(self.trained, settings)
-        self.schedule = NoiseSchedule()
-        self.weights = torch.ones(FEATURES)
+        self.schedule = NoiseSchedule(device=device)
+        self.weights = torch.ones(FEATURES, device=device)
         self.weights[:3] = settings.root_weight
         self.restore(asdict(settings))
 
-    def terms(self, batch: Batch, generator: torch.Generator) -> dict[str, Tensor]:
-        """Every loss term of one batch, weighted."""
-        s, model = self.settings, self.model
-        size = len(batch.mask)
-        t = draw_timesteps(size, self.schedule.timesteps, s.noisiest, generator)
-        x0 = (batch.reactor - model.mean) / model.std
-        xt = self.schedule.q_sample(x0, t, torch.randn(x0.shape, generator=generator))
+    def own_share(self) -> float:
+        """The share of online scenes whose past the network makes itself, at this step."""
+        s = self.settings
+        return s.own * min(max((self.step - s.own_after + 1) / s.own_growth, 0.0), 1.0)
+
+    def network_input(self, batch: Batch, generator: torch.Generator) -> dict[str, Tensor]:
+        """All that the network sees of a batch beside the noised reaction and its timestep, by argument."""
+        s, model, size = self.settings, self.model, len(batch.mask)
         keep = torch.rand(size, 1, generator=generator) >= s.cond_drop_prob
-        causal = bool(torch.rand(1, generator=generator) >= s.offline)
         start = torch.randint(150, (size,), generator=generator)
         start = start * (torch.rand(size, generator=generator) < 0.5)
         seen = seen_rows(batch.actor)
-        seen = seen + s.jitter * torch.randn(seen.shape, generator=generator)
-        seen = (seen - model.actor_mean) / model.actor_std
-        given = (torch.rand(size, generator=generator) < s.begin) | batch.cropped
-        begin = model.begin_row(knot_positions(batch.reactor[:, :3])[:, 0]) * given[:, None]
-        with mixed_precision("cpu"), sdpa_kernel(SDPBackend.MATH):
-            predicted = model(xt, t, seen, batch.words * keep, causal=causal, start=start, begin=begin)
-        predicted = predicted.float()
-        error = ((predicted - x0).square() * self.weights).mean(-1)
-        terms = {"simple": masked_mean(error, batch.mask).mean()}
-
-        reactor, actor = knot_positions(batch.reactor), knot_positions(batch.actor)
-        moved = predicted * model.std + model.mean
-        made = knot_positions(moved)
-        mask = batch.mask[:, 2:]
-        early = t <= s.t_bar * self.schedule.timesteps
-        stands = batch.reactor[:, 2:, -NUM_CONTACTS:] > 0.5
-        step = made[:, 1:, list(FEET)] - made[:, :-1, list(FEET)]
-        between = mask[:, 1:]
-        losses = {
-            "velocity": masked_mean(
-                (made.diff(dim=1) - reactor.diff(dim=1)).square().mean((-1, -2)), between
-            ),
-            "bone_length": masked_mean((bone_lengths(made) - bone_lengths(reactor)).square().mean(-1), mask),
-            "foot_contact": masked_mean((step.square().sum(-1) * stands[:, 1:]).mean(-1), between),
-            "interaction": interaction_loss(made, reactor, actor, mask),
-            "distance": distance_loss(made, reactor, actor, mask),
+        seen = seen + s.jitter * self.normal(seen, 4)
+        given = torch.rand(size, generator=generator) < s.begin
+        given = given.to(self.device) | batch.cropped
+        return {
+            "actor": (seen - model.actor_mean) / model.actor_std,
+            "condition": batch.words * keep.to(self.device),
+            "start": start.to(self.device),
+            "begin": model.begin_row(knot_positions(batch.reactor[:, :3])[:, 0]) * given[:, None],
         }
+
+    def normal(self, like: Tensor, use: int) -> Tensor:
+        """Standard normal numbers of a tensor's shape for a use of this step."""
+        seed = seeded(self.settings.seed, use, self.step).initial_seed()
+        generator = torch.Generator(self.device).manual_seed(seed)
+        return torch.randn(like.shape, generator=generator, device=self.device)
+
+    def predict(self, x: Tensor, t: Tensor, seen: dict[str, Tensor], *, causal: bool) -> Tensor:
+        """The network's clean reaction (B, K, 70) in float32; ``seen`` of :meth:`network_input`."""
+        # Under a mask, the CPU's fused attention is slower than the plain one.
+        plain = sdpa_kernel(SDPBackend.MATH) if self.device == "cpu" else nullcontext()
+        with mixed_precision(self.device), plain:
+            made: Tensor = self.model(x, t, causal=causal, **seen)
+        return made.float()
+
+    def past(
+        self, x0: Tensor, batch: Batch, seen: dict[str, Tensor], share: float, generator: torch.Generator
+    ) -> Past:
+        """The noised motion of a batch, with a past of the network's own for a share of the scenes."""
+        s = self.settings
+        t = draw_timesteps(len(x0), self.schedule.timesteps, s.noisiest, generator).to(self.device)
+        xt = self.schedule.q_sample(x0, t, self.normal(x0, 5))
+        if not share:
+            none = torch.zeros(len(x0), dtype=torch.bool, device=self.device)
+            return Past(xt, t, x0, x0, torch.ones_like(batch.mask, dtype=torch.bool), none)
+        planned = plan(batch.rows, share=share, steps=s.sampler, rollout=s.rollout, generator=generator)
+
+        def predict(x: Tensor, t: Tensor, places: Tensor) -> Tensor:
+            return self.predict(x, t, {name: value[places] for name, value in seen.items()}, causal=True)
+
+        noise, std = self.normal(x0, 6), self.model.std
+        return make_past(predict, planned, x0, (xt, t), self.schedule, std, steps=s.sampler, noise=noise)
+
+    def terms(self, batch: Batch, generator: torch.Generator) -> tuple[dict[str, Tensor], Tensor]:
+        """Every loss term of one batch, weighted, and the share of scenes with a past of the network's own."""
+        s, model = self.settings, self.model
+        x0 = (batch.reactor - model.mean) / model.std
+        causal = bool(torch.rand(1, generator=generator) >= s.offline)
+        seen = self.network_input(batch, generator)
+        past = self.past(x0, batch, seen, self.own_share() if causal else 0.0, generator)
+        predicted = self.predict(past.x, past.t, seen, causal=causal)
+        learned = batch.mask * past.learned
+        error = ((predicted - past.wanted).square() * self.weights).mean(-1)
+        terms = {"simple": masked_mean(error, learned).mean()}
+
+        # A knot is where three control points meet: of those that are past, it takes the network's own.
+        rows = past.learned[..., None]
+        full, wanted = (
+            torch.where(rows, x, past.past) * model.std + model.mean for x in (predicted, past.wanted)
+        )
+        mask = learned[:, 2:]
+        early = past.t <= s.t_bar * self.schedule.timesteps
+        stands = batch.reactor[:, 2:, -NUM_CONTACTS:] > 0.5
+        losses = motion_losses(full, wanted, knot_positions(batch.actor), mask, stands)
         return terms | {
             name: getattr(s, name) * (value * early).sum() / early.sum().clamp_min(1)
             for name, value in losses.items()
-        }
+        }, past.used.float().mean()
 
     def train_step(self) -> dict[str, float]:
         """One optimiser step; returns the loss terms."""
         batch = self.data.batch(self.step, self.conditions)
         self.model.train()
-        terms = self.terms(batch, seeded(self.settings.seed, 3, self.step))
+        terms, own = self.terms(batch, seeded(self.settings.seed, 3, self.step))
         total = torch.stack(list(terms.values())).sum()
         self.optimizer_step(total, self.optimizer, self.trained)
         self.ema_update(self.averaged, self.trained)
-        return {name: value.item() for name, value in terms.items()} | {"total": total.item()}
+        shown = terms | {"total": total, "own": own}
+        return dict(zip(shown, torch.stack(list(shown.values())).tolist(), strict=True))
 
 
 def main(argv: list[str] | None = None) -> int:
@@ -249,18 +350,27 @@ def main(argv: list[str] | None = None) -> int:
     )  # fmt: skip
     parser.add_argument("--init", type=Path, help="begin with a shipped ReGenNet, its words and all")
     parser.add_argument("--export", type=Path, help="after that, write the averaged weights to this folder")
+    parser.add_argument("--threads", type=int, help="of torch on the CPU (as many as there are cores)")
+    parser.add_argument("--device", default="cuda" if torch.cuda.is_available() else "cpu")
     add_run_options(parser, Settings)
     options = parser.parse_args(argv)
+    if options.threads:
+        torch.set_num_threads(options.threads)
     return exit_code(lambda: _run(options))
 
 
 def _run(options: argparse.Namespace) -> None:
     trainer = Trainer(
-        load(options.scenes), chosen(options, Settings), options.out, words=options.words, init=options.init
+        load(options.scenes),
+        chosen(options, Settings),
+        options.out,
+        words=options.words,
+        init=options.init,
+        device=options.device,
     )
     trainer.run_logged(minutes=options.minutes)
     if options.export:
-        model, reads = with_touches(trainer.ema, trainer.data.scenes)
+        model, reads = with_touches(trainer.ema.cpu(), trainer.data.scenes)
         print(f"touches read from test captions: {reads:.1%}")
         save_network(options.export, model, card={"summary": SUMMARY}, trained_steps=trainer.step)
 

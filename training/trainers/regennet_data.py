@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import hashlib
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -12,27 +13,27 @@ from safetensors.torch import load_file, save_file
 from torch import Tensor
 
 from models.intergen.losses import facing
-from models.motion_tokens import FEATURES, NUM_CONTACTS, mirror_control
+from models.motion_tokens import FEATURES, NUM_CONTACTS, NUM_JOINTS, mirror_control
 from models.regennet.compact import LEAD, CompactReGenNet
 from motion import SMPL22, InputError
 from motion.formats.files import replacing
-from training.core.precision import mixed_precision
-from training.core.text_features import CaptionFeatures
 from training.corpus.grammar import mirror_caption
 from training.prepare import ROOT_SCALE, Scenes
 from training.trainers.intergen_data import balanced, seeded
+from training.trainers.touch import conditions
 
 
 @dataclass
 class Batch:
-    """One batch: control points of reactor and actor (B, K, 70) in metres, mask (B, K), words (B, C), and
-    whether the scene was cropped (B,)."""
+    """One batch: control points of reactor and actor (B, K, 70) in metres, mask (B, K), words (B, C), whether
+    the scene was cropped (B,), and its real rows (B,), these on the CPU."""
 
     reactor: Tensor
     actor: Tensor
     mask: Tensor
     words: Tensor
     cropped: Tensor
+    rows: Tensor
 
 
 class Conditions:
@@ -43,32 +44,36 @@ class Conditions:
         conditioner: the frozen conditioner.
         cache: the run's folder.
         digest: names the conditioner's weights.
+        device: where the encoder runs and the vectors stay.
     """
 
-    def __init__(self, captions: list[str], conditioner: torch.nn.Module, cache: Path, digest: str) -> None:
-        self.index = {caption: row for row, caption in enumerate(captions)}
-        path = cache / f"conditions_{len(captions)}_{digest[:12]}.safetensors"
+    def __init__(
+        self,
+        captions: list[str],
+        conditioner: torch.nn.Module,
+        cache: Path,
+        digest: str,
+        *,
+        device: str = "cpu",
+    ) -> None:
+        named = hashlib.sha256("\n".join([digest, *captions]).encode()).hexdigest()[:16]
+        path = cache / f"conditions_{named}.safetensors"
         try:
-            self.vectors = load_file(path)["conditions"]
+            vectors = load_file(path)["conditions"]
         except (OSError, SafetensorError):
-            features = CaptionFeatures(captions, cache)
-            order = sorted(range(len(captions)), key=lambda row: int(features.lengths[row]))
-            self.vectors = torch.zeros(len(captions), conditioner.config.latent_dim, dtype=torch.half)
-            with torch.no_grad(), mixed_precision("cpu"):
-                for start in range(0, len(order), 256):
-                    rows = order[start : start + 256]
-                    self.vectors[rows] = conditioner(*features.batch([captions[r] for r in rows])).half()
+            vectors = conditions(conditioner, captions, device=device).half().cpu()
             with replacing(path) as temporary:
-                save_file({"conditions": self.vectors}, temporary)
+                save_file({"conditions": vectors}, temporary)
+        self.vectors = vectors.to(device)
 
-    def batch(self, captions: list[str]) -> Tensor:
-        """(B, C) float32."""
-        return self.vectors[[self.index[caption] for caption in captions]].float()
+    def batch(self, places: Tensor) -> Tensor:
+        """The vectors (B, C) float32 of captions by their places (B,) in the list."""
+        return self.vectors[places.to(self.vectors.device)].float()
 
 
 def knot_positions(control: Tensor) -> Tensor:
-    """Control points (B, K, 70) → positions at the knots (B, K − 2, 22, 3)."""
-    knots = (control[:, :-2] + 4 * control[:, 1:-1] + control[:, 2:]) / 6
+    """Control points (…, K, 70) → positions at the knots (…, K − 2, 22, 3)."""
+    knots = (control[..., :-2, :] + 4 * control[..., 1:-1, :] + control[..., 2:, :]) / 6
     root, others, _ = knots.split([3, FEATURES - 3 - NUM_CONTACTS, NUM_CONTACTS], dim=-1)
     others = others.unflatten(-1, (-1, 3)) + root[..., None, :]
     return torch.cat([root[..., None, :], others], dim=-2)
@@ -76,7 +81,7 @@ def knot_positions(control: Tensor) -> Tensor:
 
 def seen_rows(control: Tensor) -> Tensor:
     """The actor as each row sees it, not normalised: control points (B, K, 70) → (B, K, 132)."""
-    knots = (control[:, :-2] + 4 * control[:, 1:-1] + control[:, 2:]) / 6
+    knots = (control[..., :-2, :] + 4 * control[..., 1:-1, :] + control[..., 2:, :]) / 6
     pose = knots[..., : FEATURES - NUM_CONTACTS]
     place = torch.arange(control.shape[1]) - LEAD
     now, before = pose[:, place.clamp_min(0)], pose[:, (place - 1).clamp_min(0)]
@@ -88,21 +93,21 @@ def is_recorded(row: dict[str, Any]) -> bool:
     return any(str(source).startswith(("sbu", "k3hi")) for source in row["sources"])
 
 
-def cropped(people: Tensor, knots: int) -> Tensor:
-    """Control points (2, K, 70) without their first ``knots``, in the frame of the actor's new first pose.
+def at_the_origin(people: Tensor) -> Tensor:
+    """Control points (…, 2, K, 70) in the frame of the actor's first pose.
 
     The actor, person 0, stands at the origin of the floor and faces +Z at the first frame.
     """
-    people = people[:, knots:]
-    first = knot_positions(people[:1, :3])[0, 0]
-    ahead = facing(first[None])[0]
-    x, z = (ahead / ahead.norm().clamp_min(1e-6))[[0, 2]]
+    first = knot_positions(people[..., 0, :3, :])[..., 0, :, :]
+    x, _, z = (facing(first)).unbind(-1)
     zero, one = torch.zeros_like(x), torch.ones_like(x)
-    turn = torch.stack([z, zero, -x, zero, one, zero, x, zero, z]).view(3, 3)
+    turn = torch.stack([z, zero, -x, zero, one, zero, x, zero, z], dim=-1).unflatten(-1, (3, 3))
     pose, contacts = people.split([FEATURES - NUM_CONTACTS, NUM_CONTACTS], dim=-1)
-    pose = pose.unflatten(-1, (-1, 3)).clone()
-    pose[..., 0, :] -= first[0] * torch.tensor([1.0, 0.0, 1.0])
-    return torch.cat([(pose @ turn.T).flatten(-2), contacts], dim=-1)
+    root, others = pose.unflatten(-1, (-1, 3)).split([1, NUM_JOINTS - 1], dim=-2)
+    origin = first[..., 0, :] * first.new_tensor([1.0, 0.0, 1.0])
+    root = root - origin[..., None, None, None, :]
+    turned = torch.cat([root, others], dim=-2) @ turn.mT[..., None, None, :, :]
+    return torch.cat([turned.flatten(-2), contacts], dim=-1)
 
 
 class Data:
@@ -114,16 +119,29 @@ class Data:
         crop: share of scenes that begin somewhere in their first half.
         recorded: how often a recorded pair counts.
         seed: of everything random.
+        device: holds all scenes and puts the batches together, so no batch is copied or waited for.
     """
 
-    def __init__(self, scenes: Scenes, *, size: int, crop: float, recorded: int, seed: int) -> None:
-        self.scenes, self.size, self.crop, self.seed = scenes, size, crop, seed
+    def __init__(
+        self, scenes: Scenes, *, size: int, crop: float, recorded: int, seed: int, device: str = "cpu"
+    ) -> None:
+        self.scenes, self.size, self.crop, self.seed, self.device = scenes, size, crop, seed, device
         self.rows: list[dict[str, Any]] = [
             row for row in balanced(scenes.split("train")) for _ in range(recorded if is_recorded(row) else 1)
         ]
         if len(self.rows) < size:
             raise InputError(f"{len(self.rows)} training scenes do not fill a batch of {size}.")
         self.knots = torch.tensor([row["tokens"] for row in self.rows]) * scenes.layout.knots_per_token
+        self.starts = torch.tensor([row["start"] for row in self.rows])
+        self.control = scenes.control.to(device)
+        index = {caption: place for place, caption in enumerate(self.captions())}
+        captions = [row["captions"] for row in self.rows]
+        self.caption_counts = torch.tensor([len(own) for own in captions])
+        self.first_captions = self.caption_counts.cumsum(0) - self.caption_counts
+        # By place in all rows' captions, one after the other: the caption, and that of the mirror image.
+        self.words = torch.tensor([index[c] for own in captions for c in own])
+        mirrored = torch.tensor([index[mirror_caption(c)] for c in index])
+        self.mirrored_words = mirrored[self.words]
         self.batches_an_epoch = len(self.rows) // size
         self._epoch, self._order = -1, torch.empty(0)
 
@@ -158,25 +176,29 @@ class Data:
             self._epoch = epoch
         return self._order[place]
 
-    def batch(self, step: int, conditions: Conditions) -> Batch:
-        """The batch of a step; the same for the same seed and step."""
-        rows = [self.rows[i] for i in self._rows_of(step)]
-        draw = torch.rand(len(rows), 4, generator=seeded(self.seed, 2, step))
-        longest = max(row["tokens"] for row in rows) * self.scenes.layout.knots_per_token
-        longest = -8 * (-longest // 8)  # few shapes: kernels are made for each
-        people = torch.zeros(2, len(rows), longest, FEATURES)
-        mask = torch.zeros(len(rows), longest)
-        captions = []
-        for i, row in enumerate(rows):
-            one, caption = self.scenes.scene(row), row["captions"][int(draw[i, 0] * len(row["captions"]))]
-            if draw[i, 1] < 0.5:
-                one, caption = mirror_control(one, SMPL22.mirror), mirror_caption(caption)
-            if draw[i, 2] < self.crop:
-                one = cropped(one, 1 + int(draw[i, 3] * one.shape[1] / 2))
-            people[:, i, : one.shape[1]] = one
-            people[:, i, one.shape[1] :] = one[:, -1:]
-            mask[i, : one.shape[1]] = 1
-            captions.append(caption)
-        actor, reactor = people
-        crop = draw[:, 2] < self.crop
-        return Batch(reactor, actor, mask, conditions.batch(captions), crop)
+    def batch(self, step: int, known: Conditions) -> Batch:
+        """The batch of a step; the same for the same seed and step.
+
+        Args:
+            known: of :meth:`captions`, in their order.
+        """
+        chosen = self._rows_of(step)
+        knots = self.knots[chosen]
+        draw = torch.rand(len(chosen), 4, generator=seeded(self.seed, 2, step))
+        mirror, crop = draw[:, 1] < 0.5, draw[:, 2] < self.crop
+        left_out = torch.where(crop, 1 + (draw[:, 3] * knots / 2).long(), 0)
+        longest = -8 * (-int(knots.max()) // 8)  # few shapes: kernels are made for each
+        place = left_out[:, None] + torch.arange(longest)
+        mask = (place < knots[:, None]).float()
+        where = self.starts[chosen, None] + place.minimum(knots[:, None] - 1)
+        caption = self.first_captions[chosen] + (draw[:, 0] * self.caption_counts[chosen]).long()
+        words = torch.where(mirror, self.mirrored_words[caption], self.words[caption])
+
+        people = self.control[where.to(self.device)].float().transpose(1, 2)
+        flipped, begun = (flag.to(self.device)[:, None, None, None] for flag in (mirror, crop))
+        people = torch.where(flipped, mirror_control(people, SMPL22.mirror), people)
+        people = torch.where(begun, at_the_origin(people), people)
+        actor, reactor = people.unbind(1)
+        return Batch(
+            reactor, actor, mask.to(self.device), known.batch(words), crop.to(self.device), knots - left_out
+        )

@@ -12,7 +12,7 @@ from typing import Any, TypeVar
 
 import torch
 import torch.nn.functional as F
-from torch import Tensor
+from torch import Tensor, nn
 
 from models.intergen.compact import CompactInterGen, Touch
 from models.regennet.compact import CompactReGenNet
@@ -57,15 +57,15 @@ def examples(rows: list[dict[str, Any]]) -> list[tuple[str, Touch]]:
 
 
 @torch.no_grad()
-def conditions(model: CompactInterGen | CompactReGenNet, captions: list[str]) -> Tensor:
-    """(N, cond_dim) condition vectors."""
-    encoder, parts = MiniLM(), []
+def conditions(conditioner: nn.Module, captions: list[str], *, device: str = "cpu") -> Tensor:
+    """(N, cond_dim) condition vectors of captions, on the device, where the conditioner is too."""
+    encoder, parts = MiniLM().to(device), []
     order = sorted(range(len(captions)), key=lambda i: len(captions[i]))
     for start in range(0, len(order), 128):
-        with mixed_precision("cpu"):
+        with mixed_precision(device):
             tokens = encoder([captions[i] for i in order[start : start + 128]])
-            parts.append(model.conditioner(tokens.features.float(), tokens.mask).float())
-    return torch.cat(parts)[torch.tensor(order).argsort()]
+            parts.append(conditioner(tokens.features.float(), tokens.mask).float())
+    return torch.cat(parts)[torch.tensor(order, device=device).argsort()]
 
 
 def with_touches(
@@ -117,4 +117,6 @@ def _tensors(
     reader = model.touch_reader
     assert reader is not None
     kept = [(caption, reader.touches.index(t)) for caption, t in found if t in reader.touches]
-    return conditions(model, [caption for caption, _ in kept]), torch.tensor([label for _, label in kept])
+    return conditions(model.conditioner, [caption for caption, _ in kept]), torch.tensor(
+        [label for _, label in kept]
+    )

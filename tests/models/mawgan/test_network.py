@@ -163,12 +163,12 @@ def test_a_linear_map_is_found_in_closed_form() -> None:
 
 def test_a_network_conditioned_on_the_pose_sees_it(network: PredictiveMAWGAN) -> None:
     torch.manual_seed(0)
-    told = PredictiveMAWGAN(replace(SMALL, pose=True)).eval()
+    posed = PredictiveMAWGAN(replace(SMALL, pose=True)).eval()
     past = motion(1)
-    for one, differs in ((network, False), (told, True)):
+    for one, differs in ((network, False), (posed, True)):
         elsewhere = one(past + 0.5) - 0.5
         assert torch.allclose(one(past), elsewhere, atol=1e-5) != differs
-    assert told(past[:, :1].expand_as(past)).isfinite().all()
+    assert posed(past[:, :1].expand_as(past)).isfinite().all()
 
 
 def test_what_stands_still_stays_as_it_is(network: PredictiveMAWGAN) -> None:

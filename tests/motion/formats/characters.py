@@ -88,12 +88,12 @@ def glb_character(
         nodes.append({"name": name, "children": below, "translation": offset.tolist()})
     nodes.append({"mesh": 0, "skin": 0})
     attributes = {"POSITION": 0, "JOINTS_0": 1, "WEIGHTS_0": 2}
-    told: dict[str, Any] = {
+    document: dict[str, Any] = {
         "asset": {"version": "2.0"}, "nodes": nodes, "buffers": [{"byteLength": len(blob)}], "bufferViews": views,
         "accessors": accessors, "meshes": [{"primitives": [{"attributes": attributes, "indices": 3}]}],
         "skins": [{"joints": list(range(len(kept))), "inverseBindMatrices": 4}],
     }  # fmt: skip
-    return packed(told | changes, blob)
+    return packed(document | changes, blob)
 
 
 def glb_motion(
@@ -121,8 +121,8 @@ def glb_motion(
     names = RIGS[rig] if isinstance(rig, str) else rig
     turn = np.eye(3) if turn is None else turn
     rest = SMPL22.rest_positions().astype(float)
-    told, blob = unpacked(glb_character(places=rest, unit=unit, turn=turn))
-    views, accessors = told["bufferViews"], told["accessors"]
+    document, blob = unpacked(glb_character(places=rest, unit=unit, turn=turn))
+    views, accessors = document["bufferViews"], document["accessors"]
 
     def add(values: np.ndarray, shape: str) -> int:
         nonlocal blob
@@ -179,11 +179,11 @@ def glb_motion(
             skins.append({"joints": list(range(first, first + count)), "inverseBindMatrices": bound})
             nodes.append({"mesh": 0, "skin": person})
             top.append(len(nodes) - 1)
-    told |= {"nodes": nodes, "animations": animations, "skins": skins, "scene": 0, "scenes": [{"nodes": top}],
+    document |= {"nodes": nodes, "animations": animations, "skins": skins, "scene": 0, "scenes": [{"nodes": top}],
              "buffers": [{"byteLength": len(blob)}]}  # fmt: skip
     if not skinned:
-        del told["skins"], told["meshes"]
-    return packed(told | changes, blob)
+        del document["skins"], document["meshes"]
+    return packed(document | changes, blob)
 
 
 def unpacked(data: bytes) -> tuple[dict[str, Any], bytes]:
@@ -192,9 +192,9 @@ def unpacked(data: bytes) -> tuple[dict[str, Any], bytes]:
     return json.loads(data[20 : 20 + length]), data[28 + length :]
 
 
-def packed(told: dict[str, Any], blob: bytes) -> bytes:
+def packed(document: dict[str, Any], blob: bytes) -> bytes:
     """The two chunks of a file."""
-    text = json.dumps(told).encode()
+    text = json.dumps(document).encode()
     text += b" " * (-len(text) % 4)
     chunks = (
         struct.pack("<II", len(text), 0x4E4F534A) + text + struct.pack("<II", len(blob), 0x004E4942) + blob

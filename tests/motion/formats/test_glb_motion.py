@@ -66,22 +66,22 @@ def test_joints_stand_where_they_do_in_the_file(rig: str, given: dict[str, Any])
 
 
 def test_a_file_in_centimetres_is_found_to_be() -> None:
-    told, _ = unpacked(glb_motion(ROTATIONS, ROOT, unit=100.0))
-    told["nodes"][0]["scale"] = [1, 1, 1]
-    found = import_motion(glb_motion(ROTATIONS, ROOT, unit=100.0, nodes=told["nodes"]), name="walk.glb")
+    document, _ = unpacked(glb_motion(ROTATIONS, ROOT, unit=100.0))
+    document["nodes"][0]["scale"] = [1, 1, 1]
+    found = import_motion(glb_motion(ROTATIONS, ROOT, unit=100.0, nodes=document["nodes"]), name="walk.glb")
     assert found.unit == "cm"
     assert np.linalg.norm(found.people[0].positions - POSITIONS, axis=-1).max() < 0.1
 
 
 @pytest.mark.parametrize(
-    ("fps", "count", "told"), [(24.0, 37, 24), (60.0, 15, 60), (120.0, 8, 120), (2.0, 436, 30)]
+    ("fps", "count", "rate"), [(24.0, 37, 24), (60.0, 15, 60), (120.0, 8, 120), (2.0, 436, 30)]
 )
-def test_frame_rates_are_those_of_the_keys(fps: float, count: int, told: float) -> None:
+def test_frame_rates_are_those_of_the_keys(fps: float, count: int, rate: float) -> None:
     found = import_motion(glb_motion(ROTATIONS, ROOT, fps=fps), name="walk.glb")
-    assert found.fps == told and found.people[0].fps == 30
+    assert found.fps == rate and found.people[0].fps == 30
     assert abs(found.people[0].num_frames - count) <= 1, "as long as in the file"
     faster = import_motion(
-        glb_motion(ROTATIONS, ROOT, fps=fps), name="walk.glb", choices=ImportChoices(fps=2 * told)
+        glb_motion(ROTATIONS, ROOT, fps=fps), name="walk.glb", choices=ImportChoices(fps=2 * rate)
     )
     assert abs(2 * faster.people[0].num_frames - count) <= 3
 
@@ -104,10 +104,10 @@ def test_several_people_share_one_clock_and_one_world() -> None:
 
 
 def test_a_prop_with_bones_is_no_person() -> None:
-    told, _ = unpacked(glb_motion(ROTATIONS, ROOT, people=2))
-    for node in told["nodes"][25:47]:
+    document, _ = unpacked(glb_motion(ROTATIONS, ROOT, people=2))
+    for node in document["nodes"][25:47]:
         node["name"] = "rope"
-    nodes = told["nodes"]
+    nodes = document["nodes"]
     assert len(read_glb_people(glb_motion(ROTATIONS, ROOT, people=2, nodes=nodes), name="x.glb")) == 1
 
 
@@ -133,14 +133,14 @@ def _animated(**fields: Any) -> dict[str, Any]:
 
 
 def _sampled(**fields: Any) -> dict[str, Any]:
-    (told,) = unpacked(WALK)[0]["animations"]
-    return _animated(samplers=[each | fields for each in told["samplers"]])
+    (animation,) = unpacked(WALK)[0]["animations"]
+    return _animated(samplers=[each | fields for each in animation["samplers"]])
 
 
-TOLD = unpacked(WALK)[0]
+GLTF = unpacked(WALK)[0]
 WRONG: dict[str, tuple[dict[str, Any], str]] = {
     "no animation": ({"animations": []}, "has no animation: export it with one, or put it on"),
-    "two animations": ({"animations": 2 * TOLD["animations"]}, r"2 animations of one person \(walk 0, walk 0\)"),
+    "two animations": ({"animations": 2 * GLTF["animations"]}, r"2 animations of one person \(walk 0, walk 0\)"),
     "nothing moves": (_animated(channels=[]), "moves no joint"),
     "only weights": (
         _animated(channels=[{"sampler": 0, "target": {"node": 1, "path": "weights"}}]), "moves no joint",
@@ -150,10 +150,10 @@ WRONG: dict[str, tuple[dict[str, Any], str]] = {
     "another way": (_sampled(interpolation="BEZIER"), "is not known"),
     "splines of one value": (_sampled(interpolation="CUBICSPLINE"), "do not fit"),
     "a sampler that is not there": (_animated(samplers=[]), "is not there"),
-    "a node nowhere": ({"nodes": [each | {"translation": [1e999, 0, 0]} for each in TOLD["nodes"]]}, "nowhere|damaged"),
-    "a node of no length": ({"nodes": [each | {"translation": [1, 2]} for each in TOLD["nodes"]]}, "nowhere"),
-    "no person": ({"nodes": [each | {"name": "rope"} for each in TOLD["nodes"]]}, "no joint that looks like"),
-    "everything in one place": ({"nodes": [{**each, "scale": [0, 0, 0]} for each in TOLD["nodes"]]}, "of no length"),
+    "a node nowhere": ({"nodes": [each | {"translation": [1e999, 0, 0]} for each in GLTF["nodes"]]}, "nowhere|damaged"),
+    "a node of no length": ({"nodes": [each | {"translation": [1, 2]} for each in GLTF["nodes"]]}, "nowhere"),
+    "no person": ({"nodes": [each | {"name": "rope"} for each in GLTF["nodes"]]}, "no joint that looks like"),
+    "everything in one place": ({"nodes": [{**each, "scale": [0, 0, 0]} for each in GLTF["nodes"]]}, "of no length"),
     "wrong kinds": ({"animations": [7]}, "is damaged"),
     "compression": ({"extensionsRequired": ["EXT_meshopt_compression"]}, "EXT_meshopt"),
 }  # fmt: skip
@@ -191,7 +191,7 @@ def test_long_motions_are_refused_before_they_are_read(monkeypatch: pytest.Monke
         read_glb_people(WALK, name="walk.glb")
 
 
-def test_large_files_are_told_of_meshes_not_of_frames(tmp_path: Path) -> None:
+def test_large_files_are_refused_for_meshes_not_for_frames(tmp_path: Path) -> None:
     with (tmp_path / "large.glb").open("wb") as file:
         file.truncate(51 * 2**20)
     with pytest.raises(InputError, match="reduce its mesh"):
@@ -201,5 +201,5 @@ def test_large_files_are_told_of_meshes_not_of_frames(tmp_path: Path) -> None:
 def test_many_animations_are_refused_before_they_are_read() -> None:
     began = time.process_time()
     with pytest.raises(InputError, match="animations of one person"):
-        read_glb_people(glb_motion(ROTATIONS, ROOT, animations=TOLD["animations"][:1] * 200), name="walk.glb")
+        read_glb_people(glb_motion(ROTATIONS, ROOT, animations=GLTF["animations"][:1] * 200), name="walk.glb")
     assert time.process_time() - began < 2

@@ -23,7 +23,7 @@ from .test_fuzz import EDITS, PATIENT, SECONDS
 
 VALID = glb_character()
 LENGTH = struct.unpack_from("<I", VALID, 12)[0]
-TOLD = json.loads(VALID[20 : 20 + LENGTH])
+GLTF = json.loads(VALID[20 : 20 + LENGTH])
 
 
 def test_a_character_is_its_joints_its_surface_and_its_weights() -> None:
@@ -40,7 +40,7 @@ def test_a_character_is_its_joints_its_surface_and_its_weights() -> None:
 
 
 def _changed(kind: str, number: int, **fields: Any) -> dict[str, Any]:
-    return {kind: [each | fields if i == number else each for i, each in enumerate(TOLD[kind])]}
+    return {kind: [each | fields if i == number else each for i, each in enumerate(GLTF[kind])]}
 
 
 WRONG: dict[str, tuple[dict[str, Any], str]] = {

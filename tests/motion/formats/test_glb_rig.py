@@ -61,13 +61,13 @@ def in_our_order(data: bytes, rig: str, person: int = 0) -> np.ndarray:
 def test_a_partner_stands_in_the_file_s_world_on_its_skeleton(rig: str, given: dict[str, Any]) -> None:
     reference = glb_motion(ROTATIONS, POSITIONS[:, 0], rig, **given)
     made = glb_on_rig(OTHER, reference, name="rig.glb")
-    told, blob = unpacked(made)
+    document, blob = unpacked(made)
     before, its = unpacked(reference)
-    assert told["nodes"] == before["nodes"] and told["skins"] == before["skins"], (
+    assert document["nodes"] == before["nodes"] and document["skins"] == before["skins"], (
         "nothing but the motion is new"
     )
-    assert told["meshes"] == before["meshes"] and blob.startswith(its)
-    assert len(told["animations"]) == 1
+    assert document["meshes"] == before["meshes"] and blob.startswith(its)
+    assert len(document["animations"]) == 1
     joints = in_our_order(made, rig)
     assert joints.shape == (40, 22, 3)
     assert angles(joints, OTHER.positions).max() < 0.1, "limbs point where the partner's do"
@@ -134,11 +134,16 @@ def _lowest(data: bytes) -> float:
 
 
 def test_meshes_below_an_armature_come_to_the_top() -> None:
-    told, _ = unpacked(glb_motion(ROTATIONS, POSITIONS[:, 0], unit=100.0))
-    told["nodes"][0]["children"].append(23)
-    told["scenes"][0]["nodes"] = [0]
+    document, _ = unpacked(glb_motion(ROTATIONS, POSITIONS[:, 0], unit=100.0))
+    document["nodes"][0]["children"].append(23)
+    document["scenes"][0]["nodes"] = [0]
     reference = glb_motion(
-        ROTATIONS, POSITIONS[:, 0], unit=100.0, nodes=told["nodes"], scenes=told["scenes"], animations=[]
+        ROTATIONS,
+        POSITIONS[:, 0],
+        unit=100.0,
+        nodes=document["nodes"],
+        scenes=document["scenes"],
+        animations=[],
     )
     made, _ = unpacked(glb_wearing(DUET, reference, name="x.glb"))
     shown = made["scenes"][0]["nodes"]
@@ -147,12 +152,12 @@ def test_meshes_below_an_armature_come_to_the_top() -> None:
 
 
 def test_nodes_with_a_matrix_are_taken_apart() -> None:
-    told, _ = unpacked(glb_motion(ROTATIONS, POSITIONS[:, 0]))
-    for node in told["nodes"][1:23]:
+    document, _ = unpacked(glb_motion(ROTATIONS, POSITIONS[:, 0]))
+    for node in document["nodes"][1:23]:
         matrix = np.eye(4)
         matrix[:3, 3] = node.pop("translation")
         node["matrix"] = matrix.T.reshape(-1).tolist()
-    reference = glb_motion(ROTATIONS, POSITIONS[:, 0], nodes=told["nodes"], animations=[])
+    reference = glb_motion(ROTATIONS, POSITIONS[:, 0], nodes=document["nodes"], animations=[])
     made = glb_wearing(DUET, reference, name="x.glb")
     assert not any("matrix" in node for node in unpacked(made)[0]["nodes"])
     assert angles(in_our_order(made, "mixamo"), DUET.a.positions).max() < 0.1

@@ -1,4 +1,4 @@
-"""What is found in a file is told, and what is known of it is believed."""
+"""What was found in a file is reported, and what the user knows about it is believed."""
 
 import io
 
@@ -75,9 +75,9 @@ def test_rigs_show_which_joint_is_which(rig: str) -> None:
     text = bvh_text(rotations, positions[:, 0], RIGS[rig], unit=100, z_up=True)
     found = import_motion(text.encode(), name="clip.bvh")
     assert (found.up, found.unit) == ("z", "cm")
-    told = {ours: theirs for theirs, ours in found.joints}
+    named = {ours: theirs for theirs, ours in found.joints}
     for part in ("pelvis", "left_elbow", "right_knee", "left_wrist", "right_ankle", "head"):
-        assert told[part] == RIGS[rig][part]
+        assert named[part] == RIGS[rig][part]
 
 
 @pytest.mark.parametrize(

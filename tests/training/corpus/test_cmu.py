@@ -84,8 +84,8 @@ def test_table_goes_between_the_marks(folder: Path, tmp_path: Path) -> None:
 def test_bad_data_is_one_sentence(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
     (folder / "test" / "walking" / "walking_2.txt").write_text("1,2,3\n")
     assert main(["--data", str(folder)]) == 2
-    told = capsys.readouterr().err
-    assert "walking_2.txt does not hold 117 finite numbers a line" in told and told.count("\n") == 1
+    message = capsys.readouterr().err
+    assert "walking_2.txt does not hold 117 finite numbers a line" in message and message.count("\n") == 1
     assert main(["--data", str(folder / "nowhere")]) == 2
 
 

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import io
 import json
+import tarfile
 
 import numpy as np
 import pytest
@@ -116,3 +118,18 @@ def test_sources_take_the_vocabulary_along(tmp_path) -> None:
     assert bend[0][-1] > bend[0][0] + 0.1 and bend[1][0] > bend[1][-1] + 0.1
     again = load_sources(tmp_path / "data", cache_dir=tmp_path / "cache")
     assert [c.place for c in again] == [c.place for c in clips.values()] or len(again) == 3
+
+
+def test_sets_that_are_still_packed_are_read(tmp_path) -> None:
+    folder = tmp_path / "data" / "deepmimic"
+    folder.mkdir(parents=True)
+    data = clip([row()] * 60)
+    with tarfile.open(folder / "motions.tar.xz", "w:xz") as packed:
+        entry = tarfile.TarInfo("motions/humanoid3d_jump.txt")
+        entry.size = len(data)
+        packed.addfile(entry, io.BytesIO(data))
+    clips = load_sources(tmp_path / "data", cache_dir=tmp_path / "cache")
+    assert [c.action for c in clips] == ["jump"]
+    (folder / "motions.tar.xz").write_bytes(b"no archive")
+    with pytest.raises(InputError):
+        load_sources(tmp_path / "data", cache_dir=tmp_path / "cache")

@@ -76,10 +76,10 @@ def test_recorded_motion_given_as_made_scores_as_recorded_motion(scenes: Scenes)
     assert bool(found["known"]) == any(
         set(row["sources"]) & s for row in scenes.split("test") for s in shared
     )
-    told = table(found | {"known": ["wave to each other"]}, "About it.")
-    assert "Recorded test scenes show 2 of the classes." in told
-    assert "Those of 1 share a recording with training scenes" in told
-    assert told.startswith("About it.\n") and "| class recognised | 100% | 100% |" in told
+    page = table(found | {"known": ["wave to each other"]}, "About it.")
+    assert "Recorded test scenes show 2 of the classes." in page
+    assert "Those of 1 share a recording with training scenes" in page
+    assert page.startswith("About it.\n") and "| class recognised | 100% | 100% |" in page
     swapped: Any = SimpleNamespace(
         run=lambda r: engine.run(GenerateRequest(prompt=LABELS[r.prompt == LABELS[0]], samples=r.samples))
     )

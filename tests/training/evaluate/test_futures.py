@@ -45,7 +45,7 @@ def test_the_table_has_means_and_their_errors() -> None:
     assert "| 2 recorded pairs |" in shown and "| both | 15.0 ± 3.5 | 3.0 ± 0.7 |" in shown
 
 
-def test_a_motion_is_foretold_by_all_methods() -> None:
+def test_a_motion_is_predicted_by_all_methods() -> None:
     past = Duet.from_positions(pair(1.5, frames=30), fps=30.0)
     for foretell in methods(Engine(), steps=1).values():
         futures = foretell(past, "They wave.")

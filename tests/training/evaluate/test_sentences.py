@@ -2,10 +2,6 @@
 
 from __future__ import annotations
 
-import re
-import zlib
-from functools import cache
-
 import numpy as np
 import pytest
 
@@ -13,64 +9,26 @@ from motion.metrics.sentences import kept_out, load_sentences, without_sentences
 from motion.metrics.sentences.joints import Motion
 from motion.metrics.sentences.language import RuleError, check
 from motion.metrics.sentences.stretches import longest, stretches
-from motion.transforms import mirrored
 from training.corpus.captions import FAMILIES, Phrasebook
-from training.corpus.grammar import expand
-from training.corpus.phrases import ACTIONS, ENTRIES
 
+from .fairness import Puppets, captions_of, phrases
 from .puppets import play
 from .sentence_scripts import SCRIPTS
 
 SENTENCES = {sentence.id: sentence for sentence in load_sentences()}
 
 
-@cache
-def puppets(name: str) -> Motion:
-    return Motion(play(SCRIPTS[name], SENTENCES[name].seconds))
+PUPPETS = Puppets(SENTENCES, SCRIPTS)
 
 
 @pytest.mark.parametrize("name", SENTENCES)
-def test_a_puppet_that_does_it_passes(name: str) -> None:
-    found = SENTENCES[name].judge(puppets(name))
-    assert found.passed, [rule for rule, fulfilled in found.parts if not fulfilled]
-
-
-@pytest.mark.parametrize("gap", [0.7, 1.5, 3.0])
-@pytest.mark.parametrize("name", SENTENCES)
-def test_two_who_stand_fail(name: str, gap: float) -> None:
-    assert not SENTENCES[name].judge(Motion(play(f"gap {gap}", SENTENCES[name].seconds))).passed
-
-
-@pytest.mark.parametrize("name", [s.id for s in SENTENCES.values() if s.named])
-def test_the_wrong_person_doing_it_fails(name: str) -> None:
-    assert not SENTENCES[name].judge(puppets(name).swapped()).passed
-
-
-@pytest.mark.parametrize("name", [s.id for s in SENTENCES.values() if not s.named])
-def test_where_nobody_is_named_either_may_do_it(name: str) -> None:
-    assert SENTENCES[name].judge(puppets(name).swapped()).passed
-
-
-@pytest.mark.parametrize("name", [s.id for s in SENTENCES.values() if s.ordered])
-def test_played_backwards_it_fails(name: str) -> None:
-    assert not SENTENCES[name].judge(puppets(name).reversed()).passed
-
-
-@pytest.mark.parametrize("name", [s.id for s in SENTENCES.values() if "side" in s.tags])
-def test_the_other_hand_fails(name: str) -> None:
-    motion = Motion(mirrored(puppets(name).positions))
-    assert not SENTENCES[name].judge(motion).passed
+def test_the_rule_fits_the_words(name: str) -> None:
+    PUPPETS.assert_fair(name)
 
 
 def test_a_rule_turns_most_other_scenes_away() -> None:
-    names = list(SENTENCES)
-    passed = [
-        (name, other)
-        for i, name in enumerate(names)
-        for other in (names[(i + 9 * k) % len(names)] for k in range(1, 9))
-        if SENTENCES[name].judge(puppets(other)).passed
-    ]
-    assert len(passed) < 0.03 * 8 * len(names), passed
+    passed = PUPPETS.passing_others(list(SENTENCES), others=8, stride=9)
+    assert len(passed) < 0.03 * 8 * len(SENTENCES), passed
 
 
 def test_there_are_eighty_and_every_weakness_is_among_them() -> None:
@@ -129,23 +87,14 @@ def test_captions_that_repeat_a_sentence_are_refused() -> None:
 @pytest.mark.parametrize("family", FAMILIES)
 @pytest.mark.parametrize("split", ["train", "test"])
 def test_no_caption_of_the_corpus_is_a_sentence(family: str, split: str) -> None:
-    rng = np.random.default_rng(zlib.crc32(f"{family} {split}".encode()))
-    acts = sorted(ACTIONS)
-    slots = {key: str(rng.choice(acts)) for key in ("act_a", "act_b", "first", "second")}
-    captions = Phrasebook(family).sample(rng, slots, n=40, split=split)
+    captions = captions_of(family, split)
     assert captions or split == "test"
     assert not [caption for caption in captions if kept_out(caption)]
 
 
 def test_phrases_of_the_corpus_hold_no_sentence() -> None:
-    """Whole sentences and keywords of the phrase book, every one, whoever they are said of."""
-    people = {"{A}": "one person", "{B}": "the other"}
-    for entry in ENTRIES.values():
-        for pattern in (*entry.nouns, *entry.sentences, *entry.both, *entry.a, *entry.b):
-            for text in expand(pattern):
-                for mark, word in people.items():
-                    text = text.replace(mark, word)
-                assert kept_out(re.sub(r"\*|\{[^}]*\}", "", text)) is None, text
+    """Whole sentences and keywords of the phrase book, every one, of either person."""
+    assert [text for text in phrases() if kept_out(text)] == []
 
 
 def test_the_grammar_writes_no_caption_that_is_kept_out(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -159,7 +159,7 @@ def test_mean_speeds_are_matched_by_the_mean_of_what_may_follow() -> None:
     assert float(speed) == pytest.approx(1.0, abs=1e-4) and float(acceleration) < 1e-4
     even = ahead.expand_as(real)
     assert all(float(x) < 1e-4 for x in mlp.liveliness(even, real))
-    # In two groups the two who stand are told from the walker and the one beside.
+    # In two groups the two who stand are known from the walker and the one beside.
     assert float(mlp.liveliness(even, real, 2)[0]) == pytest.approx(1.0, abs=1e-4)
     trembling = even * (-1.0) ** torch.arange(11)[:, None, None]
     speed, acceleration = mlp.liveliness(trembling, real)
@@ -184,7 +184,7 @@ def test_pasts_of_its_own_are_the_recorded_ones_where_the_network_is_right(passe
     expected = to_last_pose(windows[:, start : start + 35].numpy(), 9)[0]
     assert made.shape == (2, 35, 22, 3) and np.allclose(made.numpy(), expected, atol=1e-4)
     assert np.allclose(recorded.numpy(), expected, atol=1e-4)
-    # A network that strays is not told where it should have been, but how to go on from where it is.
+    # A network that strays does not learn where it should have been, but how to go on from where it is.
     still, _ = with_own_past(lambda past: past[:, -1:].repeat(1, 25, 1, 1), windows, 10, 25, passes)
     assert np.allclose(still[:, 10:].numpy(), expected[:, 10:], atol=1e-4)
     assert np.abs(np.diff(still[:, :10].numpy(), axis=1)).max() < 1e-4
@@ -264,11 +264,11 @@ def test_the_page_s_predictions_are_scored(tmp_path: Path) -> None:
     save_predictor(tmp_path / "tiny", tiny, kind="mlp", fps=30.0)
     asked = ["--data", str(folder), "--weights", str(tmp_path), "--model", "tiny", "--windows", "4"]
     assert product.main([*asked, "--table", str(page)]) == 0
-    told = page.read_text()
-    assert "| still, mm | 40 | 100 | 200 | 300 | 600 | 1200 | 1800 | 2400 |" in told
-    assert "| tiny, mm |" in told and "still, speed" not in told
-    assert "| first step within the past's largest | 100.0% | 100.0% | 100.0% |" in told
-    assert "| slowest and fastest step over the truth's | 1.00 to 1.00 | 0.00 to 0.00 |" in told
+    text = page.read_text()
+    assert "| still, mm | 40 | 100 | 200 | 300 | 600 | 1200 | 1800 | 2400 |" in text
+    assert "| tiny, mm |" in text and "still, speed" not in text
+    assert "| first step within the past's largest | 100.0% | 100.0% | 100.0% |" in text
+    assert "| slowest and fastest step over the truth's | 1.00 to 1.00 | 0.00 to 0.00 |" in text
     assert product.main([*asked, "--model", "missing"]) == 2
 
 
@@ -288,9 +288,9 @@ def test_every_row_of_the_ablation_is_trained_once_and_scored(
     page = tmp_path / "page.md"
     asked = ["--data", str(cmu_folder), "--out", str(tmp_path / "runs"), "--steps", "1", "--table", str(page)]
     assert ablation.main([*asked, "--only", "a-r", "no-linear", "lean", "past-5"]) == 0
-    told = page.read_text()
+    text = page.read_text()
     for row in ("| La + Lr |", "| the same, convolutions alone |", "| 25 frames of past |", "zero velocity"):
-        assert row in told
+        assert row in text
     configs = {
         path.parents[1].name: json.loads(path.read_text())
         for path in (tmp_path / "runs").glob("*/predictor/config.json")

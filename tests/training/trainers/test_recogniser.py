@@ -90,8 +90,8 @@ def test_the_shell_writes_the_folder_that_is_shipped(
 ) -> None:
     words = ["--corpus", str(corpus), "--out", str(tmp_path / "run"), "--export", str(tmp_path / "agent")]
     assert recogniser.main([*words, "--seen", "known", "--windows", "1", "--batch", "4", "--steps", "2"]) == 0
-    told, answers = map(json.loads, capsys.readouterr().out.splitlines()[-2:])
+    printed, answers = map(json.loads, capsys.readouterr().out.splitlines()[-2:])
     network, source = load_folder(tmp_path / "agent")
     assert network.config.labels == tuple(GESTURES)
-    assert source.meta["test"]["named"] == round(told["named"], 3)
+    assert source.meta["test"]["named"] == round(printed["named"], 3)
     assert answers["scenes"] == 2 and answers["named"] in (0, 0.5, 1) and 1.5 <= answers["stops"] <= 4

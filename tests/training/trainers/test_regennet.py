@@ -10,15 +10,15 @@ from safetensors.torch import load_file
 from models.intergen.compact import CaptionBank, CompactConfig, CompactInterGen
 from models.intergen.compact import save_folder as save_intergen
 from models.intergen.losses import facing
-from models.motion_tokens import FEATURES, TokenLayout, decode, encode
+from models.motion_tokens import FEATURES, TokenLayout, decode, encode, mirror_control
 from models.regennet.compact import load_folder
 from models.weights_io import save_network
 from motion import SMPL22, InputError
 from training import prepare
 from training.prepare import Scenes
 from training.trainers import regennet
-from training.trainers.regennet import Settings, Trainer, distance_loss, interaction_loss
-from training.trainers.regennet_data import cropped, knot_positions, seen_rows
+from training.trainers.regennet import Settings, Trainer, apart_loss, distance_loss, interaction_loss
+from training.trainers.regennet_data import Conditions, at_the_origin, knot_positions, seen_rows
 
 SETTINGS = Settings(latent_dim=16, ff_size=16, num_layers=1, num_heads=2, batch=4, steps=6, warmup=2)
 SIZES = [
@@ -69,7 +69,7 @@ def words(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 def test_a_cropped_scene_begins_with_the_actor_at_the_origin(scenes: Scenes) -> None:
     whole = scenes.scene(scenes.rows[2])
-    late = cropped(whole, 4)
+    late = at_the_origin(whole[:, 4:])
     before, after = knot_positions(whole[:, 4:]), knot_positions(late)
     pelvis, ahead = after[0, 0, 0], facing(after[0, :1])
     torch.testing.assert_close(pelvis[[0, 2]], torch.zeros(2), atol=1e-5, rtol=0)
@@ -185,3 +185,74 @@ def test_init_begins_with_a_shipped_network(scenes: Scenes, words: Path, tmp_pat
     wider = replace(SETTINGS, latent_dim=32)
     with pytest.raises(InputError, match="of one size"):
         Trainer(scenes, wider, tmp_path / "c", words=words, init=tmp_path / "shipped")
+
+
+def test_mirrored_and_cropped_batches_hold_the_scenes_words_and_poses(
+    scenes: Scenes, words: Path, tmp_path: Path
+) -> None:
+    """Each drawn scene is a corpus scene, or its mirror image with the mirrored words, from its start or later."""
+    data = Trainer(scenes, replace(SETTINGS, crop=0.5), tmp_path, words=words).data
+    captions = data.captions()
+    assert captions == ["One person waves the left hand.", "One person waves the right hand."]
+    known = Conditions.__new__(Conditions)
+    known.vectors = torch.arange(2.0)[:, None]
+    seen = set()
+    for step in range(6):
+        batch = data.batch(step, known)
+        for i in range(4):
+            mirrored = bool(batch.words[i, 0])
+            rows = int(batch.rows[i])
+            assert batch.mask[i].sum() == rows
+            two = torch.stack([batch.actor[i, :rows], batch.reactor[i, :rows]])
+            found = []
+            for row in scenes.rows:
+                whole = scenes.scene(row)
+                whole = mirror_control(whole, SMPL22.mirror) if mirrored else whole
+                late = whole[:, whole.shape[1] - rows :]
+                if len(late[0]) == rows:
+                    found.append(at_the_origin(late) if batch.cropped[i] else late)
+            assert min(float((two - one).abs().max()) for one in found) < 1e-3
+            torch.testing.assert_close(
+                batch.reactor[i, rows:],
+                batch.reactor[i, rows - 1 : rows].expand(len(batch.reactor[i]) - rows, -1),
+            )
+            seen.add((mirrored, bool(batch.cropped[i])))
+    assert len(seen) == 4
+
+
+def test_the_past_becomes_the_networks_own_from_a_step_on(
+    scenes: Scenes, words: Path, tmp_path: Path
+) -> None:
+    settings = replace(SETTINGS, own=1.0, own_after=2, own_growth=2, offline=0.0)
+    straight = Trainer(scenes, settings, tmp_path / "a", words=words)
+    assert [share(straight, step) for step in range(5)] == [0, 0, 0.5, 1, 1]
+    # A network that predicts the mean is near the still people of these scenes.
+    assert straight.train_step()["own"] == straight.train_step()["own"] == 0
+    straight.train_step()
+    assert straight.train_step()["own"] > 0
+    straight.save()
+    take(Trainer(scenes, settings, tmp_path / "b", words=words), 3)
+    take(Trainer(scenes, settings, tmp_path / "b", words=words), 1)
+    one, other = (load_file(tmp_path / run / "last.safetensors") for run in "ab")
+    assert [key for key in one if not torch.equal(one[key], other[key])] == []
+    offline = Trainer(scenes, replace(settings, offline=1.0, own_after=0), tmp_path / "c", words=words)
+    assert offline.train_step()["own"] == 0, "offline every row sees all of the actor"
+
+
+def share(trainer: Trainer, step: int) -> float:
+    trainer.step, kept = step, trainer.step
+    found = trainer.own_share()
+    trainer.step = kept
+    return found
+
+
+def test_only_coming_nearer_than_the_recorded_pelvis_is_walking_through() -> None:
+    rest = torch.tensor(SMPL22.rest_positions()).float()
+    actor, mask = rest.expand(1, 2, -1, -1), torch.ones(1, 2)
+
+    def at(gap: float) -> torch.Tensor:
+        return (rest + torch.tensor([0.0, 0.5, gap])).expand_as(actor)
+
+    assert apart_loss(at(0.6), at(1.5), actor, mask) == 0
+    assert apart_loss(at(0.3), at(0.25), actor, mask) == 0, "they hug"
+    torch.testing.assert_close(apart_loss(at(0.05), at(1.5), actor, mask), torch.tensor([0.16]))

@@ -268,8 +268,8 @@ def test_scores_count_by_check_and_family() -> None:
     assert found["physical"]["bone_drift"] == pytest.approx(0, abs=1e-3)
     shown = table({"generated": found, "real": found, "other": found, "about": "Two."})
     assert "50 % (1/2; 9–91 %)" in shown and "by hand" not in shown
-    told = table({"generated": found, "real": found, "other": found, "everyday": found, "about": "Two."})
-    assert told.startswith(shown) and "| 2 sentences written by hand |" in told
+    page = table({"generated": found, "real": found, "other": found, "everyday": found, "about": "Two."})
+    assert page.startswith(shown) and "| 2 sentences written by hand |" in page
 
 
 def test_command_scores_real_motion_and_writes_both_files(
