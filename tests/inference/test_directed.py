@@ -97,6 +97,18 @@ def test_a_single_pose_moves_only_what_is_near_it() -> None:
     np.testing.assert_allclose(found[0, away], made[0, away], atol=1e-6)
 
 
+def test_poses_in_a_row_are_led_through_as_they_are(monkeypatch: pytest.MonkeyPatch) -> None:
+    """A bystander's poses, one every half second, leave nothing to smooth; a pose by itself does."""
+    smoothed: list[list[int]] = []
+    monkeypatch.setattr(
+        "webdemo.inference.directed.passing", lambda made, at, *_: smoothed.append(at.tolist()) or made
+    )
+    made = np.stack([walker(), walker(speed=0.8)]).astype(np.float32)
+    row = [KnownFrames(0, [20, 35, 50], made[0, [20, 35, 50]]), KnownFrames(1, [30], made[1, 30:31])]
+    Directed(FRAMES, None, parts=row).duet(made, lambda person: person)
+    assert smoothed == [[30]]
+
+
 def test_a_difference_in_speed_fades_without_a_jolt() -> None:
     """A past that moves on leads into what was made with no jump of speed."""
     made = np.zeros((60, 22, 3))

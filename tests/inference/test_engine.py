@@ -1,6 +1,8 @@
 """The engine's promises: true steps, one result, cancel within a step, same bytes for the same request."""
 
 import shutil
+import threading
+import time
 from dataclasses import replace
 from pathlib import Path
 
@@ -170,3 +172,14 @@ def test_missing_or_altered_weights_are_refused(
         file.write_bytes(data)
     with pytest.raises(InputError, match="restore"):
         list(Engine(copy).run(REQUEST))
+
+
+def test_two_threads_warm_up_once(monkeypatch: pytest.MonkeyPatch) -> None:
+    engine, runs = Engine(), []
+    monkeypatch.setattr(engine, "run", lambda request: (time.sleep(0.1), runs.append(request), iter(()))[2])
+    threads = [threading.Thread(target=engine.warm_up) for _ in range(2)]
+    for thread in threads:
+        thread.start()
+    for thread in threads:
+        thread.join()
+    assert len(runs) == 1

@@ -6,7 +6,8 @@ from motion import SMPL22
 from motion.kinematics import fit_rotations, forward_kinematics
 from motion.skeleton import FEET
 from motion.transforms import heading_matrix
-from webdemo.inference.joining import REACH, closed, joined
+from webdemo.inference.directed import with_given
+from webdemo.inference.joining import PASSING, REACH, closed, joined, passing
 
 PARENTS, CHILDREN = np.array(SMPL22.bones).T
 FRAMES = 90
@@ -48,6 +49,27 @@ def test_a_foot_that_stands_at_given_frames_stays_there() -> None:
     standing = np.repeat((SMPL22.rest_positions() + np.array([0, 0.98, 0]))[None], FRAMES, axis=0)
     feet = joined(standing + np.array([0.06, 0, 0]), np.arange(30), standing[:30])[:, list(FEET)]
     assert np.abs(feet - standing[:1, list(FEET)])[..., 0].max() < 0.02
+
+
+def test_a_single_pose_is_passed_through_without_a_jolt() -> None:
+    """An arm that is straight one frame and bent the next, as clean-up leaves it where bones were too short."""
+    pose = mover()[45]
+    shoulder, elbow, wrist = (SMPL22.index(f"right_{part}") for part in ("shoulder", "elbow", "wrist"))
+    for joint, before in ((elbow, shoulder), (wrist, elbow)):
+        pose[joint] = pose[before] + np.array([0, SMPL22.bone_lengths[joint], 0])  # straight up
+    made, fixed = mover(), np.arange(FRAMES) < 20
+    for joint, before in ((elbow, shoulder), (wrist, elbow)):
+        made[46:50, joint] = made[46:50, before] + [0, -SMPL22.bone_lengths[joint], 0]
+    alone = with_given(made, np.array([45]), pose[None])
+    found = passing(made, np.array([45]), pose[None], fixed)
+    np.testing.assert_allclose(found[45], pose, atol=1e-9)
+    away = np.abs(np.arange(FRAMES) - 45) > PASSING
+    np.testing.assert_allclose(found[away | fixed], made[away | fixed], atol=1e-9)
+    np.testing.assert_allclose(lengths(found[40:45]), lengths(made[40:45]), atol=1e-6)
+    assert jerk(found)[35:55].max() < 0.3 * jerk(alone)[35:55].max()
+    # Poses and given frames that are neighbours: what is held stays.
+    close = passing(made, np.array([22, 45]), np.stack([made[22], pose]), fixed)
+    np.testing.assert_allclose(close[:20], made[:20], atol=1e-9)
 
 
 def test_a_loop_closes_in_place_and_speed_and_keeps_what_is_fixed() -> None:

@@ -8,12 +8,13 @@ import numpy as np
 import pytest
 
 from motion import InputError
-from motion.transforms import heading_matrix
+from motion.transforms import heading, heading_matrix
 from webdemo.inference.engine import Engine
 from webdemo.inference.pipelines import live_partner
 from webdemo.inference.pipelines.agent import BETWEEN, FIRST, Eye, Look
-from webdemo.inference.pipelines.live_agent import ANSWER, IGNORED, LiveAgent
+from webdemo.inference.pipelines.live_agent import ANSWER, BACK, BESIDE, IGNORED, LEAVES, LEFT, LiveAgent
 from webdemo.inference.pipelines.live_partner import ReactingPartner
+from webdemo.inference.pipelines.steering import Goal, Steering
 
 from .people import waver
 from .test_reactor import bones_off, engine, folder
@@ -128,13 +129,15 @@ class Recorded:
     def __init__(self) -> None:
         self.frame = 0
         self.words: list[tuple[int, str]] = []
+        self.goal: Goal | None = None
+        self.steering = Steering()
 
     def take_words(self, prompt: str) -> None:
         self.words.append((self.frame, prompt))
 
     def step(self, pose: np.ndarray) -> np.ndarray:
         self.frame += 1
-        return STANDING @ heading_matrix(np.pi).T + [0, 0, 1.5]
+        return self.steering(STANDING @ heading_matrix(np.pi).T + [0, 0, 1.5], self.goal)
 
 
 STANDING = waver(1.0).positions[0] @ heading_matrix(-np.radians(50)).T
@@ -145,7 +148,7 @@ NOTHING, MAYBE, WAVE, BOW = (1.0, 0.0, 0.0), (0.1, 0.5, 0.4), (0.02, 0.95, 0.03)
 def watched(
     *rows: tuple[float, ...], frames: int, turned: int | None = None
 ) -> tuple[LiveAgent, Recorded, list[str]]:
-    """The agent after it has watched somebody, what it was told, and its state in every frame."""
+    """The agent after it has watched somebody, what it was given, and its state in every frame."""
     partner = Recorded()
     agent = LiveAgent(Scripted(*rows), partner)  # type: ignore[arg-type]
     states = []
@@ -194,3 +197,53 @@ def test_somebody_who_turns_away_is_waited_for() -> None:
     assert partner.words[-1][1] == SENTENCES[0]
     first = states.index("ignored")
     assert IGNORED <= first + 1 - (FIRST + 2 * BETWEEN) <= IGNORED + BETWEEN
+
+
+def test_the_agent_looks_at_the_person_until_it_answers() -> None:
+    _, partner, _ = watched(MAYBE, frames=30)
+    assert partner.goal is not None and not partner.goal.away and partner.goal.look
+    np.testing.assert_array_equal(partner.goal.towards, STANDING[0])
+    agent, partner, _ = watched(WAVE, frames=FIRST + 3 * BETWEEN)
+    assert agent.gesture is not None and partner.goal is None
+
+
+def test_the_agent_leaves_who_ignores_it_and_comes_back() -> None:
+    partner = Recorded()
+    agent = LiveAgent(Scripted(NOTHING), partner)  # type: ignore[arg-type]
+    turned = STANDING @ heading_matrix(np.pi).T
+    apart, states = [], []
+    for index in range(800):
+        shown = agent.step(turned if 30 <= index < 500 else STANDING)
+        apart.append(np.linalg.norm((shown[0] - STANDING[0])[[0, 2]]))
+        states.append(agent.belief.state)
+    assert states[29] == "watches" and "ignored" in states[30 : 30 + LEAVES]
+    assert np.ptp(apart[: 30 + LEAVES]) < 1e-9, "at first it waits"
+    assert states[499] == "left"
+    assert apart[499] == pytest.approx(1.5 + LEFT, abs=0.2), "it goes, but not for ever"
+    assert "left" in states[500 : 500 + BACK] and states[-1] == "watches"
+    assert BESIDE - 0.2 < apart[-1] <= BESIDE
+
+
+@pytest.mark.usefixtures("short_segments")
+def test_a_partner_that_has_turned_answers_without_a_jump(engine: Engine) -> None:
+    """New words while the partner is turned: what is shown goes on, and in the end is the network's own again."""
+    person = np.repeat(waver(1.0).positions[:1], 200, axis=0)
+
+    def steps(*, turned: bool) -> float:
+        partner = engine.partner("regennet", seed=1)
+        assert isinstance(partner, ReactingPartner)
+        made, left = [], []
+        for index, pose in enumerate(person):
+            partner.goal = Goal(pose[0] + [4.0, 0, 0]) if turned and index < 100 else None
+            if index == 100:
+                partner.take_words("Two people wave.")
+            made.append(partner.step(pose))
+            left.append(abs(partner._steering.yaw))
+        whole = np.stack(made)
+        if turned:
+            assert abs(heading(whole[99:100])[0] - np.pi / 2) < np.radians(60), "it has turned to the side"
+            assert max(left[:100]) > 0.2 and min(left[150:]) < 1e-6, "and gives the turn back"
+        assert np.isfinite(whole).all() and bones_off(whole) < 1e-6
+        return float(np.linalg.norm(np.diff(whole, axis=0), axis=-1)[5:].max())
+
+    assert steps(turned=True) < steps(turned=False) + 0.12, "12 cm a frame: a foot in the middle of its step"

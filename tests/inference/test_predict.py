@@ -129,7 +129,7 @@ def test_other_frame_rates_are_resampled(predicting: Engine) -> None:
 
 
 @pytest.mark.parametrize(
-    ("asked", "told"),
+    ("asked", "sentence"),
     [
         ({"marker": 0.4}, "The past is 0.40 s long, and 1 s or more is needed: move the marker"),
         ({"marker": 5.0}, "The marker, 5 s, is after the end of the motion, which lasts 3.00 s."),
@@ -149,10 +149,10 @@ def test_other_frame_rates_are_resampled(predicting: Engine) -> None:
         ({"motion": Clip(np.zeros((60, 15, 3)), 30.0, SBU15)}, "not SMPL's 22"),
     ],
 )
-def test_what_cannot_be_predicted_is_one_sentence(asked: dict, told: str) -> None:
+def test_what_cannot_be_predicted_is_one_sentence(asked: dict, sentence: str) -> None:
     with pytest.raises(InputError) as error:
         PredictRequest(**{"motion": walker()} | asked)
-    assert told in str(error.value) and "\n" not in str(error.value)
+    assert sentence in str(error.value) and "\n" not in str(error.value)
 
 
 def test_teleporting_joints_are_refused_where_they_are_looked_at() -> None:
@@ -254,8 +254,8 @@ def test_the_shell_writes_one_person(
     out = tmp_path / "future.bvh"
     ask = ["predict", "--past", str(past)]
     assert cli.main([*ask, "--marker", "2", "--seconds", "1", "--out", str(out)]) == 0
-    told = json.loads(capsys.readouterr().out.splitlines()[-1])
-    assert told["files"] == [str(out)] and told["past_frames"] == 60 and len(told["error"]) == 30
+    answer = json.loads(capsys.readouterr().out.splitlines()[-1])
+    assert answer["files"] == [str(out)] and answer["past_frames"] == 60 and len(answer["error"]) == 30
     motion = read(out)
     assert isinstance(motion, Clip) and motion.num_frames == 90
     glb = out.with_suffix(".glb")

@@ -53,7 +53,7 @@ def test_the_reaction_differs_by_seed_by_actor_and_by_words(engine: Engine) -> N
     other = waver()
     bent = other.positions + np.linspace(0, 0.5, other.num_frames)[:, None, None] * np.array([0, 0, 1.0])
     other_actor = other.with_positions(bent)
-    # The tiny network hardly heeds what it is told, but it does.
+    # The tiny network hardly heeds what it is given, but it does.
     for least, change in (
         (0.01, {"seed": 8}),
         (1e-3, {"actor": other_actor}),
@@ -189,13 +189,13 @@ def test_the_manifest_names_the_actor_without_the_motion(engine: Engine) -> None
     import json
 
     manifest = react(engine, steps=1).manifest
-    told = manifest["request"]
-    assert told["kind"] == "react"
-    assert told["actor"]["name"] == "waver"
-    assert told["actor"]["frames"] == 60
-    assert len(told["actor"]["sha256"]) == 64
+    asked = manifest["request"]
+    assert asked["kind"] == "react"
+    assert asked["actor"]["name"] == "waver"
+    assert asked["actor"]["frames"] == 60
+    assert len(asked["actor"]["sha256"]) == 64
     assert len(json.dumps(manifest)) < 2000
-    assert react(engine, steps=1, actor=waver(3.0)).manifest["request"]["actor"] != told["actor"]
+    assert react(engine, steps=1, actor=waver(3.0)).manifest["request"]["actor"] != asked["actor"]
 
 
 def spoiled(value: float) -> Clip:

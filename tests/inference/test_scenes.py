@@ -10,7 +10,7 @@ import torch
 from motion import Duet
 from webdemo.inference import Cancelled, CancelToken, Engine, GenerateRequest, Result, SceneRequest
 from webdemo.inference.batch import run_batch
-from webdemo.inference.pipelines.scene import WindowRequest
+from webdemo.inference.pipelines.scene import TAIL, WindowRequest
 from webdemo.inference.story import Beat, FloorPath, FloorPoint, Pose, SceneProgress
 from webdemo.inference.story.request import as_scene
 
@@ -54,6 +54,23 @@ def test_one_beat_is_what_plain_generation_gives(engine: Engine) -> None:
 def test_windows_join_without_a_jump(story: Result) -> None:
     step = np.linalg.norm(np.diff(positions(story), axis=1), axis=-1).max((0, 2))
     assert step[[59, 134]].max() < 2 * np.percentile(step, 95) + 0.01
+
+
+def test_a_window_that_another_follows_is_made_longer_and_cut(
+    engine: Engine, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    lengths, pipeline = [], engine.pipeline("intergen")
+    inner = pipeline.run
+
+    def run_and_note(asked: Any, *rest: Any) -> Any:
+        if isinstance(asked, WindowRequest):
+            lengths.append(round(30 * asked.seconds))
+        return inner(asked, *rest)
+
+    monkeypatch.setattr(pipeline, "run", run_and_note)
+    found = run(engine, SceneRequest(beats=(*BEATS[:2], Beat("They bow.", seconds=9.0)), seed=99, **QUICK))
+    assert lengths == [60 + TAIL, 48 + 75 + TAIL, 48 + 135 + TAIL, 48 + 135]
+    assert positions(found).shape[1] == 60 + 75 + 270
 
 
 def test_parts_that_did_not_change_are_not_made_again(engine: Engine, story: Result) -> None:

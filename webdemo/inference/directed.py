@@ -18,7 +18,7 @@ from models.known import Hold, Known
 from motion import SMPL22, Duet, InputError
 
 from .actor import FPS
-from .joining import joined
+from .joining import PASSING, joined, passing
 from .scenes import Finish, Scene
 
 Array = NDArray[np.floating]
@@ -86,6 +86,11 @@ class Directed(Scene):
                 runs = np.isin(at + 1, at) | np.isin(at - 1, at)  # a single pose says nothing about speed
                 if runs.any():
                     people[person] = joined(people[person], at[runs], wanted[runs])
+                apart = np.abs(at[:, None] - at[~runs])
+                alone = ~runs & (np.sum(apart <= 2 * PASSING, axis=1) == 1)  # a series says how people move
+                if alone.any():
+                    held = np.isin(np.arange(len(people[person])), at)
+                    people[person] = passing(people[person], at[alone], wanted[alone], held)
                 people[person] = with_given(people[person], at, wanted)
         return super().duet(np.stack(people), lambda person: person)
 

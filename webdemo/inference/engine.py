@@ -23,6 +23,7 @@ from motion import Duet, InputError
 from . import methods
 from .cancel import CancelToken
 from .live import LiveFrame
+from .live_take import LiveTake
 from .method import Pipeline
 from .methods import WEIGHTS
 from .own.classes import fenced
@@ -32,7 +33,7 @@ from .requests import GenerateRequest, Progress, ReactRequest, Result, SamplingR
 from .story.request import SceneRequest
 from .timer import StageTimer
 
-Request = GenerateRequest | ReactRequest | PredictRequest | SceneRequest
+Request = GenerateRequest | ReactRequest | PredictRequest | SceneRequest | LiveTake
 
 
 class Engine:
@@ -50,6 +51,7 @@ class Engine:
         self._loading: dict[str, threading.RLock] = {}
         self._pipelines: dict[str, Pipeline] = {}
         self._warm: set[str] = set()
+        self._warming = threading.Lock()
 
     @property
     def ready(self) -> bool:
@@ -57,9 +59,14 @@ class Engine:
         return SamplingRequest.model in self._pipelines
 
     def warm_up(self) -> None:
-        """Loads the default network and runs one step, which makes the first request fast."""
-        for _ in self.run(GenerateRequest(prompt="Two people wave.", seconds=2.0, steps=1, damping=0.0)):
-            pass
+        """Loads the default network and runs one step, which makes the first request fast; once."""
+        with self._warming:
+            if SamplingRequest.model not in self._warm:
+                for _ in self.run(
+                    GenerateRequest(prompt="Two people wave.", seconds=2.0, steps=1, damping=0.0)
+                ):
+                    pass
+                self._warm.add(SamplingRequest.model)
 
     def info(self) -> dict[str, Any]:
         """Name, summary and figures of the default model, read from its folder; loads no network."""
@@ -92,7 +99,11 @@ class Engine:
         _take_threads(pipeline)
         timer.lap("load", timer.began)
         cancel.raise_if_cancelled()
-        for event in pipeline.run(request, cancel, timer, **options):
+        if isinstance(request, LiveTake):  # its motion is there
+            events = request.results(timer)
+        else:
+            events = pipeline.run(request, cancel, timer, **options)
+        for event in events:
             if isinstance(event, Result):
                 manifest = _manifest(request, pipeline)
                 duets = tuple(
@@ -149,13 +160,14 @@ class Engine:
         with loading:  # of this method alone: no model waits for another one's loading
             if name not in self._pipelines:
                 parts = [self.pipeline(needed) for needed in found.needs]
+                _take_threads()
                 made = found.load(self.weights / (found.weights or name), *parts)
                 self._pipelines[name] = made if found in methods.BUILT_IN else fenced(made, name)
             return self._pipelines[name]
 
 
-def _take_threads(pipeline: Pipeline) -> None:
-    """Sets PyTorch's threads for a run that begins in this thread."""
+def _take_threads(pipeline: Pipeline | None = None) -> None:
+    """Sets PyTorch's threads for a run that begins in this thread, or for loading."""
     from .threads import take_threads  # needs PyTorch, which the engine itself does not
 
     take_threads(plain_denoiser=not getattr(pipeline, "compiled", True))

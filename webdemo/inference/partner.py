@@ -26,8 +26,8 @@ class Belief:
     """A partner's view of the person at this moment.
 
     Attributes:
-        state: "follows" for a partner who does not recognise anything; otherwise "watches", "answers" or
-            "ignored".
+        state: "follows" for a partner who does not recognise anything; otherwise "watches", "answers",
+            "ignored" or "left".
         text: a sentence about it.
         chances: the likeliest gestures with their probabilities, the likeliest first.
     """

@@ -132,6 +132,16 @@ class GenerateRequest(SamplingRequest):
         return {"kind": "generate", **asdict(self)}
 
 
+def clip_facts(clip: Clip) -> dict[str, Any]:
+    """A person's motion in a manifest: its name, length and the SHA-256 that represents its positions."""
+    return {
+        "name": clip.name[:100],
+        "frames": clip.num_frames,
+        "fps": clip.fps,
+        "sha256": hashlib.sha256(np.ascontiguousarray(clip.positions).tobytes()).hexdigest(),
+    }
+
+
 @dataclass(frozen=True, kw_only=True)
 class ReactRequest(SamplingRequest):
     """Generates a second person for a given one.
@@ -202,14 +212,7 @@ class ReactRequest(SamplingRequest):
         plain = {f.name: getattr(self, f.name) for f in fields(self) if f.name not in ("actor", "first_pose")}
         if self.first_pose is not None:
             plain["first_pose"] = np.asarray(self.first_pose).tolist()
-        clip = self.actor
-        actor = {
-            "name": clip.name[:100],
-            "frames": clip.num_frames,
-            "fps": clip.fps,
-            "sha256": hashlib.sha256(np.ascontiguousarray(clip.positions).tobytes()).hexdigest(),
-        }
-        return {"kind": "react", "actor": actor, **plain}
+        return {"kind": "react", "actor": clip_facts(self.actor), **plain}
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -11,6 +11,7 @@ from pathlib import Path
 
 import torch
 
+import models.compiled  # noqa: F401  # reads PyTorch's default as well, before it is changed here
 from motion.cores import usable_cores
 
 CORES = min(torch.get_num_threads(), usable_cores())

@@ -96,8 +96,8 @@ def test_a_method_of_two_files_is_everywhere(
         cli.main(["generate", "--prompt", "Sway.", "--model", "toy", "--seconds", "2", "--out", str(out)])
         == 0
     )
-    told = json.loads(capsys.readouterr().out.splitlines()[-1])
-    assert told["manifest"]["model"] == "toy" and told["manifest"]["request"]["steps"] == 3
+    printed = json.loads(capsys.readouterr().out.splitlines()[-1])
+    assert printed["manifest"]["model"] == "toy" and printed["manifest"]["request"]["steps"] == 3
     assert read(out).num_frames == 60
 
     # in the API

@@ -43,7 +43,7 @@ def test_every_clause_has_its_person(sentence: str, found: list[tuple[str, str]]
     assert [(clause.who, clause.words) for clause in clauses(sentence)] == found
 
 
-def test_what_goes_on_at_once_is_told_from_what_follows() -> None:
+def test_what_goes_on_at_once_differs_from_what_follows() -> None:
     assert [clause.at_once for clause in clauses("A man waits while a woman sings, and then he leaves.")] == [
         False, True, False,
     ]  # fmt: skip

@@ -5,7 +5,7 @@ import pytest
 from webdemo.inference.story.moves import Way, goes, moves
 
 
-def told(sentence: str) -> str:
+def moves_of(sentence: str) -> str:
     return " ".join(f"{move.person}:{move.way.name.lower()}" for move in moves(sentence))
 
 
@@ -53,7 +53,7 @@ def told(sentence: str) -> str:
     ],
 )
 def test_words_send_people_where_they_say(sentence: str, found: str) -> None:
-    assert told(sentence) == found
+    assert moves_of(sentence) == found
 
 
 def test_speed_and_turns_follow_from_the_words() -> None:
@@ -70,11 +70,11 @@ def test_speed_and_turns_follow_from_the_words() -> None:
 
 
 def test_who_is_on_the_ground_is_not_held_in_place() -> None:
-    assert told("Person A sits on the floor while person B walks past.") == "b:past"
+    assert moves_of("Person A sits on the floor while person B walks past.") == "b:past"
 
 
 def test_a_halt_is_a_move_but_sends_nobody_away() -> None:
-    assert told("Both stop.") == "a:stay b:stay" and not goes(moves("Both stop."))
+    assert moves_of("Both stop.") == "a:stay b:stay" and not goes(moves("Both stop."))
 
 
 def test_until_ends_what_went_on_before() -> None:

@@ -1,4 +1,4 @@
-"""What a scene may ask for, and what it is told where it asks for too much."""
+"""What a scene may ask for, and the sentence where it asks for too much."""
 
 import itertools
 import json
@@ -112,8 +112,8 @@ def test_a_request_comes_back_from_its_dictionary() -> None:
     request = SceneRequest(
         beats=(WAVE, Beat(a="bows")), paths=(path((0, 0, 0), (2, 1, 1)),), poses=(pose,), seed=3
     )
-    told = json.loads(json.dumps(request.to_dict()))
-    assert SceneRequest.from_dict(told).to_dict() == request.to_dict()
+    written = json.loads(json.dumps(request.to_dict()))
+    assert SceneRequest.from_dict(written).to_dict() == request.to_dict()
     span = SceneRequest(beats=(WAVE,), motion=still(), start=1.0, end=4.0)
     assert SceneRequest.from_dict(span.to_dict(), still()).to_dict() == span.to_dict()
 

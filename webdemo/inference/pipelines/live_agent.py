@@ -3,7 +3,8 @@
 Every half second it takes the last second of the person, predicts two more and recognises the gesture (see
 :mod:`.agent`). Until it is sure, it stands with the person. When it is sure, the online ReGenNet receives the
 sentence of the gesture and answers frame by frame; the thesis plays a prerecorded motion instead. A second gesture
-interrupts the answer, and a person who turns away ends it.
+interrupts the answer, and a person who turns away ends it. While it does not answer, the agent turns to the person and
+looks at them; it leaves somebody who turns their back on it for long, and comes back when they turn round.
 """
 
 from __future__ import annotations
@@ -20,6 +21,7 @@ from webdemo.inference.partner import Belief
 
 from .agent import BETWEEN, FIRST, Decision, Eye, Look
 from .live_partner import ReactingPartner
+from .steering import Goal
 
 Array = NDArray[np.floating]
 
@@ -33,6 +35,14 @@ AWAY = -0.2
 """Cosine between the person's direction and the way to the agent below which the person looks away."""
 IGNORED = 45
 """Frames of looking away after which the agent counts as ignored."""
+LEAVES = 180
+"""Frames of looking away after which the agent leaves."""
+BACK = 20
+"""Frames of not looking away after which an agent that has left comes back."""
+LEFT, FARTHEST = 2.0, 5.0
+"""Metres that the agent goes when it leaves, and metres from the person beyond which it goes no further."""
+BESIDE = 2.0
+"""Metres from the person up to which it comes back."""
 SHOWN = 3
 """Gestures that are named with their probabilities."""
 
@@ -53,7 +63,10 @@ class LiveAgent:
         self.gesture: int | None = None
         self._seen: deque[Array] = deque(maxlen=OBSERVED)
         self._looks: deque[Look] = deque(maxlen=MEMORY)
-        self._away = 0
+        self._away = self._met = 0
+        self._gone = self._returns = False
+        self._until = FARTHEST
+        self._shown: Array | None = None
         self._began = 0
         self.belief = Belief("watches", "The agent watches.")
 
@@ -61,20 +74,39 @@ class LiveAgent:
         """See :class:`webdemo.inference.partner.LivePartner`."""
         self.frame += 1
         self._seen.append(np.asarray(pose, dtype=np.float64))
-        shown = self.partner.step(pose)
-        self._away = self._away + 1 if _looks_away(pose, shown) else 0
+        self.partner.goal = self._goal(self._seen[-1])
+        shown = self._shown = self.partner.step(pose)
+        away = _looks_away(pose, shown)
+        self._away, self._met = (self._away + 1, 0) if away else (0, self._met + 1)
         if self.frame >= FIRST and (self.frame - FIRST) % BETWEEN == 0:
             self._look()
         return shown
+
+    def _goal(self, pose: Array) -> Goal | None:
+        """The place to which the agent turns and goes by itself; none while it answers."""
+        if self._shown is None or self.gesture is not None:
+            self._returns = False
+            return None
+        apart = float(np.linalg.norm((pose[0] - self._shown[0])[[0, 2]]))
+        if self._away == LEAVES:
+            self._gone, self._until = True, min(apart + LEFT, FARTHEST)
+        if self._gone and self._met >= BACK:
+            self._gone, self._returns = False, True
+        if self._gone:
+            return Goal(pose[0], away=True, walk=apart < self._until)
+        self._returns = self._returns and apart > BESIDE
+        return Goal(pose[0], walk=self._returns)
 
     def _look(self) -> None:
         """Takes a look, and begins, changes or ends the answer from the next frame on."""
         (look,) = self.eye.looks(np.stack(self._seen))
         self._looks.append(Look(self.frame, look.chances))
-        if self._away >= IGNORED:
+        if self._away >= IGNORED or self._gone:
             self._looks.clear()
             self._rest()
-            self.belief = Belief("ignored", "The person looks away, so the agent waits.")
+            left = Belief("left", "The person has looked away for long, so the agent leaves.")
+            waits = Belief("ignored", "The person looks away, so the agent waits.")
+            self.belief = left if self._gone else waits
             return
         decision = self.eye.decide(list(self._looks))
         if decision.sure and decision.place is not None:

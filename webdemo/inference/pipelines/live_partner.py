@@ -17,6 +17,7 @@ from torch import Tensor
 
 from models.motion_tokens import FEATURES
 from motion import SMPL22, Clip
+from motion.transforms import turn
 from webdemo.inference.actor import FPS, Placement
 from webdemo.inference.following import FollowingCleanup
 from webdemo.inference.noise import sample_noise
@@ -25,6 +26,7 @@ from webdemo.inference.requests import ReactRequest
 from webdemo.inference.threads import take_threads
 
 from .regennet import ReGenNetPipeline, settle
+from .steering import Goal, Steering
 
 Array = NDArray[np.floating]
 
@@ -104,6 +106,9 @@ class ReactingPartner:
         prompt: what the two people do, or nothing.
         seed: of the noise.
         guidance: scale of the classifier-free guidance on the prompt.
+
+    Attributes:
+        goal: where the partner turns and goes by itself, beside what the network has it do; None for nowhere.
     """
 
     belief = Belief("follows", "")
@@ -117,6 +122,7 @@ class ReactingPartner:
         guidance: float = ReactRequest.guidance,
     ) -> None:
         self.pipeline, self.guidance, self.seed = pipeline, guidance, seed
+        self.goal: Goal | None = None
         self._conditions: dict[str, Tensor] = {}
         self.take_words(prompt)
         self._person: deque[Array] = deque(maxlen=REPLAY)
@@ -129,6 +135,7 @@ class ReactingPartner:
         self._person.clear()
         self._shown.clear()
         self._clean = FollowingCleanup()
+        self._steering = Steering()
         self._now: Segment | None = None
         self._next: Segment | None = None
         self._replay: deque[Array] = deque()
@@ -151,7 +158,7 @@ class ReactingPartner:
         raw, contacts = self._now.step(pose)
         raw = raw + settle(self._off, np.array([self._settled]))[0, 0]
         self._settled += 1
-        shown = self._clean(raw, contacts)
+        shown = self._steering(self._clean(raw, contacts), self.goal)
         kept_off = self._kept_off(shown, pose)
         shown = shown + kept_off
         self._person.append(pose)
@@ -185,7 +192,11 @@ class ReactingPartner:
         for _ in range(min(CATCH_UP, len(self._replay))):
             raw, _ = self._next.step(self._replay.popleft())
         if not self._replay:
-            self._off, self._settled = self._shown[-1] - raw, 1
+            shown = self._shown[-1]
+            if not self._steering.idle:  # what it has turned and gone is no error of the new segment's pose
+                self._steering.takes_over(raw, shown)
+                raw, shown = raw - raw[0] * _FLAT, turn(shown - shown[0] * _FLAT, -self._steering.yaw)
+            self._off, self._settled = shown - raw, 1
             self._now, self._next = self._next, None
 
     def _kept_off(self, raw: Array, pose: Array) -> Array:

@@ -29,7 +29,7 @@ from webdemo.inference.directed import Directed, KnownFrames, Part, directed
 from webdemo.inference.joining import closed
 from webdemo.inference.requests import GenerateRequest, Progress, Result
 from webdemo.inference.scenes import NAMES
-from webdemo.inference.story.plan import Window, window_seed, windows
+from webdemo.inference.story.plan import MOST_FRAMES, Window, window_seed, windows
 from webdemo.inference.story.progress import SceneProgress
 from webdemo.inference.story.request import SceneRequest
 from webdemo.inference.story.wishes import meeting
@@ -45,6 +45,9 @@ Array = NDArray[np.floating]
 
 KEPT = 400
 """Windows that are kept; one of five seconds takes 160 kB."""
+TAIL = 8
+"""Frames that are made behind a window and thrown away where another follows: the network is least sure of the last
+ones, and its feet are fast there."""
 FAR = 6.0
 """Metres between two people beyond which the training scenes hold next to nothing."""
 
@@ -288,7 +291,9 @@ class _Setting:
         if request.planned and request.end is None and not request.loop:
             taken = {part.person for part in wished}
             parts += [part for part in planned(request, window, scene, placement) if part.person not in taken]
-        frames = max(past + length + window.after, round(SECONDS[0] * FPS))
+        ends = window.after or window.stop == request.edges[-1]
+        tail = window.after if ends else min(TAIL, MOST_FRAMES - past - length)
+        frames = max(past + length + tail, round(SECONDS[0] * FPS))
         return cls(window, frames, tuple(parts), placement)
 
     def scene(self, pipeline: InterGenPipeline) -> Directed:

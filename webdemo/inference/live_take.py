@@ -1,0 +1,78 @@
+"""A live stream that somebody keeps: both people's motion as it was shown, as an ordinary result.
+
+Nothing is generated again. This module does not import torch.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from typing import Any, ClassVar
+
+from motion import Clip, Duet, InputError
+from motion.metrics import compare
+
+from .partner import PARTNERS
+from .requests import Progress, Result, clip_facts
+from .timer import StageTimer
+
+LONGEST = 60.0
+"""Seconds of a stream that can be kept."""
+SHORTEST = 1.0
+"""Seconds: with less there is nothing to measure."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class LiveTake:
+    """Asks for a live stream to be kept.
+
+    Attributes:
+        model: who answered, one of :data:`webdemo.inference.partner.PARTNERS`.
+        actor: the person, at 30 fps on SMPL22's joints.
+        reactor: the partner, of the same length.
+
+    Raises:
+        InputError: for an unknown partner, or a stream that is too short or too long.
+    """
+
+    model: str
+    actor: Clip
+    reactor: Clip
+    mode: ClassVar[str] = "online"
+    prompt: ClassVar[str] = ""
+
+    def __post_init__(self) -> None:
+        if self.model not in PARTNERS:
+            raise InputError(f"There is no live partner {self.model!r:.40}: choose {' or '.join(PARTNERS)}.")
+        if self.actor.positions.shape != self.reactor.positions.shape:
+            raise InputError("The two people of a live stream must have as many frames and joints.")
+        if self.actor.num_frames < SHORTEST * self.actor.fps:
+            raise InputError("This live stream is shorter than a second: let it go on for longer.")
+        if self.actor.seconds > LONGEST + 1:
+            raise InputError(f"Only the last {LONGEST:g} s of a live stream can be kept: send no more.")
+
+    @property
+    def title(self) -> str:
+        """The name of the run in the history."""
+        return live_title(self.model)
+
+    def to_dict(self) -> dict[str, Any]:
+        """All fields except the motion, which its SHA-256 represents."""
+        actor = clip_facts(self.actor)
+        return {"kind": "react", "live": True, "model": self.model, "mode": self.mode, "actor": actor}
+
+    def results(self, timer: StageTimer) -> Iterator[Progress | Result]:
+        """The two people with their read-outs."""
+        yield timer.progress("finish")
+        duet = Duet(self.actor, self.reactor, ("actor", "reactor"))
+        yield Result(
+            duets=(duet,),
+            manifest={},
+            readouts=(compare(None, duet),),
+            timings={"total": round(timer.elapsed, 4)},
+        )
+
+
+def live_title(model: str) -> str:
+    """The name of a kept live stream, by its partner."""
+    return f"Live with {PARTNERS.get(model, model)}"
