@@ -72,12 +72,12 @@ def test_every_command_has_help(run: Run, capsys: pytest.CaptureFixture[str], co
 def test_generate_writes_a_file_and_one_json_line(run: Run, tmp_path: Path, suffix: str) -> None:
     code, said, _ = generate(run, tmp_path / f"duet{suffix}", "--seed", 3)
     assert code == 0
-    told = answer(said)
-    files = [Path(name) for name in told["files"]]
+    printed = answer(said)
+    files = [Path(name) for name in printed["files"]]
     assert set(files) == set(tmp_path.iterdir())
-    assert told["manifest"]["request"]["seed"] == 3
-    assert told["manifest"]["weights_sha256"]
-    assert told["wall_seconds"] > 0
+    assert printed["manifest"]["request"]["seed"] == 3
+    assert printed["manifest"]["weights_sha256"]
+    assert printed["wall_seconds"] > 0
     if suffix == ".glb":
         assert files[0].read_bytes()[:4] == b"glTF"
         return
@@ -158,9 +158,9 @@ def test_render_draws_what_generate_wrote(run: Run, tmp_path: Path, suffix: str)
     files = answer(generate(run, tmp_path / f"duet{suffix}")[1])["files"]
     code, said, _ = run("render", files[0], "--out", tmp_path / "sheet.png", "--frames", 4)
     assert code == 0
-    told = answer(said)
-    assert told["files"] == [str(tmp_path / "sheet.png")]
-    assert told["frames"] == 30
+    printed = answer(said)
+    assert printed["files"] == [str(tmp_path / "sheet.png")]
+    assert printed["frames"] == 30
     with Image.open(tmp_path / "sheet.png") as picture:
         picture.load()
         assert picture.format == "PNG"
@@ -204,11 +204,11 @@ def test_render_refuses_in_one_line(run: Run, tmp_path: Path, monkeypatch: pytes
 def test_info_tells_the_model_and_the_formats(run: Run) -> None:
     code, said, _ = run("info")
     assert code == 0
-    told = answer(said)
-    assert told["model"]["summary"] == "a tiny untrained model"
-    assert told["weights"] == ["intergen"]
-    assert told["formats"][".npz"] == {"read": True, "write": True}
-    assert told["versions"]["torch"]
+    printed = answer(said)
+    assert printed["model"]["summary"] == "a tiny untrained model"
+    assert printed["weights"] == ["intergen"]
+    assert printed["formats"][".npz"] == {"read": True, "write": True}
+    assert printed["versions"]["torch"]
 
 
 def test_benchmark_reports_figures(
@@ -225,10 +225,10 @@ def test_benchmark_reports_figures(
     monkeypatch.setattr("webdemo.benchmark.reactions.WHOLE", 30)
     code, said, _ = run("benchmark", "--seconds", 1, "--steps", 2, "--repeats", 1)
     assert code == 0
-    told = answer(said)
-    assert told["frames"] == 30
-    assert told["request_seconds"] > 0
-    assert told["plain_over_request"] > 0
+    printed = answer(said)
+    assert printed["frames"] == 30
+    assert printed["request_seconds"] > 0
+    assert printed["plain_over_request"] > 0
     for figure in (
         "part_ms_network",
         "network_share_of_gemm",
@@ -238,7 +238,7 @@ def test_benchmark_reports_figures(
         "reaction_whole_seconds",
         "interformer_48_frames",
     ):
-        assert told[figure] > 0
+        assert printed[figure] > 0
 
 
 def test_missing_weights_are_one_line(run: Run, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -260,10 +260,10 @@ def test_app_takes_the_options_of_serve(
 
 
 def test_a_reader_who_has_gone_is_no_traceback(run: Run, monkeypatch: pytest.MonkeyPatch) -> None:
-    def told(options: Any) -> dict[str, Any]:
+    def info(options: Any) -> dict[str, Any]:
         raise BrokenPipeError
 
-    monkeypatch.setattr(service, "info", told)
+    monkeypatch.setattr(service, "info", info)
     assert run("info") == (141, "", "")
 
 

@@ -62,7 +62,7 @@ def test_a_documented_command_is_taken(
     with pytest.raises(SystemExit) as ended:
         main(asked)
     assert ended.value.code == 0
-    told = capsys.readouterr().out
+    help_text = capsys.readouterr().out
     flags = [word.split("=")[0] for word in words if word.startswith("--")]
-    missing = [flag for flag in flags if flag != "--help" and not re.search(rf"{flag}(?![\w-])", told)]
+    missing = [flag for flag in flags if flag != "--help" and not re.search(rf"{flag}(?![\w-])", help_text)]
     assert not missing, f"{page} shows {module} with {missing}"

@@ -65,11 +65,11 @@ def test_one_person_of_a_file_is_trimmed_and_answered(
     assert code == 0
     answer = json.loads(said.splitlines()[-1])
     assert answer["files"] == [str(out)]
-    told = answer["manifest"]["request"]
-    assert told | {
+    request = answer["manifest"]["request"]
+    assert request | {
         "prompt": "They bow.", "role": "b", "seed": 5, "steps": 9, "guidance": 3, "damping": 0.5,
         "cleanup": False, "mode": "offline", "model": "intergen",
-    } == told  # fmt: skip
+    } == request  # fmt: skip
     duet = read(out)
     assert duet.roles == ("actor", "reactor")
     np.testing.assert_array_equal(duet.a.positions, standing(120, x=2.0).positions[30:90])

@@ -46,8 +46,8 @@ def test_a_lab_reads_its_studies(
     (listed,) = json.loads(said)["studies"]
     assert (listed["id"], listed["owner"], listed["sets"]) == (made.id, "user ada", ["ours", "theirs"])
     code, said = say(capsys, "study", "result", made.id[:6])
-    told = json.loads(said)
-    assert (code, told["raters"], told["comparisons"][0]["ties"]) == (0, 1, 1)
+    answer = json.loads(said)
+    assert (code, answer["raters"], answer["comparisons"][0]["ties"]) == (0, 1, 1)
     code, said = say(capsys, "study", "export", made.id, "--out", tmp_path / "votes.csv")
     assert code == 0 and json.loads(said)["votes"] == 1
     (row,) = csv.DictReader((tmp_path / "votes.csv").open())

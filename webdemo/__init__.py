@@ -1,5 +1,6 @@
 """The application: inference, the page, the server and the shell commands."""
 
-from .quick_gradio import install
+from . import quick_gradio, quick_imports
 
-install()  # before anything of this package imports Gradio
+quick_gradio.install()  # before anything of this package imports Gradio
+quick_imports.install()

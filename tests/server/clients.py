@@ -72,7 +72,9 @@ def find_fn(client: TestClient, headers: dict[str, str], api_name: str) -> int:
     return next(d["id"] for d in config["dependencies"] if d["api_name"] == api_name)
 
 
-def told(client: TestClient, endpoint: str, data: list[Any], headers: dict[str, str] | None = None) -> str:
+def events_of(
+    client: TestClient, endpoint: str, data: list[Any], headers: dict[str, str] | None = None
+) -> str:
     """What a call of an endpoint ends with."""
     joined = client.post(f"{CALL}/{endpoint}", json={"data": data}, headers=headers)
     if joined.status_code != 200:
@@ -81,7 +83,7 @@ def told(client: TestClient, endpoint: str, data: list[Any], headers: dict[str, 
 
 
 def answer_of(said: str) -> dict[str, Any]:
-    """The answer of a call that was told to be complete."""
+    """The answer in the events of a call that came to its end."""
     data = next(line for line in said.splitlines() if line.startswith("data: ["))
     return json.loads(data.removeprefix("data: "))[0]
 

@@ -7,6 +7,7 @@ import gc
 import json
 import subprocess
 import sys
+import time
 import tracemalloc
 from collections.abc import Iterator
 from pathlib import Path
@@ -15,6 +16,7 @@ from typing import Any
 import pytest
 from fastapi.testclient import TestClient
 
+from webdemo.server import memory
 from webdemo.server.http import page_sessions as sessions
 from webdemo.server.http.page_sessions import LeanStates
 
@@ -92,3 +94,18 @@ print(before - resident())
 def test_gaps_go_back_to_the_system() -> None:
     said = subprocess.run([sys.executable, "-c", GAPS], cwd=ROOT, capture_output=True, text=True, check=True)
     assert float(said.stdout) > 100  # megabytes
+
+
+def test_garbage_is_looked_for_again_once_the_server_has_started(tmp_path: Path) -> None:
+    try:
+        memory.put_off_collection()
+        assert not gc.isenabled()
+        with client_of(settings_for(tmp_path)):
+            until = time.monotonic() + 60
+            while not gc.isenabled():
+                assert time.monotonic() < until
+                time.sleep(0.05)
+        assert gc.get_freeze_count() > 100_000, "modules are left out"
+    finally:
+        gc.enable()
+        gc.unfreeze()

@@ -68,6 +68,27 @@ def test_processes_draw_what_one_draws(tmp_path, monkeypatch):
     assert paths[0].read_bytes() == paths[1].read_bytes()
 
 
+@pytest.mark.parametrize(("suffix", "share"), [(".mp4", 1.5), (".gif", 4)])
+def test_no_more_bytes_are_passed_on_than_a_film_needs(tmp_path, monkeypatch, suffix, share):
+    """Bytes a pixel of what the drawing processes send; a video's encoder takes no more than one and a half."""
+    sizes = []
+
+    def counted(pictures, total, progress):
+        for picture in pictures:
+            sizes.append(picture.nbytes)
+            yield picture
+
+    monkeypatch.setattr(film, "_counted", counted)
+    film.write_film([Pane(DUET)], tmp_path / f"x{suffix}", size=SMALL)
+    assert set(sizes) == {share * SMALL[0] * SMALL[1]}
+
+
+def test_a_single_pane_is_not_copied():
+    job = film.Job((Pane(DUET),), Style(), SMALL, np.zeros(1), [], "")
+    picture = np.zeros((SMALL[1], SMALL[0], 4), np.uint8)
+    assert film._joined(job, [picture]) is picture
+
+
 def test_panes_stand_side_by_side_under_their_captions(tmp_path):
     near = Duet(DUET.a, DUET.b.with_positions(DUET.b.positions + np.array([0, 0, 0.5])))
     one, two = (film.write_film(panes, tmp_path / f"{len(panes)}.gif", size=(320, 120))

@@ -2,20 +2,12 @@
 
 import numpy as np
 import pytest
-import trimesh
 
 from motion import SMPL22
 from motion.body import load_body
-from webdemo.view.light import Shadow, vertex_normals
+from webdemo.view.light import Shadow
 
 STANDING = SMPL22.rest_positions() + np.array([0, 0.98, 0])
-
-
-def test_normals_of_a_sphere_point_outwards() -> None:
-    ball = trimesh.creation.icosphere(3)
-    normals = vertex_normals(np.array(ball.vertices), np.array(ball.faces))
-    np.testing.assert_allclose(np.linalg.norm(normals, axis=1), 1)
-    assert np.einsum("vi,vi->v", normals, ball.vertices).min() > 0.99
 
 
 def test_the_floor_is_dark_below_people_and_open_far_away() -> None:
@@ -24,7 +16,7 @@ def test_the_floor_is_dark_below_people_and_open_far_away() -> None:
     dark, _ = shadow.at(np.array([0.0, 2.0, 1.0]), np.array([0.0, 1.0, -1.0]))
     assert min(dark[:2]) > 2 * dark[2]
     outside, places = shadow.at(np.array([50.0]), np.array([0.0]))
-    assert not len(outside) and not len(places[0])
+    assert not len(outside) and not len(places)
 
 
 def test_a_person_in_the_air_casts_less() -> None:

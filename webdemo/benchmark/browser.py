@@ -31,11 +31,14 @@ LONGEST_START = 120.0
 LONGEST_RUN = 120.0
 WATCHED = 3.0
 """Seconds over which frames a second and processor time are read."""
+GIVE_BACK_EVERY = 5.0
+"""Seconds after which a server at rest has given memory back, see :mod:`webdemo.server.app`."""
 LONG_RUN = {"seconds": 10, "samples": 8}
 """A run that outlasts the measurement of the waiting page."""
 
 _STAGE_STYLE = """#player .pdd-stage {{ width: {0}px !important; min-width: {0}px !important;
 height: {1}px !important; min-height: {1}px !important; flex: none !important }}"""
+_PLAYED = "window.__pasdedeux && window.__pasdedeux.mode !== null && !window.__pasdedeux.playing"
 _FOLLOW_RUN = """() => {
   const seen = (window.__benchmark = { before: window.__pasdedeux?.id ?? null, done: null, motion: null, body: null });
   let looks = 0;
@@ -68,7 +71,8 @@ def measure_browser() -> dict[str, Any]:
         ``player_fps_turning`` (the camera at rest, and dragged) while bodies play, ``player_fps_skeletons``
         and ``player_pixels``. ``browser_cores_idle``, ``browser_cores_waiting`` and ``browser_cores_paused``
         are what all of the browser's processes took of a core while the page was left alone, in the middle of
-        a run, and while a motion was paused.
+        a run, and while a motion was paused. ``page_memory_mb`` is the memory of the page's process at rest after
+        these runs, ``page_memory_mb_own`` without libraries and mapped files, in megabytes (Linux).
 
     Raises:
         InputError: where Playwright, Chromium or the model's weights are missing, or the page does not come.
@@ -76,14 +80,14 @@ def measure_browser() -> dict[str, Any]:
     with _chromium() as browser:
         page = browser.new_page(viewport={"width": 1440, "height": 1000})
         began = time.perf_counter()
-        with _served() as url:
+        with _served() as (url, server):
             figures = {"page_first_answer_seconds": time.perf_counter() - began}
             page.goto(url)
             page.locator("#prompt textarea").wait_for(state="visible", timeout=1000 * LONGEST_START)
             figures["page_prompt_seconds"] = time.perf_counter() - began
             _wait_for_model(page)
             figures["page_model_ready_seconds"] = time.perf_counter() - began
-            page.wait_for_function("!window.__pasdedeux?.playing", timeout=1000 * LONGEST_RUN)
+            page.wait_for_function(_PLAYED, timeout=1000 * LONGEST_RUN)
             page.wait_for_timeout(1000)
             figures["browser_cores_idle"] = _cores(browser, lambda: page.wait_for_timeout(1000 * WATCHED))
             figures |= _follow_a_run(page) | _frame_rates(page)
@@ -92,7 +96,8 @@ def measure_browser() -> dict[str, Any]:
             page.wait_for_timeout(1500)  # a still picture is drawn once more, finer
             figures["browser_cores_paused"] = _cores(browser, lambda: page.wait_for_timeout(1000 * WATCHED))
             figures["browser_cores_waiting"] = _wait_for_a_long_run(page, browser)
-            return figures
+            page.wait_for_timeout(1000 * (GIVE_BACK_EVERY + 2))
+            return figures | _memory(server)
 
 
 @contextlib.contextmanager
@@ -116,8 +121,8 @@ def _chromium() -> Iterator[Any]:
 
 
 @contextlib.contextmanager
-def _served() -> Iterator[str]:
-    """The address of ``app.py`` in a process of its own, once it answers; the process ends afterwards."""
+def _served() -> Iterator[tuple[str, int]]:
+    """The address of ``app.py`` in a process of its own, once it answers, and that process' id; it ends afterwards."""
     with socket.socket() as probe:
         probe.bind(("127.0.0.1", 0))
         port = probe.getsockname()[1]
@@ -142,7 +147,7 @@ def _served() -> Iterator[str]:
             if server.poll() is not None or time.monotonic() > until:
                 raise InputError("The page did not start: run `python app.py` to see why.")
             time.sleep(0.05)
-        yield url
+        yield url, server.pid
     finally:
         server.terminate()
         try:
@@ -151,6 +156,15 @@ def _served() -> Iterator[str]:
             server.kill()
             server.wait()
         data.cleanup()
+
+
+def _memory(process: int) -> dict[str, float]:
+    """Megabytes in memory of a process, and the part that is no file's; nothing where the system does not tell."""
+    with contextlib.suppress(OSError):
+        lines = Path(f"/proc/{process}/smaps_rollup").read_text().splitlines()[1:]
+        sizes = {name: int(rest.split()[0]) / 1024 for name, rest in (line.split(":") for line in lines)}
+        return {"page_memory_mb": sizes["Rss"], "page_memory_mb_own": sizes["Anonymous"]}
+    return {}
 
 
 def _answers(url: str) -> bool:
@@ -217,6 +231,7 @@ def _wait_for_a_long_run(page: Any, browser: Any) -> float:
         field = page.locator(f"#{name} input[type=number]")
         field.fill(str(value))
         field.blur()
+    page.locator("#pace").get_by_text("Faithful").click()
     page.locator("button#generate:enabled").wait_for(timeout=1000 * LONGEST_RUN)
     page.locator("button#generate").click()
     stop = page.locator("button#cancel:enabled")

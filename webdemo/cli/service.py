@@ -90,6 +90,8 @@ def benchmark(options: argparse.Namespace) -> dict[str, Any]:
         from webdemo.benchmark.load import goals_missed, measure_batching, run_load
 
         figures = measure_batching(steps=options.steps)
+        for name, value in figures.items():
+            print(f"{name:40} {value:.3f}")
         figures |= run_load(people=options.people, minutes=options.minutes, steps=options.steps)
         return figures | {"goals_missed": goals_missed(figures)}
     return run_benchmark(
@@ -106,6 +108,9 @@ def serve(options: argparse.Namespace) -> dict[str, Any]:
         for name, value in settings.shown().items():
             print(f"{name} = {json.dumps(value)}  # {Settings.model_fields[name].description}")
         return settings.shown()
+    from webdemo.server.memory import put_off_collection
+
+    put_off_collection()  # before Gradio is imported
     from webdemo.server.serve import serve as run
 
     run(settings)

@@ -5,6 +5,7 @@ from __future__ import annotations
 import asyncio
 import contextlib
 import logging
+import time
 from collections.abc import AsyncIterator, Callable
 from pathlib import Path
 from typing import Any
@@ -37,7 +38,7 @@ from webdemo.server.store.scratch import Scratch
 from webdemo.ui.page import build_page, launch_options, start_queue
 from webdemo.ui.runs import EngineLike, Loader
 
-from .memory import give_back
+from .memory import collect_again, give_back
 from .settings import Settings
 
 log = logging.getLogger(__name__)
@@ -52,8 +53,10 @@ GIVE_BACK_EVERY = 5.0
 """Seconds between two returns of unused memory to the system."""
 PAGES = 256
 """Most sessions whose state is kept; Gradio's default of 10,000 would take gigabytes."""
-WARM_UP_AFTER = 2.0
-"""Seconds between the start and the loading of the networks, to keep the first page fast."""
+WARM_UP_AFTER = 0.5
+"""Seconds between the start and the loading of the networks, to answer a waiting browser first."""
+LONGEST_LOAD = 60.0
+"""Seconds after which Python looks for garbage again, even if the networks do not load."""
 
 
 def create_app(
@@ -144,9 +147,10 @@ async def _lifespan(app: FastAPI) -> AsyncIterator[None]:
         log.warning("%d runs were interrupted when the server last stopped.", lost)
     tasks = [
         asyncio.create_task(_later(WARM_UP_AFTER, lab.health.probe)),
+        asyncio.create_task(_collect_when_loaded(lab)),
         asyncio.create_task(_every(CLEAN_EVERY, lab.history.clean)),
         asyncio.create_task(_every(TIDY_EVERY, app.state.tidy)),
-        asyncio.create_task(_every(GIVE_BACK_EVERY, give_back)),
+        asyncio.create_task(_every(GIVE_BACK_EVERY, lambda: give_back(resting=not lab.busy))),
         asyncio.create_task(_every(GIVE_BACK_EVERY, lab.history.settle)),
         asyncio.create_task(_every(SEEN_EVERY, lab.places.refresh)),
         asyncio.create_task(_every(SHARE_EVERY, lab.share)),
@@ -168,6 +172,13 @@ async def _lifespan(app: FastAPI) -> AsyncIterator[None]:
 async def _later(seconds: float, job: Callable[[], Any]) -> None:
     await asyncio.sleep(seconds)
     await run_in_threadpool(job)
+
+
+async def _collect_when_loaded(lab: Lab) -> None:
+    until = time.monotonic() + LONGEST_LOAD
+    while not lab.health.ready and time.monotonic() < until:
+        await asyncio.sleep(0.5)
+    collect_again()
 
 
 async def _every(seconds: float, job: Callable[[], Any]) -> None:

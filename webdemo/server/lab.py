@@ -51,6 +51,11 @@ class Lab:
     sign_ins: SignIns | None = None
     node: InstanceLock | None = None
 
+    @property
+    def busy(self) -> bool:
+        """True while anything runs on the networks."""
+        return bool(self.queue.running or self.streams.count)
+
     def share(self) -> None:
         """Exchanges the work done for people with the other processes."""
         self.queue.charge_elsewhere(self.shares.exchange())

@@ -7,6 +7,7 @@ libraries) packs them as H.264 or VP9, Pillow as GIF.
 from __future__ import annotations
 
 import contextlib
+import math
 import os
 import subprocess
 import sys
@@ -36,6 +37,8 @@ _GIF_FPS = 25.0
 """GIF counts in hundredths of a second and browsers slow down what is shown for one: 25 is its best rate."""
 _FEW = 45
 """Frames up to which starting other processes costs more than it saves."""
+_PLANES = "yuv420p"
+"""Pixels of the videos, in FFmpeg's words: a plane of light, and two of colour of half the height and width."""
 _CODECS = {
     ".mp4": ("libx264", {"preset": "veryfast", "crf": "19", "movflags": "+faststart"}),
     ".webm": ("libvpx-vp9", {"deadline": "realtime", "cpu-used": "8", "crf": "31", "b": "0", "row-mt": "1"}),
@@ -96,7 +99,7 @@ def write_film(
         yaw=yaw,
         elevation=elevation,
     )
-    job = Job(tuple(panes), style, size, times, views, title)
+    job = Job(tuple(panes), style, size, times, views, title, planar=suffix != ".gif")
     with replacing(path) as temporary, contextlib.closing(_pictures(job)) as pictures:
         counted = _counted(pictures, len(times), progress)
         if suffix == ".gif":
@@ -138,17 +141,27 @@ def _cell(size: tuple[int, int], panes: int) -> tuple[int, int]:
 
 
 def _draw(job: Job) -> Iterator[Picture]:
-    """The pictures of a job, (height, width, 4) each."""
+    """The pictures of a job, of its shape."""
     size = _cell(job.size, len(job.panes))
     stages = [Stage(pane, job.style, size).pictures(job.times, job.views) for pane in job.panes]
     for seconds, shown in zip(job.times, zip(*stages, strict=True), strict=True):
         whole = _joined(job, shown)
         _caption(job, whole, float(seconds))
-        yield whole
+        yield _planes(whole) if job.planar else whole
+
+
+def _planes(whole: Picture) -> Picture:
+    """A picture (height, width, 4) as a video's planes (3/2 height, width)."""
+    import av
+
+    frame = av.VideoFrame.from_ndarray(whole, format="rgba").reformat(format=_PLANES)
+    return cast(Picture, frame.to_ndarray())
 
 
 def _joined(job: Job, shown: Sequence[Picture]) -> Picture:
     """The panes in their columns and rows; what is left over is as the last one's edge."""
+    if len(shown) == 1:
+        return shown[0]
     columns, rows = _shape(len(shown))
     blank = [np.broadcast_to(shown[-1][:1, :1], shown[-1].shape)] * (columns * rows - len(shown))
     cells = [*shown, *blank]
@@ -183,7 +196,7 @@ def _pictures(job: Job) -> Generator[Picture, None, None]:
     if workers < 2 or len(job.times) <= _FEW:
         yield from _draw(job)
         return
-    count = 4 * job.size[0] * job.size[1]
+    count = math.prod(job.shape)
     with contextlib.ExitStack() as running:
         outputs = []
         for number in range(workers):
@@ -199,7 +212,7 @@ def _pictures(job: Job) -> Generator[Picture, None, None]:
                 raise InputError(
                     "The film could not be drawn: a process that draws it ended early. Try again."
                 )
-            yield np.frombuffer(data, np.uint8).reshape(job.size[1], job.size[0], 4)
+            yield np.frombuffer(data, np.uint8).reshape(job.shape)
 
 
 @contextlib.contextmanager
@@ -230,7 +243,7 @@ def draw_for_parent() -> None:
     """
     job = unpacked(sys.stdin.buffer.read())
     for picture in _draw(job):
-        sys.stdout.buffer.write(picture.tobytes())
+        sys.stdout.buffer.write(np.ascontiguousarray(picture).data)
     sys.stdout.buffer.flush()
 
 
@@ -253,9 +266,9 @@ def _write_video(
         rate = Fraction(fps).limit_denominator(1001)
         stream = cast(av.VideoStream, film.add_stream(codec, rate=rate, options=options))
         stream.width, stream.height = size
-        stream.pix_fmt = "yuv420p"
+        stream.pix_fmt = _PLANES
         for picture in pictures:
-            film.mux(stream.encode(av.VideoFrame.from_ndarray(picture, format="rgba")))
+            film.mux(stream.encode(av.VideoFrame.from_ndarray(picture, format=_PLANES)))
         film.mux(stream.encode(None))
 
 

@@ -7,7 +7,7 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from motion.body import Body
+from motion.body import Body, vertex_normals
 from motion.skeleton import Skeleton
 
 from .camera import Camera
@@ -23,18 +23,6 @@ _HIGHEST = 1.8
 _SAMPLES = 3
 _RADII = {"head": 0.09, "spine1": 0.11, "spine2": 0.11, "spine3": 0.11, "hip": 0.09, "knee": 0.07}
 _RADIUS = 0.05
-
-
-def vertex_normals(vertices: Array, faces: NDArray[np.integer]) -> Array:
-    """(V, 3) unit normals of a surface with vertices (V, 3) and faces (F, 3)."""
-    a, b, c = (vertices[faces[:, corner]] for corner in range(3))
-    flat = np.cross(b - a, c - a)
-    total = np.empty_like(vertices)
-    for axis in range(3):
-        total[:, axis] = np.bincount(
-            faces.ravel(), weights=np.repeat(flat[:, axis], 3), minlength=len(vertices)
-        )
-    return total / np.maximum(np.linalg.norm(total, axis=1, keepdims=True), 1e-12)
 
 
 def shaded(body: Body, vertices: Array, worn: Worn, lamps: Lamps, camera: Camera) -> Array:
@@ -110,23 +98,24 @@ class Shadow:
     def _splats(self, points: Array, sigma: Array, amount: Array) -> Array:
         """(S, S) the sum of round Gaussians, which are products of one along each axis."""
         pixel = self.span / SHADOW_SIZE
-        places = (np.arange(SHADOW_SIZE) + 0.5) * pixel
-        away = (points[:, [0, 2]] - self.origin)[:, :, None] - places
-        bells = np.exp(-0.5 * (away / sigma[:, None, None]) ** 2).astype(np.float32)
+        places = ((np.arange(SHADOW_SIZE) + 0.5) * pixel).astype(np.float32)
+        away = (points[:, [0, 2]] - self.origin).astype(np.float32)[:, :, None] - places
+        away *= np.sqrt(0.5).astype(np.float32) / sigma.astype(np.float32)[:, None, None]
+        bells = np.exp(-np.square(away, out=away), out=away)
         peak = (amount / (2 * np.pi * sigma**2)).astype(np.float32)
         return (bells[:, 0] * peak[:, None]).T @ bells[:, 1]
 
-    def at(self, x: Array, z: Array) -> tuple[Array, tuple[NDArray[np.intp], ...]]:
+    def at(self, x: Array, z: Array) -> tuple[Array, NDArray[np.intp]]:
         """Darkness of the floor's shadow at places (any shape, metres).
 
         Returns:
-            (N,) from 0 to 1, and the indices of these places.
+            (N,) from 0 to 1, and the indices of these places where all are counted in a row.
         """
         scale = np.float32(SHADOW_SIZE / self.span)
-        row = (x - np.float32(self.origin[0])) * scale - np.float32(0.5)
-        column = (z - np.float32(self.origin[1])) * scale - np.float32(0.5)
+        row = (x.ravel() - np.float32(self.origin[0])) * scale - np.float32(0.5)
+        column = (z.ravel() - np.float32(self.origin[1])) * scale - np.float32(0.5)
         last = SHADOW_SIZE - 1
-        inside = np.nonzero((row >= 0) & (column >= 0) & (row < last) & (column < last))
+        inside = np.flatnonzero((row >= 0) & (column >= 0) & (row < last) & (column < last))
         row, column = row[inside], column[inside]
         i, j = row.astype(np.int32), column.astype(np.int32)
         s, t = row - i, column - j

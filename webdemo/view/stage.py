@@ -306,9 +306,9 @@ def _ground(camera: Camera, theme: Theme, shadow: Shadow) -> NDArray[np.uint32]:
         t = np.minimum(np.sqrt(east * east + south * south) / np.float32(24), np.float32(1))
         floor = _ramp(theme.floor, theme.horizon)[_levels(t * t * (3 - 2 * t))]
         dark, hidden = shadow.at(east + np.float32(camera.target[0]), south + np.float32(camera.target[2]))
-        plain = floor[hidden].view(np.uint8).reshape(-1, 4)
+        plain = floor.ravel()[hidden].view(np.uint8).reshape(-1, 4)
         lost = dark[:, None] * np.array([*(1 - np.array(theme.shade)), 0], dtype=np.float32)
-        floor[hidden] = (plain * (1 - lost)).astype(np.uint8).view(np.uint32)[:, 0]
+        floor.ravel()[hidden] = (plain * (1 - lost)).astype(np.uint8).view(np.uint32)[:, 0]
         picture[first:] = floor
     return picture.repeat(_COARSE, axis=0).repeat(_COARSE, axis=1)[: camera.size[1], : camera.size[0]]
 

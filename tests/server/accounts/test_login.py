@@ -18,12 +18,12 @@ from tests.server.clients import (
     HTML,
     JOIN,
     answer_of,
+    events_of,
     find_fn,
     lab_of,
     no_room,
     served_on_loopback,
     sign_in,
-    told,
 )
 from webdemo.server.accounts.users import Users
 from webdemo.server.store.database import Link, SignIn
@@ -103,8 +103,8 @@ def test_a_page_session_is_its_persons(shared: TestClient) -> None:
     assert shared.get("/gradio_api/heartbeat/adas", headers=eve).status_code == 403
     stop = {"session_hash": "adas", "fn_index": fn, "event_id": "x"}
     assert shared.post("/gradio_api/cancel", json=stop, headers=eve).status_code == 403
-    told = shared.get("/gradio_api/queue/data?session_hash=adas", headers=ada).text
-    assert "process_completed" in told and '"seed": 0' in told.replace('"seed":0', '"seed": 0')
+    text = shared.get("/gradio_api/queue/data?session_hash=adas", headers=ada).text
+    assert "process_completed" in text and '"seed": 0' in text.replace('"seed":0', '"seed": 0')
     history = lab_of(shared).history
     assert [entry.title for entry in history.entries("user ada")] == ["Two people walk."]
     assert history.entries("user eve") == []
@@ -117,8 +117,8 @@ def test_a_notebook_signs_in(shared: TestClient) -> None:
     cookies = {"cookie": f"pasdedeux_session={answer.cookies['pasdedeux_session']}"}
     body = {"data": ["impossible", 1, 0, 1, 3, 1, 0, "ddim", "intergen"]}
     event = shared.post("/gradio_api/call/generate", json=body, headers=cookies).json()["event_id"]
-    told = shared.get(f"/gradio_api/call/generate/{event}", headers=cookies).text
-    assert "event: error" in told and "The stub cannot do this: ask for something possible." in told
+    text = shared.get(f"/gradio_api/call/generate/{event}", headers=cookies).text
+    assert "event: error" in text and "The stub cannot do this: ask for something possible." in text
 
 
 def newest(client: TestClient, owner: str) -> Entry:
@@ -127,7 +127,7 @@ def newest(client: TestClient, owner: str) -> Entry:
 
 def test_a_run_of_another_is_not_opened_by_its_id(shared: TestClient) -> None:
     ada = sign_in(shared, "ada")
-    assert "event: complete" in told(shared, "generate", FIELDS, ada)
+    assert "event: complete" in events_of(shared, "generate", FIELDS, ada)
     history, entry = lab_of(shared).history, newest(shared, "user ada")
     for key, owner in ((entry.id, "user eve"), (entry.id, ""), (entry.id[:-1], "user ada")):
         with pytest.raises(InputError, match="There is no such run"):
@@ -139,7 +139,7 @@ def test_a_run_of_another_is_not_opened_by_its_id(shared: TestClient) -> None:
 
 
 def page_at(client: TestClient, key: str, headers: dict[str, str]) -> str:
-    """What the page does first at ``/?run=KEY``: all that it is told then."""
+    """What the page does first at ``/?run=KEY``: all that it is given then."""
     session = f"page{time.monotonic_ns()}"
     fn = find_fn(client, headers, "open_address")
     body = {"data": [key], "fn_index": fn, "session_hash": session}
@@ -154,7 +154,7 @@ def page_at(client: TestClient, key: str, headers: dict[str, str]) -> str:
 def test_an_address_opens_no_run_of_another(shared: TestClient) -> None:
     """To a stranger a run, one that never was and a link that ended or was revoked are the same."""
     ada, eve = sign_in(shared, "ada"), sign_in(shared, "eve")
-    assert "event: complete" in told(shared, "generate", ["SECRET", *FIELDS[1:]], ada)
+    assert "event: complete" in events_of(shared, "generate", ["SECRET", *FIELDS[1:]], ada)
     history, entry = lab_of(shared).history, newest(shared, "user ada")
     assert "SECRET" in page_at(shared, entry.id, ada)
     key, _ = history.link(entry.id, "user ada")
@@ -178,7 +178,7 @@ def test_two_page_processes_on_one_database(pair: tuple[TestClient, TestClient])
     one, two = pair
     ada = sign_in(one, "ada")
     assert find_fn(two, ada, "generate") == find_fn(one, ada, "generate")
-    manifest = answer_of(told(one, "generate", FIELDS, ada))["manifest"]
+    manifest = answer_of(events_of(one, "generate", FIELDS, ada))["manifest"]
     entry = newest(two, "user ada")
     assert lab_of(two).history.open(entry.id, "user ada").result.manifest == manifest
     key, _ = lab_of(one).history.link(entry.id, "user ada")

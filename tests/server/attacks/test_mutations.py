@@ -109,10 +109,10 @@ def test_requests_end_in_no_error_of_the_programs(target: Target) -> None:
             method = "HEAD"  # the answer is a stream that lasts
         began = time.monotonic()
         answer = target.ask("eve", method, path, **rest)
-        told = (i, method, path, rest, answer.status_code, answer.text[:300])
-        assert answer.status_code < 500, told
-        assert "Traceback" not in answer.text and "root:" not in answer.text, told
-        assert time.monotonic() - began < SLOWEST, told
+        sent = (i, method, path, rest, answer.status_code, answer.text[:300])
+        assert answer.status_code < 500, sent
+        assert "Traceback" not in answer.text and "root:" not in answer.text, sent
+        assert time.monotonic() - began < SLOWEST, sent
     assert target.healthy() and target.memory() - begun < GROWTH
     assert "A request failed." not in target.log()
 

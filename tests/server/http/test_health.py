@@ -1,4 +1,4 @@
-"""How it is told whether the server is well: health, figures and logs."""
+"""The server says whether it is well: health, figures and logs."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ import pytest
 from fastapi.testclient import TestClient
 from prometheus_client.parser import text_string_to_metric_families
 
-from tests.server.clients import FIELDS, JOIN, answer_of, lab_of, told
+from tests.server.clients import FIELDS, JOIN, answer_of, events_of, lab_of
 from tests.server.queue.test_queue import wait_for
 from webdemo.server.logs import JsonLines, log_instead_of_printing
 
@@ -56,8 +56,8 @@ def samples(client: TestClient) -> dict[str, dict[tuple[tuple[str, str], ...], f
 
 def test_every_figure_is_there_and_counts(local: TestClient) -> None:
     before = samples(local)
-    manifest = answer_of(told(local, "generate", FIELDS))["manifest"]
-    assert "event: error" in told(local, "generate", CRASH)
+    manifest = answer_of(events_of(local, "generate", FIELDS))["manifest"]
+    assert "event: error" in events_of(local, "generate", CRASH)
     model = manifest["model"]
     wait_for(lambda: not lab_of(local).queue.running)
     after = samples(local)
@@ -85,7 +85,7 @@ def test_every_figure_is_there_and_counts(local: TestClient) -> None:
 def test_an_error_is_found_in_the_log_by_its_id(local: TestClient, caplog: pytest.LogCaptureFixture) -> None:
     """The page's sentence names the request; the log says under that name where the error came from."""
     with caplog.at_level(logging.INFO):
-        said = told(local, "generate", CRASH)
+        said = events_of(local, "generate", CRASH)
     reference = re.search(r"its log says more under ([0-9a-f]{12})", said)
     assert reference is not None
     lines = [json.loads(JsonLines().format(record)) for record in caplog.records]
@@ -114,7 +114,7 @@ def test_gradios_own_errors_hold_no_prompt(
         raise ValueError(f"{value} is no number")
 
     monkeypatch.setattr(gr.Number, "preprocess", breaks)
-    said = told(local, "generate", ["x", forged, *FIELDS[2:]])
+    said = events_of(local, "generate", ["x", forged, *FIELDS[2:]])
     assert "event: error" in said
     lines = [JsonLines().format(record) for record in caplog.records]
     printed = "".join(capfd.readouterr())

@@ -13,7 +13,7 @@ import pytest
 from fastapi.testclient import TestClient
 
 from motion import InputError
-from tests.server.clients import FIELDS, HERE, UPLOAD, client_of, lab_of, settings_for, told
+from tests.server.clients import FIELDS, HERE, UPLOAD, client_of, events_of, lab_of, settings_for
 from tests.server.lab import stub_module
 from webdemo.server.queue.queue import FairQueue
 from webdemo.server.queue.turns import QueueLimits
@@ -31,7 +31,7 @@ def open_to_all(tmp_path_factory: pytest.TempPathFactory) -> Iterator[TestClient
 
 def react(client: TestClient, actor: Any) -> str:
     rest = ["", "", 0, 0, "a", 0, 1, 3, 1, 0, "ddim", "intergen", "offline", False, False]
-    return told(client, "react", [actor, *rest])
+    return events_of(client, "react", [actor, *rest])
 
 
 @pytest.mark.parametrize(
@@ -88,7 +88,7 @@ def test_what_the_page_does_not_offer_is_no_error_of_the_programs(local: TestCli
 
 def test_a_visitors_history_is_not_had_by_naming_them(open_to_all: TestClient) -> None:
     mine = {"cookie": "pasdedeux_visitor=" + "m" * 32}
-    assert "event: complete" in told(open_to_all, "generate", FIELDS, mine)
+    assert "event: complete" in events_of(open_to_all, "generate", FIELDS, mine)
     history = lab_of(open_to_all).history
     with history.database.engine.connect() as connection:
         owners = {row[0] for row in connection.exec_driver_sql("SELECT owner FROM runs")}

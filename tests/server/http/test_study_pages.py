@@ -54,13 +54,13 @@ def test_a_person_with_the_link_votes_once_and_sees_no_names(local: TestClient, 
     )
     me = browser(local, made.key)
     first = local.post(f"/study/{made.key}/next", headers=me)
-    told = first.json()
-    assert (told["total"], told["done"], told["pair"]["title"]) == (1, 0, "They walk.")
-    assert [cell["caption"] for cell in told["pair"]["samples"][0]["cells"]] == ["1", "2"]
-    told["pair"]["samples"] = [{**s, "positions": 0, "cells": 0} for s in told["pair"]["samples"]]
+    handed = first.json()
+    assert (handed["total"], handed["done"], handed["pair"]["title"]) == (1, 0, "They walk.")
+    assert [cell["caption"] for cell in handed["pair"]["samples"][0]["cells"]] == ["1", "2"]
+    handed["pair"]["samples"] = [{**s, "positions": 0, "cells": 0} for s in handed["pair"]["samples"]]
     for secret in SECRETS:
-        assert secret not in json.dumps(told) and secret not in page.text
-    vote = {"ticket": told["ticket"], "answer": "1"}
+        assert secret not in json.dumps(handed) and secret not in page.text
+    vote = {"ticket": handed["ticket"], "answer": "1"}
     done = local.post(f"/study/{made.key}/vote", headers=me, json=vote)
     assert done.json() == {
         "question": "Which <b>is</b> @script@ longer?", "total": 1, "done": 1, "result": None,
@@ -73,8 +73,8 @@ def test_a_person_with_the_link_votes_once_and_sees_no_names(local: TestClient, 
 def test_programs_strangers_and_nonsense_get_a_sentence(local: TestClient) -> None:
     made = study(local, "local")
     me = browser(local, made.key)
-    told = local.post(f"/study/{made.key}/next", headers=me).json()
-    good = {"ticket": told["ticket"], "answer": "1"}
+    handed = local.post(f"/study/{made.key}/next", headers=me).json()
+    good = {"ticket": handed["ticket"], "answer": "1"}
     other = browser(local, made.key)
     cases: list[tuple[dict[str, str], Any, int, str]] = [
         (me, good, 422, "before the pair can have been seen"),
@@ -103,8 +103,8 @@ def test_with_accounts_a_person_is_an_account(shared: TestClient, quick: None) -
     assert "to vote in the study" in shared.get(asked.headers["location"], headers=HTML).text
     assert shared.post(f"/study/{made.key}/next", headers=ORIGIN).status_code == 401
     eve = sign_in(shared, "eve") | ORIGIN
-    told = shared.post(f"/study/{made.key}/next", headers=eve).json()
-    vote = {"ticket": told["ticket"], "answer": "skip"}
+    handed = shared.post(f"/study/{made.key}/next", headers=eve).json()
+    vote = {"ticket": handed["ticket"], "answer": "skip"}
     done = shared.post(f"/study/{made.key}/vote", headers=eve, json=vote).json()
     assert done["result"]["comparisons"][0]["skips"] == 1 and done["result"]["votes"] == 0
     elsewhere = sign_in(shared, "eve") | ORIGIN  # another browser is no other person

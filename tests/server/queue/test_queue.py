@@ -229,14 +229,14 @@ def test_cancel_while_waiting_and_while_running(monkeypatch: pytest.MonkeyPatch)
 
 def test_an_error_is_its_own_alone(monkeypatch: pytest.MonkeyPatch) -> None:
     gate, people = make(monkeypatch)
-    told: list[BaseException] = []
-    people.queue.broken = told.append
+    heard: list[BaseException] = []
+    people.queue.broken = heard.append
     people.ask("a", request("crash"))
     people.ask("b", request("b"))
     gate.open.release(2)
     people.end()
     assert isinstance(people.ends["crash"], RuntimeError) and isinstance(people.ends["b"], Result)
-    assert [type(error) for error in told] == [RuntimeError]
+    assert [type(error) for error in heard] == [RuntimeError]
     assert b'pasdedeux_errors_total{kind="RuntimeError"} 1.0' in people.queue.figures.text()
 
 

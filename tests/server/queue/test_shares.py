@@ -12,7 +12,7 @@ from fastapi.testclient import TestClient
 from sqlalchemy import update
 
 from motion import InputError
-from tests.server.clients import CALL, DATABASES, FIELDS, database_url, lab_of, sign_in, told
+from tests.server.clients import CALL, DATABASES, FIELDS, database_url, events_of, lab_of, sign_in
 from tests.server.lab import ROOT
 from webdemo.inference.requests import GenerateRequest
 from webdemo.server.cluster.instance_lock import InstanceLock
@@ -39,7 +39,7 @@ def test_each_server_knows_what_people_used_at_the_other(two: tuple[Shares, Shar
         one.add("ada", units)
     one.add("eve", 1.0)
     assert other.exchange() == {}  # it is not written yet
-    assert one.exchange() == {}  # its own is not told to it
+    assert one.exchange() == {}  # it does not hear of its own
     assert other.exchange() == {"ada": 7.0, "eve": 1.0}
     one.add("ada", 2.0)
     other.add("ada", 50.0)
@@ -108,7 +108,7 @@ def test_two_servers_tell_each_other(pair: tuple[TestClient, TestClient]) -> Non
     both = 2 * (1 * 40 + 10)  # samples × (seconds × steps + 10)
     wait_for(lambda: list(queues[0]._turns.served.values()) == [both])
     for client in pair:
-        assert "You have 2 runs waiting or running already" in told(client, "generate", FIELDS, ada)
+        assert "You have 2 runs waiting or running already" in events_of(client, "generate", FIELDS, ada)
     assert pair[0].post(f"{CALL}/generate", json=body, headers=eve).status_code == 200
     wait_for(lambda: queues[0].waiting == 1)  # somebody else's is let in
     for queue in queues:

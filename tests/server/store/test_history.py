@@ -99,8 +99,10 @@ def test_the_verdict_names_what_differs(history: History) -> None:
         duets=tuple(duet.with_positions(duet.positions + np.float32(0.002)) for duet in old.duets),
         manifest=old.manifest | {"weights_sha256": "f" * 64, "versions": {"torch": "9"}},
     )
-    told = verdict(old, new)
-    assert "up to 2 mm" in told and "the weights (unknown → ffffffff)" in told and "torch (none → 9)" in told
+    sentence = verdict(old, new)
+    assert all(
+        part in sentence for part in ("up to 2 mm", "the weights (unknown → ffffffff)", "torch (none → 9)")
+    )
     elsewhere = replace(new, manifest=old.manifest)
     assert "same weights and versions; it ran on another machine" in verdict(old, elsewhere)
     shared = replace(old, manifest=old.manifest | {"runs_in_pass": 3})
@@ -259,9 +261,9 @@ def test_a_damaged_database_is_a_sentence_and_no_sql(history: History) -> None:
     with history.database.engine.begin() as connection:
         connection.exec_driver_sql("DROP TABLE links")
     for act in (lambda: history.entries(ME), lambda: history.link(runs[0], ME)):
-        with pytest.raises(InputError) as told:
+        with pytest.raises(InputError) as error:
             act()
-        assert "history cannot be read or written" in str(told.value) and "links" not in str(told.value)
+        assert "history cannot be read or written" in str(error.value) and "links" not in str(error.value)
 
 
 def test_a_run_that_is_removed_while_it_runs_leaves_no_files(history: History) -> None:

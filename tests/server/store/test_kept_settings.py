@@ -39,7 +39,7 @@ def test_motions_of_other_joints_stand_beside_none() -> None:
 
 
 def test_controls_keep_values_of_their_kinds() -> None:
-    told = {
+    controls = {
         "seed": 3,
         "steps": float("nan"),
         "guidance": True,
@@ -48,5 +48,5 @@ def test_controls_keep_values_of_their_kinds() -> None:
         "person": "b",
         "x": 1,
     }
-    assert plain_controls(told) == {"seed": 3, "person": "b"}
+    assert plain_controls(controls) == {"seed": 3, "person": "b"}
     assert plain_controls(["seed"]) == {}

@@ -161,13 +161,13 @@ def _changed(file: Path, change: Callable[[dict[str, Any], dict[str, bytes]], No
     """A workspace with its list of runs and its files changed by hand."""
     with zipfile.ZipFile(file) as archive:
         files = {name: archive.read(name) for name in archive.namelist()}
-    told = json.loads(files.pop("workspace.json"))
-    change(told, files)
+    listing = json.loads(files.pop("workspace.json"))
+    change(listing, files)
     made = io.BytesIO()
     with zipfile.ZipFile(made, "w") as archive:
         for name, content in files.items():
             archive.writestr(name, content)
-        archive.writestr("workspace.json", json.dumps(told))
+        archive.writestr("workspace.json", json.dumps(listing))
     return made.getvalue()
 
 
@@ -193,28 +193,30 @@ def test_a_grid_and_its_cells_go_out_and_come_in_together(notebook: Notebook, tm
 
 
 def _controls(**controls: Any) -> Callable[[dict[str, Any], dict[str, bytes]], None]:
-    return lambda told, files: told["runs"][0].update(kept={"controls": controls, "compared": []})
+    return lambda listing, files: listing["runs"][0].update(kept={"controls": controls, "compared": []})
 
 
 HOSTILE: dict[str, Callable[[dict[str, Any], dict[str, bytes]], Any]] = {
-    "no motion": lambda told, files: files.clear(),
-    "a motion that is none": lambda told, files: files.update({"0/1.npz": b"PK\x03\x04 nothing"}),
-    "pickled code": lambda told, files: files.update({"0/1.npz": _pickled()}),
-    "another format": lambda told, files: told.update(format="mine"),
-    "runs that are no list": lambda told, files: told.update(runs={"0": {}}),
-    "a run that is none": lambda told, files: told.update(runs=[[]]),
-    "an unknown kind": lambda told, files: told["runs"][0].update(kind="../../x"),
-    "too many runs": lambda told, files: told.update(runs=[{}] * 1001),
+    "no motion": lambda listing, files: files.clear(),
+    "a motion that is none": lambda listing, files: files.update({"0/1.npz": b"PK\x03\x04 nothing"}),
+    "pickled code": lambda listing, files: files.update({"0/1.npz": _pickled()}),
+    "another format": lambda listing, files: listing.update(format="mine"),
+    "runs that are no list": lambda listing, files: listing.update(runs={"0": {}}),
+    "a run that is none": lambda listing, files: listing.update(runs=[[]]),
+    "an unknown kind": lambda listing, files: listing["runs"][0].update(kind="../../x"),
+    "too many runs": lambda listing, files: listing.update(runs=[{}] * 1001),
     "a grid without names": _controls(grid={"columns": 3}),
     "a grid of 500 cells": _controls(
         grid={"columns": ["x"] * 500, "rows": [""], "names": list(map(str, range(500)))}
     ),
     "a grid with equal names": _controls(grid={"columns": ["x"] * 2, "rows": [""], "names": ["x", "x"]}),
-    "a part that is not there": lambda told, files: told["runs"][0].update(kept={"compared": [7]}),
-    "a part of itself": lambda told, files: told["runs"][0].update(kept={"compared": [0]}),
-    "parts that are no numbers": lambda told, files: told["runs"][0].update(kept={"compared": ["0", None]}),
-    "too many parts": lambda told, files: told["runs"][0].update(kept={"compared": [0] * 500}),
-    "a prediction from nowhere": lambda told, files: told["runs"][0]["outcome"].update(
+    "a part that is not there": lambda listing, files: listing["runs"][0].update(kept={"compared": [7]}),
+    "a part of itself": lambda listing, files: listing["runs"][0].update(kept={"compared": [0]}),
+    "parts that are no numbers": lambda listing, files: listing["runs"][0].update(
+        kept={"compared": ["0", None]}
+    ),
+    "too many parts": lambda listing, files: listing["runs"][0].update(kept={"compared": [0] * 500}),
+    "a prediction from nowhere": lambda listing, files: listing["runs"][0]["outcome"].update(
         prediction={"past_frames": 10**9}
     ),
 }
@@ -250,17 +252,17 @@ def test_what_a_workspace_claims_is_not_believed(notebook: Notebook, tmp_path: P
     file = tmp_path / "workspace.zip"
     notebook.export(ME, [], file)
 
-    def claim(told: dict[str, Any], files: dict[str, bytes]) -> None:
+    def claim(listing: dict[str, Any], files: dict[str, bytes]) -> None:
         files["../../../evil.npz"] = files["/etc/evil"] = b"x"
-        told["runs"][0] |= {
+        listing["runs"][0] |= {
             "id": mine, "owner": OTHER, "state": "running", "favourite": True, "created": 1e18, "size": -5,
             "title": "<script>", "readouts": [{"after": {"foot_skate": "<b>", "jerk": 1e999}, "curves": [1]}],
         }  # fmt: skip
-        told["runs"][0]["kept"] = {
+        listing["runs"][0]["kept"] = {
             "controls": {"seed": "<b>", "person": ["a"], "steps": 7, "note": "x"},
             "compared": None,
         }
-        told["runs"][0]["request"] |= {"prompt": ["no", "text"], "actor": [1], "seed": {"deep": {"er": 1}}}
+        listing["runs"][0]["request"] |= {"prompt": ["no", "text"], "actor": [1], "seed": {"deep": {"er": 1}}}
 
     file.write_bytes(_changed(file, claim))
     assert notebook.take_in(ME, file) == 1

@@ -121,9 +121,9 @@ def test_names_in_a_workspace_become_no_paths(
         for each in old.namelist():
             content = old.read(each)
             if each == "workspace.json":
-                told = json.loads(content)
-                told["runs"][0]["kept"]["file"] = name
-                content = json.dumps(told).encode()
+                listing = json.loads(content)
+                listing["runs"][0]["kept"]["file"] = name
+                content = json.dumps(listing).encode()
             new.writestr(each, content)
     notebook.take_in(ME, changed)
     (entry,) = [entry for entry in notebook.search(ME, Search()).entries if entry.id != mine]

@@ -15,7 +15,7 @@ from fastapi.testclient import TestClient
 from sqlalchemy import event
 
 from motion import InputError, formats
-from tests.server.clients import FIELDS, HERE, UPLOAD, client_of, lab_of, settings_for, told
+from tests.server.clients import FIELDS, HERE, UPLOAD, client_of, events_of, lab_of, settings_for
 from tests.server.lab import stub_module
 from tests.server.queue.test_queue import wait_for
 from webdemo.server import app as app_module
@@ -69,7 +69,7 @@ def test_a_server_keeps_its_files_there_and_tidies_them(
     with TestClient(app, base_url=HERE, client=("127.0.0.1", 5)) as client:
         (upload,) = map(Path, client.post(UPLOAD, files={"files": ("a.bvh", b"HIERARCHY")}).json())
         assert upload.is_relative_to(scratch.uploads)
-        assert "event: complete" in told(client, "generate", FIELDS)
+        assert "event: complete" in events_of(client, "generate", FIELDS)
         (made,) = scratch.uploads.glob("*/run-*")
         files = [upload, *made.iterdir()]
         assert len(files) > 3 and all(file.exists() for file in files)
@@ -104,7 +104,7 @@ def test_uploads_are_weighed(tmp_path: Path) -> None:
 
 def test_nothing_is_taken_where_the_disk_is_nearly_full(tmp_path: Path) -> None:
     with client_of(settings_for(tmp_path, free_megabytes=1e12)) as client:
-        said = told(client, "generate", FIELDS)
+        said = events_of(client, "generate", FIELDS)
         assert "event: error" in said and "disk is nearly full" in said
         assert lab_of(client).history.entries("local") == []
         answer = client.post(UPLOAD, files=SMALL)
@@ -150,12 +150,12 @@ def _fill_the_database(local: TestClient) -> None:
     event.listen(lab.database.engine, "connect", limit)
     lab.database.engine.dispose()
     try:
-        said = [told(local, "generate", ["x" * 500, *FIELDS[1:]]) for _ in range(12)][-1]
+        said = [events_of(local, "generate", ["x" * 500, *FIELDS[1:]]) for _ in range(12)][-1]
     finally:
         event.remove(lab.database.engine, "connect", limit)
         lab.database.engine.dispose()
     assert "event: error" in said and "disk is full, so nothing new can be kept" in said
-    assert "event: complete" in told(local, "generate", FIELDS)
+    assert "event: complete" in events_of(local, "generate", FIELDS)
     assert {*before} <= {entry.id for entry in lab.history.entries("local")}
 
 
@@ -168,7 +168,7 @@ def test_an_error_does_not_say_where_the_files_are(
         )
 
     monkeypatch.setattr(formats, "write", full)
-    said = told(local, "generate", ["They walk to the end of the road.", *FIELDS[1:]])
+    said = events_of(local, "generate", ["They walk to the end of the road.", *FIELDS[1:]])
     assert "event: error" in said
     assert re.search(r"road-seed0-[0-9a-f]{4}\.npz could not be written because the disk is full", said)
     assert "/" not in said.partition("data: ")[2]

@@ -39,7 +39,7 @@ def studies(request: pytest.FixtureRequest, tmp_path: Path) -> Iterator[Studies]
 
 
 def sets(count: int = 3) -> dict[str, list[Stimulus]]:
-    """Walks of 1 s in the one set and of 2 s in the other, so that they can be told apart."""
+    """Walks of 1 s in the one set and of 2 s in the other, so that they differ."""
     return {
         name: [Stimulus(f"They walk {i}.", walking(seconds, i)) for i in range(count)]
         for name, seconds in (("short", 1.0), ("long", 2.0))

@@ -10,7 +10,6 @@ import errno
 import hmac
 import json
 import logging
-import re
 import shutil
 from collections.abc import Callable
 from urllib.parse import parse_qs, quote, urlsplit
@@ -33,57 +32,21 @@ from .exchange import Exchange
 from .metrics import Figures
 from .payloads import Payloads
 from .rate_limit import RateLimit
+from .routes import API, LIVE, MESSAGE, PUBLIC, is_upload, path_below, route_of
 from .upload_form import UploadForm
 
 log = logging.getLogger(__name__)
 
-PUBLIC = ("/login", "/logout", "/healthz", "/metrics")
-"""Paths that need no sign-in; /metrics has its own rule."""
-API = "/gradio_api/"
-_CLOSED = re.compile(
-    r"/(monitoring|docs|redoc|openapi\.json|gradio_api/(openapi\.json|proxy=|vibe|undo-vibe|run-history|runs|deep_link|dev/"
-    r"|stream/|process_recording|custom_component|file=\w+:|file/\w+:))",
-    re.IGNORECASE,
-)
-"""Gradio's routes that this page does not use: proxies, code editing, monitoring, other hosts' files."""
 _NOT_HEARD = (b"x-forwarded-host", b"x-forwarded-proto", b"x-gradio-server")
 """Headers from any client from which Gradio would take the page's address. Here they are dropped: the address is
 Host's, and the scheme is that of a trusted proxy."""
 _CHANGING = ("POST", "PUT", "PATCH", "DELETE")
-_LONGEST_URL = 4096
-_ROUTES = frozenset(
-    f"/{name}"
-    for name in (
-        "login",
-        "logout",
-        "study",
-        "healthz",
-        "live",
-        "metrics",
-        "config",
-        "theme.css",
-        "static",
-        "assets",
-        "favicon.ico",
-    )
-)
-_API_ROUTES = frozenset(
-    ("queue", "upload", "upload_progress", "file", "call", "run", "api", "info", "heartbeat", "cancel",
-     "reset", "component_server", "startup-events", "app_id")
-)  # fmt: skip
-
-
-_NOTHING = "There is nothing here."
 _DISK = "The server's disk is full, so nothing more can be kept: tell the person who runs it."
 _DATABASE = "The server's database cannot be read or written: tell the person who runs it."
 _ANSWERS = frozenset(f"{API}{name}" for name in ("queue/data", "call", "run", "api"))
 """Paths that send the results of runs."""
 _CALLS = frozenset(f"{API}{name}" for name in ("queue/join", "call"))
 """Paths whose responses hold the id of a call, with which its result is fetched."""
-LIVE = "/live/"
-"""Path of the messages of live streams."""
-_MESSAGE = f"{LIVE}ID"
-"""Their label in metrics and log."""
 _LIVE_WEIGHT = 0.05
 """The number of requests that a message of a live stream counts as: some fifteen come in a second."""
 _MOST_FIELDS = 50
@@ -142,8 +105,8 @@ class Guard:
         REFERENCE.set(exchange.reference)
         route = "(none)"
         try:
-            path = self._path(scope)
-            route = _route(path)
+            path = path_below(self.settings.root_path, scope["path"], scope.get("query_string", b""))
+            route = route_of(path)
             heard = [pair for pair in scope["headers"] if pair[0] not in _NOT_HEARD or on_a_space()]
             scope = {**scope, "path": path, "raw_path": path.encode(), "headers": heard}
             await self._pass(exchange, scope, receive, route)
@@ -207,26 +170,13 @@ class Guard:
         self.figures.answer_seconds.labels(route).observe(exchange.first_byte)
         # Neither the query nor the whole path: both can hold the key of a run or of a file.
         log.log(
-            logging.DEBUG if route == _MESSAGE else logging.INFO,  # a live stream sends some fifteen a second
+            logging.DEBUG if route == MESSAGE else logging.INFO,  # a live stream sends some fifteen a second
             "request",
             extra={"method": method, "route": route, "status": status,
                    "first_byte_seconds": round(exchange.first_byte, 4), "seconds": round(exchange.seconds, 4)},
         )  # fmt: skip
 
     # ---- the head --------------------------------------------------------------------------------
-
-    def _path(self, scope: Scope) -> str:
-        """The path below the base path; raises Refused for one that tries tricks."""
-        path, root = scope["path"], self.settings.root_path
-        if len(path) + len(scope.get("query_string", b"")) > _LONGEST_URL:
-            raise Refused(414, "The address is too long.", "bad path")
-        if root and (path == root or path.startswith(f"{root}/")):
-            path = path[len(root) :] or "/"
-        if "\0" in path or "\\" in path or ".." in path.split("/") or not path.isprintable():
-            raise Refused(404, _NOTHING, "bad path")
-        if _CLOSED.match(path):
-            raise Refused(404, _NOTHING, "closed")
-        return path
 
     def _check_head(self, scope: Scope, headers: dict[bytes, bytes]) -> None:
         """Raises Refused for foreign names, and for another site's page that asks in a visitor's name."""
@@ -286,7 +236,7 @@ class Guard:
 
     def _most(self, path: str) -> float:
         """Most bytes of a body; an upload's form has some overhead around the file."""
-        megabytes = self.settings.upload_megabytes + 1 if _is_upload(path) else self.settings.body_megabytes
+        megabytes = self.settings.upload_megabytes + 1 if is_upload(path) else self.settings.body_megabytes
         return megabytes * 2**20
 
     def _weight(self, scope: Scope, headers: dict[bytes, bytes]) -> float:
@@ -296,7 +246,7 @@ class Guard:
         most = self._most(path)
         if path.startswith(LIVE):
             return _LIVE_WEIGHT
-        if not _is_upload(path) or declared > most:
+        if not is_upload(path) or declared > most:
             return 1.0
         return 1.0 + (declared if b"content-length" in headers else most) / 2**20
 
@@ -309,7 +259,7 @@ class Guard:
         if declared > most:
             raise too_large(most)
         form = None
-        if _is_upload(path):
+        if is_upload(path):
             self._check_room(declared)
             form = UploadForm(headers.get(b"content-type", b""))
         body = BoundedBody(receive, most=most, seconds=self.settings.body_seconds, form=form)
@@ -377,29 +327,12 @@ class Guard:
         return hear
 
 
-def _is_upload(path: str) -> bool:
-    return path.startswith(f"{API}upload")
-
-
 def may_read_figures(settings: Settings, address: str, authorization: str) -> bool:
     """True if /metrics may be read: from this machine, or with the token."""
     token = settings.metrics_token
     if token:
         return hmac.compare_digest(authorization.encode(), f"Bearer {token}".encode())
     return is_loopback(address)
-
-
-def _route(path: str) -> str:
-    """Label of a path in metrics and log: its first word if that is known, never a key or a name."""
-    if path.startswith(API):
-        word, _, rest = path[len(API) :].replace("=", "/").partition("/")
-        if word == "queue" and rest in ("join", "data"):
-            return f"{API}queue/{rest}"
-        return f"{API}{word}" if word in _API_ROUTES else "(other)"
-    if path.startswith(LIVE):
-        return _MESSAGE
-    first = "/" + path[1:].partition("/")[0]
-    return first if path == "/" or first in _ROUTES else "(other)"
 
 
 def _sign_in_first(root: str, scope: Scope, in_browser: bool) -> Response:

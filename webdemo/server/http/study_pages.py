@@ -51,7 +51,7 @@ def study_routes(settings: Settings, studies: Studies) -> APIRouter:
     @router.post("/study/{key}/next")
     def following(key: str, request: Request) -> Response:
         try:
-            return _told(_following(studies, key, _voter(request), _visitor(request).address))
+            return _answered(_following(studies, key, _voter(request), _visitor(request).address))
         except InputError as error:
             raise Refused(422, str(error), "study") from None
 
@@ -64,7 +64,7 @@ def study_routes(settings: Settings, studies: Studies) -> APIRouter:
             answer = await run_in_threadpool(_following, studies, key, person, _visitor(request).address)
         except InputError as error:
             raise Refused(422, str(error), "study") from None
-        return _told(answer)
+        return _answered(answer)
 
     return router
 
@@ -86,8 +86,8 @@ def _voter(request: Request) -> str:
 def _vote(body: bytes) -> tuple[str, str]:
     """The ticket and the pressed key of a vote's body."""
     try:
-        told = json.loads(body if len(body) <= LONGEST_VOTE else b"")
-        ticket, pressed = told["ticket"], told["answer"]
+        vote = json.loads(body if len(body) <= LONGEST_VOTE else b"")
+        ticket, pressed = vote["ticket"], vote["answer"]
     except (ValueError, KeyError, TypeError):
         raise Refused(400, "The vote cannot be read: reload the page.", "study") from None
     if not isinstance(ticket, str) or not isinstance(pressed, str):
@@ -95,7 +95,7 @@ def _vote(body: bytes) -> tuple[str, str]:
     return ticket, pressed
 
 
-def _told(answer: dict[str, Any]) -> Response:
+def _answered(answer: dict[str, Any]) -> Response:
     return JSONResponse(answer, headers={"Cache-Control": "no-store"})
 
 
@@ -125,8 +125,8 @@ def pair_payload(shown: Shown) -> Payload:
 
 
 def _plain(result: StudyResult) -> dict[str, Any]:
-    told = result.to_dict()
-    return {name: told[name] for name in ("raters", "votes", "comparisons")}
+    figures = result.to_dict()
+    return {name: figures[name] for name in ("raters", "votes", "comparisons")}
 
 
 def _page(root: str, key: str, question: str) -> str:

@@ -109,21 +109,21 @@ class Notebook(History):
 
         The file itself is copied beside the run where it is not too large and its owner's runs leave room.
         """
-        told: dict[str, Any] = {"controls": dict(kept.controls), "compared": list(kept.compared)}
-        if len(json.dumps(told)) > LARGEST_KEPT:
+        record: dict[str, Any] = {"controls": dict(kept.controls), "compared": list(kept.compared)}
+        if len(json.dumps(record)) > LARGEST_KEPT:
             return
         with self.database.session() as session:
             self._own(session, run, owner)
             used = session.scalar(select(func.sum(Run.size)).where(Run.owner == owner)) or 0
         folder = self.folder / run
         if kept.original is not None:
-            told["file"] = keep_original(kept.original, folder, LARGEST_SHARE * self.keep_bytes - used)
+            record["file"] = keep_original(kept.original, folder, LARGEST_SHARE * self.keep_bytes - used)
         self._keep_people(kept, folder)
         with self.database.session.begin() as session:
             mine = self._own(session, run, owner)
             with suppress(OSError):
                 mine.size = bytes_of(folder)
-            _note(session, run).kept = json.dumps(told)
+            _note(session, run).kept = json.dumps(record)
             for other in kept.compared[:MOST_BESIDE]:
                 self._own(session, other, owner)
                 _note(session, other).part_of = run

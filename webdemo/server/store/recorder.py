@@ -11,6 +11,7 @@ from typing import Any
 from sqlalchemy.exc import SQLAlchemyError
 
 from motion import InputError
+from webdemo.inference.live_take import live_title
 from webdemo.inference.methods import methods
 from webdemo.inference.requests import Cancelled, Progress, Result
 from webdemo.inference.story.beats import story_title
@@ -108,6 +109,8 @@ class Recorder:
 
 def title_of(asked: Mapping[str, Any]) -> str:
     """Title of a run from its request's dictionary: the words that its method hears, or the name of its input."""
+    if asked.get("live"):
+        return live_title(str(asked.get("model")))
     words = str(asked.get("prompt", "")).strip()
     if words and _hears(str(asked.get("model", ""))):
         return words

@@ -131,15 +131,15 @@ def _put_beside(stored: Sequence[Mapping[str, Any]], taken: Sequence[Taken]) -> 
     beside = groups([each.get("compared") for each in kept], [run.motion for run in taken])
     for number, run in enumerate(taken):
         others = [taken[other] for other in beside.get(number, ())]
-        told: dict[str, Any] = {
+        record: dict[str, Any] = {
             "controls": plain_controls(kept[number].get("controls")),
             "compared": [o.row["id"] for o in others],
         }
         if original := kept_original(kept[number].get("file"), run.folder):
-            told["file"] = original.name
-        if "grid" in told["controls"] and not others:  # its other cells were removed before
-            del told["controls"]["grid"]
-        run.note["kept"] = json.dumps(told)
+            record["file"] = original.name
+        if "grid" in record["controls"] and not others:  # its other cells were removed before
+            del record["controls"]["grid"]
+        run.note["kept"] = json.dumps(record)
         for other in others:
             other.note["part_of"] = run.row["id"]
 

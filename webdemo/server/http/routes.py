@@ -1,0 +1,75 @@
+"""The paths of the server: which there are, what they are called in metrics, and which no request may name."""
+
+from __future__ import annotations
+
+import re
+
+from .body_limits import Refused
+
+PUBLIC = ("/login", "/logout", "/healthz", "/metrics")
+"""Paths that need no sign-in; /metrics has its own rule."""
+API = "/gradio_api/"
+LIVE = "/live/"
+"""Path of the messages of live streams."""
+MESSAGE = f"{LIVE}ID"
+"""Their label in metrics and log."""
+
+_CLOSED = re.compile(
+    r"/(monitoring|docs|redoc|openapi\.json|gradio_api/(openapi\.json|proxy=|vibe|undo-vibe|run-history|runs|deep_link|dev/"
+    r"|stream/|process_recording|custom_component|file=\w+:|file/\w+:))",
+    re.IGNORECASE,
+)
+"""Gradio's routes that this page does not use: proxies, code editing, monitoring, other hosts' files."""
+_LONGEST_URL = 4096
+_ROUTES = frozenset(
+    f"/{name}"
+    for name in (
+        "login",
+        "logout",
+        "study",
+        "healthz",
+        "live",
+        "metrics",
+        "config",
+        "theme.css",
+        "static",
+        "assets",
+        "favicon.ico",
+    )
+)
+_API_ROUTES = frozenset(
+    ("queue", "upload", "upload_progress", "file", "call", "run", "api", "info", "heartbeat", "cancel",
+     "reset", "component_server", "startup-events", "app_id")
+)  # fmt: skip
+_NOTHING = "There is nothing here."
+
+
+def path_below(root: str, path: str, query: bytes) -> str:
+    """The path below the base path ``root``; raises Refused for one that tries tricks or is closed."""
+    if len(path) + len(query) > _LONGEST_URL:
+        raise Refused(414, "The address is too long.", "bad path")
+    if root and (path == root or path.startswith(f"{root}/")):
+        path = path[len(root) :] or "/"
+    if "\0" in path or "\\" in path or ".." in path.split("/") or not path.isprintable():
+        raise Refused(404, _NOTHING, "bad path")
+    if _CLOSED.match(path):
+        raise Refused(404, _NOTHING, "closed")
+    return path
+
+
+def is_upload(path: str) -> bool:
+    """True for the paths that take files."""
+    return path.startswith(f"{API}upload")
+
+
+def route_of(path: str) -> str:
+    """Label of a path in metrics and log: its first word if that is known, never a key or a name."""
+    if path.startswith(API):
+        word, _, rest = path[len(API) :].replace("=", "/").partition("/")
+        if word == "queue" and rest in ("join", "data"):
+            return f"{API}queue/{rest}"
+        return f"{API}{word}" if word in _API_ROUTES else "(other)"
+    if path.startswith(LIVE):
+        return MESSAGE
+    first = "/" + path[1:].partition("/")[0]
+    return first if path == "/" or first in _ROUTES else "(other)"
