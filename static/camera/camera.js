@@ -4,6 +4,7 @@ import { analyse } from "./analysis.js";
 import { detectorsOf } from "./detector.js";
 import { drawPeople, drawSureness } from "./drawing.js";
 import { close, FilmError, LONGEST, openFilm } from "./film.js";
+import { keepLens, lensOf } from "./lens.js";
 import { takesTurns, takeTurn } from "./turns.js";
 import { closeWebcam, countDown, openWebcam, record } from "./webcam.js";
 
@@ -31,7 +32,9 @@ class Panel {
     this.file.onchange = () => {
       const [file] = this.file.files;
       this.file.value = "";
-      if (file) this.attempt(() => this.read(file, file.name));
+      if (!file) return;
+      this.of("video");
+      this.attempt(() => this.read(file, file.name));
     };
     this.record.onclick = () => this.attempt(() => this.prepare());
     this.begin.onclick = () => this.attempt(() => this.film(), false);
@@ -40,8 +43,16 @@ class Panel {
       this.say("Cancelled.");
     };
     this.again.onclick = () => this.hand();
+    this.of("video");
+    this.lens.onchange = () => keepLens(this.lens, this.source);
     takesTurns(this);
     this.open.disabled = false; // before, nobody would hear
+  }
+
+  /** Takes the lens that was last set for a source, "webcam" or "video". */
+  of(source) {
+    this.source = source;
+    this.lens.value = lensOf(source);
   }
 
   toggle() {
@@ -95,6 +106,7 @@ class Panel {
 
   async prepare() {
     this.say("Opening the camera …");
+    this.of("webcam");
     const run = this.run;
     await openWebcam(this.video);
     if (run !== this.run) return closeWebcam(this.video);

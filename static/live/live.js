@@ -3,6 +3,7 @@
 import { detectorsOf } from "../camera/detector.js";
 import { drawPeople } from "../camera/drawing.js";
 import { FilmError } from "../camera/film.js";
+import { keepLens, lensOf } from "../camera/lens.js";
 import { takesTurns, takeTurn } from "../camera/turns.js";
 import { Stream } from "../player/stream.js";
 import { Connection, LiveError } from "./connection.js";
@@ -11,11 +12,15 @@ import { Person, Video, Webcam } from "./sources.js";
 const WAITING = 8; // messages that wait for the server; older ones are dropped
 const TOGETHER = 6; // messages that are sent as one
 const FIGURES = 500; // milliseconds between two updates of the figures
+const AGAIN = "What happened can be played again; Keep makes it a result with read-outs and downloads.";
 const NAMES = { agent: "agent", regennet: "reactor" };
 
-/** `element` holds live.html; `address` is that of the live streams, `mediapipe` of the detector's files. */
-export function mount(element, { address, mediapipe }) {
-  new Panel(element, address, mediapipe);
+/**
+ * `element` holds live.html; `keep(text)` hands a stream to the page's Python side; `address` is that of the live
+ * streams, `mediapipe` of the detector's files.
+ */
+export function mount(element, keep, { address, mediapipe }) {
+  new Panel(element, keep, address, mediapipe);
   for (const name of ["../camera/camera.css", "live.css"]) {
     const href = new URL(name, import.meta.url).href;
     if (document.querySelector(`link[href="${href}"]`)) continue;
@@ -24,12 +29,12 @@ export function mount(element, { address, mediapipe }) {
 }
 
 class Panel {
-  constructor(element, address, mediapipe) {
-    Object.assign(this, { element, address, mediapipe, run: 0 });
+  constructor(element, hand, address, mediapipe) {
+    Object.assign(this, { element, hand, address, mediapipe, run: 0, last: null });
     this.root = element.querySelector(".pdlive");
     const find = (name) => this.root.querySelector(`.${name}`);
-    for (const name of ["open", "body", "stage", "video", "drawing", "file", "begin", "stop", "line"]) this[name] = find(`pdcam-${name}`);
-    for (const name of ["source", "partner", "belief", "text", "chances", "figures"]) this[name] = find(`pdlive-${name}`);
+    for (const name of ["open", "body", "stage", "video", "drawing", "file", "begin", "stop", "line", "more", "tilt", "lens"]) this[name] = find(`pdcam-${name}`);
+    for (const name of ["source", "partner", "keep", "belief", "text", "chances", "figures"]) this[name] = find(`pdlive-${name}`);
     this.open.onclick = () => this.toggle();
     this.begin.onclick = () => (this.source.value === "video" ? this.file.click() : this.start());
     this.file.onchange = () => {
@@ -37,7 +42,11 @@ class Panel {
       this.file.value = "";
       if (file) this.start(file);
     };
-    this.stop.onclick = () => this.rest("Stopped. What happened can be played again.");
+    this.stop.onclick = () => this.rest(`Stopped. ${AGAIN}`);
+    this.keep.onclick = () => this.handOver();
+    this.source.onchange = () => this.takeLens();
+    this.lens.onchange = () => keepLens(this.lens, this.source.value);
+    this.takeLens();
     window.addEventListener("pagehide", () => this.rest());
     takesTurns(this);
     this.open.disabled = false; // before, nobody would hear
@@ -51,6 +60,12 @@ class Panel {
   get player() {
     const near = this.element.closest('[role="tabpanel"]') ?? document;
     return near.querySelector(".pdd")?.player ?? null;
+  }
+
+  /** Shows the lens that was last set for who is filmed; a chosen person was filmed by nobody. */
+  takeLens() {
+    this.more.hidden = this.source.value === "clip";
+    this.lens.value = lensOf(this.source.value);
   }
 
   toggle() {
@@ -68,7 +83,8 @@ class Panel {
     this.root.dataset.state = name;
     this.begin.hidden = name !== "idle";
     this.stop.hidden = name === "idle";
-    this.source.disabled = this.partner.disabled = name !== "idle";
+    for (const input of [this.source, this.partner, this.tilt, this.lens]) input.disabled = name !== "idle";
+    this.keep.hidden = !this.last?.long;
   }
 
   /** Ends the stream and lets go of camera and film. */
@@ -84,6 +100,7 @@ class Panel {
   }
 
   async start(file = null) {
+    this.last = null;
     this.rest();
     takeTurn(this);
     const run = this.run;
@@ -105,7 +122,8 @@ class Panel {
       const payload = await connection.open();
       await source.play?.();
       if (over()) return;
-      this.live.stream = new Stream(player, payload, ["you", NAMES[partner]]);
+      this.live.stream = this.last = new Stream(player, payload, ["you", NAMES[partner]]);
+      this.last.partner = partner;
       if (source.video) {
         this.stage.hidden = false;
         this.stage.classList.toggle("pdcam-mirror", source.mirrored);
@@ -125,14 +143,15 @@ class Panel {
     const chosen = this.source.value;
     if (chosen === "clip") return new Person(player);
     const [detector] = detectorsOf(this.mediapipe);
-    return chosen === "video" ? new Video(this.video, detector, file) : new Webcam(this.video, detector);
+    const camera = { lens: Number(this.lens.value), tilt: this.tilt.value === "" ? null : Number(this.tilt.value) };
+    return chosen === "video" ? new Video(this.video, detector, camera, file) : new Webcam(this.video, detector, camera);
   }
 
   /** Looks and sends until the source is at its end. */
   async follow(over) {
     const { source } = this.live;
     const waiting = [];
-    this.tally = { taken: [], delays: [], server: 0, lost: 0, shown: 0 };
+    this.tally = { taken: [], delays: [], parts: [], lost: 0, shown: 0 };
     let wake = () => {};
     let ended = false;
     const sending = (async () => {
@@ -159,7 +178,18 @@ class Panel {
     await sending;
     if (over()) return;
     if (!this.live.stream.known) throw new FilmError("Nobody was seen long enough: a partner needs a person in eight pictures, a second or two.");
-    this.rest("The end. What happened can be played again.");
+    this.rest(`The end. ${AGAIN}`);
+  }
+
+  /** Ends the stream, where it still runs, and makes its last minute a result of the page. */
+  handOver() {
+    const { last } = this;
+    this.rest();
+    if (!last?.shown) return this.say("Something else is shown now, so this live stream can no longer be kept.", "error");
+    this.hand(JSON.stringify({ partner: last.partner, positions: last.pack() }));
+    this.last = null;
+    this.keep.hidden = true;
+    this.say("Kept: see the result beside this.");
   }
 
   /** Sends what has been seen, and shows what is answered. */
@@ -172,12 +202,14 @@ class Panel {
     const now = performance.now();
     const { tally } = this;
     tally.taken.push(...seen.map(({ taken }) => taken));
-    tally.server = answer.milliseconds;
     if (answer.frames) {
       stream.add(answer.frames, answer.belief.state === "answers" ? "answers" : "");
-      const shownAfter = (1000 * stream.lag) / 30;
-      tally.delays.push(now - seen.at(-1).taken + shownAfter);
+      const last = seen.at(-1);
+      const player = (1000 * stream.lag) / 30;
+      tally.delays.push(now - last.taken + player);
+      tally.parts.push({ camera: last.camera, body: last.body, server: answer.milliseconds, player });
     }
+    this.keep.hidden = !stream.long;
     this.believe(answer.belief);
     this.say(answer.hint || (stream.known ? "Live." : "Stand still for a second, seen from head to feet."), answer.hint ? "error" : "");
     this.measure(now);
@@ -206,17 +238,27 @@ class Panel {
     const { taken, delays } = tally;
     const span = (taken.at(-1) - taken[0]) / 1000;
     const rate = span > 0 ? (taken.length - 1) / span : 0;
-    const delay = [...delays].sort((a, b) => a - b)[delays.length >> 1];
+    tally.parts = tally.parts.slice(-30);
+    const delay = median(delays);
+    const within = ["camera", "body", "server", "player"]
+      .map((part) => [part, median(tally.parts.map((each) => each[part]).filter((ms) => ms !== undefined))])
+      .filter(([, ms]) => ms !== undefined);
     const missed = this.live.source.missed + tally.lost;
     const parts = [
       `${rate.toFixed(0)} pictures a second`,
-      delay === undefined ? "" : `${Math.round(delay)} ms to the partner (server ${Math.round(tally.server)} ms)`,
+      delay === undefined ? "" : `${Math.round(delay)} ms to the partner (${within.map(([part, ms]) => `${part} ${Math.round(ms)}`).join(", ")})`,
       missed ? `${missed} pictures left out` : "",
     ];
     this.figures.textContent = parts.filter(Boolean).join(" · ");
     this.root.dataset.delay = delay === undefined ? "" : String(Math.round(delay));
     this.root.dataset.rate = rate.toFixed(1);
+    this.root.dataset.parts = JSON.stringify(Object.fromEntries(within.map(([part, ms]) => [part, Math.round(ms)])));
   }
+}
+
+/** The middle value; undefined of none. */
+function median(values) {
+  return [...values].sort((a, b) => a - b)[values.length >> 1];
 }
 
 /** Several messages as one: the pictures or poses one after the other. */

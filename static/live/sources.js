@@ -5,25 +5,26 @@ import { Landmarks } from "../camera/landmarks.js";
 import { closeWebcam, openWebcam } from "../camera/webcam.js";
 
 const FASTEST = 33; // milliseconds from picture to picture
-const LENS = 70; // degrees from corner to corner
 const BATCH = 2; // poses of a clip in a message
 const nap = (ms) => new Promise((resolve) => setTimeout(resolve, ms));
 
 /** Pictures of a video element, looked at as fast as can be. */
 class Pictures {
-  constructor(video, detector) {
-    this.video = video;
-    this.detector = detector;
+  /** `camera` holds what is known of the camera: lens and tilt in degrees. */
+  constructor(video, detector, camera) {
+    Object.assign(this, { video, detector, camera });
     this.shown = 0;
     this.looked = 0;
     this.latest = -1;
+    this.behind = 0; // milliseconds from the camera to the page, where the browser tells
   }
 
   async begin() {
     await this.detector.begin(1);
     await this.detector.detect(this.video, 0); // the first picture takes seconds
     this.began = performance.now() - 100;
-    const count = (now, { presentedFrames }) => {
+    const count = (now, { presentedFrames, presentationTime, captureTime }) => {
+      if (captureTime) this.behind = Math.max(0, presentationTime - captureTime);
       this.first ??= presentedFrames;
       this.shown = presentedFrames - this.first + 1;
       if (!this.over) this.video.requestVideoFrameCallback?.(count);
@@ -52,16 +53,16 @@ class Pictures {
     const time = (this.at - this.began) / 1000;
     const people = await this.detector.detect(video, time);
     if (this.over) return null;
+    const found = performance.now();
     this.looked++;
     const landmarks = new Landmarks(video.videoWidth, video.videoHeight);
     landmarks.add(time, people);
-    return { people, taken: this.at, message: JSON.parse(landmarks.pack()) };
+    return { people, taken: this.at - this.behind, camera: this.behind, body: found - this.at, message: JSON.parse(landmarks.pack()) };
   }
 }
 
 export class Webcam extends Pictures {
   mirrored = true;
-  camera = { lens: LENS };
 
   async begin() {
     await openWebcam(this.video);
@@ -77,10 +78,9 @@ export class Webcam extends Pictures {
 
 export class Video extends Pictures {
   mirrored = false;
-  camera = { lens: LENS };
 
-  constructor(video, detector, file) {
-    super(video, detector);
+  constructor(video, detector, camera, file) {
+    super(video, detector, camera);
     this.file = file;
   }
 

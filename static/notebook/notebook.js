@@ -1,5 +1,5 @@
 // The notebook of runs: cards that can be searched, chosen, named, tagged and written on.
-// Python gives the entries (webdemo/ui/components/notebook.py) and is told what is pressed by one event.
+// Python gives the entries (webdemo/ui/components/notebook.py) and hears of every press by one event.
 
 import { play } from "./thumbnail.js";
 
@@ -202,7 +202,7 @@ export function mount(element, props, watch, trigger) {
   const link = Object.assign(document.createElement("link"), { rel: "stylesheet", href: new URL("notebook.css", import.meta.url).href });
   document.head.append(link);
   const events = { open: "submit", compare: "like", study: "edit", again: "retry", stop: "stop" }; // the others are "select"
-  const notebook = new Notebook(element.querySelector(".pdn"), (told) => trigger(events[told.act] ?? "select", told));
+  const notebook = new Notebook(element.querySelector(".pdn"), (action) => trigger(events[action.act] ?? "select", action));
   let shown = null;
   const sync = () => {
     if (!props.value || props.value === shown) return;

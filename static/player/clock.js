@@ -4,13 +4,14 @@ const LONGEST_STEP = 0.5; // seconds; a stalled tab goes on from where it stood
 
 export class Clock {
   constructor() {
-    Object.assign(this, { frames: 1, fps: 30, speed: 1, loop: true, playing: false, frame: 0, last: null, limit: null });
+    Object.assign(this, { frames: 1, fps: 30, speed: 1, hurry: 1, loop: true, playing: false, frame: 0, last: null, limit: null });
   }
 
   load({ frames, fps }) {
     this.frames = frames;
     this.fps = fps;
     this.limit = null;
+    this.hurry = 1; // by how much a stream is played faster than it comes
     this.seek(this.frame);
   }
 
@@ -42,7 +43,7 @@ export class Clock {
     if (!this.playing) return;
     const step = this.last === null ? 0 : Math.min((now - this.last) / 1000, LONGEST_STEP);
     this.last = now;
-    const next = this.frame + step * this.speed * this.fps;
+    const next = this.frame + step * this.speed * this.hurry * this.fps;
     if (this.limit !== null) this.frame = Math.min(next, this.limit);
     else if (next < this.frames - 1) this.frame = next;
     else if (this.loop) this.frame = next % this.frames; // [frames - 1, frames) holds the last frame

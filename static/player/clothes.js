@@ -1,8 +1,10 @@
 // What the people of a player wear: bodies that ship, lighter ones where people are many and small, or an
 // uploaded character. They stay skeletons where no body can be had, or plotly is too slow for them.
 
-import { decodeBody } from "./body.js";
+import { coarser, decodeBody } from "./body.js";
 import { loadBody } from "./loader.js";
+
+const GHOST_VERTICES = 2000; // of an uploaded character on each ghost of a future; light bodies have a thousand
 
 const light = () => Promise.all(["a-small", "b-small"].map(loadBody));
 
@@ -24,7 +26,6 @@ export class Clothes {
       return;
     }
     await this.change();
-    this.dressFutures();
     this.player.wake();
   }
 
@@ -39,12 +40,15 @@ export class Clothes {
     if (scene?.mode !== "fast") return;
     if (this.worn) for (const pane of panes) pane.dress(this.worn);
     if (!show.character) await this.dressGrid();
+    await this.dressFutures();
   }
 
-  /** Bodies for the ghosts of futures, once they are there. */
+  /** What the ghosts of futures wear, once it is there: lighter than people, and the character where they do. */
   async dressFutures() {
-    const { futures } = this.player;
-    if (this.bodies && futures.samples.length) futures.dress(await light());
+    const { futures, show } = this.player;
+    if (!this.bodies || !futures.samples.length) return;
+    const lightBodies = await light();
+    futures.dress(show.character ? [this.character.pale, this.character.pale] : lightBodies);
   }
 
   /** Lighter bodies for people who are seen small, many at a time. */
@@ -58,7 +62,8 @@ export class Clothes {
 
   /** Puts an uploaded character on both people, as motion/character.py packs it, or takes it off for null. */
   wear(stored) {
-    this.character = stored && { id: stored.id, body: decodeBody(stored) };
+    const body = stored && decodeBody(stored);
+    this.character = stored && { id: stored.id, body, pale: coarser(body, GHOST_VERTICES) };
     const shown = stored && { bodies: true, skeletons: false };
     Object.assign(this.player.show, { character: Boolean(stored), ...shown });
     this.change();

@@ -39,10 +39,10 @@ export class Controls {
       if (tab) player.select([...tab.parentElement.children].indexOf(tab));
     });
     this.find(".pdd-range").addEventListener("input", (event) => player.seek(Number(event.target.value)));
-    this.find(".pdd-speed select").addEventListener("change", (event) => player.setSpeed(Number(event.target.value)));
+    this.find(".pdd-speed select").addEventListener("change", (event) => player.actions.setSpeed(Number(event.target.value)));
     attach(this.find(".pdd-touch"), player.orbit, {
       changed: () => player.turned(),
-      hover: (pointer) => player.hover(pointer),
+      hover: (pointer) => player.hover.at(pointer),
       mayScroll: (event) => event.ctrlKey || root.contains(document.activeElement) || document.fullscreenElement === root,
     });
     let pressed = null;

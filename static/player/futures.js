@@ -1,6 +1,6 @@
-// Several ways on from a moment: the samples of such a payload share what came before it. From that moment on the one
+// Several continuations from a moment: the samples of such a payload share what came before it. From then on the one
 // that is chosen stands there as ever, and the others as ghosts in tints of their own. A click on a ghost, its number or
-// the number's key takes it; the player's director is told.
+// the number's key takes it, and the player's director hears of it.
 
 import { Figure } from "./body.js";
 import { poseAt } from "./decode.js";
@@ -37,8 +37,8 @@ export class Futures {
       number.type = "button";
       number.textContent = String(i + 1);
       number.dataset.future = i;
-      number.title = `Take this way on (${i + 1})`;
-      number.setAttribute("aria-label", `Take way ${i + 1}`);
+      number.title = `Take this continuation (${i + 1})`;
+      number.setAttribute("aria-label", `Take continuation ${i + 1}`);
       number.style.background = css(FUTURES[i % FUTURES.length]);
       return number;
     }));

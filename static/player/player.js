@@ -1,5 +1,6 @@
 // The player: one element, one scene, one clock. main.js makes these; everything else is a part of it.
 
+import { Actions } from "./actions.js";
 import { aim } from "./address.js";
 import { Clock } from "./clock.js";
 import { Clothes } from "./clothes.js";
@@ -9,19 +10,16 @@ import { Framing } from "./framing.js";
 import { Futures } from "./futures.js";
 import * as live from "./live.js";
 import { Grid } from "./grid.js";
+import { Hover } from "./hover.js";
 import { Orbit } from "./orbit.js";
-import { Tip } from "./overlay.js";
 import { THEMES, themeName } from "./palette.js";
 import { Pane } from "./pane.js";
-import { savePicture } from "./picture.js";
 import { Posing } from "./posing.js";
 import { describe } from "./skeleton.js";
 import { Strip } from "./strip.js";
 
-const SPEEDS = [0.25, 0.5, 1, 1.5, 2];
 const FPS_WINDOW = 1500; // ms
 const STILL_AFTER = 250; // ms
-const MOVES = new Set(["play", "step", "back", "forward", "first", "last", "sample"]); // to another moment or motion
 export const loops = { running: 0 }; // animation loops alive on the page; a leak shows here
 
 /** Marks this browser tab as one that has made something, which a reload then brings back (ui/tabs/history.py). */
@@ -49,7 +47,8 @@ export class Player {
     this.grid = new Grid(this.find(".pdd-grid"), this.panes[0]);
     this.focus = null; // the number of the cell of a grid that is seen large
     this.futures = new Futures(this);
-    this.tip = new Tip(this.find(".pdd-tip"));
+    this.hover = new Hover(this);
+    this.actions = new Actions(this);
     this.strip = new Strip(root, { onSeek: (frame) => this.seek(frame) });
     this.data = null;
     this.director = null; // keeps poses: see direct()
@@ -244,63 +243,13 @@ export class Player {
   }
 
   act(action, argument) {
-    const { clock } = this;
-    const toggle = { follow: 1, trails: 1, ghosts: 1 }[action];
-    if (action === "grid" || (action === "close" && this.focus !== null)) return this.enlarge(null);
-    if (action === "help" || action === "close") return this.controls.toggleHelp(action === "help" ? undefined : false);
-    this.data && (this.data.rounds = null); // a visitor is at hand: it goes on
-    if (action === "fullscreen") return this.toggleFullscreen();
-    if (!this.data) return;
-    if (action === "pose") return this.togglePosing();
-    if (action === "take") return this.futures.take(argument);
-    if (MOVES.has(action) && !this.mayLeave()) return;
-    if (action === "pause") clock.pause();
-    else if (action === "play") clock.playing ? clock.pause() : clock.play();
-    else if (action === "loop") clock.loop = !clock.loop;
-    else if (action === "step" || action === "back" || action === "forward") {
-      clock.pause();
-      clock.seek(Math.round(clock.shown) + (argument ?? (action === "back" ? -1 : 1)));
-    } else if (action === "first") clock.seek(0);
-    else if (action === "last") clock.seek(clock.frames - 1);
-    else if (action === "faster") this.setSpeed(SPEEDS[Math.min(Math.max(SPEEDS.indexOf(clock.speed) + argument, 0), SPEEDS.length - 1)]);
-    else if (action === "sample") this.select(this.sampleIndex + argument);
-    else if (action === "camera") this.framing.goTo(argument);
-    else if (action === "picture") this.savePicture();
-    else if (toggle && action === "follow") this.orbit.following = !this.orbit.following;
-    else if (action === "figure") this.clothes.next();
-    else if (toggle) this.show[action] = !this.show[action];
-    this.refresh();
+    this.actions.do(action, argument);
   }
 
   /** While a message covers the scene nothing is drawn. */
   cover(covered) {
     this.covered = covered;
     if (!covered && this.scene) this.wake();
-  }
-
-  setSpeed(speed) {
-    this.clock.speed = speed;
-    this.controls.show(this);
-  }
-
-  async toggleFullscreen() {
-    if (document.fullscreenElement === this.root) await document.exitFullscreen();
-    else if (this.root.requestFullscreen) await this.root.requestFullscreen().catch(() => this.fillWindow());
-    else this.fillWindow(); // phones without the interface
-  }
-
-  fillWindow() {
-    this.root.classList.toggle("pdd-full");
-    this.refresh();
-  }
-
-  savePicture() {
-    const frame = Math.round(this.clock.shown);
-    const caption = [this.data.title, `${(frame / this.clock.fps).toFixed(2)} s`].filter(Boolean).join("  ·  ");
-    return savePicture({
-      panes: this.shown, stage: this.stage, theme: this.theme, caption,
-      name: `pas-de-deux-${this.sampleIndex + 1}-frame-${frame}.png`,
-    });
   }
 
   // ---- listening -----------------------------------------------------------------------------
@@ -326,12 +275,6 @@ export class Player {
   turned() {
     this.framing.preset = null;
     this.wake();
-  }
-
-  /** Where the pointer is over the scene, [x, y], or null. */
-  hover(pointer) {
-    this.pointer = pointer;
-    this.showTip();
   }
 
   setTheme(name) {
@@ -417,7 +360,7 @@ export class Player {
     }
     futures.place(clock.shown, matrix);
     this.posing?.place(this.panes[0].spots);
-    if (pose) this.showTip();
+    if (pose) this.hover.show();
     this.controls.show(this);
     this.strip.show(clock.shown);
     this.pose = posed ?? pose;
@@ -426,17 +369,6 @@ export class Player {
 
   setStill(still) {
     return this.shown.map((pane) => pane.scene?.setStill(still)).some(Boolean);
-  }
-
-  showTip() {
-    if (!this.pointer || !this.data || this.posing) return this.tip.hide();
-    const shifted = ({ host, spots }) => spots.map((points) => points.map(([x, y, depth]) => [x + host.offsetLeft, y, depth]));
-    this.tip.show(this.pointer, this.shown.flatMap(shifted), (person, joint) => {
-      const frame = this.clock.shown;
-      const [now, soon] = [frame, Math.min(frame + 1, this.clock.frames - 1)].map((f) => this.everybody(f)[person][joint]);
-      const speed = Math.hypot(...now.map((v, i) => soon[i] - v)) * this.clock.fps;
-      return `${"AB"[person % 2]} · ${this.data.names[joint].replaceAll("_", " ")} — ${now[2].toFixed(2)} m high, ${speed.toFixed(1)} m/s`;
-    });
   }
 
   count(now) {

@@ -19,6 +19,11 @@ const LIFTED = [0.12, 0.4]; // heights of an ankle between which its foot begins
 const TURNS = 24; // of the descent along the spine
 const STEP = 0.12; // radians of one turn of one joint
 const SPINE = [["neck", 0.6], ["spine3", 0.3], ["spine2", 0.3], ["spine1", 0.4], ["pelvis", 0.4]]; // most radians each
+const LEAN = [["spine3", 0.1], ["spine2", 0.1], ["spine1", 0.12], ["pelvis", 0.3]]; // likewise, behind a hand
+const LEAN_TURNS = 24;
+const LEAN_BACK = 0.3; // of a lean forward
+const HEAD_UP = 0.5; // of a lean that the head does not follow
+const STRETCHED = [0.9, 0.99]; // of an arm's length: where the trunk begins to lean, and what is never reached
 
 const NAMES = [
   "pelvis", "left_hip", "right_hip", "spine1", "left_knee", "right_knee", "spine2", "left_ankle", "right_ankle", "spine3",
@@ -61,7 +66,35 @@ function moveHand(pose, side, target) {
   const across = sub(pose[AT.left_shoulder], pose[AT.right_shoulder]);
   const ahead = unit(cross(across, sub(pose[AT.neck], pose[AT.pelvis])));
   const above = Math.max(target[2], Math.min(PALM, pose[wrist][2]));
-  limb(pose, [shoulder, elbow, wrist], [target[0], target[1], above], add([0, 0, -1], ahead, -1)); // elbows point back and down
+  const place = [target[0], target[1], above];
+  const stood = copy(pose);
+  leanAfter(pose, [shoulder, elbow, wrist], place);
+  hang(pose, stood, side === "left" ? "right" : "left");
+  limb(pose, [shoulder, elbow, wrist], place, add([0, 0, -1], ahead, -1)); // elbows point back and down
+}
+
+/** The trunk leans after a hand that the arm alone hardly reaches: every joint its share, softly from STRETCHED on. */
+function leanAfter(pose, [shoulder, elbow, wrist], target) {
+  const arm = length(sub(pose[elbow], pose[shoulder])) + length(sub(pose[wrist], pose[elbow]));
+  const from = Math.max(STRETCHED[0] * arm, length(sub(pose[wrist], pose[shoulder]))); // an arm that hangs is at rest
+  const room = Math.max(STRETCHED[1] * arm - from, 1e-3);
+  const away = length(sub(target, pose[shoulder]));
+  if (away <= from) return;
+  const left = from + room * (1 - Math.exp((from - away) / room)); // what the arm bridges
+  const sideways = unit(sub(pose[AT.left_hip], pose[AT.right_hip])); // a turn about it leans forward
+  const whole = LEAN.reduce((sum, [, most]) => sum + most, 0);
+  const turned = straight(LEAN);
+  for (let turn = 0; turn < LEAN_TURNS; turn++) {
+    const goal = add(target, unit(sub(pose[shoulder], target)), left);
+    if (length(sub(pose[shoulder], goal)) < 1e-3) return;
+    for (const [name, most] of LEAN) {
+      const pivot = pose[AT[name]];
+      const [axis, angle] = between(sub(pose[shoulder], pivot), sub(goal, pivot));
+      let wanted = add(turned[name], axis, (angle * most) / whole);
+      wanted = add(wanted, sideways, Math.max(-LEAN_BACK * most - dot(wanted, sideways), 0));
+      bendSpine(pose, turned, name, most, wanted);
+    }
+  }
 }
 
 function moveFoot(pose, side, target) {
@@ -107,23 +140,42 @@ function level(pose, ankle, foot, lowest) {
 }
 
 function moveHead(pose, target) {
-  const turned = Object.fromEntries(SPINE.map(([name]) => [name, [0, 0, 0]]));
+  const turned = straight(SPINE);
   for (let turn = 0; turn < TURNS && length(sub(pose[AT.head], target)) > 1e-3; turn++) {
     for (const [name, most] of SPINE) {
       const pivot = pose[AT[name]];
-      const [from, to] = [unit(sub(pose[AT.head], pivot)), unit(sub(target, pivot))];
-      const axis = cross(from, to);
-      const angle = Math.min(Math.atan2(length(axis), dot(from, to)), STEP);
-      const before = turned[name];
-      const wanted = add(before, unit(axis), angle);
-      const k = Math.min(1, most / (length(wanted) || 1));
-      const by = sub(wanted.map((v) => k * v), before); // small turns add up like vectors
-      if (length(by) < 1e-6) continue;
-      turned[name] = add(before, by);
-      const m = rotation(by);
-      for (const joint of carriedBy(name)) pose[joint] = add(pivot, apply(m, sub(pose[joint], pivot)));
+      const [axis, angle] = between(sub(pose[AT.head], pivot), sub(target, pivot));
+      bendSpine(pose, turned, name, most, add(turned[name], axis, Math.min(angle, STEP)));
     }
   }
+}
+
+/** The other arm of a trunk that leans points where it did, and the head stays half as upright as it was. */
+function hang(pose, stood, side) {
+  const [shoulder, elbow, wrist] = ["shoulder", "elbow", "wrist"].map((part) => AT[`${side}_${part}`]);
+  for (const joint of [elbow, wrist]) pose[joint] = add(pose[shoulder], sub(stood[joint], stood[shoulder]));
+  const [carried, before] = [pose, stood].map((points) => sub(points[AT.head], points[AT.neck]));
+  const mixed = unit(add(add([0, 0, 0], carried, 1 - HEAD_UP), before, HEAD_UP));
+  pose[AT.head] = add(pose[AT.neck], mixed, length(before));
+}
+
+/** What each joint of the spine has been turned by so far: nothing. */
+const straight = (limits) => Object.fromEntries(limits.map(([name]) => [name, [0, 0, 0]]));
+
+/** Axis and angle of the smallest turn of one direction into another. */
+function between(from, to) {
+  const axis = cross(unit(from), unit(to));
+  return [unit(axis), Math.atan2(length(axis), dot(unit(from), unit(to)))];
+}
+
+/** Turns what a joint of the spine carries so that its turns come to `wanted`, or to `most` radians of it. */
+function bendSpine(pose, turned, name, most, wanted) {
+  const k = Math.min(1, most / (length(wanted) || 1));
+  const by = sub(wanted.map((v) => k * v), turned[name]); // small turns add up like vectors
+  if (length(by) < 1e-6) return;
+  turned[name] = add(turned[name], by);
+  const [m, pivot] = [rotation(by), pose[AT[name]]];
+  for (const joint of carriedBy(name)) pose[joint] = add(pivot, apply(m, sub(pose[joint], pivot)));
 }
 
 /** Joints that a joint of the spine carries. */

@@ -1,11 +1,13 @@
 // A motion that arrives while it happens, without an end: the player shows the latest frames of two people.
 
 import { unpackPositions } from "./decode.js";
+import { Pace } from "./pace.js";
 
 const KEPT = 1800; // frames that can be looked at again
 const DROPPED = 600; // of the oldest, when there are more
 const BEHIND = 8; // frames: a clock that lags more jumps
 const BUFFER = 2; // frames that it keeps in hand
+const LONG = 30; // frames from which on a stream can be kept
 
 export class Stream {
   /** `template` is a payload of one person; `roles` are the names of the two. */
@@ -15,11 +17,26 @@ export class Stream {
     this.roles = roles;
     this.known = 0;
     this.started = false;
+    this.pace = new Pace();
   }
 
   /** Whether the player still shows this stream. */
   get shown() {
     return !this.known || this.player.data?.id === this.template.id;
+  }
+
+  /** Whether there is enough to be kept. */
+  get long() {
+    return this.known >= LONG;
+  }
+
+  /** What can be looked at again as base64 of float32 (2, frames, joints, 3); after the end. */
+  pack() {
+    const { values } = this.player.sample.motion;
+    const bytes = new Uint8Array(values.buffer, values.byteOffset, values.byteLength);
+    let text = "";
+    for (let start = 0; start < bytes.length; start += 8192) text += String.fromCharCode(...bytes.subarray(start, start + 8192));
+    return btoa(text);
   }
 
   /** Frames by which the picture lags behind what has come. */
@@ -31,6 +48,7 @@ export class Stream {
   /** Takes new frames, packed as in webdemo/view/payload.py, and a line about them. */
   add(packed, text) {
     const { player } = this;
+    const inHand = this.lag;
     if (!this.known) this._begin(packed);
     else this._append(unpackPositions(packed));
     const { clock, sample } = player;
@@ -41,7 +59,11 @@ export class Stream {
       this.started = clock.loop = true;
       clock.play();
     }
-    if (clock.playing && clock.limit - clock.frame > BEHIND) clock.frame = clock.limit - BUFFER;
+    clock.hurry = clock.playing ? this.pace.add(performance.now(), inHand) : 1;
+    if (clock.playing && clock.limit - clock.frame > BEHIND) {
+      clock.frame = clock.limit - BUFFER;
+      this.pace.begin();
+    }
     player.find(".pdd-range").max = String(this.known - 1);
     player.wake();
   }
@@ -57,6 +79,7 @@ export class Stream {
     for (let person = 0; person < people; person++) cut.set(values.subarray(width * frames * person, width * (frames * person + known)), width * known * person);
     sample.motion = { values: cut, people, frames: known, joints };
     sample.live = null;
+    player.clock.hurry = 1;
     player.select(0);
   }
 

@@ -5,7 +5,7 @@ export const LONGEST = 30;
 const GUESS = 4; // seconds of a beat whose length has not been worked out yet
 
 /** A story without anything. */
-export const empty = () => ({ beats: [], paths: [], poses: [], loop: false, span: null, from: null });
+export const empty = () => ({ beats: [], paths: [], poses: [], loop: false, planned: true, span: null, from: null });
 
 /** A story as the server gave it, with its own fields alone. */
 export function read(given) {

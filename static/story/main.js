@@ -149,7 +149,7 @@ class Editor {
     if (field === "seconds" && story.beats.length) {
       const free = event.target.value === "";
       this.edit(free ? edits.change(story, selected, { seconds: null }) : edits.stretch(story, selected, value));
-    } else if (field === "loop") this.edit({ ...story, loop: event.target.checked });
+    } else if (field === "loop" || field === "planned") this.edit({ ...story, [field]: event.target.checked });
     else if (field === "from" || field === "to") {
       const [from, to] = ["from", "to"].map((name) => Number(this.find(`[data-field=${name}]`).value));
       if (to > from) this.edit({ ...story, span: [from, Math.min(to, this.total)] });
@@ -289,7 +289,7 @@ class Editor {
     this.player?.refresh(); // it shows poses
     const beat = story.beats[this.selected];
     this.find("[data-field=seconds]").value = beat ? edits.lengthOf(beat) : "";
-    this.find("[data-field=loop]").checked = story.loop;
+    for (const name of ["loop", "planned"]) this.find(`[data-field=${name}]`).checked = story[name];
     this.find("[data-field=from]").value = story.span?.[0] ?? "";
     this.find("[data-field=to]").value = story.span?.[1] ?? "";
     for (const act of ["split", "left", "right", "again", "delete"]) {

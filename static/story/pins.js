@@ -28,7 +28,7 @@ export class Pins {
     pin.setAttribute("aria-label", `${pin.title}: Enter goes there, arrow keys move it, Delete takes it away`);
     pin.addEventListener("pointerdown", (event) => this.begin(event, pin, index));
     pin.addEventListener("click", (event) => {
-      if (event.detail === 0) this.goTo(index); // Enter or Space; the pointer's own are told from drags in begin()
+      if (event.detail === 0) this.goTo(index); // Enter or Space; begin() knows the pointer's clicks from its drags
     });
     return pin;
   }

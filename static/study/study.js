@@ -35,9 +35,9 @@ function say(sentence) {
 
 async function ask(what, body) {
   const answer = await fetch(`${here}/${what}`, { method: "POST", headers: { "Content-Type": "application/json" }, body: JSON.stringify(body) });
-  const told = await answer.json().catch(() => ({}));
-  if (!answer.ok) throw new Error(told.detail || "The server does not answer: reload the page.");
-  return told;
+  const reply = await answer.json().catch(() => ({}));
+  if (!answer.ok) throw new Error(reply.detail || "The server does not answer: reload the page.");
+  return reply;
 }
 
 /** Asks the server, and shows the pair that it sends or the end. */
@@ -45,9 +45,9 @@ async function go(what, body = {}) {
   enable(false);
   clearTimeout(timer);
   try {
-    const told = await ask(what, body);
+    const reply = await ask(what, body);
     say("");
-    told.pair ? next(told) : end(told);
+    reply.pair ? next(reply) : end(reply);
   } catch (error) {
     say(error.message === "Failed to fetch" ? "The server cannot be reached: check the network, then answer again." : error.message);
     show({ busy: "" });

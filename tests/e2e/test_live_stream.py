@@ -30,6 +30,46 @@ def two_people(page: Page) -> None:
     page.wait_for_function("window.__pasdedeux?.positions?.length === 2", timeout=SLOW)
 
 
+def the_lens_is_remembered(page: Page) -> None:
+    """The webcam's lens and a video's are two; neither is asked for where nobody films."""
+    lens = page.locator(f"{PANEL} .pdcam-lens")
+    expect(lens).to_be_hidden()
+    page.select_option(f"{PANEL} .pdlive-source", "webcam")
+    page.click(f"{PANEL} .pdcam-more summary")
+    expect(lens).to_have_value("70")
+    for typed, taken in (("300", "130"), ("", "70"), ("85", "85")):
+        lens.fill(typed)
+        lens.press("Tab")
+        expect(lens).to_have_value(taken)
+    page.select_option(f"{PANEL} .pdlive-source", "video")
+    expect(lens).to_have_value("70")
+    page.select_option(f"{PANEL} .pdlive-source", "webcam")
+    expect(lens).to_have_value("85")
+    sent = page.evaluate(
+        "name => import(name).then(({ lensOf }) => ['webcam', 'video'].map(lensOf))",
+        page.evaluate(
+            "performance.getEntriesByType('resource').map(({ name }) => name).find((name) => name.endsWith('/lens.js'))"
+        ),
+    )
+    assert sent == [85, 70], "what a stream and a film are opened with"
+
+
+def keep_it(page: Page) -> None:
+    """Makes the stream that has ended a result: the same frames, with read-outs and files."""
+    before = page.evaluate("window.__pasdedeux.positions")
+    frame = page.evaluate("window.__pasdedeux.player.clock.pause(), window.__pasdedeux.player.clock.frame")
+    page.click(f"{PANEL} .pdlive-keep")
+    expect(page.locator("#react-status")).to_contain_text("Kept: 5.0 s live.", timeout=SLOW)
+    expect(page.locator("#react-readouts")).to_contain_text("Foot skate")
+    expect(page.locator("#react-download-npz")).to_be_enabled(timeout=SLOW)
+    page.wait_for_function("!window.__pasdedeux.player.data.id.startsWith('stream-')", timeout=SLOW)
+    assert page.evaluate("window.__pasdedeux.player.sample.frames") == 150
+    assert page.evaluate("window.__pasdedeux.positions.length") == 2
+    assert len(before) == 2 and frame is not None
+    expect(page.locator(f"{PANEL} .pdlive-keep")).to_be_hidden()
+    expect(page.locator(f"{PANEL} .pdcam-line")).to_have_text("Kept: see the result beside this.")
+
+
 def test_a_recorded_person_is_answered_as_they_move(lab: str, open_page: Callable[..., Page]) -> None:
     page = open_page(lab, width=1100, height=700)
     page.get_by_role("tab", name="React").click()
@@ -37,6 +77,7 @@ def test_a_recorded_person_is_answered_as_they_move(lab: str, open_page: Callabl
     page.click(f"{PANEL} .pdcam-open")
     start(page, "clip")
     expect(line).to_contain_text("Nobody is chosen yet", timeout=SLOW)
+    the_lens_is_remembered(page)
 
     for name, sentence in (
         ("NotAllowedError", "The camera may not be used"),
@@ -57,12 +98,13 @@ def test_a_recorded_person_is_answered_as_they_move(lab: str, open_page: Callabl
     expect(page.locator(f"{PANEL} .pdlive-text")).to_have_text("The stub watches.")
     expect(page.locator(f"{PANEL} .pdlive-chances li")).to_have_text(["wave75 %", "bow20 %"])
     expect(page.locator(f"{PANEL} .pdlive-figures")).to_contain_text("ms to the partner")
-    expect(line).to_contain_text("The end. What happened can be played again.", timeout=SLOW)
+    expect(line).to_contain_text("The end. What happened can be played again", timeout=SLOW)
     shown = page.evaluate("[window.__pasdedeux.player.sample.frames, window.__pasdedeux.playing]")
     assert shown == [150, True], "five seconds, which play again"
     person, partner = page.evaluate("window.__pasdedeux.positions")
     assert partner[0] == pytest.approx([-person[0][0], person[0][1], 1.5 - person[0][2]], abs=0.01)
 
+    keep_it(page)
     page.get_by_role("button", name="Push").click()
     page.wait_for_function("window.__pasdedeux?.positions?.length === 1", timeout=SLOW)
     page.route("**/live/*", lambda route: route.abort())

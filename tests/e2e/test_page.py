@@ -165,6 +165,7 @@ def test_a_class_is_chosen_from_the_list(page: Page, server: SimpleNamespace) ->
 
 
 def test_progress_counts_the_steps_in_text_and_over_the_player(page: Page, slow_steps: None) -> None:
+    page.locator("#pace label", has_text="Faithful").click()  # many steps, so that the run is seen
     ask(page, "two people bow")
     page.wait_for_function(
         "/step \\d+ of 50/.test(document.querySelector('#status').innerText) &&"
@@ -178,6 +179,7 @@ def test_progress_counts_the_steps_in_text_and_over_the_player(page: Page, slow_
 
 
 def test_cancel_stops_at_a_step_and_keeps_the_last_motion(page: Page, server: SimpleNamespace) -> None:
+    page.locator("#pace label", has_text="Faithful").click()  # many steps, so that the run is seen
     ask(page, "two people hug")
     status(page, "done")
     before = shown_id(page)
@@ -219,6 +221,7 @@ def test_a_run_can_be_cancelled_whose_first_updates_arrive_together(
 
     monkeypatch.setattr(results, "write_record", slowly)  # so that the page goes on listening to the server
     try:
+        page.locator("#pace label", has_text="Faithful").click()  # many steps, so that the run is seen
         ask(page, "two people hug")
         status(page, "done")
         expect(page.locator("button#generate")).to_be_enabled(timeout=SLOW)
@@ -301,6 +304,7 @@ def test_downloads_are_files(page: Page, tmp_path: Path) -> None:
 
 
 def test_two_sessions_do_not_cancel_each_other(page: Page, phone: Page, server: SimpleNamespace) -> None:
+    page.locator("#pace label", has_text="Faithful").click()  # many steps, so that the run is seen
     server.engine.pause = LONG_STEP
     try:
         ask(page, "the first of two")
@@ -335,3 +339,12 @@ def test_every_control_has_a_name_and_the_focus_is_visible(page: Page) -> None:
     page.keyboard.press("Tab")
     page.keyboard.press("Shift+Tab")
     assert page.evaluate("getComputedStyle(document.activeElement).outlineStyle") != "none"
+
+
+def test_nothing_but_buttons_takes_room_in_the_row_of_files(page: Page) -> None:
+    ask(page, "Two people walk home.")
+    status(page, "done")
+    wide = page.locator("#downloads > *").evaluate_all(
+        "(all) => all.filter((each) => each.offsetWidth > 0).map((each) => each.tagName)"
+    )
+    assert len(wide) > 8 and set(wide) == {"BUTTON"}

@@ -97,7 +97,13 @@ def test_controls_that_differ_from_what_is_shown_say_so(page: Page, server: Simp
     expect(changed).not_to_contain_text(CHANGED)
 
     folded = page.locator("#advanced")
+    expect(folded).to_contain_text("Guidance 4.3, 8 steps, damping 0.7")
+    page.locator("#pace label", has_text="Faithful").click()
     expect(folded).to_contain_text("Guidance 4.3, 50 steps, damping 0.7")
+    expect(changed).to_contain_text(CHANGED)
+    page.locator("#pace label", has_text="Fast").click()
+    expect(folded).to_contain_text("Guidance 4.3, 8 steps, damping 0.7")
+    expect(changed).not_to_contain_text(CHANGED)
     for width in (1440, 1024, 390):  # its line never wraps, and its arrow stays in the panel
         page.set_viewport_size({"width": width, "height": 844})
         button, panel = (part.bounding_box() for part in (folded.locator("button").first, folded))
@@ -108,7 +114,14 @@ def test_controls_that_differ_from_what_is_shown_say_so(page: Page, server: Simp
     folded.locator("button").first.click()
     set_number(page, "#steps", "12")
     expect(folded).to_contain_text("Guidance 4.3, 12 steps, damping 0.7")
+    expect(page.locator("#pace input:checked")).to_have_count(0)
     expect(changed).to_contain_text(CHANGED)
+    page.get_by_label("Paths from the words").first.uncheck()
+    expect(folded).to_contain_text("damping 0.7, no paths")
+    set_number(page, "#seed", "3")
+    generate(page, "Two people run.")
+    assert server.engine.requests[-1].planned is False
+    expect(changed).not_to_contain_text(CHANGED)
 
     seen = len(server.engine.requests)
     set_number(page, "#seed", "1.5")

@@ -277,3 +277,22 @@ def test_saves_a_picture(player):
     image = np.asarray(Image.open(download.value.path()).convert("RGB"), dtype=np.int16)
     assert has_color(image, blue=True)
     assert has_color(image, blue=False)
+
+
+def test_the_joint_under_the_pointer_says_where_it_is_and_how_fast(player):
+    page = player()
+    pause(page)
+    page.evaluate("window.__pasdedeux.player.seek(60)")
+    until(page, "window.__pasdedeux.frame === 60 && window.__pasdedeux.loops === 0")
+    x, y = page.evaluate("""() => {
+        const { player } = window.__pasdedeux;
+        const box = player.stage.getBoundingClientRect();
+        const [left, top] = player.panes[0].spots[0][15];
+        return [box.left + left, box.top + top];
+    }""")
+    page.mouse.move(x, y)
+    tip = page.locator(".pdd-tip")
+    until(page, "document.querySelector('.pdd-tip').innerText.includes('m high')")
+    assert tip.inner_text().startswith("A · head — 1.") and tip.inner_text().endswith(" m/s")
+    page.mouse.move(5, 5)
+    tip.wait_for(state="hidden")

@@ -246,8 +246,63 @@ def test_both_wear_an_uploaded_character_until_the_figure_button_takes_it_off(pl
         until(page, "window.__pasdedeux.loops === 0")
         worn = page.evaluate("window.__pasdedeux.player.panes[0].figures[0].body.zones.includes('character')")
         assert worn == (state == "character")
-        _, told = page.evaluate(f"({READ_PLAYER})(null, '')")
-        assert json.loads(told)["character"] == worn, "a film is told, too"
+        _, sent = page.evaluate(f"({READ_PLAYER})(null, '')")
+        assert json.loads(sent)["character"] == worn, "a film shows it, too"
         page.keyboard.press("s")
     page.evaluate("window.__pasdedeux.player.clothes.wear(null)")
     until(page, "document.querySelector('[data-act=figure]').dataset.figure !== 'character'")
+
+
+def test_ghosts_of_futures_wear_the_character_that_people_wear(player):
+    body = character_body(read_character(glb_character("unreal", places=a_pose()), name="x.glb"))
+    page = player()
+    until(page, DRESSED)
+    press(page, "futures")
+    zones = "window.__pasdedeux.player.futures.ghosts.flat().map(({ body }) => body.zones[0])"
+    worn = "window.__pasdedeux.player.clothes.character"
+    stock = "window.__pasdedeux.player.clothes.bodies[0].zones[0]"
+    until(page, f"({zones}).length === 6 && ({zones}).every((zone) => zone === {stock})")
+    page.evaluate("body => window.__pasdedeux.player.clothes.wear(body)", {"id": "x", **packed_body(body)})
+    until(page, f"({zones}).every((zone) => zone === 'character')")
+    # Other futures come while it is worn; taken off, the ghosts have stock bodies again.
+    page.evaluate("""() => {
+        const { futures, clothes, data } = window.__pasdedeux.player;
+        futures.ghosts = [];
+        futures.load(data);
+        clothes.dressFutures();
+    }""")
+    until(page, f"({zones}).length === 6 && ({zones}).every((zone) => zone === 'character')")
+    pause(page)
+    page.evaluate("window.__pasdedeux.player.seek(100)")
+    until(page, "window.__pasdedeux.frame === 100 && window.__pasdedeux.loops === 0")
+    faces = page.evaluate(f"{worn}.pale.faces.length") // 3
+    assert page.evaluate("window.__pasdedeux.player.scene.objects.futures.triangleCount") == 4 * faces > 0
+    page.evaluate("window.__pasdedeux.player.clothes.wear(null)")
+    until(page, f"({zones}).every((zone) => zone === {stock})")
+
+
+def test_a_coarser_body_keeps_its_shape_and_what_it_hangs_on(player):
+    found = player(None).evaluate(
+        """async () => {
+            const { coarser, Figure } = await import("/player/body.js");
+            const { loadBody } = await import("/player/loader.js");
+            const body = await loadBody("a");
+            const pale = coarser(body, 800);
+            return {
+                same: coarser(body, 5000) === body,
+                whole: [...body.vertices], few: [...pale.vertices], faces: [...pale.faces],
+                counts: [pale.normals.length, pale.sky.length, pale.bones.length, pale.weights.length].map(Number),
+                zones: pale.faceZones.length, shares: [...pale.weights],
+                posed: new Figure(pale).positions.length,
+            };
+        }"""
+    )
+    few, whole = (np.reshape(found[name], (-1, 3)) for name in ("few", "whole"))
+    count, faces = len(few), np.reshape(found["faces"], (-1, 3))
+    assert found["same"] and 400 < count <= 800
+    assert found["counts"] == [3 * count, count, 4 * count, 4 * count] and found["zones"] == len(faces)
+    assert found["posed"] == 9 * len(faces) and faces.max() < count
+    np.testing.assert_allclose(np.reshape(found["shares"], (-1, 4)).sum(axis=1), 1, atol=0.01)
+    assert (faces[:, 0] != faces[:, 1]).all() and len(faces) > 800
+    np.testing.assert_allclose(few.min(axis=0), whole.min(axis=0), atol=0.06)
+    np.testing.assert_allclose(few.max(axis=0), whole.max(axis=0), atol=0.06)

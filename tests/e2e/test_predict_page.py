@@ -136,7 +136,7 @@ def damaged(kind: str) -> np.ndarray:
 
 
 @pytest.mark.parametrize(
-    ("kind", "read", "told"),
+    ("kind", "read", "sentence"),
     [
         ("short", "Give 1 s or more", "1 s or more is needed: give a longer motion"),
         ("jump", "one person, 3.0 s", "The left wrist jumps"),
@@ -144,7 +144,7 @@ def damaged(kind: str) -> np.ndarray:
     ],
 )
 def test_what_cannot_be_predicted_is_a_sentence(
-    page: Page, tmp_path: Path, kind: str, read: str | None, told: str
+    page: Page, tmp_path: Path, kind: str, read: str | None, sentence: str
 ) -> None:
     error = page.locator("#predict-status .pd-error")
     page.click("button#predict-generate")
@@ -154,7 +154,7 @@ def test_what_cannot_be_predicted_is_a_sentence(
     if read:
         expect(page.locator("#predict-status")).to_contain_text(read, timeout=SLOW)
         page.click("button#predict-generate")
-    expect(error).to_contain_text(told, timeout=SLOW)
+    expect(error).to_contain_text(sentence, timeout=SLOW)
 
 
 def test_on_a_phone_the_motion_comes_first_then_the_player_then_the_settings(

@@ -104,6 +104,15 @@ def test_a_story_from_sentence_to_futures(page: Any) -> None:
     page.keyboard.press("ArrowUp")
     assert story(page)["paths"][0]["points"][1][2] == pytest.approx(path["points"][1][2] + 0.1)
     page.get_by_role("button", name="Delete the path").click()
+    # Words that do not become paths: on the line, in the story's text, undone.
+    page.get_by_label("Paths from the words").and_(page.locator(".pds input")).uncheck()
+    assert story(page)["planned"] is False
+    page.wait_for_function(
+        "document.querySelector('#scene-text textarea')?.value.includes('planned = false') ||"
+        " !document.querySelector('#scene-text textarea')"
+    )
+    page.get_by_role("button", name="Undo", exact=True).click()
+    assert page.locator(".pds [data-field=planned]").is_checked() and story(page)["planned"]
     # A span is selected on the ruler and made again, and three futures follow.
     ruler = page.locator(".pds-ruler").bounding_box()
     page.mouse.move(ruler["x"] + 30, ruler["y"] + 10)
@@ -120,7 +129,7 @@ def test_a_story_from_sentence_to_futures(page: Any) -> None:
     rest(page)
     # They stand beside each other from the moment on, and a press on a number takes one.
     page.evaluate("window.__pasdedeux.player.act('pause'); window.__pasdedeux.player.act('last')")
-    page.get_by_role("button", name="Take way 2").click()
+    page.get_by_role("button", name="Take continuation 2").click()
     page.wait_for_function("window.__pasdedeux.player.data.samples.length === 1")
     assert "number 2" in page.locator("#scene-status").inner_text()
 
@@ -165,11 +174,40 @@ def test_a_dragged_hand_becomes_a_pose_that_the_motion_passes_through(page: Any)
     page.mouse.move(box["x"] + 113, box["y"] + 15, steps=4)
     page.mouse.up()
     assert story(page)["poses"][0]["seconds"] > 3
-    page.get_by_role("button", name="Undo", exact=True).last.click()
+    dragged = story(page)["poses"][0]["seconds"]
+    undo, redo = (page.get_by_role("button", name=name, exact=True).last for name in ("Undo", "Redo"))
+
+    def pinned(seconds: float) -> bool:
+        """The pose, as it was kept, and its pin are at a moment."""
+        (pose,) = story(page)["poses"]
+        seen = page.evaluate(
+            "parseFloat(document.querySelector('.pds-pin').style.left) / 100 *"
+            " document.querySelector('.pds').editor.total"
+        )
+        assert np.abs(np.array(pose["positions"]) - wanted).max() < 1e-4
+        return pose["seconds"] == seconds and abs(seen - seconds) < 0.01
+
+    assert pinned(dragged)
+    undo.click()
+    assert pinned(2.0) and redo.is_enabled()
+    redo.click()
+    assert pinned(dragged) and redo.is_disabled()
+    undo.click()
     pin.focus()
     page.keyboard.press("ArrowRight")
+    assert redo.is_disabled(), "another change ends what could be redone"
     page.keyboard.press("ArrowRight")
-    assert story(page)["poses"][0]["seconds"] == 2.0667
+    assert pinned(2.0667)
+    for keys, seconds in (("z", 2.0333), ("z", 2.0), ("Shift+z", 2.0333), ("Shift+z", 2.0667)):
+        page.keyboard.press(f"Control+{keys}")
+        assert pinned(seconds), "the focus stays on the pin, from where it is undone and redone by keys"
+    undo.click()
+    undo.click()
+    undo.click()
+    assert story(page)["poses"] == [] and page.locator(".pds-pin").count() == 0
+    for _ in range(3):
+        redo.click()
+    assert pinned(2.0667)
     page.evaluate("window.__pasdedeux.player.seek(0)")
     pin.click()
     page.wait_for_function("window.__pasdedeux.frame === 62")
@@ -184,3 +222,5 @@ def test_a_dragged_hand_becomes_a_pose_that_the_motion_passes_through(page: Any)
     pin.focus()
     page.keyboard.press("Delete")
     assert story(page)["poses"] == []
+    undo.click()
+    assert pinned(2.0667)

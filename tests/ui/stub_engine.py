@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import time
 from collections.abc import Iterator
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -13,10 +14,12 @@ from motion.kinematics import forward_kinematics
 from motion.metrics import compare
 from motion.transforms import heading_matrix
 from webdemo.inference.live import LiveFrame, LiveProgress, LiveRequest, paced
+from webdemo.inference.live_take import LiveTake
 from webdemo.inference.partner import Belief
 from webdemo.inference.predict_request import PredictRequest, PredictResult, with_people
 from webdemo.inference.requests import Cancelled, GenerateRequest, Progress, ReactRequest, Result
 from webdemo.inference.story import SceneProgress, SceneRequest
+from webdemo.inference.timer import StageTimer
 
 FPS = 30
 _WALK = 0.8  # metres a second
@@ -137,6 +140,11 @@ class StubEngine:
             return
         if isinstance(request, SceneRequest):
             yield from self._scene(request, cancel)
+            return
+        if isinstance(request, LiveTake):
+            manifest = {"model": "stub", "request": request.to_dict()}
+            for event in request.results(StageTimer.start()):
+                yield replace(event, manifest=manifest) if isinstance(event, Result) else event
             return
         if "impossible" in request.prompt:
             raise InputError("The stub cannot do this: ask for something possible.")

@@ -37,6 +37,11 @@ def request_of(opened: Opened) -> Request:
         InputError: for a kind that keeps too little of what it was made from, or fields that no longer fit.
     """
     asked = with_current_names(opened.entry.request)
+    if asked.get("live"):
+        raise InputError(
+            "A live stream cannot be run again: its partner answered as it happened. React to its actor in the tab "
+            "React, or stream once more."
+        )
     kind = _KINDS.get(opened.entry.kind)
     if kind is None:
         raise InputError(

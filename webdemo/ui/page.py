@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import sys
 import time
 from collections.abc import Callable, Iterator
 from pathlib import Path
@@ -17,11 +18,13 @@ from webdemo.ui.tabs.history import LABEL as HISTORY
 from webdemo.ui.tabs.history import HistoryTab
 from webdemo.ui.tabs.predict import PredictTab
 from webdemo.ui.tabs.react import ReactTab
+from webdemo.ui.tabs.results import QUIET
 from webdemo.ui.tabs.scene import SceneTab
 from webdemo.ui.text.panels import model_state
 
 from .api import ClassEndpoint, GenerateEndpoint, PredictEndpoint, ReactEndpoint, RenderEndpoint
 from .context import PageContext
+from .frames import let_rest
 from .history import HistoryLike
 from .runs import EngineLike, Loader, Runs, RunsLike
 from .scene_api import SceneEndpoint
@@ -84,6 +87,7 @@ def build_page(
     def loading() -> Iterator[str]:
         yield from watch_loading(page.loader)
 
+    let_rest()
     with gr.Blocks(title=TITLE, delete_cache=_CACHE, fill_width=True, analytics_enabled=False) as demo:
         for endpoint in ENDPOINTS:
             endpoint(page).publish()
@@ -91,13 +95,7 @@ def build_page(
             gr.HTML(_HEADER)
             mark = gr.HTML(model_state("loading"), elem_id="model-state")
         _build_tabs(page, demo)
-        demo.load(
-            loading,
-            outputs=mark,
-            api_visibility="private",
-            show_progress="hidden",
-            concurrency_limit=None,
-        )
+        demo.load(loading, outputs=mark, concurrency_limit=None, **QUIET)
         demo.unload(leave)
     start_queue(demo, max_size=64)
     return demo
@@ -119,6 +117,9 @@ def start_queue(page: gr.Blocks, max_size: int) -> None:
     )
     page._queue.sleep_when_free = _LOOK
     page._queue.progress_update_sleep_when_free = 5 * _LOOK
+    # Gradio sums up all earlier events after each one, with pandas, for a dashboard that this page does not have.
+    page._queue.ANALYTICS_MAX_EVENTS = 1
+    page._queue.ANAYLTICS_CACHE_FREQUENCY = sys.maxsize
 
 
 def _build_tabs(page: PageContext, demo: gr.Blocks) -> None:

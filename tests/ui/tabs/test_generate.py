@@ -1,58 +1,35 @@
-"""What the page's handlers do, without a browser."""
+"""What the handlers of the tab Generate do, without a browser."""
 
 from __future__ import annotations
 
-import json
-import os
-import re
 import threading
 import time
-import zipfile
 from pathlib import Path
 from types import SimpleNamespace
 from typing import Any
 
+import gradio as gr
 import pytest
 
-os.environ.setdefault("GRADIO_ANALYTICS_ENABLED", "False")
-
-import av
-import gradio as gr
-
-from motion.character import character_body
-from motion.formats.glb_reader import read_character
-from tests.motion.formats.characters import glb_character, unpacked
-from tests.motion.formats.rigs import RIGS
 from tests.ui.stub_engine import StubEngine
 from tests.ui.tab_events import built, changes
+from tests.ui.tabs.generating import FIELDS, result_of, run
 from webdemo.inference.cancel import CancelToken
 from webdemo.inference.methods import method
 from webdemo.inference.requests import Cancelled, GenerateRequest, Progress, Result
-from webdemo.ui.components.exports import KINDS, Record, Shelf, Worn, file_name, for_download, write_files
-from webdemo.ui.components.film import make_film
+from webdemo.ui.components.pace import AT_FIRST, FAITHFUL, FAST
+from webdemo.ui.history import Entry, Kept, Opened
 from webdemo.ui.page import build_page, watch_loading
 from webdemo.ui.runs import Loader, Runs
 from webdemo.ui.tabs.generate import GenerateTab
 from webdemo.ui.tabs.job import PACE
 from webdemo.ui.text.classes import installed_classes
 from webdemo.ui.text.examples import EXAMPLES
-from webdemo.view.stage import Style
-
-FIELDS = {"prompt": "two people walk", "seconds": 2.0, "seed": 3, "samples": 1, "guidance": 2.5, "steps": 5,
-          "damping": 0.7}  # fmt: skip
 
 
 @pytest.fixture
 def tab(tmp_path: Path) -> GenerateTab:
     return built(GenerateTab, tmp_path)
-
-
-def run(tab: GenerateTab, **changed: Any) -> list[dict[str, Any]]:
-    return [changes(tab.outputs, updates) for updates in tab.run("me", {**FIELDS, **changed})]
-
-
-def result_of(tab: GenerateTab, **changed: Any) -> Record:
-    return run(tab, **changed)[-1]["record"]
 
 
 def test_a_run_ends_with_a_motion_readouts_and_a_record(tab: GenerateTab) -> None:
@@ -74,7 +51,8 @@ def test_a_class_is_asked_for_in_place_of_a_sentence(tab: GenerateTab) -> None:
     unchosen = run(tab, model="bigraphdiff", class_name=None)[-1]
     assert "No class is chosen" in unchosen["line"] and "record" not in unchosen
     for way, sentence in (("intergen", True), ("bigraphdiff", False)):
-        *shown, guidance, about = tab.asked_by(way)
+        *shown, guidance, about, _, steps, pace = tab.asked_by(way)
+        assert steps["value"] == pace["value"] == (AT_FIRST if sentence else FAITHFUL)
         assert method(way).summary in about
         assert [update["visible"] for update in shown] == [sentence, not sentence]
         assert (
@@ -96,7 +74,7 @@ def test_progress_is_true_and_paced(tab: GenerateTab) -> None:
     began = time.monotonic()
     lines = [step["line"] for step in run(tab, steps=20)[1:-1]]
     assert any("step 1 of 20" in line for line in lines)
-    stages = 3  # each is told at once
+    stages = 3  # each is shown at once
     assert 3 <= len(lines) <= stages + (time.monotonic() - began) / PACE
 
 
@@ -166,7 +144,7 @@ def test_an_empty_seed_is_drawn_and_shown(tab: GenerateTab) -> None:
 
     seeds = set()
     for _ in range(2):
-        fields = {**FIELDS, "seed": None, "model": "intergen", "class_name": None}
+        fields = {**FIELDS, "seed": None, "model": "intergen", "class_name": None, "planned": True}
         steps = tab.start({part: fields[name] for name, part in tab.controls.items()}, Visit())
         last = [changes(tab.outputs, step) for step in steps][-1]
         seed = last["record"].result.manifest["request"]["seed"]
@@ -240,136 +218,6 @@ def test_loading_is_shown_until_it_is_done_or_failed() -> None:
     assert "The weights file is missing" in marks[-1]
 
 
-def test_files_of_one_sample(tab: GenerateTab, tmp_path: Path) -> None:
-    record = result_of(tab)
-    files = write_files(record.result, tab.page.shelf.folder(), prompt=record.prompt)
-    name = file_name("two people walk", record.result.manifest)
-    assert name.startswith("two-people-walk-seed3-")
-    assert {path.name for path in files["bvh"]} == {f"{name}_a.bvh", f"{name}_b.bvh"}
-    assert json.loads(files["json"][0].read_text())["request"]["seed"] == 3
-    found = for_download(files)
-    assert found["npz"].suffix == ".npz"
-    assert zipfile.ZipFile(found["bvh"]).namelist() == [path.name for path in files["bvh"]]
-
-
-def test_files_of_several_samples_are_zipped(tab: GenerateTab) -> None:
-    record = result_of(tab, samples=2)
-    found = for_download(write_files(record.result, tab.page.shelf.folder(), prompt=record.prompt))
-    assert len(zipfile.ZipFile(found["npz"]).namelist()) == 2
-    assert len(zipfile.ZipFile(found["bvh"]).namelist()) == 4
-
-
-def test_export_fills_the_buttons_once(tab: GenerateTab) -> None:
-    record = result_of(tab)
-    first = tab.export(record)
-    offered = {kind.key for kind in KINDS if kind.offered()}
-    filled = {kind.key for kind, update in zip(KINDS, first[1:], strict=True) if update["interactive"]}
-    assert filled == offered
-    assert all(update == gr.skip() for update in tab.export(record))
-    assert all(update == gr.skip() for update in tab.export(None))
-
-
-def test_a_full_disk_is_reported_and_leaves_nothing(
-    tab: GenerateTab, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    def full(*_: Any, **__: Any) -> None:
-        raise OSError(28, "No space left on device")
-
-    monkeypatch.setattr("webdemo.ui.components.exports.write_sheet", full)
-    line, *buttons = tab.export(result_of(tab))
-    assert "The disk is full" in line
-    assert not any(button["interactive"] for button in buttons)
-    assert list(tab.page.shelf.root.glob("run-*")) == []
-
-
-@pytest.mark.parametrize(
-    "shown", ["{}", "no json", '{"yaw": 1e999, "look": "none", "sample": 9, "view": null}']
-)
-def test_a_film_shows_the_last_result(tab: GenerateTab, monkeypatch: pytest.MonkeyPatch, shown: str) -> None:
-    monkeypatch.setattr("webdemo.ui.components.film.film.SIZE", (96, 64))
-    (busy, _), (line, button) = tab.make_film(result_of(tab, seconds=1.0), shown)
-    assert "Drawing" in busy and "The film is ready" in line
-    with av.open(str(button["value"])) as opened:
-        assert sum(1 for _ in opened.decode(video=0)) == 30
-
-
-def test_a_film_is_what_the_player_shows(tab: GenerateTab, monkeypatch: pytest.MonkeyPatch) -> None:
-    asked: dict[str, Any] = {}
-    monkeypatch.setattr(
-        "webdemo.ui.components.film.film.write_film", lambda *_, **options: asked.update(options)
-    )
-    shown = {
-        "yaw": 1.5,
-        "elevation": 9,
-        "view": "top",
-        "follow": False,
-        "trails": True,
-        "look": "both",
-        "theme": "dark",
-    }
-    record = result_of(tab)
-    make_film(record, json.dumps(shown), tab.page.shelf.folder())
-    assert (asked["yaw"], asked["elevation"], asked["view"], asked["follow"]) == (1.5, 1.5, "top", False)
-    assert asked["style"] == Style(look="both", trails=True, theme="dark")
-    assert asked["title"] == "two people walk"
-
-
-@pytest.mark.parametrize("shown", [True, False, None, "yes"])
-def test_a_film_wears_the_character_while_the_player_shows_it(
-    tab: GenerateTab, monkeypatch: pytest.MonkeyPatch, shown: Any
-) -> None:
-    asked: dict[str, Any] = {}
-    monkeypatch.setattr(
-        "webdemo.ui.components.film.film.write_film", lambda *_, **options: asked.update(options)
-    )
-    record = result_of(tab)
-    record.worn = Worn(character_body(read_character(glb_character(), name="x.glb")), Path("x.glb"))
-    make_film(record, json.dumps({"character": shown}), tab.page.shelf.folder())
-    assert asked["style"].body is (record.worn.body if shown is True else None)
-
-
-def test_a_film_of_nothing_is_one_sentence(tab: GenerateTab) -> None:
-    *_, (line, _) = tab.make_film(None, "{}")
-    assert "make one first" in line
-
-
-def test_old_folders_are_removed(tmp_path: Path) -> None:
-    shelf = Shelf(tmp_path / "runs", max_age=60)
-    old, new = shelf.folder(), shelf.folder()
-    (old / "motion.npz").write_bytes(b"0")
-    os.utime(old, (time.time() - 120,) * 2)
-    shelf.folder()
-    assert not old.exists()
-    assert new.exists()
-
-
-@pytest.mark.parametrize(
-    ("prompt", "expected"),
-    [
-        ("Two people shake hands!", "two-people-shake-hands-seed7"),
-        ("../../etc/passwd", "etc-passwd-seed7"),
-        ("你好 🕺", "motion-seed7"),
-        ("<img onerror=x>", "img-onerror-x-seed7"),
-        ("word " * 100, "word-word-word-word-word-word-word-word-seed7"),
-    ],
-)
-def test_file_names_are_plain(prompt: str, expected: str) -> None:
-    name, _, digest = file_name(prompt, {"request": {"seed": 7}}).rpartition("-")
-    assert re.fullmatch("[0-9a-f]{4}", digest)
-    assert name == expected or (prompt.startswith("word") and len(name) <= 56 and name.endswith("-seed7"))
-
-
-def test_runs_that_differ_have_files_that_differ_in_name() -> None:
-    asked = {"seed": 7, "guidance": 2.5, "steps": 50}
-    manifests = [
-        {"request": asked},
-        {"request": asked | {"guidance": 3.0}},
-        {"request": asked, "model": "other"},
-    ]
-    names = [file_name("hug", manifest) for manifest in manifests]
-    assert len(set(names)) == 3 and file_name("hug", dict(manifests[0])) == names[0]
-
-
 def test_examples_are_prompts_that_a_request_takes() -> None:
     for _, sentence in EXAMPLES:
         assert GenerateRequest(prompt=sentence).prompt == sentence
@@ -403,32 +251,39 @@ def test_build_page_offers_an_endpoint_a_job(tmp_path: Path) -> None:
     ]
 
 
-def test_both_wear_an_uploaded_character_in_this_result_and_the_next(
-    tab: GenerateTab, tmp_path: Path
+def test_words_become_paths_unless_that_is_switched_off(tab: GenerateTab) -> None:
+    for planned in (True, False):
+        last = run(tab, planned=planned)[-1]
+        assert last["record"].result.manifest["request"]["planned"] is planned
+        assert ("Paths from the words" in last["readouts"]) is not planned
+    assert tab.planned in tab.controls.values() and tab.planned in tab.knobs.values()
+    assert tab.planned in tab.tell_advanced["inputs"], "the line over the folded settings says it"
+    assert [tab.asked_by(way)[4]["visible"] for way in ("intergen", "bigraphdiff")] == [True, False]
+
+
+def test_the_switch_of_steps_shows_how_a_kept_run_was_made(tab: GenerateTab) -> None:
+    result = result_of(tab).result
+    for steps, choice in ((FAST, FAST), (FAITHFUL, FAITHFUL), (12, None)):
+        asked = {**result.manifest["request"], "steps": steps}
+        entry = Entry(id="x", kind="generate", title="t", state="done", request=asked)
+        found = tab.opened(Opened(entry=entry, result=result, kept=Kept(controls={"steps": steps})))
+        assert found[tab.pace]["value"] == choice and found[tab.steps]["value"] == steps
+    assert tab.steps.value == tab.pace.value == AT_FIRST
+
+
+@pytest.mark.parametrize(
+    ("changed", "planned"),
+    [({}, True), ({"planned": False}, False), ({"planned": None}, False),
+     ({"planned": None, "model": "bigraphdiff"}, True)],
+)  # fmt: skip
+def test_a_kept_run_opens_with_paths_from_words_as_it_was_made(
+    tab: GenerateTab, changed: dict[str, Any], planned: bool
 ) -> None:
-    file = tmp_path / "robot.glb"
-    file.write_bytes(glb_character("unreal"))
-    line, worn, player, *offered = tab.put_on(str(file), None)
-    assert "Both wear robot.glb" in line and worn.body.zones == ("character",) and offered == [gr.skip()] * 2
-    assert player["character"]["zones"] == ["character"] and player["character"]["id"]
-    record = result_of(tab)
-    _, *updates = tab.export(record, worn)
-    later = [updates[[kind.key for kind in KINDS].index(key)]["value"] for key in ("glb", "png")]
-    plain = Record(record.result, "two people walk")
-    _, *bare = tab.export(Record(record.result, "two people walk"))
-    _, _, _, *offered = tab.put_on(str(file), plain)
-    assert all(each["interactive"] for each in offered) and plain.worn is not None
-    sheets = [Path(path).read_bytes() for path in (later[1], offered[1]["value"])]
-    stock = bare[[kind.key for kind in KINDS].index("png")]["value"]
-    assert sheets[0] == sheets[1] != Path(stock).read_bytes(), "the contact sheet shows it, too"
-    for path in (later[0], offered[0]["value"]):
-        told = unpacked(Path(path).read_bytes())[0]
-        names = [told["nodes"][joint]["name"] for joint in told["skins"][1]["joints"]]
-        assert set(names) == set(RIGS["unreal"].values()), "on the character's own skeleton"
-
-
-@pytest.mark.parametrize("content", [b"no character", glb_character()[:3000], glb_character(skins=[])])
-def test_a_file_that_is_no_character_is_a_sentence(tab: GenerateTab, tmp_path: Path, content: bytes) -> None:
-    (tmp_path / "x.glb").write_bytes(content)
-    line, *rest = tab.put_on(str(tmp_path / "x.glb"), None)
-    assert "pd-error" in line and "x.glb" in line and rest == [gr.skip()] * 4
+    result = result_of(tab).result
+    asked = {**result.manifest["request"], **changed}
+    asked = {name: value for name, value in asked.items() if value is not None}
+    entry = Entry(id="x", kind="generate", title="t", state="done", request=asked)
+    found = tab.opened(Opened(entry=entry, result=result, kept=Kept(controls={"planned": not planned})))
+    assert found[tab.planned]["value"] is planned
+    assert found[tab.planned]["visible"] is ("model" not in changed)
+    assert ("no paths" in found[tab.folded]["label"]) is not planned

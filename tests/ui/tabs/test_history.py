@@ -15,7 +15,7 @@ import pytest
 from motion import SKELETONS, Clip, InputError
 from tests.ui.stub_engine import walking
 from webdemo.inference.requests import Progress, Result
-from webdemo.ui.components.notebook import MOST_SHOWN, STEP, Told, facts, settings, shown
+from webdemo.ui.components.notebook import MOST_SHOWN, STEP, Action, facts, settings, shown
 from webdemo.ui.history import Entry, Found, Opened, Search
 from webdemo.ui.tabs.history import EMPTY, NOTHING_FOUND, HistoryTab, _signed_in, compared
 from webdemo.ui.visitor import Visitor
@@ -98,8 +98,8 @@ def test_the_list_is_searched_and_says_why_it_is_empty() -> None:
     book = Book()
     empty = tab(book).refresh([])[0]["value"]
     assert empty["empty"] == EMPTY and empty["removed"] == 0
-    told = {"words": "hug", "starred": True, "since": 5.0, "until": "x", "kind": None, "tag": "a"}
-    found = press(tab(book), "search", search=told).view["value"]
+    asked = {"words": "hug", "starred": True, "since": 5.0, "until": "x", "kind": None, "tag": "a"}
+    found = press(tab(book), "search", search=asked).view["value"]
     assert found["empty"] == NOTHING_FOUND
     assert book.done[-1] == Search(words="hug", starred=True, since=5.0, tag="a", limit=STEP)
     press(tab(book), "search", limit=120)
@@ -127,8 +127,8 @@ def test_runs_are_kept_named_removed_and_brought_back() -> None:
 def test_an_export_says_what_is_in_it(tmp_path: Path) -> None:
     book = Book(entry("hug"))
     (tmp_path / "pas-de-deux-workspace.zip").write_bytes(b"x" * 2**20)
-    told = press(tab(book, tmp_path), "export", "hug")
-    assert "2 runs in one file of 1.0 MB." in told.line and told.saved["visible"]
+    answer = press(tab(book, tmp_path), "export", "hug")
+    assert "2 runs in one file of 1.0 MB." in answer.line and answer.saved["visible"]
 
 
 @pytest.mark.parametrize(
@@ -140,7 +140,7 @@ def test_an_export_says_what_is_in_it(tmp_path: Path) -> None:
 )  # fmt: skip
 def test_what_a_notebook_never_sends_is_refused(data: Any) -> None:
     with pytest.raises(InputError, match="something unknown"):
-        Told(data)
+        Action(data)
 
 
 @pytest.mark.parametrize(

@@ -21,7 +21,7 @@ from webdemo.inference.methods import methods
 from webdemo.inference.predict_request import PredictRequest
 from webdemo.ui.api import PredictEndpoint
 from webdemo.ui.components.exports import Record, write_files
-from webdemo.ui.components.prediction_view import curves_figure, prediction_payload, still_error, told_errors
+from webdemo.ui.components.prediction_view import curves_figure, error_lines, prediction_payload, still_error
 from webdemo.ui.tabs.predict import PredictTab, predict_choices
 from webdemo.view.payload import unpack_positions
 
@@ -78,22 +78,22 @@ def test_the_last_result_is_continued_from_its_end(tab: PredictTab, pair: Path) 
     (sample,) = again["player"]["value"]["samples"]
     assert (sample["past_until"], sample["frames"], sample["ghost"]) == (90, 120, None)
     assert [curve["key"] for curve in sample["curves"]] == ["speed"]
-    (told,) = ([changes(LOADED, u) for u in tab.take_result(None)][-1],)
-    assert "There is no result yet" in told["line"]
+    (update,) = ([changes(LOADED, u) for u in tab.take_result(None)][-1],)
+    assert "There is no result yet" in update["line"]
 
 
 @pytest.mark.parametrize(
-    ("fields", "told"),
+    ("fields", "sentence"),
     [
         ({"source": None}, "There is no motion yet"),
         ({"marker": 0.2}, "1 s or more is needed"),
         ({"marker": None, "seconds": 99.0}, "Length must be from 0.5 to 4 seconds"),
     ],
 )
-def test_errors_are_one_sentence(tab: PredictTab, pair: Path, fields: dict[str, Any], told: str) -> None:
+def test_errors_are_one_sentence(tab: PredictTab, pair: Path, fields: dict[str, Any], sentence: str) -> None:
     source = loaded(tab, pair)["source"]
     asked = {"source": source, "marker": 2.0, "seconds": 1.0, "model": "motion-mlp"} | fields
-    assert told in run(tab, asked)["line"]
+    assert sentence in run(tab, asked)["line"]
 
 
 def test_one_person_is_predicted_and_written(tab: PredictTab, tmp_path: Path) -> None:
@@ -120,15 +120,15 @@ def test_curves_compare_with_the_last_pose() -> None:
 def test_errors_are_described_in_words_beside_those_of_the_last_pose(monkeypatch: pytest.MonkeyPatch) -> None:
     result = drift(PredictRequest(motion=walking(4.0), marker=2.0, seconds=1.0))
     monkeypatch.setattr("webdemo.ui.components.prediction_view.still_error", lambda _: np.full(30, 60.0))
-    (near,) = told_errors(replace(result, error=(30.0,) * 30))
-    (far,) = told_errors(replace(result, error=(80.0,) * 29 + (170.0,)))
+    (near,) = error_lines(replace(result, error=(30.0,) * 30))
+    (far,) = error_lines(replace(result, error=(80.0,) * 29 + (170.0,)))
     assert near == (
         "Over 1.0 s the joints are 30 mm off on average, and 30 mm at the end. "
         "Holding the last pose would have been 60 mm off."
     )
     assert "83 mm off on average, and 170 mm at the end" in far
     assert "Holding the last pose would have been nearer: 60 mm." in far
-    (alone,) = told_errors(drift(PredictRequest(motion=walking(4.0), seconds=1.0)))
+    (alone,) = error_lines(drift(PredictRequest(motion=walking(4.0), seconds=1.0)))
     assert "Nothing follows" in alone
 
 
@@ -164,6 +164,6 @@ def test_programs_get_the_files_and_the_curves(tab: PredictTab, pair: Path) -> N
     assert answer["manifest"]["request"]["kind"] == "predict"
     (motion,) = (read(file) for file in files if file.endswith(".npz"))
     assert motion.num_frames == 90
-    for past, marker, told in ((str(pair), 0.3, "1 s or more is needed"), ("", 0, "There is no past")):
-        with pytest.raises(gr.Error, match=told):
+    for past, marker, sentence in ((str(pair), 0.3, "1 s or more is needed"), ("", 0, "There is no past")):
+        with pytest.raises(gr.Error, match=sentence):
             endpoint.predict(past, marker, 1.0, "motion-mlp")

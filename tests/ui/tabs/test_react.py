@@ -179,12 +179,13 @@ def test_cancel_ends_within_one_step(tab: ReactTab, walker: Path) -> None:
     source = upload(tab, walker)[-1]["source"]
     tab.page.engine.pause = 0.1
     updates = tab.run("me", {"source": source, **FIELDS, "steps": 50})
-    for _ in range(5):
+    while tab.page.engine.steps_done < 2:  # updates come at a pace, not with every step
         next(updates)
+    seen = tab.page.engine.steps_done
     assert tab.page.runs.cancel("me")
     last = [changes(tab.outputs, update) for update in updates][-1]
     assert "Cancelled at step" in last["line"]
-    assert tab.page.engine.steps_done < 10
+    assert tab.page.engine.steps_done <= seen + 1
 
 
 def test_examples_are_the_files_of_a_folder(tab: ReactTab, tmp_path: Path) -> None:

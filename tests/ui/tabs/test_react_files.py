@@ -81,19 +81,19 @@ def test_an_opened_run_brings_back_the_very_file_that_was_uploaded(tab: ReactTab
 def test_an_upload_is_kept_with_its_run_and_an_example_is_not(
     tab: ReactTab, walker: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    told: list[Kept] = []
-    history: Any = SimpleNamespace(keep=lambda run, owner, kept: told.append(kept))
+    written: list[Kept] = []
+    history: Any = SimpleNamespace(keep=lambda run, owner, kept: written.append(kept))
     monkeypatch.setattr(tab, "page", replace(tab.page, history=history))
     source = upload(tab, walker)[-1]["source"]
     *_, last = run(tab, replace(source, read_with=("y", "auto", None, "auto")))
     record = last["record"]
     tab._keep(replace(record, result=replace(record.result, run="x")), {"source": source})
-    assert told[-1].original == Original(walker, walker.name)
-    assert told[-1].controls["up"] == "auto"
+    assert written[-1].original == Original(walker, walker.name)
+    assert written[-1].controls["up"] == "auto"
     name, path = example_clips()[0]
     *_, shown = [changes(LOADED, u) for u in tab.load(lambda: read_source(path, name))]
     tab._keep(replace(record, result=replace(record.result, run="x")), {"source": shown["source"]})
-    assert clean_name(told[-1].original.name if told[-1].original else "") == ""
+    assert clean_name(written[-1].original.name if written[-1].original else "") == ""
 
 
 def test_a_partner_is_taken_on_the_rig_of_an_uploaded_bvh(tab: ReactTab, tmp_path: Path) -> None:

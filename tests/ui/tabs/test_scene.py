@@ -207,8 +207,8 @@ def test_a_span_keeps_the_poses_and_the_way_that_fall_into_it(tab: SceneTab) -> 
     assert [point["seconds"] for point in asked["paths"][0]["points"]] == [2.0]
     # What lies behind the frame that futures begin at is given to them.
     last = part(tab, "futures", record, laid)
-    told = last["story"]["value"]
-    assert sorted(pose["seconds"] for pose in told["poses"]) == [1.0, 2.0, 3.0]
+    left = last["story"]["value"]
+    assert sorted(pose["seconds"] for pose in left["poses"]) == [1.0, 2.0, 3.0]
     last = last["record"].result.manifest["request"]
     assert [pose["seconds"] for pose in last["poses"]] == [2.0, 3.0]
     assert [point["seconds"] for point in last["paths"][0]["points"]] == [2.0, 3.0, 4.0]
@@ -226,3 +226,33 @@ def test_a_pose_off_the_path_is_one_sentence(tab: SceneTab) -> None:
     assert "off their path" in line
     line = tab.edited(story_value(beats, (), (Pose("a", 2.0, place), Pose("a", 2.01, place))), 1)[2]
     assert "keep one" in line
+
+
+def test_paths_from_the_words_are_switched_on_the_line(tab: SceneTab) -> None:
+    line = {"beats": [], "planned": False}  # ticked off before there is a story
+    last = generate(tab, story=line)[-1]
+    assert last["record"].result.manifest["request"]["planned"] is False
+    assert last["story"]["value"]["planned"] is False and "planned = false" in last["text"]
+    # It stays so in parts, with another sentence, with an example and when the run is opened.
+    laid = last["story"]["value"]
+    for which in ("span", "futures"):
+        made = part(tab, which, last["record"], laid | {"span": [1.0, 3.0]}, "They bow.")
+        assert made["record"].result.manifest["request"]["planned"] is False
+        assert which == "span" or made["story"]["value"]["planned"] is False
+    assert generate(tab, "They wave.", laid)[-1]["story"]["value"]["planned"] is False
+    assert "planned = false" in tab.lay_out("They wave.", laid)[2]
+    assert "planned" not in tab.lay_out("They wave.")[2]
+    entry = Entry(
+        id="x", kind="scene", title="t", state="done", request=last["record"].result.manifest["request"]
+    )
+    opened = tab.opened(Opened(entry=entry, result=last["record"].result))
+    assert opened[tab.line_up]["value"]["planned"] is False and "planned = false" in opened[tab.text]
+    # A story as text says it itself.
+    text = 'planned = %s\n[[beat]]\nwords = "They bow."\n'
+    assert tab.use_text(text % "false", "x")[0]["planned"] is False
+    assert generate(tab, text % "true", laid)[-1]["story"]["value"]["planned"] is True
+
+
+def test_a_loop_that_is_ticked_before_there_is_a_story_is_made(tab: SceneTab) -> None:
+    last = generate(tab, story={"beats": [], "loop": True})[-1]
+    assert last["record"].result.manifest["request"]["loop"] is True

@@ -6,11 +6,18 @@ to the player beside the panel. No event of the page is part of it.
 
 from __future__ import annotations
 
+import base64
+import binascii
 import json
 from pathlib import Path
 from typing import Any
 
 import gradio as gr
+import numpy as np
+
+from motion import SMPL22, Clip, InputError
+from webdemo.inference.actor import FPS
+from webdemo.inference.live_take import LONGEST, LiveTake
 
 from .camera import CAMERA_FOLDER
 from .player import PLAYER_FOLDER
@@ -25,12 +32,18 @@ const root = (config.root || new URL(".", document.baseURI).href).replace(/[/]$/
 const encode = (path) => path.split("/").map(encodeURIComponent).join("/");
 const file = (path) => root + (config.api_prefix || "/gradio_api") + "/file=" + encode(path);
 const addresses = { address: root + "/live", mediapipe: file(%s) + "/mediapipe/" };
-import(file(%s) + "/live.js").then((live) => live.mount(element, addresses));
+const keep = (text) => { props.value = text; trigger("submit"); };
+import(file(%s) + "/live.js").then((live) => live.mount(element, keep, addresses));
 """
+FARTHEST = 100.0
+"""Metres from the origin: nobody in front of a camera walks further."""
+_BROKEN = "The live stream could not be kept, since its motion arrived damaged: press Keep again."
 
 
 class LivePanel(gr.HTML):
     """Lets a partner answer live in the player of the same tab.
+
+    A stream that is to be kept is sent as a text for :func:`take_of`; the event is ``submit``.
 
     Args:
         elem_id: id of the element in the page.
@@ -46,6 +59,45 @@ class LivePanel(gr.HTML):
         }
         super().__init__(None, elem_id=elem_id, **kwargs)
 
+    def api_info(self) -> dict[str, Any]:
+        """Describes the component's value for the API page."""
+        return {"type": "string", "description": "a live stream, as the page packs it"}
+
+    def example_payload(self) -> None:
+        """None: the component takes no example."""
+        return None
+
+    def example_value(self) -> None:
+        """None: the component takes no example."""
+        return None
+
     def get_block_name(self) -> str:
         """Gradio's name of the front end that draws it."""
         return "html"
+
+
+def take_of(text: str | None) -> LiveTake:
+    """A live stream that somebody keeps, from what the panel sends; all of it may be hostile.
+
+    The text is JSON with ``partner`` and ``positions``, base64 of little-endian float32 (2, T, 22, 3) in metres at
+    30 fps.
+
+    Raises:
+        InputError: where it is damaged, too short or too long.
+    """
+    try:
+        fields = json.loads(text or "")
+        data = base64.b64decode(fields["positions"], validate=True)
+        partner = str(fields["partner"])
+    except (TypeError, ValueError, KeyError, RecursionError, binascii.Error):
+        raise InputError(_BROKEN) from None
+    frame = 2 * SMPL22.num_joints * 3 * 4
+    if not data or len(data) % frame or len(data) > (LONGEST + 1) * FPS * frame:
+        raise InputError(_BROKEN)
+    people = np.frombuffer(data, "<f4").reshape(2, -1, SMPL22.num_joints, 3)
+    if not (np.abs(people) < FARTHEST).all():  # nor for what is not a number
+        raise InputError(_BROKEN)
+    actor, reactor = (
+        Clip(one.copy(), FPS, SMPL22, name=name) for one, name in zip(people, ("you", partner), strict=True)
+    )
+    return LiveTake(model=partner, actor=actor, reactor=reactor)

@@ -26,6 +26,7 @@ ACTS = (
 _SETTINGS = (
     ("seconds", "Seconds"), ("seed", "Seed"), ("samples", "Samples"), ("guidance", "Guidance"), ("steps", "Steps"),
     ("damping", "Damping"), ("sampler", "Sampler"), ("marker", "Past ends at"), ("cleanup", "Clean-up"),
+    ("planned", "Paths from the words"),
 )  # fmt: skip
 _ROLES = {"a": "acts first", "b": "reacts"}
 _MARKS = {
@@ -49,7 +50,7 @@ import(root + (config.api_prefix || "/gradio_api") + "/file=" + encode(%s))
 class NotebookView(gr.HTML):
     """The runs of a history as cards; its value is what :func:`shown` gives.
 
-    What a visitor does arrives as the event ``select``, whose data :func:`told` reads.
+    What a visitor does arrives as the event ``select``, whose data :class:`Action` reads.
 
     Args:
         elem_id: id of the element in the page.
@@ -143,8 +144,9 @@ def settings(entry: Entry) -> list[list[str]]:
     for key, name in _SETTINGS:
         value = asked.get(key)
         if value is not None:
-            plain = isinstance(value, (int, float)) and not isinstance(value, bool)
-            found.append([name, f"{value:g}" if plain and key != "seed" else str(value)])
+            if isinstance(value, bool):
+                value = "on" if value else "off"
+            found.append([name, f"{value:g}" if key != "seed" and not isinstance(value, str) else str(value)])
     return [pair for pair in found if pair[1]]
 
 
@@ -159,7 +161,7 @@ def method_label(asked: Mapping[str, Any]) -> str:
     return label_of(model)
 
 
-class Told:
+class Action:
     """A visitor's action in the notebook, read from what a browser sent.
 
     Attributes:
@@ -194,13 +196,13 @@ class Told:
         return self.ids[0]
 
 
-def _search(told: Mapping[str, Any], limit: Any) -> Search:
+def _search(fields: Mapping[str, Any], limit: Any) -> Search:
     words: dict[str, Any] = {
-        name: str(told.get(name) or "")[:200] for name in ("words", "kind", "model", "tag")
+        name: str(fields.get(name) or "")[:200] for name in ("words", "kind", "model", "tag")
     }
     for name in ("since", "until"):
-        value = told.get(name)
+        value = fields.get(name)
         if isinstance(value, (int, float)) and not isinstance(value, bool):
             words[name] = float(value)
     most = limit if type(limit) is int and STEP <= limit <= MOST_SHOWN else STEP
-    return Search(**words, starred=told.get("starred") is True, limit=most)
+    return Search(**words, starred=fields.get("starred") is True, limit=most)

@@ -3,12 +3,10 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
-import plotly.graph_objects as go
 from numpy.typing import NDArray
-from plotly.subplots import make_subplots
 
 from motion import Clip, Duet, stacked_positions
 from webdemo.inference.methods import label_of, methods
@@ -17,6 +15,9 @@ from webdemo.view.curves import Curve
 from webdemo.view.payload import Payload, build_payload, sample_payload
 
 from .show import with_shown_roles
+
+if TYPE_CHECKING:
+    import plotly.graph_objects as go
 
 Array = NDArray[np.floating]
 _BLUE, _VIOLET, _GREY, _ORANGE = "#2468d8", "#8b3fc4", "#8e99aa", "#e07a10"
@@ -101,6 +102,9 @@ def curves_figure(*results: PredictResult) -> go.Figure:
     Results of several methods for one past share the axes. Where the motion ends at the marker there is
     no error, and the speed is drawn alone.
     """
+    import plotly.graph_objects as go  # 0.1 s, for a page that may never predict
+    from plotly.subplots import make_subplots
+
     first = results[0]
     fps = first.duets[0].fps
     known = len(first.error)
@@ -141,7 +145,7 @@ def curves_figure(*results: PredictResult) -> go.Figure:
     return figure
 
 
-def told_errors(*results: PredictResult) -> list[str]:
+def error_lines(*results: PredictResult) -> list[str]:
     """A sentence or two a result on how far off it was, and whether holding the last pose came nearer."""
     lines = []
     for result in results:

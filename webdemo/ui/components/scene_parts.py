@@ -14,7 +14,7 @@ from webdemo.inference.requests import MAX_SEED, Result
 from webdemo.inference.story import Beat, FloorPath, Pose, SceneRequest, read_words, split_sentence
 
 from .exports import Record
-from .story import span_of, story_fields, story_value
+from .story import span_of, story_fields, story_value, ticked
 
 FUTURES = 3
 FUTURE_SECONDS = 4.0
@@ -49,7 +49,7 @@ def part_request(fields: Mapping[str, Any]) -> SceneRequest:
     """
     duet, story = shown_duet(fields["record"], fields["sample"]), story_fields(fields["story"])
     plain = {f: fields[f] for f in ("guidance", "steps", "damping")}
-    plain["seed"] = secrets.randbelow(MAX_SEED + 1)
+    plain |= {"seed": secrets.randbelow(MAX_SEED + 1), "planned": story["planned"]}
     words = str(fields["words"] or "").strip()
     if fields["part"] == "futures":
         start = min(fields["frame"] / duet.fps, duet.seconds)
@@ -89,16 +89,20 @@ def only_sample(result: Result, sample: int) -> Result:
 
 
 def laid_out(fields: Mapping[str, Any]) -> Any:
-    """The story of the line; where it is empty, or the sentence is another one, the sentence split into beats."""
+    """The story of the line; where it is empty, or the sentence is another one, the sentence split into beats.
+
+    Those keep what is ticked on the line, unless the sentence is a story in TOML that says it itself.
+    """
     story, prompt = fields["story"], str(fields["prompt"] or "")
     if isinstance(story, Mapping) and story.get("beats"):
         reworded = story.get("from") is not None and prompt.strip() and prompt != story["from"]
         if not reworded:
             return story
-    found = read_words(prompt)
+    found = ticked(story) | read_words(prompt)
     laid = story_value(
-        found["beats"], found.get("paths", ()), found.get("poses", ()), found.get("loop", False)
-    )
+        found["beats"], found.get("paths", ()), found.get("poses", ()),
+        loop=found["loop"], planned=found["planned"],
+    )  # fmt: skip
     return laid | {"from": prompt}
 
 
@@ -111,7 +115,7 @@ def went_on(story: Any, wanted: SceneRequest) -> dict[str, Any]:
     if known and abs(missing) > 1e-6:  # a beat of which too little is left
         known = (*known[:-1], replace(known[-1], seconds=round(known[-1].length + missing, 2)))
     paths, poses = wishes_in(fields, 0.0, wanted.total_seconds, wanted.total_seconds)
-    return story_value((*known, *wanted.beats), paths, poses) | {"from": ""}
+    return story_value((*known, *wanted.beats), paths, poses, planned=wanted.planned) | {"from": ""}
 
 
 def beats_in(beats: tuple[Beat, ...], start: float, end: float) -> tuple[Beat, ...]:

@@ -12,14 +12,17 @@ OPENED = "opened"
 """Stands for the settings of a run that was opened with all controls as they were."""
 CHANGED = "Settings changed: run again to see what they do."
 
-ADVANCED = """(guidance, steps, damping) => ({
-  __type__: "update", label: `Guidance ${guidance}, ${steps} steps, damping ${damping}`,
-})"""
-"""JavaScript that gives the folded sliders' line; :func:`advanced_label` is the same in Python."""
+UNPLANNED = ", no paths"
+"""Ends the line over the folded settings where words do not become paths."""
+ADVANCED = f"""(guidance, steps, damping, planned = true) => ({{
+  __type__: "update",
+  label: `Guidance ${{guidance}}, ${{steps}} steps, damping ${{damping}}${{planned ? "" : "{UNPLANNED}"}}`,
+}})"""
+"""JavaScript that gives the line over the folded settings; :func:`advanced_label` begins it in Python."""
 
 
 def advanced_label(guidance: float, steps: int, damping: float) -> str:
-    """The line over the folded sliders."""
+    """The line over the folded settings, where words become paths."""
     return f"Guidance {guidance:g}, {steps} steps, damping {damping:g}"
 
 

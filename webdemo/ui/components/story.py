@@ -83,7 +83,9 @@ def story_value(
     beats: tuple[Beat, ...],
     paths: tuple[FloorPath, ...] = (),
     poses: tuple[Pose, ...] = (),
+    *,
     loop: bool = False,
+    planned: bool = True,
 ) -> dict[str, Any]:
     """A story as the component holds it."""
     return {
@@ -100,13 +102,16 @@ def story_value(
         ],
         "poses": [pose.to_dict() for pose in poses],
         "loop": loop,
+        "planned": planned,
         "span": None,
     }
 
 
 def value_of(request: SceneRequest) -> dict[str, Any]:
     """The story of a request."""
-    return story_value(request.beats, request.paths, request.poses, request.loop)
+    return story_value(
+        request.beats, request.paths, request.poses, loop=request.loop, planned=request.planned
+    )
 
 
 def story_fields(value: Any) -> dict[str, Any]:
@@ -116,7 +121,7 @@ def story_fields(value: Any) -> dict[str, Any]:
         InputError: if the browser sent something else.
     """
     if not isinstance(value, Mapping):
-        return {"beats": (), "paths": (), "poses": (), "loop": False}
+        return {"beats": (), "paths": (), "poses": (), **ticked(value)}
     try:
         beats = [
             entry for entry in list(value.get("beats") or ())[: MOST_BEATS + 1] if isinstance(entry, Mapping)
@@ -125,12 +130,18 @@ def story_fields(value: Any) -> dict[str, Any]:
             "beats": tuple(beat_of(entry) for entry in beats),
             "paths": tuple(path_of(entry) for entry in value.get("paths") or ()),
             "poses": tuple(pose_of(entry) for entry in value.get("poses") or ()),
-            "loop": bool(value.get("loop")),
+            **ticked(value),
         }
     except InputError:
         raise
     except (TypeError, ValueError, AttributeError) as error:
         raise InputError("The story on the page is damaged: reload the page and write it again.") from error
+
+
+def ticked(value: Any) -> dict[str, Any]:
+    """The fields of a :class:`SceneRequest` that are ticked on a story, whatever else is in it."""
+    found = value if isinstance(value, Mapping) else {}
+    return {"loop": bool(found.get("loop")), "planned": found.get("planned") is not False}
 
 
 def span_of(value: Any) -> tuple[float, float] | None:

@@ -49,15 +49,15 @@ def candidates(runs: Sequence[Opened]) -> list[Candidate]:
 def _motions(run: Opened, card: Opened) -> Iterator[Candidate]:
     """The samples of a run; its name and tags are those of the card that it stands on."""
     asked = run.entry.request
-    told = dict(settings(run.entry))
-    told |= {NAME: card.entry.title, TAG: " ".join(card.entry.tags)}
+    values = dict(settings(run.entry))
+    values |= {NAME: card.entry.title, TAG: " ".join(card.entry.tags)}
     given = asked.get("actor") or asked.get("motion")
     prompt = str(asked.get("prompt") or "")
     name = str(given.get("name", "")) if isinstance(given, Mapping) else prompt or run.entry.title
     seed = asked.get("seed")
     for i, motion in enumerate(run.result.duets):
         number = seed + i if isinstance(seed, int) else i
-        yield Candidate(Stimulus(prompt, motion, number, name), told)
+        yield Candidate(Stimulus(prompt, motion, number, name), values)
 
 
 def ways(found: Sequence[Candidate]) -> list[tuple[str, str]]:

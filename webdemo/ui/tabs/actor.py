@@ -92,19 +92,19 @@ class ActorTab(SweepTab):
         """
         controls = run.kept.controls
         source = actor_source(run)
-        begin, end = 0.0, round(source.seconds, 1)
-        file, told = None, ""
+        begin, end = 0.0, round(source.end, 1)
+        file, note = None, ""
         if people := run.kept.people:
             source = replace(source, people=people)
             letters = [letter for _, letter in source.choices]
             source = replace(source, chosen=controls["person"] if controls.get("person") in letters else "a")
             begin, end = float(controls.get("start", 0.0)), float(controls.get("end", end))
             source = replace(source, read_with=_known_choices(controls))
-            source, file, told = given_again(source, run.kept.original, self.page.shelf.folder())
+            source, file, note = given_again(source, run.kept.original, self.page.shelf.folder())
         last = max(round(source.seconds, 1), _SHORTEST)
         return {
             self.file: file,
-            self.line: line + (status(told) if told else ""),
+            self.line: line + (status(note) if note else ""),
             self.found: _found(source),
             **dict(zip((self.up, self.unit, self.fps, self.order), source.read_with, strict=True)),
             self.source: source,
@@ -200,19 +200,19 @@ class ActorTab(SweepTab):
             source = read()
             payload = source.preview(source.chosen, 0.0, source.end)
         except Exception as error:
-            told = status(error_line(error), tone="error")
+            note = status(error_line(error), tone="error")
             if fresh:
                 nobody = list(self.forget())
-                nobody[2] = told
+                nobody[2] = note
                 yield tuple(nobody)
             else:
-                yield *same, told, busy(""), *rest
+                yield *same, note, busy(""), *rest
             return
         last = max(round(source.seconds, 1), _SHORTEST)
         yield (
             source,
             source.key,
-            self._told(source, 0.0, source.end),
+            self._part_line(source, 0.0, source.end),
             show(payload),
             gr.update(visible=True),
             gr.update(choices=source.choices, visible=len(source.people) > 1, value=source.chosen),
@@ -234,10 +234,10 @@ class ActorTab(SweepTab):
             payload = source.preview(person, start, end)
         except Exception as error:
             return status(error_line(error), tone="error"), busy("")
-        return self._told(source, start, end), show(payload)
+        return self._part_line(source, start, end), show(payload)
 
     @staticmethod
-    def _told(source: Source, start: float, end: float) -> str:
+    def _part_line(source: Source, start: float, end: float) -> str:
         end = min(end, source.seconds)
         shortest, longest = SECONDS
         used = f"{source.name}: {start:.1f} to {end:.1f} s of {source.seconds:.1f} s."

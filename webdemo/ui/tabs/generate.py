@@ -13,7 +13,8 @@ from motion import InputError
 from webdemo.inference.actor import SECONDS
 from webdemo.inference.methods import installed, label_of, method
 from webdemo.inference.requests import GenerateRequest
-from webdemo.ui.components.settings import looked_up
+from webdemo.ui.components.pace import AT_FIRST, FAITHFUL, pace_of
+from webdemo.ui.components.settings import UNPLANNED, looked_up
 from webdemo.ui.components.show import arrival_payload
 from webdemo.ui.components.sweep import Kind
 from webdemo.ui.history import Opened
@@ -44,6 +45,7 @@ def named_method(known: Mapping[str, str], given: str) -> str:
     return found
 
 
+_PLANNED_INFO = "Words such as “walks up” or “leaves” set where people walk; off, the network alone decides."
 ARRIVAL = "shake-hands.npz"
 """The example that plays before anything is asked for."""
 
@@ -71,10 +73,15 @@ class GenerateTab(SweepTab):
         """Also what was asked by: a sentence or a class."""
         asked = run.entry.request
         model = asked.get("model", GenerateRequest.model)
-        sentence, label, _, about = self.asked_by(model)
+        sentence, label, _, about, plan, *_ = self.asked_by(model)
         if takes_class(model):
             label = gr.update(value=asked.get("prompt"), visible=True)
-        return super().opened(run) | {self.by_sentence: sentence, self.class_name: label, self.about: about}
+        found = super().opened(run)
+        planned = bool(asked.get("planned", takes_class(model)))  # once, words did not become paths
+        if not planned and self.folded in found:
+            found[self.folded]["label"] += UNPLANNED
+        found[self.planned] = plan | {"value": planned}
+        return found | {self.by_sentence: sentence, self.class_name: label, self.about: about}
 
     def build(self, demo: gr.Blocks, record: gr.State | None = None) -> None:
         """Lays out the tab inside ``demo`` and wires its events.
@@ -93,7 +100,7 @@ class GenerateTab(SweepTab):
         self.controls = {
             "model": self.model, "prompt": self.prompt, "class_name": self.class_name,
             "seconds": self.seconds, "seed": self.seed, "samples": self.samples, "guidance": self.guidance,
-            "steps": self.steps, "damping": self.damping,
+            "steps": self.steps, "damping": self.damping, "planned": self.planned,
         }  # fmt: skip
         self._wire_run([self.go.click, self.prompt.submit], record)
         self._wire_sweeps()
@@ -102,7 +109,9 @@ class GenerateTab(SweepTab):
             chip.click(
                 None, outputs=self.prompt, js=f"() => {{ {focus} return {json.dumps(sentence)}; }}", **QUIET
             )
-        fitted = [self.by_sentence, self.class_name, self.guidance, self.about]
+        fitted = [
+            self.by_sentence, self.class_name, self.guidance, self.about, self.planned, self.steps, self.pace,
+        ]  # fmt: skip
         self.model.input(
             None, inputs=self.model, outputs=fitted,
             js=looked_up({name: self.asked_by(name) for _, name in generate_choices()}), **QUIET,
@@ -149,12 +158,15 @@ class GenerateTab(SweepTab):
 
     @staticmethod
     def asked_by(way: str) -> Updates:
-        """Shows the input that a method takes, sets its guidance and describes it in a line."""
+        """Shows the inputs that a method takes, sets its guidance and steps and describes it in a line."""
         found, by_class = method(way), takes_class(way)
         guidance = found.default("guidance", GenerateRequest.guidance)
+        # Few steps were judged for sentences.
+        steps = found.default("steps", FAITHFUL) if by_class else AT_FIRST
         return (
             gr.update(visible=not by_class), gr.update(visible=by_class), gr.update(value=guidance),
-            method_line(found.summary),
+            method_line(found.summary), gr.update(visible=not by_class), gr.update(value=steps),
+            gr.update(value=pace_of(steps)),
         )  # fmt: skip
 
     def _settings(self) -> None:
@@ -165,8 +177,18 @@ class GenerateTab(SweepTab):
                     info="Length of the motion.", elem_id="seconds",
                 )  # fmt: skip
                 self.samples = self._samples()
-            self._sampling()
+            self._sampling(self._plan, paced=True)
             self._sweeps()
+
+    def _plan(self) -> Sequence[gr.Checkbox]:
+        """A switch: words become paths, or not."""
+        self.planned = gr.Checkbox(
+            GenerateRequest.planned,
+            label="Paths from the words",
+            info=_PLANNED_INFO,
+            elem_id=self._id("planned"),
+        )
+        return [self.planned]
 
     def kinds(self) -> Sequence[Kind]:
         """Also sentences, and methods."""

@@ -13,7 +13,7 @@ from motion import InputError
 from webdemo.inference.requests import Cancelled, Progress, Result
 from webdemo.ui.again import request_of, request_of_unfinished, verdict
 from webdemo.ui.components.exports import KINDS, Record, Worn
-from webdemo.ui.components.notebook import NotebookView, Told, shown
+from webdemo.ui.components.notebook import Action, NotebookView, shown
 from webdemo.ui.components.settings import taken
 from webdemo.ui.components.sweep import MOST, loose
 from webdemo.ui.context import PageContext
@@ -93,17 +93,17 @@ class HistoryTab:
     def _wire(self, demo: gr.Blocks, tab: gr.Tab, record: gr.State) -> None:
         self.record = record
         quick: dict[str, Any] = {"concurrency_limit": 8, "concurrency_id": "history", **QUIET}
-        told = [self.view, self.who, self.line, self.address, self.saved, self.removed]
-        tab.select(self.refresh, inputs=self.removed, outputs=told[:2], **quick)
-        self.view.select(self.act, inputs=self.removed, outputs=told, **quick)
+        shown = [self.view, self.who, self.line, self.address, self.saved, self.removed]
+        tab.select(self.refresh, inputs=self.removed, outputs=shown[:2], **quick)
+        self.view.select(self.act, inputs=self.removed, outputs=shown, **quick)
         self.everything.click(self.export_all, outputs=[self.line, self.saved], **quick)
         self.file.upload(
-            self.take_in, inputs=[self.file, self.removed], outputs=[*told[:3], self.file], **quick
+            self.take_in, inputs=[self.file, self.removed], outputs=[*shown[:3], self.file], **quick
         )
         again = self.view.retry(
             self.again, outputs=[self.line], concurrency_limit=None, trigger_mode="once", **QUIET
         )
-        again.then(self.refresh, inputs=self.removed, outputs=told[:2], **quick)
+        again.then(self.refresh, inputs=self.removed, outputs=shown[:2], **quick)
         self.view.stop(self.cancel, queue=False, **QUIET)
         if self.study is not None:
             self.study.wire(tab, self.view.edit)
@@ -160,23 +160,23 @@ class HistoryTab:
         line, address, saved = gr.skip(), gr.update(visible=False), gr.skip()
         search = Search()
         try:
-            told = Told(event._data)
-            search, owner = told.search, visitor().owner
-            if told.act == "link":
-                link, until = self._link(told.one, owner)
+            action = Action(event._data)
+            search, owner = action.search, visitor().owner
+            if action.act == "link":
+                link, until = self._link(action.one, owner)
                 line, address = status(until, tone="done"), gr.update(value=link, visible=True)
-            elif told.act == "export":
-                line, saved = self._export(told.ids)
-            elif told.act == "remove":
-                count, removed = self.history.remove(told.ids, owner), told.ids
+            elif action.act == "export":
+                line, saved = self._export(action.ids)
+            elif action.act == "remove":
+                count, removed = self.history.remove(action.ids, owner), action.ids
                 line = status(
                     f"Removed {_runs(count)}, with {'its' if count == 1 else 'their'} links.", tone="done"
                 )
-            elif told.act == "restore":
+            elif action.act == "restore":
                 count, removed = self.history.restore(removed, owner), []
                 line = status(f"Brought {_runs(count)} back.", tone="done")
-            elif told.act != "search":
-                line = status(self._one(told, owner), tone="done")
+            elif action.act != "search":
+                line = status(self._one(action, owner), tone="done")
         except Exception as error:
             line = status(error_line(error), tone="error")
         view, who = self.refresh(removed) if search == Search() else (gr.skip(), gr.skip())
@@ -187,18 +187,18 @@ class HistoryTab:
                 line = status(error_line(error), tone="error")
         return view, who, line, address, saved, removed
 
-    def _one(self, told: Told, owner: str) -> str:
+    def _one(self, action: Action, owner: str) -> str:
         """Does something with one run and says so in a sentence."""
-        run = told.one
-        if told.act == "favour":
+        run = action.one
+        if action.act == "favour":
             wanted = not self.history.entry(run, owner).favourite
             self.history.favour(run, owner, favourite=wanted)
             return "Kept: it will not be removed because of its age." if wanted else "No longer kept."
-        if told.act == "revoke":
+        if action.act == "revoke":
             ended = self.history.revoke(run, owner)
             return "Its link no longer works." if ended == 1 else f"{ended} links to it no longer work."
-        if told.act == "describe":
-            self.history.describe(run, owner, **told.fields)
+        if action.act == "describe":
+            self.history.describe(run, owner, **action.fields)
             return "Saved."
         raise InputError("The notebook sent something unknown: reload the page.")
 
@@ -237,7 +237,7 @@ class HistoryTab:
         last: Progress | None = None
         line = ""
         try:
-            run = Told(event._data).one
+            run = Action(event._data).one
             entry = self.history.entry(run, visitor().owner)
             if entry.state != "done":
                 opened, wanted = None, request_of_unfinished(entry)
@@ -264,15 +264,15 @@ class HistoryTab:
     def open(self, event: gr.EventData) -> Updates:
         """Shows a run in its tab, with all controls as they were."""
         try:
-            return self._shown(self.history.open(Told(event._data).one, visitor().owner))
+            return self._shown(self.history.open(Action(event._data).one, visitor().owner))
         except Exception as error:
             return self._not_shown(error_line(error))
 
     def compare(self, event: gr.EventData) -> Updates:
         """Shows the first sample of several runs as a grid, in the tab of the first."""
         try:
-            told = Told(event._data)
-            runs = [self.history.open(run, visitor().owner) for run in told.ids[: MOST + 1]]
+            action = Action(event._data)
+            runs = [self.history.open(run, visitor().owner) for run in action.ids[: MOST + 1]]
             job = self.jobs.get(runs[0].entry.kind) if runs else None
             if job is None:
                 raise InputError("Choose two to nine runs first.")

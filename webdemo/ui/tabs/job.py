@@ -25,6 +25,7 @@ from webdemo.inference.requests import (
 )
 from webdemo.ui.components.actors import READ_WITH
 from webdemo.ui.components.exports import Record
+from webdemo.ui.components.pace import AT_FIRST, CHOSEN, FAITHFUL, FOLLOWED, pace_of, pace_switch
 from webdemo.ui.components.player import busy, show
 from webdemo.ui.components.settings import ADVANCED, OPENED, advanced_label, differs, snapshot
 from webdemo.ui.components.show import result_payload
@@ -42,8 +43,8 @@ __all__ = ["QUIET", "JobTab", "Updates", "total"]
 
 STEPS_SHOWN = (1, 100)
 """What the slider offers; the API takes more."""
-PACE = 0.3
-"""Seconds between two updates of the page while a run goes on."""
+PACE = 0.5
+"""Seconds between two updates of the page while a run goes on; each costs a browser about ten milliseconds."""
 _DAMPING_INFO = (
     "While t ≤ threshold × T, corrects feet, bones, overlap, touch and facing as the motion is generated; "
     "0 = off."
@@ -76,7 +77,9 @@ class JobTab(ResultsTab, ABC):
     dice: gr.Button | None = None
     """Draws a seed, where the tab's motion is random."""
     folded: gr.Accordion | None = None
-    """Holds the sliders that are rarely needed, where the tab has them."""
+    """Holds the settings that are rarely needed, where the tab has them."""
+    pace: gr.Radio | None = None
+    """Switches between few steps and many, where the tab has it."""
     controls: Mapping[str, gr.components.Component]
     """The inputs of a run, by the names of its fields; set by ``build``."""
 
@@ -115,8 +118,11 @@ class JobTab(ResultsTab, ABC):
             elem_id=self._id("samples"),
         )  # fmt: skip
 
-    def _sampling(self) -> None:
-        """The seed; and guidance, steps and damping, folded under a line that tells their values."""
+    def _sampling(self, more: Callable[[], Sequence[gr.Checkbox]] = tuple, *, paced: bool = False) -> None:
+        """The seed; and guidance, steps, damping and ``more``, folded under a line with their values.
+
+        ``paced`` puts a switch over them: fast or faithful.
+        """
         with gr.Row(elem_classes="pd-seed"):
             self.seed = gr.Number(
                 value=SamplingRequest.seed, label="Seed", info=_SEED_INFO,
@@ -125,7 +131,9 @@ class JobTab(ResultsTab, ABC):
             self.dice = gr.Button(
                 "Random", size="sm", elem_id=self._id("dice"), elem_classes="pd-dice", min_width=0
             )
-        values = (SamplingRequest.guidance, SamplingRequest.steps, SamplingRequest.damping)
+        if paced:
+            self.pace = pace_switch(self._id("pace"))
+        values = (SamplingRequest.guidance, AT_FIRST if paced else FAITHFUL, SamplingRequest.damping)
         with gr.Accordion(
             advanced_label(*values), open=False, elem_id=self._id("advanced"), elem_classes="pd-advanced"
         ) as self.folded:
@@ -141,10 +149,13 @@ class JobTab(ResultsTab, ABC):
                 *DAMPING, value=values[2], step=0.05, label="Damping threshold",
                 info=_DAMPING_INFO, elem_id=self._id("damping"),
             )  # fmt: skip
-        sliders = [self.guidance, self.steps, self.damping]
-        # A folded slider tells nobody of its changes before it was seen, so others also use this.
-        self.tell_advanced = {"inputs": sliders, "outputs": self.folded, "js": ADVANCED, **QUIET}
-        gr.on([slider.change for slider in sliders], None, **self.tell_advanced)
+            added = more()
+        parts: list[Any] = [self.guidance, self.steps, self.damping, *added]
+        # A folded part tells nobody of its changes before it was seen, so others also use this.
+        self.tell_advanced = {"inputs": parts, "outputs": self.folded, "js": ADVANCED, **QUIET}
+        gr.on([part.change for part in parts], None, **self.tell_advanced)
+        if self.pace is not None:
+            self.steps.change(None, inputs=self.steps, outputs=self.pace, js=FOLLOWED, **QUIET)
 
     # ---- events ----------------------------------------------------------------------------------
 
@@ -179,6 +190,9 @@ class JobTab(ResultsTab, ABC):
         }  # fmt: skip
         changes: list[Any] = [getattr(part, "change") for part in self.knobs.values()]  # noqa: B009
         gr.on(changes, None, **self.compare)
+        if self.pace is not None:
+            chosen = self.pace.input(None, inputs=self.pace, outputs=self.steps, js=CHOSEN, **QUIET)
+            chosen.then(None, **self.tell_advanced).then(None, **self.compare)
         self._wire_start(self.start, triggers)
         self.stop.click(self.cancel, queue=False, **QUIET)
         self._wire_results()
@@ -371,6 +385,8 @@ class JobTab(ResultsTab, ABC):
         values: list[Any] = [run.entry.request.get(name) for name in ("guidance", "steps", "damping")]
         if self.folded is not None and None not in values:
             found[self.folded] = gr.update(label=advanced_label(*values))
+        if self.pace is not None:
+            found[self.pace] = gr.update(value=pace_of(run.entry.request.get("steps")))
         return found
 
     def _stopped(self, line: str, tone: str) -> Updates:

@@ -25,9 +25,9 @@ from webdemo.ui.components.exports import Record
 from webdemo.ui.components.player import busy, show
 from webdemo.ui.components.prediction_view import (
     curves_figure,
+    error_lines,
     method_name,
     prediction_payload,
-    told_errors,
     without_name,
 )
 from webdemo.ui.components.settings import looked_up
@@ -120,7 +120,7 @@ class PredictTab(SweepTab):
     def beside_grid(self, made: Mapping[str, Result]) -> dict[str, Any]:
         """The errors of all cells over their read-outs; the curves of one prediction are hidden."""
         results = [result for result in made.values() if isinstance(result, PredictResult)]
-        errors = dict(zip(made, told_errors(*results), strict=True)) if len(results) == len(made) else {}
+        errors = dict(zip(made, error_lines(*results), strict=True)) if len(results) == len(made) else {}
         return {"curves": gr.update(visible=False), "readouts": prediction_lines(errors) + grid_table(made)}
 
     # ---- layout ----------------------------------------------------------------------------------
@@ -155,7 +155,7 @@ class PredictTab(SweepTab):
                             [("nothing", ""), *predict_choices()], value="", label="Compare with",
                             elem_id="predict-other", min_width=0, filterable=False,
                         )  # fmt: skip
-                    self.about = gr.HTML(self.told_about(PredictRequest.model), elem_id="predict-about")
+                    self.about = gr.HTML(self.method_about(PredictRequest.model), elem_id="predict-about")
                     self._sweeps()
             self._results(EMPTY_TEXT, self._curves)
         self.source = gr.State(None, time_to_live=3600)
@@ -203,7 +203,7 @@ class PredictTab(SweepTab):
         self.take.click(self.take_result, inputs=self.record, **load).then(None, **self.compare)
         self.model.input(
             None, inputs=self.model, outputs=self.about,
-            js=looked_up({name: [self.told_about(name)] for _, name in predict_choices()}), **QUIET,
+            js=looked_up({name: [self.method_about(name)] for _, name in predict_choices()}), **QUIET,
         )  # fmt: skip
         others = [self.camera.submit, *(button.click for button in (*self.chips, self.take))]
         gr.on(others, None, outputs=self.file, js="() => null", **QUIET)  # the file is no longer what is used
@@ -241,12 +241,12 @@ class PredictTab(SweepTab):
             source = read()
             payload = player_payload(without_name(motion_of(source)), title=source.name)
         except Exception as error:
-            told = status(error_line(error), tone="error")
-            yield (None, "", told, show(None), gr.skip()) if fresh else (*same, told, busy(""), gr.skip())
+            note = status(error_line(error), tone="error")
+            yield (None, "", note, show(None), gr.skip()) if fresh else (*same, note, busy(""), gr.skip())
             return
         last = _last_marker(source)
         marker = last if at_end else max(PAST_SECONDS, round(last / 2, 1))
-        yield source, source.key, self._told(source), show(payload), self._marker(source, marker)
+        yield source, source.key, self._found_line(source), show(payload), self._marker(source, marker)
 
     @staticmethod
     def _marker(source: Source, value: float) -> Any:
@@ -270,14 +270,14 @@ class PredictTab(SweepTab):
         shown.then(None, outputs=self.file, js="() => null", **QUIET)
 
     @staticmethod
-    def _told(source: Source) -> str:
+    def _found_line(source: Source) -> str:
         people = "two people" if len(source.people) > 1 else "one person"
-        told = f"{source.name}: {people}, {source.seconds:.1f} s."
+        sentence = f"{source.name}: {people}, {source.seconds:.1f} s."
         if source.seconds < PAST_SECONDS:
-            return status(f"{told} Give {PAST_SECONDS:g} s or more.", tone="warning")
+            return status(f"{sentence} Give {PAST_SECONDS:g} s or more.", tone="warning")
         if source.seconds > LONGEST:
-            return status(f"{told} Cut it to {LONGEST:g} s or less.", tone="warning")
-        return status(" ".join((told, *source.notes)), tone="warning" if source.notes else "quiet")
+            return status(f"{sentence} Cut it to {LONGEST:g} s or less.", tone="warning")
+        return status(" ".join((sentence, *source.notes)), tone="warning" if source.notes else "quiet")
 
     @staticmethod
     def forget() -> Updates:
@@ -285,7 +285,7 @@ class PredictTab(SweepTab):
         return None, "", status(), show(None), gr.skip()
 
     @staticmethod
-    def told_about(model: str) -> str:
+    def method_about(model: str) -> str:
         """One line on a method."""
         return method_line(method(model).summary)
 
@@ -322,7 +322,7 @@ class PredictTab(SweepTab):
         made = {str(result.manifest.get("model")): result for result in results}
         return {
             "player": show(prediction_payload(*results, title=title)),
-            "readouts": prediction_lines(dict(zip(named, told_errors(*results), strict=True)))
+            "readouts": prediction_lines(dict(zip(named, error_lines(*results), strict=True)))
             + comparison_panel(named),
             "record": Record(results[0], title, compared=made),
             "curves": gr.update(visible=True),
@@ -334,9 +334,9 @@ class PredictTab(SweepTab):
         found, result = super().opened(run), run.result
         if isinstance(result, PredictResult):
             source = given_source(result, run.entry.title)
-            source, found[self.file], told = given_again(source, run.kept.original, self.page.shelf.folder())
+            source, found[self.file], note = given_again(source, run.kept.original, self.page.shelf.folder())
             found[self.source], found[self.given] = source, source.key
-            found[self.line] += status(told) if told else ""
+            found[self.line] += status(note) if note else ""
             found[self.marker] = self._marker(source, result.past_frames / result.duets[0].fps)
         beside = () if "grid" in run.kept.controls else run.beside[:1]
         others = [each.result for each in beside if isinstance(each.result, PredictResult)]
@@ -355,7 +355,7 @@ class PredictTab(SweepTab):
         return {
             **shown,
             "player": show(prediction_payload(result, title=title)),
-            "readouts": prediction_lines({"": told_errors(result)[0]}) + str(shown["readouts"]),
+            "readouts": prediction_lines({"": error_lines(result)[0]}) + str(shown["readouts"]),
             "curves": gr.update(visible=True),
             "plot": curves_figure(result),
         }

@@ -11,6 +11,7 @@ import gradio as gr
 from motion import InputError
 from webdemo.inference.actor import SECONDS
 from webdemo.inference.live import LiveRequest
+from webdemo.inference.live_take import LiveTake
 from webdemo.inference.methods import AUTOMATIC, variants
 from webdemo.inference.requests import ReactRequest, Result
 from webdemo.ui.components.actors import (
@@ -26,7 +27,7 @@ from webdemo.ui.components.camera import CameraPanel
 from webdemo.ui.components.compare import comparison_payload
 from webdemo.ui.components.exports import Record
 from webdemo.ui.components.live import LiveView
-from webdemo.ui.components.live_panel import LivePanel
+from webdemo.ui.components.live_panel import LivePanel, take_of
 from webdemo.ui.components.player import show
 from webdemo.ui.components.settings import looked_up
 from webdemo.ui.components.show import result_payload
@@ -155,6 +156,7 @@ class ReactTab(ActorTab):
         }  # fmt: skip
         self._wire_run([self.go.click, self.prompt.submit], record)
         self._wire_start(self.start_stream, [self.stream.click])
+        self._wire_start(self.keep_live, [self.live.submit], more=[self.live])
         self._wire_sweeps()
         self._wire_actor()
         self._wire_methods()
@@ -180,7 +182,7 @@ class ReactTab(ActorTab):
                     for person in ("a", "b")
                 }
             self.camera = CameraPanel(elem_id="react-camera")
-            LivePanel(elem_id="react-live")
+            self.live = LivePanel(elem_id="react-live")
             with gr.Column(visible=False, min_width=0, elem_classes="pd-settings") as self.trim:
                 self.person = gr.Radio(
                     [("Person A", "a"), ("Person B", "b")], value="a", label="Which person",
@@ -262,16 +264,30 @@ class ReactTab(ActorTab):
         """Streams an online reaction while the actor plays; yields updates of the page."""
         yield from self.run(str(request.session_hash), {**self._fields(values), "stream": True})
 
+    def keep_live(self, values: dict[gr.components.Component, Any], request: gr.Request) -> Iterator[Updates]:
+        """Makes a live stream, as the panel sends it, a result of the history; yields updates of the page."""
+        taken = {"source": None, "live": values[self.live]}
+        yield from self.run(str(request.session_hash), {**self._fields(values), **taken})
+
     def answer(self, session: str, fields: Mapping[str, Any]) -> Iterator[Updates]:
         """Runs one method, two side by side, or a streamed reaction."""
         if fields.get("grid"):
             yield from super().answer(session, fields)
+        elif "live" in fields:
+            yield from self._answer_kept(session, take_of(fields["live"]))
         elif fields.get("stream"):
             yield from self._answer_streamed(session, fields)
         elif fields.get("other"):
             yield from self._answer_both(session, fields)
         else:
             yield from super().answer(session, fields)
+
+    def _answer_kept(self, session: str, take: LiveTake) -> Iterator[Updates]:
+        """Shows a live stream as a result."""
+        result = yield from self.made(session, take)
+        shown = self._shown(result, take.title)
+        line = status(f"Kept: {seconds(take.actor.seconds)} live.", tone="done")
+        yield self._updates(**{**shown, "line": line + notes_lines(result)})
 
     def _answer_both(self, session: str, fields: Mapping[str, Any]) -> Iterator[Updates]:
         """Runs two methods one after the other for the same actor, words and seed, and shows both."""
@@ -315,8 +331,8 @@ class ReactTab(ActorTab):
             raise
         shown = self._shown(result, title)
         payload = {**result_payload(result, title=title), "continues": view.id}
-        told = f"Streamed by {live.label}: {view.delay}."
-        line = status(told, tone="done") + notes_lines(result)
+        sentence = f"Streamed by {live.label}: {view.delay}."
+        line = status(sentence, tone="done") + notes_lines(result)
         yield self._updates(**{**shown, "player": show(payload), "line": line})
 
 

@@ -36,8 +36,11 @@ from webdemo.view.payload import Payload
 log = logging.getLogger(__name__)
 
 
-QUIET: dict[str, Any] = {"api_visibility": "private", "show_progress": "hidden"}
-"""Options of events that are the page's own: no endpoint, no spinner over what they change."""
+QUIET: dict[str, Any] = {"api_visibility": "private", "show_progress": "hidden", "show_progress_on": []}
+"""Options of events that are the page's own: no endpoint, no spinner over what they change.
+
+Without the empty list the browser would still note the state of a run at every component that it may change, once
+an update, and count the seconds of each in every frame."""
 
 _WORN = [[kind.key for kind in KINDS].index(key) for key in WORN]
 """The downloads that show an uploaded character."""
@@ -140,12 +143,12 @@ class ResultsTab:
                 files = for_download(written, file_name(record.prompt, record.result.manifest))
         except Exception as error:
             return status(error_line(error), tone="error"), *((gr.skip(),) * (2 + len(WORN)))
-        told = (
+        sentence = (
             f"Both wear {worn.body.name}, in films, in the .glb and on the contact sheet as well. "
             "The figure button of the player shows bodies again."
         )
         offered = (_offered(key, files[key]) if key in files else gr.skip() for key in WORN)
-        return status(told, tone="done"), worn, wear(worn.body), *offered
+        return status(sentence, tone="done"), worn, wear(worn.body), *offered
 
     def make_film(self, record: Record | None, shown: str) -> Iterator[Updates]:
         """Films the last result as the player shows it and hands the film to its download button."""
@@ -197,8 +200,8 @@ class ResultsTab:
         try:
             return gr.skip(), write_on_rig(record, self.page.shelf.folder())
         except Exception as error:
-            told = f"The motion is ready, but not on the rig of your file. {error_line(error)}"
-            return status(told, tone="warning"), []
+            sentence = f"The motion is ready, but not on the rig of your file. {error_line(error)}"
+            return status(sentence, tone="warning"), []
 
 
 def _offered(kind: str, file: Path | None) -> dict[str, Any]:

@@ -1,4 +1,4 @@
-"""A story in several beats → two people through time; parts made again, and ways on."""
+"""A story in several beats → two people through time; parts made again, and continuations."""
 
 from __future__ import annotations
 
@@ -29,6 +29,7 @@ from webdemo.ui.components.story import (
     motion_marks,
     story_fields,
     story_value,
+    ticked,
     value_of,
 )
 from webdemo.ui.components.upload import chip
@@ -43,7 +44,7 @@ from .sweeps import SweepTab
 EMPTY_TEXT = (
     "Write a little story, or pick an example, and press Generate\n"
     "It is laid out as beats under this player. You can change their words and lengths, make a span again,"
-    " and ask for several ways on."
+    " and ask for several continuations."
 )
 EXAMPLES = (
     (
@@ -108,7 +109,7 @@ class SceneTab(SweepTab):
                 self._ask()
                 with gr.Column(elem_classes="pd-panel pd-settings", min_width=0):
                     self.samples = self._samples()
-                    self._sampling()
+                    self._sampling(paced=True)
                     self._sweeps()
                 with gr.Accordion("The story as text", open=False, elem_classes="pd-panel pd-about"):
                     self.text = gr.Textbox(
@@ -145,8 +146,8 @@ class SceneTab(SweepTab):
         self.line_up = StoryLine(elem_id=self._id("story"), elem_classes="pd-story")
         with gr.Column(elem_classes="pd-panel pd-parts", min_width=0):
             self.words = gr.Textbox(
-                label="A part of it again, or ways on",
-                placeholder="Words for the part; empty: the span's own beats, or whatever may follow",
+                label="Make a part again, or continue",
+                placeholder="Words for this part. Empty: the span's own beats, or any continuation",
                 elem_id=self._id("part-words"),
             )
             with gr.Row(elem_classes="pd-chips"):
@@ -154,7 +155,7 @@ class SceneTab(SweepTab):
                     "Make this span again", size="sm", min_width=0, elem_id=self._id("remake")
                 )
                 self.futures = gr.Button(
-                    f"{FUTURES} ways on from here", size="sm", min_width=0, elem_id=self._id("futures")
+                    f"{FUTURES} continuations from here", size="sm", min_width=0, elem_id=self._id("futures")
                 )
                 self.take = gr.Button(
                     "Take the one shown", size="sm", min_width=0, elem_id=self._id("take"),
@@ -178,6 +179,7 @@ class SceneTab(SweepTab):
         for button, (_, sentences) in zip(self.chips, EXAMPLES, strict=True):
             button.click(
                 partial(self.lay_out, sentences),
+                inputs=self.line_up,
                 outputs=[self.prompt, self.line_up, self.text, self.line],
                 **QUIET,
             )
@@ -224,7 +226,7 @@ class SceneTab(SweepTab):
             )
 
     def _shown(self, result: Result, title: str) -> dict[str, Any]:
-        """As every tab shows a result; several ways on from a moment say which moment that is."""
+        """As every tab shows a result; several continuations also say from which moment they begin."""
         shown = super()._shown(result, title)
         asked = result.manifest.get("request", {})
         ahead = asked.get("kind") == "scene" and "motion" in asked and asked.get("end") is None
@@ -237,12 +239,13 @@ class SceneTab(SweepTab):
         return {"story": fields["story"]} if fields.get("part") else {}
 
     @staticmethod
-    def lay_out(sentences: str) -> Updates:
-        """A sentence, and the line with its beats."""
+    def lay_out(sentences: str, story: Any = None) -> Updates:
+        """A sentence, and the line with its beats; what was ticked on the line stays so."""
         beats = split_sentence(sentences)
-        request = SceneRequest(beats=beats)
-        laid = story_value(beats) | {"from": sentences}
-        return sentences, laid, write_story(request), status(f"{len(beats)} beats: press Generate.")
+        ticks = ticked(story)
+        laid = story_value(beats, **ticks) | {"from": sentences}
+        text = write_story(SceneRequest(beats=beats, **ticks))
+        return sentences, laid, text, status(f"{len(beats)} beats: press Generate.")
 
     @staticmethod
     def edited(story: Any, seed: float | None) -> Updates:
@@ -265,10 +268,12 @@ class SceneTab(SweepTab):
             request = SceneRequest(**fields)
         except Exception as error:
             return gr.skip(), status(error_line(error), tone="error"), gr.skip()
-        told = status(f"{len(request.beats)} beats, {request.seconds:g} s: press Generate.")
-        shown = story_value(fields["beats"], request.paths, request.poses, request.loop)
+        line = status(f"{len(request.beats)} beats, {request.seconds:g} s: press Generate.")
+        shown = story_value(
+            fields["beats"], request.paths, request.poses, loop=request.loop, planned=request.planned
+        )
         shown["from"] = prompt
-        return shown, told, request.seed if "seed" in fields else gr.skip()
+        return shown, line, request.seed if "seed" in fields else gr.skip()
 
     def answer(self, session: str, fields: Mapping[str, Any]) -> Iterator[Updates]:
         """Runs the story; parts appear as they are finished and stay if the run is cancelled."""
@@ -328,8 +333,8 @@ class SceneTab(SweepTab):
             return gr.skip(), status(error_line(error), tone="error"), gr.skip(), gr.skip(), gr.skip()
         assert record is not None
         shown = self._shown(record.result, record.prompt)
-        told = status("Select a span of it, or ask for ways on.")
-        return shown["player"], told, shown["under"], shown["readouts"], gr.update(motion=motion_marks(duet))
+        line = status("Select a span of it, or ask for continuations.")
+        return shown["player"], line, shown["under"], shown["readouts"], gr.update(motion=motion_marks(duet))
 
     def take_shown(self, record: Record | None, earlier: list[Record], shown: str) -> Updates:
         """Keeps one of several futures as the motion; the choice can be gone back to."""
@@ -342,10 +347,10 @@ class SceneTab(SweepTab):
         if len(record.result.duets) == 1:
             return gr.skip(), status("This is the motion already."), gr.skip(), gr.skip(), gr.skip()
         kept = Record(only_sample(record.result, sample), record.prompt)
-        told = status(f"Taken: number {sample + 1} is the motion now.", tone="done")
+        line = status(f"Taken: number {sample + 1} is the motion now.", tone="done")
         return (
             self._shown(kept.result, record.prompt)["player"],
-            told,
+            line,
             kept,
             gr.update(motion=motion_marks(duet)),
             [*earlier, record][-MOST_EARLIER:],
@@ -360,16 +365,16 @@ class SceneTab(SweepTab):
         assert isinstance(duet, Duet)
         record = Record(record.result, record.prompt)
         shown = self._shown(record.result, record.prompt)
-        told = status("This is the motion before.", tone="done")
-        return shown["player"], told, record, gr.update(motion=motion_marks(duet)), left
+        line = status("This is the motion before.", tone="done")
+        return shown["player"], line, record, gr.update(motion=motion_marks(duet)), left
 
     def opened(self, run: Opened) -> dict[gr.components.Component, Any]:
         """Also the story that was asked for."""
         found, duet = super().opened(run), run.result.duets[0]
         if run.entry.kind == "scene" and isinstance(duet, Duet):
-            told = run.entry.request
-            motion = duet if "motion" in told else None
-            request = SceneRequest.from_dict(told, motion)
+            asked = run.entry.request
+            motion = duet if "motion" in asked else None
+            request = SceneRequest.from_dict(asked, motion)
             whole = run.kept.controls.get("story")  # a part's own request knows nothing of what is around it
             if motion is None or not whole:
                 story, text = value_of(request), write_story(request)

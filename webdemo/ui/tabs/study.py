@@ -10,7 +10,7 @@ import gradio as gr
 from motion import InputError
 from webdemo.study import Stimulus
 from webdemo.study.pairs import MOST_CHECKS, MOST_PAIRS
-from webdemo.ui.components.notebook import Told
+from webdemo.ui.components.notebook import Action
 from webdemo.ui.components.study_sets import (
     MOST_RUNS,
     ONE_SET,
@@ -162,7 +162,7 @@ class StudyPanel:
     def choose(self, event: gr.EventData) -> Updates:
         """Offers what tells the runs that are chosen in the notebook apart."""
         try:
-            ids = Told(event._data).ids
+            ids = Action(event._data).ids
             offered = ways(self._candidates(ids))
         except Exception as error:
             return gr.update(open=True), status(error_line(error), tone="error"), *((gr.skip(),) * 3)

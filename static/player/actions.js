@@ -1,0 +1,67 @@
+// What buttons and keys ask for, by name: play, step, sample, camera, trails, picture, … (keys.js and player.html).
+
+import { savePicture } from "./picture.js";
+
+const SPEEDS = [0.25, 0.5, 1, 1.5, 2];
+const MOVES = new Set(["play", "step", "back", "forward", "first", "last", "sample"]); // to another moment or motion
+const SWITCHES = new Set(["trails", "ghosts"]);
+
+export class Actions {
+  constructor(player) {
+    this.player = player;
+  }
+
+  do(action, argument) {
+    const { player } = this;
+    const { clock } = player;
+    if (action === "grid" || (action === "close" && player.focus !== null)) return player.enlarge(null);
+    if (action === "help" || action === "close") return player.controls.toggleHelp(action === "help" ? undefined : false);
+    if (player.data) player.data.rounds = null; // a visitor is at hand: it goes on
+    if (action === "fullscreen") return this.toggleFullscreen();
+    if (!player.data) return;
+    if (action === "pose") return player.togglePosing();
+    if (action === "take") return player.futures.take(argument);
+    if (MOVES.has(action) && !player.mayLeave()) return;
+    if (action === "pause") clock.pause();
+    else if (action === "play") clock.playing ? clock.pause() : clock.play();
+    else if (action === "loop") clock.loop = !clock.loop;
+    else if (action === "step" || action === "back" || action === "forward") {
+      clock.pause();
+      clock.seek(Math.round(clock.shown) + (argument ?? (action === "back" ? -1 : 1)));
+    } else if (action === "first") clock.seek(0);
+    else if (action === "last") clock.seek(clock.frames - 1);
+    else if (action === "faster") this.setSpeed(SPEEDS[Math.min(Math.max(SPEEDS.indexOf(clock.speed) + argument, 0), SPEEDS.length - 1)]);
+    else if (action === "sample") player.select(player.sampleIndex + argument);
+    else if (action === "camera") player.framing.goTo(argument);
+    else if (action === "picture") this.savePicture();
+    else if (action === "follow") player.orbit.following = !player.orbit.following;
+    else if (action === "figure") player.clothes.next();
+    else if (SWITCHES.has(action)) player.show[action] = !player.show[action];
+    player.refresh();
+  }
+
+  setSpeed(speed) {
+    this.player.clock.speed = speed;
+    this.player.controls.show(this.player);
+  }
+
+  async toggleFullscreen() {
+    const { root } = this.player;
+    if (document.fullscreenElement === root) await document.exitFullscreen();
+    else if (root.requestFullscreen) await root.requestFullscreen().catch(() => this.fillWindow());
+    else this.fillWindow(); // phones without the interface
+  }
+
+  fillWindow() {
+    this.player.root.classList.toggle("pdd-full");
+    this.player.refresh();
+  }
+
+  savePicture() {
+    const { clock, data, shown, stage, theme, sampleIndex } = this.player;
+    const frame = Math.round(clock.shown);
+    const caption = [data.title, `${(frame / clock.fps).toFixed(2)} s`].filter(Boolean).join("  ·  ");
+    const name = `pas-de-deux-${sampleIndex + 1}-frame-${frame}.png`;
+    return savePicture({ panes: shown, stage, theme, caption, name });
+  }
+}

@@ -1,0 +1,72 @@
+"""Work that a page asks of the browser while nothing on it changes, counted in frames instead of timed."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from types import SimpleNamespace
+
+import pytest
+from playwright.sync_api import Page, expect
+
+from tests.ui.stub_engine import StubEngine
+from webdemo.ui.page import build_page, launch_options
+
+pytestmark = pytest.mark.e2e
+
+SLOW = 60_000
+WATCHED = 2000
+"""Milliseconds; a screen draws 120 frames in them."""
+COUNT = """
+  const ask = window.requestAnimationFrame.bind(window);
+  window.asked = 0;
+  window.requestAnimationFrame = (draw) => ask((now) => { window.asked++; draw(now); });
+"""
+
+
+@pytest.fixture(scope="module")
+def server(tmp_path_factory: pytest.TempPathFactory) -> Iterator[SimpleNamespace]:
+    engine = StubEngine(pause=0.2)
+    page = build_page(engine, files=tmp_path_factory.mktemp("files"))
+    _, url, _ = page.launch(prevent_thread_lock=True, quiet=True, server_name="127.0.0.1", **launch_options())
+    yield SimpleNamespace(url=url, engine=engine)
+    page.close()
+
+
+@pytest.fixture
+def rested(server: SimpleNamespace, open_page: Callable[..., Page]) -> Page:
+    """The page when its first motion is paused."""
+    page = open_page(
+        server.url, before=lambda tab: tab.add_init_script(COUNT), reduced_motion="no-preference"
+    )
+    page.set_default_timeout(SLOW)
+    expect(page.locator("#model-state")).to_contain_text("Model ready", timeout=SLOW)
+    page.wait_for_function("window.__pasdedeux && window.__pasdedeux.mode !== null", timeout=SLOW)
+    page.evaluate("window.__pasdedeux.player.act('pause')")
+    page.wait_for_function("window.__pasdedeux.loops === 0", timeout=SLOW)
+    for _ in range(10):  # a still picture is drawn once more, finer, and Gradio's loading screen swings out
+        if frames(page) == 0:
+            return page
+    raise AssertionError("The page never rests.")
+
+
+def frames(page: Page) -> int:
+    page.evaluate("window.asked = 0")
+    page.wait_for_timeout(WATCHED)
+    return page.evaluate("window.asked")
+
+
+def test_a_page_left_alone_asks_for_no_frame(rested: Page) -> None:
+    assert frames(rested) == 0
+    rested.evaluate("window.__pasdedeux.player.act('play')")
+    assert frames(rested) > 10, "the count sees what is drawn"
+
+
+def test_a_waiting_page_draws_only_what_a_run_tells(rested: Page) -> None:
+    rested.locator("#pace label", has_text="Faithful").click()  # the run lasts while frames are counted
+    rested.fill("#prompt textarea", "Two people meet.")
+    rested.click("button#generate", timeout=SLOW)
+    expect(rested.locator("#status .pd-busy")).to_contain_text("step", timeout=SLOW)
+    rested.wait_for_timeout(500)
+    assert frames(rested) < 20
+    expect(rested.locator("button#cancel")).to_be_enabled(timeout=100)
+    rested.click("button#cancel", timeout=SLOW)

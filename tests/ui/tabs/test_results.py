@@ -1,0 +1,192 @@
+"""Files, films and characters of a result, as every tab offers them."""
+
+from __future__ import annotations
+
+import json
+import os
+import re
+import time
+import zipfile
+from pathlib import Path
+from typing import Any
+
+import av
+import gradio as gr
+import pytest
+
+from motion.character import character_body
+from motion.formats.glb_reader import read_character
+from tests.motion.formats.characters import glb_character, unpacked
+from tests.motion.formats.rigs import RIGS
+from tests.ui.tab_events import built
+from tests.ui.tabs.generating import result_of
+from webdemo.ui.components.exports import KINDS, Record, Shelf, Worn, file_name, for_download, write_files
+from webdemo.ui.components.film import make_film
+from webdemo.ui.tabs.generate import GenerateTab
+from webdemo.view.stage import Style
+
+
+@pytest.fixture
+def tab(tmp_path: Path) -> GenerateTab:
+    return built(GenerateTab, tmp_path)
+
+
+def test_files_of_one_sample(tab: GenerateTab, tmp_path: Path) -> None:
+    record = result_of(tab)
+    files = write_files(record.result, tab.page.shelf.folder(), prompt=record.prompt)
+    name = file_name("two people walk", record.result.manifest)
+    assert name.startswith("two-people-walk-seed3-")
+    assert {path.name for path in files["bvh"]} == {f"{name}_a.bvh", f"{name}_b.bvh"}
+    assert json.loads(files["json"][0].read_text())["request"]["seed"] == 3
+    found = for_download(files)
+    assert found["npz"].suffix == ".npz"
+    assert zipfile.ZipFile(found["bvh"]).namelist() == [path.name for path in files["bvh"]]
+
+
+def test_files_of_several_samples_are_zipped(tab: GenerateTab) -> None:
+    record = result_of(tab, samples=2)
+    found = for_download(write_files(record.result, tab.page.shelf.folder(), prompt=record.prompt))
+    assert len(zipfile.ZipFile(found["npz"]).namelist()) == 2
+    assert len(zipfile.ZipFile(found["bvh"]).namelist()) == 4
+
+
+def test_export_fills_the_buttons_once(tab: GenerateTab) -> None:
+    record = result_of(tab)
+    first = tab.export(record)
+    offered = {kind.key for kind in KINDS if kind.offered()}
+    filled = {kind.key for kind, update in zip(KINDS, first[1:], strict=True) if update["interactive"]}
+    assert filled == offered
+    assert all(update == gr.skip() for update in tab.export(record))
+    assert all(update == gr.skip() for update in tab.export(None))
+
+
+def test_a_full_disk_is_reported_and_leaves_nothing(
+    tab: GenerateTab, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def full(*_: Any, **__: Any) -> None:
+        raise OSError(28, "No space left on device")
+
+    monkeypatch.setattr("webdemo.ui.components.exports.write_sheet", full)
+    line, *buttons = tab.export(result_of(tab))
+    assert "The disk is full" in line
+    assert not any(button["interactive"] for button in buttons)
+    assert list(tab.page.shelf.root.glob("run-*")) == []
+
+
+@pytest.mark.parametrize(
+    "shown", ["{}", "no json", '{"yaw": 1e999, "look": "none", "sample": 9, "view": null}']
+)
+def test_a_film_shows_the_last_result(tab: GenerateTab, monkeypatch: pytest.MonkeyPatch, shown: str) -> None:
+    monkeypatch.setattr("webdemo.ui.components.film.film.SIZE", (96, 64))
+    (busy, _), (line, button) = tab.make_film(result_of(tab, seconds=1.0), shown)
+    assert "Drawing" in busy and "The film is ready" in line
+    with av.open(str(button["value"])) as opened:
+        assert sum(1 for _ in opened.decode(video=0)) == 30
+
+
+def test_a_film_is_what_the_player_shows(tab: GenerateTab, monkeypatch: pytest.MonkeyPatch) -> None:
+    asked: dict[str, Any] = {}
+    monkeypatch.setattr(
+        "webdemo.ui.components.film.film.write_film", lambda *_, **options: asked.update(options)
+    )
+    shown = {
+        "yaw": 1.5,
+        "elevation": 9,
+        "view": "top",
+        "follow": False,
+        "trails": True,
+        "look": "both",
+        "theme": "dark",
+    }
+    record = result_of(tab)
+    make_film(record, json.dumps(shown), tab.page.shelf.folder())
+    assert (asked["yaw"], asked["elevation"], asked["view"], asked["follow"]) == (1.5, 1.5, "top", False)
+    assert asked["style"] == Style(look="both", trails=True, theme="dark")
+    assert asked["title"] == "two people walk"
+
+
+@pytest.mark.parametrize("shown", [True, False, None, "yes"])
+def test_a_film_wears_the_character_while_the_player_shows_it(
+    tab: GenerateTab, monkeypatch: pytest.MonkeyPatch, shown: Any
+) -> None:
+    asked: dict[str, Any] = {}
+    monkeypatch.setattr(
+        "webdemo.ui.components.film.film.write_film", lambda *_, **options: asked.update(options)
+    )
+    record = result_of(tab)
+    record.worn = Worn(character_body(read_character(glb_character(), name="x.glb")), Path("x.glb"))
+    make_film(record, json.dumps({"character": shown}), tab.page.shelf.folder())
+    assert asked["style"].body is (record.worn.body if shown is True else None)
+
+
+def test_a_film_of_nothing_is_one_sentence(tab: GenerateTab) -> None:
+    *_, (line, _) = tab.make_film(None, "{}")
+    assert "make one first" in line
+
+
+def test_old_folders_are_removed(tmp_path: Path) -> None:
+    shelf = Shelf(tmp_path / "runs", max_age=60)
+    old, new = shelf.folder(), shelf.folder()
+    (old / "motion.npz").write_bytes(b"0")
+    os.utime(old, (time.time() - 120,) * 2)
+    shelf.folder()
+    assert not old.exists()
+    assert new.exists()
+
+
+@pytest.mark.parametrize(
+    ("prompt", "expected"),
+    [
+        ("Two people shake hands!", "two-people-shake-hands-seed7"),
+        ("../../etc/passwd", "etc-passwd-seed7"),
+        ("你好 🕺", "motion-seed7"),
+        ("<img onerror=x>", "img-onerror-x-seed7"),
+        ("word " * 100, "word-word-word-word-word-word-word-word-seed7"),
+    ],
+)
+def test_file_names_are_plain(prompt: str, expected: str) -> None:
+    name, _, digest = file_name(prompt, {"request": {"seed": 7}}).rpartition("-")
+    assert re.fullmatch("[0-9a-f]{4}", digest)
+    assert name == expected or (prompt.startswith("word") and len(name) <= 56 and name.endswith("-seed7"))
+
+
+def test_runs_that_differ_have_files_that_differ_in_name() -> None:
+    asked = {"seed": 7, "guidance": 2.5, "steps": 50}
+    manifests = [
+        {"request": asked},
+        {"request": asked | {"guidance": 3.0}},
+        {"request": asked, "model": "other"},
+    ]
+    names = [file_name("hug", manifest) for manifest in manifests]
+    assert len(set(names)) == 3 and file_name("hug", dict(manifests[0])) == names[0]
+
+
+def test_both_wear_an_uploaded_character_in_this_result_and_the_next(
+    tab: GenerateTab, tmp_path: Path
+) -> None:
+    file = tmp_path / "robot.glb"
+    file.write_bytes(glb_character("unreal"))
+    line, worn, player, *offered = tab.put_on(str(file), None)
+    assert "Both wear robot.glb" in line and worn.body.zones == ("character",) and offered == [gr.skip()] * 2
+    assert player["character"]["zones"] == ["character"] and player["character"]["id"]
+    record = result_of(tab)
+    _, *updates = tab.export(record, worn)
+    later = [updates[[kind.key for kind in KINDS].index(key)]["value"] for key in ("glb", "png")]
+    plain = Record(record.result, "two people walk")
+    _, *bare = tab.export(Record(record.result, "two people walk"))
+    _, _, _, *offered = tab.put_on(str(file), plain)
+    assert all(each["interactive"] for each in offered) and plain.worn is not None
+    sheets = [Path(path).read_bytes() for path in (later[1], offered[1]["value"])]
+    stock = bare[[kind.key for kind in KINDS].index("png")]["value"]
+    assert sheets[0] == sheets[1] != Path(stock).read_bytes(), "the contact sheet shows it, too"
+    for path in (later[0], offered[0]["value"]):
+        document = unpacked(Path(path).read_bytes())[0]
+        names = [document["nodes"][joint]["name"] for joint in document["skins"][1]["joints"]]
+        assert set(names) == set(RIGS["unreal"].values()), "on the character's own skeleton"
+
+
+@pytest.mark.parametrize("content", [b"no character", glb_character()[:3000], glb_character(skins=[])])
+def test_a_file_that_is_no_character_is_a_sentence(tab: GenerateTab, tmp_path: Path, content: bytes) -> None:
+    (tmp_path / "x.glb").write_bytes(content)
+    line, *rest = tab.put_on(str(tmp_path / "x.glb"), None)
+    assert "pd-error" in line and "x.glb" in line and rest == [gr.skip()] * 4
