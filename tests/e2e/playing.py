@@ -17,6 +17,12 @@ def hook(page, name: str):
     return page.evaluate(f"window.__pasdedeux.{name}")
 
 
+def choose(page, box: str, option: str) -> None:
+    """Chooses in a dropdown of the page; another one's list may still be fading out beside it."""
+    page.click(f"{box} input")
+    page.locator(box).get_by_role("option", name=option, exact=True).click()
+
+
 def until(page, expression: str, seconds: float = 60) -> None:
     page.wait_for_function(expression, timeout=1000 * seconds)
 

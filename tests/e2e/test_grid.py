@@ -16,7 +16,7 @@ from playwright.sync_api import Page, expect
 from tests.ui.stub_engine import StubEngine
 from webdemo.ui.page import build_page, launch_options
 
-from .playing import stage_pixels
+from .playing import choose, stage_pixels
 
 pytestmark = pytest.mark.e2e
 
@@ -45,8 +45,7 @@ def url(tmp_path_factory: pytest.TempPathFactory) -> Iterator[str]:
 
 
 def sweep(page: Page, side: str, what: str, values: str) -> None:
-    page.click(f"#grid-{side} input")
-    page.get_by_role("option", name=what, exact=True).last.click()
+    choose(page, f"#grid-{side}", what)
     page.fill(f"#grid-{side}-values textarea, #grid-{side}-values input", values)
 
 
@@ -71,7 +70,7 @@ def test_nine_results_share_one_context_and_one_opens_large(
     sweep(page, "down", "Damping", "0, 0.4, 0.7")
     page.click("#grid-make")
     expect(page.locator("#status .pd-done")).to_contain_text("9 results done", timeout=SLOW)
-    page.wait_for_function(f"{PLAYER}.grid.cells.length === 9 && window.__pasdedeux.frame > 0")
+    page.wait_for_function(f"{PLAYER}.grid.cells.length === 9 && window.__pasdedeux?.frame > 0")
     assert page.evaluate("window.contexts") == before, "a cell has a context of its own"
     expect(page.locator("#player .pdd-head:not(:empty)")).to_have_text(
         ["seed 1", "seed 2", "seed 3", "damping 0", "damping 0.4", "damping 0.7"]
@@ -81,7 +80,7 @@ def test_nine_results_share_one_context_and_one_opens_large(
         page.locator("#readouts .pd-better").count() > 0 and page.locator("#readouts .pd-worse").count() > 0
     )
     page.evaluate(f"{PLAYER}.act('play')")
-    page.wait_for_function("window.__pasdedeux.loops === 0")
+    page.wait_for_function("window.__pasdedeux?.loops === 0")
     page.wait_for_function(f"{PLAYER}.clothes.bodies")
     pixels = stage_pixels(page)
     rows = np.array_split(pixels, 3)

@@ -13,6 +13,8 @@ from playwright.sync_api import expect
 from motion.formats import write
 from tests.ui.stub_engine import walking
 
+from .playing import choose
+
 pytestmark = [pytest.mark.e2e, pytest.mark.slow]
 SLOW = 120_000
 
@@ -123,8 +125,7 @@ def test_a_class_and_a_reaction_open_with_their_method(lab: str, open_page: Call
     page.click("button[role=tab]:has-text('React')")
     page.click(".pd-chip:visible >> nth=0")
     page.wait_for_selector("#react-status :text('0.0 to')")
-    page.click("#react-method input")
-    page.get_by_role("option", name="ReGenNet, offline").click()
+    choose(page, "#react-method", "ReGenNet, offline")
     page.locator("#react-advanced button").first.click()
     page.locator("#react-steps input[type=number]").fill("7")
     page.locator("#react-steps input[type=number]").press("Tab")
@@ -232,7 +233,7 @@ def test_a_notebook_is_searched_written_in_and_taken_along(
     other = open_page(link)
     other.set_default_timeout(SLOW)
     other.wait_for_selector("#status .pd-done:has-text('Made on')")
-    other.wait_for_function("window.__pasdedeux.frame === 42 && !window.__pasdedeux.playing")
+    other.wait_for_function("window.__pasdedeux?.frame === 42 && !window.__pasdedeux?.playing")
     expect(other.locator("#player .pdd-title")).to_have_text("<b>The salute</b>")
     assert abs(other.evaluate("window.__pasdedeux.player.orbit.yaw + 0.55")) < 0.01
 

@@ -18,6 +18,8 @@ from tests.ui.stub_engine import StubEngine, walking
 from webdemo.inference.methods import method
 from webdemo.ui.page import build_page, launch_options
 
+from .playing import choose
+
 pytestmark = pytest.mark.e2e
 
 SLOW = 120_000
@@ -67,12 +69,10 @@ def play_row_is_in_view(page: Page, player: str) -> None:
     assert bottom <= 700, f"the play row ends at {bottom:.0f} of 700 pixels"
 
 
-def choose(page: Page, box: str, option: str) -> None:
-    expect(page.locator(".pd-run:visible")).to_be_enabled(
-        timeout=SLOW
-    )  # what a run changes on the page is there
-    page.click(f"{box} input")
-    page.get_by_role("option", name=option, exact=True).click()
+def choose_when_done(page: Page, box: str, option: str) -> None:
+    """Chooses once all that a run changes on the page is there."""
+    expect(page.locator(".pd-run:visible")).to_be_enabled(timeout=SLOW)
+    choose(page, box, option)
 
 
 def open_react(page: Page, file: Path) -> None:
@@ -171,14 +171,14 @@ def test_words_that_a_method_does_not_hear_are_greyed_and_frames_are_counted(
 ) -> None:
     open_react(page, write(walking(3.0).a, tmp_path / "walker.npz")[0])
     page.fill("#react-prompt textarea", "They shake hands.")
-    choose(page, "#react-method", "Virtual agent")
+    choose_when_done(page, "#react-method", "Virtual agent")
     expect(page.locator("#react-prompt textarea")).to_be_disabled()
     expect(page.locator("#react-about")).to_contain_text(method("agent").summary)
     page.click("button#react-generate")
     expect(page.locator("#react-player .pdd-title")).to_have_text("Reaction to walker.npz", timeout=SLOW)
     assert server.engine.requests[-1].prompt == ""
 
-    choose(page, "#react-method", "ReGenNet, online")
+    choose_when_done(page, "#react-method", "ReGenNet, online")
     expect(page.locator("#react-prompt textarea")).to_be_enabled()
     server.engine.pause = 5.0  # so that a slow browser sees the run while it goes on
     try:
@@ -214,7 +214,7 @@ def test_a_file_that_cannot_be_read_leaves_nothing_of_the_one_before(
 
     page.get_by_role("tab", name="Predict").click()
     expect(page.locator("#predict-about")).to_have_text(method("motion-mlp").summary)
-    choose(page, "#predict-method", "PredictiveMA-WGAN")
+    choose_when_done(page, "#predict-method", "PredictiveMA-WGAN")
     expect(page.locator("#predict-about")).to_have_text(method("mawgan").summary)
     page.set_input_files("#predict-file input[type=file]", good)
     expect(page.locator("#predict-status")).to_contain_text("one person, 3.0 s", timeout=SLOW)

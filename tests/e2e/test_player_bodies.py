@@ -220,7 +220,7 @@ def test_without_bodies_there_are_skeletons(open_page, plain_url):
 
     page = open_page(plain_url, before=without_bodies)
     page.wait_for_selector(".pdd-styled", timeout=30_000)
-    page.wait_for_function("window.__pasdedeux.mode !== null", timeout=30_000)
+    page.wait_for_function("window.__pasdedeux?.mode ?? null", timeout=30_000)
     press(page, "load")
     until(page, "window.__pasdedeux.frame > 0")
     assert bones_drawn(page)

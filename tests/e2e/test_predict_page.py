@@ -17,6 +17,8 @@ from motion.formats import write
 from tests.ui.stub_engine import StubEngine, walking
 from webdemo.ui.page import build_page, launch_options
 
+from .playing import choose
+
 pytestmark = pytest.mark.e2e
 
 SLOW = 60_000
@@ -97,8 +99,7 @@ def test_the_past_ends_at_the_marker_and_the_truth_is_a_ghost(page: Page, tmp_pa
 def test_two_methods_go_on_side_by_side_on_one_clock(page: Page, tmp_path: Path) -> None:
     upload(page, write(walking(3.0).a, tmp_path / "walker.npz")[0])
     people(page, 1)
-    page.click("#predict-other input")
-    page.get_by_role("option", name="Zero velocity").click()
+    choose(page, "#predict-other", "Zero velocity (the last pose, held)")
     page.click("button#predict-generate")
     expect(page.locator("#predict-status .pd-done")).to_contain_text("Both done", timeout=SLOW)
     people(page, 2)

@@ -16,6 +16,8 @@ from motion.formats import write
 from tests.ui.stub_engine import StubEngine, walking
 from webdemo.ui.page import build_page, launch_options
 
+from .playing import choose
+
 pytestmark = pytest.mark.e2e
 
 SLOW = 60_000
@@ -99,7 +101,7 @@ def test_a_streamed_reaction_comes_while_the_actor_plays_and_can_be_cancelled(
     expect(page.locator("#react-player .pdd-chip")).to_contain_text("streaming · delay", timeout=SLOW)
     people(page, 2)
     known = "(window.__pasdedeux.player.sample.live?.known ?? null)"
-    page.wait_for_function(f"{known} === 72 && window.__pasdedeux.frame > 20")
+    page.wait_for_function(f"{known} === 72 && window.__pasdedeux?.frame > 20")
     assert page.evaluate("window.__pasdedeux.frame") < 72, "the actor does not run ahead of the reactor"
     other = "window.__pasdedeux.player.everybody(15)"
     apart = page.evaluate(f"(([a, b]) => b[0][1] - a[0][1])({other})")
@@ -107,7 +109,7 @@ def test_a_streamed_reaction_comes_while_the_actor_plays_and_can_be_cancelled(
     expect(page.locator("button#react-generate")).to_be_disabled()
     engine.live_waits_at = None
     expect(page.locator("#react-status .pd-done")).to_contain_text("longest", timeout=SLOW)
-    page.wait_for_function(f"{known} === null && window.__pasdedeux.player.sample.frames === 120")
+    page.wait_for_function(f"{known} === null && window.__pasdedeux?.player?.sample.frames === 120")
     expect(page.locator("#react-download-npz")).to_be_enabled(timeout=SLOW)
 
     engine.live_waits_at = 72
@@ -115,13 +117,8 @@ def test_a_streamed_reaction_comes_while_the_actor_plays_and_can_be_cancelled(
     page.wait_for_function(f"{known} >= 18")
     page.click("button#react-cancel")
     expect(page.locator("#react-status .pd-warning")).to_contain_text("Cancelled at frame", timeout=SLOW)
-    page.wait_for_function(f"{known} === null && window.__pasdedeux.player.sample.frames < 120")
+    page.wait_for_function(f"{known} === null && window.__pasdedeux?.player?.sample.frames < 120")
     people(page, 2)
-
-
-def choose(page: Page, box: str, option: str) -> None:
-    page.click(f"{box} input")
-    page.get_by_role("option", name=option).click()
 
 
 def test_two_methods_are_seen_side_by_side_on_one_clock(page: Page, tmp_path: Path) -> None:

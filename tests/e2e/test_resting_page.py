@@ -42,7 +42,7 @@ def rested(server: SimpleNamespace, open_page: Callable[..., Page]) -> Page:
     expect(page.locator("#model-state")).to_contain_text("Model ready", timeout=SLOW)
     page.wait_for_function("window.__pasdedeux && window.__pasdedeux.mode !== null", timeout=SLOW)
     page.evaluate("window.__pasdedeux.player.act('pause')")
-    page.wait_for_function("window.__pasdedeux.loops === 0", timeout=SLOW)
+    page.wait_for_function("window.__pasdedeux?.loops === 0", timeout=SLOW)
     for _ in range(10):  # a still picture is drawn once more, finer, and Gradio's loading screen swings out
         if frames(page) == 0:
             return page

@@ -65,9 +65,9 @@ def test_a_grid_is_linked_compared_and_voted_on(lab: str, open_page: Callable, t
     box = owner.locator("#player .pdd-cell").nth(1).bounding_box()
     assert box
     owner.mouse.click(box["x"] + 30, box["y"] + 30)
-    owner.wait_for_function("window.__pasdedeux.player.focus === 1")
+    owner.wait_for_function("window.__pasdedeux?.player?.focus === 1")
     owner.click("#player .pdd-back")
-    owner.wait_for_function(f"{CELLS} === 2 && window.__pasdedeux.player.focus === null")
+    owner.wait_for_function(f"{CELLS} === 2 && window.__pasdedeux?.player?.focus === null")
 
     owner.get_by_role("tab", name="History").click()
     owner.click(".pdn-card:has-text('grid of 2') .pdn-thumb")
@@ -85,7 +85,7 @@ def test_a_grid_is_linked_compared_and_voted_on(lab: str, open_page: Callable, t
 
     voter = open_page(invitation, **small, color_scheme="dark")
     expect(voter.locator("h1")).to_have_text("Which does what the sentence says?")
-    voter.wait_for_function(f"{CELLS} === 2 && window.__pasdedeux.frame > 0", timeout=SLOW)
+    voter.wait_for_function(f"{CELLS} === 2 && window.__pasdedeux?.frame > 0", timeout=SLOW)
     expect(voter.locator(".pdd-head:not(:empty)")).to_have_text(["1", "2"])
     expect(voter.locator(".pdd-title")).to_have_text("Two people shake hands.")
     assert "damping" not in voter.content()
