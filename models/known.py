@@ -78,6 +78,24 @@ class Known:
         self.rows[:, person, at] = feature_rows(positions, contacts)
         self.mask[:, person, at, : FEATURES if moving else FEATURES - 4] = True
 
+    def add_joints(
+        self, person: int, positions: Tensor, frames: Iterable[int], joints: Iterable[int]
+    ) -> None:
+        """Marks some joints of a person's poses as known in all motions.
+
+        Args:
+            person: 0 for a, 1 for b.
+            positions: (N, 22, 3) metres.
+            frames: N of them.
+            joints: which ones; all but the pelvis are known relative to it, so it must be among them.
+        """
+        at = torch.tensor(list(frames), dtype=torch.long)
+        rows = feature_rows(positions, positions.new_zeros(len(at), 4))
+        for joint in joints:
+            own = slice(3 * joint, 3 * joint + 3)
+            self.rows[:, person, at, own] = rows[:, own]
+            self.mask[:, person, at, own] = True
+
     def add_path(
         self, person: int, frames: Iterable[int], places: Tensor, headings: Tensor | None = None
     ) -> None:

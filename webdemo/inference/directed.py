@@ -40,11 +40,14 @@ class KnownFrames:
         person: 0 for a, 1 for b.
         frames: N different frames of the scene, in order.
         positions: (N, 22, 3) metres.
+        joints: those that are given, the pelvis among them; () for all. Where only some are given, the network is
+            held to them, and the finished motion comes close to them.
     """
 
     person: int
     frames: Sequence[int]
     positions: Array
+    joints: Sequence[int] = ()
 
 
 @dataclass(frozen=True, eq=False)
@@ -79,7 +82,9 @@ class Directed(Scene):
         """As :meth:`Scene.duet`; what is given is met exactly, and what was made leads there smoothly."""
         people = [finish(person) for person in pair]
         for person in range(2):
-            given = [p for p in self.parts if isinstance(p, KnownFrames) and p.person == person]
+            given = [
+                p for p in self.parts if isinstance(p, KnownFrames) and p.person == person and not p.joints
+            ]
             if given:
                 at = np.concatenate([np.asarray(p.frames) for p in given])
                 wanted = np.concatenate([p.positions for p in given])
@@ -148,7 +153,11 @@ def directed(model: DuetSpace, frames: int, parts: Sequence[Part], *, check: boo
         if isinstance(part, KnownFrames):
             if check:
                 _check_poses(part, at)
-            known.add_person(part.person, torch.from_numpy(np.asarray(part.positions)).float(), at)
+            poses = torch.from_numpy(np.asarray(part.positions)).float()
+            if part.joints:
+                known.add_joints(part.person, poses, at, part.joints)
+            else:
+                known.add_person(part.person, poses, at)
         else:
             if check:
                 _check_path(part, at)

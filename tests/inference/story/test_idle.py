@@ -5,7 +5,8 @@ import pytest
 
 from motion import SMPL22
 from motion.transforms import heading
-from webdemo.inference.story.idle import goes_down, idle, is_planned, standing
+from webdemo.inference.story.idle import idle, is_planned
+from webdemo.inference.story.poses import standing
 
 
 @pytest.mark.parametrize(
@@ -31,12 +32,6 @@ from webdemo.inference.story.idle import goes_down, idle, is_planned, standing
 )
 def test_only_bystanders_stand_by(sentence: str, found: str) -> None:
     assert "".join(sorted(idle(sentence))) == found
-
-
-def test_who_goes_down_was_on_their_feet() -> None:
-    assert goes_down("Person B sits down.") == {"b"} and goes_down("They kneel down.") == {"a", "b"}
-    assert goes_down("A man drops to one knee.") == {"a"} and goes_down("One falls over.") == {"a"}
-    assert not goes_down("B sits; A pulls up B") and not goes_down("Person A is lying on the floor.")
 
 
 def test_plain_sentences_have_no_plan() -> None:

@@ -312,7 +312,8 @@ class _Setting:
         for part in self.parts:
             values = part.positions if isinstance(part, KnownFrames) else part.places
             headings = None if isinstance(part, KnownFrames) else part.headings
-            found.update(repr((type(part).__name__, part.person, list(part.frames))).encode())
+            joints = list(part.joints) if isinstance(part, KnownFrames) else []
+            found.update(repr((type(part).__name__, part.person, list(part.frames), joints)).encode())
             for array in (values, headings):
                 found.update(b"-" if array is None else np.ascontiguousarray(array).tobytes())
         for array in (self.placement.turn, self.placement.origin, self.placement.goal):

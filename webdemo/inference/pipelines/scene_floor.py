@@ -11,10 +11,14 @@ from motion.transforms import heading
 from webdemo.inference.actor import FPS, Placement
 from webdemo.inference.directed import KnownFrames, KnownPath, Part
 from webdemo.inference.story.floor import HALT, Standing, Way2D, plan, starting
-from webdemo.inference.story.idle import goes_down, idle, is_planned, standing, touches
+from webdemo.inference.story.idle import idle, is_planned, touches
 from webdemo.inference.story.moves import Way, goes, moves
 from webdemo.inference.story.plan import Window
+from webdemo.inference.story.poses import LOWER, standing
+from webdemo.inference.story.postures import Change, Posture, changes
 from webdemo.inference.story.request import SceneRequest
+
+from .scene_postures import lower, postures
 
 Array = NDArray[np.floating]
 
@@ -45,15 +49,18 @@ def planned(request: SceneRequest, window: Window, scene: Array, placement: Plac
         return _apart(request, window, placement)
     before = scene[:, max(start - 4, 0) : start]
     stand = _stand(before) if start else _beginning(request)
+    sentences = [beat.sentence for beat in request.beats]
+    gone = {"ab".index(move.person) for move in found if move.way is not Way.STAY}
     parts: list[Part] = []
     for person in range(2):
-        if "ab"[person] in still and (not start or before[person, -1, 0, 1] > _UPRIGHT):
+        last = scene[person, start - 1] if start else None
+        if "ab"[person] in still and (last is None or last[0, 1] > _UPRIGHT):
             parts += _posed(person, stand, window, start, stop, placement, request.seed)
-        elif not start and window.part == 0 and "ab"[person] in goes_down(words):
-            poses = standing(
-                stand.places[person], float(stand.headings[person]), np.zeros(1), seed=request.seed
-            )
-            parts.append(KnownFrames(person, [0], placement.to_network(poses)))
+        elif person not in gone:
+            poses = postures(sentences, window.beat, person, start, stop, stand, last)
+            if (inside := lower(poses, window.start, window.stop)) is not None:
+                frames = [frame - window.start + window.past for frame in inside[0]]
+                parts.append(KnownFrames(person, frames, placement.to_network(inside[1]), LOWER))
     posed = {part.person for part in parts}
     for way in plan(found, stand, stop - start, first=not start):
         if way.person not in posed:
@@ -81,11 +88,14 @@ def plan_note(request: SceneRequest) -> list[str]:
 
 def _beginning(request: SceneRequest) -> Standing:
     """Places before the first beat, so that the first moves of the story can begin."""
+    first = request.beats[0].sentence
+    lies = any(listed[0] == Change(Posture.LIES, already=True) for listed in changes(first).values())
+    near = lies or touches(first)
     for beat in request.beats:
         found = moves(beat.sentence)
         if goes(found):
-            return starting(found, beat.length)
-    return starting((), request.beats[0].length)
+            return starting(found, beat.length, near=near)
+    return starting((), request.beats[0].length, near=near)
 
 
 def _apart(request: SceneRequest, window: Window, placement: Placement) -> list[Part]:

@@ -6,6 +6,7 @@ given once a second and the network does the walking between; where people touch
 
 from __future__ import annotations
 
+import itertools
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass, field
@@ -35,12 +36,16 @@ ASIDE = 0.7
 """Metres beside the other at which one walks past."""
 SIDESTEP = 0.8
 """Metres of a step aside."""
+REACH = 0.75
+"""Metres between two people one of whom touches the other."""
 WIDE = 0.9
 """Radius in metres of a walk around the other, at least."""
 MOST = 2.6
 """Metres a second of the fastest run that is planned."""
 FARTHEST = 5.0
 """Metres apart to which people walk; the training scenes hold next to nothing beyond."""
+STEP = math.pi / 3
+"""Radians of a turn between two given headings."""
 TURNING = 0.9
 """Seconds of a half turn."""
 _EASE = 0.5
@@ -167,8 +172,14 @@ class _Track:
         return (len(self.places) - self.frame) / FPS
 
 
-def starting(moves: Sequence[Move], seconds: float) -> Standing:
-    """Places before a first beat: a at the origin, facing +Z, and b so that their moves can begin."""
+def starting(moves: Sequence[Move], seconds: float, *, near: bool = False) -> Standing:
+    """Places before a first beat: a at the origin, facing +Z, and b so that their moves can begin.
+
+    Args:
+        moves: of the first beat that has any.
+        seconds: its length.
+        near: they are within reach of each other, unless one comes to the other.
+    """
     ways = {move.way: move for move in reversed(moves)}
     if Way.ALONG in ways:
         gap = LINKED if ways[Way.ALONG].linked else ABREAST
@@ -178,7 +189,7 @@ def starting(moves: Sequence[Move], seconds: float) -> Standing:
         return Standing(np.array([[0.0, 0.0], [0.0, lead * BEHIND]]), np.zeros(2))
     if Way.BACKS in ways:
         return Standing(np.array([[0.0, 0.0], [0.0, -0.6]]), np.array([0.0, math.pi]))
-    gap = next((_START[move.way] for move in moves if move.way in _START), 1.4)
+    gap = next((_START[move.way] for move in moves if move.way in _START), REACH if near else 1.4)
     for way in (Way.TO, Way.BEHIND):
         if way in ways:
             gap = float(np.clip(CLOSE + 0.6 * seconds * ways[way].speed, 1.8, 3.6))
@@ -340,12 +351,23 @@ def _sampled(who: int, track: _Track, standing: Standing | None) -> Way2D | None
         int(known[-1]),
         *([0] if standing is not None else []),
     }
-    frames = sorted(wanted)
+    frames = _with_turns(sorted(wanted), track.headings)
     headings = track.headings[frames]
     facing = np.isfinite(headings)
     return Way2D(
         who, frames, track.places[frames], np.where(facing, headings, np.nan) if facing.any() else None
     )
+
+
+def _with_turns(frames: Sequence[int], headings: Array) -> list[int]:
+    """The frames, with more of them where somebody turns so far between two that they could turn the other way."""
+    found = list(frames)
+    for first, last in itertools.pairwise(frames):
+        turned = abs(headings[last] - headings[first])
+        if turned > math.pi + 0.1:  # false where either heading is free
+            parts = math.ceil(turned / STEP) + 1
+            found += np.linspace(first, last, parts).round().astype(int).tolist()
+    return sorted(set(found))
 
 
 def _time(way: float, speed: float, most: float) -> float:

@@ -1,70 +1,52 @@
-"""Sentences that name person A and person B, taken apart into what each of them does."""
+"""Sentences about two people, taken apart into what each of them does."""
 
 from __future__ import annotations
 
 import re
+from collections.abc import Sequence
 
-_NAMED = r"person\s+[ab]\b"
-_JOIN = r"\b(?:and|but|while|as|whereas|so|until)\b"
-_CUT = re.compile(
-    rf"(?:[,;]\s*|\s+)(?:{_JOIN})?\s*(?:then\s+|finally\s+)?(?={_NAMED}(?!'s)\s+(?!and\b|or\b))"
-    rf"|\.\s+(?={_NAMED})",
-    re.IGNORECASE,
-)
-_SUBJECT = re.compile(
-    rf"^(?:first\s+|while\s+|as\s+|when\s+)?(?P<who>{_NAMED})(?!'s)(?!\s+(?:and|or)\b)", re.IGNORECASE
-)
-_BOTH = re.compile(
-    r"\b(?:they|both|the two|two people|each other|together)\b"
-    rf"|(?:^|[,.;]\s*|\b(?:then|while|as|and)\s+){_NAMED}\s+(?:and|or)\s+{_NAMED}",
-    re.IGNORECASE,
-)
-_OBJECT = re.compile(
-    r"\b(?:to|at|with|of|on|by|from|past|towards?|around|behind|for|before|over|near|beside|after|and|than|the)\s*$",
-    re.IGNORECASE,
+from .clauses import clauses
+
+_DOES = {
+    "pushed": "pushes", "shoved": "shoves", "knocked": "knocks", "kicked": "kicks", "punched": "punches",
+    "slapped": "slaps", "hit": "hits", "struck": "strikes", "tapped": "taps", "patted": "pats", "hugged": "hugs",
+    "embraced": "embraces", "kissed": "kisses", "touched": "touches", "pulled": "pulls", "dragged": "drags",
+    "lifted": "lifts", "helped": "helps", "supported": "supports", "led": "leads", "guided": "guides",
+    "carried": "carries", "held": "holds", "grabbed": "grabs", "caught": "catches", "thrown": "throws",
+    "comforted": "comforts", "greeted": "greets", "followed": "follows", "chased": "chases",
+    "approached": "approaches", "stopped": "stops",
+}  # fmt: skip
+"""Verbs in the passive voice and as their agent does them."""
+_PASSIVE = re.compile(
+    rf"^(?:is|are|gets?) (?:being )?(?P<verb>{'|'.join(_DOES)})\b(?P<rest>.*?) by (?!the (?:hand|arm|wrist|shoulder))"
 )
 
 
 def of_each(sentence: str) -> tuple[str, str]:
     """A sentence for person a and one for person b; "" for who is not said to do anything.
 
-    Both are "" where the sentence names nobody, or also says what both do: then the whole sentence says it best.
+    Both are "" where a part of the sentence is about both people, or about nobody: then the whole sentence says it
+    best.
     """
-    if not re.search(_NAMED, sentence, re.IGNORECASE) or _BOTH.search(sentence):
+    found = clauses(sentence)
+    if any(clause.who == "ab" or not clause.subject for clause in found):
         return "", ""
-    found: dict[str, list[str]] = {"a": [], "b": []}
-    for clause in _clauses(sentence.strip().rstrip(".")):
-        subject = _SUBJECT.match(clause)
-        if subject is None:
-            return "", ""
-        who = subject["who"][-1].lower()
-        rest = clause[subject.end() :].strip(" ,;")
-        if rest:
-            found[who].append(_from_outside(rest, who))
-    return _sentence(found["a"]), _sentence(found["b"])
-
-
-def _clauses(sentence: str) -> list[str]:
-    """The sentence cut before every named person who is a subject, not an object as in "waves to person B"."""
-    parts: list[str] = []
-    start = 0
-    for match in _CUT.finditer(sentence):
-        joined = bool(re.search(_JOIN, match[0], re.IGNORECASE))
-        marked = joined or bool(re.search(r"[,;.]", match[0]))
-        object_ = not joined and _OBJECT.search(sentence[: match.end()])
-        if marked and not object_ and sentence[start : match.start()].strip():
-            parts.append(sentence[start : match.start()].strip())
-            start = match.end()
-    return [*parts, sentence[start:].strip()]
+    acts: dict[str, list[str]] = {"a": [], "b": []}
+    for clause in found:
+        acts[clause.who].append(_from_outside(clause.words, clause.who))
+        if (passive := _PASSIVE.match(clause.words)) is not None:
+            rest = _from_outside(passive["rest"], clause.who)
+            acts["b" if clause.who == "a" else "a"].append(f"{_DOES[passive['verb']]} the other person{rest}")
+    return _sentence(acts["a"]), _sentence(acts["b"])
 
 
 def _from_outside(words: str, who: str) -> str:
     """The words without the names: who does it is "them", and the other one "the other person"."""
     other = "b" if who == "a" else "a"
-    words = re.sub(rf"person\s+{other}\b", "the other person", words, flags=re.IGNORECASE)
-    words = re.sub(rf"person\s+{who}'s\b", "their", words, flags=re.IGNORECASE)
-    return re.sub(rf"person\s+{who}\b", "them", words, flags=re.IGNORECASE)
+    words = re.sub(rf"\bperson {other}\b", "the other person", words)
+    words = re.sub(rf"\bperson {who}'s\b", "their", words)
+    return re.sub(rf"\bperson {who}\b", "them", words)
 
 
-def _sentence(acts: list[str]) -> str:
-    return f"One person {', then '.join(acts)}." if acts else ""
+def _sentence(acts: Sequence[str]) -> str:
+    return f"One person {' and '.join(acts)}." if acts else ""

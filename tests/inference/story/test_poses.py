@@ -1,0 +1,55 @@
+"""Poses of planned bodies: on the floor, with their own bones, where they should be."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+
+from motion import SMPL22
+from motion.metrics.sentences.joints import Motion
+from motion.metrics.sentences.poses import kneels, lies, low, sits
+from motion.metrics.sentences.poses import upright as is_upright
+from motion.transforms import heading
+from webdemo.inference.story.poses import crouching, kneeling, leaping, lying, seated, upright
+
+PLACE = np.array([1.0, -2.0])
+TOES = [SMPL22.index("left_foot"), SMPL22.index("right_foot")]
+
+
+def bones(pose: np.ndarray) -> np.ndarray:
+    parents, children = np.array(SMPL22.bones).T
+    return np.linalg.norm(pose[children] - pose[parents], axis=-1) / SMPL22.bone_lengths[children]
+
+
+@pytest.mark.parametrize("make", [upright, seated, crouching, kneeling, lying])
+def test_poses_are_of_this_body_and_on_the_floor(make) -> None:
+    pose = make(PLACE, 0.7)
+    np.testing.assert_allclose(bones(pose), 1.0, atol=1e-9)
+    assert 0.0 <= pose[:, 1].min() < 0.1
+    assert abs(float(heading(pose[None])[0]) - 0.7) < 0.05
+
+
+@pytest.mark.parametrize(
+    ("make", "rule"), [(upright, is_upright), (seated, sits), (kneeling, kneels), (lying, lies), (crouching, low)]
+)  # fmt: skip
+def test_poses_are_what_they_are_called(make, rule) -> None:
+    duet = np.stack([np.tile(upright(PLACE, 0.0), (40, 1, 1)), np.tile(upright(PLACE + 1, 0.0), (40, 1, 1))])
+    duet[0, 20:] = make(PLACE, 0.0)  # a body's height is seen while it stands
+    assert rule(Motion(duet), 0)[25:].all()
+
+
+def test_feet_stay_where_they_stood() -> None:
+    feet = [make(PLACE, 0.7)[TOES].mean(axis=0)[[0, 2]] for make in (upright, seated, crouching)]
+    assert np.ptp(feet, axis=0).max() < 1e-6
+    assert np.linalg.norm(lying(PLACE, 0.7)[TOES].mean(axis=0)[[0, 2]] - feet[0]) < 0.35
+
+
+def test_a_jump_takes_as_long_as_its_height_needs() -> None:
+    for rise in (0.1, 0.3):
+        moments = leaping(PLACE, 0.0, rise)
+        top = next(pose for seconds, pose in moments if seconds == 0.0)
+        assert abs(top[TOES, 1].min() - 0.02 - rise) < 0.1, "the feet leave the floor"
+        in_air = math.sqrt(2 * rise / 9.81)
+        assert all(abs(seconds) > in_air for seconds, pose in moments if pose[TOES, 1].min() < 0.05)

@@ -1,0 +1,121 @@
+"""The postures and jumps that the words of a beat ask for, as the network is given them."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Iterator
+
+import numpy as np
+from numpy.typing import NDArray
+
+from motion.transforms import heading
+from webdemo.inference.actor import FPS
+from webdemo.inference.story.floor import HALT, Standing
+from webdemo.inference.story.poses import (
+    LYING,
+    TOES,
+    crouching,
+    kneeling,
+    leaping,
+    lying,
+    seated,
+    upright,
+)
+from webdemo.inference.story.postures import Posture, at_start, changes, leaps
+
+Array = NDArray[np.floating]
+Pose = tuple[int, Array]
+"""A frame of the scene and a pose (22, 3) in metres of its world."""
+
+HELD = 6
+"""Frames between two poses of somebody who stays as they are."""
+SETTLING = 40
+"""Frames in which somebody sits down, falls or gets up."""
+DUCKING = 16
+"""Frames in which somebody ducks, and as many in which they are up again."""
+LEAP = 36
+"""Frames from the highest moment of a jump to that of the next."""
+_MAKES: dict[Posture, Callable[[Array, float], Array]] = {
+    Posture.STANDS: upright,
+    Posture.SITS: seated,
+    Posture.KNEELS: kneeling,
+    Posture.CROUCHES: crouching,
+    Posture.LIES: lying,
+}
+
+
+def postures(
+    sentences: list[str], beat: int, person: int, start: int, stop: int, stand: Standing, last: Array | None
+) -> list[Pose]:
+    """The poses by which a person's posture is held in a beat; none where the words leave them on their feet.
+
+    Args:
+        sentences: of all beats.
+        beat: which one.
+        person: 0 for a, 1 for b.
+        start, stop: the beat's first frame and the one after its last.
+        stand: where the people are when it begins.
+        last: the person's pose (22, 3) before it; None in a first beat.
+    """
+    who = "ab"[person]
+    now = at_start(sentences, beat)[who]
+    own = [change for change in changes(sentences[beat]).get(who, ()) if not change.already]
+    jumps = leaps(sentences[beat]).get(who, 0)
+    if now is Posture.STANDS and not own and not jumps:
+        others = [*changes(sentences[beat]).values(), *leaps(sentences[beat])]
+        return [(start, upright(*_place(person, stand, None)))] if last is None and others else []
+    place, angle = _place(person, stand, last)
+    if last is None and now is Posture.LIES:  # across the other's way, and not with the feet towards them
+        angle += math.pi / 2
+        place = place + LYING * np.array([math.sin(angle), math.cos(angle)])
+    found: dict[int, Array] = {}
+    begins = start + 1 if last is not None else start
+    pose = _MAKES[now](place, angle) if last is None or now is Posture.STANDS else last
+    for change in own:
+        at = start + round(change.after * (stop - start))
+        if now is not Posture.STANDS or (last is None and begins == start):
+            found |= _stays(pose, begins, at + 1)
+        if change.passing:
+            middle = min(at + DUCKING + (stop - at) // 4, stop - DUCKING)
+            found |= {middle: _MAKES[change.posture](place, angle), middle + DUCKING: upright(place, angle)}
+            begins = middle + DUCKING
+            continue
+        now, pose = change.posture, _MAKES[change.posture](place, angle)
+        begins = min(at + SETTLING, stop - 1)
+    if own and now is Posture.STANDS:
+        found |= _stays(pose, begins, min(begins + 2 * HELD + 1, stop))
+    elif now is not Posture.STANDS:
+        found |= _stays(pose, begins, stop)
+    for frame, leap in _jumping(jumps, start, stop, place, angle) if now is Posture.STANDS else ():
+        found[frame] = leap
+    return [(frame, found[frame]) for frame in sorted(found) if start <= frame < stop]
+
+
+def lower(poses: list[Pose], first: int, last: int) -> tuple[list[int], Array] | None:
+    """The frames from ``first`` to before ``last`` and their poses (N, 22, 3); None if there are none."""
+    inside = [(frame, pose) for frame, pose in poses if first <= frame < last]
+    return ([frame for frame, _ in inside], np.stack([pose for _, pose in inside])) if inside else None
+
+
+def _stays(pose: Array, start: int, stop: int) -> dict[int, Array]:
+    return dict.fromkeys({*range(start, stop, HELD), max(start, stop - 1)}, pose)
+
+
+def _jumping(times: int, start: int, stop: int, place: Array, angle: float) -> Iterator[Pose]:
+    """The poses of so many jumps, the first of them a second after the beat begins."""
+    top = start + min(FPS, (stop - start) // 2)
+    for i in range(times):
+        for seconds, pose in leaping(place, angle):
+            yield round(top + i * LEAP + seconds * FPS), pose
+
+
+def _place(person: int, stand: Standing, last: Array | None) -> tuple[Array, float]:
+    """The place (x, z) and heading of somebody who stands, or of one who is down if they got up."""
+    if last is None:
+        return np.asarray(stand.places[person], dtype=float), float(stand.headings[person])
+    pose = np.asarray(last, dtype=float)
+    angle = float(heading(pose[None])[0])
+    if pose[0, 1] > 0.8:
+        return np.asarray(stand.places[person] + HALT * stand.speeds[person], dtype=float), angle
+    toes = pose[list(TOES)].mean(axis=0)[[0, 2]]
+    return toes - 0.12 * np.array([np.sin(angle), np.cos(angle)]), angle

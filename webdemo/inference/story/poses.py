@@ -1,0 +1,189 @@
+"""Poses of a body that stands, sits, kneels, crouches, lies or jumps, by the angles of its joints."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+
+import numpy as np
+from numpy.typing import NDArray
+
+from motion import SMPL22
+from motion.kinematics import forward_kinematics
+from motion.transforms import heading_matrix
+
+Array = NDArray[np.floating]
+
+SOLE = 0.02
+"""Height in metres of the toe joint of a foot that stands."""
+LYING = 0.6
+"""Metres from where somebody stood to the pelvis when they lie."""
+LOWER = tuple(
+    SMPL22.index(name)
+    for name in (
+        "pelvis", "left_hip", "right_hip", "spine1", "left_knee", "right_knee", "left_ankle", "right_ankle",
+        "left_foot", "right_foot",
+    )
+)  # fmt: skip
+"""Joints of the pelvis and the legs: with these known, the arms and the head are free for other acts."""
+TOES = (SMPL22.index("left_foot"), SMPL22.index("right_foot"))
+_ARMS = {"left": 1.0, "right": -1.0}
+
+
+def standing(place: Array, angle: float, seconds: Array, *, seed: int = 0) -> Array:
+    """Somebody who stands with hanging arms and shifts their weight a little.
+
+    Args:
+        place: (2,) x and z of the pelvis in metres.
+        angle: heading in radians from +Z towards +X.
+        seconds: (N,) moments.
+        seed: draws the phases of the sway.
+
+    Returns:
+        (N, 22, 3) metres, the feet on the floor and at one place.
+    """
+    phases = np.random.default_rng(seed).uniform(0, 2 * np.pi, 4)
+    sway = [
+        np.sin(2 * np.pi * np.asarray(seconds) / period + phase)
+        for period, phase in zip((5.3, 3.9, 7.1, 4.4), phases, strict=True)
+    ]
+    turns = np.tile(np.eye(3), (len(seconds), SMPL22.num_joints, 1, 1))
+    turns[:, 0] = heading_matrix(angle) @ _about(2, 0.012 * sway[0])
+    turns[:, SMPL22.index("spine2")] = _about(2, -0.02 * sway[0]) @ heading_matrix(0.03 * sway[1])
+    turns[:, SMPL22.index("neck")] = _about(0, 0.05 + 0.02 * sway[1])
+    turns[:, SMPL22.index("head")] = heading_matrix(0.1 * sway[2])
+    for side, sign, arm in (("left", 1.0, sway[3]), ("right", -1.0, sway[1])):
+        turns[:, SMPL22.index(f"{side}_shoulder")] = _about(2, -sign * (1.4 + 0.015 * arm)) @ _about(
+            0, 0.05 + 0.03 * arm
+        )
+        turns[:, SMPL22.index(f"{side}_elbow")] = heading_matrix(-sign * (0.3 + 0.06 * arm))
+        turns[:, SMPL22.index(f"{side}_hip")] = _about(2, -sign * 0.02 - 0.012 * sway[0]) @ _about(
+            0, np.full(len(seconds), -0.06)
+        )
+        turns[:, SMPL22.index(f"{side}_knee")] = _about(0, np.full(len(seconds), 0.12))
+        turns[:, SMPL22.index(f"{side}_ankle")] = _about(0, np.full(len(seconds), -0.06))
+    poses = forward_kinematics(turns, np.zeros((len(seconds), 3)))
+    return _on_floor(poses, place, angle)
+
+
+_SITS: Mapping[str, float] = {
+    "hip": -1.45,
+    "knee": 1.5,
+    "ankle": -0.05,
+    "shoulder": 1.2,
+    "elbow": 0.6,
+    "spine": 0.08,
+}
+_CROUCHES: Mapping[str, float] = {
+    "hip": -1.75,
+    "knee": 2.2,
+    "ankle": -0.5,
+    "shoulder": 1.2,
+    "elbow": 0.5,
+    "spine": 0.2,
+}
+_BENDS: Mapping[str, float] = {
+    "hip": -0.6, "knee": 0.95, "ankle": -0.38, "shoulder": 1.2, "elbow": 0.3, "spine": 0.1,
+}  # fmt: skip
+_STANDS: Mapping[str, float] = {
+    "hip": -0.06,
+    "knee": 0.12,
+    "ankle": -0.06,
+    "shoulder": 1.4,
+    "elbow": 0.3,
+    "spine": 0.0,
+}
+_FLIES: Mapping[str, float] = {
+    "hip": -0.2,
+    "knee": 0.4,
+    "ankle": 0.45,
+    "shoulder": 1.3,
+    "elbow": 0.3,
+    "spine": 0.0,
+}
+
+
+def upright(place: Array, angle: float) -> Array:
+    """Somebody who stands still: (22, 3) metres."""
+    return _on_floor(_posed(angle, _STANDS)[None], place, angle)[0]
+
+
+def seated(place: Array, angle: float) -> Array:
+    """Somebody who sits as on a chair, the feet where they stood: (22, 3) metres."""
+    return _on_floor(_posed(angle, _SITS)[None], place, angle)[0]
+
+
+def crouching(place: Array, angle: float) -> Array:
+    """Somebody who crouches on their feet: (22, 3) metres."""
+    return _on_floor(_posed(angle, _CROUCHES)[None], place, angle)[0]
+
+
+def kneeling(place: Array, angle: float) -> Array:
+    """Somebody on the right knee, the left foot in front: (22, 3) metres."""
+    pose = _posed(
+        angle,
+        {"hip": -1.75, "knee": 1.8, "ankle": -0.05, "shoulder": 1.3, "elbow": 0.4, "spine": 0.03},
+        {"hip": 0.1, "knee": 1.4, "ankle": 0.9, "shoulder": 1.3, "elbow": 0.4, "spine": 0.03},
+    )
+    pose[:, 1] += SOLE + 0.04 - pose[:, 1].min()
+    return pose + np.array([place[0], 0.0, place[1]])
+
+
+def lying(place: Array, angle: float) -> Array:
+    """Somebody who lies on the back, the feet about where they stood: (22, 3) metres."""
+    pose = _posed(
+        0.0, {"hip": -0.12, "knee": 0.25, "ankle": 0.4, "shoulder": 0.9, "elbow": 0.2, "spine": 0.0}
+    )
+    pose = (pose - pose[0]) @ (heading_matrix(angle) @ _about(0, -np.pi / 2)).T
+    pose[:, 1] += 0.08 - pose[:, 1].min()
+    return pose + np.array([place[0], 0.0, place[1]]) - LYING * np.array([np.sin(angle), 0.0, np.cos(angle)])
+
+
+def leaping(place: Array, angle: float, rise: float = 0.22) -> Sequence[tuple[float, Array]]:
+    """A jump on the spot as poses (22, 3) in metres, with their seconds from its highest moment.
+
+    It is in the air as long as a body in free fall.
+
+    Args:
+        place: (2,) x and z of the pelvis in metres.
+        angle: heading in radians from +Z towards +X.
+        rise: metres by which the feet leave the floor.
+    """
+    up = (2 * rise / 9.81) ** 0.5
+    bent = _on_floor(_posed(angle, _BENDS)[None], place, angle)[0]
+    high = _on_floor(_posed(angle, _FLIES)[None], place, angle)[0] + np.array([0.0, rise, 0.0])
+    return ((-up - 0.23, bent), (0.0, high), (up + 0.2, bent), (up + 0.6, upright(place, angle)))
+
+
+def _posed(angle: float, left: Mapping[str, float], right: Mapping[str, float] | None = None) -> Array:
+    """A pose (22, 3) around the origin by angles in radians: flexed hips are negative, flexed knees positive."""
+    turns = np.tile(np.eye(3), (1, SMPL22.num_joints, 1, 1))
+    turns[:, 0] = heading_matrix(angle)
+    for spine in ("spine1", "spine2"):
+        turns[:, SMPL22.index(spine)] = _about(0, left["spine"])
+    for (side, sign), angles in zip(_ARMS.items(), (left, right or left), strict=True):
+        turns[:, SMPL22.index(f"{side}_shoulder")] = _about(2, -sign * angles["shoulder"])
+        turns[:, SMPL22.index(f"{side}_elbow")] = heading_matrix(-sign * angles["elbow"])
+        turns[:, SMPL22.index(f"{side}_hip")] = _about(2, -sign * 0.02) @ _about(0, angles["hip"])
+        for joint in ("knee", "ankle"):
+            turns[:, SMPL22.index(f"{side}_{joint}")] = _about(0, angles[joint])
+    return forward_kinematics(turns, np.zeros((1, 3)))[0]
+
+
+def _on_floor(poses: Array, place: Array, angle: float) -> Array:
+    """The poses (N, 22, 3) with their toes on the floor, where those of one who stands at ``place`` are."""
+    soles = poses[:, TOES]
+    moved = poses - soles.mean(axis=1, keepdims=True) * [1, 0, 1]
+    moved[..., 1] += SOLE - soles[..., 1].mean(axis=1)[:, None]
+    return moved + np.array([place[0], 0.0, place[1]]) + 0.12 * np.array([np.sin(angle), 0.0, np.cos(angle)])
+
+
+def _about(axis: int, angle: Array | float) -> Array:
+    """(…, 3, 3) rotations about X (0) or Z (2)."""
+    angle = np.asarray(angle, dtype=np.float64)
+    cos, sin, one, zero = np.cos(angle), np.sin(angle), np.ones_like(angle), np.zeros_like(angle)
+    rows = (
+        [one, zero, zero, zero, cos, -sin, zero, sin, cos]
+        if axis == 0
+        else [cos, -sin, zero, sin, cos, zero, zero, zero, one]
+    )
+    return np.stack(rows, axis=-1).reshape(*angle.shape, 3, 3)

@@ -1,0 +1,181 @@
+"""Postures: who sits, kneels, crouches or lies down in a story, and stays so, and who jumps.
+
+A network that was trained on people who sit down and get up again does not leave them seated. The words say how the
+people hold themselves at the end of each beat; until they get up, their pelvis and legs are given.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Sequence
+from dataclasses import dataclass
+from enum import Enum
+
+from .clauses import Clause, clauses
+
+
+class Posture(Enum):
+    """How somebody holds themselves."""
+
+    STANDS = "stands"
+    SITS = "sits"
+    KNEELS = "kneels"
+    CROUCHES = "crouches"
+    LIES = "lies"
+
+
+@dataclass(frozen=True)
+class Change:
+    """A change of one person's posture in a beat.
+
+    Attributes:
+        posture: how they hold themselves from then on.
+        already: they do so when the beat begins, if nothing before it says otherwise ("while she sits").
+        after: how much of the beat's words come before, from 0 to 1.
+        passing: they are up again at once, as somebody who ducks is.
+    """
+
+    posture: Posture
+    already: bool = False
+    after: float = 0.0
+    passing: bool = False
+
+
+_SURFACE = r"(?:ground|floor|grass|mat|backs?|bottom|bum|side|knees)"
+_GROUND = rf"(?:(?:to|on|onto) (?:the |his |her |their )?{_SURFACE}|over|down)"
+_FEET = r"(?:to|on|onto) (?:his|her|their) feet\b"
+_UP = re.compile(
+    r"\b(?:gets?|getting|stands?|standing|ris(?:es?|ing)|climbs?) (?:\w+ )?up\b|\b(?:rises?|arises?)\b"
+    rf"|\b(?:gets?|ris(?:es?|ing)|jumps?|springs?|leaps?|climbs?|scrambles?) (?:back )?{_FEET}|\bback {_FEET}"
+    rf"|\b(?:is|are|gets?) (?:pulled|helped|lifted|dragged|hauled) (?:\w+ )?(?:up\b|{_FEET})"
+)
+_BY_OTHER = re.compile(r"\b(?:is|are|gets?|being) (?:\w+ )?\w+(?:ed|wn)\b")
+_RAISES = re.compile(
+    r"\b(?:pull|help|lift|drag|haul)\w* (?:(?:person [ab]|him|her|them|the \w+|each other) )?(?:\w+ )?"
+    rf"(?:up\b|{_FEET})"
+)
+"""Acts by which one gets the other up."""
+_FELLS = re.compile(
+    r"\b(?:knock|push|shov|throw|pull|trip|wrestl)\w* (?:\w+ ){1,3}?(?:over|down|(?:to|on) the (?:ground|floor))\b"
+)
+"""Acts by which one makes the other fall."""
+_DOWN = (
+    (
+        Posture.LIES,
+        r"\b(?:fall|drop|tumble|topple|collapse|faint)(?:s|ing)?(?: \w+)?(?: backwards?)? "
+        rf"{_GROUND}|\b(?:collapse|faint|topple)s?\b|^falls?$|\bfalls? flat\b"
+        r"|\b(?:is|are|gets?) (?:knocked|pushed|thrown|shoved) (?:\w+ )?(?:over|down|to the (?:ground|floor))\b"
+        r"|\bl(?:ies?|ying) down\b|\bplays? dead\b",
+    ),
+    (
+        Posture.KNEELS,
+        r"\bkneel(?:s|ing)?\b|\b(?:drop|sink|fall|go|get)(?:s|es)? (?:\w+ )?(?:on|to|onto|upon) "
+        r"(?:one|a|his|her|their|both) knees?\b",
+    ),
+    (Posture.SITS, r"\b(?:sits?|sitting) (?:\w+ )?down\b|\btakes? (?:a|his|her|their) seats?\b|\bsits?\b"),
+    (Posture.CROUCHES, r"\b(?:crouch|squat)(?:es|s|ing)?\b"),
+)
+_STAYS = r"\b(?:is|are|stays?|remains?|keeps?) (?:\w+ )?"
+_STATE = (
+    (
+        Posture.SITS,
+        rf"{_STAYS}(?:seated|sitting)\b(?! down)|\bsits?(?! (?:\w+ )?down)\b|^(?:seated|sitting)\b(?! down)",
+    ),
+    (Posture.LIES, rf"{_STAYS}lying\b(?! down)|\bl(?:ies?|ying) (?:\w+ )?(?:on|flat|still)\b"),
+    (Posture.KNEELS, rf"{_STAYS}kneeling\b|^kneeling\b(?! down)"),
+    (Posture.CROUCHES, rf"{_STAYS}(?:crouching|squatting)\b"),
+)
+_PATTERNS = tuple((posture, re.compile(pattern)) for posture, pattern in _DOWN)
+_STATES = tuple((posture, re.compile(pattern)) for posture, pattern in _STATE)
+_DUCKS = re.compile(r"\bduck(?:s|ing)?\b")
+_TIRELESS = re.compile(r"\bsquats?\b.*\b(?:times|again|repeatedly)\b|\b(?:sit|push|press)-?ups?\b")
+_JUMPS = re.compile(r"\b(?:jump|hop|leap|bounce|spring)(?:s|ing)?\b")
+_ELSEWHERE = re.compile(
+    r"\b(?:jump|hop|leap|bounce|spring)(?:s|ing)? (?:over|onto|on(?! the spot)|off|out|aside|away|back\w*|at|rope|ahead"
+    r"|forwards?|towards?|to\b|into (?!the air))|\bjumping jacks?\b"
+)
+_OFTEN = re.compile(
+    r"\b(?:hop|hopping|hops|bounc\w+|jumping)\b.* on the spot\b|\bup and (?:\w+ )?down\b|\bagain and again\b"
+    r"|\brepeatedly\b|\b(?:several|three|many|a few) times\b"
+)
+_TWICE = re.compile(r"\btwice\b|\btwo times\b")
+_NOT = re.compile(
+    r"\b(?:do(?:es)?n't|not|without|never|refus\w+ to|wants? to|tries to|about to|almost|nearly)\b"
+)
+
+
+def changes(sentence: str) -> dict[str, tuple[Change, ...]]:
+    """The changes of posture in a beat's sentence, in order, by person "a" and "b"."""
+    found: dict[str, tuple[Change, ...]] = {}
+    listed = clauses(sentence)
+    at_once = any(clause.at_once for clause in listed)
+    for i, clause in enumerate(listed):
+        share = i / len(listed)
+        if (change := _caused(clause, share)) is not None:
+            other = "b" if clause.who == "a" else "a"
+            found[other] = (*found.get(other, ()), change)
+            continue
+        for who in clause.who:
+            if (change := _own(clause, share, first=who not in found, at_once=at_once)) is not None:
+                found[who] = (*found.get(who, ()), change)
+    return found
+
+
+def _says(pattern: re.Pattern[str], words: str) -> bool:
+    """True if the words have the pattern, and nothing before it takes it back."""
+    found, denied = pattern.search(words), _NOT.search(words)
+    return (
+        found is not None and not (denied and denied.start() < found.start()) and not _TIRELESS.search(words)
+    )
+
+
+def _caused(clause: Clause, share: float) -> Change | None:
+    """The posture that one brings the other into."""
+    if clause.who == "ab" or _BY_OTHER.search(clause.words):
+        return None
+    if _says(_RAISES, clause.words):
+        return Change(Posture.STANDS, after=share)
+    return Change(Posture.LIES, after=max(share, 0.4)) if _says(_FELLS, clause.words) else None
+
+
+def _own(clause: Clause, share: float, *, first: bool, at_once: bool) -> Change | None:
+    """The posture that the people of a clause take up."""
+    if _says(_UP, clause.words):
+        return Change(Posture.STANDS, after=share)
+    if _says(_DUCKS, clause.words):
+        return Change(Posture.CROUCHES, after=share, passing=True)
+    if (
+        first
+        and (state := next((p for p, pattern in _STATES if _says(pattern, clause.words)), None)) is not None
+    ):
+        return Change(state, already=True)
+    for posture, pattern in _PATTERNS:
+        if _says(pattern, clause.words):
+            already = at_once and first and posture is not Posture.LIES and " down" not in clause.words
+            if posture is Posture.LIES and _BY_OTHER.search(clause.words):
+                share = max(share, 0.4)  # what makes them fall comes before
+            return Change(posture, already=already, after=share)
+    return None
+
+
+def leaps(sentence: str) -> dict[str, int]:
+    """How often each person, "a" and "b", jumps on the spot in a beat's sentence."""
+    found: dict[str, int] = {}
+    for clause in clauses(sentence):
+        if not _says(_JUMPS, clause.words) or _ELSEWHERE.search(clause.words) or _UP.search(clause.words):
+            continue
+        times = 3 if _OFTEN.search(sentence.lower()) else 2 if _TWICE.search(clause.words) else 1
+        found |= dict.fromkeys(clause.who, times)
+    return found
+
+
+def at_start(sentences: Sequence[str], beat: int) -> dict[str, Posture]:
+    """The postures of both people, "a" and "b", when a beat of a story begins."""
+    held = dict.fromkeys("ab", Posture.STANDS)
+    for i, sentence in enumerate(sentences[: beat + 1]):
+        for person, listed in changes(sentence).items():
+            if i == 0 and listed[0].already:
+                held[person] = listed[0].posture
+            if i < beat and not listed[-1].passing:
+                held[person] = listed[-1].posture
+    return held
