@@ -7,9 +7,11 @@ from typing import Any
 import numpy as np
 import pytest
 
-from motion import SMPL22, Clip, Duet
+from motion import SMPL22, Clip, Duet, InputError
 from motion.formats import read, write
 from motion.kinematics import forward_kinematics
+from tests.motion.bodies import marching
+from tests.motion.formats.characters import glb_takes
 from tests.motion.formats.rigs import RIGS, bvh_text
 from webdemo import cli
 from webdemo.cli import generation
@@ -226,3 +228,74 @@ def test_the_partner_comes_on_the_rig_of_the_file_too(
         capsys, "--actor", write(standing(60), tmp_path / "x.npz")[0], "--own-rig", "--out", rig
     )
     assert code == 2 and "rig of a BVH or .glb file, and x.npz is none" in said
+
+
+def test_one_animation_of_several_is_chosen_and_noted(
+    tmp_path: Path, asked: list[ReactRequest], capsys: pytest.CaptureFixture[str]
+) -> None:
+    positions, rotations = marching(60)
+    actor = tmp_path / "takes.glb"
+    actor.write_bytes(glb_takes(rotations, positions[:, 0], ["walk", "glide"]))
+    words = ["--actor", actor, "--own-rig", "--out", tmp_path / "x.npz"]
+    for more, note in (
+        ([], "Of the 2 animations in takes.glb, 1 (“walk”) was taken; the other is 2 (“glide”)."),
+        (
+            ["--animation", "glide"],
+            "Of the 2 animations in takes.glb, 2 (“glide”) was taken; the other is 1 (“walk”).",
+        ),
+        (
+            ["--animation", "2"],
+            "Of the 2 animations in takes.glb, 2 (“glide”) was taken; the other is 1 (“walk”).",
+        ),
+    ):
+        code, said, told = react(capsys, *words, *more)
+        assert code == 0 and note in told.splitlines()
+        assert json.loads(said.splitlines()[-1])["notes"] == [note]
+    np.testing.assert_array_equal(asked[1].actor.positions, asked[2].actor.positions)
+    assert np.abs(asked[0].actor.positions - asked[1].actor.positions).max() > 0.1
+    code, _, told = react(capsys, *words, "--animation", "run")
+    assert code == 2 and "has no such animation: choose 1 (“walk”) or 2 (“glide”)" in told
+
+
+def test_other_commands_choose_an_animation_too(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    positions, rotations = marching(60)
+    file = tmp_path / "takes.glb"
+    file.write_bytes(glb_takes(rotations, positions[:, 0], ["walk", "glide"]))
+    note = "Of the 2 animations in takes.glb, 2 (“glide”) was taken; the other is 1 (“walk”)."
+    assert cli.main(["render", str(file), "--animation", "glide", "--frames", "2", "--width", "300"]) == 0
+    assert json.loads(capsys.readouterr().out.splitlines()[-1])["notes"] == [note]
+    words = [
+        "predict",
+        "--past",
+        str(file),
+        "--animation",
+        "2",
+        "--model",
+        "still",
+        "--out",
+        str(tmp_path / "p.npz"),
+    ]
+    requests: list[Any] = []
+
+    def stop(request: Any) -> Any:
+        requests.append(request)
+        raise InputError("Stopped.")
+
+    monkeypatch.setattr(generation, "run", stop)
+    assert cli.main(words) == 2
+    np.testing.assert_array_equal(requests[0].motion.positions, read(file, animation="glide").positions)
+    for wrong, says in (
+        (["render", str(file), str(file), "--animation", "1"], "chooses within one file"),
+        (
+            ["scene", "--prompt", "They bow.", "--animation", "1", "--out", str(tmp_path / "s.npz")],
+            "give --motion",
+        ),
+        (
+            ["scene", "--prompt", "They bow.", "--motion", str(file), "--animation", "9", "--out", words[-1]],
+            "no such",
+        ),
+    ):
+        capsys.readouterr()
+        assert cli.main(wrong) == 2 and says in capsys.readouterr().err

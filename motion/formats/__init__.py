@@ -15,12 +15,16 @@ from .bvh import read_bvh, read_bvh_people
 from .bvh_writer import write_bvh
 from .crowd import Crowd, Motion, gathered
 from .glb import write_glb
-from .glb_motion import read_glb_people
+from .glb_animations import Animation
+from .glb_motion import animations_in, read_glb_people
 from .kinect import read_kinect
 from .npz import read_npy, read_npz, write_npy, write_npz
 from .one_person import write_clip
 
-__all__ = ["FORMATS", "Format", "can_read", "can_write", "read", "read_everyone", "read_pair", "write"]
+__all__ = [
+    "FORMATS", "Animation", "Format", "animation_note", "can_read", "can_write", "read", "read_everyone", "read_pair",
+    "write",
+]  # fmt: skip
 
 
 @dataclass(frozen=True)
@@ -43,13 +47,15 @@ class Format:
     needs: str | None = None
 
 
+NO_ANIMATIONS = "{} is no .glb file and has no animations to choose from: leave the choice out."
 RIGS = (".bvh", ".glb")
 """Suffixes of files that hold rigs of any kind."""
 
 
 def read_rigs(
-    source: str | Path | bytes, *, name: str | None = None, fps: float, file_fps: float | None = None
-) -> tuple[RigMotion, ...]:
+    source: str | Path | bytes, *, name: str | None = None, fps: float, file_fps: float | None = None,
+    animation: Animation | None = None,
+) -> tuple[RigMotion, ...]:  # fmt: skip
     """The people in a file of one of :data:`RIGS`, on their own rigs.
 
     Args:
@@ -57,19 +63,21 @@ def read_rigs(
         name: what to call it in messages.
         fps: the rate that is wanted in the end.
         file_fps: the file's true rate, where it is not what the file says.
+        animation: of a .glb with several, the name or the number, from 1, of the one to read; the first by default.
 
     Raises:
         InputError: one sentence saying what is wrong with the file.
     """
     if Path(name or str(source)).suffix.lower() == ".glb":
-        return read_glb_people(source, name=name)
+        return read_glb_people(source, name=name, animation=animation)
     return read_bvh_people(source, name=name, fps=fps, file_fps=file_fps)
 
 
 def _read_rig_clips(
-    source: str | Path | bytes, *, name: str | None = None, fps: float | None = None, everyone: bool = False
-) -> Motion:
-    rigs = read_rigs(source, name=name, fps=fps or 30.0)
+    source: str | Path | bytes, *, name: str | None = None, fps: float | None = None, everyone: bool = False,
+    animation: Animation | None = None,
+) -> Motion:  # fmt: skip
+    rigs = read_rigs(source, name=name, fps=fps or 30.0, animation=animation)
     people = tuple(own_clip(rig) or retarget(rig, fps=fps or 30.0) for rig in rigs)
     return gathered(people, people[0].name, everyone=everyone)
 
@@ -121,6 +129,7 @@ def read(
     fps: float | None = None,
     keep_skeleton: bool = False,
     longest: float | None = None,
+    animation: Animation | None = None,
 ) -> Clip | Duet:
     """Reads one motion file.
 
@@ -131,6 +140,7 @@ def read(
         keep_skeleton: keep the joints of arrays in other layouts (Kinect's, CMU's).
         longest: seconds; a longer motion is refused before its joints are fitted, which takes about 5 ms a
             frame and person.
+        animation: of a .glb with several, the name or the number, from 1, of the one to read; the first by default.
 
     Returns:
         a clip, or a duet where the file holds two people, in metres and Y up, on SMPL22. Other rigs and
@@ -144,20 +154,36 @@ def read(
     known = FORMATS.get(suffix)
     if known is None or known.reader is None:
         raise InputError(_unknown(suffix, "read", _READABLE))
-    motion = known.reader(path, name=Path(label).name, fps=fps)
+    motion = known.reader(path, name=Path(label).name, fps=fps, **_choice(animation, label))
     assert not isinstance(motion, Crowd)  # not everyone was asked for
     if longest is not None and motion.seconds > longest:
         raise InputError(f"{label} lasts {motion.seconds:.0f} s: cut it to {longest:g} s or less.")
     return motion if keep_skeleton else to_smpl(motion)
 
 
-def read_everyone(path: str | Path | bytes, *, name: str | None = None) -> Motion:
+def animation_note(path: str | Path, animation: Animation | None = None) -> str:
+    """A sentence on which animation of a file :func:`read` takes and which not; empty where there is no choice."""
+    return animations_in(path, animation=animation).note if Path(path).suffix.lower() == ".glb" else ""
+
+
+def _choice(animation: Animation | None, label: str) -> dict[str, Animation]:
+    """The choice for a reader; raises InputError for a file of which none can be chosen."""
+    if animation is None:
+        return {}
+    if Path(label).suffix.lower() != ".glb":
+        raise InputError(NO_ANIMATIONS.format(Path(label).name))
+    return {"animation": animation}
+
+
+def read_everyone(
+    path: str | Path | bytes, *, name: str | None = None, animation: Animation | None = None
+) -> Motion:
     """Like :func:`read`, but returns all people, even more than two, with the file's own joints."""
     label = name or str(path)
     known = FORMATS.get(Path(label).suffix.lower())
     if known is None or known.reader is None:
         raise InputError(_unknown(Path(label).suffix.lower(), "read", _READABLE))
-    return known.reader(path, name=Path(label).name, everyone=True)
+    return known.reader(path, name=Path(label).name, everyone=True, **_choice(animation, label))
 
 
 def read_pair(

@@ -16,8 +16,9 @@ from motion.rigs import RigMotion, match_joints
 
 from .bvh_numbers import MAX_NUMBERS
 from .files import check_duration
+from .glb_animations import Animation, Animations, chosen
 from .glb_file import GlbFile, opened
-from .glb_nodes import Channel, Rig, bind_pose, channels, moves, people, placed, with_those_above
+from .glb_nodes import Channel, Rig, bind_pose, channels, people, placed, with_those_above
 
 Array = NDArray[np.floating]
 
@@ -35,8 +36,17 @@ _LEGS = (0.6, 1.7)
 """Length of an average person's legs over that of people's."""
 
 
-def read_glb_people(source: str | Path | bytes, *, name: str | None = None) -> tuple[RigMotion, ...]:
-    """The animated people in a .glb file, who share one clock, one unit and one world.
+def read_glb_people(
+    source: str | Path | bytes, *, name: str | None = None, animation: Animation | None = None
+) -> tuple[RigMotion, ...]:
+    """The people of :func:`read_glb` alone."""
+    return read_glb(source, name=name, animation=animation)[0]
+
+
+def read_glb(
+    source: str | Path | bytes, *, name: str | None = None, animation: Animation | None = None
+) -> tuple[tuple[RigMotion, ...], Animations]:
+    """The animated people in a .glb file, who share one clock, one unit and one world, and its animations.
 
     Key frames are read at the rate of the densest channel, at 60 a second at most; keys further apart than a tenth of
     a second are filled in at 30. Names of joints lose the beginning that they share.
@@ -44,32 +54,49 @@ def read_glb_people(source: str | Path | bytes, *, name: str | None = None) -> t
     Args:
         source: a path, or the file's bytes.
         name: what to call the file in messages; its own name by default.
+        animation: the name or the number, from 1, of the one that is read of several; the first by default.
 
     Raises:
         InputError: one sentence that says what is wrong with the file and what to do.
     """
     with opened(source, name, "read as motion", harmless=MESHES) as file:
-        parents = file.node_parents()
-        if not file.document.get("animations"):
-            raise InputError(
-                f"{file.label} has no animation: export it with one, or put it on both people with "
-                "“Wear a character”."
-            )
-        found = [_Person(file, parents, rig) for rig in people(file, parents)]
-        whole = [person for person in found if person.problem is None]
-        if not whole:
-            assert found[0].problem is not None
-            raise found[0].problem
-        if len(whole) > MOST_PEOPLE:
-            file.refuse(f"it holds {len(whole)} people", f"export {MOST_PEOPLE} at most")
-        moved = [_only(file, set(person.nodes)) for person in whole]
+        whole = _whole(file)
+        nodes = [set(person.nodes) for person in whole]
+        taken, animations = chosen(file, nodes, animation)
+        moved = [channels(file, each, its) for each, its in zip(taken, nodes, strict=True)]
         moments, rate, every = _clock(file, moved, sum(len(person.nodes) for person in whole))
         places = [person.at(its, moments) for person, its in zip(whole, moved, strict=True)]
         scale = metres_per_unit(whole[0].motion(places[0], rate))
         return tuple(
             person.motion(scale * its, rate / every, scale, every)
             for person, its in zip(whole, places, strict=True)
+        ), animations
+
+
+def animations_in(
+    source: str | Path | bytes, *, name: str | None = None, animation: Animation | None = None
+) -> Animations:
+    """The animations that :func:`read_glb` finds in a file, without their key frames."""
+    with opened(source, name, "read as motion", harmless=MESHES) as file:
+        return chosen(file, [person.nodes for person in _whole(file)], animation)[1]
+
+
+def _whole(file: GlbFile) -> list[_Person]:
+    """The people in a file with animations, one at least and not too many."""
+    parents = file.node_parents()
+    if not file.document.get("animations"):
+        raise InputError(
+            f"{file.label} has no animation: export it with one, or put it on both people with "
+            "“Wear a character”."
         )
+    found = [_Person(file, parents, rig) for rig in people(file, parents)]
+    whole = [person for person in found if person.problem is None]
+    if not whole:
+        assert found[0].problem is not None
+        raise found[0].problem
+    if len(whole) > MOST_PEOPLE:
+        file.refuse(f"it holds {len(whole)} people", f"export {MOST_PEOPLE} at most")
+    return whole
 
 
 class _Person:
@@ -129,23 +156,6 @@ def _shared_beginning(names: Sequence[str]) -> str:
     first, last = min(names), max(names)
     same = next((i for i, (one, other) in enumerate(zip(first, last, strict=False)) if one != other), 0)
     return first[: max(first[:same].rfind(mark) for mark in "_:|. -") + 1]
-
-
-def _only(file: GlbFile, nodes: set[int]) -> list[Channel]:
-    """The channels of the one animation that moves these nodes."""
-    moving = [each for each in file.document["animations"] if moves(each, nodes)]
-    if not moving:
-        raise InputError(
-            f"{file.label} has an animation, but it moves no joint of the skeleton: export it again."
-        )
-    if len(moving) > 1:
-        names = ", ".join(str(each.get("name", "one without a name"))[:40] for each in moving[:3])
-        more = " …" if len(moving) > 3 else ""
-        raise InputError(
-            f"{file.label} holds {len(moving)} animations of one person ({names}{more}): "
-            "export one of them alone."
-        )
-    return channels(file, moving[0], nodes)
 
 
 def _clock(file: GlbFile, moved: Sequence[Sequence[Channel]], nodes: int) -> tuple[Array, float, int]:

@@ -23,6 +23,7 @@ from motion.retarget import floor_on_smpl, leg_scale, retarget, up_rotation
 from motion.rigs import RigMotion, match_joints, pairs_of
 from motion.skeleton import SMPL22
 
+from .glb_animations import Animation
 from .glb_file import GlbFile, opened, packed
 from .glb_motion import MESHES, metres_per_unit, read_glb_people
 from .glb_nodes import Rig, bind_pose, people, placed, quaternions, split, with_those_above
@@ -39,13 +40,16 @@ _REACH = (0.2, 0.6)
 _LIFTS = (-0.05, 0.3)
 
 
-def glb_on_rig(clip: Clip, reference: str | Path | bytes, *, name: str | None = None) -> bytes:
+def glb_on_rig(
+    clip: Clip, reference: str | Path | bytes, *, name: str | None = None, animation: Animation | None = None
+) -> bytes:
     """One person's motion on the skeleton of an animated character, in the world of its own animation.
 
     Args:
         clip: on SMPL22, metres, as it was made for the person that was read from the reference.
         reference: a .glb of one animated person, or its bytes.
         name: what to call it in messages.
+        animation: the one that the person was read from, of several; the first by default.
 
     Returns:
         the file, with one animation at the clip's frame rate.
@@ -54,7 +58,7 @@ def glb_on_rig(clip: Clip, reference: str | Path | bytes, *, name: str | None = 
         InputError: for another skeleton, or a file that is no animated character.
     """
     check_smpl(clip)
-    moved = read_glb_people(reference, name=name)
+    moved = read_glb_people(reference, name=name, animation=animation)
     if len(moved) != 1:
         raise InputError(f"{moved[0].name} holds {len(moved)} people: a partner needs the rig of one.")
     with opened(reference, name, "used as a rig", harmless=MESHES) as file:

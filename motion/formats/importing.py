@@ -17,9 +17,11 @@ from motion.layouts import LAYOUTS
 from motion.retarget import retarget, retarget_duet, to_smpl, up_axis
 from motion.rigs import RigMotion, matched_names
 
-from . import RIGS, own_clip, read_everyone, read_rigs
+from . import NO_ANIMATIONS, RIGS, own_clip, read_everyone, read_rigs
 from .crowd import clips_of
 from .files import MAX_SECONDS
+from .glb_animations import Animation, Animations, check_animation
+from .glb_motion import read_glb
 
 Array = NDArray[np.floating]
 
@@ -44,14 +46,17 @@ class ImportChoices:
         fps: frames a second; overrides the file.
         order: order of joints without names: a key of :data:`~motion.SKELETONS`, such as
             "sbu15" or "k3hi15".
+        animation: the name or the number, from 1, of the one to read of a .glb with several.
     """
 
     up: str | None = None
     unit: str | None = None
     fps: float | None = None
     order: str | None = None
+    animation: Animation | None = None
 
     def __post_init__(self) -> None:
+        check_animation(self.animation)
         if self.up is not None and self.up not in AXES:
             raise InputError(f"Up axis {self.up!r:.20} is not known: choose x, y or z.")
         if self.unit is not None and self.unit not in UNITS:
@@ -76,6 +81,7 @@ class Imported:
         fps: its frames a second.
         joints: (joint of the file, joint of SMPL22).
         order: joint order of an array, if several orders have that number of joints.
+        animations: those of a .glb file, and which of them this is; None for any other file.
     """
 
     people: tuple[Clip, ...]
@@ -84,6 +90,7 @@ class Imported:
     fps: float
     joints: tuple[tuple[str, str], ...] = field(repr=False)
     order: str | None = None
+    animations: Animations | None = None
 
     @cached_property
     def motion(self) -> Clip | Duet:
@@ -116,6 +123,11 @@ def import_motion(
     """
     choices = choices or ImportChoices()
     label = name or Path(str(source)).name
+    if Path(label).suffix.lower() == ".glb":
+        people_in, animations = read_glb(source, name=name, animation=choices.animation)
+        return replace(_import_rigs(people_in, choices), animations=animations)
+    if choices.animation is not None:
+        raise InputError(NO_ANIMATIONS.format(label))
     if Path(label).suffix.lower() in RIGS:
         rigs = read_rigs(source, name=name, fps=_FPS, file_fps=choices.fps)
         return _import_rigs(rigs, choices)

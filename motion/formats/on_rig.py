@@ -9,21 +9,25 @@ from motion.errors import InputError
 
 from . import RIGS, read_rigs
 from .bvh_rig import bvh_on_rig
+from .glb_animations import Animation
 from .glb_rig import glb_on_rig
 
 
-def on_rig(clip: Clip, reference: Path) -> bytes:
+def on_rig(clip: Clip, reference: Path, *, animation: Animation | None = None) -> bytes:
     """One person's motion as a file of the reference's kind, on its rig and in its world.
 
     Args:
         clip: on SMPL22, metres.
         reference: a .bvh or .glb of one person.
+        animation: the one that the person was read from, of a .glb with several.
 
     Raises:
         InputError: as :func:`check_rig`, and where the rig cannot be moved.
     """
     _check_kind(reference)
-    return glb_on_rig(clip, reference) if reference.suffix.lower() == ".glb" else bvh_on_rig(clip, reference)
+    if reference.suffix.lower() == ".glb":
+        return glb_on_rig(clip, reference, animation=animation)
+    return bvh_on_rig(clip, reference)
 
 
 def check_rig(reference: Path) -> None:

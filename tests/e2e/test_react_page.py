@@ -13,6 +13,8 @@ os.environ.setdefault("GRADIO_ANALYTICS_ENABLED", "False")
 from playwright.sync_api import Page, expect
 
 from motion.formats import write
+from tests.motion.bodies import marching
+from tests.motion.formats.characters import glb_takes
 from tests.ui.stub_engine import StubEngine, walking
 from webdemo.ui.page import build_page, launch_options
 
@@ -73,6 +75,17 @@ def test_an_uploaded_person_is_seen_trimmed_and_gets_a_partner(page: Page, tmp_p
     people(page, 1)
     expect(page.locator("#react-status")).to_contain_text("0.0 to 3.0 s of 3.0 s", timeout=SLOW)
     expect(page.locator("#react-person input[value=b]")).to_be_checked(timeout=SLOW)
+
+
+def test_another_animation_of_a_character_is_chosen(page: Page, tmp_path: Path) -> None:
+    positions, rotations = marching(60)
+    file = tmp_path / "takes.glb"
+    file.write_bytes(glb_takes(rotations, positions[:, 0], ["walk", "glide"]))
+    page.set_input_files("#react-file input[type=file]", file)
+    expect(page.locator("#react-status")).to_contain_text("1 (“walk”) was taken", timeout=SLOW)
+    choose(page, "#react-animation", "2 · glide")
+    expect(page.locator("#react-status")).to_contain_text("2 (“glide”) was taken", timeout=SLOW)
+    expect(page.locator("#react-animation input")).to_have_value("2 · glide")
 
 
 def test_a_result_of_the_other_tab_is_taken_and_bad_files_are_a_sentence(page: Page, tmp_path: Path) -> None:

@@ -20,7 +20,7 @@ from PIL import Image
 
 from motion.formats import read
 from tests.motion.bodies import marching
-from tests.motion.formats.characters import glb_character, glb_motion
+from tests.motion.formats.characters import glb_character, glb_motion, glb_takes
 from webdemo.ui.page import build_page, launch_options
 
 from .stub_engine import StubEngine, walking
@@ -121,6 +121,29 @@ def test_react_gives_the_partner_on_the_rig_of_the_file(client: Client, walkers:
     assert read(found[partner]).num_frames == 60
     with pytest.raises(AppError, match=r"rig of a BVH or \.glb file, and walkers\.npz is none"):
         client.predict(actor=handle_file(walkers), person="a", end=3, own_rig=True, api_name="/react")
+
+
+def test_one_animation_of_several_is_chosen_and_noted(client: Client, walkers: Path) -> None:
+    positions, rotations = marching(60)
+    robot = walkers.with_name("takes.glb")
+    robot.write_bytes(glb_takes(rotations, positions[:, 0], ["walk", "glide"]))
+    note = "Of the 2 animations in takes.glb, {} was taken; the other is {}."
+    for fields, taken, other in (
+        ({}, "1 (“walk”)", "2 (“glide”)"),
+        ({"animation": "glide"}, "2 (“glide”)", "1 (“walk”)"),
+    ):
+        answer, files = client.predict(
+            actor=handle_file(robot), own_rig=True, steps=2, api_name="/react", **fields
+        )
+        assert answer["notes"][0] == note.format(taken, other) and any(
+            path.endswith("rig.glb") for path in files
+        )
+    with pytest.raises(AppError, match="no such animation"):
+        client.predict(past=handle_file(robot), marker=0, animation="run", api_name="/predict")
+    with pytest.raises(AppError, match="no such animation"):
+        client.predict(motion=handle_file(robot), kind="png", animation="run", api_name="/render")
+    with pytest.raises(AppError, match="no such animation"):
+        client.predict(story="They bow.", motion=handle_file(robot), animation="run", api_name="/scene")
 
 
 def test_errors_of_react_are_sentences(client: Client, walkers: Path, walker: Path) -> None:

@@ -17,7 +17,7 @@ from webdemo.inference.methods import AUTOMATIC, automatic, methods
 from webdemo.inference.predict_request import LONGEST, PredictRequest, PredictResult
 from webdemo.inference.requests import GenerateRequest, ReactRequest, Result
 
-from .parser import add_sampling, names_of, sampling_fields
+from .parser import add_animation, add_sampling, names_of, sampling_fields, with_note
 from .running import check_out, run, write_result
 
 
@@ -55,6 +55,7 @@ def add_react(commands: Any) -> None:
     parser = commands.add_parser("react", help="generate a second person for a given one")
     parser.add_argument("--actor", type=Path, required=True, help="the given person: .bvh, .glb, .npz …")
     parser.add_argument("--person", help="which person, a to f, if the file holds several")
+    add_animation(parser, "the actor")
     parser.add_argument("--start", type=float, default=0.0, help="first second of the file to use")
     parser.add_argument("--end", type=float, help="last second of the file to use; the end by default")
     parser.add_argument("--prompt", default=ReactRequest.prompt, help="what the two people do (optional)")
@@ -85,7 +86,7 @@ def react(options: argparse.Namespace) -> dict[str, Any]:
     check_out(options.out)
     actor, pose = read_actor(
         options.actor, person=options.person, start=options.start, end=options.end,
-        keep_start=options.keep_start,
+        keep_start=options.keep_start, animation=options.animation,
     )  # fmt: skip
     mode = options.mode or ("online" if options.stream else ReactRequest.mode)
     if options.model == AUTOMATIC:
@@ -100,7 +101,7 @@ def react(options: argparse.Namespace) -> dict[str, Any]:
     written = write_result(result, options.out)
     if options.own_rig:
         written["files"] += _on_own_rig(result, request, options)
-    return written
+    return with_note(written, options.actor, options.animation)
 
 
 def _on_own_rig(result: Result, request: ReactRequest, options: argparse.Namespace) -> list[str]:
@@ -114,7 +115,7 @@ def _on_own_rig(result: Result, request: ReactRequest, options: argparse.Namespa
         given_is_a = np.array_equal(duet.a.positions, request.actor.positions)
         made = duet.b if given_is_a else duet.a
         name = f"{options.out.stem}{number}_rig{options.actor.suffix.lower()}"
-        files[options.out.with_name(name)] = on_rig(made, options.actor)
+        files[options.out.with_name(name)] = on_rig(made, options.actor, animation=options.animation)
     return [str(path) for path in write_files(files)]
 
 
@@ -141,6 +142,7 @@ def add_predict(commands: Any) -> None:
     """Adds ``predict`` to the shell's commands."""
     parser = commands.add_parser("predict", help="predict what comes after a motion of one person or two")
     parser.add_argument("--past", type=Path, required=True, help="the motion: .bvh, .glb, .npz …")
+    add_animation(parser, "the past")
     parser.add_argument("--marker", type=float, help="second at which the past ends; the end by default")
     parser.add_argument(
         "--seconds", type=float, default=PredictRequest.seconds, help="how many seconds to predict"
@@ -156,7 +158,7 @@ def predict(options: argparse.Namespace) -> dict[str, Any]:
 
     check_out(options.out)
     request = PredictRequest(
-        motion=read(options.past, longest=LONGEST),
+        motion=read(options.past, longest=LONGEST, animation=options.animation),
         marker=options.marker,
         seconds=options.seconds,
         model=options.model,
@@ -164,4 +166,4 @@ def predict(options: argparse.Namespace) -> dict[str, Any]:
     result = run(request)
     assert isinstance(result, PredictResult)
     figures = {name: getattr(result, name) for name in ("past_frames", "error", "speed", "true_speed")}
-    return write_result(result, options.out) | figures
+    return with_note(write_result(result, options.out) | figures, options.past, options.animation)

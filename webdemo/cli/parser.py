@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import argparse
+import sys
 from dataclasses import fields
 from pathlib import Path
 from typing import Any, NoReturn
@@ -25,6 +26,24 @@ def names_of(task: Task) -> str:
     """The names of the methods of a task, for a help text."""
     names = [found.name for found in methods(task)]
     return " or ".join([AUTOMATIC, *names] if task == "react" else names)
+
+
+def add_animation(parser: argparse.ArgumentParser, of: str) -> None:
+    """The option that chooses one of a .glb file's animations; ``of`` is the argument that names the file."""
+    parser.add_argument(
+        "--animation", metavar="NAME", help=f"of a .glb with several, the animation of {of} to read: name or number, "
+        "from 1; the first by default",
+    )  # fmt: skip
+
+
+def with_note(written: dict[str, Any], path: Path, animation: str | None) -> dict[str, Any]:
+    """A report with a note on which animation of its file was taken, also on stderr, where there are several."""
+    from motion.formats import animation_note
+
+    if note := animation_note(path, animation):
+        print(note, file=sys.stderr)
+        written["notes"] = [note, *written.get("notes", ())]
+    return written
 
 
 def add_sampling(parser: argparse.ArgumentParser, task: Task) -> None:

@@ -8,12 +8,15 @@ from typing import Any
 
 from motion import InputError
 
+from .parser import add_animation, with_note
+
 
 def add_render(commands: Any) -> None:
     """Adds ``render`` to the shell's commands."""
     parser = commands.add_parser("render", help="draw a film or a contact sheet of any motion file")
     parser.add_argument("file", type=Path, help="motion file: .npz, .bvh, .glb …")
     parser.add_argument("second", type=Path, nargs="?", help="the other person, if each has a file")
+    add_animation(parser, "the file")
     parser.add_argument(
         "--out", type=Path,
         help="film: .mp4, .webm or .gif; contact sheet: .png, .svg or .pdf; a .png beside the file by default",
@@ -50,7 +53,7 @@ def render(options: argparse.Namespace) -> dict[str, Any]:
     from webdemo.view import film, sheet
     from webdemo.view.stage import Pane, Style
 
-    motion = _motion(options.file, options.second)
+    motion = _motion(options.file, options.second, options.animation)
     out = options.out or options.file.with_suffix(".png")
     title = options.file.stem if options.title is None else options.title
     suffix = out.suffix.lower()
@@ -88,17 +91,20 @@ def render(options: argparse.Namespace) -> dict[str, Any]:
         raise InputError(
             f"{out.name} cannot be rendered: give --out a name that ends in .mp4, .webm, .gif, .png, .svg or .pdf."
         )
-    return {"files": [str(out)], "frames": motion.num_frames, "fps": motion.fps, "seconds": motion.seconds}
+    written = {"files": [str(out)], "frames": motion.num_frames, "fps": motion.fps, "seconds": motion.seconds}
+    return with_note(written, options.file, options.animation)
 
 
-def _motion(file: Path, second: Path | None) -> Any:
+def _motion(file: Path, second: Path | None, animation: str | None = None) -> Any:
     """The motion of a file, or of a pair of files of which the second may be left to be found."""
     from motion.formats import read, read_pair
 
     if second is None and file.stem.endswith("_a"):
         other = file.with_stem(file.stem[:-2] + "_b")
         second = other if other.exists() else None
-    return read(file) if second is None else read_pair(file, second)
+    if second is not None and animation is not None:
+        raise InputError("--animation chooses within one file: leave it out, or the second file.")
+    return read(file, animation=animation) if second is None else read_pair(file, second)
 
 
 def _size(words: str) -> tuple[int, int]:

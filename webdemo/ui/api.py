@@ -11,9 +11,7 @@ from typing import Any
 import gradio as gr
 
 from motion import InputError
-from motion.character import character_body
-from motion.formats import read
-from motion.formats.glb_reader import read_character
+from motion.formats import animation_note, read
 from motion.formats.on_rig import check_rig
 from webdemo.inference.actor import read_actor
 from webdemo.inference.methods import AUTOMATIC, methods
@@ -28,28 +26,23 @@ from webdemo.inference.requests import (
 from webdemo.ui.components.exports import (
     RIG,
     Record,
-    file_name,
-    without_place,
     write_files,
     write_on_rig,
 )
-from webdemo.ui.components.film import LONGEST as LONGEST_FILM
 from webdemo.ui.text.classes import class_method
 from webdemo.ui.text.words import error_line, progress_line
-from webdemo.view.camera import VIEWS
-from webdemo.view.film import FPS, SIZE, write_film
-from webdemo.view.sheet import SUFFIXES as SHEETS
-from webdemo.view.sheet import write_sheet
-from webdemo.view.stage import LOOKS, Pane, Style
 
 from .context import PageContext
 
 Answer = tuple[dict[str, Any], list[str]]
+Given = tuple[Path, str | None]
+"""A file that was sent, and which of its animations is wanted."""
+WHICH = "of a .glb with several animations, the name or the number (from 1) of one; empty for the first"
 PROGRESS = gr.Progress()
 """A default value that makes Gradio report a job's progress in ``job.status()``."""
 
 
-_READING = threading.BoundedSemaphore(4)
+READING = threading.BoundedSemaphore(4)
 """Files that are read at once, as many as of the page's own: a large one takes seconds and 100 MB."""
 
 
@@ -98,20 +91,24 @@ class Endpoint:
         title: str,
         progress: gr.Progress,
         rig: Path | None = None,
+        given: Given | None = None,
     ) -> Answer:
         """Runs a request and writes its files, called after ``title``; every error is one sentence.
 
-        ``rig`` is the file on whose rig the partner is wanted as well.
+        ``rig`` is the file on whose rig the partner is wanted as well, and ``given`` the one that was read, of which
+        the notes say which animation was taken.
         """
         try:
-            with _READING:
+            with READING:
                 request = make()
+                note = animation_note(*given) if given is not None else ""
                 if rig is not None:
                     check_rig(rig)
             result = self._run(request, progress)
             files = write_files(result, self.page.shelf.folder(), prompt=title)
             if rig is not None:
-                files[RIG] = write_on_rig(Record(result, title, rig=rig), self.page.shelf.folder())
+                record = Record(result, title, rig=rig, animation=given[1] if given else None)
+                files[RIG] = write_on_rig(record, self.page.shelf.folder())
         except Cancelled:
             raise gr.Error("The run was cancelled: send the request again.", print_exception=False) from None
         except Exception as error:
@@ -120,7 +117,7 @@ class Endpoint:
             "manifest": result.manifest,
             "readouts": list(result.readouts),
             "timings": result.timings,
-            "notes": list(result.notes),
+            "notes": [*([note] if note else []), *result.notes],
             "files": {key: [path.name for path in paths] for key, paths in files.items()},
         }
         if isinstance(result, PredictResult):
@@ -250,6 +247,7 @@ class ReactEndpoint(Endpoint):
                 gr.Checkbox(
                     False, label="also the new person on the rig of the file: a .bvh or .glb of one person"
                 ),
+                gr.Textbox("", label=WHICH),
             ]
             self._publish(self.react, "react", inputs)
 
@@ -271,6 +269,7 @@ class ReactEndpoint(Endpoint):
         mode: str,
         keep_start: bool = False,
         own_rig: bool = False,
+        animation: str = "",
         progress: gr.Progress = PROGRESS,
     ) -> Answer:
         """A second person for a given one, who stays exactly as they are (at 30 frames a second).
@@ -285,15 +284,19 @@ class ReactEndpoint(Endpoint):
             if not actor:
                 raise InputError("There is no actor: send a motion file, such as a .bvh.")
             clip, pose = read_actor(
-                actor, person=person or None, start=start, end=end or None, keep_start=keep_start
-            )
+                actor, person=person or None, start=start, end=end or None, keep_start=keep_start,
+                animation=animation or None,
+            )  # fmt: skip
             return ReactRequest(
                 actor=clip, prompt=prompt, role=role, seed=seed, samples=samples, guidance=guidance,
                 steps=steps, damping=damping, sampler=sampler, model=model, mode=mode, first_pose=pose,
             )  # fmt: skip
 
         title = prompt.strip() or f"Reaction to {Path(actor or '').stem}"
-        return self._answer(request, title, progress, Path(actor) if own_rig and actor else None)
+        file = Path(actor or "")
+        return self._answer(
+            request, title, progress, file if own_rig and actor else None, (file, animation or None)
+        )
 
 
 class PredictEndpoint(Endpoint):
@@ -307,12 +310,14 @@ class PredictEndpoint(Endpoint):
                 gr.Number(0, label="the second at which the past ends; 0 is the end of the file"),
                 gr.Number(PredictRequest.seconds, label="how much to predict in seconds, 0.5 to 4"),
                 gr.Textbox(PredictRequest.model, label=" or ".join(m.name for m in methods("predict"))),
+                gr.Textbox("", label=WHICH),
             ]
             self._publish(self.predict, "predict", inputs)
 
     def predict(
-        self, past: str, marker: float, seconds: float, model: str, progress: gr.Progress = PROGRESS
-    ) -> Answer:
+        self, past: str, marker: float, seconds: float, model: str, animation: str = "",
+        progress: gr.Progress = PROGRESS,
+    ) -> Answer:  # fmt: skip
         """Predicts what comes after the past of a motion, for one person or two.
 
         Returns the manifest, timings, notes and file names, and under "prediction" the error (mm) and speed
@@ -324,64 +329,9 @@ class PredictEndpoint(Endpoint):
             if not past:
                 raise InputError("There is no past: send a motion file, such as a .bvh.")
             return PredictRequest(
-                motion=read(Path(past), longest=LONGEST), marker=marker or None, seconds=seconds, model=model
-            )
-
-        return self._answer(request, f"After {Path(past or '').stem}", progress)
-
-
-class RenderEndpoint:
-    """``/render``: a motion file → a film or a contact sheet.
-
-    Args:
-        page: what tabs and endpoints share.
-    """
-
-    def __init__(self, page: PageContext) -> None:
-        self.page = page
-
-    def publish(self) -> None:
-        """Adds the endpoint to the page that is being built."""
-        with gr.Row(visible=False):
-            inputs = [
-                gr.File(label="the motion of one person or two: .bvh, .glb, .npz or .npy, up to 50 MB"),
-                gr.Textbox("mp4", label="film: mp4, webm or gif; contact sheet: png, svg or pdf"),
-                gr.Textbox(Style.look, label=" or ".join(LOOKS)),
-                gr.Textbox(Style.theme, label="light or dark"),
-                gr.Textbox("threequarter", label=" or ".join(VIEWS)),
-                gr.Checkbox(False, label="lines behind hands and pelvis, in a film"),
-                gr.Number(FPS, label="frames a second of a film, 1 to 60"),
-                gr.Number(SIZE[0], label="width in pixels: even, 64 to 1920"),
-                gr.Number(SIZE[1], label="height of a film in pixels: even, 64 to 1080"),
-                gr.File(
-                    label="a skinned character for everybody to wear: .glb, up to 50 MB; may be left out"
-                ),
-            ]
-            gr.Button().click(
-                self.render, inputs=inputs, outputs=gr.File(label="the film or sheet"), api_name="render",
-                concurrency_limit=1, concurrency_id="film",
+                motion=read(Path(past), longest=LONGEST, animation=animation or None),
+                marker=marker or None, seconds=seconds, model=model,
             )  # fmt: skip
 
-    def render(
-        self, motion: str, kind: str, look: str, theme: str, view: str, trails: bool, fps: float, width: float,
-        height: float, character: str | None = None,
-    ) -> str:  # fmt: skip
-        """A film or a contact sheet of a motion file. An error is one sentence that says what to change."""
-        folder = self.page.shelf.folder()
-        try:
-            if not motion:
-                raise InputError("There is no motion: send a motion file, such as a .bvh.")
-            if width > 1920 or height > 1080:
-                raise InputError("Pictures have 1920x1080 pixels at most here: ask for less.")
-            with _READING:
-                found = read(Path(motion), longest=LONGEST_FILM)
-                body = character_body(read_character(Path(character))) if character else None
-            name, suffix = Path(motion).stem, f".{kind.lower().lstrip('.')}"
-            out = folder / f"{file_name(name, {})}{suffix}"
-            style = Style(look=look, theme=theme, trails=trails, names=suffix not in SHEETS, body=body)
-            if suffix in SHEETS:
-                return str(write_sheet(found, out, width=int(width), title=name, style=style, view=view))
-            size = (int(width), int(height))
-            return str(write_film([Pane(found)], out, fps=fps, size=size, style=style, view=view, title=name))
-        except Exception as error:
-            raise gr.Error(error_line(without_place(error, folder)), print_exception=False) from None
+        file = Path(past or "")
+        return self._answer(request, f"After {file.stem}", progress, given=(file, animation or None))

@@ -22,10 +22,11 @@ from webdemo.ui.tabs.results import QUIET
 from webdemo.ui.tabs.scene import SceneTab
 from webdemo.ui.text.panels import model_state
 
-from .api import ClassEndpoint, GenerateEndpoint, PredictEndpoint, ReactEndpoint, RenderEndpoint
+from .api import ClassEndpoint, GenerateEndpoint, PredictEndpoint, ReactEndpoint
 from .context import PageContext
 from .frames import let_rest
 from .history import HistoryLike
+from .render_api import RenderEndpoint
 from .runs import EngineLike, Loader, Runs, RunsLike
 from .scene_api import SceneEndpoint
 from .studies import StudiesLike

@@ -12,7 +12,7 @@ from motion.retarget import to_smpl
 from webdemo.inference.story import SceneRequest, read_words
 from webdemo.inference.story.request import MOST_SECONDS
 
-from .api import PROGRESS, Answer, Endpoint
+from .api import PROGRESS, WHICH, Answer, Endpoint
 
 
 class SceneEndpoint(Endpoint):
@@ -34,6 +34,7 @@ class SceneEndpoint(Endpoint):
                 gr.Number(0, label="with a motion: the second at which it goes on unchanged; 0: it does not"),
                 gr.Number(None, label="how many scenes or futures, 1 to 8; the story's own by default"),
                 gr.Number(None, label="seed; the story's own by default"),
+                gr.Textbox("", label=WHICH),
             ]
             self._publish(self.scene, "scene", inputs)
 
@@ -45,6 +46,7 @@ class SceneEndpoint(Endpoint):
         end: float = 0,
         samples: float | None = None,
         seed: float | None = None,
+        animation: str = "",
         progress: gr.Progress = PROGRESS,
     ) -> Answer:
         """A scene of several beats, or a span or a continuation of a given motion.
@@ -59,14 +61,15 @@ class SceneEndpoint(Endpoint):
             fields |= {
                 key: value for key, value in (("samples", samples), ("seed", seed)) if value is not None
             }
-            given = _two_people(motion) if motion else None
+            given = _two_people(motion, animation or None) if motion else None
             return SceneRequest(**fields, motion=given, start=start or None, end=end or None)
 
-        return self._answer(request, story.split("\n", 1)[0][:80] or "A scene", progress)
+        given = (Path(motion), animation or None) if motion else None
+        return self._answer(request, story.split("\n", 1)[0][:80] or "A scene", progress, given=given)
 
 
-def _two_people(path: str) -> Duet:
-    found = read(Path(path), longest=MOST_SECONDS)
+def _two_people(path: str, animation: str | None) -> Duet:
+    found = read(Path(path), longest=MOST_SECONDS, animation=animation)
     if not isinstance(found, Duet):
         raise InputError(f"{Path(path).name} holds one person: a scene goes on from a motion of two.")
     return to_smpl(found)

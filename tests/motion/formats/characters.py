@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import struct
+from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
@@ -184,6 +185,16 @@ def glb_motion(
     if not skinned:
         del document["skins"], document["meshes"]
     return packed(document | changes, blob)
+
+
+def glb_takes(rotations: np.ndarray, root: np.ndarray, names: Sequence[Any], **given: Any) -> bytes:
+    """:func:`glb_motion` with an animation for each name; the limbs move in the first alone, the others glide."""
+    document, blob = unpacked(glb_motion(rotations, root, **given))
+    (walk,) = document["animations"]
+    glide = {**walk, "channels": [c for c in walk["channels"] if c["target"]["path"] == "translation"]}
+    takes = [walk, *[glide] * (len(names) - 1)]
+    document["animations"] = [{**take, "name": name} for take, name in zip(takes, names, strict=True)]
+    return packed(document, blob)
 
 
 def unpacked(data: bytes) -> tuple[dict[str, Any], bytes]:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import io
 import time
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -15,7 +16,7 @@ from motion.formats import FORMATS
 from motion.formats.importing import AXES, ORDERS, UNITS, ImportChoices, import_motion
 from tests.motion.bodies import marching
 
-from .characters import glb_motion
+from .characters import glb_motion, glb_takes
 from .rigs import RIGS, bvh_text
 from .test_kinect import sbu_text, skeleton_text
 
@@ -50,6 +51,12 @@ VALID = {
     ),
     "walk.glb": glb_motion(ROTATIONS, POSITIONS[:, 0], unit=100.0),
     "bones.glb": glb_motion(ROTATIONS, POSITIONS[:, 0], skinned=False, way="CUBICSPLINE"),
+    "takes.glb": glb_takes(
+        ROTATIONS,
+        POSITIONS[:, 0],
+        ["idle", "\u202ewalk\n\ud800", "x" * 5000, None, ["2"], "3"],
+        skinned=False,
+    ),
     "22.npy": array_file(POSITIONS.astype(np.float32)),
     "15.npy": array_file(SKELETONS_15),
     "take.bvh": BVH.encode(),
@@ -81,6 +88,9 @@ CHOICES = st.builds(
     unit=st.sampled_from([None, *UNITS]),
     fps=st.sampled_from([None, 1.0, 30.0, 1000.0]),
     order=st.sampled_from([None, *ORDERS]),
+    animation=st.sampled_from(
+        [None, 1, 2, 6, 7, 10**12, "3", "IDLE", "x" * 5000, "\u202ewalk\n\ud800", "٣", "²"]
+    ),
 )
 PATIENT = settings(
     max_examples=150, deadline=None, suppress_health_check=[HealthCheck.too_slow, HealthCheck.data_too_large]
@@ -94,6 +104,8 @@ def check(data: bytes, name: str, choices: ImportChoices | None = None) -> bool:
         found = import_motion(data, name=name, choices=choices)
         if found.people[0].num_frames < 30:
             assert np.isfinite(found.motion.positions).all()
+        note = found.animations.note if found.animations else ""
+        assert (note + found.describe()).isprintable() and len(note) < 600
     except InputError as error:
         message = str(error)
         assert message and "\n" not in message and len(message) < 400
@@ -148,6 +160,7 @@ def test_damaged_files_are_read_or_a_sentence(name: str) -> None:
                 raw[at:at] = piece
             else:
                 raw[at:at] = raw[at : at + length]
+        choices = choices if name == "takes.glb" else replace(choices, animation=None)
         check(bytes(raw), name, choices)
 
     read()

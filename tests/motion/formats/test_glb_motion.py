@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import time
 from pathlib import Path
 from typing import Any
 
@@ -140,7 +139,6 @@ def _sampled(**fields: Any) -> dict[str, Any]:
 GLTF = unpacked(WALK)[0]
 WRONG: dict[str, tuple[dict[str, Any], str]] = {
     "no animation": ({"animations": []}, "has no animation: export it with one, or put it on"),
-    "two animations": ({"animations": 2 * GLTF["animations"]}, r"2 animations of one person \(walk 0, walk 0\)"),
     "nothing moves": (_animated(channels=[]), "moves no joint"),
     "only weights": (
         _animated(channels=[{"sampler": 0, "target": {"node": 1, "path": "weights"}}]), "moves no joint",
@@ -196,10 +194,3 @@ def test_large_files_are_refused_for_meshes_not_for_frames(tmp_path: Path) -> No
         file.truncate(51 * 2**20)
     with pytest.raises(InputError, match="reduce its mesh"):
         read_glb_people(tmp_path / "large.glb")
-
-
-def test_many_animations_are_refused_before_they_are_read() -> None:
-    began = time.process_time()
-    with pytest.raises(InputError, match="animations of one person"):
-        read_glb_people(glb_motion(ROTATIONS, ROOT, animations=GLTF["animations"][:1] * 200), name="walk.glb")
-    assert time.process_time() - began < 2

@@ -13,7 +13,7 @@ from tests.ui.tab_events import changes
 from webdemo.ui.tabs.react import ReactTab
 
 LOADED = ("source", "given", "line", "player", "trim", "person", "start", "end", "found")
-READ = (*LOADED, "up", "unit", "fps", "order")
+READ = (*LOADED, "up", "unit", "fps", "order", "animation")
 FIELDS = {"person": "a", "start": 0.0, "end": 10.0, "role": "a", "prompt": "they walk", "seed": 3,
           "samples": 1, "guidance": 2.5, "steps": 5, "damping": 0.7}  # fmt: skip
 

@@ -85,7 +85,7 @@ def test_an_upload_is_kept_with_its_run_and_an_example_is_not(
     history: Any = SimpleNamespace(keep=lambda run, owner, kept: written.append(kept))
     monkeypatch.setattr(tab, "page", replace(tab.page, history=history))
     source = upload(tab, walker)[-1]["source"]
-    *_, last = run(tab, replace(source, read_with=("y", "auto", None, "auto")))
+    *_, last = run(tab, replace(source, read_with=("y", "auto", None, "auto", None)))
     record = last["record"]
     tab._keep(replace(record, result=replace(record.result, run="x")), {"source": source})
     assert written[-1].original == Original(walker, walker.name)
@@ -139,7 +139,9 @@ def test_a_partner_is_taken_on_the_skeleton_of_an_uploaded_glb(tab: ReactTab, tm
 def test_only_a_rig_that_was_read_as_it_is_is_offered(tab: ReactTab, walker: Path, walkers: Path) -> None:
     source = upload(tab, walker)[-1]["source"]
     assert rig_of(source) == walker
-    assert rig_of(None) is None and rig_of(replace(source, read_with=("z", "auto", None, "auto"))) is None
+    assert (
+        rig_of(None) is None and rig_of(replace(source, read_with=("z", "auto", None, "auto", None))) is None
+    )
     assert rig_of(upload(tab, walkers)[-1]["source"]) is None
     *_, last = run(tab, replace(source, path=None), end=2.0)
     _, *updates = tab.export(last["record"])

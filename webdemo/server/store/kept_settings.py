@@ -10,7 +10,9 @@ from motion import Clip, Duet, InputError
 
 MOST_BESIDE = 8
 """Runs of a grid beside its first."""
-_NUMBERS = ("seconds", "seed", "samples", "guidance", "steps", "damping", "start", "end", "marker", "fps")
+_NUMBERS = (
+    "seconds", "seed", "samples", "guidance", "steps", "damping", "start", "end", "marker", "fps", "animation",
+)  # fmt: skip
 _SWITCHES = ("keep",)
 _TEXTS = ("prompt", "class_name", "model", "method", "other", "person", "role", "up", "unit", "order")
 _LONGEST = 5000

@@ -25,12 +25,13 @@ from webdemo.inference.requests import Result, SamplingRequest
 from webdemo.ui.history import Original, clean_name
 from webdemo.view.payload import Payload, player_payload
 
+from .animations import animation_labels, animation_list, labels_of_file
 from .show import GIVEN
 
 AUTO = "auto"
-ReadWith = tuple[str, str, float | None, str]
-"""Up axis, unit, frames a second and order of joints, as the page's controls give them."""
-READ_WITH = ("up", "unit", "fps", "order")
+ReadWith = tuple[str, str, float | None, str, int | None]
+"""Up axis, unit, frames a second, order of joints and number of the animation, as the page's controls give them."""
+READ_WITH = ("up", "unit", "fps", "order", "animation")
 """The names of these controls."""
 
 
@@ -76,7 +77,8 @@ class Source:
         path: the file, so that it can be read anew with other choices; None for a result.
         found: how the file was read, None for a result.
         notes: sentences about how well it could be read.
-        read_with: what was known of the file: up axis, unit, rate, order of its joints.
+        read_with: what was known of the file: up axis, unit, rate, order of its joints, and its chosen animation.
+        animations: labels of those in the file, where there is one to choose.
         key: differs between any two.
     """
 
@@ -86,7 +88,8 @@ class Source:
     path: Path | None = None
     found: Found | None = None
     notes: tuple[str, ...] = ()
-    read_with: ReadWith = ("auto", "auto", None, "auto")
+    read_with: ReadWith = ("auto", "auto", None, "auto", None)
+    animations: tuple[str, ...] = ()
     key: str = field(default_factory=lambda: uuid.uuid4().hex, compare=False)
     _fitted: dict[Any, tuple[Clip, ...]] = field(default_factory=dict, repr=False, compare=False)
     """What was fitted last, by what was asked."""
@@ -158,12 +161,17 @@ def given_again(source: Source, original: Original | None, folder: Path) -> tupl
     if original is not None:
         with suppress(OSError):
             path = Path(shutil.copyfile(original.path, folder / original.name))
-            return replace(source, path=path), str(path), ""
+            return replace(source, path=path, animations=labels_of_file(path)), str(path), ""
     return (
         source,
         kept_file(source, folder),
         NOT_KEPT.format(source.name[:80]) if clean_name(source.name) else "",
     )
+
+
+def offered_animations(source: Source | None) -> Any:
+    """An update of the list of a source's animations."""
+    return animation_list(source.animations, source.read_with[4]) if source else animation_list((), None)
 
 
 def rig_of(source: Source | None) -> Path | None:
@@ -178,7 +186,7 @@ def rig_of(source: Source | None) -> Path | None:
         or len(source.people) != 1
     ):
         return None
-    return source.path if source.read_with == Source.read_with else None
+    return source.path if source.read_with[:4] == Source.read_with[:4] else None
 
 
 def kept_file(source: Source, folder: Path) -> str | None:
@@ -207,15 +215,19 @@ def read_source(path: str | Path, name: str | None = None, read_with: ReadWith |
         tuple(at_30_fps(person) for person in found.people),
         path=path,
         found=Found(found.describe(), found.joints),
+        notes=(found.animations.note,) if found.animations and found.animations.note else (),
         read_with=read_with or Source.read_with,
+        animations=animation_labels(found.animations),
     )
 
 
-def import_choices(up: str, unit: str, fps: float | None, order: str = AUTO) -> ImportChoices:
+def import_choices(
+    up: str, unit: str, fps: float | None, order: str = AUTO, animation: int | None = None
+) -> ImportChoices:
     """The page's import controls as choices; "auto" and an empty or zero rate leave a thing to be found."""
     chosen = {"up": up, "unit": unit, "order": order}
     known = {name: value for name, value in chosen.items() if value != AUTO}
-    return ImportChoices(**known, fps=float(fps) if fps else None)
+    return ImportChoices(**known, fps=float(fps) if fps else None, animation=animation)
 
 
 def result_source(result: Result, title: str, person: str) -> Source:

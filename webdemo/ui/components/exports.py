@@ -25,6 +25,7 @@ import numpy as np
 from motion import SMPL22, Clip, Duet, InputError, formats
 from motion.body import Body
 from motion.character import character_body
+from motion.formats import Animation
 from motion.formats.files import write_files as replace_all
 from motion.formats.glb_reader import read_character
 from motion.formats.glb_rig import glb_wearing
@@ -118,6 +119,7 @@ class Record:
         worn: an uploaded character whom both people wear in the files of :data:`WORN` and in films; None for the
             bodies that ship.
         rig: the uploaded .bvh or .glb file of one person that the result is a reaction to; None for anything else.
+        animation: which of that file's animations it is a reaction to; None for the first.
     """
 
     result: Result = field(repr=False)
@@ -126,6 +128,7 @@ class Record:
     compared: Mapping[str, Result] = field(default_factory=dict, repr=False)
     grid: Mapping[str, Any] = field(default_factory=dict)
     rig: Path | None = None
+    animation: Animation | None = None
     worn: Worn | None = None
 
 
@@ -184,7 +187,7 @@ def write_on_rig(record: Record, folder: Path) -> list[Path]:
             partner = duet.people[1 - ROLES.index(asked.get("role", ROLES[0]))]
             number = f"-{i + 1}" if len(result.duets) > 1 else ""
             path = folder / f"{name}{number}-on-your-rig{record.rig.suffix.lower()}"
-            files[path] = on_rig(partner, record.rig)
+            files[path] = on_rig(partner, record.rig, animation=record.animation)
     files[folder / record.rig.name] = record.rig.read_bytes()
     with _writing(folder):
         return replace_all(files)

@@ -19,9 +19,11 @@ from webdemo.ui.components.actors import (
     ReadWith,
     Source,
     given_again,
+    offered_animations,
     read_source,
     result_source,
 )
+from webdemo.ui.components.animations import kept_animation
 from webdemo.ui.components.camera import CameraPanel, film_source
 from webdemo.ui.components.exports import Record
 from webdemo.ui.components.player import busy, show
@@ -54,6 +56,7 @@ class ActorTab(SweepTab):
     chips: list[gr.Button]
     take: dict[str, gr.Button]
     trim: gr.Column
+    animation: gr.Dropdown
     person: gr.Radio
     begin: gr.Slider
     end: gr.Slider
@@ -106,7 +109,8 @@ class ActorTab(SweepTab):
             self.file: file,
             self.line: line + (status(note) if note else ""),
             self.found: _found(source),
-            **dict(zip((self.up, self.unit, self.fps, self.order), source.read_with, strict=True)),
+            **dict(zip((self.up, self.unit, self.fps, self.order), source.read_with[:4], strict=True)),
+            self.animation: offered_animations(source),
             self.source: source,
             self.given: source.key,
             self.trim: gr.update(visible=True),
@@ -132,10 +136,14 @@ class ActorTab(SweepTab):
         }
         self.file.upload(self.upload, inputs=self.file, **load).then(None, **self.compare)
         self.camera.submit(self.read_film, inputs=self.camera, **load).then(None, **self.compare)
-        choices = [self.up, self.unit, self.fps, self.order]
-        self.file.upload(lambda: (AUTO, AUTO, None, AUTO), outputs=choices, queue=False, **QUIET)
+        known = [self.up, self.unit, self.fps, self.order]
+        self.file.upload(lambda: (AUTO, AUTO, None, AUTO), outputs=known, queue=False, **QUIET)
+        choices = [*known, self.animation]
         gr.on(
-            [self.up.input, self.unit.input, self.order.input, self.fps.submit, self.fps.blur],
+            [
+                self.up.input, self.unit.input, self.order.input, self.fps.submit, self.fps.blur,
+                self.animation.input,
+            ],
             self.read_again, inputs=[self.source, *choices], trigger_mode="always_last",
             **{**load, "outputs": [*changed, *choices]},
         ).then(None, **self.compare)  # fmt: skip
@@ -151,6 +159,9 @@ class ActorTab(SweepTab):
             lambda source: gr.update(visible=source is not None and len(source.people) == 2, value=False),
             inputs=self.source, outputs=self.keep, queue=False, **QUIET,
         )  # fmt: skip
+        self.source.change(
+            offered_animations, inputs=self.source, outputs=self.animation, queue=False, **QUIET
+        )
         self.file.clear(self.forget, outputs=changed, queue=False, **QUIET)
         trim = [self.source, self.person, self.begin, self.end]
         gr.on(
@@ -168,15 +179,17 @@ class ActorTab(SweepTab):
         yield from self.load(partial(film_source, landmarks))
 
     def read_again(
-        self, source: Source | None, up: str, unit: str, fps: float | None, order: str = AUTO
-    ) -> Iterator[Updates]:
+        self, source: Source | None, up: str, unit: str, fps: float | None, order: str = AUTO,
+        animation: int | None = None,
+    ) -> Iterator[Updates]:  # fmt: skip
         """Reads the source's file anew with what the visitor knows of it, or takes that back where it cannot."""
         if source is None or source.path is None:
             return
-        path, name, asked = source.path, source.name, (up, unit, fps, order)
+        path, name, asked = source.path, source.name, (up, unit, fps, order, animation)
         for updates in self.load(lambda: read_source(path, name, asked)):
             failed = updates[0] == gr.skip() and "pd-error" in updates[2]
-            yield *updates, *(source.read_with if failed else (gr.skip(),) * 4)
+            back = (*source.read_with[:4], offered_animations(source)) if failed else (gr.skip(),) * 5
+            yield *updates, *back
 
     def take_result(self, person: str, record: Record | None) -> Iterator[Updates]:
         """Makes a person of the session's last result the actor."""
@@ -261,6 +274,7 @@ def _known_choices(controls: Mapping[str, Any]) -> ReadWith:
         offered("unit", UNITS),
         float(fps) if isinstance(fps, (int, float)) else None,
         offered("order", ORDERS),
+        kept_animation(controls),
     )
 
 

@@ -19,7 +19,8 @@ from webdemo.inference.predict_request import (
     PredictResult,
 )
 from webdemo.inference.requests import Result
-from webdemo.ui.components.actors import Source, given_again, read_source, result_source
+from webdemo.ui.components.actors import Source, given_again, offered_animations, read_source, result_source
+from webdemo.ui.components.animations import animation_field, kept_animation
 from webdemo.ui.components.camera import CameraPanel, film_source
 from webdemo.ui.components.exports import Record
 from webdemo.ui.components.player import busy, show
@@ -84,7 +85,7 @@ class PredictTab(SweepTab):
 
     label = "Predict"
     prefix = "predict-"
-    restored = ("file", "given", "about")
+    restored = ("file", "given", "about", "animation")
 
     def __init__(self, page: PageContext, examples: list[tuple[str, Path]] | None = None) -> None:
         super().__init__(page)
@@ -175,6 +176,7 @@ class PredictTab(SweepTab):
                 self.chips = example_chips(self.examples)
                 self.take = chip("Continue the last result", elem_id="predict-take")
             self.camera = CameraPanel(elem_id="predict-camera")
+            self.animation = animation_field("predict-animation")
             self._go("Predict")
 
     def _curves(self) -> None:
@@ -207,12 +209,28 @@ class PredictTab(SweepTab):
         )  # fmt: skip
         others = [self.camera.submit, *(button.click for button in (*self.chips, self.take))]
         gr.on(others, None, outputs=self.file, js="() => null", **QUIET)  # the file is no longer what is used
+        self.source.change(
+            offered_animations, inputs=self.source, outputs=self.animation, queue=False, **QUIET
+        )
+        self.animation.input(
+            self.read_again, inputs=[self.source, self.animation], trigger_mode="always_last",
+            **{**load, "outputs": [*self.loaded, self.animation]},
+        ).then(None, **self.compare)  # fmt: skip
         self.file.clear(self.forget, outputs=self.loaded, queue=False, **QUIET)
 
     def upload(self, path: str | None) -> Iterator[Updates]:
         """Reads an uploaded file and shows its motion; one that cannot be read leaves no motion."""
         if path is not None:
             yield from self.load(partial(read_source, path), fresh=True)
+
+    def read_again(self, source: Source | None, animation: int | None) -> Iterator[Updates]:
+        """Reads another animation of the source's file, or takes that back where it cannot."""
+        if source is None or source.path is None:
+            return
+        asked = (*source.read_with[:4], animation)
+        for updates in self.load(partial(read_source, source.path, source.name, asked)):
+            failed = updates[0] == gr.skip() and "pd-error" in updates[2]
+            yield *updates, offered_animations(source) if failed else gr.skip()
 
     def read_film(self, landmarks: str | None) -> Iterator[Updates]:
         """Makes the motion of a film the past."""
@@ -334,7 +352,9 @@ class PredictTab(SweepTab):
         found, result = super().opened(run), run.result
         if isinstance(result, PredictResult):
             source = given_source(result, run.entry.title)
+            source = replace(source, read_with=(*source.read_with[:4], kept_animation(run.kept.controls)))
             source, found[self.file], note = given_again(source, run.kept.original, self.page.shelf.folder())
+            found[self.animation] = offered_animations(source)
             found[self.source], found[self.given] = source, source.key
             found[self.line] += status(note) if note else ""
             found[self.marker] = self._marker(source, result.past_frames / result.duets[0].fps)

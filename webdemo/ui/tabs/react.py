@@ -16,6 +16,7 @@ from webdemo.inference.methods import AUTOMATIC, variants
 from webdemo.inference.requests import ReactRequest, Result
 from webdemo.ui.components.actors import (
     READ_WITH,
+    Source,
     chosen_actor,
     live_variant,
     react_choices,
@@ -23,6 +24,7 @@ from webdemo.ui.components.actors import (
     rig_of,
     with_method,
 )
+from webdemo.ui.components.animations import animation_field
 from webdemo.ui.components.camera import CameraPanel
 from webdemo.ui.components.compare import comparison_payload
 from webdemo.ui.components.exports import Record
@@ -98,7 +100,8 @@ class ReactTab(ActorTab):
     def complete(self, record: Record, fields: Mapping[str, Any]) -> None:
         """The rig of an uploaded file, for the partner on it."""
         if not record.grid:
-            record.rig = rig_of(fields.get("source"))
+            source: Source | None = fields.get("source")
+            record.rig, record.animation = rig_of(source), source.read_with[4] if source else None
 
     def kinds(self) -> Sequence[Kind]:
         """Also words, and methods."""
@@ -184,6 +187,7 @@ class ReactTab(ActorTab):
             self.camera = CameraPanel(elem_id="react-camera")
             self.live = LivePanel(elem_id="react-live")
             with gr.Column(visible=False, min_width=0, elem_classes="pd-settings") as self.trim:
+                self.animation = animation_field("react-animation")
                 self.person = gr.Radio(
                     [("Person A", "a"), ("Person B", "b")], value="a", label="Which person",
                     elem_id="react-person", visible=False,

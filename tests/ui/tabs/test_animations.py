@@ -1,0 +1,128 @@
+"""A .glb of several animations on the tabs React and Predict: the first is shown, and another can be chosen."""
+
+from __future__ import annotations
+
+import os
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+os.environ.setdefault("GRADIO_ANALYTICS_ENABLED", "False")
+
+import gradio as gr
+
+from motion.formats import read
+from motion.formats.glb_animations import Animations
+from tests.motion.bodies import marching
+from tests.motion.formats.characters import glb_motion, glb_takes
+from tests.ui.tab_events import built, changes
+from webdemo.server.store.kept_settings import plain_controls
+from webdemo.ui.components.actors import Source, offered_animations, rig_of
+from webdemo.ui.components.animations import MOST_OFFERED, animation_labels
+from webdemo.ui.history import Entry, Kept, Opened, Original
+from webdemo.ui.tabs.predict import PredictTab
+from webdemo.ui.tabs.react import ReactTab
+
+from .reacting import LOADED, READ, run, upload
+
+POSITIONS, ROTATIONS = marching(90)
+LABELS = ("1 · <b>walk</b>", "2 · glide", "3")
+HIDDEN = gr.update(choices=[], value=None, visible=False)
+
+
+@pytest.fixture
+def takes(tmp_path: Path) -> Path:
+    """One person in three animations, three seconds."""
+    path = tmp_path / "takes.glb"
+    path.write_bytes(glb_takes(ROTATIONS, POSITIONS[:, 0], ["<b>walk</b>", "glide", None]))
+    return path
+
+
+@pytest.fixture
+def tab(tmp_path: Path) -> ReactTab:
+    return built(ReactTab, tmp_path / "files")
+
+
+def shown(number: int) -> dict[str, Any]:
+    return gr.update(choices=[(label, i) for i, label in enumerate(LABELS, 1)], value=number, visible=True)
+
+
+def test_the_first_is_shown_and_the_line_names_the_others(tab: ReactTab, takes: Path) -> None:
+    found = upload(tab, takes)[-1]
+    assert "1 (“&lt;b&gt;walk&lt;/b&gt;”) was taken; the others are 2 (“glide”) and 3." in found["line"]
+    assert offered_animations(found["source"]) == shown(1)
+
+
+def test_a_file_of_one_animation_offers_no_choice(tab: ReactTab, takes: Path, walker: Path) -> None:
+    takes.write_bytes(glb_motion(ROTATIONS, POSITIONS[:, 0]))
+    for path in (takes, walker):
+        source = upload(tab, path)[-1]["source"]
+        assert offered_animations(source) == HIDDEN and source.notes == ()
+    assert offered_animations(None) == HIDDEN
+
+
+def test_another_is_read_when_it_is_chosen(tab: ReactTab, takes: Path) -> None:
+    source = upload(tab, takes)[-1]["source"]
+    *_, again = [changes(READ, u) for u in tab.read_again(source, "auto", "auto", None, "auto", 2)]
+    assert "2 (“glide”) was taken" in again["line"] and offered_animations(again["source"]) == shown(2)
+    assert np.abs(again["source"].people[0].positions - source.people[0].positions).max() > 0.1
+    *_, wrong = [changes(READ, u) for u in tab.read_again(again["source"], "auto", "auto", None, "auto", 9)]
+    assert "takes.glb has no such animation" in wrong["line"] and wrong["animation"] == shown(2)
+
+
+def test_a_partner_is_taken_on_the_rig_as_the_chosen_animation_has_it(tab: ReactTab, takes: Path) -> None:
+    source = upload(tab, takes)[-1]["source"]
+    *_, again = [changes(READ, u) for u in tab.read_again(source, "auto", "auto", None, "auto", 2)]
+    assert rig_of(again["source"]) == takes
+    *_, last = run(tab, again["source"], end=2.0)
+    assert (last["record"].rig, last["record"].animation) == (takes, 2)
+
+
+def test_an_opened_run_was_made_from_its_animation(tab: ReactTab, takes: Path) -> None:
+    source = replace(upload(tab, takes)[-1]["source"], read_with=("auto", "auto", None, "auto", 3))
+    *_, last = run(tab, source, end=2.0)
+    result = last["record"].result
+    entry = Entry(id="x", kind="react", title="t", state="done", request=result.manifest["request"])
+    controls = plain_controls({"animation": 3.0, "up": "auto"})
+    kept = Kept(controls=controls, people=source.people, original=Original(takes, "takes.glb"))
+    found = tab.opened(Opened(entry=entry, result=result, kept=kept))
+    assert found[tab.animation] == shown(3) and found[tab.source].read_with[4] == 3
+    gone = tab.opened(Opened(entry=entry, result=result, kept=replace(kept, original=None)))
+    assert gone[tab.animation] == HIDDEN
+    by_hand = replace(kept, controls=plain_controls({"animation": "9" * 400}))
+    assert tab.opened(Opened(entry=entry, result=result, kept=by_hand))[tab.animation] == shown(1)
+
+
+def test_a_past_is_chosen_likewise(tmp_path: Path, takes: Path) -> None:
+    tab = built(PredictTab, tmp_path / "files")
+    names = ("source", "given", "line", "player", "marker", "animation")
+    source = [changes(names[:-1], u) for u in tab.upload(str(takes))][-1]["source"]
+    assert offered_animations(source) == shown(1)
+    *_, again = [changes(names, u) for u in tab.read_again(source, 2)]
+    assert "2 (“glide”) was taken" in again["line"] and "animation" not in again
+    np.testing.assert_array_equal(again["source"].people[0].positions, read(takes, animation=2).positions)
+    *_, wrong = [changes(names, u) for u in tab.read_again(again["source"], 9)]
+    assert "no such animation" in wrong["line"] and wrong["animation"] == shown(2)
+    assert list(tab.read_again(None, 1)) == []
+
+
+def test_the_list_stays_short() -> None:
+    names = tuple(f"take {number}" for number in range(15_000))
+    labels = animation_labels(Animations("x.glb", names, (1,)))
+    assert len(labels) == MOST_OFFERED and labels[-1] == f"{MOST_OFFERED} · take {MOST_OFFERED - 1}"
+
+
+def test_the_lists_are_wired_to_their_sources(tab: ReactTab, tmp_path: Path) -> None:
+    assert len(LOADED) + 5 == len(READ)
+    for made in (tab, built(PredictTab, tmp_path / "files")):
+        blocks = made.animation.parent
+        while blocks.parent is not None:
+            blocks = blocks.parent
+        events = [fn for fn in blocks.fns.values() if (made.animation._id, "input") in fn.targets]
+        follow = [fn for fn in blocks.fns.values() if fn.outputs == [made.animation]]
+        assert len(events) == 1 and made.animation in events[0].inputs
+        assert [fn.targets for fn in follow] == [[(made.source._id, "change")]]
+    assert isinstance(Source.read_with, tuple)

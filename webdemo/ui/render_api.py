@@ -1,0 +1,81 @@
+"""``/render``: a motion file → a film or a contact sheet, for programs."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import gradio as gr
+
+from motion import InputError
+from motion.character import character_body
+from motion.formats import read
+from motion.formats.glb_reader import read_character
+from webdemo.ui.components.exports import file_name, without_place
+from webdemo.ui.components.film import LONGEST
+from webdemo.ui.text.words import error_line
+from webdemo.view.camera import VIEWS
+from webdemo.view.film import FPS, SIZE, write_film
+from webdemo.view.sheet import SUFFIXES as SHEETS
+from webdemo.view.sheet import write_sheet
+from webdemo.view.stage import LOOKS, Pane, Style
+
+from .api import READING, WHICH
+from .context import PageContext
+
+
+class RenderEndpoint:
+    """``/render``: a motion file → a film or a contact sheet.
+
+    Args:
+        page: what tabs and endpoints share.
+    """
+
+    def __init__(self, page: PageContext) -> None:
+        self.page = page
+
+    def publish(self) -> None:
+        """Adds the endpoint to the page that is being built."""
+        with gr.Row(visible=False):
+            inputs = [
+                gr.File(label="the motion of one person or two: .bvh, .glb, .npz or .npy, up to 50 MB"),
+                gr.Textbox("mp4", label="film: mp4, webm or gif; contact sheet: png, svg or pdf"),
+                gr.Textbox(Style.look, label=" or ".join(LOOKS)),
+                gr.Textbox(Style.theme, label="light or dark"),
+                gr.Textbox("threequarter", label=" or ".join(VIEWS)),
+                gr.Checkbox(False, label="lines behind hands and pelvis, in a film"),
+                gr.Number(FPS, label="frames a second of a film, 1 to 60"),
+                gr.Number(SIZE[0], label="width in pixels: even, 64 to 1920"),
+                gr.Number(SIZE[1], label="height of a film in pixels: even, 64 to 1080"),
+                gr.File(
+                    label="a skinned character for everybody to wear: .glb, up to 50 MB; may be left out"
+                ),
+                gr.Textbox("", label=WHICH),
+            ]
+            gr.Button().click(
+                self.render, inputs=inputs, outputs=gr.File(label="the film or sheet"), api_name="render",
+                concurrency_limit=1, concurrency_id="film",
+            )  # fmt: skip
+
+    def render(
+        self, motion: str, kind: str, look: str, theme: str, view: str, trails: bool, fps: float, width: float,
+        height: float, character: str | None = None, animation: str = "",
+    ) -> str:  # fmt: skip
+        """A film or a contact sheet of a motion file. An error is one sentence that says what to change."""
+        folder = self.page.shelf.folder()
+        try:
+            if not motion:
+                raise InputError("There is no motion: send a motion file, such as a .bvh.")
+            if width > 1920 or height > 1080:
+                raise InputError("Pictures have 1920x1080 pixels at most here: ask for less.")
+            with READING:
+                found = read(Path(motion), longest=LONGEST, animation=animation or None)
+                body = character_body(read_character(Path(character))) if character else None
+            name, suffix = Path(motion).stem, f".{kind.lower().lstrip('.')}"
+            out = folder / f"{file_name(name, {})}{suffix}"
+            style = Style(look=look, theme=theme, trails=trails, names=suffix not in SHEETS, body=body)
+            if suffix in SHEETS:
+                return str(write_sheet(found, out, width=int(width), title=name, style=style, view=view))
+            size = (int(width), int(height))
+            return str(write_film([Pane(found)], out, fps=fps, size=size, style=style, view=view, title=name))
+        except Exception as error:
+            raise gr.Error(error_line(without_place(error, folder)), print_exception=False) from None
