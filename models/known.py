@@ -87,7 +87,7 @@ class Known:
             person: 0 for a, 1 for b.
             positions: (N, 22, 3) metres.
             frames: N of them.
-            joints: which ones; all but the pelvis are known relative to it, so it must be among them.
+            joints: which ones; all but the pelvis are known relative to it.
         """
         at = torch.tensor(list(frames), dtype=torch.long)
         rows = feature_rows(positions, positions.new_zeros(len(at), 4))

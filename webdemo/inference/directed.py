@@ -40,8 +40,8 @@ class KnownFrames:
         person: 0 for a, 1 for b.
         frames: N different frames of the scene, in order.
         positions: (N, 22, 3) metres.
-        joints: those that are given, the pelvis among them; () for all. Where only some are given, the network is
-            held to them, and the finished motion comes close to them.
+        joints: those that are given; () for all. All but the pelvis are given relative to it. Where only some are
+            given, the network is held to them, and the finished motion comes close to them.
     """
 
     person: int
@@ -146,7 +146,8 @@ def directed(model: DuetSpace, frames: int, parts: Sequence[Part], *, check: boo
     known = Known.nothing(length)
     for part in parts:
         at = _frames(part, frames)
-        if known.mask[0, part.person, at][:, 0].any():
+        beside = isinstance(part, KnownFrames) and part.joints and 0 not in part.joints
+        if not beside and known.mask[0, part.person, at][:, 0].any():
             raise InputError(
                 f"Two given parts say where person {'ab'[part.person]} is at one time: give one."
             )

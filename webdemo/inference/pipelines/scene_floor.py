@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Collection, Sequence
 
 import numpy as np
 from numpy.typing import NDArray
@@ -12,12 +13,13 @@ from webdemo.inference.actor import FPS, Placement
 from webdemo.inference.directed import KnownFrames, KnownPath, Part
 from webdemo.inference.story.floor import HALT, Standing, Way2D, plan, starting
 from webdemo.inference.story.idle import idle, is_planned, touches
-from webdemo.inference.story.moves import Way, goes, moves
+from webdemo.inference.story.moves import Move, Way, goes, moves
 from webdemo.inference.story.plan import Window
 from webdemo.inference.story.poses import LOWER, standing
-from webdemo.inference.story.postures import Change, Posture, changes
+from webdemo.inference.story.postures import Change, Posture, changes, leaps
 from webdemo.inference.story.request import SceneRequest
 
+from .scene_hands import hands, known_hands
 from .scene_postures import lower, postures
 
 Array = NDArray[np.floating]
@@ -49,32 +51,61 @@ def planned(request: SceneRequest, window: Window, scene: Array, placement: Plac
         return _apart(request, window, placement)
     before = scene[:, max(start - 4, 0) : start]
     stand = _stand(before) if start else _beginning(request)
-    sentences = [beat.sentence for beat in request.beats]
-    gone = {"ab".index(move.person) for move in found if move.way is not Way.STAY}
-    parts: list[Part] = []
-    for person in range(2):
-        last = scene[person, start - 1] if start else None
-        if "ab"[person] in still and (last is None or last[0, 1] > _UPRIGHT):
-            parts += _posed(person, stand, window, start, stop, placement, request.seed)
-        elif person not in gone:
-            poses = postures(sentences, window.beat, person, start, stop, stand, last)
-            if (inside := lower(poses, window.start, window.stop)) is not None:
-                frames = [frame - window.start + window.past for frame in inside[0]]
-                parts.append(KnownFrames(person, frames, placement.to_network(inside[1]), LOWER))
-    posed = {part.person for part in parts}
-    for way in plan(found, stand, stop - start, first=not start):
-        if way.person not in posed:
-            parts += _path(way, window, start, placement)
+    parts, posed = _held(request, window, scene, stand, still, found, placement)
+    ways = {way.person: way for way in plan(found, stand, stop - start, first=not start)}
+    ways = {person: way for person, way in ways.items() if person not in {part.person for part in parts}}
+    for way in ways.values():
+        parts += _path(way, window, start, placement)
+    for person, (gesture, frames, wrists) in hands(words, found, ways, posed, stand, stop - start).items():
+        inside = (frames + start >= window.start) & (frames + start < window.stop)
+        if inside.any():
+            shift = start - window.start + window.past
+            parts.append(known_hands(person, gesture, frames[inside], wrists[inside], shift, placement))
     return parts
 
 
+def _held(
+    request: SceneRequest,
+    window: Window,
+    scene: Array,
+    stand: Standing,
+    still: Collection[str],
+    found: Sequence[Move],
+    placement: Placement,
+) -> tuple[list[Part], dict[int, Array]]:
+    """The poses of bystanders and of those whose posture is given, and a pose of each of the latter."""
+    start, stop = request.edges[window.beat], request.edges[window.beat + 1]
+    sentences = [beat.sentence for beat in request.beats]
+    gone = {move.person for move in found if move.way is not Way.STAY}
+    parts: list[Part] = []
+    posed: dict[int, Array] = {}
+    for person, who in enumerate("ab"):
+        last = scene[person, start - 1] if start else None
+        if who in still and (last is None or last[0, 1] > _UPRIGHT):
+            parts += _posed(person, stand, window, start, stop, placement, request.seed)
+        elif who not in gone:
+            poses = postures(sentences, window.beat, person, start, stop, stand, last)
+            if len(poses) > 1:
+                posed[person] = poses[-1][1]
+            if (inside := lower(poses, window.start, window.stop)) is not None:
+                frames = [frame - window.start + window.past for frame in inside[0]]
+                parts.append(KnownFrames(person, frames, placement.to_network(inside[1]), LOWER))
+    return parts, posed
+
+
 def plan_note(request: SceneRequest) -> list[str]:
-    """A sentence on where the words of a scene send its people; nothing where they send nobody."""
+    """A sentence on what the words of a scene have its people do, as far as that is given to the network."""
     said = []
     for number, beat in enumerate(request.beats, 1):
         ways = [
             f"person {m.person.upper()} {m.way.value}" for m in moves(beat.sentence) if m.way is not Way.STAY
         ]
+        ways += [
+            f"person {who.upper()} {change.posture.value}"
+            for who, listed in changes(beat.sentence).items()
+            for change in listed
+        ]
+        ways += [f"person {who.upper()} jumps" for who in leaps(beat.sentence)]
         if ways:
             said.append(
                 (f"in beat {number} " if len(request.beats) > 1 else "") + " and ".join(dict.fromkeys(ways))

@@ -150,14 +150,19 @@ def named(text: str) -> str:
     text = re.sub(r"\b(?:[Pp]erson (?:two|2)|[Pp]2|[Pp]layer 2)\b", "person B", text)
     return re.sub(
         r"(?<![A-Za-z'])([A-Z][a-z]+)(?= (?:\w+s|\w+ing|and|is|has)\b|'s\b|[.,;]|$)",
-        lambda m: m[0] if _NO_NAME.match(m[0]) or _CAPITAL_VERB.match(m[0]) else f"the {m[0].lower()}",
+        lambda m: m[0] if _is_no_name(m[0]) else f"the {m[0].lower()}",
         text,
     )
 
 
+_CAPITAL_KIND = re.compile(rf"{_KIND}$", re.IGNORECASE)
 _CAPITAL_VERB = re.compile(
     r"\w+(?:ing|ly|es)$|[A-Z]{2}|(?:High|Low|Fist|Hug|Bow|Wave|Walk|Run|Shake|Kick|Push|Race|Dance|Jump)\b"
 )
+
+
+def _is_no_name(word: str) -> bool:
+    return any(found.match(word) for found in (_NO_NAME, _CAPITAL_VERB, _CAPITAL_KIND))
 
 
 def plain(text: str) -> str:

@@ -9,6 +9,7 @@ from __future__ import annotations
 import re
 
 from .clauses import Clause, clauses
+from .gestures import gestures
 from .moves import MOVED, Way, goes, moves, way_of
 from .postures import changes, leaps
 
@@ -27,12 +28,13 @@ _BUSY = re.compile(
 _ALONE = re.compile(
     r"\b(?:(?:jump|leap|hop|fall|kneel|crawl|roll|spin|squat|crouch|stretch|bow|clap|applaud|beckon|salut|nod|shrug|"
     r"collaps|cheer|danc|faint|yawn|curts|stamp|scratch|juggl|exercis|shiver|trembl|sob|laugh|pray|meditat|march)\w*|sits?|sitting|lies|lying|wav(?:es?|ing)|points?|pointing|rais\w+|lowers?|"
-    r"lifts? (?:his|her|their|the|both)|gets? (?:up|down)|stands? up|trips?)\b"
+    r"lifts? (?:his|her|their|the|both)|gets? (?:up|down)|stands? up|trips?|holds? out)\b"
 )
 """Acts that need nobody else."""
 _TOUCH = re.compile(
-    r"\b(?:hug|embrac|pat|pats|tap|hit|slap|grab|hold|tak|giv|pull|push|shov|lift|carr|help|kiss|cover|comfort|touch|"
-    r"lay|lean|tickl|shak|strok|catch|throw|kick|punch|lead|drag|support|tackl|trip|pass|hand|high[- ]fiv|fist)\w*"
+    r"\b(?:hug|embrac|pat|pats|tap|hit|slap|grab|hold(?!\w* out)|tak|knock|giv|pull|push|shov|lift|carr|help|kiss|"
+    r"cover|comfort|touch|lay|lean|tickl|shak|strok|catch|throw|kick|punch|lead|drag|support|tackl|trip|pass|hand|"
+    r"high[- ]fiv|fist)\w*"
 )
 _IN_VAIN = re.compile(r"\b(?:left hanging|in vain|gets? no answer|(?:is|are) ignored)\b")
 
@@ -40,8 +42,8 @@ _IN_VAIN = re.compile(r"\b(?:left hanging|in vain|gets? no answer|(?:is|are) ign
 def idle(sentence: str) -> frozenset[str]:
     """The people, "a" and "b", who stand by and do nothing else in a beat's sentence.
 
-    These are people who are said to wait, to watch or not to answer, or who are not mentioned while the other does
-    something that needs nobody else, such as sitting down.
+    These are people who are said to wait, to watch or not to answer, or who do nothing of their own while the other
+    does something that needs nobody else, such as sitting down or waving.
     """
     found = clauses(sentence)
     vain = {"ab".replace(c.who, "") for c in found if _IN_VAIN.search(c.words) and c.who != "ab"}
@@ -50,7 +52,10 @@ def idle(sentence: str) -> frozenset[str]:
         MOVED.search(c.words) and _TOUCH.search(c.words) for c in found
     ):
         return frozenset(vain)
-    return frozenset(vain | {p for p, q in ("ab", "ba") if _stands_by(own[p], own[q])})
+    by = {p for p, q in ("ab", "ba") if _stands_by(own[p], own[q])}
+    if not touches(sentence):
+        by |= {q for p, q in ("ab", "ba") if gestures(sentence).get(p) and not own[q]}
+    return frozenset(vain | by)
 
 
 def is_planned(sentence: str) -> bool:

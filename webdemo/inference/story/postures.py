@@ -15,7 +15,7 @@ from .clauses import Clause, clauses
 
 
 class Posture(Enum):
-    """How somebody holds themselves."""
+    """A way to hold oneself."""
 
     STANDS = "stands"
     SITS = "sits"
@@ -159,7 +159,7 @@ def _own(clause: Clause, share: float, *, first: bool, at_once: bool) -> Change 
 
 
 def leaps(sentence: str) -> dict[str, int]:
-    """How often each person, "a" and "b", jumps on the spot in a beat's sentence."""
+    """The number of jumps on the spot of each person, "a" and "b", in a beat's sentence."""
     found: dict[str, int] = {}
     for clause in clauses(sentence):
         if not _says(_JUMPS, clause.words) or _ELSEWHERE.search(clause.words) or _UP.search(clause.words):

@@ -1,0 +1,58 @@
+"""Gestures in a beat's words, and the way of the hand."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from motion import SMPL22
+from webdemo.inference.story.gestures import Gesture, Hand, gestures, wrist
+from webdemo.inference.story.poses import upright
+
+AHEAD = np.tile([0.0, 0.0, 1.0], (60, 1))
+TIME = np.arange(60) / 30
+
+
+@pytest.mark.parametrize(
+    ("sentence", "found"),
+    [
+        ("Person A walks towards person B with both arms raised high.", {"a": (Hand.HIGH, 2)}),
+        ("Both jump and throw their hands above their heads.", {"a": (Hand.HIGH, 2), "b": (Hand.HIGH, 2)}),
+        ("Person B backs away while waving with the left hand.", {"b": (Hand.WAVES, 1)}),
+        ("She keeps pointing at him with her right arm as she walks around him.", {"a": (Hand.POINTS, 1)}),
+        ("A boy raises his hand.", {"a": (Hand.UP, 1)}),
+        # no gesture of a hand in the air
+        ("Person A puts both hands on person B's shoulders.", {}),
+        ("Person A throws his arms around her.", {}),
+        ("Person A does not wave.", {}),
+        ("Person A holds out a hand.", {}),
+        ("They shake hands.", {}),
+        ("", {}),
+    ],
+)
+def test_gestures_are_read(sentence: str, found: dict[str, tuple[Hand, int]]) -> None:
+    assert {who: (g.hand, len(g.sides)) for who, g in gestures(sentence).items()} == found
+
+
+def test_a_named_hand_is_that_hand() -> None:
+    assert gestures("Person A waves with the left hand.")["a"].sides == ("left",)
+    assert gestures("Person A waves.")["a"].sides == ("right",)
+
+
+@pytest.mark.parametrize("side", ["left", "right"])
+def test_hands_are_where_the_gesture_has_them(side: str) -> None:
+    pose = upright(np.zeros(2), 0.0)
+    shoulder = pose[SMPL22.index(f"{side}_shoulder")] - pose[0]
+    out = 1 if side == "left" else -1
+
+    def way(hand: Hand) -> np.ndarray:
+        return wrist(Gesture(hand, (side,)), side, TIME, AHEAD)
+
+    arm = sum(SMPL22.bone_lengths[SMPL22.index(f"{side}_{joint}")] for joint in ("elbow", "wrist"))
+    for hand in Hand:
+        assert np.linalg.norm(way(hand) - shoulder, axis=1).max() < arm, "within the arm's reach"
+    assert (way(Hand.HIGH)[:, 1] > pose[SMPL22.index("head"), 1] - pose[0, 1]).all()
+    assert (way(Hand.UP)[:, 1] > shoulder[1] + 0.2).all()
+    assert (way(Hand.POINTS)[:, 2] > 0.4).all()
+    assert np.sign(way(Hand.LINKED)[0, 0]) == out
+    assert np.ptp(way(Hand.WAVES)[:, 0]) > 0.2 and np.ptp(way(Hand.UP), axis=0).max() == 0

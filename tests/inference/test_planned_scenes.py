@@ -1,0 +1,88 @@
+"""Postures, jumps and gestures of the words are met by a network that has learned nothing."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import pytest
+
+from motion import SMPL22
+from webdemo.inference import Engine, GenerateRequest, SceneRequest
+from webdemo.inference.story import Beat
+
+from .test_scenes import positions, run
+
+QUICK: dict[str, Any] = {"steps": 3, "seed": 1}
+FEET = [SMPL22.index("left_foot"), SMPL22.index("right_foot")]
+WRISTS = [SMPL22.index("left_wrist"), SMPL22.index("right_wrist")]
+
+
+def made(engine: Engine, prompt: str, **fields: Any) -> np.ndarray:
+    return positions(run(engine, GenerateRequest(prompt=prompt, seconds=4.0, **QUICK, **fields)))
+
+
+def heights(motion: np.ndarray, person: int) -> np.ndarray:
+    return motion[person, :, 0, 1]
+
+
+def test_who_sits_down_stays_seated_until_they_get_up(engine: Engine) -> None:
+    beats = (
+        Beat("Person A sits down.", seconds=3.0),
+        Beat("Person B waves.", seconds=2.0),
+        Beat("Person A gets up.", seconds=3.0),
+    )
+    found = heights(positions(run(engine, SceneRequest(beats=beats, **QUICK))), 0)
+    assert found[0] > 0.9, "on their feet at first"
+    assert (np.abs(found[60:150] - 0.63) < 0.08).all(), "seated, also in the next beat"
+    assert found[-1] > 0.85
+    free = heights(positions(run(engine, SceneRequest(beats=beats, planned=False, **QUICK))), 0)
+    assert not (np.abs(free[60:150] - 0.63) < 0.08).all()
+
+
+@pytest.mark.parametrize(
+    ("prompt", "low"),
+    [("Person A is lying on the floor.", 0.3), ("While person A kneels, person B looks on.", 0.75)],
+)
+def test_who_is_down_already_is_so_from_the_start(engine: Engine, prompt: str, low: float) -> None:
+    found = made(engine, prompt)
+    assert heights(found, 0)[:90].max() < low and heights(found, 1)[0] > 0.85
+
+
+def test_who_falls_ends_on_the_floor_and_may_be_helped_up(engine: Engine) -> None:
+    assert heights(made(engine, "Person A falls over."), 0)[-20:].max() < 0.35
+    found = heights(made(engine, "One falls to the ground and the other helps him up again."), 0)
+    assert found[0] > 0.85 and found.min() < 0.35 and found[-5] > 0.85
+
+
+def test_jumps_leave_the_floor_as_often_as_said(engine: Engine) -> None:
+    found = made(engine, "Person A jumps up and down.", cleanup=False)
+    feet = found[0][:, FEET, 1].min(axis=1)
+    airborne = feet > 0.12
+    assert np.sum(np.diff(airborne.astype(int)) == 1) == 3
+    assert not (found[1][:, FEET, 1].min(axis=1) > 0.12).any()
+
+
+def test_a_hand_waves_on_the_way(engine: Engine) -> None:
+    prompt = "Person A walks away while waving with the left hand."
+    found, free = made(engine, prompt), made(engine, prompt, planned=False)
+
+    def lifted(motion: np.ndarray) -> np.ndarray:
+        return motion[0, 30:110, WRISTS[0], 1] - motion[0, 30:110, SMPL22.index("left_shoulder"), 1]
+
+    assert np.median(lifted(found)) > 0.1 > np.median(lifted(free))
+
+
+def test_those_who_walk_hand_in_hand_have_a_hand_at_each_other(engine: Engine) -> None:
+    found = made(engine, "They walk hand in hand.")
+    gaps = np.linalg.norm(found[0][:, WRISTS, None] - found[1][:, None, WRISTS], axis=-1).min(axis=(1, 2))
+    assert np.median(gaps[30:]) < 0.15
+
+
+def test_notes_say_what_was_read(engine: Engine) -> None:
+    notes = run(engine, GenerateRequest(prompt="Person A sits down.", seconds=3.0, **QUICK)).notes
+    assert any("person A sits" in note for note in notes)
+    free = run(
+        engine, GenerateRequest(prompt="Person A sits down.", seconds=3.0, planned=False, **QUICK)
+    ).notes
+    assert not any("From the words" in note for note in free)

@@ -1,0 +1,126 @@
+"""The hands of people whose way or posture the words of a beat give, as the network is given them."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from motion import SMPL22
+from motion.transforms import heading_matrix
+from webdemo.inference.actor import FPS, Placement
+from webdemo.inference.directed import KnownFrames
+from webdemo.inference.story.floor import Standing, Way2D
+from webdemo.inference.story.gestures import Gesture, Hand, gestures, wrist
+from webdemo.inference.story.moves import Move, Way
+
+Array = NDArray[np.floating]
+
+BEGINS = 15
+"""Frames of a beat before a hand is given."""
+OFTEN = 4
+"""Frames between two given places of a hand."""
+
+
+@dataclass(frozen=True, eq=False)
+class Course:
+    """A person's places and headings through a beat.
+
+    Attributes:
+        places: (T, 2) x and z in metres.
+        headings: (T,) radians.
+    """
+
+    places: Array
+    headings: Array
+
+    @classmethod
+    def stays(cls, place: Array, angle: float, frames: int) -> Course:
+        """Of somebody who stays where they are."""
+        return cls(np.tile(np.asarray(place, dtype=float), (frames, 1)), np.full(frames, angle))
+
+    @classmethod
+    def of(cls, way: Way2D, angle: float, frames: int) -> Course:
+        """Of somebody on a way; where it leaves them free to look, they look as before."""
+        time = np.arange(frames)
+        places = np.stack([np.interp(time, way.frames, way.places[:, axis]) for axis in (0, 1)], axis=1)
+        known = np.array([]) if way.headings is None else np.flatnonzero(np.isfinite(way.headings))
+        if way.headings is None or not len(known):
+            return cls(places, np.full(frames, angle))
+        at = np.asarray(way.frames)[known]
+        return cls(places, np.interp(time, at, np.unwrap(way.headings[known])))
+
+
+def hands(
+    sentence: str,
+    moves: Sequence[Move],
+    ways: Mapping[int, Way2D],
+    posed: Mapping[int, Array],
+    stand: Standing,
+    frames: int,
+) -> dict[int, tuple[Gesture, NDArray[np.integer], Array]]:
+    """The gestures of those whose way or posture is given.
+
+    Args:
+        sentence: of the beat.
+        moves: as they are read from it.
+        ways: by person.
+        posed: a pose (22, 3) of those whose posture is given, by person.
+        stand: where the people are when the beat begins.
+        frames: its length.
+
+    Returns:
+        By person the gesture, the frames of the beat (N,) and the wrists' places beside the pelvis in the scene's
+        world, (N, sides, 3) metres.
+    """
+    found = gestures(sentence)
+    if {move.way for move in moves if move.linked} == {Way.ALONG}:
+        inner = _inner(ways)
+        found |= {who: Gesture(Hand.LINKED, (side,)) for who, side in inner.items()}
+    courses = {
+        i: Course.of(ways[i], float(stand.headings[i]), frames)
+        if i in ways
+        else Course.stays(stand.places[i], float(stand.headings[i]), frames)
+        for i in (0, 1)
+    }
+    at = np.arange(BEGINS, frames, OFTEN)
+    made: dict[int, tuple[Gesture, NDArray[np.integer], Array]] = {}
+    for person in (0, 1):
+        gesture = found.get("ab"[person])
+        if gesture is None or not (person in ways or person in posed) or not len(at):
+            continue  # the network makes the gesture
+        own, other = courses[person], courses[1 - person]
+        turns = np.stack([heading_matrix(angle) for angle in own.headings[at]])
+        line = np.insert(other.places[at] - own.places[at], 1, 0.0, axis=1)
+        line /= np.linalg.norm(line, axis=1, keepdims=True).clip(min=1e-6)
+        towards = np.einsum("nji,nj->ni", turns, line)
+        wrists = np.stack([wrist(gesture, side, at / FPS, towards) for side in gesture.sides], axis=1)
+        made[person] = (gesture, at, np.einsum("nij,nsj->nsi", turns, wrists))
+    return made
+
+
+def known_hands(
+    person: int,
+    gesture: Gesture,
+    frames: NDArray[np.integer],
+    wrists: Array,
+    shift: int,
+    placement: Placement,
+) -> KnownFrames:
+    """The wrists (N, sides, 3) of a person at some frames, as the network is given them."""
+    joints = [SMPL22.index(f"{side}_wrist") for side in gesture.sides]
+    poses = np.zeros((len(frames), SMPL22.num_joints, 3))
+    poses[:, joints] = wrists
+    return KnownFrames(person, (frames + shift).tolist(), placement.to_network(poses), joints)
+
+
+def _inner(ways: Mapping[int, Way2D]) -> dict[str, str]:
+    """The hand of each of two people side by side that is next to the other."""
+    if len(ways) < 2 or any(way.headings is None for way in ways.values()):
+        return {}
+    line = ways[1].places[-1] - ways[0].places[-1]
+    angle = float(np.nan_to_num(np.asarray(ways[0].headings)[-1]))
+    left = line @ np.array([np.cos(angle), -np.sin(angle)]) > 0
+    return {"a": "left", "b": "right"} if left else {"a": "right", "b": "left"}

@@ -1,0 +1,118 @@
+"""Gestures that somebody makes while they walk, jump or sit: a raised hand, a wave, a pointing arm.
+
+The network makes a gesture where it also chooses the steps. Where the way or the posture is given, it has rarely seen
+the two together, so the wrist is given as well.
+"""
+
+from __future__ import annotations
+
+import re
+from dataclasses import dataclass
+from enum import Enum
+
+import numpy as np
+from numpy.typing import NDArray
+
+from motion import SMPL22
+
+from .clauses import clauses
+from .poses import upright
+
+Array = NDArray[np.floating]
+SIDES = ("left", "right")
+
+
+class Hand(Enum):
+    """A gesture of a hand."""
+
+    HIGH = "high above the head"
+    UP = "raised"
+    WAVES = "waves"
+    POINTS = "points at the other"
+    LINKED = "holds the other's hand"
+
+
+@dataclass(frozen=True)
+class Gesture:
+    """A gesture of one person.
+
+    Attributes:
+        hand: which one.
+        sides: "left", "right" or both of them.
+    """
+
+    hand: Hand
+    sides: tuple[str, ...]
+
+
+_HIS = r"(?:(?:the|his|her|their|a) )?"
+_BOTH = rf"(?:both )?{_HIS}(?:arms|hands)"
+_NOT_UP = r"(?! (?:on|around|out|to|together|behind|forwards?|towards?|at|in front|down)\b)"
+_PATTERNS = (
+    (
+        Hand.HIGH,
+        rf"\b(?:throw|rais|lift|fling|put|hold|stretch|reach)\w* (?:up )?{_BOTH}\b{_NOT_UP}"
+        rf"|\b{_BOTH} (?:\w+ )?(?:raised|up|high|above|over (?:his|her|their) heads?|in the air)\b|\bhands up\b",
+    ),
+    (Hand.WAVES, r"\bwav(?:e|es|ing)\b"),
+    (Hand.POINTS, r"\bpoint(?:s|ing)?\b(?! out)"),
+    (
+        Hand.UP,
+        rf"\b(?:rais|lift|put|hold)\w* (?:up )?{_HIS}(?:(?:left|right) )?(?:hand|arm)\b(?! out| to)"
+        rf"|\b{_HIS}(?:(?:left|right) )?(?:hand|arm) (?:raised|up|in the air)\b",
+    ),
+)
+_COMPILED = tuple((hand, re.compile(pattern)) for hand, pattern in _PATTERNS)
+_NOT = re.compile(r"\b(?:do(?:es)?n't|not|without|never|refus\w+ to|lowers?|drops?)\b")
+_SIDE = re.compile(r"\b(left|right)(?:[- ]hand(?:ed)?| arm)?\b")
+_REACH = 0.47
+"""Metres from the shoulder to the wrist of an arm that is nearly straight."""
+_SWAYS = 1.6
+"""Strokes a second of a wave."""
+
+
+def gestures(sentence: str) -> dict[str, Gesture]:
+    """The gestures of a beat's sentence, by person "a" and "b"; those of whom it names one."""
+    found: dict[str, Gesture] = {}
+    for clause in clauses(sentence):
+        for hand, pattern in _COMPILED:
+            match, denied = pattern.search(clause.words), _NOT.search(clause.words)
+            if match is None or (denied and denied.start() < match.start()):
+                continue
+            side = _SIDE.search(clause.words)
+            sides = SIDES if hand is Hand.HIGH else (side[1],) if side else ("right",)
+            found |= dict.fromkeys(clause.who, Gesture(hand, sides))
+            break
+    return found
+
+
+def wrist(gesture: Gesture, side: str, seconds: Array, towards: Array) -> Array:
+    """A wrist's way beside the pelvis of somebody who faces +Z.
+
+    Args:
+        gesture: the gesture.
+        side: "left" or "right".
+        seconds: (N,) moments.
+        towards: (N, 3) unit directions to the other person, as seen by the one who faces +Z.
+
+    Returns:
+        (N, 3) metres from the pelvis.
+    """
+    pose = upright(np.zeros(2), 0.0)
+    shoulder = pose[SMPL22.index(f"{side}_shoulder")] - pose[0]
+    out = 1.0 if side == "left" else -1.0
+    offset = np.zeros((len(seconds), 3))
+    match gesture.hand:
+        case Hand.HIGH:
+            offset[:] = [0.1 * out, 0.45, 0.08]
+        case Hand.UP:
+            offset[:] = [0.1 * out, 0.32, 0.16]
+        case Hand.WAVES:
+            offset[:] = [0.16 * out, 0.26, 0.18]
+            offset[:, 0] += 0.14 * np.sin(2 * np.pi * _SWAYS * np.asarray(seconds))
+        case Hand.POINTS:
+            offset = _REACH * towards + np.array([0.0, -0.05, 0.0])
+        case Hand.LINKED:
+            shoulder = np.zeros(3)
+            offset[:] = [0.22 * out, 0.0, 0.08]
+    return shoulder + offset
