@@ -20,6 +20,7 @@ from .glb_motion import animations_in, read_glb_people
 from .kinect import read_kinect
 from .npz import read_npy, read_npz, write_npy, write_npz
 from .one_person import write_clip
+from .usd import write_usd
 
 __all__ = [
     "FORMATS", "Animation", "Format", "animation_note", "can_read", "can_write", "read", "read_everyone", "read_pair",
@@ -100,6 +101,7 @@ FORMATS: dict[str, Format] = {
         Format(".skeleton", "Kinect v2 text", read_kinect),
         Format(".txt", "Kinect text", read_kinect),
         Format(".glb", "glTF binary", _read_rig_clips, write_glb, needs="pygltflib"),
+        Format(".usda", "USD as text", None, write_usd),
     )
 }
 

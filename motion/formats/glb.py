@@ -108,7 +108,7 @@ def _add_person(
     gltf = buffer.gltf
     positions = clip.positions.astype(np.float64)
     world = bone_rotations(positions)
-    offsets = _offsets(positions, world)
+    offsets = bone_offsets(positions, world)
     holder = len(gltf.nodes)
     first = holder + 1
     # A node of the person's own above the joints: programs make one armature of each, not one of both.
@@ -147,7 +147,7 @@ def _add_person(
         animate(first + joint, "rotation", quaternions(rotations[:, joint]), gl.VEC4)
 
 
-def _offsets(positions: Array, world: Array) -> Array:
+def bone_offsets(positions: Array, world: Array) -> Array:
     """(22, 3) a person's own bones in T-pose, metres: the mean of each where it changes its length."""
     offsets = np.zeros((SMPL22.num_joints, 3))
     for parent, joint in SMPL22.bones:

@@ -1,10 +1,10 @@
 """Opens a two-person .glb and its BVH pair in Blender and says where the joints stand. Not a test: run by hand.
 
     pip install bpy==5.0.1                          # Python 3.11, in an environment of its own
-    python tests/second_programs/blender_check.py MOTION.glb MOTION_a.bvh MOTION_b.bvh --out picture.png
+    python tests/second_programs/blender_check.py MOTION.glb MOTION_a.bvh MOTION_b.bvh --usd MOTION.usda --out x.png
 
-Both formats are imported with Blender's defaults. Prints one JSON object: the armatures, the frames, the
-largest distance in metres between the joints of the two formats over all frames, and the lowest point of
+All formats are imported with Blender's defaults. Prints one JSON object: the armatures, the frames, the
+largest distance in metres between the joints of the formats over all frames, and the lowest point of
 each body; with ``--out`` it also renders the bodies over the BVH's bones.
 """
 
@@ -40,6 +40,7 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("glb", type=Path)
     parser.add_argument("bvh", type=Path, nargs=2)
+    parser.add_argument("--usd", type=Path, help="the same motion as .usda")
     parser.add_argument("--out", type=Path)
     parser.add_argument("--frame", type=int, help="the frame that is rendered; the middle one by default")
     options = parser.parse_args()
@@ -52,15 +53,22 @@ def main() -> None:
     for path in options.bvh:
         bpy.ops.import_anim.bvh(filepath=str(path))
     stick = [o for o in armatures() if o not in people]
+    if options.usd:
+        bpy.ops.wm.usd_import(filepath=str(options.usd))
+    from_usd = [o for o in armatures() if o not in people + stick]
     glb_actions = [o.animation_data.action.frame_range[:] for o in people]
     bvh_actions = [o.animation_data.action.frame_range[:] for o in stick]
     count = int(bvh_actions[0][1] - bvh_actions[0][0]) + 1
 
-    apart, lowest = 0.0, {o.name: 9.0 for o in people}
+    apart, usd_apart, lowest = 0.0, 0.0, {o.name: 9.0 for o in people}
     for frame in range(count):
         # Blender puts the glTF's first frame at 0 and the BVH's at 1.
         scene.frame_set(round(glb_actions[0][0]) + frame)
         own = [joints(o) for o in people]
+        scene.frame_set(frame)  # a time code of USD is a frame, and its first is 0
+        for mine, theirs in zip(own, (joints(o) for o in from_usd), strict=bool(from_usd)):
+            usd_apart = max([usd_apart, *((mine[name] - theirs[name]).length for name in mine)])
+        scene.frame_set(round(glb_actions[0][0]) + frame)
         bodies = [
             o.evaluated_get(bpy.context.evaluated_depsgraph_get())
             for o in scene.objects
@@ -83,6 +91,8 @@ def main() -> None:
         "glb_frames": glb_actions,
         "bvh_frames": bvh_actions,
         "glb_bvh_apart_m": round(apart, 7),
+        "usd_armatures": [o.name for o in from_usd],
+        "glb_usd_apart_m": round(usd_apart, 7) if from_usd else None,
         "lowest_of_bodies_m": {name: round(low, 4) for name, low in lowest.items()},
     }
     if options.out:

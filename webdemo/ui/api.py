@@ -168,7 +168,7 @@ class GenerateEndpoint(Endpoint):
         """Two people from one sentence.
 
         Returns the manifest, read-outs, timings, notes and file names; and the files: for every sample a
-        two-person .npz, two .bvh (and a .glb where the server writes them), a contact sheet .png, and one
+        two-person .npz, two .bvh, a .usda (and a .glb where the server writes them), a contact sheet .png, and a
         manifest .json. An error is one sentence that says what to change.
         """
         return self._answer(
@@ -275,7 +275,7 @@ class ReactEndpoint(Endpoint):
         """A second person for a given one, who stays exactly as they are (at 30 frames a second).
 
         Returns the manifest, read-outs, timings, notes and file names; and the files: for every sample a
-        two-person .npz, two .bvh (and a .glb where the server writes them), a contact sheet .png, and one
+        two-person .npz, two .bvh, a .usda (and a .glb where the server writes them), a contact sheet .png, and a
         manifest .json. With own_rig there is also the new person of every sample on the rig of the file, and that
         file as it is. An error is one sentence that says what to change.
         """

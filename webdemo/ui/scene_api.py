@@ -52,7 +52,7 @@ class SceneEndpoint(Endpoint):
         """A scene of several beats, or a span or a continuation of a given motion.
 
         Returns the manifest, read-outs, timings, notes and file names; and the files: for every sample a
-        two-person .npz, two .bvh (and a .glb where the server writes them), a contact sheet .png, and one
+        two-person .npz, two .bvh, a .usda (and a .glb where the server writes them), a contact sheet .png, and a
         manifest .json. An error is one sentence that says what to change.
         """
 

@@ -74,6 +74,7 @@ KINDS = (
     Kind("npz", "Motion .npz"),
     Kind("bvh", "BVH pair"),
     Kind("glb", "Animated .glb"),
+    Kind("usda", "Animated .usda"),
     Kind("png", "Contact sheet"),
     Kind("json", "Manifest"),
     Kind("csv", "Read-outs .csv"),

@@ -1,0 +1,229 @@
+"""OpenUSD as text (.usda): two skinned, animated people for Blender, Houdini, Maya, Unreal and Omniverse.
+
+Each person is a scope called by their role with a UsdSkel root: a skeleton of 22 joints, its animation, and a body of
+:mod:`motion.body` bound to it. The stage is in metres and Y up, and a time code is a frame.
+"""
+
+from __future__ import annotations
+
+import json
+import re
+from collections.abc import Iterable, Mapping
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from motion.body import BODIES, Body, bone_rotations, load_body
+from motion.clip import Clip, Duet
+from motion.colours import BODIES as COLOURS
+from motion.colours import linear
+from motion.errors import InputError
+from motion.kinematics import local_rotations
+from motion.skeleton import SMPL22
+
+from .files import write_files
+from .glb import bone_offsets
+from .glb_nodes import quaternions
+
+Array = NDArray[np.floating]
+
+_AROUND = 0.4
+"""Metres from the joints to the edge of the box that holds a body."""
+_ONES = f"[{', '.join(['(1, 1, 1)'] * SMPL22.num_joints)}]"
+
+
+def write_usd(duet: Duet, path: str | Path) -> list[Path]:
+    """Writes one .usda with both people, named by their roles.
+
+    Args:
+        duet: on SMPL22.
+        path: of the file.
+
+    Returns:
+        the path, in a list as for every format.
+
+    Raises:
+        InputError: for people who are not on SMPL22, or where the file cannot be written.
+    """
+    if duet.skeleton.joint_names != SMPL22.joint_names:
+        raise InputError(
+            f"USD needs a rest pose, and {duet.skeleton.name} has none: retarget to SMPL22 first."
+        )
+    return write_files({Path(path): usd_text(duet).encode()})
+
+
+def usd_text(duet: Duet) -> str:
+    """The file's text."""
+    names = [_identifier(role) for role in duet.roles]
+    if names[0].lower() == names[1].lower():
+        names = [f"{name}_{letter}" for name, letter in zip(names, "ab", strict=True)]
+    # A string's escapes are those of JSON.
+    manifest = json.dumps(json.dumps(duet.manifest or {}, default=str))
+    people = (
+        _person(clip, name, load_body(body), zones)
+        for clip, name, body, zones in zip(duet.people, names, BODIES, COLOURS, strict=True)
+    )
+    return f"""#usda 1.0
+(
+    customLayerData = {{
+        string creator = "Pas de Deux"
+        string manifest = {manifest}
+    }}
+    defaultPrim = "duet"
+    endTimeCode = {duet.num_frames - 1}
+    framesPerSecond = {duet.fps:g}
+    metersPerUnit = 1
+    startTimeCode = 0
+    timeCodesPerSecond = {duet.fps:g}
+    upAxis = "Y"
+)
+
+def Xform "duet" (
+    kind = "assembly"
+)
+{{
+{"".join(people)}}}
+"""
+
+
+def _person(clip: Clip, name: str, body: Body, colours: Mapping[str, str]) -> str:
+    positions = clip.positions.astype(np.float64)
+    world = bone_rotations(positions)
+    rest = np.tile(
+        np.eye(4), (SMPL22.num_joints, 1, 1)
+    )  # USD stores rows: points stand to the left of matrices
+    rest[:, 3, :3] = bone_offsets(positions, world)
+    rest[0, 3, :3] = positions[0, 0]
+    bind = np.tile(np.eye(4), (SMPL22.num_joints, 1, 1))
+    bind[:, :3, :3], bind[:, 3, :3] = body.turns, body.joints
+    place = f"/duet/{name}/person"
+    box = np.stack([positions.min(axis=(0, 1)) - _AROUND, positions.max(axis=(0, 1)) + _AROUND])
+    return f"""    def Scope "{name}"
+    {{
+        def SkelRoot "person"
+        {{
+            float3[] extent = {_rows(box)}
+
+            def Skeleton "{name}" (
+                prepend apiSchemas = ["SkelBindingAPI"]
+            )
+            {{
+                uniform token[] joints = {_JOINTS}
+                uniform matrix4d[] bindTransforms = {_matrices(bind)}
+                uniform matrix4d[] restTransforms = {_matrices(rest)}
+                rel skel:animationSource = <{place}/{name}/animation>
+{_animation(positions, world, rest[:, 3, :3])}
+            }}
+
+            def Mesh "{name}_body" (
+                prepend apiSchemas = ["SkelBindingAPI", "MaterialBindingAPI"]
+            )
+            {{
+                rel skel:skeleton = <{place}/{name}>
+{_surface(body)}
+{_subsets(body, place)}            }}
+{_materials(body, place, colours)}        }}
+    }}
+"""
+
+
+def _animation(positions: Array, world: Array, offsets: Array) -> str:
+    """The motion: quaternions real part first, and where each joint is against the one above it."""
+    local = local_rotations(world)
+    turns = np.stack([quaternions(local[:, joint]) for joint in range(SMPL22.num_joints)], axis=1)
+    places = np.repeat(offsets[None], len(positions), axis=0)
+    places[:, 0] = positions[:, 0]
+    return f"""
+                def SkelAnimation "animation"
+                {{
+                    uniform token[] joints = {_JOINTS}
+                    quatf[] rotations.timeSamples = {_samples(turns[..., [3, 0, 1, 2]])}
+                    half3[] scales = {_ONES}
+                    float3[] translations.timeSamples = {_samples(places)}
+                }}"""
+
+
+def _surface(body: Body) -> str:
+    """The body as it is bound; each vertex follows four joints."""
+    weights = np.round(body.weights / body.weights.sum(axis=1, keepdims=True), 6)
+    joints = np.where(weights > 0, body.bones, 0)
+    four = '(\nelementSize = 4\ninterpolation = "vertex"\n)'
+    return f"""                uniform token subdivisionScheme = "none"
+                float3[] extent = {_rows(np.stack([body.vertices.min(axis=0), body.vertices.max(axis=0)]))}
+                int[] faceVertexCounts = {[3] * len(body.faces)}
+                int[] faceVertexIndices = {body.faces.reshape(-1).tolist()}
+                point3f[] points = {_rows(body.vertices)}
+                int[] primvars:skel:jointIndices = {joints.reshape(-1).tolist()} {four}
+                float[] primvars:skel:jointWeights = {weights.reshape(-1).tolist()} {four}
+                matrix4d primvars:skel:geomBindTransform = {_matrices(np.eye(4)[None])[1:-1]}"""
+
+
+def _subsets(body: Body, place: str) -> str:
+    """The faces of each zone, bound to its material."""
+    return "".join(f"""
+                def GeomSubset "{zone}" (
+                    prepend apiSchemas = ["MaterialBindingAPI"]
+                )
+                {{
+                    uniform token elementType = "face"
+                    uniform token familyName = "materialBind"
+                    int[] indices = {np.flatnonzero(body.face_zones == number).tolist()}
+                    rel material:binding = <{place}/{zone}>
+                }}
+""" for number, zone in enumerate(body.zones))  # fmt: skip
+
+
+def _materials(body: Body, place: str, colours: Mapping[str, str]) -> str:
+    return "".join(f"""
+            def Material "{zone}"
+            {{
+                token outputs:surface.connect = <{place}/{zone}/surface.outputs:surface>
+
+                def Shader "surface"
+                {{
+                    uniform token info:id = "UsdPreviewSurface"
+                    color3f inputs:diffuseColor = {_tuple(np.round(linear(colours[zone]), 5))}
+                    float inputs:roughness = 0.8
+                    token outputs:surface
+                }}
+            }}
+""" for zone in body.zones)  # fmt: skip
+
+
+def _identifier(role: str) -> str:
+    """A role as the name of a prim: ASCII letters, digits and underscores, not beginning with a digit."""
+    name = re.sub(r"\W+", "_", role, flags=re.ASCII).strip("_")[:40] or "person"
+    return f"_{name}" if name[0].isdigit() else name
+
+
+def _paths() -> Iterable[str]:
+    """The joints as USD calls them: "pelvis/left_hip/left_knee"."""
+    found: list[str] = []
+    for name, parent in zip(SMPL22.joint_names, SMPL22.parents, strict=True):
+        found.append(f"{found[parent]}/{name}" if parent >= 0 else name)
+    return found
+
+
+_JOINTS = json.dumps(list(_paths()))
+
+
+def _tuple(values: Any) -> str:
+    return str(tuple(np.asarray(values).tolist()))
+
+
+def _rows(values: Array) -> str:
+    """(N, k) numbers as an array of tuples."""
+    return str(list(map(tuple, np.round(values.astype(np.float64), 6).tolist())))
+
+
+def _matrices(values: Array) -> str:
+    """(N, 4, 4) as an array of tuples of rows."""
+    return str([tuple(map(tuple, each)) for each in np.round(values, 7).tolist()])
+
+
+def _samples(values: Array) -> str:
+    """(T, N, k) as an array of tuples for each frame."""
+    frames = "".join(f"{frame}: {_rows(each)},\n" for frame, each in enumerate(values))
+    return f"{{\n{frames}}}"

@@ -1,0 +1,117 @@
+"""OpenUSD as text: the joints, and what is around them; OpenUSD itself reads it where ``usd-core`` is installed."""
+
+from __future__ import annotations
+
+import json
+import re
+from pathlib import Path
+
+import numpy as np
+import pytest
+from scipy.spatial.transform import Rotation
+
+from motion import SMPL22, Clip, Duet, InputError, formats
+from motion.body import BODIES, load_body, skin
+from motion.formats.usd import usd_text
+from motion.skeleton import SBU15
+from motion.transforms import turn
+from tests.motion.bodies import marching
+
+A = marching(24)[0]
+B = turn(marching(24, seed=5)[0], np.pi) + np.array([0.3, 0, 1.5])
+DUET = Duet(
+    Clip(A, 30),
+    Clip(B.astype(np.float32), 30),
+    ("actor", "reactor"),
+    {"prompt": 'They "wave" \\ 😀\n'},
+)
+
+
+def samples(text: str, what: str, width: int) -> np.ndarray:
+    """(people, frames, joints, width) of an attribute with time samples."""
+    found = []
+    for block in re.findall(rf"{what}\.timeSamples = {{\n(.*?)}}", text, flags=re.DOTALL):
+        rows = [line.split(": ", 1)[1] for line in block.splitlines()]
+        found.append([re.findall(r"-?[\d.]+(?:e-?\d+)?", row) for row in rows])
+    return np.array(found, dtype=float).reshape(len(found), len(found[0]), -1, width)
+
+
+def test_rotations_and_places_give_the_joints() -> None:
+    text = usd_text(DUET)
+    turns = samples(text, r"quatf\[\] rotations", 4)
+    places = samples(text, r"float3\[\] translations", 3)
+    assert turns.shape == (2, 24, 22, 4) and places.shape == (2, 24, 22, 3)
+    for clip, quaternions, local in zip(DUET.people, turns, places, strict=True):
+        matrices = Rotation.from_quat(quaternions[..., [1, 2, 3, 0]].reshape(-1, 4)).as_matrix()
+        world, at = matrices.reshape(24, 22, 3, 3).copy(), local.copy()
+        for parent, joint in SMPL22.bones:
+            at[:, joint] = at[:, parent] + (world[:, parent] @ local[:, joint, :, None])[..., 0]
+            world[:, joint] = world[:, parent] @ world[:, joint]
+        np.testing.assert_allclose(at, clip.positions, atol=2e-5)
+
+
+def test_the_stage_is_in_metres_and_y_up_and_keeps_the_manifest() -> None:
+    text = usd_text(DUET)
+    for line in ("metersPerUnit = 1", 'upAxis = "Y"', "timeCodesPerSecond = 30", "endTimeCode = 23"):
+        assert f"    {line}" in text.splitlines()
+    (stored,) = re.findall(r"string manifest = (.*)", text)
+    assert json.loads(json.loads(stored)) == DUET.manifest
+    assert text.isascii() and text.count("{") == text.count("}") and text.count('"') % 2 == 0
+
+
+@pytest.mark.parametrize(
+    ("roles", "names"),
+    [
+        (("actor", "reactor"), ("actor", "reactor")),
+        (("a", "A"), ("a_a", "A_b")),
+        (("2nd", 'x"{/}\n'), ("_2nd", "x")),
+        (("é", "x" * 500), ("person", "x" * 40)),
+    ],
+)
+def test_roles_become_names_of_scopes(roles: tuple[str, str], names: tuple[str, str]) -> None:
+    text = usd_text(Duet(DUET.a, DUET.b, roles))
+    assert tuple(re.findall(r'^    def Scope "(.*)"$', text, flags=re.MULTILINE)) == names
+
+
+def test_it_is_written_and_only_for_people_with_a_rest_pose(tmp_path: Path) -> None:
+    assert formats.can_write(".usda") and not formats.can_read(".usda")
+    (path,) = formats.write(DUET, tmp_path / "take.usda")
+    assert path.read_text().startswith("#usda 1.0\n")
+    with pytest.raises(InputError, match="needs a rest pose"):
+        formats.write(
+            Duet.from_positions(np.zeros((2, 4, 15, 3)), fps=30, skeleton=SBU15), tmp_path / "x.usda"
+        )
+    with pytest.raises(InputError, match="one person is written as"):
+        formats.write(DUET.a, tmp_path / "x.usda")
+    assert [each.name for each in tmp_path.iterdir()] == ["take.usda"]
+
+
+def test_openusd_reads_the_same_joints_and_bodies(tmp_path: Path) -> None:
+    """Runs with ``pip install usd-core``."""
+    pytest.importorskip("pxr", reason="usd-core is not installed")
+    from pxr import Usd, UsdGeom, UsdShade, UsdSkel, Vt
+
+    (path,) = formats.write(DUET, tmp_path / "take.usda")
+    stage = Usd.Stage.Open(str(path))
+    assert UsdGeom.GetStageUpAxis(stage) == "Y" and UsdGeom.GetStageMetersPerUnit(stage) == 1.0
+    assert (stage.GetStartTimeCode(), stage.GetEndTimeCode(), stage.GetTimeCodesPerSecond()) == (0, 23, 30)
+    assert json.loads(stage.GetRootLayer().customLayerData["manifest"]) == DUET.manifest
+    cache = UsdSkel.Cache()
+    for clip, role, name in zip(DUET.people, DUET.roles, BODIES, strict=True):
+        person = f"/duet/{role}/person"
+        assert stage.GetPrimAtPath(f"/duet/{role}").GetTypeName() == "Scope"
+        assert cache.Populate(UsdSkel.Root(stage.GetPrimAtPath(person)), Usd.PrimDefaultPredicate)
+        skeleton = cache.GetSkelQuery(UsdSkel.Skeleton(stage.GetPrimAtPath(f"{person}/{role}")))
+        mesh = stage.GetPrimAtPath(f"{person}/{role}_body")
+        surfaces = skin(load_body(name), clip)
+        for frame in (0, 11, 23):
+            joints = np.array(skeleton.ComputeJointSkelTransforms(frame))[:, 3, :3]
+            np.testing.assert_allclose(joints, clip.positions[frame], atol=2e-5)
+            points = Vt.Vec3fArray(UsdGeom.Mesh(mesh).GetPointsAttr().Get())
+            cache.GetSkinningQuery(mesh).ComputeSkinnedPoints(
+                skeleton.ComputeSkinningTransforms(frame), points, frame
+            )
+            np.testing.assert_allclose(np.array(points), surfaces[frame], atol=5e-5)
+        subsets = UsdShade.MaterialBindingAPI(mesh).GetMaterialBindSubsets()
+        assert all(UsdShade.MaterialBindingAPI(each).ComputeBoundMaterial()[0] for each in subsets)
+        assert sum(len(each.GetIndicesAttr().Get()) for each in subsets) == len(load_body(name).faces)
