@@ -105,7 +105,7 @@ def test_a_story_from_sentence_to_futures(page: Any) -> None:
     assert story(page)["paths"][0]["points"][1][2] == pytest.approx(path["points"][1][2] + 0.1)
     page.get_by_role("button", name="Delete the path").click()
     # Words that do not become paths: on the line, in the story's text, undone.
-    page.get_by_label("Paths from the words").and_(page.locator(".pds input")).uncheck()
+    page.get_by_label("Plan from the words").and_(page.locator(".pds input")).uncheck()
     assert story(page)["planned"] is False
     page.wait_for_function(
         "document.querySelector('#scene-text textarea')?.value.includes('planned = false') ||"

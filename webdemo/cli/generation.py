@@ -32,7 +32,9 @@ def add_generate(commands: Any) -> None:
         "--no-split", action="store_true", help="give a sentence of several beats to the network at once"
     )
     parser.add_argument(
-        "--no-plan", action="store_true", help="do not read from the words where people go and who stands by"
+        "--no-plan",
+        action="store_true",
+        help="do not read from the words where people go, who stands by, sits down or jumps",
     )
     add_sampling(parser, "generate")
     parser.set_defaults(job=generate)

@@ -31,7 +31,9 @@ def add_scene(commands: Any) -> None:
     )
     parser.add_argument("--out", type=Path, required=True, help="file to write: .npz, .bvh, .glb …")
     parser.add_argument(
-        "--no-plan", action="store_true", help="do not read from the words where people go and who stands by"
+        "--no-plan",
+        action="store_true",
+        help="do not read from the words where people go, who stands by, sits down or jumps",
     )
     default = "the story's own if not given"
     parser.add_argument("--seed", type=int, help=default)

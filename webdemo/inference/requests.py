@@ -112,8 +112,8 @@ class GenerateRequest(SamplingRequest):
         seconds: length of the motion.
         split: a sentence of several beats ("first …, then …") is made beat by beat, each in its share of the
             seconds, by a model that makes scenes. Off, the whole sentence is given to the network at once.
-        planned: as in a scene: where the words send people, and who stands by, is read from them and given. Only
-            with ``split``.
+        planned: as in a scene: where the words send people, how they hold themselves and who stands by is read from
+            them and given. Only with ``split``.
     """
 
     prompt: str

@@ -255,7 +255,7 @@ def test_words_become_paths_unless_that_is_switched_off(tab: GenerateTab) -> Non
     for planned in (True, False):
         last = run(tab, planned=planned)[-1]
         assert last["record"].result.manifest["request"]["planned"] is planned
-        assert ("Paths from the words" in last["readouts"]) is not planned
+        assert ("Plan from the words" in last["readouts"]) is not planned
     assert tab.planned in tab.controls.values() and tab.planned in tab.knobs.values()
     assert tab.planned in tab.tell_advanced["inputs"], "the line over the folded settings says it"
     assert [tab.asked_by(way)[4]["visible"] for way in ("intergen", "bigraphdiff")] == [True, False]

@@ -45,7 +45,7 @@ def named_method(known: Mapping[str, str], given: str) -> str:
     return found
 
 
-_PLANNED_INFO = "Words such as “walks up” or “leaves” set where people walk; off, the network alone decides."
+_PLANNED_INFO = "Words such as “walks up”, “sits down” or “waves” set paths and poses; off, the network alone decides."
 ARRIVAL = "shake-hands.npz"
 """The example that plays before anything is asked for."""
 
@@ -184,7 +184,7 @@ class GenerateTab(SweepTab):
         """A switch: words become paths, or not."""
         self.planned = gr.Checkbox(
             GenerateRequest.planned,
-            label="Paths from the words",
+            label="Plan from the words",
             info=_PLANNED_INFO,
             elem_id=self._id("planned"),
         )

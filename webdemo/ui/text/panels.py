@@ -124,7 +124,7 @@ def _asked(result: Result, name: str | None = None) -> str:
         ("Guidance", _plain(request.get("guidance"))),
         ("Steps", request.get("steps")),
         ("Damping", _plain(request.get("damping"))),
-        ("Paths from the words", "off" if request.get("planned") is False else None),
+        ("Plan from the words", "off" if request.get("planned") is False else None),
     ]
     items = "".join(
         f"<div><dt>{text(label)}</dt><dd>{text(value)}</dd></div>"
