@@ -69,6 +69,13 @@ def test_postures_last_until_the_person_gets_up() -> None:
     assert at_start(["Person A stays seated."], 0) == {"a": SITS, "b": STANDS}
 
 
+@pytest.mark.parametrize("act", ["They dance.", "They walk away.", "Person A jumps.", "They hug."])
+def test_who_needs_their_legs_is_on_their_feet_again(act: str) -> None:
+    assert at_start(["They sit down.", act, "They talk."], 1)["a"] is STANDS
+    assert at_start(["They sit down.", act, "They talk."], 2)["a"] is STANDS
+    assert at_start(["They sit down.", "They talk."], 1)["a"] is SITS
+
+
 @pytest.mark.parametrize(
     ("sentence", "times"),
     [

@@ -16,6 +16,7 @@ from numpy.typing import NDArray
 
 from webdemo.inference.actor import FPS
 
+from .curves import direction, eased, filled, smoothed, wrapped
 from .moves import Move, Way
 
 Array = NDArray[np.floating]
@@ -78,7 +79,7 @@ class Standing:
         """The direction (2,) from one to the other; ahead, where they stand on one spot."""
         line = self.places[1 - who] - self.places[who]
         length = float(np.linalg.norm(line))
-        return line / length if length > 0.05 else _direction(float(self.headings[who]))
+        return line / length if length > 0.05 else direction(float(self.headings[who]))
 
 
 @dataclass(frozen=True, eq=False)
@@ -117,7 +118,7 @@ class _Track:
         steps = np.linalg.norm(np.diff(line, axis=0), axis=1)
         along = np.concatenate([[0.0], np.cumsum(steps)])
         time = np.arange(1, frames + 1) / frames
-        done = _eased(time, _EASE / max(seconds, 1e-6)) if ease else time
+        done = eased(time, _EASE / max(seconds, 1e-6)) if ease else time
         far = min(along[-1], MOST * frames / FPS)
         at = np.stack([np.interp(done * far, along, line[:, axis]) for axis in (0, 1)], axis=1)
         stop = self.frame + frames
@@ -126,7 +127,7 @@ class _Track:
             ahead = np.diff(np.concatenate([self.place[None], at]), axis=0)
             facing = np.arctan2(ahead[:, 0], ahead[:, 1])
             still = np.linalg.norm(ahead, axis=1) < 1e-4
-            facing[still] = _filled(facing, ~still, self.heading)[still]
+            facing[still] = filled(facing, ~still, self.heading)[still]
             facing = self._turned_into(np.unwrap(facing))
         else:
             facing = np.broadcast_to(np.asarray(heading, dtype=float), (frames,)).copy()
@@ -137,7 +138,7 @@ class _Track:
         """Headings that begin at the person's own and are turned at a body's pace."""
         found, now, most = np.empty(len(facing)), self.heading, math.pi / TURNING / FPS
         for i, wanted in enumerate(facing):
-            now += float(np.clip(_wrapped(wanted - now), -most, most))
+            now += float(np.clip(wrapped(wanted - now), -most, most))
             found[i] = now
         return found
 
@@ -146,7 +147,7 @@ class _Track:
         frames = max(1, min(round(abs(angle) / math.pi * TURNING * FPS), len(self.places) - self.frame))
         stop = self.frame + frames
         self.places[self.frame : stop] = self.place
-        self.headings[self.frame : stop] = self.heading + angle * _eased(
+        self.headings[self.frame : stop] = self.heading + angle * eased(
             np.arange(1, frames + 1) / frames, 0.4
         )
         self.heading, self.frame = self.heading + angle, stop
@@ -260,7 +261,7 @@ def _moved(
             track.stay(facing=True)
         case Way.FACE:
             line = other - here
-            track.turn(_wrapped(math.atan2(line[0], line[1]) - track.heading))
+            track.turn(wrapped(math.atan2(line[0], line[1]) - track.heading))
             track.stay(facing=True)
         case Way.TO | Way.BEHIND:
             way = (gap - CLOSE) / (2 if both else 1)
@@ -291,7 +292,7 @@ def _moved(
             line = np.stack(
                 [here, here + 0.5 * gap * to + 0.7 * aside, other + aside, other + beyond * to + aside]
             )
-            track.walk(_smoothed(line), min(seconds, (gap + beyond) / min(move.speed, MOST) + _EASE))
+            track.walk(smoothed(line), min(seconds, (gap + beyond) / min(move.speed, MOST) + _EASE))
         case Way.ROUND:
             _around(move, track, other, seconds, both, standing)
         case Way.ALONG:
@@ -319,14 +320,14 @@ def _along(who: int, move: Move, track: _Track, standing: Standing, seconds: flo
     """A walk side by side: both turn into one direction across the line between them."""
     between = standing.towards(0)
     ahead = np.array([between[1], -between[0]])
-    facing = _direction(standing.headings[0]) + _direction(standing.headings[1])
+    facing = direction(standing.headings[0]) + direction(standing.headings[1])
     if ahead @ facing < 0:
         ahead = -ahead
     middle = standing.places.mean(axis=0)
     side = between * ((LINKED if move.linked else ABREAST) / 2) * (-1 if who == 0 else 1)
     way = min(max(seconds - 0.4, 0.5) * move.speed, 7.0)
     line = np.stack([track.place, middle + side + min(0.8, 0.4 * way) * ahead, middle + side + way * ahead])
-    track.walk(_smoothed(line), seconds)
+    track.walk(smoothed(line), seconds)
     track.going = ahead
 
 
@@ -373,35 +374,3 @@ def _with_turns(frames: Sequence[int], headings: Array) -> list[int]:
 def _time(way: float, speed: float, most: float) -> float:
     """Seconds in which a way is walked, at a run if there is little time."""
     return min(most, max(way / speed + _EASE, way / MOST))
-
-
-def _eased(time: Array, share: float) -> Array:
-    """Progress 0 to 1 that takes a share of the time to get up its speed, and as much to slow down."""
-    share = min(share, 0.5)
-    speed = np.clip(np.minimum(time / share, (1 - time) / share + 1e-3), 0.02, 1.0)
-    done = np.cumsum(speed)
-    return done / done[-1]
-
-
-def _smoothed(line: Array) -> Array:
-    """Points on a curve that rounds the corners of a line (Chaikin's, four times)."""
-    for _ in range(4):
-        first, last = line[:1], line[-1:]
-        near, far = 0.75 * line[:-1] + 0.25 * line[1:], 0.25 * line[:-1] + 0.75 * line[1:]
-        line = np.concatenate([first, np.stack([near, far], axis=1).reshape(-1, 2), last])
-    return line
-
-
-def _filled(values: Array, known: Array, first: float) -> Array:
-    """The values with the last known one where they are not known."""
-    at = np.maximum.accumulate(np.where(known, np.arange(len(values)), -1))
-    return np.where(at >= 0, values[at.clip(0)], first)
-
-
-def _direction(heading: float) -> Array:
-    return np.array([math.sin(heading), math.cos(heading)])
-
-
-def _wrapped(angle: float) -> float:
-    """The same angle from -π to π."""
-    return (angle + math.pi) % (2 * math.pi) - math.pi

@@ -12,6 +12,7 @@ from dataclasses import dataclass
 from enum import Enum
 
 from .clauses import Clause, clauses
+from .moves import Way, moves
 
 
 class Posture(Enum):
@@ -169,10 +170,24 @@ def leaps(sentence: str) -> dict[str, int]:
     return found
 
 
+_ON_FEET = re.compile(
+    r"\b(?:danc|waltz|kick|fight|box|wrestl|spar|bow|curts|march|hug|embrac|exercis|stretch|chas)\w*"
+)
+"""Acts that need legs: who does them is on their feet again, also where no word says that they get up."""
+
+
+def _gets_going(sentence: str) -> set[str]:
+    """The people, "a" and "b", who walk, jump, dance or the like in a beat's sentence."""
+    going = {move.person for move in moves(sentence) if move.way not in (Way.STAY, Way.FACE, Way.BACKS)}
+    acts = [clause for clause in clauses(sentence) if _says(_ON_FEET, clause.words)]
+    return going | {who for clause in acts for who in clause.who} | set(leaps(sentence))
+
+
 def at_start(sentences: Sequence[str], beat: int) -> dict[str, Posture]:
     """The postures of both people, "a" and "b", when a beat of a story begins."""
     held = dict.fromkeys("ab", Posture.STANDS)
     for i, sentence in enumerate(sentences[: beat + 1]):
+        held |= dict.fromkeys(_gets_going(sentence), Posture.STANDS)
         for person, listed in changes(sentence).items():
             if i == 0 and listed[0].already:
                 held[person] = listed[0].posture

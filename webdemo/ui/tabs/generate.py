@@ -45,7 +45,9 @@ def named_method(known: Mapping[str, str], given: str) -> str:
     return found
 
 
-_PLANNED_INFO = "Words such as “walks up”, “sits down” or “waves” set paths and poses; off, the network alone decides."
+_PLANNED_INFO = (
+    "Words such as “walks up”, “sits down” or “waves” set paths and poses; off, the network alone decides."
+)
 ARRIVAL = "shake-hands.npz"
 """The example that plays before anything is asked for."""
 
