@@ -289,13 +289,14 @@ def _reaction(dice: random.Random, steps: int) -> Job:
         "offline",
         False,
         False,
+        "",
     )
     return Job("react", data, {"kind": "react", "seed": seed, "steps": steps}, seconds * steps + 10)
 
 
 def _prediction(dice: random.Random, steps: int) -> Job:
     seconds = dice.choice((0.5, 1.0, 1.5))
-    data = (None, 1.5, seconds, "motion-mlp")
+    data = (None, 1.5, seconds, "motion-mlp", "")
     return Job("predict", data, {"kind": "predict", "seconds": seconds}, seconds + 10)
 
 

@@ -8,8 +8,8 @@ import pytest
 
 from .target import CANARY, FIELDS, Target
 
-REACT = ["", "", 0, 0, "a", 0, 1, 3, 1, 0, "ddim", "intergen", "offline", False, False]
-PREDICT = [0, 1, "still"]
+REACT = ["", "", 0, 0, "a", 0, 1, 3, 1, 0, "ddim", "intergen", "offline", False, False, ""]
+PREDICT = [0, 1, "still", ""]
 
 
 def file_data(path: str, **more: Any) -> dict[str, Any]:
