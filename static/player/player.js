@@ -15,10 +15,10 @@ import { Orbit } from "./orbit.js";
 import { THEMES, themeName } from "./palette.js";
 import { Pane } from "./pane.js";
 import { Posing } from "./posing.js";
+import { Rate } from "./rate.js";
 import { describe } from "./skeleton.js";
 import { Strip } from "./strip.js";
 
-const FPS_WINDOW = 1500; // ms
 const STILL_AFTER = 250; // ms
 export const loops = { running: 0 }; // animation loops alive on the page; a leak shows here
 
@@ -54,7 +54,7 @@ export class Player {
     this.director = null; // keeps poses: see direct()
     this.posing = null;
     this.sampleIndex = 0;
-    this.times = [];
+    this.rate = new Rate();
     this.dirty = true;
     this.handle = 0;
     this.root.dataset.theme = this.themeName = themeName();
@@ -337,7 +337,7 @@ export class Player {
     if (moving || this.dirty) {
       this.dirty = false;
       this.paint(pose);
-      this.count(now);
+      this.rate.count(now);
     }
     if (moving || this.dirty) {
       const asked = this.dirty;
@@ -371,15 +371,9 @@ export class Player {
     return this.shown.map((pane) => pane.scene?.setStill(still)).some(Boolean);
   }
 
-  count(now) {
-    this.times.push(now);
-    while (now - this.times[0] > FPS_WINDOW) this.times.shift();
-  }
-
-  /** Pictures a second over the last second and a half. */
+  /** Pictures a second, lately. */
   get fps() {
-    const span = this.times[this.times.length - 1] - this.times[0];
-    return span > 0 ? (1000 * (this.times.length - 1)) / span : 0;
+    return this.rate.value;
   }
 
   close() {

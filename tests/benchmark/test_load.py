@@ -11,7 +11,7 @@ import pytest
 
 from motion import InputError
 from tests.server.lab import ROOT
-from webdemo.benchmark import load
+from webdemo.benchmark import batching, load
 from webdemo.benchmark.load import Tally
 from webdemo.cli import main
 
@@ -72,7 +72,7 @@ def test_the_command_says_which_goals_are_missed(
         return good
 
     monkeypatch.setattr(load, "run_load", measured)
-    monkeypatch.setattr(load, "measure_batching", lambda steps: {"batched_over_serial_throughput": 1.5})
+    monkeypatch.setattr(batching, "measure_batching", lambda steps: {"batched_over_serial_throughput": 1.5})
     command = ["benchmark", "--load", "--people", "7", "--minutes", "0.5"]
     assert main(command) == 0
     assert (asked["people"], asked["minutes"]) == (7, 0.5)

@@ -37,9 +37,9 @@ def run_benchmark(*, seconds: float, steps: int, repeats: int, browser: bool = F
         the figures by name, which are also printed.
     """
     from models.intergen.compact import load_folder
+    from webdemo.benchmark.batching import BATCHED_GOAL, measure_batching
     from webdemo.benchmark.films import measure_film
     from webdemo.benchmark.interformer import measure_interformer
-    from webdemo.benchmark.load import BATCHED_GOAL, measure_batching
     from webdemo.benchmark.parts import measure_busy, measure_parts
     from webdemo.benchmark.reactions import measure_reactions
     from webdemo.inference.engine import Engine

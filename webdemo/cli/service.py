@@ -87,7 +87,8 @@ def benchmark(options: argparse.Namespace) -> dict[str, Any]:
 
         return run_live(people=options.people, minutes=options.minutes)
     if options.load:
-        from webdemo.benchmark.load import goals_missed, measure_batching, run_load
+        from webdemo.benchmark.batching import measure_batching
+        from webdemo.benchmark.load import goals_missed, run_load
 
         figures = measure_batching(steps=options.steps)
         for name, value in figures.items():

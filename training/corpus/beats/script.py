@@ -16,7 +16,8 @@ from ..words.lexicon import ANSWERS as REPLIES
 from ..words.lexicon import Pair, sentences
 from ..words.narrator import ALONE, JOINT, ONE_BEAT
 from . import moves
-from .acts import ACTS, Done
+from .act import Done
+from .acts import ACTS
 from .performer import Rng
 from .play import Play
 from .touching import TOUCH_BEATS

@@ -14,10 +14,7 @@ import gradio as gr
 
 from motion import InputError
 from webdemo.inference.requests import (
-    DAMPING,
-    GUIDANCE,
     MAX_SEED,
-    SAMPLES,
     Cancelled,
     Progress,
     Result,
@@ -25,9 +22,8 @@ from webdemo.inference.requests import (
 )
 from webdemo.ui.components.actors import READ_WITH
 from webdemo.ui.components.exports import Record
-from webdemo.ui.components.pace import AT_FIRST, CHOSEN, FAITHFUL, FOLLOWED, pace_of, pace_switch
 from webdemo.ui.components.player import busy, show
-from webdemo.ui.components.settings import ADVANCED, OPENED, advanced_label, differs, snapshot
+from webdemo.ui.components.settings import OPENED, differs, snapshot
 from webdemo.ui.components.show import result_payload
 from webdemo.ui.context import PageContext
 from webdemo.ui.history import Kept, Opened, Original
@@ -35,25 +31,15 @@ from webdemo.ui.text.panels import notes_lines, readout_panel, status
 from webdemo.ui.text.words import cancelled_line, error_line, progress_line, seconds
 from webdemo.ui.visitor import visitor
 
-from .results import QUIET, ResultsTab, Updates
+from .results import QUIET, Updates
+from .sampling import SamplingTab
 
 log = logging.getLogger(__name__)
 __all__ = ["QUIET", "JobTab", "Updates", "total"]
 
 
-STEPS_SHOWN = (1, 100)
-"""What the slider offers; the API takes more."""
 PACE = 0.5
 """Seconds between two updates of the page while a run goes on; each costs a browser about ten milliseconds."""
-_DAMPING_INFO = (
-    "While t ≤ threshold × T, corrects feet, bones, overlap, touch and facing as the motion is generated; "
-    "0 = off."
-)
-_GUIDANCE_INFO = "How strongly the words steer; 1 = no guidance."
-_STEPS_INFO = "Denoising steps: fewer are faster, more are finer."
-_SEED_INFO = "Same seed, same motion; empty for a new one."
-_SAMPLES_INFO = "Motions to generate."
-
 Watch = Callable[[Progress], dict[str, Any] | None]
 
 
@@ -62,7 +48,7 @@ def total(result: Result) -> float:
     return result.timings.get("total", sum(result.timings.values()))
 
 
-class JobTab(ResultsTab, ABC):
+class JobTab(SamplingTab, ABC):
     """A tab that turns its controls into a request, runs it and shows the result.
 
     A subclass lays out its own controls between these parts and answers :meth:`request` and :meth:`title`.
@@ -74,12 +60,6 @@ class JobTab(ResultsTab, ABC):
     label: str
     restored: tuple[str, ...] = ()
     """Attributes that :meth:`opened` sets, besides the result and controls named as a request's fields."""
-    dice: gr.Button | None = None
-    """Draws a seed, where the tab's motion is random."""
-    folded: gr.Accordion | None = None
-    """Holds the settings that are rarely needed, where the tab has them."""
-    pace: gr.Radio | None = None
-    """Switches between few steps and many, where the tab has it."""
     controls: Mapping[str, gr.components.Component]
     """The inputs of a run, by the names of its fields; set by ``build``."""
 
@@ -111,51 +91,6 @@ class JobTab(ResultsTab, ABC):
         self.line = gr.HTML(status(), elem_id=self._id("status"), elem_classes="pd-line")
         self.changed = gr.HTML("", elem_id=self._id("changed"), elem_classes="pd-line")
         self.asked = gr.Textbox("", visible=False)
-
-    def _samples(self) -> gr.Slider:
-        return gr.Slider(
-            *SAMPLES, value=SamplingRequest.samples, step=1, label="Samples", info=_SAMPLES_INFO,
-            elem_id=self._id("samples"),
-        )  # fmt: skip
-
-    def _sampling(self, more: Callable[[], Sequence[gr.Checkbox]] = tuple, *, paced: bool = False) -> None:
-        """The seed; and guidance, steps, damping and ``more``, folded under a line with their values.
-
-        ``paced`` puts a switch over them: fast or faithful.
-        """
-        with gr.Row(elem_classes="pd-seed"):
-            self.seed = gr.Number(
-                value=SamplingRequest.seed, label="Seed", info=_SEED_INFO,
-                elem_id=self._id("seed"), elem_classes="pd-seed-field", min_width=0,
-            )  # fmt: skip
-            self.dice = gr.Button(
-                "Random", size="sm", elem_id=self._id("dice"), elem_classes="pd-dice", min_width=0
-            )
-        if paced:
-            self.pace = pace_switch(self._id("pace"))
-        values = (SamplingRequest.guidance, AT_FIRST if paced else FAITHFUL, SamplingRequest.damping)
-        with gr.Accordion(
-            advanced_label(*values), open=False, elem_id=self._id("advanced"), elem_classes="pd-advanced"
-        ) as self.folded:
-            self.guidance = gr.Slider(
-                *GUIDANCE, value=values[0], step=0.1, label="Guidance scale", info=_GUIDANCE_INFO,
-                elem_id=self._id("guidance"),
-            )  # fmt: skip
-            self.steps = gr.Slider(
-                *STEPS_SHOWN, value=values[1], step=1, label="DDIM steps", info=_STEPS_INFO,
-                elem_id=self._id("steps"),
-            )  # fmt: skip
-            self.damping = gr.Slider(
-                *DAMPING, value=values[2], step=0.05, label="Damping threshold",
-                info=_DAMPING_INFO, elem_id=self._id("damping"),
-            )  # fmt: skip
-            added = more()
-        parts: list[Any] = [self.guidance, self.steps, self.damping, *added]
-        # A folded part tells nobody of its changes before it was seen, so others also use this.
-        self.tell_advanced = {"inputs": parts, "outputs": self.folded, "js": ADVANCED, **QUIET}
-        gr.on([part.change for part in parts], None, **self.tell_advanced)
-        if self.pace is not None:
-            self.steps.change(None, inputs=self.steps, outputs=self.pace, js=FOLLOWED, **QUIET)
 
     # ---- events ----------------------------------------------------------------------------------
 
@@ -190,16 +125,10 @@ class JobTab(ResultsTab, ABC):
         }  # fmt: skip
         changes: list[Any] = [getattr(part, "change") for part in self.knobs.values()]  # noqa: B009
         gr.on(changes, None, **self.compare)
-        if self.pace is not None:
-            chosen = self.pace.input(None, inputs=self.pace, outputs=self.steps, js=CHOSEN, **QUIET)
-            chosen.then(None, **self.tell_advanced).then(None, **self.compare)
+        self._wire_sampling()
         self._wire_start(self.start, triggers)
         self.stop.click(self.cancel, queue=False, **QUIET)
         self._wire_results()
-        if self.dice is not None:
-            self.dice.click(
-                None, outputs=self.seed, js=f"() => Math.floor(Math.random() * {MAX_SEED + 1})", **QUIET
-            )
 
     def _wire_start(
         self,
@@ -382,12 +311,7 @@ class JobTab(ResultsTab, ABC):
         for name, value in run.kept.controls.items():
             if name in self.knobs:
                 found[self.knobs[name]] = gr.update(value=value)
-        values: list[Any] = [run.entry.request.get(name) for name in ("guidance", "steps", "damping")]
-        if self.folded is not None and None not in values:
-            found[self.folded] = gr.update(label=advanced_label(*values))
-        if self.pace is not None:
-            found[self.pace] = gr.update(value=pace_of(run.entry.request.get("steps")))
-        return found
+        return found | self._opened_sampling(run.entry.request)
 
     def _stopped(self, line: str, tone: str) -> Updates:
         return self._updates(player=busy(""), line=status(line, tone=tone))

@@ -1,0 +1,103 @@
+"""The settings of a tab whose motion is sampled: seed, samples, guidance, steps and damping."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from typing import Any
+
+import gradio as gr
+
+from webdemo.inference.requests import DAMPING, GUIDANCE, MAX_SEED, SAMPLES, SamplingRequest
+from webdemo.ui.components.pace import AT_FIRST, CHOSEN, FAITHFUL, FOLLOWED, pace_of, pace_switch
+from webdemo.ui.components.settings import ADVANCED, advanced_label
+
+from .results import QUIET, ResultsTab
+
+STEPS_SHOWN = (1, 100)
+"""What the slider offers; the API takes more."""
+_DAMPING_INFO = (
+    "While t ≤ threshold × T, corrects feet, bones, overlap, touch and facing as the motion is generated; "
+    "0 = off."
+)
+_GUIDANCE_INFO = "How strongly the words steer; 1 = no guidance."
+_STEPS_INFO = "Denoising steps: fewer are faster, more are finer."
+_SEED_INFO = "Same seed, same motion; empty for a new one."
+_SAMPLES_INFO = "Motions to generate."
+
+
+class SamplingTab(ResultsTab):
+    """The part of a tab that sets how its motion is sampled, for tabs that have such settings."""
+
+    dice: gr.Button | None = None
+    """Draws a seed, where the tab's motion is random."""
+    folded: gr.Accordion | None = None
+    """Holds the settings that are rarely needed, where the tab has them."""
+    pace: gr.Radio | None = None
+    """Switches between few steps and many, where the tab has it."""
+    compare: dict[str, Any]
+    """The event that says what was changed since the result; set where runs are wired."""
+
+    def _samples(self) -> gr.Slider:
+        return gr.Slider(
+            *SAMPLES, value=SamplingRequest.samples, step=1, label="Samples", info=_SAMPLES_INFO,
+            elem_id=self._id("samples"),
+        )  # fmt: skip
+
+    def _sampling(self, more: Callable[[], Sequence[gr.Checkbox]] = tuple, *, paced: bool = False) -> None:
+        """The seed; and guidance, steps, damping and ``more``, folded under a line with their values.
+
+        ``paced`` puts a switch over them: fast or faithful.
+        """
+        with gr.Row(elem_classes="pd-seed"):
+            self.seed = gr.Number(
+                value=SamplingRequest.seed, label="Seed", info=_SEED_INFO,
+                elem_id=self._id("seed"), elem_classes="pd-seed-field", min_width=0,
+            )  # fmt: skip
+            self.dice = gr.Button(
+                "Random", size="sm", elem_id=self._id("dice"), elem_classes="pd-dice", min_width=0
+            )
+        if paced:
+            self.pace = pace_switch(self._id("pace"))
+        values = (SamplingRequest.guidance, AT_FIRST if paced else FAITHFUL, SamplingRequest.damping)
+        with gr.Accordion(
+            advanced_label(*values), open=False, elem_id=self._id("advanced"), elem_classes="pd-advanced"
+        ) as self.folded:
+            self.guidance = gr.Slider(
+                *GUIDANCE, value=values[0], step=0.1, label="Guidance scale", info=_GUIDANCE_INFO,
+                elem_id=self._id("guidance"),
+            )  # fmt: skip
+            self.steps = gr.Slider(
+                *STEPS_SHOWN, value=values[1], step=1, label="DDIM steps", info=_STEPS_INFO,
+                elem_id=self._id("steps"),
+            )  # fmt: skip
+            self.damping = gr.Slider(
+                *DAMPING, value=values[2], step=0.05, label="Damping threshold",
+                info=_DAMPING_INFO, elem_id=self._id("damping"),
+            )  # fmt: skip
+            added = more()
+        parts: list[Any] = [self.guidance, self.steps, self.damping, *added]
+        # A folded part tells nobody of its changes before it was seen, so others also use this.
+        self.tell_advanced = {"inputs": parts, "outputs": self.folded, "js": ADVANCED, **QUIET}
+        gr.on([part.change for part in parts], None, **self.tell_advanced)
+        if self.pace is not None:
+            self.steps.change(None, inputs=self.steps, outputs=self.pace, js=FOLLOWED, **QUIET)
+
+    def _wire_sampling(self) -> None:
+        """The switch of the pace and the button that draws a seed, where the tab has them."""
+        if self.pace is not None:
+            chosen = self.pace.input(None, inputs=self.pace, outputs=self.steps, js=CHOSEN, **QUIET)
+            chosen.then(None, **self.tell_advanced).then(None, **self.compare)
+        if self.dice is not None:
+            self.dice.click(
+                None, outputs=self.seed, js=f"() => Math.floor(Math.random() * {MAX_SEED + 1})", **QUIET
+            )
+
+    def _opened_sampling(self, request: Mapping[str, Any]) -> dict[Any, Any]:
+        """Updates that show the settings of a kept request."""
+        found: dict[Any, Any] = {}
+        values: list[Any] = [request.get(name) for name in ("guidance", "steps", "damping")]
+        if self.folded is not None and None not in values:
+            found[self.folded] = gr.update(label=advanced_label(*values))
+        if self.pace is not None:
+            found[self.pace] = gr.update(value=pace_of(request.get("steps")))
+        return found
