@@ -74,12 +74,14 @@ def plant_feet(
         positions: (T, J, 3) metres on a skeleton of constant bones, floor at 0.
         contacts: (T, 4) bool, as :func:`foot_contacts` gives.
         blend: frames over which a correction fades.
-        held: (T,) frames whose feet are right: a contact that includes some of them is pinned to its place there.
+        held: (T,) frames that stay as they are. A contact beside them is pinned to its place there, and what is
+            corrected fades towards them.
 
     Returns:
         (T, J, 3) with the bone lengths of the input.
     """
     result = np.array(positions, dtype=np.float64)
+    stays = np.zeros(len(result), dtype=bool) if held is None else held
     ankles, toes = [], []
     for side, name in enumerate(_SIDES):
         ankle, toe = skeleton.index(f"{name}_ankle"), skeleton.index(f"{name}_foot")
@@ -91,12 +93,12 @@ def plant_feet(
             contacts[:, 2 * side + 1],
             foot_length,
             blend,
-            np.zeros(len(result), dtype=bool) if held is None else held,
+            stays,
         )
         ankles.append(goals[0])
         toes.append(goals[1])
 
-    sink = _needed_sink(result, ankles, skeleton)
+    sink = _needed_sink(result, ankles, skeleton) * (1 - _fade(stays, blend)[:, 0])
     result[..., 1] -= sink[:, None]
     forward = facing(result, skeleton)
     for name, ankle_goal, toe_goal in zip(_SIDES, ankles, toes, strict=True):
@@ -109,6 +111,7 @@ def plant_feet(
         result[:, knee] = new_knee
         result[:, ankle] = new_ankle
         result[:, toe] = toe_goal + (new_ankle - ankle_goal)
+    result[stays] = positions[stays]
     return result
 
 
@@ -166,8 +169,9 @@ def _foot_goals(
     shared = (toe_shift * toe_weight + ankle_shift * ankle_weight) / total
     new_toe = toe + shared + toe_weight * (toe_shift - shared)
     new_ankle = ankle + shared + ankle_weight * (ankle_shift - shared)
-    new_toe[:, 1] = np.maximum(new_toe[:, 1], 0.0)
-    new_ankle[:, 1] = np.maximum(new_ankle[:, 1], _REST_ANKLE[0])
+    for place, floor in ((new_toe, 0.0), (new_ankle, _REST_ANKLE[0])):
+        lift = np.maximum(floor - place[:, 1], 0.0)
+        place[:, 1] += _smooth(lift, blend) * (1 - _fade(held, blend)[:, 0]) if held.any() else lift
     bone = new_ankle - new_toe
     bone *= foot_length / np.maximum(np.linalg.norm(bone, axis=-1, keepdims=True), 1e-9)
     # The toe's place wins where both stand: a heel may lift, a toe must not glide.
@@ -181,15 +185,18 @@ def _pin(
     heights: tuple[float, float],
     held: NDArray[np.bool_],
 ) -> Array:
-    """(T, 3) shift that holds a joint still through each contact and fades between contacts."""
+    """(T, 3) shift that holds a joint still through each contact and fades between contacts, and to frames held."""
     shift = np.zeros_like(joint)
     runs: list[tuple[int, int]] = []
-    for start, stop in _runs(stands):
+    for start, stop in _runs(stands & ~held):
         runs.extend(_split(joint, start, stop, blend))
-    goals = [_goal(joint[start:stop], held[start:stop], heights) for start, stop in runs]
-    runs = _with_room_to_step(joint, runs, goals)
-    for (start, stop), goal in zip(runs, goals, strict=True):
-        shift[start:stop] = goal - joint[start:stop]
+    for start, stop in runs:
+        shift[start:stop] = _goal(joint, start, stop, stands & held, heights) - joint[start:stop]
+    runs = _with_room_to_step(shift, sorted([*runs, *_runs(held)]), held, stands & held)
+    kept = np.zeros(len(joint), dtype=bool)
+    for start, stop in runs:
+        kept[start:stop] = True
+    shift[~kept] = 0.0
     edges = [(0, 0), *runs, (len(joint), len(joint))]
     for (_, before), (after, _) in itertools.pairwise(edges):
         gap = after - before
@@ -204,28 +211,44 @@ def _pin(
     return shift
 
 
-def _goal(place: Array, held: NDArray[np.bool_], heights: tuple[float, float]) -> Array:
-    """(3,) the place that a standing joint is pinned to, given where it was (frames, 3) and the frames that stay."""
-    goal = np.median(place[held] if held.any() else place, axis=0)
-    goal[1] = np.clip(goal[1], *heights)
-    return goal
+def _goal(
+    joint: Array, start: int, stop: int, stood: NDArray[np.bool_], heights: tuple[float, float]
+) -> Array:
+    """(1 or stop - start, 3) places of a joint in a contact: where it ``stood`` (T,) beside it, or its median."""
+    beside = [joint[i] for i in (start - 1, stop) if 0 <= i < len(joint) and stood[i]]
+    if not beside:
+        goal: Array = np.median(joint[start:stop], axis=0)
+        goal[1] = np.clip(goal[1], *heights)
+        return goal[None]
+    share = _ease(np.arange(1, stop - start + 1) / (stop - start + 1))[:, None]
+    return beside[0] + share * (beside[-1] - beside[0])
 
 
 def _with_room_to_step(
-    joint: Array, runs: list[tuple[int, int]], goals: list[Array]
+    shift: Array, runs: list[tuple[int, int]], held: NDArray[np.bool_], stood: NDArray[np.bool_]
 ) -> list[tuple[int, int]]:
-    """Shortens contacts that follow each other so closely that the correction between them would jump."""
+    """Shortens contacts that follow each other so closely that the correction between them would jump.
+
+    Runs of ``held`` frames are left, a contact that goes on from where the joint ``stood`` in them, too; another one
+    beside them may vanish.
+    """
     runs = list(runs)
     for index in range(len(runs) - 1):
         (start, stop), (next_start, next_stop) = runs[index : index + 2]
-        change = (goals[index + 1] - joint[next_start]) - (goals[index] - joint[stop - 1])
+        change = shift[next_start] - shift[stop - 1]
         # Smoothstep is one and a half times as steep in its middle as on average.
         missing = int(np.ceil(1.5 * np.linalg.norm(change) / _MAX_STEP)) - (next_start - stop)
-        if missing > 0:
+        if missing <= 0 or (next_start == stop and (stood[stop - 1] or stood[next_start])):
+            continue
+        if held[stop - 1]:
+            runs[index + 1] = (min(next_start + missing, next_stop), next_stop)
+        elif held[next_start]:
+            runs[index] = (start, max(stop - missing, start))
+        else:
             half = (missing + 1) // 2
             runs[index] = (start, max(stop - half, start + 1))
             runs[index + 1] = (min(next_start + half, next_stop - 1), next_stop)
-    return runs
+    return [(start, stop) for start, stop in runs if start < stop]
 
 
 def _runs(mask: NDArray[np.bool_]) -> list[tuple[int, int]]:
@@ -279,6 +302,10 @@ def _needed_sink(positions: Array, ankles: list[Array], skeleton: Skeleton) -> A
     need = np.clip(need, 0.0, 0.12)
     if len(need) < 3 or not need.any():
         return need
-    return scipy.ndimage.gaussian_filter1d(
-        scipy.ndimage.maximum_filter1d(need, 5, mode="nearest"), 1.5, mode="nearest"
-    )
+    return _smooth(need, 2)
+
+
+def _smooth(need: Array, reach: int) -> Array:
+    """(T,) at least about ``need`` (T,), without kinks; it begins some 3 * ``reach`` frames earlier."""
+    widened = scipy.ndimage.maximum_filter1d(need, 2 * reach + 1, mode="nearest")
+    return scipy.ndimage.gaussian_filter1d(widened, 0.75 * reach, mode="nearest")

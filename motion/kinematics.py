@@ -87,6 +87,58 @@ def fit_rotations(positions: Array, skeleton: Skeleton = SMPL22) -> Array:
     return local_rotations(np.moveaxis(world, 0, -3), skeleton)
 
 
+def followed_rotations(positions: Array, skeleton: Skeleton = SMPL22) -> Array:
+    """Rotations against the world as unit quaternions that go on from frame to frame, to smooth or to interpolate.
+
+    Where one bone leaves the twist open, it is the least from frame to frame rather than from the parent, so a limb
+    that passes the rest pose's opposite does not flip; signs are chosen so that neighbours are close.
+
+    Args:
+        positions: (T, J, 3) metres.
+
+    Returns:
+        (T, J, 4) quaternions, the real part last. A joint without bones has the identity.
+    """
+    world = np.zeros((*positions.shape[:2], 3, 3)) + np.eye(3)
+    single = [(joint, children[0]) for joint, children in enumerate(skeleton.children) if len(children) == 1]
+    for joint, children in enumerate(skeleton.children):
+        if len(children) > 1:
+            bones = positions[:, list(children)] - positions[:, joint, None]
+            world[:, joint] = _kabsch(skeleton.offsets[list(children)], bones)
+    if single:
+        joints, ends = np.array(single).T
+        bones = positions[:, ends] - positions[:, joints]
+        turns = swing(bones[:-1], bones[1:])
+        for frame, turn in enumerate(turns, start=1):
+            world[frame, joints] = turn @ world[frame - 1, joints]
+    found = _quaternions(world)
+    flips = np.where(np.sum(found[1:] * found[:-1], axis=-1) < 0, -1.0, 1.0)
+    found[1:] *= np.cumprod(flips, axis=0)[..., None]
+    return found
+
+
+def _quaternions(rotations: Array) -> Array:
+    """(…, 4) unit quaternions, the real part last, of rotations (…, 3, 3): the main axis of Bar-Itzhack's matrix."""
+    across = rotations + np.swapaxes(rotations, -1, -2)
+    trace = np.trace(rotations, axis1=-2, axis2=-1)[..., None]
+    axial = rotations[..., [2, 0, 1], [1, 2, 0]] - rotations[..., [1, 2, 0], [2, 0, 1]]
+    matrix = np.empty((*rotations.shape[:-2], 4, 4))
+    matrix[..., :3, :3] = across - trace[..., None] * np.eye(3)
+    matrix[..., :3, 3] = matrix[..., 3, :3] = axial
+    matrix[..., 3, 3] = trace[..., 0]
+    return np.linalg.eigh(matrix)[1][..., -1]
+
+
+def rotation_matrices(quaternions: Array) -> Array:
+    """(…, 3, 3) rotations of quaternions (…, 4) of any length but 0, the real part last."""
+    unit = _unit(quaternions)
+    x, y, z, w = np.moveaxis(unit, -1, 0)
+    axial = np.zeros((*x.shape, 3, 3))
+    axial[..., 0, 1], axial[..., 0, 2], axial[..., 1, 2] = -z, y, -x
+    axial -= np.swapaxes(axial, -1, -2)
+    return np.eye(3) + 2 * (w[..., None, None] * axial + axial @ axial)
+
+
 def project_to_skeleton(positions: Array, skeleton: Skeleton = SMPL22) -> tuple[Array, Array]:
     """The nearest motion with the skeleton's own bone lengths: the same root path and bone directions.
 

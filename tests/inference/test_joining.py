@@ -89,3 +89,36 @@ def test_a_loop_closes_in_place_and_speed_and_keeps_what_is_fixed() -> None:
 def test_the_shortest_loop_closes() -> None:
     short = closed(mover(speed=0.1)[:15], np.zeros(0, dtype=int))
     assert short.shape == (15, 22, 3) and np.isfinite(short).all()
+
+
+def dancer(seconds: float = 3.0, turn: float = 1.2) -> np.ndarray:
+    """(T, 22, 3) a person who turns around on bent knees, ``turn`` times a second, and lets an arm circle."""
+    time = np.arange(round(30 * seconds)) / 30
+    rotations = np.repeat(fit_rotations(SMPL22.rest_positions())[None], len(time), axis=0)
+    rotations[:, 0] = np.stack([heading_matrix(a) for a in 2 * np.pi * turn * time])
+    circle = np.stack([heading_matrix(a) for a in -2 * np.pi * 1.5 * time])
+    rotations[:, SMPL22.index("left_shoulder")] = circle
+    way = np.stack([0.2 * np.sin(3 * time), 1.3 + 0 * time, 0.2 * time], axis=-1)
+    return forward_kinematics(rotations, way)
+
+
+def test_what_turns_fast_is_not_thrown_around_where_it_joins() -> None:
+    """The mean of two rotation matrices that are half a turn apart is none, and limbs jumped by half a metre."""
+    made = dancer()
+    ends = np.r_[0:30, 60:90]
+    found = joined(made, ends, made[ends])
+    hard = np.linalg.norm(np.diff(made, n=2, axis=0), axis=-1).max()
+    assert np.linalg.norm(np.diff(found, n=2, axis=0), axis=-1).max() < 1.5 * hard
+    np.testing.assert_allclose(lengths(found), lengths(made), atol=1e-6)
+
+
+def test_a_dance_that_turns_closes_without_a_jolt_and_only_there() -> None:
+    made = dancer(turn=0.7)
+    found = closed(made, np.zeros(0, dtype=int))
+    around = np.concatenate([found[-REACH - 5 :], found[: REACH + 5]])
+    assert jerk(around).max() < 0.025, "metres a frame³, where the hand circles at 13 cm a frame"
+    closing = np.diff(np.concatenate([found[-2:], found[:2]]), n=2, axis=0)
+    assert np.linalg.norm(closing, axis=-1).max() < 0.01
+    assert np.linalg.norm(closing.sum(0), axis=-1).max() < 0.01
+    np.testing.assert_array_equal(found[REACH:-REACH], made[REACH:-REACH])
+    np.testing.assert_allclose(lengths(found), lengths(made), atol=1e-6)

@@ -100,3 +100,28 @@ def test_two_bones_reach_or_draw_in(goal):
         assert np.cross(new_ankle, goal) == pytest.approx(0, abs=1e-6)
     if reach < upper + lower:
         assert new_knee[2] > 0  # knees bend forward
+
+
+def test_held_frames_stay_and_feet_beside_them_stand_where_they_stood():
+    positions, _ = marching(120)
+    positions[60:] += [0.03, -0.02, 0.0]
+    held = np.arange(120) < 60
+    contacts = foot_contacts(positions, FPS)
+    assert (contacts[59] & contacts[60]).any()
+    planted = plant_feet(positions, contacts, held=held)
+    np.testing.assert_array_equal(planted[held], positions[held])
+    np.testing.assert_allclose(_bones(planted), _bones(positions), atol=1e-6)
+    for foot, stands in zip(FEET, contacts.T, strict=True):
+        if stands[59:63].all():
+            assert np.linalg.norm(np.diff(planted[59:63, foot], axis=0), axis=-1).max() < 0.01
+
+
+def test_a_foot_between_held_frames_moves_evenly_from_place_to_place():
+    positions = gliding(60, speed=0.0, sink=0.0)
+    positions[40:] += [0.04, 0.0, 0.0]
+    positions[20:40] += [0.1, -0.03, 0.0]
+    held = np.arange(60) // 20 != 1
+    planted = plant_feet(positions, np.ones((60, 4), bool), held=held)
+    np.testing.assert_array_equal(planted[held], positions[held])
+    feet = planted[:, list(FEET)]
+    assert np.linalg.norm(np.diff(feet, axis=0), axis=-1).max() < 0.005

@@ -10,10 +10,12 @@ from scipy.spatial.transform import Rotation
 from motion import SMPL22
 from motion.kinematics import (
     fit_rotations,
+    followed_rotations,
     forward_kinematics,
     global_rotations,
     local_rotations,
     project_to_skeleton,
+    rotation_matrices,
 )
 
 quick = settings(max_examples=25, deadline=None)
@@ -86,3 +88,21 @@ def test_opposite_bone_has_a_rotation():
     projected, rotations = project_to_skeleton(positions)
     assert np.isfinite(rotations).all()
     np.testing.assert_allclose(projected[ankle], positions[ankle], atol=1e-6)
+
+
+def test_rotations_go_on_where_a_limb_passes_the_opposite_of_its_rest():
+    """An arm that circles through the direction opposite to the T-pose's, on a body that turns around twice."""
+    angle = np.linspace(0.0, 4 * np.pi, 90)
+    rotations = np.tile(np.eye(3), (90, 22, 1, 1))
+    rotations[:, 0] = Rotation.from_euler("y", angle[:, None]).as_matrix()
+    circle = np.stack([0.1 + 0 * angle, 0 * angle, angle], axis=-1)
+    rotations[:, SMPL22.index("left_shoulder")] = Rotation.from_euler("yxz", circle).as_matrix()
+    positions = forward_kinematics(rotations, np.zeros((90, 3)))
+    found = followed_rotations(positions)
+    assert np.linalg.norm(np.diff(found, axis=0), axis=-1).max() < 0.2
+    world = rotation_matrices(found)
+    np.testing.assert_allclose(world[:, 0], rotations[:, 0], atol=1e-9)
+    for parent, joint in SMPL22.bones:
+        bone = positions[:, joint] - positions[:, parent]
+        turned = world[:, parent] @ (world[0, parent].T @ bone[0])
+        np.testing.assert_allclose(turned, bone, atol=1e-9)

@@ -32,6 +32,8 @@ from webdemo.inference import Engine, Result
 from webdemo.inference.actor import FPS
 from webdemo.inference.engine import WEIGHTS
 from webdemo.inference.story import Beat, FloorPath, FloorPoint, Pose, SceneRequest
+from webdemo.inference.story.plan import windows
+from webdemo.inference.story.wishes import bent_wrong
 
 Array = NDArray[np.floating]
 Make = Callable[[SceneRequest], tuple[Duet, float]]
@@ -102,6 +104,20 @@ def seams(duet: Duet, edges: Sequence[int]) -> dict[str, list[float]]:
         "foot": [float(steps[e - AROUND : e + AROUND].max()) for e in edges[1:-1]],
         "usual_foot": [usual_step],
     }
+
+
+def jolt(positions: Array, joins: Sequence[int]) -> float:
+    """Metres a frame by which a joint's speed changes at most, frame by frame within half a second of a loop's joins.
+
+    Args:
+        positions: (2, T, 22, 3) metres of a loop.
+        joins: frames at which what was made separately meets.
+    """
+    total = positions.shape[1]
+    around = np.concatenate([positions[:, -1:], positions, positions[:, :1]], axis=1)
+    changes = np.linalg.norm(np.diff(around, n=2, axis=1), axis=-1).max((0, 2))
+    apart = np.abs(np.arange(total)[:, None] - np.array(joins))
+    return float(changes[np.minimum(apart, total - apart).min(1) <= FPS / 2].max())
 
 
 def wave_path(seconds: float) -> FloorPath:
@@ -183,7 +199,7 @@ def _stories(make: Make, options: argparse.Namespace, plain: dict[str, Any]) -> 
 
 def _parts(make: Make, options: argparse.Namespace, plain: dict[str, Any]) -> dict[str, Any]:
     """Paths, spans and loops."""
-    paths, spans, loops = [], [], []
+    paths, spans, loops, jolts = [], [], [], []
     walk = (Beat("One person walks and the other follows.", seconds=5.0),) * 2
     for seed in range(options.parts):
         path = wave_path(10.0)
@@ -194,10 +210,12 @@ def _parts(make: Make, options: argparse.Namespace, plain: dict[str, Any]) -> di
         outside = np.abs(remade.positions - duet.positions)
         outside[:, 90:180] = 0
         spans.append((float(outside.max()), seams(remade, (0, 90, 180, remade.num_frames))["ratio"]))
-        loop, _ = make(
-            SceneRequest(beats=(Beat("They dance together.", seconds=6.0),), loop=True, seed=seed, **plain)
+        dance = SceneRequest(
+            beats=(Beat("They dance together.", seconds=6.0),), loop=True, seed=seed, **plain
         )
+        loop, _ = make(dance)
         x = loop.positions.astype(np.float64)
+        jolts.append(jolt(x, [window.start for window in windows(dance)]))
         ahead = 2 * x[:, -1] - x[:, -2]
         loops.append(
             (
@@ -210,6 +228,7 @@ def _parts(make: Make, options: argparse.Namespace, plain: dict[str, Any]) -> di
         "outside": [value for value, _ in spans],
         "span_jerk": [ratio for _, ratios in spans for ratio in ratios],
         "loop_cm": [[round(100 * gap, 2), round(100 * speed, 2)] for gap, speed in loops],
+        "loop_jolt_cm": [round(100 * value, 2) for value in jolts],
     }
 
 
@@ -222,7 +241,7 @@ def _wishes(make: Make, options: argparse.Namespace, plain: dict[str, Any]) -> d
     )
     for seed in range(options.parts):
         duet, _ = make(SceneRequest(beats=beats, seed=seed, **plain))
-        frame = 120
+        frame = possible_frame(duet.a.positions)
         wanted = raised(duet.a.positions[frame])
         span = SceneRequest(
             beats=beats[1:], poses=(Pose("a", frame / FPS, wanted),), motion=duet, start=frame / FPS - 1,
@@ -241,6 +260,12 @@ def _wishes(make: Make, options: argparse.Namespace, plain: dict[str, Any]) -> d
         turned, _ = make(SceneRequest(beats=walk, paths=(way,), seed=seed, **plain))
         headings.append([float(e) for e in heading_error(turned, way)])
     return {"poses": poses, "heading_degrees": headings}
+
+
+def possible_frame(positions: Array, near: int = 120) -> int:
+    """The frame next to ``near`` in which a person (T, 22, 3) bends no joint wrong: other poses are refused."""
+    frames = sorted(range(30, len(positions) - 30), key=lambda frame: abs(frame - near))
+    return next(frame for frame in frames if bent_wrong(positions[frame]) is None)
 
 
 def table(scores: dict[str, Any]) -> str:
@@ -279,6 +304,9 @@ def table(scores: dict[str, Any]) -> str:
             f"{min(p['jerk'] for p in scores['poses']):.1f} to {max(p['jerk'] for p in scores['poses']):.1f} times"
         ),
         "loop: worst gap in place and in speed": f"{loop[0]:.1f} cm and {loop[1]:.1f} cm a frame",
+        "largest change of a joint's speed within half a second of a loop's joins, mean and worst": (
+            f"{np.mean(scores['loop_jolt_cm']):.1f} and {max(scores['loop_jolt_cm']):.1f} cm a frame"
+        ),
         "jerk at the edges of a span made again, beside the 95th percentile elsewhere": (
             f"{min(scores['span_jerk']):.1f} to {max(scores['span_jerk']):.1f} times"
         ),

@@ -9,8 +9,9 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
+from motion import SMPL22
 from motion.cleaning import foot_contacts, plant_feet
-from motion.kinematics import fit_rotations, forward_kinematics, project_to_skeleton
+from motion.kinematics import followed_rotations, rotation_matrices
 
 from .actor import FPS
 
@@ -19,8 +20,8 @@ Frames = NDArray[np.integer]
 
 REACH = 15
 """Frames beside a join that may move, half a second."""
-_AGAIN = 5
-"""The same where a loop is smoothed once more, after its feet were planted."""
+_AGAIN = (8, 5)
+"""The same where a loop is smoothed again, after its feet were planted and after they were raised to the floor."""
 _SLACK = 1e-4
 """Weight of what was made right beside a join, against the squared third difference. It grows geometrically to 1 where
 nothing may move any more: beside the join little above 1 Hz is kept, in the end all up to 5 Hz."""
@@ -30,7 +31,6 @@ _PASSING_SLACK = 1e-3
 """As :data:`_SLACK`, beside a single pose."""
 _CALM, _QUIET = 30.0, 0.8
 """Weights of accelerations, and of the limbs' speeds, that should vanish where a loop closes."""
-_ROUNDS = 2
 
 
 def joined(positions: Array, frames: Frames, given: Array) -> Array:
@@ -67,7 +67,7 @@ def passing(positions: Array, frames: Frames, given: Array, held: NDArray[np.boo
     wanted[frames] = given
     away = np.abs(np.arange(len(wanted))[:, None] - frames).min(1)
     free = np.flatnonzero((away > 0) & (away <= PASSING) & ~held)
-    found = _straightened(wanted, free, away[free], PASSING, slack=_PASSING_SLACK)
+    found = _turned(wanted, free, away[free], reach=PASSING, slack=_PASSING_SLACK)
     return plant_feet(found, foot_contacts(found, FPS), held=held | (away == 0))
 
 
@@ -84,55 +84,42 @@ def closed(positions: Array, fixed: Frames) -> Array:
     time = np.arange(total)
     away = np.abs(time + 0.5 - middle) + 0.5  # 1 at the first frame and the last, which lie in the middle
     moves = ~np.isin((time - middle) % total, fixed)
-    given: Array = np.roll(np.asarray(positions, dtype=np.float64), middle, axis=0)
-    found = given
-    for reach in (REACH, _AGAIN):
+    found: Array = np.roll(np.asarray(positions, dtype=np.float64), middle, axis=0)
+    for reach in (REACH, *_AGAIN):
         free = np.flatnonzero((away <= min(reach, middle - 2)) & moves)
         found = _turned(found, free, away[free], closes=middle, reach=reach)
-        for _ in range(_ROUNDS):
-            found = _straightened(found, free, away[free], reach, closes=middle)
-        if reach == REACH:
-            found = plant_feet(found, foot_contacts(found, FPS), held=~np.isin(time, free))
-    found = plant_feet(found, np.zeros((total, 4), dtype=bool))  # only up to the floor
-    found[~moves] = given[~moves]
+        stand = foot_contacts(found, FPS) & (reach == REACH)  # later feet are only raised to the floor
+        found = plant_feet(found, stand, held=~np.isin(time, free))
     return np.roll(found, -middle, axis=0)
 
 
 def _turned(
-    positions: Array, free: Frames, away: Array, *, closes: int | None = None, reach: int = REACH
-) -> Array:
-    """Positions (T, 22, 3) with the path of the pelvis and the joints' rotations smoothed at the frames ``free``."""
-    if not len(free):
-        return positions
-    rotations, pelvis = fit_rotations(positions), positions[:, 0]
-    way = _smoothed(pelvis, free, away, closes=closes, reach=reach)[free]
-    flat = rotations.reshape(len(positions), -1)
-    turns = _smoothed(flat, free, away, closes=closes, reach=reach, rests=True)[free]
-    u, _, vt = np.linalg.svd(turns.reshape(len(free), -1, 3, 3))
-    u[..., -1] *= np.linalg.det(u @ vt)[..., None]  # a rotation, not a reflection
-    found = positions.copy()
-    found[free] += forward_kinematics(u @ vt, way) - forward_kinematics(rotations[free], pelvis[free])
-    return found
-
-
-def _straightened(
     positions: Array,
     free: Frames,
     away: Array,
-    reach: int,
     *,
     closes: int | None = None,
+    reach: int = REACH,
     slack: float = _SLACK,
 ) -> Array:
-    """Smooths places where rotations could not be told apart, and brings them back onto constant bones."""
+    """Positions (T, 22, 3) with the path of the pelvis and the bones' rotations smoothed at the frames ``free``.
+
+    Quaternions are smoothed: the mean of two of them is a rotation between both even after nearly a full turn, but the
+    mean of two matrices that are half a turn apart is none.
+    """
     if not len(free):
         return positions
-    pelvis = positions[:, :1]
-    limbs: Array = (positions - pelvis).reshape(len(positions), -1)
-    limbs = _smoothed(limbs, free, away, closes=closes, reach=reach, rests=True, slack=slack)
-    way = _smoothed(pelvis[:, 0], free, away, closes=closes, reach=reach, slack=slack)
-    found = positions.copy()
-    found[free] = project_to_skeleton((limbs.reshape(positions.shape) + way[:, None])[free])[0]
+    turns = followed_rotations(positions)
+    flat = turns.reshape(len(positions), -1)
+    smooth = _smoothed(flat, free, away, closes=closes, reach=reach, rests=True, slack=slack)[free]
+    change = rotation_matrices(smooth.reshape(-1, *turns.shape[1:])) @ np.swapaxes(
+        rotation_matrices(turns[free]), -1, -2
+    )
+    found, old = positions.copy(), positions[free]
+    found[free, 0] = _smoothed(positions[:, 0], free, away, closes=closes, reach=reach, slack=slack)[free]
+    for parent, joint in SMPL22.bones:
+        bone = (change[:, parent] @ (old[:, joint] - old[:, parent])[..., None])[..., 0]
+        found[free, joint] = found[free, parent] + bone
     return found
 
 

@@ -10,8 +10,10 @@ from training.evaluate.scenes import (
     NEAR,
     PART,
     heading_error,
+    jolt,
     obeyed,
     path_error,
+    possible_frame,
     raised,
     seams,
     stories,
@@ -89,14 +91,35 @@ def test_headings_are_compared_the_short_way_round() -> None:
     np.testing.assert_allclose(found, 10.0, atol=1e-3)
 
 
+def test_a_jolt_is_found_beside_the_joins_of_a_loop_alone() -> None:
+    positions = apart(np.full(180, 1.0)).positions.astype(np.float64)
+    positions[0, 94, 20] += [0.2, 0.0, 0.0]  # back the next frame: the speed changes by 40 cm a frame
+    assert jolt(positions, [0, 90]) == pytest.approx(0.4)
+    assert jolt(positions, [0, 150]) == pytest.approx(0.0)
+    assert jolt(np.roll(positions, 80, axis=1), [0, 90]) == pytest.approx(0.4), (
+        "its last frame is beside its first"
+    )
+
+
+def test_a_pose_that_is_asked_for_is_one_that_people_take() -> None:
+    """A knee that is bent forward around the frame that is looked for."""
+    positions = np.repeat(REST[None], 200, axis=0)
+    knee, ankle = SMPL22.index("left_knee"), SMPL22.index("left_ankle")
+    positions[110:128, ankle] = positions[110:128, knee] + [0.0, 0.0, 0.4]
+    assert possible_frame(positions) == 128
+    positions[128:] = positions[120]
+    assert possible_frame(positions) == 109
+
+
 def test_the_table_counts() -> None:
     row = {"words": ["x", "y"], "obeyed": [True, False], "seconds": 6.0, "spent": 3.0, "ratio": [0.5], "foot": [0.1],
            "usual_foot": [0.08]}  # fmt: skip
     scores = {"settings": {"steps": 25}, "stories": [row, {**row, "obeyed": [True, True]}], "path_cm": [[1.0, 4.0]],
               "outside": [0.0], "span_jerk": [0.25, 1.5], "loop_cm": [[0.5, 0.6]], "heading_degrees": [[2.0, 4.0]],
+              "loop_jolt_cm": [2.0, 5.0],
               "poses": [{"miss_cm": 0.5, "jerk": 1.2}, {"miss_cm": 1.5, "jerk": 2.2}]}  # fmt: skip
     shown = table(scores)
-    assert "0.2 to 1.5 times" in shown
+    assert "0.2 to 1.5 times" in shown and "3.5 and 5.0 cm a frame" in shown
     assert "3.0 and 4.0 degrees" in shown and "| 1.5 cm |" in shown and "1.2 to 2.2 times" in shown
     assert (
         "| x | 100 % (2/2" in shown and "75 % (3/4" in shown and "| 30 s |" in shown and "50 % (1/2" in shown
