@@ -130,7 +130,7 @@ def _smoothed(
     """Values (T, N) whose frames ``free`` (M,) were moved so that third differences are small.
 
     Args:
-        values: metres, or entries of rotation matrices.
+        values: metres, or entries of quaternions.
         free: frames that may move.
         away: (M,) their distances from the join in frames, from 1.
         closes: the first frame of a loop that closes there.
@@ -138,15 +138,20 @@ def _smoothed(
         rests: whether speeds vanish there, too.
         slack: weight of the values themselves right beside the join.
     """
-    unit = np.eye(len(values))
+    meets = free[0] if closes is None else closes
+    first = max(
+        0, min(free[0], meets) - 3
+    )  # farther frames have no part in the differences of those that move
+    near = values[first : max(free[-1], meets) + 4]
+    inside, unit = free - first, np.eye(len(near))
     costs = [np.diff(unit, n=3, axis=0)]
     if closes is not None:
-        costs.append(np.sqrt(_CALM) * np.diff(unit, n=2, axis=0)[closes - 2 : closes])
+        costs.append(np.sqrt(_CALM) * np.diff(unit, n=2, axis=0)[meets - first - 2 : meets - first])
         if rests:
-            costs.append(np.sqrt(_QUIET) * np.diff(unit, axis=0)[closes - 2 : closes + 1])
+            costs.append(np.sqrt(_QUIET) * np.diff(unit, axis=0)[meets - first - 2 : meets - first + 1])
     cost = np.concatenate(costs)
-    moving, weights = cost[:, free], slack ** (1 - away / (reach + 1))
-    rest = cost @ values - moving @ values[free]
+    moving, weights = cost[:, inside], slack ** (1 - away / (reach + 1))
+    rest = cost @ near - moving @ near[inside]
     found = values.copy()
     found[free] = np.linalg.solve(
         moving.T @ moving + np.diag(weights), weights[:, None] * values[free] - moving.T @ rest
