@@ -139,9 +139,8 @@ def _smoothed(
         slack: weight of the values themselves right beside the join.
     """
     meets = free[0] if closes is None else closes
-    first = max(
-        0, min(free[0], meets) - 3
-    )  # farther frames have no part in the differences of those that move
+    # Frames farther away have no part in the differences of those that move.
+    first = max(0, min(free[0], meets) - 3)
     near = values[first : max(free[-1], meets) + 4]
     inside, unit = free - first, np.eye(len(near))
     costs = [np.diff(unit, n=3, axis=0)]
