@@ -23,7 +23,12 @@ CROUCHES, STANDS = Posture.CROUCHES, Posture.STANDS
         ("Person A kneels down, holds out a hand and is pulled to their feet by person B.", {"a": [KNEELS, STANDS]}),
         ("B sits; A pulls up B", {"b": [SITS, STANDS]}),
         ("Person B gets up again without any help.", {"b": [STANDS]}),
+        ("A woman plops onto the sofa.", {"a": [SITS]}),
+        ("He falls into a chair.", {"a": [SITS]}),
+        ("Person A hits the floor.", {"a": [LIES]}),
+        ("She leaves her seat.", {"a": [STANDS]}),
         # nobody goes down
+        ("They walk to the table.", {}),
         ("Person A does not sit down.", {}),
         ("Person A nearly falls over.", {}),
         ("They do sit-ups.", {}),
@@ -67,6 +72,7 @@ def test_postures_last_until_the_person_gets_up() -> None:
     story = ["Person A sits down.", "Person B waves.", "Person A gets up.", "They bow."]
     assert [at_start(story, beat)["a"] for beat in range(4)] == [STANDS, SITS, SITS, STANDS]
     assert at_start(["Person A stays seated."], 0) == {"a": SITS, "b": STANDS}
+    assert at_start(["He rises from his chair and bows."], 0)["a"] is SITS, "who gets up was down"
 
 
 @pytest.mark.parametrize("act", ["They dance.", "They walk away.", "Person A jumps.", "They hug."])

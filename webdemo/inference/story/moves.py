@@ -71,7 +71,8 @@ _WAYS: tuple[tuple[Way, tuple[str, ...]], ...] = (
         (
             r"\b(?:follow|chas|pursu|trail|shadow)\w*|\btags? along\b|\btails\b",
             rf"\b{_GO} (?:\w+ )?after {_OTHER}",
-            rf"\bwalk\w* behind {_OTHER}",
+            rf"\b(?:walk|stroll|march|run|jog|trot)\w* (?:(?!up\b)\w+ ){{0,2}}?behind {_OTHER}",
+            r"\bin pursuit\b|\b(?:hot |close )?on (?:his|her|their|person [ab]'s|the other's) heels\b",
         ),
     ),
     (
@@ -79,6 +80,7 @@ _WAYS: tuple[tuple[Way, tuple[str, ...]], ...] = (
         (
             rf"\b(?:{_GO}|com\w+|approach\w*) (?:\w+ )?(?:up )?(?:from )?behind\b",
             r"\bapproach\w* .*\bfrom behind\b",
+            rf"\b(?:sneak|creep|steal)s? up on {_OTHER}",
         ),
     ),
     (
@@ -188,7 +190,7 @@ _WAYS: tuple[tuple[Way, tuple[str, ...]], ...] = (
             r"\babout[- ]face\b",
             r"^turns?$",
             rf"\bturn\w* (?:\w+ ){{0,3}}?(?:{_AROUND}\b|away|back\b|{_HIS} backs?)",
-            r"\b(?:spin|pirouette|twirl|whirl|pivot|swivel|rotat)\w*\b",
+            r"\b(?:spin|pirouette|twirl|whirl|pivot|swivel|rotat)\w*\b|\b(?:wheel|swing|whip)s? (?:a?round|about)\b",
         ),
     ),
     (

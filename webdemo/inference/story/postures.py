@@ -42,6 +42,8 @@ class Change:
     passing: bool = False
 
 
+_SEAT = r"(?:chair|seat|bench|sofa|couch|stool|armchair|settee|step|table|desk)s?"
+_SELF = r"(?:him|her|them)sel(?:f|ves)"
 _SURFACE = r"(?:ground|floor|grass|mat|backs?|bottom|bum|side|knees)"
 _GROUND = rf"(?:(?:to|on|onto) (?:the |his |her |their )?{_SURFACE}|over|down)"
 _FEET = r"(?:to|on|onto) (?:his|her|their) feet\b"
@@ -49,6 +51,7 @@ _UP = re.compile(
     r"\b(?:gets?|getting|stands?|standing|ris(?:es?|ing)|climbs?) (?:\w+ )?up\b|\b(?:rises?|arises?)\b"
     rf"|\b(?:gets?|ris(?:es?|ing)|jumps?|springs?|leaps?|climbs?|scrambles?) (?:back )?{_FEET}|\bback {_FEET}"
     rf"|\b(?:is|are|gets?) (?:pulled|helped|lifted|dragged|hauled) (?:\w+ )?(?:up\b|{_FEET})"
+    rf"|\b(?:from|off|out of) (?:the|an?|his|her|their) (?:{_SEAT}|floor|ground)\b|\bleaves? (?:his|her|their) seats?\b"
 )
 _BY_OTHER = re.compile(r"\b(?:is|are|gets?|being) (?:\w+ )?\w+(?:ed|wn)\b")
 _RAISES = re.compile(
@@ -62,28 +65,43 @@ _FELLS = re.compile(
 """Acts by which one makes the other fall."""
 _DOWN = (
     (
+        Posture.KNEELS,
+        r"\bkneel(?:s|ing)?\b|\b(?:drop|sink|fall|go|get)(?:s|es)? (?:\w+ )?(?:on|to|onto|upon) "
+        r"(?:one|a|his|her|their|both|bended) knees?\b",
+    ),
+    (
+        Posture.SITS,
+        r"\b(?:sits?|sitting) (?:\w+ )?down\b|\b(?:takes?|has|have) (?:a|his|her|their) seats?\b|\bsits?\b"
+        r"|\b(?:flop|plop|plonk|slump|sink|drop|settle|perch|lower|squeeze|collapse|fall)(?:s|es)? (?:\w+ ){0,2}?"
+        rf"(?:on|onto|into|to|in) (?:the|an?|his|her|their) (?:\w+ )?{_SEAT}\b|\b(?:sits|seats|lowers) {_SELF}\b"
+        r"|\b(?:plop|settle|squat)s? down\b",
+    ),
+    (
         Posture.LIES,
         r"\b(?:fall|drop|tumble|topple|collapse|faint)(?:s|ing)?(?: \w+)?(?: backwards?)? "
         rf"{_GROUND}|\b(?:collapse|faint|topple)s?\b|^falls?$|\bfalls? flat\b"
         r"|\b(?:is|are|gets?) (?:knocked|pushed|thrown|shoved) (?:\w+ )?(?:over|down|to the (?:ground|floor))\b"
-        r"|\bl(?:ies?|ying) down\b|\bplays? dead\b",
+        r"|\bl(?:ies?|ying) down\b|\bplays? dead\b|\bpass(?:es)? out\b|\bkeels? over\b"
+        r"|\b(?:hits?|lands? on|ends? up on) (?:the|his|her) (?:floor|ground|deck|back|bottom)\b",
     ),
-    (
-        Posture.KNEELS,
-        r"\bkneel(?:s|ing)?\b|\b(?:drop|sink|fall|go|get)(?:s|es)? (?:\w+ )?(?:on|to|onto|upon) "
-        r"(?:one|a|his|her|their|both) knees?\b",
-    ),
-    (Posture.SITS, r"\b(?:sits?|sitting) (?:\w+ )?down\b|\btakes? (?:a|his|her|their) seats?\b|\bsits?\b"),
     (Posture.CROUCHES, r"\b(?:crouch|squat)(?:es|s|ing)?\b"),
 )
 _STAYS = r"\b(?:is|are|stays?|remains?|keeps?) (?:\w+ )?"
 _STATE = (
     (
         Posture.SITS,
-        rf"{_STAYS}(?:seated|sitting)\b(?! down)|\bsits?(?! (?:\w+ )?down)\b|^(?:seated|sitting)\b(?! down)",
+        rf"{_STAYS}(?:seated|sitting)\b(?! down)|\bsits?(?! (?:\w+ )?down)\b|^(?:seated|sitting)\b(?! down)"
+        rf"|\b(?:is|are) (?:\w+ )?(?:on|in) (?:the|an?|his|her|their) (?:\w+ )?{_SEAT}\b|\bperched\b",
     ),
-    (Posture.LIES, rf"{_STAYS}lying\b(?! down)|\bl(?:ies?|ying) (?:\w+ )?(?:on|flat|still)\b"),
-    (Posture.KNEELS, rf"{_STAYS}kneeling\b|^kneeling\b(?! down)"),
+    (
+        Posture.LIES,
+        rf"{_STAYS}(?:lying\b(?! down)|sprawled|flat on|on the (?:floor|ground)\b|on (?:his|her) back\b)"
+        r"|\bl(?:ies?|ying) (?:\w+ )?(?:on|flat|still)\b",
+    ),
+    (
+        Posture.KNEELS,
+        rf"{_STAYS}(?:kneeling|on (?:one|his|her|their|both|bended) knees?)\b|^kneeling\b(?! down)",
+    ),
     (Posture.CROUCHES, rf"{_STAYS}(?:crouching|squatting)\b"),
 )
 _PATTERNS = tuple((posture, re.compile(pattern)) for posture, pattern in _DOWN)
@@ -191,6 +209,8 @@ def at_start(sentences: Sequence[str], beat: int) -> dict[str, Posture]:
         for person, listed in changes(sentence).items():
             if i == 0 and listed[0].already:
                 held[person] = listed[0].posture
+            elif i == 0 and listed[0].posture is Posture.STANDS:
+                held[person] = Posture.SITS  # who gets up was down
             if i < beat and not listed[-1].passing:
                 held[person] = listed[-1].posture
     return held
