@@ -15,6 +15,7 @@ import time
 import urllib.request
 from collections.abc import Callable, Iterator
 from pathlib import Path
+from types import SimpleNamespace
 from urllib.parse import urlsplit
 
 import pytest
@@ -197,6 +198,25 @@ def start_server() -> Iterator[Callable[..., str]]:
     for server in running:
         server.terminate()
         server.wait(timeout=20)
+
+
+@pytest.fixture(scope="module")
+def server(
+    request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFactory
+) -> Iterator[SimpleNamespace]:
+    """The page with a stub engine, its ``url`` and its ``engine``; a step takes a module's ``PAUSE`` in seconds."""
+    from .serving import stub_page
+
+    with stub_page(tmp_path_factory.mktemp("files"), pause=getattr(request.module, "PAUSE", 0.0)) as served:
+        yield served
+
+
+@pytest.fixture(scope="module")
+def lab(start_server: Callable[..., str], tmp_path_factory: pytest.TempPathFactory) -> str:
+    """The address of a whole server with accounts of visitors, a queue and a history, with a stub engine."""
+    data = str(tmp_path_factory.mktemp("lab"))
+    env = {"STUB_PAUSE": "0", "PASDEDEUX_FREE_MEGABYTES": "0"}
+    return start_server(["tests/server/lab.py", "{port}", data], env=env)
 
 
 @pytest.fixture(scope="session")

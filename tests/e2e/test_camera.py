@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import shutil
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from fractions import Fraction
 from pathlib import Path
 
@@ -17,13 +17,6 @@ pytestmark = [pytest.mark.e2e, pytest.mark.slow]
 FILM = Path(__file__).resolve().parents[1] / "data" / "camera" / "wave.mp4"
 SLOW = 240_000
 """Milliseconds: a busy machine takes seconds for a picture."""
-
-
-@pytest.fixture(scope="module")
-def lab(start_server: Callable[..., str], tmp_path_factory: pytest.TempPathFactory) -> str:
-    data = str(tmp_path_factory.mktemp("lab"))
-    env = {"STUB_PAUSE": "0", "PASDEDEUX_FREE_MEGABYTES": "0"}
-    return start_server([str(Path("tests/server/lab.py")), "{port}", data], env=env)
 
 
 @pytest.fixture

@@ -2,21 +2,16 @@
 
 from __future__ import annotations
 
-import os
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 from pathlib import Path
-
-import pytest
-
-os.environ.setdefault("GRADIO_ANALYTICS_ENABLED", "False")
+from types import SimpleNamespace
 
 import numpy as np
+import pytest
 from playwright.sync_api import Page, expect
 
-from tests.ui.stub_engine import StubEngine
-from webdemo.ui.page import build_page, launch_options
-
 from .playing import choose, stage_pixels
+from .serving import live
 
 pytestmark = pytest.mark.e2e
 
@@ -34,30 +29,19 @@ HTMLCanvasElement.prototype.getContext = function (kind, ...rest) {
 """
 
 
-@pytest.fixture(scope="module")
-def url(tmp_path_factory: pytest.TempPathFactory) -> Iterator[str]:
-    page = build_page(StubEngine(), files=tmp_path_factory.mktemp("files"))
-    _, address, _ = page.launch(
-        prevent_thread_lock=True, quiet=True, server_name="127.0.0.1", **launch_options()
-    )
-    yield address
-    page.close()
-
-
 def sweep(page: Page, side: str, what: str, values: str) -> None:
     choose(page, f"#grid-{side}", what)
     page.fill(f"#grid-{side}-values textarea, #grid-{side}-values input", values)
 
 
 def test_nine_results_share_one_context_and_one_opens_large(
-    url: str, open_page: Callable[..., Page], tmp_path: Path
+    server: SimpleNamespace, open_page: Callable[..., Page], tmp_path: Path
 ) -> None:
     page = open_page(
-        url, width=1280, height=900, accept_downloads=True,
+        server.url, width=1280, height=900, accept_downloads=True,
         before=lambda tab: tab.add_init_script(COUNT_CONTEXTS),
     )  # fmt: skip
-    page.set_default_timeout(SLOW)
-    expect(page.locator("#model-state")).to_contain_text("Model ready", timeout=SLOW)
+    live(page, slow=SLOW)
     page.fill("#prompt textarea", "Two people shake hands.")
     page.click("#grid button >> nth=0")
     sweep(page, "across", "Seeds", "1-500")

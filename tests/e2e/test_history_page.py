@@ -19,13 +19,6 @@ pytestmark = [pytest.mark.e2e, pytest.mark.slow]
 SLOW = 120_000
 
 
-@pytest.fixture(scope="module")
-def lab(start_server: Callable[..., str], tmp_path_factory: pytest.TempPathFactory) -> str:
-    data = str(tmp_path_factory.mktemp("lab"))
-    env = {"STUB_PAUSE": "0", "PASDEDEUX_FREE_MEGABYTES": "0"}
-    return start_server([str(Path("tests/server/lab.py")), "{port}", data], seconds=180, env=env)
-
-
 def test_a_result_is_kept_and_its_link_opens_it_with_all_controls(lab: str, open_page: Callable) -> None:
     page = open_page(lab)
     page.set_default_timeout(SLOW)

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from pathlib import Path
 
 import pytest
 from playwright.sync_api import Page, expect
@@ -12,13 +11,6 @@ pytestmark = [pytest.mark.e2e, pytest.mark.slow]
 
 PANEL = "#react-live"
 SLOW = 120_000
-
-
-@pytest.fixture(scope="module")
-def lab(start_server: Callable[..., str], tmp_path_factory: pytest.TempPathFactory) -> str:
-    data = str(tmp_path_factory.mktemp("lab"))
-    env = {"STUB_PAUSE": "0", "PASDEDEUX_FREE_MEGABYTES": "0"}
-    return start_server([str(Path("tests/server/lab.py")), "{port}", data], env=env)
 
 
 def start(page: Page, source: str) -> None:

@@ -6,7 +6,6 @@ Every page comes from ``open_page``, which fails a test whose page asks another 
 from __future__ import annotations
 
 import json
-import os
 import re
 import threading
 import time
@@ -16,14 +15,11 @@ from types import SimpleNamespace
 from typing import Any
 
 import pytest
-
-os.environ.setdefault("GRADIO_ANALYTICS_ENABLED", "False")
-
 from playwright.sync_api import Page, Route, expect
 
-from tests.ui.stub_engine import StubEngine
-from webdemo.ui.page import build_page, launch_options
 from webdemo.ui.tabs import results
+
+from .serving import SLOW, live
 
 pytestmark = pytest.mark.e2e
 
@@ -39,26 +35,15 @@ ERRORS = {
     "something impossible": "The stub cannot do this",
     "a crash": "Something went wrong inside the program (RuntimeError)",
 }
-SLOW = 60_000
-"""Milliseconds that a busy machine may take to draw."""
-STEP = 0.01
+PAUSE = 0.01
 """Seconds that a step of the stub takes, where a test does not look at the steps."""
 LONG_STEP = 1.0
 """Seconds that a step takes where a run must still go on when a browser on a busy machine is ready to press."""
 
 
-@pytest.fixture(scope="module")
-def server(tmp_path_factory: pytest.TempPathFactory) -> Iterator[SimpleNamespace]:
-    engine = StubEngine(pause=STEP)
-    page = build_page(engine, files=tmp_path_factory.mktemp("files"))
-    _, url, _ = page.launch(prevent_thread_lock=True, quiet=True, server_name="127.0.0.1", **launch_options())
-    yield SimpleNamespace(url=url, engine=engine)
-    page.close()
-
-
 @pytest.fixture
 def page(server: SimpleNamespace, open_page: Callable[..., Page]) -> Page:
-    return _drawn(open_page(server.url, accept_downloads=True))
+    return live(open_page(server.url, accept_downloads=True))
 
 
 @pytest.fixture
@@ -66,19 +51,12 @@ def slow_steps(server: SimpleNamespace) -> Iterator[None]:
     """Steps slow enough for a browser on a busy machine to be seen following them."""
     server.engine.pause = 0.12
     yield
-    server.engine.pause = STEP
+    server.engine.pause = PAUSE
 
 
 @pytest.fixture
 def phone(server: SimpleNamespace, open_page: Callable[..., Page]) -> Page:
-    return _drawn(open_page(server.url, width=390, height=844))
-
-
-def _drawn(tab: Page) -> Page:
-    tab.set_default_timeout(SLOW)
-    # The mark comes from the server when the page is live; before that a press would be lost.
-    expect(tab.locator("#model-state")).to_contain_text("Model ready", timeout=SLOW)
-    return tab
+    return live(open_page(server.url, width=390, height=844))
 
 
 def ask(page: Page, prompt: str) -> None:
@@ -190,7 +168,7 @@ def test_cancel_stops_at_a_step_and_keeps_the_last_motion(page: Page, server: Si
         page.click("button#cancel")
         line = status(page, "warning")
     finally:
-        server.engine.pause = STEP
+        server.engine.pause = PAUSE
     assert line.startswith("Cancelled at step")
     assert line.endswith("of 50.")
     done = server.engine.steps_done
@@ -234,7 +212,7 @@ def test_a_run_can_be_cancelled_whose_first_updates_arrive_together(
         assert status(page, "warning").startswith("Cancelled at step")
     finally:
         written.set()
-        server.engine.pause = STEP
+        server.engine.pause = PAUSE
         page.unroute("**/queue/join*")
 
 
@@ -313,10 +291,10 @@ def test_two_sessions_do_not_cancel_each_other(page: Page, phone: Page, server: 
         wait_for_line(phone, "Waiting for another run")
         phone.click("button#cancel")
         assert status(phone, "warning") == "Cancelled before the first step."
-        server.engine.pause = STEP
+        server.engine.pause = PAUSE
         status(page, "done")
     finally:
-        server.engine.pause = STEP
+        server.engine.pause = PAUSE
 
 
 def test_the_phone_layout_has_the_player_high_and_no_sideways_scroll(phone: Page) -> None:

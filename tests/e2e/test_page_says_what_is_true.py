@@ -2,46 +2,31 @@
 
 from __future__ import annotations
 
-import os
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 from pathlib import Path
 from types import SimpleNamespace
 
 import pytest
-
-os.environ.setdefault("GRADIO_ANALYTICS_ENABLED", "False")
-
 from playwright.sync_api import Page, expect
 
 from motion.formats import write
-from tests.ui.stub_engine import StubEngine, walking
+from tests.ui.stub_engine import walking
 from webdemo.inference.methods import method
-from webdemo.ui.page import build_page, launch_options
 
 from .playing import choose
+from .serving import live
 
 pytestmark = pytest.mark.e2e
 
 SLOW = 120_000
 """Milliseconds that a busy machine may take to draw."""
+PAUSE = 0.01
 CHANGED = "Settings changed: run again"
-
-
-@pytest.fixture(scope="module")
-def server(tmp_path_factory: pytest.TempPathFactory) -> Iterator[SimpleNamespace]:
-    engine = StubEngine(pause=0.01)
-    page = build_page(engine, files=tmp_path_factory.mktemp("files"))
-    _, url, _ = page.launch(prevent_thread_lock=True, quiet=True, server_name="127.0.0.1", **launch_options())
-    yield SimpleNamespace(url=url, engine=engine)
-    page.close()
 
 
 @pytest.fixture
 def page(server: SimpleNamespace, open_page: Callable[..., Page]) -> Page:
-    tab = open_page(server.url, width=1024, height=700)
-    tab.set_default_timeout(SLOW)
-    expect(tab.locator("#model-state")).to_contain_text("Model ready", timeout=SLOW)
-    return tab
+    return live(open_page(server.url, width=1024, height=700), slow=SLOW)
 
 
 def set_number(page: Page, selector: str, value: str) -> None:

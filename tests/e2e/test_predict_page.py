@@ -2,48 +2,29 @@
 
 from __future__ import annotations
 
-import os
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 from pathlib import Path
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
-
-os.environ.setdefault("GRADIO_ANALYTICS_ENABLED", "False")
-
 from playwright.sync_api import Page, expect
 
 from motion.formats import write
-from tests.ui.stub_engine import StubEngine, walking
-from webdemo.ui.page import build_page, launch_options
+from tests.ui.stub_engine import walking
 
 from .playing import choose
+from .serving import SLOW, live
 
 pytestmark = pytest.mark.e2e
 
-SLOW = 60_000
-"""Milliseconds that a busy machine may take to draw."""
+PAUSE = 0.01
 SAMPLE = "window.__pasdedeux.player.sample"
 
 
-@pytest.fixture(scope="module")
-def url(tmp_path_factory: pytest.TempPathFactory) -> Iterator[str]:
-    page = build_page(StubEngine(pause=0.01), files=tmp_path_factory.mktemp("files"))
-    _, address, _ = page.launch(
-        prevent_thread_lock=True, quiet=True, server_name="127.0.0.1", **launch_options()
-    )
-    yield address
-    page.close()
-
-
 @pytest.fixture
-def page(url: str, open_page: Callable[..., Page]) -> Page:
-    tab = open_page(url, accept_downloads=True)
-    tab.set_default_timeout(SLOW)
-    expect(tab.locator("#model-state")).to_contain_text("Model ready", timeout=SLOW)
-    tab.get_by_role("tab", name="Predict").click()
-    expect(tab.locator("#predict-file")).to_be_visible(timeout=SLOW)
-    return tab
+def page(server: SimpleNamespace, open_page: Callable[..., Page]) -> Page:
+    return live(open_page(server.url, accept_downloads=True), "Predict")
 
 
 def people(page: Page, count: int) -> None:

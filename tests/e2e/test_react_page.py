@@ -2,53 +2,29 @@
 
 from __future__ import annotations
 
-import os
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 from pathlib import Path
+from types import SimpleNamespace
 
 import pytest
-
-os.environ.setdefault("GRADIO_ANALYTICS_ENABLED", "False")
-
 from playwright.sync_api import Page, expect
 
 from motion.formats import write
 from tests.motion.bodies import marching
 from tests.motion.formats.characters import glb_takes
-from tests.ui.stub_engine import StubEngine, walking
-from webdemo.ui.page import build_page, launch_options
+from tests.ui.stub_engine import walking
 
 from .playing import choose
+from .serving import SLOW, live
 
 pytestmark = pytest.mark.e2e
 
-SLOW = 60_000
-"""Milliseconds that a busy machine may take to draw."""
-
-
-@pytest.fixture(scope="module")
-def engine() -> StubEngine:
-    return StubEngine(pause=0.01)
-
-
-@pytest.fixture(scope="module")
-def url(engine: StubEngine, tmp_path_factory: pytest.TempPathFactory) -> Iterator[str]:
-    page = build_page(engine, files=tmp_path_factory.mktemp("files"))
-    _, address, _ = page.launch(
-        prevent_thread_lock=True, quiet=True, server_name="127.0.0.1", **launch_options()
-    )
-    yield address
-    page.close()
+PAUSE = 0.01
 
 
 @pytest.fixture
-def page(url: str, open_page: Callable[..., Page]) -> Page:
-    tab = open_page(url, accept_downloads=True)
-    tab.set_default_timeout(SLOW)
-    expect(tab.locator("#model-state")).to_contain_text("Model ready", timeout=SLOW)
-    tab.get_by_role("tab", name="React").click()
-    expect(tab.locator("#react-file")).to_be_visible(timeout=SLOW)
-    return tab
+def page(server: SimpleNamespace, open_page: Callable[..., Page]) -> Page:
+    return live(open_page(server.url, accept_downloads=True), "React")
 
 
 def people(page: Page, count: int) -> None:
@@ -104,9 +80,11 @@ def test_a_result_of_the_other_tab_is_taken_and_bad_files_are_a_sentence(page: P
 
 
 def test_a_streamed_reaction_comes_while_the_actor_plays_and_can_be_cancelled(
-    page: Page, engine: StubEngine, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+    page: Page, server: SimpleNamespace, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(engine, "live_waits_at", 72)  # so that a slow browser sees the run while it goes on
+    monkeypatch.setattr(
+        server.engine, "live_waits_at", 72
+    )  # so that a slow browser sees the run while it goes on
     (file, _) = write(walking(4.0), tmp_path / "walker.bvh")
     page.set_input_files("#react-file input[type=file]", file)
     people(page, 1)
@@ -120,12 +98,12 @@ def test_a_streamed_reaction_comes_while_the_actor_plays_and_can_be_cancelled(
     apart = page.evaluate(f"(([a, b]) => b[0][1] - a[0][1])({other})")
     assert abs(apart - 1.0) < 0.01, "the stub's reactor stands a metre aside"
     expect(page.locator("button#react-generate")).to_be_disabled()
-    engine.live_waits_at = None
+    server.engine.live_waits_at = None
     expect(page.locator("#react-status .pd-done")).to_contain_text("longest", timeout=SLOW)
     page.wait_for_function(f"{known} === null && window.__pasdedeux?.player?.sample.frames === 120")
     expect(page.locator("#react-download-npz")).to_be_enabled(timeout=SLOW)
 
-    engine.live_waits_at = 72
+    server.engine.live_waits_at = 72
     page.click("button#react-stream")
     page.wait_for_function(f"{known} >= 18")
     page.click("button#react-cancel")
@@ -158,9 +136,13 @@ def test_two_methods_are_seen_side_by_side_on_one_clock(page: Page, tmp_path: Pa
     expect(captions.nth(1)).to_be_hidden()
 
 
-def test_the_console_stays_quiet_while_runs_are_started(url: str, open_page: Callable[..., Page]) -> None:
+def test_the_console_stays_quiet_while_runs_are_started(
+    server: SimpleNamespace, open_page: Callable[..., Page]
+) -> None:
     said: list[str] = []
-    page = open_page(url, before=lambda tab: tab.on("console", lambda message: said.append(message.text)))
+    page = open_page(
+        server.url, before=lambda tab: tab.on("console", lambda message: said.append(message.text))
+    )
     page.set_default_timeout(SLOW)
     page.fill("#prompt textarea", "two people walk")
     page.click("button#generate")
@@ -170,12 +152,9 @@ def test_the_console_stays_quiet_while_runs_are_started(url: str, open_page: Cal
 
 @pytest.mark.parametrize("width", [1280, 390])
 def test_the_names_of_the_methods_are_shown_whole(
-    url: str, open_page: Callable[..., Page], width: int
+    server: SimpleNamespace, open_page: Callable[..., Page], width: int
 ) -> None:
-    tab = open_page(url, width=width, height=844)
-    tab.set_default_timeout(SLOW)
-    expect(tab.locator("#model-state")).to_contain_text("Model ready", timeout=SLOW)
-    tab.get_by_role("tab", name="React").click()
+    tab = live(open_page(server.url, width=width, height=844), "React")
     for field in ("#react-method", "#react-other"):
         tab.locator(f"{field} input").wait_for()
         room = tab.evaluate(_ROOM, [field, "InterGen, person to person"])

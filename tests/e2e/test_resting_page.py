@@ -2,18 +2,17 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 from types import SimpleNamespace
 
 import pytest
 from playwright.sync_api import Page, expect
 
-from tests.ui.stub_engine import StubEngine
-from webdemo.ui.page import build_page, launch_options
+from .serving import SLOW, live
 
 pytestmark = pytest.mark.e2e
 
-SLOW = 60_000
+PAUSE = 0.2
 WATCHED = 2000
 """Milliseconds; a screen draws 120 frames in them."""
 COUNT = """
@@ -23,23 +22,12 @@ COUNT = """
 """
 
 
-@pytest.fixture(scope="module")
-def server(tmp_path_factory: pytest.TempPathFactory) -> Iterator[SimpleNamespace]:
-    engine = StubEngine(pause=0.2)
-    page = build_page(engine, files=tmp_path_factory.mktemp("files"))
-    _, url, _ = page.launch(prevent_thread_lock=True, quiet=True, server_name="127.0.0.1", **launch_options())
-    yield SimpleNamespace(url=url, engine=engine)
-    page.close()
-
-
 @pytest.fixture
 def rested(server: SimpleNamespace, open_page: Callable[..., Page]) -> Page:
     """The page when its first motion is paused."""
-    page = open_page(
-        server.url, before=lambda tab: tab.add_init_script(COUNT), reduced_motion="no-preference"
+    page = live(
+        open_page(server.url, before=lambda tab: tab.add_init_script(COUNT), reduced_motion="no-preference")
     )
-    page.set_default_timeout(SLOW)
-    expect(page.locator("#model-state")).to_contain_text("Model ready", timeout=SLOW)
     page.wait_for_function("window.__pasdedeux && window.__pasdedeux.mode !== null", timeout=SLOW)
     page.evaluate("window.__pasdedeux.player.act('pause')")
     page.wait_for_function("window.__pasdedeux?.loops === 0", timeout=SLOW)

@@ -2,39 +2,25 @@
 
 from __future__ import annotations
 
-import os
 from collections.abc import Iterator
-from pathlib import Path
+from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
 import pytest
-
-os.environ.setdefault("GRADIO_ANALYTICS_ENABLED", "False")
-
-from tests.ui.stub_engine import StubEngine
-from webdemo.ui.page import build_page, launch_options
 
 pytestmark = pytest.mark.slow
 TIMEOUT = 60_000
 
 
 @pytest.fixture(scope="module")
-def site(tmp_path_factory: pytest.TempPathFactory) -> Iterator[str]:
-    page = build_page(StubEngine(), files=Path(tmp_path_factory.mktemp("files")))
-    _, url, _ = page.launch(prevent_thread_lock=True, quiet=True, server_name="127.0.0.1", **launch_options())
-    yield url
-    page.close()
-
-
-@pytest.fixture(scope="module")
-def page(chromium, site: str) -> Iterator[Any]:
+def page(chromium, server: SimpleNamespace) -> Iterator[Any]:
     """The tab Scene, which the tests share."""
     page = chromium.new_page(viewport={"width": 1300, "height": 1500})
     page.set_default_timeout(TIMEOUT)
     errors: list[str] = []
     page.on("pageerror", lambda error: errors.append(str(error)))
-    page.goto(site)
+    page.goto(server.url)
     page.get_by_role("tab", name="Scene").click()
     yield page
     page.close()

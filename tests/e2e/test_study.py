@@ -19,13 +19,6 @@ CELLS = "window.__pasdedeux?.player?.grid?.cells.length"
 LINK = "document.querySelector('{} textarea, {} input')?.value"
 
 
-@pytest.fixture(scope="module")
-def lab(start_server: Callable[..., str], tmp_path_factory: pytest.TempPathFactory) -> str:
-    data = str(tmp_path_factory.mktemp("lab"))
-    env = {"STUB_PAUSE": "0", "PASDEDEUX_FREE_MEGABYTES": "0"}
-    return start_server([str(Path("tests/server/lab.py")), "{port}", data], seconds=180, env=env)
-
-
 def link_in(page: Page, box: str) -> str:
     address = LINK.format(box, box)
     page.wait_for_function(address)
