@@ -140,12 +140,9 @@ def test_what_cannot_be_predicted_is_a_sentence(
 
 
 def test_on_a_phone_the_motion_comes_first_then_the_player_then_the_settings(
-    url: str, open_page: Callable[..., Page]
+    server: SimpleNamespace, open_page: Callable[..., Page]
 ) -> None:
-    tab = open_page(url, width=390, height=844)
-    tab.set_default_timeout(SLOW)
-    expect(tab.locator("#model-state")).to_contain_text("Model ready", timeout=SLOW)
-    tab.get_by_role("tab", name="Predict").click()
+    tab = live(open_page(server.url, width=390, height=844), "Predict")
     names = ("#predict-file", "#predict-player", "#predict-marker")
     expect(tab.locator(names[1])).to_be_visible(timeout=SLOW)
     tops = [tab.locator(name).bounding_box()["y"] for name in names]
