@@ -82,6 +82,12 @@ def test_those_who_walk_hand_in_hand_have_a_hand_at_each_other(engine: Engine) -
 def test_notes_say_what_was_read(engine: Engine) -> None:
     notes = run(engine, GenerateRequest(prompt="Person A sits down.", seconds=3.0, **QUICK)).notes
     assert any("person A sits" in note for note in notes)
+    beats = (Beat("They sit down."), Beat("Person A gets up and walks away."))
+    (read,) = (n for n in run(engine, SceneRequest(beats=beats, **QUICK)).notes if "From the words" in n)
+    assert (
+        "in beat 1 person A sits and person B sits; in beat 2 person A gets up and person A walks away"
+        in read
+    )
     free = run(
         engine, GenerateRequest(prompt="Person A sits down.", seconds=3.0, planned=False, **QUICK)
     ).notes

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Collection, Sequence
+from collections.abc import Collection, Iterator, Sequence
 
 import numpy as np
 from numpy.typing import NDArray
@@ -97,15 +97,10 @@ def plan_note(request: SceneRequest) -> list[str]:
     """A sentence on what the words of a scene have its people do, as far as that is given to the network."""
     said = []
     for number, beat in enumerate(request.beats, 1):
-        ways = [
+        ways = [*_said_postures(beat.sentence)]
+        ways += [
             f"person {m.person.upper()} {m.way.value}" for m in moves(beat.sentence) if m.way is not Way.STAY
         ]
-        ways += [
-            f"person {who.upper()} {change.posture.value}"
-            for who, listed in changes(beat.sentence).items()
-            for change in listed
-        ]
-        ways += [f"person {who.upper()} jumps" for who in leaps(beat.sentence)]
         if ways:
             said.append(
                 (f"in beat {number} " if len(request.beats) > 1 else "") + " and ".join(dict.fromkeys(ways))
@@ -115,6 +110,16 @@ def plan_note(request: SceneRequest) -> list[str]:
     return [
         f"From the words: {'; '.join(said)}. A path that you draw in the tab Scene takes the place of this."
     ]
+
+
+def _said_postures(sentence: str) -> Iterator[str]:
+    """The changes of posture and the jumps of a beat, in words."""
+    for who, listed in changes(sentence).items():
+        for change in listed:
+            up = change.posture is Posture.STANDS
+            yield f"person {who.upper()} {'gets up' if up else change.posture.value}"
+    for who in leaps(sentence):
+        yield f"person {who.upper()} jumps"
 
 
 def _beginning(request: SceneRequest) -> Standing:
