@@ -55,6 +55,14 @@ def test_who_falls_ends_on_the_floor_and_may_be_helped_up(engine: Engine) -> Non
     assert found[0] > 0.85 and found.min() < 0.35 and found[-5] > 0.85
 
 
+def test_who_stands_in_a_given_motion_sits_down_for_words_that_have_them_seated(engine: Engine) -> None:
+    motion = run(engine, SceneRequest(beats=(Beat("Person B stands still.", seconds=2.0),), **QUICK)).duets[0]
+    assert heights(motion.positions, 1)[-1] > 0.85
+    beats = (Beat("Person B stays seated.", seconds=3.0),)
+    found = heights(positions(run(engine, SceneRequest(beats=beats, motion=motion, **QUICK))), 1)
+    assert (np.abs(found[-30:] - 0.63) < 0.08).all()
+
+
 def test_jumps_leave_the_floor_as_often_as_said(engine: Engine) -> None:
     found = made(engine, "Person A jumps up and down.", cleanup=False)
     feet = found[0][:, FEET, 1].min(axis=1)
