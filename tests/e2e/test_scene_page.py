@@ -107,9 +107,10 @@ def test_a_story_from_sentence_to_futures(page: Any) -> None:
     page.mouse.up()
     first, last = story(page)["span"]
     assert last - first >= 0.5
+    whole = page.evaluate("window.__pasdedeux.id")
     page.locator("#scene-remake").click()
-    page.wait_for_function("window.__pasdedeux?.player?.data?.samples.length === 1")
-    page.wait_for_selector("#scene-remake:not([disabled])")
+    page.wait_for_function(f"window.__pasdedeux?.id !== {whole!r}")
+    rest(page)
     page.locator("#scene-futures").click()
     page.wait_for_function("window.__pasdedeux?.player?.data?.samples.length === 3")
     rest(page)
