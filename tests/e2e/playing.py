@@ -23,6 +23,18 @@ def choose(page, box: str, option: str) -> None:
     page.locator(box).get_by_role("option", name=option, exact=True).click()
 
 
+def settled_box(locator) -> dict[str, float]:
+    """The box of something that the player puts in its place with the next picture, once it lies still."""
+    until(locator.page, "document.querySelector('.pdd-handle')?.style.transform")
+    box = None
+    for _ in range(100):
+        last, box = box, locator.bounding_box()
+        if box is not None and box == last:
+            return box
+        locator.page.wait_for_timeout(50)
+    raise AssertionError("It does not come to rest.")
+
+
 def until(page, expression: str, seconds: float = 60) -> None:
     page.wait_for_function(expression, timeout=1000 * seconds)
 

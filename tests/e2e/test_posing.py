@@ -9,7 +9,7 @@ import pytest
 
 from motion import SMPL22
 
-from .playing import pause, press, until
+from .playing import pause, press, settled_box, until
 
 pytestmark = pytest.mark.e2e
 
@@ -125,7 +125,7 @@ def test_the_trunk_leans_after_a_hand_that_the_arm_does_not_reach(still: Any) ->
 def test_a_hand_is_dragged_given_up_and_kept(still: Any) -> None:
     before = positions(still)
     still.locator("[data-act=pose]").click()
-    box = still.locator(f'.pdd-handle[data-person="0"][data-joint="{WRIST}"]').bounding_box()
+    box = settled_box(still.locator(f'.pdd-handle[data-person="0"][data-joint="{WRIST}"]'))
     x, y = box["x"] + box["width"] / 2, box["y"] + box["height"] / 2
 
     def drag() -> None:

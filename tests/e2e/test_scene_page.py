@@ -9,6 +9,8 @@ from typing import Any
 import numpy as np
 import pytest
 
+from .playing import settled_box
+
 pytestmark = pytest.mark.slow
 TIMEOUT = 60_000
 
@@ -133,7 +135,7 @@ def test_a_dragged_hand_becomes_a_pose_that_the_motion_passes_through(page: Any)
     page.locator(".pdd:visible").focus()
     page.keyboard.press("e")
     handle = page.locator('.pdd-handle[data-person="0"][data-joint="21"]')
-    box = handle.bounding_box()
+    box = settled_box(handle)
     page.mouse.move(box["x"] + 15, box["y"] + 15)
     page.mouse.down()
     page.mouse.move(box["x"] + 40, box["y"] - 60, steps=6)
