@@ -20,7 +20,7 @@ from webdemo.inference.story.postures import Change, Posture, changes, leaps
 from webdemo.inference.story.request import SceneRequest
 
 from .scene_hands import hands, known_hands
-from .scene_postures import lower, postures
+from .scene_postures import UPRIGHT, lower, postures
 
 Array = NDArray[np.floating]
 
@@ -29,8 +29,6 @@ POSED = 15
 """Frames between two poses of somebody who stands by."""
 SETTLES = 24
 """Frames after which who stood in another way before stands so."""
-_UPRIGHT = 0.8
-"""Height in metres of the pelvis of people who stand."""
 
 
 def planned(request: SceneRequest, window: Window, scene: Array, placement: Placement) -> list[Part]:
@@ -81,7 +79,7 @@ def _held(
     posed: dict[int, Array] = {}
     for person, who in enumerate("ab"):
         last = scene[person, start - 1] if start else None
-        if who in still and (last is None or last[0, 1] > _UPRIGHT):
+        if who in still and (last is None or last[0, 1] > UPRIGHT):
             parts += _posed(person, stand, window, start, stop, placement, request.seed)
         elif who not in gone:
             poses = postures(sentences, window.beat, person, start, stop, stand, last)

@@ -33,7 +33,7 @@ SETTLING = 40
 """Frames in which somebody sits down, falls or gets up."""
 DUCKING = 16
 """Frames in which somebody ducks, and as many in which they are up again."""
-_UPRIGHT = 0.8
+UPRIGHT = 0.8
 """Height in metres of the pelvis of people who stand."""
 LEAP = 36
 """Frames from the highest moment of a jump to that of the next."""
@@ -62,7 +62,7 @@ def postures(
     who = "ab"[person]
     now = at_start(sentences, beat)[who]
     own = [change for change in changes(sentences[beat]).get(who, ()) if not change.already]
-    if last is not None and now is not Posture.STANDS and last[0, 1] > _UPRIGHT:  # as in a given motion
+    if last is not None and now is not Posture.STANDS and last[0, 1] > UPRIGHT:  # as in a given motion
         now, own = Posture.STANDS, [Change(now), *own]
     jumps = leaps(sentences[beat]).get(who, 0)
     if now is Posture.STANDS and not own and not jumps:
@@ -119,7 +119,7 @@ def _place(person: int, stand: Standing, last: Array | None) -> tuple[Array, flo
         return np.asarray(stand.places[person], dtype=float), float(stand.headings[person])
     pose = np.asarray(last, dtype=float)
     angle = float(heading(pose[None])[0])
-    if pose[0, 1] > _UPRIGHT:
+    if pose[0, 1] > UPRIGHT:
         return np.asarray(stand.places[person] + HALT * stand.speeds[person], dtype=float), angle
     toes = pose[list(TOES)].mean(axis=0)[[0, 2]]
     return toes - 0.12 * np.array([np.sin(angle), np.cos(angle)]), angle
