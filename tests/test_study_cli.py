@@ -45,6 +45,7 @@ def test_a_lab_reads_its_studies(
     code, said = say(capsys, "study", "list")
     (listed,) = json.loads(said)["studies"]
     assert (listed["id"], listed["owner"], listed["sets"]) == (made.id, "user ada", ["ours", "theirs"])
+    assert made.id.isalnum()  # Else one in 64 would be taken for an option.
     code, said = say(capsys, "study", "result", made.id[:6])
     answer = json.loads(said)
     assert (code, answer["raters"], answer["comparisons"][0]["ties"]) == (0, 1, 1)
@@ -59,3 +60,18 @@ def test_a_lab_reads_its_studies(
     ):
         code, error = say(capsys, "study", *words)
         assert code == 2 and says in error and error.count("\n") == 1
+
+
+def test_ids_of_older_labs_may_begin_with_a_dash(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.setenv("PASDEDEUX_DATA", str(tmp_path / "data"))
+    monkeypatch.setattr("webdemo.server.store.studies.secrets.token_hex", lambda count: "-7U94L")
+    settings = read_settings()
+    database = Database(settings.database_url)
+    motion = stub_module().walking(0.5)
+    sets = {name: [Stimulus("They walk.", motion)] for name in ("ours", "theirs")}
+    studies_of(settings, database).create("user ada", NewStudy(question="Which?", sets=sets, checks=0))
+    database.close()
+    code, said = say(capsys, "study", "result", "--", "-7U94L")
+    assert (code, json.loads(said)["id"]) == (0, "-7U94L")

@@ -14,7 +14,9 @@ def add_study(commands: Any) -> None:
     """Adds ``study`` to the shell's commands."""
     parser = commands.add_parser("study", help="blind studies of this lab: list, result, export")
     parser.add_argument("action", choices=("list", "result", "export"))
-    parser.add_argument("study", nargs="?", help="id of the study, or how it begins; not for list")
+    parser.add_argument(
+        "study", nargs="?", help="id of the study, or how it begins, after -- if with a dash; not for list"
+    )
     parser.add_argument("--out", type=Path, help="with export: .csv file to write, a row a vote")
     parser.set_defaults(job=study)
 

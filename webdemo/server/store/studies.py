@@ -57,7 +57,8 @@ class Studies(Voting):
             pairs.append(Pair((where, where), (chosen, len(motions)), source.caption, known=FIRST))
             motions.append(shuffled(motions[chosen], seed=i))
         row = Study(
-            id=secrets.token_urlsafe(18), owner=owner, key=secrets.token_urlsafe(18), question=question,
+            # Hexadecimal, since people type it in a shell, where a word that begins with "-" is an option.
+            id=secrets.token_hex(12), owner=owner, key=secrets.token_urlsafe(18), question=question,
             title=" ".join(study.title.split())[:LONGEST_NAME] or question[:LONGEST_NAME], sets=json.dumps(names),
             pairs=json.dumps([asdict(pair) for pair in pairs]), shows_sentence=study.shows_sentence,
             pairs_each=min(study.pairs_each or count, count), shows_result=study.shows_result,
