@@ -1,4 +1,4 @@
-"""The fresh and the unseen sentences: none of the eighty, none in the corpus, rules that a puppet shows to be fair."""
+"""The fresh, unseen and varied sentences: none of the eighty or the corpus, rules that a puppet shows to be fair."""
 
 from __future__ import annotations
 
@@ -10,15 +10,16 @@ import training.evaluate
 from motion.metrics.sentences import kept_out, load_sentences, read_sentences, without_sentences
 from training.corpus.captions import FAMILIES
 
-from . import fresh_scripts, unseen_scripts
+from . import fresh_scripts, unseen_scripts, varied_scripts
 from .fairness import Puppets, captions_of, phrases
 
-FRESH, UNSEEN = PATHS = [
-    Path(training.evaluate.__file__).with_name(f"{name}_sentences.json") for name in ("fresh", "unseen")
+FRESH, UNSEEN, VARIED = PATHS = [
+    Path(training.evaluate.__file__).with_name(f"{name}_sentences.json")
+    for name in ("fresh", "unseen", "varied")
 ]
 SETS = {path: {sentence.id: sentence for sentence in read_sentences(path)} for path in PATHS}
-SENTENCES = SETS[FRESH] | SETS[UNSEEN]
-PUPPETS = Puppets(SENTENCES, fresh_scripts.SCRIPTS | unseen_scripts.SCRIPTS)
+SENTENCES = SETS[FRESH] | SETS[UNSEEN] | SETS[VARIED]
+PUPPETS = Puppets(SENTENCES, fresh_scripts.SCRIPTS | unseen_scripts.SCRIPTS | varied_scripts.SCRIPTS)
 KINDS = ("at_once", "refuse", "stand", "turn", "jump", "sit", "contact", "passive", "lines", "narrative")
 
 every_set = pytest.mark.parametrize("path", PATHS, ids=lambda path: path.stem)
@@ -29,8 +30,14 @@ every_set = pytest.mark.parametrize("path", PATHS, ids=lambda path: path.stem)
     [
         (FRESH, fresh_scripts.SCRIPTS, 48, (*KINDS, "kneel", "hold_and_move", "while", "without")),
         (UNSEEN, unseen_scripts.SCRIPTS, 40, (*KINDS, "bow", "stop")),
+        (
+            VARIED,
+            varied_scripts.SCRIPTS,
+            72,
+            (*KINDS, "kneel", "fall", "bow", "hold_and_move", "while", "until", "without"),
+        ),
     ],
-    ids=["fresh", "unseen"],
+    ids=["fresh", "unseen", "varied"],
 )
 def test_they_are_of_the_kinds_that_people_write(
     path: Path, scripts: dict[str, str], count: int, kinds: tuple[str, ...]
@@ -54,10 +61,11 @@ def test_none_is_one_of_the_eighty(path: Path) -> None:
     assert not SETS[path].keys() & {sentence.id for sentence in load_sentences()}
 
 
-def test_none_of_the_unseen_is_a_fresh_one() -> None:
-    words = [sentence.words for sentence in SETS[UNSEEN].values()]
-    assert without_sentences(words, FRESH) == words
-    assert not SETS[UNSEEN].keys() & SETS[FRESH].keys()
+@pytest.mark.parametrize(("path", "older"), [(UNSEEN, FRESH), (VARIED, FRESH), (VARIED, UNSEEN)])
+def test_none_is_in_an_older_set(path: Path, older: Path) -> None:
+    words = [sentence.words for sentence in SETS[path].values()]
+    assert without_sentences(words, older) == words
+    assert not SETS[path].keys() & SETS[older].keys()
 
 
 @pytest.mark.parametrize("name", SENTENCES)
