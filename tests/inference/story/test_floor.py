@@ -6,8 +6,9 @@ import numpy as np
 import pytest
 
 from webdemo.inference.actor import FPS
-from webdemo.inference.story.floor import ABREAST, CLOSE, FARTHEST, MOST, Standing, Way2D, plan, starting
+from webdemo.inference.story.floor import ABREAST, CLOSE, FARTHEST, Standing, Way2D, plan, starting
 from webdemo.inference.story.moves import moves
+from webdemo.inference.story.track import MOST
 
 FACING = Standing(np.array([[0.0, 0.0], [0.0, 1.2]]), np.array([0.0, math.pi]))
 
@@ -122,3 +123,37 @@ def test_every_way_is_one_that_people_can_go(sentence: str, seconds: float, near
         assert frames[0] >= 0 and frames[-1] < round(seconds * FPS)
         speed = np.linalg.norm(np.diff(way.places, axis=0), axis=1) / np.diff(frames) * FPS
         assert (speed <= 1.6 * MOST).all(), speed.max()
+
+
+def test_who_follows_sets_off_behind_who_is_followed_and_stays_behind() -> None:
+    for sentence in ("Person A runs away and person B gives chase.", "Person B follows person A."):
+        _, found = ways(sentence, seconds=5.0, standing=FACING)
+        leader, follower = found[0], found[1]
+        assert np.linalg.norm(leader.places[-1] - leader.places[0]) > 3.0
+        assert np.linalg.norm(follower.places[-1] - follower.places[0]) > 2.0
+        assert gaps(found).max() < 3.2 and gaps(found).min() > 0.8
+        assert follower.headings is not None and abs(math.cos(follower.headings[-1])) > 0.99
+
+
+def test_moves_of_one_beat_come_one_after_another() -> None:
+    """Whoever waits, turns or arrives first has time left for the rest."""
+    _, found = ways("Person A walks up to person B, halts, wheels about and marches away.", seconds=8.0)
+    far = gaps(found)
+    nearest = int(far.argmin())
+    assert far[nearest] < 1.2 and far[0] > 2.5 and far[-1] > 2.0 and 0 < nearest < len(far) - 1
+    _, found = ways("Person B looks at person A and runs away.", seconds=5.0, standing=FACING)
+    assert gaps(found)[-1] > 3.0
+
+
+def test_nobody_turns_round_to_who_comes_up_behind_them() -> None:
+    begin, found = ways("Person A sneaks up on person B.")
+    assert math.cos(begin.headings[1]) > 0.99
+    assert found[1].headings is not None and np.cos(found[1].headings).min() > 0.99
+
+
+def test_who_stands_with_their_back_to_the_other_begins_so() -> None:
+    begin, found = ways("Person B stands with his back to person A.")
+    away = begin.places[1] - begin.places[0]
+    facing = np.array([math.sin(begin.headings[1]), math.cos(begin.headings[1])])
+    assert facing @ away > 0.9 * np.linalg.norm(away)
+    assert found[1].headings is not None and np.ptp(found[1].headings) < 1e-6

@@ -21,6 +21,7 @@ TIME = np.arange(60) / 30
         ("Person B backs away while waving with the left hand.", {"b": (Hand.WAVES, 1)}),
         ("She keeps pointing at him with her right arm as she walks around him.", {"a": (Hand.POINTS, 1)}),
         ("A boy raises his hand.", {"a": (Hand.UP, 1)}),
+        ("A zombie walks with outstretched arms.", {"a": (Hand.AHEAD, 2)}),
         # no gesture of a hand in the air
         ("Person A puts both hands on person B's shoulders.", {}),
         ("Person A throws his arms around her.", {}),
@@ -53,6 +54,7 @@ def test_hands_are_where_the_gesture_has_them(side: str) -> None:
         assert np.linalg.norm(way(hand) - shoulder, axis=1).max() < arm, "within the arm's reach"
     assert (way(Hand.HIGH)[:, 1] > pose[SMPL22.index("head"), 1] - pose[0, 1]).all()
     assert (way(Hand.UP)[:, 1] > shoulder[1] + 0.2).all()
+    assert (way(Hand.AHEAD)[:, 2] > 0.4).all()
     assert (way(Hand.POINTS)[:, 2] > 0.4).all()
     assert np.sign(way(Hand.LINKED)[0, 0]) == out
     assert np.ptp(way(Hand.WAVES)[:, 0]) > 0.2 and np.ptp(way(Hand.UP), axis=0).max() == 0

@@ -27,6 +27,11 @@ CROUCHES, STANDS = Posture.CROUCHES, Posture.STANDS
         ("He falls into a chair.", {"a": [SITS]}),
         ("Person A hits the floor.", {"a": [LIES]}),
         ("She leaves her seat.", {"a": [STANDS]}),
+        ("The nurse helps the old lady out of her armchair.", {"b": [STANDS]}),
+        ("She walks away and leaves him sitting there.", {"b": [SITS]}),
+        ("B is in the barber's chair.", {"b": [SITS]}),
+        ("Over dinner the couple talk.", {"a": [SITS], "b": [SITS]}),
+        ("A is out cold on the floor, B looks on.", {"a": [LIES]}),
         # nobody goes down
         ("They walk to the table.", {}),
         ("Person A does not sit down.", {}),
@@ -99,3 +104,14 @@ def test_who_needs_their_legs_is_on_their_feet_again(act: str) -> None:
 )
 def test_jumps_on_the_spot_are_counted(sentence: str, times: dict[str, int]) -> None:
     assert leaps(sentence) == times
+
+
+def test_who_is_left_sitting_sat_from_the_start() -> None:
+    story = ["She gets up from the table.", "Person A leaves him sitting there."]
+    assert at_start(story, 0) == {"a": SITS, "b": SITS}
+    assert at_start(story, 1)["b"] is SITS and at_start(story, 1)["a"] is STANDS
+    assert at_start(["Person B runs in.", "Person B is sitting on a chair."], 0)["b"] is STANDS
+
+
+def test_jumps_are_counted_as_nouns_too() -> None:
+    assert leaps("The girl does three hops.") == {"a": 3}

@@ -67,3 +67,20 @@ def test_a_sentence_is_split_where_one_thing_follows_another(sentence: str, beat
 
 def test_nothing_gives_no_beats() -> None:
     assert split_sentence("  \n ") == ()
+
+
+@pytest.mark.parametrize(
+    ("sentence", "beats"),
+    [
+        ("Sports day: the two race off.", ["Sports day: the two race off."]),
+        ("Cha-cha. They dance, then they bow.", ["Cha-cha, they dance.", "They bow."]),
+        (
+            "Person A runs away, person B hot on their heels.",
+            ["Person A runs away, person B hot on their heels."],
+        ),
+        ("(beat) Joe kneels. Ana walks away.", ["Person A kneels.", "Person B walks away."]),
+        ("A high five. They walk away.", ["A high five.", "They walk away."]),
+    ],
+)
+def test_a_setting_is_no_beat_of_its_own(sentence: str, beats: list[str]) -> None:
+    assert [beat.words for beat in split_sentence(sentence)] == beats

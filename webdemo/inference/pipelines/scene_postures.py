@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from motion.transforms import heading
 from webdemo.inference.actor import FPS
-from webdemo.inference.story.floor import HALT, Standing
+from webdemo.inference.story.floor import Standing
 from webdemo.inference.story.poses import (
     LYING,
     TOES,
@@ -22,6 +22,7 @@ from webdemo.inference.story.poses import (
     upright,
 )
 from webdemo.inference.story.postures import Change, Posture, at_start, changes, leaps
+from webdemo.inference.story.track import HALT
 
 Array = NDArray[np.floating]
 Pose = tuple[int, Array]

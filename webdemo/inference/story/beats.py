@@ -145,6 +145,11 @@ def _of_person(text: str, who: str) -> str:
     return f"{who} {text[:1].lower()}{text[1:]}"
 
 
+def is_known_act(words: str) -> bool:
+    """True if the words have an act whose usual length is known."""
+    return any(re.search(rf"\b(?:{pattern})", words, re.IGNORECASE) for pattern, _ in ACT_SECONDS)
+
+
 def seconds_of(sentence: str) -> float:
     """The duration of an act in half seconds: as the words say, or as long as such acts usually are."""
     stated = _STATED.search(sentence)

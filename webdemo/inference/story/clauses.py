@@ -7,7 +7,11 @@ and nothing is planned from it.
 from __future__ import annotations
 
 import re
+from collections.abc import Sequence
 from dataclasses import dataclass, field
+
+from .beats import is_known_act
+from .wording import in_plain_words, in_present, past_forms
 
 _SEX = {
     "m": re.compile(
@@ -19,27 +23,46 @@ _SEX = {
         r"princess|actress|she|her|herself"
     ),
 }
-_PEOPLE = r"(?:\w{3,}s|men|women|people|children)(?= \w+)"
+_PEOPLE = r"(?:\w{3,}s|men|women|people|children)(?=,? \w+)"
+_KIND = (
+    r"(?:man|woman|boy|girl|guy|lady|gentleman|person|child|kid|friend|dancer|fighter|boxer|player|stranger|partner|"
+    r"teacher|student|mother|father|mom|mum|mommy|mummy|dad|daddy|brother|sister|daughter|son|grandpa|grandma|granny|"
+    r"grandfather|grandmother|uncle|aunt|cousin|twin|husband|wife|spouse|fianc[eé]e?|bride|groom|girlfriend|boyfriend|"
+    r"buddy|mate|pal|bro|dude|lad|lass|waiter|waitress|guest|host|visitor|guard|boss|manager|employee|worker|intern|"
+    r"assistant|secretary|neighbou?r|cop|policeman|policewoman|officer|detective|sheriff|thief|burglar|robber|criminal|"
+    r"prisoner|suspect|bully|victim|gangster|soldier|sergeant|cadet|sentry|general|captain|doctor|nurse|medic|patient|"
+    r"coach|trainer|referee|ref|umpire|athlete|runner|swimmer|goalkeeper|goalie|striker|defender|attacker|wrestler|king|"
+    r"queen|prince|princess|lord|servant|butler|maid|knight|squire|samurai|ninja|warrior|gladiator|pirate|cowboy|wizard|"
+    r"witch|vampire|zombie|monster|ghost|robot|alien|hero|heroine|villain|enemy|foe|rival|opponent|npc|avatar|boss|clown|"
+    r"actor|actress|singer|musician|director|photographer|painter|artist|barber|hairdresser|tailor|chef|cook|farmer|"
+    r"salesman|saleswoman|seller|shopkeeper|cashier|clerk|customer|client|lawyer|judge|priest|monk|nun|pilot|driver|"
+    r"passenger|tourist|guide|beggar|baby|toddler|infant|pupil|classmate|teenager|teen|youth|adult|elder|senior|"
+    r"colleague|coworker|co-worker|teammate|team-mate|leader|follower|lover|date|crush|ex|couple|human|character|model|"
+    r"mime|puppet|individual|agent|spy|assassin|hunter|rider|jogger|cyclist|skater|passer-by|bystander|onlooker)"
+)
 _PLURAL = (
-    rf"they|both(?: of them| people|(?: \w+)? {_PEOPLE})?|the (?:two|pair|couple)(?: of them| (?:\w+ )?{_PEOPLE})?"
+    rf"they|we|both(?: of them| people|(?: \w+)? {_PEOPLE})?|the (?:two|pair|couple)(?: of them| (?:\w+ )?{_PEOPLE})?"
+    rf"|(?:the )?(?:(?!two|first|second|other)\w+ )?(?:{_KIND}s|children|women|men)(?= (?!\w+s\b)\w+)"
     rf"|two (?:\w+ )??{_PEOPLE}|a couple|a pair|people|everybody|everyone|each(?: of them)?"
 )
 _NAMED = r"person [ab]"
-_KIND = (
-    r"(?:man|woman|boy|girl|guy|lady|gentleman|person|child|kid|friend|dancer|fighter|boxer|player|stranger|partner|"
-    r"teacher|student|mother|father|mom|mum|dad|daddy|brother|sister|daughter|son|grandpa|grandma|waiter|guest|host|"
-    r"visitor|guard|boss|worker|neighbou?r|cop|policeman|thief|soldier|doctor|nurse|patient|coach|king|queen|servant|"
-    r"knight|clown|baby|toddler|teenager|colleague|customer|teammate|opponent|couple|stranger|human|character)"
-)
 _HOW = r"(?:old|young|little|small|tall|big|angry|happy|sad|tired|drunk|elderly|nervous|shy|proud)"
 _FIRST = rf"(?:the )?(?:first|former)(?: {_KIND}| one)?|the actor|one of (?:them|the two)"
 _SECOND = (
     rf"(?:the )?(?:second|latter)(?: {_KIND}| one)?|the (?:reactor|other)(?: {_KIND}| one)?|other (?:{_KIND}|one)"
     rf"|another(?: {_KIND})?|someone else|somebody else|the partner"
 )
+_DOES = (
+    rf"(?:(?:is|are|was|were|does|do|has|have|can|will|must|would|could|should|may|might|never|won't|\w+n't|doesnt|dont|"
+    rf"{'|'.join(past_forms())})\b|(?!his\b|hers\b|as\b|this\b|towards\b|always\b|perhaps\b)\w+(?:s|ing|ed)\b)"
+)
+"""A verb, as far as its form shows."""
+_MANNER = r"(?:(?:then|finally|now|suddenly|eagerly|soon|also|just|simply|only|still|\w+ly),? )*"
+_WHERE = r"(?: (?:on|in|at|by|near|with|from|behind|beside) (?:the|an?|his|her|their) (?:\w+ )??\w+)?"
 _NOUN = (
-    rf"one {_KIND}|one|(?:{_HOW} )?{_KIND}|(?:an?|the|his|her|their|some) (?:\w+ ){{0,2}}?\w+(?= \w+)"
-    r"|someone|somebody|he|she|it"
+    rf"one {_KIND}|one|(?:{_HOW} )?{_KIND}|(?!\w+(?:s|ing|ly)\b|and\b|then\b|an?\b|the\b)\w+ {_KIND}(?= \w+s\b)"
+    rf"|(?:an?|the|his|her|their|some) (?:\w+ ){{0,3}}?\w+(?={_WHERE} {_MANNER}{_DOES})"
+    r"|someone|somebody|he|she|it|i|you"
 )
 _LEADING = re.compile(
     rf"^((?:without|after|following|hearing|holding|having|with|on|at|in|from|upon)\b[^,]*?),? "
@@ -54,7 +77,9 @@ _SUBJECT = re.compile(
     rf"^{_ADVERB}(?:(?P<many>{_PLURAL})|(?P<named>{_NAMED})|(?P<first>{_FIRST})|(?P<second>{_SECOND})"
     rf"|(?P<noun>{_NOUN}))(?=\s|$)\s*"
 )
-_VERB = re.compile(r"^(?:is|are|was|does|do|has|have|can|will|keeps?|starts?|begins?|\w+s|\w+ing|\w+ed)\b")
+_VERB = re.compile(rf"^(?:{_WHERE[4:-2]} )?{_MANNER}(?:keeps?|starts?|begins?|{_DOES})")
+_SOMEBODY = re.compile(rf"(?:an? |the |his |her )?(?:{_HOW} )?{_KIND}|i|you")
+"""Subjects that need no -s on their verb: "man give flower"."""
 _PAIRED = re.compile(
     rf"(?:^|(?<=[,;.] )|(?<=then )|(?<=while )|(?<=as ))"
     rf"(?:{_NAMED}|(?:an?|the|his|her) (?:\w+ )??\w+|he|she|someone) and "
@@ -133,6 +158,18 @@ _NAMES_OF_PAIRS = re.compile(rf"(?:^|(?<=[,;.] )){_KIND} and {_KIND}(?= (?!\w+s\
 _A_WHILE = re.compile(
     r"\bafter (?:a|some|a few|several) (?:short |little )?(?:moment|while|bit|second|time|minute)s?,? "
 )
+_LATE = re.compile(
+    r"(?<=[a-z])(?<!and)(?<!then)(?<!one)(?<!he)(?<!they)(?<!both)(?<!first)(?<!second)(?<!other)"
+    r" (?:finally|eventually)(?= \w+s\b)"
+)
+"""Marks of time between a name and its verb, which begin nothing new."""
+_PLACED = re.compile(
+    r"^(?:after|before|at|on|in|during) (?!the way\b)(?:the |an? )?\w+,? (?=(?:the|an?|two|both|they|person [ab])\b)"
+)
+"""A time or place before the first subject: "After the match the players …"."""
+_RAISED = re.compile(
+    rf"\b({_KIND}|{_NAMED}|(?:the|an?) \w+)'s ((?:(?:left|right) )?(?:arm|hand))s? (?:goes|shoots|flies|comes) up\b"
+)
 _NO_NAME = re.compile(
     r"(?:They|He|She|It|One|Two|Both|The|An?|First|Then|Finally|While|As|When|After|Before|Person|Someone|Somebody|Each|"
     r"People|Everyone|Everybody|Another|His|Her|Their|Suddenly|Without|With|Holding|I|We|You)\b"
@@ -143,11 +180,14 @@ def named(text: str) -> str:
     """The text with people called A and B, 1 and 2, or by a name, called so in a way that clauses understand."""
     if re.search(r"\b[Bb]\b", text) and not re.search(r"\bperson [ab]\b", text, re.IGNORECASE):
         text = re.sub(r"\b[Bb]\b(?=\s+[a-z]|'s\b|[.,;!?]|$)", "person B", text)
-        text = re.sub(r"\bA\b(?=,|'s\b|\s+(?:\w+s|\w+ing|\w+ed)\b|[.;!?]|$)", "person A", text)
+        text = re.sub(r"(?<!person )\bA\b(?=,|'s\b|\s+(?:\w+s|\w+ing|\w+ed)\b|[.;!?]|$)", "person A", text)
         text = re.sub(r"\ba(?=[.,;!?]|$)", "person A", text)
-        text = re.sub(r"\bA\b(?= (?:and|in|on|at|by|with|to|from|then|is|has|does)\b)", "person A", text)
-    text = re.sub(r"\b(?:[Pp]erson (?:one|1)|[Pp]1|[Pp]layer 1)\b", "person A", text)
-    text = re.sub(r"\b(?:[Pp]erson (?:two|2)|[Pp]2|[Pp]layer 2)\b", "person B", text)
+        text = re.sub(
+            r"(?<!person )\bA\b(?= (?:and|in|on|at|by|with|to|from|then|is|has|does)\b)", "person A", text
+        )
+    text = _LATE.sub("", text)
+    for name, number in (("A", "one|1|#1"), ("B", "two|2|#2")):
+        text = re.sub(rf"(?i)\b(?:(?:the )?{_KIND} (?:{number})|p{number[-1]})\b", f"person {name}", text)
     return re.sub(
         r"(?<![A-Za-z'])([A-Z][a-z]+)(?= (?:\w+s|\w+ing|and|is|has)\b|'s\b|[.,;]|$)",
         lambda m: m[0] if _is_no_name(m[0]) else f"the {m[0].lower()}",
@@ -167,9 +207,10 @@ def _is_no_name(word: str) -> bool:
 
 def plain(text: str) -> str:
     """The sentence in lower case, people called A and B by their full names, and pairs as "they"."""
-    text = named(text)
+    text = re.sub(r"\([^()]*\)", " ", named(text))
     text = " ".join(text.lower().split()).strip(" .!?;")
-    text = _A_WHILE.sub("", text)
+    text = in_plain_words(_A_WHILE.sub("", text))
+    text = _RAISED.sub(r"\1 raises his \2", _PLACED.sub("", text))
     text = re.sub(r", (?=(?:side by side|shoulder to shoulder|hand in hand|arm in arm)\b)", " ", text)
     text = re.sub(rf"\band lets? ({_NAMED}|the other(?: person)?) (\w+)", r"and \1 \2s", text)
     return _PAIRED.sub("they", _NAMES_OF_PAIRS.sub("they", text))
@@ -203,9 +244,21 @@ class Reader:
             at_once = bool(_AT_ONCE.search(mark)) or (opening and len(found) == 1)
             at_once = at_once or (not stated and bool(found) and bool(_GOING_ON.match(words)))
             subject = stated or bool(self._last)
-            found.append(Clause(who, words, at_once, bool(_UNTIL.search(mark)), stated, subject))
+            found.append(Clause(who, in_present(words), at_once, bool(_UNTIL.search(mark)), stated, subject))
             self._last = who if subject else ""
-        return tuple(clause for clause in found if clause.words)
+        return tuple(clause for clause in _without_setting(found) if clause.words)
+
+
+_DONE = re.compile(
+    r"\w+ing\b|(?:with|without|hand in hand|arm in arm|side by side|back[- ]to[- ]back|both)\b"
+)
+"""Beginnings of clauses that say something of a subject that comes later."""
+
+
+def _without_setting(found: Sequence[Clause]) -> Sequence[Clause]:
+    """The clauses without those at the beginning that have no subject, as "Worn out" or "Sports day"."""
+    first = next((i for i, clause in enumerate(found) if clause.stated), 0)
+    return [*(c for c in found[:first] if _DONE.match(c.words) or is_known_act(c.words)), *found[first:]]
 
 
 def clauses(sentence: str) -> tuple[Clause, ...]:
@@ -217,7 +270,12 @@ def _who(piece: str, cast: _Cast, last: str) -> tuple[str, str, bool]:
     """The person that a piece is about, the piece without its subject, and whether it has one."""
     match = _SUBJECT.match(piece)
     rest = piece[match.end() :] if match else piece
-    if match is None or (match["noun"] and rest and not _VERB.match(re.sub(rf"^{_ADVERB}", "", rest))):
+    person = (
+        match is not None and _SOMEBODY.fullmatch(match["noun"] or "") and not re.match(r"[ab]'s\b", rest)
+    )
+    if match is None or (
+        match["noun"] and rest and not person and not _VERB.match(re.sub(rf"^{_ADVERB}", "", rest))
+    ):
         return last or "ab", piece, False
     if match["many"]:
         return "ab", rest, True

@@ -16,8 +16,9 @@ from numpy.typing import NDArray
 
 from webdemo.inference.actor import FPS
 
-from .curves import direction, eased, filled, smoothed, wrapped
+from .curves import direction, smoothed, wrapped
 from .moves import Move, Way
+from .track import EASE, MOST, Track
 
 Array = NDArray[np.floating]
 
@@ -41,18 +42,16 @@ REACH = 0.75
 """Metres between two people one of whom touches the other."""
 WIDE = 0.9
 """Radius in metres of a walk around the other, at least."""
-MOST = 2.6
-"""Metres a second of the fastest run that is planned."""
 FARTHEST = 5.0
 """Metres apart to which people walk; the training scenes hold next to nothing beyond."""
 STEP = math.pi / 3
 """Radians of a turn between two given headings."""
-TURNING = 0.9
-"""Seconds of a half turn."""
-_EASE = 0.5
-"""Seconds in which a walk gets up its speed, and slows down again."""
-HALT = 0.3
-"""Seconds of its speed that a walk takes to stop."""
+_CHASED = 7.0
+"""Metres that somebody goes who is followed."""
+_REACTS = 0.4
+"""Seconds after which somebody follows who walks away."""
+_WEIGHT = {Way.STAY: 0.4, Way.AVERTED: 0.6, Way.TURN: 0.5, Way.FACE: 0.4, Way.BACK: 0.7, Way.ASIDE: 0.7}
+"""Shares of a beat's time that moves take beside a walk."""
 _START = {Way.TO: 2.8, Way.BEHIND: 2.6, Way.AWAY: 1.1, Way.PAST: 2.2, Way.ROUND: 1.2, Way.BACK: 0.9}
 """Metres between two people at the beginning of a first beat with a move."""
 
@@ -99,80 +98,6 @@ class Way2D:
     headings: Array | None
 
 
-@dataclass
-class _Track:
-    """The planned way of one person, frame by frame; NaN where it is free."""
-
-    place: Array
-    heading: float
-    places: Array
-    headings: Array
-    frame: int = 0
-    going: Array = field(default_factory=lambda: np.zeros(2))
-
-    def walk(
-        self, line: Array, seconds: float, *, heading: Array | float | None = None, ease: bool = True
-    ) -> None:
-        """Walks along points (N, 2) within some seconds; faces where it goes, or where ``heading`` says."""
-        frames = max(1, min(round(seconds * FPS), len(self.places) - self.frame))
-        steps = np.linalg.norm(np.diff(line, axis=0), axis=1)
-        along = np.concatenate([[0.0], np.cumsum(steps)])
-        time = np.arange(1, frames + 1) / frames
-        done = eased(time, _EASE / max(seconds, 1e-6)) if ease else time
-        far = min(along[-1], MOST * frames / FPS)
-        at = np.stack([np.interp(done * far, along, line[:, axis]) for axis in (0, 1)], axis=1)
-        stop = self.frame + frames
-        self.places[self.frame : stop] = at
-        if heading is None:
-            ahead = np.diff(np.concatenate([self.place[None], at]), axis=0)
-            facing = np.arctan2(ahead[:, 0], ahead[:, 1])
-            still = np.linalg.norm(ahead, axis=1) < 1e-4
-            facing[still] = filled(facing, ~still, self.heading)[still]
-            facing = self._turned_into(np.unwrap(facing))
-        else:
-            facing = np.broadcast_to(np.asarray(heading, dtype=float), (frames,)).copy()
-        self.headings[self.frame : stop] = facing
-        self.place, self.heading, self.frame = at[-1], float(facing[-1]), stop
-
-    def _turned_into(self, facing: Array) -> Array:
-        """Headings that begin at the person's own and are turned at a body's pace."""
-        found, now, most = np.empty(len(facing)), self.heading, math.pi / TURNING / FPS
-        for i, wanted in enumerate(facing):
-            now += float(np.clip(wrapped(wanted - now), -most, most))
-            found[i] = now
-        return found
-
-    def turn(self, angle: float) -> None:
-        """Turns on the spot by so many radians."""
-        frames = max(1, min(round(abs(angle) / math.pi * TURNING * FPS), len(self.places) - self.frame))
-        stop = self.frame + frames
-        self.places[self.frame : stop] = self.place
-        self.headings[self.frame : stop] = self.heading + angle * eased(
-            np.arange(1, frames + 1) / frames, 0.4
-        )
-        self.heading, self.frame = self.heading + angle, stop
-
-    def stay(self, seconds: float | None = None, *, facing: bool = False) -> None:
-        """Stays for some seconds, or to the end of the beat."""
-        stop = (
-            len(self.places) if seconds is None else min(len(self.places), self.frame + round(seconds * FPS))
-        )
-        self.places[self.frame : stop] = self.place
-        if facing:
-            self.headings[self.frame : stop] = self.heading
-        self.frame = max(stop, self.frame)
-
-    def halt(self, speed: Array) -> None:
-        """Takes a step to stop, for a person who was walking at a speed (2,) when the beat began."""
-        if not self.frame and np.linalg.norm(speed) > 0.3:
-            self.frame = min(round(2 * HALT * FPS), len(self.places) - 1)
-            self.place = self.place + HALT * speed
-
-    def left(self) -> float:
-        """Seconds until the beat ends."""
-        return (len(self.places) - self.frame) / FPS
-
-
 def starting(moves: Sequence[Move], seconds: float, *, near: bool = False) -> Standing:
     """Places before a first beat: a at the origin, facing +Z, and b so that their moves can begin.
 
@@ -194,7 +119,7 @@ def starting(moves: Sequence[Move], seconds: float, *, near: bool = False) -> St
     for way in (Way.TO, Way.BEHIND):
         if way in ways:
             gap = float(np.clip(CLOSE + 0.6 * seconds * ways[way].speed, 1.8, 3.6))
-    turned = next((m.person for m in moves if m.way is Way.FACE), "")
+    turned = next((m.person for m in moves if m.way in (Way.FACE, Way.AVERTED)), "")
     turned = turned or next(("b" if m.person == "a" else "a" for m in moves if m.way is Way.BEHIND), "")
     ahead = -1.0 if turned == "a" else 1.0
     facing_b = 0.0 if turned else math.pi
@@ -207,7 +132,7 @@ def plan(moves: Sequence[Move], standing: Standing, frames: int, *, first: bool 
     A person without moves has no way. In a ``first`` beat the ways also say where the two begin.
     """
     tracks = [
-        _Track(
+        Track(
             np.asarray(standing.places[i], dtype=float), float(standing.headings[i]),
             np.full((frames, 2), np.nan), np.full(frames, np.nan),
         )
@@ -223,61 +148,65 @@ def plan(moves: Sequence[Move], standing: Standing, frames: int, *, first: bool 
     ]
 
 
-def _walked(who: int, own: Sequence[Sequence[Move]], tracks: Sequence[_Track], standing: Standing) -> None:
+def _walked(who: int, own: Sequence[Sequence[Move]], tracks: Sequence[Track], standing: Standing) -> None:
     """Lays out the moves of one person in order."""
     track, theirs = tracks[who], [move.way for move in own[1 - who]]
     listed = list(own[who])
-    going = [move for move in listed if move.way not in (Way.STAY, Way.TURN, Way.FACE)]
     for i, move in enumerate(listed):
         if track.left() <= 0.1:
             return
         if move.late and i == 0:
             track.frame = round(0.35 * track.left() * FPS)
-        if move.way is Way.TURN and any(later.way in (Way.AWAY, Way.PAST) for later in listed[i + 1 :]):
+        later = [after.way for after in listed[i + 1 :]]
+        if move.way is Way.TURN and (Way.AWAY in later or Way.PAST in later):
             continue  # who walks away has turned
-        seconds = track.left() if len(going) < 2 else track.left() / (len(listed) - i)
+        seconds = track.left() * _WEIGHT.get(move.way, 1.0)
+        seconds /= _WEIGHT.get(move.way, 1.0) + sum(_WEIGHT.get(way, 1.0) for way in later)
         if move.until:
             seconds *= 0.55
-        _moved(move, who, track, standing, theirs, seconds)
+        _moved(move, who, tracks, standing, theirs, seconds, last=not later)
     if track.frame and listed and listed[-1].way in (Way.AWAY, Way.BACK, Way.PAST, Way.ROUND):
         track.stay()
 
 
 def _moved(
-    move: Move, who: int, track: _Track, standing: Standing, theirs: Sequence[Way], seconds: float
-) -> None:
-    """Lays out one move."""
-    to = standing.towards(who)
-    other = np.asarray(standing.places[1 - who], dtype=float)
-    gap, here = float(np.linalg.norm(other - track.place)), track.place
+    move: Move, who: int, tracks: Sequence[Track], standing: Standing, theirs: Sequence[Way], seconds: float,
+    *, last: bool,
+) -> None:  # fmt: skip
+    """Lays out one move; after the ``last`` one of a beat a person stays where they are."""
+    track, here = tracks[who], tracks[who].place
+    other = tracks[1 - who].at(track.frame, standing.places[1 - who])
+    gap = float(np.linalg.norm(other - here))
+    to = (other - here) / gap if track.frame and gap > 0.3 else standing.towards(who)
     both = move.way in theirs
     match move.way:
-        case Way.STAY | Way.BACKS:
+        case Way.STAY | Way.BACKS | Way.AVERTED:
             track.halt(standing.speeds[who])
-            watched = Way.TURN in theirs or Way.FACE in theirs
-            track.stay(None if seconds >= track.left() else seconds, facing=watched or move.way is Way.BACKS)
+            watched = any(way in theirs for way in (Way.TURN, Way.FACE, Way.BEHIND))
+            track.stay(
+                None if seconds >= track.left() else seconds, facing=watched or move.way is not Way.STAY
+            )
         case Way.TURN:
             track.turn(2 * math.pi * move.turns)
-            track.stay(facing=True)
+            track.stay(facing=True, seconds=None if last else 0.2)
         case Way.FACE:
             line = other - here
             track.turn(wrapped(math.atan2(line[0], line[1]) - track.heading))
-            track.stay(facing=True)
+            track.stay(facing=True, seconds=None if last else 0.2)
         case Way.TO | Way.BEHIND:
             way = (gap - CLOSE) / (2 if both else 1)
             if move.way is Way.BEHIND:
                 way += CLOSE - NEAR_BY
             if way > 0.25:
                 track.walk(np.stack([here, here + way * to]), _time(way, move.speed, seconds))
-            if not both:
+            if not both and last:
                 track.stay()
         case Way.AWAY:
             room = (FARTHEST - gap + max(0.0, move.speed - 1.1)) / (2 if both else 1)
+            room = _CHASED if Way.AFTER in theirs else room
             away = -to if not np.linalg.norm(track.going) else track.going
             way = min(max(seconds - 0.4, 0.5) * move.speed, max(room, 1.2))
-            track.walk(
-                np.stack([here, here + way * away]), min(seconds, way / (0.8 * move.speed) + 2 * _EASE)
-            )
+            track.walk(np.stack([here, here + way * away]), min(seconds, way / (0.8 * move.speed) + 2 * EASE))
         case Way.BACK | Way.ASIDE:
             step = (
                 -min(0.9, 0.6 * seconds) * to
@@ -285,28 +214,28 @@ def _moved(
                 else SIDESTEP * np.array([to[1], -to[0]])
             )
             track.walk(np.stack([here, here + step]), min(seconds, 1.3), heading=math.atan2(to[0], to[1]))
-            track.stay(facing=True)
+            track.stay(facing=True, seconds=None if last else 0.2)
         case Way.PAST:
             beyond = max(1.3, min(gap, seconds * move.speed - gap))
             aside = ASIDE * np.array([to[1], -to[0]])
             line = np.stack(
                 [here, here + 0.5 * gap * to + 0.7 * aside, other + aside, other + beyond * to + aside]
             )
-            track.walk(smoothed(line), min(seconds, (gap + beyond) / min(move.speed, MOST) + _EASE))
+            track.walk(smoothed(line), min(seconds, (gap + beyond) / min(move.speed, MOST) + EASE))
         case Way.ROUND:
             _around(move, track, other, seconds, both, standing)
         case Way.ALONG:
             _along(who, move, track, standing, seconds)
         case Way.AFTER:
-            _after(move, track, to, other, seconds, theirs)
+            _after(move, track, tracks[1 - who], standing.places[1 - who], seconds)
 
 
-def _around(move: Move, track: _Track, other: Array, seconds: float, both: bool, standing: Standing) -> None:
+def _around(move: Move, track: Track, other: Array, seconds: float, both: bool, standing: Standing) -> None:
     """A walk around the other, or of both around the middle between them."""
     middle = standing.places.mean(axis=0) if both else other
     out = track.place - middle
     start, radius = math.atan2(out[0], out[1]), float(np.linalg.norm(out))
-    wanted = 2 * math.pi * move.turns * (1.1 if move.turns >= 1 else 1.25)
+    wanted = 2 * math.pi * move.turns * (1.1 if move.turns >= 1 else 1.5)
     end_radius = max(radius, WIDE / 2 if both else WIDE)
     speed = max(move.speed, 1.3)
     wanted = min(wanted, speed * max(seconds - 0.4, 0.5) / max((radius + end_radius) / 2, 0.4))
@@ -316,7 +245,7 @@ def _around(move: Move, track: _Track, other: Array, seconds: float, both: bool,
     track.walk(line, seconds)
 
 
-def _along(who: int, move: Move, track: _Track, standing: Standing, seconds: float) -> None:
+def _along(who: int, move: Move, track: Track, standing: Standing, seconds: float) -> None:
     """A walk side by side: both turn into one direction across the line between them."""
     between = standing.towards(0)
     ahead = np.array([between[1], -between[0]])
@@ -331,16 +260,27 @@ def _along(who: int, move: Move, track: _Track, standing: Standing, seconds: flo
     track.going = ahead
 
 
-def _after(move: Move, track: _Track, to: Array, other: Array, seconds: float, theirs: Sequence[Way]) -> None:
-    """A walk after the other, who walks ahead."""
-    gone = min(max(seconds - 0.4, 0.5) * move.speed, 4.0) if Way.AWAY in theirs else 0.0
-    way = float(np.linalg.norm(other - track.place)) - BEHIND + gone
-    if way > 0.25:
-        track.stay(0.4)
-        track.walk(np.stack([track.place, track.place + way * to]), min(seconds - 0.4, track.left()))
+def _after(move: Move, track: Track, ahead: Track, start: Array, seconds: float) -> None:
+    """A walk on the other's way, some steps behind them."""
+    frames = min(round(seconds * FPS), len(track.places) - track.frame)
+    first = track.frame
+    theirs = np.stack([ahead.at(frame, start) for frame in range(first, first + frames)])
+    line = np.concatenate([track.place[None], theirs])
+    along = np.concatenate([[0.0], np.cumsum(np.linalg.norm(np.diff(line, axis=0), axis=1))])
+    most = max(move.speed, MOST) / FPS
+    done, gone = np.zeros(frames), 0.0
+    for i in range(frames):
+        if i > _REACTS * FPS:
+            gone += float(
+                np.clip(along[i + 1] - BEHIND - gone, 0.0, most * min(1.0, (i / FPS - _REACTS) / EASE))
+            )
+        done[i] = gone
+    if done[-1] > 0.25:
+        at = np.stack([np.interp(done, along, line[:, axis]) for axis in (0, 1)], axis=1)
+        track.follow(at)
 
 
-def _sampled(who: int, track: _Track, standing: Standing | None) -> Way2D | None:
+def _sampled(who: int, track: Track, standing: Standing | None) -> Way2D | None:
     """The way at every :data:`EVERY` frames and at the last one that is planned, and where it begins."""
     if standing is not None:
         track.places[0], track.headings[0] = standing.places[who], standing.headings[who]
@@ -373,4 +313,4 @@ def _with_turns(frames: Sequence[int], headings: Array) -> list[int]:
 
 def _time(way: float, speed: float, most: float) -> float:
     """Seconds in which a way is walked, at a run if there is little time."""
-    return min(most, max(way / speed + _EASE, way / MOST))
+    return min(most, max(way / speed + EASE, way / MOST))

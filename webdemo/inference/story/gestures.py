@@ -27,6 +27,7 @@ class Hand(Enum):
 
     HIGH = "high above the head"
     UP = "raised"
+    AHEAD = "stretched out in front"
     WAVES = "waves"
     POINTS = "points at the other"
     LINKED = "holds the other's hand"
@@ -54,6 +55,12 @@ _PATTERNS = (
         rf"\b(?:throw|rais|lift|fling|put|hold|stretch|reach)\w* (?:up )?{_BOTH}\b{_NOT_UP}"
         rf"|\b{_BOTH} (?:\w+ )?(?:raised|up|high|above|over (?:his|her|their) heads?|in the air)\b|\bhands up\b",
     ),
+    (
+        Hand.AHEAD,
+        rf"\b(?:hold|stretch|put)\w* (?:out )?{_BOTH} (?:out|forwards?|in front|ahead)\b"
+        rf"|\b(?:arms|hands) (?:out|outstretched|stretched out|ahead|in front of (?:him|her|them))\b"
+        r"|\boutstretched (?:arms|hands)\b",
+    ),
     (Hand.WAVES, r"\bwav(?:e|es|ing)\b"),
     (Hand.POINTS, r"\bpoint(?:s|ing)?\b(?! out)"),
     (
@@ -80,7 +87,7 @@ def gestures(sentence: str) -> dict[str, Gesture]:
             if match is None or (denied and denied.start() < match.start()):
                 continue
             side = _SIDE.search(clause.words)
-            sides = SIDES if hand is Hand.HIGH else (side[1],) if side else ("right",)
+            sides = SIDES if hand in (Hand.HIGH, Hand.AHEAD) else (side[1],) if side else ("right",)
             found |= dict.fromkeys(clause.who, Gesture(hand, sides))
             break
     return found
@@ -107,6 +114,8 @@ def wrist(gesture: Gesture, side: str, seconds: Array, towards: Array) -> Array:
             offset[:] = [0.1 * out, 0.45, 0.08]
         case Hand.UP:
             offset[:] = [0.1 * out, 0.32, 0.16]
+        case Hand.AHEAD:
+            offset[:] = [0.02 * out, 0.0, 0.45]
         case Hand.WAVES:
             offset[:] = [0.16 * out, 0.26, 0.18]
             offset[:, 0] += 0.14 * np.sin(2 * np.pi * _SWAYS * np.asarray(seconds))

@@ -22,6 +22,7 @@ class Way(Enum):
     ALONG = "walks side by side with the other"
     AFTER = "follows the other"
     TURN = "turns around"
+    AVERTED = "stands with their back to the other"
     ASIDE = "steps aside"
     FACE = "turns to the other"
     BACKS = "stands with their back to the other's"
@@ -55,7 +56,10 @@ _GO = (
     r"(?:walk|go|goes|going|stroll|wander|run|jog|rush|hurr[yi]|sprint|dash|march|strid|stomp|storm|step|mov|head|creep|"
     r"sneak|tiptoe|wade|shuffl|limp|stagger|skip|danc|drift|saunter|trot|charg|stumbl|ambl|pac(?:e|ing)|bolt|scurr[yi]|"
     r"dart|trudg|plod|glid|swagger|slip|roam|parad|scamper|hobbl|totter|stalk|pranc|inch|race|racing|spring|squeez|"
-    r"brush)\w*"
+    r"brush|sidl|mosey|swan|strut|waddl|toddl|scuttl|scoot|lumber|lurch|slink|steal|prowl|stump|clomp|tramp|traips|"
+    r"canter|gallop|hasten|hurtl|zoom|zip|speed|tear|shoot|barg|breez|bustl|flounc|sashay|sweep|weav|zigzag|gambol|hik|"
+    r"lop|meander|mill|pad|potter|rambl|scrambl|skulk|slither|slop|sleepwalk|slouch|bound|hotfoot|power|nip|pop|travel|"
+    r"wend|goose-?step|moonwalk)\w*"
 )
 _OTHER = r"(?:person [ab]|(?:the|his|her|their|an?|another) (?:\w+ )?\w+|him|her|them|each other|one another)"
 _PERSON = (
@@ -64,8 +68,21 @@ _PERSON = (
 )
 _AROUND = r"(?:a?round)"
 _HIS = r"(?:his|her|their)"
+_PLACES = re.compile(
+    r"\b(?:to|towards?|for|into|through|out of) (?:the|an?|his|her|their) (?:\w+ )?(?:door|exit|window|kitchen|car|bus|"
+    r"train|taxi|house|home|street|park|shop|store|office|school|bar|bathroom|bedroom|garden|gate|corner|stairs|hall|"
+    r"fridge|bed|stage|shower|forest|woods|beach|water|lift|elevator|goal|finish line|shelf|cupboard)s?\b"
+)
+"""Places that are not where the other person is."""
 _WAYS: tuple[tuple[Way, tuple[str, ...]], ...] = (
     (Way.BACKS, (r"\b(?:stand|sit|lean|wait)\w* (?:\w+ )?back[- ]to[- ]back\b", r"^back[- ]to[- ]back\b")),
+    (
+        Way.AVERTED,
+        (
+            r"\b(?:with|has|have|keeps?) (?:his|her|their) back(?:s)? (?:to|turned|towards)\b",
+            r"\b(?:is|stands?|sits?|waits?) (?:facing|turned|looking) (?:away\b|the other way\b)",
+        ),
+    ),
     (
         Way.AFTER,
         (
@@ -129,7 +146,7 @@ _WAYS: tuple[tuple[Way, tuple[str, ...]], ...] = (
             rf"\b{_GO} (?:\w+ ){{0,2}}?(?:away|off|out\b(?! (?:a|the|his|her|their) (?:hand|arm))|home|elsewhere)\b",
             r"\bleav(?:e|es|ing)\b(?! \w+ (?:hand|arm))",
             r"\b(?:depart|separat|escap|withdr[ae]w|disappear|vanish)\w*",
-            r"\b(?:mak|tak)(?:e|es|ing) off\b",
+            r"\b(?:mak|tak)(?:e|es|ing) off\b(?! (?:together|side by side|in the same))",
             r"\btak(?:es?|ing) (?:his|her|their) leave\b",
             r"\bon (?:his|her|their) heels?\b",
             r"\bgets? away\b",
@@ -146,6 +163,7 @@ _WAYS: tuple[tuple[Way, tuple[str, ...]], ...] = (
             r"\bcarr(?:y|ies) on\b",
             r"\b(?:run|walk|go|jog)s? on ahead\b",
             r"\bgoes on\b",
+            r"\bon (?:his|her|their) way out\b",
         ),
     ),
     (
@@ -156,6 +174,7 @@ _WAYS: tuple[tuple[Way, tuple[str, ...]], ...] = (
             r"with (?:each other|him|her|them|person [ab]|the other)|in (?:the )?(?:same direction|parallel))",
             r"\baccompan\w+",
             r"\bsets? off (?:together|side by side)\b",
+            r"\bin the same direction\b",
             r"\bkeep\w* (?:pace|up) with\b",
             rf"\b(?:side by side|next to each other|hand in hand|arm in arm)\b.*\b{_GO}",
             rf"\b{_GO} (?:on|along)\b",
@@ -169,7 +188,9 @@ _WAYS: tuple[tuple[Way, tuple[str, ...]], ...] = (
             rf"|in\b|to {_OTHER}|right up)",
             r"\bcom(?:e|es|ing) (?:up |over |closer|nearer|running|back|along)",
             r"\bcomes? (?:over|closer|nearer)?$",
-            r"\b(?:approach|meets?|joins?)\w*",
+            rf"\b(?:walks?|comes?|runs?|steps?) up$|\b(?:walk|run|bump|crash)s? (?:\w+ )?into {_OTHER}",
+            r"\bcollid\w+",
+            r"\b(?:approach|joins?)\w*|\bmeets?\b|\bmeeting\b(?! (?:is|over))|\bkeeps? (?:on )?coming\b",
             r"\bclos\w+ (?:in|the (?:gap|distance))\b",
             r"\bgets? (?:closer|nearer)\b",
             r"\badvanc(?:e|es|ing)\b",
@@ -182,6 +203,7 @@ _WAYS: tuple[tuple[Way, tuple[str, ...]], ...] = (
             rf"\bturn\w* (?:all the way )?(?:{_AROUND} )?(?:to|towards) (?!go|leave|walk)",
             r"\bface each other\b",
             rf"\bturns? to {_PERSON}",
+            r"\b(?:comes?|turns?|swings?|spins?) (?:back )?(?:a?round|about) to (?:face|look)",
         ),
     ),
     (
@@ -196,7 +218,7 @@ _WAYS: tuple[tuple[Way, tuple[str, ...]], ...] = (
     (
         Way.STAY,
         (
-            r"\b(?:stay|stand|wait|remain|watch|look|freez|stop|paus|halt|linger)\w*",
+            r"(?<!n't )(?<!not )(?<!never )\b(?:stay|stand|wait|remain|watch|look|freez|stop|paus|halt|linger)\w*",
             r"\bholds? still\b",
             r"\brooted\b",
             r"\bdo(?:es)? ?n[o']t (?:move|react|budge|follow)\b",
@@ -208,6 +230,9 @@ _WAYS: tuple[tuple[Way, tuple[str, ...]], ...] = (
     ),
 )
 _PATTERNS = tuple((way, re.compile("|".join(patterns))) for way, patterns in _WAYS)
+_PERSON_NAMED = re.compile(
+    r"\b(?:to|towards?|up|over|at|join\w*|meet\w*) (?:person [ab]|him|her|them|each other|the other)\b"
+)
 _NOT = re.compile(r"\b(?:do(?:es)?n't|not|without|never|refus\w+ to|wants? to|tries to|let(?:s|ting)?)\b")
 MOVED = re.compile(
     r"\b(?:danc|waltz|lead|drag|pull|carr(?!(?:y|ies) on)|guid|push|shov|fight|kick|punch|wrestl|help|support|"
@@ -244,6 +269,8 @@ def way_of(words: str) -> Way | None:
             continue
         if way is not Way.STAY and denied is not None and denied.start() < found.start():
             continue
+        if way is Way.TO and _PLACES.search(words) and not _PERSON_NAMED.search(words):
+            return Way.AWAY
         return way
     return None
 
@@ -320,6 +347,7 @@ def _of_clause(clause: Clause, *, late: bool) -> list[Move]:
         who = "ab"
     elif way is Way.ALONG and who != "ab":
         way = Way.AWAY  # "the other one walks on"
+    late = late and way is not Way.AFTER
     speed = next((value for pattern, value in _SPEEDS if re.search(pattern, clause.words)), 1.1)
     turns = 1.0 if _FULL.search(clause.words) else 0.5
     return [Move(person, way, speed, turns, late=late) for person in who]

@@ -42,7 +42,7 @@ class Change:
     passing: bool = False
 
 
-_SEAT = r"(?:chair|seat|bench|sofa|couch|stool|armchair|settee|step|table|desk)s?"
+_SEAT = r"(?:chair|seat|bench|sofa|couch|stool|armchair|settee|step|table|desk|wheelchair|throne|swing|deckchair)s?"
 _SELF = r"(?:him|her|them)sel(?:f|ves)"
 _SURFACE = r"(?:ground|floor|grass|mat|backs?|bottom|bum|side|knees)"
 _GROUND = rf"(?:(?:to|on|onto) (?:the |his |her |their )?{_SURFACE}|over|down)"
@@ -55,8 +55,9 @@ _UP = re.compile(
 )
 _BY_OTHER = re.compile(r"\b(?:is|are|gets?|being) (?:\w+ )?\w+(?:ed|wn)\b")
 _RAISES = re.compile(
-    r"\b(?:pull|help|lift|drag|haul)\w* (?:(?:person [ab]|him|her|them|the \w+|each other) )?(?:\w+ )?"
-    rf"(?:up\b|{_FEET})"
+    r"\b(?:pull|help|lift|drag|haul|ease)\w* (?:(?:person [ab]|him|her|them|(?:the|an?|his|her) (?:old )?\w+|"
+    rf"each other) )?(?:\w+ )?(?:up\b|{_FEET}|(?:out of|off|from) (?:the|an?|his|her|their) "
+    rf"(?:{_SEAT}|floor|ground|bed))"
 )
 """Acts by which one gets the other up."""
 _FELLS = re.compile(
@@ -91,11 +92,15 @@ _STATE = (
     (
         Posture.SITS,
         rf"{_STAYS}(?:seated|sitting)\b(?! down)|\bsits?(?! (?:\w+ )?down)\b|^(?:seated|sitting)\b(?! down)"
-        rf"|\b(?:is|are) (?:\w+ )?(?:on|in) (?:the|an?|his|her|their) (?:\w+ )?{_SEAT}\b|\bperched\b",
+        rf"|\b(?:is|are|asleep|dozing|reads?\b.*|waits?|reading|waiting|sleeps?|sleeping|relax\w+) (?:\w+ )?"
+        rf"(?:on|in|at) (?:the|an?|his|her|their) (?:\w+(?:'s)? )?{_SEAT}\b|\bperched\b"
+        rf"|^(?:on|in) the (?:\w+ )?{_SEAT}\b"
+        r"|\b(?:over|at|has|have|having|eats?|eating) (?:dinner|lunch|breakfast|supper)\b",
     ),
     (
         Posture.LIES,
-        rf"{_STAYS}(?:lying\b(?! down)|sprawled|flat on|on the (?:floor|ground)\b|on (?:his|her) back\b)"
+        rf"{_STAYS}(?:lying\b(?! down)|sprawled|flat on|on the (?:floor|ground)\b|on (?:his|her) back\b|out cold|"
+        r"unconscious|dead\b|fast asleep on the (?:floor|ground|grass))|^flat on (?:his|her|their) (?:back|face)"
         r"|\bl(?:ies?|ying) (?:\w+ )?(?:on|flat|still)\b",
     ),
     (
@@ -117,10 +122,18 @@ _OFTEN = re.compile(
     r"\b(?:hop|hopping|hops|bounc\w+|jumping)\b.* on the spot\b|\bup and (?:\w+ )?down\b|\bagain and again\b"
     r"|\brepeatedly\b|\b(?:several|three|many|a few) times\b"
 )
+_COUNTED = re.compile(r"\b(two|three|four|five) (?:\w+ )?(?:jump|hop|leap|bounce)s\b")
 _TWICE = re.compile(r"\btwice\b|\btwo times\b")
 _NOT = re.compile(
     r"\b(?:do(?:es)?n't|not|without|never|refus\w+ to|wants? to|tries to|about to|almost|nearly)\b"
 )
+
+
+_LEFT_SO = re.compile(r"\b(?:walks? away|leaves? (?:\w+ )?\w+) (?P<so>sitting|seated|lying|kneeling)\b")
+"""Words by which one goes and leaves the other as they are."""
+_SO = {
+    "sitting": Posture.SITS, "seated": Posture.SITS, "lying": Posture.LIES, "kneeling": Posture.KNEELS
+}  # fmt: skip
 
 
 def changes(sentence: str) -> dict[str, tuple[Change, ...]]:
@@ -130,6 +143,12 @@ def changes(sentence: str) -> dict[str, tuple[Change, ...]]:
     at_once = any(clause.at_once for clause in listed)
     for i, clause in enumerate(listed):
         share = i / len(listed)
+        if clause.who != "ab" and (left := _LEFT_SO.search(clause.words)) is not None:
+            other = "b" if clause.who == "a" else "a"
+            found[other] = (
+                *found.get(other, ()),
+                Change(_SO[left["so"]], already=not i or other not in found),
+            )
         if (change := _caused(clause, share)) is not None:
             other = "b" if clause.who == "a" else "a"
             found[other] = (*found.get(other, ()), change)
@@ -184,6 +203,8 @@ def leaps(sentence: str) -> dict[str, int]:
         if not _says(_JUMPS, clause.words) or _ELSEWHERE.search(clause.words) or _UP.search(clause.words):
             continue
         times = 3 if _OFTEN.search(sentence.lower()) else 2 if _TWICE.search(clause.words) else 1
+        if (counted := _COUNTED.search(clause.words)) is not None:
+            times = 2 + ("two", "three", "four", "five").index(counted[1])
         found |= dict.fromkeys(clause.who, times)
     return found
 
@@ -201,15 +222,27 @@ def _gets_going(sentence: str) -> set[str]:
     return going | {who for clause in acts for who in clause.who} | set(leaps(sentence))
 
 
+def _from_the_start(sentences: Sequence[str]) -> dict[str, Posture]:
+    """The postures of people of whom a later beat first says that they are down already."""
+    found: dict[str, Posture] = {}
+    told: set[str] = set()
+    for sentence in sentences:
+        for person, listed in changes(sentence).items():
+            if person not in told and listed[0].already:
+                found[person] = listed[0].posture
+        told |= set(changes(sentence)) | _gets_going(sentence)
+    return found
+
+
 def at_start(sentences: Sequence[str], beat: int) -> dict[str, Posture]:
     """The postures of both people, "a" and "b", when a beat of a story begins."""
     held = dict.fromkeys("ab", Posture.STANDS)
+    for person, posture in _from_the_start(sentences).items():
+        held[person] = posture
     for i, sentence in enumerate(sentences[: beat + 1]):
         held |= dict.fromkeys(_gets_going(sentence), Posture.STANDS)
         for person, listed in changes(sentence).items():
-            if i == 0 and listed[0].already:
-                held[person] = listed[0].posture
-            elif i == 0 and listed[0].posture is Posture.STANDS:
+            if i == 0 and listed[0].posture is Posture.STANDS:
                 held[person] = Posture.SITS  # who gets up was down
             if i < beat and not listed[-1].passing:
                 held[person] = listed[-1].posture

@@ -5,9 +5,11 @@ from __future__ import annotations
 import re
 from collections.abc import Sequence
 
-from .beats import Beat
-from .clauses import Clause, Reader, named
+from .beats import Beat, is_known_act
+from .clauses import Clause, Reader, clauses, named
+from .gestures import gestures
 from .moves import MOVED, Way, is_bare, way_of
+from .postures import changes, leaps
 
 _MARK = r"(?:and\s+)?(?:then|finally|afterwards?|after\s+that|at\s+last|at\s+the\s+end|lastly)"
 _LOOSE_MARK = r"(?:next|later|now)"
@@ -48,18 +50,33 @@ def split_sentence(text: str) -> tuple[Beat, ...]:
     Who comes or goes does the one after the other, also where the words only say "and". In a story of several
     beats single people are called person A and person B, so that each beat can be read alone.
     """
-    text = " ".join(text.split())
+    text = " ".join(re.sub(r"\([^()]*\)", " ", text).split())
     reader = Reader()
     parts: list[str] = []
+    setting = ""
     for part in _clauses(_OPENING.sub("", named(text))):
         part = _STARTS_WITH_MARK.sub("", _OPENING.sub("", part.strip())).strip(" ,;.!")
         part = re.sub(r"^and\s+|\s+and$", "", part, flags=re.IGNORECASE)
-        if part:
+        if part and not _is_act(part, clauses(part)):
+            setting += f"{part}, "
+        elif part:
+            part, setting = f"{setting}{part[:1].lower()}{part[1:]}" if setting else part, ""
             groups = _acts(reader.read(part))
             parts += [_in_words(part, groups)] if len(groups) == 1 else [_worded(group) for group in groups]
+    if setting and parts:
+        parts[-1] = f"{parts[-1].rstrip('.')}, {setting.rstrip(', ')}."
     if len(parts) < 2:
         return (Beat(text),) if text else ()
     return tuple(Beat(part) for part in parts)
+
+
+def _is_act(part: str, found: Sequence[Clause]) -> bool:
+    """True if somebody does something in a part; "Sports day" is only a setting."""
+    return (
+        any(clause.stated or way_of(clause.words) is not None for clause in found)
+        or is_known_act(part)
+        or any(read(part) for read in (changes, leaps, gestures))
+    )
 
 
 def _acts(found: Sequence[Clause]) -> list[list[Clause]]:
@@ -82,11 +99,15 @@ def _acts(found: Sequence[Clause]) -> list[list[Clause]]:
 
 def _follows(group: Sequence[Clause], clause: Clause, after: Sequence[Clause]) -> bool:
     """True if a clause begins when a group is over."""
-    way, before = way_of(clause.words), [way_of(done.words) for done in group]
+    way = way_of(clause.words)
+    group = [done for done in group if done.subject or is_known_act(done.words)] or group
+    before = [way_of(done.words) for done in group]
     if way is Way.TURN and after and way_of(after[0].words) is Way.AWAY:
         way = Way.AWAY
     if way is None and not after and is_bare(clause):
         return bool(_MOMENT.search(group[-1].words))
+    if way is Way.AFTER and Way.AWAY in before:
+        return False  # who follows sets off at once
     if way in DEPARTS:
         return any(done is None for done in before)
     arrived = [done for done, move in zip(group, before, strict=True) if move in ARRIVES and done.who != "ab"]
