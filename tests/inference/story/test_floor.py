@@ -145,6 +145,15 @@ def test_moves_of_one_beat_come_one_after_another() -> None:
     assert gaps(found)[-1] > 3.0
 
 
+def test_who_spins_turns_all_the_way() -> None:
+    for words, degrees in (("spins like a top", 360), ("spins around", 180)):
+        _, found = ways(f"Person A {words}.", standing=FACING)
+        assert found[0].headings is not None
+        assert np.degrees(found[0].headings[-1]) == pytest.approx(degrees, abs=5)
+        between = np.diff([0.0, *found[0].headings])
+        assert np.degrees(np.abs(between)).max() < 190, "a larger turn could be made the other way"
+
+
 def test_nobody_turns_round_to_who_comes_up_behind_them() -> None:
     begin, found = ways("Person A sneaks up on person B.")
     assert math.cos(begin.headings[1]) > 0.99

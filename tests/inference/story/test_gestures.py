@@ -22,6 +22,7 @@ TIME = np.arange(60) / 30
         ("She keeps pointing at him with her right arm as she walks around him.", {"a": (Hand.POINTS, 1)}),
         ("A boy raises his hand.", {"a": (Hand.UP, 1)}),
         ("A zombie walks with outstretched arms.", {"a": (Hand.AHEAD, 2)}),
+        ("The soldier salutes.", {"a": (Hand.SALUTES, 1)}),
         # no gesture of a hand in the air
         ("Person A puts both hands on person B's shoulders.", {}),
         ("Person A throws his arms around her.", {}),

@@ -32,6 +32,7 @@ CROUCHES, STANDS = Posture.CROUCHES, Posture.STANDS
         ("B is in the barber's chair.", {"b": [SITS]}),
         ("Over dinner the couple talk.", {"a": [SITS], "b": [SITS]}),
         ("A is out cold on the floor, B looks on.", {"a": [LIES]}),
+        ("The medic walks up to the injured player.", {"b": [LIES]}),
         # nobody goes down
         ("They walk to the table.", {}),
         ("Person A does not sit down.", {}),

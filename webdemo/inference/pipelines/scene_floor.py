@@ -15,13 +15,13 @@ from webdemo.inference.story.floor import Standing, Way2D, plan, starting
 from webdemo.inference.story.idle import idle, is_planned, touches
 from webdemo.inference.story.moves import Move, Way, goes, moves
 from webdemo.inference.story.plan import Window
-from webdemo.inference.story.poses import LOWER, standing
+from webdemo.inference.story.poses import standing
 from webdemo.inference.story.postures import Change, Posture, changes, leaps
 from webdemo.inference.story.request import SceneRequest
 from webdemo.inference.story.track import HALT
 
 from .scene_hands import hands, known_hands
-from .scene_postures import UPRIGHT, lower, postures
+from .scene_postures import UPRIGHT, led, postures
 
 Array = NDArray[np.floating]
 
@@ -86,9 +86,9 @@ def _held(
             poses = postures(sentences, window.beat, person, start, stop, stand, last)
             if len(poses) > 1:
                 posed[person] = poses[-1][1]
-            if (inside := lower(poses, window.start, window.stop)) is not None:
-                frames = [frame - window.start + window.past for frame in inside[0]]
-                parts.append(KnownFrames(person, frames, placement.to_network(inside[1]), LOWER))
+            for joints, frames, known in led(poses, window.start, window.stop):
+                shifted = [frame - window.start + window.past for frame in frames]
+                parts.append(KnownFrames(person, shifted, placement.to_network(known), joints))
     return parts, posed
 
 

@@ -3,15 +3,18 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 
 import numpy as np
 from numpy.typing import NDArray
 
+from motion import SMPL22
 from motion.transforms import heading
 from webdemo.inference.actor import FPS
 from webdemo.inference.story.floor import Standing
 from webdemo.inference.story.poses import (
+    FLAT,
+    LOWER,
     LYING,
     TOES,
     crouching,
@@ -36,6 +39,9 @@ DUCKING = 16
 """Frames in which somebody ducks, and as many in which they are up again."""
 UPRIGHT = 0.8
 """Height in metres of the pelvis of people who stand."""
+LOW = 0.5
+"""Height in metres of the head of those who lie."""
+_HEAD = SMPL22.index("head")
 LEAP = 36
 """Frames from the highest moment of a jump to that of the next."""
 _MAKES: dict[Posture, Callable[[Array, float], Array]] = {
@@ -96,10 +102,15 @@ def postures(
     return [(frame, found[frame]) for frame in sorted(found) if start <= frame < stop]
 
 
-def lower(poses: list[Pose], first: int, last: int) -> tuple[list[int], Array] | None:
-    """The frames from ``first`` to before ``last`` and their poses (N, 22, 3); None if there are none."""
-    inside = [(frame, pose) for frame, pose in poses if first <= frame < last]
-    return ([frame for frame, _ in inside], np.stack([pose for _, pose in inside])) if inside else None
+def led(poses: list[Pose], first: int, last: int) -> Iterator[tuple[Sequence[int], list[int], Array]]:
+    """The joints, frames and poses (N, 22, 3) from ``first`` to before ``last`` that are given.
+
+    Pelvis and legs, and the trunk and head of those who lie down, which the network would raise.
+    """
+    for joints, lies in ((LOWER, False), (FLAT, True)):
+        inside = [(f, pose) for f, pose in poses if first <= f < last and bool(pose[_HEAD, 1] < LOW) is lies]
+        if inside:
+            yield joints, [frame for frame, _ in inside], np.stack([pose for _, pose in inside])
 
 
 def _stays(pose: Array, start: int, stop: int) -> dict[int, Array]:

@@ -68,7 +68,7 @@ _LEADING = re.compile(
     rf"^((?:without|after|following|hearing|holding|having|with|on|at|in|from|upon)\b[^,]*?),? "
     rf"(?=(?:they|both of them|{_NAMED}|he|she|one|the (?:first|second|other)) \w+)"
 )
-_OBJECT = re.compile(rf"\b(?:{_NAMED}|the (?:first|second|other)(?: person| one)?|the \w+|him|her)$")
+_OBJECT = re.compile(rf"\b(?:{_NAMED}|the (?:first|second|other)(?: person| one)?|the (?:\w+ )?\w+|him|her)$")
 _ADVERB = (
     r"(?:(?:first|then|finally|afterwards|next|now|later|suddenly|slowly|quickly|eagerly|meanwhile|halfway|soon|eventually|there|also|just|simply|"
     r"carefully|\w+ly),? )*"
@@ -88,7 +88,7 @@ _PAIRED = re.compile(
 _GOING_ON = re.compile(r"^(?!(?:during|anything|something|nothing)\b)\w*[aeiouy]\w*ing\b")
 _RELATIVE = re.compile(r"\bwho\b")
 _JOIN = re.compile(
-    r"(?P<mark>\s*[.;:!?]\s+|,?\s+(?:and|but|yet|so)\s+(?:then\s+)?|,?\s+(?:then|afterwards|finally)\s+"
+    r"(?P<mark>\s*[.;:!?]\s+|\s+[-–—]\s+|,?\s+(?:and|but|yet|so)\s+(?:then\s+)?|,?\s+(?:then|afterwards|finally)\s+"
     r"|,?\s+(?:while|as|whereas|when|until|till|before)\s+|,\s+who\s+|,\s+)"
 )
 _AT_ONCE = re.compile(r"\b(?:while|as|whereas|when|who)\b")
@@ -179,8 +179,10 @@ _NO_NAME = re.compile(
 def named(text: str) -> str:
     """The text with people called A and B, 1 and 2, or by a name, called so in a way that clauses understand."""
     if re.search(r"\b[Bb]\b", text) and not re.search(r"\bperson [ab]\b", text, re.IGNORECASE):
-        text = re.sub(r"\b[Bb]\b(?=\s+[a-z]|'s\b|[.,;!?]|$)", "person B", text)
-        text = re.sub(r"(?<!person )\bA\b(?=,|'s\b|\s+(?:\w+s|\w+ing|\w+ed)\b|[.;!?]|$)", "person A", text)
+        text = re.sub(r"\b[Bb]\b(?=\s+(?:[a-z]|[-–—])|'s\b|[.,;!?]|$)", "person B", text)
+        text = re.sub(
+            r"(?<!person )\bA\b(?=,|\s+[-–—]|'s\b|\s+(?:\w+s|\w+ing|\w+ed)\b|[.;!?]|$)", "person A", text
+        )
         text = re.sub(r"\ba(?=[.,;!?]|$)", "person A", text)
         text = re.sub(
             r"(?<!person )\bA\b(?= (?:and|in|on|at|by|with|to|from|then|is|has|does)\b)", "person A", text

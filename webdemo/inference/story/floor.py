@@ -303,7 +303,7 @@ def _sampled(who: int, track: Track, standing: Standing | None) -> Way2D | None:
 def _with_turns(frames: Sequence[int], headings: Array) -> list[int]:
     """The frames, with more of them where somebody turns so far between two that they could turn the other way."""
     found = list(frames)
-    for first, last in itertools.pairwise(frames):
+    for first, last in itertools.pairwise([0, *frames]):
         turned = abs(headings[last] - headings[first])
         if turned > math.pi + 0.1:  # false where either heading is free
             parts = math.ceil(turned / STEP) + 1

@@ -27,6 +27,7 @@ class Hand(Enum):
 
     HIGH = "high above the head"
     UP = "raised"
+    SALUTES = "salutes"
     AHEAD = "stretched out in front"
     WAVES = "waves"
     POINTS = "points at the other"
@@ -61,6 +62,7 @@ _PATTERNS = (
         rf"|\b(?:arms|hands) (?:out|outstretched|stretched out|ahead|in front of (?:him|her|them))\b"
         r"|\boutstretched (?:arms|hands)\b",
     ),
+    (Hand.SALUTES, r"\bsalut(?:e|es|ing)\b"),
     (Hand.WAVES, r"\bwav(?:e|es|ing)\b"),
     (Hand.POINTS, r"\bpoint(?:s|ing)?\b(?! out)"),
     (
@@ -114,6 +116,8 @@ def wrist(gesture: Gesture, side: str, seconds: Array, towards: Array) -> Array:
             offset[:] = [0.1 * out, 0.45, 0.08]
         case Hand.UP:
             offset[:] = [0.1 * out, 0.32, 0.16]
+        case Hand.SALUTES:
+            offset[:] = [0.06 * out, 0.26, 0.2]
         case Hand.AHEAD:
             offset[:] = [0.02 * out, 0.0, 0.45]
         case Hand.WAVES:

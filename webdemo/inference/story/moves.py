@@ -104,7 +104,7 @@ _WAYS: tuple[tuple[Way, tuple[str, ...]], ...] = (
         Way.PAST,
         (
             rf"\b(?:{_GO}|com\w+) (?:\w+ )?(?:past\b|(?<!side )by\b(?! the (?:hand|arm)| side))",
-            r"\bovertak\w+",
+            r"\bovertak\w+|^(?:right|straight|just) past\b",
             rf"\bpass(?:es|ing)? (?:by\b|{_PERSON}(?! (?:an?|the)\b))",
         ),
     ),
@@ -260,6 +260,9 @@ _FULL = re.compile(
 )
 
 
+_SPINS = re.compile(r"\b(?:spin|pirouette|twirl|whirl|rotat)\w*\b(?! (?:a?round|about|to))")
+
+
 def way_of(words: str) -> Way | None:
     """The way of moving that a clause's words name, if they do."""
     denied = _NOT.search(words)
@@ -349,7 +352,7 @@ def _of_clause(clause: Clause, *, late: bool) -> list[Move]:
         way = Way.AWAY  # "the other one walks on"
     late = late and way is not Way.AFTER
     speed = next((value for pattern, value in _SPEEDS if re.search(pattern, clause.words)), 1.1)
-    turns = 1.0 if _FULL.search(clause.words) else 0.5
+    turns = 1.0 if _FULL.search(clause.words) or (way is Way.TURN and _SPINS.search(clause.words)) else 0.5
     return [Move(person, way, speed, turns, late=late) for person in who]
 
 

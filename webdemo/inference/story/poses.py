@@ -24,6 +24,7 @@ LOWER = tuple(
         "left_foot", "right_foot",
     )
 )  # fmt: skip
+FLAT = (*LOWER, *(SMPL22.index(name) for name in ("spine2", "spine3", "neck", "head")))
 """Joints of the pelvis and the legs: with these known, the arms and the head are free for other acts."""
 TOES = (SMPL22.index("left_foot"), SMPL22.index("right_foot"))
 _ARMS = {"left": 1.0, "right": -1.0}

@@ -131,8 +131,14 @@ _NOT = re.compile(
 
 _LEFT_SO = re.compile(r"\b(?:walks? away|leaves? (?:\w+ )?\w+) (?P<so>sitting|seated|lying|kneeling)\b")
 """Words by which one goes and leaves the other as they are."""
+_LIES_THERE = re.compile(
+    r"\b(?:the|an?|his|her|their) (?P<so>injured|wounded|fallen|unconscious|sleeping|dead|seated|sitting|kneeling) \w+"
+)
+"""Objects that say how the other person is."""
 _SO = {
-    "sitting": Posture.SITS, "seated": Posture.SITS, "lying": Posture.LIES, "kneeling": Posture.KNEELS
+    "sitting": Posture.SITS, "seated": Posture.SITS, "kneeling": Posture.KNEELS, "lying": Posture.LIES,
+    "injured": Posture.LIES, "wounded": Posture.LIES, "fallen": Posture.LIES, "unconscious": Posture.LIES,
+    "sleeping": Posture.LIES, "dead": Posture.LIES,
 }  # fmt: skip
 
 
@@ -143,7 +149,8 @@ def changes(sentence: str) -> dict[str, tuple[Change, ...]]:
     at_once = any(clause.at_once for clause in listed)
     for i, clause in enumerate(listed):
         share = i / len(listed)
-        if clause.who != "ab" and (left := _LEFT_SO.search(clause.words)) is not None:
+        left = _LEFT_SO.search(clause.words) or _LIES_THERE.search(clause.words)
+        if clause.who != "ab" and left is not None:
             other = "b" if clause.who == "a" else "a"
             found[other] = (
                 *found.get(other, ()),

@@ -115,8 +115,9 @@ def _phrases() -> dict[str, list[_Phrase]]:
             end = _NO_OBJECT if _PARTICLE.search(rest) else r"\b"
             compiled = re.compile(f" {pattern}{end}" if rest else _END)
             for own, form in _forms(first, verb):
-                forms = [f"{form} {object_}".strip() for form in (form, verb if own in past(first) else form)]
-                found[own].append(_Phrase(compiled, *forms, len(phrase)))
+                many = verb if own in past(first) else form
+                one, several = (f"{word} {object_}".strip() for word in (form, many))
+                found[own].append(_Phrase(compiled, one, several, len(phrase)))
     for listed in found.values():
         listed.sort(key=lambda phrase: -phrase.length)
     return found
