@@ -11,17 +11,18 @@ import training.evaluate
 from motion.metrics.sentences import kept_out, load_sentences, read_sentences, without_sentences
 from training.corpus.captions import FAMILIES
 
-from . import fresh_scripts, hidden_scripts, unseen_scripts, varied_scripts
+from . import fresh_scripts, hidden_scripts, ordinary_scripts, unseen_scripts, varied_scripts
 from .fairness import Puppets, captions_of, phrases
 
-FRESH, UNSEEN, VARIED, HIDDEN = PATHS = [
+FRESH, UNSEEN, VARIED, HIDDEN, ORDINARY = PATHS = [
     Path(training.evaluate.__file__).with_name(f"{name}_sentences.json")
-    for name in ("fresh", "unseen", "varied", "hidden")
+    for name in ("fresh", "unseen", "varied", "hidden", "ordinary")
 ]
 SETS = {path: {sentence.id: sentence for sentence in read_sentences(path)} for path in PATHS}
 SENTENCES = {id: sentence for listed in SETS.values() for id, sentence in listed.items()}
-SCRIPTS = [module.SCRIPTS for module in (fresh_scripts, unseen_scripts, varied_scripts, hidden_scripts)]
-PUPPETS = Puppets(SENTENCES, SCRIPTS[0] | SCRIPTS[1] | SCRIPTS[2] | SCRIPTS[3])
+MODULES = (fresh_scripts, unseen_scripts, varied_scripts, hidden_scripts, ordinary_scripts)
+SCRIPTS = {id: script for module in MODULES for id, script in module.SCRIPTS.items()}
+PUPPETS = Puppets(SENTENCES, SCRIPTS)
 KINDS = ("at_once", "refuse", "stand", "turn", "jump", "sit", "contact", "passive", "lines", "narrative")
 
 every_set = pytest.mark.parametrize("path", PATHS, ids=lambda path: path.stem)
@@ -44,8 +45,14 @@ every_set = pytest.mark.parametrize("path", PATHS, ids=lambda path: path.stem)
             60,
             (*KINDS, "bow", "stop", "kneel", "fall", "while", "until", "without"),
         ),
+        (
+            ORDINARY,
+            ordinary_scripts.SCRIPTS,
+            72,
+            (*KINDS, "kneel", "fall", "bow", "stop", "hold_and_move", "while", "until", "without"),
+        ),
     ],
-    ids=["fresh", "unseen", "varied", "hidden"],
+    ids=["fresh", "unseen", "varied", "hidden", "ordinary"],
 )
 def test_they_are_of_the_kinds_that_people_write(
     path: Path, scripts: dict[str, str], count: int, kinds: tuple[str, ...]
