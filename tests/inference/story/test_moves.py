@@ -2,7 +2,8 @@
 
 import pytest
 
-from webdemo.inference.story.moves import Way, goes, moves
+from webdemo.inference.story.moves import goes, moves
+from webdemo.inference.story.ways import Way
 
 
 def moves_of(sentence: str) -> str:

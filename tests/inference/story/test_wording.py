@@ -8,7 +8,7 @@ import pytest
 import tomllib
 
 from webdemo.inference.story.clauses import clauses
-from webdemo.inference.story.moves import way_of
+from webdemo.inference.story.ways import way_of
 from webdemo.inference.story.wording import (
     PHRASEBOOK,
     in_plain_words,

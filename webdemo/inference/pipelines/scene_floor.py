@@ -13,12 +13,13 @@ from webdemo.inference.actor import FPS, Placement
 from webdemo.inference.directed import KnownFrames, KnownPath, Part
 from webdemo.inference.story.floor import Standing, Way2D, plan, starting
 from webdemo.inference.story.idle import idle, is_planned, touches
-from webdemo.inference.story.moves import Move, Way, goes, moves
+from webdemo.inference.story.moves import Move, goes, moves
 from webdemo.inference.story.plan import Window
 from webdemo.inference.story.poses import standing
 from webdemo.inference.story.postures import Change, Posture, changes, leaps
 from webdemo.inference.story.request import SceneRequest
 from webdemo.inference.story.track import HALT
+from webdemo.inference.story.ways import Way
 
 from .scene_hands import hands, known_hands
 from .scene_postures import UPRIGHT, led, postures

@@ -14,7 +14,8 @@ from webdemo.inference.actor import FPS, Placement
 from webdemo.inference.directed import KnownFrames
 from webdemo.inference.story.floor import Standing, Way2D
 from webdemo.inference.story.gestures import Gesture, Hand, gestures, wrist
-from webdemo.inference.story.moves import Move, Way
+from webdemo.inference.story.moves import Move
+from webdemo.inference.story.ways import Way
 
 Array = NDArray[np.floating]
 

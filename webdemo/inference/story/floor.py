@@ -17,8 +17,9 @@ from numpy.typing import NDArray
 from webdemo.inference.actor import FPS
 
 from .curves import direction, smoothed, wrapped
-from .moves import Move, Way
+from .moves import Move
 from .track import EASE, MOST, Track
+from .ways import Way
 
 Array = NDArray[np.floating]
 

@@ -10,8 +10,9 @@ import re
 
 from .clauses import Clause, clauses
 from .gestures import gestures
-from .moves import MOVED, Way, goes, moves, way_of
+from .moves import MOVED, goes, moves
 from .postures import changes, leaps
+from .ways import Way, way_of
 
 _NOTHING = re.compile(
     r"\b(?:stands?|standing|stays?|waits?|watch(?:es|ing)?|looks? on|observ\w+|remains?|listens?|ignor\w+|nothing|"

@@ -12,7 +12,8 @@ from dataclasses import dataclass
 from enum import Enum
 
 from .clauses import Clause, clauses
-from .moves import Way, moves
+from .moves import moves
+from .ways import Way
 
 
 class Posture(Enum):

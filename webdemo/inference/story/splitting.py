@@ -8,8 +8,9 @@ from collections.abc import Sequence
 from .beats import Beat, is_known_act
 from .clauses import Clause, Reader, clauses, named
 from .gestures import gestures
-from .moves import MOVED, Way, is_bare, way_of
+from .moves import MOVED, is_bare
 from .postures import changes, leaps
+from .ways import Way, way_of
 
 _MARK = r"(?:and\s+)?(?:then|finally|afterwards?|after\s+that|at\s+last|at\s+the\s+end|lastly)"
 _LOOSE_MARK = r"(?:next|later|now)"
