@@ -57,7 +57,13 @@ from webdemo.inference.story import split_sentence
         ("They stroll along and chat.", None),
         ("She turns round and walks away.", None),
         ("A man walks past another man and waves to him as he goes.", None),
-        ("Person A pushes person B away and leaves.", None),
+        (
+            "Person A pushes person B away and leaves.",
+            ["Person A pushes person B away.", "Person A leaves."],
+        ),
+        ("They jog together until she has to sit down.", ["They jog together.", "Person A has to sit down."]),
+        ("A stands up and leaves, B stays.", ["Person A stands up.", "Person A leaves and person B stays."]),
+        ("B comes and sits down beside A.", ["Person B comes.", "Person B sits down beside person A."]),
         ("First person A bows.", ["First person A bows."]),
     ],
 )

@@ -8,14 +8,15 @@ from collections.abc import Collection, Iterator, Sequence
 import numpy as np
 from numpy.typing import NDArray
 
+from motion import SMPL22
 from motion.transforms import heading
 from webdemo.inference.actor import FPS, Placement
 from webdemo.inference.directed import KnownFrames, KnownPath, Part
 from webdemo.inference.story.floor import Standing, Way2D, plan, starting
-from webdemo.inference.story.idle import idle, is_planned, touches
+from webdemo.inference.story.idle import gesturing, idle, is_planned, touches
 from webdemo.inference.story.moves import Move, goes, moves
 from webdemo.inference.story.plan import Window
-from webdemo.inference.story.poses import standing
+from webdemo.inference.story.poses import ARMS, standing, upright
 from webdemo.inference.story.postures import Change, Posture, changes, leaps
 from webdemo.inference.story.request import SceneRequest
 from webdemo.inference.story.track import HALT
@@ -81,8 +82,12 @@ def _held(
     posed: dict[int, Array] = {}
     for person, who in enumerate("ab"):
         last = scene[person, start - 1] if start else None
-        if who in still and (last is None or last[0, 1] > UPRIGHT):
-            parts += _posed(person, stand, window, start, stop, placement, request.seed)
+        up = last is None or last[0, 1] > UPRIGHT
+        if up and (who in still or (who in gesturing(sentences[window.beat]) and who not in gone)):
+            free = () if who in still else ARMS
+            parts += _posed(person, stand, window, start, stop, placement, request.seed, free)
+            if free:
+                posed[person] = upright(stand.places[person], float(stand.headings[person]))
         elif who not in gone:
             poses = postures(sentences, window.beat, person, start, stop, stand, last)
             if len(poses) > 1:
@@ -152,9 +157,10 @@ def _apart(request: SceneRequest, window: Window, placement: Placement) -> list[
 
 
 def _posed(
-    person: int, stand: Standing, window: Window, start: int, stop: int, placement: Placement, seed: int
-) -> list[Part]:
-    """The poses of a bystander that fall into a window."""
+    person: int, stand: Standing, window: Window, start: int, stop: int, placement: Placement, seed: int,
+    free: Collection[int] = (),
+) -> list[Part]:  # fmt: skip
+    """The poses of a bystander that fall into a window, but for the joints that are ``free``."""
     frames = np.arange(start + (SETTLES if start else 0), stop, POSED)
     frames = frames[(frames >= window.start) & (frames < window.stop)]
     if not len(frames):
@@ -162,7 +168,8 @@ def _posed(
     place = stand.places[person] + (HALT * stand.speeds[person] if start else 0.0)
     poses = standing(place, float(stand.headings[person]), frames / FPS, seed=seed + person)
     shift = window.past - window.start
-    return [KnownFrames(person, (frames + shift).tolist(), placement.to_network(poses))]
+    joints = [joint for joint in range(SMPL22.num_joints) if joint not in free]
+    return [KnownFrames(person, (frames + shift).tolist(), placement.to_network(poses), joints)]
 
 
 def _path(way: Way2D, window: Window, start: int, placement: Placement) -> list[Part]:

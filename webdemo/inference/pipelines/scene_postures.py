@@ -17,7 +17,9 @@ from webdemo.inference.story.poses import (
     LOWER,
     LYING,
     TOES,
+    bending,
     crouching,
+    grounded,
     kneeling,
     leaping,
     lying,
@@ -40,15 +42,17 @@ DUCKING = 16
 UPRIGHT = 0.8
 """Height in metres of the pelvis of people who stand."""
 LOW = 0.5
-"""Height in metres of the head of those who lie."""
+"""Metres of the head over the pelvis of those who lie or are bent."""
 _HEAD = SMPL22.index("head")
 LEAP = 36
 """Frames from the highest moment of a jump to that of the next."""
 _MAKES: dict[Posture, Callable[[Array, float], Array]] = {
     Posture.STANDS: upright,
     Posture.SITS: seated,
+    Posture.GROUND: grounded,
     Posture.KNEELS: kneeling,
     Posture.CROUCHES: crouching,
+    Posture.BENDS: bending,
     Posture.LIES: lying,
 }
 
@@ -84,6 +88,8 @@ def postures(
     pose = _MAKES[now](place, angle) if last is None or now is Posture.STANDS else last
     for change in own:
         at = start + round(change.after * (stop - start))
+        if last is None and now is not Posture.STANDS:
+            at = max(at, start + round(FPS))  # they are seen as they were
         if now is not Posture.STANDS or (last is None and begins == start):
             found |= _stays(pose, begins, at + 1)
         if change.passing:
@@ -105,10 +111,14 @@ def postures(
 def led(poses: list[Pose], first: int, last: int) -> Iterator[tuple[Sequence[int], list[int], Array]]:
     """The joints, frames and poses (N, 22, 3) from ``first`` to before ``last`` that are given.
 
-    Pelvis and legs, and the trunk and head of those who lie down, which the network would raise.
+    Pelvis and legs, and the trunk and head of those who lie or bend down, which the network would raise.
     """
     for joints, lies in ((LOWER, False), (FLAT, True)):
-        inside = [(f, pose) for f, pose in poses if first <= f < last and bool(pose[_HEAD, 1] < LOW) is lies]
+        inside = [
+            (f, pose)
+            for f, pose in poses
+            if first <= f < last and bool(pose[_HEAD, 1] - pose[0, 1] < LOW) is lies
+        ]
         if inside:
             yield joints, [frame for frame, _ in inside], np.stack([pose for _, pose in inside])
 

@@ -68,7 +68,9 @@ _LEADING = re.compile(
     rf"^((?:without|after|following|hearing|holding|having|with|on|at|in|from|upon)\b[^,]*?),? "
     rf"(?=(?:they|both of them|{_NAMED}|he|she|one|the (?:first|second|other)) \w+)"
 )
-_OBJECT = re.compile(rf"\b(?:{_NAMED}|the (?:first|second|other)(?: person| one)?|the (?:\w+ )?\w+|him|her)$")
+_OBJECT = re.compile(
+    rf"\b(?:{_NAMED}|the (?:first|second|other)(?: person| one)?|(?:the|an?) (?:\w+ )?\w+|him|her)$"
+)
 _ADVERB = (
     r"(?:(?:first|then|finally|afterwards|next|now|later|suddenly|slowly|quickly|eagerly|meanwhile|halfway|soon|eventually|there|also|just|simply|"
     r"carefully|\w+ly),? )*"
@@ -89,11 +91,11 @@ _GOING_ON = re.compile(r"^(?!(?:during|anything|something|nothing)\b)\w*[aeiouy]
 _RELATIVE = re.compile(r"\bwho\b")
 _JOIN = re.compile(
     r"(?P<mark>\s*[.;:!?]\s+|\s+[-–—]\s+|,?\s+(?:and|but|yet|so)\s+(?:then\s+)?|,?\s+(?:then|afterwards|finally)\s+"
-    r"|,?\s+(?:while|as|whereas|when|until|till|before)\s+|,\s+who\s+|,\s+)"
+    r"|,?\s+(?:while|as|whereas|when|until|till|before)\s+|,?\s+who\s+|,\s+)"
 )
 _AT_ONCE = re.compile(r"\b(?:while|as|whereas|when|who)\b")
 _UNTIL = re.compile(r"\b(?:until|till)\b")
-_OPENING = re.compile(r"^(?:while|as|when|whereas)\s+")
+_OPENING = re.compile(r"^(?:while|as|when|whereas|whenever|each time|every time)\s+")
 _AFTER = re.compile(r"^(?:after|upon|following|once)\s+")
 
 
@@ -170,6 +172,10 @@ _PLACED = re.compile(
 _RAISED = re.compile(
     rf"\b({_KIND}|{_NAMED}|(?:the|an?) \w+)'s ((?:(?:left|right) )?(?:arm|hand))s? (?:goes|shoots|flies|comes) up\b"
 )
+_TO_AND_FRO = re.compile(
+    r"\b((?:walk|pac|run|march|stroll|jog|go|stride)\w*) (?:up and down|back and forth|to and fro"
+    r"|forwards? and back\w*)"
+)
 _NO_NAME = re.compile(
     r"(?:They|He|She|It|One|Two|Both|The|An?|First|Then|Finally|While|As|When|After|Before|Person|Someone|Somebody|Each|"
     r"People|Everyone|Everybody|Another|His|Her|Their|Suddenly|Without|With|Holding|I|We|You)\b"
@@ -210,7 +216,9 @@ def _is_no_name(word: str) -> bool:
 def plain(text: str) -> str:
     """The sentence in lower case, people called A and B by their full names, and pairs as "they"."""
     text = re.sub(r"\([^()]*\)", " ", named(text))
+    text = re.sub(r"[\"“”][^\"“”]*[\"“”],?", " ", text)
     text = " ".join(text.lower().split()).strip(" .!?;")
+    text = _TO_AND_FRO.sub(r"\1 to-and-fro", text)
     text = in_plain_words(_A_WHILE.sub("", text))
     text = _RAISED.sub(r"\1 raises his \2", _PLACED.sub("", text))
     text = re.sub(r", (?=(?:side by side|shoulder to shoulder|hand in hand|arm in arm)\b)", " ", text)

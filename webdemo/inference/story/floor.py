@@ -39,6 +39,8 @@ ASIDE = 0.7
 """Metres beside the other at which one walks past."""
 SIDESTEP = 0.8
 """Metres of a step aside."""
+PACED = 1.1
+"""Metres to either side that somebody walks to and fro."""
 REACH = 0.75
 """Metres between two people one of whom touches the other."""
 WIDE = 0.9
@@ -119,7 +121,9 @@ def starting(moves: Sequence[Move], seconds: float, *, near: bool = False) -> St
     gap = next((_START[move.way] for move in moves if move.way in _START), REACH if near else 1.4)
     for way in (Way.TO, Way.BEHIND):
         if way in ways:
-            gap = float(np.clip(CLOSE + 0.6 * seconds * ways[way].speed, 1.8, 3.6))
+            gap = float(
+                np.clip(CLOSE + 0.6 * seconds * ways[way].speed, 1.8, 3.6 if ways[way].speed < 2 else 5.0)
+            )
     turned = next((m.person for m in moves if m.way in (Way.FACE, Way.AVERTED)), "")
     turned = turned or next(("b" if m.person == "a" else "a" for m in moves if m.way is Way.BEHIND), "")
     ahead = -1.0 if turned == "a" else 1.0
@@ -217,18 +221,48 @@ def _moved(
             track.walk(np.stack([here, here + step]), min(seconds, 1.3), heading=math.atan2(to[0], to[1]))
             track.stay(facing=True, seconds=None if last else 0.2)
         case Way.PAST:
-            beyond = max(1.3, min(gap, seconds * move.speed - gap))
-            aside = ASIDE * np.array([to[1], -to[0]])
-            line = np.stack(
-                [here, here + 0.5 * gap * to + 0.7 * aside, other + aside, other + beyond * to + aside]
-            )
-            track.walk(smoothed(line), min(seconds, (gap + beyond) / min(move.speed, MOST) + EASE))
+            _past(move, track, other, to, seconds)
+        case Way.AHEAD:
+            _ahead(move, track, gap, to, seconds, last=last)
+        case Way.PACE:
+            _to_and_fro(track, to, seconds)
         case Way.ROUND:
             _around(move, track, other, seconds, both, standing)
         case Way.ALONG:
             _along(who, move, track, standing, seconds)
         case Way.AFTER:
             _after(move, track, tracks[1 - who], standing.places[1 - who], seconds)
+
+
+def _past(move: Move, track: Track, other: Array, to: Array, seconds: float) -> None:
+    """A walk past the other, to one side of them."""
+    here, gap = track.place, float(np.linalg.norm(other - track.place))
+    beyond = max(1.3, min(gap, seconds * move.speed - gap))
+    aside = ASIDE * np.array([to[1], -to[0]])
+    line = np.stack([here, here + 0.5 * gap * to + 0.7 * aside, other + aside, other + beyond * to + aside])
+    track.walk(smoothed(line), min(seconds, (gap + beyond) / min(move.speed, MOST) + EASE))
+
+
+def _ahead(move: Move, track: Track, gap: float, to: Array, seconds: float, *, last: bool) -> None:
+    """A walk straight on, which ends before the other."""
+    here = track.place
+    ahead = direction(track.heading)
+    most = gap - CLOSE if ahead @ to > 0.7 else FARTHEST
+    way = min(move.metres, most, max(seconds - 0.2, 0.5) * move.speed)
+    if way > 0.15:
+        track.walk(np.stack([here, here + way * ahead]), min(seconds, way / move.speed + EASE))
+    track.stay(facing=True, seconds=None if last else 0.2)
+
+
+def _to_and_fro(track: Track, to: Array, seconds: float) -> None:
+    """A walk to and fro across the line to the other."""
+    middle, across, side = track.place, np.array([to[1], -to[0]]), 1.0
+    ends = track.frame + seconds * FPS
+    while track.left() > 1.0 and track.frame < ends - FPS:
+        goal = middle + side * PACED * across
+        way = float(np.linalg.norm(goal - track.place))
+        track.walk(np.stack([track.place, goal]), way + EASE)
+        side = -side
 
 
 def _around(move: Move, track: Track, other: Array, seconds: float, both: bool, standing: Standing) -> None:

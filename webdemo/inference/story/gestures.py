@@ -28,6 +28,7 @@ class Hand(Enum):
     HIGH = "high above the head"
     UP = "raised"
     SALUTES = "salutes"
+    CLAPS = "claps"
     AHEAD = "stretched out in front"
     WAVES = "waves"
     POINTS = "points at the other"
@@ -63,8 +64,9 @@ _PATTERNS = (
         r"|\boutstretched (?:arms|hands)\b",
     ),
     (Hand.SALUTES, r"\bsalut(?:e|es|ing)\b"),
+    (Hand.CLAPS, r"\b(?:clap|applaud)(?:s|ing)?\b(?! (?:him|her|them|the other|person) on)"),
     (Hand.WAVES, r"\bwav(?:e|es|ing)\b"),
-    (Hand.POINTS, r"\bpoint(?:s|ing)?\b(?! out)"),
+    (Hand.POINTS, r"\bpoint(?:s|ing)?\b(?! out)|\b(?:aim|shoot|fire)s?\b"),
     (
         Hand.UP,
         rf"\b(?:rais|lift|put|hold)\w* (?:up )?{_HIS}(?:(?:left|right) )?(?:hand|arm)\b(?! out| to)"
@@ -74,8 +76,15 @@ _PATTERNS = (
 _COMPILED = tuple((hand, re.compile(pattern)) for hand, pattern in _PATTERNS)
 _NOT = re.compile(r"\b(?:do(?:es)?n't|not|without|never|refus\w+ to|lowers?|drops?)\b")
 _SIDE = re.compile(r"\b(left|right)(?:[- ]hand(?:ed)?| arm)?\b")
+_OF_BOTH = (Hand.HIGH, Hand.AHEAD, Hand.CLAPS)
+STOOD = (Hand.CLAPS, Hand.SALUTES, Hand.AHEAD)
+"""Gestures that are given also to those who only stand."""
 _REACH = 0.47
 """Metres from the shoulder to the wrist of an arm that is nearly straight."""
+_CLAPPING = np.array([0.0, 0.28, 0.3])
+"""Metres from the pelvis to where hands clap."""
+_CLAPS = 2.0
+"""Claps a second."""
 _SWAYS = 1.6
 """Strokes a second of a wave."""
 
@@ -89,7 +98,7 @@ def gestures(sentence: str) -> dict[str, Gesture]:
             if match is None or (denied and denied.start() < match.start()):
                 continue
             side = _SIDE.search(clause.words)
-            sides = SIDES if hand in (Hand.HIGH, Hand.AHEAD) else (side[1],) if side else ("right",)
+            sides = SIDES if hand in _OF_BOTH else (side[1],) if side else ("right",)
             found |= dict.fromkeys(clause.who, Gesture(hand, sides))
             break
     return found
@@ -118,6 +127,9 @@ def wrist(gesture: Gesture, side: str, seconds: Array, towards: Array) -> Array:
             offset[:] = [0.1 * out, 0.32, 0.16]
         case Hand.SALUTES:
             offset[:] = [0.06 * out, 0.26, 0.2]
+        case Hand.CLAPS:
+            offset = _CLAPPING - shoulder + np.zeros((len(seconds), 3))
+            offset[:, 0] += out * (0.075 + 0.07 * (1 + np.cos(2 * np.pi * _CLAPS * np.asarray(seconds))))
         case Hand.AHEAD:
             offset[:] = [0.02 * out, 0.0, 0.45]
         case Hand.WAVES:

@@ -9,13 +9,14 @@ from __future__ import annotations
 import re
 
 from .clauses import Clause, clauses
-from .gestures import gestures
+from .gestures import STOOD, gestures
 from .moves import MOVED, goes, moves
 from .postures import changes, leaps
 from .ways import Way, way_of
 
 _NOTHING = re.compile(
-    r"\b(?:stands?|standing|stays?|waits?|watch(?:es|ing)?|looks? on|observ\w+|remains?|listens?|ignor\w+|nothing|"
+    r"\b(?:stands?(?! up)|standing(?! up)|stays?|waits?|watch(?:es|ing)?|looks? on|observ\w+|remains?|"
+    r"listens?|ignor\w+|nothing|"
     r"motionless|upright|unmoved|idle|rooted|pays? no attention|"
     r"star(?:es?|ing)|gaz\w+|just looks?|refus\w+|declin\w+|keeps? still|without (?:moving|reacting|answering)|"
     r"do(?:es)? ?n[o']t (?:\w+ )?(?:move|react|answer|respond|budge|follow|return|take|shake|wave|bow|clap|join|accept"
@@ -59,9 +60,18 @@ def idle(sentence: str) -> frozenset[str]:
     return frozenset(vain | by)
 
 
+def gesturing(sentence: str) -> frozenset[str]:
+    """The people, "a" and "b", who only stand and make a gesture of which the network knows little."""
+    made = gestures(sentence)
+    own = {p: [c for c in clauses(sentence) if p in c.who] for p in "ab"}
+    return frozenset(
+        p for p in made if made[p].hand in STOOD and len(own[p]) == 1 and way_of(own[p][0].words) is None
+    )
+
+
 def is_planned(sentence: str) -> bool:
     """True if a beat's words say where people go, who stands by, sits, kneels or lies down, or jumps."""
-    return goes(moves(sentence)) or any(read(sentence) for read in (idle, changes, leaps))
+    return goes(moves(sentence)) or any(read(sentence) for read in (idle, changes, leaps, gesturing))
 
 
 def touches(sentence: str) -> bool:

@@ -22,6 +22,7 @@ class Move:
         until: the move ends early, because the sentence goes on with "until …".
         linked: they hold each other by the hands or arms.
         late: the sentence tells it after something else that is done in place.
+        metres: length of the way, of :attr:`Way.AHEAD`.
     """
 
     person: str
@@ -31,11 +32,20 @@ class Move:
     until: bool = False
     linked: bool = False
     late: bool = False
+    metres: float = 0.0
 
 
+LED = re.compile(
+    r"\b(?:(?:lead|guid|escort|usher|walk)(?:s|es|ing)? (?:person [ab]|him|her|them|(?:the|an?|his|her) (?:\w+ )?\w+) "
+    r"(?:by the (?:hand|arm) )?(?:across|to|through|over|away|off|along|out|down|onto|into|home)\b"
+    r"|(?:is|are|gets?) (?:led|guided|escorted|helped|walked) (?:by the (?:hand|arm) )?"
+    r"(?:across|to the|through|away|off|along|out|home)\b)"
+)
+"""Acts in which one takes the other along by the hand or arm."""
+STRUCK = re.compile(r"\b(?:push|shov|kick|punch)\w*")
+"""Acts in which one moves the other at one moment."""
 MOVED = re.compile(
-    r"\b(?:danc|waltz|lead|drag|pull|carr(?!(?:y|ies) on)|guid|push|shov|fight|kick|punch|wrestl|help|support|"
-    r"escort)\w*"
+    r"\b(?:danc|waltz|lead|drag|pull|carr(?!(?:y|ies) on)|guid|fight|wrestl|help|support|escort)\w*"
 )
 """Acts in which one moves the other: where they go follows from their touch."""
 _FLOOR = re.compile(
@@ -47,6 +57,14 @@ _WITH = re.compile(r"\b(?:beside|next to|alongside|with|accompan\w+|together|by 
 _LINKED = re.compile(
     r"\b(?:hand in hand|arm in arm|(?:hold|link|join|tak)\w* (?:\w+ )?(?:hands?|arms?)|arms? around)\b"
 )
+_STOPS = re.compile(r"\bstops? (?:walking|running|moving|in (?:his|her|their) tracks)\b")
+"""Who stops was on the way."""
+_WALKS = re.compile(
+    r"(?:is |keeps? |goes )?(?:walk|stroll|jog|run|march|strut|limp|wander|shuffl|sleepwalk|creep|skip|hobbl|"
+    r"stagger)\w*"
+    r"(?: \w+ly)?(?: (?:about|along|by|on|across the \w+|down the \w+|through the \w+))?(?: with [\w ]+)?"
+)
+"""A walk of one person without a way."""
 _HALT = re.compile(r"\b(?:stop|halt|stand still|wait|freeze|stay|remain|pause)s?\b")
 _SPEEDS = (
     (r"\b(?:run|sprint|dash|charg|chas|rac(?:e|ing)|fle[ed]|bolt|dart|scamper)\w*", 2.2),
@@ -67,6 +85,16 @@ _OF_ONE = {Way.AFTER, Way.BEHIND, Way.PAST, Way.ROUND, Way.TO}
 _EACH = re.compile(r"\b(?:each other|one another|meets?)\b")
 
 
+_STEP = 0.7
+_COUNT = re.compile(r"\b(?:a|one|two|three|four|five|ten)\b(?= (?:\w+ )?(?:step|pace)s?\b)")
+_STEPS = {"a": 1, "one": 1, "two": 2, "three": 3, "four": 4, "five": 5, "ten": 6}
+
+
+def is_moved(clause: Clause) -> bool:
+    """True if in a clause one moves the other by touch, and not along with themselves."""
+    return bool(MOVED.search(clause.words)) and not LED.search(clause.words)
+
+
 def is_bare(clause: Clause) -> bool:
     """True if a clause says that both walk, and nothing else."""
     return clause.who == "ab" and bool(_BARE.fullmatch(clause.words))
@@ -84,7 +112,7 @@ def moves(sentence: str) -> tuple[Move, ...]:
     touch, as in leading or pushing, has no moves: the network places those two better.
     """
     found = clauses(sentence)
-    if any(MOVED.search(clause.words) for clause in found):
+    if any(is_moved(clause) or STRUCK.search(clause.words) for clause in found):
         return ()
     made: list[Move] = []
     hands = any(re.search(r"\bhands?\b|\barms?\b", clause.words) for clause in found)
@@ -123,7 +151,13 @@ def moves(sentence: str) -> tuple[Move, ...]:
 
 
 def _of_clause(clause: Clause, *, late: bool) -> list[Move]:
+    if LED.search(clause.words):
+        return [Move(person, Way.ALONG, 0.9, linked=True, late=late) for person in "ab"]
     way, who = way_of(clause.words), clause.who
+    if who != "ab" and _STOPS.search(clause.words):
+        return [Move(who, Way.TO, until=True), Move(who, Way.STAY)]
+    if way is None and who != "ab" and clause.subject and _WALKS.fullmatch(clause.words):
+        way = Way.PAST
     if way is None or (_FLOOR.search(clause.words) and way in (Way.STAY, Way.TURN)):
         return []
     if not clause.subject and way in _OF_ONE and not _EACH.search(clause.words):
@@ -134,8 +168,9 @@ def _of_clause(clause: Clause, *, late: bool) -> list[Move]:
         way = Way.AWAY  # "the other one walks on"
     late = late and way is not Way.AFTER
     speed = next((value for pattern, value in _SPEEDS if re.search(pattern, clause.words)), 1.1)
+    metres = _STEP * _STEPS.get((_COUNT.search(clause.words) or [""])[0], 3) if way is Way.AHEAD else 0.0
     turns = 1.0 if _FULL.search(clause.words) or (way is Way.TURN and _SPINS.search(clause.words)) else 0.5
-    return [Move(person, way, speed, turns, late=late) for person in who]
+    return [Move(person, way, speed, turns, late=late, metres=metres) for person in who]
 
 
 def _ended(move: Move, before: Clause) -> Move:

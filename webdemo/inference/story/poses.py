@@ -24,6 +24,9 @@ LOWER = tuple(
         "left_foot", "right_foot",
     )
 )  # fmt: skip
+ARMS = tuple(
+    SMPL22.index(f"{side}_{name}") for side in ("left", "right") for name in ("shoulder", "elbow", "wrist")
+)
 FLAT = (*LOWER, *(SMPL22.index(name) for name in ("spine2", "spine3", "neck", "head")))
 """Joints of the pelvis and the legs: with these known, the arms and the head are free for other acts."""
 TOES = (SMPL22.index("left_foot"), SMPL22.index("right_foot"))
@@ -85,6 +88,8 @@ _CROUCHES: Mapping[str, float] = {
 _BENDS: Mapping[str, float] = {
     "hip": -0.6, "knee": 0.95, "ankle": -0.38, "shoulder": 1.2, "elbow": 0.3, "spine": 0.1,
 }  # fmt: skip
+_BENT = 0.9
+"""Radians by which somebody who bends down is bent."""
 _STANDS: Mapping[str, float] = {
     "hip": -0.06,
     "knee": 0.12,
@@ -111,6 +116,25 @@ def upright(place: Array, angle: float) -> Array:
 def seated(place: Array, angle: float) -> Array:
     """Somebody who sits as on a chair, the feet where they stood: (22, 3) metres."""
     return _on_floor(_posed(angle, _SITS)[None], place, angle)[0]
+
+
+def grounded(place: Array, angle: float) -> Array:
+    """Somebody who sits on the ground, the feet where they stood: (22, 3) metres."""
+    pose = _posed(
+        angle, {"hip": -1.8, "knee": 0.35, "ankle": 0.0, "shoulder": 1.3, "elbow": 0.3, "spine": 0.1}
+    )
+    pose[:, 1] += 0.08 - pose[:, 1].min()
+    toes = pose[list(TOES)].mean(axis=0)
+    return pose + np.array([place[0] - toes[0], 0.0, place[1] - toes[2]])
+
+
+def bending(place: Array, angle: float) -> Array:
+    """Somebody who bends down from the hips: (22, 3) metres."""
+    pose = upright(place, angle)
+    upper = [j for j in range(SMPL22.num_joints) if j not in LOWER or j == SMPL22.index("spine1")]
+    turn = heading_matrix(angle) @ _about(0, _BENT) @ heading_matrix(-angle)
+    pose[upper] = pose[0] + (pose[upper] - pose[0]) @ turn.T
+    return pose
 
 
 def crouching(place: Array, angle: float) -> Array:

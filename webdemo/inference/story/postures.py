@@ -22,7 +22,9 @@ class Posture(Enum):
     STANDS = "stands"
     SITS = "sits"
     KNEELS = "kneels"
+    GROUND = "sits on the ground"
     CROUCHES = "crouches"
+    BENDS = "bends down"
     LIES = "lies"
 
 
@@ -44,6 +46,7 @@ class Change:
 
 
 _SEAT = r"(?:chair|seat|bench|sofa|couch|stool|armchair|settee|step|table|desk|wheelchair|throne|swing|deckchair)s?"
+_FLOOR = r"(?:on|in) (?:the|a) (?:floor|ground|grass|carpet|mat|rug|sand|beach|snow|lawn|blanket)\b"
 _SELF = r"(?:him|her|them)sel(?:f|ves)"
 _SURFACE = r"(?:ground|floor|grass|mat|backs?|bottom|bum|side|knees)"
 _GROUND = rf"(?:(?:to|on|onto) (?:the |his |her |their )?{_SURFACE}|over|down)"
@@ -72,6 +75,10 @@ _DOWN = (
         r"(?:one|a|his|her|their|both|bended) knees?\b",
     ),
     (
+        Posture.GROUND,
+        rf"\b(?:sits?|sitting|plops?|flops?) (?:\w+ ){{0,2}}?{_FLOOR}",
+    ),
+    (
         Posture.SITS,
         r"\b(?:sits?|sitting) (?:\w+ )?down\b|\b(?:takes?|has|have) (?:a|his|her|their) seats?\b|\bsits?\b"
         r"|\b(?:flop|plop|plonk|slump|sink|drop|settle|perch|lower|squeeze|collapse|fall)(?:s|es)? (?:\w+ ){0,2}?"
@@ -86,10 +93,16 @@ _DOWN = (
         r"|\bl(?:ies?|ying) down\b|\bplays? dead\b|\bpass(?:es)? out\b|\bkeels? over\b"
         r"|\b(?:hits?|lands? on|ends? up on) (?:the|his|her) (?:floor|ground|deck|back|bottom)\b",
     ),
+    (Posture.BENDS, r"\b(?:bend|lean|stoop)s? (?:\w+ )?(?:down|over)\b(?! backwards?)"),
     (Posture.CROUCHES, r"\b(?:crouch|squat)(?:es|s|ing)?\b"),
 )
 _STAYS = r"\b(?:is|are|stays?|remains?|keeps?) (?:\w+ )?"
 _STATE = (
+    (
+        Posture.GROUND,
+        rf"{_STAYS}(?:seated|sitting) (?:\w+ )?{_FLOOR}|\bsits? (?!down)(?:\w+ )?{_FLOOR}"
+        rf"|^(?:seated|sitting) (?!down)(?:\w+ )?{_FLOOR}",
+    ),
     (
         Posture.SITS,
         rf"{_STAYS}(?:seated|sitting)\b(?! down)|\bsits?(?! (?:\w+ )?down)\b|^(?:seated|sitting)\b(?! down)"
@@ -102,7 +115,8 @@ _STATE = (
         Posture.LIES,
         rf"{_STAYS}(?:lying\b(?! down)|sprawled|flat on|on the (?:floor|ground)\b|on (?:his|her) back\b|out cold|"
         r"unconscious|dead\b|fast asleep on the (?:floor|ground|grass))|^flat on (?:his|her|their) (?:back|face)"
-        r"|\bl(?:ies?|ying) (?:\w+ )?(?:on|flat|still)\b",
+        r"|\bl(?:ies?|ying) (?:\w+ )?(?:on|flat|still|there|next to|beside|in)\b"
+        rf"|\b(?:sleep(?:s|ing)?|asleep)\b(?! (?:in|on) (?:an?|the|his|her) (?:\w+ )?{_SEAT})",
     ),
     (
         Posture.KNEELS,
@@ -113,14 +127,18 @@ _STATE = (
 _PATTERNS = tuple((posture, re.compile(pattern)) for posture, pattern in _DOWN)
 _STATES = tuple((posture, re.compile(pattern)) for posture, pattern in _STATE)
 _DUCKS = re.compile(r"\bduck(?:s|ing)?\b")
-_TIRELESS = re.compile(r"\bsquats?\b.*\b(?:times|again|repeatedly)\b|\b(?:sit|push|press)-?ups?\b")
+_TIRELESS = re.compile(
+    r"\b(?:does|do|doing) (?:\w+ )?squats\b|\bsquats?\b.*\b(?:times|again|repeatedly)\b|\b(?:sit|push|press)-?ups?\b"
+)
 _JUMPS = re.compile(r"\b(?:jump|hop|leap|bounce|spring)(?:s|ing)?\b")
 _ELSEWHERE = re.compile(
-    r"\b(?:jump|hop|leap|bounce|spring)(?:s|ing)? (?:over|onto|on(?! the spot)|off|out|aside|away|back\w*|at|rope|ahead"
+    r"\b(?:jump|hop|leap|bounce|spring)(?:s|ing)? (?:over|onto|on(?! the spot| an? trampoline| the trampoline| the bed"
+    r"| one leg)|off|out|aside|away|back\w*|at|rope|ahead"
     r"|forwards?|towards?|to\b|into (?!the air))|\bjumping jacks?\b"
 )
 _OFTEN = re.compile(
-    r"\b(?:hop|hopping|hops|bounc\w+|jumping)\b.* on the spot\b|\bup and (?:\w+ )?down\b|\bagain and again\b"
+    r"\b(?:is|are|keeps?) (?:jump|hopp|leap|bounc)ing\b"
+    r"|\b(?:hop|hopping|hops|bounc\w+|jumping)\b.* on the spot\b|\bup and (?:\w+ )?down\b|\bagain and again\b"
     r"|\brepeatedly\b|\b(?:several|three|many|a few) times\b"
 )
 _COUNTED = re.compile(r"\b(two|three|four|five) (?:\w+ )?(?:jump|hop|leap|bounce)s\b")
@@ -202,6 +220,12 @@ def _own(clause: Clause, share: float, *, first: bool, at_once: bool) -> Change 
                 share = max(share, 0.4)  # what makes them fall comes before
             return Change(posture, already=already, after=share)
     return None
+
+
+def is_down_or_up(clause: Clause) -> bool:
+    """True if the people of a clause go down and stay there, or get up."""
+    change = _own(clause, 0.0, first=False, at_once=False)
+    return change is not None and not change.passing
 
 
 def leaps(sentence: str) -> dict[str, int]:

@@ -8,8 +8,8 @@ from collections.abc import Sequence
 from .beats import Beat, is_known_act
 from .clauses import Clause, Reader, clauses, named
 from .gestures import gestures
-from .moves import MOVED, is_bare
-from .postures import changes, leaps
+from .moves import is_bare, is_moved
+from .postures import changes, is_down_or_up, leaps
 from .ways import Way, way_of
 
 _MARK = r"(?:and\s+)?(?:then|finally|afterwards?|after\s+that|at\s+last|at\s+the\s+end|lastly)"
@@ -82,13 +82,13 @@ def _is_act(part: str, found: Sequence[Clause]) -> bool:
 
 def _acts(found: Sequence[Clause]) -> list[list[Clause]]:
     """The clauses in groups that happen one after another."""
-    if any(MOVED.search(clause.words) for clause in found):
+    if any(is_moved(clause) for clause in found):
         return [list(found)]
     groups: list[list[Clause]] = []
     for i, clause in enumerate(found):
         beside = (
             clause.at_once
-            or clause.until
+            or (clause.until and not is_down_or_up(clause))
             or any(later.at_once and later.who == clause.who for later in found[i + 1 : i + 2])
         )
         if not groups or beside or not _follows(groups[-1], clause, found[i + 1 : i + 2]):
@@ -109,10 +109,13 @@ def _follows(group: Sequence[Clause], clause: Clause, after: Sequence[Clause]) -
         return bool(_MOMENT.search(group[-1].words))
     if way is Way.AFTER and Way.AWAY in before:
         return False  # who follows sets off at once
+    own = [done for done in group if set(done.who) & set(clause.who)]
     if way in DEPARTS:
-        return any(done is None for done in before)
-    arrived = [done for done, move in zip(group, before, strict=True) if move in ARRIVES and done.who != "ab"]
-    return bool(arrived) and way is None and any(set(done.who) & set(clause.who) for done in arrived)
+        return any(done is None for done in before) or any(is_down_or_up(done) for done in own)
+    if is_down_or_up(clause):
+        return any(way_of(done.words) in DEPARTS for done in own)
+    arrived = [done for done in own if way_of(done.words) in (*ARRIVES, Way.AFTER) and done.who != "ab"]
+    return bool(arrived) and way is None
 
 
 def _in_words(part: str, groups: Sequence[Sequence[Clause]]) -> str:

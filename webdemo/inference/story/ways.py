@@ -22,6 +22,8 @@ class Way(Enum):
     ASIDE = "steps aside"
     FACE = "turns to the other"
     BACKS = "stands with their back to the other's"
+    AHEAD = "walks ahead"
+    PACE = "walks to and fro"
     STAY = "stays in place"
 
 
@@ -160,7 +162,7 @@ _WAYS: tuple[tuple[Way, tuple[str, ...]], ...] = (
             r"|over\b(?! (?:him|her|it|the|person))"
             rf"|in\b|to {_OTHER}|right up)",
             r"\bcom(?:e|es|ing) (?:up |over |closer|nearer|running|back|along)",
-            r"\bcomes? (?:over|closer|nearer)?$",
+            r"\bcomes?(?: over| closer| nearer)?$",
             rf"\b(?:walks?|comes?|runs?|steps?) up$|\b(?:walk|run|bump|crash)s? (?:\w+ )?into {_OTHER}",
             r"\bcollid\w+",
             r"\b(?:approach|joins?)\w*|\bmeets?\b|\bmeeting\b(?! (?:is|over))|\bkeeps? (?:on )?coming\b",
@@ -168,6 +170,21 @@ _WAYS: tuple[tuple[Way, tuple[str, ...]], ...] = (
             r"\bgets? (?:closer|nearer)\b",
             r"\badvanc(?:e|es|ing)\b",
             r"\bmak(?:es?|ing) (?:his|her|their) way (?:over|up|to)\b",
+        ),
+    ),
+    (
+        Way.AHEAD,
+        (
+            r"\b(?:tak(?:es?|ing)|steps?|moves?|walks?|goes|comes?) (?:\w+ ){0,3}?forwards?\b",
+            r"\b(?:walk|go|goes|march|tak)\w* (?:(?:a|the|few|some|several|three|four|five|ten) )+"
+            r"(?:steps|paces)\b(?! to)",
+        ),
+    ),
+    (
+        Way.PACE,
+        (
+            r"\bpac(?:e|es|ing)\b(?! (?:a?round|behind|up to|away|towards|after|over)\b)",
+            r"\bto-and-fro\b",
         ),
     ),
     (
