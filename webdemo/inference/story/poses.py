@@ -27,7 +27,11 @@ LOWER = tuple(
 ARMS = tuple(
     SMPL22.index(f"{side}_{name}") for side in ("left", "right") for name in ("shoulder", "elbow", "wrist")
 )
-FLAT = (*LOWER, *(SMPL22.index(name) for name in ("spine2", "spine3", "neck", "head")))
+FLAT = (
+    *LOWER,
+    *(SMPL22.index(name) for name in ("spine2", "spine3", "neck", "head", "left_collar", "right_collar")),
+    *(SMPL22.index(name) for name in ("left_shoulder", "right_shoulder")),
+)
 """Joints of the pelvis and the legs: with these known, the arms and the head are free for other acts."""
 TOES = (SMPL22.index("left_foot"), SMPL22.index("right_foot"))
 _ARMS = {"left": 1.0, "right": -1.0}
