@@ -100,3 +100,36 @@ def test_notes_say_what_was_read(engine: Engine) -> None:
         engine, GenerateRequest(prompt="Person A sits down.", seconds=3.0, planned=False, **QUICK)
     ).notes
     assert not any("From the words" in note for note in free)
+
+
+def test_who_lies_rests_head_and_shoulders(engine: Engine) -> None:
+    found = made(engine, "Person A is lying on the floor.")[0]
+    upper = [SMPL22.index(name) for name in ("head", "left_shoulder", "right_shoulder")]
+    assert found[:90, upper, 1].max() < 0.4
+
+
+def test_who_sits_on_the_ground_is_lower_than_on_a_chair(engine: Engine) -> None:
+    assert (np.abs(heights(made(engine, "Person A sits down on the grass."), 0)[-20:] - 0.17) < 0.08).all()
+
+
+def test_who_claps_beside_a_jump_brings_the_hands_together(engine: Engine) -> None:
+    found = made(engine, "Person A jumps for joy and person B claps.")[1]
+    wrists = [found[:, SMPL22.index(f"{side}_wrist")] for side in ("left", "right")]
+    gap = np.linalg.norm(wrists[0] - wrists[1], axis=1)[15:-15]
+    meets = np.sum(np.diff((gap < np.median(gap)).astype(int)) == 1)
+    assert gap.min() < 0.25 and meets >= 4 and heights(found[None].repeat(2, axis=0), 0).min() > 0.85
+
+
+def test_who_gives_chase_runs_behind_who_runs_away(engine: Engine) -> None:
+    found = made(engine, "Person A bolts and person B gives chase.")
+    gap = np.linalg.norm((found[0] - found[1])[:, 0, [0, 2]], axis=1)
+    for person in found:
+        assert np.linalg.norm((person[-1] - person[0])[0, [0, 2]]) > 3.0
+    assert gap[30:].max() < 4.0
+
+
+def test_who_gets_up_and_leaves_does_both(engine: Engine) -> None:
+    found = made(engine, "Person A stands up and leaves, person B keeps sitting.")
+    assert heights(found, 0)[:15].max() < 0.75 and heights(found, 0)[-5:].min() > 0.85
+    assert np.linalg.norm((found[0, -1] - found[0, 0])[0, [0, 2]]) > 1.0
+    assert heights(found, 1).max() < 0.75
