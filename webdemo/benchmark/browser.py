@@ -33,6 +33,8 @@ WATCHED = 3.0
 """Seconds over which frames a second and processor time are read."""
 GIVE_BACK_EVERY = 5.0
 """Seconds after which a server at rest has given memory back, see :mod:`webdemo.server.app`."""
+LONGEST_SETTLING = 15.0
+"""Seconds that a page gets to draw what it owes, such as the finer picture of a motion just paused."""
 LONG_RUN = {"seconds": 10, "samples": 8}
 """A run that outlasts the measurement of the waiting page."""
 
@@ -93,7 +95,7 @@ def measure_browser() -> dict[str, Any]:
             figures |= _follow_a_run(page) | _frame_rates(page)
             if page.evaluate("window.__pasdedeux.playing"):
                 page.locator("#player .pdd-play").click()
-            page.wait_for_timeout(1500)  # a still picture is drawn once more, finer
+            _let_settle(page, browser)
             figures["browser_cores_paused"] = _cores(browser, lambda: page.wait_for_timeout(1000 * WATCHED))
             figures["browser_cores_waiting"] = _wait_for_a_long_run(page, browser)
             page.wait_for_timeout(1000 * (GIVE_BACK_EVERY + 2))
@@ -200,6 +202,13 @@ def _cores(browser: Any, act: Callable[[], Any]) -> float:
     share = (spent() - before) / (time.perf_counter() - began)
     session.detach()
     return share
+
+
+def _let_settle(page: Any, browser: Any) -> None:
+    """Waits for half a second in which the browser takes little, or until it has had its time."""
+    until = time.monotonic() + LONGEST_SETTLING
+    while time.monotonic() < until and _cores(browser, lambda: page.wait_for_timeout(500)) > 0.2:
+        pass
 
 
 def _follow_a_run(page: Any) -> dict[str, float]:
