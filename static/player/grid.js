@@ -16,7 +16,7 @@ class Cell {
     this.labels = { labels: [] };
     this.host = make("pdd-cell");
     this.canvas = document.createElement("canvas");
-    this.scene = { setStill: (still) => pane.scene.setStill(still), picture: async () => this.canvas };
+    this.scene = { setStill: (...given) => pane.scene.setStill(...given), picture: async () => this.canvas };
     this.host.title = sample.caption;
     this.host.append(this.canvas);
   }

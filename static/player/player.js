@@ -20,6 +20,7 @@ import { describe } from "./skeleton.js";
 import { Strip } from "./strip.js";
 
 const STILL_AFTER = 250; // ms
+const LIVE_PAUSE = 48; // ms between pictures that the processor draws of a person who moves now
 export const loops = { running: 0 }; // animation loops alive on the page; a leak shows here
 
 /** Marks this browser tab as one that has made something, which a reload then brings back (ui/tabs/history.py). */
@@ -334,6 +335,8 @@ export class Player {
     }
     this.orbit.step(now, seconds, wanted);
     const moving = this.clock.playing || !this.orbit.settled(wanted);
+    if (moving && this.sparing && now - this.painted < LIVE_PAUSE) return this.wake();
+    this.painted = now;
     if (moving || this.dirty) {
       this.dirty = false;
       this.paint(pose);
@@ -368,7 +371,12 @@ export class Player {
   }
 
   setStill(still) {
-    return this.shown.map((pane) => pane.scene?.setStill(still)).some(Boolean);
+    return this.shown.map((pane) => pane.scene?.setStill(still, this.sparing)).some(Boolean);
+  }
+
+  /** Whether the processor draws here while it is also needed to follow somebody who moves now. */
+  get sparing() {
+    return Boolean(this.data?.stream && this.clock.limit !== null && this.scene?.software);
   }
 
   /** Pictures a second, lately. */

@@ -20,6 +20,7 @@ const NOWHERE = [[NaN, NaN, NaN], [NaN, NaN, NaN], [NaN, NaN, NaN]];
 const FLAT = { ambient: 1, diffuse: 0, specular: 0, roughness: 1, fresnel: 0 };
 const MOVING_RATIO = 1;
 const STILL_RATIO = 2;
+const LIVE_RATIO = 0.75;
 
 const axis = { visible: false, range: [-HALF, HALF], showspikes: false, tickmode: "array", tickvals: [] };
 
@@ -262,12 +263,14 @@ export class Scene {
 
   /**
    * Where the processor draws, a picture that stands still is drawn at twice the size for smooth edges,
-   * which it could not keep up while moving. Says whether that changed anything.
+   * which it could not keep up while moving. One that follows a person `live` is drawn smaller, because finding that
+   * person needs the processor too. Says whether that changed anything.
    */
-  setStill(still) {
+  setStill(still, live = false) {
     const gl = this.inside?.glplot;
     if (!this.software || this.mode !== "fast" || !gl) return false;
-    const ratio = still ? STILL_RATIO : MOVING_RATIO;
+    const moving = live ? LIVE_RATIO : MOVING_RATIO;
+    const ratio = still ? STILL_RATIO : moving;
     if (gl.pixelRatio === ratio) return false;
     gl.pixelRatio = ratio;
     return true;
