@@ -33,7 +33,7 @@ _KIND = (
     r"prisoner|suspect|bully|victim|gangster|soldier|sergeant|cadet|sentry|general|captain|doctor|nurse|medic|patient|"
     r"coach|trainer|referee|ref|umpire|athlete|runner|swimmer|goalkeeper|goalie|striker|defender|attacker|wrestler|king|"
     r"queen|prince|princess|lord|servant|butler|maid|knight|squire|samurai|ninja|warrior|gladiator|pirate|cowboy|wizard|"
-    r"witch|vampire|zombie|monster|ghost|robot|alien|hero|heroine|villain|enemy|foe|rival|opponent|npc|avatar|boss|clown|"
+    r"witch|vampire|zombie|monster|ghost|robot|alien|hero|heroine|villain|enemy|foe|rival|opponent|npc|avatar|clown|"
     r"actor|actress|singer|musician|director|photographer|painter|artist|barber|hairdresser|tailor|chef|cook|farmer|"
     r"salesman|saleswoman|seller|shopkeeper|cashier|clerk|customer|client|lawyer|judge|priest|monk|nun|pilot|driver|"
     r"passenger|tourist|guide|beggar|baby|toddler|infant|pupil|classmate|teenager|teen|youth|adult|elder|senior|"
@@ -297,10 +297,8 @@ def _who(piece: str, cast: _Cast, last: str) -> tuple[str, str, bool]:
         cast.words["first"] = "a"
         return "a", rest, True
     if match["second"]:
-        turned = (
-            "other" in match["second"] and last == "b"
-        )  # the other of the two is the person who was not mentioned last
-        who = "a" if turned else "b"
+        # "the other" of the two is the person who was not mentioned last
+        who = "a" if "other" in match["second"] and last == "b" else "b"
         cast.words[match["second"].split()[-1]] = who
         return who, rest, True
     return cast.noun(match["noun"], last if last in ("a", "b") else "a"), rest, True

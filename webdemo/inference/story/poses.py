@@ -1,4 +1,4 @@
-"""Poses of a body that stands, sits, kneels, crouches, lies or jumps, by the angles of its joints."""
+"""Poses of a body that stands, sits, kneels, crouches, bends down, lies or jumps, by the angles of its joints."""
 
 from __future__ import annotations
 
@@ -24,17 +24,23 @@ LOWER = tuple(
         "left_foot", "right_foot",
     )
 )  # fmt: skip
+"""Joints of the pelvis and the legs: with these known, the arms and the head are free for other acts."""
 ARMS = tuple(
     SMPL22.index(f"{side}_{name}") for side in ("left", "right") for name in ("shoulder", "elbow", "wrist")
 )
 FLAT = (
     *LOWER,
-    *(SMPL22.index(name) for name in ("spine2", "spine3", "neck", "head", "left_collar", "right_collar")),
-    *(SMPL22.index(name) for name in ("left_shoulder", "right_shoulder")),
-)
-"""Joints of the pelvis and the legs: with these known, the arms and the head are free for other acts."""
+    *(
+        SMPL22.index(name)
+        for name in (
+            "spine2", "spine3", "neck", "head", "left_collar", "right_collar", "left_shoulder", "right_shoulder",
+        )
+    ),
+)  # fmt: skip
+"""The same with the trunk, the head and the shoulders, for those who lie or bend down."""
 TOES = (SMPL22.index("left_foot"), SMPL22.index("right_foot"))
-_ARMS = {"left": 1.0, "right": -1.0}
+_SIDES = {"left": 1.0, "right": -1.0}
+"""Sides of the body, with the sign of their x as seen by somebody who faces +Z."""
 
 
 def standing(place: Array, angle: float, seconds: Array, *, seed: int = 0) -> Array:
@@ -189,7 +195,7 @@ def _posed(angle: float, left: Mapping[str, float], right: Mapping[str, float] |
     turns[:, 0] = heading_matrix(angle)
     for spine in ("spine1", "spine2"):
         turns[:, SMPL22.index(spine)] = _about(0, left["spine"])
-    for (side, sign), angles in zip(_ARMS.items(), (left, right or left), strict=True):
+    for (side, sign), angles in zip(_SIDES.items(), (left, right or left), strict=True):
         turns[:, SMPL22.index(f"{side}_shoulder")] = _about(2, -sign * angles["shoulder"])
         turns[:, SMPL22.index(f"{side}_elbow")] = heading_matrix(-sign * angles["elbow"])
         turns[:, SMPL22.index(f"{side}_hip")] = _about(2, -sign * 0.02) @ _about(0, angles["hip"])

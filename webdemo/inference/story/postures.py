@@ -1,7 +1,8 @@
 """Postures: who sits, kneels, crouches or lies down in a story, and stays so, and who jumps.
 
 A network that was trained on people who sit down and get up again does not leave them seated. The words say how the
-people hold themselves at the end of each beat; until they get up, their pelvis and legs are given.
+people hold themselves at the end of each beat; until they get up, their pelvis and legs are given, and the trunk and
+head of those who lie or bend down.
 """
 
 from __future__ import annotations
@@ -30,7 +31,7 @@ class Posture(Enum):
 
 @dataclass(frozen=True)
 class Change:
-    """A change of one person's posture in a beat.
+    """A posture that one person takes up in a beat, or in which its words find them.
 
     Attributes:
         posture: how they hold themselves from then on.
@@ -146,15 +147,13 @@ _TWICE = re.compile(r"\btwice\b|\btwo times\b")
 _NOT = re.compile(
     r"\b(?:do(?:es)?n't|not|without|never|refus\w+ to|wants? to|tries to|about to|almost|nearly)\b"
 )
-
-
 _LEFT_SO = re.compile(r"\b(?:walks? away|leaves? (?:\w+ )?\w+) (?P<so>sitting|seated|lying|kneeling)\b")
 """Words by which one goes and leaves the other as they are."""
-_LIES_THERE = re.compile(
+_OBJECT_SO = re.compile(
     r"\b(?:the|an?|his|her|their) (?P<so>injured|wounded|fallen|unconscious|sleeping|dead|seated|sitting|kneeling) \w+"
 )
-"""Objects that say how the other person is."""
-_SO = {
+"""Objects of verbs that say how the other person holds themselves."""
+_POSTURES = {
     "sitting": Posture.SITS, "seated": Posture.SITS, "kneeling": Posture.KNEELS, "lying": Posture.LIES,
     "injured": Posture.LIES, "wounded": Posture.LIES, "fallen": Posture.LIES, "unconscious": Posture.LIES,
     "sleeping": Posture.LIES, "dead": Posture.LIES,
@@ -168,13 +167,11 @@ def changes(sentence: str) -> dict[str, tuple[Change, ...]]:
     at_once = any(clause.at_once for clause in listed)
     for i, clause in enumerate(listed):
         share = i / len(listed)
-        left = _LEFT_SO.search(clause.words) or _LIES_THERE.search(clause.words)
+        left = _LEFT_SO.search(clause.words) or _OBJECT_SO.search(clause.words)
         if clause.who != "ab" and left is not None:
             other = "b" if clause.who == "a" else "a"
-            found[other] = (
-                *found.get(other, ()),
-                Change(_SO[left["so"]], already=not i or other not in found),
-            )
+            kept = Change(_POSTURES[left["so"]], already=other not in found)
+            found[other] = (*found.get(other, ()), kept)
         if (change := _caused(clause, share)) is not None:
             other = "b" if clause.who == "a" else "a"
             found[other] = (*found.get(other, ()), change)

@@ -26,7 +26,16 @@ HALT = 0.3
 
 @dataclass
 class Track:
-    """The planned way of one person, frame by frame; NaN where it is free."""
+    """The planned way of one person, frame by frame.
+
+    Attributes:
+        place: (2,) x and z in metres where they are at ``frame``.
+        heading: radians that they face there.
+        places: (T, 2) metres, of the whole beat; NaN where they are free.
+        headings: (T,) radians; NaN where they may face anywhere.
+        frame: the first frame that is not laid out yet.
+        going: (2,) unit direction of a walk side by side that they are on; zero if there was none.
+    """
 
     place: Array
     heading: float
@@ -35,15 +44,13 @@ class Track:
     frame: int = 0
     going: Array = field(default_factory=lambda: np.zeros(2))
 
-    def walk(
-        self, line: Array, seconds: float, *, heading: Array | float | None = None, ease: bool = True
-    ) -> None:
+    def walk(self, line: Array, seconds: float, *, heading: float | None = None) -> None:
         """Walks along points (N, 2) within some seconds; faces where it goes, or where ``heading`` says."""
         frames = max(1, min(round(seconds * FPS), len(self.places) - self.frame))
         steps = np.linalg.norm(np.diff(line, axis=0), axis=1)
         along = np.concatenate([[0.0], np.cumsum(steps)])
         time = np.arange(1, frames + 1) / frames
-        done = eased(time, EASE / max(seconds, 1e-6)) if ease else time
+        done = eased(time, EASE / max(seconds, 1e-6))
         far = min(along[-1], MOST * frames / FPS)
         at = np.stack([np.interp(done * far, along, line[:, axis]) for axis in (0, 1)], axis=1)
         stop = self.frame + frames
@@ -55,7 +62,7 @@ class Track:
             facing[still] = filled(facing, ~still, self.heading)[still]
             facing = self._turned_into(np.unwrap(facing))
         else:
-            facing = np.broadcast_to(np.asarray(heading, dtype=float), (frames,)).copy()
+            facing = np.full(frames, heading)
         self.headings[self.frame : stop] = facing
         self.place, self.heading, self.frame = at[-1], float(facing[-1]), stop
 
