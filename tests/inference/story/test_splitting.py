@@ -86,6 +86,7 @@ def test_nothing_gives_no_beats() -> None:
         ),
         ("(beat) Joe kneels. Ana walks away.", ["Person A kneels.", "Person B walks away."]),
         ("A high five. They walk away.", ["A high five.", "They walk away."]),
+        ('They "hug". They bow. They leave.', ['They "hug".', "They bow.", "They leave."]),
     ],
 )
 def test_a_setting_is_no_beat_of_its_own(sentence: str, beats: list[str]) -> None:

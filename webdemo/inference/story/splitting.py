@@ -62,8 +62,9 @@ def split_sentence(text: str) -> tuple[Beat, ...]:
             setting += f"{part}, "
         elif part:
             part, setting = f"{setting}{part[:1].lower()}{part[1:]}" if setting else part, ""
-            groups = _acts(reader.read(part))
-            parts += [_in_words(part, groups)] if len(groups) == 1 else [_worded(group) for group in groups]
+            found = reader.read(part)
+            groups = _acts(found)
+            parts += [_worded(group) for group in groups] if len(groups) > 1 else [_in_words(part, found)]
     if setting and parts:
         parts[-1] = f"{parts[-1].rstrip('.')}, {setting.rstrip(', ')}."
     if len(parts) < 2:
@@ -118,17 +119,13 @@ def _follows(group: Sequence[Clause], clause: Clause, after: Sequence[Clause]) -
     return bool(arrived) and way is None
 
 
-def _in_words(part: str, groups: Sequence[Sequence[Clause]]) -> str:
+def _in_words(part: str, found: Sequence[Clause]) -> str:
     """A part as a sentence: as it is if it names both or a person; otherwise with the name of who is meant."""
-    found = groups[0] if groups else []
-    named = bool(found) and found[0].stated and (found[0].who == "ab" or _NAMES.match(part))
-    if (
-        not found
-        or not found[0].subject
-        or (named and not any(c.who != "ab" and c.stated for c in found[1:]))
-    ):
-        return f"{part[:1].upper()}{part[1:]}."
-    return _worded(found)
+    whole = f"{part[:1].upper()}{part[1:]}."
+    if not found or not found[0].subject:
+        return whole
+    told = found[0].stated and (found[0].who == "ab" or _NAMES.match(part))
+    return whole if told and not any(c.who != "ab" and c.stated for c in found[1:]) else _worded(found)
 
 
 def _worded(found: Sequence[Clause]) -> str:
@@ -150,10 +147,10 @@ def _worded(found: Sequence[Clause]) -> str:
 def _clauses(text: str) -> list[str]:
     """The text cut where one thing follows another: at marks of time, at full stops, and in lists of three or more."""
     found: list[str] = []
-    clauses = _BREAK.split(_LATE_MARK.sub(lambda m: f", {m['mark']} {m['who']} ", text))
-    for i, clause in enumerate(clauses):
-        listed = _LIST.split(clause)
-        goes_on = i + 1 < len(clauses) and not clauses[i + 1][:1].isupper()
-        in_a_list = bool(re.search(rf",\s+{_VERB}\b", clause, re.IGNORECASE))
-        found += listed if in_a_list and (len(listed) > 2 or goes_on) else [clause]
+    pieces = _BREAK.split(_LATE_MARK.sub(lambda m: f", {m['mark']} {m['who']} ", text))
+    for i, piece in enumerate(pieces):
+        listed = _LIST.split(piece)
+        goes_on = i + 1 < len(pieces) and not pieces[i + 1][:1].isupper()
+        in_a_list = bool(re.search(rf",\s+{_VERB}\b", piece, re.IGNORECASE))
+        found += listed if in_a_list and (len(listed) > 2 or goes_on) else [piece]
     return found
