@@ -40,10 +40,10 @@ _PAST = {
     "creep": "crept", "do": "did", "draw": "drew", "drive": "drove", "fall": "fell", "find": "found",
     "flee": "fled", "fling": "flung", "fly": "flew", "get": "got", "give": "gave", "go": "went",
     "hang": "hung", "have": "had", "hide": "hid", "hit": "hit", "hold": "held", "keep": "kept",
-    "kneel": "knelt", "lead": "led", "leap": "leapt", "leave": "left", "leg": "legged", "lie": "lay",
+    "kneel": "knelt", "lead": "led", "leap": "leapt", "leave": "left", "lie": "lay",
     "lose": "lost", "make": "made", "meet": "met", "pay": "paid", "put": "put", "ride": "rode",
     "rise": "rose", "run": "ran", "see": "saw", "seek": "sought", "shake": "shook", "shoot": "shot",
-    "show": "showed", "sink": "sank", "sit": "sat", "slide": "slid", "slink": "slunk", "speed": "sped",
+    "sink": "sank", "sit": "sat", "slide": "slid", "slink": "slunk", "speed": "sped",
     "spin": "spun", "split": "split", "spread": "spread", "spring": "sprang", "stand": "stood",
     "steal": "stole", "stick": "stuck", "stride": "strode", "sweep": "swept", "swing": "swung",
     "take": "took", "tear": "tore", "throw": "threw", "wind": "wound",
@@ -51,6 +51,7 @@ _PAST = {
 _SILENT = re.compile(r"(?:[^aeiou]l|[vcuzs]|[^aeiou]g|[aeo]r|[ai][tm]|ok|ip)$")
 """Ends of stems that have lost an e before -ed and -ing; a guess where it does not matter."""
 _KEPT = {"ss", "ll", "ff", "zz"}
+"""Double letters that stems have of their own, and not because of -ed."""
 _MANY = re.compile(r"\b(?:they|both|we|people|men|women|children|(?:two|the) (?:\w+ )?\w+s)(?: \w+ly)? $")
 """A plural subject right before its verb."""
 _SINGULAR = {verb: f"{verb}es" if verb in ("do", "go") else f"{verb}s" for verb in _PAST} | {
@@ -74,7 +75,7 @@ def participle(verb: str) -> str:
         return "being"
     if verb == "lie":
         return "lying"
-    stem = verb[:-1] if re.search(r"[^e]e$", verb) and verb != "be" else verb
+    stem = verb[:-1] if re.search(r"[^e]e$", verb) else verb
     return f"{stem}{stem[-1]}ing" if _doubles(verb) else f"{stem}ing"
 
 
@@ -95,7 +96,14 @@ def _doubles(verb: str) -> bool:
 
 @dataclass(frozen=True)
 class _Phrase:
-    """A phrase that begins with one form of its verb."""
+    """A phrase that begins with one form of its verb.
+
+    Attributes:
+        rest: matches what follows the verb.
+        plain: the plain words in the same form.
+        plural: the same after a plural subject.
+        length: characters of the phrase.
+    """
 
     rest: re.Pattern[str]
     plain: str
@@ -154,13 +162,12 @@ def in_plain_words(text: str) -> str:
 
 @cache
 def _irregular() -> dict[str, str]:
-    forms = {form: singular(verb) for verb in _PAST for form in past(verb)}
-    same = {"beat", "hit", "put", "split", "spread", "was", "were", "been"}
-    return {form: present for form, present in forms.items() if form not in same}
+    """Irregular past forms and their present; without those of "be", and those that are like the base form."""
+    return {form: singular(verb) for verb in _PAST if verb != "be" for form in past(verb) if form != verb}
 
 
 def past_forms() -> tuple[str, ...]:
-    """The irregular past forms that are no other word's base form."""
+    """The irregular past forms that :func:`in_present` knows."""
     return tuple(_irregular())
 
 
