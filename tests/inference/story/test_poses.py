@@ -12,7 +12,17 @@ from motion.metrics.sentences.joints import Motion
 from motion.metrics.sentences.poses import kneels, lies, low, sits
 from motion.metrics.sentences.poses import upright as is_upright
 from motion.transforms import heading
-from webdemo.inference.story.poses import crouching, kneeling, leaping, lying, seated, upright
+from webdemo.inference.story.poses import (
+    LOWER,
+    bending,
+    crouching,
+    grounded,
+    kneeling,
+    leaping,
+    lying,
+    seated,
+    upright,
+)
 
 PLACE = np.array([1.0, -2.0])
 TOES = [SMPL22.index("left_foot"), SMPL22.index("right_foot")]
@@ -23,7 +33,7 @@ def bones(pose: np.ndarray) -> np.ndarray:
     return np.linalg.norm(pose[children] - pose[parents], axis=-1) / SMPL22.bone_lengths[children]
 
 
-@pytest.mark.parametrize("make", [upright, seated, crouching, kneeling, lying])
+@pytest.mark.parametrize("make", [upright, seated, grounded, bending, crouching, kneeling, lying])
 def test_poses_are_of_this_body_and_on_the_floor(make) -> None:
     pose = make(PLACE, 0.7)
     np.testing.assert_allclose(bones(pose), 1.0, atol=1e-9)
@@ -41,9 +51,25 @@ def test_poses_are_what_they_are_called(make, rule) -> None:
 
 
 def test_feet_stay_where_they_stood() -> None:
-    feet = [make(PLACE, 0.7)[TOES].mean(axis=0)[[0, 2]] for make in (upright, seated, crouching)]
+    feet = [
+        make(PLACE, 0.7)[TOES].mean(axis=0)[[0, 2]]
+        for make in (upright, seated, grounded, bending, crouching)
+    ]
     assert np.ptp(feet, axis=0).max() < 1e-6
     assert np.linalg.norm(lying(PLACE, 0.7)[TOES].mean(axis=0)[[0, 2]] - feet[0]) < 0.35
+
+
+def test_who_sits_on_the_ground_is_at_its_level() -> None:
+    pose = grounded(PLACE, 0.7)
+    assert pose[0, 1] < 0.25 < 0.6 < pose[SMPL22.index("head"), 1]
+
+
+def test_who_bends_down_keeps_straight_legs_and_lowers_the_head_forward() -> None:
+    straight, bent = upright(np.zeros(2), 0.0), bending(np.zeros(2), 0.0)
+    head = SMPL22.index("head")
+    assert bent[head, 1] < straight[head, 1] - 0.2 and bent[head, 2] > straight[head, 2] + 0.4
+    assert np.array_equal(bent[list(LOWER)][:3], straight[list(LOWER)][:3])
+    assert np.array_equal(bent[TOES], straight[TOES])
 
 
 def test_a_jump_takes_as_long_as_its_height_needs() -> None:

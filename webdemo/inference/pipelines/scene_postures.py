@@ -16,6 +16,7 @@ from webdemo.inference.story.poses import (
     FLAT,
     LOWER,
     LYING,
+    STANCE,
     TOES,
     bending,
     crouching,
@@ -42,7 +43,7 @@ DUCKING = 16
 UPRIGHT = 0.8
 """Height in metres of the pelvis of people who stand."""
 LOW = 0.5
-"""Metres of the head over the pelvis of those who lie or are bent."""
+"""Metres of the head over the pelvis below which somebody lies or is bent."""
 _HEAD = SMPL22.index("head")
 LEAP = 36
 """Frames from the highest moment of a jump to that of the next."""
@@ -144,4 +145,4 @@ def _place(person: int, stand: Standing, last: Array | None) -> tuple[Array, flo
     if pose[0, 1] > UPRIGHT:
         return np.asarray(stand.places[person] + HALT * stand.speeds[person], dtype=float), angle
     toes = pose[list(TOES)].mean(axis=0)[[0, 2]]
-    return toes - 0.12 * np.array([np.sin(angle), np.cos(angle)]), angle
+    return toes - STANCE * np.array([np.sin(angle), np.cos(angle)]), angle

@@ -13,6 +13,8 @@ from motion.transforms import heading_matrix
 
 Array = NDArray[np.floating]
 
+STANCE = 0.12
+"""Metres by which the toes of somebody who stands are ahead of the place where they stand."""
 SOLE = 0.02
 """Height in metres of the toe joint of a foot that stands."""
 LYING = 0.6
@@ -134,8 +136,8 @@ def grounded(place: Array, angle: float) -> Array:
         angle, {"hip": -1.8, "knee": 0.35, "ankle": 0.0, "shoulder": 1.3, "elbow": 0.3, "spine": 0.1}
     )
     pose[:, 1] += 0.08 - pose[:, 1].min()
-    toes = pose[list(TOES)].mean(axis=0)
-    return pose + np.array([place[0] - toes[0], 0.0, place[1] - toes[2]])
+    ahead = STANCE * np.array([np.sin(angle), 0.0, np.cos(angle)])
+    return pose + (np.array([place[0], 0.0, place[1]]) + ahead - pose[list(TOES)].mean(axis=0)) * [1, 0, 1]
 
 
 def bending(place: Array, angle: float) -> Array:
@@ -209,7 +211,9 @@ def _on_floor(poses: Array, place: Array, angle: float) -> Array:
     soles = poses[:, TOES]
     moved = poses - soles.mean(axis=1, keepdims=True) * [1, 0, 1]
     moved[..., 1] += SOLE - soles[..., 1].mean(axis=1)[:, None]
-    return moved + np.array([place[0], 0.0, place[1]]) + 0.12 * np.array([np.sin(angle), 0.0, np.cos(angle)])
+    return (
+        moved + np.array([place[0], 0.0, place[1]]) + STANCE * np.array([np.sin(angle), 0.0, np.cos(angle)])
+    )
 
 
 def _about(axis: int, angle: Array | float) -> Array:
