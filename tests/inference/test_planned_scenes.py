@@ -9,7 +9,9 @@ import pytest
 
 from motion import SMPL22
 from webdemo.inference import Engine, GenerateRequest, SceneRequest
+from webdemo.inference.pipelines.scene_postures import led
 from webdemo.inference.story import Beat
+from webdemo.inference.story.poses import bending, lying, seated
 
 from .test_scenes import positions, run
 
@@ -106,6 +108,40 @@ def test_who_lies_rests_head_and_shoulders(engine: Engine) -> None:
     found = made(engine, "Person A is lying on the floor.")[0]
     upper = [SMPL22.index(name) for name in ("head", "left_shoulder", "right_shoulder")]
     assert found[:90, upper, 1].max() < 0.4
+
+
+def test_who_lies_is_given_the_trunk_and_who_sits_the_legs_alone() -> None:
+    given = {}
+    for make in (lying, bending, seated):
+        ((joints, frames, poses),) = led([(3, make(np.zeros(2), 0.0))], 0, 10)
+        assert list(frames) == [3] and poses.shape == (1, SMPL22.num_joints, 3)
+        given[make] = {SMPL22.joint_names[joint] for joint in joints}
+    assert given[lying] == given[bending] > given[seated]
+    assert {"pelvis", "left_ankle", "right_foot"} < given[seated]
+    assert given[lying] - given[seated] == {
+        "spine2", "spine3", "neck", "head", "left_collar", "right_collar", "left_shoulder", "right_shoulder"
+    }  # fmt: skip
+
+
+def test_who_bends_down_brings_the_head_forward(engine: Engine) -> None:
+    found = made(engine, "Person A bends down.")[0, -20:]
+    head = found[:, SMPL22.index("head")] - found[:, 0]
+    assert (head[:, 1] < 0.45).all() and (np.linalg.norm(head[:, [0, 2]], axis=1) > 0.35).all()
+    assert (found[:, 0, 1] > 0.85).all(), "on straight legs"
+
+
+def test_who_lies_from_the_start_lies_across_the_way_of_the_other(engine: Engine) -> None:
+    found = made(engine, "Person B is lying on the floor and person A stands by.")
+    body = (found[1, 5, SMPL22.index("head")] - found[1, 5, 0])[[0, 2]]
+    line = (found[0, 5, 0] - found[1, 5, 0])[[0, 2]]
+    assert abs(body @ line) < 0.35 * np.linalg.norm(body) * np.linalg.norm(line)
+
+
+def test_those_who_only_clap_have_their_hands_led(engine: Engine) -> None:
+    for person in made(engine, "They clap."):
+        wrists = [person[15:-15, index] for index in WRISTS]
+        gap = np.linalg.norm(wrists[0] - wrists[1], axis=1)
+        assert gap.min() < 0.25 and gap.max() < 0.5
 
 
 def test_who_sits_on_the_ground_is_lower_than_on_a_chair(engine: Engine) -> None:

@@ -6,11 +6,12 @@ import numpy as np
 import pytest
 
 from webdemo.inference.actor import FPS
-from webdemo.inference.story.floor import ABREAST, CLOSE, FARTHEST, Standing, Way2D, plan, starting
+from webdemo.inference.story.floor import ABREAST, CLOSE, FARTHEST, LINKED, Standing, Way2D, plan, starting
 from webdemo.inference.story.moves import moves
 from webdemo.inference.story.track import MOST
 
 FACING = Standing(np.array([[0.0, 0.0], [0.0, 1.2]]), np.array([0.0, math.pi]))
+BEHIND_B = Standing(np.array([[0.0, 0.0], [0.0, 3.0]]), np.zeros(2))
 
 
 def ways(
@@ -166,3 +167,57 @@ def test_who_stands_with_their_back_to_the_other_begins_so() -> None:
     facing = np.array([math.sin(begin.headings[1]), math.cos(begin.headings[1])])
     assert facing @ away > 0.9 * np.linalg.norm(away)
     assert found[1].headings is not None and np.ptp(found[1].headings) < 1e-6
+
+
+def test_who_follows_sees_the_other_go_first() -> None:
+    _, found = ways("Person A follows person B.", standing=BEHIND_B)
+    assert found[0].frames[0] == 29 and 0.3 < found[0].places[0, 1] < 1.4, "less than a second of running"
+    assert found[1].places[0, 1] > 3.6
+
+
+def test_who_is_followed_goes_on_to_the_end() -> None:
+    _, found = ways("Person A follows person B.", seconds=8.0, standing=FACING)
+    assert found[1].places[-1, 1] - FACING.places[1, 1] > 6.0
+
+
+def test_who_waits_before_a_walk_leaves_most_of_the_time_to_it() -> None:
+    _, found = ways("Person B looks at person A and runs away.", seconds=5.0, standing=FACING)
+    at = dict(zip(found[1].frames, found[1].places[:, 1], strict=True))
+    assert at[29] == pytest.approx(1.2) and at[59] > 1.5 and at[89] > 2.5
+
+
+def test_who_walks_to_and_fro_comes_back_across_the_line() -> None:
+    _, found = ways("Person A paces up and down.", seconds=8.0, standing=BEHIND_B)
+    aside = found[0].places[:, 0]
+    assert aside.max() > 0.8 and aside.min() < -0.8 and np.abs(found[0].places[:, 1]).max() < 0.05
+    assert (np.diff(np.sign(aside)) != 0).sum() >= 2
+
+
+@pytest.mark.parametrize(
+    ("words", "standing", "ahead"),
+    [("two steps", BEHIND_B, 1.4), ("five steps", FACING, 1.2 - CLOSE), ("two steps", None, 0.5)],
+)
+def test_steps_forward_end_before_the_other(words: str, standing: Standing | None, ahead: float) -> None:
+    _, found = ways(f"Person A takes {words} forward.", standing=standing)
+    assert found[0].places[-1] == pytest.approx([0.0, ahead], abs=0.02)
+
+
+def test_who_is_led_by_the_hand_walks_along() -> None:
+    _, found = ways("Person A leads person B by the hand across the room.", seconds=5.0, standing=FACING)
+    assert gaps(found)[-1] == pytest.approx(LINKED, abs=0.02)
+    assert all(np.linalg.norm(way.places[-1] - way.places[0]) > 2.0 for way in found.values())
+
+
+def test_a_move_told_after_something_else_begins_late_but_following_does_not() -> None:
+    _, found = ways("Person A nods and walks away.", standing=FACING)
+    assert found[0].frames[0] > 0.3 * 4 * FPS
+    _, found = ways("Person A waves and person B follows person A.", standing=FACING)
+    assert found[0].frames[0] == found[1].frames[0]
+
+
+def test_what_ends_with_until_leaves_time() -> None:
+    ends = [
+        ways(f"They walk side by side{rest}.", seconds=8.0)[1][0].places[-1]
+        for rest in ("", " until one of them stops")
+    ]
+    assert 1.0 < np.linalg.norm(ends[1]) < 0.7 * np.linalg.norm(ends[0])

@@ -5,7 +5,7 @@ import pytest
 
 from motion import SMPL22
 from motion.transforms import heading
-from webdemo.inference.story.idle import idle, is_planned
+from webdemo.inference.story.idle import gesturing, idle, is_planned
 from webdemo.inference.story.poses import standing
 
 
@@ -34,8 +34,26 @@ def test_only_bystanders_stand_by(sentence: str, found: str) -> None:
     assert "".join(sorted(idle(sentence))) == found
 
 
+@pytest.mark.parametrize(
+    ("sentence", "found"),
+    [
+        ("They clap.", "ab"),
+        ("Person B salutes.", "b"),
+        ("Person A holds both arms out.", "a"),
+        # what the network knows, and who does something else as well
+        ("Person A waves.", ""),
+        ("Person A claps and person A bows.", ""),
+        ("Person A walks away with outstretched arms.", ""),
+    ],
+)
+def test_gestures_that_the_network_knows_little_of_are_given_to_who_only_stands(
+    sentence: str, found: str
+) -> None:
+    assert "".join(sorted(gesturing(sentence))) == found
+
+
 def test_plain_sentences_have_no_plan() -> None:
-    assert is_planned("They walk away.") and is_planned("Person A kneels.")
+    assert is_planned("They walk away.") and is_planned("Person A kneels.") and is_planned("They clap.")
     assert not is_planned("They shake hands.") and not is_planned("Two people hug.")
 
 

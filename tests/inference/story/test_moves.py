@@ -38,6 +38,13 @@ def moves_of(sentence: str) -> str:
         ("They set off together.", "a:along b:along"),
         ("He makes off.", "a:away b:stay"),
         ("She goes back to him.", "a:to b:stay"),
+        ("Person B paces up and down.", "b:pace a:stay"),
+        ("Person A takes three steps forward.", "a:ahead b:stay"),
+        ("A mother walks her son across the street.", "a:along b:along"),
+        ("Person A is led by the hand across the room.", "a:along b:along"),
+        ("Person A stops walking.", "a:to a:stay b:stay"),
+        ("Person A limps.", "a:past b:stay"),
+        ("They take hands and spin around.", "a:round b:round"),
         # moved by touch, by words alone, or not at all
         ("Person A leads person B by the hand.", ""),
         ("They shake hands.", ""),

@@ -84,6 +84,10 @@ def test_nothing_gives_no_beats() -> None:
             "Person A runs away, person B hot on their heels.",
             ["Person A runs away, person B hot on their heels."],
         ),
+        (
+            "Person A waves as she walks away and person B follows.",
+            ["Person A waves as she walks away and person B follows."],
+        ),
         ("(beat) Joe kneels. Ana walks away.", ["Person A kneels.", "Person B walks away."]),
         ("A high five. They walk away.", ["A high five.", "They walk away."]),
         ('They "hug". They bow. They leave.', ['They "hug".', "They bow.", "They leave."]),
