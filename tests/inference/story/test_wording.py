@@ -8,7 +8,7 @@ import pytest
 import tomllib
 
 from webdemo.inference.story.clauses import clauses
-from webdemo.inference.story.ways import way_of
+from webdemo.inference.story.ways import Way, way_of
 from webdemo.inference.story.wording import (
     PHRASEBOOK,
     in_plain_words,
@@ -104,6 +104,10 @@ def test_who_does_something_is_found(sentence: str, found: str) -> None:
 
 
 def test_moves_are_read_from_phrases() -> None:
-    for sentence, person in (("She legs it.", "a"), ("Both did a runner.", "ab")):
+    for sentence, person, way in (
+        ("She legs it.", "a", Way.AWAY),
+        ("Both did a runner.", "ab", Way.AWAY),
+        ("He whips round.", "a", Way.TURN),
+    ):
         (clause,) = clauses(sentence)
-        assert clause.who == person and way_of(clause.words) is not None
+        assert clause.who == person and way_of(clause.words) is way
