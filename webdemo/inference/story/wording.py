@@ -31,8 +31,11 @@ _END = (
     r"quickly)\b))"
 )
 """Ends a phrase of one word, which means something else with an object: "drops" and "drops the ball"."""
-_NO_OBJECT = r"\b(?! (?:the|an?|his|her|their|its?|him|them)\b)"
-"""Ends a phrase with a particle: "turns up the music" is no arrival."""
+_NO_OBJECT = (
+    r"\b(?! (?:the|an?|his|her|their|its?|him|them|person|each)\b)"
+    r"(?!(?<=over) to (?!(?:the|one|his|her) (?:\w+ )?side\b))"
+)
+"""Ends a phrase with a particle: "turns up the music" is no arrival, and "moves over to him" no step aside."""
 _PARTICLE = re.compile(r"\b(?:up|down|out|over|off|on|in|by|back|around|about|behind|past)$")
 _PAST = {
     "be": "was|were|been", "bear": "bore", "beat": "beat", "become": "became", "bend": "bent",
