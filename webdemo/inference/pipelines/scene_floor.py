@@ -12,6 +12,7 @@ from motion import SMPL22
 from motion.transforms import heading
 from webdemo.inference.actor import FPS, Placement
 from webdemo.inference.directed import KnownFrames, KnownPath, Part
+from webdemo.inference.story.contacts import contact
 from webdemo.inference.story.floor import Standing, Way2D, plan, starting
 from webdemo.inference.story.idle import gesturing, idle, is_planned, touches
 from webdemo.inference.story.moves import Move, goes, moves
@@ -22,6 +23,7 @@ from webdemo.inference.story.request import SceneRequest
 from webdemo.inference.story.track import HALT
 from webdemo.inference.story.ways import Way
 
+from .scene_contacts import given_contact, meeting
 from .scene_hands import hands, known_hands
 from .scene_postures import UPRIGHT, led, postures
 
@@ -53,10 +55,17 @@ def planned(request: SceneRequest, window: Window, scene: Array, placement: Plac
     before = scene[:, max(start - 4, 0) : start]
     stand = _stand(before) if start else _beginning(request)
     parts, posed = _held(request, window, scene, stand, still, found, placement)
+    touch, found = meeting(contact(words), found, posed, stand)
+    if touch is not None:
+        parts = [part for part in parts if part.person != "ab".index(touch.person)]
     ways = {way.person: way for way in plan(found, stand, stop - start, first=not start)}
     ways = {person: way for person, way in ways.items() if person not in {part.person for part in parts}}
     for way in ways.values():
         parts += _path(way, window, start, placement)
+    if touch is not None and (
+        part := given_contact(touch, ways, posed, stand, start, stop, window, placement)
+    ):
+        parts.append(part)
     for person, (gesture, frames, wrists) in hands(words, found, ways, posed, stand, stop - start).items():
         inside = (frames + start >= window.start) & (frames + start < window.stop)
         if inside.any():

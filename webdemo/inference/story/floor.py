@@ -199,13 +199,12 @@ def _moved(
             track.turn(wrapped(math.atan2(line[0], line[1]) - track.heading))
             track.stay(facing=True, seconds=None if last else 0.2)
         case Way.TO | Way.BEHIND:
-            way = (gap - CLOSE) / (2 if both else 1)
-            if move.way is Way.BEHIND:
-                way += CLOSE - NEAR_BY
-            if way > 0.25:
+            near = move.near or (NEAR_BY if move.way is Way.BEHIND else CLOSE)
+            way = (gap - near) / (2 if both else 1)
+            if way > (0.05 if move.near else 0.25):
                 track.walk(np.stack([here, here + way * to]), _time(way, move.speed, seconds))
-            if not both and last:
-                track.stay()
+            if last and (move.near or not both):
+                track.stay(facing=bool(move.near))
         case Way.AWAY:
             room = (FARTHEST - gap + max(0.0, move.speed - 1.1)) / (2 if both else 1)
             room = _CHASED if Way.AFTER in theirs else room

@@ -69,7 +69,7 @@ _PATTERNS = (
     (Hand.POINTS, r"\bpoint(?:s|ing)?\b(?! out)|\b(?:aim|shoot|fire)s?\b"),
     (
         Hand.UP,
-        rf"\b(?:rais|lift|put|hold)\w* (?:up )?{_HIS}(?:(?:left|right) )?(?:hand|arm)\b(?! out| to)"
+        rf"\b(?:rais|lift|put|hold)\w* (?:up )?{_HIS}(?:(?:left|right) )?(?:hand|arm)\b(?! out| to| on)"
         rf"|\b{_HIS}(?:(?:left|right) )?(?:hand|arm) (?:raised|up|in the air)\b",
     ),
 )

@@ -9,6 +9,7 @@ from __future__ import annotations
 import re
 
 from .clauses import Clause, clauses
+from .contacts import contact
 from .gestures import STOOD, gestures
 from .moves import MOVED, goes, moves
 from .postures import changes, leaps
@@ -71,7 +72,11 @@ def gesturing(sentence: str) -> frozenset[str]:
 
 def is_planned(sentence: str) -> bool:
     """True if a beat's words say where people go, who stands by, sits, kneels or lies down, or jumps."""
-    return goes(moves(sentence)) or any(read(sentence) for read in (idle, changes, leaps, gesturing))
+    return (
+        goes(moves(sentence))
+        or contact(sentence) is not None
+        or any(read(sentence) for read in (idle, changes, leaps, gesturing))
+    )
 
 
 def touches(sentence: str) -> bool:

@@ -23,6 +23,7 @@ class Move:
         linked: they hold each other by the hands or arms.
         late: the sentence tells it after something else that is done in place.
         metres: length of the way, of :attr:`Way.AHEAD`.
+        near: metres from the other at which who comes up to them stands; 0 for as far as the network likes.
     """
 
     person: str
@@ -33,6 +34,7 @@ class Move:
     linked: bool = False
     late: bool = False
     metres: float = 0.0
+    near: float = 0.0
 
 
 LED = re.compile(

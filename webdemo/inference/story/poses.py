@@ -40,6 +40,8 @@ FLAT = (
     ),
 )  # fmt: skip
 """The same with the trunk, the head and the shoulders, for those who lie or bend down."""
+TRUNK = tuple(joint for joint in FLAT if joint not in LOWER or joint == SMPL22.index("spine1"))
+"""Joints of the trunk, the head and the shoulders."""
 TOES = (SMPL22.index("left_foot"), SMPL22.index("right_foot"))
 _SIDES = {"left": 1.0, "right": -1.0}
 """Sides of the body, with the sign of their x as seen by somebody who faces +Z."""
@@ -140,11 +142,11 @@ def grounded(place: Array, angle: float) -> Array:
     return pose + (np.array([place[0], 0.0, place[1]]) + ahead - pose[list(TOES)].mean(axis=0)) * [1, 0, 1]
 
 
-def bending(place: Array, angle: float) -> Array:
-    """Somebody who bends down from the hips: (22, 3) metres."""
+def bending(place: Array, angle: float, lean: float = _BENT) -> Array:
+    """Somebody who bends down from the hips by so many radians: (22, 3) metres."""
     pose = upright(place, angle)
     upper = [j for j in range(SMPL22.num_joints) if j not in LOWER or j == SMPL22.index("spine1")]
-    turn = heading_matrix(angle) @ _about(0, _BENT) @ heading_matrix(-angle)
+    turn = heading_matrix(angle) @ _about(0, lean) @ heading_matrix(-angle)
     pose[upper] = pose[0] + (pose[upper] - pose[0]) @ turn.T
     return pose
 

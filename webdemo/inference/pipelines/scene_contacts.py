@@ -1,0 +1,164 @@
+"""Contacts that the words of a beat ask for: who touches is led up to the other, and the hand is given."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+
+import numpy as np
+from numpy.typing import NDArray
+
+from motion import SMPL22
+from webdemo.inference.actor import FPS, Placement
+from webdemo.inference.directed import KnownFrames
+from webdemo.inference.story.contacts import Contact, lean, middle, reach, touched
+from webdemo.inference.story.floor import Standing, Way2D
+from webdemo.inference.story.moves import Move
+from webdemo.inference.story.plan import Window
+from webdemo.inference.story.poses import TRUNK, bending, upright
+from webdemo.inference.story.ways import Way
+
+from .scene_hands import Course
+
+Array = NDArray[np.floating]
+
+REACHES = 12
+"""Frames in which a hand is brought to the place that it touches."""
+HELD = 1.6
+"""Seconds that a hand stays, where the beat is long enough."""
+BEAT = 20
+"""Frames from one pat to the next."""
+TAKEN_BACK = 0.2
+"""Metres by which a hand is taken back between two pats."""
+LOWEST = 0.55
+"""Height in metres of the lowest place that somebody on their feet reaches."""
+_COMES = (Way.TO, Way.BEHIND, Way.STAY, Way.FACE)
+_WAITS = (Way.STAY, Way.AVERTED, Way.FACE, Way.TURN)
+
+
+def meeting(
+    touch: Contact | None, found: Sequence[Move], posed: Mapping[int, Array], stand: Standing
+) -> tuple[Contact | None, tuple[Move, ...]]:
+    """The contact, if it can be planned, and the moves of the beat with those that it needs.
+
+    Args:
+        touch: as the words name it.
+        found: the beat's moves.
+        posed: a pose (22, 3) of those whose posture is given, by person.
+        stand: where the people are when the beat begins.
+    """
+    moves = tuple(found)
+    if touch is None:
+        return None, moves
+    giver = "ab".index(touch.person)
+    own = [move for move in moves if move.person == touch.person]
+    theirs = [move for move in moves if move.person != touch.person]
+    pose = posed.get(1 - giver, upright(np.zeros(2), 0.0))
+    if giver in posed or any(move.way not in _COMES for move in own):
+        return None, moves
+    if any(move.way not in (*_WAITS, Way.TO) for move in theirs) or middle(touch, pose)[1] < LOWEST:
+        return None, moves
+    near = reach(touch, pose)
+    if 1 - giver in posed:
+        line = stand.towards(1 - giver)
+        near += float((middle(touch, pose)[[0, 2]] - stand.places[1 - giver]) @ line)
+    comes = [
+        Move(m.person, m.way, m.speed, late=m.late, near=near) if m.way in _COMES[:2] else m for m in own
+    ]
+    if not any(move.near for move in comes):
+        comes = [*(m for m in comes if m.way is Way.FACE), Move(touch.person, Way.TO, 0.8, near=near)]
+    other = "ab"[1 - giver]
+    waits = [Move(m.person, m.way, m.speed, near=near) if m.way is Way.TO else m for m in theirs]
+    if 1 - giver not in posed and (not waits or waits[0].way in (Way.TURN, Way.FACE)):
+        waits = [Move(other, Way.STAY), *waits]
+    return touch, (*comes, *waits)
+
+
+def given_contact(
+    touch: Contact,
+    ways: Mapping[int, Way2D],
+    posed: Mapping[int, Array],
+    stand: Standing,
+    start: int,
+    stop: int,
+    window: Window,
+    placement: Placement,
+) -> KnownFrames | None:
+    """The hands or the head of who touches, as the network is given them; None where the beat is too short.
+
+    Args:
+        touch: the contact.
+        ways: by person.
+        posed: a pose (22, 3) of those whose posture is given, by person.
+        stand: where the people are when the beat begins.
+        start, stop: the beat's first frame and the one after its last.
+        window: the window that is made.
+        placement: from the scene's world to the network's frame.
+    """
+    giver, frames = "ab".index(touch.person), stop - start
+    if giver not in ways:
+        return None
+    own = Course.of(ways[giver], float(stand.headings[giver]), frames)
+    other = _course(1 - giver, ways, stand, frames)
+    first = max(_arrival(own), _arrival(other) if 1 - giver in ways else 0) + REACHES
+    first = max(first, round(0.6 * frames)) if touch.late else first
+    last = min(frames, _leaving(other, first))
+    at = _moments(touch, first, last)
+    wrists = [SMPL22.index(f"{side}_wrist") for side in touch.sides]
+    joints = [*TRUNK, *wrists]
+    kept: list[int] = []
+    poses: list[Array] = []
+    for frame, back in at:
+        if not window.start <= start + frame < window.stop:
+            continue
+        target = posed.get(1 - giver)
+        if target is None:
+            target = upright(other.places[frame], float(other.headings[frame]))
+        pose = bending(own.places[frame], float(own.headings[frame]), lean(touch, target))
+        if touch.sides:
+            places = touched(touch, target, pose)
+            away = pose[wrists] - places
+            away /= np.linalg.norm(away, axis=1, keepdims=True).clip(min=1e-6)
+            pose[wrists] = places + back * away
+        pose -= pose[0].copy()
+        kept.append(start + frame - window.start + window.past)
+        poses.append(pose)
+    if not kept:
+        return None
+    return KnownFrames(giver, kept, placement.to_network(np.stack(poses)), joints)
+
+
+def _moments(touch: Contact, first: int, last: int) -> list[tuple[int, float]]:
+    """The frames at which the hand is given, and metres by which it is taken back then."""
+    if not touch.times:
+        stop = min(last, max(first + round(HELD * FPS), round(0.85 * last)))
+        return [(frame, 0.0) for frame in range(first, stop, 3)]
+    found: list[tuple[int, float]] = []
+    for i in range(touch.times):
+        on = first + i * BEAT
+        found += [(frame, 0.0) for frame in range(on, on + 7, 3)]
+        if i + 1 < touch.times:
+            found.append((on + BEAT // 2 + 3, TAKEN_BACK))
+    return [(frame, back) for frame, back in found if frame < last]
+
+
+def _course(person: int, ways: Mapping[int, Way2D], stand: Standing, frames: int) -> Course:
+    angle = float(stand.headings[person])
+    if person in ways:
+        return Course.of(ways[person], angle, frames)
+    return Course.stays(stand.places[person], angle, frames)
+
+
+def _arrival(course: Course) -> int:
+    """The frame from which somebody stays within 4 cm of where they end up."""
+    away = np.linalg.norm(course.places - course.places[-1], axis=1) > 0.04
+    return int(np.flatnonzero(away)[-1]) + 1 if away.any() else 0
+
+
+def _leaving(course: Course, first: int) -> int:
+    """The frame after ``first`` at which somebody begins to turn or to go."""
+    if first >= len(course.places):
+        return len(course.places)
+    moved = np.linalg.norm(course.places[first:] - course.places[first], axis=1) > 0.1
+    turned = np.abs(course.headings[first:] - course.headings[first]) > 0.4
+    gone = np.flatnonzero(moved | turned)
+    return first + int(gone[0]) if len(gone) else len(course.places)
