@@ -57,3 +57,38 @@ def test_who_is_tapped_and_turns_round_is_tapped_first(engine: Engine) -> None:
     angle = np.unwrap(np.arctan2(across[:, 0], across[:, 2]))
     turned = np.abs(angle - angle[0]) > 1.0
     assert turned[-1] and gap[: int(np.flatnonzero(turned)[0])].min() < 0.25
+
+
+@pytest.mark.parametrize(
+    "prompt", ["A couple dances a waltz.", "They take each other by both hands and spin around."]
+)
+def test_those_in_a_hold_have_their_hands_joined_while_they_turn(engine: Engine, prompt: str) -> None:
+    found = made(engine, prompt)
+    joined = nearest(found, 0, ["left_wrist"], ["right_wrist"])[30:110]
+    assert np.mean(joined < 0.2) > 0.9
+    line = found[1, :, 0] - found[0, :, 0]
+    angle = np.unwrap(np.arctan2(line[:, 0], line[:, 2]))
+    assert abs(angle[-1] - angle[0]) > 1.5
+
+
+def test_who_bows_brings_the_head_down_and_up_again(engine: Engine) -> None:
+    found = made(engine, "Person A bows deeply to person B, who watches.")
+    over = found[:, :, SMPL22.index("head"), 1] - found[:, :, 0, 1]
+    assert over[0].min() < 0.35 and over[0, -1] > 0.5 and over[1].min() > 0.5
+    assert over[0].min() < made(engine, "Person A bows to person B.")[0, :, SMPL22.index("head"), 1].min()
+
+
+def test_a_phone_is_held_to_the_ear(engine: Engine) -> None:
+    found = made(engine, "She is on the phone, he waits.")
+    gap = np.linalg.norm(
+        found[0, :, SMPL22.index("right_wrist")] - found[0, :, SMPL22.index("head")], axis=-1
+    )
+    assert np.mean(gap[30:110] < 0.3) > 0.8
+
+
+def test_a_massage_is_given_from_behind(engine: Engine) -> None:
+    found = made(engine, "He gets a shoulder massage from her.")
+    gap = nearest(found, 1, ["left_wrist"], ["left_shoulder", "right_shoulder"])
+    across = found[0, 60, SMPL22.index("left_hip")] - found[0, 60, SMPL22.index("right_hip")]
+    ahead = np.cross(across, [0.0, 1.0, 0.0])
+    assert gap.min() < 0.25 and (found[1, 60, 0] - found[0, 60, 0]) @ ahead < 0

@@ -187,7 +187,7 @@ def test_a_sentence_of_several_beats_is_split_by_plain_generation_too(engine: En
     ("prompt", "fields"),
     [
         ("They wave.", {}),
-        ("They wave, then they bow.", {"seconds": 2.0}),
+        ("They wave, then they nod.", {"seconds": 2.0}),
         ("shake hands. then bow.", {"model": "bigraphdiff"}),
     ],
 )

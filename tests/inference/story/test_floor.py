@@ -6,7 +6,18 @@ import numpy as np
 import pytest
 
 from webdemo.inference.actor import FPS
-from webdemo.inference.story.floor import ABREAST, CLOSE, FARTHEST, LINKED, Standing, Way2D, plan, starting
+from webdemo.inference.story.floor import (
+    ABREAST,
+    BEHIND,
+    CLOSE,
+    FARTHEST,
+    LINKED,
+    Standing,
+    Way2D,
+    plan,
+    starting,
+)
+from webdemo.inference.story.holds import hold
 from webdemo.inference.story.moves import moves
 from webdemo.inference.story.track import MOST
 
@@ -213,6 +224,30 @@ def test_a_move_told_after_something_else_begins_late_but_following_does_not() -
     assert found[0].frames[0] > 0.3 * 4 * FPS
     _, found = ways("Person A waves and person B follows person A.", standing=FACING)
     assert found[0].frames[0] == found[1].frames[0]
+
+
+@pytest.mark.parametrize(
+    "words", ["A couple dances a waltz.", "They take each other's hands and spin around."]
+)
+def test_those_in_a_hold_turn_about_the_middle_and_face_each_other(words: str) -> None:
+    kind = hold(words)
+    assert kind is not None
+    begin, found = ways(words, 6.0)
+    middle = begin.places.mean(axis=0)
+    assert np.abs(gaps(found) - kind.value).max() < 0.05
+    for way in found.values():
+        inwards = middle - way.places
+        turned = np.unwrap(np.arctan2(inwards[:, 0], inwards[:, 1]))
+        assert way.headings is not None
+        assert np.abs(np.cos(turned - way.headings) - 1).max() < 0.02
+        assert abs(turned[-1] - turned[0]) > math.pi
+
+
+def test_who_walks_backwards_before_the_other_faces_them() -> None:
+    begin, found = ways("Person A walks backwards and person B follows her.", 5.0)
+    assert begin.gap() == BEHIND and math.cos(begin.headings[1]) < -0.99
+    assert found[0].places[-1, 1] < -1.5 and np.abs(np.asarray(found[0].headings)).max() < 0.01
+    assert found[1].places[-1, 1] < 0.2
 
 
 def test_what_ends_with_until_leaves_time() -> None:

@@ -23,7 +23,13 @@ TIME = np.arange(60) / 30
         ("A boy raises his hand.", {"a": (Hand.UP, 1)}),
         ("A zombie walks with outstretched arms.", {"a": (Hand.AHEAD, 2)}),
         ("The soldier salutes.", {"a": (Hand.SALUTES, 1)}),
+        ("She is on the phone.", {"a": (Hand.PHONE, 1)}),
+        ("He covers his ears.", {"a": (Hand.EARS, 2)}),
+        ("Person B hides his face.", {"b": (Hand.EYES, 2)}),
+        ("A tourist takes a picture of his wife.", {"a": (Hand.PHOTO, 2)}),
+        ("Two monks pray.", {"a": (Hand.PRAYS, 2), "b": (Hand.PRAYS, 2)}),
         # no gesture of a hand in the air
+        ("Person A lays a hand on person B's head.", {}),
         ("Person A puts both hands on person B's shoulders.", {}),
         ("Person A throws his arms around her.", {}),
         ("Person A does not wave.", {}),
@@ -56,6 +62,10 @@ def test_hands_are_where_the_gesture_has_them(side: str) -> None:
     assert (way(Hand.HIGH)[:, 1] > pose[SMPL22.index("head"), 1] - pose[0, 1]).all()
     assert (way(Hand.UP)[:, 1] > shoulder[1] + 0.2).all()
     assert (way(Hand.AHEAD)[:, 2] > 0.4).all()
+    head = pose[SMPL22.index("head")] - pose[0]
+    for hand in (Hand.PHONE, Hand.EARS, Hand.EYES):
+        assert np.linalg.norm(way(hand) - head, axis=1).max() < 0.25, "a hand's length from the head"
+    assert (out * way(Hand.PRAYS)[:, 0] < 0.1).all()
     assert (way(Hand.POINTS)[:, 2] > 0.4).all()
     assert np.sign(way(Hand.LINKED)[0, 0]) == out
     assert np.ptp(way(Hand.WAVES)[:, 0]) > 0.2 and np.ptp(way(Hand.UP), axis=0).max() == 0

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from webdemo.inference.story.postures import Posture, at_start, changes, leaps
+from webdemo.inference.story.postures import Posture, at_start, bows, changes, leaps
 
 SITS, KNEELS, LIES = Posture.SITS, Posture.KNEELS, Posture.LIES
 CROUCHES, STANDS = Posture.CROUCHES, Posture.STANDS
@@ -33,6 +33,7 @@ CROUCHES, STANDS = Posture.CROUCHES, Posture.STANDS
         ("Over dinner the couple talk.", {"a": [SITS], "b": [SITS]}),
         ("A is out cold on the floor, B looks on.", {"a": [LIES]}),
         ("The medic walks up to the injured player.", {"b": [LIES]}),
+        ("Person A dozes on a bench.", {"a": [SITS]}),
         # nobody goes down
         ("They walk to the table.", {}),
         ("Person A does not sit down.", {}),
@@ -112,6 +113,29 @@ def test_who_is_left_sitting_sat_from_the_start() -> None:
     assert at_start(story, 0) == {"a": SITS, "b": SITS}
     assert at_start(story, 1)["b"] is SITS and at_start(story, 1)["a"] is STANDS
     assert at_start(["Person B runs in.", "Person B is sitting on a chair."], 0)["b"] is STANDS
+
+
+def test_who_lies_down_was_up() -> None:
+    assert not changes("One person lies down on the floor next to the other.")["a"][0].already
+    assert changes("One person is lying on the floor.")["a"][0].already
+
+
+@pytest.mark.parametrize(
+    ("sentence", "found"),
+    [
+        ("Person A bows.", {"a": (1, False)}),
+        ("They bow to each other.", {"a": (1, False), "b": (1, False)}),
+        ("Person B bows very deeply.", {"b": (1, True)}),
+        ("One of them takes three bows in a row.", {"a": (3, False)}),
+        ("She bows twice.", {"a": (2, False)}),
+        ("The maid curtsies.", {"a": (1, False)}),
+        ("Person A does not bow.", {}),
+        ("He draws a bow tie.", {}),
+        ("They wave.", {}),
+    ],
+)
+def test_bows_are_counted(sentence: str, found: dict[str, tuple[int, bool]]) -> None:
+    assert bows(sentence) == found
 
 
 def test_jumps_are_counted_as_nouns_too() -> None:

@@ -65,6 +65,15 @@ from webdemo.inference.story import split_sentence
         ("A stands up and leaves, B stays.", ["Person A stands up.", "Person A leaves and person B stays."]),
         ("B comes and sits down beside A.", ["Person B comes.", "Person B sits down beside person A."]),
         ("First person A bows.", ["First person A bows."]),
+        (
+            "She taps him on the shoulder, he turns around, and she gives him a letter.",
+            ["Person A taps him on the shoulder.", "Person B turns around.", "Person A gives him a letter."],
+        ),
+        (
+            "He drops to one knee and proposes and they hug.",
+            ["Person A kneels down and proposes.", "They hug."],
+        ),
+        ("They bow, fight and bow again.", ["They bow.", "They fight.", "They bow again."]),
     ],
 )
 def test_a_sentence_is_split_where_one_thing_follows_another(sentence: str, beats: list[str] | None) -> None:

@@ -1,4 +1,4 @@
-"""Contacts that the words of a beat ask for: who touches is led up to the other, and the hand is given."""
+"""Contacts and holds that the words of a beat ask for: people are led within reach, and the hands are given."""
 
 from __future__ import annotations
 
@@ -12,6 +12,7 @@ from webdemo.inference.actor import FPS, Placement
 from webdemo.inference.directed import KnownFrames
 from webdemo.inference.story.contacts import Contact, lean, middle, reach, touched
 from webdemo.inference.story.floor import Standing, Way2D
+from webdemo.inference.story.holds import Hold, joined
 from webdemo.inference.story.moves import Move
 from webdemo.inference.story.plan import Window
 from webdemo.inference.story.poses import TRUNK, bending, upright
@@ -29,6 +30,7 @@ BEAT = 20
 """Frames from one pat to the next."""
 TAKEN_BACK = 0.2
 """Metres by which a hand is taken back between two pats."""
+_WRISTS = [SMPL22.index("left_wrist"), SMPL22.index("right_wrist")]
 LOWEST = 0.55
 """Height in metres of the lowest place that somebody on their feet reaches."""
 _COMES = (Way.TO, Way.BEHIND, Way.STAY, Way.FACE)
@@ -125,6 +127,32 @@ def given_contact(
     if not kept:
         return None
     return KnownFrames(giver, kept, placement.to_network(np.stack(poses)), joints)
+
+
+def given_hold(
+    kind: Hold,
+    ways: Mapping[int, Way2D],
+    stand: Standing,
+    start: int,
+    stop: int,
+    window: Window,
+    placement: Placement,
+) -> list[KnownFrames]:
+    """The trunks and hands of two people in a hold, as the network is given them; arguments as above."""
+    courses = [_course(person, ways, stand, stop - start) for person in (0, 1)]
+    at = np.arange(REACHES, stop - start, 3)
+    at = at[(at + start >= window.start) & (at + start < window.stop)]
+    if not len(at):
+        return []
+    wrists = joined(kind, np.stack([course.places[at] for course in courses]))
+    frames = (at + start - window.start + window.past).tolist()
+    parts = []
+    for person, course in enumerate(courses):
+        poses = np.stack([upright(course.places[t], float(course.headings[t])) for t in at])
+        poses[:, _WRISTS] = np.moveaxis(wrists[person], 0, 1)
+        poses -= poses[:, :1].copy()
+        parts.append(KnownFrames(person, frames, placement.to_network(poses), [*TRUNK, *_WRISTS]))
+    return parts
 
 
 def _moments(touch: Contact, first: int, last: int) -> list[tuple[int, float]]:

@@ -14,6 +14,7 @@ from webdemo.inference.actor import FPS, Placement
 from webdemo.inference.directed import KnownFrames, KnownPath, Part
 from webdemo.inference.story.contacts import contact
 from webdemo.inference.story.floor import Standing, Way2D, plan, starting
+from webdemo.inference.story.holds import hold
 from webdemo.inference.story.idle import gesturing, idle, is_planned, touches
 from webdemo.inference.story.moves import Move, goes, moves
 from webdemo.inference.story.plan import Window
@@ -23,7 +24,7 @@ from webdemo.inference.story.request import SceneRequest
 from webdemo.inference.story.track import HALT
 from webdemo.inference.story.ways import Way
 
-from .scene_contacts import given_contact, meeting
+from .scene_contacts import given_contact, given_hold, meeting
 from .scene_hands import hands, known_hands
 from .scene_postures import UPRIGHT, led, postures
 
@@ -66,6 +67,8 @@ def planned(request: SceneRequest, window: Window, scene: Array, placement: Plac
         part := given_contact(touch, ways, posed, stand, start, stop, window, placement)
     ):
         parts.append(part)
+    if (held := hold(words)) is not None and len(ways) == 2:
+        parts += given_hold(held, ways, stand, start, stop, window, placement)
     for person, (gesture, frames, wrists) in hands(words, found, ways, posed, stand, stop - start).items():
         inside = (frames + start >= window.start) & (frames + start < window.stop)
         if inside.any():
@@ -141,6 +144,10 @@ def _beginning(request: SceneRequest) -> Standing:
     first = request.beats[0].sentence
     lies = any(listed[0] == Change(Posture.LIES, already=True) for listed in changes(first).values())
     near = lies or touches(first)
+    touch = contact(first)
+    if touch is not None and touch.behind and not goes(moves(first)):
+        averted = Move("b" if touch.person == "a" else "a", Way.AVERTED)
+        return starting((averted,), request.beats[0].length, near=True)
     for beat in request.beats:
         found = moves(beat.sentence)
         if goes(found):
@@ -149,12 +156,12 @@ def _beginning(request: SceneRequest) -> Standing:
 
 
 def _apart(request: SceneRequest, window: Window, placement: Placement) -> list[Part]:
-    """The places where two people begin who only walk up to each other in a later beat; free if they touch before."""
+    """The places where two people begin who only come or go in a later beat; free if they touch before."""
     for beat in request.beats[1:]:
         found = moves(beat.sentence)
         if goes(found):
             if (
-                not any(move.way is Way.TO for move in found)
+                not any(move.way in (Way.TO, Way.AWAY) for move in found)
                 or window.part
                 or touches(request.beats[0].sentence)
             ):

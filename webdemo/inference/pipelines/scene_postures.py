@@ -19,6 +19,7 @@ from webdemo.inference.story.poses import (
     STANCE,
     TOES,
     bending,
+    bowing,
     crouching,
     grounded,
     kneeling,
@@ -27,7 +28,7 @@ from webdemo.inference.story.poses import (
     seated,
     upright,
 )
-from webdemo.inference.story.postures import Change, Posture, at_start, changes, leaps
+from webdemo.inference.story.postures import Change, Posture, at_start, bows, changes, leaps
 from webdemo.inference.story.track import HALT
 
 Array = NDArray[np.floating]
@@ -47,6 +48,10 @@ LOW = 0.5
 _HEAD = SMPL22.index("head")
 LEAP = 36
 """Frames from the highest moment of a jump to that of the next."""
+BOWED, DEEP = 0.9, 1.25
+"""Radians by which somebody who bows is bent, and by which they are who bows deeply."""
+BOW = 50
+"""Frames from the lowest moment of a bow to that of the next."""
 _MAKES: dict[Posture, Callable[[Array, float], Array]] = {
     Posture.STANDS: upright,
     Posture.SITS: seated,
@@ -76,9 +81,9 @@ def postures(
     own = [change for change in changes(sentences[beat]).get(who, ()) if not change.already]
     if last is not None and now is not Posture.STANDS and last[0, 1] > UPRIGHT:  # as in a given motion
         now, own = Posture.STANDS, [Change(now), *own]
-    jumps = leaps(sentences[beat]).get(who, 0)
-    if now is Posture.STANDS and not own and not jumps:
-        others = [*changes(sentences[beat]).values(), *leaps(sentences[beat])]
+    jumps, nods = leaps(sentences[beat]).get(who, 0), bows(sentences[beat]).get(who)
+    if now is Posture.STANDS and not own and not jumps and not nods:
+        others = [*changes(sentences[beat]).values(), *leaps(sentences[beat]), *bows(sentences[beat])]
         return [(start, upright(*_place(person, stand, None)))] if last is None and others else []
     place, angle = _place(person, stand, last)
     if last is None and now is Posture.LIES:  # across the other's way, and not with the feet towards them
@@ -104,8 +109,9 @@ def postures(
         found |= _stays(pose, begins, min(begins + 2 * HELD + 1, stop))
     elif now is not Posture.STANDS:
         found |= _stays(pose, begins, stop)
-    for frame, leap in _jumping(jumps, start, stop, place, angle) if now is Posture.STANDS else ():
-        found[frame] = leap
+    if now is Posture.STANDS:
+        found |= dict(_jumping(jumps, start, stop, place, angle))
+        found |= dict(_bowing(*nods, start, stop, place, angle)) if nods else {}
     return [(frame, found[frame]) for frame in sorted(found) if start <= frame < stop]
 
 
@@ -134,6 +140,14 @@ def _jumping(times: int, start: int, stop: int, place: Array, angle: float) -> I
     for i in range(times):
         for seconds, pose in leaping(place, angle):
             yield round(top + i * LEAP + seconds * FPS), pose
+
+
+def _bowing(times: int, deep: bool, start: int, stop: int, place: Array, angle: float) -> Iterator[Pose]:
+    """The poses of so many bows, the lowest of the first a second after the beat begins."""
+    low = start + min(FPS, (stop - start) // 2)
+    for i in range(times):
+        for seconds, pose in bowing(place, angle, DEEP if deep else BOWED):
+            yield round(low + i * BOW + seconds * FPS), pose
 
 
 def _place(person: int, stand: Standing, last: Array | None) -> tuple[Array, float]:

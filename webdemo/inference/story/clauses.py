@@ -43,7 +43,8 @@ _KIND = (
 _PLURAL = (
     rf"they|we|both(?: of them| people|(?: \w+)? {_PEOPLE})?|the (?:two|pair|couple)(?: of them| (?:\w+ )?{_PEOPLE})?"
     rf"|(?:the )?(?:(?!two|first|second|other)\w+ )?(?:{_KIND}s|children|women|men)(?= (?!\w+s\b)\w+)"
-    rf"|two (?:\w+ )??{_PEOPLE}|a couple|a pair|people|everybody|everyone|each(?: of them)?"
+    rf"|two (?:\w+ )??{_PEOPLE}|an? (?:\w+ )?couple|couple(?= \w+ing)|a pair|people|everybody|everyone"
+    r"|each(?: of them)?"
 )
 _NAMED = r"person [ab]"
 _HOW = r"(?:old|young|little|small|tall|big|angry|happy|sad|tired|drunk|elderly|nervous|shy|proud)"
@@ -176,6 +177,12 @@ _TO_AND_FRO = re.compile(
     r"\b((?:walk|pac|run|march|stroll|jog|go|stride)\w*) (?:up and down|back and forth|to and fro"
     r"|forwards? and back\w*)"
 )
+_IS = re.compile(r"\b(he|she|it|they|who|someone|somebody|everyone)'(s|re)\b", re.IGNORECASE)
+_AT_THE_SAME_TIME = re.compile(r",? and (?:at the same time|simultaneously),? ", re.IGNORECASE)
+_HAS = re.compile(
+    rf"\b(?:has|have|had) (?:just |already |now )?(?=(?:\w+ed|{'|'.join(past_forms())})\b)(?!had\b)"
+)
+"""The auxiliary of a perfect: who has turned turns."""
 _NO_NAME = re.compile(
     r"(?:They|He|She|It|One|Two|Both|The|An?|First|Then|Finally|While|As|When|After|Before|Person|Someone|Somebody|Each|"
     r"People|Everyone|Everybody|Another|His|Her|Their|Suddenly|Without|With|Holding|I|We|You)\b"
@@ -184,18 +191,25 @@ _NO_NAME = re.compile(
 
 def named(text: str) -> str:
     """The text with people called A and B, 1 and 2, or by a name, called so in a way that clauses understand."""
-    if re.search(r"\b[Bb]\b", text) and not re.search(r"\bperson [ab]\b", text, re.IGNORECASE):
+    text = _IS.sub(lambda m: f"{m[1]} {'is' if m[2] == 's' else 'are'}", text)
+    text = _AT_THE_SAME_TIME.sub(" while ", text)
+    if re.search(r"\bperson [ab]\b", text, re.IGNORECASE):
+        text = re.sub(r"(?<![Pp]erson )\b([AB])\b(?=\s+\w+s\b|'s\b)", r"person \1", text)
+    elif re.search(r"\b[Bb]\b", text):
         text = re.sub(r"\b[Bb]\b(?=\s+(?:[a-z]|[-–—])|'s\b|[.,;!?]|$)", "person B", text)
         text = re.sub(
             r"(?<!person )\bA\b(?=,|\s+[-–—]|'s\b|\s+(?:\w+s|\w+ing|\w+ed)\b|[.;!?]|$)", "person A", text
         )
         text = re.sub(r"\ba(?=[.,;!?]|$)", "person A", text)
         text = re.sub(
-            r"(?<!person )\bA\b(?= (?:and|in|on|at|by|with|to|from|then|is|has|does)\b)", "person A", text
+            r"(?<!person )\bA\b(?= (?:and|in|on|at|by|with|to|from|then|is|has|does|off|over|up|away|aside|for|into"
+            r"|onto|around)\b)",
+            "person A",
+            text,
         )
     text = _LATE.sub("", text)
     for name, number in (("A", "one|1|#1"), ("B", "two|2|#2")):
-        text = re.sub(rf"(?i)\b(?:(?:the )?{_KIND} (?:{number})|p{number[-1]})\b", f"person {name}", text)
+        text = re.sub(rf"(?i)\b(?:(?:the )?{_KIND} ?(?:{number})|p{number[-1]})\b", f"person {name}", text)
     return re.sub(
         r"(?<![A-Za-z'])([A-Z][a-z]+)(?= (?:\w+s|\w+ing|and|is|has)\b|'s\b|[.,;]|$)",
         lambda m: m[0] if _is_no_name(m[0]) else f"the {m[0].lower()}",
@@ -218,7 +232,7 @@ def plain(text: str) -> str:
     text = re.sub(r"\([^()]*\)", " ", named(text))
     text = re.sub(r"[\"“”][^\"“”]*[\"“”],?", " ", text)
     text = " ".join(text.lower().split()).strip(" .!?;")
-    text = _TO_AND_FRO.sub(r"\1 to-and-fro", text)
+    text = _HAS.sub("", _TO_AND_FRO.sub(r"\1 to-and-fro", text))
     text = in_plain_words(_A_WHILE.sub("", text))
     text = _RAISED.sub(r"\1 raises his \2", _PLACED.sub("", text))
     text = re.sub(r", (?=(?:side by side|shoulder to shoulder|hand in hand|arm in arm)\b)", " ", text)

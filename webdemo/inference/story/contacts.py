@@ -8,7 +8,7 @@ led to where they reach the other, and the hand is given.
 from __future__ import annotations
 
 import re
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from enum import Enum
 
 import numpy as np
@@ -46,6 +46,7 @@ class Contact:
         sides: the hands that touch, "left", "right" or both; none for a kiss, which the head gives.
         times: how often a short touch is repeated; 0 for a hand that stays.
         late: something else goes on until then.
+        behind: who touches stands behind the other.
     """
 
     person: str
@@ -53,6 +54,7 @@ class Contact:
     sides: tuple[str, ...]
     times: int = 0
     late: bool = False
+    behind: bool = False
 
 
 _REGIONS = (
@@ -75,8 +77,8 @@ _HANDS = (
 _LAYS = r"(?:lay|put|plac|rest|press|keep|hold)(?:s|es|ing)?"
 _SHORT = r"(?:pat|tap|touch|pok|prod|nudg|slap|smack|dab|peck)(?:p?ing|t?ing|e?s)?"
 _LONG = (
-    r"(?:strok|rub|caress|massag|squeez|grab|grip|seiz|tak|catch|clasp|clutch|shak|hold|comb|ruffl|feel|examin|bandag|ti)"
-    r"(?:b?ing|e?s|e)?"
+    r"(?:strok|rub|caress|massag|squeez|grab|grip|seiz|tak|catch|clasp|clutch|shak|hold|comb|brush|cut|trim|dry|wash|braid|ruffl|feel|examin|bandag|ti)"
+    r"(?:[bmt]?ing|e?s|e)?"
 )
 _COVERS = r"cover(?:s|ing)?"
 _KISSES = r"(?:kiss(?:es|ing)?|peck(?:s|ing)?)"
@@ -87,16 +89,17 @@ _ACTS = re.compile(
     rf"(?P<kiss>{_KISSES}) {_LY}{_OTHER} {_BY}|"
     rf"(?P<short>{_SHORT}) {_LY}{_OTHER} {_LY}(?:once |twice )?{_BY}|"
     rf"(?P<long>{_LONG}) {_LY}(?:hold of )?{_OTHER} {_LY}{_BY}|"
+    rf"(?P<gives>giv(?:es?|ing)) {_OTHERS} (?=\w+ an? (?:\w+ )?(?:shake|squeeze|rub|stroke|pat|tap)\b)|"
     rf"(?P<covers>{_COVERS}) {_LY}(?:person [ab]|the other(?: person| one)?|the \w+)'s |"
     rf"(?P<part>{_SHORT}|{_LONG}) {_LY}(?:hold of )?{_OTHERS} )(?:{_REGION})\b"
 )
 _ON_BOTH = re.compile(
     r"\bboth (?:\w+ )?hands\b|\btwo hands\b|\bhands on\b|\b(?:shoulders|eyes)\b|\bmassag\w+"
 )
-_KISSED = re.compile(rf"\b{_KISSES}(?! {_LY}(?:\w+ )?(?:hand|goodbye to|\w+'s hand))\b")
+_KISSED = re.compile(rf"(?<!for a )\b{_KISSES}(?! {_LY}(?:\w+ )?(?:hand|goodbye to|\w+'s hand))\b")
 _PASSIVE = re.compile(
     r"\b(?:is|are|gets?|being) (?:\w+ly )?"
-    r"(?P<verb>patted|tapped|touched|poked|slapped|grabbed|stroked|seized|caught|kissed)\b"
+    r"(?P<verb>patted|tapped|touched|poked|slapped|grabbed|stroked|seized|caught|kissed|massaged)\b"
     r"(?P<rest>.*)"
 )
 _STEMS = {"patted": "pats", "grabbed": "grabs", "caught": "catches", "tapped": "taps", "kissed": "kisses"}
@@ -105,6 +108,7 @@ _NOT = re.compile(
 )
 _OWN = re.compile(r"\bhis own\b|\bher own\b|\btheir own\b")
 _MANY = re.compile(r"\b(?:again and again|repeatedly|several times|twice|patting|tapping|a few times)\b")
+_BEHIND = re.compile(r"\bbehind\b")
 _PATS = re.compile(r"\b(?:pat|tap|prod)\w*")
 _SIDE = re.compile(
     r"\b(?:with|using) (?:his|her|their|the) (left|right)\b|\b(?:his|her|their) (left|right) (?:hand|arm) (?:up)?on"
@@ -129,8 +133,11 @@ _HIP = 0.93
 
 def contact(sentence: str) -> Contact | None:
     """The first contact that a beat's sentence names, if it does."""
-    made = (_of(clause) for clause in clauses(sentence) if clause.who != "ab")
-    return next((touch for touch in made if touch is not None), None)
+    found = clauses(sentence)
+    touch = next((touch for touch in map(_of, found) if touch is not None), None)
+    if touch is None or touch.behind:
+        return touch
+    return replace(touch, behind=any(_BEHIND.search(c.words) for c in found if c.who == touch.person))
 
 
 def _of(clause: Clause) -> Contact | None:
@@ -141,16 +148,22 @@ def _of(clause: Clause) -> Contact | None:
     act, denied = _ACTS.search(words), _NOT.search(words)
     kiss = _KISSED.search(words)
     match = act or kiss
+    if person == "ab":
+        act, person = None, "a"  # both kiss; who of them touches the other where is not said
+        match = kiss
     if match is None or _OWN.search(words) or (denied and denied.start() < match.start()):
         return None
-    if kiss is not None:
+    if kiss is not None or act is None:
         return Contact(person, Region.HEAD, (), late=clause.until)
     region = next(region for region, _ in _REGIONS if act[region.name])
     side = _SIDE.search(words)
     sides = SIDES if _ON_BOTH.search(words) else ((side[1] or side[2]),) if side else ("right",)
     short = act["short"] or (act["part"] and re.match(_SHORT, act["part"]))
     times = 3 if _MANY.search(words) else 2 if short and _PATS.search(words) else 1 if short else 0
-    return Contact(person, region, sides, times, clause.until)
+    behind = bool(_BEHIND.search(words)) or (
+        sides == SIDES and region is Region.SHOULDER and "massag" in words
+    )
+    return Contact(person, region, sides, times, clause.until, behind)
 
 
 def reach(touch: Contact, pose: Array) -> float:

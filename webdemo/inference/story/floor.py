@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 
 from webdemo.inference.actor import FPS
 
-from .curves import direction, smoothed, wrapped
+from .curves import direction, eased, smoothed, wrapped
 from .moves import Move
 from .track import EASE, MOST, Track
 from .ways import Way
@@ -113,12 +113,15 @@ def starting(moves: Sequence[Move], seconds: float, *, near: bool = False) -> St
     if Way.ALONG in ways:
         gap = LINKED if ways[Way.ALONG].linked else ABREAST
         return Standing(np.array([[0.0, 0.0], [-gap, 0.0]]), np.zeros(2))
+    if Way.AFTER in ways and any(move.backwards for move in moves):
+        return Standing(np.array([[0.0, 0.0], [0.0, BEHIND]]), np.array([0.0, math.pi]))
     if Way.AFTER in ways:
         lead = 1 if ways[Way.AFTER].person == "a" else -1
         return Standing(np.array([[0.0, 0.0], [0.0, lead * BEHIND]]), np.zeros(2))
     if Way.BACKS in ways:
         return Standing(np.array([[0.0, 0.0], [0.0, -0.6]]), np.array([0.0, math.pi]))
     gap = next((_START[move.way] for move in moves if move.way in _START), REACH if near else 1.4)
+    gap = ways[Way.HOLD].near if Way.HOLD in ways else gap
     for way in (Way.TO, Way.BEHIND):
         if way in ways:
             gap = float(
@@ -199,18 +202,9 @@ def _moved(
             track.turn(wrapped(math.atan2(line[0], line[1]) - track.heading))
             track.stay(facing=True, seconds=None if last else 0.2)
         case Way.TO | Way.BEHIND:
-            near = move.near or (NEAR_BY if move.way is Way.BEHIND else CLOSE)
-            way = (gap - near) / (2 if both else 1)
-            if way > (0.05 if move.near else 0.25):
-                track.walk(np.stack([here, here + way * to]), _time(way, move.speed, seconds))
-            if last and (move.near or not both):
-                track.stay(facing=bool(move.near))
+            _to(move, track, gap, to, seconds, both=both, last=last)
         case Way.AWAY:
-            room = (FARTHEST - gap + max(0.0, move.speed - 1.1)) / (2 if both else 1)
-            room = _CHASED if Way.AFTER in theirs else room
-            away = -to if not np.linalg.norm(track.going) else track.going
-            way = min(max(seconds - 0.4, 0.5) * move.speed, max(room, 1.2))
-            track.walk(np.stack([here, here + way * away]), min(seconds, way / (0.8 * move.speed) + 2 * EASE))
+            _away(move, track, gap, to, seconds, both=both, followed=Way.AFTER in theirs)
         case Way.BACK | Way.ASIDE:
             step = (
                 -min(0.9, 0.6 * seconds) * to
@@ -227,10 +221,34 @@ def _moved(
             _to_and_fro(track, to, seconds)
         case Way.ROUND:
             _around(move, track, other, seconds, both, standing)
+        case Way.HOLD:
+            _in_hold(move, track, standing, seconds)
         case Way.ALONG:
             _along(who, move, track, standing, seconds)
         case Way.AFTER:
             _after(move, track, tracks[1 - who], standing.places[1 - who], seconds)
+
+
+def _to(move: Move, track: Track, gap: float, to: Array, seconds: float, *, both: bool, last: bool) -> None:
+    """A walk up to the other, or halfway where both come."""
+    near = move.near or (NEAR_BY if move.way is Way.BEHIND else CLOSE)
+    way = (gap - near) / (2 if both else 1)
+    if way > (0.05 if move.near else 0.25):
+        track.walk(np.stack([track.place, track.place + way * to]), _time(way, move.speed, seconds))
+    if last and (move.near or not both):
+        track.stay(facing=bool(move.near))
+
+
+def _away(
+    move: Move, track: Track, gap: float, to: Array, seconds: float, *, both: bool, followed: bool
+) -> None:
+    """A walk away from the other, or on in the direction that the person was going in."""
+    room = _CHASED if followed else (FARTHEST - gap + max(0.0, move.speed - 1.1)) / (2 if both else 1)
+    away = -to if not np.linalg.norm(track.going) else track.going
+    way = min(max(seconds - 0.4, 0.5) * move.speed, max(room, 1.2))
+    facing = math.atan2(to[0], to[1]) if move.backwards else None
+    taken = min(seconds, way / (0.8 * move.speed) + 2 * EASE)
+    track.walk(np.stack([track.place, track.place + way * away]), taken, heading=facing)
 
 
 def _past(move: Move, track: Track, other: Array, to: Array, seconds: float) -> None:
@@ -277,6 +295,22 @@ def _around(move: Move, track: Track, other: Array, seconds: float, both: bool, 
     radii = radius + (end_radius - radius) * np.clip(np.linspace(0, 5, 60), 0, 1)
     line = middle + radii[:, None] * np.stack([np.sin(angles), np.cos(angles)], axis=1)
     track.walk(line, seconds)
+
+
+def _in_hold(move: Move, track: Track, standing: Standing, seconds: float) -> None:
+    """The way of one of two who turn around the middle between them and face each other."""
+    middle = standing.places.mean(axis=0)
+    out = track.place - middle
+    time = np.linspace(0, 1, max(round(seconds * FPS), 2))
+    start, radius = math.atan2(out[0], out[1]), float(np.linalg.norm(out))
+    nearer = np.clip(time * seconds / 1.2, 0, 1)
+    turned = 2 * math.pi * move.turns * seconds * eased(time, min(0.5, 1.5 / seconds))
+    angles, radii = start + turned, radius + (move.near / 2 - radius) * nearer
+    line = middle + radii[:, None] * np.stack([np.sin(angles), np.cos(angles)], axis=1)
+    stop = min(track.frame + len(line), len(track.places))
+    track.places[track.frame : stop] = line[: stop - track.frame]
+    track.headings[track.frame : stop] = angles[: stop - track.frame] + math.pi
+    track.place, track.heading, track.frame = line[-1], float(angles[-1] + math.pi), stop
 
 
 def _along(who: int, move: Move, track: Track, standing: Standing, seconds: float) -> None:

@@ -29,6 +29,11 @@ class Hand(Enum):
     UP = "raised"
     SALUTES = "salutes"
     CLAPS = "claps"
+    PHONE = "holds a phone to the ear"
+    EARS = "covers the ears"
+    EYES = "covers the eyes"
+    PHOTO = "holds a camera before the face"
+    PRAYS = "holds the palms together"
     AHEAD = "stretched out in front"
     WAVES = "waves"
     POINTS = "points at the other"
@@ -65,6 +70,24 @@ _PATTERNS = (
     ),
     (Hand.SALUTES, r"\bsalut(?:e|es|ing)\b"),
     (Hand.CLAPS, r"\b(?:clap|applaud)(?:s|ing)?\b(?! (?:him|her|them|the other|person) on)"),
+    (
+        Hand.PHONE,
+        r"\bon (?:the|his|her|their|a) (?:cell ?|mobile ?)?(?:phone|mobile|call)\b|\bphon(?:es?|ing)\b"
+        r"|\bmak(?:es?|ing) a (?:phone )?call\b|\b(?:phone|hand|receiver|shell) to (?:his|her|their) ear\b",
+    ),
+    (Hand.EARS, r"\b(?:cover|plug|block|hold)(?:s|ing)? (?:both )?(?:of )?(?:his|her|their) (?:own )?ears\b"),
+    (
+        Hand.EYES,
+        r"\b(?:cover|hid|shield)(?:e|es|s|ing)? (?:his|her|their) (?:own )?(?:eyes|face)\b"
+        r"|\b(?:face|head) in (?:his|her|their|both) hands\b"
+        r"|\bhands? (?:\w+ )?to (?:his|her|their) (?:face|head|mouth)\b",
+    ),
+    (
+        Hand.PHOTO,
+        r"\b(?:tak|snap|shoot)(?:e|es|s|ing)? (?:an? |some |his |her |their )?(?:picture|photo|photograph|snapshot)s?\b"
+        r"|\bphotograph(?:s|ing)?\b|\bfilms (?:person [ab]|him|her|them|the)\b",
+    ),
+    (Hand.PRAYS, r"\bpray(?:s|ing)?\b|\b(?:palms|hands) (?:folded|together)\b|\bnamaste\b"),
     (Hand.WAVES, r"\bwav(?:e|es|ing)\b"),
     (Hand.POINTS, r"\bpoint(?:s|ing)?\b(?! out)|\b(?:aim|shoot|fire)s?\b"),
     (
@@ -76,13 +99,18 @@ _PATTERNS = (
 _COMPILED = tuple((hand, re.compile(pattern)) for hand, pattern in _PATTERNS)
 _NOT = re.compile(r"\b(?:do(?:es)?n't|not|without|never|refus\w+ to|lowers?|drops?)\b")
 _SIDE = re.compile(r"\b(left|right)(?:[- ]hand(?:ed)?| arm)?\b")
-_OF_BOTH = (Hand.HIGH, Hand.AHEAD, Hand.CLAPS)
-STOOD = (Hand.CLAPS, Hand.SALUTES, Hand.AHEAD)
+_OF_BOTH = (Hand.HIGH, Hand.AHEAD, Hand.CLAPS, Hand.EARS, Hand.EYES, Hand.PHOTO, Hand.PRAYS)
+_OWN = (Hand.PHONE, Hand.EARS, Hand.EYES, Hand.PHOTO, Hand.PRAYS)
+STOOD = (Hand.CLAPS, Hand.SALUTES, Hand.AHEAD, *_OWN)
 """Gestures that are given also to those who only stand."""
 _REACH = 0.47
 """Metres from the shoulder to the wrist of an arm that is nearly straight."""
 _CLAPPING = np.array([0.0, 0.28, 0.3])
 """Metres from the pelvis to where hands clap."""
+_EAR = np.array([0.13, 0.6, 0.1])
+"""Metres from the pelvis to the left wrist of a hand at the ear."""
+_EYE = np.array([0.08, 0.58, 0.18])
+"""Metres from the pelvis to the left wrist of a hand before the eyes."""
 _CLAPS = 2.0
 """Claps a second."""
 _SWAYS = 1.6
@@ -130,6 +158,14 @@ def wrist(gesture: Gesture, side: str, seconds: Array, towards: Array) -> Array:
         case Hand.CLAPS:
             offset = _CLAPPING - shoulder + np.zeros((len(seconds), 3))
             offset[:, 0] += out * (0.075 + 0.07 * (1 + np.cos(2 * np.pi * _CLAPS * np.asarray(seconds))))
+        case Hand.PHONE | Hand.EARS:
+            offset = _EAR * [out, 1.0, 1.0] - shoulder + np.zeros((len(seconds), 3))
+        case Hand.EYES | Hand.PHOTO:
+            offset = _EYE * [out, 1.0, 1.0] - shoulder + np.zeros((len(seconds), 3))
+            offset[:, 2] += 0.1 if gesture.hand is Hand.PHOTO else 0.0
+        case Hand.PRAYS:
+            offset = _CLAPPING - shoulder + np.zeros((len(seconds), 3))
+            offset[:] += [0.05 * out, 0.04, -0.04]
         case Hand.AHEAD:
             offset[:] = [0.02 * out, 0.0, 0.45]
         case Hand.WAVES:

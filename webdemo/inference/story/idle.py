@@ -12,7 +12,7 @@ from .clauses import Clause, clauses
 from .contacts import contact
 from .gestures import STOOD, gestures
 from .moves import MOVED, goes, moves
-from .postures import changes, leaps
+from .postures import bows, changes, leaps
 from .ways import Way, way_of
 
 _NOTHING = re.compile(
@@ -64,19 +64,20 @@ def idle(sentence: str) -> frozenset[str]:
 def gesturing(sentence: str) -> frozenset[str]:
     """The people, "a" and "b", who only stand and make a gesture of which the network knows little."""
     made = gestures(sentence)
-    own = {p: [c for c in clauses(sentence) if p in c.who] for p in "ab"}
+    found = clauses(sentence)
+    own = {p: [c for c in found if p in c.who] for p in "ab"}
+    each = len(made) == 2 and all(c.who != "ab" for c in found)
     return frozenset(
-        p for p in made if made[p].hand in STOOD and len(own[p]) == 1 and way_of(own[p][0].words) is None
+        p
+        for p in made
+        if (made[p].hand in STOOD or each) and len(own[p]) == 1 and way_of(own[p][0].words) is None
     )
 
 
 def is_planned(sentence: str) -> bool:
-    """True if a beat's words say where people go, who stands by, sits, kneels or lies down, or jumps."""
-    return (
-        goes(moves(sentence))
-        or contact(sentence) is not None
-        or any(read(sentence) for read in (idle, changes, leaps, gesturing))
-    )
+    """True if a beat's words say where people go, who stands by, sits, kneels, lies down, jumps, bows or touches."""
+    read = (contact, idle, changes, leaps, bows, gesturing)
+    return goes(moves(sentence)) or any(found(sentence) for found in read)
 
 
 def touches(sentence: str) -> bool:

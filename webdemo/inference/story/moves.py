@@ -7,6 +7,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 from .clauses import Clause, clauses
+from .holds import hold
 from .ways import Way, way_of
 
 
@@ -18,12 +19,13 @@ class Move:
         person: "a" or "b".
         way: how they move.
         speed: metres a second.
-        turns: whole turns, of :attr:`Way.ROUND` and :attr:`Way.TURN`.
+        turns: whole turns, of :attr:`Way.ROUND` and :attr:`Way.TURN`; a second, of :attr:`Way.HOLD`.
         until: the move ends early, because the sentence goes on with "until …".
         linked: they hold each other by the hands or arms.
         late: the sentence tells it after something else that is done in place.
         metres: length of the way, of :attr:`Way.AHEAD`.
         near: metres from the other at which who comes up to them stands; 0 for as far as the network likes.
+        backwards: they go away with their face to the other.
     """
 
     person: str
@@ -35,6 +37,7 @@ class Move:
     late: bool = False
     metres: float = 0.0
     near: float = 0.0
+    backwards: bool = False
 
 
 LED = re.compile(
@@ -50,11 +53,19 @@ MOVED = re.compile(
     r"\b(?:danc|waltz|lead|drag|pull|carr(?!(?:y|ies) on)|guid|fight|wrestl|help|support|escort)\w*"
 )
 """Acts in which one moves the other: where they go follows from their touch."""
+_ROUND = re.compile(r"\bdanc\w* (?:all )?(?:a?round|past|towards|over to) (?:person [ab]|him|her|the \w+)")
+"""A dance of one person that has a way."""
 _FLOOR = re.compile(
     r"\b(?:sit|kneel|crawl|roll|lie|lying|fall|seated|crouch|squat|get|jump|leap)\w*|\bone knee\b|\bdown\b"
 )
 """Acts that take a person off their feet or to the ground, for which no place is held."""
-_BARE = re.compile(r"(?:walk|run|jog|stroll|skip|march)s?(?:ing)?(?: together| a bit| a little)?")
+_BARE = re.compile(
+    r"(?P<verb>(?:(?:go|goes|are|is) )?(?:walk|runn?|jog|stroll|skipp?|march|wander)s?(?:ing)?)"
+    r"(?P<rest>(?: together| a bit| a little| \w+ly)?"
+    r"(?: (?:through|along|down|in|across|around|on|by|over) (?:the |a |an |their )?\w+(?: \w+)?)?)"
+)
+_TALKS = re.compile(r"(?:are |is )?(?:talk|chat|laugh|sing|gossip|argu|joke|discuss|hold|swing)\w*")
+"""What two people do while they walk."""
 _WITH = re.compile(r"\b(?:beside|next to|alongside|with|accompan\w+|together|by side)\b")
 _LINKED = re.compile(
     r"\b(?:hand in hand|arm in arm|(?:hold|link|join|tak)\w* (?:\w+ )?(?:hands?|arms?)|arms? around)\b"
@@ -94,7 +105,7 @@ _STEPS = {"a": 1, "one": 1, "two": 2, "three": 3, "four": 4, "five": 5, "ten": 6
 
 def is_moved(clause: Clause) -> bool:
     """True if in a clause one moves the other by touch, and not along with themselves."""
-    return bool(MOVED.search(clause.words)) and not LED.search(clause.words)
+    return bool(MOVED.search(clause.words)) and not (LED.search(clause.words) or _ROUND.search(clause.words))
 
 
 def is_bare(clause: Clause) -> bool:
@@ -113,6 +124,9 @@ def moves(sentence: str) -> tuple[Move, ...]:
     A person who is not mentioned while the other walks stays in place. A sentence in which one moves the other by
     touch, as in leading or pushing, has no moves: the network places those two better.
     """
+    held = hold(sentence)
+    if held is not None:
+        return tuple(Move(person, Way.HOLD, near=held.value, turns=held.turns) for person in "ab")
     found = clauses(sentence)
     if any(is_moved(clause) or STRUCK.search(clause.words) for clause in found):
         return ()
@@ -120,8 +134,8 @@ def moves(sentence: str) -> tuple[Move, ...]:
     hands = any(re.search(r"\bhands?\b|\barms?\b", clause.words) for clause in found)
     for i, clause in enumerate(found):
         late = not clause.at_once and any(way_of(before.words) is None for before in found[:i])
-        if is_bare(clause) and i == len(found) - 1:
-            clause, late = replace(clause, words=f"{clause.words} along"), False
+        if is_bare(clause) and all(_TALKS.match(after.words) for after in found[i + 1 :]):
+            clause, late = replace(clause, words=_BARE.sub(r"\g<verb> along\g<rest>", clause.words)), False
         if (
             clause.who == "ab"
             and hands
@@ -132,7 +146,14 @@ def moves(sentence: str) -> tuple[Move, ...]:
     for person, other in ("ab", "ba"):
         ways = {move.way for move in made if move.person == other}
         after = next((move for move in made if move.person == person and move.way is Way.AFTER), None)
-        if after is not None and not ways & _GOING:
+        if after is not None and Way.BACK in ways:
+            made = [
+                replace(m, way=Way.AWAY, speed=0.8, backwards=True)
+                if (m.person, m.way) == (other, Way.BACK)
+                else m
+                for m in made
+            ]
+        elif after is not None and not ways & _GOING:
             until = any(clause.until for clause in found)
             made.insert(0, Move(other, Way.AWAY, after.speed, until=until))
     if _LINKED.search(sentence.lower()):

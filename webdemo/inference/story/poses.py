@@ -193,6 +193,12 @@ def leaping(place: Array, angle: float, rise: float = 0.22) -> Sequence[tuple[fl
     return ((-up - 0.23, bent), (0.0, high), (up + 0.2, bent), (up + 0.6, upright(place, angle)))
 
 
+def bowing(place: Array, angle: float, lean: float = _BENT) -> Sequence[tuple[float, Array]]:
+    """A bow on the spot as poses (22, 3) in metres, with their seconds from its lowest moment."""
+    low, up = bending(place, angle, lean), upright(place, angle)
+    return ((-0.7, up), (-0.15, low), (0.15, low), (0.85, up))
+
+
 def _posed(angle: float, left: Mapping[str, float], right: Mapping[str, float] | None = None) -> Array:
     """A pose (22, 3) around the origin by angles in radians: flexed hips are negative, flexed knees positive."""
     turns = np.tile(np.eye(3), (1, SMPL22.num_joints, 1, 1))

@@ -107,7 +107,8 @@ _STATE = (
     (
         Posture.SITS,
         rf"{_STAYS}(?:seated|sitting)\b(?! down)|\bsits?(?! (?:\w+ )?down)\b|^(?:seated|sitting)\b(?! down)"
-        rf"|\b(?:is|are|asleep|dozing|reads?\b.*|waits?|reading|waiting|sleeps?|sleeping|relax\w+) (?:\w+ )?"
+        rf"|\b(?:is|are|asleep|dozing|reads?\b.*|waits?|reading|waiting|sleeps?|sleeping|doz(?:es|ed)|relax\w+)"
+        r" (?:\w+ )?"
         rf"(?:on|in|at) (?:the|an?|his|her|their) (?:\w+(?:'s)? )?{_SEAT}\b|\bperched\b"
         rf"|^(?:on|in) the (?:\w+ )?{_SEAT}\b"
         r"|\b(?:over|at|has|have|having|eats?|eating) (?:dinner|lunch|breakfast|supper)\b",
@@ -116,7 +117,7 @@ _STATE = (
         Posture.LIES,
         rf"{_STAYS}(?:lying\b(?! down)|sprawled|flat on|on the (?:floor|ground)\b|on (?:his|her) back\b|out cold|"
         r"unconscious|dead\b|fast asleep on the (?:floor|ground|grass))|^flat on (?:his|her|their) (?:back|face)"
-        r"|\bl(?:ies?|ying) (?:\w+ )?(?:on|flat|still|there|next to|beside|in)\b"
+        r"|\bl(?:ies?|ying) (?!down\b)(?:\w+ )?(?:on|flat|still|there|next to|beside|in)\b"
         rf"|\b(?:sleep(?:s|ing)?|asleep)\b(?! (?:in|on) (?:an?|the|his|her) (?:\w+ )?{_SEAT})",
     ),
     (
@@ -142,6 +143,7 @@ _OFTEN = re.compile(
     r"|\b(?:hop|hopping|hops|bounc\w+|jumping)\b.* on the spot\b|\bup and (?:\w+ )?down\b|\bagain and again\b"
     r"|\brepeatedly\b|\b(?:several|three|many|a few) times\b"
 )
+_COUNTS = ("two", "three", "four", "five")
 _COUNTED = re.compile(r"\b(two|three|four|five) (?:\w+ )?(?:jump|hop|leap|bounce)s\b")
 _TWICE = re.compile(r"\btwice\b|\btwo times\b")
 _NOT = re.compile(
@@ -233,8 +235,25 @@ def leaps(sentence: str) -> dict[str, int]:
             continue
         times = 3 if _OFTEN.search(sentence.lower()) else 2 if _TWICE.search(clause.words) else 1
         if (counted := _COUNTED.search(clause.words)) is not None:
-            times = 2 + ("two", "three", "four", "five").index(counted[1])
+            times = 2 + _COUNTS.index(counted[1])
         found |= dict.fromkeys(clause.who, times)
+    return found
+
+
+_BOWS = re.compile(r"\b(?:bow(?:s|ing)?(?! (?:and arrow|tie|out))|curts\w+)\b")
+_DEEP = re.compile(r"\b(?:deep|low)\w*|\bto the (?:ground|floor)\b")
+_SEVERAL = re.compile(r"\b(?:take|make)s? (two|three|four|five) bows\b|\bbows? (two|three|four|five) times\b")
+
+
+def bows(sentence: str) -> dict[str, tuple[int, bool]]:
+    """The number of bows of each person, "a" and "b", in a beat's sentence, and True where they are deep."""
+    found: dict[str, tuple[int, bool]] = {}
+    for clause in clauses(sentence):
+        if _says(_BOWS, clause.words):
+            several = _SEVERAL.search(clause.words)
+            times = 2 + _COUNTS.index(several[1] or several[2]) if several else 1
+            times = 2 if _TWICE.search(clause.words) else times
+            found |= dict.fromkeys(clause.who, (times, bool(_DEEP.search(clause.words))))
     return found
 
 

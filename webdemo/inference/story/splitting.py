@@ -26,7 +26,8 @@ _LATE_MARK = re.compile(
 )
 _VERB = (
     r"(?:walk|go|come|run|turn|bow|wave|shake|hug|embrac|danc|kick|push|punch|jump|sit|kneel|get|stand|talk|part|leav|circl"
-    r"|hold|clap|point|pat|tap|nod|step|stop|help|hand|give|take|wait|meet|greet|stroll|high[- ]five|raise|let)\w*"
+    r"|hold|clap|point|pat|tap|nod|step|stop|help|hand|give|take|wait|meet|greet|stroll|high[- ]five|raise|let"
+    r"|fight|spar|box|salut|kiss|throw|fall|lie|crouch|slap|touch|spin|twirl|lift|march)\w*"
 )
 _LIST = re.compile(rf",\s+(?={_VERB}\b)|,?\s+and\s+(?={_VERB}\b)", re.IGNORECASE)
 _OPENING = re.compile(
@@ -86,17 +87,27 @@ def _acts(found: Sequence[Clause]) -> list[list[Clause]]:
     if any(is_moved(clause) for clause in found):
         return [list(found)]
     groups: list[list[Clause]] = []
+    several = sum(clause.stated for clause in found) >= 3
     for i, clause in enumerate(found):
         beside = (
             clause.at_once
             or (clause.until and not is_down_or_up(clause))
             or any(later.at_once and later.who == clause.who for later in found[i + 1 : i + 2])
         )
-        if not groups or beside or not _follows(groups[-1], clause, found[i + 1 : i + 2]):
+        after = bool(groups) and (
+            _follows(groups[-1], clause, found[i + 1 : i + 2])
+            or (several and clause.stated and _is_over(groups[-1][-1]))
+        )
+        if not groups or beside or not after:
             groups[-1:] = [[*(groups[-1] if groups else []), clause]]
         else:
             groups.append([clause])
     return groups
+
+
+def _is_over(clause: Clause) -> bool:
+    """True if what a clause says takes a moment."""
+    return bool(_MOMENT.search(clause.words)) or way_of(clause.words) in (Way.TURN, Way.FACE)
 
 
 def _follows(group: Sequence[Clause], clause: Clause, after: Sequence[Clause]) -> bool:
@@ -111,6 +122,8 @@ def _follows(group: Sequence[Clause], clause: Clause, after: Sequence[Clause]) -
     if way is Way.AFTER and Way.AWAY in before:
         return False  # who follows sets off at once
     own = [done for done in group if set(done.who) & set(clause.who)]
+    if _MOMENT.search(clause.words) and any(is_down_or_up(done) for done in own):
+        return True
     if way in DEPARTS:
         return any(done is None for done in before) or any(is_down_or_up(done) for done in own)
     if is_down_or_up(clause):

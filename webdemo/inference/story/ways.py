@@ -17,6 +17,7 @@ class Way(Enum):
     ROUND = "walks around the other"
     ALONG = "walks side by side with the other"
     AFTER = "follows the other"
+    HOLD = "goes round with the other, in hold"
     TURN = "turns around"
     AVERTED = "stands with their back to the other"
     ASIDE = "steps aside"
@@ -28,7 +29,8 @@ class Way(Enum):
 
 
 _GO = (
-    r"(?:walk|go|goes|going|stroll|wander|run|jog|rush|hurr[yi]|sprint|dash|march|strid|stomp|storm|step|mov|head|creep|"
+    r"(?:walk|go|goes|going|stroll|wander|run|jog|rush|hurr[yi]|sprint|dash|march|strid|stomp|storm|step|mov|creep|"
+    r"(?<!the )(?<!his )(?<!her )(?<!their )head|"
     r"sneak|tiptoe|wade|shuffl|limp|stagger|skip|danc|drift|saunter|trot|charg|stumbl|ambl|pac(?:e|ing)|bolt|scurr[yi]|"
     r"dart|trudg|plod|glid|swagger|slip|roam|parad|scamper|hobbl|totter|stalk|pranc|inch|race|racing|spring|squeez|"
     r"brush|sidl|mosey|swan|strut|waddl|toddl|scuttl|scoot|lumber|lurch|slink|steal|prowl|stump|clomp|tramp|traips|"

@@ -1,0 +1,51 @@
+"""Holds of two people, and where their hands are in them."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from webdemo.inference.story.holds import Hold, hold, joined
+
+FACING = np.array([[[0.0, 0.0]], [[0.0, 0.5]]])
+"""Person a at the origin, facing +Z; person b before them."""
+LEFT, RIGHT = 0, 1
+
+
+@pytest.mark.parametrize(
+    ("sentence", "found"),
+    [
+        ("A couple dances the tango.", Hold.CLOSED),
+        ("couple dancing a slow waltz", Hold.CLOSED),
+        ("They dance closely.", Hold.CLOSED),
+        ("They take each other by both hands and spin round and round.", Hold.RING),
+        ("Two girls join hands and dance around in circles.", Hold.RING),
+        # no hold
+        ("They dance.", None),
+        ("They hold hands and walk.", None),
+        ("Person A dances a tango while person B watches.", None),
+        ("They stop dancing the tango.", None),
+        ("They spin around.", None),
+        ("", None),
+    ],
+)
+def test_holds_are_read(sentence: str, found: Hold | None) -> None:
+    assert hold(sentence) is found
+
+
+def test_a_leads_with_the_left_hand_and_has_the_right_on_the_partners_back() -> None:
+    hands = joined(Hold.CLOSED, FACING)[:, :, 0]
+    assert np.linalg.norm(hands[0, LEFT] - hands[1, RIGHT]) < 0.1
+    assert hands[0, LEFT][0] > 0.3, "out to a's left side, which is +X"
+    assert abs(hands[0, RIGHT][2] - 0.5) < 0.1 and hands[0, RIGHT][1] > 1.1
+    assert abs(hands[1, LEFT][2]) < 0.15 and hands[1, LEFT][0] < -0.1, "on a's right shoulder"
+
+
+def test_both_hands_are_joined_in_a_ring_wherever_it_has_turned_to() -> None:
+    for angle in np.linspace(0, 6, 7):
+        ahead = np.array([np.sin(angle), np.cos(angle)])
+        places = np.stack([-0.4 * ahead, 0.4 * ahead])[:, None]
+        hands = joined(Hold.RING, places)[:, :, 0]
+        assert np.linalg.norm(hands[0, LEFT] - hands[1, RIGHT]) < 0.1
+        assert np.linalg.norm(hands[0, RIGHT] - hands[1, LEFT]) < 0.1
+        assert np.linalg.norm(hands[0, LEFT] - hands[0, RIGHT]) > 0.4
