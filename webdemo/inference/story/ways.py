@@ -132,7 +132,7 @@ _WAYS: tuple[tuple[Way, tuple[str, ...]], ...] = (
             r"\bopposite directions\b",
             rf"\b{_GO} apart\b",
             r"\bheads? for\b",
-            rf"\b(?:go|goes|walks?|heads?|runs?|gets?) back to (?!{_PERSON})",
+            rf"\b(?:go|goes|walks?|heads?|runs?|gets?) back to (?!(?!her (?!\w+ly\b|again\b)\w){_PERSON})",
             r"\bsplit up\b",
             r"\bflees?\b",
             r"\bexits?\b",
