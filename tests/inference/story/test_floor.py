@@ -12,6 +12,7 @@ from webdemo.inference.story.floor import (
     CLOSE,
     FARTHEST,
     LINKED,
+    REACH,
     Standing,
     Way2D,
     plan,
@@ -256,3 +257,28 @@ def test_what_ends_with_until_leaves_time() -> None:
         for rest in ("", " until one of them stops")
     ]
     assert 1.0 < np.linalg.norm(ends[1]) < 0.7 * np.linalg.norm(ends[0])
+
+
+@pytest.mark.parametrize(
+    ("sentence", "apart", "headings"),
+    [
+        ("They walk side by side.", [-ABREAST, 0.0], [0.0, 0.0]),
+        ("They walk hand in hand.", [-LINKED, 0.0], [0.0, 0.0]),
+        ("Person A follows person B.", [0.0, BEHIND], [0.0, 0.0]),
+        ("Person B follows person A.", [0.0, -BEHIND], [0.0, 0.0]),
+        ("They stand back to back.", [0.0, -0.6], [0.0, math.pi]),
+        ("They walk away from each other.", [0.0, 1.1], [0.0, math.pi]),
+        ("Person A walks past person B.", [0.0, 2.2], [0.0, math.pi]),
+    ],
+)
+def test_a_first_beat_begins_where_its_move_can(
+    sentence: str, apart: list[float], headings: list[float]
+) -> None:
+    begin = starting(moves(sentence), 4.0)
+    assert begin.places[1] - begin.places[0] == pytest.approx(apart)
+    assert begin.headings == pytest.approx(headings)
+
+
+def test_those_who_touch_begin_within_reach_unless_one_comes_to_the_other() -> None:
+    assert REACH == starting((), 4.0, near=True).gap() < starting((), 4.0).gap()
+    assert starting(moves("They walk up to each other."), 4.0, near=True).gap() > 1.7

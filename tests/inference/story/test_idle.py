@@ -13,6 +13,7 @@ from webdemo.inference.story.poses import standing
     ("sentence", "found"),
     [
         ("Person A sits down.", "b"),
+        ("Person A aims.", "b"),
         ("Person B bows.", "a"),
         ("A boy jumps as his sister looks on.", "b"),
         ("She waves, but he does not wave back.", "b"),

@@ -100,6 +100,7 @@ def test_every_phrase_is_found_once_and_in_plain_words() -> None:
         ("The man went home and the woman stayed.", "a:goes home b:stays"),
         ("A is on the floor. B backs off.", "a:is on the floor b:backs off"),
         ("Karate kid kicks, the other guy falls.", "a:kicks b:falls"),
+        ("Person A bows and after a short moment he walks off.", "a:bows a:walks off"),
         ("He reads until Max finally arrives.", "a:reads b:walks up to the other"),
     ],
 )
