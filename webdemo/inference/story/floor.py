@@ -55,8 +55,8 @@ _REACTS = 0.4
 """Seconds after which somebody follows who walks away."""
 _WEIGHT = {Way.STAY: 0.4, Way.AVERTED: 0.6, Way.TURN: 0.5, Way.FACE: 0.4, Way.BACK: 0.7, Way.ASIDE: 0.7}
 """Shares of a beat's time that moves take beside a walk."""
-_START = {Way.TO: 2.8, Way.BEHIND: 2.6, Way.AWAY: 1.1, Way.PAST: 2.2, Way.ROUND: 1.2, Way.BACK: 0.9}
-"""Metres between two people at the beginning of a first beat with a move."""
+_START = {Way.AWAY: 1.1, Way.PAST: 2.2, Way.ROUND: 1.2, Way.BACK: 0.9}
+"""Metres between two people at the beginning of a first beat with such a move."""
 
 
 @dataclass(frozen=True)
