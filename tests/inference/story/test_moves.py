@@ -91,6 +91,20 @@ def test_speed_and_turns_follow_from_the_words() -> None:
     assert moves("She walks once around him.")[0].turns == 1.0 > moves("She walks around him.")[0].turns
 
 
+@pytest.mark.parametrize(
+    ("words", "metres"),
+    [
+        ("takes a step forward", 0.7),
+        ("takes two steps forward", 1.4),
+        ("takes a few steps forward", 2.1),
+        ("takes ten paces", 4.2),
+    ],
+)
+def test_steps_ahead_are_counted(words: str, metres: float) -> None:
+    ahead, _ = moves(f"Person A {words}.")
+    assert ahead.way is Way.AHEAD and ahead.metres == pytest.approx(metres)
+
+
 def test_who_is_on_the_ground_is_not_held_in_place() -> None:
     assert moves_of("Person A sits on the floor while person B walks past.") == "b:past"
 

@@ -88,19 +88,18 @@ _SPEEDS = (
 _FULL = re.compile(
     r"\b(?:in (?:a )?circles?|once|all the way|full|whole|complete\w*|360|(?:round )?and round|several times|twice)\b"
 )
-
-
 _SPINS = re.compile(r"\b(?:spin|pirouette|twirl|whirl|rotat)\w*\b(?! (?:a?round|about|to))")
+"""A turn all the way round: "spins", not "spins around"."""
 _GOING = {Way.AWAY, Way.PAST, Way.ROUND, Way.ALONG, Way.TO, Way.BEHIND}
-
-
+"""Ways on which somebody can be followed."""
 _OF_ONE = {Way.AFTER, Way.BEHIND, Way.PAST, Way.ROUND, Way.TO}
+"""Ways that relate one person to the other; without a subject, as in "Following him", they are a's."""
 _EACH = re.compile(r"\b(?:each other|one another|meets?)\b")
-
-
 _STEP = 0.7
-_COUNT = re.compile(r"\b(?:a|one|two|three|four|five|ten)\b(?= (?:\w+ )?(?:step|pace)s?\b)")
+"""Metres of a step."""
+_COUNT = re.compile(r"\b(?:a(?! few)|one|two|three|four|five|ten)\b(?= (?:\w+ )?(?:step|pace)s?\b)")
 _STEPS = {"a": 1, "one": 1, "two": 2, "three": 3, "four": 4, "five": 5, "ten": 6}
+"""Steps for a number word, and three where there is none; ten would lead too far away."""
 
 
 def is_moved(clause: Clause) -> bool:
