@@ -70,7 +70,7 @@ _WITH = re.compile(r"\b(?:beside|next to|alongside|with|accompan\w+|together|by 
 _LINKED = re.compile(
     r"\b(?:hand in hand|arm in arm|(?:hold|link|join|tak)\w* (?:\w+ )?(?:hands?|arms?)|arms? around)\b"
 )
-_STOPS = re.compile(r"\bstops? (?:walking|running|moving|in (?:his|her|their) tracks)\b")
+_STOPS = re.compile(r"\bstops? (?:walking|running|moving)\b")
 """Who stops was on the way."""
 _WALKS = re.compile(
     r"(?:is |keeps? |goes )?(?:walk|stroll|jog|run|march|strut|limp|wander|shuffl|sleepwalk|creep|skip|hobbl|"
