@@ -1,7 +1,8 @@
-"""Gestures that somebody makes while they walk, jump or sit: a raised hand, a wave, a pointing arm.
+"""Gestures of the hands: a raised hand, a wave, a pointing arm.
 
 The network makes a gesture where it also chooses the steps. Where the way or the posture is given, it has rarely seen
-the two together, so the wrist is given as well.
+the two together, so the wrist is given as well. It knows little of the gestures of :data:`STOOD`, so they are given
+also to people who only stand.
 """
 
 from __future__ import annotations
@@ -111,9 +112,9 @@ _EAR = np.array([0.13, 0.6, 0.1])
 """Metres from the pelvis to the left wrist of a hand at the ear."""
 _EYE = np.array([0.08, 0.58, 0.18])
 """Metres from the pelvis to the left wrist of a hand before the eyes."""
-_CLAPS = 2.0
+_CLAP_RATE = 2.0
 """Claps a second."""
-_SWAYS = 1.6
+_WAVE_RATE = 1.6
 """Strokes a second of a wave."""
 
 
@@ -157,7 +158,7 @@ def wrist(gesture: Gesture, side: str, seconds: Array, towards: Array) -> Array:
             offset[:] = [0.06 * out, 0.26, 0.2]
         case Hand.CLAPS:
             offset = _CLAPPING - shoulder + np.zeros((len(seconds), 3))
-            offset[:, 0] += out * (0.075 + 0.07 * (1 + np.cos(2 * np.pi * _CLAPS * np.asarray(seconds))))
+            offset[:, 0] += out * (0.075 + 0.07 * (1 + np.cos(2 * np.pi * _CLAP_RATE * np.asarray(seconds))))
         case Hand.PHONE | Hand.EARS:
             offset = _EAR * [out, 1.0, 1.0] - shoulder + np.zeros((len(seconds), 3))
         case Hand.EYES | Hand.PHOTO:
@@ -170,7 +171,7 @@ def wrist(gesture: Gesture, side: str, seconds: Array, towards: Array) -> Array:
             offset[:] = [0.02 * out, 0.0, 0.45]
         case Hand.WAVES:
             offset[:] = [0.16 * out, 0.26, 0.18]
-            offset[:, 0] += 0.14 * np.sin(2 * np.pi * _SWAYS * np.asarray(seconds))
+            offset[:, 0] += 0.14 * np.sin(2 * np.pi * _WAVE_RATE * np.asarray(seconds))
         case Hand.POINTS:
             offset = _REACH * towards + np.array([0.0, -0.05, 0.0])
         case Hand.LINKED:

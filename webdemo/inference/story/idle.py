@@ -62,7 +62,7 @@ def idle(sentence: str) -> frozenset[str]:
 
 
 def gesturing(sentence: str) -> frozenset[str]:
-    """The people, "a" and "b", who only stand and make a gesture of which the network knows little."""
+    """The people, "a" and "b", who only stand and make one of the gestures that the network knows little of."""
     made = gestures(sentence)
     found = clauses(sentence)
     own = {p: [c for c in found if p in c.who] for p in "ab"}
