@@ -92,3 +92,23 @@ def test_a_massage_is_given_from_behind(engine: Engine) -> None:
     across = found[0, 60, SMPL22.index("left_hip")] - found[0, 60, SMPL22.index("right_hip")]
     ahead = np.cross(across, [0.0, 1.0, 0.0])
     assert gap.min() < 0.25 and (found[1, 60, 0] - found[0, 60, 0]) @ ahead < 0
+
+
+def test_a_hand_that_is_offered_stays_out_and_nobody_takes_it(engine: Engine) -> None:
+    found = made(engine, "Person A offers a hand, but person B does not take it.")
+    wrist, pelvis = found[0, 45:105, SMPL22.index("right_wrist")], found[0, 45:105, 0]
+    assert np.mean((wrist - pelvis)[:, 2] > 0.25) > 0.8, "a faces +Z"
+    hands = nearest(found, 0, ["left_wrist", "right_wrist"], ["left_wrist", "right_wrist"])
+    assert hands.min() > 0.3
+
+
+@pytest.mark.parametrize(
+    ("prompt", "same"),
+    [("They practise side by side.", True), ("They sit on the floor back to back.", False)],
+)
+def test_people_begin_and_stay_where_the_words_put_them(engine: Engine, prompt: str, same: bool) -> None:
+    found = made(engine, prompt)
+    across = found[:, :, SMPL22.index("left_hip")] - found[:, :, SMPL22.index("right_hip")]
+    facing = np.cross(across, [0.0, 1.0, 0.0])
+    alike = np.einsum("ti,ti->t", facing[0], facing[1])[29::30]
+    assert (alike > 0).all() if same else (alike < 0).all()

@@ -28,12 +28,18 @@ TIME = np.arange(60) / 30
         ("Person B hides his face.", {"b": (Hand.EYES, 2)}),
         ("A tourist takes a picture of his wife.", {"a": (Hand.PHOTO, 2)}),
         ("Two monks pray.", {"a": (Hand.PRAYS, 2), "b": (Hand.PRAYS, 2)}),
+        ("Person A offers a hand, but person B does not take it.", {"a": (Hand.OFFERS, 1)}),
+        ("She holds out her hand.", {"a": (Hand.OFFERS, 1)}),
+        ("He offers her a drink.", {"a": (Hand.OFFERS, 1)}),
+        ("The woman is offered a drink.", {"b": (Hand.OFFERS, 1)}),
+        ("B refuses to shake A's hand.", {"a": (Hand.OFFERS, 1)}),
+        ("Person A does not offer a hand.", {}),
+        ("Person A offers a hand and person B shakes it.", {}),
         # no gesture of a hand in the air
         ("Person A lays a hand on person B's head.", {}),
         ("Person A puts both hands on person B's shoulders.", {}),
         ("Person A throws his arms around her.", {}),
         ("Person A does not wave.", {}),
-        ("Person A holds out a hand.", {}),
         ("They shake hands.", {}),
         ("", {}),
     ],
@@ -67,5 +73,11 @@ def test_hands_are_where_the_gesture_has_them(side: str) -> None:
         assert np.linalg.norm(way(hand) - head, axis=1).max() < 0.25, "a hand's length from the head"
     assert (out * way(Hand.PRAYS)[:, 0] < 0.1).all()
     assert (way(Hand.POINTS)[:, 2] > 0.4).all()
+    offered = way(Hand.OFFERS)
+    assert (
+        (offered[:, 2] > 0.3).all()
+        and (offered[:, 1] < shoulder[1] - 0.1).all()
+        and (offered[:, 1] > 0.1).all()
+    )
     assert np.sign(way(Hand.LINKED)[0, 0]) == out
     assert np.ptp(way(Hand.WAVES)[:, 0]) > 0.2 and np.ptp(way(Hand.UP), axis=0).max() == 0

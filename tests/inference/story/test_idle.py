@@ -26,7 +26,7 @@ from webdemo.inference.story.poses import standing
         ("They wave at each other.", ""),
         ("Person A waves and person B waves back.", ""),
         ("Person A dances while person B sits and watches.", ""),
-        ("Person A offers person B a hand.", ""),
+        ("Person A offers person B a hand.", "b"),
         ("Two people hug.", ""),
         ("", ""),
     ],

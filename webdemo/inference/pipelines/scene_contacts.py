@@ -71,7 +71,7 @@ def meeting(
     other = "ab"[1 - giver]
     waits = [Move(m.person, m.way, m.speed, near=near) if m.way is Way.TO else m for m in theirs]
     if 1 - giver not in posed and (not waits or waits[0].way in (Way.TURN, Way.FACE)):
-        waits = [Move(other, Way.STAY), *waits]
+        waits = [Move(other, Way.AVERTED if touch.behind else Way.STAY), *waits]
     return touch, (*comes, *waits)
 
 

@@ -12,8 +12,10 @@ from motion import SMPL22
 from motion.transforms import heading
 from webdemo.inference.actor import FPS, Placement
 from webdemo.inference.directed import KnownFrames, KnownPath, Part
+from webdemo.inference.story.beginnings import beginning
 from webdemo.inference.story.contacts import contact
 from webdemo.inference.story.floor import Standing, Way2D, plan, starting
+from webdemo.inference.story.gestures import Hand, gestures
 from webdemo.inference.story.holds import hold
 from webdemo.inference.story.idle import gesturing, idle, is_planned, touches
 from webdemo.inference.story.moves import Move, goes, moves
@@ -63,6 +65,9 @@ def planned(request: SceneRequest, window: Window, scene: Array, placement: Plac
     ways = {person: way for person, way in ways.items() if person not in {part.person for part in parts}}
     for way in ways.values():
         parts += _path(way, window, start, placement)
+    if not start and not parts and beginning(words) is not None:
+        stays = plan([Move(who, Way.AVERTED) for who in "ab"], stand, stop - start, first=True)
+        parts += [part for way in stays for part in _path(way, window, start, placement)]
     if touch is not None and (
         part := given_contact(touch, ways, posed, stand, start, stop, window, placement)
     ):
@@ -142,6 +147,10 @@ def _said_postures(sentence: str) -> Iterator[str]:
 def _beginning(request: SceneRequest) -> Standing:
     """Places before the first beat, so that the first moves of the story can begin."""
     first = request.beats[0].sentence
+    if not goes(moves(first)) and (placed := beginning(first)) is not None:
+        return placed
+    if any(gesture.hand is Hand.OFFERS for gesture in gestures(first).values()):
+        return starting((), request.beats[0].length)
     lies = any(listed[0] == Change(Posture.LIES, already=True) for listed in changes(first).values())
     near = lies or touches(first)
     touch = contact(first)
@@ -166,10 +175,14 @@ def _apart(request: SceneRequest, window: Window, placement: Placement) -> list[
                 or touches(request.beats[0].sentence)
             ):
                 return []
-            stand = starting(found, beat.length)
-            ways = [Way2D(i, [0], stand.places[i : i + 1], stand.headings[i : i + 1]) for i in (0, 1)]
-            return [part for way in ways for part in _path(way, window, 0, placement)]
+            return _given_places(starting(found, beat.length), window, placement)
     return []
+
+
+def _given_places(stand: Standing, window: Window, placement: Placement) -> list[Part]:
+    """The places of both people at the first frame."""
+    ways = [Way2D(i, [0], stand.places[i : i + 1], stand.headings[i : i + 1]) for i in (0, 1)]
+    return [part for way in ways for part in _path(way, window, 0, placement)]
 
 
 def _posed(

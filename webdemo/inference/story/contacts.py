@@ -30,6 +30,7 @@ class Region(Enum):
     SHOULDER = "shoulder"
     BACK = "back"
     CHEST = "chest"
+    WAIST = "waist, from behind"
     ARM = "arm"
     HAND = "hand"
     LEG = "leg"
@@ -96,10 +97,14 @@ _ACTS = re.compile(
 _ON_BOTH = re.compile(
     r"\bboth (?:\w+ )?hands\b|\btwo hands\b|\bhands on\b|\b(?:shoulders|eyes)\b|\bmassag\w+"
 )
+_HUGS_BEHIND = re.compile(
+    r"\b(?:(?:hug|embrac|cuddl|hold)\w*|(?:wrap|put|throw|sling|fling)\w* (?:both )?(?:his|her|their) arms around)"
+    r" .*\bfrom behind\b"
+)
 _KISSED = re.compile(rf"(?<!for a )\b{_KISSES}(?! {_LY}(?:\w+ )?(?:hand|goodbye to|\w+'s hand))\b")
 _PASSIVE = re.compile(
     r"\b(?:is|are|gets?|being) (?:\w+ly )?"
-    r"(?P<verb>patted|tapped|touched|poked|slapped|grabbed|stroked|seized|caught|kissed|massaged)\b"
+    r"(?P<verb>patted|tapped|touched|poked|slapped|grabbed|stroked|seized|caught|kissed|massaged|hugged|embraced|cuddled|held)\b"
     r"(?P<rest>.*)"
 )
 _STEMS = {"patted": "pats", "grabbed": "grabs", "caught": "catches", "tapped": "taps", "kissed": "kisses"}
@@ -117,6 +122,7 @@ _SIDE = re.compile(
 
 _JOINTS = {
     Region.HEAD: "head", Region.SHOULDER: "{side}_shoulder", Region.BACK: "spine3", Region.CHEST: "spine2",
+    Region.WAIST: "spine2",
     Region.ARM: "{side}_elbow", Region.HAND: "{side}_wrist", Region.LEG: "{side}_knee", Region.FOOT: "{side}_ankle",
 }  # fmt: skip
 _SKIN = 0.1
@@ -148,6 +154,8 @@ def _of(clause: Clause) -> Contact | None:
     act, denied = _ACTS.search(words), _NOT.search(words)
     kiss = _KISSED.search(words)
     match = act or kiss
+    if (hug := _HUGS_BEHIND.search(words)) is not None and not (denied and denied.start() < hug.start()):
+        return Contact(person if person != "ab" else "a", Region.WAIST, SIDES, behind=True)
     if person == "ab":
         act, person = None, "a"  # both kiss; who of them touches the other where is not said
         match = kiss
@@ -177,6 +185,8 @@ def reach(touch: Contact, pose: Array) -> float:
     ahead, up = _TRUNK * np.sin(angle), _HIP + _TRUNK * np.cos(angle)
     if not touch.sides:
         return float(ahead + 0.08 + _KISS)
+    if touch.region is Region.WAIST:
+        return 0.36
     arm = float(np.sqrt(max(_ARM**2 - (up - height) ** 2, 0.1**2)))
     return float(min(ahead + arm, 0.55)) + _SKIN
 
@@ -219,7 +229,10 @@ def touched(touch: Contact, other: Array, own: Array) -> Array:
         shoulder = own[SMPL22.index(f"{side}_shoulder")]
         joint = min(joints, key=lambda j: float(np.linalg.norm(other[j] - shoulder)))
         place = other[joint] + _SKIN * _unit(shoulder - other[joint])
-        if len(joints) == 1 and len(touch.sides) == 2:
+        if touch.region is Region.WAIST:  # the arms go round
+            across = _unit((shoulder - own[0]) * [1.0, 0.0, 1.0])
+            place = other[joint] + 0.12 * _facing(other) - 0.02 * across + np.array([0.0, 0.02, 0.0])
+        elif len(joints) == 1 and len(touch.sides) == 2:
             place = place + 0.08 * _unit((shoulder - own[0]) * [1.0, 0.0, 1.0])
         if touch.region is Region.BACK and len(joints) == 1:
             place = place + 0.05 * _unit(shoulder - back)

@@ -36,6 +36,7 @@ class Hand(Enum):
     PHOTO = "holds a camera before the face"
     PRAYS = "holds the palms together"
     AHEAD = "stretched out in front"
+    OFFERS = "holds out a hand"
     WAVES = "waves"
     POINTS = "points at the other"
     LINKED = "holds the other's hand"
@@ -97,12 +98,25 @@ _PATTERNS = (
         rf"|\b{_HIS}(?:(?:left|right) )?(?:hand|arm) (?:raised|up|in the air)\b",
     ),
 )
+_THING = r"(?:an?|his|her|their|the) (?!seat|chair|help|apolog|smile|bow|kiss|hug|hands\b)(?:\w+ )??\w+"
+_TO_WHOM = r"(?:(?:person [ab]|him|her|them|the (?:other|\w+)) )?"
+_OFFERS = re.compile(
+    rf"\b(?:offer|extend)(?:s|ing)? {_TO_WHOM}{_THING}"
+    rf"|\b(?:hold|stretch|reach|put|stick)(?:s|es|ing)? (?:out {_THING}|{_THING} out)\b|\b(?:is|are) held out\b"
+)
+_IS_OFFERED = re.compile(r"\b(?:is|are|gets?) offered (?:an?|the|his|her)\b")
+_REFUSES = re.compile(
+    r"\b(?:refus\w+ to|do(?:es)?n't|does not|won't) (?:shake|take|accept|touch) \w+(?: \w)?(?:'s)? (?:\w+ )?"
+    r"(?:hand|handshake)\b"
+    r"|\b(?:refus|declin|ignor|reject)\w* (?:\w+(?: [ab])?(?:'s)? )?(?:\w+ )?(?:hand|handshake)\b"
+)
+_ACCEPTS = re.compile(r"\b(?:shak|accept|grab|grasp|high[- ]five|catch|clasp|hold|help|pull)\w*|\btakes?\b")
 _COMPILED = tuple((hand, re.compile(pattern)) for hand, pattern in _PATTERNS)
 _NOT = re.compile(r"\b(?:do(?:es)?n't|not|without|never|refus\w+ to|lowers?|drops?)\b")
 _SIDE = re.compile(r"\b(left|right)(?:[- ]hand(?:ed)?| arm)?\b")
 _OF_BOTH = (Hand.HIGH, Hand.AHEAD, Hand.CLAPS, Hand.EARS, Hand.EYES, Hand.PHOTO, Hand.PRAYS)
 _OWN = (Hand.PHONE, Hand.EARS, Hand.EYES, Hand.PHOTO, Hand.PRAYS)
-STOOD = (Hand.CLAPS, Hand.SALUTES, Hand.AHEAD, *_OWN)
+STOOD = (Hand.CLAPS, Hand.SALUTES, Hand.AHEAD, Hand.OFFERS, *_OWN)
 """Gestures that are given also to those who only stand."""
 _REACH = 0.47
 """Metres from the shoulder to the wrist of an arm that is nearly straight."""
@@ -120,7 +134,7 @@ _WAVE_RATE = 1.6
 
 def gestures(sentence: str) -> dict[str, Gesture]:
     """The gestures of a beat's sentence, by person "a" and "b"; those of whom it names one."""
-    found: dict[str, Gesture] = {}
+    found = _offers(sentence)
     for clause in clauses(sentence):
         for hand, pattern in _COMPILED:
             match, denied = pattern.search(clause.words), _NOT.search(clause.words)
@@ -130,6 +144,27 @@ def gestures(sentence: str) -> dict[str, Gesture]:
             sides = SIDES if hand in _OF_BOTH else (side[1],) if side else ("right",)
             found |= dict.fromkeys(clause.who, Gesture(hand, sides))
             break
+    return found
+
+
+def _offers(sentence: str) -> dict[str, Gesture]:
+    """The people who hold out a hand that the other does not take within the beat."""
+    found: dict[str, Gesture] = {}
+    listed = clauses(sentence)
+    for clause in listed:
+        other = {"a": "b", "b": "a"}.get(clause.who, "a")
+        if _REFUSES.search(clause.words) or _IS_OFFERED.search(clause.words):
+            found[other] = Gesture(Hand.OFFERS, ("right",))
+        elif (match := _OFFERS.search(clause.words)) is not None:
+            denied = _NOT.search(clause.words)
+            if not (denied and denied.start() < match.start()):
+                side = _SIDE.search(clause.words)
+                who = clause.who if clause.who != "ab" else "a"
+                found[who] = Gesture(Hand.OFFERS, (side[1] if side else "right",))
+    for clause in listed:
+        accepted = _ACCEPTS.search(clause.words)
+        if accepted and not _NOT.search(clause.words) and not _OFFERS.search(clause.words):
+            return {}
     return found
 
 
@@ -167,6 +202,8 @@ def wrist(gesture: Gesture, side: str, seconds: Array, towards: Array) -> Array:
         case Hand.PRAYS:
             offset = _CLAPPING - shoulder + np.zeros((len(seconds), 3))
             offset[:] += [0.05 * out, 0.04, -0.04]
+        case Hand.OFFERS:
+            offset[:] = [-0.06 * out, -0.2, 0.38]
         case Hand.AHEAD:
             offset[:] = [0.02 * out, 0.0, 0.45]
         case Hand.WAVES:

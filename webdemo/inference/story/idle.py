@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import re
 
+from .beginnings import beginning
 from .clauses import Clause, clauses
 from .contacts import contact
 from .gestures import STOOD, gestures
@@ -19,6 +20,7 @@ _NOTHING = re.compile(
     r"\b(?:stands?(?! up)|standing(?! up)|stays?|waits?|watch(?:es|ing)?|looks? on|observ\w+|remains?|"
     r"listens?|ignor\w+|nothing|"
     r"motionless|upright|unmoved|idle|rooted|pays? no attention|"
+    r"^looks? at (?:it|(?:the|his|her|their) (?:\w+ )?\w+)$|"
     r"star(?:es?|ing)|gaz\w+|just looks?|refus\w+|declin\w+|keeps? still|without (?:moving|reacting|answering)|"
     r"do(?:es)? ?n[o']t (?:\w+ )?(?:move|react|answer|respond|budge|follow|return|take|shake|wave|bow|clap|join|accept"
     r"|\w+ back))\b"
@@ -36,8 +38,8 @@ _ALONE = re.compile(
 """Acts that need nobody else."""
 _TOUCH = re.compile(
     r"\b(?:hug|embrac|pat|pats|tap|hit|slap|grab|hold(?!\w* out)|tak|knock|giv|pull|push|shov|lift|carr|help|kiss|"
-    r"cover|comfort|touch|lay|lean|tickl|shak|strok|catch|throw|kick|punch|lead|drag|support|tackl|trip|pass|hand|"
-    r"high[- ]fiv|fist)\w*"
+    r"cover|comfort|touch|lay|lean|tickl|shak|strok|catch|throw|kick|punch|lead|drag|support|tackl|trip|pass|"
+    r"high[- ]fiv|fist)\w*|\bhands? (?:him|her|them|person [ab]|over|an?|the)\b|\bhand in hand\b|\bhandshak\w+"
 )
 _IN_VAIN = re.compile(r"\b(?:left hanging|in vain|gets? no answer|(?:is|are) ignored)\b")
 
@@ -70,13 +72,15 @@ def gesturing(sentence: str) -> frozenset[str]:
     return frozenset(
         p
         for p in made
-        if (made[p].hand in STOOD or each) and len(own[p]) == 1 and way_of(own[p][0].words) is None
+        if (made[p].hand in STOOD or each)
+        and len(own[p]) < 2
+        and all(way_of(c.words) is None for c in own[p])
     )
 
 
 def is_planned(sentence: str) -> bool:
     """True if a beat's words say where people go, who stands by, sits, kneels, lies down, jumps, bows or touches."""
-    read = (contact, idle, changes, leaps, bows, gesturing)
+    read = (contact, idle, changes, leaps, bows, gesturing, beginning)
     return goes(moves(sentence)) or any(found(sentence) for found in read)
 
 

@@ -1,0 +1,35 @@
+"""Places in which the words of a first beat have two people begin."""
+
+from __future__ import annotations
+
+import math
+import re
+
+import numpy as np
+
+from .floor import ABREAST, Standing
+from .poses import grounded, seated
+from .postures import Posture, changes
+
+_BESIDE = re.compile(
+    r"\b(?:side by side|shoulder to shoulder|next to (?:each other|one another|him|her|person [ab]|the other)"
+    r"|beside (?:each other|one another|him|her|person [ab]|the other))\b"
+)
+_BACKS = re.compile(r"\bback[- ]to[- ]back\b")
+BACKS = 0.5
+"""Metres between the pelvises of two people who stand or sit back to back."""
+_SEATS = {Posture.SITS: seated, Posture.GROUND: grounded}
+
+
+def beginning(sentence: str) -> Standing | None:
+    """Places of two people of whom a sentence says that they are side by side or back to back; None of others."""
+    words = sentence.lower()
+    if _BACKS.search(words):
+        held = (change.posture for listed in changes(sentence).values() for change in listed)
+        seat = next((_SEATS[posture] for posture in held if posture in _SEATS), None)
+        behind = float(seat(np.zeros(2), 0.0)[0, 2]) if seat else 0.0  # the feet are where they stand
+        apart = BACKS - 2 * behind
+        return Standing(np.array([[0.0, 0.0], [0.0, -apart]]), np.array([0.0, math.pi]))
+    if _BESIDE.search(words):
+        return Standing(np.array([[0.0, 0.0], [-ABREAST, 0.0]]), np.zeros(2))
+    return None
