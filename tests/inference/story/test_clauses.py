@@ -39,6 +39,7 @@ from webdemo.inference.story.clauses import Reader, clauses
         ("Person A waves, B nods.", [("a", "waves"), ("b", "nods")]),
         ("One bows and at the same time the other nods.", [("a", "bows"), ("b", "nods")]),
         ("He has turned around.", [("a", "turns around")]),
+        ("Link arms, walk.", [("ab", "link arms"), ("ab", "walk")]),
         ("A young couple dance.", [("ab", "dance")]),
         ("jump, clap", [("ab", "jump"), ("ab", "clap")]),
         ("", []),

@@ -41,6 +41,7 @@ TIME = np.arange(60) / 30
         ("Person A throws his arms around her.", {}),
         ("Person A does not wave.", {}),
         ("They shake hands.", {}),
+        ("They hold hands and jump.", {}),
         ("", {}),
     ],
 )

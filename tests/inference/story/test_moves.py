@@ -58,6 +58,7 @@ def moves_of(sentence: str) -> str:
         ("She dances around him while he sits there.", "a:round"),
         ("The guide walks backwards while the tourist follows her.", "a:away b:after"),
         ("A couple dances a waltz.", "a:hold b:hold"),
+        ("Holding both her hands, he walks backwards and leads her along.", "a:away b:after"),
         # moved by touch, by words alone, or not at all
         ("She is stroked on the head by him.", ""),
         ("Person A leads person B by the hand.", ""),

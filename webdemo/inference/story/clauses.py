@@ -219,7 +219,10 @@ def named(text: str) -> str:
 
 _CAPITAL_KIND = re.compile(rf"{_KIND}$", re.IGNORECASE)
 _CAPITAL_VERB = re.compile(
-    r"\w+(?:ing|ly|es)$|[A-Z]{2}|(?:High|Low|Fist|Hug|Bow|Wave|Walk|Run|Shake|Kick|Push|Race|Dance|Jump)\b"
+    r"\w+(?:ing|ly|es)$|[A-Z]{2}|(?:High|Low|Fist|Hug|Bow|Wave|Walk|Run|Shake|Kick|Push|Race|Dance|Jump|Hold|Link|"
+    r"Join|Take|Swing|Clap|Sit|Stand|Turn|Kneel|Spin|Fight|Box|Hop|Skip|March|Talk|Wrestle|Pat|Tap|Kiss|Throw|Catch|"
+    r"Play|Meet|Greet|Stroll|Raise|Lift|Point|Nod|Duck|Punch|Slap|Chase|Follow|Lead|Pull|Carry|Help|Give|Hand|Offer|"
+    r"Bump|Circle|Embrace)\b"
 )
 
 

@@ -155,6 +155,7 @@ def moves(sentence: str) -> tuple[Move, ...]:
         elif after is not None and not ways & _GOING:
             until = any(clause.until for clause in found)
             made.insert(0, Move(other, Way.AWAY, after.speed, until=until))
+    made = _led_backwards(made)
     if _LINKED.search(sentence.lower()):
         made = [replace(move, linked=True) for move in made]
     for i, clause in enumerate(found):
@@ -193,6 +194,16 @@ def _of_clause(clause: Clause, *, late: bool) -> list[Move]:
     metres = _STEP * _STEPS.get((_COUNT.search(clause.words) or [""])[0], 3) if way is Way.AHEAD else 0.0
     turns = 1.0 if _FULL.search(clause.words) or (way is Way.TURN and _SPINS.search(clause.words)) else 0.5
     return [Move(person, way, speed, turns, late=late, metres=metres) for person in who]
+
+
+def _led_backwards(made: Sequence[Move]) -> list[Move]:
+    """The moves, where one who walks backwards and leads the other along goes ahead of them."""
+    backs = {move.person for move in made if move.way is Way.BACK}
+    if len(backs) != 1 or not any(move.way is Way.ALONG for move in made):
+        return list(made)
+    (leader,) = backs
+    follower = "b" if leader == "a" else "a"
+    return [Move(leader, Way.AWAY, 0.8, backwards=True), Move(follower, Way.AFTER, 0.8)]
 
 
 def _ended(move: Move, before: Clause) -> Move:
