@@ -23,6 +23,8 @@ ORIGIN = np.zeros(2)
         ("The man kisses her.", ("a", Region.HEAD, 0, 0)),
         ("She grabs him by the arm.", ("a", Region.ARM, 1, 0)),
         ("He slaps her in the face.", ("a", Region.HEAD, 1, 1)),
+        ("He slaps her in the face twice.", ("a", Region.HEAD, 1, 2)),
+        ("He keeps patting her on the back.", ("a", Region.BACK, 1, 3)),
         ("Person A covers person B's eyes with both hands.", ("a", Region.HEAD, 2, 0)),
         ("Person B gets hugged from behind by person A.", ("a", Region.WAIST, 2, 0)),
         ("She cuts his hair.", ("a", Region.HEAD, 1, 0)),

@@ -30,9 +30,9 @@ BEAT = 20
 """Frames from one pat to the next."""
 TAKEN_BACK = 0.2
 """Metres by which a hand is taken back between two pats."""
-_WRISTS = [SMPL22.index("left_wrist"), SMPL22.index("right_wrist")]
 LOWEST = 0.55
 """Height in metres of the lowest place that somebody on their feet reaches."""
+_WRISTS = [SMPL22.index("left_wrist"), SMPL22.index("right_wrist")]
 _COMES = (Way.TO, Way.BEHIND, Way.STAY, Way.FACE)
 _WAITS = (Way.STAY, Way.AVERTED, Way.FACE, Way.TURN)
 
@@ -85,7 +85,7 @@ def given_contact(
     window: Window,
     placement: Placement,
 ) -> KnownFrames | None:
-    """The hands or the head of who touches, as the network is given them; None where the beat is too short.
+    """The trunk and the hands of who touches, as the network is given them; None where the beat is too short.
 
     Args:
         touch: the contact.

@@ -45,7 +45,7 @@ class Contact:
         person: "a" or "b", who touches the other.
         region: of the other's body.
         sides: the hands that touch, "left", "right" or both; none for a kiss, which the head gives.
-        times: how often a short touch is repeated; 0 for a hand that stays.
+        times: how often a short touch is made; 0 for a hand that stays.
         late: something else goes on until then.
         behind: who touches stands behind the other.
     """
@@ -107,14 +107,16 @@ _PASSIVE = re.compile(
     r"(?P<verb>patted|tapped|touched|poked|slapped|grabbed|stroked|seized|caught|kissed|massaged|hugged|embraced|cuddled|held)\b"
     r"(?P<rest>.*)"
 )
-_STEMS = {"patted": "pats", "grabbed": "grabs", "caught": "catches", "tapped": "taps", "kissed": "kisses"}
+_ACTIVE = {"patted": "pats", "grabbed": "grabs", "caught": "catches", "tapped": "taps", "kissed": "kisses"}
 _NOT = re.compile(
     r"\b(?:do(?:es)?n't|not|without|never|refus\w+ to|wants? to|tries to|about to|almost|nearly)\b"
 )
 _OWN = re.compile(r"\bhis own\b|\bher own\b|\btheir own\b")
-_MANY = re.compile(r"\b(?:again and again|repeatedly|several times|twice|patting|tapping|a few times)\b")
-_BEHIND = re.compile(r"\bbehind\b")
-_PATS = re.compile(r"\b(?:pat|tap|prod)\w*")
+_MANY = re.compile(
+    r"\b(?:again and again|repeatedly|several times|three times|patting|tapping|a few times)\b"
+)
+_BEHIND = re.compile(r"\bbehind\b")  # also of somebody who stands there
+_PATS = re.compile(r"\b(?:pat|tap|prod)\w*|\btwice\b")
 _SIDE = re.compile(
     r"\b(?:with|using) (?:his|her|their|the) (left|right)\b|\b(?:his|her|their) (left|right) (?:hand|arm) (?:up)?on"
 )
@@ -149,16 +151,15 @@ def contact(sentence: str) -> Contact | None:
 def _of(clause: Clause) -> Contact | None:
     words, person = clause.words, clause.who
     if (passive := _PASSIVE.search(words)) is not None:
-        stem = _STEMS.get(passive["verb"], f"{passive['verb'].removesuffix('ed')}s")
+        stem = _ACTIVE.get(passive["verb"], f"{passive['verb'].removesuffix('ed')}s")
         words, person = f"{stem} them{passive['rest']}", "b" if person == "a" else "a"
     act, denied = _ACTS.search(words), _NOT.search(words)
     kiss = _KISSED.search(words)
     match = act or kiss
     if (hug := _HUGS_BEHIND.search(words)) is not None and not (denied and denied.start() < hug.start()):
         return Contact(person if person != "ab" else "a", Region.WAIST, SIDES, behind=True)
-    if person == "ab":
-        act, person = None, "a"  # both kiss; who of them touches the other where is not said
-        match = kiss
+    if person == "ab":  # both kiss; of other touches it is not said who of them touches the other
+        act, match, person = None, kiss, "a"
     if match is None or _OWN.search(words) or (denied and denied.start() < match.start()):
         return None
     if kiss is not None or act is None:
@@ -166,12 +167,17 @@ def _of(clause: Clause) -> Contact | None:
     region = next(region for region, _ in _REGIONS if act[region.name])
     side = _SIDE.search(words)
     sides = SIDES if _ON_BOTH.search(words) else ((side[1] or side[2]),) if side else ("right",)
-    short = act["short"] or (act["part"] and re.match(_SHORT, act["part"]))
-    times = 3 if _MANY.search(words) else 2 if short and _PATS.search(words) else 1 if short else 0
-    behind = bool(_BEHIND.search(words)) or (
-        sides == SIDES and region is Region.SHOULDER and "massag" in words
-    )
-    return Contact(person, region, sides, times, clause.until, behind)
+    behind = bool(_BEHIND.search(words)) or (region is Region.SHOULDER and "massag" in words)
+    return Contact(person, region, sides, _times(act, words), clause.until, behind)
+
+
+def _times(act: re.Match[str], words: str) -> int:
+    """The number of times that a short touch is made; 0 for one that lasts."""
+    if _MANY.search(words):
+        return 3
+    if not (act["short"] or (act["part"] and re.match(_SHORT, act["part"]))):
+        return 0
+    return 2 if _PATS.search(words) else 1
 
 
 def reach(touch: Contact, pose: Array) -> float:
