@@ -112,3 +112,17 @@ def test_people_begin_and_stay_where_the_words_put_them(engine: Engine, prompt: 
     facing = np.cross(across, [0.0, 1.0, 0.0])
     alike = np.einsum("ti,ti->t", facing[0], facing[1])[29::30]
     assert (alike > 0).all() if same else (alike < 0).all()
+
+
+def test_who_is_pushed_over_stood_and_was_pushed_first(engine: Engine) -> None:
+    found = made(engine, "Person A is pushed over by person B.")
+    gap = nearest(found, 1, ["left_wrist", "right_wrist"], ["spine2", "spine3"])
+    touched = int(np.flatnonzero(gap < 0.3)[0])
+    assert found[0, touched, 0, 1] > 0.7 and found[0, -5, 0, 1] < 0.35
+
+
+def test_who_is_led_backwards_by_both_hands_keeps_them(engine: Engine) -> None:
+    found = made(engine, "Holding both her hands, he walks backwards and leads her along.")
+    for mine, theirs in (("left_wrist", "right_wrist"), ("right_wrist", "left_wrist")):
+        assert (nearest(found, 0, [mine], [theirs])[59::30] < 0.3).all(), "where their places are given"
+    assert np.linalg.norm(found[0, -1, 0] - found[0, 0, 0]) > 1.0

@@ -29,6 +29,8 @@ ORIGIN = np.zeros(2)
         ("Person B gets hugged from behind by person A.", ("a", Region.WAIST, 2, 0)),
         ("She cuts his hair.", ("a", Region.HEAD, 1, 0)),
         ("They turn to each other and kiss.", ("a", Region.HEAD, 0, 0)),
+        ("Person A is knocked over by the other person.", ("b", Region.CHEST, 2, 1)),
+        ("Person A pushes person B to the ground.", ("a", Region.CHEST, 2, 1)),
         # none that is planned
         ("He covers his eyes.", None),
         ("Person A does not touch person B's arm.", None),

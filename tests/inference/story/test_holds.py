@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from webdemo.inference.story.holds import Hold, hold, joined
+from webdemo.inference.story.holds import Hold, hold, joined, leads_by_both_hands
 
 FACING = np.array([[[0.0, 0.0]], [[0.0, 0.5]]])
 """Person a at the origin, facing +Z; person b before them."""
@@ -49,3 +49,8 @@ def test_both_hands_are_joined_in_a_ring_wherever_it_has_turned_to() -> None:
         assert np.linalg.norm(hands[0, LEFT] - hands[1, RIGHT]) < 0.1
         assert np.linalg.norm(hands[0, RIGHT] - hands[1, LEFT]) < 0.1
         assert np.linalg.norm(hands[0, LEFT] - hands[0, RIGHT]) > 0.4
+
+
+def test_who_leads_by_both_hands_is_told_from_who_leads_by_one() -> None:
+    assert leads_by_both_hands("Holding both her hands, he walks backwards and leads her along.")
+    assert not leads_by_both_hands("He takes her by the hand.")

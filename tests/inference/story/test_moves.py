@@ -59,6 +59,7 @@ def moves_of(sentence: str) -> str:
         ("The guide walks backwards while the tourist follows her.", "a:away b:after"),
         ("A couple dances a waltz.", "a:hold b:hold"),
         ("Holding both her hands, he walks backwards and leads her along.", "a:away b:after"),
+        ("walk, shake hands", "a:to b:to"),
         # moved by touch, by words alone, or not at all
         ("She is stroked on the head by him.", ""),
         ("Person A leads person B by the hand.", ""),

@@ -54,6 +54,10 @@ def meeting(
     giver = "ab".index(touch.person)
     own = [move for move in moves if move.person == touch.person]
     theirs = [move for move in moves if move.person != touch.person]
+    if touch.fells:
+        if 1 - giver not in posed:
+            return None, moves  # the network knows pushes
+        posed = {}
     pose = posed.get(1 - giver, upright(np.zeros(2), 0.0))
     if giver in posed or any(move.way not in _COMES for move in own):
         return None, moves
@@ -70,7 +74,7 @@ def meeting(
         comes = [*(m for m in comes if m.way is Way.FACE), Move(touch.person, Way.TO, 0.8, near=near)]
     other = "ab"[1 - giver]
     waits = [Move(m.person, m.way, m.speed, near=near) if m.way is Way.TO else m for m in theirs]
-    if 1 - giver not in posed and (not waits or waits[0].way in (Way.TURN, Way.FACE)):
+    if 1 - giver not in posed and not touch.fells and (not waits or waits[0].way in (Way.TURN, Way.FACE)):
         waits = [Move(other, Way.AVERTED if touch.behind else Way.STAY), *waits]
     return touch, (*comes, *waits)
 
@@ -112,7 +116,7 @@ def given_contact(
     for frame, back in at:
         if not window.start <= start + frame < window.stop:
             continue
-        target = posed.get(1 - giver)
+        target = None if touch.fells else posed.get(1 - giver)
         if target is None:
             target = upright(other.places[frame], float(other.headings[frame]))
         pose = bending(own.places[frame], float(own.headings[frame]), lean(touch, target))

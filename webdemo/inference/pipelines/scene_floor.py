@@ -16,7 +16,7 @@ from webdemo.inference.story.beginnings import beginning
 from webdemo.inference.story.contacts import contact
 from webdemo.inference.story.floor import Standing, Way2D, plan, starting
 from webdemo.inference.story.gestures import Hand, gestures
-from webdemo.inference.story.holds import hold
+from webdemo.inference.story.holds import Hold, hold, leads_by_both_hands
 from webdemo.inference.story.idle import gesturing, idle, is_planned, touches
 from webdemo.inference.story.moves import Move, goes, moves
 from webdemo.inference.story.plan import Window
@@ -72,7 +72,8 @@ def planned(request: SceneRequest, window: Window, scene: Array, placement: Plac
         part := given_contact(touch, ways, posed, stand, start, stop, window, placement)
     ):
         parts.append(part)
-    if (held := hold(words)) is not None and len(ways) == 2:
+    led = Hold.RING if any(move.backwards for move in found) and leads_by_both_hands(words) else None
+    if (held := hold(words) or led) is not None and len(ways) == 2:
         parts += given_hold(held, ways, stand, start, stop, window, placement)
     for person, (gesture, frames, wrists) in hands(words, found, ways, posed, stand, stop - start).items():
         inside = (frames + start >= window.start) & (frames + start < window.stop)

@@ -48,6 +48,7 @@ class Contact:
         times: how often a short touch is made; 0 for a hand that stays.
         late: something else goes on until then.
         behind: who touches stands behind the other.
+        fells: the other falls from it, and stood before.
     """
 
     person: str
@@ -56,6 +57,7 @@ class Contact:
     times: int = 0
     late: bool = False
     behind: bool = False
+    fells: bool = False
 
 
 _REGIONS = (
@@ -101,13 +103,16 @@ _HUGS_BEHIND = re.compile(
     r"\b(?:(?:hug|embrac|cuddl|hold)\w*|(?:wrap|put|throw|sling|fling)\w* (?:both )?(?:his|her|their) arms around)"
     r" .*\bfrom behind\b"
 )
+_PUSHES = re.compile(rf"\b(?:push|shov|knock)(?:es?|s|ing)? {_OTHER}\b")
 _KISSED = re.compile(rf"(?<!for a )\b{_KISSES}(?! {_LY}(?:\w+ )?(?:hand|goodbye to|\w+'s hand))\b")
 _PASSIVE = re.compile(
     r"\b(?:is|are|gets?|being) (?:\w+ly )?"
-    r"(?P<verb>patted|tapped|touched|poked|slapped|grabbed|stroked|seized|caught|kissed|massaged|hugged|embraced|cuddled|held)\b"
+    r"(?P<verb>patted|tapped|touched|poked|slapped|grabbed|stroked|seized|caught|kissed|massaged|hugged|embraced|cuddled|held|pushed|"
+    r"shoved|knocked)\b"
     r"(?P<rest>.*)"
 )
-_ACTIVE = {"patted": "pats", "grabbed": "grabs", "caught": "catches", "tapped": "taps", "kissed": "kisses"}
+_ACTIVE = {"patted": "pats", "grabbed": "grabs", "caught": "catches", "tapped": "taps", "kissed": "kisses",
+            "pushed": "pushes", "shoved": "shoves"}  # fmt: skip
 _NOT = re.compile(
     r"\b(?:do(?:es)?n't|not|without|never|refus\w+ to|wants? to|tries to|about to|almost|nearly)\b"
 )
@@ -158,6 +163,8 @@ def _of(clause: Clause) -> Contact | None:
     match = act or kiss
     if (hug := _HUGS_BEHIND.search(words)) is not None and not (denied and denied.start() < hug.start()):
         return Contact(person if person != "ab" else "a", Region.WAIST, SIDES, behind=True)
+    if person != "ab" and _PUSHES.search(words) and not denied:
+        return Contact(person, Region.CHEST, SIDES, 1, fells=True)
     if person == "ab":  # both kiss; of other touches it is not said who of them touches the other
         act, match, person = None, kiss, "a"
     if match is None or _OWN.search(words) or (denied and denied.start() < match.start()):

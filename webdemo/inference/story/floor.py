@@ -114,7 +114,8 @@ def starting(moves: Sequence[Move], seconds: float, *, near: bool = False) -> St
         gap = LINKED if ways[Way.ALONG].linked else ABREAST
         return Standing(np.array([[0.0, 0.0], [-gap, 0.0]]), np.zeros(2))
     if Way.AFTER in ways and any(move.backwards for move in moves):
-        return Standing(np.array([[0.0, 0.0], [0.0, BEHIND]]), np.array([0.0, math.pi]))
+        gap = ways[Way.AFTER].near or BEHIND
+        return Standing(np.array([[0.0, 0.0], [0.0, gap]]), np.array([0.0, math.pi]))
     if Way.AFTER in ways:
         lead = 1 if ways[Way.AFTER].person == "a" else -1
         return Standing(np.array([[0.0, 0.0], [0.0, lead * BEHIND]]), np.zeros(2))
@@ -340,7 +341,11 @@ def _after(move: Move, track: Track, ahead: Track, start: Array, seconds: float)
     for i in range(frames):
         if i > _REACTS * FPS:
             gone += float(
-                np.clip(along[i + 1] - BEHIND - gone, 0.0, most * min(1.0, (i / FPS - _REACTS) / EASE))
+                np.clip(
+                    along[i + 1] - (move.near or BEHIND) - gone,
+                    0.0,
+                    most * min(1.0, (i / FPS - _REACTS) / EASE),
+                )
             )
         done[i] = gone
     if done[-1] > 0.25:

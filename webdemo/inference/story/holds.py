@@ -41,6 +41,7 @@ _HANDS = re.compile(
     r"(?:both )?(?:their )?hands\b"
     r"|\bby (?:both|the) hands\b|\bboth hands joined\b|\bhand in hand\b"
 )
+_BOTH = re.compile(r"\bboth (?:of )?(?:his|her|their|the other's|person [ab]'s) hands\b|\bby both hands\b")
 _LEADS = re.compile(r"(?:is |are )?(?:lead|follow)(?:s|ing)?")
 _NOT = re.compile(r"\b(?:do(?:es)?n't|not|without|never|refus\w+ to|wants? to|stops?)\b")
 
@@ -54,6 +55,11 @@ def hold(sentence: str) -> Hold | None:
     if _DANCE.search(words):
         return Hold.CLOSED
     return Hold.RING if _HANDS.search(words) and _TURN.search(words) else None
+
+
+def leads_by_both_hands(sentence: str) -> bool:
+    """True if a beat's words have somebody hold both of the other's hands."""
+    return bool(_BOTH.search(sentence.lower()))
 
 
 def joined(kind: Hold, places: Array) -> Array:

@@ -32,7 +32,8 @@ _BUSY = re.compile(
 )
 _ALONE = re.compile(
     r"\b(?:(?:jump|leap|hop|fall|kneel|crawl|roll|spin|squat|crouch|stretch|bow|clap|applaud|beckon|salut|nod|shrug|"
-    r"collaps|cheer|danc|faint|yawn|curts|stamp|scratch|juggl|exercis|shiver|trembl|sob|laugh|pray|meditat|march)\w*|sits?|sitting|lies|lying|wav(?:es?|ing)|points?|pointing|rais\w+|lowers?|"
+    r"collaps|cheer|danc|faint|yawn|curts|stamp|scratch|juggl|exercis|shiver|trembl|sob|laugh|pray|meditat|march)\w*"
+    r"|looks? at|sits?|sitting|lies|lying|wav(?:es?|ing)|points?|pointing|rais\w+|lowers?|"
     r"lifts? (?:his|her|their|the|both)|gets? (?:up|down)|stands? up|trips?|holds? out)\b"
 )
 """Acts that need nobody else."""

@@ -7,7 +7,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 from .clauses import Clause, clauses
-from .holds import hold
+from .holds import Hold, hold
 from .ways import Way, way_of
 
 
@@ -66,11 +66,13 @@ _BARE = re.compile(
 )
 _TALKS = re.compile(r"(?:are |is )?(?:talk|chat|laugh|sing|gossip|argu|joke|discuss|hold|swing)\w*")
 """What two people do while they walk."""
+_MEETS = re.compile(r"(?:shake hands|hug|embrace|high[- ]five|kiss|fist[- ]bump|bump fists|greet)")
+"""What two people do who have walked up to each other, in words without a subject: "walk, hug"."""
 _WITH = re.compile(r"\b(?:beside|next to|alongside|with|accompan\w+|together|by side)\b")
 _LINKED = re.compile(
     r"\b(?:hand in hand|arm in arm|(?:hold|link|join|tak)\w* (?:\w+ )?(?:hands?|arms?)|arms? around)\b"
 )
-_STOPS = re.compile(r"\bstops? (?:walking|running|moving)\b")
+_STOPS = re.compile(r"\bstops? (?:dead|short|walking|running|moving)\b")
 """Who stops was on the way."""
 _WALKS = re.compile(
     r"(?:is |keeps? |goes )?(?:walk|stroll|jog|run|march|strut|limp|wander|shuffl|sleepwalk|creep|skip|hobbl|"
@@ -133,7 +135,13 @@ def moves(sentence: str) -> tuple[Move, ...]:
     hands = any(re.search(r"\bhands?\b|\barms?\b", clause.words) for clause in found)
     for i, clause in enumerate(found):
         late = not clause.at_once and any(way_of(before.words) is None for before in found[:i])
-        if is_bare(clause) and all(_TALKS.match(after.words) for after in found[i + 1 :]):
+        if (
+            is_bare(clause)
+            and not clause.subject
+            and any(_MEETS.match(after.words) for after in found[i + 1 :])
+        ):
+            clause, late = replace(clause, words="walk up to each other"), False
+        elif is_bare(clause) and all(_TALKS.match(after.words) for after in found[i + 1 :]):
             clause, late = replace(clause, words=_BARE.sub(r"\g<verb> along\g<rest>", clause.words)), False
         if (
             clause.who == "ab"
@@ -203,7 +211,8 @@ def _led_backwards(made: Sequence[Move]) -> list[Move]:
         return list(made)
     (leader,) = backs
     follower = "b" if leader == "a" else "a"
-    return [Move(leader, Way.AWAY, 0.8, backwards=True), Move(follower, Way.AFTER, 0.8)]
+    near = Hold.RING.value
+    return [Move(leader, Way.AWAY, 0.8, backwards=True, near=near), Move(follower, Way.AFTER, 0.8, near=near)]
 
 
 def _ended(move: Move, before: Clause) -> Move:
