@@ -42,6 +42,7 @@ TIME = np.arange(60) / 30
         ("Person A does not wave.", {}),
         ("They shake hands.", {}),
         ("They hold hands and jump.", {}),
+        ("Person A holds both her hands.", {}),
         ("", {}),
     ],
 )

@@ -61,8 +61,7 @@ _NOT_UP = r"(?! (?:on|around|out|to|together|behind|forwards?|towards?|at|in fro
 _PATTERNS = (
     (
         Hand.HIGH,
-        rf"\b(?!(?:hold|link|join)\w* hands\b)(?:throw|rais|lift|fling|put|hold|stretch|reach)\w* (?:up )?{_BOTH}\b"
-        rf"{_NOT_UP}"
+        rf"\b(?:(?:throw|rais|lift|fling|put|stretch|reach)\w* (?:up )?|hold\w* up ){_BOTH}\b{_NOT_UP}"
         rf"|\b{_BOTH} (?:\w+ )?(?:raised|up|high|above|over (?:his|her|their) heads?|in the air)\b|\bhands up\b",
     ),
     (
