@@ -282,3 +282,8 @@ def test_a_first_beat_begins_where_its_move_can(
 def test_those_who_touch_begin_within_reach_unless_one_comes_to_the_other() -> None:
     assert REACH == starting((), 4.0, near=True).gap() < starting((), 4.0).gap()
     assert starting(moves("They walk up to each other."), 4.0, near=True).gap() > 1.7
+
+
+def test_a_turn_that_begins_late_in_a_short_beat_gives_no_place_before_it() -> None:
+    _, found = ways("She jumps into his arms and he spins her around.", 1.0, FACING)
+    assert found and all(np.isfinite(way.places).all() for way in found.values())

@@ -365,7 +365,7 @@ def _sampled(who: int, track: Track, standing: Standing | None) -> Way2D | None:
         int(known[-1]),
         *([0] if standing is not None else []),
     }
-    frames = _with_turns(sorted(wanted), track.headings)
+    frames = [f for f in _with_turns(sorted(wanted), track.headings) if np.isfinite(track.places[f, 0])]
     headings = track.headings[frames]
     facing = np.isfinite(headings)
     return Way2D(
