@@ -126,3 +126,31 @@ def test_who_is_led_backwards_by_both_hands_keeps_them(engine: Engine) -> None:
     for mine, theirs in (("left_wrist", "right_wrist"), ("right_wrist", "left_wrist")):
         assert (nearest(found, 0, [mine], [theirs])[59::30] < 0.3).all(), "where their places are given"
     assert np.linalg.norm(found[0, -1, 0] - found[0, 0, 0]) > 1.0
+
+
+def speed_of_hands(motion: np.ndarray, person: int) -> np.ndarray:
+    """(2, T - 1) metres a second of both wrists, beside their shoulders."""
+    arms = [
+        motion[person, :, SMPL22.index(f"{side}_wrist")] - motion[person, :, SMPL22.index(f"{side}_shoulder")]
+        for side in ("left", "right")
+    ]
+    return np.linalg.norm(np.diff(arms, axis=1), axis=-1) * 30
+
+
+def test_two_who_fight_both_strike_and_reach_each_other(engine: Engine) -> None:
+    found = made(engine, "They fight.")
+    free = made(engine, "They fight.", planned=False)
+    for giver in (0, 1):
+        gap = nearest(found, giver, ["left_wrist", "right_wrist"], ["head", "neck", "spine3"])
+        assert gap.min() < 0.35 and speed_of_hands(found, giver).max() > 2.0
+        assert (
+            gap.min() < nearest(free, giver, ["left_wrist", "right_wrist"], ["head", "neck", "spine3"]).min()
+        )
+
+
+def test_a_ball_goes_to_and_fro_between_two_who_stand_apart(engine: Engine) -> None:
+    found = made(engine, "Two people throw a ball to each other.")
+    assert np.linalg.norm(found[0, :, 0] - found[1, :, 0], axis=-1).min() > 1.8
+    first = [int(speed_of_hands(found, person).max(axis=0)[5:70].argmax()) for person in (0, 1)]
+    thrown = [found[p, :, SMPL22.index("right_wrist"), 1] - found[p, :, 0, 1] for p in (0, 1)]
+    assert thrown[0][5:30].max() > 0.55 and thrown[1][50:80].max() > 0.55 and first[0] < 30

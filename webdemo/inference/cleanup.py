@@ -1,4 +1,4 @@
-"""The end of every generation: constant bones and planted feet, reported as such."""
+"""The end of every generation: constant bones, planted feet and raised toes, reported as such."""
 
 from __future__ import annotations
 
@@ -8,6 +8,7 @@ from numpy.typing import NDArray
 from motion import SMPL22
 from motion.cleaning import foot_contacts, plant_feet, solve_two_bones
 from motion.kinematics import project_to_skeleton
+from motion.swings import lift_swinging_feet
 from motion.transforms import facing
 
 Array = NDArray[np.floating]
@@ -21,7 +22,7 @@ _LEGS = [
 
 
 def clean_person(positions: Array, fps: float = 30.0) -> Array:
-    """One person on SMPL22's constant bones, feet planted where they stand.
+    """One person on SMPL22's constant bones, feet planted where they stand, toes raised where a foot swings.
 
     Bones are made constant by their directions, from the pelvis outwards; wrists and ankles are then taken
     back to their places by two-bone IK, so hands that met still meet.
@@ -33,7 +34,7 @@ def clean_person(positions: Array, fps: float = 30.0) -> Array:
         (T, 22, 3) metres.
     """
     result = on_constant_bones(positions)
-    return plant_feet(result, foot_contacts(result, fps))
+    return lift_swinging_feet(plant_feet(result, foot_contacts(result, fps)), fps)
 
 
 def on_constant_bones(positions: Array) -> Array:

@@ -23,12 +23,14 @@ from webdemo.inference.story.plan import Window
 from webdemo.inference.story.poses import ARMS, standing, upright
 from webdemo.inference.story.postures import Change, Posture, changes, leaps
 from webdemo.inference.story.request import SceneRequest
+from webdemo.inference.story.strikes import strike
 from webdemo.inference.story.track import HALT
 from webdemo.inference.story.ways import Way
 
 from .scene_contacts import given_contact, given_hold, meeting
 from .scene_hands import hands, known_hands
 from .scene_postures import UPRIGHT, led, postures
+from .scene_strikes import given_blows
 
 Array = NDArray[np.floating]
 
@@ -75,6 +77,8 @@ def planned(request: SceneRequest, window: Window, scene: Array, placement: Plac
     led = Hold.RING if any(move.backwards for move in found) and leads_by_both_hands(words) else None
     if (held := hold(words) or led) is not None and len(ways) == 2:
         parts += given_hold(held, ways, stand, start, stop, window, placement)
+    if len(ways) == 2 and (struck := strike(words)) is not None:
+        parts += given_blows(struck, ways, stand, start, stop, window, placement)
     for person, (gesture, frames, wrists) in hands(words, found, ways, posed, stand, stop - start).items():
         inside = (frames + start >= window.start) & (frames + start < window.stop)
         if inside.any():

@@ -16,6 +16,11 @@ _BESIDE = re.compile(
     r"|beside (?:each other|one another|him|her|person [ab]|the other))\b"
 )
 _BACKS = re.compile(r"\bback[- ]to[- ]back\b")
+_KICKS = re.compile(
+    r"\bkick(?:s|ing)?(?: (?:out )?at)? (?:person [ab]|the other|him|her|them|each other|one another|(?:the|an?) \w+$)"
+)
+KICK = 1.0
+"""Metres between two people one of whom kicks the other."""
 BACKS = 0.5
 """Metres between the pelvises of two people who stand or sit back to back."""
 _SEATS = {Posture.SITS: seated, Posture.GROUND: grounded}
@@ -32,4 +37,6 @@ def beginning(sentence: str) -> Standing | None:
         return Standing(np.array([[0.0, 0.0], [0.0, -apart]]), np.array([0.0, math.pi]))
     if _BESIDE.search(words):
         return Standing(np.array([[0.0, 0.0], [-ABREAST, 0.0]]), np.zeros(2))
+    if _KICKS.search(words):
+        return Standing(np.array([[0.0, 0.0], [0.0, KICK]]), np.array([0.0, math.pi]))
     return None

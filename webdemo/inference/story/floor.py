@@ -122,7 +122,7 @@ def starting(moves: Sequence[Move], seconds: float, *, near: bool = False) -> St
     if Way.BACKS in ways:
         return Standing(np.array([[0.0, 0.0], [0.0, -0.6]]), np.array([0.0, math.pi]))
     gap = next((_START[move.way] for move in moves if move.way in _START), REACH if near else 1.4)
-    gap = ways[Way.HOLD].near if Way.HOLD in ways else gap
+    gap = next((ways[way].near for way in (Way.HOLD, Way.SPAR) if way in ways), gap)
     for way in (Way.TO, Way.BEHIND):
         if way in ways:
             gap = float(
@@ -222,7 +222,7 @@ def _moved(
             _to_and_fro(track, to, seconds)
         case Way.ROUND:
             _around(move, track, other, seconds, both, standing)
-        case Way.HOLD:
+        case Way.HOLD | Way.SPAR:
             _in_hold(move, track, standing, seconds)
         case Way.ALONG:
             _along(who, move, track, standing, seconds)
@@ -299,7 +299,7 @@ def _around(move: Move, track: Track, other: Array, seconds: float, both: bool, 
 
 
 def _in_hold(move: Move, track: Track, standing: Standing, seconds: float) -> None:
-    """The way of one of two who turn around the middle between them and face each other."""
+    """The way of one of two who turn around the middle between them; in hold they face each other."""
     middle = standing.places.mean(axis=0)
     out = track.place - middle
     time = np.linspace(0, 1, max(round(seconds * FPS), 2))
@@ -310,7 +310,8 @@ def _in_hold(move: Move, track: Track, standing: Standing, seconds: float) -> No
     line = middle + radii[:, None] * np.stack([np.sin(angles), np.cos(angles)], axis=1)
     stop = min(track.frame + len(line), len(track.places))
     track.places[track.frame : stop] = line[: stop - track.frame]
-    track.headings[track.frame : stop] = angles[: stop - track.frame] + math.pi
+    if move.way is Way.HOLD:
+        track.headings[track.frame : stop] = angles[: stop - track.frame] + math.pi
     track.place, track.heading, track.frame = line[-1], float(angles[-1] + math.pi), stop
 
 

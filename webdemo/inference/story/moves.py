@@ -8,6 +8,7 @@ from dataclasses import dataclass, replace
 
 from .clauses import Clause, clauses
 from .holds import Hold, hold
+from .strikes import strike, turning
 from .ways import Way, way_of
 
 
@@ -19,7 +20,8 @@ class Move:
         person: "a" or "b".
         way: how they move.
         speed: metres a second.
-        turns: whole turns, of :attr:`Way.ROUND` and :attr:`Way.TURN`; a second, of :attr:`Way.HOLD`.
+        turns: whole turns, of :attr:`Way.ROUND` and :attr:`Way.TURN`; a second, of :attr:`Way.HOLD` and
+            :attr:`Way.SPAR`.
         until: the move ends early, because the sentence goes on with "until …".
         linked: they hold each other by the hands or arms.
         late: the sentence tells it after something else that is done in place.
@@ -128,6 +130,9 @@ def moves(sentence: str) -> tuple[Move, ...]:
     held = hold(sentence)
     if held is not None:
         return tuple(Move(person, Way.HOLD, near=held.value, turns=held.turns) for person in "ab")
+    if (struck := strike(sentence)) is not None:
+        near, turns = struck.bout.value, turning(struck.bout)
+        return tuple(Move(person, Way.SPAR, near=near, turns=turns) for person in "ab")
     found = clauses(sentence)
     if any(is_moved(clause) or STRUCK.search(clause.words) for clause in found):
         return ()
@@ -150,20 +155,7 @@ def moves(sentence: str) -> tuple[Move, ...]:
         ):
             clause = replace(clause, words="circle each other")
         made += _of_clause(clause, late=late)
-    for person, other in ("ab", "ba"):
-        ways = {move.way for move in made if move.person == other}
-        after = next((move for move in made if move.person == person and move.way is Way.AFTER), None)
-        if after is not None and Way.BACK in ways:
-            made = [
-                replace(m, way=Way.AWAY, speed=0.8, backwards=True)
-                if (m.person, m.way) == (other, Way.BACK)
-                else m
-                for m in made
-            ]
-        elif after is not None and not ways & _GOING:
-            until = any(clause.until for clause in found)
-            made.insert(0, Move(other, Way.AWAY, after.speed, until=until))
-    made = _led_backwards(made)
+    made = _led_backwards(_followed(made, until=any(clause.until for clause in found)))
     if _LINKED.search(sentence.lower()):
         made = [replace(move, linked=True) for move in made]
     for i, clause in enumerate(found):
@@ -202,6 +194,23 @@ def _of_clause(clause: Clause, *, late: bool) -> list[Move]:
     metres = _STEP * _STEPS.get((_COUNT.search(clause.words) or [""])[0], 3) if way is Way.AHEAD else 0.0
     turns = 1.0 if _FULL.search(clause.words) or (way is Way.TURN and _SPINS.search(clause.words)) else 0.5
     return [Move(person, way, speed, turns, late=late, metres=metres) for person in who]
+
+
+def _followed(made: list[Move], *, until: bool) -> list[Move]:
+    """The moves, where somebody who is followed goes ahead; ``until`` something ends that early."""
+    for person, other in ("ab", "ba"):
+        ways = {move.way for move in made if move.person == other}
+        after = next((move for move in made if move.person == person and move.way is Way.AFTER), None)
+        if after is not None and Way.BACK in ways:
+            made = [
+                replace(m, way=Way.AWAY, speed=0.8, backwards=True)
+                if (m.person, m.way) == (other, Way.BACK)
+                else m
+                for m in made
+            ]
+        elif after is not None and not ways & _GOING:
+            made = [Move(other, Way.AWAY, after.speed, until=until), *made]
+    return made
 
 
 def _led_backwards(made: Sequence[Move]) -> list[Move]:

@@ -18,6 +18,7 @@ class Way(Enum):
     ALONG = "walks side by side with the other"
     AFTER = "follows the other"
     HOLD = "goes round with the other, in hold"
+    SPAR = "stands before the other"
     TURN = "turns around"
     AVERTED = "stands with their back to the other"
     ASIDE = "steps aside"

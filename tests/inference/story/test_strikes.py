@@ -1,0 +1,112 @@
+"""Blows and throws, as words name them and as arms make them."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from motion import SMPL22
+from webdemo.inference.story.beginnings import KICK, beginning
+from webdemo.inference.story.moves import moves
+from webdemo.inference.story.strikes import Bout, Strike, blows, catching, poses, ready, strike
+from webdemo.inference.story.ways import Way
+
+HERE, THERE = np.zeros(2), np.array([0.0, Bout.FISTS.value])
+HEAD = SMPL22.index("head")
+
+
+@pytest.mark.parametrize(
+    ("words", "bout", "turns", "goes_on"),
+    [
+        ("They fight.", Bout.FISTS, "ab", True),
+        ("Two people are boxing.", Bout.FISTS, "ab", True),
+        ("Two boxers throw punches at each other.", Bout.FISTS, "ab", True),
+        ("He fights with her.", Bout.FISTS, "ab", True),
+        ("Two knights fight with swords.", Bout.WEAPONS, "ab", True),
+        ("They fence.", Bout.WEAPONS, "ab", True),
+        ("Two people play tennis.", Bout.RACKETS, "ab", True),
+        ("Two kids are throwing a ball to each other.", Bout.THROWS, "ab", True),
+        ("Person A throws a ball to person B, who catches it.", Bout.THROWS, "a", False),
+        ("Person B catches keys thrown by person A.", Bout.THROWS, "a", False),
+        ("Person B punches person A.", Bout.FISTS, "b", False),
+        ("She hits back.", Bout.FISTS, "a", False),
+        ("He keeps hitting her.", Bout.FISTS, "a", True),
+    ],
+)
+def test_blows_are_read(words: str, bout: Bout, turns: str, goes_on: bool) -> None:
+    assert strike(words) == Strike(bout, turns, goes_on)
+    found = moves(words)
+    assert {m.person for m in found} == {"a", "b"} and {m.way for m in found} == {Way.SPAR}
+    assert all(move.near == bout.value for move in found)
+
+
+@pytest.mark.parametrize(
+    "words",
+    [
+        "They do not fight.",
+        "He wants to punch her.",
+        "They stop fighting and hug.",
+        "She throws her arms around him.",
+        "He punches the air.",
+        "They strike a pose.",
+        "A man hits the wall.",
+        "The cowboys fight a duel with pistols.",
+        "He punches her and she falls down.",
+        "They hug.",
+        "She passes him.",
+    ],
+)
+def test_other_words_are_left_to_the_network(words: str) -> None:
+    assert strike(words) is None
+
+
+def test_two_who_fight_strike_in_turn_with_either_fist() -> None:
+    made = blows(Strike(Bout.FISTS, "ab"), 150)
+    assert [blow.person for blow in made[:4]] == [0, 1, 0, 1]
+    assert [blow.side for blow in made[:4]] == ["right", "right", "left", "left"]
+    assert np.all(np.diff([blow.frame for blow in made]) > 15) and made[-1].frame < 150
+
+
+def test_one_blow_is_struck_once_when_the_two_are_near() -> None:
+    made = blows(Strike(Bout.FISTS, "b", goes_on=False), 150, first=40)
+    assert [blow.person for blow in made] == [1] and made[0].frame > 40
+    assert blows(Strike(Bout.FISTS, "b", goes_on=False), 20) == []
+
+
+@pytest.mark.parametrize("side", ["left", "right"])
+def test_a_fist_shoots_out_to_the_head_and_not_into_it(side: str) -> None:
+    frames, found = poses(Bout.FISTS, side, HERE, THERE)
+    wrist = found[:, SMPL22.index(f"{side}_wrist")]
+    head = np.array([0.0, ready(HERE, THERE)[HEAD, 1], Bout.FISTS.value - 0.1])
+    away = np.linalg.norm(wrist - head, axis=-1)
+    landed = frames.index(-1)
+    assert 0.1 < away[landed] < 0.3 < away[0]
+    assert np.linalg.norm(wrist[landed] - wrist[0]) / (frames[landed] - frames[0]) * 30 > 2.5  # m/s
+    other = "left" if side == "right" else "right"
+    assert (
+        found[landed, SMPL22.index(f"{side}_shoulder"), 2]
+        > found[landed, SMPL22.index(f"{other}_shoulder"), 2]
+    )
+
+
+@pytest.mark.parametrize("bout", [Bout.WEAPONS, Bout.RACKETS, Bout.THROWS])
+def test_an_arm_swings_from_behind_to_before_the_body(bout: Bout) -> None:
+    angle = 1.1
+    there = bout.value * np.array([np.sin(angle), np.cos(angle)])
+    ahead = np.array([np.sin(angle), 0.0, np.cos(angle)])
+    frames, found = poses(bout, "right", HERE, there)
+    reach = found[:, SMPL22.index("right_wrist")] @ ahead
+    assert reach[frames.index(-1)] > 0.4 > 0.1 > reach[0]
+
+
+def test_hands_that_catch_wait_for_what_is_in_the_air() -> None:
+    frames, found = catching(HERE, THERE)
+    wrists = found[:, [SMPL22.index("left_wrist"), SMPL22.index("right_wrist")]]
+    assert min(frames) > 5 and wrists[..., 2].min() > 0.35 and np.ptp(wrists[0, :, 0]) < 0.3
+
+
+@pytest.mark.parametrize("words", ["He kicks her.", "They kick each other.", "Person A kicks person B."])
+def test_who_kicks_begins_within_reach(words: str) -> None:
+    placed = beginning(words)
+    assert placed is not None and placed.gap() == pytest.approx(KICK)
+    assert beginning("He kicks the ball.") is None

@@ -1,0 +1,75 @@
+"""Blows and throws, as the network is given them."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+import numpy as np
+from numpy.typing import NDArray
+
+from motion import SMPL22
+from webdemo.inference.actor import Placement
+from webdemo.inference.directed import KnownFrames
+from webdemo.inference.story.floor import Standing, Way2D
+from webdemo.inference.story.gestures import SIDES
+from webdemo.inference.story.plan import Window
+from webdemo.inference.story.poses import TRUNK
+from webdemo.inference.story.strikes import Bout, Strike, blows, catching, poses, ready
+
+from .scene_hands import Course
+
+Array = NDArray[np.floating]
+_Given = tuple[int, tuple[str, ...], tuple[tuple[int, ...], Array]]
+"""A person, their hands, and frames with the poses at them."""
+_NEARLY = 0.15
+"""Metres from the distance of a blow at which it is struck."""
+
+
+def given_blows(
+    struck: Strike,
+    ways: Mapping[int, Way2D],
+    stand: Standing,
+    start: int,
+    stop: int,
+    window: Window,
+    placement: Placement,
+) -> list[KnownFrames]:
+    """The trunks and arms of people who strike or throw, and the hands that catch.
+
+    Args:
+        struck: the blows of the beat.
+        ways: of both, by person.
+        stand: where the people are when the beat begins.
+        start, stop: the beat's first frame and the one after its last.
+        window: the window that is made.
+        placement: from the scene's world to the network's frame.
+    """
+    courses = [Course.of(ways[i], float(stand.headings[i]), stop - start) for i in (0, 1)]
+    apart = np.linalg.norm(courses[0].places - courses[1].places, axis=1)
+    there = np.flatnonzero(np.abs(apart - struck.bout.value) < _NEARLY)
+    given: dict[tuple[int, tuple[str, ...]], dict[int, Array]] = {}
+    if not start:
+        for person in {"ab".index(who) for who in struck.turns}:
+            pose = ready(*(courses[i].places[0] for i in (person, 1 - person)))
+            if window.start == 0:
+                given[(person, SIDES)] = {window.past: pose}
+    for blow in blows(struck, stop - start, first=int(there[0]) if len(there) else 0):
+        places = [course.places[blow.frame] for course in courses]
+        own, other = places[blow.person], places[1 - blow.person]
+        made: list[_Given] = [(blow.person, (blow.side,), poses(struck.bout, blow.side, own, other))]
+        if struck.bout is Bout.THROWS:
+            made.append((1 - blow.person, SIDES, catching(other, own)))
+        for person, sides, (beside, known) in made:
+            for frame, pose in zip(beside, known, strict=True):
+                at = start + blow.frame + frame
+                if window.start <= at < window.stop:
+                    given.setdefault((person, sides), {})[at - window.start + window.past] = pose
+    return [
+        KnownFrames(
+            person,
+            list(known),
+            placement.to_network(np.stack(list(known.values()))),
+            [*TRUNK, *(SMPL22.index(f"{side}_wrist") for side in sides)],
+        )
+        for (person, sides), known in given.items()
+    ]

@@ -1,0 +1,223 @@
+"""Blows and throws: people who fight, with or without weapons, play with rackets, or throw each other a ball.
+
+The network throws punches at the distance of its training scenes, most of which miss by half a metre, and only one of
+the two strikes; rackets and balls it does not know. So the two are kept at the distance that they need, and the arms
+are given at the moments of their blows, in turn. The rest is the network's.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Sequence
+from dataclasses import dataclass
+from enum import Enum
+
+import numpy as np
+from numpy.typing import NDArray
+
+from motion import SMPL22
+from motion.transforms import heading_matrix
+
+from .clauses import Clause, clauses
+from .poses import bending
+
+Array = NDArray[np.floating]
+
+
+class Bout(Enum):
+    """Kinds of blows and throws, and the metres between the pelvises of the two."""
+
+    FISTS = 0.75
+    WEAPONS = 1.3
+    RACKETS = 3.0
+    THROWS = 2.2
+
+
+@dataclass(frozen=True)
+class Strike:
+    """The blows or throws of a beat.
+
+    Attributes:
+        bout: of which kind.
+        turns: who strikes, in order, "a" and "b", over and over where ``goes_on``.
+        goes_on: they strike through the whole beat.
+    """
+
+    bout: Bout
+    turns: str
+    goes_on: bool = True
+
+
+@dataclass(frozen=True)
+class Blow:
+    """One blow or throw: the frame of the beat at which it lands, who strikes, and the hand."""
+
+    frame: int
+    person: int
+    side: str
+
+
+_EACH = r"(?:each other|one another)"
+_OTHER = r"(?:person [ab]|him|her|them|the other(?: person| one)?|(?:the|an?|his|her) (?:\w+ )?\w+)"
+_NOBODY = r"(?:the|an?|his|her) (?:\w+ )?(?:road|ball|wall|ground|floor|drum|target|bag|air|table|button|note|pose)s?\b"
+_THING = r"(?:ball|snowball|frisbee|key|bottle|apple|pillow|stone|book|hat|coin|phone)s?"
+_WEAPONS = re.compile(
+    r"\b(?:swords?|sab(?:re|er)s?|sticks?|staffs?|lightsab(?:re|er)s?|fenc\w+|pillows?|spears?)\b"
+)
+_FAR = re.compile(r"\b(?:guns?|pistols?|rifles?|arrows?|words)\b")
+_FIGHT = re.compile(
+    r"\b(?:fight|box|spar|brawl|scuffle|kickbox|duel|fenc)(?:es|s|e|ing)?\b(?! (?:back|off|over)\b)"
+    r"|\b(?:exchang|trad|swap|throw)\w* (?:\w+ )?(?:blows|punches|jabs|hits)\b"
+    rf"|\b(?:punch|hit|strik|slap|attack|jab|beat)(?:e|es|s|ing|ting)? (?:at )?{_EACH}\b"
+    r"|\bcom(?:e|es|ing) to blows\b|\bin an? (?:\w+ )?(?:fist ?)?(?:fight|duel)\b|\bfist[- ]?fight\w*"
+    r"|\bhav(?:e|ing) an? (?:\w+ )?(?:fight|duel)\b"
+)
+_AGAINST = re.compile(rf"\b(?:fight|box|spar|duel|fenc)(?:e?s|ing)? (?:with |against )?{_OTHER}\b")
+_PUNCHES = re.compile(
+    rf"\b(?:punch|hit|strik|jab|thump|sock)(?:es|s|ing|ting)? (?:out )?(?:at )?(?!{_NOBODY}){_OTHER}(?! with)\b"
+    r"|\b(?:hit|punch|strik|fight)(?:es|s)? back\b|\bretaliates\b"
+)
+_RACKETS = re.compile(
+    r"\bplay\w* (?:a game of )?(?:table )?(?:tennis|badminton|squash|ping[- ]?pong|paddle)\b"
+)
+_THROWS = re.compile(
+    rf"\b(?:throw|toss|pass|lob|chuck)(?:es|s|ing)? (?:{_OTHER} )??(?:(?:an?|the|his|her|their|some) )?"
+    rf"(?:\w+ )?{_THING}\b"
+    r"|\bplay\w* (?:catch|ball|frisbee)\b|\bsnowball fight\b"
+)
+_THROWN = re.compile(rf"\bcatch\w* .*\bthrown (?:to \w+ )?by {_OTHER}")
+_CATCHES = re.compile(r"\bcatch(?:es)? (?:it|the \w+|them)\b")
+_NOT = re.compile(
+    r"\b(?:do(?:es)?n't|not|without|never|refus\w+ to|wants? to|about to|tries to|pretends? to|stops?|almost)\b"
+)
+_MANY = re.compile(r"\b(?:again and again|repeatedly|keeps?|beats? up|several)\b")
+_CIRCLING = 0.03
+"""Turns a second of two who fight around the middle between them."""
+_FIRST = 20
+"""Frames before the first blow."""
+_DRAWN = 5
+"""Frames before a blow in which the arm is drawn back."""
+_PERIODS = {Bout.FISTS: 22, Bout.WEAPONS: 26, Bout.RACKETS: 36, Bout.THROWS: 48}
+"""Frames from one blow to the next."""
+_FLIGHT = 16
+"""Frames for which what was thrown is in the air."""
+_REACHES = {
+    Bout.FISTS: ((0.14, 0.4, 0.14), None),
+    Bout.WEAPONS: ((0.12, 0.78, 0.02), (0.02, 0.4, 0.5)),
+    Bout.RACKETS: ((0.45, 0.3, -0.1), (-0.05, 0.4, 0.45)),
+    Bout.THROWS: ((0.22, 0.68, -0.12), (0.05, 0.5, 0.48)),
+}
+"""Metres from the pelvis to the left wrist before a blow, and as it lands; None on the other's head."""
+_READY = np.array([0.12, 0.2, 0.28])
+"""Metres from the pelvis to the left wrist between two blows."""
+_RECOVERS = 11
+"""Frames after a blow in which the arm is ready again."""
+_CATCHING = np.array([0.12, 0.35, 0.4])
+"""Metres from the pelvis to the left wrist of hands that catch."""
+_TWIST, _LEAN = 0.4, 0.12
+"""Radians by which the shoulder goes ahead with the fist, and by which the trunk leans forward."""
+_ARM = 0.5
+"""Metres from the shoulder to the wrist of an arm that strikes."""
+_FIST = 0.1
+"""Metres from the wrist to what its fist hits."""
+
+
+def strike(sentence: str) -> Strike | None:
+    """The blows or throws of a beat's sentence, where they are all that it tells."""
+    found = clauses(sentence)
+    words = " and ".join(clause.words for clause in found)
+    if not found or _NOT.search(words) or _FAR.search(words):
+        return None
+    both = all(clause.who == "ab" for clause in found)
+    if _RACKETS.search(words) and (both or len(found) == 1):
+        return Strike(Bout.RACKETS, "ab")
+    if (throws := _throws(found)) is not None:
+        return throws
+    if _FIGHT.search(words) and (both or (len(found) == 1 and _AGAINST.search(words))):
+        return Strike(Bout.WEAPONS if _WEAPONS.search(words) else Bout.FISTS, "ab")
+    if len(found) == 1 and found[0].who != "ab" and found[0].subject and _PUNCHES.search(words):
+        return Strike(Bout.FISTS, found[0].who, bool(_MANY.search(words)))
+    return None
+
+
+def _throws(found: Sequence[Clause]) -> Strike | None:
+    """Something that one throws and the other may catch, or that goes to and fro."""
+    for clause in found:
+        if _THROWN.search(clause.words) and len(found) == 1 and clause.who != "ab":
+            return Strike(Bout.THROWS, "b" if clause.who == "a" else "a", goes_on=False)
+        if _THROWS.search(clause.words):
+            others = [c for c in found if c is not clause]
+            if not all(_CATCHES.search(c.words) for c in others):
+                return None
+            if clause.who == "ab":
+                return Strike(Bout.THROWS, "ab")
+            return Strike(Bout.THROWS, clause.who, goes_on=False)
+    return None
+
+
+def turning(bout: Bout) -> float:
+    """Turns a second of the two around the middle between them."""
+    return _CIRCLING if bout in (Bout.FISTS, Bout.WEAPONS) else 0.0
+
+
+def blows(struck: Strike, frames: int, *, first: int = 0) -> list[Blow]:
+    """The blows of a beat of so many frames, from its ``first`` frame at which the two are at their distance."""
+    period = _PERIODS[struck.bout] * (1 if len(struck.turns) > 1 else 2)
+    last = frames - (_FLIGHT + 6 if struck.bout is Bout.THROWS else _DRAWN)
+    at = range(first + _FIRST, last, period)
+    made = [
+        Blow(frame, "ab".index(struck.turns[i % len(struck.turns)]), _hand(struck, i))
+        for i, frame in enumerate(at)
+    ]
+    return made if struck.goes_on else made[:1]
+
+
+def _hand(struck: Strike, number: int) -> str:
+    """Fists take turns; weapons, rackets and balls are in the right hand."""
+    left = struck.bout is Bout.FISTS and number // len(struck.turns) % 2
+    return "left" if left else "right"
+
+
+def poses(bout: Bout, side: str, place: Array, other: Array) -> tuple[tuple[int, ...], Array]:
+    """A blow or throw as frames beside the one at which it lands, and poses of the one who strikes.
+
+    Args:
+        bout: of which kind.
+        side: "left" or "right".
+        place: (2,) x and z of the one who strikes, in metres.
+        other: (2,) of the other.
+
+    Returns:
+        N frames, and (N, 22, 3) metres from the pelvis; only the trunk and the wrist of that side are meant.
+    """
+    line = np.asarray(other) - place
+    angle, sign = float(np.arctan2(line[0], line[1])), 1.0 if side == "left" else -1.0
+    wrist, turn = SMPL22.index(f"{side}_wrist"), heading_matrix(angle)
+    back, ahead = _REACHES[bout]
+    drawn = bending(place, angle + sign * _TWIST / 2, _LEAN)
+    drawn[wrist] = drawn[0] + turn @ (np.array(back) * [sign, 1.0, 1.0])
+    landed = bending(place, angle - sign * _TWIST, _LEAN)
+    if ahead is None:
+        head = bending(np.asarray(other), angle + np.pi, _LEAN)[SMPL22.index("head")]
+        shoulder = landed[SMPL22.index(f"{side}_shoulder")]
+        length = float(np.linalg.norm(head - shoulder))
+        landed[wrist] = shoulder + (head - shoulder) * min(_ARM, length - _FIST) / length
+    else:
+        landed[wrist] = landed[0] + turn @ (np.array(ahead) * [sign, 1.0, 1.0])
+    after = drawn if ahead is None else ready(place, other)
+    return (-_DRAWN, -1, 1, _RECOVERS), np.stack([pose - pose[0] for pose in (drawn, landed, landed, after)])
+
+
+def ready(place: Array, other: Array, reach: Array = _READY) -> Array:
+    """A pose (22, 3) from the pelvis of somebody who has both hands ready, towards the other; places as above."""
+    line = np.asarray(other) - place
+    angle = float(np.arctan2(line[0], line[1]))
+    pose = bending(place, angle, _LEAN)
+    for side, sign in (("left", 1.0), ("right", -1.0)):
+        pose[SMPL22.index(f"{side}_wrist")] = pose[0] + heading_matrix(angle) @ (reach * [sign, 1.0, 1.0])
+    return pose - pose[0]
+
+
+def catching(place: Array, other: Array) -> tuple[tuple[int, ...], Array]:
+    """Both hands that catch what the other throws, as :func:`poses` from the frame at which it is thrown."""
+    return (_FLIGHT - 6, _FLIGHT, _FLIGHT + 6), np.stack([ready(place, other, _CATCHING)] * 3)
