@@ -18,6 +18,7 @@ from webdemo.inference.story.floor import Standing, Way2D, plan, starting
 from webdemo.inference.story.gestures import Hand, gestures
 from webdemo.inference.story.holds import Hold, hold, leads_by_both_hands
 from webdemo.inference.story.idle import gesturing, idle, is_planned, touches
+from webdemo.inference.story.lifts import lift
 from webdemo.inference.story.moves import Move, goes, moves
 from webdemo.inference.story.plan import Window
 from webdemo.inference.story.poses import ARMS, standing, upright
@@ -29,6 +30,7 @@ from webdemo.inference.story.ways import Way
 
 from .scene_contacts import given_contact, given_hold, meeting
 from .scene_hands import hands, known_hands
+from .scene_lifts import Carrying
 from .scene_postures import UPRIGHT, led, postures
 from .scene_strikes import given_blows
 
@@ -59,12 +61,17 @@ def planned(request: SceneRequest, window: Window, scene: Array, placement: Plac
         return _apart(request, window, placement)
     before = scene[:, max(start - 4, 0) : start]
     stand = _stand(before) if start else _beginning(request)
-    parts, posed = _held(request, window, scene, stand, still, found, placement)
+    lifted = lift(words)
+    parts, posed = ([], {}) if lifted else _held(request, window, scene, stand, still, found, placement)
     touch, found = meeting(contact(words), found, posed, stand)
     if touch is not None:
         parts = [part for part in parts if part.person != "ab".index(touch.person)]
     ways = {way.person: way for way in plan(found, stand, stop - start, first=not start)}
     ways = {person: way for person, way in ways.items() if person not in {part.person for part in parts}}
+    if lifted is not None and len(ways) == 2:
+        carrying = Carrying(lifted, ways, stand, start, stop)
+        parts += carrying.given(window, placement)
+        ways = carrying.before()
     for way in ways.values():
         parts += _path(way, window, start, placement)
     if not start and not parts and beginning(words) is not None:
@@ -152,7 +159,7 @@ def _said_postures(sentence: str) -> Iterator[str]:
 def _beginning(request: SceneRequest) -> Standing:
     """Places before the first beat, so that the first moves of the story can begin."""
     first = request.beats[0].sentence
-    if not goes(moves(first)) and (placed := beginning(first)) is not None:
+    if (lift(first) or not goes(moves(first))) and (placed := beginning(first)) is not None:
         return placed
     if any(gesture.hand is Hand.OFFERS for gesture in gestures(first).values()):
         return starting((), request.beats[0].length)

@@ -8,6 +8,7 @@ import re
 import numpy as np
 
 from .floor import ABREAST, Standing
+from .lifts import NEAR, Carry, Lift, lift
 from .poses import grounded, seated
 from .postures import Posture, changes
 
@@ -37,6 +38,18 @@ def beginning(sentence: str) -> Standing | None:
         return Standing(np.array([[0.0, 0.0], [0.0, -apart]]), np.array([0.0, math.pi]))
     if _BESIDE.search(words):
         return Standing(np.array([[0.0, 0.0], [-ABREAST, 0.0]]), np.zeros(2))
+    if (lifted := lift(sentence)) is not None and not lifted.comes:
+        return _carried(lifted)
     if _KICKS.search(words):
         return Standing(np.array([[0.0, 0.0], [0.0, KICK]]), np.array([0.0, math.pi]))
     return None
+
+
+def _carried(lifted: Lift) -> Standing:
+    """A place before the other for who is lifted, and behind the one who walks on for who is carried."""
+    places, headings = np.zeros((2, 2)), np.zeros(2)
+    if lifted.carry is Carry.UP:
+        places[1, 1], headings[1] = NEAR, math.pi
+    else:
+        places["ab".index(lifted.carrier) - 1, 1] = -0.3
+    return Standing(places, headings)

@@ -24,7 +24,7 @@ _SEX = {
     ),
 }
 _PEOPLE = r"(?:\w{3,}s|men|women|people|children)(?=,? \w+)"
-_KIND = (
+KIND = (
     r"(?:man|woman|boy|girl|guy|lady|gentleman|person|child|kid|friend|dancer|fighter|boxer|player|stranger|partner|"
     r"teacher|student|mother|father|mom|mum|mommy|mummy|dad|daddy|brother|sister|daughter|son|grandpa|grandma|granny|"
     r"grandfather|grandmother|uncle|aunt|cousin|twin|husband|wife|spouse|fianc[eé]e?|bride|groom|girlfriend|boyfriend|"
@@ -40,18 +40,20 @@ _KIND = (
     r"colleague|coworker|co-worker|teammate|team-mate|leader|follower|lover|date|crush|ex|couple|human|character|model|"
     r"mime|puppet|individual|agent|spy|assassin|hunter|rider|jogger|cyclist|skater|passer-by|bystander|onlooker)"
 )
+OTHER = rf"(?:person [ab]|him|her|them|(?:the|an?) other(?: person| one)?|(?:the|an?|his|her|another) (?:\w+ )??{KIND})"
+"""The other person, as the object of a verb."""
 _PLURAL = (
     rf"they|we|both(?: of them| people|(?: \w+)? {_PEOPLE})?|the (?:two|pair|couple)(?: of them| (?:\w+ )?{_PEOPLE})?"
-    rf"|(?:the )?(?:(?!two|first|second|other)\w+ )?(?:{_KIND}s|children|women|men)(?= (?!\w+s\b)\w+)"
+    rf"|(?:the )?(?:(?!two|first|second|other)\w+ )?(?:{KIND}s|children|women|men)(?= (?!\w+s\b)\w+)"
     rf"|two (?:\w+ )??{_PEOPLE}|an? (?:\w+ )?couple|couple(?= \w+ing)|a pair|people|everybody|everyone"
     r"|each(?: of them)?"
 )
 _NAMED = r"person [ab]"
 _HOW = r"(?:old|young|little|small|tall|big|angry|happy|sad|tired|drunk|elderly|nervous|shy|proud)"
-_FIRST = rf"(?:the )?(?:first|former)(?: {_KIND}| one)?|the actor|one of (?:them|the two)"
+_FIRST = rf"(?:the )?(?:first|former)(?: {KIND}| one)?|the actor|one of (?:them|the two)"
 _SECOND = (
-    rf"(?:the )?(?:second|latter)(?: {_KIND}| one)?|the (?:reactor|other)(?: {_KIND}| one)?|other (?:{_KIND}|one)"
-    rf"|another(?: {_KIND})?|someone else|somebody else|the partner"
+    rf"(?:the )?(?:second|latter)(?: {KIND}| one)?|the (?:reactor|other)(?: {KIND}| one)?|other (?:{KIND}|one)"
+    rf"|another(?: {KIND})?|someone else|somebody else|the partner"
 )
 _DOES = (
     rf"(?:(?:is|are|was|were|does|do|has|have|can|will|must|would|could|should|may|might|never|won't|\w+n't|doesnt|dont|"
@@ -61,7 +63,7 @@ _DOES = (
 _MANNER = r"(?:(?:then|finally|now|suddenly|eagerly|soon|also|just|simply|only|still|\w+ly),? )*"
 _WHERE = r"(?: (?:on|in|at|by|near|with|from|behind|beside) (?:the|an?|his|her|their) (?:\w+ )??\w+)?"
 _NOUN = (
-    rf"one {_KIND}|one|(?:{_HOW} )?{_KIND}|(?!\w+(?:s|ing|ly)\b|and\b|then\b|an?\b|the\b)\w+ {_KIND}(?= \w+s\b)"
+    rf"one {KIND}|one|(?:{_HOW} )?{KIND}|(?!\w+(?:s|ing|ly)\b|and\b|then\b|an?\b|the\b)\w+ {KIND}(?= \w+s\b)"
     rf"|(?:an?|the|his|her|their|some) (?:\w+ ){{0,3}}?\w+(?={_WHERE} {_MANNER}{_DOES})"
     r"|someone|somebody|he|she|it|i|you"
 )
@@ -81,7 +83,7 @@ _SUBJECT = re.compile(
     rf"|(?P<noun>{_NOUN}))(?=\s|$)\s*"
 )
 _VERB = re.compile(rf"^(?:{_WHERE[4:-2]} )?{_MANNER}(?:keeps?|starts?|begins?|{_DOES})")
-_SOMEBODY = re.compile(rf"(?:an? |the |his |her )?(?:{_HOW} )?{_KIND}|i|you")
+_SOMEBODY = re.compile(rf"(?:an? |the |his |her )?(?:{_HOW} )?{KIND}|i|you")
 """Subjects that need no -s on their verb: "man give flower"."""
 _PAIRED = re.compile(
     rf"(?:^|(?<=[,;.] )|(?<=then )|(?<=while )|(?<=as ))"
@@ -157,7 +159,7 @@ class _Cast:
         return found
 
 
-_NAMES_OF_PAIRS = re.compile(rf"(?:^|(?<=[,;.] )){_KIND} and {_KIND}(?= (?!\w+s\b)\w+)")
+_NAMES_OF_PAIRS = re.compile(rf"(?:^|(?<=[,;.] )){KIND} and {KIND}(?= (?!\w+s\b)\w+)")
 _A_WHILE = re.compile(
     r"\bafter (?:a|some|a few|several) (?:short |little )?(?:moment|while|bit|second|time|minute)s?,? "
 )
@@ -171,7 +173,7 @@ _PLACED = re.compile(
 )
 """A time or place before the first subject: "After the match the players …"."""
 _RAISED = re.compile(
-    rf"\b({_KIND}|{_NAMED}|(?:the|an?) \w+)'s ((?:(?:left|right) )?(?:arm|hand))s? (?:goes|shoots|flies|comes) up\b"
+    rf"\b({KIND}|{_NAMED}|(?:the|an?) \w+)'s ((?:(?:left|right) )?(?:arm|hand))s? (?:goes|shoots|flies|comes) up\b"
 )
 _TO_AND_FRO = re.compile(
     r"\b((?:walk|pac|run|march|stroll|jog|go|stride)\w*) (?:up and down|back and forth|to and fro"
@@ -209,7 +211,7 @@ def named(text: str) -> str:
         )
     text = _LATE.sub("", text)
     for name, number in (("A", "one|1|#1"), ("B", "two|2|#2")):
-        text = re.sub(rf"(?i)\b(?:(?:the )?{_KIND} ?(?:{number})|p{number[-1]})\b", f"person {name}", text)
+        text = re.sub(rf"(?i)\b(?:(?:the )?{KIND} ?(?:{number})|p{number[-1]})\b", f"person {name}", text)
     return re.sub(
         r"(?<![A-Za-z'])([A-Z][a-z]+)(?= (?:\w+s|\w+ing|and|is|has)\b|'s\b|[.,;]|$)",
         lambda m: m[0] if _is_no_name(m[0]) else f"the {m[0].lower()}",
@@ -217,7 +219,7 @@ def named(text: str) -> str:
     )
 
 
-_CAPITAL_KIND = re.compile(rf"{_KIND}$", re.IGNORECASE)
+_CAPITAL_KIND = re.compile(rf"{KIND}$", re.IGNORECASE)
 _CAPITAL_VERB = re.compile(
     r"\w+(?:ing|ly|es)$|[A-Z]{2}|(?:High|Low|Fist|Hug|Bow|Wave|Walk|Run|Shake|Kick|Push|Race|Dance|Jump|Hold|Link|"
     r"Join|Take|Swing|Clap|Sit|Stand|Turn|Kneel|Spin|Fight|Box|Hop|Skip|March|Talk|Wrestle|Pat|Tap|Kiss|Throw|Catch|"

@@ -8,6 +8,7 @@ from dataclasses import dataclass, replace
 
 from .clauses import Clause, clauses
 from .holds import Hold, hold
+from .lifts import NEAR, Carry, Lift, lift
 from .strikes import strike, turning
 from .ways import Way, way_of
 
@@ -130,6 +131,8 @@ def moves(sentence: str) -> tuple[Move, ...]:
     held = hold(sentence)
     if held is not None:
         return tuple(Move(person, Way.HOLD, near=held.value, turns=held.turns) for person in "ab")
+    if (lifted := lift(sentence)) is not None:
+        return _lifted(lifted)
     if (struck := strike(sentence)) is not None:
         near, turns = struck.bout.value, turning(struck.bout)
         return tuple(Move(person, Way.SPAR, near=near, turns=turns) for person in "ab")
@@ -194,6 +197,18 @@ def _of_clause(clause: Clause, *, late: bool) -> list[Move]:
     metres = _STEP * _STEPS.get((_COUNT.search(clause.words) or [""])[0], 3) if way is Way.AHEAD else 0.0
     turns = 1.0 if _FULL.search(clause.words) or (way is Way.TURN and _SPINS.search(clause.words)) else 0.5
     return [Move(person, way, speed, turns, late=late, metres=metres) for person in who]
+
+
+def _lifted(found: Lift) -> tuple[Move, ...]:
+    """The way of one who picks the other up, and walks on with them or turns round."""
+    comes = found.comes or found.carrier
+    made = [Move(comes, Way.TO, near=NEAR), Move("b" if comes == "a" else "a", Way.STAY)]
+    if found.spins:
+        made.append(Move(found.carrier, Way.TURN, turns=1.0))
+    elif found.carry is not Carry.UP:
+        made += [Move(found.carrier, Way.STAY)] if found.comes else []
+        made.append(Move(found.carrier, Way.AWAY, 0.8))
+    return tuple(made)
 
 
 def _followed(made: list[Move], *, until: bool) -> list[Move]:

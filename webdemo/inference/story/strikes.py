@@ -18,7 +18,7 @@ from numpy.typing import NDArray
 from motion import SMPL22
 from motion.transforms import heading_matrix
 
-from .clauses import Clause, clauses
+from .clauses import OTHER, Clause, clauses
 from .poses import bending
 
 Array = NDArray[np.floating]
@@ -58,8 +58,6 @@ class Blow:
 
 
 _EACH = r"(?:each other|one another)"
-_OTHER = r"(?:person [ab]|him|her|them|the other(?: person| one)?|(?:the|an?|his|her) (?:\w+ )?\w+)"
-_NOBODY = r"(?:the|an?|his|her) (?:\w+ )?(?:road|ball|wall|ground|floor|drum|target|bag|air|table|button|note|pose)s?\b"
 _THING = r"(?:ball|snowball|frisbee|key|bottle|apple|pillow|stone|book|hat|coin|phone)s?"
 _WEAPONS = re.compile(
     r"\b(?:swords?|sab(?:re|er)s?|sticks?|staffs?|lightsab(?:re|er)s?|fenc\w+|pillows?|spears?)\b"
@@ -72,20 +70,20 @@ _FIGHT = re.compile(
     r"|\bcom(?:e|es|ing) to blows\b|\bin an? (?:\w+ )?(?:fist ?)?(?:fight|duel)\b|\bfist[- ]?fight\w*"
     r"|\bhav(?:e|ing) an? (?:\w+ )?(?:fight|duel)\b"
 )
-_AGAINST = re.compile(rf"\b(?:fight|box|spar|duel|fenc)(?:e?s|ing)? (?:with |against )?{_OTHER}\b")
+_AGAINST = re.compile(rf"\b(?:fight|box|spar|duel|fenc)(?:e?s|ing)? (?:with |against )?{OTHER}\b")
 _PUNCHES = re.compile(
-    rf"\b(?:punch|hit|strik|jab|thump|sock)(?:es|s|ing|ting)? (?:out )?(?:at )?(?!{_NOBODY}){_OTHER}(?! with)\b"
+    rf"\b(?:punch|hit|strik|jab|thump|sock)(?:es|s|ing|ting)? (?:out )?(?:at )?{OTHER}(?! with)\b"
     r"|\b(?:hit|punch|strik|fight)(?:es|s)? back\b|\bretaliates\b"
 )
 _RACKETS = re.compile(
     r"\bplay\w* (?:a game of )?(?:table )?(?:tennis|badminton|squash|ping[- ]?pong|paddle)\b"
 )
 _THROWS = re.compile(
-    rf"\b(?:throw|toss|pass|lob|chuck)(?:es|s|ing)? (?:{_OTHER} )??(?:(?:an?|the|his|her|their|some) )?"
+    rf"\b(?:throw|toss|pass|lob|chuck)(?:es|s|ing)? (?:{OTHER} )??(?:(?:an?|the|his|her|their|some) )?"
     rf"(?:\w+ )?{_THING}\b"
     r"|\bplay\w* (?:catch|ball|frisbee)\b|\bsnowball fight\b"
 )
-_THROWN = re.compile(rf"\bcatch\w* .*\bthrown (?:to \w+ )?by {_OTHER}")
+_THROWN = re.compile(rf"\bcatch\w* .*\bthrown (?:to \w+ )?by {OTHER}")
 _CATCHES = re.compile(r"\bcatch(?:es)? (?:it|the \w+|them)\b")
 _NOT = re.compile(
     r"\b(?:do(?:es)?n't|not|without|never|refus\w+ to|wants? to|about to|tries to|pretends? to|stops?|almost)\b"

@@ -1,0 +1,52 @@
+"""Lifts of the words are met by a network that has learned nothing."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from motion import SMPL22
+from webdemo.inference import Engine
+
+from .test_planned_scenes import made
+
+FEET = [SMPL22.index(f"{side}_{part}") for side in ("left", "right") for part in ("ankle", "foot")]
+
+
+def low(motion: np.ndarray, person: int) -> np.ndarray:
+    """(T,) metres of a person's lowest foot over the floor."""
+    return motion[person][:, FEET, 1].min(axis=1)
+
+
+def test_who_is_lifted_leaves_the_floor_and_comes_down_again(engine: Engine) -> None:
+    found = made(engine, "He lifts her up.")
+    feet = low(found, 1)
+    assert feet[0] < 0.08 and feet[50:90].min() > 0.15 and feet[-1] < 0.1
+    assert low(found, 0).max() < 0.12
+    assert low(made(engine, "He lifts her up.", planned=False), 1)[50:90].min() < 0.15
+
+
+def test_two_who_spin_in_a_lift_turn_all_the_way_round(engine: Engine) -> None:
+    found = made(engine, "He picks her up and spins her around.")
+    line = found[1, :, 0] - found[0, :, 0]
+    angle = np.unwrap(np.arctan2(line[:, 0], line[:, 2]))
+    assert abs(angle[-20] - angle[0]) > np.radians(300)
+
+
+@pytest.mark.parametrize(
+    ("words", "carrier"),
+    [
+        ("He carries her in his arms.", 0),
+        ("A father carries his daughter on his back.", 0),
+        ("Person B carries person A away.", 1),
+    ],
+)
+def test_who_carries_walks_one_foot_after_the_other(engine: Engine, words: str, carrier: int) -> None:
+    found = made(engine, words)
+    assert low(found, 1 - carrier)[10:].min() > 0.15
+    pelvis = found[:, :, 0][..., [0, 2]]
+    assert np.linalg.norm(pelvis[carrier, -1] - pelvis[carrier, 0]) > 1.5
+    assert np.linalg.norm(pelvis[0] - pelvis[1], axis=-1).max() < 0.5
+    toes = found[carrier][:, [SMPL22.index("left_foot"), SMPL22.index("right_foot")]][..., [0, 2]]
+    speeds = np.linalg.norm(np.diff(toes[30:120], axis=0), axis=-1) * 30
+    assert np.median(speeds.min(axis=1)) < 0.3 and np.median(speeds.max(axis=1)) > 0.8

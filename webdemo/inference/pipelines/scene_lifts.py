@@ -1,0 +1,136 @@
+"""Lifts that the words of a beat ask for: the body of who is carried and the hands of who carries."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from motion import SMPL22
+from webdemo.inference.actor import Placement
+from webdemo.inference.directed import KnownFrames
+from webdemo.inference.story.floor import Standing, Way2D
+from webdemo.inference.story.lifts import NEAR, Carry, Lift, carried
+from webdemo.inference.story.plan import Window
+from webdemo.inference.story.poses import LOWER, TRUNK, upright
+
+from .scene_hands import Course
+from .steering import STRIDE, Steps
+
+Array = NDArray[np.floating]
+OFTEN = 3
+"""Frames between two given poses."""
+RISES = 16
+"""Frames in which somebody is picked up, or set down."""
+LONG = 75
+"""Frames of a lift, from which on who is lifted is set down again before the beat ends."""
+_FAR = 0.9
+"""Metres between the two from which on nobody is picked up."""
+_STANDS = 0.003
+"""Metres or radians a frame below which a body stands."""
+_ELBOWS = [SMPL22.index("left_elbow"), SMPL22.index("right_elbow")]
+_WRISTS = [SMPL22.index("left_wrist"), SMPL22.index("right_wrist")]
+_CARRIER = [*LOWER, *(joint for joint in TRUNK if joint not in LOWER), *_WRISTS]
+_BODY = [joint for joint in range(SMPL22.num_joints) if joint not in _ELBOWS]
+
+
+@dataclass(frozen=True)
+class Carrying:
+    """A lift in its beat.
+
+    Attributes:
+        lift: as the words name it.
+        ways: of both people, by person.
+        stand: where they are when the beat begins.
+        start, stop: the beat's first frame and the one after its last.
+    """
+
+    lift: Lift
+    ways: Mapping[int, Way2D]
+    stand: Standing
+    start: int
+    stop: int
+
+    @property
+    def carrier(self) -> int:
+        """0 or 1."""
+        return "ab".index(self.lift.carrier)
+
+    @property
+    def off(self) -> tuple[int, int]:
+        """The first frame of the beat at which the feet are off the floor, and the one after the last."""
+        frames = self.stop - self.start
+        if not self.start and not self.lift.comes and self.lift.carry is not Carry.UP:
+            return 0, frames
+        own, other = (self._course(person) for person in (0, 1))
+        apart = np.linalg.norm(own.places - other.places, axis=1)
+        near = int(np.flatnonzero(apart < max(NEAR, float(apart.min())) + 0.05)[0])
+        first = min(near + RISES if apart[near] < _FAR else frames, frames)
+        down = self.lift.carry is Carry.UP and frames - first > LONG
+        return first, frames - 2 * RISES if down else frames
+
+    def before(self) -> dict[int, Way2D]:
+        """The ways until shortly before the feet leave the floor; from then on, poses say where people are."""
+        found, until = {}, self.off[0] - RISES // 2
+        for person, way in self.ways.items():
+            kept = np.asarray(way.frames) < (until if person != self.carrier else self.off[0])
+            if person != self.carrier and not self.start:
+                kept &= np.asarray(way.frames) > 0  # where they begin on their feet
+            if kept.any():
+                headings = None if way.headings is None else way.headings[kept]
+                frames = np.asarray(way.frames)[kept].tolist()
+                found[person] = replace(way, frames=frames, places=way.places[kept], headings=headings)
+        return found
+
+    def given(self, window: Window, placement: Placement) -> list[KnownFrames]:
+        """The body of who is carried, and pelvis, trunk and hands of who carries, as the network is given them."""
+        course, parts = self._course(self.carrier), []
+        at = np.arange(*self.off, OFTEN)
+        at = at[(at + self.start >= window.start) & (at + self.start < window.stop)]
+        if len(at):
+            walking = self._walking()[at - self.off[0]]
+            made = [carried(self.lift.carry, course.places[t], float(course.headings[t])) for t in at]
+            theirs, own = (np.stack(poses) for poses in zip(*made, strict=True))
+            sinks = walking[:, :1] - own[:, :1]
+            theirs, own = theirs + sinks, own + sinks
+            own[:, LOWER] = walking[:, LOWER]
+            frames = (at + self.start - window.start + window.past).tolist()
+            parts.append(KnownFrames(1 - self.carrier, frames, placement.to_network(theirs), _BODY))
+            parts.append(KnownFrames(self.carrier, frames, placement.to_network(own), _CARRIER))
+        feet = [(f, pose) for f, pose in self._on_feet() if window.start <= f + self.start < window.stop]
+        if feet:
+            frames = [f + self.start - window.start + window.past for f, _ in feet]
+            poses = placement.to_network(np.stack([pose for _, pose in feet]))
+            parts.append(KnownFrames(1 - self.carrier, frames, poses, LOWER))
+        return parts
+
+    def _walking(self) -> Array:
+        """(N, 22, 3) the carrier's poses while the other is off the floor, one foot after the other."""
+        course, steps = self._course(self.carrier), Steps()
+        speed = np.insert(np.gradient(course.places, axis=0), 1, 0.0, axis=1)
+        turned = np.gradient(course.headings)
+        found = []
+        for t in range(*self.off):
+            pose = upright(course.places[t], float(course.headings[t]))
+            pose -= (pose[0] - [*course.places[t][:1], 0.0, *course.places[t][1:]]) * [1.0, 0.0, 1.0]
+            moving = bool(np.linalg.norm(speed[t]) > _STANDS or abs(turned[t]) > _STANDS)
+            found.append(steps(pose, moving=moving, ahead=STRIDE / 2 * speed[t]))
+        return np.stack(found)
+
+    def _on_feet(self) -> Iterator[tuple[int, Array]]:
+        """Frames before and after the lift, and poses (22, 3) of who is carried then."""
+        first, last = self.off
+        other, frames = 1 - self.carrier, self.stop - self.start
+        if first and not self.start:
+            yield 0, upright(self.stand.places[other], float(self.stand.headings[other]))
+        if last < frames:
+            own = self._course(self.carrier)
+            angle = float(own.headings[-1])
+            place = own.places[-1] + NEAR * np.array([np.sin(angle), np.cos(angle)])
+            for frame in (frames - RISES // 2, frames - 1):
+                yield frame, upright(place, angle + np.pi)
+
+    def _course(self, person: int) -> Course:
+        return Course.of(self.ways[person], float(self.stand.headings[person]), self.stop - self.start)

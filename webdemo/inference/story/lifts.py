@@ -1,0 +1,187 @@
+"""Lifts: one who picks the other up, carries them in the arms or takes them on the back.
+
+No scene of the training data has anybody off the floor on somebody else, so the whole body of who is carried is given,
+and the hands of who carries.
+"""
+
+from __future__ import annotations
+
+import re
+from dataclasses import dataclass
+from enum import Enum
+
+import numpy as np
+from numpy.typing import NDArray
+
+from motion import SMPL22
+from motion.kinematics import forward_kinematics
+from motion.transforms import heading_matrix
+
+from .clauses import OTHER, Clause, clauses
+from .poses import bending
+from .ways import Way, way_of
+
+Array = NDArray[np.floating]
+
+
+class Carry(Enum):
+    """Ways in which somebody is held, and the place of their pelvis beside the carrier's, who faces +Z, in metres."""
+
+    UP = (0.0, 0.27, 0.3)
+    ARMS = (0.0, 0.12, 0.3)
+    BACK = (0.0, 0.22, -0.2)
+
+
+@dataclass(frozen=True)
+class Lift:
+    """A lift of one person by the other.
+
+    Attributes:
+        carrier: "a" or "b".
+        carry: how the other is held.
+        spins: the two turn round meanwhile.
+        comes: who walks up to the other first, if somebody does.
+    """
+
+    carrier: str
+    carry: Carry
+    spins: bool = False
+    comes: str = ""
+
+
+NEAR = 0.45
+"""Metres between the pelvises at which one picks the other up."""
+_BACK = re.compile(
+    rf"\bcarr(?:y|ies|ying) {OTHER} (?:\w+ )?on (?:his|her|their|the) (?:back|shoulders)\b"
+    rf"|\bpiggy-?back\w*|\btakes? {OTHER} on (?:his|her|their) back\b"
+)
+_ARMS = re.compile(
+    rf"\bcarr(?:y|ies|ying) {OTHER}"
+    r"(?: (?:away|off|out|across|through|over|along|around|about|home|to|in (?:his|her|their) arms)\b|$)"
+)
+_UP = re.compile(
+    rf"\b(?:pick|lift|hoist|scoop)s? {OTHER} (?:up\b|(?:up )?(?:off|into|in|from) (?:the|his|her|their)\b)"
+    rf"|\bsweeps? {OTHER} off (?:his|her|their) feet\b"
+    rf"|\b(?:lift|hoist|pick)s? up {OTHER}|\blifts? {OTHER}$"
+)
+_LEAPS = re.compile(
+    r"\b(?:jump|leap)(?:s|ing)? (?:up )?into (?:his|her|their|person [ab]'s|the \w+'s) arms\b"
+)
+_RIDES = re.compile(
+    r"\b(?:jump|climb|hop|get|ride)(?:s|ing)? (?:up )?(?:on|onto) (?:his|her|their|person [ab]'s|the \w+'s) back\b"
+)
+_CARRIED = re.compile(
+    r"\b(?:is|are|gets?|being) (?P<verb>carried|lifted|picked) (?P<rest>.*)\bby (?:person [ab]|him|her|the|an?)"
+)
+_SPINS = re.compile(r"\b(?:spin|whirl|swing|twirl|turn)s? (?:\w+(?: [ab])? )?(?:a?round|in circles)\b")
+_NOT = re.compile(
+    r"\b(?:do(?:es)?n't|not|without|never|refus\w+ to|wants? to|about to|tries to|pretends? to|almost|cannot|can't)\b"
+)
+_LEGS = {
+    Carry.UP: (-0.15, 0.0, 0.35),
+    Carry.ARMS: (-0.9, 0.0, 1.2),
+    Carry.BACK: (-1.25, 0.4, 1.3),
+}
+"""Radians of the hips forward (negative) and out, and of the knees, of who is carried."""
+_SIDES = (("left", 1.0), ("right", -1.0))
+
+
+def lift(sentence: str) -> Lift | None:
+    """The lift of a beat's sentence, if it tells of one."""
+    found = clauses(sentence)
+    spins = any(_SPINS.search(clause.words) for clause in found)
+    comes = next((c.who for c in found if c.who != "ab" and way_of(c.words) is Way.TO), "")
+    named = [
+        read
+        for clause in found
+        if clause.who != "ab" and clause.subject and not _NOT.search(clause.words)
+        if (read := _of_clause(clause)) is not None
+    ]
+    if not named:
+        return None
+    carrier, carry = next((read for read in named if read[1] is not Carry.UP), named[0])
+    if len({carry for _, carry in named}) > 1:
+        comes = comes or carrier  # they are picked up before they are carried
+    return Lift(carrier, carry, spins and carry is not Carry.BACK, comes)
+
+
+def _of_clause(clause: Clause) -> tuple[str, Carry] | None:
+    """The carrier that a clause names, and how the other is held."""
+    words, other = clause.words, "b" if clause.who == "a" else "a"
+    if _LEAPS.search(words):
+        return other, Carry.UP
+    if _RIDES.search(words):
+        return other, Carry.BACK
+    if (passive := _CARRIED.search(words)) is not None:
+        up = Carry.ARMS if passive["verb"] == "carried" else Carry.UP
+        return other, Carry.BACK if "back" in passive["rest"] else up
+    for carry, pattern in ((Carry.BACK, _BACK), (Carry.ARMS, _ARMS), (Carry.UP, _UP)):
+        if pattern.search(words):
+            return clause.who, carry
+    return None
+
+
+def carried(carry: Carry, place: Array, angle: float) -> tuple[Array, Array]:
+    """The pose of who is carried, and of who carries.
+
+    Args:
+        carry: how.
+        place: (2,) x and z of the carrier's pelvis in metres.
+        angle: the carrier's heading in radians.
+
+    Returns:
+        (22, 3) metres in the world, with wrists where they hold on but elbows as they hang, and (22, 3) of the
+        carrier, of which the trunk and the wrists are meant.
+    """
+    turn = heading_matrix(angle)
+    carrier = bending(place, angle, {Carry.UP: -0.08, Carry.ARMS: -0.1, Carry.BACK: 0.3}[carry])
+    pose = _pose(carry) @ turn.T + carrier[0] + turn @ np.array(carry.value)
+
+    def own(name: str) -> Array:
+        return carrier[SMPL22.index(name)]
+
+    def theirs(name: str) -> Array:
+        return pose[SMPL22.index(name)]
+
+    left, up, ahead = turn[:, 0], np.array([0.0, 1.0, 0.0]), turn[:, 2]
+    if carry is Carry.UP:
+        hands = {s: theirs("spine2") + sign * 0.12 * left + 0.08 * ahead for s, sign in _SIDES}
+        holds = {s: own(f"{o}_shoulder") + 0.1 * up for s, o in (("left", "right"), ("right", "left"))}
+    elif carry is Carry.ARMS:
+        hands = {
+            "left": theirs("spine3") - 0.1 * up,
+            "right": 0.5 * (theirs("left_knee") + theirs("right_knee")) - 0.1 * up,
+        }
+        holds = {"left": theirs("spine2") + 0.16 * up, "right": own("neck") + 0.12 * left + 0.05 * ahead}
+    else:
+        hands = {s: 0.7 * theirs(f"{s}_knee") + 0.3 * theirs(f"{s}_hip") - 0.04 * up for s, _ in _SIDES}
+        holds = {s: own("spine3") + 0.14 * ahead + sign * 0.08 * left + 0.08 * up for s, sign in _SIDES}
+    for side, _ in _SIDES:
+        wrist = SMPL22.index(f"{side}_wrist")
+        carrier[wrist], pose[wrist] = hands[side], holds[side]
+    return pose, carrier
+
+
+def _pose(carry: Carry) -> Array:
+    """(22, 3) metres from the pelvis of who is carried by somebody who faces +Z."""
+    hip, out, knee = _LEGS[carry]
+    turns = np.tile(np.eye(3), (1, SMPL22.num_joints, 1, 1))
+    if carry is Carry.UP:
+        turns[:, 0] = heading_matrix(np.pi)
+    elif carry is Carry.BACK:
+        turns[:, 0] = _about("x", 0.25)
+    else:  # the head on the carrier's left, the face up
+        turns[:, 0] = np.array([[0.0, 0.85, -0.53], [0.0, 0.53, 0.85], [1.0, 0.0, 0.0]])
+        turns[:, SMPL22.index("spine1")] = _about("x", 0.2)
+    for side, sign in _SIDES:
+        turns[:, SMPL22.index(f"{side}_hip")] = _about("z", sign * out) @ _about("x", hip)
+        turns[:, SMPL22.index(f"{side}_knee")] = _about("x", knee)
+        turns[:, SMPL22.index(f"{side}_shoulder")] = _about("z", -sign * 1.2)
+    return forward_kinematics(turns, np.zeros((1, 3)))[0]
+
+
+def _about(axis: str, angle: float) -> Array:
+    cos, sin = np.cos(angle), np.sin(angle)
+    if axis == "x":
+        return np.array([[1.0, 0.0, 0.0], [0.0, cos, -sin], [0.0, sin, cos]])
+    return np.array([[cos, -sin, 0.0], [sin, cos, 0.0], [0.0, 0.0, 1.0]])
