@@ -154,3 +154,10 @@ def test_a_ball_goes_to_and_fro_between_two_who_stand_apart(engine: Engine) -> N
     first = [int(speed_of_hands(found, person).max(axis=0)[5:70].argmax()) for person in (0, 1)]
     thrown = [found[p, :, SMPL22.index("right_wrist"), 1] - found[p, :, 0, 1] for p in (0, 1)]
     assert thrown[0][5:30].max() > 0.55 and thrown[1][50:80].max() > 0.55 and first[0] < 30
+
+
+def test_those_side_by_side_stay_so_and_those_back_to_back_sit_so(engine: Engine) -> None:
+    beside = made(engine, "Two people practise tai chi side by side.")
+    assert np.abs(np.diff(beside[:, ::10, 0], axis=1)).max() < 0.15
+    backs = made(engine, "They sit back to back.")
+    assert backs[:, 30:, 0, 1].max() < 0.75

@@ -12,7 +12,7 @@ from motion import SMPL22
 from motion.transforms import heading
 from webdemo.inference.actor import FPS, Placement
 from webdemo.inference.directed import KnownFrames, KnownPath, Part
-from webdemo.inference.story.beginnings import beginning
+from webdemo.inference.story.beginnings import beginning, keeps_place
 from webdemo.inference.story.contacts import contact
 from webdemo.inference.story.floor import Standing, Way2D, plan, starting
 from webdemo.inference.story.gestures import Hand, gestures
@@ -66,6 +66,8 @@ def planned(request: SceneRequest, window: Window, scene: Array, placement: Plac
     touch, found = meeting(contact(words), found, posed, stand)
     if touch is not None:
         parts = [part for part in parts if part.person != "ab".index(touch.person)]
+    if not start and not parts and not found and keeps_place(words):
+        found = tuple(Move(who, Way.AVERTED) for who in "ab")
     ways = {way.person: way for way in plan(found, stand, stop - start, first=not start)}
     ways = {person: way for person, way in ways.items() if person not in {part.person for part in parts}}
     if lifted is not None and len(ways) == 2:
@@ -74,9 +76,6 @@ def planned(request: SceneRequest, window: Window, scene: Array, placement: Plac
         ways = carrying.before()
     for way in ways.values():
         parts += _path(way, window, start, placement)
-    if not start and not parts and beginning(words) is not None:
-        stays = plan([Move(who, Way.AVERTED) for who in "ab"], stand, stop - start, first=True)
-        parts += [part for way in stays for part in _path(way, window, start, placement)]
     if touch is not None and (
         part := given_contact(touch, ways, posed, stand, start, stop, window, placement)
     ):
@@ -106,7 +105,7 @@ def _held(
     """The poses of bystanders and of those whose posture is given, and a pose of each of the latter."""
     start, stop = request.edges[window.beat], request.edges[window.beat + 1]
     sentences = [beat.sentence for beat in request.beats]
-    gone = {move.person for move in found if move.way is not Way.STAY}
+    gone = {move.person for move in found if move.way not in (Way.STAY, Way.BACKS)}
     parts: list[Part] = []
     posed: dict[int, Array] = {}
     for person, who in enumerate("ab"):

@@ -27,6 +27,12 @@ BACKS = 0.5
 _SEATS = {Posture.SITS: seated, Posture.GROUND: grounded}
 
 
+def keeps_place(sentence: str) -> bool:
+    """True if a sentence has two people side by side or back to back, where they stay."""
+    words = sentence.lower()
+    return bool(_BACKS.search(words) or _BESIDE.search(words))
+
+
 def beginning(sentence: str) -> Standing | None:
     """Places of two people of whom a sentence says that they are side by side or back to back; None of others."""
     words = sentence.lower()
