@@ -161,3 +161,14 @@ def test_those_side_by_side_stay_so_and_those_back_to_back_sit_so(engine: Engine
     assert np.abs(np.diff(beside[:, ::10, 0], axis=1)).max() < 0.15
     backs = made(engine, "They sit back to back.")
     assert backs[:, 30:, 0, 1].max() < 0.75
+
+
+def test_who_is_twirled_turns_all_the_way_round_under_joined_hands(engine: Engine) -> None:
+    found = made(engine, "He twirls her under his arm.")
+    for left, right in (("left_hip", "right_hip"), ("left_shoulder", "right_shoulder")):
+        across = found[1, :, SMPL22.index(left)] - found[1, :, SMPL22.index(right)]
+        angle = np.unwrap(np.arctan2(across[:, 0], across[:, 2]))
+        assert abs(abs(angle[-15] - angle[15]) - 2 * np.pi) < 0.6
+    gap = nearest(found, 0, ["right_wrist"], ["right_wrist"])[20:130]
+    assert np.mean(gap < 0.2) > 0.9
+    assert found[0, 20:130, SMPL22.index("right_wrist"), 1].min() > 1.6

@@ -5,7 +5,9 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from webdemo.inference.story.holds import Hold, hold, joined, leads_by_both_hands
+from motion import SMPL22
+from webdemo.inference.story.holds import TWIRL, Hold, hold, joined, leads_by_both_hands, raised, twirls
+from webdemo.inference.story.poses import upright
 
 FACING = np.array([[[0.0, 0.0]], [[0.0, 0.5]]])
 """Person a at the origin, facing +Z; person b before them."""
@@ -54,3 +56,29 @@ def test_both_hands_are_joined_in_a_ring_wherever_it_has_turned_to() -> None:
 def test_who_leads_by_both_hands_is_told_from_who_leads_by_one() -> None:
     assert leads_by_both_hands("Holding both her hands, he walks backwards and leads her along.")
     assert not leads_by_both_hands("He takes her by the hand.")
+
+
+@pytest.mark.parametrize(
+    ("words", "leader"),
+    [
+        ("He twirls her.", "a"),
+        ("While dancing he twirls her under his arm", "a"),
+        ("She spins under his arm.", "b"),
+        ("Person B turns person A around under his arm.", "b"),
+        ("They twirl around.", ""),
+        ("He spins her around.", ""),
+        ("He does not twirl her.", ""),
+        ("She twirls.", ""),
+    ],
+)
+def test_twirls_are_read(words: str, leader: str) -> None:
+    assert twirls(words) == leader
+
+
+def test_the_hands_over_a_twirl_are_above_both_heads_and_in_reach_of_both() -> None:
+    places = np.array([[[0.0, 0.0]], [[0.0, TWIRL]]])
+    (hand,) = raised(places)
+    for person, angle in ((0, 0.0), (1, np.pi)):
+        pose = upright(places[person, 0], angle)
+        assert hand[1] > pose[SMPL22.index("head"), 1] + 0.1
+        assert np.linalg.norm(hand - pose[SMPL22.index("right_shoulder")]) < 0.56

@@ -12,7 +12,7 @@ from webdemo.inference.actor import FPS, Placement
 from webdemo.inference.directed import KnownFrames
 from webdemo.inference.story.contacts import Contact, lean, middle, reach, touched
 from webdemo.inference.story.floor import Standing, Way2D
-from webdemo.inference.story.holds import Hold, joined
+from webdemo.inference.story.holds import Hold, joined, raised
 from webdemo.inference.story.moves import Move
 from webdemo.inference.story.plan import Window
 from webdemo.inference.story.poses import TRUNK, bending, upright
@@ -32,6 +32,7 @@ TAKEN_BACK = 0.2
 """Metres by which a hand is taken back between two pats."""
 LOWEST = 0.55
 """Height in metres of the lowest place that somebody on their feet reaches."""
+_HIPS = [SMPL22.index("left_hip"), SMPL22.index("right_hip")]
 _WRISTS = [SMPL22.index("left_wrist"), SMPL22.index("right_wrist")]
 _COMES = (Way.TO, Way.BEHIND, Way.STAY, Way.FACE)
 _WAITS = (Way.STAY, Way.AVERTED, Way.FACE, Way.TURN)
@@ -156,6 +157,28 @@ def given_hold(
         poses[:, _WRISTS] = np.moveaxis(wrists[person], 0, 1)
         poses -= poses[:, :1].copy()
         parts.append(KnownFrames(person, frames, placement.to_network(poses), [*TRUNK, *_WRISTS]))
+    return parts
+
+
+def given_twirl(
+    ways: Mapping[int, Way2D], stand: Standing, start: int, stop: int, window: Window, placement: Placement
+) -> list[KnownFrames]:
+    """The bodies and joined right hands of two people, one of whom turns under them; arguments as above."""
+    courses = [_course(person, ways, stand, stop - start) for person in (0, 1)]
+    at = np.arange(REACHES, stop - start - REACHES, 3)
+    at = at[(at + start >= window.start) & (at + start < window.stop)]
+    if not len(at):
+        return []
+    places = np.stack([course.places[at] for course in courses])
+    hands, wrist = raised(places), SMPL22.index("right_wrist")
+    frames = (at + start - window.start + window.past).tolist()
+    parts = []
+    for person in (0, 1):
+        course = courses[person]
+        poses = np.stack([upright(course.places[t], float(course.headings[t])) for t in at])
+        poses[:, wrist] = hands
+        poses -= poses[:, :1].copy()
+        parts.append(KnownFrames(person, frames, placement.to_network(poses), [*_HIPS, *TRUNK, wrist]))
     return parts
 
 

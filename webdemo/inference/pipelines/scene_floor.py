@@ -16,7 +16,7 @@ from webdemo.inference.story.beginnings import beginning, keeps_place
 from webdemo.inference.story.contacts import contact
 from webdemo.inference.story.floor import Standing, Way2D, plan, starting
 from webdemo.inference.story.gestures import Hand, gestures
-from webdemo.inference.story.holds import Hold, hold, leads_by_both_hands
+from webdemo.inference.story.holds import Hold, hold, leads_by_both_hands, twirls
 from webdemo.inference.story.idle import gesturing, idle, is_planned, touches
 from webdemo.inference.story.lifts import lift
 from webdemo.inference.story.moves import Move, goes, moves
@@ -28,7 +28,7 @@ from webdemo.inference.story.strikes import strike
 from webdemo.inference.story.track import HALT
 from webdemo.inference.story.ways import Way
 
-from .scene_contacts import given_contact, given_hold, meeting
+from .scene_contacts import given_contact, given_hold, given_twirl, meeting
 from .scene_hands import hands, known_hands
 from .scene_lifts import Carrying
 from .scene_postures import UPRIGHT, led, postures
@@ -83,6 +83,8 @@ def planned(request: SceneRequest, window: Window, scene: Array, placement: Plac
     led = Hold.RING if any(move.backwards for move in found) and leads_by_both_hands(words) else None
     if (held := hold(words) or led) is not None and len(ways) == 2:
         parts += given_hold(held, ways, stand, start, stop, window, placement)
+    if len(ways) == 2 and twirls(words):
+        parts += given_twirl(ways, stand, start, stop, window, placement)
     if len(ways) == 2 and (struck := strike(words)) is not None:
         parts += given_blows(struck, ways, stand, start, stop, window, placement)
     for person, (gesture, frames, wrists) in hands(words, found, ways, posed, stand, stop - start).items():
@@ -158,7 +160,7 @@ def _said_postures(sentence: str) -> Iterator[str]:
 def _beginning(request: SceneRequest) -> Standing:
     """Places before the first beat, so that the first moves of the story can begin."""
     first = request.beats[0].sentence
-    if (lift(first) or not goes(moves(first))) and (placed := beginning(first)) is not None:
+    if (lift(first) or twirls(first) or not goes(moves(first))) and (placed := beginning(first)) is not None:
         return placed
     if any(gesture.hand is Hand.OFFERS for gesture in gestures(first).values()):
         return starting((), request.beats[0].length)

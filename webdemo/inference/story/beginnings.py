@@ -8,6 +8,7 @@ import re
 import numpy as np
 
 from .floor import ABREAST, Standing
+from .holds import TWIRL, twirls
 from .lifts import NEAR, Carry, Lift, lift
 from .poses import grounded, seated
 from .postures import Posture, changes
@@ -46,8 +47,9 @@ def beginning(sentence: str) -> Standing | None:
         return Standing(np.array([[0.0, 0.0], [-ABREAST, 0.0]]), np.zeros(2))
     if (lifted := lift(sentence)) is not None and not lifted.comes:
         return _carried(lifted)
-    if _KICKS.search(words):
-        return Standing(np.array([[0.0, 0.0], [0.0, KICK]]), np.array([0.0, math.pi]))
+    if twirls(sentence) or _KICKS.search(words):
+        apart = TWIRL if twirls(sentence) else KICK
+        return Standing(np.array([[0.0, 0.0], [0.0, apart]]), np.array([0.0, math.pi]))
     return None
 
 

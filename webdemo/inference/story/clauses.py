@@ -99,6 +99,7 @@ _JOIN = re.compile(
 _AT_ONCE = re.compile(r"\b(?:while|as|whereas|when|who)\b")
 _UNTIL = re.compile(r"\b(?:until|till)\b")
 _OPENING = re.compile(r"^(?:while|as|when|whereas|whenever|each time|every time)\s+")
+_NO_COMMA = re.compile(r"^((?:while|when) \w+ing) (?=(?:he|she|they|person [ab]) \w+)")
 _AFTER = re.compile(r"^(?:after|upon|following|once)\s+")
 
 
@@ -258,6 +259,7 @@ class Reader:
         mark = ""
         text = plain(sentence)
         text, led = _LEADING.subn(r"\1, ", text)
+        text = _NO_COMMA.sub(r"\1, ", text)
         opening = bool(_OPENING.match(text)) or (bool(led) and not _AFTER.match(text))
         text = _AFTER.sub("", _OPENING.sub("", text))
         for i, piece in enumerate(_JOIN.split(text)):

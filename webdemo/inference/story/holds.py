@@ -11,7 +11,7 @@ from enum import Enum
 import numpy as np
 from numpy.typing import NDArray
 
-from .clauses import clauses
+from .clauses import OTHER, clauses
 
 Array = NDArray[np.floating]
 
@@ -41,6 +41,17 @@ _HANDS = re.compile(
     r"(?:both )?(?:their )?hands\b"
     r"|\bby (?:both|the) hands\b|\bboth hands joined\b|\bhand in hand\b"
 )
+_TWIRLS = re.compile(
+    rf"\b(?:twirl|spin|turn|whirl)(?:s|ing)? {OTHER} (?:a?round )?(?:(?:once|twice) )?under\b"
+    rf"|\btwirls? {OTHER}(?: a?round)?$|\bspins? {OTHER} out\b"
+)
+_TWIRLED = re.compile(
+    r"\b(?:twirl|spin|turn)s? (?:a?round )?under (?:his|her|their|person [ab]'s|the \w+'s) (?:raised )?arm\b"
+)
+TWIRL = 0.42
+"""Metres between the pelvises of two of whom one turns under the other's arm."""
+_OVER = 1.88
+"""Height in metres of the hands over somebody who turns under them."""
 _BOTH = re.compile(r"\bboth (?:of )?(?:his|her|their|the other's|person [ab]'s) hands\b|\bby both hands\b")
 _LEADS = re.compile(r"(?:is |are )?(?:lead|follow)(?:s|ing)?")
 _NOT = re.compile(r"\b(?:do(?:es)?n't|not|without|never|refus\w+ to|wants? to|stops?)\b")
@@ -55,6 +66,23 @@ def hold(sentence: str) -> Hold | None:
     if _DANCE.search(words):
         return Hold.CLOSED
     return Hold.RING if _HANDS.search(words) and _TURN.search(words) else None
+
+
+def twirls(sentence: str) -> str:
+    """The one, "a" or "b", under whose raised arm the other turns in a beat's sentence; "" if nobody does."""
+    for clause in clauses(sentence):
+        if clause.who == "ab" or not clause.subject or _NOT.search(clause.words):
+            continue
+        if _TWIRLS.search(clause.words):
+            return clause.who
+        if _TWIRLED.search(clause.words):
+            return "b" if clause.who == "a" else "a"
+    return ""
+
+
+def raised(places: Array) -> Array:
+    """The place of the two joined hands over two people (2, N, 2), one of whom turns under them: (N, 3) metres."""
+    return np.insert(np.mean(places, axis=0), 1, _OVER, axis=-1)
 
 
 def leads_by_both_hands(sentence: str) -> bool:

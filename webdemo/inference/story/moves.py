@@ -7,7 +7,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 from .clauses import Clause, clauses
-from .holds import Hold, hold
+from .holds import TWIRL, Hold, hold, twirls
 from .lifts import NEAR, Carry, Lift, lift
 from .strikes import strike, turning
 from .ways import Way, way_of
@@ -133,6 +133,13 @@ def moves(sentence: str) -> tuple[Move, ...]:
         return tuple(Move(person, Way.HOLD, near=held.value, turns=held.turns) for person in "ab")
     if (lifted := lift(sentence)) is not None:
         return _lifted(lifted)
+    if leader := twirls(sentence):
+        other = "b" if leader == "a" else "a"
+        return (
+            Move(leader, Way.TO, near=TWIRL),
+            Move(other, Way.FACE, late=True),
+            Move(other, Way.TURN, turns=1.0),
+        )
     if (struck := strike(sentence)) is not None:
         near, turns = struck.bout.value, turning(struck.bout)
         return tuple(Move(person, Way.SPAR, near=near, turns=turns) for person in "ab")
