@@ -7,6 +7,7 @@ from numpy.typing import NDArray
 
 from motion import SMPL22
 from motion.cleaning import foot_contacts, plant_feet, solve_two_bones
+from motion.ground import above_floor
 from motion.kinematics import project_to_skeleton
 from motion.swings import lift_swinging_feet
 from motion.transforms import facing
@@ -22,7 +23,7 @@ _LEGS = [
 
 
 def clean_person(positions: Array, fps: float = 30.0) -> Array:
-    """One person on SMPL22's constant bones, feet planted where they stand, toes raised where a foot swings.
+    """One person on SMPL22's constant bones, above the floor, feet planted where they stand, swinging toes raised.
 
     Bones are made constant by their directions, from the pelvis outwards; wrists and ankles are then taken
     back to their places by two-bone IK, so hands that met still meet.
@@ -33,7 +34,7 @@ def clean_person(positions: Array, fps: float = 30.0) -> Array:
     Returns:
         (T, 22, 3) metres.
     """
-    result = on_constant_bones(positions)
+    result = above_floor(on_constant_bones(positions))
     return lift_swinging_feet(plant_feet(result, foot_contacts(result, fps)), fps)
 
 
