@@ -31,6 +31,8 @@ ORIGIN = np.zeros(2)
         ("They turn to each other and kiss.", ("a", Region.HEAD, 0, 0)),
         ("Person A is knocked over by the other person.", ("b", Region.CHEST, 2, 1)),
         ("Person A pushes person B to the ground.", ("a", Region.CHEST, 2, 1)),
+        ("A mother comforts her crying child.", ("a", Region.SHOULDER, 1, 0)),
+        ("She puts her arm around him.", ("a", Region.SHOULDER, 1, 0)),
         # none that is planned
         ("He covers his eyes.", None),
         ("Person A does not touch person B's arm.", None),

@@ -20,6 +20,9 @@ from webdemo.inference.story import split_sentence
         ),
         ("They bump fists, and person A then goes away.", ["They bump fists.", "Person A goes away."]),
         ("They hug before they walk away", ["They hug.", "They walk away."]),
+        # two show something, then touch
+        ("Two friends cheer and hug.", ["They cheer.", "They hug."]),
+        ("They smile and shake hands.", ["They smile and shake hands."]),
         # who comes or goes does it before or after the rest
         (
             "A man slaps his friend on the back and strolls off.",

@@ -44,6 +44,8 @@ def test_blows_are_read(words: str, bout: Bout, turns: str, goes_on: bool) -> No
     "words",
     [
         "They do not fight.",
+        "Two karate fighters bow to each other before the fight.",
+        "They bow and fight.",
         "He wants to punch her.",
         "They stop fighting and hug.",
         "She throws her arms around him.",

@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 from motion import SMPL22
 from motion.transforms import heading
 
-from .clauses import Clause, clauses
+from .clauses import OTHER, Clause, clauses
 from .gestures import SIDES
 
 Array = NDArray[np.floating]
@@ -104,6 +104,11 @@ _HUGS_BEHIND = re.compile(
     r" .*\bfrom behind\b"
 )
 _PUSHES = re.compile(rf"\b(?:push|shov|knock)(?:es?|s|ing)? {_OTHER}\b")
+_COMFORTS = re.compile(
+    rf"\b(?:comfort|consol|reassur|sooth)(?:es|s|e|ing)? {OTHER}\b"
+    rf"|\b(?:put|lay|throw|sling|wrap|plac|hav|keep)(?:s|es|ing)? (?:an|his|her|one|their) arm "
+    rf"(?:a?round|over|about) {OTHER}\b"
+)
 _KISSED = re.compile(rf"(?<!for a )\b{_KISSES}(?! {_LY}(?:\w+ )?(?:hand|goodbye to|\w+'s hand))\b")
 _PASSIVE = re.compile(
     r"\b(?:is|are|gets?|being) (?:\w+ly )?"
@@ -167,6 +172,8 @@ def _of(clause: Clause) -> Contact | None:
         return Contact(person, Region.CHEST, SIDES, 1, fells=True)
     if person == "ab":  # both kiss; of other touches it is not said who of them touches the other
         act, match, person = None, kiss, "a"
+    if match is None and person != "ab" and _COMFORTS.search(words) and not denied:
+        return Contact(person, Region.SHOULDER, ("right",), late=clause.until)
     if match is None or _OWN.search(words) or (denied and denied.start() < match.start()):
         return None
     if kiss is not None or act is None:

@@ -40,6 +40,11 @@ _MOMENT = re.compile(
     r"\b(?:shak|high[- ]fiv|low[- ]fiv|fist|bump|hug|embrac|bow|kiss|slap|pat\b|pats\b|tap|nod|curts|salut|greet)\w*"
 )
 """Acts that are over when a walk begins."""
+_TOGETHER = re.compile(r"^(?:shak|high[- ]fiv|hug|embrac|kiss|fist[- ]bump|bump)\w*")
+"""Touches of two people, which begin when what both showed before is over."""
+_SHOWN = re.compile(
+    r"^(?:cheer|clap|applaud|wav|bow|danc|shak|high[- ]fiv|hug|nod|fight|argu|laugh|kiss|jump)\w*"
+)
 ARRIVES = (Way.TO, Way.BEHIND)
 """Ways that are over before what the person does next; two who walk up to each other and shake hands do it in one."""
 DEPARTS = (Way.AWAY, Way.PAST, Way.ROUND, Way.ALONG, Way.AFTER, *ARRIVES)
@@ -119,6 +124,12 @@ def _follows(group: Sequence[Clause], clause: Clause, after: Sequence[Clause]) -
         way = Way.AWAY
     if way is None and not after and is_bare(clause):
         return bool(_MOMENT.search(group[-1].words))
+    if (
+        clause.who == "ab" == group[-1].who
+        and _TOGETHER.search(clause.words)
+        and _SHOWN.search(group[-1].words)
+    ):
+        return True
     if way is Way.AFTER and Way.AWAY in before:
         return False  # who follows sets off at once
     own = [done for done in group if set(done.who) & set(clause.who)]

@@ -64,12 +64,15 @@ _WEAPONS = re.compile(
 )
 _FAR = re.compile(r"\b(?:guns?|pistols?|rifles?|arrows?|words)\b")
 _FIGHT = re.compile(
-    r"\b(?:fight|box|spar|brawl|scuffle|kickbox|duel|fenc)(?:es|s|e|ing)?\b(?! (?:back|off|over)\b)"
+    r"(?<!the )(?<!an )(?<!a )\b(?:fight|box|spar|brawl|scuffle|kickbox|duel|fenc)(?:es|s|e|ing)?\b"
+    r"(?! (?:back|off|over)\b)"
     r"|\b(?:exchang|trad|swap|throw)\w* (?:\w+ )?(?:blows|punches|jabs|hits)\b"
     rf"|\b(?:punch|hit|strik|slap|attack|jab|beat)(?:e|es|s|ing|ting)? (?:at )?{_EACH}\b"
     r"|\bcom(?:e|es|ing) to blows\b|\bin an? (?:\w+ )?(?:fist ?)?(?:fight|duel)\b|\bfist[- ]?fight\w*"
     r"|\bhav(?:e|ing) an? (?:\w+ )?(?:fight|duel)\b"
 )
+_MEANWHILE = re.compile(r"\b(?:circl|dodg|duck|block|parr|shout|yell|laugh|swear|sweat)\w*")
+"""Acts of people who fight all the while."""
 _AGAINST = re.compile(rf"\b(?:fight|box|spar|duel|fenc)(?:e?s|ing)? (?:with |against )?{OTHER}\b")
 _PUNCHES = re.compile(
     rf"\b(?:punch|hit|strik|jab|thump|sock)(?:es|s|ing|ting)? (?:out )?(?:at )?{OTHER}(?! with)\b"
@@ -131,7 +134,8 @@ def strike(sentence: str) -> Strike | None:
         return Strike(Bout.RACKETS, "ab")
     if (throws := _throws(found)) is not None:
         return throws
-    if _FIGHT.search(words) and (both or (len(found) == 1 and _AGAINST.search(words))):
+    only = all(_FIGHT.search(clause.words) or _MEANWHILE.search(clause.words) for clause in found)
+    if only and _FIGHT.search(words) and (both or (len(found) == 1 and _AGAINST.search(words))):
         return Strike(Bout.WEAPONS if _WEAPONS.search(words) else Bout.FISTS, "ab")
     if len(found) == 1 and found[0].who != "ab" and found[0].subject and _PUNCHES.search(words):
         return Strike(Bout.FISTS, found[0].who, bool(_MANY.search(words)))
