@@ -148,6 +148,15 @@ def test_two_who_fight_both_strike_and_reach_each_other(engine: Engine) -> None:
         )
 
 
+def test_a_punch_goes_over_who_ducks_and_is_returned(engine: Engine) -> None:
+    found = made(engine, "Person A throws a punch, person B ducks under it and punches back.")
+    fast = [speed_of_hands(found, person).max(axis=0)[15:] for person in (0, 1)]
+    ducked = int(found[1, :, 0, 1].argmin())
+    first = 15 + int(fast[0].argmax())
+    assert found[1, ducked, 0, 1] < 0.6 and abs(ducked - first) < 12
+    assert fast[1][first:].max() > 2.0
+
+
 def test_a_ball_goes_to_and_fro_between_two_who_stand_apart(engine: Engine) -> None:
     found = made(engine, "Two people throw a ball to each other.")
     assert np.linalg.norm(found[0, :, 0] - found[1, :, 0], axis=-1).min() > 1.8

@@ -53,13 +53,30 @@ def test_blows_are_read(words: str, bout: Bout, turns: str, goes_on: bool) -> No
         "They strike a pose.",
         "A man hits the wall.",
         "The cowboys fight a duel with pistols.",
-        "He punches her and she falls down.",
+        "He punches her and they laugh.",
         "They hug.",
         "She passes him.",
     ],
 )
 def test_other_words_are_left_to_the_network(words: str) -> None:
     assert strike(words) is None
+
+
+@pytest.mark.parametrize(
+    ("words", "turns"),
+    [
+        ("He punches her and she falls down.", "a"),
+        ("Person B throws a punch and person A ducks.", "b"),
+        ("Person A throws a punch, person B ducks under it and punches back.", "ab"),
+        ("One person punches and the other steps back.", "a"),
+        ("He swings at her and she dodges.", "a"),
+    ],
+)
+def test_answers_to_a_punch_are_read(words: str, turns: str) -> None:
+    assert strike(words) == Strike(Bout.FISTS, turns, goes_on=False, answered=True)
+    placed = beginning(words)
+    assert placed is not None and placed.gap() == pytest.approx(Bout.FISTS.value)
+    assert moves(words)[0].person == turns[0] and all(move.way is not Way.SPAR for move in moves(words))
 
 
 def test_two_who_fight_strike_in_turn_with_either_fist() -> None:

@@ -105,7 +105,7 @@ def given_contact(
     if giver not in ways:
         return None
     own = Course.of(ways[giver], float(stand.headings[giver]), frames)
-    other = _course(1 - giver, ways, stand, frames)
+    other = course_of(1 - giver, ways, stand, frames)
     first = max(_arrival(own), _arrival(other) if 1 - giver in ways else 0) + REACHES
     first = max(first, round(0.6 * frames)) if touch.late else first
     last = min(frames, _leaving(other, first))
@@ -144,7 +144,7 @@ def given_hold(
     placement: Placement,
 ) -> list[KnownFrames]:
     """The trunks and hands of two people in a hold, as the network is given them; arguments as above."""
-    courses = [_course(person, ways, stand, stop - start) for person in (0, 1)]
+    courses = [course_of(person, ways, stand, stop - start) for person in (0, 1)]
     at = np.arange(REACHES, stop - start, 3)
     at = at[(at + start >= window.start) & (at + start < window.stop)]
     if not len(at):
@@ -164,7 +164,7 @@ def given_twirl(
     ways: Mapping[int, Way2D], stand: Standing, start: int, stop: int, window: Window, placement: Placement
 ) -> list[KnownFrames]:
     """The bodies and joined right hands of two people, one of whom turns under them; arguments as above."""
-    courses = [_course(person, ways, stand, stop - start) for person in (0, 1)]
+    courses = [course_of(person, ways, stand, stop - start) for person in (0, 1)]
     at = np.arange(REACHES, stop - start - REACHES, 3)
     at = at[(at + start >= window.start) & (at + start < window.stop)]
     if not len(at):
@@ -196,7 +196,8 @@ def _moments(touch: Contact, first: int, last: int) -> list[tuple[int, float]]:
     return [(frame, back) for frame, back in found if frame < last]
 
 
-def _course(person: int, ways: Mapping[int, Way2D], stand: Standing, frames: int) -> Course:
+def course_of(person: int, ways: Mapping[int, Way2D], stand: Standing, frames: int) -> Course:
+    """The course of a person (0 or 1) through a beat; of somebody without a way, that of one who stays."""
     angle = float(stand.headings[person])
     if person in ways:
         return Course.of(ways[person], angle, frames)

@@ -85,8 +85,8 @@ def planned(request: SceneRequest, window: Window, scene: Array, placement: Plac
         parts += given_hold(held, ways, stand, start, stop, window, placement)
     if len(ways) == 2 and twirls(words):
         parts += given_twirl(ways, stand, start, stop, window, placement)
-    if len(ways) == 2 and (struck := strike(words)) is not None:
-        parts += given_blows(struck, ways, stand, start, stop, window, placement)
+    if (struck := strike(words)) is not None and "ab".index(struck.turns[0]) in ways:
+        parts += given_blows(struck, words, ways, stand, start, stop, window, placement)
     for person, (gesture, frames, wrists) in hands(words, found, ways, posed, stand, stop - start).items():
         inside = (frames + start >= window.start) & (frames + start < window.stop)
         if inside.any():
@@ -160,7 +160,9 @@ def _said_postures(sentence: str) -> Iterator[str]:
 def _beginning(request: SceneRequest) -> Standing:
     """Places before the first beat, so that the first moves of the story can begin."""
     first = request.beats[0].sentence
-    if (lift(first) or twirls(first) or not goes(moves(first))) and (placed := beginning(first)) is not None:
+    if (lift(first) or twirls(first) or strike(first) or not goes(moves(first))) and (
+        placed := beginning(first)
+    ) is not None:
         return placed
     if any(gesture.hand is Hand.OFFERS for gesture in gestures(first).values()):
         return starting((), request.beats[0].length)

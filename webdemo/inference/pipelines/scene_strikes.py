@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 
 import numpy as np
 from numpy.typing import NDArray
@@ -14,9 +14,12 @@ from webdemo.inference.story.floor import Standing, Way2D
 from webdemo.inference.story.gestures import SIDES
 from webdemo.inference.story.plan import Window
 from webdemo.inference.story.poses import TRUNK
-from webdemo.inference.story.strikes import Bout, Strike, blows, catching, poses, ready
+from webdemo.inference.story.postures import changes
+from webdemo.inference.story.strikes import FIRST, Bout, Strike, blows, catching, poses, ready
 
+from .scene_contacts import course_of
 from .scene_hands import Course
+from .scene_postures import DUCKING
 
 Array = NDArray[np.floating]
 _Given = tuple[int, tuple[str, ...], tuple[tuple[int, ...], Array]]
@@ -27,6 +30,7 @@ _NEARLY = 0.15
 
 def given_blows(
     struck: Strike,
+    words: str,
     ways: Mapping[int, Way2D],
     stand: Standing,
     start: int,
@@ -38,22 +42,22 @@ def given_blows(
 
     Args:
         struck: the blows of the beat.
-        ways: of both, by person.
+        words: of the beat.
+        ways: by person.
         stand: where the people are when the beat begins.
         start, stop: the beat's first frame and the one after its last.
         window: the window that is made.
         placement: from the scene's world to the network's frame.
     """
-    courses = [Course.of(ways[i], float(stand.headings[i]), stop - start) for i in (0, 1)]
-    apart = np.linalg.norm(courses[0].places - courses[1].places, axis=1)
-    there = np.flatnonzero(np.abs(apart - struck.bout.value) < _NEARLY)
+    courses = [course_of(person, ways, stand, stop - start) for person in (0, 1)]
+    first = _first(struck, words, courses)
     given: dict[tuple[int, tuple[str, ...]], dict[int, Array]] = {}
     if not start:
         for person in {"ab".index(who) for who in struck.turns}:
             pose = ready(*(courses[i].places[0] for i in (person, 1 - person)))
             if window.start == 0:
                 given[(person, SIDES)] = {window.past: pose}
-    for blow in blows(struck, stop - start, first=int(there[0]) if len(there) else 0):
+    for blow in blows(struck, stop - start, first=first):
         places = [course.places[blow.frame] for course in courses]
         own, other = places[blow.person], places[1 - blow.person]
         made: list[_Given] = [(blow.person, (blow.side,), poses(struck.bout, blow.side, own, other))]
@@ -73,3 +77,17 @@ def given_blows(
         )
         for (person, sides), known in given.items()
     ]
+
+
+def _first(struck: Strike, words: str, courses: Sequence[Course]) -> int:
+    """The frame of the beat at which the two are near, or so long before the first blow that it meets its answer."""
+    apart, frames = np.linalg.norm(courses[0].places - courses[1].places, axis=1), len(courses[0].places)
+    there = np.flatnonzero(np.abs(apart - struck.bout.value) < _NEARLY)
+    near = int(there[0]) if len(there) else 0
+    if not struck.answered:
+        return near
+    change = next(iter(changes(words).get("b" if struck.turns[0] == "a" else "a", ())), None)
+    at = round((0.35 if change is None else change.after) * frames)
+    if change is not None and change.passing:  # the fist goes over them
+        at = min(at + DUCKING + (frames - at) // 4, frames - DUCKING)
+    return max(at - FIRST, near - FIRST // 2)

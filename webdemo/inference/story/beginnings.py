@@ -12,6 +12,7 @@ from .holds import TWIRL, twirls
 from .lifts import NEAR, Carry, Lift, lift
 from .poses import grounded, seated
 from .postures import Posture, changes
+from .strikes import Bout, strike
 
 _BESIDE = re.compile(
     r"\b(?:side by side|shoulder to shoulder|next to (?:each other|one another|him|her|person [ab]|the other)"
@@ -47,8 +48,9 @@ def beginning(sentence: str) -> Standing | None:
         return Standing(np.array([[0.0, 0.0], [-ABREAST, 0.0]]), np.zeros(2))
     if (lifted := lift(sentence)) is not None and not lifted.comes:
         return _carried(lifted)
-    if twirls(sentence) or _KICKS.search(words):
-        apart = TWIRL if twirls(sentence) else KICK
+    struck = strike(sentence)
+    if twirls(sentence) or (struck and struck.answered) or _KICKS.search(words):
+        apart = TWIRL if twirls(sentence) else Bout.FISTS.value if struck else KICK
         return Standing(np.array([[0.0, 0.0], [0.0, apart]]), np.array([0.0, math.pi]))
     return None
 

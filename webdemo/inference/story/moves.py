@@ -9,7 +9,7 @@ from dataclasses import dataclass, replace
 from .clauses import Clause, clauses
 from .holds import TWIRL, Hold, hold, twirls
 from .lifts import NEAR, Carry, Lift, lift
-from .strikes import strike, turning
+from .strikes import Strike, strike, turning
 from .ways import Way, way_of
 
 
@@ -141,8 +141,7 @@ def moves(sentence: str) -> tuple[Move, ...]:
             Move(other, Way.TURN, turns=1.0),
         )
     if (struck := strike(sentence)) is not None:
-        near, turns = struck.bout.value, turning(struck.bout)
-        return tuple(Move(person, Way.SPAR, near=near, turns=turns) for person in "ab")
+        return _struck(struck, clauses(sentence))
     found = clauses(sentence)
     if any(is_moved(clause) or STRUCK.search(clause.words) for clause in found):
         return ()
@@ -204,6 +203,19 @@ def _of_clause(clause: Clause, *, late: bool) -> list[Move]:
     metres = _STEP * _STEPS.get((_COUNT.search(clause.words) or [""])[0], 3) if way is Way.AHEAD else 0.0
     turns = 1.0 if _FULL.search(clause.words) or (way is Way.TURN and _SPINS.search(clause.words)) else 0.5
     return [Move(person, way, speed, turns, late=late, metres=metres) for person in who]
+
+
+def _struck(found: Strike, listed: Sequence[Clause]) -> tuple[Move, ...]:
+    """The places of two of whom at least one strikes, and a step back of the other."""
+    near, first = found.bout.value, found.turns[0]
+    if not found.answered:
+        return tuple(Move(person, Way.SPAR, near=near, turns=turning(found.bout)) for person in "ab")
+    other = "b" if first == "a" else "a"
+    comes = Move(first, Way.TO, near=near)
+    own = [clause.words for clause in listed if clause.who == other]
+    if any(way_of(words) is Way.BACK for words in own):
+        return comes, Move(other, Way.BACK, late=True)
+    return (comes,) if any(_FLOOR.search(w) or "duck" in w for w in own) else (comes, Move(other, Way.STAY))
 
 
 def _lifted(found: Lift) -> tuple[Move, ...]:

@@ -41,11 +41,13 @@ class Strike:
         bout: of which kind.
         turns: who strikes, in order, "a" and "b", over and over where ``goes_on``.
         goes_on: they strike through the whole beat.
+        answered: the other ducks, falls or steps back at the first blow.
     """
 
     bout: Bout
     turns: str
     goes_on: bool = True
+    answered: bool = False
 
 
 @dataclass(frozen=True)
@@ -76,8 +78,14 @@ _MEANWHILE = re.compile(r"\b(?:circl|dodg|duck|block|parr|shout|yell|laugh|swear
 _AGAINST = re.compile(rf"\b(?:fight|box|spar|duel|fenc)(?:e?s|ing)? (?:with |against )?{OTHER}\b")
 _PUNCHES = re.compile(
     rf"\b(?:punch|hit|strik|jab|thump|sock)(?:es|s|ing|ting)? (?:out )?(?:at )?{OTHER}(?! with)\b"
-    r"|\b(?:hit|punch|strik|fight)(?:es|s)? back\b|\bretaliates\b"
+    r"|\b(?:hit|punch|strik|fight)(?:es|s)? back\b|\bretaliates\b|\bpunches$"
+    rf"|\bthrows? an? (?:\w+ )?punch\b|\b(?:swings?|takes? a swing) at {OTHER}\b"
 )
+_ANSWERS = re.compile(
+    r"\b(?:fall|collaps|go(?:es)? down|drop|duck|dodg|block|parr|stagger|stumbl|step|back|flinch|reel|recoil|sway"
+    r"|hop)\w*"
+)
+"""Acts of somebody who is punched, or just not."""
 _RACKETS = re.compile(
     r"\bplay\w* (?:a game of )?(?:table )?(?:tennis|badminton|squash|ping[- ]?pong|paddle)\b"
 )
@@ -94,7 +102,7 @@ _NOT = re.compile(
 _MANY = re.compile(r"\b(?:again and again|repeatedly|keeps?|beats? up|several)\b")
 _CIRCLING = 0.03
 """Turns a second of two who fight around the middle between them."""
-_FIRST = 20
+FIRST = 20
 """Frames before the first blow."""
 _DRAWN = 5
 """Frames before a blow in which the arm is drawn back."""
@@ -137,9 +145,18 @@ def strike(sentence: str) -> Strike | None:
     only = all(_FIGHT.search(clause.words) or _MEANWHILE.search(clause.words) for clause in found)
     if only and _FIGHT.search(words) and (both or (len(found) == 1 and _AGAINST.search(words))):
         return Strike(Bout.WEAPONS if _WEAPONS.search(words) else Bout.FISTS, "ab")
-    if len(found) == 1 and found[0].who != "ab" and found[0].subject and _PUNCHES.search(words):
-        return Strike(Bout.FISTS, found[0].who, bool(_MANY.search(words)))
-    return None
+    return _punches(found)
+
+
+def _punches(found: Sequence[Clause]) -> Strike | None:
+    """Punches of one person or of both in turn, and what the other does about the first of them."""
+    struck = [bool(_PUNCHES.search(clause.words)) for clause in found]
+    if any(clause.who == "ab" or not clause.subject for clause in found) or not struck[0]:
+        return None
+    if not all(punch or _ANSWERS.search(clause.words) for clause, punch in zip(found, struck, strict=True)):
+        return None
+    turns = "".join(clause.who for clause, punch in zip(found, struck, strict=True) if punch)
+    return Strike(Bout.FISTS, turns, bool(_MANY.search(found[0].words)), not all(struck))
 
 
 def _throws(found: Sequence[Clause]) -> Strike | None:
@@ -166,12 +183,12 @@ def blows(struck: Strike, frames: int, *, first: int = 0) -> list[Blow]:
     """The blows of a beat of so many frames, from its ``first`` frame at which the two are at their distance."""
     period = _PERIODS[struck.bout] * (1 if len(struck.turns) > 1 else 2)
     last = frames - (_FLIGHT + 6 if struck.bout is Bout.THROWS else _DRAWN)
-    at = range(first + _FIRST, last, period)
+    at = range(first + FIRST, last, period)
     made = [
         Blow(frame, "ab".index(struck.turns[i % len(struck.turns)]), _hand(struck, i))
         for i, frame in enumerate(at)
     ]
-    return made if struck.goes_on else made[:1]
+    return made if struck.goes_on else made[: len(struck.turns)]
 
 
 def _hand(struck: Strike, number: int) -> str:
