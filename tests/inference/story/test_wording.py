@@ -24,6 +24,10 @@ from webdemo.inference.story.wording import (
     [
         ("person a legs it", "person a runs away"),
         ("they leg it", "they run away"),
+        ("she hit out at him", "she punches him"),
+        ("they hit out at him", "they punch him"),
+        ("they duke it out", "they fight"),
+        ("he gave her a piggyback ride", "he carries her on his back"),
         ("legging it", "running away"),
         ("the thief bolted and the cop gave chase", "the thief runs away and the cop chases the other"),
         ("she gives him the cold shoulder", "she turns around"),

@@ -135,8 +135,12 @@ def _phrases() -> dict[str, list[_Phrase]]:
 
 
 def _forms(first: str, verb: str) -> Iterator[tuple[str, str]]:
-    """The forms of a phrase's verb with those of the plain verb; the past becomes the present."""
-    yield first, verb
+    """The forms of a phrase's verb with those of the plain verb; the past becomes the present.
+
+    A base form that is a past form as well, as "hit" is, counts as the past.
+    """
+    if first not in past(first):
+        yield first, verb
     yield singular(first), singular(verb)
     yield participle(first), participle(verb)
     for form in past(first):
