@@ -20,6 +20,10 @@ from webdemo.inference.story import split_sentence
         ),
         ("They bump fists, and person A then goes away.", ["They bump fists.", "Person A goes away."]),
         ("They hug before they walk away", ["They hug.", "They walk away."]),
+        # words without a subject
+        ("walk, shake hands", ["They walk up to each other and shake hands."]),
+        ("running, hug", ["They run up to each other and hug."]),
+        ("strolling and kissing", ["strolling and kissing"]),
         # two show something, then touch
         ("Two friends cheer and hug.", ["They cheer.", "They hug."]),
         ("They smile and shake hands.", ["They smile and shake hands."]),

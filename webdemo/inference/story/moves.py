@@ -69,7 +69,7 @@ _BARE = re.compile(
 )
 _TALKS = re.compile(r"(?:are |is )?(?:talk|chat|laugh|sing|gossip|argu|joke|discuss|hold|swing)\w*")
 """What two people do while they walk."""
-_MEETS = re.compile(r"(?:shake hands|hug|embrace|high[- ]five|kiss|fist[- ]bump|bump fists|greet)")
+MEETS = re.compile(r"(?:shake hands|hug|embrace|high[- ]five|kiss|fist[- ]bump|bump fists|greet)")
 """What two people do who have walked up to each other, in words without a subject: "walk, hug"."""
 _WITH = re.compile(r"\b(?:beside|next to|alongside|with|accompan\w+|together|by side)\b")
 _LINKED = re.compile(
@@ -152,7 +152,7 @@ def moves(sentence: str) -> tuple[Move, ...]:
         if (
             is_bare(clause)
             and not clause.subject
-            and any(_MEETS.match(after.words) for after in found[i + 1 :])
+            and any(MEETS.match(after.words) for after in found[i + 1 :])
         ):
             clause, late = replace(clause, words="walk up to each other"), False
         elif is_bare(clause) and all(_TALKS.match(after.words) for after in found[i + 1 :]):

@@ -8,7 +8,7 @@ from collections.abc import Sequence
 from .beats import Beat, is_known_act
 from .clauses import Clause, Reader, clauses, named
 from .gestures import gestures
-from .moves import is_bare, is_moved
+from .moves import MEETS, is_bare, is_moved
 from .postures import changes, is_down_or_up, leaps
 from .ways import Way, way_of
 
@@ -74,8 +74,20 @@ def split_sentence(text: str) -> tuple[Beat, ...]:
     if setting and parts:
         parts[-1] = f"{parts[-1].rstrip('.')}, {setting.rstrip(', ')}."
     if len(parts) < 2:
-        return (Beat(text),) if text else ()
+        return (Beat(_meeting(text)),) if text else ()
     return tuple(Beat(part) for part in parts)
+
+
+def _meeting(text: str) -> str:
+    """The text, where one without a subject such as "walk, shake hands" has them walk up to each other."""
+    found = clauses(text)
+    if not found or any(clause.subject for clause in found) or not is_bare(found[0]):
+        return text
+    acts = [clause.words for clause in found[1:]]
+    if not any(MEETS.match(act) for act in acts) or any(re.match(r"\w+ing\b", act) for act in acts):
+        return text
+    verb = re.sub(r"(?:(?<=n)n|(?<=g)g|(?<=p)p)?ing$", "", found[0].words.split()[0])
+    return f"They {verb} up to each other and {' and '.join(acts)}."
 
 
 def _is_act(part: str, found: Sequence[Clause]) -> bool:
