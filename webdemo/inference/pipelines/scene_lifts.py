@@ -12,7 +12,7 @@ from motion import SMPL22
 from webdemo.inference.actor import Placement
 from webdemo.inference.directed import KnownFrames
 from webdemo.inference.story.floor import Standing, Way2D
-from webdemo.inference.story.lifts import NEAR, Carry, Lift, carried
+from webdemo.inference.story.lifts import Carry, Lift, carried
 from webdemo.inference.story.plan import Window
 from webdemo.inference.story.poses import LOWER, TRUNK, upright
 
@@ -26,8 +26,8 @@ RISES = 16
 """Frames in which somebody is picked up, or set down."""
 LONG = 75
 """Frames of a lift, from which on who is lifted is set down again before the beat ends."""
-_FAR = 0.9
-"""Metres between the two from which on nobody is picked up."""
+_FAR = 0.45
+"""Metres beyond the distance of a lift from which on nobody is picked up."""
 _STANDS = 0.003
 """Metres or radians a frame below which a body stands."""
 _ELBOWS = [SMPL22.index("left_elbow"), SMPL22.index("right_elbow")]
@@ -66,8 +66,8 @@ class Carrying:
             return 0, frames
         own, other = (self._course(person) for person in (0, 1))
         apart = np.linalg.norm(own.places - other.places, axis=1)
-        near = int(np.flatnonzero(apart < max(NEAR, float(apart.min())) + 0.05)[0])
-        first = min(near + RISES if apart[near] < _FAR else frames, frames)
+        near = int(np.flatnonzero(apart < max(self.lift.carry.near, float(apart.min())) + 0.05)[0])
+        first = min(near + RISES if apart[near] < self.lift.carry.near + _FAR else frames, frames)
         down = self.lift.carry is Carry.UP and frames - first > LONG
         return first, frames - 2 * RISES if down else frames
 
@@ -94,7 +94,8 @@ class Carrying:
             made = [carried(self.lift.carry, course.places[t], float(course.headings[t])) for t in at]
             theirs, own = (np.stack(poses) for poses in zip(*made, strict=True))
             sinks = walking[:, :1] - own[:, :1]
-            theirs, own = theirs + sinks, own + sinks
+            own += sinks
+            theirs += 0.0 if self.lift.carry is Carry.DRAGS else sinks
             own[:, LOWER] = walking[:, LOWER]
             frames = (at + self.start - window.start + window.past).tolist()
             parts.append(KnownFrames(1 - self.carrier, frames, placement.to_network(theirs), _BODY))
@@ -128,7 +129,7 @@ class Carrying:
         if last < frames:
             own = self._course(self.carrier)
             angle = float(own.headings[-1])
-            place = own.places[-1] + NEAR * np.array([np.sin(angle), np.cos(angle)])
+            place = own.places[-1] + self.lift.carry.near * np.array([np.sin(angle), np.cos(angle)])
             for frame in (frames - RISES // 2, frames - 1):
                 yield frame, upright(place, angle + np.pi)
 

@@ -9,7 +9,7 @@ import numpy as np
 
 from .floor import ABREAST, Standing
 from .holds import TWIRL, twirls
-from .lifts import NEAR, Carry, Lift, lift
+from .lifts import Carry, Lift, lift
 from .poses import grounded, seated
 from .postures import Posture, changes
 from .strikes import Bout, strike
@@ -56,10 +56,10 @@ def beginning(sentence: str) -> Standing | None:
 
 
 def _carried(lifted: Lift) -> Standing:
-    """A place before the other for who is lifted, and behind the one who walks on for who is carried."""
+    """A place before the other for who is lifted or dragged, and behind the one who walks on for who is carried."""
     places, headings = np.zeros((2, 2)), np.zeros(2)
-    if lifted.carry is Carry.UP:
-        places[1, 1], headings[1] = NEAR, math.pi
+    if lifted.carry in (Carry.UP, Carry.DRAGS):
+        places[1, 1], headings[1] = lifted.carry.near, math.pi
     else:
         places["ab".index(lifted.carrier) - 1, 1] = -0.3
     return Standing(places, headings)

@@ -1,4 +1,4 @@
-"""Lifts: one who picks the other up, carries them in the arms or takes them on the back.
+"""Lifts: one who picks the other up, carries them in the arms, takes them on the back or drags them by the feet.
 
 No scene of the training data has anybody off the floor on somebody else, so the whole body of who is carried is given,
 and the hands of who carries.
@@ -30,6 +30,12 @@ class Carry(Enum):
     UP = (0.0, 0.27, 0.3)
     ARMS = (0.0, 0.12, 0.3)
     BACK = (0.0, 0.22, -0.2)
+    DRAGS = (0.0, -0.83, 1.0)
+
+    @property
+    def near(self) -> float:
+        """Metres between the pelvises at which one takes hold of the other."""
+        return 1.0 if self is Carry.DRAGS else 0.45
 
 
 @dataclass(frozen=True)
@@ -49,8 +55,6 @@ class Lift:
     comes: str = ""
 
 
-NEAR = 0.45
-"""Metres between the pelvises at which one picks the other up."""
 _BACK = re.compile(
     rf"\bcarr(?:y|ies|ying) {OTHER} (?:\w+ )?on (?:his|her|their|the) (?:back|shoulders)\b"
     rf"|\bpiggy-?back\w*|\btakes? {OTHER} on (?:his|her|their) back\b"
@@ -64,6 +68,10 @@ _UP = re.compile(
     rf"|\bsweeps? {OTHER} off (?:his|her|their) feet\b"
     rf"|\b(?:lift|hoist|pick)s? up {OTHER}|\blifts? {OTHER}$"
 )
+_DRAGS = re.compile(
+    rf"\b(?:drag|haul)(?:s|ging|ing)? {OTHER}(?! to (?:his|her|their) feet)\b"
+    rf"|\bpulls? {OTHER} (?:\w+ )?by (?:the|his|her|their|both) (?:feet|legs|ankles)\b"
+)
 _LEAPS = re.compile(
     r"\b(?:jump|leap)(?:s|ing)? (?:up )?into (?:his|her|their|person [ab]'s|the \w+'s) arms\b"
 )
@@ -71,16 +79,20 @@ _RIDES = re.compile(
     r"\b(?:jump|climb|hop|get|ride)(?:s|ing)? (?:up )?(?:on|onto) (?:his|her|their|person [ab]'s|the \w+'s) back\b"
 )
 _CARRIED = re.compile(
-    r"\b(?:is|are|gets?|being) (?P<verb>carried|lifted|picked) (?P<rest>.*)\bby (?:person [ab]|him|her|the|an?)"
+    r"\b(?:is|are|gets?|being) (?P<verb>carried|lifted|picked|dragged) (?P<rest>.*)\bby (?:person [ab]|him|her|the|an?)"
 )
 _SPINS = re.compile(r"\b(?:spin|whirl|swing|twirl|turn)s? (?:\w+(?: [ab])? )?(?:a?round|in circles)\b")
 _NOT = re.compile(
     r"\b(?:do(?:es)?n't|not|without|never|refus\w+ to|wants? to|about to|tries to|pretends? to|almost|cannot|can't)\b"
 )
+_PATTERNS = ((Carry.BACK, _BACK), (Carry.ARMS, _ARMS), (Carry.DRAGS, _DRAGS), (Carry.UP, _UP))
+_LEANS = {Carry.UP: -0.08, Carry.ARMS: -0.1, Carry.BACK: 0.3, Carry.DRAGS: 1.0}
+"""Radians by which the carrier leans forward."""
 _LEGS = {
     Carry.UP: (-0.15, 0.0, 0.35),
     Carry.ARMS: (-0.9, 0.0, 1.2),
     Carry.BACK: (-1.25, 0.4, 1.3),
+    Carry.DRAGS: (-0.9, 0.0, 0.1),
 }
 """Radians of the hips forward (negative) and out, and of the knees, of who is carried."""
 _SIDES = (("left", 1.0), ("right", -1.0))
@@ -113,9 +125,9 @@ def _of_clause(clause: Clause) -> tuple[str, Carry] | None:
     if _RIDES.search(words):
         return other, Carry.BACK
     if (passive := _CARRIED.search(words)) is not None:
-        up = Carry.ARMS if passive["verb"] == "carried" else Carry.UP
+        up = {"carried": Carry.ARMS, "dragged": Carry.DRAGS}.get(passive["verb"], Carry.UP)
         return other, Carry.BACK if "back" in passive["rest"] else up
-    for carry, pattern in ((Carry.BACK, _BACK), (Carry.ARMS, _ARMS), (Carry.UP, _UP)):
+    for carry, pattern in _PATTERNS:
         if pattern.search(words):
             return clause.who, carry
     return None
@@ -134,7 +146,7 @@ def carried(carry: Carry, place: Array, angle: float) -> tuple[Array, Array]:
         carrier, of which the trunk and the wrists are meant.
     """
     turn = heading_matrix(angle)
-    carrier = bending(place, angle, {Carry.UP: -0.08, Carry.ARMS: -0.1, Carry.BACK: 0.3}[carry])
+    carrier = bending(place, angle, _LEANS[carry])
     pose = _pose(carry) @ turn.T + carrier[0] + turn @ np.array(carry.value)
 
     def own(name: str) -> Array:
@@ -153,6 +165,9 @@ def carried(carry: Carry, place: Array, angle: float) -> tuple[Array, Array]:
             "right": 0.5 * (theirs("left_knee") + theirs("right_knee")) - 0.1 * up,
         }
         holds = {"left": theirs("spine2") + 0.16 * up, "right": own("neck") + 0.12 * left + 0.05 * ahead}
+    elif carry is Carry.DRAGS:
+        hands = {s: theirs(f"{o}_ankle") for s, o in (("left", "right"), ("right", "left"))}
+        holds = {s: theirs(f"{s}_shoulder") + 0.45 * ahead - 0.04 * up for s, _ in _SIDES}
     else:
         hands = {s: 0.7 * theirs(f"{s}_knee") + 0.3 * theirs(f"{s}_hip") - 0.04 * up for s, _ in _SIDES}
         holds = {s: own("spine3") + 0.14 * ahead + sign * 0.08 * left + 0.08 * up for s, sign in _SIDES}
@@ -170,6 +185,8 @@ def _pose(carry: Carry) -> Array:
         turns[:, 0] = heading_matrix(np.pi)
     elif carry is Carry.BACK:
         turns[:, 0] = _about("x", 0.25)
+    elif carry is Carry.DRAGS:  # on the back, the feet towards the carrier
+        turns[:, 0] = np.array([[-1.0, 0.0, 0.0], [0.0, 0.0, 1.0], [0.0, 1.0, 0.0]])
     else:  # the head on the carrier's left, the face up
         turns[:, 0] = np.array([[0.0, 0.85, -0.53], [0.0, 0.53, 0.85], [1.0, 0.0, 0.0]])
         turns[:, SMPL22.index("spine1")] = _about("x", 0.2)

@@ -8,7 +8,7 @@ from dataclasses import dataclass, replace
 
 from .clauses import Clause, clauses
 from .holds import TWIRL, Hold, hold, twirls
-from .lifts import NEAR, Carry, Lift, lift
+from .lifts import Carry, Lift, lift
 from .strikes import Strike, strike, turning
 from .ways import Way, way_of
 
@@ -221,12 +221,13 @@ def _struck(found: Strike, listed: Sequence[Clause]) -> tuple[Move, ...]:
 def _lifted(found: Lift) -> tuple[Move, ...]:
     """The way of one who picks the other up, and walks on with them or turns round."""
     comes = found.comes or found.carrier
-    made = [Move(comes, Way.TO, near=NEAR), Move("b" if comes == "a" else "a", Way.STAY)]
+    made = [Move(comes, Way.TO, near=found.carry.near), Move("b" if comes == "a" else "a", Way.STAY)]
     if found.spins:
         made.append(Move(found.carrier, Way.TURN, turns=1.0))
     elif found.carry is not Carry.UP:
         made += [Move(found.carrier, Way.STAY)] if found.comes else []
-        made.append(Move(found.carrier, Way.AWAY, 0.8))
+        drags = found.carry is Carry.DRAGS
+        made.append(Move(found.carrier, Way.AWAY, 0.5 if drags else 0.8, backwards=drags))
     return tuple(made)
 
 
