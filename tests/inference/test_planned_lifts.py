@@ -6,9 +6,11 @@ import numpy as np
 import pytest
 
 from motion import SMPL22
-from webdemo.inference import Engine
+from webdemo.inference import Engine, SceneRequest
+from webdemo.inference.story import Beat, FloorPath, FloorPoint
 
-from .test_planned_scenes import made
+from .test_planned_scenes import QUICK, made
+from .test_scenes import positions, run
 
 FEET = [SMPL22.index(f"{side}_{part}") for side in ("left", "right") for part in ("ankle", "foot")]
 
@@ -63,3 +65,15 @@ def test_who_is_dragged_lies_and_is_pulled_along_by_the_feet(engine: Engine) -> 
     )
     apart = found[0][20:-20, wrists][:, :, None] - found[1][20:-20, ankles][:, None]
     assert np.median(np.linalg.norm(apart, axis=-1).min(axis=(1, 2))) < 0.25
+
+
+def test_nobody_is_carried_by_somebody_who_is_sent_elsewhere(engine: Engine) -> None:
+    beats = (
+        Beat("A couple dances a waltz.", seconds=2.0),
+        Beat("Person A carries person B away.", seconds=3.0),
+    )
+    away = FloorPath("a", (FloorPoint(2.0, 0.0, 3.5), FloorPoint(3.0, 0.0, 4.9)))
+    carried, left = (
+        positions(run(engine, SceneRequest(beats=beats, paths=paths, **QUICK))) for paths in ((), (away,))
+    )
+    assert low(carried, 1)[100:].min() > 0.15 > low(left, 1)[100:].min()

@@ -290,7 +290,7 @@ class _Setting:
         parts += wished
         if request.planned and request.end is None and not request.loop:
             taken = {part.person for part in wished}
-            parts += [part for part in planned(request, window, scene, placement) if part.person not in taken]
+            parts += planned(request, window, scene, placement, taken)
         ends = window.after or window.stop == request.edges[-1]
         tail = window.after if ends else min(TAIL, MOST_FRAMES - past - length)
         frames = max(past + length + tail, round(SECONDS[0] * FPS))

@@ -43,15 +43,30 @@ SETTLES = 24
 """Frames after which who stood in another way before stands so."""
 
 
-def planned(request: SceneRequest, window: Window, scene: Array, placement: Placement) -> list[Part]:
-    """The places and bystanders that the words of a window's beat ask for, in the network's frame.
+def planned(
+    request: SceneRequest,
+    window: Window,
+    scene: Array,
+    placement: Placement,
+    taken: Collection[int] = (),
+) -> list[Part]:
+    """The places, poses and hands that the words of a window's beat ask for, in the network's frame.
 
     Args:
         request: the scene's request.
         window: the window.
         scene: (2, T, 22, 3), whose frames before the window are there.
         placement: from the scene's world to the network's frame.
+        taken: the people whose way or poses the request gives. Two who hold or carry each other are then left to the
+            network.
     """
+    words = request.beats[window.beat].sentence
+    if taken and any(read(words) for read in (lift, twirls, hold)):
+        return []
+    return [part for part in _parts(request, window, scene, placement) if part.person not in taken]
+
+
+def _parts(request: SceneRequest, window: Window, scene: Array, placement: Placement) -> list[Part]:
     words = request.beats[window.beat].sentence
     found, still = moves(words), idle(words)
     start, stop = request.edges[window.beat], request.edges[window.beat + 1]
@@ -64,6 +79,8 @@ def planned(request: SceneRequest, window: Window, scene: Array, placement: Plac
     lifted = lift(words)
     parts, posed = ([], {}) if lifted else _held(request, window, scene, stand, still, found, placement)
     touch, found = meeting(contact(words), found, posed, stand)
+    if lifted is not None and not start and not lifted.comes:  # they are held from the first frame
+        found = tuple(m for m in found if (m.person, m.way) != (lifted.carrier, Way.STAY))
     if touch is not None:
         parts = [part for part in parts if part.person != "ab".index(touch.person)]
     if not start and not parts and not found and keeps_place(words):

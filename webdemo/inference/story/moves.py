@@ -225,7 +225,7 @@ def _lifted(found: Lift) -> tuple[Move, ...]:
     if found.spins:
         made.append(Move(found.carrier, Way.TURN, turns=1.0))
     elif found.carry is not Carry.UP:
-        made += [Move(found.carrier, Way.STAY)] if found.comes else []
+        made.append(Move(found.carrier, Way.STAY))
         drags = found.carry is Carry.DRAGS
         made.append(Move(found.carrier, Way.AWAY, 0.5 if drags else 0.8, backwards=drags))
     return tuple(made)
