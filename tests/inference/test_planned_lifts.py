@@ -7,6 +7,7 @@ import pytest
 
 from motion import SMPL22
 from webdemo.inference import Engine, SceneRequest
+from webdemo.inference.pipelines.scene_floor import plan_note
 from webdemo.inference.story import Beat, FloorPath, FloorPoint
 
 from .test_planned_scenes import QUICK, made
@@ -77,3 +78,18 @@ def test_nobody_is_carried_by_somebody_who_is_sent_elsewhere(engine: Engine) -> 
         positions(run(engine, SceneRequest(beats=beats, paths=paths, **QUICK))) for paths in ((), (away,))
     )
     assert low(carried, 1)[100:].min() > 0.15 > low(left, 1)[100:].min()
+
+
+@pytest.mark.parametrize(
+    ("words", "said"),
+    [
+        ("He picks her up and spins her around.", "person A picks the other up and turns round"),
+        ("Person B carries person A on his back.", "person B carries the other on their back"),
+        ("He twirls her.", "person B turns under the other's arm"),
+        ("They fight.", "person A strikes and person B strikes"),
+        ("Person B throws a ball to person A.", "person B throws something"),
+    ],
+)
+def test_a_note_says_who_lifts_twirls_or_strikes(words: str, said: str) -> None:
+    (note,) = plan_note(SceneRequest(beats=(Beat(words, seconds=3.0),)))
+    assert f"From the words: {said}." in note

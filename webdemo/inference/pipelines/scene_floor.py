@@ -24,7 +24,7 @@ from webdemo.inference.story.plan import Window
 from webdemo.inference.story.poses import ARMS, standing, upright
 from webdemo.inference.story.postures import Change, Posture, changes, leaps
 from webdemo.inference.story.request import SceneRequest
-from webdemo.inference.story.strikes import strike
+from webdemo.inference.story.strikes import Bout, strike
 from webdemo.inference.story.track import HALT
 from webdemo.inference.story.ways import Way
 
@@ -149,9 +149,13 @@ def plan_note(request: SceneRequest) -> list[str]:
     """A sentence on what the words of a scene have its people do, as far as that is given to the network."""
     said = []
     for number, beat in enumerate(request.beats, 1):
-        ways = [*_said_postures(beat.sentence)]
-        ways += [
-            f"person {m.person.upper()} {m.way.value}" for m in moves(beat.sentence) if m.way is not Way.STAY
+        ways = _said_together(beat.sentence) or [
+            *_said_postures(beat.sentence),
+            *(
+                f"person {m.person.upper()} {m.way.value}"
+                for m in moves(beat.sentence)
+                if m.way is not Way.STAY
+            ),
         ]
         if ways:
             said.append(
@@ -162,6 +166,19 @@ def plan_note(request: SceneRequest) -> list[str]:
     return [
         f"From the words: {'; '.join(said)}. A path that you draw in the tab Scene takes the place of this."
     ]
+
+
+def _said_together(sentence: str) -> list[str]:
+    """A lift, a twirl or the blows of a beat, in words."""
+    if (lifted := lift(sentence)) is not None:
+        turns = " and turns round" if lifted.spins else ""
+        return [f"person {lifted.carrier.upper()} {lifted.carry.words}{turns}"]
+    if leader := twirls(sentence):
+        return [f"person {'B' if leader == 'a' else 'A'} turns under the other's arm"]
+    if (struck := strike(sentence)) is not None:
+        verb = "throws something" if struck.bout is Bout.THROWS else "strikes"
+        return [f"person {who.upper()} {verb}" for who in dict.fromkeys(struck.turns)]
+    return []
 
 
 def _said_postures(sentence: str) -> Iterator[str]:

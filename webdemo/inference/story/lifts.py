@@ -33,6 +33,11 @@ class Carry(Enum):
     DRAGS = (0.0, -0.83, 1.0)
 
     @property
+    def words(self) -> str:
+        """The act of the carrier: "picks the other up"."""
+        return _WORDS[self]
+
+    @property
     def near(self) -> float:
         """Metres between the pelvises at which one takes hold of the other."""
         return 1.0 if self is Carry.DRAGS else 0.45
@@ -55,6 +60,12 @@ class Lift:
     comes: str = ""
 
 
+_WORDS = {
+    Carry.UP: "picks the other up",
+    Carry.ARMS: "carries the other in their arms",
+    Carry.BACK: "carries the other on their back",
+    Carry.DRAGS: "drags the other",
+}
 _BACK = re.compile(
     rf"\bcarr(?:y|ies|ying) {OTHER} (?:\w+ )?on (?:his|her|their|the) (?:back|shoulders)\b"
     rf"|\bpiggy-?back\w*|\btakes? {OTHER} on (?:his|her|their) back\b"
