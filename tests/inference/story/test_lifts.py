@@ -49,6 +49,9 @@ def test_lifts_are_read(words: str, found: Lift) -> None:
         "He tries to lift her up.",
         "He cannot carry her.",
         "She helps him up.",
+        "Person A takes person B by the hand and drags person B along.",
+        "He drags her onto the dance floor.",
+        "She is dragged along by him.",
         "She jumps up and down.",
     ],
 )

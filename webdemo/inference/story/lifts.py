@@ -80,8 +80,9 @@ _UP = re.compile(
     rf"|\b(?:lift|hoist|pick)s? up {OTHER}|\blifts? {OTHER}$"
 )
 _DRAGS = re.compile(
-    rf"\b(?:drag|haul)(?:s|ging|ing)? {OTHER}(?! to (?:his|her|their) feet)\b"
-    rf"|\bpulls? {OTHER} (?:\w+ )?by (?:the|his|her|their|both) (?:feet|legs|ankles)\b"
+    rf"\b(?:drag|haul|pull)(?:s|ging|ing)? {OTHER} (?:\w+ )?(?:across|over|along) the (?:floor|ground|grass|sand)\b"
+    rf"|\b(?:drag|haul|pull)(?:s|ging|ing)? {OTHER} (?:\w+ )?by (?:the|his|her|their|both) (?:feet|legs|ankles)\b"
+    r"|\b(?:drag|haul)(?:s|ging|ing)? (?:the|an?|his|her) (?:unconscious|lifeless|wounded|injured|dead|limp) \w+"
 )
 _LEAPS = re.compile(
     r"\b(?:jump|leap)(?:s|ing)? (?:up )?into (?:his|her|their|person [ab]'s|the \w+'s) arms\b"
@@ -89,6 +90,7 @@ _LEAPS = re.compile(
 _RIDES = re.compile(
     r"\b(?:jump|climb|hop|get|ride)(?:s|ing)? (?:up )?(?:on|onto) (?:his|her|their|person [ab]'s|the \w+'s) back\b"
 )
+_ON_FLOOR = re.compile(r"\b(?:feet|legs|ankles|floor|ground)\b")
 _CARRIED = re.compile(
     r"\b(?:is|are|gets?|being) (?P<verb>carried|lifted|picked|dragged) (?P<rest>.*)\bby (?:person [ab]|him|her|the|an?)"
 )
@@ -135,7 +137,10 @@ def _of_clause(clause: Clause) -> tuple[str, Carry] | None:
         return other, Carry.UP
     if _RIDES.search(words):
         return other, Carry.BACK
-    if (passive := _CARRIED.search(words)) is not None:
+    passive = _CARRIED.search(words)
+    if passive is not None and passive["verb"] == "dragged" and not _ON_FLOOR.search(words):
+        return None
+    if passive is not None:
         up = {"carried": Carry.ARMS, "dragged": Carry.DRAGS}.get(passive["verb"], Carry.UP)
         return other, Carry.BACK if "back" in passive["rest"] else up
     for carry, pattern in _PATTERNS:
