@@ -1,10 +1,13 @@
 """Clean-up of one person, for whole motions and frame by frame."""
 
 import numpy as np
+import pytest
 
 from motion import SMPL22
+from webdemo.inference import cleanup
 from webdemo.inference.cleanup import clean_person, on_constant_bones
 from webdemo.inference.following import FollowingCleanup
+from webdemo.inference.story.poses import lying
 
 WRISTS = [SMPL22.index(name) for name in ("left_wrist", "right_wrist")]
 TOES = [SMPL22.index(name) for name in ("left_foot", "right_foot")]
@@ -60,3 +63,17 @@ def test_a_standing_foot_keeps_its_place_and_is_let_go() -> None:
     loose = np.array([cleanup(frame, np.zeros(4)) for frame in shaking[20:]])
     assert np.ptp(loose[5:, TOES][..., [0, 2]], axis=0).max() > 0.005
     assert min(loose[:, TOES, 1].min(), stands[:, TOES, 1].min()) > -1e-6
+
+
+def test_toes_that_swing_are_raised(monkeypatch: pytest.MonkeyPatch) -> None:
+    walker = np.repeat((SMPL22.rest_positions() + np.array([0, 0.95, 0]))[None], 40, axis=0)
+    share = np.clip((np.arange(40) - 12) / 14, 0, 1)
+    walker[:, [SMPL22.index("right_ankle"), TOES[1]], 2] += (0.6 * share**2 * (3 - 2 * share))[:, None]
+    raised = clean_person(walker)[:, TOES[1], 1]
+    monkeypatch.setattr(cleanup, "lift_swinging_feet", lambda positions, fps: positions)
+    assert (raised - clean_person(walker)[:, TOES[1], 1]).max() > 0.015
+
+
+def test_bodies_are_kept_above_the_floor() -> None:
+    sunk = np.repeat(lying(np.zeros(2), 0.0)[None], 20, axis=0) - [0.0, 0.3, 0.0]
+    assert clean_person(sunk)[:, 0, 1].min() > 0.05

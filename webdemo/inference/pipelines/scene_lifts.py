@@ -16,6 +16,7 @@ from webdemo.inference.story.lifts import Carry, Lift, carried
 from webdemo.inference.story.plan import Window
 from webdemo.inference.story.poses import LOWER, TRUNK, upright
 
+from .scene_contacts import course_of
 from .scene_hands import Course
 from .steering import STRIDE, Steps
 
@@ -134,4 +135,4 @@ class Carrying:
                 yield frame, upright(place, angle + np.pi)
 
     def _course(self, person: int) -> Course:
-        return Course.of(self.ways[person], float(self.stand.headings[person]), self.stop - self.start)
+        return course_of(person, self.ways, self.stand, self.stop - self.start)

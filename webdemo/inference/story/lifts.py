@@ -18,7 +18,7 @@ from motion.kinematics import forward_kinematics
 from motion.transforms import heading_matrix
 
 from .clauses import OTHER, Clause, clauses
-from .poses import bending
+from .poses import about, bending
 from .ways import Way, way_of
 
 Array = NDArray[np.floating]
@@ -200,21 +200,14 @@ def _pose(carry: Carry) -> Array:
     if carry is Carry.UP:
         turns[:, 0] = heading_matrix(np.pi)
     elif carry is Carry.BACK:
-        turns[:, 0] = _about("x", 0.25)
+        turns[:, 0] = about(0, 0.25)
     elif carry is Carry.DRAGS:  # on the back, the feet towards the carrier
         turns[:, 0] = np.array([[-1.0, 0.0, 0.0], [0.0, 0.0, 1.0], [0.0, 1.0, 0.0]])
     else:  # the head on the carrier's left, the face up
         turns[:, 0] = np.array([[0.0, 0.85, -0.53], [0.0, 0.53, 0.85], [1.0, 0.0, 0.0]])
-        turns[:, SMPL22.index("spine1")] = _about("x", 0.2)
+        turns[:, SMPL22.index("spine1")] = about(0, 0.2)
     for side, sign in _SIDES:
-        turns[:, SMPL22.index(f"{side}_hip")] = _about("z", sign * out) @ _about("x", hip)
-        turns[:, SMPL22.index(f"{side}_knee")] = _about("x", knee)
-        turns[:, SMPL22.index(f"{side}_shoulder")] = _about("z", -sign * 1.2)
+        turns[:, SMPL22.index(f"{side}_hip")] = about(2, sign * out) @ about(0, hip)
+        turns[:, SMPL22.index(f"{side}_knee")] = about(0, knee)
+        turns[:, SMPL22.index(f"{side}_shoulder")] = about(2, -sign * 1.2)
     return forward_kinematics(turns, np.zeros((1, 3)))[0]
-
-
-def _about(axis: str, angle: float) -> Array:
-    cos, sin = np.cos(angle), np.sin(angle)
-    if axis == "x":
-        return np.array([[1.0, 0.0, 0.0], [0.0, cos, -sin], [0.0, sin, cos]])
-    return np.array([[cos, -sin, 0.0], [sin, cos, 0.0], [0.0, 0.0, 1.0]])

@@ -65,20 +65,20 @@ def standing(place: Array, angle: float, seconds: Array, *, seed: int = 0) -> Ar
         for period, phase in zip((5.3, 3.9, 7.1, 4.4), phases, strict=True)
     ]
     turns = np.tile(np.eye(3), (len(seconds), SMPL22.num_joints, 1, 1))
-    turns[:, 0] = heading_matrix(angle) @ _about(2, 0.012 * sway[0])
-    turns[:, SMPL22.index("spine2")] = _about(2, -0.02 * sway[0]) @ heading_matrix(0.03 * sway[1])
-    turns[:, SMPL22.index("neck")] = _about(0, 0.05 + 0.02 * sway[1])
+    turns[:, 0] = heading_matrix(angle) @ about(2, 0.012 * sway[0])
+    turns[:, SMPL22.index("spine2")] = about(2, -0.02 * sway[0]) @ heading_matrix(0.03 * sway[1])
+    turns[:, SMPL22.index("neck")] = about(0, 0.05 + 0.02 * sway[1])
     turns[:, SMPL22.index("head")] = heading_matrix(0.1 * sway[2])
     for side, sign, arm in (("left", 1.0, sway[3]), ("right", -1.0, sway[1])):
-        turns[:, SMPL22.index(f"{side}_shoulder")] = _about(2, -sign * (1.4 + 0.015 * arm)) @ _about(
+        turns[:, SMPL22.index(f"{side}_shoulder")] = about(2, -sign * (1.4 + 0.015 * arm)) @ about(
             0, 0.05 + 0.03 * arm
         )
         turns[:, SMPL22.index(f"{side}_elbow")] = heading_matrix(-sign * (0.3 + 0.06 * arm))
-        turns[:, SMPL22.index(f"{side}_hip")] = _about(2, -sign * 0.02 - 0.012 * sway[0]) @ _about(
+        turns[:, SMPL22.index(f"{side}_hip")] = about(2, -sign * 0.02 - 0.012 * sway[0]) @ about(
             0, np.full(len(seconds), -0.06)
         )
-        turns[:, SMPL22.index(f"{side}_knee")] = _about(0, np.full(len(seconds), 0.12))
-        turns[:, SMPL22.index(f"{side}_ankle")] = _about(0, np.full(len(seconds), -0.06))
+        turns[:, SMPL22.index(f"{side}_knee")] = about(0, np.full(len(seconds), 0.12))
+        turns[:, SMPL22.index(f"{side}_ankle")] = about(0, np.full(len(seconds), -0.06))
     poses = forward_kinematics(turns, np.zeros((len(seconds), 3)))
     return _on_floor(poses, place, angle)
 
@@ -146,7 +146,7 @@ def bending(place: Array, angle: float, lean: float = _BENT) -> Array:
     """Somebody who bends down from the hips by so many radians: (22, 3) metres."""
     pose = upright(place, angle)
     upper = [j for j in range(SMPL22.num_joints) if j not in LOWER or j == SMPL22.index("spine1")]
-    turn = heading_matrix(angle) @ _about(0, lean) @ heading_matrix(-angle)
+    turn = heading_matrix(angle) @ about(0, lean) @ heading_matrix(-angle)
     pose[upper] = pose[0] + (pose[upper] - pose[0]) @ turn.T
     return pose
 
@@ -172,7 +172,7 @@ def lying(place: Array, angle: float) -> Array:
     pose = _posed(
         0.0, {"hip": -0.12, "knee": 0.25, "ankle": 0.4, "shoulder": 0.9, "elbow": 0.2, "spine": 0.0}
     )
-    pose = (pose - pose[0]) @ (heading_matrix(angle) @ _about(0, -np.pi / 2)).T
+    pose = (pose - pose[0]) @ (heading_matrix(angle) @ about(0, -np.pi / 2)).T
     pose[:, 1] += 0.08 - pose[:, 1].min()
     return pose + np.array([place[0], 0.0, place[1]]) - LYING * np.array([np.sin(angle), 0.0, np.cos(angle)])
 
@@ -204,13 +204,13 @@ def _posed(angle: float, left: Mapping[str, float], right: Mapping[str, float] |
     turns = np.tile(np.eye(3), (1, SMPL22.num_joints, 1, 1))
     turns[:, 0] = heading_matrix(angle)
     for spine in ("spine1", "spine2"):
-        turns[:, SMPL22.index(spine)] = _about(0, left["spine"])
+        turns[:, SMPL22.index(spine)] = about(0, left["spine"])
     for (side, sign), angles in zip(_SIDES.items(), (left, right or left), strict=True):
-        turns[:, SMPL22.index(f"{side}_shoulder")] = _about(2, -sign * angles["shoulder"])
+        turns[:, SMPL22.index(f"{side}_shoulder")] = about(2, -sign * angles["shoulder"])
         turns[:, SMPL22.index(f"{side}_elbow")] = heading_matrix(-sign * angles["elbow"])
-        turns[:, SMPL22.index(f"{side}_hip")] = _about(2, -sign * 0.02) @ _about(0, angles["hip"])
+        turns[:, SMPL22.index(f"{side}_hip")] = about(2, -sign * 0.02) @ about(0, angles["hip"])
         for joint in ("knee", "ankle"):
-            turns[:, SMPL22.index(f"{side}_{joint}")] = _about(0, angles[joint])
+            turns[:, SMPL22.index(f"{side}_{joint}")] = about(0, angles[joint])
     return forward_kinematics(turns, np.zeros((1, 3)))[0]
 
 
@@ -224,7 +224,7 @@ def _on_floor(poses: Array, place: Array, angle: float) -> Array:
     )
 
 
-def _about(axis: int, angle: Array | float) -> Array:
+def about(axis: int, angle: Array | float) -> Array:
     """(…, 3, 3) rotations about X (0) or Z (2)."""
     angle = np.asarray(angle, dtype=np.float64)
     cos, sin, one, zero = np.cos(angle), np.sin(angle), np.ones_like(angle), np.zeros_like(angle)
