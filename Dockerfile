@@ -16,6 +16,7 @@ RUN useradd --system --uid 10001 --no-create-home --shell /usr/sbin/nologin lab 
 COPY --from=build /opt/venv /opt/venv
 WORKDIR /app
 COPY app.py ./
+COPY acts acts
 COPY motion motion
 COPY models models
 COPY static static
@@ -26,6 +27,7 @@ ENV PATH=/opt/venv/bin:$PATH \
     HF_HUB_OFFLINE=1 \
     PASDEDEUX_HOST=0.0.0.0 \
     PASDEDEUX_DATA=/data \
+    PASDEDEUX_EXIT_WHEN_STUCK=1 \
     XDG_CACHE_HOME=/data/cache
 USER 10001
 VOLUME /data

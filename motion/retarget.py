@@ -37,6 +37,9 @@ _FLAT_FOOT = float(np.arctan2(-_toe[1], np.hypot(_toe[0], _toe[2])))
 # Where pelvis, spine1, spine2 and spine3 lie between the midpoint of the hips and the neck.
 _spine = [float(-SMPL22.offsets[_J["left_hip"], 1])]
 _spine += [float(SMPL22.bone_lengths[_J[name]]) for name in ("spine1", "spine2", "spine3", "neck")]
+_STRAIGHT, _TALL = 0.9, 1.2
+"""A rest pose stands if this share of the way from its ankles to its neck lies along one axis, and if that is so many
+times the length of its legs."""
 _BLOCK = 2048
 """Frames whose rotations are fitted at once."""
 _SPINE_FRACTIONS = np.cumsum(_spine) / np.sum(_spine)
@@ -156,11 +159,14 @@ def _finished(positions: Array, fps: float, name: str, plant: bool) -> Clip:
 def up_rotation(rig: RigMotion, parts: BodyParts | None = None) -> Array:
     """(3, 3) rotation that turns the file's up axis to Y.
 
-    People stand most of the time, so up is the axis along which ankles and head are furthest apart. If the motion
-    does not show it clearly (someone lying), the rest pose decides. An axis that the rig names is used; the body
-    shows which end of it is up.
+    An axis that the rig names is used; the body shows which end of it is up. In a BVH, Y is up unless the rest pose
+    stands along another axis: its people may lie or crawl all the time. Elsewhere people stand most of the time, so
+    up is the axis along which ankles and head are furthest apart, and where the motion does not show it clearly, the
+    rest pose decides.
     """
     parts = parts or match_joints(rig)
+    if rig.up is None and rig.y_up:
+        return _rest_up(rig, parts)
     heads = [joint for joint in (parts.head, parts.neck, parts.spine[-1]) if joint is not None]
     ankles = [joint for joint in (parts.left["ankle"], parts.right["ankle"]) if joint is not None]
     tall = np.median(rig.positions[:, heads[0]] - rig.positions[:, ankles].mean(axis=1), axis=0)
@@ -173,6 +179,19 @@ def up_rotation(rig: RigMotion, parts: BodyParts | None = None) -> Array:
         if abs(vector[axis]) > 0.8 * np.linalg.norm(vector) and np.linalg.norm(vector) > 0.7:
             return _to_y(axis, float(np.sign(vector[axis])))
     return np.eye(3)
+
+
+def _rest_up(rig: RigMotion, parts: BodyParts) -> Array:
+    """(3, 3) rotation that turns the axis along which the rest pose stands to Y; of one that does not stand, none."""
+    rest = _bodies(_rest_positions(rig)[None], rig, parts, np.eye(3))
+    tall = np.mean([rest["neck"] - rest[f"{side}_ankle"] for side in ("left", "right")], axis=(0, 1))
+    legs = np.mean([
+        np.linalg.norm(rest[f"{side}_{upper}"] - rest[f"{side}_{lower}"])
+        for side in ("left", "right") for upper, lower in (("hip", "knee"), ("knee", "ankle"))
+    ])  # fmt: skip
+    axis = int(np.argmax(np.abs(tall)))
+    stands = abs(tall[axis]) > max(_STRAIGHT * np.linalg.norm(tall), _TALL * 2 * legs)
+    return _to_y(axis, float(np.sign(tall[axis]))) if stands and axis != 1 else np.eye(3)
 
 
 def up_axis(rig: RigMotion) -> str:

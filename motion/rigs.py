@@ -35,6 +35,7 @@ class RigMotion:
         name: the file's name, for messages.
         up: the axis that points up ("x", "y" or "z"), where it is known; it is found from the body otherwise.
         every: of how many frames of the file one is here.
+        y_up: Y is up unless the rest pose stands along another axis, as in a BVH.
     """
 
     joint_names: tuple[str, ...]
@@ -47,6 +48,7 @@ class RigMotion:
     name: str = ""
     up: str | None = None
     every: int = 1
+    y_up: bool = False
 
     @property
     def num_frames(self) -> int:
@@ -56,9 +58,11 @@ class RigMotion:
     @cached_property
     def bone_lengths(self) -> Array:
         """(J,) median length of the bone that ends in each joint in metres, 0 for roots."""
-        parents = np.array(self.parents)
-        bones = np.linalg.norm(self.positions - self.positions[:, np.maximum(parents, 0)], axis=-1)
-        return np.where(parents < 0, 0.0, np.median(bones, axis=0))
+        return np.array([
+            0.0 if parent < 0
+            else np.median(np.linalg.norm(self.positions[:, joint] - self.positions[:, parent], axis=-1))
+            for joint, parent in enumerate(self.parents)
+        ])  # fmt: skip
 
     def path_to_root(self, joint: int) -> list[int]:
         """The joint and all its ancestors."""

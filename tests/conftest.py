@@ -1,9 +1,28 @@
-"""What tests translate for OpenVINO does not push the user's own translations out of their cache."""
+"""A cache of their own for all tests, so that they push nothing of the user's out, and the mark of the quick ones."""
 
 import os
 from collections.abc import Iterator
+from pathlib import Path
 
 import pytest
+
+from tests.quick import TESTS, listed
+
+QUICK = {TESTS / module for module in listed()}
+
+
+def pytest_ignore_collect(collection_path: Path, config: pytest.Config) -> bool | None:
+    """For ``-m quick`` nothing else is imported, which takes longer than the quick tests themselves."""
+    is_test = collection_path.name.startswith("test_") and collection_path.suffix == ".py"
+    left_out = config.option.markexpr == "quick" and is_test and collection_path not in QUICK
+    return True if left_out else None
+
+
+def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
+    """Marks the tests of the modules in ``tests/quick.txt``."""
+    for item in items:
+        if item.path in QUICK:
+            item.add_marker(pytest.mark.quick)
 
 
 @pytest.fixture(scope="session", autouse=True)

@@ -1,11 +1,16 @@
-"""Every file, folder and Python name of the repository that a document mentions exists."""
+"""Every file, folder and Python name that a document mentions exists, and what it counts has that number."""
 
 from __future__ import annotations
 
 import re
+import subprocess
 from pathlib import Path
 
 import pytest
+
+from models.weights_io import WeightsFolder
+from training.corpus.words import lexicon
+from training.trainers.intergen_data import Settings
 
 ROOT = Path(__file__).resolve().parents[1]
 SKIPPED = {".venv", ".git", "node_modules", "runs", "outputs"}
@@ -83,3 +88,65 @@ def test_what_does_not_exist_is_found() -> None:
     assert missing_links(text, ROOT) == ["gone.md"]
     assert missing_paths(text) == ["models/gone.py"]
     assert missing_names(text) == ["motion.Gone"]
+
+
+def shares(text: str, pattern: str) -> list[str]:
+    """The groups of the only match of a pattern in a text whose lines are joined."""
+    (found,) = re.findall(pattern, " ".join(text.split()))
+    return list(found) if isinstance(found, tuple) else [found]
+
+
+def test_the_class_models_card_has_the_scores_of_the_table() -> None:
+    card = (ROOT / "models/weights/bigraphdiff/CARD.md").read_text()
+    scores = (ROOT / "docs/scores.md").read_text()
+    table = scores[scores.index("<!-- classes -->") : scores.index("<!-- end of classes -->")]
+    rows = {name: cells for name, *cells in re.findall(r"^\| ([^|]+) \| ([^|]+) \| ([^|]+) \|$", table, re.M)}
+    named, among = rows["class recognised"], rows["class among the 3 likeliest"]
+    said = shares(card, r"right class in (\d+) % .* likeliest in (\d+) % \(.*: (\d+) and (\d+) %\)")
+    assert said == [cell.rstrip("%") for cell in (named[0], among[0], named[1], among[1])]
+    touch, apart, face = shares(
+        card, r"do so in (\d+ of \d+) .* should in (\d+ of \d+), .* in (\d+ of \d+)\."
+    )
+    for kind, share in (("contact", touch), ("distance", apart), ("facing", face)):
+        assert f"({share.replace(' of ', '/')})" in rows[f"{kind} as in a scene of the class"][0]
+    said = shares(card, r"Jerk is ([\d.]+) times and foot skate ([\d.]+) times")
+    for kind, ratio in zip(("jerk, m/s³", "foot skate, cm/s"), said, strict=True):
+        assert f"{float(rows[kind][0]) / float(rows[kind][1]):.2f}" == ratio
+
+
+@pytest.mark.parametrize("page", ["scores.md", "reactions.md"])
+def test_scores_are_those_of_the_shipped_weights(page: str) -> None:
+    text = " ".join((ROOT / "docs" / page).read_text().split())
+    found = re.findall(r"\b(InterGen|ReGenNet|InterFormer) ([0-9a-f]{12})\b", text)
+    assert {name for name, _ in found} == {"InterGen", "ReGenNet", "InterFormer"}
+    for name, digest in found:
+        assert WeightsFolder(ROOT / "models/weights" / name.lower()).digest.startswith(digest), name
+
+
+def test_acts_gestures_classes_and_losses_are_counted() -> None:
+    beats = (ROOT / "docs/corpus-beats.md").read_text()
+    written, spoken = lexicon.count()
+    acts, shown = shares(beats, rf"{written:,} sentences .* {spoken} phrases for (\d+) acts, of which (\d+) ")
+    assert int(acts) == len(lexicon.phrases())
+    assert int(shown) == len(re.findall(r"^\| [a-z-]+ \| \d", beats, re.MULTILINE))
+    labels = WeightsFolder(ROOT / "models/weights/agent").meta["model"]["labels"]
+    assert labels[0] == "nothing"
+    assert f"the gesture among {len(labels) - 1}." in (ROOT / "docs/live.md").read_text()
+    classes = WeightsFolder(ROOT / "models/weights/bigraphdiff").meta["model"]["labels"]
+    for page in ("README.md", "models/weights/bigraphdiff/CARD.md"):
+        assert f"{len(classes)} classes" in (ROOT / page).read_text()
+    weightless = (
+        "distance-map loss (eq. 12, weight 0)" in (ROOT / "models/weights/intergen/CARD.md").read_text()
+    )
+    assert weightless == (Settings().weights.distance_map == 0)
+
+
+def test_the_size_of_a_clone_is_right() -> None:
+    """Every file twice, once as it is and once, packed, in ``.git``."""
+    listed = subprocess.run(["git", "ls-files", "-z"], cwd=ROOT, capture_output=True, text=True)
+    if listed.returncode:
+        pytest.skip("not a git checkout")
+    files = [ROOT / name for name in listed.stdout.split("\0") if name]
+    bytes_here = sum(path.stat().st_size for path in files if path.is_file())
+    (said,) = shares((ROOT / "README.md").read_text(), r"brings about (\d+) MB")
+    assert 1.5 < int(said) * 1e6 / bytes_here < 2

@@ -9,6 +9,7 @@ import socket
 import subprocess
 import sys
 import time
+import tomllib
 import urllib.error
 import urllib.request
 from collections.abc import Iterator
@@ -24,7 +25,6 @@ from webdemo.inference.methods import failed, method, methods, register_settings
 from webdemo.inference.own import entries
 from webdemo.inference.own.classes import method_of_class
 
-tomllib = pytest.importorskip("tomllib", reason="settings files need Python 3.11")
 ROOT = Path(__file__).resolve().parents[1]
 DOCUMENT = ROOT / "docs" / "own-model.md"
 BLOCKS = re.findall(r"^```(\w+)\n(.*?)^```", DOCUMENT.read_text(), re.DOTALL | re.MULTILINE)

@@ -94,8 +94,8 @@ def test_a_model_comes_with_its_own_number_of_steps(
 ) -> None:
     words = ["--actor", pair, "--person", "a", "--out", tmp_path / "x.npz"]
     for more, expected in (
-        ([], ("agent", "offline", 50)),
-        (["--prompt", "They wave."], ("intergen", "offline", 50)),
+        ([], ("agent", "offline", 8)),
+        (["--prompt", "They wave."], ("intergen", "offline", 8)),
         (["--mode", "online"], ("regennet", "online", 5)),
         (["--model", "regennet"], ("regennet", "offline", 5)),
         (["--model", "regennet", "--mode", "online", "--steps", 7], ("regennet", "online", 7)),

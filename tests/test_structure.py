@@ -10,17 +10,18 @@ from pathlib import Path
 import pytest
 
 ROOT = Path(__file__).resolve().parents[1]
-PACKAGES = ("motion", "models", "webdemo", "training")
-TORCH_FREE = ("motion", "webdemo.view", "webdemo.study", "webdemo.ui")
+PACKAGES = ("motion", "acts", "models", "webdemo", "training")
+TORCH_FREE = ("motion", "acts", "webdemo.view", "webdemo.study", "webdemo.ui")
 """The page draws before the networks load, so nothing it needs may wait for torch."""
 
 FLOORS: dict[str, set[str]] = {
     "motion": set(),
+    "acts": {"motion"},
     "models": {"motion"},
     "webdemo.view": {"motion"},
     "webdemo.study": {"motion"},
-    "webdemo.inference": {"motion", "models"},
-    "training": {"motion", "models", "webdemo.view", "webdemo.inference"},
+    "webdemo.inference": {"motion", "acts", "models"},
+    "training": {"motion", "acts", "models", "webdemo.view", "webdemo.inference"},
 }
 """What the lower floors may import. Those above (ui, server, benchmark, cli) may import all but training."""
 

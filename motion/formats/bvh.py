@@ -177,6 +177,7 @@ def _placed(motion: Motion, every: int) -> tuple[RigMotion, ...]:
             scale,
             label,
             every=every,
+            y_up=True,
         )
         for first, stop in people
     )

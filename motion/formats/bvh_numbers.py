@@ -21,6 +21,11 @@ Array = NDArray[np.floating]
 MAX_NUMBERS = 20_000_000
 _PIECE = 2**20
 _LARGEST = 1e7
+_BLANK = re.compile(rb"\s*+")
+_HEAD = re.compile(
+    rb"Frames:[ \t]*+(\S{1,99}+)[ \t]*+\r?\n\s*+Frame[ \t]++Time:[ \t]*+(\S{1,99}+)[ \t]*+(?:\r?\n|$)",
+    re.IGNORECASE,
+)
 
 
 @dataclass(frozen=True)
@@ -102,9 +107,9 @@ def find_motion(data: bytes, start: int, joints: list[Joint], label: str) -> Mot
     Raises:
         InputError: if the head is missing or says what cannot be.
     """
-    head = re.compile(
-        rb"\s*Frames:[ \t]*(\S+)[ \t]*\r?\n\s*Frame[ \t]+Time:[ \t]*(\S+)[ \t]*(?:\r?\n|$)", re.IGNORECASE
-    ).match(data, start)
+    blank = _BLANK.match(data, start)
+    assert blank is not None  # nothing is blank, too
+    head = _HEAD.match(data, blank.end())
     if not head:
         raise InputError(
             f"{label}: after MOTION there must be the lines 'Frames: N' and 'Frame Time: SECONDS'."

@@ -11,7 +11,7 @@ import struct
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from pathlib import Path
-from typing import Any, NoReturn
+from typing import Any, NamedTuple, NoReturn
 
 import numpy as np
 from numpy.typing import NDArray
@@ -22,6 +22,8 @@ from .files import read_bytes
 
 MOST_JOINTS = 512
 MOST_NODES = 5_000
+MOST_SKINS = 200
+"""Skins of a file: a character has one for each of its meshes."""
 MOST_ITEMS = 20_000
 """Entries of each list of the file."""
 LARGEST_JSON = 4 * 2**20
@@ -66,6 +68,31 @@ def opened(
         raise InputError(f"{label} is damaged: export it again as glTF binary (.glb).") from None
 
 
+class Stored(NamedTuple):
+    """The place of rows of numbers in a file.
+
+    Attributes:
+        kind: "SCALAR", "VEC3", …
+        rows: how many.
+        component: glTF's number for the kind of each number.
+        start: byte of the first row.
+        stride: bytes from one row to the next.
+        normalized: whole numbers stand for fractions.
+    """
+
+    kind: str
+    rows: int
+    component: int
+    start: int
+    stride: int
+    normalized: bool
+
+    @property
+    def size(self) -> int:
+        """Bytes of the numbers themselves."""
+        return self.rows * _WIDTHS[self.kind] * np.dtype(_TYPES[self.component]).itemsize
+
+
 class GlbFile:
     """The parts of a file that have been checked.
 
@@ -89,6 +116,11 @@ class GlbFile:
                 or len(self.document.get(key, [])) > MOST_ITEMS
             ):
                 self.refuse(f"its list of {key} is too long or none")
+        if len(self.document.get("skins", [])) > MOST_SKINS:
+            self.refuse(
+                f"it has {len(self.document['skins']):,} skins",
+                f"export the character alone, with {MOST_SKINS} skins at most",
+            )
         needed = [str(each)[:40] for each in list(self.document.get("extensionsRequired", []))]
         if needed := [each for each in needed if not each.startswith((*_LOOKS, *harmless))]:
             self.refuse(
@@ -131,12 +163,12 @@ class GlbFile:
             self.refuse(f"{what} {value!r:.20} is not there")
         return value
 
-    def numbers(self, accessor: Any, kind: str, most: int, what: str) -> NDArray:
-        """The rows of an accessor of this kind, at most so many."""
-        stored = self.document["accessors"][self.index(accessor, len(self.document["accessors"]), "accessor")]
-        if stored.get("sparse") is not None or stored.get("type") != kind or "bufferView" not in stored:
+    def stored(self, accessor: Any, kind: str, most: int, what: str) -> Stored:
+        """The place of the rows of an accessor of this kind, at most so many; nothing is decoded yet."""
+        found = self.document["accessors"][self.index(accessor, len(self.document["accessors"]), "accessor")]
+        if found.get("sparse") is not None or found.get("type") != kind or "bufferView" not in found:
             self.refuse(f"its {what} are stored in a way that is not read here")
-        count, component = stored["count"], stored["componentType"]
+        count, component = found["count"], found["componentType"]
         if type(count) is not int or not 0 < count <= most:
             self.refuse(
                 f"it has {count!r:.20} {what}, and {most:,} are the limit",
@@ -145,22 +177,31 @@ class GlbFile:
         if component not in _TYPES:
             self.refuse(f"its {what} are of an unknown kind")
         views = self.document["bufferViews"]
-        view = views[self.index(stored["bufferView"], len(views), "buffer view")]
+        view = views[self.index(found["bufferView"], len(views), "buffer view")]
         if view.get("buffer", 0) != 0 or self.document["buffers"][0].get("uri") is not None:
             self.refuse("it keeps its data in other files", "export it as one .glb file")
-        dtype = np.dtype(_TYPES[component])
-        row = dtype.itemsize * _WIDTHS[kind]
-        start = self._size(view.get("byteOffset", 0)) + self._size(stored.get("byteOffset", 0))
+        row = np.dtype(_TYPES[component]).itemsize * _WIDTHS[kind]
+        start = self._size(view.get("byteOffset", 0)) + self._size(found.get("byteOffset", 0))
         stride = self._size(view.get("byteStride", 0)) or row
         end = self._size(view.get("byteOffset", 0)) + self._size(view["byteLength"])
         if not row <= stride <= 252 or start + stride * (count - 1) + row > min(end, len(self.blob)):
             self.refuse(f"its {what} lie outside of the file")
-        rows = np.ndarray((count, _WIDTHS[kind]), dtype, self.blob, start, (stride, dtype.itemsize))
+        return Stored(kind, count, component, start, stride, bool(found.get("normalized")))
+
+    def decoded(self, stored: Stored, what: str) -> NDArray:
+        """(rows, width) the numbers that are stored there."""
+        dtype = np.dtype(_TYPES[stored.component])
+        shape = (stored.rows, _WIDTHS[stored.kind])
+        rows = np.ndarray(shape, dtype, self.blob, stored.start, (stored.stride, dtype.itemsize))
         if dtype.kind == "f" and not (np.isfinite(rows).all() and np.abs(rows).max() < _FARTHEST):
             self.refuse(f"its {what} are not finite or very far away")
-        if dtype.kind != "f" and stored.get("normalized"):
+        if dtype.kind != "f" and stored.normalized:
             return rows / float(np.iinfo(dtype).max)
         return rows.copy()
+
+    def numbers(self, accessor: Any, kind: str, most: int, what: str) -> NDArray:
+        """The rows of an accessor of this kind, at most so many."""
+        return self.decoded(self.stored(accessor, kind, most, what), what)
 
     def _size(self, value: Any) -> int:
         if type(value) is not int or not 0 <= value < 2**31:

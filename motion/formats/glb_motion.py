@@ -66,9 +66,11 @@ def read_glb(
         moved = [channels(file, each, its) for each, its in zip(taken, nodes, strict=True)]
         moments, rate, every = _clock(file, moved, sum(len(person.nodes) for person in whole))
         places = [person.at(its, moments) for person, its in zip(whole, moved, strict=True)]
-        scale = metres_per_unit(whole[0].motion(places[0], rate))
+        scale = np.float32(metres_per_unit(whole[0].motion(places[0], rate)))
+        for its in places:
+            its *= scale
         return tuple(
-            person.motion(scale * its, rate / every, scale, every)
+            person.motion(its, rate / every, float(scale), every)
             for person, its in zip(whole, places, strict=True)
         ), animations
 
@@ -136,7 +138,7 @@ class _Person:
             part = moments[start : start + block]
             world = placed(self.file, self.nodes, self.parents, moved, part)
             positions[start : start + block] = self._joints(world, len(part))
-        if not np.isfinite(positions).all() or np.abs(positions).max() > _FARTHEST:
+        if not (positions.min() >= -_FARTHEST and positions.max() <= _FARTHEST):  # NaN is neither
             self.file.refuse("its joints fly away")
         return positions
 
@@ -174,7 +176,8 @@ def _clock(file: GlbFile, moved: Sequence[Sequence[Channel]], nodes: int) -> tup
 
 def _rate(moved: Sequence[Channel]) -> float:
     """Frames a second of the densest channel."""
-    steps = [float(np.median(np.diff(each.times))) for each in moved if len(each.times) > 2]
+    clocks = {id(each.times): each.times for each in moved if len(each.times) > 2}  # channels share them
+    steps = [float(np.median(np.diff(times))) for times in clocks.values()]
     step = min((each for each in steps if each > 0), default=1.0)
     rate = 1.0 / step
     if not _RATES[0] <= rate <= _RATES[1]:

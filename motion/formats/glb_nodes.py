@@ -9,12 +9,13 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from .glb_file import MOST_JOINTS, GlbFile, in_order
+from .glb_file import MOST_JOINTS, GlbFile, Stored, in_order
 
 Array = NDArray[np.floating]
 
 MOST_KEYS = 6_000_000
-"""Key frames of all channels together."""
+"""Key frames of all channels together; those that channels share count once."""
+_NO_FIT = "its key frames do not fit their times"
 _PATHS = {"translation": ("VEC3", 3), "rotation": ("VEC4", 4), "scale": ("VEC3", 3)}
 _DEFAULTS = {"translation": (0.0, 0.0, 0.0), "rotation": (0.0, 0.0, 0.0, 1.0), "scale": (1.0, 1.0, 1.0)}
 
@@ -144,12 +145,36 @@ def moves(animation: Any, nodes: set[int]) -> bool:
 
 
 def channels(file: GlbFile, animation: Any, nodes: set[int]) -> list[Channel]:
-    """The channels of an animation that move these nodes, at most one for each property."""
+    """The channels of an animation that move these nodes, at most one for each property.
+
+    All key frames are counted before the first is decoded, and those that several channels share are decoded once.
+    """
+    found = _stored_channels(file, animation, nodes)
+    stored = {part for *_, times, values in found for part in (times, values)}
+    if sum(values.rows for values in {values for *_, values in found}) >= MOST_KEYS:
+        file.refuse(f"it has more than {MOST_KEYS:,} key frames", "lower its frame rate")
+    if sum(part.size for part in stored) > len(file.blob):
+        file.refuse("its key frames overlap")
+    tables = {part: file.decoded(part, "key frames").astype(np.float64) for part in stored}
+    clocks = {times: tables[times][:, 0] for *_, times, _ in found}
+    if any((np.diff(times) < 0).any() or times[0] < 0 for times in clocks.values()):
+        file.refuse(_NO_FIT)
+    splines = {values: tables[values].reshape(-1, 3, tables[values].shape[1])
+               for _, _, way, _, values in found if way == "CUBICSPLINE"}  # fmt: skip
+    return [
+        Channel(node, path, clocks[times], (splines if way == "CUBICSPLINE" else tables)[values], way)
+        for node, path, way, times, values in found
+    ]
+
+
+def _stored_channels(
+    file: GlbFile, animation: Any, nodes: set[int]
+) -> list[tuple[int, str, str, Stored, Stored]]:
+    """Node, path, way, times and values of each channel, not decoded yet."""
     count = len(file.document.get("nodes", []))
-    samplers, entries = animation["samplers"], animation["channels"]
-    found: dict[tuple[int, str], Channel] = {}
-    keys = 0
-    for channel in entries:
+    samplers = animation["samplers"]
+    found: dict[tuple[int, str], tuple[int, str, str, Stored, Stored]] = {}
+    for channel in animation["channels"]:
         target = channel["target"]
         if target.get("node") is None or target.get("path") not in _PATHS:
             continue
@@ -160,21 +185,11 @@ def channels(file: GlbFile, animation: Any, nodes: set[int]) -> list[Channel]:
         way = sampler.get("interpolation", "LINEAR")
         if way not in ("LINEAR", "STEP", "CUBICSPLINE"):
             file.refuse(f"it moves in a way {way!r:.20} that is not known")
-        kind, width = _PATHS[path]
-        times = file.numbers(sampler["input"], "SCALAR", MOST_KEYS - keys, "key frames")[:, 0].astype(
-            np.float64
-        )
-        values = file.numbers(sampler["output"], kind, 3 * MOST_KEYS, "key frames").astype(np.float64)
-        keys += len(values)
-        if keys >= MOST_KEYS:
-            file.refuse(f"it has more than {MOST_KEYS:,} key frames", "lower its frame rate")
-        if way == "CUBICSPLINE":
-            if len(values) != 3 * len(times):
-                file.refuse("its key frames do not fit their times")
-            values = values.reshape(-1, 3, width)
-        if len(values) != len(times) or (np.diff(times) < 0).any() or times[0] < 0:
-            file.refuse("its key frames do not fit their times")
-        found[node, path] = Channel(node, path, times, values, way)
+        times = file.stored(sampler["input"], "SCALAR", MOST_KEYS, "key frames")
+        values = file.stored(sampler["output"], _PATHS[path][0], 3 * MOST_KEYS, "key frames")
+        if values.rows != (3 if way == "CUBICSPLINE" else 1) * times.rows:
+            file.refuse(_NO_FIT)
+        found[node, path] = (node, path, way, times, values)
     return list(found.values())
 
 
@@ -225,13 +240,18 @@ def placed(
         moments: (T,) seconds.
     """
     world: dict[int, Array] = {}
+    courses: dict[tuple[int, int, str, str], Array] = {}  # what channels share is worked out once
     by_node: dict[int, list[Channel]] = {}
     for each in moved:
         by_node.setdefault(each.node, []).append(each)
     for node in nodes:
         parts = {path: part[None] for path, part in local_parts(file, node).items()}
         if moments is not None:
-            parts |= {each.path: each.at(moments) for each in by_node.get(node, ())}
+            for each in by_node.get(node, ()):
+                course = (id(each.times), id(each.values), each.path, each.way)
+                if course not in courses:
+                    courses[course] = each.at(moments)
+                parts[each.path] = courses[course]
         local = matrices(parts)
         world[node] = world[parents[node]] @ local if parents[node] >= 0 else local
     return world

@@ -74,8 +74,8 @@ def _character(file: GlbFile) -> Character:
         file.refuse(
             "it has no mesh that is bound to a skeleton", "skin the mesh and export it with its armature"
         )
-    found = [(skin, _surface(file, each)) for skin, each in bound.items()]
-    skin, (vertices, faces, slots, weights) = max(found, key=lambda each: len(each[1][1]))
+    skin = max(bound, key=lambda each: _triangles(file, bound[each]))
+    vertices, faces, slots, weights = _surface(file, bound[skin])
     joints = file.skin_joints(skins[skin])
     if slots[weights > 0].max(initial=0) >= len(joints):
         file.refuse("its mesh is bound to joints that are not there")
@@ -89,13 +89,30 @@ def _character(file: GlbFile) -> Character:
     return Character(file.label, names, tuple(above), places[order], vertices, faces, slots, weights)
 
 
+def _triangles(file: GlbFile, meshes: Sequence[Mapping[str, Any]]) -> int:
+    """The number of skinned triangles of meshes, by what the file declares; nothing is decoded."""
+    total = 0
+    for primitive in (each for mesh in meshes for each in mesh["primitives"]):
+        held = primitive["attributes"]
+        if _is_skinned(primitive):
+            corners = primitive.get("indices")
+            what = (held["POSITION"], "VEC3") if corners is None else (corners, "SCALAR")
+            total += file.stored(*what, 3 * MOST_TRIANGLES, "corners of triangles").rows // 3
+    return total
+
+
+def _is_skinned(primitive: Mapping[str, Any]) -> bool:
+    held = primitive["attributes"]
+    return primitive.get("mode", 4) == 4 and "JOINTS_0" in held and "WEIGHTS_0" in held
+
+
 def _surface(file: GlbFile, meshes: Sequence[Mapping[str, Any]]) -> tuple[Array, NDArray, NDArray, Array]:
     """Vertices (V, 3), faces (F, 3), joints (V, 4) and weights (V, 4) of meshes as one."""
     parts: list[tuple[Array, NDArray, NDArray, Array]] = []
     count = triangles = 0
     for primitive in (each for mesh in meshes for each in mesh["primitives"]):
         held = primitive["attributes"]
-        if primitive.get("mode", 4) != 4 or "JOINTS_0" not in held or "WEIGHTS_0" not in held:
+        if not _is_skinned(primitive):
             continue
         left = MOST_VERTICES - count
         vertices = file.numbers(held["POSITION"], "VEC3", max(left, 0), "vertices").astype(np.float64)

@@ -37,11 +37,11 @@ _JOINT_COUNTS = "15 (Kinect v1), 17 (CMU), 22 or 24 (SMPL) or 25 (Kinect v2) joi
 _MAX_HEADER = 4096
 _AT_ONCE = 4096
 """Frames of which rotations are made at a time."""
-# What zipfile raises over damaged files, from wrong sums to sizes below zero.
-_ZIP_ERRORS = (
+ZIP_ERRORS = (
     zipfile.BadZipFile, zlib.error, struct.error, lzma.LZMAError, EOFError, NotImplementedError, RuntimeError,
     OSError, ValueError, OverflowError, IndexError, KeyError,
 )  # fmt: skip
+"""Errors that :mod:`zipfile` raises over damaged files, from wrong sums to sizes below zero."""
 _KEYS = (
     "positions", "fps", "joint_names", "parents", "roles", "manifest",
     "poses", "trans", "mocap_framerate", "mocap_frame_rate",
@@ -156,7 +156,7 @@ def _load_members(data: bytes, label: str) -> dict[str, Array]:
                     arrays[key] = _load_array(stream, member.file_size, f"{label}, {key}")
     except InputError:
         raise
-    except _ZIP_ERRORS as error:
+    except ZIP_ERRORS as error:
         raise InputError(f"{label} is not a whole .npz file, or it is damaged: save it again.") from error
     return arrays
 

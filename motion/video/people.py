@@ -43,7 +43,7 @@ _STANDS = 0.8
 """m/s below which a low foot stands: a walker's feet glide where the path is uncertain."""
 _SEEN = 0.5
 """A point that is seen less surely than this counts as hidden."""
-_LEGS = [INDEX[f"{side}_{part}"] for side in ("left", "right") for part in ("knee", "ankle")]
+_LEGS = [[INDEX[f"{side}_{part}"] for part in ("knee", "ankle")] for side in ("left", "right")]
 
 POINT_OF = {
     "left_hip": "left_hip", "left_knee": "left_knee", "left_ankle": "left_ankle",
@@ -161,11 +161,11 @@ def _check_seen(track: Track, landmarks: Landmarks) -> None:
         raise InputError("The legs are not in the picture: step back so that the whole body is seen.")
 
 
-def _legs_seen(track: Track, landmarks: Landmarks) -> Array:
-    """(T,) whether both legs are seen, and inside the picture."""
+def _legs_seen(track: Track, landmarks: Landmarks) -> NDArray[np.bool_]:
+    """(T,) whether one leg is seen from knee to ankle, inside the picture: from the side it hides the other."""
     points = np.nan_to_num(track.pixels[:, _LEGS], nan=-1.0)
     inside = ((points >= 0) & (points <= [landmarks.width, landmarks.height])).all(axis=-1)
-    return (inside & (track.seen[:, _LEGS] > _SEEN)).mean(axis=1) > 0.5
+    return np.any(np.all(inside & (track.seen[:, _LEGS] > _SEEN), axis=2), axis=1)
 
 
 def _in_camera(track: Track, landmarks: Landmarks, focal: float) -> Array:

@@ -22,9 +22,12 @@ export class Posing {
     this.held = null;
     this.host = player.find(".pdd-handles");
     this.bar = player.find(".pdd-posing");
+    this.opener = player.root.contains(document.activeElement) ? document.activeElement : player.root;
     this.listen();
     this.lay();
-    this.say();
+    const { spots } = player.panes[0];
+    if (spots) this.place(spots);
+    this.focus(this.handles.find((handle) => handle.style.visibility !== "hidden"));
   }
 
   listen() {
@@ -34,6 +37,7 @@ export class Posing {
     this.host.addEventListener("pointermove", (event) => this.drag(event), { signal });
     this.host.addEventListener("pointerup", () => this.release(), { signal });
     this.host.addEventListener("pointercancel", () => this.giveUp(), { signal });
+    this.host.addEventListener("focusin", (event) => this.choose(event.target), { signal });
     this.bar.addEventListener("click", (event) => this.press(event), { signal });
     this.player.root.addEventListener("keydown", (event) => this.key(event), { signal, capture: true });
   }
@@ -45,9 +49,8 @@ export class Posing {
       handle.type = "button";
       handle.className = `pdd-handle pdd-handle-${"ab"[person]}`;
       Object.assign(handle.dataset, { person, joint });
-      const whose = name[0].toUpperCase() + name.slice(1);
-      handle.setAttribute("aria-label", `${whose} of ${"AB"[person]}: arrow keys move it`);
-      handle.title = `${whose} of ${"AB"[person]}`;
+      handle.title = `${name[0].toUpperCase() + name.slice(1)} of ${"AB"[person]}`;
+      handle.setAttribute("aria-label", `${handle.title}: arrow keys move it`);
       return handle;
     }));
     this.host.replaceChildren(...this.handles);
@@ -61,18 +64,35 @@ export class Posing {
       const [x, y, depth] = spots[handle.dataset.person][handle.dataset.joint];
       handle.style.transform = `translate(${x.toFixed(1)}px, ${y.toFixed(1)}px) translate(-50%, -50%)`;
       handle.style.zIndex = String(1000 - Math.round(10 * Math.min(depth, 99)));
-      handle.style.visibility = depth > 0.1 ? "visible" : "hidden";
+      const shown = depth > 0.1;
+      if (!shown && handle === document.activeElement) this.focus(this.player.root);
+      handle.style.visibility = shown ? "visible" : "hidden";
     }
+  }
+
+  // ---- the focus: Tab goes from joint to joint and on to the buttons; it never gets lost ------------
+
+  focus(element) {
+    (element ?? this.player.root).focus({ preventScroll: true });
+  }
+
+  choose(handle) {
+    this.chosen = handle;
+    this.say();
   }
 
   say() {
     const { bar } = this;
     const any = this.changed.some(Boolean);
-    bar.querySelector("[data-pose=keep]").disabled = !any;
-    bar.querySelector("[data-pose=back]").disabled = !this.steps.length;
+    for (const [act, enabled] of [["keep", any], ["back", this.steps.length > 0]]) {
+      const button = bar.querySelector(`[data-pose=${act}]`);
+      if (!enabled && button === document.activeElement) this.focus(this.chosen); // a disabled button loses the focus
+      button.disabled = !enabled;
+    }
     const seconds = (this.frame / this.player.clock.fps).toFixed(2);
-    const who = this.changed.map((is, person) => (is ? "AB"[person] : "")).join("") || null;
-    bar.querySelector("output").textContent = who ? `${[...who].join(" and ")} at ${seconds} s` : `At ${seconds} s: drag a hand, a foot, the hips or a head`;
+    const who = this.changed.flatMap((is, person) => (is ? ["AB"[person]] : [])).join(" and ");
+    const where = `${this.chosen ? `${this.chosen.title} at` : "At"} ${seconds} s`;
+    bar.querySelector("output").textContent = `${where}: ${who ? `${who} changed` : "drag a joint or use the arrow keys"}`;
   }
 
   /** Shows that the pose must be kept or given up first. */
@@ -198,6 +218,7 @@ export class Posing {
 
   close() {
     this.abort.abort();
+    if ([this.host, this.bar].some((part) => part.contains(document.activeElement))) this.focus(this.opener);
     this.host.replaceChildren();
     this.host.hidden = this.bar.hidden = true;
   }

@@ -3,12 +3,11 @@
 import * as edits from "./edits.js";
 
 const KEY = "pas-de-deux-story";
-const words = (story) => JSON.stringify(edits.read(story).beats.map(({ words, a, b }) => [words || "", a || "", b || ""]));
 
 export class Draft {
   constructor(store = window.sessionStorage) {
     this.store = store;
-    this.base = words(null);
+    this.base = edits.wordsOf(null);
     this.fresh = true; // nothing was changed since the page was opened
   }
 
@@ -20,7 +19,7 @@ export class Draft {
 
   /** The server gave a story: returns what it had been changed to before a reload, or null. */
   given(story) {
-    this.base = words(story);
+    this.base = edits.wordsOf(story);
     const kept = this.fresh ? this.read() : null;
     if (kept?.base === this.base) return edits.read(kept.story);
     if (story?.beats?.length) this.write(null);

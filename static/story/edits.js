@@ -5,7 +5,7 @@ export const LONGEST = 30;
 const GUESS = 4; // seconds of a beat whose length has not been worked out yet
 
 /** A story without anything. */
-export const empty = () => ({ beats: [], paths: [], poses: [], loop: false, planned: true, span: null, from: null });
+export const empty = () => ({ beats: [], paths: [], poses: [], loop: false, planned: true, span: null, ahead: false });
 
 /** A story as the server gave it, with its own fields alone. */
 export function read(given) {
@@ -13,6 +13,9 @@ export function read(given) {
   for (const key of Object.keys(story)) story[key] = given?.[key] ?? story[key];
   return story;
 }
+
+/** What is said in the beats, as a text that is the same where the words are. */
+export const wordsOf = (story) => JSON.stringify((story?.beats ?? []).map(({ words, a, b }) => [words || "", a || "", b || ""]));
 
 /** Seconds of a beat: as set, as worked out from its words, or a guess. */
 export const lengthOf = (beat) => beat.seconds ?? beat.auto ?? GUESS;

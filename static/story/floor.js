@@ -4,6 +4,7 @@ import { edges, path, pathOf } from "./edits.js";
 
 const EDGE = 8;
 const STEP = 0.35; // metres between two points of a drawn path
+const NEAR = 0.5; // metres from where a person stands within which a drawn path begins there
 const NAMES = { a: "A", b: "B" };
 const SVG = "http://www.w3.org/2000/svg";
 const make = (name, attributes, parent) => {
@@ -13,6 +14,11 @@ const make = (name, attributes, parent) => {
   return node;
 };
 const inside = (value) => Math.round(100 * Math.min(Math.max(value, -EDGE), EDGE)) / 100;
+
+/** The place [x, z] of each person of a motion at a moment; it stands still before its beginning and after its end. */
+export function placesAt(motion, seconds) {
+  return (motion?.tracks ?? []).map((track) => track[Math.min(Math.max(Math.round(seconds / motion.step), 0), track.length - 1)]);
+}
 
 /** A point is [seconds or null, x, z] with or without a heading; the picture has x to the right and z upwards. */
 export class Floor {
@@ -42,7 +48,7 @@ export class Floor {
     if (event.button) return;
     event.preventDefault();
     this.svg.setPointerCapture(event.pointerId);
-    const { story, selected } = this.editor;
+    const { story } = this.editor;
     const [x, z] = this.at(event);
     const point = event.target.dataset?.point;
     if (point) {
@@ -50,8 +56,20 @@ export class Floor {
       this.held = { person, index: Number(point), points: pathOf(story, person).map((p) => [...p]) };
       return;
     }
-    const start = story.beats.length ? edges(story)[Math.max(selected, 0)] : 0;
-    this.held = { person: this.person, drawn: true, points: [[start, x, z]] };
+    const stands = this.standing(this.person);
+    const near = stands && Math.hypot(x - stands[0], z - stands[1]) < NEAR;
+    this.held = { person: this.person, drawn: true, points: [[this.start, ...(near ? stands : [x, z])]] };
+  }
+
+  /** Seconds at which the selected beat begins, and a path that is drawn now. */
+  get start() {
+    const { story, selected } = this.editor;
+    return story.beats.length ? edges(story)[Math.max(selected, 0)] : 0;
+  }
+
+  /** The place at which the motion that is shown has a person at that time, if there is one. */
+  standing(person) {
+    return placesAt(this.editor.props.motion, this.start)["ab".indexOf(person)];
   }
 
   drag(event) {
@@ -93,13 +111,12 @@ export class Floor {
     this.svg.querySelector(`[data-person="${person}"][data-point="${Math.min(index, points.length - 1)}"]`)?.focus();
   }
 
-  /** A point after the last, half a metre on, for the keyboard. */
+  /** The point where the person stands, or one after the last, half a metre on: for the keyboard. */
   addPoint() {
-    const { story, selected } = this.editor;
+    const { story } = this.editor;
     const points = pathOf(story, this.person).map((p) => [...p]);
     const last = points.at(-1);
-    const start = story.beats.length ? edges(story)[Math.max(selected, 0)] : 0;
-    points.push(last ? [null, last[1], inside(last[2] + 0.5)] : [start, 0, 0]);
+    points.push(last ? [null, last[1], inside(last[2] + 0.5)] : [this.start, ...(this.standing(this.person) ?? [0, 0])]);
     this.editor.edit(path(story, this.person, points));
   }
 
@@ -114,6 +131,7 @@ export class Floor {
       make("line", { x1: i, x2: i, y1: -EDGE, y2: EDGE, class: strong }, this.svg);
       make("line", { y1: i, y2: i, x1: -EDGE, x2: EDGE, class: strong }, this.svg);
     }
+    this.drawMotion(story);
     for (const { person, points } of story.paths) {
       const group = make("g", { class: `pds-path pds-${person}` }, this.svg);
       make("polyline", { points: points.map(([, x, z]) => `${x},${-z}`).join(" ") }, group);
@@ -127,5 +145,28 @@ export class Floor {
         make("title", {}, dot).textContent = label;
       });
     }
+  }
+
+  /** Where the people of the motion walk, stronger in the selected beat, and where they stand when it begins. */
+  drawMotion(story) {
+    const { motion } = this.editor.props;
+    const places = placesAt(motion, this.start);
+    const line = (points) => points.map(([x, z]) => `${x},${-z}`).join(" ");
+    places.forEach(([x, z], i) => {
+      const person = "ab"[i];
+      const group = make("g", { class: `pds-track pds-${person}` }, this.svg);
+      const track = motion.tracks[i];
+      make("polyline", { points: line(track) }, group);
+      const [from, to] = [this.start, this.until(story)].map((seconds) => Math.round(seconds / motion.step));
+      make("polyline", { points: line(track.slice(from, to + 1)), class: "pds-now" }, group);
+      make("circle", { cx: x, cy: -z, r: 0.3 }, group);
+      const label = `${NAMES[person]} stands at x ${x}, z ${z} when the selected beat begins, at ${this.start.toFixed(1)} s`;
+      make("text", { x, y: 0.15 - z, role: "img", "aria-label": label }, group).textContent = NAMES[person];
+    });
+  }
+
+  /** Seconds at which the selected beat ends. */
+  until(story) {
+    return story.beats.length ? edges(story)[Math.max(this.editor.selected, 0) + 1] : Infinity;
   }
 }

@@ -3,23 +3,20 @@
 import { Draft } from "./draft.js";
 import * as edits from "./edits.js";
 import { Floor } from "./floor.js";
+import { block, drawRuler, drawTicks, node } from "./lanes.js";
 import { Pins } from "./pins.js";
 
 const LANES = [["words", "both"], ["a", "A"], ["b", "B"]];
 const PIXELS = 44; // a second, at least
-const MOST_TICKS = 80;
 
-const node = (name, className, text) => {
-  const made = document.createElement(name);
-  made.className = className;
-  if (text !== undefined) made.textContent = text;
-  return made;
-};
+const plain = (story) => JSON.stringify({ ...story, ahead: false });
 
 class Editor {
-  constructor(root, props, changed) {
+  /** `kept` takes the story as the component's value; `changed` tells the server that the user changed it. */
+  constructor(root, props, kept, changed) {
     this.root = root;
     this.props = props;
+    this.kept = kept;
     this.changed = changed;
     this.story = edits.empty();
     this.selected = 0;
@@ -74,12 +71,43 @@ class Editor {
     if (story === this.given) return;
     this.given = story;
     const changed = this.draft.given(story);
-    if (JSON.stringify(edits.read(story)) === this.sent) return;
-    if (this.story.beats.length) this.past.keep(this.story);
-    this.story = edits.read(story);
-    this.selected = Math.min(Math.max(this.selected, 0), this.story.beats.length - 1);
+    const next = edits.read(story);
+    if (plain(next) === this.sent && !changed) {
+      this.story = { ...this.story, ahead: next.ahead };
+      return;
+    }
+    this.keepPast();
+    this.story = next;
+    this.bound();
     if (changed) this.edit(changed);
     else this.draw();
+  }
+
+  /** The beats, paths and poses that the text over the line gives, unless they were changed since it was written. */
+  lay(laid) {
+    if (!laid || laid === this.laid) return;
+    this.laid = laid;
+    if (this.story.ahead) return;
+    this.keepPast();
+    this.hold(edits.read({ ...this.story, ...laid, span: null }));
+    this.bound();
+    this.draw();
+    this.draft.keep(this.story);
+  }
+
+  /** The story becomes the component's value. */
+  hold(story) {
+    this.story = this.given = story;
+    this.sent = plain(story);
+    this.kept(story);
+  }
+
+  keepPast() {
+    if (this.story.beats.length) this.past.keep(this.story);
+  }
+
+  bound() {
+    this.selected = Math.min(Math.max(this.selected, 0), this.story.beats.length - 1);
   }
 
   /** Lengths that follow from the words, as the server worked them out. */
@@ -97,14 +125,13 @@ class Editor {
     this.show(story);
   }
 
-  show(story) {
-    this.story = story;
-    this.selected = Math.min(Math.max(this.selected, 0), story.beats.length - 1);
+  show(next) {
+    const ahead = this.story.ahead || edits.wordsOf(next) !== edits.wordsOf(this.story);
+    this.hold({ ...next, ahead });
+    this.bound();
     this.draw();
-    this.sent = JSON.stringify(story);
-    this.given = story;
-    this.draft.keep(story);
-    this.changed(story);
+    this.draft.keep(this.story);
+    this.changed();
   }
 
   // ---- events ----------------------------------------------------------------------------------
@@ -277,13 +304,16 @@ class Editor {
     for (const [lane, name] of LANES) {
       const row = node("div", `pds-lane pds-lane-${lane}`);
       row.append(node("span", "pds-name", name));
-      story.beats.forEach((beat, i) => row.append(this.block(beat, i, lane, name, starts, total)));
+      const stretch = (event, index) => this.stretchBy(event, index);
+      story.beats.forEach((beat, i) => row.append(
+        block(beat, i, { lane, name, starts, total, selected: i === this.selected, stretch }),
+      ));
       row.append(...this.pins.of(lane, total));
       lanes.append(row);
     }
     if (focused) this.find(`[data-key="${focused}"]`)?.focus({ preventScroll: true });
-    this.drawRuler(total);
-    this.drawTicks(total);
+    drawRuler(this.find(".pds-ruler"), total);
+    drawTicks(this.find(".pds-ticks"), this.props.motion?.contacts ?? [], total);
     this.drawSpan(story.span);
     this.floor.draw(story);
     this.player?.refresh(); // it shows poses
@@ -319,60 +349,6 @@ class Editor {
     return `Beat ${this.selected + 1}: ${length}${seed}. Click a block to change its words.`;
   }
 
-  block(beat, index, lane, name, starts, total) {
-    const box = node("div", "pds-block");
-    box.style.left = `${(100 * starts[index]) / total}%`;
-    box.style.width = `${(100 * edits.lengthOf(beat)) / total}%`;
-    const words = beat[lane] ?? "";
-    const cell = node("button", `pds-cell${words ? "" : " pds-none"}`, words || "+");
-    cell.type = "button";
-    cell.dataset.beat = index;
-    cell.dataset.lane = lane;
-    cell.dataset.key = `${lane} ${index}`;
-    cell.title = words;
-    cell.setAttribute("aria-label", `Beat ${index + 1}, ${name}: ${words || "no words"}`);
-    if (index === this.selected) cell.classList.add("pds-selected");
-    box.append(cell);
-    if (lane === "words") {
-      const handle = node("span", "pds-handle");
-      handle.tabIndex = 0;
-      handle.dataset.beat = index;
-      handle.dataset.key = `length ${index}`;
-      handle.setAttribute("role", "slider");
-      handle.setAttribute("aria-label", `Length of beat ${index + 1}`);
-      handle.setAttribute("aria-valuenow", edits.lengthOf(beat));
-      handle.setAttribute("aria-valuemin", edits.SHORTEST);
-      handle.setAttribute("aria-valuemax", edits.LONGEST);
-      handle.addEventListener("pointerdown", (event) => this.stretchBy(event, index));
-      box.append(handle);
-    }
-    return box;
-  }
-
-  drawRuler(total) {
-    const ruler = this.find(".pds-ruler");
-    ruler.replaceChildren();
-    const step = total > 60 ? 5 : total > 20 ? 2 : 1;
-    for (let second = 0; second <= total; second += step) {
-      const mark = node("span", "", String(second));
-      mark.style.left = `${(100 * second) / total}%`;
-      ruler.append(mark);
-    }
-  }
-
-  drawTicks(total) {
-    const ticks = this.find(".pds-ticks");
-    ticks.replaceChildren();
-    for (const contact of (this.props.motion?.contacts ?? []).slice(0, MOST_TICKS)) {
-      const tick = node("span", "");
-      tick.dataset.kind = contact.kind;
-      tick.title = `${contact.label}, ${contact.start.toFixed(1)} s`;
-      tick.style.left = `${(100 * contact.start) / total}%`;
-      tick.style.width = `${(100 * (contact.stop - contact.start)) / total}%`;
-      ticks.append(tick);
-    }
-  }
-
   drawSpan(span) {
     const shown = this.find(".pds-span");
     shown.hidden = !span;
@@ -385,16 +361,14 @@ class Editor {
 /** `element` holds story.html; `props` are the component's, watched by `watch`; `trigger` tells the server. */
 export function mount(element, props, watch, trigger) {
   const root = element.querySelector(".pds");
-  const editor = new Editor(root, props, (story) => {
-    props.value = story;
-    trigger("input");
-  });
+  const editor = new Editor(root, props, (story) => (props.value = story), () => trigger("input"));
   const sync = () => {
     editor.load(props.value);
+    editor.lay(props.laid);
     editor.measure(props.lengths);
     editor.draw();
   };
-  watch(["value", "lengths", "motion"], sync);
+  watch(["value", "laid", "lengths", "motion"], sync);
   sync();
   root.editor = editor;
 }

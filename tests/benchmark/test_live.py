@@ -9,14 +9,14 @@ from typing import Any
 import pytest
 
 from motion import InputError
-from webdemo.benchmark import live, load
+from webdemo.benchmark import live, served
 
 from .test_load import STUB_APP
 
 pytestmark = pytest.mark.slow
 AT_ANY_PACE = f"""
 import sys
-sys.path.insert(0, {str(load.ROOT)!r})
+sys.path.insert(0, {str(served.ROOT)!r})
 import webdemo.server.live.streams as streams
 streams.BUSIEST = float("inf")
 {STUB_APP}
@@ -34,7 +34,7 @@ def test_twenty_people_are_answered_and_one_more_is_refused(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     (tmp_path / "app.py").write_text(AT_ANY_PACE)
-    monkeypatch.setattr(load, "ROOT", tmp_path)
+    monkeypatch.setattr(served, "ROOT", tmp_path)
     figures = run_live(people=20, minutes=0.03)
     assert figures["refused"] == figures["log_lines_of_errors"] == 0, figures
     (sentence,) = figures["refused_of_one_more"]

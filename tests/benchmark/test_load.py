@@ -11,8 +11,9 @@ import pytest
 
 from motion import InputError
 from tests.server.lab import ROOT
-from webdemo.benchmark import batching, load
-from webdemo.benchmark.load import Tally
+from webdemo.benchmark import batching, load, served
+from webdemo.benchmark.live import Person
+from webdemo.benchmark.load import Tally, attacked_figures
 from webdemo.cli import main
 
 pytestmark = pytest.mark.slow
@@ -32,7 +33,7 @@ def run_load(**options: Any) -> dict[str, Any]:
 
 def test_every_kind_of_job_comes_back(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     (tmp_path / "app.py").write_text(STUB_APP)
-    monkeypatch.setattr(load, "ROOT", tmp_path)
+    monkeypatch.setattr(served, "ROOT", tmp_path)
     monkeypatch.setattr(load, "REST_SECONDS", 0.1)
     monkeypatch.setattr(load, "PROBE_EVERY", 0.1)
     people = len(load.KINDS)
@@ -41,11 +42,16 @@ def test_every_kind_of_job_comes_back(tmp_path: Path, monkeypatch: pytest.Monkey
     assert figures["runs_lost"] == figures["runs_swapped"] == figures["runs_refused_or_failed"] == 0, figures
     assert figures["memory_at_rest_before_mb"] > 0 and figures["memory_most_mb"] > 0
     assert figures["page_worst_seconds"] > 0
+    assert figures["attack_events_taken"] > 0 < figures["attack_events_refused"], figures
+    assert figures["attack_messages_answered"] > 0 < figures["attack_messages_replaced"], figures
+    assert figures["attacked_runs_done"] >= people == len(figures["attacked_waits_over_fair_share"]), figures
+    assert figures["attacked_runs_lost"] == figures["attacked_runs_refused_or_failed"] == 0, figures
+    assert figures["attacked_live_wait_over_fair_share"] > 0 < figures["attacked_live_frames_over_fair_share"]
 
 
 def test_a_server_that_ends_is_one_sentence(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     (tmp_path / "app.py").write_text("raise SystemExit(1)")
-    monkeypatch.setattr(load, "ROOT", tmp_path)
+    monkeypatch.setattr(served, "ROOT", tmp_path)
     with pytest.raises(InputError, match="ended before it was ready"):
         run_load(people=1, minutes=0.01)
 
@@ -58,13 +64,31 @@ def test_shares_are_compared_by_work() -> None:
     assert figures["memory_most_mb"] == 9.0 and figures["memory_last_over_first_quarter"] == 1.2
 
 
+def test_what_attackers_leave_is_compared_with_a_fair_share() -> None:
+    """Two attackers beside two people are entitled to half, so that waits twice as long are fair."""
+    calm = Tally(kinds={0: {"generate": [1.0], "render": [4.0]}, 1: {"generate": [3.0]}})
+    attacked = Tally(kinds={0: {"generate": [4.0]}, 1: {"generate": [8.0], "render": [40.0]}})
+    calm.live = Person(delays=[0.2, 0.1, 0.3], frames=60, seconds=2.0)
+    attacked.live = Person(delays=[1.2], frames=30, seconds=2.0)
+    figures = attacked_figures(calm, attacked, 2)
+    assert figures["attacked_waits_over_fair_share"] == [1.0, 3.5]
+    assert figures["attacked_longest_wait_over_fair_share"] == 3.5
+    assert figures["attacked_live_wait_over_fair_share"] == pytest.approx(2.0)
+    assert figures["attacked_live_frames_over_fair_share"] == 1.0
+    calm.live = Person(refused="The server is too busy.")
+    assert "attacked_live_wait_over_fair_share" not in attacked_figures(calm, attacked, 2)
+
+
 def test_the_command_says_which_goals_are_missed(
     monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
     asked: dict[str, Any] = {}
     good: dict[str, Any] = {
         "runs_lost": 0, "runs_swapped": 0, "runs_refused_or_failed": 0, "log_lines_of_errors": 0,
-        "longest_wait_over_fair_share": 2.9, "page_worst_seconds": 0.9, "memory_last_over_first_quarter": 1.0,
+        "longest_wait_over_fair_share": 2.9, "attacked_longest_wait_over_fair_share": 2.9,
+        "attacked_runs_lost": 0, "attacked_runs_swapped": 0, "attacked_runs_refused_or_failed": 0,
+        "attacked_live_wait_over_fair_share": 1.0, "attacked_live_frames_over_fair_share": 1.0,
+        "page_worst_seconds": 0.9, "memory_last_over_first_quarter": 1.0,
     }  # fmt: skip
 
     def measured(**options: Any) -> dict[str, Any]:

@@ -13,7 +13,7 @@ import subprocess
 import sys
 import time
 import urllib.request
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from pathlib import Path
 from types import SimpleNamespace
 from urllib.parse import urlsplit
@@ -25,6 +25,7 @@ from .playing import press
 
 REPOSITORY = Path(__file__).resolve().parents[2]
 LOOPBACK = {"127.0.0.1", "localhost", "::1", ""}
+LEAVING = ("AbortError: signal is aborted", "Unexpected error Connection errored out.")
 FLAGS = [
     "--no-sandbox",
     "--disable-gpu",
@@ -75,7 +76,7 @@ def _shared_context(chromium):
 
 
 class Tabs:
-    """Watched tabs of the browser: errors of scripts and of policy, and requests to other hosts, are noted."""
+    """Watched tabs of the browser: refused requests, errors on the console, and requests to other hosts are noted."""
 
     def __init__(self, chromium, shared_context) -> None:
         self.chromium, self.shared_context = chromium, shared_context
@@ -109,11 +110,14 @@ class Tabs:
         page.on("request", lambda request: self._note_host(request.url))
         page.on("websocket", lambda websocket: self._note_host(websocket.url))
         page.on("pageerror", lambda error: self.errors.append(str(error)))
-        page.on("console", lambda said: _note_policy(said.text, self.errors))
+        page.on("response", self._note_refusal)
+        page.on("console", self._note_error)
+        page.on("framenavigated", self._forget_leaving)
 
-    def check(self) -> None:
-        """Fails where something was noted since the last check."""
-        errors, foreign = self.errors[:], sorted(set(self.foreign))
+    def check(self, expected: Sequence[str] = ()) -> None:
+        """Fails where something was noted since the last check, but for errors that contain what is expected."""
+        errors = [error for error in self.errors if not any(said in error for said in expected)]
+        foreign = sorted(set(self.foreign))
         self.errors.clear()
         self.foreign.clear()
         assert not errors, f"errors in the page: {errors}"
@@ -124,6 +128,22 @@ class Tabs:
         for context_or_page in self.opened:
             context_or_page.close()
 
+    def _note_refusal(self, response) -> None:
+        if response.status >= 400:
+            self.errors.append(f"{response.status} from {urlsplit(response.url).path}")
+
+    def _note_error(self, said) -> None:
+        """A page that needs more than the server's content security policy allows says so on the console, too."""
+        text = said.text
+        if said.type != "error" or "Failed to load resource" in text or text.startswith("INFO:"):
+            return  # a response, which is noted already, or MediaPipe's, which has no other way to speak
+        self.errors.append(text)
+
+    def _forget_leaving(self, frame) -> None:
+        """Gradio's script tells of its open streams as errors when the page is left."""
+        if frame.parent_frame is None:
+            self.errors = [error for error in self.errors if not any(said in error for said in LEAVING)]
+
     def _note_host(self, url: str) -> None:
         parts = urlsplit(url)
         if parts.scheme in ("http", "https", "ws", "wss") and (parts.hostname or "") not in LOOPBACK:
@@ -131,12 +151,18 @@ class Tabs:
 
 
 @pytest.fixture
-def open_page(chromium, _shared_context) -> Iterator[Callable]:
+def expected_errors() -> list[str]:
+    """Parts of the errors that a test provokes; it adds them."""
+    return []
+
+
+@pytest.fixture
+def open_page(chromium, _shared_context, expected_errors: list[str]) -> Iterator[Callable]:
     """:meth:`Tabs.open`, for tabs that are closed after the test."""
     tabs = Tabs(chromium, _shared_context)
     yield tabs.open
     tabs.close()
-    tabs.check()
+    tabs.check(expected_errors)
 
 
 @pytest.fixture(scope="module")
@@ -154,12 +180,6 @@ def open_kept(kept_tabs: Tabs) -> Iterator[Callable]:
     kept_tabs.check()
 
 
-def _note_policy(said: str, errors: list[str]) -> None:
-    """A page that needs more than the server's content security policy allows says so on the console."""
-    if "Content Security Policy" in said:
-        errors.append(said)
-
-
 def free_port() -> int:
     with socket.socket() as probe:
         probe.bind(("127.0.0.1", 0))
@@ -171,7 +191,10 @@ def start_server() -> Iterator[Callable[..., str]]:
     """``start_server([script, args…, "{port}"])`` runs Python on them and gives the URL once it answers."""
     running: list[subprocess.Popen] = []
 
-    def start(arguments: list[str], *, seconds: float = 180.0, env: dict[str, str] | None = None) -> str:
+    def start(
+        arguments: list[str], *, seconds: float = 180.0, env: dict[str, str] | None = None,
+        log: Path | None = None,
+    ) -> str:  # fmt: skip
         port = free_port()
         command = [sys.executable, *(argument.format(port=port) for argument in arguments)]
         environment = {
@@ -180,7 +203,10 @@ def start_server() -> Iterator[Callable[..., str]]:
             "OMP_NUM_THREADS": "1",
             **(env or {}),
         }
-        server = subprocess.Popen(command, cwd=REPOSITORY, env=environment, stdout=subprocess.DEVNULL)
+        kept = log.open("wb") if log is not None else None
+        server = subprocess.Popen(
+            command, cwd=REPOSITORY, env=environment, stdout=subprocess.DEVNULL, stderr=kept
+        )
         running.append(server)
         url = f"http://127.0.0.1:{port}/"
         until = time.monotonic() + seconds
@@ -200,23 +226,38 @@ def start_server() -> Iterator[Callable[..., str]]:
         server.wait(timeout=20)
 
 
+@pytest.fixture(scope="session")
+def _stub_server(tmp_path_factory: pytest.TempPathFactory) -> Iterator[SimpleNamespace]:
+    from .serving import stub_server
+
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setenv("GRADIO_TEMP_DIR", str(tmp_path_factory.mktemp("uploads")))  # the server sets its own
+        with stub_server(tmp_path_factory.mktemp("stub"), free_port()) as served:
+            yield served
+
+
 @pytest.fixture(scope="module")
-def server(
-    request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFactory
-) -> Iterator[SimpleNamespace]:
-    """The page with a stub engine, its ``url`` and its ``engine``; a step takes a module's ``PAUSE`` in seconds."""
-    from .serving import stub_page
+def server(request: pytest.FixtureRequest, _stub_server: SimpleNamespace, _shared_context) -> SimpleNamespace:
+    """The whole application with a stub engine, for tests that need a slow or failing one, or exact figures.
 
-    with stub_page(tmp_path_factory.mktemp("files"), pause=getattr(request.module, "PAUSE", 0.0)) as served:
-        yield served
+    Its ``url`` and its ``engine``; a step takes a module's ``PAUSE`` in seconds.
+    """
+    _stub_server.engine.pause = getattr(request.module, "PAUSE", 0.0)
+    return _stub_server
 
 
-@pytest.fixture(scope="module")
-def lab(start_server: Callable[..., str], tmp_path_factory: pytest.TempPathFactory) -> str:
-    """The address of a whole server with accounts of visitors, a queue and a history, with a stub engine."""
-    data = str(tmp_path_factory.mktemp("lab"))
-    env = {"STUB_PAUSE": "0", "PASDEDEUX_FREE_MEGABYTES": "0"}
-    return start_server(["tests/server/lab.py", "{port}", data], env=env)
+@pytest.fixture(scope="session")
+def _app(start_server: Callable[..., str], tmp_path_factory: pytest.TempPathFactory) -> SimpleNamespace:
+    folder = tmp_path_factory.mktemp("app")
+    env = {"PASDEDEUX_DATA": str(folder / "data"), "PASDEDEUX_FREE_MEGABYTES": "0"}
+    url = start_server(["app.py", "--port", "{port}"], env=env, log=folder / "log")
+    return SimpleNamespace(url=url, log=folder / "log")
+
+
+@pytest.fixture(scope="session")
+def lab(_app: SimpleNamespace) -> str:
+    """The address of what ``python app.py`` serves, with the shipped networks."""
+    return _app.url
 
 
 @pytest.fixture(scope="session")

@@ -1,8 +1,10 @@
-"""The page with an engine that needs no networks, for the tests that look at it; see the fixture ``server``."""
+"""The application that ``python app.py`` serves, for tests that look at it; see the fixtures ``server`` and ``lab``."""
 
 from __future__ import annotations
 
 import os
+import threading
+import time
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
@@ -13,27 +15,36 @@ os.environ.setdefault("GRADIO_ANALYTICS_ENABLED", "False")
 from playwright.sync_api import Page, expect
 
 from tests.ui.stub_engine import StubEngine
-from webdemo.ui.page import build_page, launch_options
+from webdemo.server.serve import make_server
+from webdemo.server.settings import Settings
 
 SLOW = 60_000
 """Milliseconds that a busy machine may take to draw."""
+OFTEN = 100_000
+"""Requests a minute: tests press faster than people."""
 
 
 @contextmanager
-def stub_page(files: Path, *, pause: float) -> Iterator[SimpleNamespace]:
-    """Serves the page while it is entered; yields its ``url`` and its ``engine``.
+def stub_server(folder: Path, port: int) -> Iterator[SimpleNamespace]:
+    """Serves the whole application with the stub engine while it is entered; yields its ``url`` and its ``engine``.
 
     Args:
-        files: a folder for what runs write.
-        pause: seconds that a step of the engine takes.
+        folder: for the history and all files.
+        port: a free one.
     """
-    engine = StubEngine(pause=pause)
-    page = build_page(engine, files=files)
-    _, url, _ = page.launch(prevent_thread_lock=True, quiet=True, server_name="127.0.0.1", **launch_options())
+    engine = StubEngine()
+    settings = Settings(data=folder, port=port, free_megabytes=0, rate=OFTEN, grace_seconds=1)
+    server = make_server(settings, engine=engine, scratch=True)
+    thread = threading.Thread(target=server.run, daemon=True)
+    thread.start()
+    while not server.started:
+        assert thread.is_alive(), "the server did not start"
+        time.sleep(0.02)
     try:
-        yield SimpleNamespace(url=url, engine=engine)
+        yield SimpleNamespace(url=settings.url, engine=engine)
     finally:
-        page.close()
+        server.should_exit = True
+        thread.join(timeout=60)
 
 
 def live(page: Page, tab: str | None = None, *, slow: int = SLOW) -> Page:

@@ -38,7 +38,7 @@ def test_nine_results_share_one_context_and_one_opens_large(
     server: SimpleNamespace, open_page: Callable[..., Page], tmp_path: Path
 ) -> None:
     page = open_page(
-        server.url, width=1280, height=900, accept_downloads=True,
+        server.url, width=1280, height=900,
         before=lambda tab: tab.add_init_script(COUNT_CONTEXTS),
     )  # fmt: skip
     live(page, slow=SLOW)

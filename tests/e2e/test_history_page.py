@@ -31,6 +31,8 @@ def test_a_result_is_kept_and_its_link_opens_it_with_all_controls(lab: str, open
     page.wait_for_selector("#status .pd-done")
     page.click("button[role=tab]:has-text('History')")
     page.wait_for_selector(".pdn-card:has-text('seed 77')")
+    expect(page.locator("#history-who")).to_contain_text(re.compile(r"[\d.]+ of [\d,]+ MB used: runs [\d.]+"))
+    expect(page.locator("#history-who meter")).to_be_visible()
     page.click("#history-link")
     box = page.locator("#history-address textarea, #history-address input")
     box.wait_for()
@@ -145,14 +147,14 @@ def test_a_run_opens_with_the_very_file_that_was_uploaded(
     lab: str, open_page: Callable, tmp_path: Path
 ) -> None:
     file = write(walking(2.0).a, tmp_path / "my walk.bvh")[0]
-    page = open_page(lab, accept_downloads=True)
+    page = open_page(lab)
     page.set_default_timeout(SLOW)
     page.click("button[role=tab]:has-text('React')")
     page.set_input_files("#react-file input[type=file]", str(file))
     page.wait_for_selector("#react-status :text('0.0 to')")
     page.click("button#react-generate")
     page.wait_for_selector("#react-status .pd-done:has-text('Done')")
-    other = open_page(lab, accept_downloads=True)
+    other = open_page(lab)
     other.set_default_timeout(SLOW)
     other.click("button[role=tab]:has-text('History')")
     other.click(".pdn-card:has-text('my walk.bvh')")
@@ -166,7 +168,7 @@ def test_a_run_opens_with_the_very_file_that_was_uploaded(
 def test_a_notebook_is_searched_written_in_and_taken_along(
     lab: str, open_page: Callable, tmp_path: Path
 ) -> None:
-    page = open_page(lab, accept_downloads=True)
+    page = open_page(lab)
     page.set_default_timeout(SLOW)
     prompts = ("They bow in the rehearsal.", "They salute in the rehearsal.")
     for prompt in prompts:

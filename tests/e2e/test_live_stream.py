@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
 
 import pytest
@@ -62,7 +63,10 @@ def keep_it(page: Page) -> None:
     expect(page.locator(f"{PANEL} .pdcam-line")).to_have_text("Kept: see the result beside this.")
 
 
-def test_a_recorded_person_is_answered_as_they_move(lab: str, open_page: Callable[..., Page]) -> None:
+def test_a_recorded_person_is_answered_as_they_move(
+    lab: str, open_page: Callable[..., Page], expected_errors: list[str]
+) -> None:
+    expected_errors.append("410 from /live/")  # of the stream that another one ends
     page = open_page(lab, width=1100, height=700)
     page.get_by_role("tab", name="React").click()
     line = page.locator(f"{PANEL} .pdcam-line")
@@ -87,14 +91,14 @@ def test_a_recorded_person_is_answered_as_they_move(lab: str, open_page: Callabl
     page.wait_for_function("window.__pasdedeux?.positions?.length === 1", timeout=SLOW)
     start(page, "clip")
     two_people(page)
-    expect(page.locator(f"{PANEL} .pdlive-text")).to_have_text("The stub watches.")
-    expect(page.locator(f"{PANEL} .pdlive-chances li")).to_have_text(["wave75 %", "bow20 %"])
+    expect(page.locator(f"{PANEL} .pdlive-text")).to_contain_text("push", timeout=SLOW)
+    expect(page.locator(f"{PANEL} .pdlive-chances li").first).to_contain_text("push")
     expect(page.locator(f"{PANEL} .pdlive-figures")).to_contain_text("ms to the partner")
     expect(line).to_contain_text("The end. What happened can be played again", timeout=SLOW)
     shown = page.evaluate("[window.__pasdedeux.player.sample.frames, window.__pasdedeux.playing]")
     assert shown == [150, True], "five seconds, which play again"
     person, partner = page.evaluate("window.__pasdedeux.positions")
-    assert partner[0] == pytest.approx([-person[0][0], person[0][1], 1.5 - person[0][2]], abs=0.01)
+    assert 0.3 < math.dist(person[0], partner[0]) < 4
 
     keep_it(page)
     page.get_by_role("button", name="Push").click()

@@ -113,6 +113,7 @@ def test_controls_that_differ_from_what_is_shown_say_so(page: Page, server: Simp
     page.click("button#generate")
     expect(page.locator("#status .pd-error")).to_contain_text("Seed must be a whole number", timeout=SLOW)
     assert len(server.engine.requests) == seen, "a seed that is no integer was rounded in silence"
+    expect(changed).not_to_contain_text(CHANGED)  # nothing was made
 
 
 def test_a_sentence_is_warned_of_beside_done_and_names_say_who_acts(page: Page) -> None:

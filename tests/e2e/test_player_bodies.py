@@ -214,7 +214,9 @@ def test_bodies_keep_their_colours_in_the_dark(player):
     assert pixels[5:40, 200:400].mean() < 60
 
 
-def test_without_bodies_there_are_skeletons(open_page, plain_url):
+def test_without_bodies_there_are_skeletons(open_page, plain_url, expected_errors):
+    expected_errors.append("Failed to fetch")
+
     def without_bodies(page):
         page.route("**/bodies/*.json", lambda route: route.abort())
 

@@ -150,7 +150,9 @@ def test_a_motion_that_waits_for_the_3d_view_is_announced(open_page, player_url)
     assert not busy.is_visible()
 
 
-def test_says_so_without_webgl(open_page, player_url):
+def test_says_so_without_webgl(open_page, player_url, expected_errors):
+    expected_errors.append("This browser offers no WebGL")
+
     def no_webgl(page):
         page.add_init_script("""const original = HTMLCanvasElement.prototype.getContext;
             HTMLCanvasElement.prototype.getContext = function (kind, ...rest) {

@@ -179,6 +179,52 @@ def test_a_joint_is_moved_with_the_keys(still: Any) -> None:
     assert still.evaluate("window.kept") == []
 
 
+def focused(page: Any) -> str:
+    return page.evaluate("document.activeElement.title || document.activeElement.className")
+
+
+def test_a_pose_is_made_without_a_mouse(still: Any) -> None:
+    before = positions(still, 0)
+    button = still.locator("[data-act=pose]")
+    button.focus()
+    still.keyboard.press("Enter")
+    walked = [focused(still)]
+    while len(walked) < 12:
+        still.keyboard.press("Tab")
+        walked.append(focused(still))
+    joints = ("Left hand", "Right hand", "Left foot", "Right foot", "Hips", "Head")
+    assert walked == [f"{joint} of {person}" for person in "AB" for joint in joints]
+    still.keyboard.press("Tab")
+    assert focused(still) == "Leave without keeping it (Escape)", "there is nothing to keep or undo yet"
+    for _ in range(11):
+        still.keyboard.press("Shift+Tab")
+    assert focused(still) == "Right hand of A"
+    assert still.locator(".pdd-posing output").inner_text().startswith("Right hand of A at 2.00 s")
+    still.keyboard.press("PageUp")
+    moved = positions(still, 0)
+    assert 0.01 < np.linalg.norm(moved[WRIST] - before[WRIST]) < 0.03
+    # The button that undoes the last pull becomes disabled: the focus goes back to the joint.
+    undo = still.get_by_role("button", name="Undo")
+    undo.focus()
+    still.keyboard.press("Enter")
+    np.testing.assert_allclose(positions(still, 0), before)
+    assert undo.is_disabled() and focused(still) == "Right hand of A"
+    still.keyboard.press("ArrowLeft")
+    moved = positions(still, 0)
+    still.keyboard.press("Enter")
+    ((kept,),) = [each["poses"] for each in still.evaluate("window.kept")]
+    np.testing.assert_allclose(kept["positions"], moved, atol=1e-5)
+    assert focused(still) == button.get_attribute("title"), "the focus is where it was before the pose"
+    still.keyboard.press("Enter")
+    still.keyboard.press("Escape")
+    assert focused(still) == button.get_attribute("title")
+    still.locator(".pdd").focus()
+    still.keyboard.press("e")
+    assert focused(still) == "Left hand of A"
+    still.keyboard.press("Escape")
+    assert focused(still) == "pdd pdd-styled"
+
+
 def test_ways_on_stand_beside_each_other_and_one_is_taken(still: Any) -> None:
     press(still, "futures")
     until(still, "window.__pasdedeux.player.futures.ghosts.length === 3")

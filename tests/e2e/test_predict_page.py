@@ -24,7 +24,7 @@ SAMPLE = "window.__pasdedeux.player.sample"
 
 @pytest.fixture
 def page(server: SimpleNamespace, open_page: Callable[..., Page]) -> Page:
-    return live(open_page(server.url, accept_downloads=True), "Predict")
+    return live(open_page(server.url), "Predict")
 
 
 def people(page: Page, count: int) -> None:

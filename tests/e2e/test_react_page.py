@@ -24,7 +24,7 @@ PAUSE = 0.01
 
 @pytest.fixture
 def page(server: SimpleNamespace, open_page: Callable[..., Page]) -> Page:
-    return live(open_page(server.url, accept_downloads=True), "React")
+    return live(open_page(server.url), "React")
 
 
 def people(page: Page, count: int) -> None:

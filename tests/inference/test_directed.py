@@ -9,7 +9,8 @@ from motion import SMPL22, Duet, InputError
 from motion.transforms import heading_matrix
 from webdemo.inference import Engine, GenerateRequest
 from webdemo.inference.cancel import CancelToken
-from webdemo.inference.directed import FADE, Directed, KnownFrames, KnownPath, Part, directed, with_given
+from webdemo.inference.directed import FADE, Directed, directed, with_given
+from webdemo.inference.known_parts import KnownFrames, KnownPath, Part
 from webdemo.inference.timer import StageTimer
 
 FRAMES = 60

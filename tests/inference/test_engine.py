@@ -112,8 +112,21 @@ def test_both_samplers_and_no_guidance_run(engine: Engine) -> None:
 def test_a_far_prompt_gets_a_note_with_the_nearest_caption(engine: Engine) -> None:
     assert result_of(engine, REQUEST).notes == ()
     notes = result_of(engine, replace(REQUEST, prompt="quarterly tax law for submarines")).notes
-    assert len(notes) == 1
-    assert "far from anything" in notes[0]
+    assert ["Not understood" in note for note in notes] == [True, False]
+    assert "far from anything" in notes[1]
+
+
+def test_what_cannot_be_shown_is_said(engine: Engine) -> None:
+    three = result_of(engine, replace(REQUEST, prompt="Three people hug.")).notes
+    assert any("Only two people" in note for note in three)
+    for prompt, unread in (
+        ("They recite push-ups.", True),
+        ("He proposes to her.", False),
+        ("They dance a tango.", False),
+    ):
+        notes = " ".join(result_of(engine, replace(REQUEST, prompt=prompt)).notes)
+        assert ("Not understood" in notes) is unread, prompt
+        assert "far from anything" not in notes or unread, prompt
 
 
 def test_strange_prompts_are_only_text(engine: Engine) -> None:

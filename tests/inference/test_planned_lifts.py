@@ -10,6 +10,7 @@ from webdemo.inference import Engine, SceneRequest
 from webdemo.inference.pipelines.scene_floor import plan_note
 from webdemo.inference.story import Beat, FloorPath, FloorPoint
 
+from .followed import Follower, speeds
 from .test_planned_scenes import QUICK, made
 from .test_scenes import positions, run
 
@@ -93,3 +94,18 @@ def test_nobody_is_carried_by_somebody_who_is_sent_elsewhere(engine: Engine) -> 
 def test_a_note_says_who_lifts_twirls_or_strikes(words: str, said: str) -> None:
     (note,) = plan_note(SceneRequest(beats=(Beat(words, seconds=3.0),)))
     assert f"From the words: {said}." in note
+
+
+@pytest.mark.parametrize(
+    "words",
+    ["My son runs to me and I lift him up.", "Person A runs to person B and person B lifts person A up."],
+)
+def test_who_runs_up_first_begins_apart_and_is_lifted_after_the_run(
+    monkeypatch: pytest.MonkeyPatch, words: str
+) -> None:
+    found = positions(Follower(monkeypatch).scene(SceneRequest(beats=(Beat(words, seconds=4.0),))))
+    gaps, feet = np.linalg.norm(found[0, :, 0] - found[1, :, 0], axis=-1), low(found, 0)
+    assert gaps[0] > 2.5 and gaps[-1] < 0.5
+    assert speeds(found)[0].max() > 1.8, "at a run"
+    assert speeds(found)[1].max() < 0.3, "the other waits"
+    assert (feet[gaps > 1.0] < 0.1).all() and feet[-9:].max() > 0.15, "lifted after the run"

@@ -10,7 +10,8 @@ import torch
 from motion import Duet
 from webdemo.inference import Cancelled, CancelToken, Engine, GenerateRequest, Result, SceneRequest
 from webdemo.inference.batch import run_batch
-from webdemo.inference.pipelines.scene import TAIL, WindowRequest
+from webdemo.inference.pipelines.scene import WindowRequest
+from webdemo.inference.plans import Plan
 from webdemo.inference.story import Beat, FloorPath, FloorPoint, Pose, SceneProgress
 from webdemo.inference.story.request import as_scene
 
@@ -69,7 +70,8 @@ def test_a_window_that_another_follows_is_made_longer_and_cut(
 
     monkeypatch.setattr(pipeline, "run", run_and_note)
     found = run(engine, SceneRequest(beats=(*BEATS[:2], Beat("They bow.", seconds=9.0)), seed=99, **QUICK))
-    assert lengths == [60 + TAIL, 48 + 75 + TAIL, 48 + 135 + TAIL, 48 + 135]
+    tail = 8
+    assert lengths == [60 + tail, 48 + 75 + tail, 48 + 135 + tail, 48 + 135]
     assert positions(found).shape[1] == 60 + 75 + 270
 
 
@@ -84,6 +86,17 @@ def test_parts_that_did_not_change_are_not_made_again(engine: Engine, story: Res
     other = run(engine, SceneRequest(beats=(BEATS[0], replace(BEATS[1], seed=8), BEATS[2]), **QUICK))
     np.testing.assert_array_equal(positions(other)[:, :60], positions(story)[:, :60])
     assert np.abs(positions(other)[:, 60:135] - positions(story)[:, 60:135]).max() > 0.01
+
+
+def test_a_kept_window_is_not_taken_for_one_elsewhere(engine: Engine) -> None:
+    """In the network's frame both are the same; where they lie in the world is not."""
+
+    def asked(x: float, z: float) -> SceneRequest:
+        path = FloorPath("a", (FloorPoint(x, z, 0.0), FloorPoint(x, z + 1.0, 1.9)))
+        return SceneRequest(beats=BEATS[:1], paths=(path,), seed=12, **QUICK)
+
+    first, moved = (positions(run(engine, asked(*place))) for place in ((0.0, 0.0), (3.0, -2.0)))
+    np.testing.assert_allclose(moved, first + np.float32([3.0, 0.0, -2.0]), atol=1e-3)
 
 
 @pytest.mark.parametrize(("start", "end"), [(2.0, 4.0), (0.0, 1.0), (5.0, 6.0)])
@@ -210,7 +223,7 @@ def test_a_scene_shares_its_passes_with_other_requests(engine: Engine) -> None:
 def test_a_network_that_reads_them_is_given_each_persons_own_words(reading_engine: Engine) -> None:
     pipeline = reading_engine.pipeline("intergen")
     beats = [Beat(a="waves with both hands"), Beat(b="waves with both hands"), Beat("They wave.")]
-    asked = [WindowRequest(prompt="They wave.", seconds=2.0, alone=beat.alone) for beat in beats]
+    asked = [WindowRequest(prompt="They wave.", seconds=2.0, plan=Plan(alone=beat.alone)) for beat in beats]
     first, second, neither = (pipeline.conditioning(each).condition for each in asked)
     assert first[:, 1].any() and not first[:, 2].any()
     assert torch.equal(first[:, 1], second[:, 2]) and not second[:, 1].any()

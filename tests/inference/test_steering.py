@@ -63,6 +63,19 @@ def test_to_somebody_nearly_ahead_only_the_head_turns() -> None:
     np.testing.assert_allclose(steered(Goal(at(degrees), look=False), 60)[-1], STANDING, atol=1e-12)
 
 
+@pytest.mark.parametrize("degrees", [90, -130, 170])
+def test_no_head_turns_farther_than_a_neck_does(degrees: float) -> None:
+    made = steered(Goal(at(degrees)), 90)
+    neck, head = SMPL22.index("neck"), SMPL22.index("head")
+    before = (STANDING[head] - STANDING[neck])[[0, 2]]
+    turned = []
+    for pose, body in zip(made, heading(made), strict=True):
+        now = (heading_matrix(-float(body)) @ (pose[head] - pose[neck]))[[0, 2]]
+        turned.append(np.degrees(np.arctan2(now[0], now[1]) - np.arctan2(before[0], before[1])))
+    off = np.abs((np.array(turned) + 180) % 360 - 180)
+    assert 20 < off.max() < 70, "it looks ahead of its body, and not over its back"
+
+
 def test_it_walks_off_with_its_back_to_somebody() -> None:
     made = steered(Goal(at(0), away=True, walk=True), 150)
     assert abs(heading(made)[-1]) > np.radians(170)

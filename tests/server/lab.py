@@ -1,6 +1,7 @@
 """A server with the stub engine, for tests and for looking at it: ``python tests/server/lab.py PORT DATA``.
 
-Settings come from the environment as always; ``STUB_PAUSE`` is the stub's seconds a step.
+Settings come from the environment as always; ``STUB_PAUSE`` is the stub's seconds a step, ``STUB_PARTNER`` those of a
+frame of its live partner.
 """
 
 from __future__ import annotations
@@ -31,7 +32,8 @@ if __name__ == "__main__":
     from webdemo.server.serve import make_server
     from webdemo.server.settings import read_settings
 
-    engine = stub_module().StubEngine(pause=float(os.environ.get("STUB_PAUSE", "0.02")))
+    pause, partner = (float(os.environ.get(name, "0")) for name in ("STUB_PAUSE", "STUB_PARTNER"))
+    engine = stub_module().StubEngine(pause=pause, partner_pause=partner)
     settings = read_settings(port=int(sys.argv[1]), data=sys.argv[2])
     set_up_logs(settings.log_level, content=settings.log_content)
     make_server(settings, engine=engine, scratch=True).run()

@@ -67,6 +67,15 @@ def test_generate_from_a_notebook(url: str, tmp_path: Path) -> None:
     assert "(RuntimeError); its log says more under " in str(caught.value)
 
 
+def test_a_sentence_is_read_without_generating(url: str) -> None:
+    lab = Client(url, auth=("ada", "correct horse"), verbose=False)
+    plan = lab.predict("She hugs him, then he leaves.", api_name="/read")
+    assert [(act["act"], act["agents"], act["patient"]) for act in plan["acts"]][:1] == [("hug", ["a"], "b")]
+    with pytest.raises(AppError) as caught:
+        lab.predict("word " * 1000, api_name="/read")
+    assert "characters: shorten it" in str(caught.value)
+
+
 def test_a_notebook_sees_how_far_a_run_is(url: str, tmp_path: Path) -> None:
     lab = Client(url, auth=("ada", "correct horse"), verbose=False, download_files=str(tmp_path))
     job = lab.submit(prompt="Two people walk.", seconds=1, steps=60, api_name="/generate")

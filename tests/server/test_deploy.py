@@ -8,6 +8,7 @@ import re
 import shutil
 import subprocess
 import sys
+from ipaddress import ip_address, ip_network
 from pathlib import Path
 
 import pytest
@@ -70,7 +71,8 @@ def test_the_image_installs_what_is_locked() -> None:
 
 
 def test_compose_takes_every_right_away(monkeypatch: pytest.MonkeyPatch) -> None:
-    (lab,) = yaml.safe_load((ROOT / "compose.yaml").read_text())["services"].values()
+    compose = yaml.safe_load((ROOT / "compose.yaml").read_text())
+    (lab,) = compose["services"].values()
     assert lab["read_only"] is True and lab["cap_drop"] == ["ALL"]
     assert lab["security_opt"] == ["no-new-privileges:true"]
     assert all(port.startswith("127.0.0.1:") for port in lab["ports"])
@@ -78,6 +80,11 @@ def test_compose_takes_every_right_away(monkeypatch: pytest.MonkeyPatch) -> None
         monkeypatch.setenv(name, value)
     settings = read_settings()
     settings.check()  # it is not open
+    (network,) = compose["networks"].values()
+    (addresses,) = network["ipam"]["config"]
+    assert lab["networks"] == list(compose["networks"]) and settings.proxies == [addresses["gateway"]]
+    assert ip_address(addresses["gateway"]) in ip_network(addresses["subnet"])
+    assert settings.exit_when_stuck and lab["restart"] == "unless-stopped"
     written = {mount.split(":")[1] for mount in lab["volumes"]}
     assert str(settings.data) in written and str(settings.users).startswith(f"{settings.data}/")
     assert int(lab["stop_grace_period"].removesuffix("s")) > settings.grace_seconds
@@ -99,6 +106,7 @@ def test_the_health_check_asks_the_server(served: tuple[str, int]) -> None:
 def test_the_unit_is_understood(tmp_path: Path) -> None:
     text = UNIT.read_text()
     assert f"{PREFIX}USERS" in settings_in(text) and "User=root" not in text
+    assert "Restart=on-failure" in text and settings_in(text)[f"{PREFIX}EXIT_WHEN_STUCK"] == "1"
     fields = set(type(read_settings()).model_fields)
     assert {name.removeprefix(PREFIX).lower() for name in settings_in(text)} <= fields
     if (analyze := shutil.which("systemd-analyze")) is None:

@@ -19,6 +19,7 @@ from webdemo.inference.partner import Belief
 from webdemo.inference.predict_request import PredictRequest, PredictResult, with_people
 from webdemo.inference.requests import Cancelled, GenerateRequest, Progress, ReactRequest, Result
 from webdemo.inference.story import SceneProgress, SceneRequest
+from webdemo.inference.story.request import as_scene
 from webdemo.inference.timer import StageTimer
 
 FPS = 30
@@ -88,12 +89,18 @@ def _about_z(angle: float) -> np.ndarray:
 
 
 class Mirror:
-    """A live partner who does what the person does, a metre and a half further on and turned around."""
+    """A live partner who does what the person does, a metre and a half further on and turned around.
 
-    def __init__(self) -> None:
+    Computing a frame takes ``pause`` seconds.
+    """
+
+    def __init__(self, pause: float = 0.0) -> None:
+        self.pause = pause
         self.belief = Belief("watches", "The stub watches.", (("wave", 0.75), ("bow", 0.2)))
 
     def step(self, pose: np.ndarray) -> np.ndarray:
+        if self.pause:
+            time.sleep(self.pause)
         return pose * [-1, 1, -1] + [0, 0, 1.5]
 
 
@@ -101,14 +108,14 @@ class StubEngine:
     """Answers as the real engine does, after ``steps`` pauses of ``pause`` seconds.
 
     A prompt that holds the word "impossible" is refused, one with "crash" raises an error that is no
-    sentence for a user, and one with "unknown" comes with a note. A live run waits at the frame
-    ``live_waits_at`` until that is another.
+    sentence for a user, one with "hang" never ends, and one with "unknown" comes with a note. A live run
+    waits at the frame ``live_waits_at`` until that is another.
     """
 
     live_waits_at: int | None = None
 
-    def __init__(self, *, pause: float = 0.0, load: float = 0.0) -> None:
-        self.pause = pause
+    def __init__(self, *, pause: float = 0.0, load: float = 0.0, partner_pause: float = 0.0) -> None:
+        self.pause, self.partner_pause = pause, partner_pause
         self.load = load
         self.ready = load == 0.0
         self.steps_done = 0
@@ -127,13 +134,16 @@ class StubEngine:
         }
 
     def partner(self, name: str, *, seed: int = 0) -> Mirror:
-        return Mirror()
+        return Mirror(self.partner_pause)
 
     def run(
         self, request: GenerateRequest | ReactRequest | PredictRequest, cancel: Any = None
     ) -> Iterator[Progress | Result]:
         started = time.monotonic()
         self.requests.append(request)
+        if isinstance(request, GenerateRequest):
+            go_on = cancel.raise_if_cancelled if cancel is not None else lambda: None
+            as_scene(request, go_on)  # sentences are read as by the engine itself
         if isinstance(request, PredictRequest):
             yield Progress(stage="sample", step=1, total=1, unit="pass")
             yield drift(request)
@@ -149,6 +159,8 @@ class StubEngine:
         if "impossible" in request.prompt:
             raise InputError("The stub cannot do this: ask for something possible.")
         yield Progress(stage="text")
+        while "hang" in request.prompt:
+            time.sleep(0.1)
         if isinstance(request, LiveRequest):
             yield from self._live(request, cancel)
         for step in range(0 if isinstance(request, LiveRequest) else request.steps):

@@ -7,7 +7,9 @@ import numpy as np
 import pytest
 
 from motion import SMPL22, Clip, Duet
-from webdemo.inference.requests import ReactRequest, Result
+from webdemo.inference.plans import Plan, WindowPlan
+from webdemo.inference.requests import GenerateRequest, ReactRequest, Result
+from webdemo.inference.story import Beat, SceneRequest
 from webdemo.ui.again import request_of, verdict
 
 STANDING = SMPL22.rest_positions() + np.array([0, 0.98, 0])
@@ -45,3 +47,23 @@ def test_an_older_name_is_no_other_request(request_: ReactRequest) -> None:
     assert "the request" not in verdict(*results)
     changed = Result(duets=(moved,), manifest={"request": new | {"seed": 4}})
     assert "the request" in verdict(results[0], changed)
+
+
+def opened_run(asked: Any, manifest: dict[str, Any]) -> Any:
+    request = asked.to_dict()
+    return SimpleNamespace(
+        entry=SimpleNamespace(kind=request["kind"], request=request, title="A run"),
+        result=SimpleNamespace(duets=(duet(),), manifest=manifest),
+    )
+
+
+@pytest.mark.parametrize(
+    "asked", [GenerateRequest(prompt="They wave."), SceneRequest(beats=(Beat("They wave."),))]
+)
+def test_a_stored_run_is_made_again_from_its_plan(asked: Any) -> None:
+    plan = Plan(notes=("From the words: nothing.",), windows=(WindowPlan((1.0, 2.0, 0.5)),))
+    found: Any = request_of(opened_run(asked, {"plan": plan.to_dict()}))
+    assert found.plan is not None and found.plan.to_dict() == plan.to_dict()
+    assert found.to_dict() == asked.to_dict()
+    older: Any = request_of(opened_run(asked, {}))
+    assert older.plan is None and older.to_dict() == asked.to_dict()

@@ -21,6 +21,8 @@ from PIL import Image
 from motion.formats import read
 from tests.motion.bodies import marching
 from tests.motion.formats.characters import glb_character, glb_motion, glb_takes
+from webdemo.inference.method import DEFAULT_STEPS
+from webdemo.inference.methods import method
 from webdemo.ui.page import build_page, launch_options
 
 from .stub_engine import StubEngine, walking
@@ -56,13 +58,14 @@ def test_generate_gives_a_manifest_and_files_that_can_be_read(client: Client) ->
 
 def test_only_the_prompt_is_needed(client: Client) -> None:
     answer, _ = generate(client, prompt="two people walk")
-    assert answer["manifest"]["request"]["steps"] == 50
+    assert answer["manifest"]["request"]["steps"] == DEFAULT_STEPS
 
 
 def test_a_class_is_enough_too(client: Client) -> None:
     answer, files = client.predict("shake hands", api_name="/generate_class")
     asked = answer["manifest"]["request"]
     assert (asked["model"], asked["prompt"], asked["guidance"]) == ("bigraphdiff", "shake hands", 1.8)
+    assert asked["steps"] == method("bigraphdiff").steps == 50
     assert any(re.fullmatch("shake-hands-seed0-[0-9a-f]{4}.npz", Path(path).name) for path in files)
 
 
@@ -73,7 +76,8 @@ def test_a_class_is_enough_too(client: Client) -> None:
         ({"prompt": "x" * 10_000}, "The prompt has 10,000 characters: shorten it to 500 or fewer."),
         ({"prompt": "x", "steps": 5000}, "DDIM steps must be from 1 to 1000, not 5000."),
         ({"prompt": "x", "seconds": 0}, "Length must be from 1 to 10 seconds, not 0."),
-        ({"prompt": "x", "seed": 1.5}, "Seed must be a whole number from 0 to 4294967295, not 1.5."),
+        ({"prompt": "x", "seed": 1.5}, "Seed must be a whole number from 0 to 4,294,967,295, not 1.5."),
+        ({"prompt": "x", "seed": -1}, "Seed must be from 0 to 4,294,967,295, not -1."),
         ({"prompt": "x", "guidance": "much"}, "Guidance scale must be a number from 0 to 10, not 'much'."),
         ({"prompt": "x", "sampler": "euler"}, "Sampler 'euler' is not known: choose one of ddim, dpm++."),
         (

@@ -23,7 +23,7 @@ from webdemo.view.contact_sheet import contact_sheet
 
 from .report import touch_gap
 from .vocabulary import ANIMATED
-from .words.lexicon import count
+from .words.lexicon import count, phrases
 
 FPS = 30.0
 MEASURED = 250
@@ -96,8 +96,9 @@ def _head(
             f"{len(scenes):,} scenes, {hours:.1f} hours: {spread} beats in the captions, transitions not counted. "
             f"There are {joint:,} different captions of both people, {alone:,} of one person alone and "
             f"{single:,} of single beats, made from {written:,} sentences written by hand and {spoken} phrases "
-            f"for {len(_acts(scenes))} acts. {made / FPS / 3600:.1f} hours include hand-animated clips "
-            "(Mesh2Motion, smoothed and slowed to what a body can do)."
+            f"for {len(phrases())} acts, of which {len(_acts(scenes))} occur here. "
+            f"{made / FPS / 3600:.1f} hours include hand-animated clips (Mesh2Motion, smoothed and slowed to "
+            "what a body can do)."
         ),
         "",
         *measures,

@@ -22,7 +22,7 @@ from motion import InputError
 from webdemo.inference.actor import FPS, read_actor
 from webdemo.server.accounts.visitors import VISITOR_COOKIE, new_token
 
-from .load import ROOT, errors_logged, ready, serving
+from .served import ROOT, errors_logged, ready, serving
 
 CLIP = ROOT / "static" / "examples" / "wave.npz"
 BETWEEN = 1 / 15
@@ -88,6 +88,12 @@ async def _measure(url: str, server: Any, people: int, seconds: float, partner: 
         "delay_95th_ms": 1000 * delays[int(0.95 * len(delays))],
         "delay_longest_ms": 1000 * delays[-1],
     }
+
+
+async def stream(client: httpx.AsyncClient, seconds: float, partner: str = "agent") -> Person:
+    """One person who is live for so many seconds."""
+    poses = np.rint(1000 * read_actor(CLIP, person="a")[0].positions).astype("<i2")
+    return await _person(client, poses, seconds, partner)
 
 
 async def _person(client: httpx.AsyncClient, poses: np.ndarray, seconds: float, partner: str) -> Person:

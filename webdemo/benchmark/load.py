@@ -1,23 +1,19 @@
 """Load test: many people send mixed jobs to a server on loopback, and every answer is checked.
 
+In the second half of the time two more attack it: one fills the queue, one floods a live stream.
 ``python -m webdemo benchmark --load --people 20 --minutes 5``.
 """
 
 from __future__ import annotations
 
 import asyncio
-import contextlib
 import json
-import os
 import random
-import signal
-import socket
 import statistics
 import subprocess
-import sys
 import tempfile
 import time
-from collections.abc import Iterator, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
@@ -29,8 +25,10 @@ from webdemo.inference.requests import GenerateRequest
 from webdemo.server.accounts.visitors import VISITOR_COOKIE, new_token
 from webdemo.server.queue.wait_estimate import units
 
-ROOT = Path(__file__).resolve().parents[2]
-START_SECONDS = 180.0
+from .attackers import ATTACKERS, attack
+from .live import Person, stream
+from .served import ROOT, errors_logged, ready, serving
+
 PROBE_EVERY = 2.0
 """Seconds between two looks at how quickly the page answers."""
 PROMPTS = (
@@ -47,6 +45,12 @@ GOALS: dict[str, tuple[float, float]] = {
     "runs_refused_or_failed": (0, 0),
     "log_lines_of_errors": (0, 0),
     "longest_wait_over_fair_share": (0, 3),
+    "attacked_longest_wait_over_fair_share": (0, 3),
+    "attacked_runs_lost": (0, 0),
+    "attacked_runs_swapped": (0, 0),
+    "attacked_runs_refused_or_failed": (0, 0),
+    "attacked_live_wait_over_fair_share": (0, 3),
+    "attacked_live_frames_over_fair_share": (1 / 3, float("inf")),
     "page_worst_seconds": (0, 1),
     "memory_last_over_first_quarter": (0, 1.05),
     "batched_over_serial_throughput": (1.5, float("inf")),
@@ -55,6 +59,9 @@ GOALS: dict[str, tuple[float, float]] = {
 REST_SECONDS = 10.0
 """Seconds before memory is read; the server frees the memory of ended runs every few seconds."""
 _API = "gradio_api"
+SHEET = "render"
+NOBODY = object()
+"""Stands for no character, since None stands for the uploaded file."""
 
 
 @dataclass
@@ -63,6 +70,8 @@ class Tally:
 
     Attributes:
         waits: seconds a unit of work that each person waited for each run.
+        kinds: the same for runs and other events, by person and endpoint.
+        live: the stream of one more person.
         latencies: seconds from asking to the result.
         page: seconds that the page took to answer, each time it was asked.
         memory: megabytes that the server held at those times.
@@ -77,7 +86,18 @@ class Tally:
     page: list[float] = field(default_factory=list)
     memory: list[float] = field(default_factory=list)
     waits: dict[int, list[float]] = field(default_factory=dict)
+    kinds: dict[int, dict[str, list[float]]] = field(default_factory=dict)
+    live: Person | None = None
     work: float = 0.0
+
+    def add(self, person: int, job: Job, took: float) -> None:
+        """Records a job that is done."""
+        self.done += 1
+        self.latencies.append(took)
+        self.kinds.setdefault(person, {}).setdefault(job.endpoint, []).append(took / job.work)
+        if job.endpoint != SHEET:
+            self.waits.setdefault(person, []).append(took / job.work)
+            self.work += job.work
 
     def figures(self) -> dict[str, Any]:
         """The tally as plain numbers."""
@@ -93,7 +113,7 @@ class Tally:
             "latency_median_seconds": statistics.median(self.latencies) if self.latencies else None,
             "latency_worst_seconds": max(self.latencies, default=None),
             "longest_wait_over_fair_share": max(means.values(), default=float("nan")) / share,
-            "people_served": len(means),
+            "people_served": len(self.kinds),
             "page_median_seconds": statistics.median(self.page) if self.page else None,
             "page_worst_seconds": max(self.page, default=None),
             "memory_first_quarter_mb": statistics.median(self.memory[:quarter] or [0]),
@@ -105,6 +125,50 @@ class Tally:
             ),
             "memory_most_mb": max(self.memory, default=0.0),
         }
+
+
+def attacked_figures(calm: Tally, attacked: Tally, people: int) -> dict[str, Any]:
+    """Figures of what people got while they were attacked, over their fair share.
+
+    An attacker is entitled to as much as anybody else, so a fair share is what a person got before, divided among as
+    many people more. A live stream is one of two then.
+    """
+    usual: dict[str, list[float]] = {}
+    for kinds in calm.kinds.values():
+        for endpoint, waits in kinds.items():
+            usual.setdefault(endpoint, []).extend(waits)
+    more = (people + ATTACKERS) / people
+    ratios = {
+        person: statistics.mean(
+            wait / statistics.mean(usual[endpoint]) / more
+            for endpoint, waits in kinds.items()
+            if endpoint in usual
+            for wait in waits
+        )
+        for person, kinds in attacked.kinds.items()
+        if kinds.keys() & usual.keys()
+    }
+    figures: dict[str, Any] = {
+        f"attacked_{name}": value
+        for name, value in attacked.figures().items()
+        if name.startswith(("runs_", "first_errors", "people_served", "page_"))
+    }
+    figures["attacked_waits_over_fair_share"] = [round(ratio, 2) for _, ratio in sorted(ratios.items())]
+    figures["attacked_longest_wait_over_fair_share"] = max(ratios.values(), default=float("nan"))
+    before, after = calm.live, attacked.live
+    if before and after and before.delays and after.delays:
+        delays = [statistics.median(person.delays) for person in (before, after)]
+        waits = [sum(person.delays) / person.frames for person in (before, after)]  # seconds a frame
+        frames = [person.frames / person.seconds for person in (before, after)]
+        figures |= {
+            "live_delay_median_ms": 1000 * delays[0],
+            "attacked_live_delay_median_ms": 1000 * delays[1],
+            "attacked_live_wait_over_fair_share": waits[1] / (2 * waits[0]),
+            "live_frames_a_second": frames[0],
+            "attacked_live_frames_a_second": frames[1],
+            "attacked_live_frames_over_fair_share": 2 * frames[1] / frames[0],
+        }
+    return figures
 
 
 def goals_missed(figures: Mapping[str, Any]) -> list[str]:
@@ -121,7 +185,7 @@ def run_load(*, people: int, minutes: float, steps: int = 20, seed: int = 0) -> 
 
     Args:
         people: number of people at once; each sends the next request when the result is there.
-        minutes: duration; runs that are under way at its end are finished.
+        minutes: duration, half of it beside the attackers; runs that are under way at its end are finished.
         steps: the most denoising steps that a job has; jobs differ in prompt, length, samples and steps.
         seed: of the mix of jobs.
 
@@ -139,92 +203,50 @@ def run_load(*, people: int, minutes: float, steps: int = 20, seed: int = 0) -> 
     return figures
 
 
-@contextlib.contextmanager
-def serving(folder: Path, **settings: object) -> Iterator[tuple[str, subprocess.Popen[bytes]]]:
-    """``python app.py`` on a free port of 127.0.0.1, with its data and its log in a folder: the address, and it.
-
-    Args:
-        folder: an empty one.
-        settings: of the server.
-    """
-    with socket.socket() as probe:
-        probe.bind(("127.0.0.1", 0))
-        port = probe.getsockname()[1]
-    chosen = {"host": "127.0.0.1", "port": port, "data": folder, "free_megabytes": 0, "log_level": "warning"}
-    env = os.environ | {
-        f"PASDEDEUX_{name.upper()}": str(value) for name, value in (chosen | settings).items()
-    }
-    with open(folder / "log", "w", encoding="utf-8") as log:
-        server = subprocess.Popen(
-            [sys.executable, "app.py"], cwd=ROOT, env=env, stdout=subprocess.DEVNULL, stderr=log
-        )
-        try:
-            yield f"http://127.0.0.1:{port}/", server
-        finally:
-            server.send_signal(signal.SIGTERM)
-            try:
-                server.wait(timeout=90)
-            except subprocess.TimeoutExpired:
-                server.kill()
-
-
-def errors_logged(folder: Path) -> int:
-    """The number of errors in the log of a server whose folder this was."""
-    return (folder / "log").read_text(encoding="utf-8").count('"level": "error"')
-
-
 async def _load(
     url: str, server: subprocess.Popen[bytes], people: int, minutes: float, steps: int, seed: int
 ) -> dict[str, Any]:
-    tally = Tally()
+    calm, attacked = Tally(), Tally()
     limits = httpx.Limits(max_connections=None)
     async with httpx.AsyncClient(base_url=url, timeout=httpx.Timeout(60, read=None), limits=limits) as client:
         await ready(client, server)
         # The first run of each kind imports and prepares things, so it comes before memory is read.
         warm_up = Tally()
-        await asyncio.gather(*(
-            _person(client, warm_up, i, random.Random(f"warm-up {seed} {i}"), steps, 0.0)
-            for i in range(max(people, len(KINDS)))
-        ))  # fmt: skip
+        await _crowd(client, warm_up, max(people, len(KINDS)), 0.0, steps, f"warm-up {seed}")
         await asyncio.sleep(REST_SECONDS)
         memory = await _memory(client)
-        began = time.monotonic()
-        until = began + 60 * minutes
-        probe = asyncio.create_task(_probe(client, tally))
-        await asyncio.gather(*(
-            _person(client, tally, i, random.Random(seed * 1000 + i), steps, until) for i in range(people)
-        ))  # fmt: skip
-        took = time.monotonic() - began
-        probe.cancel()
+        took = await _crowd(client, calm, people, 30 * minutes, steps, f"{seed}")
         await asyncio.sleep(REST_SECONDS)
         after = await _memory(client)
+        attackers = asyncio.create_task(attack(url))
+        await _crowd(client, attacked, people, 30 * minutes, steps, f"attacked {seed}")
+        attackers.cancel()
+        sent = await attackers
     return {
         "people": people,
         "seconds": took,
-        **tally.figures(),
-        "units_a_second": tally.work / took,
+        **calm.figures(),
+        "units_a_second": calm.work / took,
         "memory_at_rest_before_mb": memory,
         "memory_at_rest_after_mb": after,
+        **sent,
+        **attacked_figures(calm, attacked, people),
     }
 
 
-async def ready(client: httpx.AsyncClient, server: subprocess.Popen[bytes]) -> None:
-    """Waits until a server can generate.
-
-    Raises:
-        InputError: where it does not come up.
-    """
-    until = time.monotonic() + START_SECONDS
-    while time.monotonic() < until:
-        if server.poll() is not None:
-            raise InputError("The server ended before it was ready: start `python app.py` to see why.")
-        try:
-            if (await client.get("healthz")).status_code == 200:
-                return
-        except httpx.TransportError:  # it does not listen yet
-            pass
-        await asyncio.sleep(0.5)
-    raise InputError(f"The server was not ready within {START_SECONDS:g} s: see its /healthz.")
+async def _crowd(
+    client: httpx.AsyncClient, tally: Tally, people: int, seconds: float, steps: int, seed: str
+) -> float:
+    """Many people at once, and one more with a live stream; returns the seconds until the last of them is done."""
+    began = time.monotonic()
+    probe = asyncio.create_task(_probe(client, tally))
+    live = asyncio.create_task(stream(client, max(seconds, 2.0)))
+    dice = [random.Random(f"{seed} {person}") for person in range(people)]
+    await asyncio.gather(*(_person(client, tally, i, dice[i], steps, began + seconds) for i in range(people)))
+    took = time.monotonic() - began
+    tally.live = await live
+    probe.cancel()
+    return took
 
 
 async def _memory(client: httpx.AsyncClient) -> float:
@@ -300,7 +322,25 @@ def _prediction(dice: random.Random, steps: int) -> Job:
     return Job("predict", data, {"kind": "predict", "seconds": seconds}, seconds + 10)
 
 
-KINDS = (_generation, _generation, _generation, _generation, _reaction, _prediction)
+def _sheet(dice: random.Random, steps: int) -> Job:
+    """A contact sheet, which waits in the queue of events."""
+    data = (
+        None,
+        "png",
+        "bodies",
+        "light",
+        "threequarter",
+        False,
+        24,
+        dice.choice((480, 640)),
+        360,
+        NOBODY,
+        "",
+    )
+    return Job(SHEET, data, {}, 1.0)
+
+
+KINDS = (_generation, _generation, _generation, _generation, _reaction, _sheet, _prediction)
 """Jobs are drawn from these, so a kind that stands here twice is twice as frequent; a person's first is fixed."""
 
 
@@ -316,12 +356,10 @@ async def _person(
         kind, answer = await _ask(client, cookies, job)
         took = time.monotonic() - began
         if kind == "complete":
-            tally.done += 1
-            request = answer[0]["manifest"]["request"]
-            tally.swapped += any(request.get(name) != value for name, value in job.asked.items())
-            tally.latencies.append(took)
-            tally.waits.setdefault(person, []).append(took / job.work)
-            tally.work += job.work
+            tally.add(person, job, took)
+            if job.asked:
+                request = answer[0]["manifest"]["request"]
+                tally.swapped += any(request.get(name) != value for name, value in job.asked.items())
         elif kind == "error":
             tally.errors.append(f"{job.endpoint}: {answer}"[:200])
             await asyncio.sleep(1)
@@ -343,6 +381,7 @@ async def _ask(client: httpx.AsyncClient, cookies: dict[str, str], job: Job) -> 
             if sent.status_code != 200:
                 return "error", f"{sent.status_code} {sent.text}"
             data[data.index(None)] = {"path": sent.json()[0], "meta": {"_type": "gradio.FileData"}}
+        data = [None if value is NOBODY else value for value in data]
         joined = await client.post(call, json={"data": data}, headers=cookies)
         if joined.status_code != 200:
             return "error", f"{joined.status_code} {joined.text}"

@@ -1,6 +1,6 @@
 """The same jobs from a shell: ``python -m webdemo COMMAND``.
 
-The commands are generate, react, predict, scene, render, score, study, info, benchmark, serve and user.
+The commands are generate, react, predict, scene, read, render, score, study, info, benchmark, serve, clock and user.
 The last line on stdout is one JSON object. An error is one line on stderr that says what is
 wrong and what to do, with exit code 2. A cancelled run (Ctrl+C) ends with 130, and one whose reader has gone
 with 141. No file is left half-written.
@@ -21,6 +21,7 @@ from motion import InputError
 
 from .generation import add_generate, add_predict, add_react
 from .parser import Parser
+from .reading import add_read
 from .rendering import add_render
 from .scenes import add_scene
 from .scoring import add_score
@@ -39,6 +40,7 @@ def main(argv: Sequence[str] | None = None) -> int:
         add_react,
         add_predict,
         add_scene,
+        add_read,
         add_render,
         add_score,
         add_study,

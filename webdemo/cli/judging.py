@@ -64,7 +64,7 @@ def score_model(options: argparse.Namespace) -> dict[str, Any]:
     found = method(options.model)
     scoring = Scoring(
         found.name,
-        found.default("steps", SamplingRequest.steps) if options.steps is None else options.steps,
+        found.steps if options.steps is None else options.steps,
         found.default("guidance", SamplingRequest.guidance) if options.guidance is None else options.guidance,
         options.damping,
         options.plain,
@@ -100,7 +100,7 @@ def score_model(options: argparse.Namespace) -> dict[str, Any]:
     passed, count = scores["tags"][ALL]
     return {
         "model": found.name, "sentences": len(sentences), "motions": sum(map(len, duets)), "passed": passed,
-        "judged": count, "tags": scores["tags"], "conditions": scores["conditions"],
+        "judged": count, "tags": scores["tags"], "any": scores["any"], "conditions": scores["conditions"],
         "physical": scores["physical"], "files": [] if options.out is None else [str(options.out)],
     }  # fmt: skip
 
@@ -141,7 +141,10 @@ def _motion(engine: Any, scoring: Scoring, sentence: Sentence, seed: int, kept: 
     found, actor = method(scoring.model), None
     if "generate" not in found.tasks:  # the actor is person a of the default model's motion of the sentence
         default = Scoring(
-            SamplingRequest.model, SamplingRequest.steps, SamplingRequest.guidance, scoring.damping
+            SamplingRequest.model,
+            method(SamplingRequest.model).steps,
+            SamplingRequest.guidance,
+            scoring.damping,
         )
         actor = _made(engine, default.request(sentence, seed, None))
     duet = _made(engine, scoring.request(sentence, seed, actor))

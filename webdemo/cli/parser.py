@@ -71,7 +71,6 @@ def sampling_fields(options: argparse.Namespace) -> dict[str, Any]:
     """The fields of a request, from the options of :func:`add_sampling`."""
     names = ("seed", "samples", "guidance", "steps", "damping", "sampler", "model")
     found = {name: getattr(options, name) for name in names} | {"cleanup": not options.no_cleanup}
-    for name in ("guidance", "steps"):
-        if found[name] is None:
-            found[name] = method(options.model).default(name, getattr(SamplingRequest, name))
+    if options.guidance is None:
+        found["guidance"] = method(options.model).default("guidance", SamplingRequest.guidance)
     return found

@@ -19,6 +19,7 @@ from motion import SMPL22, Duet, InputError
 
 from .actor import FPS
 from .joining import PASSING, joined, passing
+from .known_parts import KnownFrames, KnownPath, Part
 from .scenes import Finish, Scene
 
 Array = NDArray[np.floating]
@@ -30,46 +31,6 @@ FADE = 12
 """Frames over which what clean-up changed at a given frame is taken back beside it."""
 _BONE_ERROR = 0.3
 _HIPS = (SMPL22.index("left_hip"), SMPL22.index("right_hip"))
-
-
-@dataclass(frozen=True, eq=False)
-class KnownFrames:
-    """The motion of a person at some frames, held exactly.
-
-    Attributes:
-        person: 0 for a, 1 for b.
-        frames: N different frames of the scene, in order.
-        positions: (N, 22, 3) metres.
-        joints: those that are given; () for all. All but the pelvis are given relative to it. Where only some are
-            given, the network is held to them, and the finished motion comes close to them.
-    """
-
-    person: int
-    frames: Sequence[int]
-    positions: Array
-    joints: Sequence[int] = ()
-
-
-@dataclass(frozen=True, eq=False)
-class KnownPath:
-    """A person's places at some frames, and optionally their headings.
-
-    Attributes:
-        person: 0 for a, 1 for b.
-        frames: N different frames of the scene, in order; between them the way is free.
-        places: (N, 2) x and z of the pelvis in metres.
-        headings: (N,) radians from +Z towards +X. The network is shown them; they are not held.
-        turned: the headings are held, too, by the places of the hips.
-    """
-
-    person: int
-    frames: Sequence[int]
-    places: Array
-    headings: Array | None = None
-    turned: bool = False
-
-
-Part = KnownFrames | KnownPath
 
 
 @dataclass(frozen=True, kw_only=True)

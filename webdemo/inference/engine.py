@@ -105,7 +105,7 @@ class Engine:
             events = pipeline.run(request, cancel, timer, **options)
         for event in events:
             if isinstance(event, Result):
-                manifest = _manifest(request, pipeline)
+                manifest = _manifest(request, pipeline) | event.manifest
                 duets = tuple(
                     replace(duet, manifest=manifest | {"sample": i}) if isinstance(duet, Duet) else duet
                     for i, duet in enumerate(event.duets)

@@ -8,7 +8,7 @@ from __future__ import annotations
 import hashlib
 import math
 from collections.abc import Mapping
-from dataclasses import asdict, dataclass, field, fields
+from dataclasses import dataclass, field, fields
 from typing import Any
 
 import numpy as np
@@ -19,6 +19,7 @@ from motion import Clip, Duet, InputError
 from . import methods
 from .actor import ROLES, check_actor
 from .method import Method
+from .plans import Plan
 
 MAX_PROMPT = 500
 STEPS = (1, 1000)
@@ -31,16 +32,25 @@ SAMPLERS = ("ddim", "dpm++")
 
 def _number(name: str, value: Any, low: float, high: float, unit: str = "") -> float:
     if isinstance(value, bool) or not isinstance(value, (int, float)) or not math.isfinite(value):
-        raise InputError(f"{name} must be a number from {low:g} to {high:g}{unit}, not {value!r:.40}.")
+        raise InputError(
+            f"{name} must be a number from {_plain(low)} to {_plain(high)}{unit}, not {value!r:.40}."
+        )
     if not low <= value <= high:
-        raise InputError(f"{name} must be from {low:g} to {high:g}{unit}, not {value:g}.")
+        raise InputError(f"{name} must be from {_plain(low)} to {_plain(high)}{unit}, not {_plain(value)}.")
     return float(value)
+
+
+def _plain(value: float) -> str:
+    """A number as people write it: 4,294,967,295 rather than 4.29497e+09."""
+    return f"{int(value):,}" if 1e4 <= abs(value) < 1e15 and value == int(value) else f"{value:g}"
 
 
 def _whole(name: str, value: Any, low: int, high: int) -> int:
     number = _number(name, value, low, high)
     if number != int(number):
-        raise InputError(f"{name} must be a whole number from {low} to {high}, not {value:g}.")
+        raise InputError(
+            f"{name} must be a whole number from {_plain(low)} to {_plain(high)}, not {value:g}."
+        )
     return int(number)
 
 
@@ -62,6 +72,10 @@ def _others(needed: str) -> str:
     return "the model " + " or ".join(m.name for m in methods.methods("react") if needed in m.takes)
 
 
+OWN_STEPS: Any = None
+"""In place of steps: those of the model."""
+
+
 @dataclass(frozen=True, kw_only=True)
 class SamplingRequest:
     """The settings of every job that denoises a motion.
@@ -70,7 +84,7 @@ class SamplingRequest:
         seed: the same request with the same seed gives the same motion.
         samples: number of different motions to generate.
         guidance: scale s of classifier-free guidance, s·conditioned + (1−s)·unconditioned; 1 is none.
-        steps: denoising steps.
+        steps: denoising steps; by default the model's own (:attr:`Method.steps`), which is filled in here.
         damping: t̄ as a fraction of the diffusion's T: while t ≤ t̄·T the regularisers correct the predicted
             motion; 0 turns the correction off.
         sampler: "ddim" (η = 0) or "dpm++" (DPM-Solver++ multistep).
@@ -81,7 +95,7 @@ class SamplingRequest:
     seed: int = 0
     samples: int = 1
     guidance: float = 4.3
-    steps: int = 50
+    steps: int = OWN_STEPS
     damping: float = 0.7
     sampler: str = "ddim"
     model: str = "intergen"
@@ -89,6 +103,8 @@ class SamplingRequest:
 
     def _check(self, method: Method) -> None:
         set_ = object.__setattr__
+        if self.steps is None:
+            set_(self, "steps", method.steps)
         for name, value in method.fixed.items():
             set_(self, name, value)
         set_(self, "seed", _whole("Seed", self.seed, 0, MAX_SEED))
@@ -114,12 +130,14 @@ class GenerateRequest(SamplingRequest):
             seconds, by a model that makes scenes. Off, the whole sentence is given to the network at once.
         planned: as in a scene: where the words send people, how they hold themselves and who stands by is read from
             them and given. Only with ``split``.
+        plan: of an earlier result of this request, which is used instead of reading the words; read them by default.
     """
 
     prompt: str
     seconds: float = 5.0
     split: bool = True
     planned: bool = True
+    plan: Plan | None = field(default=None, compare=False, repr=False)
 
     def __post_init__(self) -> None:
         method = methods.method(self.model, "generate")
@@ -128,8 +146,9 @@ class GenerateRequest(SamplingRequest):
         self._check(method)
 
     def to_dict(self) -> dict[str, Any]:
-        """All fields, and the kind of the request."""
-        return {"kind": "generate", **asdict(self)}
+        """All fields but the plan, and the kind of the request."""
+        plain = {f.name: getattr(self, f.name) for f in fields(self) if f.name != "plan"}
+        return {"kind": "generate", **plain}
 
 
 def clip_facts(clip: Clip) -> dict[str, Any]:
@@ -240,7 +259,7 @@ class Result:
 
     Attributes:
         duets: one a sample; a prediction for one person is that person's clip.
-        manifest: request, model, weights hash, versions: all that reproduces the result.
+        manifest: request, plan, model, weights hash, versions: all that reproduces the result.
         readouts: one dictionary of interaction measures a sample (see :mod:`motion.metrics`), each
             measure with its value ``before`` and ``after`` the damping and clean-up where both exist.
         timings: seconds by stage.

@@ -7,6 +7,7 @@ import contextlib
 import logging
 import time
 from collections.abc import AsyncIterator, Callable
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -29,6 +30,7 @@ from webdemo.server.http.payloads import Payloads
 from webdemo.server.http.study_pages import study_routes
 from webdemo.server.lab import Lab, engine_of, make_lab
 from webdemo.server.live.routes import live_routes
+from webdemo.server.queue.events import EventLimits, FairEvents
 from webdemo.server.queue.places import SEEN_EVERY
 from webdemo.server.queue.shares import SHARE_EVERY
 from webdemo.server.queue.turns import Batcher
@@ -37,9 +39,11 @@ from webdemo.server.store.recorder import Recorder
 from webdemo.server.store.scratch import Scratch
 from webdemo.ui.page import build_page, launch_options, start_queue
 from webdemo.ui.runs import EngineLike, Loader
+from webdemo.ui.visitor import visitor
 
 from .memory import collect_again, give_back
 from .settings import Settings
+from .watchdog import watch
 
 log = logging.getLogger(__name__)
 
@@ -82,14 +86,15 @@ def create_app(
     settings.check()
     if engine is None:
         engine, batcher = engine_of(settings)
-    lab = make_lab(settings, engine, batcher, node)
+    lab = make_lab(settings, engine, batcher, node, scratch)
     page = build_page(
         engine, loader=Loader(engine), runs=Recorder(lab.queue, lab.history, lab.places), history=lab.history,
         studies=lab.studies, files=Path(get_upload_folder()), owner=visitors_folder,
+        admit=lambda size: lab.storage.admit(visitor(), size),
     )  # fmt: skip
     app = FastAPI(title="Pas de Deux", docs_url=None, redoc_url=None, openapi_url=None, lifespan=_lifespan)
     app.state.lab = lab
-    app.state.tidy = lambda: scratch.clean(kept_in_cache(page)) if scratch is not None else None
+    app.state.tidy = lambda: lab.storage.tidy(kept_in_cache(page))
     visitors = Visitors(settings, lab.sign_ins)
     _add_routes(app, lab)
     app.include_router(live_routes(lab.streams))
@@ -100,17 +105,20 @@ def create_app(
     app.add_middleware(PageCache)
     app.add_middleware(
         Guard, settings=settings, visitors=visitors, figures=lab.figures, answers=lab.answers,
-        payloads=Payloads(page),
+        payloads=Payloads(page), admit=lab.storage.admit,
     )  # fmt: skip
-    _mount(app, page, settings)
+    _mount(app, page, lab)
     return app
 
 
-def _mount(app: FastAPI, page: gr.Blocks, settings: Settings) -> None:
+def _mount(app: FastAPI, page: gr.Blocks, lab: Lab) -> None:
     """Mounts the page in the application and closes what Gradio leaves open when mounted."""
+    settings = lab.settings
     page.state_session_capacity = PAGES
     page.max_threads = settings.queue + 64  # each waiting run holds a thread
-    start_queue(page, max_size=2 * settings.queue + 64)
+    near = settings.events * settings.address_people
+    limits = EventLimits(person=settings.events, address=near, total=2 * max(near, settings.queue) + 64)
+    start_queue(page, partial(FairEvents, limits=limits, figures=lab.figures))
     options = launch_options() | {
         "allowed_paths": [],
         "server_name": settings.host,
@@ -156,6 +164,8 @@ async def _lifespan(app: FastAPI) -> AsyncIterator[None]:
         asyncio.create_task(_every(SHARE_EVERY, lab.share)),
         asyncio.create_task(_every(SWEEP_EVERY, lab.streams.sweep)),
     ]
+    if lab.settings.exit_when_stuck:
+        tasks.append(asyncio.create_task(watch(lab.health.stuck)))
     try:
         yield
     finally:

@@ -6,12 +6,13 @@ import logging
 import time
 from collections.abc import Callable
 from dataclasses import dataclass
+from functools import partial
 from typing import Any
 
 from webdemo.server.accounts.users import SignIns, Users
 from webdemo.server.cluster.instance_lock import InstanceLock
 from webdemo.server.http.guard import OpenAnswers
-from webdemo.server.http.health import Health
+from webdemo.server.http.health import Health, check_disk
 from webdemo.server.http.metrics import Figures
 from webdemo.server.live.streams import Streams
 from webdemo.server.queue.places import Places
@@ -21,6 +22,8 @@ from webdemo.server.queue.shares import Shares
 from webdemo.server.queue.turns import Batcher, QueueLimits
 from webdemo.server.store.database import Database
 from webdemo.server.store.notebook import Notebook
+from webdemo.server.store.scratch import ADDRESS_SHARE, Scratch
+from webdemo.server.store.storage import Storage
 from webdemo.server.store.studies import Studies
 from webdemo.ui.lazy import LazyEngine
 from webdemo.ui.runs import EngineLike
@@ -41,6 +44,7 @@ class Lab:
     database: Database
     history: Notebook
     studies: Studies
+    storage: Storage
     queue: FairQueue
     places: Places
     shares: Shares
@@ -74,8 +78,9 @@ class Lab:
 
 
 def make_lab(
-    settings: Settings, engine: EngineLike, batcher: Batcher | None, node: InstanceLock | None
-) -> Lab:
+    settings: Settings, engine: EngineLike, batcher: Batcher | None, node: InstanceLock | None,
+    scratch: Scratch | None = None,
+) -> Lab:  # fmt: skip
     """Puts the parts together.
 
     Args:
@@ -83,6 +88,7 @@ def make_lab(
         engine: what generates.
         batcher: runs several requests of ``engine`` at once.
         node: this process's own name; without it the settings' is taken to be.
+        scratch: uploads and files for download; without it they are not counted.
 
     Raises:
         InputError: if the accounts, the database or the data folder cannot be used.
@@ -91,11 +97,18 @@ def make_lab(
     users = Users(settings.users) if settings.users is not None else None
     database = Database(settings.database_url)
     figures = Figures()
-    wants: dict[str, Callable[[], Any]] = {"database": database.check}
+    wants: dict[str, Callable[[], Any]] = {
+        "database": database.check,
+        "disk": partial(check_disk, settings.data, settings.free_megabytes * 2**20),
+    }
     if users is not None:
         _ = users.names  # reports an unreadable file at start
         wants["accounts"] = lambda: users.names
-    health = Health(engine, wants)
+    works: dict[str, Callable[[], float]] = {
+        "queue": lambda: queue.stuck,
+        "live stream": lambda: streams.stuck,
+    }
+    health = Health(engine, wants, works=works, stuck_seconds=settings.stuck_seconds)
     shares = Shares(database, name)
     queue = FairQueue(
         engine, _limits(settings, engine), batcher=batcher, figures=figures, broken=health.broken,
@@ -106,20 +119,31 @@ def make_lab(
         waiting=lambda: queue.waiting, running=lambda: queue.running, ready=lambda: health.ready,
         live=lambda: streams.count,
     )  # fmt: skip
+    storage = storage_of(settings, database, scratch)
     return Lab(
-        settings=settings, database=database, history=_history(settings, database, name), queue=queue,
-        studies=studies_of(settings, database),
+        settings=settings, database=database, history=_history(settings, storage, name), queue=queue,
+        studies=studies_of(settings, database, storage), storage=storage,
         places=Places(database, name, settings.running + settings.waiting), shares=shares, health=health,
         figures=figures, answers=OpenAnswers(), streams=streams, node=node,
         sign_ins=SignIns(database, users, settings.session_hours) if users is not None else None,
     )  # fmt: skip
 
 
-def _history(settings: Settings, database: Database, name: str) -> Notebook:
+def storage_of(settings: Settings, database: Database, scratch: Scratch | None = None) -> Storage:
+    """The room that people have in a lab."""
+    total = settings.keep_megabytes * 2**20
+    address = min(settings.address_people * settings.person_bytes, ADDRESS_SHARE * total)
+    return Storage(
+        database, settings.motions, person_bytes=settings.person_bytes, total_bytes=total, address_bytes=address,
+        scratch=scratch,
+    )  # fmt: skip
+
+
+def _history(settings: Settings, storage: Storage, name: str) -> Notebook:
     return Notebook(
-        database, settings.motions, node=name, keep_days=settings.keep_days,
-        keep_bytes=settings.keep_megabytes * 2**20, keep_favourites=settings.keep_favourites,
-        link_days=settings.link_days, free_bytes=settings.free_megabytes * 2**20,
+        storage.database, settings.motions, node=name, storage=storage, keep_days=settings.keep_days,
+        keep_favourites=settings.keep_favourites, link_days=settings.link_days,
+        free_bytes=settings.free_megabytes * 2**20,
     )  # fmt: skip
 
 
@@ -129,11 +153,11 @@ def _streams(settings: Settings, engine: EngineLike) -> Streams:
     return Streams(partners, most=settings.live, address=max(1, settings.live // 2))
 
 
-def studies_of(settings: Settings, database: Database) -> Studies:
+def studies_of(settings: Settings, database: Database, storage: Storage | None = None) -> Studies:
     """The blind studies of a lab."""
     return Studies(
-        database, settings.data / "studies", most_bytes=settings.keep_megabytes * 2**20,
-        address_people=settings.address_people,
+        database, settings.data / "studies", storage=storage or storage_of(settings, database),
+        address_people=settings.study_voters,
     )  # fmt: skip
 
 
@@ -141,6 +165,7 @@ def _limits(settings: Settings, engine: EngineLike) -> QueueLimits:
     return QueueLimits(
         running=settings.running, waiting=settings.waiting, queue=settings.queue, batch=settings.batch,
         address=settings.waiting * settings.address_people, workers=getattr(engine, "parallel", 1),
+        seconds=settings.run_seconds,
     )  # fmt: skip
 
 

@@ -16,6 +16,7 @@ from uvicorn.protocols.http.h11_impl import H11Protocol
 
 from motion import InputError
 from webdemo.server.cluster.instance_lock import InstanceLock
+from webdemo.server.http.networks import network_of
 from webdemo.server.store.scratch import Scratch
 
 from .app import Lab, create_app
@@ -44,7 +45,7 @@ def bounded_protocol(settings: Settings) -> type[H11Protocol]:
 
         def connection_made(self, transport: Any) -> None:
             super().connection_made(transport)
-            self.address = self.client[0] if self.client else ""
+            self.address = network_of(self.client[0]) if self.client else ""
             count = open_by_address.get(self.address, 0)
             self.taken = (
                 len(self.connections) <= settings.connections and count < settings.address_connections

@@ -9,7 +9,6 @@ from __future__ import annotations
 import ipaddress
 import os
 import socket
-import sys
 import tempfile
 from pathlib import Path
 from typing import Any, Literal
@@ -27,7 +26,12 @@ from motion import InputError
 from motion.cores import usable_cores
 
 PREFIX = "PASDEDEUX_"
+PEOPLE = 8
+"""People of a small lab, whose room together is all there is; a larger one seldom uses all of everyone's."""
 FILE = "pasdedeux.toml"
+PRIVATE = ("127.0.0.0/8", "10.0.0.0/8", "172.16.0.0/12", "192.168.0.0/16")
+"""Private networks: a Space's proxy is in one of them, and nobody else reaches the Space directly. With "*", a visitor
+could claim any address, since the first one that is forwarded would count."""
 
 
 def on_a_space() -> bool:
@@ -60,7 +64,7 @@ class Settings(BaseSettings):
         "", pattern=r"^(/[\w.~-]+)*$", description="path under which a proxy serves the page"
     )
     proxies: list[str] = Field(
-        default_factory=lambda: ["*"] if on_a_space() else ["127.0.0.1", "::1"],
+        default_factory=lambda: [*PRIVATE] if on_a_space() else ["127.0.0.1", "::1"],
         description="addresses of proxies whose X-Forwarded headers are trusted",
     )
     hosts: list[str] = Field(
@@ -83,23 +87,40 @@ class Settings(BaseSettings):
         30, gt=0, description="age in days at which a run is removed unless it is a favourite"
     )
     keep_megabytes: float = Field(
-        2000, gt=0, description="total size of runs above which the oldest are removed"
+        2000, gt=0, description="total size of all people's runs and studies; nobody's make way for others'"
     )
+    person_megabytes: float | None = Field(
+        None, gt=0,
+        description="room of one person for runs, studies, uploads and downloads together; by default an eighth of "
+        "keep_megabytes and scratch_megabytes, or all of it where there is one history",
+    )  # fmt: skip
     keep_favourites: int = Field(200, ge=0, description="favourites per person")
     link_days: float = Field(30, gt=0, le=3650, description="days for which a link opens a run for others")
     free_megabytes: float = Field(
         100, ge=0, description="free disk space below which runs and uploads are refused"
     )
     scratch_megabytes: float = Field(
-        2000, gt=0, description="total size of uploads and download files above which the oldest are removed"
+        2000, gt=0, description="total size of all people's uploads and download files"
     )
 
     # ---- the queue
     running: int = Field(2, ge=1, description="runs of one person at the same time")
     waiting: int = Field(4, ge=1, description="runs of one person that may wait")
     queue: int = Field(64, ge=1, le=1000, description="runs of all people that may wait")
+    events: int = Field(
+        16, ge=8, le=1000, description="unfinished events of one person: runs, films, files that are read"
+    )
+    run_seconds: float = Field(600, ge=0, description="time that one run may take once it has begun; 0: any")
     batch: int = Field(8, ge=1, le=64, description="motions in one pass through the network")
     grace_seconds: float = Field(60, ge=0, description="how long runs may take to finish at a shutdown")
+
+    # ---- when something is stuck
+    stuck_seconds: float = Field(
+        300, gt=0, description="time without progress after which a run counts as stuck, and /healthz says so"
+    )
+    exit_when_stuck: bool = Field(
+        False, description="end the process when it is stuck, for a supervisor that starts it again"
+    )
 
     # ---- live streams
     live: int = Field(
@@ -126,6 +147,9 @@ class Settings(BaseSettings):
     rate: int = Field(240, ge=1, description="requests per person and minute that change something")
     address_people: int = Field(
         8, ge=1, description="on an open server: how many people's share one address may take"
+    )
+    study_voters: int = Field(
+        60, ge=1, description="on an open server: people of one address who may vote in one study"
     )
     upload_megabytes: float = Field(50, gt=0, le=50, description="largest upload")
     body_megabytes: float = Field(2, gt=0, description="largest body of any other request")
@@ -162,6 +186,14 @@ class Settings(BaseSettings):
         return self.users is not None
 
     @property
+    def person_bytes(self) -> float:
+        """Bytes that one person may store."""
+        if self.person_megabytes is not None:
+            return self.person_megabytes * 2**20
+        people = PEOPLE if self.accounts or self.open else 1
+        return (self.keep_megabytes + self.scratch_megabytes) * 2**20 / people
+
+    @property
     def url(self) -> str:
         """The page's address, for the person who started the server."""
         host = "127.0.0.1" if self.host in ("0.0.0.0", "::") else self.host
@@ -189,6 +221,7 @@ class Settings(BaseSettings):
         """The settings as plain values, secrets left out."""
         plain = self.model_dump(mode="json")
         plain["database"] = _without_password(self.database_url)
+        plain["person_megabytes"] = self.person_bytes / 2**20
         plain["metrics_token"] = "set" if self.metrics_token else ""
         return plain
 
@@ -212,10 +245,6 @@ def read_settings(**given: Any) -> Settings:
     named = os.environ.get(f"{PREFIX}SETTINGS")
     if named and not Path(named).is_file():
         raise InputError(f"There is no settings file {named}: correct {PREFIX}SETTINGS or make the file.")
-    if sys.version_info < (3, 11) and Path(named or FILE).is_file():  # its reader came with Python 3.11
-        raise InputError(
-            "A settings file needs Python 3.11 or newer: use the environment, or a newer Python."
-        )
     try:
         return Settings(**{name: value for name, value in given.items() if value is not None})
     except ValidationError as error:

@@ -11,6 +11,7 @@ import numpy as np
 
 from motion import Duet, InputError
 from webdemo.inference.actor import ROLES
+from webdemo.inference.plans import kept_plan
 from webdemo.inference.predict_request import PredictRequest, PredictResult
 from webdemo.inference.requests import (
     GenerateRequest,
@@ -31,7 +32,7 @@ _KINDS: dict[str, type[Request]] = {
 
 
 def request_of(opened: Opened) -> Request:
-    """The request that a kept run was made from.
+    """The request that a kept run was made from, with the plan of its result: the words are not read again.
 
     Raises:
         InputError: for a kind that keeps too little of what it was made from, or fields that no longer fit.
@@ -49,14 +50,12 @@ def request_of(opened: Opened) -> Request:
         )
     if kind is SceneRequest:
         kept = opened.result.duets[0]  # what was made of it is not read again
-        return SceneRequest.from_dict(asked, kept if "motion" in asked and isinstance(kept, Duet) else None)
+        motion = kept if "motion" in asked and isinstance(kept, Duet) else None
+        return SceneRequest.from_dict(asked, motion, kept_plan(opened.result.manifest))
     given: dict[str, Any] = {f.name: asked[f.name] for f in fields(kind) if f.name in asked}
     if kind is GenerateRequest:
-        given = {
-            "split": False,
-            "planned": False,
-            **given,
-        }  # of a time before sentences were split or planned
+        older = {"split": False, "planned": False}  # of a time before sentences were split or planned
+        given = {**older, **given, "plan": kept_plan(opened.result.manifest)}
     if kind is ReactRequest:
         given["actor"] = actor_source(opened).people[0]
     if kind is PredictRequest:

@@ -17,6 +17,7 @@ from webdemo.inference.actor import read_actor
 from webdemo.inference.methods import AUTOMATIC, methods
 from webdemo.inference.predict_request import LONGEST, PredictRequest, PredictResult
 from webdemo.inference.requests import (
+    OWN_STEPS,
     Cancelled,
     GenerateRequest,
     ReactRequest,
@@ -66,7 +67,7 @@ class Endpoint:
             gr.Number(SamplingRequest.seed, label="0 to 4294967295; the same seed gives the same motion"),
             gr.Number(SamplingRequest.samples, label="how many motions to generate, 1 to 8"),
             gr.Number(guidance, label="scale of classifier-free guidance, 0 to 10; 1 is none"),
-            gr.Number(SamplingRequest.steps, label="denoising steps, 1 to 1000"),
+            gr.Number(None, label="denoising steps, 1 to 1000; the model's own if not given (mostly 8)"),
             gr.Number(SamplingRequest.damping, label="damping threshold as a share of T, 0 to 1; 0 is none"),
             gr.Textbox(SamplingRequest.sampler, label="ddim or dpm++"),
         ]
@@ -159,9 +160,9 @@ class GenerateEndpoint(Endpoint):
         seed: int,
         samples: int,
         guidance: float,
-        steps: int,
-        damping: float,
-        sampler: str,
+        steps: int = OWN_STEPS,
+        damping: float = SamplingRequest.damping,
+        sampler: str = SamplingRequest.sampler,
         model: str = GenerateRequest.model,
         progress: gr.Progress = PROGRESS,
     ) -> Answer:
@@ -201,9 +202,9 @@ class ClassEndpoint(Endpoint):
         seed: int,
         samples: int,
         guidance: float,
-        steps: int,
-        damping: float,
-        sampler: str,
+        steps: int = OWN_STEPS,
+        damping: float = SamplingRequest.damping,
+        sampler: str = SamplingRequest.sampler,
         progress: gr.Progress = PROGRESS,
     ) -> Answer:
         """Two people from the name of a class, by BiGraphDiff; an unknown one is answered with all names.
@@ -262,11 +263,11 @@ class ReactEndpoint(Endpoint):
         seed: int,
         samples: int,
         guidance: float,
-        steps: int,
-        damping: float,
-        sampler: str,
-        model: str,
-        mode: str,
+        steps: int = OWN_STEPS,
+        damping: float = SamplingRequest.damping,
+        sampler: str = SamplingRequest.sampler,
+        model: str = ReactRequest.model,
+        mode: str = ReactRequest.mode,
         keep_start: bool = False,
         own_rig: bool = False,
         animation: str = "",

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Mapping, Sequence
+from collections.abc import Generator, Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any, Protocol
@@ -11,6 +11,8 @@ from typing import Any, Protocol
 from motion import Clip
 from motion.formats import can_read
 from webdemo.inference.requests import Result
+
+from .visitor import Visitor
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -90,6 +92,32 @@ class Found:
     total: int
     tags: Sequence[str] = ()
     models: Sequence[str] = ()
+
+
+@dataclass(frozen=True, kw_only=True)
+class Usage:
+    """The room that a person uses, in bytes.
+
+    Attributes:
+        runs: that are no favourites.
+        favourites: runs that are never removed on their own.
+        studies: with their motions.
+        temporary: uploads, films and other files for download, which are soon removed.
+        allowed: of everything together.
+        kept: of runs, favourites and studies together.
+    """
+
+    runs: float = 0
+    favourites: float = 0
+    studies: float = 0
+    temporary: float = 0
+    allowed: float
+    kept: float
+
+    @property
+    def used(self) -> float:
+        """Bytes of everything together."""
+        return self.runs + self.favourites + self.studies + self.temporary
 
 
 _LONGEST_NAME = 100
@@ -185,8 +213,19 @@ class HistoryLike(Protocol):
     def revoke(self, run: str, owner: str) -> int:
         """Ends all links to a run; returns how many there were."""
 
+    def usage(self, who: Visitor) -> Usage:
+        """The room that a person uses, and how much they may."""
+
+    def weight(self, owner: str, runs: Sequence[str]) -> float:
+        """Bytes of runs, or of all of them for none given: about those that :meth:`export` writes."""
+
     def export(self, owner: str, runs: Sequence[str], file: Path) -> int:
         """Writes runs, or all of them for none given, into one file; returns how many."""
 
-    def take_in(self, owner: str, file: Path) -> int:
-        """Adds the runs of a file of :meth:`export` to the owner's; returns how many."""
+    def take_in(self, owner: str, file: Path, *, address: str = "") -> Generator[tuple[int, int], None, None]:
+        """Adds the runs of a file of :meth:`export` to the owner's, all or none.
+
+        Yields:
+            how many runs have been read, and of how many. They are there when the iterator has ended; closed before,
+            it leaves nothing.
+        """

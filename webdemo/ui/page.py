@@ -5,6 +5,7 @@ from __future__ import annotations
 import sys
 import time
 from collections.abc import Callable, Iterator
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -26,6 +27,7 @@ from .api import ClassEndpoint, GenerateEndpoint, PredictEndpoint, ReactEndpoint
 from .context import PageContext
 from .frames import let_rest
 from .history import HistoryLike
+from .read_api import ReadEndpoint
 from .render_api import RenderEndpoint
 from .runs import EngineLike, Loader, Runs, RunsLike
 from .scene_api import SceneEndpoint
@@ -35,7 +37,9 @@ from .theme import HEAD, style_sheet, theme
 TITLE = "Pas de Deux"
 TABS = (GenerateTab, SceneTab, ReactTab, PredictTab)
 """A class a job, with a ``label`` and ``build(demo, record)``."""
-ENDPOINTS = (PredictEndpoint, GenerateEndpoint, ClassEndpoint, ReactEndpoint, RenderEndpoint, SceneEndpoint)
+ENDPOINTS = (
+    PredictEndpoint, GenerateEndpoint, ClassEndpoint, ReactEndpoint, RenderEndpoint, SceneEndpoint, ReadEndpoint,
+)  # fmt: skip
 """Gradio's client in the browser takes the page's first function for "/predict", so that one comes first."""
 
 _HEADER = (
@@ -55,6 +59,7 @@ def build_page(
     loader: Loader | None = None,
     files: Path | None = None,
     owner: Callable[[], str] | None = None,
+    admit: Callable[[float], None] | None = None,
     runs: RunsLike | None = None,
     history: HistoryLike | None = None,
     studies: StudiesLike | None = None,
@@ -66,6 +71,7 @@ def build_page(
         loader: loads the engine's networks; by default the first visit starts one.
         files: folder for the files that users take home; by default in the system's temporary folder.
         owner: names the folder in ``files`` of the person whose event is answered; by default all share one.
+        admit: makes room there for a file of so many bytes, or raises InputError; by default there is room.
         runs: the line that requests wait in; by default one of the page's own, one run at a time.
         history: runs that can be found again, in a tab of its own; none by default.
         studies: blind studies of those runs; none by default.
@@ -77,7 +83,7 @@ def build_page(
         engine=engine,
         runs=runs or Runs(engine),
         loader=loader or Loader(engine),
-        shelf=Shelf(files, owner=owner),
+        shelf=Shelf(files, owner=owner, admit=admit),
         history=history,
         studies=studies,
     )
@@ -98,24 +104,28 @@ def build_page(
         _build_tabs(page, demo)
         demo.load(loading, outputs=mark, concurrency_limit=None, **QUIET)
         demo.unload(leave)
-    start_queue(demo, max_size=64)
+    start_queue(demo, partial(Queue, max_size=64))
     return demo
 
 
-def start_queue(page: gr.Blocks, max_size: int) -> None:
+def start_queue(page: gr.Blocks, make: Callable[..., Queue]) -> None:
     """Gives a page its queue of events, which is looked into less often than Gradio's own while nothing waits.
 
     Gradio looks every millisecond, and every ten for progress. An idle server then takes a tenth of a core.
     ``page.queue()`` would make a whole application besides, which launching or mounting the page makes anew.
+
+    Args:
+        page: the page.
+        make: Gradio's queue, or a kind of it, that is given the other options.
     """
-    page._queue = Queue(
+    page._queue = make(
         live_updates=True,
         concurrency_count=page.max_threads,
         update_intervals=1,
-        max_size=max_size,
         blocks=page,
         default_concurrency_limit=4,
     )
+    page.api_open = False  # otherwise every event could be called past the queue
     page._queue.sleep_when_free = _LOOK
     page._queue.progress_update_sleep_when_free = 5 * _LOOK
     # Gradio sums up all earlier events after each one, with pandas, for a dashboard that this page does not have.

@@ -65,6 +65,11 @@ class RenderEndpoint:
         try:
             if not motion:
                 raise InputError("There is no motion: send a motion file, such as a .bvh.")
+            kind, look, theme = kind or "mp4", look or Style.look, theme or Style.theme
+            fps, width, height = (
+                given if given is not None else usual
+                for given, usual in zip((fps, width, height), (FPS, *SIZE), strict=True)
+            )
             if width > 1920 or height > 1080:
                 raise InputError("Pictures have 1920x1080 pixels at most here: ask for less.")
             with READING:

@@ -9,7 +9,7 @@ import gradio as gr
 from motion import Duet, InputError
 from motion.formats import read
 from motion.retarget import to_smpl
-from webdemo.inference.story import SceneRequest, read_words
+from webdemo.inference.story import SceneRequest, in_time, read_words
 from webdemo.inference.story.request import MOST_SECONDS
 
 from .api import PROGRESS, WHICH, Answer, Endpoint
@@ -57,7 +57,7 @@ class SceneEndpoint(Endpoint):
         """
 
         def request() -> SceneRequest:
-            fields = read_words(story)
+            fields = read_words(story, in_time())
             fields |= {
                 key: value for key, value in (("samples", samples), ("seed", seed)) if value is not None
             }

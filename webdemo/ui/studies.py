@@ -67,8 +67,8 @@ class StudyEntry:
 class StudiesLike(Protocol):
     """Blind studies. Every method raises InputError with a sentence where it cannot."""
 
-    def create(self, owner: str, study: NewStudy) -> StudyEntry:
-        """Makes a study of copies of the motions."""
+    def create(self, owner: str, study: NewStudy, *, address: str = "") -> StudyEntry:
+        """Makes a study of copies of the motions; ``address`` is that of a person known by a cookie alone."""
 
     def mine(self, owner: str) -> Sequence[StudyEntry]:
         """The owner's studies, newest first."""

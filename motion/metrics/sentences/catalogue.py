@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import re
+import tomllib
 from collections.abc import Iterable
 from dataclasses import dataclass
 from functools import cache
@@ -55,6 +56,8 @@ class Sentence:
         ordered: whether the motion played backwards must fail.
         rule: conditions of :mod:`.language`, all of which must be fulfilled; () for one that is not judged.
         source: who wrote the words, where it was not this project.
+        clauses: the parts of the words, one for each condition of the rule; () where the words are not divided.
+        sealed: whether the words, the rule and their verdicts must not be shown; scores print numbers only.
     """
 
     id: str
@@ -65,6 +68,8 @@ class Sentence:
     ordered: bool
     rule: tuple[str, ...]
     source: str = ""
+    clauses: tuple[str, ...] = ()
+    sealed: bool = False
 
     def judge(self, motion: Motion | Duet) -> Judgement:
         """The rule's judgement of a motion of SMPL's 22 joints."""
@@ -92,7 +97,9 @@ def read_sentences(path: Path) -> tuple[Sentence, ...]:
 
     Args:
         path: JSON in the form of ``sentences.json``, in which ``tags``, ``named``, ``ordered`` and ``rule`` may be left
-            out; or text with a sentence a line, of which the known ones bring their rules along.
+            out; TOML with ``sentence`` tables of the same fields, which may have ``clauses``, a list of [part of the
+            words, condition], in place of ``rule``, and with ``sealed`` for the whole file; or text with a sentence a
+            line, of which the known ones bring their rules along.
 
     Raises:
         InputError: if the file is missing, too large, or a sentence or rule in it cannot be read.
@@ -105,7 +112,13 @@ def read_sentences(path: Path) -> tuple[Sentence, ...]:
         raise InputError(
             f"{path} cannot be read ({type(error).__name__}): name a text or JSON file."
         ) from None
-    if path.suffix.lower() != ".json":
+    if path.suffix.lower() == ".toml":
+        try:
+            tables = tomllib.loads(text)
+        except tomllib.TOMLDecodeError as error:
+            raise InputError(f"{path.name} is not TOML ({error}): see docs/own-model.md.") from None
+        found = _given(tables.get("sentence"), path.name, sealed=tables.get("sealed") is True)
+    elif path.suffix.lower() != ".json":
         known = {sentence.words: sentence for sentence in load_sentences()}
         lines = [line.strip() for line in text.splitlines() if line.strip()]
         rows = [{"words": line} for line in lines if line not in known]
@@ -122,7 +135,7 @@ def read_sentences(path: Path) -> tuple[Sentence, ...]:
     return tuple(found)
 
 
-def _given(rows: object, name: str) -> list[Sentence]:
+def _given(rows: object, name: str, *, sealed: bool = False) -> list[Sentence]:
     if not isinstance(rows, list) or not all(isinstance(row, dict) and row.get("words") for row in rows):
         raise InputError(f"{name} must be a list of objects that have `words`: see docs/own-model.md.")
     still = Motion(np.zeros((2, 30, SMPL22.num_joints, 3)) + SMPL22.rest_positions(), 30.0)
@@ -130,13 +143,19 @@ def _given(rows: object, name: str) -> list[Sentence]:
     for i, row in enumerate(rows):
         try:
             row = {"id": f"sentence-{i + 1}", "seconds": 5.0, "named": False, "ordered": False} | row
-            row |= {"tags": tuple(row.get("tags", ())), "rule": tuple(row.get("rule", ()))}
+            clauses = [(str(text), str(rule)) for text, rule in row.get("clauses", ())]
+            rule = [rule for _, rule in clauses] or row.get("rule", ())
+            row |= {"tags": tuple(row.get("tags", ())), "rule": tuple(rule)}
+            row |= {"clauses": tuple(text for text, _ in clauses), "sealed": sealed}
             sentence = Sentence(**row)
+            if not all(text in sentence.words for text in sentence.clauses):
+                raise ValueError("a clause is no part of its words")
             if not re.fullmatch(r"[\w-]{1,60}", sentence.id) or not 0 < float(sentence.seconds) <= 60:
                 raise ValueError("its id or its seconds cannot be used")
             sentence.judge(still)
         except (TypeError, ValueError, IndexError, RecursionError) as error:
-            raise InputError(f"Sentence {i + 1} of {name} cannot be used: {error}.") from None
+            why = "its fields or its rule are wrong" if sealed else error
+            raise InputError(f"Sentence {i + 1} of {name} cannot be used: {why}.") from None
         made.append(sentence)
     return made
 

@@ -1,7 +1,7 @@
 """Rules as text, such as ``then(hands_meet(), walks_away(a))``: read without running any code of theirs.
 
-A rule is one condition over predicates (:mod:`.vocabulary`). ``a`` and ``b`` are the two people; numbers,
-text and keywords are passed on as they are.
+A rule is one condition over predicates (:mod:`.vocabulary`), or several joined by ``and`` and ``or``. ``a`` and
+``b`` are the two people; numbers, text and keywords are passed on as they are.
 """
 
 from __future__ import annotations
@@ -12,7 +12,7 @@ from typing import Any
 
 import numpy as np
 
-from . import paths, poses, touches  # noqa: F401 (they fill the vocabulary)
+from . import paths, poses, shapes, touches  # noqa: F401 (they fill the vocabulary)
 from .joints import Motion
 from .stretches import Mask, longest, stretches
 from .vocabulary import PREDICATES
@@ -56,6 +56,23 @@ def mostly(m: Motion, mask: Mask, share: float = 0.6) -> bool:
 def times(m: Motion, mask: Mask, count: int) -> bool:
     """It holds in ``count`` stretches or more."""
     return len([1 for i, j in stretches(mask, m.fps, pause=0.1) if j - i >= 2]) >= count
+
+
+@condition
+def exactly(m: Motion, mask: Mask, count: int) -> bool:
+    """It holds in ``count`` stretches, no more and no fewer."""
+    return len([1 for i, j in stretches(mask, m.fps, pause=0.1) if j - i >= 2]) == count
+
+
+@condition
+def until(m: Motion, going: Mask, event: Mask, share: float = 0.6) -> bool:
+    """``event`` comes, not at once; ``going`` holds for that share of the second before it, and for less after it."""
+    found = [i for i, j in stretches(event, m.fps) if j - i >= SHORTEST * m.fps and i >= 0.4 * m.fps]
+    if not found:
+        return False
+    before = going[max(0, round(found[0] - m.fps)) : found[0]]
+    after = going[found[0] + round(SLACK * m.fps) :]
+    return bool(before.mean() >= share and (after.size == 0 or after.mean() < share))
 
 
 @condition
@@ -107,9 +124,18 @@ def check(rule: str, motion: Motion) -> bool:
         tree = ast.parse(rule, mode="eval").body
     except SyntaxError as error:
         raise RuleError(f"The rule {rule!r} cannot be read: {error.msg}.") from error
-    if not isinstance(tree, ast.Call) or _name(tree.func) not in CONDITIONS:
+    return _holds(tree, rule, motion)
+
+
+def _holds(node: ast.expr, rule: str, motion: Motion) -> bool:
+    if isinstance(node, ast.BoolOp):
+        held = [
+            _holds(part, rule, motion) for part in node.values
+        ]  # all of them, so that a wrong word is found
+        return all(held) if isinstance(node.op, ast.And) else any(held)
+    if not isinstance(node, ast.Call) or _name(node.func) not in CONDITIONS:
         raise RuleError(f"The rule {rule!r} must begin with one of {', '.join(CONDITIONS)}.")
-    return bool(_call(tree, motion, CONDITIONS))
+    return bool(_call(node, motion, CONDITIONS))
 
 
 def _call(node: ast.Call, motion: Motion, known: dict[str, Callable[..., Any]]) -> Any:

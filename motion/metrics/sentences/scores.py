@@ -24,8 +24,9 @@ def score(sentences: Sequence[Sentence], duets: Sequence[Sequence[Duet]]) -> dic
     Returns:
         ``tags``: {tag: [motions that obey, motions]}, "all" first; ``other``: the same where every motion is
         judged by the sentence half the list away, which is what the rules leave to chance; ``sentences``: a
-        row each with its verdicts and how often each condition is met; ``conditions``: [met, all] over the
-        motions, which moves before whole sentences do; ``physical``: means over all motions.
+        row each with its verdicts and how often each condition is met, but none for sealed ones; ``conditions``:
+        [met, all] over the motions, which moves before whole sentences do; ``any``: [sentences that one of their
+        motions obeys, sentences]; ``physical``: means over all motions.
     """
     half = len(sentences) // 2
     tags: dict[str, list[int]] = {ALL: [0, 0]}
@@ -50,7 +51,8 @@ def score(sentences: Sequence[Sentence], duets: Sequence[Sequence[Duet]]) -> dic
     return {
         "tags": tags,
         "other": other,
-        "sentences": rows,
+        "sentences": [row for row, sentence in zip(rows, sentences, strict=True) if not sentence.sealed],
+        "any": [sum(any(row["passed"]) for row in rows), len(rows)],
         "conditions": [
             sum(sum(row["met"].values()) for row in rows),
             sum(len(row["met"]) * len(row["passed"]) for row in rows),
@@ -96,6 +98,9 @@ def table(scores: Mapping[str, Any], beside: Mapping[str, Any] | None = None) ->
     columns = [found["conditions"] for found in (scores, beside) if found]
     shown = [share(*column) for column in columns]
     lines.append(f"| single conditions of the rules | {' | '.join(shown)} | – |")
+    columns = [found.get("any", (0, 0)) for found in (scores, beside) if found]
+    shown = [share(*column) for column in columns]
+    lines.append(f"| sentences that one of their motions obeys | {' | '.join(shown)} | – |")
     heads = ["Measure", "Generated", *(["Before"] if beside else [])]
     lines += ["", f"| {' | '.join(heads)} |", "|---" * len(heads) + "|"]
     for key, (label, unit) in PHYSICAL.items():

@@ -17,6 +17,10 @@ BODY = {
     "head": ("head", "neck"),
     "arm": ("left_elbow", "right_elbow", "left_wrist", "right_wrist"),
     "elbow": ("left_elbow", "right_elbow"),
+    "wrist": ("left_wrist", "right_wrist"),
+    "hip": ("left_hip", "right_hip"),
+    "waist": ("pelvis", "spine1", "left_hip", "right_hip"),
+    "knee": ("left_knee", "right_knee"),
     "leg": ("left_hip", "right_hip", "left_knee", "right_knee", "left_ankle", "right_ankle"),
     "foot": ("left_foot", "right_foot", "left_ankle", "right_ankle"),
     "body": ("pelvis", "spine1", "spine2", "spine3", "neck", "head", "left_collar", "right_collar",
@@ -59,7 +63,7 @@ def both_hands_meet(m: Motion, gap: float = 0.15) -> Mask:
     return np.minimum(straight, crossed) < gap
 
 
-def _to_joints(m: Motion, points: Array, who: int, part: str) -> Array:
+def to_joints(m: Motion, points: Array, who: int, part: str) -> Array:
     """(P, T) least distance of points (P, T, 3) to a person's joints of a part."""
     joints = np.stack([m.joint(who, name) for name in BODY[part]])
     return np.linalg.norm(points[:, None] - joints[None], axis=-1).min(axis=1)
@@ -68,7 +72,7 @@ def _to_joints(m: Motion, points: Array, who: int, part: str) -> Array:
 @predicate
 def hand_on(m: Motion, who: int, part: str, side: str = "any", gap: float = ON_JOINT) -> Mask:
     """A hand (wrist or palm) is on a part of the other's body."""
-    return _to_joints(m, m.hands(who, side), 1 - who, part).min(axis=0) < gap
+    return to_joints(m, m.hands(who, side), 1 - who, part).min(axis=0) < gap
 
 
 @predicate
@@ -80,13 +84,13 @@ def both_hands_on(m: Motion, who: int, part: str, gap: float = 0.22) -> Mask:
 @predicate
 def foot_on(m: Motion, who: int, part: str, gap: float = ON_JOINT) -> Mask:
     """A foot is on a part of the other's body."""
-    return _to_joints(m, m.pair(who, "foot"), 1 - who, part).min(axis=0) < gap
+    return to_joints(m, m.pair(who, "foot"), 1 - who, part).min(axis=0) < gap
 
 
 @predicate
 def hand_to_own(m: Motion, who: int, part: str, side: str = "any", gap: float = ON_JOINT) -> Mask:
     """A hand is on a part of the person's own body."""
-    return _to_joints(m, m.hands(who, side), who, part).min(axis=0) < gap
+    return to_joints(m, m.hands(who, side), who, part).min(axis=0) < gap
 
 
 @predicate
@@ -101,7 +105,7 @@ def arms_linked(m: Motion, gap: float = 0.2) -> Mask:
     """An elbow of one is at an elbow or a hand of the other, or their hands meet."""
     found = hands_meet(m)
     for who in (0, 1):
-        found = found | (_to_joints(m, m.pair(who, "elbow"), 1 - who, "arm").min(axis=0) < gap)
+        found = found | (to_joints(m, m.pair(who, "elbow"), 1 - who, "arm").min(axis=0) < gap)
     return found
 
 

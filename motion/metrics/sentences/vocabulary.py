@@ -2,8 +2,8 @@
 
 A predicate takes a :class:`~.joints.Motion`, people (0 is a, 1 is b) and numbers, and gives a (T,) mask. Lengths
 are in metres, angles in degrees, speeds in metres a second; the defaults are what a viewer would accept.
-:mod:`.paths` holds those of walking and looking, :mod:`.poses` those of bodies and arms, :mod:`.touches` those
-of two people who touch.
+:mod:`.paths` holds those of walking and looking, :mod:`.poses` those of bodies and arms, :mod:`.shapes` those
+of limbs, levels and unison, :mod:`.touches` those of two people who touch.
 """
 
 from __future__ import annotations

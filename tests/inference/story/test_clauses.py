@@ -26,6 +26,7 @@ from webdemo.inference.story.clauses import Reader, clauses
             "A nurse points at the patient. The patient gets up.",
             [("a", "points at the patient"), ("b", "gets up")],
         ),
+        ("My son runs to me and I hug him.", [("a", "runs to them"), ("b", "hug him")]),
         ("cop chasing a thief", [("a", "chasing a thief")]),
         ("dad and daughter dance", [("ab", "dance")]),
         ("Tom waves and Lucy nods.", [("a", "waves"), ("b", "nods")]),

@@ -1,5 +1,6 @@
 """A story is read from TOML and written again; a mistake is named with its line and key."""
 
+import time
 from pathlib import Path
 
 import numpy as np
@@ -7,7 +8,9 @@ import pytest
 
 from motion import SMPL22, Duet, InputError
 from motion.formats import write
-from webdemo.inference.story import FloorPoint, SceneRequest, read_story, write_story
+from webdemo.inference.story import Beat, FloorPoint, SceneRequest, read_story, read_words, write_story
+from webdemo.inference.story.splitting import MOST_WORDS
+from webdemo.inference.story.toml import MOST_CHARACTERS
 
 STORY = """
 seed = 4
@@ -79,3 +82,66 @@ def test_a_pose_is_read_from_a_file_beside_the_story(tmp_path: Path) -> None:
 def test_the_example_stories_can_be_made(path: Path) -> None:
     request = SceneRequest(**read_story(path.read_text(encoding="utf-8"), path.parent))
     assert len(request.beats) >= 3
+
+
+def unread(text: str) -> str:
+    """The sentence with which a story is refused."""
+    with pytest.raises(InputError) as refused:
+        read_words(text)
+    return str(refused.value)
+
+
+TOO_LARGE = [
+    ("[[path]]\n" * 2000, "more than 102 tables"),
+    ("[[beat]]\n" * 61, "61 beats"),
+    ("x = 1\n" + "a." * 70_000 + "a = 1", "Line 2: a key has 9 parts"),
+    ("[x]\n" + '"a" . ' * 20_000 + "a = 1", "a key has 9 parts"),
+    ("x = { " + "a.b.c.d.e.f.g.h.i = 1, " * 5000 + "}", "a key has 9 parts"),
+    ("[" + ".".join("a" * 70_000) + "]\n[[beat]]", "a key has 9 parts"),
+    ("seed = " + "[" * 70_000, "nested too deeply"),
+    ("seed = " + "{a=" * 40_000, "nested too deeply"),
+    ("seed = " + "9" * 5000, "longer than any key or number"),
+    ("seed = 0x" + "f" * 5000, "longer than any key or number"),
+    ("beat = [" + '{words="a"},' * 10_000 + "]", "10000 beats"),
+    ('[[path]]\nperson="a"\npoints=[' + "[1,2,3]," * 10_000 + "]", "10000 points"),
+    ("".join(f"k{i} = 1\n" for i in range(12_000)), "no key 'k0'"),
+    ("seed = 1 # " + "x" * MOST_CHARACTERS, "shorten it to 150,000"),
+    ("[[beat]]\n" + '"""' + '\\"""' * 30_000, "no valid TOML"),
+    ("They hug. " * 61, "more than 60 beats"),
+    ("a. " * 9000, "Nobody does anything"),
+    ("They walk and " + "hug and " * 3000 + "part.", "characters: shorten it to 500"),
+    ("x" * (MOST_WORDS + 1), "shorten it to 30,000"),
+]
+"""Texts that are more than a story may be, and what the refusal says."""
+
+
+@pytest.mark.parametrize(("text", "says"), TOO_LARGE)
+def test_a_text_that_is_too_large_is_refused_in_time(text, says):
+    began = time.process_time()
+    assert says in unread(text)
+    assert time.process_time() - began < 2
+
+
+def test_full_stops_in_a_sentence_are_no_parts_of_a_key():
+    words = "They walk. Sit. Bow. Run. Hop. Wave. Nod. Clap. Part... a.b.c.d.e.f.g.h.i.j"
+    for quoted in (
+        f'"{words}"',
+        f"'{words}'",
+        f'"""\n{words} "x" {words}"""',
+        f"'''{words}''''",
+        f'"\\"{words}"',
+    ):
+        assert words in read_story(f"[[beat]]\nwords = {quoted}  # {words}\nseconds = 3.5")["beats"][0].words
+
+
+def test_the_largest_story_is_read():
+    """As many beats, points and poses as a scene may have, with all their digits."""
+    dice = np.random.default_rng(0)
+    text = write_story(SceneRequest(beats=[Beat("x" * 499, seconds=3.0, seed=4294967295)] * 60))
+    for person in "ab":
+        points = dice.uniform(-8, 8, (600, 4)).round(4).tolist()
+        text += f'\n[[path]]\nperson = "{person}"\npoints = {points}\n'
+    for _ in range(40):
+        text += f'\n[[pose]]\nperson = "a"\npositions = {dice.uniform(-8, 8, (22, 3)).tolist()}\n'
+    found = read_story(text)
+    assert [len(found[key]) for key in ("beats", "paths", "poses")] == [60, 2, 40]

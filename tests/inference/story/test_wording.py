@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 import re
+import tomllib
 
 import pytest
-import tomllib
 
 from webdemo.inference.story.clauses import clauses
 from webdemo.inference.story.ways import Way, way_of

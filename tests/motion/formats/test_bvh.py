@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from scipy.spatial.transform import Rotation
 
 from motion import SMPL22, InputError, formats
 from motion.formats.bvh import read_bvh
@@ -89,6 +90,40 @@ def test_channel_order_positions_and_up_axis(order, positions_everywhere, z_up):
     # Without a sensible rest pose the neck's lean cannot be measured; the limbs are the same.
     wanted = slice(None) if not positions_everywhere else WRISTS_AND_ANKLES
     np.testing.assert_allclose(clip.positions[:, wanted], expected.positions[:, wanted], atol=0.06)
+
+
+def down(kind: str) -> np.ndarray:
+    """Rotations of somebody who lies on the back, or is on hands and knees, all the time."""
+    rotations = np.tile(np.eye(3), (40, 22, 1, 1))
+    rotations[:, 0] = Rotation.from_euler("x", -88 if kind == "lies" else 88, degrees=True).as_matrix()
+    if kind == "crawls":
+        for side in ("left", "right"):
+            rotations[:, SMPL22.index(f"{side}_hip")] = Rotation.from_euler(
+                "x", -80, degrees=True
+            ).as_matrix()
+            rotations[:, SMPL22.index(f"{side}_knee")] = Rotation.from_euler(
+                "x", 85, degrees=True
+            ).as_matrix()
+    turned = Rotation.from_euler("y", 90, degrees=True).as_matrix()
+    rotations[:, 0] = turned @ rotations[:, 0]
+    return rotations
+
+
+@pytest.mark.parametrize("kind", ["lies", "crawls"])
+@pytest.mark.parametrize("rig", RIGS)
+@pytest.mark.parametrize("z_up", [False, True])
+def test_who_is_down_all_the_time_is_not_stood_up(kind, rig, z_up):
+    root = np.tile([0.0, 0.12 if kind == "lies" else 0.45, 0.0], (40, 1))
+    content = bvh_text(down(kind), root, RIGS[rig], z_up=z_up).encode()
+    found = import_motion(content, name="down.bvh")
+    assert found.up == ("z" if z_up else "y"), "the rest pose stands along it"
+    assert f"{found.up.upper()} up" in found.describe()
+    positions = found.people[0].positions
+    assert positions[..., 1].max() < 0.9 and positions[:, 0, 1].max() < 0.7
+    long = positions[0, SMPL22.index("neck")] - positions[0, 0]
+    assert abs(long[1]) < 0.25 and np.hypot(long[0], long[2]) > 0.35, "the trunk is level"
+    other = import_motion(content, choices=ImportChoices(up="x"), name="down.bvh")
+    assert other.up == "x", "and it can be corrected"
 
 
 def test_one_and_two_rotation_channels():

@@ -12,13 +12,14 @@ from scipy.spatial.transform import Rotation
 from motion import SMPL22, Clip, Duet, InputError
 from motion.formats import glb_motion as reader
 from motion.formats import glb_nodes, read, read_everyone, write
+from motion.formats.glb_file import GlbFile, Stored
 from motion.formats.glb_motion import read_glb_people
 from motion.formats.glb_nodes import Channel
 from motion.formats.importing import ImportChoices, import_motion
 from motion.retarget import retarget
 from tests.motion.bodies import marching
 
-from .characters import glb_character, glb_motion, unpacked
+from .characters import glb_character, glb_motion, packed, unpacked
 from .rigs import RIGS
 
 POSITIONS, ROTATIONS = marching(30)
@@ -194,3 +195,77 @@ def test_large_files_are_refused_for_meshes_not_for_frames(tmp_path: Path) -> No
         file.truncate(51 * 2**20)
     with pytest.raises(InputError, match="reduce its mesh"):
         read_glb_people(tmp_path / "large.glb")
+
+
+def _shared(joints: int, keys: int, *, apart: int = 0) -> bytes:
+    """A walk of many joints that all turn by one sampler, or by one each whose keys begin ``apart`` bytes later."""
+    document, blob = unpacked(WALK)
+    views, accessors, nodes = document["bufferViews"], document["accessors"], document["nodes"]
+    (animation,), (skin,) = document["animations"], document["skins"]
+    first, more = len(nodes), joints - len(skin["joints"])
+    nodes += [{"name": f"extra {number}"} for number in range(more)]
+    nodes[1]["children"] += range(first, first + more)
+    skin["joints"] += range(first, first + more)
+    del skin["inverseBindMatrices"]
+    times = (np.arange(keys) / 50).astype("<f4").tobytes()
+    turns = np.tile(np.array([0, 0, 0, 1], "<f4"), (keys + joints, 1)).tobytes()
+    for data in (times, turns):
+        views.append({"buffer": 0, "byteOffset": len(blob), "byteLength": len(data)})
+        blob += data
+    kinds = {"componentType": 5126, "count": keys}
+    accessors.append({"bufferView": len(views) - 2, "type": "SCALAR", **kinds})
+    for number in range(joints if apart else 1):
+        accessors.append(
+            {"bufferView": len(views) - 1, "byteOffset": apart * number, "type": "VEC4", **kinds}
+        )
+    outputs = range(len(accessors) - (joints if apart else 1), len(accessors))
+    animation["samplers"] = [{"input": outputs[0] - 1, "output": output} for output in outputs]
+    animation["channels"] = [
+        {"sampler": number if apart else 0, "target": {"node": joint, "path": "rotation"}}
+        for number, joint in enumerate(skin["joints"])
+    ]
+    document["buffers"][0]["byteLength"] = len(blob)
+    return packed(document, blob)
+
+
+class Decoding:
+    """Counts the rows that are decoded."""
+
+    def __init__(self, monkeypatch: pytest.MonkeyPatch) -> None:
+        self.rows = 0
+        whole = GlbFile.decoded
+
+        def counted(file: GlbFile, stored: Stored, what: str) -> Any:
+            self.rows += stored.rows
+            return whole(file, stored, what)
+
+        monkeypatch.setattr(GlbFile, "decoded", counted)
+
+
+def test_a_sampler_that_joints_share_is_decoded_and_worked_out_once(monkeypatch: pytest.MonkeyPatch) -> None:
+    data, keys = _shared(200, 1000), 1000
+    decoding, courses = Decoding(monkeypatch), []
+    at = Channel.at
+    monkeypatch.setattr(Channel, "at", lambda channel, moments: courses.append(1) or at(channel, moments))
+    (found,) = read_glb_people(data, name="walk.glb")
+    assert found.positions.shape == (1000, 200, 3)
+    assert decoding.rows == 2 * keys and len(courses) == 1
+
+
+def test_key_frames_that_overlap_are_refused_before_they_are_decoded(monkeypatch: pytest.MonkeyPatch) -> None:
+    data = _shared(200, 1000, apart=16)
+    decoding = Decoding(monkeypatch)
+    with pytest.raises(
+        InputError, match=r"walk\.glb cannot be read as motion because its key frames overlap"
+    ):
+        read_glb_people(data, name="walk.glb")
+    assert decoding.rows == 0
+
+
+def test_thousands_of_skins_are_refused_before_any_is_looked_at(monkeypatch: pytest.MonkeyPatch) -> None:
+    document, blob = unpacked(WALK)
+    document["skins"] *= 5000
+    decoding = Decoding(monkeypatch)
+    with pytest.raises(InputError, match="it has 5,000 skins"):
+        read_glb_people(packed(document, blob), name="walk.glb")
+    assert decoding.rows == 0

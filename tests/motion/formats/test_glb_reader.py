@@ -15,9 +15,10 @@ from hypothesis import strategies as st
 from motion import InputError
 from motion.character import character_body
 from motion.formats import glb_file
+from motion.formats.glb_file import GlbFile
 from motion.formats.glb_reader import read_character
 
-from .characters import glb_character
+from .characters import glb_character, packed, unpacked
 from .rigs import RIGS
 from .test_fuzz import EDITS, PATIENT, SECONDS
 
@@ -128,3 +129,18 @@ def test_damaged_characters_are_read_or_a_sentence(rig: str) -> None:
 def test_every_known_rig_is_a_character() -> None:
     for rig in RIGS:
         assert len(read_character(glb_character(rig), name="x.glb").joint_names) >= 17, rig
+
+
+def test_of_many_skins_only_the_largest_is_decoded(monkeypatch: pytest.MonkeyPatch) -> None:
+    document, blob = unpacked(glb_character())
+    document["skins"] *= 100
+    document["nodes"] += [{"mesh": 0, "skin": number} for number in range(1, 100)]
+    decoded: list[str] = []
+    whole = GlbFile.decoded
+    monkeypatch.setattr(
+        GlbFile, "decoded", lambda file, stored, what: decoded.append(what) or whole(file, stored, what)
+    )
+    read_character(packed(document, blob), name="robot.glb")
+    assert sorted(decoded) == [
+        "bind matrices", "corners of triangles", "joints of vertices", "vertices", "weights",
+    ]  # fmt: skip

@@ -84,6 +84,8 @@ def test_glb_has_a_node_of_their_own_for_each_person(tmp_path):
     assert all(holder not in found.parents for holder in holders)
     names = [nodes[joint].name for joint in found.gltf.skins[1].joints]
     assert names == [f"reactor_{name}" for name in SMPL22.joint_names]
+    assert len(found.gltf.meshes) == 2, "one a person and nothing else"
+    assert [node.name for node in nodes if node.mesh is not None] == ["actor_body", "reactor_body"]
 
 
 @pytest.mark.parametrize("size", [1.0, 1.15])

@@ -10,7 +10,8 @@ import pytest
 from motion import SMPL22, Duet, InputError
 from motion.metrics import foot_skate
 from motion.transforms import heading, resample
-from motion.video import people_of
+from motion.video import Landmarks, people_of
+from motion.video.landmarks import INDEX
 from motion.video.tracks import tracks_of
 
 from .filming import film, stepping
@@ -90,6 +91,46 @@ def test_somebody_who_passes_by_for_a_moment_is_not_a_second_person() -> None:
         seen=landmarks.seen[short],
     )  # fmt: skip
     assert len(tracks_of(landmarks)) == 1
+
+
+def hidden(landmarks: Landmarks, *points: str, share: float = 1.0) -> Landmarks:
+    """The same film, in the first share of which the network is unsure of some points."""
+    seen = landmarks.seen.copy()
+    seen[: round(share * len(seen)), [INDEX[point] for point in points]] = 0.2
+    return replace(landmarks, seen=seen)
+
+
+FAR_LEG = ("right_hip", "right_knee", "right_ankle", "right_heel", "right_foot_index")
+
+
+def test_a_whole_body_from_the_side_hides_no_legs() -> None:
+    front = film([stepping(1.0)])
+    side = hidden(film([stepping(1.0, heading=np.pi / 2)]), *FAR_LEG)
+    for landmarks in (front, side):
+        assert people_of(landmarks).notes == ()
+
+
+def test_two_whole_bodies_face_to_face_hide_no_legs() -> None:
+    left, right = stepping(1.0, heading=np.pi / 2), stepping(1.0, heading=-np.pi / 2)
+    left[..., 0] -= 0.7
+    right[..., 0] += 0.7
+    filmed = people_of(hidden(film([left, right]), *FAR_LEG))
+    assert len(filmed.people) == 2 and filmed.notes == ()
+
+
+def test_legs_that_are_hidden_for_a_while_are_told() -> None:
+    covered = hidden(film([stepping(1.0)]), "left_ankle", "right_knee", share=0.4)
+    (note,) = people_of(covered).notes
+    assert note.startswith("The legs are hidden or out of the picture for 4")
+
+
+def test_a_body_cut_at_the_hips_is_refused_however_sure_the_network_is() -> None:
+    landmarks = film([stepping(1.0)])
+    image = landmarks.image.copy()
+    hips = image[:, [INDEX["left_hip"], INDEX["right_hip"]], 1].max()
+    cut = replace(landmarks, image=image / [1.0, hips], height=round(landmarks.height * hips))
+    with pytest.raises(InputError, match="The legs are not in the picture"):
+        people_of(cut)
 
 
 @pytest.mark.parametrize(

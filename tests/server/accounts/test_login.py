@@ -121,6 +121,26 @@ def test_a_notebook_signs_in(shared: TestClient) -> None:
     assert "event: error" in text and "The stub cannot do this: ask for something possible." in text
 
 
+def test_a_browser_is_remembered_that_somebody_signed_in_with(shared: TestClient) -> None:
+    """So that guesses of others do not slow its owner down there."""
+    given = {"username": "Ada ", "password": "password of ada"}
+    signed_in = shared.post("/login", data=given)
+    known = signed_in.cookies["pasdedeux_known"]
+    shared.cookies.clear()
+    sign_ins = lab_of(shared).sign_ins
+    assert sign_ins is not None and sign_ins._browser("ada", known)
+    attributes = next(c for c in signed_in.headers.get_list("set-cookie") if c.startswith("pasdedeux_known="))
+    assert "HttpOnly" in attributes
+    for _ in range(60):
+        sign_ins._throttle._names.take("ada")
+    assert shared.post("/login", data=given).status_code == 429
+    assert shared.post("/login", data=given, headers={"cookie": f"pasdedeux_known={known}"}).json() == {
+        "success": True
+    }
+    sign_ins._throttle._names.take("ada", -60)
+    shared.cookies.clear()
+
+
 def newest(client: TestClient, owner: str) -> Entry:
     return lab_of(client).history.entries(owner)[0]
 

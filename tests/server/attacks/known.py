@@ -1,7 +1,7 @@
 """Attacks as data: who sends what to which server, and what may come back.
 
-``{name}`` in a path, header or value stands for one of the victim's things, see :func:`victims_things`:
-ada's upload, download, call, session and run, her cookie, and places on the server's disk.
+``{name}`` in a path, header or value stands for one of the victim's things, see :class:`.victim.Victim`: ada's
+upload, download, call, session, run and study, and places on the server's disk.
 """
 
 from __future__ import annotations
@@ -106,7 +106,6 @@ OTHERS_THINGS = [
     post("the end of another's call", f"{API}/cancel", 403, 404, body={**OWN, "event_id": "{call}"}),
     post("another's component", f"{API}/component_server", 403, 404,
          body={"session_hash": "{session}", "component_id": 1, "fn_name": "x", "data": []}),
-    get("another's run by its id", "/?run={run}", 200, never=("SECRET",), at="open"),
 ]  # fmt: skip
 
 FORGED = [
@@ -124,6 +123,7 @@ FORGED = [
     post("no such endpoint", f"{API}/call/nosuch", 404, body={"data": []}),
     post("a private endpoint", f"{API}/call/refresh", 404, body={"data": [None]}),
     post("the second kind of calls", f"{API}/call/v2/generate", 404, body={"prompt": "x"}),
+    post("another function's values", f"{API}/call/render", 400, body={"data": ["/etc/passwd"], "fn_index": 6}),
     post("no such function", f"{API}/queue/join", 404, body={**OWN, "fn_index": 99_999, "data": []}),
     post("a function by a text", f"{API}/run/predict", 404, body={"fn_index": "0", "data": []}),
     post("a function by a truth", f"{API}/queue/join", 404, body={**OWN, "fn_index": True, "data": []}),
@@ -196,7 +196,10 @@ STRANGERS = [
         headers={"cookie": "pasdedeux_session=" + "A" * 43}),
     get("a name as a session", "/config", 401, at="closed", who="stranger",
         headers={"cookie": "pasdedeux_session=user ada"}),
-    get("the figures", "/metrics", 200, 403, never=("password", "pasdedeux_session", "SECRET")),
+    get("the figures from this machine", "/metrics", 200, who="stranger", holds="pasdedeux_",
+        never=("password", "pasdedeux_session", "SECRET")),
+    get("the figures from another machine", "/metrics", 403, who="stranger",
+        headers={"x-forwarded-for": "198.51.100.7"}, never=("pasdedeux_",)),
 ]  # fmt: skip
 
 SCRIPT = "<script>window.hacked=1</script>"
@@ -210,16 +213,88 @@ SCRIPTS = [
     get("a script in a run's key", f"/?run={SCRIPT}", 200, headers={"accept": "text/html"}, never=(SCRIPT,)),
 ]  # fmt: skip
 
+OWN_PAGE = {"origin": "{here}"}
+VOTE = {"ticket": "x", "answer": "1"}
 STUDIES = [
+    get("what is compared in a study", "/study/{study_key}", 200, holds="Which is longer?", never=("SECRET",)),
+    get("a study by its id", "/study/{study}", 404, holds="no such study"),
     get("a study by another's run", "/study/{run}", 404, holds="no such study"),
     get("a script in a study's key", f"/study/{SCRIPT}", 404, headers={"accept": "text/html"}, never=(SCRIPT,)),
     get("a step out of a study", "/study/..%2f..%2fapp.py", 404),
-    get("the motions of studies", f"{API}/file={{data}}/studies/", 403, 404),
-    post("a vote by a program", "/study/{run}/vote", 403, body={"ticket": "x", "answer": "1"}, holds="own page"),
-    post("a vote from another site", "/study/{run}/vote", 403, headers={"origin": "https://example.invalid"},
-         body={"ticket": "x", "answer": "1"}, holds="Another site"),
-    post("a vote by a stranger", "/study/{run}/vote", 401, who="stranger", at="closed",
-         body={"ticket": "x", "answer": "1"}),
+    get("the motions of studies", f"{API}/file={{data}}/studies/{{study}}/0.npz", 403, 404, never=("PK",)),
+    post("what is compared in a pair", "/study/{study_key}/next", 200, headers=OWN_PAGE, holds='"ticket"',
+         never=("SECRET", "manifest", "damped")),
+    post("a vote by a program", "/study/{study_key}/vote", 403, body=VOTE, holds="own page"),
+    post("a pair for a program", "/study/{study_key}/next", 403, holds="own page"),
+    post("a vote from another site", "/study/{study_key}/vote", 403, body=VOTE, holds="Another site",
+         headers={"origin": "https://example.invalid"}),
+    post("a vote by a stranger", "/study/{study_key}/vote", 401, who="stranger", at="closed", headers=OWN_PAGE,
+         body=VOTE),
+    post("a vote without a cookie", "/study/{study_key}/vote", 403, who="stranger", at="open", headers=OWN_PAGE,
+         body=VOTE, holds="cookie"),
+    post("a vote with no ticket", "/study/{study_key}/vote", 422, headers=OWN_PAGE, body=VOTE),
+    *(post(f"a vote that is {vote!r:.40}", "/study/{study_key}/vote", 400, headers=OWN_PAGE, body=vote)
+      for vote in ([], 7, {"ticket": "x"}, {"ticket": ["x"], "answer": "1"}, {"ticket": "x" * 2000, "answer": "1"})),
 ]  # fmt: skip
 
-KNOWN = [*PATHS, *OTHERS_THINGS, *FORGED, *UPLOADS, *OTHER_SITES, *STRANGERS, *SCRIPTS, *STUDIES]
+OTHER_ROUTES = [
+    *(get(f"nothing of hers in {path}", path, 200, never=("SECRET", "{data}", "password"))
+      for path in ("/config/", f"{API}/app_id", f"{API}/app_id/", f"{API}/info/", f"{API}/login_check",
+                   f"{API}/queue/status", "/manifest.json", "/robots.txt", "/favicon.ico", "/healthz",
+                   f"{API}/theme.css", f"{API}/user", f"{API}/user/", f"{API}/login_check/", f"{API}/token",
+                   f"{API}/token/")),
+    *(Attack(name=f"closed: {method} {path}", method=method, path=path, expected=(404,))
+      for method, path in (
+          ("GET", f"{API}/custom_component/1/client/component/x.js"), ("GET", f"{API}/runs/"),
+          ("GET", f"{API}/stream/{{session}}/1/1/playlist-file"), ("GET", f"{API}/vibe-code"),
+          ("GET", f"{API}/call/v2/generate/{{call}}"), ("GET", "/assets/../../app.py"), ("GET", "/pwa_icon"),
+          ("GET", "/pwa_icon/7"), ("GET", "/monitoring/summary"), ("HEAD", "/openapi.json"),
+          ("HEAD", f"{API}/proxy=http://127.0.0.1:9/"), ("POST", f"{API}/process_recording"),
+          ("POST", f"{API}/stream/{{call}}"), ("POST", f"{API}/stream/{{call}}/close"),
+          ("POST", f"{API}/vibe-edit"), ("POST", f"{API}/vibe-edit/"), ("POST", f"{API}/undo-vibe-edit"),
+          ("POST", f"{API}/undo-vibe-edit/"), ("POST", f"{API}/vibe-code"), ("POST", f"{API}/vibe-code/"),
+          ("POST", f"{API}/vibe-starter-queries"), ("POST", f"{API}/vibe-starter-queries/"),
+          ("POST", f"{API}/call/v2/generate/"),
+      )),
+    Attack(name="the length of another's upload", method="HEAD", path=f"{API}/file={{upload}}", expected=(403, 404)),
+    Attack(name="the page's head", method="HEAD", path="/", expected=(200,)),
+    get("the progress of an upload that never was", f"{API}/upload_progress?upload_id={'x' * 3000}", 404),
+    *(post(f"another's upload, at {path}", f"{API}/{path}", 400, 403, body={"data": [OTHER_FILE, *FIELDS[1:]]})
+      for path in ("call/generate/", "api/generate", "api/generate/", "run/generate/")),
+    post("another's component, with a slash", f"{API}/component_server/", 403, 404,
+         body={"session_hash": "{session}", "component_id": 1, "fn_name": "x", "data": []}),
+    post("the end of another's call, with a slash", f"{API}/reset/", 403, 404, body={**OWN, "event_id": "{call}"}),
+    post("a sign-in at Gradio's own address, which knows nobody", "/login/", 302, at="closed", who="stranger",
+         headers={"content-type": "application/x-www-form-urlencoded"}, content=b"username=ada&password=x"),
+    post("another site signs somebody out", "/logout", 403, at="closed", who="ada",
+         headers={"origin": "https://evil.example"}),
+]  # fmt: skip
+
+LIVE = [
+    *(post(f"a live stream with {fields!r:.60}", "/live", 422, body=fields, never=("Traceback",))
+      for fields in ({}, [], {"partner": "nobody"}, {"partner": ["agent"]}, {"partner": "agent", "lens": 1e9},
+                     {"partner": "agent", "seed": 2**32}, {"partner": "agent", "seed": True},
+                     {"partner": "agent", "tilt": "x"})),
+    post("a live stream of half a megabyte", "/live", 422, content=b"[" * 2**19),
+    post("a live stream from another site", "/live", 403, headers={"origin": "https://evil.example"},
+         body={"partner": "agent"}),
+    post("a live stream of a stranger", "/live", 401, at="closed", who="stranger", body={"partner": "agent"}),
+    post("a message to a stream that never was", "/live/x", 404, body={}),
+    post("a message to another's run as a stream", "/live/{run}", 404, body={}),
+    Attack(name="the end of a stream that never was", method="DELETE", path="/live/x", expected=(404,)),
+    Attack(name="the end of a stream by another site", method="DELETE", path="/live/x", expected=(403,),
+           headers={"origin": "https://evil.example"}),
+]  # fmt: skip
+
+KNOWN = [
+    *OTHER_ROUTES,
+    *LIVE,
+    *PATHS,
+    *OTHERS_THINGS,
+    *FORGED,
+    *UPLOADS,
+    *OTHER_SITES,
+    *STRANGERS,
+    *SCRIPTS,
+    *STUDIES,
+]

@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 import os
+import secrets
 import socket
 import subprocess
 import sys
 import time
+from functools import cached_property
 from pathlib import Path
 from types import TracebackType
 from typing import Any
@@ -30,15 +32,16 @@ class Target:
     Args:
         folder: its data; ``canary.txt`` in it holds :data:`CANARY`.
         accounts: with those of ada and eve; without, it is open to everybody.
+        stub_pause: seconds of a step of the stub engine.
         settings: further ones, by their names.
     """
 
-    def __init__(self, folder: Path, *, accounts: bool, **settings: Any) -> None:
+    def __init__(self, folder: Path, *, accounts: bool, stub_pause: float = 0.0, **settings: Any) -> None:
         with socket.socket() as probe:
             probe.bind(("127.0.0.1", 0))
             self.port = probe.getsockname()[1]
         self.url, self.folder, self.accounts = f"http://127.0.0.1:{self.port}", folder, accounts
-        self.data = folder / "data"
+        self.data, self.stub_pause = folder / "data", stub_pause
         self.canary = folder / "canary.txt"
         self.canary.write_text(CANARY)
         given: dict[str, Any] = {"node": "target", "free_megabytes": 0, "rate": 100_000, "grace_seconds": 1}
@@ -58,7 +61,7 @@ class Target:
         with open(self.folder / "log", "w") as log:
             self.process = subprocess.Popen(
                 [sys.executable, script, str(self.port), str(self.data)],
-                cwd=ROOT, env={**os.environ, "OMP_NUM_THREADS": "1", "STUB_PAUSE": "0", **self.env},
+                cwd=ROOT, env={**os.environ, "OMP_NUM_THREADS": "1", "STUB_PAUSE": str(self.stub_pause), **self.env},
                 stdout=log, stderr=subprocess.STDOUT,
             )  # fmt: skip
         until = time.monotonic() + 240
@@ -113,6 +116,27 @@ class Target:
         if asked.status_code != 200:
             return asked.text
         return self.ask(who, "GET", f"/gradio_api/call/{endpoint}/{asked.json()['event_id']}").text
+
+    def event(self, who: str, function: int, data: list[Any], event_data: Any = None) -> str:
+        """What an event of the page ends with, or the refusal of it."""
+        body = {
+            "data": data,
+            "fn_index": function,
+            "session_hash": secrets.token_hex(8),
+            "event_data": event_data,
+        }
+        if function not in self.unqueued:
+            joined = self.ask(who, "POST", "/gradio_api/queue/join", json=body)
+            if joined.status_code != 200:
+                return joined.text
+            return self.ask(who, "GET", f"/gradio_api/queue/data?session_hash={body['session_hash']}").text
+        return self.ask(who, "POST", "/gradio_api/run/predict", json=body).text
+
+    @cached_property
+    def unqueued(self) -> set[int]:
+        """The functions that are answered at once."""
+        config = self.ask("eve", "GET", "/config").json()
+        return {function["id"] for function in config["dependencies"] if function["queue"] is False}
 
     def upload(self, who: str, name: str, content: bytes) -> str:
         """Uploads a file; returns its path there."""

@@ -3,14 +3,17 @@
 from __future__ import annotations
 
 import json
-from pathlib import Path
-from typing import Any
+import time
+from collections.abc import Callable
 
 import pytest
 
+from .backend import Backend
 from .known import API, KNOWN, Attack
-from .target import CANARY, FIELDS, Target
+from .target import CANARY, Target
+from .victim import SECRET, Victim
 
+Victims = Callable[[Target], Victim]
 SECRETS = (CANARY, "root:", "sqlite format 3", "traceback (most recent")
 CASES = [
     pytest.param(attack, fixture, id=f"{place}: {attack.name}")
@@ -20,56 +23,20 @@ CASES = [
 ]
 
 
-@pytest.fixture(scope="package")
-def things() -> dict[str, dict[str, str]]:
-    """Ada's things at every server, by its address."""
-    return {}
-
-
-def victims_things(target: Target) -> dict[str, str]:
-    """What ada has there: made anew for every server, once."""
-    upload = target.upload("ada", "hers.bvh", b"HIERARCHY of ada's")
-    finished = target.call("ada", "generate", ["SECRET", *FIELDS[1:]])
-    (download,) = [word for word in finished.split('"') if word.endswith(".npz") and word[0] == "/"][:1]
-    open_call = {"data": ["SECRET", *FIELDS[1:]]}
-    made = target.ask("ada", "POST", f"{API}/call/generate", json=open_call).json()["event_id"]
-    join = {**open_call, "fn_index": 1, "session_hash": "adas own"}
-    target.ask("ada", "POST", f"{API}/queue/join", json=join).raise_for_status()
-    (run,) = {entry.name for entry in list((target.data / "motions").iterdir())[:1]}
-    return {
-        "upload": upload, "download": download, "call": made, "session": "adas own", "run": run,
-        "folder_of_ada": str(Path(upload).parents[1]), "canary": str(target.canary),
-        "folder": str(target.folder), "data": str(target.data),
-    }  # fmt: skip
-
-
-def filled(value: Any, things: dict[str, str]) -> Any:
-    """A value with the victim's things in place of their names."""
-    if isinstance(value, str):
-        for name, thing in things.items():
-            value = value.replace(f"{{{name}}}", thing)
-        return value
-    if isinstance(value, dict):
-        return {key: filled(item, things) for key, item in value.items()}
-    return [filled(item, things) for item in value] if isinstance(value, list) else value
-
-
 @pytest.mark.parametrize(("attack", "at"), CASES)
-def test_it_fails(
-    attack: Attack, at: str, things: dict[str, dict[str, str]], request: pytest.FixtureRequest
-) -> None:
+def test_it_fails(attack: Attack, at: str, victims: Victims, request: pytest.FixtureRequest) -> None:
     target: Target = request.getfixturevalue(at)
-    if target.url not in things:
-        things[target.url] = victims_things(target)
-    hers = things[target.url]
-    content = attack.content
+    fill, content = victims(target).fill, attack.content
+    kind = {}
     if attack.body is not None:
-        content = json.dumps(filled(attack.body, hers)).encode()
-    kind = {"content-type": "application/json"} if attack.body is not None else {}
+        content, kind = json.dumps(fill(attack.body)).encode(), {"content-type": "application/json"}
     answer = target.ask(
-        attack.who, attack.method, filled(attack.path, hers), content=content,
-        headers={**kind, **attack.headers},
-    )  # fmt: skip
+        attack.who,
+        attack.method,
+        fill(attack.path),
+        content=content,
+        headers={**kind, **fill(attack.headers)},
+    )
     assert answer.status_code in attack.expected, answer.text[:500]
     said = answer.text.lower()
     assert not [secret for secret in (*SECRETS, *attack.never) if secret.lower() in said]
@@ -77,13 +44,24 @@ def test_it_fails(
     assert "access-control-allow-origin" not in answer.headers
 
 
-def test_what_ada_has_is_still_hers(target: Target, things: dict[str, dict[str, str]]) -> None:
+def test_a_study_s_ticket_is_its_voter_s(target: Target, victims: Victims) -> None:
+    """Ada's ticket, which she was sent, is worth nothing to eve; ada then votes with it."""
+    page = f"/study/{victims(target).things['study_key']}"
+    here = {"origin": target.url}
+    pair = target.ask("ada", "POST", f"{page}/next", headers=here).json()
+    vote = {"ticket": pair["ticket"], "answer": "1"}
+    stolen = target.ask("eve", "POST", f"{page}/vote", json=vote, headers=here)
+    assert (stolen.status_code, "was not sent to you" in stolen.json()["detail"]) == (422, True)
+    time.sleep(pair["wait"] + 0.1)
+    assert target.ask("ada", "POST", f"{page}/vote", json=vote, headers=here).json()["done"] == 1
+
+
+def test_what_ada_has_is_still_hers(target: Target, victims: Victims, backend: Backend) -> None:
     """The attacks above asked for things that are there."""
-    hers = things.get(target.url) or victims_things(target)
-    assert target.ask("ada", "GET", f"{API}/file={hers['upload']}").text == "HIERARCHY of ada's"
-    assert target.ask("ada", "GET", f"{API}/file={hers['download']}").content[:2] == b"PK"
-    assert "SECRET" in target.ask("ada", "GET", f"{API}/call/generate/{hers['call']}").text
-    assert "SECRET" in target.ask("ada", "GET", f"{API}/queue/data?session_hash={hers['session']}").text
+    ada = victims(target)
+    ada.check(backend.number)
+    for path in ("call/generate/{call}", "queue/data?session_hash={session}"):  # each is sent once
+        assert SECRET in target.ask("ada", "GET", ada.fill(f"{API}/{path}")).text
     assert target.healthy() and not target.copies(CANARY)
 
 

@@ -27,7 +27,8 @@ def test_ready_when_a_generation_works(local: TestClient) -> None:
     while (answer := local.get("/healthz")).status_code != 200:
         assert time.monotonic() < until
         time.sleep(0.05)
-    assert answer.json() == {"status": "ready", "checks": {"database": "ok", "generation": "ok"}}
+    names = ("database", "disk", "generation", "progress")
+    assert answer.json() == {"status": "ready", "checks": dict.fromkeys(names, "ok")}
     lab_of(local).health.broken(RuntimeError())
     answer = local.get("/healthz")
     assert answer.status_code == 503 and "RuntimeError" in answer.json()["checks"]["generation"]
@@ -110,11 +111,11 @@ def test_gradios_own_errors_hold_no_prompt(
     forged = 'SECRET PROMPT\n{"level": "error", "message": "forged"}'
     monkeypatch.setattr(traceback, "print_exc", log_instead_of_printing)
 
-    def breaks(component: gr.Number, value: Any) -> float:
-        raise ValueError(f"{value} is no number")
+    def breaks(component: gr.Textbox, value: Any) -> str:
+        raise ValueError(f"{value} is no sentence")
 
-    monkeypatch.setattr(gr.Number, "preprocess", breaks)
-    said = events_of(local, "generate", ["x", forged, *FIELDS[2:]])
+    monkeypatch.setattr(gr.Textbox, "preprocess", breaks)
+    said = events_of(local, "generate", [forged, *FIELDS[1:]])
     assert "event: error" in said
     lines = [JsonLines().format(record) for record in caplog.records]
     printed = "".join(capfd.readouterr())

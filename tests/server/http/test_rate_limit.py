@@ -7,43 +7,47 @@ from webdemo.server.http.body_limits import Refused
 from webdemo.server.http.rate_limit import RateLimit
 
 
+class Clock:
+    """A time that a test sets."""
+
+    now = 0.0
+
+    def __call__(self) -> float:
+        return self.now
+
+
 @pytest.fixture
-def clock(monkeypatch: pytest.MonkeyPatch) -> list[float]:
-    """The seconds that the limit's clock shows."""
-    now = [0.0]
-    monkeypatch.setattr(rate_limit, "time", type("Clock", (), {"monotonic": staticmethod(lambda: now[0])}))
-    return now
+def clock() -> Clock:
+    return Clock()
 
 
-def test_as_many_as_a_minute_come_at_once_and_then_at_the_rate(clock: list[float]) -> None:
-    limit = RateLimit(60)
+def test_as_many_as_a_minute_come_at_once_and_then_at_the_rate(clock: Clock) -> None:
+    limit = RateLimit(60, clock)
     for _ in range(60):
         limit.take("a")
     with pytest.raises(Refused) as refused:
         limit.take("a")
     assert refused.value.status == 429
     limit.take("b")  # others have their own
-    clock[0] = 2.0
+    clock.now = 2.0
     limit.take("a")
     limit.take("a")
     with pytest.raises(Refused):
         limit.take("a")
 
 
-def test_a_full_bucket_is_enough_for_any_one_request(clock: list[float]) -> None:
-    limit = RateLimit(10)
+def test_a_full_bucket_is_enough_for_any_one_request(clock: Clock) -> None:
+    limit = RateLimit(10, clock)
     limit.take("a", weight=500)
     with pytest.raises(Refused):
         limit.take("a")
-    clock[0] = 61.0
+    clock.now = 61.0
     limit.take("a", weight=500)
 
 
-def test_people_who_were_idle_longest_are_forgotten(
-    clock: list[float], monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_people_who_were_idle_longest_are_forgotten(clock: Clock, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(rate_limit, "_MOST", 2)
-    limit = RateLimit(1)
+    limit = RateLimit(1, clock)
     for person in "abc":
         limit.take(person)
     limit.take("a")  # was forgotten, so it begins anew

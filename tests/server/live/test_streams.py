@@ -6,6 +6,7 @@ import base64
 import json
 import threading
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 import pytest
@@ -15,7 +16,7 @@ from tests.motion.video.filming import film, packed, stepping
 from tests.server.lab import stub_module
 from webdemo.server.live import stream as stream_module
 from webdemo.server.live import streams as streams_module
-from webdemo.server.live.messages import MOST_BYTES, MOST_PICTURES, read_message
+from webdemo.server.live.messages import MOST_BYTES, MOST_PICTURES, Message, read_message
 from webdemo.server.live.stream import MOST_FRAMES, LiveStream, Resampled
 from webdemo.server.live.streams import StreamEnded, StreamRefused, Streams, StreamUnknown
 from webdemo.ui.visitor import Visitor
@@ -44,6 +45,16 @@ def poses(times: list[float], metres: float = 0.0) -> bytes:
     positions = np.stack([rest + np.array([0, metres * time, 0]) for time in times])
     data = base64.b64encode(np.rint(1000 * positions).astype("<i2").tobytes()).decode()
     return json.dumps({"times": times, "poses": data}).encode()
+
+
+def answered(one: LiveStream, message: Message) -> dict[str, Any]:
+    """A stream's answer, with all its steps done at once."""
+    steps = one.answer(message)
+    while True:
+        try:
+            next(steps)
+        except StopIteration as end:
+            return end.value
 
 
 def stream() -> LiveStream:
@@ -99,7 +110,7 @@ def test_a_busy_server_takes_nobody_else_in() -> None:
     some.engine.partner = lambda name, seed=0: Slow()
     stream = some.open(ADA, "agent")
     for second in range(60):
-        some.answer(stream.id, ADA, read_message(poses([second, second + 0.1])))
+        some.answer(stream.id, ADA, poses([second / 10, second / 10 + 1 / 30])).result(20)
     assert some.pace == pytest.approx(0.02, rel=0.05)
     with pytest.raises(StreamRefused, match="too busy for another live partner beside 1"):
         some.open(EVE, "agent")
@@ -132,6 +143,8 @@ def test_a_server_that_stops_ends_its_streams() -> None:
         some.find(key, ADA)
     with pytest.raises(StreamRefused, match="stopping"):
         some.open(ADA, "agent")
+    with pytest.raises(StreamRefused, match="stopping"):
+        some.opening("ada", dict)
     with pytest.raises(StreamRefused, match="switched off"):
         streams(most=0).open(ADA, "agent")
 
@@ -162,8 +175,8 @@ def test_poses_at_any_pace_become_thirty_a_second() -> None:
 
 def test_a_stream_answers_each_frame_once() -> None:
     one = stream()
-    first = one.answer(read_message(poses([0.0, 1 / 30], 0.5)))
-    second = one.answer(read_message(poses([2 / 30, 0.1], 0.5)))
+    first = answered(one, read_message(poses([0.0, 1 / 30], 0.5)))
+    second = answered(one, read_message(poses([2 / 30, 0.1], 0.5)))
     assert (first["start"], second["start"]) == (0, 2)
     both = np.concatenate([unpack_positions(a["frames"]) for a in (first, second)], axis=1)
     assert both.shape == (2, 4, 22, 3)
@@ -171,7 +184,7 @@ def test_a_stream_answers_each_frame_once() -> None:
     assert both[1] == pytest.approx(both[0] * [-1, 1, -1] + [0, 0, 1.5], abs=2e-3)
     assert first["belief"]["text"] == "The stub watches."
     assert first["belief"]["chances"] == [["wave", 0.75], ["bow", 0.2]]
-    assert one.answer(read_message(b"{}"))["frames"] is None
+    assert answered(one, read_message(b"{}"))["frames"] is None
     assert one.counts.frames == one.counts.pictures == 4
 
 
@@ -184,7 +197,7 @@ def test_landmarks_become_the_persons_poses() -> None:
             filmed, times=np.array([time]), frames=np.zeros(1, int), world=filmed.world[[picture]],
             image=filmed.image[[picture]], seen=filmed.seen[[picture]],
         )  # fmt: skip
-        answers.append(one.answer(read_message(packed(chosen).encode())))
+        answers.append(answered(one, read_message(packed(chosen).encode())))
     frames = [unpack_positions(a["frames"]) for a in answers if a["frames"]]
     person = np.concatenate(frames, axis=1)[0]
     assert len(person) == pytest.approx(30 * 1.5 - 2 * 8, abs=3)
@@ -192,27 +205,30 @@ def test_landmarks_become_the_persons_poses() -> None:
     one.clock.now += stream_module.LOST + 0.1
     empty = replace(filmed, times=np.array([3.0]), frames=np.zeros(0, int), world=filmed.world[:0],
                     image=filmed.image[:0], seen=filmed.seen[:0])  # fmt: skip
-    assert "step into the picture" in one.answer(read_message(packed(empty).encode()))["hint"]
+    assert "step into the picture" in answered(one, read_message(packed(empty).encode()))["hint"]
 
 
-def test_two_messages_at_once_are_refused() -> None:
+def test_a_stream_that_ends_stops_in_the_middle_of_a_message() -> None:
+    some = streams()
+    steps: list[int] = []
     held, goes_on = threading.Event(), threading.Event()
 
     class Slow(STUB.Mirror):
         def step(self, pose: np.ndarray) -> np.ndarray:
+            steps.append(1)
             held.set()
             goes_on.wait(20)
             return super().step(pose)
 
-    one = LiveStream("id", "ada", "", Slow())
-    first = threading.Thread(target=one.answer, args=(read_message(poses([0.0])),))
-    first.start()
+    some.engine.partner = lambda name, seed=0: Slow()
+    one = some.open(ADA, "agent")
+    answer = some.answer(one.id, ADA, poses([0.0, 1.0, 2.0]))
     assert held.wait(20)
-    with pytest.raises(InputError, match="one after the other"):
-        one.answer(read_message(poses([0.1])))
+    some.close(one)
     goes_on.set()
-    first.join(20)
-    assert one.answer(read_message(poses([0.1])))["start"] == 1
+    with pytest.raises(StreamEnded):
+        answer.result(20)
+    assert len(steps) == 1
 
 
 @pytest.mark.parametrize(
@@ -244,14 +260,24 @@ def test_what_no_page_sends_is_refused_in_a_sentence(body: bytes) -> None:
 
 def test_a_message_that_spans_half_a_minute_is_not_computed_whole() -> None:
     one = stream()
-    answer = one.answer(read_message(poses([float(second) for second in range(32)])))
+    answer = answered(one, read_message(poses([float(second) for second in range(32)])))
     assert MOST_FRAMES <= one.counts.frames < MOST_FRAMES + 30
     assert answer["start"] == 0
+
+
+def test_a_stream_gets_no_more_frames_than_time_has_passed() -> None:
+    one = stream()
+    for minute in range(3):
+        answered(one, read_message(poses([60 * minute + 0.9 * i for i in range(32)])))
+    assert one.counts.frames == stream_module.AHEAD
+    one.clock.now += 1.0
+    answered(one, read_message(poses([600 + 0.9 * i for i in range(32)])))
+    assert one.counts.frames == stream_module.AHEAD + 30
 
 
 def test_points_that_lie_in_one_place_do_no_harm() -> None:
     filmed = film([stepping(1.0)])
     for part in (replace(filmed, image=np.full_like(filmed.image, 0.5), world=np.zeros_like(filmed.world)),
                  replace(filmed, seen=np.zeros_like(filmed.seen), image=np.zeros_like(filmed.image))):  # fmt: skip
-        answer = stream().answer(read_message(packed(part).encode()))
+        answer = answered(stream(), read_message(packed(part).encode()))
         assert answer["frames"] is None or np.isfinite(unpack_positions(answer["frames"])).all()

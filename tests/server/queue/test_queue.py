@@ -12,6 +12,7 @@ from typing import Any
 import pytest
 
 from motion import InputError
+from webdemo.inference import cancel
 from webdemo.inference.requests import Cancelled, GenerateRequest, Progress, Result
 from webdemo.server.app import engine_of
 from webdemo.server.cluster import ray_engine
@@ -73,12 +74,17 @@ class People:
 
     def ask(self, person: str, wanted: Any, *, alone: bool = False) -> None:
         """Asks in a thread of its own; returns when the request is in the line, runs or was refused."""
+        thread = self.ask_only(person, wanted, alone=alone)
+        wait_for(lambda: self.queue.running or not thread.is_alive())  # the first is taken at once
+
+    def ask_only(self, person: str, wanted: Any, *, alone: bool = False) -> threading.Thread:
+        """As :meth:`ask`, where nothing takes the first request."""
         before = self.queue.waiting + self.queue.running
         thread = threading.Thread(target=self._run, args=(person, wanted, alone), daemon=True)
         self.threads.append(thread)
         thread.start()
         wait_for(lambda: self.queue.waiting + self.queue.running > before or not thread.is_alive())
-        wait_for(lambda: self.queue.running or not thread.is_alive())  # the first is taken at once
+        return thread
 
     def _run(self, person: str, wanted: Any, alone: bool) -> None:
         self.who.name = person
@@ -300,3 +306,38 @@ def test_the_engine_that_settings_name(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(ray_engine, "find_spec", lambda name: name)
     engine, batcher = engine_of(Settings(engine="ray", ray_replicas=3, batch=4))
     assert batcher is None and engine.parallel == 12 and not engine.ready
+
+
+def test_the_time_of_a_run_begins_when_it_runs(monkeypatch: pytest.MonkeyPatch) -> None:
+    now = 0.0
+    monkeypatch.setattr(cancel, "monotonic", lambda: now)
+    gate, people = make(monkeypatch, seconds=600)
+    people.ask("ada", request("first"))
+    people.ask("eve", request("second"))
+    now = 599.0
+    gate.open.release()
+    wait_for(lambda: ("second",) in gate.order)
+    assert isinstance(people.ends["first"], Result)
+    now = 599.0 + 600.0  # the second has waited as long as it may run
+    people.ask("ada", request("third"))
+    assert people.queue.running == 1 and "second" not in people.ends
+    now += 1.0
+    people.threads[1].join(timeout=10)
+    assert isinstance(people.ends["second"], InputError)
+    assert "longer than the 10 minutes that this lab allows" in str(people.ends["second"])
+    gate.open.release()
+    people.end()
+    assert isinstance(people.ends["third"], Result)
+
+
+def test_a_result_that_is_there_is_not_too_late(monkeypatch: pytest.MonkeyPatch) -> None:
+    now = 0.0
+    monkeypatch.setattr(cancel, "monotonic", lambda: now)
+    gate = Gate()
+    gate.open.release()
+    queue = FairQueue(gate, QueueLimits(seconds=600))  # type: ignore[arg-type]
+    events = queue.run("a session", request("x"))
+    assert isinstance(next(events), Progress)
+    wait_for(lambda: queue.running == 0)
+    now = 601.0
+    assert isinstance(next(events), Result)

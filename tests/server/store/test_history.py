@@ -22,9 +22,8 @@ from webdemo.inference.predict_request import PredictRequest, PredictResult
 from webdemo.inference.requests import GenerateRequest, ReactRequest, Result
 from webdemo.server.queue.shared_engine import SharedEngine
 from webdemo.server.queue.wait_estimate import units
-from webdemo.server.store import history as history_module
 from webdemo.server.store.database import Database, Link, Run, Table
-from webdemo.server.store.history import DAY, WAIT_SECONDS, History
+from webdemo.server.store.history import DAY, History
 from webdemo.server.store.recorder import title_of
 from webdemo.ui.again import request_of, verdict
 
@@ -165,68 +164,16 @@ def test_keys_are_unguessable(history: History) -> None:
     assert len(keys) == 21 and all(len(key) == 24 for key in keys)
 
 
-def test_age_and_size_remove_the_oldest_but_no_favourites(history: History) -> None:
+def test_age_removes_the_oldest_but_no_favourites(history: History) -> None:
     runs = [kept(history, seed=i) for i in range(5)]
     assert history.clean() == 0
     with history.database.session.begin() as session:
         for i, run in enumerate(runs):
-            session.execute(update(Run).where(Run.id == run).values(created=time.time() - (40 - 8 * i) * DAY))
+            session.execute(update(Run).where(Run.id == run).values(stored=time.time() - (40 - 8 * i) * DAY))
     history.favour(runs[0], ME, favourite=True)
     assert history.clean() == 1  # 32 days old; the one of 40 days is a favourite
-    size = sum(path.stat().st_size for path in (history.folder / runs[4]).iterdir())
-    history.keep_bytes = 2.5 * size
-    assert history.clean() == 2
-    assert {entry.id for entry in history.entries(ME)} == {runs[0], runs[4]}
-    assert {path.name for path in history.folder.iterdir()} == {runs[0], runs[4]}
-
-
-class Clock:
-    """Stands for the module ``time`` in the history alone: an event loop beside it keeps the true time."""
-
-    def __init__(self) -> None:
-        self.ahead = self.uptime = 0.0
-
-    def set(self, ahead: float, uptime: float = 0.0) -> None:
-        self.ahead, self.uptime = ahead, uptime
-
-    def time(self) -> float:
-        return time.time() + self.ahead
-
-    def monotonic(self) -> float:
-        return time.monotonic() + self.uptime
-
-
-def clock_of(monkeypatch: pytest.MonkeyPatch) -> Clock:
-    clock = Clock()
-    monkeypatch.setattr(history_module, "time", clock)
-    return clock
-
-
-def test_a_wrong_clock_removes_nothing(
-    history: History, monkeypatch: pytest.MonkeyPatch, caplog: pytest.LogCaptureFixture
-) -> None:
-    """The server is started with its clock 60 days ahead, and the clock is set right within the day."""
-    runs = [kept(history, seed=i) for i in range(2)]
-    link, _ = history.link(runs[0], ME)
-    clock = clock_of(monkeypatch)
-    clock.set(60 * DAY)
-    assert [history.clean(), history.clean()] == [0, 0]
-    assert "clock is 60 days past the newest run" in caplog.text
-    clock.set(0)
-    assert history.clean() == 0
-    assert {entry.id for entry in history.entries(ME)} == set(runs)
-    assert history.open(link, "").entry.id == runs[0]
-
-
-def test_a_clock_that_stays_ahead_is_believed_after_a_day(
-    history: History, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    kept(history)
-    clock = clock_of(monkeypatch)
-    clock.set(60 * DAY)
-    assert history.clean() == 0
-    clock.set(60 * DAY, uptime=WAIT_SECONDS + 1)
-    assert history.clean() == 1
+    assert {entry.id for entry in history.entries(ME)} == {runs[0], *runs[2:]}
+    assert {path.name for path in history.folder.iterdir()} == {runs[0], *runs[2:]}
 
 
 def test_a_full_disk_in_the_middle_of_a_run_leaves_it_ended(history: History) -> None:

@@ -17,6 +17,7 @@ import pytest
 from motion import InputError
 from tests.server.clients import DATABASES, database_url
 from tests.server.lab import stub_module
+from webdemo.inference.plans import Plan, WindowPlan
 from webdemo.inference.requests import GenerateRequest, ReactRequest
 from webdemo.server.store import history as history_module
 from webdemo.server.store.database import Database, Table
@@ -24,6 +25,7 @@ from webdemo.server.store.notebook import Notebook
 from webdemo.ui.history import Kept, Search
 
 ME, OTHER = "user ada", "user eve"
+PLAN = Plan(windows=(WindowPlan((1.0, 2.0, 0.5)),))
 
 
 @pytest.fixture(params=DATABASES)
@@ -38,8 +40,14 @@ def kept(notebook: Notebook, prompt: str = "Two people walk.", *, owner: str = M
     request = GenerateRequest(prompt=prompt, **({"seconds": 1.0, "steps": 1} | fields))
     run = notebook.begin(owner, request, prompt)
     *_, result = stub_module().StubEngine().run(request)
-    notebook.finish(run, result)
+    notebook.finish(run, replace(result, manifest={**result.manifest, "plan": PLAN.to_dict()}))
     return run
+
+
+def taken_in(notebook: Notebook, owner: str, file: Path) -> int:
+    """The number of runs that were imported."""
+    *_, (_, total) = notebook.take_in(owner, file)
+    return total
 
 
 def found(notebook: Notebook, owner: str = ME, **wanted: Any) -> list[str]:
@@ -146,14 +154,14 @@ def test_a_workspace_goes_out_and_comes_in_beside_what_is_there(notebook: Notebo
     assert notebook.export(ME, [], file) == 1
     with pytest.raises(InputError, match="None of these runs"):
         notebook.export(OTHER, [run], tmp_path / "theirs.zip")
-    assert notebook.take_in(OTHER, file) == 1 and notebook.take_in(ME, file) == 1
+    assert taken_in(notebook, OTHER, file) == 1 and taken_in(notebook, ME, file) == 1
     (theirs,) = notebook.search(OTHER, Search()).entries
     assert (theirs.title, theirs.tags, theirs.note, theirs.frame) == ("Kept", ("a", "b"), "Look.", 3)
     assert theirs.id != run and len(found(notebook)) == 2, "nothing was overwritten"
     mine, copy = notebook.open(run, ME), notebook.open(theirs.id, OTHER)
     for a, b in zip(mine.result.duets, copy.result.duets, strict=True):
         np.testing.assert_array_equal(a.positions, b.positions)
-    assert copy.result.manifest["request"]["seed"] == 9
+    assert copy.result.manifest["request"]["seed"] == 9 and copy.result.manifest["plan"] == PLAN.to_dict()
     assert copy.result.readouts[0]["after"].keys() >= {"foot_skate"}
 
 
@@ -180,14 +188,14 @@ def test_a_grid_and_its_cells_go_out_and_come_in_together(notebook: Notebook, tm
     notebook.keep(first, ME, Kept(controls={"seed": 1, "grid": GRID}, people=people, compared=(second,)))
     file = tmp_path / "workspace.zip"
     assert notebook.export(ME, [first], file) == 2, "its cell goes with it"
-    assert notebook.take_in(OTHER, file) == 2
+    assert taken_in(notebook, OTHER, file) == 2
     (card,) = notebook.search(OTHER, Search()).entries
     opened = notebook.open(card.id, OTHER)
     assert opened.kept.controls == {"seed": 1, "grid": GRID} and len(opened.kept.people) == 2
     assert [each.entry.request["seed"] for each in opened.beside] == [2]
     notebook.remove([second], ME)
     alone = tmp_path / "alone.zip"
-    assert notebook.export(ME, [first], alone) == 1 and notebook.take_in(OTHER, alone) == 1
+    assert notebook.export(ME, [first], alone) == 1 and taken_in(notebook, OTHER, alone) == 1
     newest = notebook.search(OTHER, Search()).entries
     assert "grid" not in notebook.open(next(e.id for e in newest if e.id != card.id), OTHER).kept.controls
 
@@ -216,6 +224,9 @@ HOSTILE: dict[str, Callable[[dict[str, Any], dict[str, bytes]], Any]] = {
         kept={"compared": ["0", None]}
     ),
     "too many parts": lambda listing, files: listing["runs"][0].update(kept={"compared": [0] * 500}),
+    "a plan that is none": lambda listing, files: listing["runs"][0]["outcome"]["manifest"].update(
+        plan={"beats": [], "alone": ["", ""], "notes": [], "windows": [{"place": ["x"]}]}
+    ),
     "a prediction from nowhere": lambda listing, files: listing["runs"][0]["outcome"].update(
         prediction={"past_frames": 10**9}
     ),
@@ -241,7 +252,7 @@ def test_a_workspace_made_by_hand_is_one_sentence_and_adds_nothing(
     for name, content in contents.items():
         bad.write_bytes(content)
         with pytest.raises(InputError) as error:
-            notebook.take_in(ME, bad)
+            taken_in(notebook, ME, bad)
         assert str(error.value).count("\n") == 0 and str(tmp_path) not in str(error.value), name
         assert len(found(notebook)) == 1, name
         assert sorted(path.name for path in notebook.folder.iterdir()) == before, name
@@ -265,7 +276,7 @@ def test_what_a_workspace_claims_is_not_believed(notebook: Notebook, tmp_path: P
         listing["runs"][0]["request"] |= {"prompt": ["no", "text"], "actor": [1], "seed": {"deep": {"er": 1}}}
 
     file.write_bytes(_changed(file, claim))
-    assert notebook.take_in(ME, file) == 1
+    assert taken_in(notebook, ME, file) == 1
     new = next(entry for entry in notebook.search(ME, Search()).entries if entry.id != mine)
     assert not new.favourite and new.state == "done" and new.created <= time.time()
     assert "actor" not in new.request and "prompt" not in new.request and new.request["seed"] == {}

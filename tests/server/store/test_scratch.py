@@ -30,24 +30,53 @@ SMALL = {"files": ("a.bvh", b"HIERARCHY")}
 
 def put(folder: Path, name: str, *, age: float, size: int = MB) -> Path:
     path = folder / name / "file.bvh"
-    path.parent.mkdir()
+    path.parent.mkdir(parents=True)
     path.write_bytes(b"x" * size)
     for each in (path, path.parent):
         os.utime(each, (time.time() - age,) * 2)
     return path
 
 
-def test_what_is_old_goes_then_the_oldest_of_too_much(tmp_path: Path) -> None:
-    scratch = Scratch(tmp_path / "s", 3.5 * MB)
+def test_what_is_old_goes_then_the_oldest_of_who_has_too_much(tmp_path: Path) -> None:
+    scratch = Scratch(tmp_path / "s", 100 * MB)
     old = put(scratch.uploads, "old", age=KEPT_SECONDS + 1)
     own = put(scratch.uploads, "the page's own", age=2 * KEPT_SECONDS)
-    files = [put(scratch.uploads, str(i), age=1000 - i) for i in range(4)]
-    used = put(scratch.uploads, "used", age=0)
-    assert scratch.clean([str(own)]) == 4
-    assert [path.exists() for path in (old, own, *files, used)] == [False, True, *[False] * 3, True, True]
-    os.utime(files[0].parent, (0, 0))  # its file's removal had made it new
+    ada = [put(scratch.uploads / "ada", str(i), age=1000 - i) for i in range(4)]
+    used = put(scratch.uploads / "ada", "used", age=0)
+    eve = [put(scratch.uploads / "eve", str(i), age=2000 - i) for i in range(3)]
+    assert scratch.clean([str(own)], lambda person: 3.5 * MB) == 3
+    assert [path.exists() for path in (old, own, *ada, used, *eve)] == [
+        False, True, False, False, True, True, True, *[True] * 3,
+    ]  # fmt: skip
+    os.utime(ada[0].parent, (0, 0))  # its file's removal had made it new
     scratch.clean([str(own)])
-    assert not files[0].parent.exists() and scratch.uploads.exists()
+    assert not ada[0].parent.exists() and scratch.uploads.exists()
+
+
+def test_a_person_s_own_files_make_way_and_no_others(tmp_path: Path) -> None:
+    scratch = Scratch(tmp_path / "s", 10 * MB)
+    ada = [put(scratch.uploads / "ada", str(i), age=1000 - i) for i in range(4)]
+    eve = [put(scratch.uploads / "eve", str(i), age=2000 - i) for i in range(5)]
+    scratch.admit("ada", "", 2 * MB, 5 * MB)
+    assert [path.exists() for path in (*ada, *eve)] == [False, *[True] * 8]
+    with pytest.raises(InputError, match="no room for 6 MB more"):
+        scratch.admit("ada", "", 6 * MB, 5 * MB)
+    put(scratch.uploads / "bob", "young", age=0, size=4 * MB)
+    with pytest.raises(
+        InputError, match="no room for 3 MB more"
+    ):  # all together have too much, but he has no old ones
+        scratch.admit("bob", "", 3 * MB, 100 * MB)
+    assert all(path.exists() for path in eve)
+
+
+def test_new_names_bring_no_more_room_to_an_address(tmp_path: Path) -> None:
+    scratch = Scratch(tmp_path / "s", 10 * MB)
+    for number in range(5):
+        scratch.admit(f"visitor {number}", "192.0.2.1", MB, 100 * MB)
+        put(scratch.uploads / f"visitor {number}", "file", age=0)
+    with pytest.raises(InputError, match="no room"):
+        scratch.admit("visitor 5", "192.0.2.1", MB, 100 * MB)
+    scratch.admit("visitor 6", "192.0.2.2", MB, 100 * MB)
 
 
 def test_what_a_killed_process_left_goes_at_the_start(tmp_path: Path) -> None:

@@ -13,6 +13,8 @@ import pytest
 from motion import Duet, InputError
 from tests.server.clients import DATABASES, database_url, no_room
 from tests.server.lab import stub_module
+from webdemo.server.lab import studies_of
+from webdemo.server.settings import Settings
 from webdemo.server.store.database import Database, Table
 from webdemo.server.store.studies import Studies
 from webdemo.server.store.voting import SOONEST
@@ -225,6 +227,13 @@ def test_a_closed_study_takes_no_votes_and_a_deleted_one_is_gone(studies: Studie
         studies.invitation(study.key, "ada")
 
 
+def test_a_lab_behind_one_address_may_vote(tmp_path: Path) -> None:
+    """The voters of a study have a limit of their own, higher than the share of an address in all else."""
+    database = Database(f"sqlite:///{tmp_path / 's.db'}")
+    assert studies_of(Settings(data=tmp_path), database).address_people >= 5 * Settings().address_people
+    assert studies_of(Settings(data=tmp_path, study_voters=3), database).address_people == 3
+
+
 def test_one_address_has_a_limited_number_of_voters(studies: Studies) -> None:
     study = new(studies)
     for person in ("one", "two"):
@@ -268,7 +277,8 @@ def test_a_full_disk_leaves_no_half_study(tmp_path: Path) -> None:
     with no_room(studies.database), pytest.raises(InputError, match="disk is full"):
         new(studies, sets=many)
     assert list((tmp_path / "studies").iterdir()) == []
-    studies.most_bytes = -1
-    with pytest.raises(InputError, match="room for studies on this server is used up"):
+    studies.storage.total_bytes = 1
+    with pytest.raises(InputError, match="nothing of others is removed for yours"):
         new(studies)
+    assert list((tmp_path / "studies").iterdir()) == []
     studies.database.close()

@@ -91,7 +91,9 @@ def test_what_was_drawn_is_kept_and_new_words_are_drawn_again(
     motions.path(SOME[0], 1).unlink()
     assert keeping.draw_missing(generator, SOME, range(2), Sampling(), motions) == 0
     assert drawn[8:] == [(SOME[0].id, 1)]
-    np.testing.assert_allclose(motions.read(SOME[1], 0).positions, duet(SOME[1]).positions)
+    kept = motions.read(SOME[1], 0)
+    np.testing.assert_allclose(kept.positions, duet(SOME[1]).positions)
+    assert kept.fps == 30.0 and kept.seconds == pytest.approx(SOME[1].seconds, abs=0.05)
     changed = replace(SOME[0], words=SOME[0].words + " Slowly.")
     with pytest.raises(InputError, match="draw the motions again"):
         motions.read(changed, 0)

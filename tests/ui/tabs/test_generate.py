@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import threading
 import time
 from pathlib import Path
@@ -17,7 +18,7 @@ from tests.ui.tabs.generating import FIELDS, result_of, run
 from webdemo.inference.cancel import CancelToken
 from webdemo.inference.methods import method
 from webdemo.inference.requests import Cancelled, GenerateRequest, Progress, Result
-from webdemo.ui.components.pace import AT_FIRST, FAITHFUL, FAST
+from webdemo.ui.components.pace import FAITHFUL, FAST
 from webdemo.ui.history import Entry, Kept, Opened
 from webdemo.ui.page import build_page, watch_loading
 from webdemo.ui.runs import Loader, Runs
@@ -44,6 +45,15 @@ def test_a_run_ends_with_a_motion_readouts_and_a_record(tab: GenerateTab) -> Non
     assert last["record"].result.manifest["request"]["seed"] == 3
 
 
+@pytest.mark.parametrize("prompt", ["", "impossible"])
+def test_after_a_failure_no_settings_are_compared_with_a_result(tab: GenerateTab, prompt: str) -> None:
+    others = {"model": "intergen", "class_name": None, "planned": True}
+    assert json.loads(run(tab, **others)[-1]["asked"])["seed"] == 3
+    last = run(tab, **others, prompt=prompt)[-1]
+    assert "pd-error" in last["line"]
+    assert last["asked"] == last["changed"] == ""
+
+
 def test_a_class_is_asked_for_in_place_of_a_sentence(tab: GenerateTab) -> None:
     last = run(tab, model="bigraphdiff", class_name="shake hands")[-1]
     assert last["player"]["value"]["title"] == "shake hands"
@@ -52,7 +62,7 @@ def test_a_class_is_asked_for_in_place_of_a_sentence(tab: GenerateTab) -> None:
     assert "No class is chosen" in unchosen["line"] and "record" not in unchosen
     for way, sentence in (("intergen", True), ("bigraphdiff", False)):
         *shown, guidance, about, _, steps, pace = tab.asked_by(way)
-        assert steps["value"] == pace["value"] == (AT_FIRST if sentence else FAITHFUL)
+        assert steps["value"] == pace["value"] == (FAST if sentence else FAITHFUL)
         assert method(way).summary in about
         assert [update["visible"] for update in shown] == [sentence, not sentence]
         assert (
@@ -248,6 +258,7 @@ def test_build_page_offers_an_endpoint_a_job(tmp_path: Path) -> None:
         "/react",
         "/render",
         "/scene",
+        "/read",
     ]
 
 
@@ -268,7 +279,7 @@ def test_the_switch_of_steps_shows_how_a_kept_run_was_made(tab: GenerateTab) -> 
         entry = Entry(id="x", kind="generate", title="t", state="done", request=asked)
         found = tab.opened(Opened(entry=entry, result=result, kept=Kept(controls={"steps": steps})))
         assert found[tab.pace]["value"] == choice and found[tab.steps]["value"] == steps
-    assert tab.steps.value == tab.pace.value == AT_FIRST
+    assert tab.steps.value == tab.pace.value == FAST
 
 
 @pytest.mark.parametrize(

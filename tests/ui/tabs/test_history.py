@@ -16,7 +16,7 @@ from motion import SKELETONS, Clip, InputError
 from tests.ui.stub_engine import walking
 from webdemo.inference.requests import Progress, Result
 from webdemo.ui.components.notebook import MOST_SHOWN, STEP, Action, facts, settings, shown
-from webdemo.ui.history import Entry, Found, Opened, Search
+from webdemo.ui.history import Entry, Found, Opened, Search, Usage
 from webdemo.ui.tabs.history import EMPTY, NOTHING_FOUND, HistoryTab, _signed_in, compared
 from webdemo.ui.visitor import Visitor
 
@@ -48,13 +48,15 @@ class Book:
     def __getattr__(self, name: str) -> Any:
         def act(*given: Any, **fields: Any) -> Any:
             self.done.append((name, *given[:1], fields))
-            return {"revoke": len(self.entries), "link": ("key", 0.0), "export": 2}.get(name, 1)
+            room = Usage(runs=3 * 2**20, allowed=500 * 2**20, kept=375 * 2**20)
+            answers = {"revoke": len(self.entries), "link": ("key", 0.0), "export": 2, "usage": room}
+            return answers.get(name, 1)
 
         return act
 
 
 def tab(book: Any, tmp_path: Path | None = None) -> HistoryTab:
-    page: Any = SimpleNamespace(history=book, shelf=SimpleNamespace(folder=lambda: tmp_path))
+    page: Any = SimpleNamespace(history=book, shelf=SimpleNamespace(folder=lambda size: tmp_path))
     return HistoryTab(page, {}, tabs=None)  # type: ignore[arg-type] # no tab is opened here
 
 

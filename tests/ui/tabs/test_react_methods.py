@@ -36,7 +36,7 @@ def tab(tmp_path: Path) -> ReactTab:
 @pytest.mark.parametrize(
     ("method", "model", "mode", "steps"),
     [
-        ("intergen", "intergen", "offline", 50),
+        ("intergen", "intergen", "offline", 8),
         ("regennet", "regennet", "offline", 5),
         ("regennet-online", "regennet", "online", 5),
     ],

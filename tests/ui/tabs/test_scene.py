@@ -1,5 +1,6 @@
 """What the handlers of the Scene tab do, without a browser."""
 
+import json
 from pathlib import Path
 from typing import Any
 
@@ -7,16 +8,18 @@ import gradio as gr
 import numpy as np
 import pytest
 
-from motion import Duet
-from webdemo.inference.story import Beat, FloorPath, FloorPoint, Pose
+from motion import Duet, InputError
+from webdemo.inference.story import Beat, FloorPath, FloorPoint, Pose, splitting
 from webdemo.ui.components.exports import Record, Shelf
+from webdemo.ui.components.scene_parts import part_request
 from webdemo.ui.components.story import motion_marks, story_fields, story_value
+from webdemo.ui.components.story_words import edited, lay_out, settled, story_text, use_text, written
 from webdemo.ui.context import PageContext
 from webdemo.ui.history import Entry, Kept, Opened
 from webdemo.ui.runs import Loader, Runs
 from webdemo.ui.tabs.scene import EXAMPLES, SceneTab
 
-from ..stub_engine import StubEngine
+from ..stub_engine import StubEngine, walking
 
 SETTINGS = {"seed": 3, "samples": 1, "guidance": 4.3, "steps": 2, "damping": 0.7}
 PLACE = '{"frame": 60, "sample": 0}'
@@ -49,7 +52,9 @@ def generate(
 
 def test_a_sentence_is_laid_out_and_made_beat_by_beat(tab: SceneTab) -> None:
     updates = generate(tab)
-    (laid,) = [u["story"] for u in updates if "beats" in u.get("story", {})]
+    stories = [u["story"] for u in updates if "story" in u]
+    assert all(story["__type__"] == "update" for story in stories), "the page changes them in place"
+    laid = stories[0]["value"]
     assert [beat["words"] for beat in laid["beats"]] == ["They meet.", "They hug."]
     lengths = [
         u["player"]["value"]["samples"][0]["frames"] for u in updates if "value" in u.get("player", {})
@@ -61,16 +66,72 @@ def test_a_sentence_is_laid_out_and_made_beat_by_beat(tab: SceneTab) -> None:
     assert updates[-1]["story"]["motion"]["seconds"] == record.result.duets[0].seconds
 
 
-def test_a_changed_line_is_what_is_made_until_the_sentence_changes(tab: SceneTab) -> None:
-    laid = tab.lay_out("They meet. Then they hug.")[1]
-    laid["beats"][1]["words"] = "They bow."
-    words = [b["words"] for b in generate(tab, story=laid)[-1]["record"].result.manifest["request"]["beats"]]
+def test_of_the_words_and_the_beats_what_was_changed_last_is_made_and_shown(tab: SceneTab) -> None:
+    def made(prompt: str, story: Any) -> tuple[list[str], dict[str, Any]]:
+        last = generate(tab, prompt, story)[-1]
+        return [b["words"] for b in last["record"].result.manifest["request"]["beats"]], last
+
+    laid = lay_out("They meet. Then they hug.")[1]
+    laid["beats"][1] |= {"seconds": 6.0}
+    words, last = made("They meet. Then they hug.", laid)
+    assert words == ["They meet.", "They hug."] and "prompt" not in last, "the words stay as they were typed"
+    assert last["story"]["value"]["beats"][1]["seconds"] == 6.0
+    changed = laid | {"beats": [laid["beats"][0], {"words": "They bow."}], "ahead": True}
+    words, last = made("They meet. Then they hug.", changed)
     assert words == ["They meet.", "They bow."]
-    words = [
-        b["words"]
-        for b in generate(tab, "They wave.", laid)[-1]["record"].result.manifest["request"]["beats"]
+    assert last["prompt"] == "They meet. They bow." and not last["story"]["value"]["ahead"]
+    assert json.loads(last["asked"])["prompt"] == last["prompt"], "nothing was changed since"
+    words, last = made("They wave.", laid)
+    assert words == ["They wave."] and "prompt" not in last
+    words, last = made(" ", laid)
+    assert words == ["They meet.", "They hug."] and last["prompt"] == "They meet. They hug."
+    words, last = made('[[beat]]\nwords = "They bow."\na = "nods"\n', laid)
+    assert words == ["They bow."] and last["prompt"] == "They bow. One person nods."
+
+
+def test_beats_whose_words_stay_keep_what_was_set_for_them() -> None:
+    still = np.zeros((22, 3))
+    beats = (
+        Beat("They meet.", seconds=3.0, seed=5),
+        Beat("They hug."),
+        Beat("", "waves, turns and bows", "waits"),
+    )
+    total = sum(beat.length for beat in beats)
+    poses = tuple(Pose("a", at, still) for at in (1.0, 4.0, total - 0.5))
+    way = FloorPath("a", (FloorPoint(0.0, 0.0, 0.0), FloorPoint(1.0, 1.0, 2.0)))
+    story = story_value(beats, (way,), poses, loop=True) | {"span": [0, 1]}
+    text = story_text(beats)
+    assert text == "They meet. They hug. One person waves, turns and bows, while the other person waits."
+    assert settled(story, text) == (story, text) and settled(story, text)[0] is story
+    laid, said = settled(story, text.replace("hug", "talk to each other for ten seconds"))
+    assert said != text and laid["loop"] is True and len(laid["paths"]) == 1
+    kept = [{k: beat[k] for k in ("words", "a", "seconds", "seed")} for beat in laid["beats"]]
+    assert kept == [
+        {"words": "They meet.", "a": "", "seconds": 3.0, "seed": 5},
+        {"words": "They talk to each other for ten seconds.", "a": "", "seconds": None, "seed": None},
+        {"words": "", "a": "waves, turns and bows", "seconds": None, "seed": None},
     ]
-    assert words == ["They wave."]
+    later = round(total - 0.5 + 10 - beats[1].length, 4)
+    assert [pose["seconds"] for pose in laid["poses"]] == [1.0, later], "poses stay with their beats"
+    laid, _ = settled(story, text + " Finally they bow.")
+    assert [beat["a"] for beat in laid["beats"]] == ["", "", "waves, turns and bows", ""]
+    assert [pose["seconds"] for pose in laid["poses"]] == [pose.seconds for pose in poses]
+    laid, _ = settled(story, "They run.")
+    assert len(laid["beats"]) == 1 and laid["poses"] == laid["paths"] == []
+
+
+def test_words_that_were_written_are_laid_out(tab: SceneTab) -> None:
+    laid = lay_out("They meet. Then they hug.")[1]
+    line_up, text, line, words = written("They meet. Then they bow.", laid, 4)
+    assert [beat["words"] for beat in line_up["laid"]["beats"]] == ["They meet.", "They bow."]
+    assert set(line_up["laid"]) == {"beats", "paths", "poses"}, "ticks and the span are the line's own"
+    assert "seed = 4" in text and "2 beats" in line and words == gr.skip()
+    nothing = (gr.skip(),) * 4
+    assert written("They meet. Then they hug.", laid, 4) == nothing
+    assert written("They run.", laid | {"ahead": True}, 4) == nothing, "the beats are newer"
+    assert written("", None, 4) == nothing
+    assert written("", laid, 4)[3] == "They meet. They hug."
+    assert "no valid TOML" in written("[[beat]]\nwords = 'x", laid, 4)[2]
 
 
 @pytest.mark.parametrize(
@@ -94,17 +155,20 @@ def test_what_cannot_be_made_is_one_sentence(tab: SceneTab, story: Any, says: st
 
 
 def test_an_edit_gives_lengths_and_text(tab: SceneTab) -> None:
-    line_up, text, line = tab.edited({"beats": [{"words": "They dance."}, {"words": "They nod."}]}, 4)
+    line_up, text, line, words = edited({"beats": [{"words": "They dance."}, {"words": "They nod."}]}, 4)
     assert line_up["lengths"][0] > line_up["lengths"][1] and "seed = 4" in text and line == ""
-    line_up, text, line = tab.edited({"beats": [{"words": "They dance."}, {"words": ""}]}, 4)
+    assert words == gr.skip()
+    ahead = {"beats": [{"words": "They dance."}, {"words": ""}, {"a": "waves"}], "ahead": True}
+    line_up, text, line, words = edited(ahead, 4)
     assert text == gr.skip() and "Beat 2 has no words" in line
+    assert words == "They dance. One person waves."
 
 
 def test_the_text_becomes_the_line(tab: SceneTab) -> None:
-    story, line, seed = tab.use_text('seed = 9\n[[beat]]\nwords = "They bow."\n', "x")
-    assert (story["beats"][0]["words"], story["from"], seed) == ("They bow.", "x", 9) and "1 beats" in line
-    story, line, seed = tab.use_text("[[beat]]\nwrods = 1\n", "x")
-    assert story == gr.skip() and "Line 2" in line
+    story, words, line, seed = use_text('seed = 9\n[[beat]]\nwords = "They bow."\n')
+    assert (story["beats"][0]["words"], words, seed) == ("They bow.", "They bow.", 9) and "1 beats" in line
+    story, words, line, seed = use_text("[[beat]]\nwrods = 1\n")
+    assert story == words == gr.skip() and "Line 2" in line
 
 
 def part(tab: SceneTab, which: str, record: Record | None, story: Any, words: str = "") -> dict[str, Any]:
@@ -134,6 +198,7 @@ def test_futures_begin_at_the_playhead_and_one_is_taken(tab: SceneTab) -> None:
     assert found.manifest["request"]["start"] == 2.0 and len(found.duets) == 3
     beats = last["story"]["value"]["beats"]
     assert [(b["words"], b["seconds"]) for b in beats] == [("They meet.", 2.0), ("They bow.", 4.5)]
+    assert last["prompt"] == "They meet. They bow." and last["asked"] == ""
     assert last["player"]["value"]["futures"] == 60
     player, line, kept, _, earlier = tab.take_shown(last["record"], [record], '{"sample": 2}')
     assert kept.result.duets == found.duets[2:] and "number 3" in line and "futures" not in player["value"]
@@ -158,6 +223,15 @@ def test_a_kept_run_opens_with_its_story(tab: SceneTab) -> None:
     )  # fmt: skip
     found = tab.opened(Opened(entry=entry, result=result))
     assert [b["words"] for b in found[tab.line_up]["value"]["beats"]] == ["They meet.", "They hug."]
+    assert found[tab.prompt]["value"] == "They meet. They hug."
+    kept = Kept(controls={"prompt": "First they meet, then they hug."})
+    found = tab.opened(Opened(entry=entry, result=result, kept=kept))
+    assert found[tab.prompt]["value"] == "First they meet, then they hug."
+    kept = Kept(controls={"prompt": "They run."})  # of a time when the words were not kept with the beats
+    assert (
+        tab.opened(Opened(entry=entry, result=result, kept=kept))[tab.prompt]["value"]
+        == "They meet. They hug."
+    )
 
 
 def test_a_kept_part_opens_with_the_whole_story(tab: SceneTab) -> None:
@@ -180,7 +254,7 @@ def test_a_kept_part_opens_with_the_whole_story(tab: SceneTab) -> None:
 
 def test_every_example_is_a_story_of_several_beats(tab: SceneTab) -> None:
     for _, sentences in EXAMPLES:
-        assert len(story_fields(tab.lay_out(sentences)[1])["beats"]) >= 4
+        assert len(story_fields(lay_out(sentences)[1])["beats"]) >= 4
 
 
 def test_contacts_are_marked_in_seconds() -> None:
@@ -189,7 +263,16 @@ def test_contacts_are_marked_in_seconds() -> None:
         Duet.from_positions(still, fps=30.0),
         {"contacts": [{"start": 15, "stop": 30, "kind": "hands", "label": "x"}]},
     )
-    assert marks == {"seconds": 2.0, "contacts": [{"start": 0.5, "stop": 1.0, "kind": "hands", "label": "x"}]}
+    assert marks["contacts"] == [{"start": 0.5, "stop": 1.0, "kind": "hands", "label": "x"}]
+    assert (marks["seconds"], marks["step"]) == (2.0, 0.1)
+
+
+def test_both_tracks_are_marked_on_the_floor() -> None:
+    duet = walking(3.0)
+    marks = motion_marks(duet, {})
+    tracks = np.array(marks["tracks"])
+    assert tracks.shape == (2, 30, 2)
+    np.testing.assert_allclose(tracks, duet.positions[:, ::3, 0][..., [0, 2]], atol=0.006)
 
 
 def test_a_span_keeps_the_poses_and_the_way_that_fall_into_it(tab: SceneTab) -> None:
@@ -222,9 +305,9 @@ def test_a_pose_off_the_path_is_one_sentence(tab: SceneTab) -> None:
     place = record.result.duets[0].a.positions[60]
     way = FloorPath("a", (FloorPoint(3.0, 3.0, 1.0), FloorPoint(3.0, 3.5, 3.0)))
     beats = (Beat("They meet."), Beat("They hug."))
-    line = tab.edited(story_value(beats, (way,), (Pose("a", 2.0, place),)), 1)[2]
+    line = edited(story_value(beats, (way,), (Pose("a", 2.0, place),)), 1)[2]
     assert "off their path" in line
-    line = tab.edited(story_value(beats, (), (Pose("a", 2.0, place), Pose("a", 2.01, place))), 1)[2]
+    line = edited(story_value(beats, (), (Pose("a", 2.0, place), Pose("a", 2.01, place))), 1)[2]
     assert "keep one" in line
 
 
@@ -240,8 +323,8 @@ def test_paths_from_the_words_are_switched_on_the_line(tab: SceneTab) -> None:
         assert made["record"].result.manifest["request"]["planned"] is False
         assert which == "span" or made["story"]["value"]["planned"] is False
     assert generate(tab, "They wave.", laid)[-1]["story"]["value"]["planned"] is False
-    assert "planned = false" in tab.lay_out("They wave.", laid)[2]
-    assert "planned" not in tab.lay_out("They wave.")[2]
+    assert "planned = false" in lay_out("They wave.", laid)[2]
+    assert "planned" not in lay_out("They wave.")[2]
     entry = Entry(
         id="x", kind="scene", title="t", state="done", request=last["record"].result.manifest["request"]
     )
@@ -249,10 +332,26 @@ def test_paths_from_the_words_are_switched_on_the_line(tab: SceneTab) -> None:
     assert opened[tab.line_up]["value"]["planned"] is False and "planned = false" in opened[tab.text]
     # A story as text says it itself.
     text = 'planned = %s\n[[beat]]\nwords = "They bow."\n'
-    assert tab.use_text(text % "false", "x")[0]["planned"] is False
+    assert use_text(text % "false")[0]["planned"] is False
     assert generate(tab, text % "true", laid)[-1]["story"]["value"]["planned"] is True
 
 
 def test_a_loop_that_is_ticked_before_there_is_a_story_is_made(tab: SceneTab) -> None:
     last = generate(tab, story={"beats": [], "loop": True})[-1]
     assert last["record"].result.manifest["request"]["loop"] is True
+
+
+def test_every_story_of_the_page_is_read_in_limited_time(
+    tab: SceneTab, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    laid, record = lay_out("They meet.")[1], generate(tab)[-1]["record"]
+    monkeypatch.setattr(splitting, "READING_SECONDS", 1e-9)
+    said = "The story took longer than 1e-09 seconds to read: shorten it"
+    words = "They bow. They hug."
+    for updates in (generate(tab, words), generate(tab, words, laid)):
+        assert said in str(updates[-1]["line"]) and "record" not in updates[-1]
+    assert said in str(use_text(words)[2]) and said in str(written(words, laid, 0)[2])
+    fields = {"record": record, "sample": 0, "frame": 30, "story": laid, "words": words, "part": "futures"}
+    for part in ({"part": "futures"}, {"part": "span", "story": {**laid, "span": [0.0, 1.0]}}):
+        with pytest.raises(InputError, match=said):
+            part_request({**fields, **part, "guidance": 1, "steps": 1, "damping": 0})

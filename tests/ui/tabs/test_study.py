@@ -98,7 +98,7 @@ class Studies:
     def __init__(self) -> None:
         self.made: list[NewStudy] = []
 
-    def create(self, owner: str, study: NewStudy) -> StudyEntry:
+    def create(self, owner: str, study: NewStudy, *, address: str = "") -> StudyEntry:
         self.made.append(study)
         return entry(pairs=2)
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import csv
+import html
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -166,6 +167,16 @@ def test_the_best_and_the_worst_are_marked() -> None:
     assert '<td class=""><b>2.0</b>' in made and "&lt;one&gt;" in made
 
 
+def test_what_cannot_be_measured_is_a_dash_among_the_others() -> None:
+    def result(delay: float | None) -> Result:
+        after = {"foot_skate": 1.0, "response_delay": delay}
+        return Result(duets=(), manifest={}, readouts=({"after": after},))
+
+    made = grid_table({"plain": result(None), "damped": result(0.2)})
+    assert "<td>–</td>" in made and "<b>0.20</b>" in made
+    assert "Response delay" not in grid_table({"plain": result(None), "damped": result(None)})
+
+
 def test_a_sentence_stands_beside_its_class_and_a_method_beside_a_method(
     tab: GenerateTab, tmp_path: Path
 ) -> None:
@@ -174,7 +185,11 @@ def test_a_sentence_stands_beside_its_class_and_a_method_beside_a_method(
     first, second = tab.page.engine.requests
     assert (first.model, second.model, second.prompt) == ("intergen", "bigraphdiff", "shake hands")
     assert first.guidance == GenerateRequest(prompt="x").guidance and second.guidance < 4
-    assert "No class is chosen" in run(tab, field, values, "", "", prompt="They juggle.")[-1]["line"]
+    said = html.unescape(run(tab, field, values, "", "", prompt="They juggle.")[-1]["line"])
+    assert "names none of BiGraphDiff's classes" in said and "No class is chosen" not in said
+    run(tab, field, values, "", "", model="bigraphdiff", prompt="", class_name="hug")
+    sentence, name = tab.page.engine.requests[-2:]
+    assert (sentence.prompt, name.prompt) == ("Two people hug.", "hug")
     assert "There is no method" in run(tab, "model", "intergen; mine", "", "")[-1]["line"]
     react = built(ReactTab, tmp_path / "react")
     assert set(react.presets()["Method beside method"][1].split("; ")) >= {

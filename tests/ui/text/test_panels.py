@@ -12,7 +12,14 @@ from motion.metrics import MEASURES
 from tests.ui.stub_engine import StubEngine, walking
 from webdemo.inference.requests import GenerateRequest, Progress, Result
 from webdemo.ui.components.show import result_payload
-from webdemo.ui.text.panels import model_card, model_state, notes_lines, readout_panel, status
+from webdemo.ui.text.panels import (
+    comparison_panel,
+    model_card,
+    model_state,
+    notes_lines,
+    readout_panel,
+    status,
+)
 from webdemo.ui.text.plain import in_words
 from webdemo.ui.text.words import cancelled_line, error_line, progress_line, text
 
@@ -77,8 +84,17 @@ def test_readouts_without_a_before_show_values_alone() -> None:
     plain = result()
     readouts = tuple({**readout, "before": None} for readout in plain.readouts)
     made = readout_panel(Result(duets=plain.duets, manifest=plain.manifest, readouts=readouts))
-    assert "Before" not in made
-    assert "Value" in made
+    assert "Before" not in made and "before" not in made
+    assert "<caption>Quality</caption>" in made and "Value" in made
+
+
+def test_measures_that_could_not_be_determined_are_dashes() -> None:
+    nothing = dict.fromkeys(measure.key for measure in MEASURES)
+    readout = {"before": {"jerk": 30.0}, "after": nothing}
+    results = {name: Result(duets=(walking(1.0),), manifest={}, readouts=(readout,)) for name in "ab"}
+    alone, compared = readout_panel(results["a"]), comparison_panel(results)
+    assert "<td>30</td><td><b>–</b></td><td>–</td>" in alone and "same" not in alone
+    assert "<td>30 → <b>–</b></td>" in compared
 
 
 def test_several_samples_are_columns() -> None:

@@ -10,6 +10,7 @@ from __future__ import annotations
 import json
 import os
 import re
+import tomllib
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -94,10 +95,6 @@ def _tables() -> tuple[Mapping[str, Any], Path, str]:
     path = Path(os.environ.get(SETTINGS_VARIABLE) or SETTINGS_FILE)
     if not path.is_file():
         return {}, Path.cwd(), path.name
-    try:
-        import tomllib  # Python 3.11
-    except ImportError:
-        raise InputError(f"{path.name} needs Python 3.11 or newer: set {MODELS_VARIABLE}.") from None
     try:
         settings = tomllib.loads(path.read_text(encoding="utf-8"))
     except (OSError, ValueError) as error:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from dataclasses import asdict, replace
 from pathlib import Path
 
 import torch
@@ -12,13 +13,15 @@ from models.compiled import compile_network
 from models.intergen.compact import CaptionBank, CompactInterGen, load_captions, load_folder
 from models.text import MiniLM
 from webdemo.inference.cancel import CancelToken
+from webdemo.inference.plans import Plan
 from webdemo.inference.requests import GenerateRequest, Progress, ReactRequest, Result
 from webdemo.inference.scenes import Scene
+from webdemo.inference.story import understood
 from webdemo.inference.story.request import SceneRequest, as_scene
 from webdemo.inference.story.roles import of_each
 from webdemo.inference.timer import StageTimer
 
-from .scene import SceneMaker, WindowRequest
+from .scene import SceneMaker
 from .two_person import Conditioning, Passes, TwoPersonPipeline
 
 
@@ -49,32 +52,54 @@ class InterGenPipeline(TwoPersonPipeline[CompactInterGen]):
         """As :meth:`TwoPersonPipeline.run`; a scene, or a sentence of several beats, is made window by window."""
         if isinstance(request, SceneRequest):
             return self.scenes.run(request, cancel, timer, passes)
-        split = as_scene(request) if isinstance(request, GenerateRequest) and scene is None else None
-        if split is not None:
+        if isinstance(request, GenerateRequest) and scene is None:
+            return self._generate(request, cancel, timer, passes)
+        return super().run(request, cancel, timer, passes, scene)
+
+    def _generate(
+        self, request: GenerateRequest, cancel: CancelToken, timer: StageTimer, passes: Passes | None
+    ) -> Iterator[Progress | Result]:
+        """A sentence, made as a scene where it has several beats or a plan."""
+        split = as_scene(request, cancel.raise_if_cancelled)
+        if split is None:
+            plan = request.plan or Plan(alone=of_each(request.prompt))
+            events = super().run(replace(request, plan=plan), cancel, timer, passes)
+        else:
+            plan = Plan(beats=tuple(asdict(beat) for beat in split.beats))
             notes = [
                 f"This was made as {len(split.beats)} beats, one after another; the tab Scene lets you change them."
             ]
-            return self.scenes.run(split, cancel, timer, passes, notes=notes if len(split.beats) > 1 else ())
-        return super().run(request, cancel, timer, passes, scene)
+            events = self.scenes.run(
+                split, cancel, timer, passes, notes=notes if len(split.beats) > 1 else ()
+            )
+        for event in events:
+            if isinstance(event, Result):
+                own = plan.to_dict()
+                said = () if request.plan is not None else understood.notes(request.prompt)
+                kept = {**own, **event.manifest.get("plan", {}), "beats": own["beats"]}
+                event = replace(
+                    event, notes=tuple(dict.fromkeys((*said, *event.notes))), manifest={"plan": kept}
+                )
+            yield event
 
-    def condition(self, prompt: str, alone: tuple[str, str] = ("", "")) -> tuple[Tensor, Tensor]:
+    def condition(self, prompt: str, alone: tuple[str, str] | None = None) -> tuple[Tensor, Tensor]:
         """The condition (1, …) of a prompt and its unit sentence vector (384,).
 
         Args:
-            alone: what a and b do, in a sentence each. By default it is taken from the prompt, where that says it by
-                their names. Only a network with ``words`` reads it.
+            alone: what a and b do, in a sentence each, or "". By default it is taken from the prompt, where that says
+                it by their names. Only a network with ``words`` reads it.
         """
         tokens = self.encoder([prompt])
         parts = [tokens]
-        if self.model.config.words and any(own := alone if any(alone) else of_each(prompt)):
+        if self.model.config.words and any(own := of_each(prompt) if alone is None else alone):
             parts += [self.encoder([sentence]) if sentence else tokens.missing() for sentence in own]
         with torch.no_grad():
             return self.model.condition(*parts), tokens.pooled()[0]
 
-    def notes(self, vector: Tensor) -> tuple[str, ...]:
-        """Warns the user of a prompt that is far from all that was trained on."""
+    def notes(self, prompt: str, vector: Tensor) -> tuple[str, ...]:
+        """Warns the user of a prompt that is not understood and far from all that was trained on."""
         near = self.bank.nearest(vector)
-        if near[0][0] >= self.bank.far:
+        if near[0][0] >= self.bank.far or understood.is_understood(prompt):
             return ()
         return (
             "This sentence is far from anything the model was trained on, so the motion may not match it. "
@@ -85,7 +110,7 @@ class InterGenPipeline(TwoPersonPipeline[CompactInterGen]):
         """The text vector and the touches that the text asks for; nothing without text."""
         if not request.prompt.strip():  # without an intent both halves of the guidance are the same
             return Conditioning(self.model.no_condition(), 1.0)
-        alone = request.alone if isinstance(request, WindowRequest) else ("", "")
-        condition, vector = self.condition(request.prompt, alone)
+        plan = request.plan if isinstance(request, GenerateRequest) else None
+        condition, vector = self.condition(request.prompt, None if plan is None else plan.alone)
         (touch,) = self.model.touches(condition)
-        return Conditioning(condition, request.guidance, touch, self.notes(vector))
+        return Conditioning(condition, request.guidance, touch, self.notes(request.prompt, vector))

@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-import math
-from collections.abc import Collection, Iterator, Sequence
+from collections.abc import Callable, Collection, Iterator, Sequence
 
 import numpy as np
 from numpy.typing import NDArray
@@ -11,7 +10,7 @@ from numpy.typing import NDArray
 from motion import SMPL22
 from motion.transforms import heading
 from webdemo.inference.actor import FPS, Placement
-from webdemo.inference.directed import KnownFrames, KnownPath, Part
+from webdemo.inference.known_parts import KnownFrames, Part
 from webdemo.inference.story.beginnings import beginning, keeps_place
 from webdemo.inference.story.contacts import contact
 from webdemo.inference.story.floor import Standing, Way2D, plan, starting
@@ -31,7 +30,9 @@ from webdemo.inference.story.ways import Way
 from .scene_contacts import given_contact, given_hold, given_twirl, meeting
 from .scene_hands import hands, known_hands
 from .scene_lifts import Carrying
+from .scene_paths import path_of
 from .scene_postures import UPRIGHT, led, postures
+from .scene_room import Room, roomy
 from .scene_strikes import given_blows
 
 Array = NDArray[np.floating]
@@ -77,7 +78,10 @@ def _parts(request: SceneRequest, window: Window, scene: Array, placement: Place
     before = scene[:, max(start - 4, 0) : start]
     stand = _stand(before) if start else _beginning(request)
     lifted = lift(words)
-    parts, posed = ([], {}) if lifted else _held(request, window, scene, stand, still, found, placement)
+    room = _room(request, window, scene, stand, still, found)
+    stand = room.stand
+    parts, posed = ([], {}) if lifted else _held(request, window, scene, room, still, found, placement)
+    parts += room.steps(start, window, placement)
     touch, found = meeting(contact(words), found, posed, stand)
     if lifted is not None and not start and not lifted.comes:  # they are held from the first frame
         found = tuple(m for m in found if (m.person, m.way) != (lifted.carrier, Way.STAY))
@@ -92,7 +96,7 @@ def _parts(request: SceneRequest, window: Window, scene: Array, placement: Place
         parts += carrying.given(window, placement)
         ways = carrying.before()
     for way in ways.values():
-        parts += _path(way, window, start, placement)
+        parts += path_of(way, window, start, placement)
     if touch is not None and (
         part := given_contact(touch, ways, posed, stand, start, stop, window, placement)
     ):
@@ -112,23 +116,58 @@ def _parts(request: SceneRequest, window: Window, scene: Array, placement: Place
     return parts
 
 
-def _held(
+def _room(
     request: SceneRequest,
     window: Window,
     scene: Array,
     stand: Standing,
     still: Collection[str],
     found: Sequence[Move],
+) -> Room:
+    """The room that the postures of a beat need, in which nobody goes anywhere or touches the other."""
+    words = request.beats[window.beat].sentence
+    if any(read(words) for read in (lift, twirls, hold, strike, contact)) or _going(found):
+        return Room(stand)
+    start, stop = request.edges[window.beat], request.edges[window.beat + 1]
+    sentences = [beat.sentence for beat in request.beats]
+    poses = {
+        person: postures(
+            sentences, window.beat, person, start, stop, stand, scene[person, start - 1] if start else None
+        )
+        for person, who in enumerate("ab")
+        if who not in still
+    }
+    return roomy(stand, poses, _down(scene, start), first=not start)
+
+
+def _down(scene: Array, start: int) -> list[int]:
+    """The people who are not on their feet before a frame of a scene."""
+    return [person for person in (0, 1) if start and scene[person, start - 1, 0, 1] <= UPRIGHT]
+
+
+def _going(found: Sequence[Move]) -> set[str]:
+    """The people who leave their place."""
+    return {move.person for move in found if move.way not in (Way.STAY, Way.BACKS, Way.AVERTED)}
+
+
+def _held(
+    request: SceneRequest,
+    window: Window,
+    scene: Array,
+    room: Room,
+    still: Collection[str],
+    found: Sequence[Move],
     placement: Placement,
 ) -> tuple[list[Part], dict[int, Array]]:
     """The poses of bystanders and of those whose posture is given, and a pose of each of the latter."""
-    start, stop = request.edges[window.beat], request.edges[window.beat + 1]
+    stand, stop = room.stand, request.edges[window.beat + 1]
+    start = request.edges[window.beat] + room.delay
     sentences = [beat.sentence for beat in request.beats]
     gone = {move.person for move in found if move.way not in (Way.STAY, Way.BACKS)}
     parts: list[Part] = []
     posed: dict[int, Array] = {}
     for person, who in enumerate("ab"):
-        last = scene[person, start - 1] if start else None
+        last = scene[person, start - room.delay - 1] if start else None
         up = last is None or last[0, 1] > UPRIGHT
         if up and (who in still or (who in gesturing(sentences[window.beat]) and who not in gone)):
             free = () if who in still else ARMS
@@ -145,10 +184,14 @@ def _held(
     return parts, posed
 
 
-def plan_note(request: SceneRequest) -> list[str]:
-    """A sentence on what the words of a scene have its people do, as far as that is given to the network."""
+def plan_note(request: SceneRequest, go_on: Callable[[], None] = lambda: None) -> list[str]:
+    """A sentence on what the words of a scene have its people do, as far as that is given to the network.
+
+    ``go_on`` is called before each beat; what it raises ends the reading.
+    """
     said = []
     for number, beat in enumerate(request.beats, 1):
+        go_on()
         ways = _said_together(beat.sentence) or [
             *_said_postures(beat.sentence),
             *(
@@ -194,7 +237,7 @@ def _said_postures(sentence: str) -> Iterator[str]:
 def _beginning(request: SceneRequest) -> Standing:
     """Places before the first beat, so that the first moves of the story can begin."""
     first = request.beats[0].sentence
-    if (lift(first) or twirls(first) or strike(first) or not goes(moves(first))) and (
+    if (lift(first) or twirls(first) or strike(first) or not _going(moves(first))) and (
         placed := beginning(first)
     ) is not None:
         return placed
@@ -231,7 +274,7 @@ def _apart(request: SceneRequest, window: Window, placement: Placement) -> list[
 def _given_places(stand: Standing, window: Window, placement: Placement) -> list[Part]:
     """The places of both people at the first frame."""
     ways = [Way2D(i, [0], stand.places[i : i + 1], stand.headings[i : i + 1]) for i in (0, 1)]
-    return [part for way in ways for part in _path(way, window, 0, placement)]
+    return [part for way in ways for part in path_of(way, window, 0, placement)]
 
 
 def _posed(
@@ -248,37 +291,6 @@ def _posed(
     shift = window.past - window.start
     joints = [joint for joint in range(SMPL22.num_joints) if joint not in free]
     return [KnownFrames(person, (frames + shift).tolist(), placement.to_network(poses), joints)]
-
-
-def _path(way: Way2D, window: Window, start: int, placement: Placement) -> list[Part]:
-    """The part of a way that falls into a window."""
-    frames = np.asarray(way.frames) + start
-    inside = (frames >= window.start) & (frames < window.stop)
-    headings = np.full(len(frames), np.nan) if way.headings is None else way.headings
-    at = frames[inside] - window.start + window.past
-    return known_paths(way.person, at, way.places[inside], headings[inside], placement)
-
-
-def known_paths(
-    person: int, frames: NDArray[np.integer], places: Array, headings: Array, placement: Placement
-) -> list[Part]:
-    """A way over the floor of the scene's world, as the network is given it.
-
-    Args:
-        person: 0 for a, 1 for b.
-        frames: (N,) frames of the window, in order.
-        places: (N, 2) x and z in metres.
-        headings: (N,) radians from +Z towards +X; NaN where a person may face anywhere.
-        placement: from the scene's world to the network's frame.
-    """
-    base = math.atan2(placement.turn[2, 0], placement.turn[0, 0])
-    moved = placement.to_network(np.insert(places, 1, 0.0, axis=1))[:, [0, 2]]
-    known = np.isfinite(headings)
-    return [
-        KnownPath(person, frames[own].tolist(), moved[own], headings[own] - base if turned else None, turned)
-        for turned, own in ((True, known), (False, ~known))
-        if own.any()
-    ]
 
 
 def _stand(poses: Array) -> Standing:

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from motion import SMPL22
 from motion.transforms import heading_matrix
 from webdemo.inference.actor import FPS, Placement
-from webdemo.inference.directed import KnownFrames
+from webdemo.inference.known_parts import KnownFrames
 from webdemo.inference.story.floor import Standing, Way2D
 from webdemo.inference.story.gestures import Gesture, Hand, gestures, wrist
 from webdemo.inference.story.moves import Move

@@ -25,6 +25,7 @@ from webdemo.inference.story.poses import (
     kneeling,
     leaping,
     lying,
+    rising,
     seated,
     upright,
 )
@@ -39,6 +40,8 @@ HELD = 6
 """Frames between two poses of somebody who stays as they are."""
 SETTLING = 40
 """Frames in which somebody sits down, falls or gets up."""
+RISING = 54
+"""Frames in which somebody gets up from the ground."""
 DUCKING = 16
 """Frames in which somebody ducks, and as many in which they are up again."""
 UPRIGHT = 0.8
@@ -52,6 +55,8 @@ BOWED, DEEP = 0.9, 1.25
 """Radians by which somebody who bows is bent, and by which they are who bows deeply."""
 BOW = 50
 """Frames from the lowest moment of a bow to that of the next."""
+_LOW = (Posture.LIES, Posture.GROUND)
+"""Postures from which people sit up and get their feet under them before they stand."""
 _MAKES: dict[Posture, Callable[[Array, float], Array]] = {
     Posture.STANDS: upright,
     Posture.SITS: seated,
@@ -103,8 +108,11 @@ def postures(
             found |= {middle: _MAKES[change.posture](place, angle), middle + DUCKING: upright(place, angle)}
             begins = middle + DUCKING
             continue
-        now, pose = change.posture, _MAKES[change.posture](place, angle)
-        begins = min(at + SETTLING, stop - 1)
+        ends = min(at + (RISING if now in _LOW and change.posture is Posture.STANDS else SETTLING), stop - 1)
+        if now in _LOW and change.posture is Posture.STANDS:
+            on_the_way = rising(place, angle, lies=now is Posture.LIES)
+            found |= {at + round(share * (ends - at)): pose for share, pose in on_the_way}
+        now, pose, begins = change.posture, _MAKES[change.posture](place, angle), ends
     if own and now is Posture.STANDS:
         found |= _stays(pose, begins, min(begins + 2 * HELD + 1, stop))
     elif now is not Posture.STANDS:

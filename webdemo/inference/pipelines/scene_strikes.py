@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from motion import SMPL22
 from webdemo.inference.actor import Placement
-from webdemo.inference.directed import KnownFrames
+from webdemo.inference.known_parts import KnownFrames
 from webdemo.inference.story.floor import Standing, Way2D
 from webdemo.inference.story.gestures import SIDES
 from webdemo.inference.story.plan import Window

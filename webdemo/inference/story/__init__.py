@@ -6,11 +6,11 @@ Importing this package imports no torch.
 from .beats import Beat
 from .progress import SceneProgress
 from .request import SceneRequest
-from .splitting import split_sentence
+from .splitting import in_time, split_sentence
 from .toml import read_story, read_words, write_story
 from .wishes import FloorPath, FloorPoint, Pose
 
 __all__ = [
-    "Beat", "FloorPath", "FloorPoint", "Pose", "SceneProgress", "SceneRequest", "read_story", "read_words",
-    "split_sentence", "write_story",
+    "Beat", "FloorPath", "FloorPoint", "Pose", "SceneProgress", "SceneRequest", "in_time", "read_story",
+    "read_words", "split_sentence", "write_story",
 ]  # fmt: skip

@@ -40,7 +40,11 @@ ACT_SECONDS: tuple[tuple[str, float], ...] = (
 """Patterns of acts and their seconds, which are medians over the corpus of beats (docs/corpus-beats.md); a dance, which
 goes on as long as one likes, has the length of its scenes."""
 
-_SPEEDS = ((r"\bslow\w*|\bcalm\w*|\bgentl\w*", 1.3), (r"\bquick\w*|\bfast\b|\bbrief\w*|\bhurr\w*", 0.75))
+_ACTS = tuple((re.compile(rf"\b(?:{act})", re.IGNORECASE), seconds) for act, seconds in ACT_SECONDS)
+_SPEEDS = (
+    (re.compile(r"\b(?:slow|calm|gentl)", re.IGNORECASE), 1.3),
+    (re.compile(r"\b(?:quick|fast\b|brief|hurr)", re.IGNORECASE), 0.75),
+)
 _STATED = re.compile(r"\bfor (?:about )?(\d+(?:\.\d+)?|[a-z]+) seconds?\b", re.IGNORECASE)
 _COUNT = ("one", "two", "three", "four", "five", "six", "seven", "eight", "nine", "ten")
 _NUMBERS = {name: i for i, name in enumerate(_COUNT, 1)}
@@ -116,7 +120,7 @@ class Beat:
             isinstance(self.seed, bool) or not isinstance(self.seed, int) or not 0 <= self.seed <= MAX_SEED
         ):
             raise InputError(
-                f"{which}: its seed must be a whole number from 0 to {MAX_SEED}, not {self.seed!r:.20}."
+                f"{which}: its seed must be a whole number from 0 to {MAX_SEED:,}, not {self.seed!r:.20}."
             )
 
     def timed(self) -> Beat:
@@ -147,7 +151,7 @@ def _of_person(text: str, who: str) -> str:
 
 def is_known_act(words: str) -> bool:
     """True if the words have an act whose usual length is known."""
-    return any(re.search(rf"\b(?:{pattern})", words, re.IGNORECASE) for pattern, _ in ACT_SECONDS)
+    return any(act.search(words) for act, _ in _ACTS)
 
 
 def seconds_of(sentence: str) -> float:
@@ -158,11 +162,9 @@ def seconds_of(sentence: str) -> float:
         value = float(number) if number[0].isdigit() else _NUMBERS.get(number, 0)
         if SHORTEST <= value <= LONGEST:
             return float(value)
-    found = [
-        seconds for pattern, seconds in ACT_SECONDS if re.search(rf"\b(?:{pattern})", sentence, re.IGNORECASE)
-    ]
+    found = [seconds for act, seconds in _ACTS if act.search(sentence)]
     length = max(found) + LEAD_SECONDS if found else DEFAULT_SECONDS
     for pattern, factor in _SPEEDS:
-        if re.search(pattern, sentence, re.IGNORECASE):
+        if pattern.search(sentence):
             length *= factor
     return min(max(round(2 * length) / 2, 1.5), 10.0)

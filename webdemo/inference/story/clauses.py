@@ -9,10 +9,16 @@ from __future__ import annotations
 import re
 from collections.abc import Sequence
 from dataclasses import dataclass, field
+from functools import lru_cache
+
+from webdemo.inference.requests import MAX_PROMPT
 
 from .beats import is_known_act
+from .names import KIND, NAMED, named
 from .wording import in_plain_words, in_present, past_forms
 
+LONGEST_READ = 2 * MAX_PROMPT
+"""Characters of a sentence that are read: twice the longest prompt, as names and phrases are spelt out."""
 _SEX = {
     "m": re.compile(
         r"man|boy|father|son|brother|husband|uncle|king|gentleman|guy|lad|waiter|policeman|grandfather|grandpa|dad|"
@@ -24,22 +30,6 @@ _SEX = {
     ),
 }
 _PEOPLE = r"(?:\w{3,}s|men|women|people|children)(?=,? \w+)"
-KIND = (
-    r"(?:man|woman|boy|girl|guy|lady|gentleman|person|child|kid|friend|dancer|fighter|boxer|player|stranger|partner|"
-    r"teacher|student|mother|father|mom|mum|mommy|mummy|dad|daddy|brother|sister|daughter|son|grandpa|grandma|granny|"
-    r"grandfather|grandmother|uncle|aunt|cousin|twin|husband|wife|spouse|fianc[eé]e?|bride|groom|girlfriend|boyfriend|"
-    r"buddy|mate|pal|bro|dude|lad|lass|waiter|waitress|guest|host|visitor|guard|boss|manager|employee|worker|intern|"
-    r"assistant|secretary|neighbou?r|cop|policeman|policewoman|officer|detective|sheriff|thief|burglar|robber|criminal|"
-    r"prisoner|suspect|bully|victim|gangster|soldier|sergeant|cadet|sentry|general|captain|doctor|nurse|medic|patient|"
-    r"coach|trainer|referee|ref|umpire|athlete|runner|swimmer|goalkeeper|goalie|striker|defender|attacker|wrestler|king|"
-    r"queen|prince|princess|lord|servant|butler|maid|knight|squire|samurai|ninja|warrior|gladiator|pirate|cowboy|wizard|"
-    r"witch|vampire|zombie|monster|ghost|robot|alien|hero|heroine|villain|enemy|foe|rival|opponent|npc|avatar|clown|"
-    r"actor|actress|singer|musician|director|photographer|painter|artist|barber|hairdresser|tailor|chef|cook|farmer|"
-    r"salesman|saleswoman|seller|shopkeeper|cashier|clerk|customer|client|lawyer|judge|priest|monk|nun|pilot|driver|"
-    r"passenger|tourist|guide|beggar|baby|toddler|infant|pupil|classmate|teenager|teen|youth|adult|elder|senior|"
-    r"colleague|coworker|co-worker|teammate|team-mate|leader|follower|lover|date|crush|ex|couple|human|character|model|"
-    r"mime|puppet|individual|agent|spy|assassin|hunter|rider|jogger|cyclist|skater|passer-by|bystander|onlooker)"
-)
 OTHER = rf"(?:person [ab]|him|her|them|(?:the|an?) other(?: person| one)?|(?:the|an?|his|her|another) (?:\w+ )??{KIND})"
 """The other person, as the object of a verb."""
 _PLURAL = (
@@ -48,7 +38,6 @@ _PLURAL = (
     rf"|two (?:\w+ )??{_PEOPLE}|an? (?:\w+ )?couple|couple(?= \w+ing)|a pair|people|everybody|everyone"
     r"|each(?: of them)?"
 )
-_NAMED = r"person [ab]"
 _HOW = r"(?:old|young|little|small|tall|big|angry|happy|sad|tired|drunk|elderly|nervous|shy|proud)"
 _FIRST = rf"(?:the )?(?:first|former)(?: {KIND}| one)?|the actor|one of (?:them|the two)"
 _SECOND = (
@@ -60,7 +49,8 @@ _DOES = (
     rf"{'|'.join(past_forms())})\b|(?!his\b|hers\b|as\b|this\b|towards\b|always\b|perhaps\b)\w+(?:s|ing|ed)\b)"
 )
 """A verb, as far as its form shows."""
-_MANNER = r"(?:(?:then|finally|now|suddenly|eagerly|soon|also|just|simply|only|still|\w+ly),? )*"
+_MANNER = r"(?:(?:then|now|soon|also|just|only|still|\w+ly),? )*+"
+"""Adverbs before a verb. No word may match in two ways: n words would then match in 2ⁿ."""
 _WHERE = r"(?: (?:on|in|at|by|near|with|from|behind|beside) (?:the|an?|his|her|their) (?:\w+ )??\w+)?"
 _NOUN = (
     rf"one {KIND}|one|(?:{_HOW} )?{KIND}|(?!\w+(?:s|ing|ly)\b|and\b|then\b|an?\b|the\b)\w+ {KIND}(?= \w+s\b)"
@@ -69,17 +59,16 @@ _NOUN = (
 )
 _LEADING = re.compile(
     rf"^((?:without|after|following|hearing|holding|having|with|on|at|in|from|upon)\b[^,]*?),? "
-    rf"(?=(?:they|both of them|{_NAMED}|he|she|one|the (?:first|second|other)) \w+)"
+    rf"(?=(?:they|both of them|{NAMED}|he|she|one|the (?:first|second|other)) \w+)"
 )
 _OBJECT = re.compile(
-    rf"\b(?:{_NAMED}|the (?:first|second|other)(?: person| one)?|(?:the|an?) (?:\w+ )?\w+|him|her)$"
+    rf"\b(?:{NAMED}|the (?:first|second|other)(?: person| one)?|(?:the|an?) (?:\w+ )?\w+|him|her)$"
 )
-_ADVERB = (
-    r"(?:(?:first|then|finally|afterwards|next|now|later|suddenly|slowly|quickly|eagerly|meanwhile|halfway|soon|eventually|there|also|just|simply|"
-    r"carefully|\w+ly),? )*"
-)
+_ADVERB = r"(?:(?:first|then|afterwards|next|now|later|meanwhile|halfway|soon|there|also|just|\w+ly),? )*"
+"""Adverbs before a subject; as with `_MANNER`, each word matches in one way."""
+_ADVERBS = re.compile(rf"^{_ADVERB}")
 _SUBJECT = re.compile(
-    rf"^{_ADVERB}(?:(?P<many>{_PLURAL})|(?P<named>{_NAMED})|(?P<first>{_FIRST})|(?P<second>{_SECOND})"
+    rf"^{_ADVERB}(?:(?P<many>{_PLURAL})|(?P<named>{NAMED})|(?P<first>{_FIRST})|(?P<second>{_SECOND})"
     rf"|(?P<noun>{_NOUN}))(?=\s|$)\s*"
 )
 _VERB = re.compile(rf"^(?:{_WHERE[4:-2]} )?{_MANNER}(?:keeps?|starts?|begins?|{_DOES})")
@@ -87,8 +76,8 @@ _SOMEBODY = re.compile(rf"(?:an? |the |his |her )?(?:{_HOW} )?{KIND}|i|you")
 """Subjects that need no -s on their verb: "man give flower"."""
 _PAIRED = re.compile(
     rf"(?:^|(?<=[,;.] )|(?<=then )|(?<=while )|(?<=as ))"
-    rf"(?:{_NAMED}|(?:an?|the|his|her) (?:\w+ )??\w+|he|she|someone) and "
-    rf"(?:{_NAMED}|(?:an?|his|her|the(?! other)) (?:\w+ )??\w+|another \w+|he|she|someone else)(?= (?!\w+s\b)\w+)"
+    rf"(?:{NAMED}|(?:an?|the|his|her) (?:\w+ )??\w+|he|she|someone) and "
+    rf"(?:{NAMED}|(?:an?|his|her|the(?! other)) (?:\w+ )??\w+|another \w+|he|she|someone else)(?= (?!\w+s\b)\w+)"
 )
 _GOING_ON = re.compile(r"^(?!(?:during|anything|something|nothing)\b)\w*[aeiouy]\w*ing\b")
 _RELATIVE = re.compile(r"\bwho\b")
@@ -164,86 +153,35 @@ _NAMES_OF_PAIRS = re.compile(rf"(?:^|(?<=[,;.] )){KIND} and {KIND}(?= (?!\w+s\b)
 _A_WHILE = re.compile(
     r"\bafter (?:a|some|a few|several) (?:short |little )?(?:moment|while|bit|second|time|minute)s?,? "
 )
-_LATE = re.compile(
-    r"(?<=[a-z])(?<!and)(?<!then)(?<!one)(?<!he)(?<!they)(?<!both)(?<!first)(?<!second)(?<!other)"
-    r" (?:finally|eventually)(?= \w+s\b)"
-)
-"""Marks of time between a name and its verb, which begin nothing new."""
 _PLACED = re.compile(
     r"^(?:after|before|at|on|in|during) (?!the way\b)(?:the |an? )?\w+,? (?=(?:the|an?|two|both|they|person [ab])\b)"
 )
 """A time or place before the first subject: "After the match the players …"."""
 _RAISED = re.compile(
-    rf"\b({KIND}|{_NAMED}|(?:the|an?) \w+)'s ((?:(?:left|right) )?(?:arm|hand))s? (?:goes|shoots|flies|comes) up\b"
+    rf"\b({KIND}|{NAMED}|(?:the|an?) \w+)'s ((?:(?:left|right) )?(?:arm|hand))s? (?:goes|shoots|flies|comes) up\b"
 )
 _TO_AND_FRO = re.compile(
     r"\b((?:walk|pac|run|march|stroll|jog|go|stride)\w*) (?:up and down|back and forth|to and fro"
     r"|forwards? and back\w*)"
 )
-_IS = re.compile(r"\b(he|she|it|they|who|someone|somebody|everyone)'(s|re)\b", re.IGNORECASE)
-_AT_THE_SAME_TIME = re.compile(r",? and (?:at the same time|simultaneously),? ", re.IGNORECASE)
 _HAS = re.compile(
     rf"\b(?:has|have|had) (?:just |already |now )?(?=(?:\w+ed|{'|'.join(past_forms())})\b)(?!had\b)"
 )
 """The auxiliary of a perfect: who has turned turns."""
-_NO_NAME = re.compile(
-    r"(?:They|He|She|It|One|Two|Both|The|An?|First|Then|Finally|While|As|When|After|Before|Person|Someone|Somebody|Each|"
-    r"People|Everyone|Everybody|Another|His|Her|Their|Suddenly|Without|With|Holding|I|We|You)\b"
-)
-
-
-def named(text: str) -> str:
-    """The text with people called A and B, 1 and 2, or by a name, called so in a way that clauses understand."""
-    text = _IS.sub(lambda m: f"{m[1]} {'is' if m[2] == 's' else 'are'}", text)
-    text = _AT_THE_SAME_TIME.sub(" while ", text)
-    if re.search(r"\bperson [ab]\b", text, re.IGNORECASE):
-        text = re.sub(r"(?<![Pp]erson )\b([AB])\b(?=\s+\w+s\b|'s\b)", r"person \1", text)
-    elif re.search(r"\b[Bb]\b", text):
-        text = re.sub(r"\b[Bb]\b(?=\s+(?:[a-z]|[-–—])|'s\b|[.,;!?]|$)", "person B", text)
-        text = re.sub(
-            r"(?<!person )\bA\b(?=,|\s+[-–—]|'s\b|\s+(?:\w+s|\w+ing|\w+ed)\b|[.;!?]|$)", "person A", text
-        )
-        text = re.sub(r"\ba(?=[.,;!?]|$)", "person A", text)
-        text = re.sub(
-            r"(?<!person )\bA\b(?= (?:and|in|on|at|by|with|to|from|then|is|has|does|off|over|up|away|aside|for|into"
-            r"|onto|around)\b)",
-            "person A",
-            text,
-        )
-    text = _LATE.sub("", text)
-    for name, number in (("A", "one|1|#1"), ("B", "two|2|#2")):
-        text = re.sub(rf"(?i)\b(?:(?:the )?{KIND} ?(?:{number})|p{number[-1]})\b", f"person {name}", text)
-    return re.sub(
-        r"(?<![A-Za-z'])([A-Z][a-z]+)(?= (?:\w+s|\w+ing|and|is|has)\b|'s\b|[.,;]|$)",
-        lambda m: m[0] if _is_no_name(m[0]) else f"the {m[0].lower()}",
-        text,
-    )
-
-
-_CAPITAL_KIND = re.compile(rf"{KIND}$", re.IGNORECASE)
-_CAPITAL_VERB = re.compile(
-    r"\w+(?:ing|ly|es)$|[A-Z]{2}|(?:High|Low|Fist|Hug|Bow|Wave|Walk|Run|Shake|Kick|Push|Race|Dance|Jump|Hold|Link|"
-    r"Join|Take|Swing|Clap|Sit|Stand|Turn|Kneel|Spin|Fight|Box|Hop|Skip|March|Talk|Wrestle|Pat|Tap|Kiss|Throw|Catch|"
-    r"Play|Meet|Greet|Stroll|Raise|Lift|Point|Nod|Duck|Punch|Slap|Chase|Follow|Lead|Pull|Carry|Help|Give|Hand|Offer|"
-    r"Bump|Circle|Embrace)\b"
-)
-
-
-def _is_no_name(word: str) -> bool:
-    return any(found.match(word) for found in (_NO_NAME, _CAPITAL_VERB, _CAPITAL_KIND))
+_LETS = re.compile(rf"\band lets? ({NAMED}|the other(?: person)?) (\w+)")
 
 
 def plain(text: str) -> str:
     """The sentence in lower case, people called A and B by their full names, and pairs as "they"."""
-    text = re.sub(r"\([^()]*\)", " ", named(text))
+    text = re.sub(r"\([^()]*\)", " ", named(text[:LONGEST_READ])[:LONGEST_READ])
     text = re.sub(r"[\"“”][^\"“”]*[\"“”],?", " ", text)
     text = " ".join(text.lower().split()).strip(" .!?;")
     text = _HAS.sub("", _TO_AND_FRO.sub(r"\1 to-and-fro", text))
-    text = in_plain_words(_A_WHILE.sub("", text))
+    text = in_plain_words(_A_WHILE.sub("", text))[:LONGEST_READ]
     text = _RAISED.sub(r"\1 raises his \2", _PLACED.sub("", text))
     text = re.sub(r", (?=(?:side by side|shoulder to shoulder|hand in hand|arm in arm)\b)", " ", text)
-    text = re.sub(rf"\band lets? ({_NAMED}|the other(?: person)?) (\w+)", r"and \1 \2s", text)
-    return _PAIRED.sub("they", _NAMES_OF_PAIRS.sub("they", text))
+    text = _LETS.sub(r"and \1 \2s", text)
+    return _PAIRED.sub("they", _NAMES_OF_PAIRS.sub("they", text[:LONGEST_READ]))
 
 
 class Reader:
@@ -275,9 +213,18 @@ class Reader:
             at_once = bool(_AT_ONCE.search(mark)) or (opening and len(found) == 1)
             at_once = at_once or (not stated and bool(found) and bool(_GOING_ON.match(words)))
             subject = stated or bool(self._last)
-            found.append(Clause(who, in_present(words), at_once, bool(_UNTIL.search(mark)), stated, subject))
+            words = _from_outside(in_present(words))
+            found.append(Clause(who, words, at_once, bool(_UNTIL.search(mark)), stated, subject))
             self._last = who if subject else ""
         return tuple(clause for clause in _without_setting(found) if clause.words)
+
+
+_OWN_VOICE = {"me": "them", "us": "them", "my": "his", "our": "his", "myself": "himself"}
+
+
+def _from_outside(words: str) -> str:
+    """The words of a clause with those for the narrator as for anybody else: "runs to me" becomes "runs to them"."""
+    return " ".join(_OWN_VOICE.get(word, word) for word in words.split(" "))
 
 
 _DONE = re.compile(
@@ -292,6 +239,7 @@ def _without_setting(found: Sequence[Clause]) -> Sequence[Clause]:
     return [*(c for c in found[:first] if _DONE.match(c.words) or is_known_act(c.words)), *found[first:]]
 
 
+@lru_cache(maxsize=512)
 def clauses(sentence: str) -> tuple[Clause, ...]:
     """The clauses of a sentence or of several, in order."""
     return Reader().read(sentence)
@@ -304,9 +252,7 @@ def _who(piece: str, cast: _Cast, last: str) -> tuple[str, str, bool]:
     person = (
         match is not None and _SOMEBODY.fullmatch(match["noun"] or "") and not re.match(r"[ab]'s\b", rest)
     )
-    if match is None or (
-        match["noun"] and rest and not person and not _VERB.match(re.sub(rf"^{_ADVERB}", "", rest))
-    ):
+    if match is None or (match["noun"] and rest and not person and not _VERB.match(_ADVERBS.sub("", rest))):
         return last or "ab", piece, False
     if match["many"]:
         return "ab", rest, True

@@ -96,6 +96,7 @@ _ACTS = re.compile(
     rf"(?P<covers>{_COVERS}) {_LY}(?:person [ab]|the other(?: person| one)?|the \w+)'s |"
     rf"(?P<part>{_SHORT}|{_LONG}) {_LY}(?:hold of )?{_OTHERS} )(?:{_REGION})\b"
 )
+_BRIEF = re.compile(_SHORT)
 _ON_BOTH = re.compile(
     r"\bboth (?:\w+ )?hands\b|\btwo hands\b|\bhands on\b|\b(?:shoulders|eyes)\b|\bmassag\w+"
 )
@@ -189,7 +190,7 @@ def _times(act: re.Match[str], words: str) -> int:
     """The number of times that a short touch is made; 0 for one that lasts."""
     if _MANY.search(words):
         return 3
-    if not (act["short"] or (act["part"] and re.match(_SHORT, act["part"]))):
+    if not (act["short"] or (act["part"] and _BRIEF.match(act["part"]))):
         return 0
     return 2 if _PATS.search(words) else 1
 

@@ -85,10 +85,10 @@ _WALKS = re.compile(
 """A walk of one person without a way."""
 _HALT = re.compile(r"\b(?:stop|halt|stand still|wait|freeze|stay|remain|pause)s?\b")
 _SPEEDS = (
-    (r"\b(?:run|sprint|dash|charg|chas|rac(?:e|ing)|fle[ed]|bolt|dart|scamper)\w*", 2.2),
-    (r"\b(?:jog|hurr|rush|storm|trot)\w*|\bquick\w*|\bfast\b", 1.7),
-    (r"\b(?:stroll|saunter|wander|ambl|drift|trudg|plod|roam)\w*|\bslow\w*|\bcalm\w*|\bcareful\w*", 0.8),
-    (r"\b(?:creep|sneak|tiptoe|shuffl|limp|edg|inch|hobbl|totter)\w*", 0.6),
+    (re.compile(r"\b(?:run|sprint|dash|charg|chas|rac(?:e|ing)|fle[ed]|bolt|dart|scamper)"), 2.2),
+    (re.compile(r"\b(?:jog|hurr|rush|storm|trot|quick|fast\b)"), 1.7),
+    (re.compile(r"\b(?:stroll|saunter|wander|ambl|drift|trudg|plod|roam|slow|calm|careful)"), 0.8),
+    (re.compile(r"\b(?:creep|sneak|tiptoe|shuffl|limp|edg|inch|hobbl|totter)"), 0.6),
 )
 _FULL = re.compile(
     r"\b(?:in (?:a )?circles?|once|all the way|full|whole|complete\w*|360|(?:round )?and round|several times|twice)\b"
@@ -132,7 +132,7 @@ def moves(sentence: str) -> tuple[Move, ...]:
     if held is not None:
         return tuple(Move(person, Way.HOLD, near=held.value, turns=held.turns) for person in "ab")
     if (lifted := lift(sentence)) is not None:
-        return _lifted(lifted)
+        return _lifted(lifted, clauses(sentence))
     if leader := twirls(sentence):
         other = "b" if leader == "a" else "a"
         return (
@@ -199,10 +199,15 @@ def _of_clause(clause: Clause, *, late: bool) -> list[Move]:
     elif way is Way.ALONG and who != "ab":
         way = Way.AWAY  # "the other one walks on"
     late = late and way is not Way.AFTER
-    speed = next((value for pattern, value in _SPEEDS if re.search(pattern, clause.words)), 1.1)
+    speed = _speed(clause.words)
     metres = _STEP * _STEPS.get((_COUNT.search(clause.words) or [""])[0], 3) if way is Way.AHEAD else 0.0
     turns = 1.0 if _FULL.search(clause.words) or (way is Way.TURN and _SPINS.search(clause.words)) else 0.5
     return [Move(person, way, speed, turns, late=late, metres=metres) for person in who]
+
+
+def _speed(words: str) -> float:
+    """Metres a second of the movement that a clause names."""
+    return next((value for pattern, value in _SPEEDS if pattern.search(words)), 1.1)
 
 
 def _struck(found: Strike, listed: Sequence[Clause]) -> tuple[Move, ...]:
@@ -218,10 +223,14 @@ def _struck(found: Strike, listed: Sequence[Clause]) -> tuple[Move, ...]:
     return (comes,) if any(_FLOOR.search(w) or "duck" in w for w in own) else (comes, Move(other, Way.STAY))
 
 
-def _lifted(found: Lift) -> tuple[Move, ...]:
-    """The way of one who picks the other up, and walks on with them or turns round."""
+def _lifted(found: Lift, listed: Sequence[Clause]) -> tuple[Move, ...]:
+    """The way to the other of the one who comes, and of one who picks them up and walks on with them or turns round."""
     comes = found.comes or found.carrier
-    made = [Move(comes, Way.TO, near=found.carry.near), Move("b" if comes == "a" else "a", Way.STAY)]
+    ways = [clause.words for clause in listed if clause.who == comes and way_of(clause.words) is Way.TO]
+    made = [
+        Move(comes, Way.TO, _speed(ways[0]) if ways else 1.1, near=found.carry.near),
+        Move("b" if comes == "a" else "a", Way.STAY),
+    ]
     if found.spins:
         made.append(Move(found.carrier, Way.TURN, turns=1.0))
     elif found.carry is not Carry.UP:

@@ -177,6 +177,23 @@ def lying(place: Array, angle: float) -> Array:
     return pose + np.array([place[0], 0.0, place[1]]) - LYING * np.array([np.sin(angle), 0.0, np.cos(angle)])
 
 
+def rising(place: Array, angle: float, *, lies: bool) -> Sequence[tuple[float, Array]]:
+    """Somebody who gets up from the ground, as poses (22, 3) in metres and shares of the time that it takes.
+
+    They sit up, get their feet under them, and stand where :func:`lying` and :func:`grounded` have their feet.
+
+    Args:
+        place: (2,) x and z in metres where they stand afterwards.
+        angle: heading in radians.
+        lies: they lie on the back before, and do not sit.
+    """
+    sits = _posed(
+        angle, {"hip": -2.4, "knee": 1.9, "ankle": 0.1, "shoulder": 1.2, "elbow": 0.3, "spine": 0.15}
+    )
+    sits = _on_floor(sits[None], place, angle)[0]
+    return ((0.45, sits), (0.75, crouching(place, angle))) if lies else ((0.6, crouching(place, angle)),)
+
+
 def leaping(place: Array, angle: float, rise: float = 0.22) -> Sequence[tuple[float, Array]]:
     """A jump on the spot as poses (22, 3) in metres, with their seconds from its highest moment.
 

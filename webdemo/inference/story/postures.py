@@ -48,6 +48,7 @@ class Change:
 
 _SEAT = r"(?:chair|seat|bench|sofa|couch|stool|armchair|settee|step|table|desk|wheelchair|throne|swing|deckchair)s?"
 _FLOOR = r"(?:on|in) (?:the|a) (?:floor|ground|grass|carpet|mat|rug|sand|beach|snow|lawn|blanket)\b"
+_ON_FLOOR, _ON_SEAT = re.compile(rf"\b{_FLOOR}"), re.compile(rf"\b{_SEAT}\b")
 _SELF = r"(?:him|her|them)sel(?:f|ves)"
 _SURFACE = r"(?:ground|floor|grass|mat|backs?|bottom|bum|side|knees)"
 _GROUND = rf"(?:(?:to|on|onto) (?:the |his |her |their )?{_SURFACE}|over|down)"
@@ -211,14 +212,20 @@ def _own(clause: Clause, share: float, *, first: bool, at_once: bool) -> Change 
         first
         and (state := next((p for p, pattern in _STATES if _says(pattern, clause.words)), None)) is not None
     ):
-        return Change(state, already=True)
+        return Change(_low(state, clause.words), already=True)
     for posture, pattern in _PATTERNS:
         if _says(pattern, clause.words):
             already = at_once and first and posture is not Posture.LIES and " down" not in clause.words
             if posture is Posture.LIES and _BY_OTHER.search(clause.words):
                 share = max(share, 0.4)  # what makes them fall comes before
-            return Change(posture, already=already, after=share)
+            return Change(_low(posture, clause.words), already=already, after=share)
     return None
+
+
+def _low(posture: Posture, words: str) -> Posture:
+    """The posture, where people who sit on the floor do so however many words lie between."""
+    on_floor = _ON_FLOOR.search(words) is not None and _ON_SEAT.search(words) is None
+    return Posture.GROUND if posture is Posture.SITS and on_floor else posture
 
 
 def is_down_or_up(clause: Clause) -> bool:

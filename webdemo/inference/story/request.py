@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import hashlib
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import asdict, dataclass, field, fields, replace
 from typing import Any
 
@@ -12,6 +12,7 @@ import numpy as np
 from motion import Duet, InputError
 from webdemo.inference import methods
 from webdemo.inference.actor import FPS
+from webdemo.inference.plans import Plan
 from webdemo.inference.predict_request import check_motion
 from webdemo.inference.requests import GenerateRequest, SamplingRequest, _number
 
@@ -48,6 +49,7 @@ class SceneRequest(SamplingRequest):
         motion: a given motion of two people on SMPL22's joints, of up to three minutes.
         start: second of the given motion at which the beats begin; its end by default.
         end: second at which the given motion goes on.
+        plan: of an earlier result of this request, which is used instead of reading the words; read them by default.
     """
 
     beats: tuple[Beat, ...] = ()
@@ -58,6 +60,7 @@ class SceneRequest(SamplingRequest):
     motion: Duet | None = None
     start: float | None = None
     end: float | None = None
+    plan: Plan | None = field(default=None, compare=False, repr=False)
 
     def __post_init__(self) -> None:
         set_ = object.__setattr__
@@ -231,8 +234,10 @@ class SceneRequest(SamplingRequest):
         return positions[:, :first], positions[:, last:] if self.end is not None else positions[:, :0]
 
     @classmethod
-    def from_dict(cls, values: Mapping[str, Any], motion: Duet | None = None) -> SceneRequest:
-        """The request that :meth:`to_dict` gave, with the motion that it was given.
+    def from_dict(
+        cls, values: Mapping[str, Any], motion: Duet | None = None, plan: Plan | None = None
+    ) -> SceneRequest:
+        """The request that :meth:`to_dict` gave, with the motion that it was given, and the plan of its result.
 
         Raises:
             InputError: for values that are no longer taken.
@@ -248,19 +253,33 @@ class SceneRequest(SamplingRequest):
             motion=motion,
             start=values.get("start"),
             end=values.get("end"),
+            plan=plan,
         )
 
 
-def as_scene(request: GenerateRequest) -> SceneRequest | None:
+def as_scene(request: GenerateRequest, go_on: Callable[[], None] = lambda: None) -> SceneRequest | None:
     """The scene of a sentence with several beats, which share the request's seconds, or of one with a plan.
 
-    None if the sentence is given to the network as it is.
+    None if the sentence is given to the network as it is, as one whose beats would be longer than a prompt. A request
+    with a plan has its beats from there. ``go_on`` is called before each sentence; what it raises ends the reading.
     """
+    plain = {f.name: getattr(request, f.name) for f in fields(SamplingRequest)}
+    if request.plan is not None:
+        beats = tuple(beat_of(beat) for beat in request.plan.beats)
+        return (
+            SceneRequest(beats=beats, planned=request.planned, plan=request.plan, **plain) if beats else None
+        )
     if not request.split or "scene" not in methods.method(request.model).tasks:
         return None
-    beats = split_sentence(request.prompt)
-    if len(beats) > request.seconds / LEAST_SHARE:
-        beats = (Beat(request.prompt),)
+    try:
+        beats = split_sentence(request.prompt, go_on)
+        if len(beats) > request.seconds / LEAST_SHARE:
+            beats = (Beat(request.prompt),)
+        for number, beat in enumerate(beats, 1):
+            beat.check(number)
+    except InputError:
+        go_on()  # may be what raised it
+        return None
     if len(beats) < 2 and not (request.planned and is_planned(request.prompt)):
         return None
     factor = request.seconds / sum(beat.length for beat in beats)
@@ -269,7 +288,6 @@ def as_scene(request: GenerateRequest) -> SceneRequest | None:
         replace(beat, seconds=round(max(float(s), SHORTEST), 4))
         for beat, s in zip(beats, np.diff(edges), strict=True)
     )
-    plain = {f.name: getattr(request, f.name) for f in fields(SamplingRequest)}
     return SceneRequest(beats=timed, planned=request.planned, **plain)
 
 

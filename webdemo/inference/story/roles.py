@@ -21,6 +21,8 @@ _PASSIVE = re.compile(
     rf"^(?:is|are|gets?) (?:being )?(?P<verb>{'|'.join(_DOES)})\b(?P<rest>.*?) by (?!the (?:hand|arm|wrist|shoulder))"
 )
 
+_NAMED = re.compile(r"\bperson ([ab])\b((?:'s\b)?)")
+
 
 def of_each(sentence: str) -> tuple[str, str]:
     """A sentence for person a and one for person b; "" for who is not said to do anything.
@@ -42,10 +44,13 @@ def of_each(sentence: str) -> tuple[str, str]:
 
 def _from_outside(words: str, who: str) -> str:
     """The words without the names: who does it is "them", and the other one "the other person"."""
-    other = "b" if who == "a" else "a"
-    words = re.sub(rf"\bperson {other}\b", "the other person", words)
-    words = re.sub(rf"\bperson {who}'s\b", "their", words)
-    return re.sub(rf"\bperson {who}\b", "them", words)
+
+    def named(match: re.Match[str]) -> str:
+        if match[1] != who:
+            return f"the other person{match[2]}"
+        return "their" if match[2] else "them"
+
+    return _NAMED.sub(named, words)
 
 
 def _sentence(acts: Sequence[str]) -> str:

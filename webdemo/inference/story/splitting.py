@@ -3,25 +3,35 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 
-from .beats import Beat, is_known_act
-from .clauses import Clause, Reader, clauses, named
+from motion import InputError
+from webdemo.inference.cancel import CancelToken
+from webdemo.inference.requests import MAX_PROMPT
+
+from .beats import MOST_BEATS, Beat, is_known_act
+from .clauses import LONGEST_READ, Clause, Reader, clauses
 from .gestures import gestures
 from .moves import MEETS, is_bare, is_moved
+from .names import named
 from .postures import changes, is_down_or_up, leaps
 from .ways import Way, way_of
 
-_MARK = r"(?:and\s+)?(?:then|finally|afterwards?|after\s+that|at\s+last|at\s+the\s+end|lastly)"
+MOST_WORDS = MOST_BEATS * MAX_PROMPT
+"""Characters of a story in sentences: as many as its beats may have."""
+READING_SECONDS = 30.0
+"""In which a story is read that no run waits for."""
+_MARK = r"(?:and )?(?:then|finally|afterwards?|after that|at last|at the end|lastly)"
 _LOOSE_MARK = r"(?:next|later|now)"
 """Marks of time only at the beginning of a clause: "next to each other" is a place."""
 _BREAK = re.compile(
-    rf"(?:[.;!,]\s*|\s+){_MARK}\b,?\s*|[.;!,]\s+(?:and\s+)?{_LOOSE_MARK}\b,?\s+(?!to\b)|(?<=[.!])\s+"
-    r"|,?\s+before\s+(?=(?:they|he|she)\b)",
+    rf"(?:[.;!,] ?| ){_MARK}\b,? ?|[.;!,] (?:and )?{_LOOSE_MARK}\b,? (?!to\b)|(?<=[.!]) "
+    r"|,? before (?=(?:they|he|she)\b)",
     re.IGNORECASE,
 )
 _LATE_MARK = re.compile(
-    r"(?:,\s+(?:and\s+)?|\s+and\s+)(?P<who>person\s+[ab]|the\s+(?:other|first|second)(?:\s+person)?|they|he|she|both)\s+(?P<mark>then|finally|afterwards)\s+",
+    r"(?:, (?:and )?| and )(?P<who>person [ab]|the (?:other|first|second)(?: person)?|they|he|she|both) "
+    r"(?P<mark>then|finally|afterwards) ",
     re.IGNORECASE,
 )
 _VERB = (
@@ -29,11 +39,12 @@ _VERB = (
     r"|hold|clap|point|pat|tap|nod|step|stop|help|hand|give|take|wait|meet|greet|stroll|high[- ]five|raise|let"
     r"|fight|spar|box|salut|kiss|throw|fall|lie|crouch|slap|touch|spin|twirl|lift|march)\w*"
 )
-_LIST = re.compile(rf",\s+(?={_VERB}\b)|,?\s+and\s+(?={_VERB}\b)", re.IGNORECASE)
+_LIST = re.compile(rf", (?={_VERB}\b)|,? and (?={_VERB}\b)", re.IGNORECASE)
+_IN_A_LIST = re.compile(rf", {_VERB}\b", re.IGNORECASE)
 _OPENING = re.compile(
-    r"^(?:first(?:ly)?|at first|to begin with|in the beginning)\b(?!\s+person),?\s*", re.IGNORECASE
+    r"^(?:first(?:ly)?|at first|to begin with|in the beginning)\b(?! person),? ?", re.IGNORECASE
 )
-_STARTS_WITH_MARK = re.compile(rf"^(?:{_MARK}\b,?|{_LOOSE_MARK},)\s*", re.IGNORECASE)
+_STARTS_WITH_MARK = re.compile(rf"^(?:{_MARK}\b,?|{_LOOSE_MARK},) ?", re.IGNORECASE)
 _NAMES = re.compile(r"(?:person [ab]|the (?:first|second) person)\b", re.IGNORECASE)
 
 _MOMENT = re.compile(
@@ -51,19 +62,36 @@ DEPARTS = (Way.AWAY, Way.PAST, Way.ROUND, Way.ALONG, Way.AFTER, *ARRIVES)
 """Ways that begin when what the person did before is over."""
 
 
-def split_sentence(text: str) -> tuple[Beat, ...]:
+def in_time() -> Callable[[], None]:
+    """A ``go_on`` for :func:`split_sentence` that raises InputError after :data:`READING_SECONDS` from now."""
+    late = "The story took longer than {limit} to read: shorten it, or try again when the lab is less busy."
+    return CancelToken(READING_SECONDS, late).start().raise_if_cancelled
+
+
+def split_sentence(text: str, go_on: Callable[[], None] = lambda: None) -> tuple[Beat, ...]:
     """The beats of a sentence such as "First …, then …. Finally …"; one beat if it names one thing.
 
     Who comes or goes does the one after the other, also where the words only say "and". In a story of several
     beats single people are called person A and person B, so that each beat can be read alone.
+
+    Args:
+        text: what happens, in linear time of whose length it is read.
+        go_on: called before each sentence; what it raises ends the reading.
+
+    Raises:
+        InputError: for a text, or a sentence in it, that is longer than any scene's.
     """
+    if len(text) > MOST_WORDS:
+        raise InputError(f"The story has {len(text):,} characters: shorten it to {MOST_WORDS:,}.")
     text = " ".join(re.sub(r"\([^()]*\)", " ", text).split())
     reader = Reader()
     parts: list[str] = []
     setting = ""
     for part in _clauses(_OPENING.sub("", named(text))):
         part = _STARTS_WITH_MARK.sub("", _OPENING.sub("", part.strip())).strip(" ,;.!")
-        part = re.sub(r"^and\s+|\s+and$", "", part, flags=re.IGNORECASE)
+        part = re.sub(r"^and | and$", "", part, flags=re.IGNORECASE)
+        go_on()
+        _check_length(part, setting)
         if part and not _is_act(part, clauses(part)):
             setting += f"{part}, "
         elif part:
@@ -71,11 +99,25 @@ def split_sentence(text: str) -> tuple[Beat, ...]:
             found = reader.read(part)
             groups = _acts(found)
             parts += [_worded(group) for group in groups] if len(groups) > 1 else [_in_words(part, found)]
+            if len(parts) > MOST_BEATS:
+                raise InputError(
+                    f"The story has more than {MOST_BEATS} beats: keep to {MOST_BEATS} or fewer."
+                )
     if setting and parts:
         parts[-1] = f"{parts[-1].rstrip('.')}, {setting.rstrip(', ')}."
     if len(parts) < 2:
         return (Beat(_meeting(text)),) if text else ()
     return tuple(Beat(part) for part in parts)
+
+
+def _check_length(part: str, setting: str) -> None:
+    """Raises InputError where the next part of a story would make no beat that a scene takes."""
+    if len(part) > LONGEST_READ:
+        raise InputError(
+            f"The sentence “{part[:40]} …” has {len(part):,} characters: shorten it to {MAX_PROMPT}, or split it."
+        )
+    if len(setting) > MAX_PROMPT:
+        raise InputError(f"Nobody does anything from “{setting[:40]} …” on: say who does what.")
 
 
 def _meeting(text: str) -> str:
@@ -187,6 +229,6 @@ def _clauses(text: str) -> list[str]:
     for i, piece in enumerate(pieces):
         listed = _LIST.split(piece)
         goes_on = i + 1 < len(pieces) and not pieces[i + 1][:1].isupper()
-        in_a_list = bool(re.search(rf",\s+{_VERB}\b", piece, re.IGNORECASE))
+        in_a_list = bool(_IN_A_LIST.search(piece))
         found += listed if in_a_list and (len(listed) > 2 or goes_on) else [piece]
     return found

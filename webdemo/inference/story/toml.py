@@ -22,9 +22,9 @@ from __future__ import annotations
 import difflib
 import json
 import re
-import sys
-from collections.abc import Mapping
-from dataclasses import dataclass, fields
+import tomllib
+from collections.abc import Callable, Mapping
+from dataclasses import fields
 from pathlib import Path
 from typing import Any
 
@@ -32,21 +32,19 @@ import numpy as np
 
 from motion import Duet, InputError
 from motion.formats import read
+from webdemo.inference.actor import ROLES
+from webdemo.inference.methods import method
 from webdemo.inference.requests import SamplingRequest
 
-from .beats import Beat
+from .beats import MOST_BEATS, Beat
 from .request import SceneRequest, beat_of, path_of
 from .splitting import split_sentence
-from .wishes import FloorPath, Pose
+from .toml_outline import Lines, check_outline
+from .wishes import MOST_POINTS, MOST_POSES, FloorPath, Pose
 
-if sys.version_info >= (3, 11):
-    import tomllib
-else:
-    import tomli as tomllib
-
-MOST_CHARACTERS = 200_000
-"""Of a story; one of 60 beats with drawn paths has a tenth of that."""
-_LOOKS_LIKE_TOML = re.compile(r"^\s*(?:\[\[?\s*\w+\s*\]|\w+\s*=)", re.MULTILINE)
+MOST_CHARACTERS = 150_000
+"""Of a story in TOML; the longest there is, with all its paths and poses written in full, has fewer."""
+_LOOKS_LIKE_TOML = re.compile(r"^[ \t]*+(?:\[\[?[ \t]*\w++[ \t]*\]|\w++[ \t]*=)", re.MULTILINE)
 _NUMBER, _TEXT = (int, float), (str,)
 _TOP: dict[str, tuple[type, ...]] = {
     "seed": (int,), "samples": (int,), "guidance": _NUMBER, "steps": (int,), "damping": _NUMBER, "sampler": _TEXT,
@@ -64,7 +62,8 @@ _PATH: dict[str, tuple[type, ...]] = {"person": _TEXT, "points": (list,)}
 _POSE: dict[str, tuple[type, ...]] = {
     "person": _TEXT, "seconds": _NUMBER, "file": _TEXT, "frame": (int,), "of": _TEXT, "positions": (list,),
 }  # fmt: skip
-_TABLES = {"beat": _BEAT, "path": _PATH, "pose": _POSE}
+_TABLES = {"beat": (_BEAT, MOST_BEATS), "path": (_PATH, len(ROLES)), "pose": (_POSE, MOST_POSES)}
+"""The keys of each table, and how many of it a story may have."""
 _KINDS = {
     str: "text in quotes",
     int: "a whole number",
@@ -86,16 +85,20 @@ def read_story(text: str, folder: Path | None = None) -> dict[str, Any]:
     """
     if len(text) > MOST_CHARACTERS:
         raise InputError(f"The story has {len(text):,} characters: shorten it to {MOST_CHARACTERS:,}.")
+    check_outline(text, sum(most for _, most in _TABLES.values()))
     try:
         found = tomllib.loads(text)
     except tomllib.TOMLDecodeError as error:
         raise InputError(f"The story is no valid TOML: {_sentence(error)}") from None
     except RecursionError:
         raise InputError("The story is no valid TOML: its lists are nested too deeply.") from None
-    lines = _Lines(text)
+    lines = Lines(text)
     _check_keys(found, _TOP, lines, "", 0, "a story")
-    for table, known in _TABLES.items():
-        for i, entry in enumerate(found.get(table, ())):
+    for table, (known, most) in _TABLES.items():
+        entries = found.get(table, ())
+        if len(entries) > most:
+            raise InputError(f"The story has {len(entries)} {table}s: keep to {most} or fewer.")
+        for i, entry in enumerate(entries):
             if not isinstance(entry, Mapping):
                 raise InputError(f"{lines.where('', 0, table)}{table} must be written as [[{table}]].")
             _check_keys(entry, known, lines, table, i, f"a {table}")
@@ -109,17 +112,17 @@ def read_story(text: str, folder: Path | None = None) -> dict[str, Any]:
     }
 
 
-def read_words(text: str) -> dict[str, Any]:
+def read_words(text: str, go_on: Callable[[], None] = lambda: None) -> dict[str, Any]:
     """The fields that a text sets: a story in TOML, or plain sentences, which are split into beats.
+
+    ``go_on`` is called before each sentence; what it raises ends the reading.
 
     Raises:
         InputError: as :func:`read_story`.
     """
-    if _LOOKS_LIKE_TOML.search(text):
+    if _LOOKS_LIKE_TOML.search(text[:MOST_CHARACTERS]):
         return read_story(text)
-    if len(text) > MOST_CHARACTERS:
-        raise InputError(f"The story has {len(text):,} characters: shorten it to {MOST_CHARACTERS:,}.")
-    return {"beats": split_sentence(text)}
+    return {"beats": split_sentence(text, go_on)}
 
 
 def write_story(request: SceneRequest) -> str:
@@ -127,7 +130,8 @@ def write_story(request: SceneRequest) -> str:
     out = [f"seed = {request.seed}"]
     for f in fields(SamplingRequest):
         value = getattr(request, f.name)
-        if f.name != "seed" and value != f.default:
+        default = method(request.model, "scene").steps if f.name == "steps" else f.default
+        if f.name != "seed" and value != default:
             out.append(f"{f.name} = {json.dumps(value)}")
     if not request.planned:
         out.append("planned = false")
@@ -186,51 +190,32 @@ def _sentence(error: Exception) -> str:
     return f"{where}: {said[:1].lower()}{said[1:200]}."
 
 
-@dataclass(frozen=True)
-class _Lines:
-    """Finds the line of a key in the text."""
-
-    text: str
-
-    def where(self, table: str, index: int, key: str) -> str:
-        """``"Line 4: "`` for a key of the table's ``index``-th entry; "" if it is not found."""
-        current, counts = "", {"": 0}
-        for number, line in enumerate(self.text.splitlines(), 1):
-            header = re.match(r"\s*\[\[?\s*\"?([\w-]+)\"?\s*\]\]?", line)
-            if header:
-                current = header[1]
-                counts[current] = counts.get(current, -1) + 1
-            found = header is not None and not table and current == key
-            inside = current == table and counts[current] == index
-            if found or (inside and re.match(rf"\s*[\"']?{re.escape(key)}[\"']?\s*[.=]", line)):
-                return f"Line {number}: "
-        return ""
-
-
 def _check_keys(
     found: Mapping[str, Any],
     known: Mapping[str, tuple[type, ...]],
-    lines: _Lines,
+    lines: Lines,
     table: str,
     index: int,
     what: str,
 ) -> None:
     for key, value in found.items():
-        where = lines.where(table, index, key)
         if key not in known:
-            near = difflib.get_close_matches(key, known, n=1)
+            where = lines.where(table, index, key)
+            near = difflib.get_close_matches(key[:40], known, n=1)
             hint = f"did you mean {near[0]!r}?" if near else f"it takes {', '.join(known)}."
             raise InputError(f"{where}there is no key {key!r:.40} in {what}; {hint}" if where else
                              f"There is no key {key!r:.40} in {what}; {hint}")  # fmt: skip
         kinds = known[key]
         if not isinstance(value, kinds) or (isinstance(value, bool) and bool not in kinds):
             wanted = _KINDS[kinds[-1]]
-            raise InputError(f"{where}{key} must be {wanted}, not {value!r:.40}.")
+            raise InputError(f"{lines.where(table, index, key)}{key} must be {wanted}, not {value!r:.40}.")
 
 
-def _path(entry: Mapping[str, Any], index: int, lines: _Lines) -> FloorPath:
+def _path(entry: Mapping[str, Any], index: int, lines: Lines) -> FloorPath:
     points = entry.get("points", [])
     where = lines.where("path", index, "points") or "A path: "
+    if len(points) > MOST_POINTS:
+        raise InputError(f"{where}there are {len(points)} points: keep to {MOST_POINTS} or fewer.")
     keys = {"seconds", "x", "z", "heading"}
     for number, point in enumerate(points, 1):
         values = list(point.values()) if isinstance(point, Mapping) else point
@@ -244,7 +229,7 @@ def _path(entry: Mapping[str, Any], index: int, lines: _Lines) -> FloorPath:
     return path_of({"person": entry.get("person", ""), "points": points})
 
 
-def _pose(entry: Mapping[str, Any], index: int, lines: _Lines, folder: Path | None) -> Pose:
+def _pose(entry: Mapping[str, Any], index: int, lines: Lines, folder: Path | None) -> Pose:
     person, seconds = entry.get("person", ""), entry.get("seconds", 0.0)
     if "positions" in entry:
         where = lines.where("pose", index, "positions") or "A pose: "

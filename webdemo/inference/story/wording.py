@@ -3,13 +3,12 @@
 from __future__ import annotations
 
 import re
+import tomllib
 from collections import defaultdict
 from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
-
-import tomllib
 
 PHRASEBOOK = Path(__file__).with_name("phrasebook.toml")
 _OBJECT = (

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import asyncio
+from functools import partial
 from urllib.parse import urlsplit
 
 from fastapi import APIRouter, Form, Request
@@ -12,25 +14,31 @@ from motion import InputError
 from webdemo.server.http.body_limits import Refused
 from webdemo.server.http.cookies import set_cookie
 from webdemo.server.http.error_pages import sign_in_card
+from webdemo.server.http.networks import network_of
 from webdemo.server.settings import Settings
 
-from .users import SignIns, TooManyTries
-from .visitors import NO_ACCOUNTS, SESSION_COOKIE, Visitors
+from .throttle import TooManyTries
+from .users import SignIns
+from .visitors import KNOWN_COOKIE, NO_ACCOUNTS, SESSION_COOKIE, Visitors
+
+AT_ONCE = 2
+"""Passwords that are checked at a time; further tries wait without holding a thread."""
+WRONG = "The name or the password is wrong: try again."
+KNOWN_SECONDS = 365 * 86_400
+"""How long a browser is remembered as one in which somebody has signed in."""
 
 
 def login_routes(settings: Settings, sign_ins: SignIns, visitors: Visitors) -> APIRouter:
     """``/login`` (the page, and POST for it and for gradio_client) and ``/logout``."""
     router = APIRouter()
     root = settings.root_path
+    places = asyncio.Semaphore(AT_ONCE)
 
     def page(wanted: str, *, name: str = "", error: str = "", status: int = 200) -> HTMLResponse:
         body = sign_in_card(action=f"{root}/login", wanted=wanted, name=name[:40], error=error)
         return HTMLResponse(body, status_code=status, headers={"Cache-Control": "no-store"})
 
-    def keep(response: Response, request: Request, token: str, seconds: float) -> Response:
-        secure = request.url.scheme == "https"
-        set_cookie(response, SESSION_COOKIE, token, seconds=seconds, root=root, secure=secure)
-        return response
+    keep = partial(_keep, root)
 
     @router.get("/login")
     def ask(next: str = "/") -> Response:
@@ -44,26 +52,26 @@ def login_routes(settings: Settings, sign_ins: SignIns, visitors: Visitors) -> A
         next: str = Form("/", max_length=4096),
     ) -> Response:
         in_browser = "text/html" in request.headers.get("accept", "")
-        address = request.client.host if request.client else ""
-        error, status, token = "The name or the password is wrong: try again.", 401, None
+        address, name = network_of(request.client.host if request.client else ""), username.strip().lower()
+        error, status, token = WRONG, 401, None
         try:
-            token = await run_in_threadpool(sign_ins.begin, username.strip().lower(), password, address)
+            async with places:
+                known = request.cookies.get(KNOWN_COOKIE, "")
+                token = await run_in_threadpool(sign_ins.begin, name, password, address, known)
         except TooManyTries as reason:
             error, status = str(reason), 429
         except InputError:
             raise Refused(503, NO_ACCOUNTS, "accounts") from None
         if token is None:
-            return (
-                page(_own_path(next), name=username, error=error, status=status)
-                if in_browser
-                else JSONResponse({"detail": error}, status_code=status)
-            )
-        response: Response = (
-            RedirectResponse(f"{root}{_own_path(next)}", status_code=303)
-            if in_browser
-            else JSONResponse({"success": True})
-        )
-        return keep(response, request, token, sign_ins.seconds)
+            if in_browser:
+                return page(_own_path(next), name=username, error=error, status=status)
+            return JSONResponse({"detail": error}, status_code=status)
+        response: Response = JSONResponse({"success": True})
+        if in_browser:
+            response = RedirectResponse(f"{root}{_own_path(next)}", status_code=303)
+        keep(response, request, SESSION_COOKIE, token, sign_ins.seconds)
+        keep(response, request, KNOWN_COOKIE, sign_ins.known_browser(name), KNOWN_SECONDS)
+        return response
 
     @router.get("/logout")
     def sign_out_first() -> Response:
@@ -74,9 +82,16 @@ def login_routes(settings: Settings, sign_ins: SignIns, visitors: Visitors) -> A
         if token := request.cookies.get(SESSION_COOKIE, ""):
             await run_in_threadpool(sign_ins.end, token)
             visitors.forget(token)
-        return keep(RedirectResponse(f"{root}/login", status_code=303), request, "", 0)
+        response = RedirectResponse(f"{root}/login", status_code=303)
+        keep(response, request, SESSION_COOKIE, "", 0)
+        return response
 
     return router
+
+
+def _keep(root: str, response: Response, request: Request, cookie: str, value: str, seconds: float) -> None:
+    secure = request.url.scheme == "https"
+    set_cookie(response, cookie, value, seconds=seconds, root=root, secure=secure)
 
 
 def _own_path(wanted: str) -> str:

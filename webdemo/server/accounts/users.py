@@ -18,6 +18,8 @@ from motion import InputError
 from motion.formats.files import replacing
 from webdemo.server.store.database import Database, SignIn
 
+from .throttle import Throttle
+
 NAME = re.compile(r"[a-z0-9][a-z0-9._-]{0,39}\Z")
 SHORTEST = 8
 """Characters of a password at least."""
@@ -27,9 +29,6 @@ _COST = {"n": 2**14, "r": 8, "p": 1}
 _HEADER = (
     "# Accounts of Pas de Deux: a name, then scrypt's salt and hash. `python -m webdemo user` edits it.\n"
 )
-TRIES = 8
-"""Wrong passwords for one name from one address in :data:`TRY_SECONDS` before the next is refused."""
-TRY_SECONDS = 300.0
 
 
 class Users:
@@ -129,10 +128,6 @@ def _parse(text: str) -> dict[str, tuple[bytes, bytes]]:
     return entries
 
 
-class TooManyTries(InputError):
-    """Too many wrong passwords for one name or from one address."""
-
-
 class SignIns:
     """Sessions of signed-in people; only the hash of the cookie is stored.
 
@@ -144,28 +139,30 @@ class SignIns:
 
     def __init__(self, database: Database, users: Users, hours: float) -> None:
         self.database, self.users, self.seconds = database, users, hours * 3600
-        self._tries: dict[str, list[float]] = {}
+        self._throttle = Throttle()
         self._lock = threading.Lock()
 
-    def begin(self, name: str, password: str, address: str) -> str | None:
+    def begin(self, name: str, password: str, address: str, known: str = "") -> str | None:
         """A new session's token, or None if name and password do not match.
+
+        Args:
+            name: of the account.
+            password: to be checked.
+            address: where the try comes from.
+            known: what :meth:`known_browser` gave this browser, if it did.
 
         Raises:
             TooManyTries: after too many wrong passwords.
             InputError: if the accounts cannot be read.
         """
-        # A name is locked for one address only, so a stranger cannot lock its owner out.
-        allowed = {f"{name[:64]} {address}": TRIES, address: 5 * TRIES}
-        with self._lock:
-            self._forget()
-            if any(len(self._tries.get(key, ())) >= most for key, most in allowed.items()):
-                raise TooManyTries("Too many wrong passwords: try again in five minutes.")
         entry = self.users.entry(name)  # read before the password is checked, which may change meanwhile
+        counted = (name, address, self._browser(name, known))
+        with self._lock:
+            self._throttle.take(*counted)
         if not self.users.knows(name, password) or entry is None:
-            with self._lock:
-                for key in allowed:
-                    self._tries.setdefault(key, []).append(time.monotonic())
             return None
+        with self._lock:
+            self._throttle.give_back(*counted)
         token = secrets.token_urlsafe(32)
         now = time.time()
         with self.database.session.begin() as session:
@@ -192,11 +189,20 @@ class SignIns:
         with self.database.session.begin() as session:
             session.execute(delete(SignIn).where(SignIn.digest == _digest(token)))
 
-    def _forget(self) -> None:
-        since = time.monotonic() - TRY_SECONDS
-        self._tries = {
-            key: recent for key, tries in self._tries.items() if (recent := [t for t in tries if t > since])
-        }
+    def known_browser(self, name: str) -> str:
+        """A cookie for a browser in which somebody has signed in; worth nothing once the password is another."""
+        browser = secrets.token_urlsafe(12)
+        return f"{browser}.{self._signature(name, browser)}"
+
+    def _browser(self, name: str, known: str) -> str:
+        """The id in a :meth:`known_browser` of this name; empty if it is none."""
+        browser, _, signature = known.partition(".")
+        right = self._signature(name, browser)
+        return browser if right and hmac.compare_digest(signature.encode(), right.encode()) else ""
+
+    def _signature(self, name: str, browser: str) -> str:
+        entry = self.users.entry(name)
+        return "" if entry is None else hmac.new(entry.encode(), browser.encode(), "sha256").hexdigest()
 
 
 def _digest(token: str) -> str:

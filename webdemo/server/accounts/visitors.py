@@ -11,6 +11,7 @@ from collections.abc import Mapping
 
 from motion import InputError
 from webdemo.server.http.body_limits import Refused
+from webdemo.server.http.networks import network_of
 from webdemo.server.settings import Settings, is_loopback
 from webdemo.ui.visitor import Visitor
 
@@ -18,6 +19,7 @@ from .users import SignIns
 
 SESSION_COOKIE = "pasdedeux_session"
 VISITOR_COOKIE = "pasdedeux_visitor"
+KNOWN_COOKIE = "pasdedeux_known"
 _REMEMBERED = 10.0
 """Seconds for which a sign-in is not looked up anew."""
 _MOST = 20_000
@@ -54,10 +56,11 @@ class Visitors:
                 "This server is for its own machine: its owner can make accounts or set PASDEDEUX_OPEN=1.",
                 "not open",
             )
+        network = network_of(address)
         token = cookies.get(VISITOR_COOKIE, "")
         browser = f"visitor {digest(token)}" if 20 <= len(token) <= 100 else ""
         if self.settings.open:
-            return Visitor(browser or f"address {address}", browser, reference, base, address=address)
+            return Visitor(browser or f"address {network}", browser, reference, base, address=network)
         return Visitor(browser or "local", "local", reference, base)
 
     def forget(self, token: str) -> None:

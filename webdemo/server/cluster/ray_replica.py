@@ -160,7 +160,7 @@ async def in_thread(items: Callable[[], Iterable[Any]]) -> AsyncIterator[list[An
     while True:
         try:
             found = [await asyncio.wait_for(queue.get(), HEARTBEAT)]
-        except asyncio.TimeoutError:
+        except TimeoutError:
             yield []
             continue
         while not queue.empty():

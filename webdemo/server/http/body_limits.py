@@ -70,7 +70,7 @@ class BoundedBody:
             return await self._receive()
         try:
             message = await asyncio.wait_for(self._receive(), max(0.0, self._until - time.monotonic()))
-        except asyncio.TimeoutError:
+        except TimeoutError:
             raise Refused(408, "The request's body did not arrive in time: send it again.", "slow") from None
         if message["type"] == "http.request":
             self._size += len(message.get("body", b""))

@@ -19,6 +19,7 @@ from starlette.concurrency import run_in_threadpool
 from starlette.responses import JSONResponse, RedirectResponse, Response
 from starlette.types import ASGIApp, Receive, Scope, Send
 
+from motion import InputError
 from webdemo.server.accounts.visitors import VISITOR_COOKIE, Bindings, Visitors, new_token
 from webdemo.server.logs import REFERENCE
 from webdemo.server.settings import Settings, is_loopback, on_a_space
@@ -30,6 +31,7 @@ from .body_limits import BoundedBody, Refused, declared_length, too_large
 from .cookies import read_cookies, set_cookie
 from .exchange import Exchange
 from .metrics import Figures
+from .networks import network_of
 from .payloads import Payloads
 from .rate_limit import RateLimit
 from .routes import API, LIVE, MESSAGE, PUBLIC, is_upload, path_below, route_of
@@ -73,6 +75,7 @@ class Guard:
         figures: metrics to update.
         answers: counts the results being sent.
         payloads: validates the payloads of calls.
+        admit: makes room for an upload of a visitor, or raises InputError.
     """
 
     def __init__(
@@ -84,9 +87,10 @@ class Guard:
         figures: Figures,
         answers: OpenAnswers,
         payloads: Payloads,
+        admit: Callable[[Visitor, float], None],
     ) -> None:
         self.app, self.settings, self.visitors, self.figures = app, settings, visitors, figures
-        self.answers, self.payloads = answers, payloads
+        self.answers, self.payloads, self.admit = answers, payloads, admit
         self.bindings = Bindings()
         self.rate_limit = RateLimit(settings.rate)
         self.address_rate_limit = RateLimit(settings.rate * settings.address_people)
@@ -212,7 +216,7 @@ class Guard:
             if path not in ("/healthz", "/metrics"):  # they say what is wrong
                 raise
             visitor = None
-        nobody = Visitor(f"address {address}", "", exchange.reference, base)
+        nobody = Visitor(f"address {network_of(address)}", "", exchange.reference, base)
         if visitor is None and (path in PUBLIC or path.startswith("/login/")):
             visitor = nobody
         if scope["method"] in _CHANGING:
@@ -260,14 +264,23 @@ class Guard:
             raise too_large(most)
         form = None
         if is_upload(path):
-            self._check_room(declared)
+            size = declared if b"content-length" in headers else most
+            self._check_disk(size)
+            await self._make_room(visitor, size)
             form = UploadForm(headers.get(b"content-type", b""))
         body = BoundedBody(receive, most=most, seconds=self.settings.body_seconds, form=form)
         if form is None and path.startswith(API):
             self._check_call(await body.whole(), visitor.person, path)
         return body
 
-    def _check_room(self, size: float) -> None:
+    async def _make_room(self, visitor: Visitor, size: float) -> None:
+        """Makes room for an upload among the visitor's own files."""
+        try:
+            await run_in_threadpool(self.admit, visitor, size)
+        except InputError as error:
+            raise Refused(507, str(error), "room") from None
+
+    def _check_disk(self, size: float) -> None:
         free = self.settings.free_megabytes * 2**20
         if free and shutil.disk_usage(self.settings.data).free < free + size:
             raise Refused(507, _DISK, "disk")
@@ -288,6 +301,8 @@ class Guard:
         except (ValueError, RecursionError):
             raise Refused(400, "The request's body is not JSON.", "bad body") from None
         fields = fields if isinstance(fields, dict) else {}
+        if path.startswith(f"{API}call/"):
+            fields.pop("fn_index", None)  # Gradio calls what the address names
         if (endpoint is not None or path.startswith(f"{API}queue/join")) and fields.get("data") is None:
             fields["data"] = []  # as many values as a function without inputs takes
         self.payloads.check(fields, endpoint, person)

@@ -3,9 +3,12 @@
 from __future__ import annotations
 
 import logging
+import shutil
+import tempfile
 import threading
 import time
 from collections.abc import Callable
+from pathlib import Path
 from typing import Any
 
 from motion import InputError
@@ -19,17 +22,42 @@ PAUSE = 30.0
 """Seconds between two tries after one that failed."""
 
 
+def check_disk(folder: Path, least: float) -> None:
+    """Raises if a folder's disk has fewer than ``least`` bytes left, or nothing can be written in the folder.
+
+    Raises:
+        InputError: if there is too little space.
+        OSError: if nothing can be written.
+    """
+    if shutil.disk_usage(folder).free < least:
+        raise InputError(f"Less than {least / 2**20:g} MB of disk space are left.")
+    with tempfile.TemporaryFile(dir=folder) as file:
+        file.write(b"0" * 4096)
+        file.flush()
+
+
 class Health:
     """Ready once a tiny generation has worked, and until a run breaks; then another one is tried.
 
     Args:
         engine: what generates.
-        wants: further things that must hold, by name; each raises where it does not.
+        wants: further things that must hold, by name; each raises where it does not, an InputError with a sentence
+            that anybody may read.
+        works: what must make progress, by name: seconds for which it has made none.
+        stuck_seconds: after which it is stuck.
     """
 
-    def __init__(self, engine: EngineLike, wants: dict[str, Callable[[], Any]] | None = None) -> None:
+    def __init__(
+        self,
+        engine: EngineLike,
+        wants: dict[str, Callable[[], Any]] | None = None,
+        *,
+        works: dict[str, Callable[[], float]] | None = None,
+        stuck_seconds: float = 300.0,
+    ) -> None:
         self.engine = engine
-        self.wants = wants or {}
+        self.wants, self.works = wants or {}, {"health check": self._trying, **(works or {})}
+        self.stuck_seconds = stuck_seconds
         self.stopping = False
         self.error = ""
         self._works = False
@@ -65,13 +93,28 @@ class Health:
             try:
                 check()
                 checks[name] = "ok"
+            except InputError as error:
+                checks[name] = f"failed: {error}"
             except Exception as error:
                 checks[name] = f"failed ({type(error).__name__})"
         checks["generation"] = "ok" if self._works else f"failed: {self.error}" if self.error else "loading"
+        checks["progress"] = f"failed: {stuck}" if (stuck := self.stuck()) else "ok"
         whole = self.ready and all(state == "ok" for state in checks.values())
         failed = any(state.startswith("failed") for state in checks.values())
         status = "stopping" if self.stopping else "ready" if whole else "failed" if failed else "loading"
         return whole, {"status": status, "checks": checks}
+
+    def stuck(self) -> str:
+        """A sentence about what has made no progress for too long; empty while everything goes on."""
+        for name, still in self.works.items():
+            if (seconds := still()) > self.stuck_seconds:
+                return f"The {name} has made no progress for {seconds:.0f} s."
+        return ""
+
+    def _trying(self) -> float:
+        """Seconds for which a tiny generation has been going on."""
+        alive = self._thread is not None and self._thread.is_alive()
+        return time.monotonic() - self._tried_at if alive else 0.0
 
     def _try(self) -> None:
         request = GenerateRequest(prompt="Two people wave.", seconds=1.0, steps=1, damping=0.0)

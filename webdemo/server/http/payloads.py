@@ -1,7 +1,8 @@
-"""The check of what a call of the page holds: known functions, plain values, and files that were uploaded here.
+"""The check of what a call of the page holds: known functions, declared values, and files that were uploaded here.
 
 Gradio copies any file that a value names as ``{"path": …, "meta": {"_type": "gradio.FileData"}}`` into the
-folder that it serves, whatever component the value is for, and fetches addresses of other hosts.
+folder that it serves, whatever component the value is for, and fetches addresses of other hosts. What each
+component takes is declared beside it, see :mod:`webdemo.ui.components.accepts`.
 """
 
 from __future__ import annotations
@@ -11,13 +12,14 @@ from typing import Any
 
 import gradio as gr
 from gradio.blocks import Blocks
+from pydantic import TypeAdapter, ValidationError
 
 from webdemo.server.store.personal_files import owns
+from webdemo.ui.components.accepts import Upload, accepts, accepts_event
 
 from .body_limits import Refused
 
 _FOREIGN = "A file must be uploaded before it can be used: choose it again."
-_NOT_TEXT = "One of the values is neither text nor a number: reload the page, or see /gradio_api/info."
 
 
 class Payloads:
@@ -31,6 +33,11 @@ class Payloads:
         self._inputs = {number: list(fn.inputs) for number, fn in page.fns.items()}
         self._numbers = {
             str(fn.api_name): number for number, fn in page.fns.items() if fn.api_visibility == "public"
+        }
+        self._events = {
+            number: [page.blocks[target] for target, _ in fn.targets if target is not None]
+            for number, fn in page.fns.items()
+            if fn.collects_event_data
         }
 
     def number_of(self, endpoint: str) -> int:
@@ -59,7 +66,11 @@ class Payloads:
             raise Refused(
                 400, "Batched calls are not supported: send one call at a time, without batched.", "forged"
             )
-        data = fields.get("data")
+        self._check_data(fields.get("data"), function, person)
+        for component in self._events.get(function, ()) if function is not None else ():
+            _validated(fields.get("event_data"), accepts_event(component), component)
+
+    def _check_data(self, data: Any, function: int | None, person: str) -> None:
         if data is None:
             return
         if not isinstance(data, list):
@@ -74,29 +85,32 @@ class Payloads:
                 "bad body",
             )
         for value, component in zip(data, inputs, strict=True):
-            _check_value(value, component, person)
+            check_value(value, component, person)
 
 
-def _check_value(value: Any, component: Any, person: str) -> None:
-    if value is None:
-        return
-    if isinstance(component, gr.File | gr.UploadButton):
-        for file in value if isinstance(value, list) else [value]:
-            _check_file(file, person)
-        return
-    text = isinstance(component, gr.Textbox)
-    plain = value if isinstance(value, list) and not text else [value]
-    kinds = (str,) if text else (str, int, float, type(None))
-    if not all(isinstance(each, kinds) for each in plain):
-        raise Refused(400, _NOT_TEXT, "forged")
+def check_value(value: Any, component: Any, person: str) -> None:
+    """Raises Refused for a value that a component does not take, or that names a file of somebody else.
+
+    Args:
+        value: from JSON.
+        component: of the page.
+        person: who sends it.
+    """
+    taken = _validated(value, accepts(component), component)
+    for file in taken if isinstance(taken, list) else [taken]:
+        if isinstance(file, Upload) and not owns(person, file.path):
+            raise Refused(403, _FOREIGN, "forged")
 
 
-def _check_file(file: Any, person: str) -> None:
-    path = file.get("path") if isinstance(file, dict) else None
-    if not isinstance(path, str) or not isinstance(file.get("meta", {}), dict):
-        raise Refused(400, _FOREIGN, "forged")
-    if not owns(person, path):
-        raise Refused(403, _FOREIGN, "forged")
+def _validated(value: Any, declared: TypeAdapter[Any], component: Any) -> Any:
+    try:
+        return declared.validate_python(value)
+    except ValidationError:
+        name = component.label or type(component).__name__
+        sentence = f"“{name}” does not take such a value: reload the page, or see /gradio_api/info."
+        if isinstance(component, gr.File | gr.UploadButton):
+            sentence = _FOREIGN
+        raise Refused(400, sentence, "forged") from None
 
 
 def _texts(value: Any) -> Iterator[str]:

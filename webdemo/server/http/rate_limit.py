@@ -1,40 +1,65 @@
-"""Limits the rate of each person's requests."""
+"""Limits how often something may be done: requests of each person, and tries of passwords."""
 
 from __future__ import annotations
 
 import time
 from collections import OrderedDict
+from collections.abc import Callable
 
 from .body_limits import Refused
 
 _MOST = 20_000
-"""People whose buckets are kept; the one that has been idle longest goes first."""
+"""Buckets that are kept; the one that has been idle longest goes first."""
+
+
+class Buckets:
+    """A token bucket for every key, refilled at a steady rate.
+
+    Args:
+        size: tokens in a full one.
+        seconds: in which an empty one is filled.
+        clock: gives the time; seconds.
+    """
+
+    def __init__(self, size: float, seconds: float, clock: Callable[[], float] = time.monotonic) -> None:
+        self.size, self.a_second, self.clock = size, size / seconds, clock
+        self._left: OrderedDict[str, tuple[float, float]] = OrderedDict()
+
+    def wait(self, key: str, tokens: float = 1.0) -> float:
+        """Seconds until a bucket has so many tokens; 0 if it has them now."""
+        return max(0.0, tokens - self._now(key)) / self.a_second
+
+    def take(self, key: str, tokens: float = 1.0) -> None:
+        """Takes tokens, or what is left of them; a negative number puts some back."""
+        left = min(self.size, max(0.0, self._now(key) - tokens))
+        self._left.pop(key, None)
+        self._left[key] = (left, self.clock())
+        while len(self._left) > _MOST:
+            self._left.popitem(last=False)
+
+    def _now(self, key: str) -> float:
+        left, then = self._left.get(key, (self.size, 0.0))
+        return min(self.size, left + (self.clock() - then) * self.a_second)
 
 
 class RateLimit:
-    """A token bucket for every person, refilled at a steady rate.
+    """Requests of each person: so many a minute, and as many at once.
 
     The package ``limits`` has no request that weighs more than a full bucket, as a large upload does.
 
     Args:
-        a_minute: how many; as many may come at once.
+        a_minute: how many.
+        clock: gives the time; seconds.
     """
 
-    def __init__(self, a_minute: int) -> None:
-        self.a_minute = a_minute
-        self._buckets: OrderedDict[str, tuple[float, float]] = OrderedDict()
+    def __init__(self, a_minute: int, clock: Callable[[], float] = time.monotonic) -> None:
+        self._buckets = Buckets(a_minute, 60.0, clock)
 
     def take(self, person: str, weight: float = 1.0) -> None:
         """Takes a request, or one as heavy as several; raises Refused if too little is left.
 
         A bucket that is full is enough for any one request.
         """
-        now = time.monotonic()
-        left, then = self._buckets.pop(person, (float(self.a_minute), now))
-        left = min(self.a_minute, left + (now - then) * self.a_minute / 60)
-        enough = left >= min(weight, self.a_minute)
-        self._buckets[person] = (max(left - weight, 0.0) if enough else left, now)
-        while len(self._buckets) > _MOST:
-            self._buckets.popitem(last=False)
-        if not enough:
+        if self._buckets.wait(person, min(weight, self._buckets.size)):
             raise Refused(429, "Too many requests in one minute: wait a little.", "rate")
+        self._buckets.take(person, weight)

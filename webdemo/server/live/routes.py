@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import asyncio
 from collections.abc import Callable
-from concurrent.futures import Executor
+from concurrent.futures import Future
 from functools import partial
 from typing import Any
 
@@ -21,8 +21,10 @@ from webdemo.inference.actor import FPS
 from webdemo.ui.visitor import LOCAL, Visitor
 from webdemo.view.payload import player_payload
 
-from .messages import read_fields, read_message
-from .streams import StreamEnded, StreamRefused, Streams, StreamUnknown
+from .messages import read_fields
+from .stream import StreamEnded
+from .streams import StreamRefused, Streams, StreamUnknown
+from .turns import Replaced
 
 
 def live_routes(streams: Streams) -> APIRouter:
@@ -31,32 +33,37 @@ def live_routes(streams: Streams) -> APIRouter:
 
     @router.post("/live")
     async def begin(request: Request) -> Response:
-        return await _answered(None, partial(_begin, streams, _visitor(request), await request.body()))
+        visitor, body = _visitor(request), await request.body()
+        return await _answered(
+            lambda: streams.opening(visitor.person, partial(_begin, streams, visitor, body))
+        )
 
     @router.post("/live/{key}")
     async def frames(key: str, request: Request) -> Response:
-        return await _answered(
-            streams.worker, partial(_frames, streams, key, _visitor(request), await request.body())
-        )
+        body = await request.body()
+        return await _answered(lambda: streams.answer(key, _visitor(request), body))
 
     @router.delete("/live/{key}")
     async def end(key: str, request: Request) -> Response:
-        return await _answered(None, partial(_end, streams, key, _visitor(request)))
+        return await _answered(lambda: _end(streams, key, _visitor(request)))
 
     return router
 
 
-async def _answered(worker: Executor | None, job: Callable[[], dict[str, Any]]) -> Response:
-    """Does a job in a worker's turn, or in a thread of its own; errors are sentences."""
+async def _answered(job: Callable[[], dict[str, Any] | Future[dict[str, Any]]]) -> Response:
+    """The answer to a message, once it is there; errors are sentences."""
     status, answer = 200, {}
     try:
-        answer = await asyncio.get_running_loop().run_in_executor(worker, job)
+        found = job()
+        answer = await asyncio.wrap_future(found) if isinstance(found, Future) else found
     except StreamRefused as error:
         status, answer = 503, {"detail": str(error)}
     except StreamUnknown as error:
         status, answer = 404, {"detail": str(error)}
     except StreamEnded as error:
         status, answer = 410, {"detail": str(error)}
+    except Replaced as error:
+        status, answer = 409, {"detail": str(error)}
     except InputError as error:
         status, answer = 422, {"detail": str(error)}
     return JSONResponse(answer, status_code=status, headers={"Cache-Control": "no-store"})
@@ -77,10 +84,6 @@ def _begin(streams: Streams, visitor: Visitor, body: bytes) -> dict[str, Any]:
     rest = SMPL22.rest_positions()[None]
     empty = player_payload(Clip(rest - [0, rest[..., 1].min(), 0], FPS, SMPL22, name="you"), title="Live")
     return {"id": stream.id, "payload": {**empty, "id": f"stream-{stream.id}"}}
-
-
-def _frames(streams: Streams, key: str, visitor: Visitor, body: bytes) -> dict[str, Any]:
-    return streams.answer(key, visitor, read_message(body))
 
 
 def _end(streams: Streams, key: str, visitor: Visitor) -> dict[str, Any]:

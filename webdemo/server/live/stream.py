@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import threading
 import time
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field
@@ -19,15 +18,22 @@ from webdemo.inference.partner import Belief, LivePartner
 from webdemo.view.payload import pack_positions
 
 from .messages import Message, Poses
+from .turns import Steps
 
 Array = NDArray[np.floating]
 
 LONGEST_GAP = 1.0
 """Seconds without a pose over which the person's motion is interpolated; a longer pause is left out."""
 MOST_FRAMES = 120
-"""Frames after which the rest of a message is left out, so that other streams get their turn."""
+"""Frames after which the rest of a message is left out: a partner who is seconds late answers nothing."""
+AHEAD = MOST_FRAMES
+"""Frames that a stream may get beyond those of the time that has passed: nobody moves faster than the clock."""
 LOST = 1.0
 """Seconds without anybody in the picture after which the page says so."""
+
+
+class StreamEnded(InputError):
+    """A live stream has ended."""
 
 
 @dataclass
@@ -105,25 +111,28 @@ class LiveStream:
         camera = {name: value for name in ("lens", "tilt") if (value := getattr(self, name)) is not None}
         self._camera = FollowedPerson(**camera)
         self._even = Resampled()
-        self._busy = threading.Lock()
         self.began = self.heard = self.found = self.clock()
 
-    def answer(self, message: Message) -> dict[str, Any]:
-        """The answer to a message: both people's new frames, and what is to be said.
+    def answer(self, message: Message) -> Steps:
+        """Computes the answer to a message, a frame a step: both people's new frames, and what is to be said.
 
         Raises:
-            InputError: if the message before is still being answered, or the stream has ended.
+            StreamEnded: if the stream has ended, also between two steps.
         """
-        if not self._busy.acquire(blocking=False):
-            raise InputError("The live stream was sent two messages at once: send one after the other.")
-        try:
+        frames: list[Array] = []
+        spent, made = 0.0, self._frames(message)
+        while True:
             if self.ended:
-                raise InputError(self.ended)
+                raise StreamEnded(self.ended)
+            if self.counts.frames + len(frames) >= AHEAD + FPS * (self.clock() - self.began):
+                break
             self.heard = began = self.clock()
-            frames = list(self._frames(message))
-            spent = self.clock() - began
-        finally:
-            self._busy.release()
+            frame = next(made, None)
+            spent += self.clock() - began
+            if frame is None:
+                break
+            frames.append(frame)
+            yield
         self.heard = self.clock()
         counts = self.counts
         counts.dropped += message.dropped

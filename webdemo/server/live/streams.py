@@ -7,7 +7,8 @@ import secrets
 import threading
 import time
 from collections.abc import Callable
-from concurrent.futures import ThreadPoolExecutor
+from concurrent.futures import Future
+from functools import partial
 from typing import Any, Protocol
 
 from motion import InputError
@@ -15,8 +16,9 @@ from webdemo.inference.actor import FPS
 from webdemo.inference.partner import PARTNERS, LivePartner
 from webdemo.ui.visitor import Visitor
 
-from .messages import Message
-from .stream import LiveStream
+from .messages import read_message
+from .stream import LiveStream, StreamEnded
+from .turns import STOPPING, Steps, StepTurns
 
 log = logging.getLogger(__name__)
 
@@ -33,16 +35,11 @@ KEPT = 256
 OTHER_TAB = "Another live stream of yours has begun, so this one ended: press Start to go on here."
 TOO_LONG = f"A live stream lasts {LONGEST / 60:.0f} minutes at most: press Start to go on."
 SILENT = f"Nothing came for {IDLE:.0f} seconds, so the live stream was closed: press Start to go on."
-STOPPING = "The server is stopping: press Start again in a minute."
 UNKNOWN = "The server does not know this live stream any more: press Start to go on."
 
 
 class StreamRefused(InputError):
     """There is no room for another live stream."""
-
-
-class StreamEnded(InputError):
-    """A live stream has ended."""
 
 
 class StreamUnknown(InputError):
@@ -59,9 +56,8 @@ class Partners(Protocol):
 class Streams:
     """Opens streams, finds them again and closes those that are idle.
 
-    Each person may have one: opening another ends the first. A stream has at most one message in work, and one thread
-    answers messages in the order in which they came, so the streams take turns. Several threads would be no faster,
-    since they would wait for Python's interpreter lock.
+    Each person may have one: opening another ends the first. One thread computes a frame of each stream in turn, and
+    another one opens streams, whose networks may have to be loaded first; see :class:`StepTurns`.
 
     Args:
         engine: has the partners.
@@ -70,7 +66,7 @@ class Streams:
         clock: gives the time; seconds.
 
     Attributes:
-        worker: the thread that answers messages.
+        turns: answers messages.
         pace: recent seconds of computing a frame.
     """
 
@@ -78,13 +74,18 @@ class Streams:
         self, engine: Partners, *, most: int, address: int, clock: Callable[[], float] = time.monotonic
     ) -> None:
         self.engine, self.most, self.address, self.clock = engine, most, address, clock
-        self.worker = ThreadPoolExecutor(max_workers=1, thread_name_prefix="live")
+        self.turns, self._doors = StepTurns("live"), StepTurns("live-open")
         self.pace = 0.0
         self._lock = threading.Lock()
         self._open: dict[str, LiveStream] = {}
         self._ended: dict[str, str] = {}
         self._coming = 0
         self._stopping = False
+
+    @property
+    def stuck(self) -> float:
+        """Seconds for which a frame, or the opening of a stream, has taken."""
+        return max(self.turns.stuck, self._doors.stuck)
 
     @property
     def count(self) -> int:
@@ -162,15 +163,35 @@ class Streams:
                 raise StreamUnknown(UNKNOWN) if reason is None else StreamEnded(reason)
         return stream
 
-    def answer(self, key: str, visitor: Visitor, message: Message) -> dict[str, Any]:
-        """The answer of a person's stream to a message.
+    def opening(self, person: str, open_: Callable[[], dict[str, Any]]) -> Future[dict[str, Any]]:
+        """Calls a function that opens a stream, when it is the person's turn.
 
         Raises:
-            InputError: as :meth:`find` and :meth:`LiveStream.answer`.
+            StreamRefused: if the server is stopping.
+        """
+        if self._stopping:
+            raise StreamRefused(STOPPING)
+
+        def steps() -> Steps:
+            return open_()
+            yield  # one step
+
+        return self._doors.submit(person, steps)
+
+    def answer(self, key: str, visitor: Visitor, body: bytes) -> Future[dict[str, Any]]:
+        """The answer of a person's stream to a message; the next message replaces one that still waits.
+
+        Raises:
+            InputError: as :meth:`find`; the answer may raise :class:`Replaced`, StreamEnded, or InputError for a
+                message that cannot be read.
         """
         stream = self.find(key, visitor)
+        stream.heard = self.clock()
+        return self.turns.submit(stream, partial(self._answer, stream, body))
+
+    def _answer(self, stream: LiveStream, body: bytes) -> Steps:
         before = stream.counts.frames
-        answer = stream.answer(message)
+        answer = yield from stream.answer(read_message(body))
         if frames := stream.counts.frames - before:
             self.pace += _PACE * (answer["milliseconds"] / 1000 / frames - self.pace)
         return answer
@@ -196,6 +217,8 @@ class Streams:
             self._stopping = True
             for stream in list(self._open.values()):
                 self._end(stream, STOPPING)
+        self.turns.stop()
+        self._doors.stop()
 
     def _end(self, stream: LiveStream, reason: str) -> None:
         """The caller holds the lock."""

@@ -65,6 +65,8 @@ class FairQueue:
         self._sessions: dict[str, CancelToken] = {}
         self._workers: set[str] = set()
         self._stopping = False
+        self._rested = time.monotonic()
+        """When the last run ended."""
 
     # ---- for callers -----------------------------------------------------------------------------
 
@@ -77,6 +79,16 @@ class FairQueue:
     def running(self) -> int:
         """Number of running runs."""
         return len(self._running)
+
+    @property
+    def stuck(self) -> float:
+        """Seconds for which a running run has made no progress, or nothing has run although something waits."""
+        now = time.monotonic()
+        with self._change:
+            still = [now - job.moved for job in self._running]
+            if self._waiting and not self._running:
+                still.append(now - max(self._rested, min(job.came for job in self._waiting)))
+        return max(still, default=0.0)
 
     def cancel(self, session: str) -> bool:
         """Stops the session's run, waiting or running; False if it has none."""
@@ -103,8 +115,8 @@ class FairQueue:
             alone: share its pass with no other run, so the same request gives the same bytes.
 
         Raises:
-            InputError: if the queue or the person's share of it is full, the server is stopping, or the engine
-                cannot fulfil the request.
+            InputError: if the queue or the person's share of it is full, the server is stopping, the run takes too
+                long, or the engine cannot fulfil the request.
             Cancelled: if the run was cancelled.
         """
         job = self._enter(session, request, visitor(), alone=alone)
@@ -146,7 +158,10 @@ class FairQueue:
 
     def _enter(self, session: str, request: Any, who: Visitor, *, alone: bool = False) -> Job:
         key, person = self.batcher.key(request) if self.batcher and not alone else None, who.person
-        job = Job(person, request, group="", cost=units(request), key=key, address=who.address)
+        job = Job(
+            person, request, group="", cost=units(request), key=key, address=who.address,
+            token=CancelToken(self.limits.seconds),
+        )  # fmt: skip
         with self._change:
             if self._stopping:
                 raise InputError("The server is stopping: send this again in a minute.")
@@ -171,7 +186,8 @@ class FairQueue:
                     f"The queue is full ({len(self._waiting)} runs wait): try again in a few minutes."
                 )
             job.group = self._group(request)
-            self._turns.meet(person, self._waiting, self._running)
+            running = [(job.person, job.cost) for job in self._running]
+            self._turns.meet(person, {job.person for job in (*self._waiting, *self._running)}, running)
             self._sessions[session] = job.token
             self._waiting.append(job)
             job.estimate = self._line(job.group).place(job)[1]
@@ -197,7 +213,8 @@ class FairQueue:
                 event = None
             if isinstance(event, Exception):
                 raise event
-            job.token.raise_if_cancelled()
+            if not isinstance(event, Result) or job.token.cancelled:  # a result that is there is not too late
+                job.token.raise_if_cancelled()
             if event is None:
                 with self._change:
                     if job not in self._waiting:
@@ -234,10 +251,11 @@ class FairQueue:
                 began = time.monotonic()
                 for job in batch:
                     self._waiting.remove(job)
-                    self._turns.charge(job)
+                    self._turns.charge(job.person, job.cost)
                     self.served(job.person, job.cost)
                     job.batch = len(batch)
-                    job.started = began
+                    job.started = job.moved = began
+                    job.token.start()
                     self._running.append(job)
             try:
                 whole = self._run_batch(batch)
@@ -245,6 +263,7 @@ class FairQueue:
                 with self._change:
                     for job in batch:
                         self._running.remove(job)
+                    self._rested = time.monotonic()
                     self._change.notify_all()
             if whole:
                 self.pace.of(group).learn(sum(job.cost for job in batch), time.monotonic() - began)
@@ -261,6 +280,8 @@ class FairQueue:
         whole = True
         try:
             for i, event in self._events(batch):
+                for job in batch:
+                    job.moved = time.monotonic()
                 batch[i].events.put(event)
                 if isinstance(event, Result):
                     ended.add(i)

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import queue
 import time
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any, Protocol
 
@@ -36,8 +36,8 @@ class Batcher(Protocol):
 
 @dataclass(frozen=True, kw_only=True)
 class QueueLimits:
-    """Limits of running and waiting runs per person, per address and in total, of motions per pass, and of
-    concurrent batches per model."""
+    """Limits of running and waiting runs per person, per address and in total, of motions per pass, of concurrent
+    batches per model, and of the seconds of one run (0: none)."""
 
     running: int = 2
     waiting: int = 4
@@ -45,6 +45,7 @@ class QueueLimits:
     queue: int = 64
     batch: int = 8
     workers: int = 1
+    seconds: float = 0.0
 
 
 @dataclass(eq=False)
@@ -57,6 +58,7 @@ class Job:
         cost: its work, in units.
         key: jobs of equal keys may share a pass; None for one that runs alone.
         events: progress, then a result or an error; read by the caller.
+        moved: when its pass last began or made progress.
         estimate: estimated wait in seconds when it arrived.
         batch: number of runs that shared its pass.
     """
@@ -71,11 +73,47 @@ class Job:
     events: queue.SimpleQueue[Any] = field(default_factory=queue.SimpleQueue)
     came: float = field(default_factory=time.monotonic)
     started: float = 0.0
+    moved: float = 0.0
     estimate: float | None = None
     batch: int = 1
 
 
-class Turns:
+class Accounts:
+    """The work done for each person.
+
+    Attributes:
+        served: units of work by person.
+    """
+
+    def __init__(self) -> None:
+        self.served: dict[str, float] = {}
+
+    def meet(self, person: str, here: Collection[str], running: Iterable[tuple[str, float]] = ()) -> None:
+        """Opens an account; a newcomer starts at the level of the least served person present.
+
+        Args:
+            person: who asks for something.
+            here: people with anything unfinished.
+            running: (person, units) already charged for running work. It does not count towards that level, or its
+                owner would be tied with the newcomer.
+        """
+        before = {name: self.served.get(name, 0.0) for name in here}
+        for name, cost in running:
+            before[name] -= cost
+        least = min(before.values(), default=0.0)
+        if person not in here:
+            self.served[person] = max(self.served.get(person, 0.0), least)
+        if not here:  # an idle server resets the accounts
+            self.served = {person: 0.0}
+        elif len(self.served) > MAX_ACCOUNTS:
+            self.served = {name: self.served.get(name, 0.0) for name in {*here, person}}
+
+    def charge(self, person: str, units: float) -> None:
+        """Adds work done for a person."""
+        self.served[person] = self.served.get(person, 0.0) + units
+
+
+class Turns(Accounts):
     """Keeps the accounts and chooses batches by them; the caller must hold a lock.
 
     Args:
@@ -84,32 +122,9 @@ class Turns:
     """
 
     def __init__(self, limits: QueueLimits, batcher: Batcher | None) -> None:
+        super().__init__()
         self.limits, self.batcher = limits, batcher
-        self.served: dict[str, float] = {}
-        """Units of work done for each person."""
         self._elsewhere: Mapping[str, float] | None = None
-
-    def meet(self, person: str, waiting: Iterable[Job], running: Iterable[Job]) -> None:
-        """Opens an account; a newcomer starts at the level of the least served person present.
-
-        Running work does not count towards that level, or its owner would be tied with the newcomer.
-        """
-        running = list(running)
-        here = {job.person for job in waiting} | {job.person for job in running}
-        before = {name: self.served[name] for name in here}
-        for job in running:
-            before[job.person] -= job.cost
-        least = min(before.values(), default=0.0)
-        if person not in here:
-            self.served[person] = max(self.served.get(person, 0.0), least)
-        if not here:  # an idle server resets the accounts
-            self.served = {person: 0.0}
-        elif len(self.served) > MAX_ACCOUNTS:
-            self.served = {name: self.served[name] for name in {*here, person}}
-
-    def charge(self, job: Job) -> None:
-        """Charges a job to its owner when it starts."""
-        self.served[job.person] = self.served.get(job.person, 0.0) + job.cost
 
     def charge_elsewhere(self, totals: Mapping[str, float]) -> None:
         """Adds the work done at other processes since the last call.

@@ -9,11 +9,13 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
-from sqlalchemy import Engine, ForeignKey, Text, UniqueConstraint, create_engine, event, select
+from sqlalchemy import Engine, ForeignKey, Text, UniqueConstraint, create_engine, event, select, update
 from sqlalchemy.exc import ArgumentError, DatabaseError, NoSuchModuleError, SQLAlchemyError
 from sqlalchemy.orm import DeclarativeBase, Mapped, mapped_column, relationship, sessionmaker
 
 from motion import InputError
+
+from .upgrade import upgrade
 
 log = logging.getLogger(__name__)
 
@@ -26,7 +28,7 @@ CHECKED_ROWS = 200
 
 
 class Table(DeclarativeBase):
-    """The base of all tables. Times are seconds since 1970."""
+    """The base of all tables. Times are seconds since 1970 where nothing else is said."""
 
 
 class Run(Table):
@@ -39,8 +41,11 @@ class Run(Table):
         request: as JSON, without motion.
         outcome: manifest, timings and notes as JSON; empty until done.
         message: what went wrong, as one sentence.
-        size: bytes of its files.
+        created: what the clock showed then.
+        stored: the lab's time (:mod:`.ledger`) when it came here, by which it grows old.
+        size: bytes of its files and of what is written about it.
         node: the process that runs it.
+        address: a hash of the address that it came from; empty where people are known by more than a cookie.
     """
 
     __tablename__ = "runs"
@@ -54,7 +59,9 @@ class Run(Table):
     outcome: Mapped[str] = mapped_column(Text, default="")
     message: Mapped[str] = mapped_column(Text, default="")
     created: Mapped[float] = mapped_column(default=time.time, index=True)
+    stored: Mapped[float] = mapped_column(default=0.0, server_default="0", index=True)
     size: Mapped[int] = mapped_column(default=0)
+    address: Mapped[str] = mapped_column(default="", server_default="", index=True)
     favourite: Mapped[bool] = mapped_column(default=False)
     node: Mapped[str] = mapped_column(default="")
     links: Mapped[list[Link]] = relationship(back_populates="run", cascade="all, delete-orphan")
@@ -130,6 +137,7 @@ class Study(Table):
         shows_result: people see the result after their last pair.
         closed: nobody can vote any more.
         size: bytes of its motions.
+        address: as that of a run.
     """
 
     __tablename__ = "studies"
@@ -147,6 +155,7 @@ class Study(Table):
     closed: Mapped[bool] = mapped_column(default=False)
     created: Mapped[float] = mapped_column(default=time.time)
     size: Mapped[int] = mapped_column(default=0)
+    address: Mapped[str] = mapped_column(default="", server_default="", index=True)
 
 
 class Rater(Table):
@@ -192,7 +201,7 @@ class Ballot(Table):
 
 
 class Database:
-    """A connection to the tables, which are made where they are missing.
+    """A connection to the tables, which are made, or brought up to date, where that is needed.
 
     Args:
         url: as SQLAlchemy takes it.
@@ -206,7 +215,9 @@ class Database:
             self.engine = create_engine(url, pool_pre_ping=True)
             if self.engine.dialect.name == "sqlite":
                 _prepare_sqlite(self.engine)
-            Table.metadata.create_all(self.engine)
+            upgrade(self.engine, Table.metadata)
+            with self.engine.begin() as connection:  # rows of an earlier version
+                connection.execute(update(Run).where(Run.stored == 0).values(stored=Run.created))
         except (ArgumentError, NoSuchModuleError):
             raise InputError(
                 "The database's URL is not understood: write it as sqlite:///FILE or postgresql+psycopg://…"

@@ -22,22 +22,20 @@ from sqlalchemy.orm import Session, selectinload
 from motion import InputError, formats
 from webdemo.inference.predict_request import PredictResult
 from webdemo.inference.requests import Result
+from webdemo.server.accounts.visitors import digest
 from webdemo.ui.history import Entry, Opened
 
 from .database import Database, Link, Note, Run, sentence_of, sentences
-from .originals import bytes_of
+from .intake import IMPORT, listed, node_of
+from .ledger import DAY, LabClock, locked
+from .storage import ROW_BYTES, RUN_BYTES, Storage, forget, weight_of
 
 log = logging.getLogger(__name__)
 
 SHOWN = 200
 """Runs that a list holds at most."""
-DAY = 86_400.0
-LEAP_SECONDS = 2 * DAY
-"""A clock further than this past the newest run and the last cleaning is not trusted."""
 UNDO_SECONDS = 600.0
 """For so long a removed run can be brought back."""
-WAIT_SECONDS = DAY
-"""After a clock was not trusted, nothing is removed for this long: time to read the log and correct it."""
 _TRUTH = "truth.npz"
 """What really followed the past of a prediction."""
 _PREDICTION = ("past_frames", "error", "speed", "true_speed")
@@ -52,11 +50,12 @@ class History:
         database: where their rows are.
         folder: holds a folder a run.
         node: this process's name; its unfinished runs of an earlier life are marked as interrupted.
+        storage: counts what people store, and makes room; by default with no limit for one person.
         keep_days: age in days at which a run is removed unless it is a favourite.
-        keep_bytes: size of all runs' files above which the oldest that are no favourites are removed.
         keep_favourites: favourites that one owner may have.
         link_days: how long a link lasts.
         free_bytes: free disk space below which nothing is begun.
+        clock: tells the lab's time, by which runs grow old; by default one of its own.
     """
 
     def __init__(
@@ -65,18 +64,19 @@ class History:
         folder: Path,
         *,
         node: str = "",
+        storage: Storage | None = None,
+        clock: LabClock | None = None,
         keep_days: float = 30,
-        keep_bytes: float = 2e9,
         keep_favourites: int = 200,
         link_days: float = 30,
         free_bytes: float = 0,
     ) -> None:
         self.database, self.folder, self.node = database, folder, node
-        self.keep_days, self.keep_bytes, self.keep_favourites = keep_days, keep_bytes, keep_favourites
+        self.storage = storage or Storage(database, folder)
+        self.clock = clock or LabClock(database)
+        self.keep_days, self.keep_favourites = keep_days, keep_favourites
         self.link_days, self.free_bytes = link_days, free_bytes
         self._owed: dict[str, tuple[str, str]] = {}
-        self._cleaned = 0.0
-        self._trusted_from = 0.0
         try:
             folder.mkdir(mode=0o700, parents=True, exist_ok=True)
         except OSError as error:
@@ -87,33 +87,47 @@ class History:
     # ---- while a run goes on ---------------------------------------------------------------------
 
     @sentences()
-    def begin(self, owner: str, request: Any, title: str) -> str:
+    def begin(self, owner: str, request: Any, title: str, *, address: str = "") -> str:
         """Writes down that a run was asked for; returns its id.
 
+        Args:
+            owner: whose run it is.
+            request: that was asked for.
+            title: of the run.
+            address: that it comes from, where strangers are known by cookies that they could throw away.
+
         Raises:
-            InputError: if the disk is nearly full.
+            InputError: if the disk is nearly full, or the owner has no room and nothing that can make way.
         """
+        self._check_disk()
+        asked = request.to_dict()
+        text = json.dumps(asked)
+        run = Run(
+            id=secrets.token_urlsafe(18), owner=owner, kind=asked.get("kind", "generate"), title=title, request=text,
+            node=self.node, stored=self.clock.now(), address=digest(address) if address else "",
+            size=ROW_BYTES + len(text),
+        )  # fmt: skip
+        with self.database.session.begin() as session:
+            self.storage.check(session, owner, run.address, RUN_BYTES)
+            session.add(run)
+        return run.id
+
+    def _check_disk(self) -> None:
         if shutil.disk_usage(self.folder).free < self.free_bytes:
             raise InputError(
                 "The server's disk is nearly full, so nothing new can be kept: tell the person who runs it."
             )
-        asked = request.to_dict()
-        run = Run(
-            id=secrets.token_urlsafe(18), owner=owner, kind=asked.get("kind", "generate"), title=title,
-            request=json.dumps(asked), node=self.node,
-        )  # fmt: skip
-        with self.database.session.begin() as session:
-            session.add(run)
-        return run.id
 
     def finish(self, run: str, result: Result) -> None:
         """Keeps a run's result: first its files, then its row, so every finished row has its files.
 
+        Where its owner's room is used up, runs of theirs make way (:meth:`Storage.make_room`).
+
         Raises:
-            InputError: if they cannot be written; the run is then marked as failed.
+            InputError: if it cannot be kept; the run is then marked as failed.
         """
         try:
-            size = self._write(run, result)
+            self._write(run, result)
         except (OSError, InputError) as error:
             full = getattr(error, "errno", None) in (errno.ENOSPC, errno.EDQUOT) or "full" in str(error)
             sentence = (
@@ -127,17 +141,26 @@ class History:
         outcome = {"manifest": result.manifest, "timings": result.timings, "notes": list(result.notes)}
         if isinstance(result, PredictResult):
             outcome["prediction"] = {name: getattr(result, name) for name in _PREDICTION}
-        done = update(Run).where(Run.id == run).values(state="done", outcome=json.dumps(outcome), size=size)
         try:
-            with self.database.session.begin() as session:
-                there = cast(CursorResult[Any], session.execute(done)).rowcount
-        except SQLAlchemyError as error:
-            reason = sentence_of(error)
-            shutil.rmtree(self.folder / run, ignore_errors=True)
+            there, gone = self._enter(run, json.dumps(outcome))
+        except (SQLAlchemyError, InputError) as error:
+            reason = sentence_of(error) if isinstance(error, SQLAlchemyError) else error
+            self.storage.drop([run])
             self.end(run, "failed", str(reason))
             raise InputError(f"{reason} Download the result's files now.") from None
-        if not there:  # its owner removed it while it ran
-            shutil.rmtree(self.folder / run, ignore_errors=True)
+        self.storage.drop(gone if there else [run])  # its owner removed it while it ran
+
+    def _enter(self, run: str, outcome: str) -> tuple[bool, list[str]]:
+        """Writes a result into its row; returns whether that is still there, and the runs that made way."""
+        with self.database.session.begin() as session:
+            locked(session)
+            row = session.get(Run, run)
+            if row is None:
+                return False, []
+            weight = weight_of(row, self.folder / run) + len(outcome)
+            gone = self.storage.make_room(session, row.owner, row.address, weight - row.size, spare=[run])
+            row.state, row.outcome, row.size = "done", outcome, weight
+        return True, gone
 
     def end(self, run: str, state: str, message: str = "") -> None:
         """Marks a run that has no result; where that cannot be written, :meth:`settle` does it later."""
@@ -177,8 +200,29 @@ class History:
             )
         for run in lost:
             shutil.rmtree(self.folder / run, ignore_errors=True)
-            shutil.rmtree(self.folder / f".{run}", ignore_errors=True)
+        self._sweep(dead)
         return len(lost)
+
+    def _sweep(self, dead: Callable[[Sequence[str]], Sequence[str]] | None) -> None:
+        """Removes files that belong to no run: those of killed imports, and of runs that a process was removing.
+
+        A run has its row before it has files. The runs of an import have theirs later, but are listed in its folder.
+        """
+        there = [path for path in self.folder.iterdir() if path.is_dir()]
+        coming: set[str] = set()
+        for folder in (path for path in there if path.name.startswith(IMPORT)):
+            node = node_of(folder)
+            if node == self.node or (dead is not None and dead([node])):
+                shutil.rmtree(folder, ignore_errors=True)
+            else:
+                coming |= listed(folder)
+        with self.database.session() as session:
+            rows = session.execute(select(Run.id, Run.state)).tuples().all()
+        running = {f".{run}" for run, state in rows if state == "running"}
+        known = {run for run, _ in rows} | running | coming
+        for path in there:
+            if path.name not in known and not path.name.startswith(IMPORT):
+                shutil.rmtree(path, ignore_errors=True)
 
     # ---- finding them again ----------------------------------------------------------------------
 
@@ -239,7 +283,7 @@ class History:
         """Deletes a run, its files and its links at once."""
         with self.database.session.begin() as session:
             session.delete(self._own(session, run, owner))
-        shutil.rmtree(self.folder / run, ignore_errors=True)
+        self.storage.drop([run])
 
     @sentences()
     def link(self, run: str, owner: str) -> tuple[str, float]:
@@ -263,48 +307,24 @@ class History:
     # ---- expiry ----------------------------------------------------------------------------------
 
     def clean(self) -> int:
-        """Removes runs by age, then the oldest by size; favourites stay. Returns how many.
+        """Removes runs by age; favourites stay. Returns how many.
 
-        A clock that is wrong removes nothing: where it is far past the newest run and the last cleaning, age
-        counts again after :data:`WAIT_SECONDS`.
+        Ages are in the lab's time. While the clock cannot be trusted, nothing is removed because of its age.
         """
-        now = time.time()
+        trusted = self.clock.look()
+        now = self.clock.now()
         with self.database.session.begin() as session:
-            old = select(Run.id, Run.size).where(~Run.favourite, Run.state != "running")
-            taken_out = select(Run.id, Run.size).join(Note).where(Note.removed < now - UNDO_SECONDS)
-            gone: dict[str, int] = dict(session.execute(taken_out).tuples().all())
-            if self._clock_is_trusted(now, session.scalar(select(func.max(Run.created)))):
-                session.execute(delete(Link).where(Link.until < now))
-                outlived = session.execute(old.where(Run.created < now - self.keep_days * DAY))
-                gone |= dict(outlived.tuples().all())
-            total = (session.scalar(select(func.sum(Run.size))) or 0) - sum(gone.values())
-            if total > self.keep_bytes:
-                for run, size in session.execute(old.order_by(Run.created)):
-                    if total <= self.keep_bytes:
-                        break
-                    if run not in gone:
-                        gone[run] = size
-                        total -= size
-            for run in gone:
-                session.execute(delete(Note).where(Note.run_id == run))
-                session.execute(delete(Link).where(Link.run_id == run))
-                session.execute(delete(Run).where(Run.id == run))
-        for run in gone:
-            shutil.rmtree(self.folder / run, ignore_errors=True)
+            locked(session)
+            gone = list(session.scalars(select(Note.run_id).where(Note.removed < now - UNDO_SECONDS)))
+            if trusted:
+                session.execute(delete(Link).where(Link.until < time.time()))
+                old = Run.stored < now - self.keep_days * DAY
+                gone += session.scalars(
+                    select(Run.id).where(old, Run.stored > 0, ~Run.favourite, Run.state != "running")
+                )
+            gone = [run for run in dict.fromkeys(gone) if forget(session, run)]
+        self.storage.drop(gone)
         return len(gone)
-
-    def _clock_is_trusted(self, now: float, newest: float | None) -> bool:
-        """True if ages of runs can be trusted: not for a while after the clock seems to have jumped."""
-        last = max(self._cleaned, newest or 0.0)
-        if last and now - last > LEAP_SECONDS:
-            log.warning(
-                "The clock is %.0f days past the newest run and the last cleaning: runs are kept whatever "
-                "their age for %.0f hours. Set the clock right if it is wrong.",
-                (now - last) / DAY, WAIT_SECONDS / 3600,
-            )  # fmt: skip
-            self._trusted_from = time.monotonic() + WAIT_SECONDS
-        self._cleaned = now
-        return time.monotonic() >= self._trusted_from
 
     # ---- files -----------------------------------------------------------------------------------
 
@@ -314,8 +334,8 @@ class History:
             raise InputError("There is no such run in your history: reload the page.")
         return found
 
-    def _write(self, run: str, result: Result) -> int:
-        """Writes a result's files into a folder that takes its name when it is whole; returns their bytes."""
+    def _write(self, run: str, result: Result) -> None:
+        """Writes a result's files into a folder that takes its name when it is whole."""
         half = self.folder / f".{run}"
         try:
             half.mkdir(mode=0o700)
@@ -326,12 +346,10 @@ class History:
             (half / "readouts.json").write_text(
                 json.dumps(list(result.readouts), default=float), encoding="utf-8"
             )
-            size = bytes_of(half)
             os.replace(half, self.folder / run)
         except BaseException:
             shutil.rmtree(half, ignore_errors=True)
             raise
-        return size
 
     def _read(self, run: str, outcome: dict[str, Any]) -> Result:
         folder = self.folder / run

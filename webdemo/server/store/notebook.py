@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import json
 import logging
-import time
-from collections.abc import Sequence
-from contextlib import suppress
+import threading
+from collections.abc import Generator, Iterator, Mapping, Sequence
+from contextlib import contextmanager, suppress
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -17,14 +17,19 @@ from sqlalchemy.orm import Session, selectinload
 
 from motion import Clip, InputError, formats
 from webdemo.inference.requests import Result
-from webdemo.ui.history import Entry, Found, Kept, Opened, Search
+from webdemo.server.accounts.visitors import digest
+from webdemo.ui.history import Entry, Found, Kept, Opened, Search, Usage
+from webdemo.ui.visitor import Visitor
 from webdemo.view.thumbnail import thumbnail
 
 from .database import Note, Run, sentences
 from .history import History, entry_of, fields_of
+from .intake import announce, intake
 from .kept_settings import MOST_BESIDE
-from .originals import LARGEST_SHARE, bytes_of, keep_original, kept_original
-from .workspace import Packed, pack, unpack
+from .ledger import locked
+from .originals import LARGEST_SHARE, ORIGINAL, keep_original, kept_original
+from .storage import weight_of
+from .workspace import Packed, Taken, pack, unpack
 
 log = logging.getLogger(__name__)
 
@@ -38,6 +43,11 @@ LARGEST_KEPT = 20_000
 
 class Notebook(History):
     """A history whose owners can search it, write in it, and take it along; see :class:`History`."""
+
+    def __init__(self, *args: Any, **more: Any) -> None:
+        super().__init__(*args, **more)
+        self._importing: set[str] = set()
+        self._lock = threading.Lock()
 
     # ---- finding ---------------------------------------------------------------------------------
 
@@ -114,26 +124,43 @@ class Notebook(History):
             return
         with self.database.session() as session:
             self._own(session, run, owner)
-            used = session.scalar(select(func.sum(Run.size)).where(Run.owner == owner)) or 0
         folder = self.folder / run
         if kept.original is not None:
-            record["file"] = keep_original(kept.original, folder, LARGEST_SHARE * self.keep_bytes - used)
-        self._keep_people(kept, folder)
+            room = self.storage.spare(owner, LARGEST_SHARE)
+            record["file"] = keep_original(kept.original, folder, room)
+        added = [folder / ORIGINAL, *self._keep_people(kept, folder)]
+        try:
+            gone = self._note_kept(run, owner, record, kept.compared[:MOST_BESIDE])
+        except InputError:  # the files alone are left out
+            for path in added:
+                path.unlink(missing_ok=True)
+            gone = self._note_kept(run, owner, record | {"file": ""}, kept.compared[:MOST_BESIDE])
+        self.storage.drop(gone)
+
+    def _note_kept(self, run: str, owner: str, record: Mapping[str, Any], beside: Sequence[str]) -> list[str]:
+        """Writes the record of how a tab was set; returns the runs that made way for the files beside it."""
         with self.database.session.begin() as session:
+            locked(session)
             mine = self._own(session, run, owner)
-            with suppress(OSError):
-                mine.size = bytes_of(folder)
+            weight = weight_of(mine, self.folder / run)
+            gone = self.storage.make_room(
+                session, owner, mine.address, weight - mine.size, spare=[run, *beside]
+            )
+            mine.size = weight
             _note(session, run).kept = json.dumps(record)
-            for other in kept.compared[:MOST_BESIDE]:
+            for other in beside:
                 self._own(session, other, owner)
                 _note(session, other).part_of = run
+        return gone
 
     @staticmethod
-    def _keep_people(kept: Kept, folder: Path) -> None:
+    def _keep_people(kept: Kept, folder: Path) -> list[Path]:
+        written: list[Path] = []
         if len(kept.people) <= MOST_PEOPLE and all(p.seconds <= LONGEST_PERSON for p in kept.people):
             for i, person in enumerate(kept.people):
                 with suppress(OSError, InputError):
-                    formats.write(person, folder / f"given-{i + 1}.npz")
+                    written += formats.write(person, folder / f"given-{i + 1}.npz")
+        return written
 
     @sentences()
     def describe(
@@ -163,7 +190,7 @@ class Notebook(History):
     @sentences()
     def remove(self, runs: Sequence[str], owner: str) -> int:
         """Takes runs out of the history, with their links; :meth:`restore` brings them back for a while."""
-        now = time.time()
+        now = self.clock.now()
         with self.database.session.begin() as session:
             for run in runs:
                 found = self._own(session, run, owner)
@@ -198,6 +225,19 @@ class Notebook(History):
 
     # ---- one file --------------------------------------------------------------------------------
 
+    def usage(self, who: Visitor) -> Usage:
+        """See :meth:`.storage.Storage.usage`."""
+        return self.storage.usage(who)
+
+    @sentences()
+    def weight(self, owner: str, runs: Sequence[str]) -> float:
+        """Bytes of runs, or of all of them for none given: about those that :meth:`export` writes."""
+        wanted = [Run.owner == owner, Run.owner != ""]
+        if runs:
+            wanted.append(or_(Run.id.in_(list(runs)), Note.part_of.in_(list(runs))))
+        with self.database.session() as session:
+            return session.scalar(select(func.sum(Run.size)).outerjoin(Note).where(*wanted)) or 0
+
     @sentences()
     def export(self, owner: str, runs: Sequence[str], file: Path) -> int:
         """Writes finished runs, or all of them for none given, into one file; returns how many."""
@@ -215,31 +255,68 @@ class Notebook(History):
         pack(found, file)
         return len(found)
 
-    @sentences()
-    def take_in(self, owner: str, file: Path) -> int:
-        """Adds the runs of a file of :meth:`export` to the owner's, under ids of their own; returns how many.
+    def take_in(self, owner: str, file: Path, *, address: str = "") -> Generator[tuple[int, int], None, None]:
+        """Adds the runs of a file of :meth:`export` to the owner's, under ids of their own: all, or none.
 
-        Nothing of it is believed: every motion is read with the limits of an upload and written anew.
+        Nothing of it is believed: every motion is read with the limits of an upload and written anew. Only runs that
+        the owner has removed already make way for it.
+
+        Args:
+            owner: whose runs they become; one import goes on at a time.
+            file: the workspace.
+            address: that it comes from, where strangers are known by cookies that they could throw away.
+
+        Yields:
+            how many runs have been read, and of how many. They are there when the iterator has ended; closed before,
+            it leaves nothing.
 
         Raises:
-            InputError: if anything in the file is not as :meth:`export` writes it; then nothing is added.
+            InputError: if anything in the file is not as :meth:`export` writes it, or there is too little room.
         """
         if not owner:
             raise InputError("There is no history here to import into: sign in or allow cookies first.")
-        taken = unpack(file, self.folder)
+        self._check_disk()
+        with self._alone(owner), intake(self.folder, self.node) as folder:
+            address = digest(address) if address else ""
+            taken = yield from unpack(file, folder, self.storage.importable(owner, address))
+            with sentences():
+                gone = self._enter_all(owner, address, taken, folder)
+        self.storage.drop(gone)
+
+    @contextmanager
+    def _alone(self, owner: str) -> Iterator[None]:
+        """Holds a person's only import here."""
+        with self._lock:
+            if owner in self._importing:
+                raise InputError("You are importing a workspace already: wait for it, or cancel it.")
+            self._importing.add(owner)
+        try:
+            yield
+        finally:
+            with self._lock:
+                self._importing.discard(owner)
+
+    def _enter_all(self, owner: str, address: str, taken: Sequence[Taken], folder: Path) -> list[str]:
+        """Makes imported runs part of the history; returns the removed ones that made way."""
+        now = self.clock.now()
+        announce(folder, [run.row["id"] for run in taken])
         try:
             with self.database.session.begin() as session:
+                locked(session)
+                size = sum(run.row["size"] for run in taken)
+                gone = self.storage.make_room(session, owner, address, size, only_removed=True)
                 for run in taken:
-                    session.add(Run(owner=owner, state="done", node="", **run.row))
+                    session.add(
+                        Run(owner=owner, state="done", node="", stored=now, address=address, **run.row)
+                    )
                     session.flush()
                     session.add(Note(run_id=run.row["id"], **run.note))
                 for run in taken:
                     run.folder.rename(self.folder / run.row["id"])
         except BaseException:
-            for run in taken:
-                run.forget(self.folder)
+            self.storage.drop([run.row["id"] for run in taken])
             raise
-        return len(taken)
+        return gone
 
 
 _ALONE = or_(Note.part_of.is_(None), Note.part_of == "")

@@ -16,8 +16,8 @@ ORIGINAL = "original"
 """Name of the file in the folder of its run."""
 LARGEST_ORIGINAL = 20 * 2**20
 """Bytes of a file that is kept with a run."""
-LARGEST_SHARE = 0.25
-"""Share of the room for all runs up to which the runs of one owner may grow by such files."""
+LARGEST_SHARE = 0.5
+"""Share of a person's room for runs and studies up to which it may grow by such files."""
 
 
 def keep_original(original: Original, folder: Path, room: float) -> str:

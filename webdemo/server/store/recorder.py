@@ -55,7 +55,8 @@ class Recorder:
 
     def _run(self, session: str, request: Any, alone: bool) -> Iterator[Progress | Result]:
         who = visitor()
-        run = self.history.begin(who.owner, request, title_of(request.to_dict())) if who.owner else ""
+        title = title_of(request.to_dict())
+        run = self.history.begin(who.owner, request, title, address=who.address) if who.owner else ""
         state, message = "refused", ""
         try:
             for event in self.queue.run(session, request, alone=alone):

@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
+import math
 import os
 import shutil
 import time
-from collections.abc import Collection
+from collections.abc import Callable, Collection, Iterator
 from pathlib import Path
 
 from motion import InputError
@@ -14,14 +15,18 @@ KEPT_SECONDS = 7200.0
 """Seconds after which a file is removed; the history keeps what is needed to make it again."""
 IN_USE_SECONDS = 60.0
 """Files younger than this are kept in any case, since they may be in use."""
+ADDRESS_SHARE = 0.5
+"""Share of the room for all that people from one address may have, where strangers are known by their cookies."""
+_File = tuple[float, int, str]
+"""When it was made, its bytes and its path."""
 
 
 class Scratch:
     """A folder of one process, emptied at its start of what a killed process left.
 
     Args:
-        folder: is emptied and made.
-        most_bytes: size of all its files above which the oldest go.
+        folder: is emptied and made. Those of other processes lie beside it.
+        most_bytes: size of all its files from which on a person gets no more than they have.
 
     Raises:
         InputError: if the folder cannot be made.
@@ -29,6 +34,7 @@ class Scratch:
 
     def __init__(self, folder: Path, most_bytes: float) -> None:
         self.folder, self.most_bytes = folder, most_bytes
+        self._addresses: dict[str, str] = {}
         shutil.rmtree(folder, ignore_errors=True)
         try:
             self.uploads.mkdir(mode=0o700, parents=True, exist_ok=True)
@@ -46,34 +52,71 @@ class Scratch:
         """Makes Gradio keep its files here; call it before a page is built."""
         os.environ["GRADIO_TEMP_DIR"] = str(self.uploads)
 
-    def clean(self, keep: Collection[str] = ()) -> int:
-        """Removes files that are too old, then the oldest while the total is too large; returns their number.
+    def used(self, person: str) -> int:
+        """Bytes of the files in the folder of this name, at all processes."""
+        folders = self.folder.parent.glob(f"*/{self.uploads.name}/{person}")
+        return sum(size for folder in folders for _, size, _ in _files(folder))
+
+    def admit(self, person: str, address: str, size: float, allowed: float) -> None:
+        """Makes room for a file of a person, for which their own oldest ones make way.
+
+        Args:
+            person: the name of their folder.
+            address: that they come from, where they could throw their name away; "" elsewhere.
+            size: bytes of the file, as far as they are known.
+            allowed: bytes that the person may have.
+
+        Raises:
+            InputError: if there is too little room even then.
+        """
+        own = self.used(person)
+        total = sum(size for _, size, _ in _files(self.folder))
+        missing = max(own + size - allowed, total + size - self.most_bytes)
+        if address:
+            self._addresses[person] = address
+            others = [name for name, home in self._addresses.items() if home == address]
+            near = sum(self.used(name) for name in others)
+            missing = max(missing, near + size - ADDRESS_SHARE * self.most_bytes)
+        if missing > 0 and self._remove_oldest(self.uploads / person, missing)[1] < missing:
+            raise InputError(
+                f"There is no room for {size / 2**20:,.0f} MB more beside your uploads and files for download: use a "
+                "smaller file, remove runs of the history, or wait until the older ones are gone."
+            )
+
+    def clean(
+        self, keep: Collection[str] = (), allowed: Callable[[str], float] = lambda person: math.inf
+    ) -> int:
+        """Removes files that are too old, then the oldest of each person who has too many; returns their number.
 
         Args:
             keep: paths that stay.
+            allowed: gives the bytes that a person may have, by the name of their folder.
         """
-        now, gone, total = time.time(), 0, 0
-        found: list[tuple[float, int, str]] = []
-        for parent, _, names in os.walk(self.folder):
-            for name in names:
-                path = os.path.join(parent, name)
-                try:
-                    status = os.stat(path)
-                except OSError:  # gone meanwhile
-                    continue
-                found.append((status.st_mtime, status.st_size, path))
-                total += status.st_size
-        for made, size, path in sorted(found):
-            old = now - made > KEPT_SECONDS
-            if path in keep or now - made < IN_USE_SECONDS or not (old or total > self.most_bytes):
-                continue
-            try:
-                os.remove(path)
-            except OSError:
-                continue
-            gone, total = gone + 1, total - size
+        now = time.time()
+        gone = sum(
+            _remove(path)
+            for made, _, path in list(_files(self.folder))
+            if now - made > KEPT_SECONDS and path not in keep
+        )
+        for folder in list(self.uploads.iterdir()):
+            if (missing := self.used(folder.name) - allowed(folder.name)) > 0:
+                gone += self._remove_oldest(folder, missing, keep)[0]
+        self._addresses = {
+            name: home for name, home in self._addresses.items() if (self.uploads / name).exists()
+        }
         self._drop_empty_folders(now)
         return gone
+
+    @staticmethod
+    def _remove_oldest(folder: Path, size: float, keep: Collection[str] = ()) -> tuple[int, int]:
+        """Removes files of a folder that are not in use until so much room is made; returns their number and bytes."""
+        now, gone, freed = time.time(), 0, 0
+        for made, weight, path in sorted(_files(folder)):
+            if freed >= size or now - made < IN_USE_SECONDS:
+                break
+            if path not in keep and _remove(path):
+                gone, freed = gone + 1, freed + weight
+        return gone, freed
 
     def _drop_empty_folders(self, now: float) -> None:
         for parent, _, _ in os.walk(self.folder, topdown=False):
@@ -84,3 +127,23 @@ class Scratch:
                     os.rmdir(parent)
             except OSError:  # it is not empty
                 continue
+
+
+def _files(folder: Path) -> Iterator[_File]:
+    """All files below a folder."""
+    for parent, _, names in os.walk(folder):
+        for name in names:
+            path = os.path.join(parent, name)
+            try:
+                status = os.stat(path)
+            except OSError:  # gone meanwhile
+                continue
+            yield status.st_mtime, status.st_size, path
+
+
+def _remove(path: str) -> bool:
+    try:
+        os.remove(path)
+    except OSError:
+        return False
+    return True

@@ -15,12 +15,14 @@ from sqlalchemy.orm import Session
 
 from motion import Clip, Duet, InputError, formats
 from motion.formats.files import replacing
+from webdemo.server.accounts.visitors import digest
 from webdemo.study import Pair, StudyResult, matched_pairs, tally
 from webdemo.study.pairs import FIRST, as_shown, check_sources, shuffled
 from webdemo.study.results import write_votes
 from webdemo.ui.studies import NewStudy, StudyEntry
 
 from .database import Ballot, Rater, Study, sentences
+from .ledger import locked
 from .voting import Voting, answered_of, pairs_of, plan_of, rater_of, votes_of
 
 LONGEST_QUESTION, LONGEST_NAME = 300, 100
@@ -37,8 +39,10 @@ class Studies(Voting):
     # ---- the owner -------------------------------------------------------------------------------
 
     @sentences()
-    def create(self, owner: str, study: NewStudy) -> StudyEntry:
+    def create(self, owner: str, study: NewStudy, *, address: str = "") -> StudyEntry:
         """Makes a study of copies of the motions, so that it outlives the runs.
+
+        Where the owner's room is used up, runs of theirs make way (:meth:`.storage.Storage.make_room`).
 
         Raises:
             InputError: if there are no pairs, or too many, or no question, or no room.
@@ -62,17 +66,22 @@ class Studies(Voting):
             title=" ".join(study.title.split())[:LONGEST_NAME] or question[:LONGEST_NAME], sets=json.dumps(names),
             pairs=json.dumps([asdict(pair) for pair in pairs]), shows_sentence=study.shows_sentence,
             pairs_each=min(study.pairs_each or count, count), shows_result=study.shows_result,
-            created=self.clock(),
+            created=self.clock(), address=digest(address) if address else "",
         )  # fmt: skip
         with self.database.session() as session:
-            self._check_room(session, owner)
-        row.size = self._write(row.id, motions)
+            self._check_number(session, owner)
+            size = sum(motion.positions.nbytes for motion in motions)
+            self.storage.check(session, owner, row.address, size)
+        row.size = self._write(row.id, motions) + len(row.pairs)
         try:
             with self.database.session.begin() as session:
+                locked(session)
+                gone = self.storage.make_room(session, owner, row.address, row.size)
                 session.add(row)
         except BaseException:
             shutil.rmtree(self.folder / row.id, ignore_errors=True)
             raise
+        self.storage.drop(gone)
         return _entry(row, 0, 0)
 
     @sentences()
@@ -132,12 +141,11 @@ class Studies(Voting):
 
     # ---- parts -----------------------------------------------------------------------------------
 
-    def _check_room(self, session: Session, owner: str) -> None:
+    @staticmethod
+    def _check_number(session: Session, owner: str) -> None:
         count = session.scalar(select(func.count()).select_from(Study).where(Study.owner == owner)) or 0
         if count >= MOST_STUDIES:
             raise InputError(f"You have {count} studies already: delete one first.")
-        if (session.scalar(select(func.sum(Study.size))) or 0) > self.most_bytes:
-            raise InputError("The room for studies on this server is used up: delete one first.")
 
     def _check_finished(self, session: Session, row: Study, person: str) -> None:
         rater = rater_of(session, row, person) if person else None

@@ -22,6 +22,7 @@ from webdemo.study.pairs import FIRST
 from webdemo.study.results import ANSWERS, SECOND, SKIP, TIE
 
 from .database import Ballot, Database, Rater, Study, sentences
+from .storage import Storage
 
 SOONEST = 1.5
 """Seconds after a pair was sent before which no person can have seen it."""
@@ -73,17 +74,17 @@ class Voting:
     Args:
         database: where their rows are.
         folder: holds a folder of motions a study.
-        most_bytes: size of all studies' motions above which no new one is made.
+        storage: counts what people store, and makes room; by default with no limit for one person.
         address_people: people who may vote from one address where strangers are known by a cookie.
         clock: gives seconds since 1970.
     """
 
     def __init__(
-        self, database: Database, folder: Path, *, most_bytes: float = 2e9, address_people: int = 8,
+        self, database: Database, folder: Path, *, storage: Storage | None = None, address_people: int = 60,
         clock: Callable[[], float] = time.time,
     ) -> None:  # fmt: skip
         self.database, self.folder, self.clock = database, folder, clock
-        self.most_bytes, self.address_people = most_bytes, address_people
+        self.storage, self.address_people = storage or Storage(database, folder), address_people
 
     @sentences()
     def invitation(self, key: str, person: str) -> Invitation:

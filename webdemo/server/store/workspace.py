@@ -8,36 +8,38 @@ values of the expected kinds. Original files are copied and not read. No name in
 
 from __future__ import annotations
 
+import errno
 import json
 import math
+import os
 import secrets
-import shutil
 import time
 import zipfile
-from collections.abc import Mapping, Sequence
+from collections.abc import Generator, Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
 from motion import Clip, Duet, InputError, formats
+from webdemo.inference.plans import kept_plan
 from webdemo.inference.story import SceneRequest
 from webdemo.view.thumbnail import thumbnail
 
+from .archive import DAMAGE, WRONG, Archive
 from .kept_settings import groups, plain_controls
 from .originals import LARGEST_ORIGINAL, ORIGINAL, bytes_of, kept_original
+from .storage import ROW_BYTES
 
 FORMAT = "pas-de-deux-workspace-1"
 MOST_RUNS = 1000
 MOST_SAMPLES = 16
+MOST_FILES = MOST_RUNS * (MOST_SAMPLES + 2)
 LARGEST_FILE = 50 * 2**20
-"""Bytes of one file inside when unpacked."""
+"""Bytes of one motion inside when unpacked."""
 LARGEST_STORY = 100_000
 """Characters of a scene's request."""
-LARGEST = 1000 * 2**20
-"""Bytes of all of them."""
 _KINDS = ("generate", "scene", "react", "predict")
 _CURVES = ("error", "speed", "true_speed")
-_WRONG = "This is no workspace of Pas de Deux, or it was changed by hand ({}): export it again."
 
 
 @dataclass(frozen=True)
@@ -73,11 +75,6 @@ class Taken:
     folder: Path
     motion: Duet | Clip
 
-    def forget(self, home: Path) -> None:
-        """Removes its files, wherever they are by now."""
-        shutil.rmtree(self.folder, ignore_errors=True)
-        shutil.rmtree(home / self.row["id"], ignore_errors=True)
-
 
 def pack(runs: Sequence[Packed], file: Path) -> None:
     """Writes runs into a file; raises InputError if their files are gone."""
@@ -100,29 +97,47 @@ def pack(runs: Sequence[Packed], file: Path) -> None:
         archive.writestr("workspace.json", json.dumps({"format": FORMAT, "runs": stored}))
 
 
-def unpack(file: Path, home: Path) -> list[Taken]:
-    """The runs of a file, their files in new folders below ``home`` whose names begin with a dot.
+def unpack(file: Path, folder: Path, room: float) -> Generator[tuple[int, int], None, list[Taken]]:
+    """Reads the runs of a file; their files lie in folders in ``folder`` that are called after their new ids.
+
+    Args:
+        file: the workspace.
+        folder: empty; whoever made it removes what is in it if this fails or is not finished.
+        room: bytes that may be written.
+
+    Yields:
+        how many runs have been read, and of how many.
 
     Raises:
-        InputError: if anything is not as :func:`pack` writes it; nothing is left behind then.
+        InputError: if anything is not as :func:`pack` writes it, or there is too little room.
     """
     taken: list[Taken] = []
+    written = 0
     try:
-        with zipfile.ZipFile(file) as archive:
+        with Archive(file, MOST_FILES) as archive:
             stored_runs = _stored_runs(archive)
+            _check_room(archive.size, room)
             for number, stored in enumerate(stored_runs):
-                taken.append(_taken(archive, number, stored, home))
+                taken.append(_taken(archive, number, stored, folder))
+                written += taken[-1].row["size"]
+                _check_room(written, room)
+                yield number + 1, len(stored_runs)
             _put_beside(stored_runs, taken)
-    except BaseException as error:
-        for run in taken:
-            run.forget(home)
-        if isinstance(error, InputError):
-            raise
-        if isinstance(error, (zipfile.BadZipFile, ValueError, KeyError, TypeError, EOFError, RuntimeError,
-                              NotImplementedError, RecursionError, AttributeError)):  # fmt: skip
-            raise InputError(_WRONG.format("it cannot be read")) from None
-        raise
+    except InputError as error:
+        raise InputError(str(error).replace(f"{folder}{os.sep}", "")) from None
+    except DAMAGE as error:
+        if getattr(error, "errno", None) in (errno.ENOSPC, errno.EDQUOT):
+            raise InputError("The server's disk is full: tell the person who runs it.") from None
+        raise InputError(WRONG.format("it cannot be read")) from None
     return taken
+
+
+def _check_room(size: float, room: float) -> None:
+    if size > room:
+        raise InputError(
+            f"This workspace takes {size / 2**20:,.1f} MB, and {max(room, 0.0) / 2**20:,.1f} MB of your room are free: "
+            "remove runs of yours first, or import fewer at once."
+        )
 
 
 def _put_beside(stored: Sequence[Mapping[str, Any]], taken: Sequence[Taken]) -> None:
@@ -144,66 +159,47 @@ def _put_beside(stored: Sequence[Mapping[str, Any]], taken: Sequence[Taken]) -> 
             other.note["part_of"] = run.row["id"]
 
 
-def _stored_runs(archive: zipfile.ZipFile) -> list[dict[str, Any]]:
-    files = archive.infolist()
-    if len(files) > MOST_RUNS * (MOST_SAMPLES + 2) or sum(each.file_size for each in files) > LARGEST:
-        raise InputError(f"The workspace is too large: import {MOST_RUNS:,} runs and 1 GB at most.")
-    stored = json.loads(_content(archive, "workspace.json"))
+def _stored_runs(archive: Archive) -> list[dict[str, Any]]:
+    stored = archive.values("workspace.json")
     if (
         not isinstance(stored, dict)
         or stored.get("format") != FORMAT
         or not isinstance(stored.get("runs"), list)
     ):
-        raise InputError(_WRONG.format("its list of runs is missing"))
+        raise InputError(WRONG.format("its list of runs is missing"))
     if len(stored["runs"]) > MOST_RUNS:
         raise InputError(f"The workspace holds {len(stored['runs']):,} runs: import {MOST_RUNS:,} at most.")
     return [run if isinstance(run, dict) else {} for run in stored["runs"]]
 
 
-def _content(archive: zipfile.ZipFile, name: str, most: int = LARGEST_FILE) -> bytes:
-    """A file's bytes, bounded whatever its header says."""
-    try:
-        with archive.open(name) as source:
-            content = source.read(most + 1)
-    except KeyError:
-        raise InputError(_WRONG.format(f"{name} is missing")) from None
-    if len(content) > most:
-        raise InputError(f"{name} in the workspace is too large: export it again.")
-    return content
-
-
-def _taken(archive: zipfile.ZipFile, number: int, stored: Mapping[str, Any], home: Path) -> Taken:
+def _taken(archive: Archive, number: int, stored: Mapping[str, Any], home: Path) -> Taken:
     run = secrets.token_urlsafe(18)
-    folder = home / f".{run}"
+    folder = home / run
     folder.mkdir(mode=0o700)
-    try:
-        motions = _motions(archive, number, folder)
-        readouts = [
-            _readout(each, motion)
-            for each, motion in zip(stored.get("readouts") or [], motions, strict=False)
-        ]
-        (folder / "readouts.json").write_text(json.dumps(readouts), encoding="utf-8")
-        kind = stored.get("kind")
-        if kind not in _KINDS:
-            raise InputError(_WRONG.format(f"run {number + 1} is of no known kind"))
-        request = {**_plain(stored.get("request")), "kind": kind}
-        if kind == "scene":
-            request = _scene(stored.get("request"), motions[0])
-        row = {
-            "id": run, "kind": kind, "title": _text(stored.get("title"), 500) or "Imported",
-            "created": min(_number(stored.get("created"), time.time()), time.time()),
-            "favourite": False, "request": json.dumps(request),
-            "outcome": json.dumps(_outcome(stored.get("outcome"), request, motions[0], folder)),
-            "size": bytes_of(folder),
-        }  # fmt: skip
-        return Taken(row, _note(stored.get("note"), motions[0]), folder, motions[0])
-    except BaseException:
-        shutil.rmtree(folder, ignore_errors=True)
-        raise
+    motions = _motions(archive, number, folder)
+    readouts = [
+        _readout(each, motion) for each, motion in zip(stored.get("readouts") or [], motions, strict=False)
+    ]
+    (folder / "readouts.json").write_text(json.dumps(readouts), encoding="utf-8")
+    kind = stored.get("kind")
+    if kind not in _KINDS:
+        raise InputError(WRONG.format(f"run {number + 1} is of no known kind"))
+    request = {**_plain(stored.get("request")), "kind": kind}
+    if kind == "scene":
+        request = _scene(stored.get("request"), motions[0])
+    now = time.time()
+    row = {
+        "id": run, "kind": kind, "title": _text(stored.get("title"), 500) or "Imported",
+        "created": max(0.0, min(_number(stored.get("created"), now), now)),
+        "favourite": False, "request": json.dumps(request),
+        "outcome": json.dumps(_outcome(stored.get("outcome"), request, motions[0], folder)),
+    }  # fmt: skip
+    row["size"] = ROW_BYTES + bytes_of(folder) + len(row["request"]) + len(row["outcome"])
+    return Taken(row, _note(stored.get("note"), motions[0]), folder, motions[0])
 
 
-def _motions(archive: zipfile.ZipFile, number: int, folder: Path) -> list[Duet | Clip]:
-    names = set(archive.namelist())
+def _motions(archive: Archive, number: int, folder: Path) -> list[Duet | Clip]:
+    names = archive.names
     motions = []
     for sample in range(1, MOST_SAMPLES + 1):
         name = f"{number}/{sample}.npz"
@@ -211,18 +207,18 @@ def _motions(archive: zipfile.ZipFile, number: int, folder: Path) -> list[Duet |
             break
         motions.append(_motion(archive, name, folder / f"{sample}.npz"))
     if not motions:
-        raise InputError(_WRONG.format(f"run {number + 1} has no motion"))
+        raise InputError(WRONG.format(f"run {number + 1} has no motion"))
     for name in ("truth.npz", *(f"given-{i}.npz" for i in range(1, 7))):
         if f"{number}/{name}" in names:
             _motion(archive, f"{number}/{name}", folder / name)
     if f"{number}/{ORIGINAL}" in names:
-        (folder / ORIGINAL).write_bytes(_content(archive, f"{number}/{ORIGINAL}", LARGEST_ORIGINAL))
+        (folder / ORIGINAL).write_bytes(archive.content(f"{number}/{ORIGINAL}", LARGEST_ORIGINAL))
     return motions
 
 
-def _motion(archive: zipfile.ZipFile, name: str, path: Path) -> Duet | Clip:
+def _motion(archive: Archive, name: str, path: Path) -> Duet | Clip:
     """Reads a motion as an upload is read, and writes it anew."""
-    path.write_bytes(_content(archive, name))
+    path.write_bytes(archive.content(name, LARGEST_FILE))
     try:
         motion = formats.read(path)
     finally:
@@ -235,7 +231,7 @@ def _motion(archive: zipfile.ZipFile, name: str, path: Path) -> Duet | Clip:
 
 
 def _text(value: Any, most: int) -> str:
-    return value[:most] if isinstance(value, str) else ""
+    return value[:most].replace("\0", "") if isinstance(value, str) else ""
 
 
 def _number(value: Any, otherwise: float) -> float:
@@ -263,7 +259,7 @@ def _scene(stored: Any, motion: Duet | Clip) -> dict[str, Any]:
         or not isinstance(motion, Duet)
         or len(json.dumps(stored)) > LARGEST_STORY
     ):
-        raise InputError(_WRONG.format("a scene has no story"))
+        raise InputError(WRONG.format("a scene has no story"))
     return SceneRequest.from_dict(stored, motion if "motion" in stored else None).to_dict()
 
 
@@ -281,11 +277,14 @@ def _outcome(stored: Any, request: Mapping[str, Any], motion: Duet | Clip, folde
         "timings": {k: v for k, v in _plain(stored.get("timings")).items() if _number(v, math.nan) == v},
         "notes": [_text(note, 1000) for note in notes[:20]] if isinstance(notes, list) else [],
     }
+    manifest = stored.get("manifest")
+    if isinstance(manifest, dict) and (plan := kept_plan(manifest)) is not None:
+        outcome["manifest"]["plan"] = plan.to_dict()
     kept = stored.get("prediction")
     if isinstance(kept, dict):
         past = kept.get("past_frames")
         if type(past) is not int or not 0 < past < motion.num_frames:
-            raise InputError(_WRONG.format("a prediction begins nowhere"))
+            raise InputError(WRONG.format("a prediction begins nowhere"))
         curves = {name: _numbers(kept.get(name), motion.num_frames) for name in _CURVES}
         outcome["prediction"] = {"past_frames": past, **curves}
     elif (folder / "truth.npz").exists():

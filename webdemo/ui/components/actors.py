@@ -21,7 +21,7 @@ from motion.retarget import to_smpl
 from webdemo.inference.actor import LETTERS, SECONDS, at_30_fps, choose_actor, other_pose
 from webdemo.inference.method import Variant
 from webdemo.inference.methods import AUTOMATIC, automatic, installed, variants
-from webdemo.inference.requests import Result, SamplingRequest
+from webdemo.inference.requests import Result
 from webdemo.ui.history import Original, clean_name
 from webdemo.view.payload import Payload, player_payload
 
@@ -244,7 +244,7 @@ def result_source(result: Result, title: str, person: str) -> Source:
 def with_method(fields: Mapping[str, Any], key: str) -> dict[str, Any]:
     """The page's fields for another method, with the steps it is meant for where the model is another."""
     asked, other = reactor(fields.get("method"), fields).method, reactor(key, fields).method
-    steps = fields["steps"] if other == asked else other.default("steps", SamplingRequest.steps)
+    steps = fields["steps"] if other == asked else other.steps
     return {**fields, "method": key, "steps": steps}
 
 

@@ -11,10 +11,12 @@ from pathlib import Path
 from typing import Any
 
 import gradio as gr
+from pydantic import TypeAdapter
 
 from motion import InputError
 from motion.video import people_of, unpack_film
 
+from .accepts import Text
 from .actors import Found, Source
 
 CAMERA_FOLDER = Path(__file__).resolve().parents[3] / "static" / "camera"
@@ -37,6 +39,8 @@ class CameraPanel(gr.HTML):
     Args:
         elem_id: id of the element in the page.
     """
+
+    accepts = TypeAdapter(Text | None)
 
     def __init__(self, *, elem_id: str | None = None, **kwargs: Any) -> None:
         kwargs = {

@@ -139,17 +139,28 @@ class Shelf:
     Args:
         root: created when first needed; by default a folder of this user in the system's temporary one.
         owner: names the folder in it for the person whose event is answered; by default there is one for all.
+        admit: makes room for a file of so many bytes, or raises InputError; by default there is room.
         max_age: seconds after which a run's folder is removed when another is made.
     """
 
     def __init__(
-        self, root: Path | None = None, *, owner: Callable[[], str] | None = None, max_age: float = MAX_AGE
-    ) -> None:
+        self, root: Path | None = None, *, owner: Callable[[], str] | None = None,
+        admit: Callable[[float], None] | None = None, max_age: float = MAX_AGE,
+    ) -> None:  # fmt: skip
         self.root = root or Path(tempfile.gettempdir()) / f"pas-de-deux-{os.getuid()}"
-        self.owner, self.max_age = owner, max_age
+        self.owner, self.admit, self.max_age = owner, admit, max_age
 
-    def folder(self) -> Path:
-        """A new empty folder; those that are too old are removed."""
+    def folder(self, size: float = 0.0) -> Path:
+        """A new empty folder; those that are too old are removed.
+
+        Args:
+            size: bytes that will be written there, as far as that is known.
+
+        Raises:
+            InputError: if the person whose event is answered has too little room.
+        """
+        if self.admit is not None:
+            self.admit(size)
         parent = self.root / self.owner() if self.owner else self.root
         parent.mkdir(mode=0o700, parents=True, exist_ok=True)
         self.clean()

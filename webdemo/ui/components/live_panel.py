@@ -14,11 +14,13 @@ from typing import Any
 
 import gradio as gr
 import numpy as np
+from pydantic import TypeAdapter
 
 from motion import SMPL22, Clip, InputError
 from webdemo.inference.actor import FPS
 from webdemo.inference.live_take import LONGEST, LiveTake
 
+from .accepts import Text
 from .camera import CAMERA_FOLDER
 from .player import PLAYER_FOLDER
 
@@ -48,6 +50,8 @@ class LivePanel(gr.HTML):
     Args:
         elem_id: id of the element in the page.
     """
+
+    accepts = TypeAdapter(Text | None)
 
     def __init__(self, *, elem_id: str | None = None, **kwargs: Any) -> None:
         folders = (CAMERA_FOLDER.as_posix(), LIVE_FOLDER.as_posix())

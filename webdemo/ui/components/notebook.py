@@ -10,10 +10,13 @@ from pathlib import Path
 from typing import Any
 
 import gradio as gr
+from pydantic import TypeAdapter
 
 from motion import InputError
 from webdemo.inference.methods import label_of, methods, variants
 from webdemo.ui.history import Entry, Found, Search
+
+from .accepts import Finite, Flag, Sent, Text
 
 NOTEBOOK_FOLDER = Path(__file__).resolve().parents[3] / "static" / "notebook"
 STEP = 60
@@ -47,6 +50,31 @@ import(root + (config.api_prefix || "/gradio_api") + "/file=" + encode(%s))
 """
 
 
+class SentSearch(Sent):
+    """A search as the browser sends it; moments in seconds since 1970."""
+
+    words: Text = ""
+    kind: Text = ""
+    model: Text = ""
+    tag: Text = ""
+    starred: Flag = False
+    since: Finite | None = None
+    until: Finite | None = None
+
+
+class SentAction(Sent):
+    """A visitor's action in the notebook, as the browser sends it; :class:`Action` reads it."""
+
+    act: Text
+    ids: list[Text]
+    search: SentSearch | None = None
+    limit: Finite | None = None
+    title: Text | None = None
+    tags: Text | None = None
+    note: Text | None = None
+    frame: Finite | None = None
+
+
 class NotebookView(gr.HTML):
     """The runs of a history as cards; its value is what :func:`shown` gives.
 
@@ -55,6 +83,8 @@ class NotebookView(gr.HTML):
     Args:
         elem_id: id of the element in the page.
     """
+
+    accepts_event = TypeAdapter(SentAction)
 
     def __init__(self, *, elem_id: str | None = None, **kwargs: Any) -> None:
         kwargs = {

@@ -11,10 +11,10 @@ from typing import Any
 from motion import Duet, InputError
 from webdemo.inference.actor import FPS
 from webdemo.inference.requests import MAX_SEED, Result
-from webdemo.inference.story import Beat, FloorPath, Pose, SceneRequest, read_words, split_sentence
+from webdemo.inference.story import Beat, FloorPath, Pose, SceneRequest, in_time, split_sentence
 
 from .exports import Record
-from .story import span_of, story_fields, story_value, ticked
+from .story import span_of, story_fields, story_value
 
 FUTURES = 3
 FUTURE_SECONDS = 4.0
@@ -53,7 +53,7 @@ def part_request(fields: Mapping[str, Any]) -> SceneRequest:
     words = str(fields["words"] or "").strip()
     if fields["part"] == "futures":
         start = min(fields["frame"] / duet.fps, duet.seconds)
-        beats = split_sentence(words) or (Beat(seconds=FUTURE_SECONDS),)
+        beats = split_sentence(words, in_time()) or (Beat(seconds=FUTURE_SECONDS),)
         length = start + sum(beat.length for beat in beats)
         paths, poses = wishes_in(story, start, length, length)
         return SceneRequest(
@@ -63,7 +63,7 @@ def part_request(fields: Mapping[str, Any]) -> SceneRequest:
     if span is None:
         raise InputError("No span is selected: drag on the ruler over the beats, or type its seconds.")
     start, end = max(0.0, span[0]), min(span[1], duet.seconds)
-    beats = split_sentence(words) or beats_in(story["beats"], start, end)
+    beats = split_sentence(words, in_time()) or beats_in(story["beats"], start, end)
     paths, poses = wishes_in(story, start, end, duet.seconds)
     return SceneRequest(beats=beats, paths=paths, poses=poses, motion=duet, start=start, end=end, **plain)
 
@@ -88,24 +88,6 @@ def only_sample(result: Result, sample: int) -> Result:
     )  # fmt: skip
 
 
-def laid_out(fields: Mapping[str, Any]) -> Any:
-    """The story of the line; where it is empty, or the sentence is another one, the sentence split into beats.
-
-    Those keep what is ticked on the line, unless the sentence is a story in TOML that says it itself.
-    """
-    story, prompt = fields["story"], str(fields["prompt"] or "")
-    if isinstance(story, Mapping) and story.get("beats"):
-        reworded = story.get("from") is not None and prompt.strip() and prompt != story["from"]
-        if not reworded:
-            return story
-    found = ticked(story) | read_words(prompt)
-    laid = story_value(
-        found["beats"], found.get("paths", ()), found.get("poses", ()),
-        loop=found["loop"], planned=found["planned"],
-    )  # fmt: skip
-    return laid | {"from": prompt}
-
-
 def went_on(story: Any, wanted: SceneRequest) -> dict[str, Any]:
     """The story up to where a continuation begins, and its beats."""
     fields = story_fields(story)
@@ -115,7 +97,7 @@ def went_on(story: Any, wanted: SceneRequest) -> dict[str, Any]:
     if known and abs(missing) > 1e-6:  # a beat of which too little is left
         known = (*known[:-1], replace(known[-1], seconds=round(known[-1].length + missing, 2)))
     paths, poses = wishes_in(fields, 0.0, wanted.total_seconds, wanted.total_seconds)
-    return story_value((*known, *wanted.beats), paths, poses, planned=wanted.planned) | {"from": ""}
+    return story_value((*known, *wanted.beats), paths, poses, planned=wanted.planned)
 
 
 def beats_in(beats: tuple[Beat, ...], start: float, end: float) -> tuple[Beat, ...]:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from typing import Any
 
 from webdemo.ui.text.panels import status
@@ -26,9 +26,9 @@ def advanced_label(guidance: float, steps: int, damping: float) -> str:
     return f"Guidance {guidance:g}, {steps} steps, damping {damping:g}"
 
 
-def snapshot(fields: Mapping[str, Any], names: Iterable[str]) -> str:
-    """The values of controls as :func:`differs` compares them."""
-    return json.dumps({name: fields.get(name) for name in names})
+def snapshot(fields: Mapping[str, Any], names: Collection[str]) -> str:
+    """The values of controls as :func:`differs` compares them; "" where a run used only some of them."""
+    return json.dumps({name: fields[name] for name in names}) if set(names) <= fields.keys() else ""
 
 
 def differs(names: Sequence[str]) -> str:

@@ -13,6 +13,7 @@ from pathlib import Path
 from typing import Any
 
 import gradio as gr
+from pydantic import Field, TypeAdapter
 
 from motion import Duet, InputError
 from motion.metrics import compare
@@ -20,9 +21,14 @@ from webdemo.inference.story import Beat, FloorPath, Pose, SceneRequest
 from webdemo.inference.story.beats import MOST_BEATS
 from webdemo.inference.story.request import beat_of, path_of, pose_of
 
+from .accepts import Finite, Flag, Sent, Text
+
 STORY_FOLDER = Path(__file__).resolve().parents[3] / "static" / "story"
 
 gr.set_static_paths([STORY_FOLDER])
+
+TRACK_STEP = 0.1
+"""Seconds between two places of a track on the floor."""
 
 _ON_LOAD = """
 const config = window.gradio_config || {};
@@ -33,12 +39,55 @@ import(file(%s)).then((story) => story.mount(element, props, watch, trigger));
 """
 
 
+class SentBeat(Sent):
+    """A beat as the browser sends it; ``auto`` is the length that follows from its words."""
+
+    words: Text = ""
+    a: Text = ""
+    b: Text = ""
+    seconds: Finite | None = None
+    seed: Finite | None = None
+    auto: Finite | None = None
+
+
+class SentPath(Sent):
+    """A path as the browser sends it; a point is [seconds or null, x, z] with or without a heading."""
+
+    person: Text
+    points: list[list[Finite | None]]
+
+
+class SentPose(Sent):
+    """A pose as the browser sends it: a position for each joint."""
+
+    person: Text
+    seconds: Finite
+    positions: list[list[Finite]]
+
+
+class SentStory(Sent):
+    """A story as the browser sends it: what :func:`story_value` gives, as it was changed since.
+
+    ``ahead`` is true while the words of the beats were changed after the text over them.
+    """
+
+    beats: list[SentBeat] = Field(default_factory=list)
+    paths: list[SentPath] = Field(default_factory=list)
+    poses: list[SentPose] = Field(default_factory=list)
+    loop: Flag = False
+    planned: Flag = True
+    span: list[Finite] | None = None
+    ahead: Flag = False
+
+
 class StoryLine(gr.HTML):
     """Shows a story and lets it be changed; every change is an ``input`` event.
 
-    Props beside the value: ``lengths``, seconds of the beats as they follow from the words; ``motion``, the
-    ``seconds`` and ``contacts`` of the motion that the player shows.
+    Props beside the value: ``lengths``, seconds of the beats as they follow from the words; ``laid``, the ``beats``,
+    ``paths`` and ``poses`` that a changed text gives; ``motion``, see :func:`motion_marks`.
     """
+
+    accepts = TypeAdapter(SentStory | None)
 
     def __init__(
         self, value: dict[str, Any] | None = None, *, elem_id: str | None = None, **kwargs: Any
@@ -49,6 +98,7 @@ class StoryLine(gr.HTML):
             "js_on_load": _ON_LOAD % json.dumps((STORY_FOLDER / "main.js").as_posix()),
             "apply_default_css": False,
             "lengths": None,
+            "laid": None,
             "motion": None,
             **kwargs,
         }
@@ -104,6 +154,7 @@ def story_value(
         "loop": loop,
         "planned": planned,
         "span": None,
+        "ahead": False,
     }
 
 
@@ -126,8 +177,11 @@ def story_fields(value: Any) -> dict[str, Any]:
         beats = [
             entry for entry in list(value.get("beats") or ())[: MOST_BEATS + 1] if isinstance(entry, Mapping)
         ]
+        found = tuple(beat_of(entry) for entry in beats)
+        for number, beat in enumerate(found, 1):
+            beat.check(number)
         return {
-            "beats": tuple(beat_of(entry) for entry in beats),
+            "beats": found,
             "paths": tuple(path_of(entry) for entry in value.get("paths") or ()),
             "poses": tuple(pose_of(entry) for entry in value.get("poses") or ()),
             **ticked(value),
@@ -153,10 +207,17 @@ def span_of(value: Any) -> tuple[float, float] | None:
 
 
 def motion_marks(duet: Duet, readout: Mapping[str, Any] | None = None) -> dict[str, Any]:
-    """The marks of a motion on the line: its length and its contacts, in seconds."""
+    """The marks of a motion on the line and on the floor.
+
+    Returns:
+        ``seconds``, its length; ``contacts``, in seconds; ``tracks``, the places [x, z] of each person's pelvis on
+        the floor in metres, one every ``step`` seconds.
+    """
     found = (readout or compare(None, duet)).get("contacts") or ()
     contacts = [
         {"start": c["start"] / duet.fps, "stop": c["stop"] / duet.fps, "kind": c["kind"], "label": c["label"]}
         for c in found
     ]
-    return {"seconds": duet.seconds, "contacts": contacts}
+    every = max(1, round(TRACK_STEP * duet.fps))
+    tracks = duet.positions[:, ::every, 0][..., [0, 2]].round(2).tolist()
+    return {"seconds": duet.seconds, "contacts": contacts, "tracks": tracks, "step": every / duet.fps}

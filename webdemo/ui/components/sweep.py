@@ -12,6 +12,7 @@ from motion import InputError
 from motion.metrics import MEASURES
 from webdemo.inference.predict_request import PredictResult
 from webdemo.inference.requests import Result
+from webdemo.ui.text.panels import sides
 from webdemo.ui.text.words import number, text
 from webdemo.view.payload import Payload, build_payload, grid_sample
 
@@ -20,6 +21,8 @@ from .show import result_payload
 
 MOST = 9
 """Cells of a grid."""
+BETWEEN_VALUES, BETWEEN_SENTENCES = re.compile(r"[,;\s]+"), re.compile(r"[;\n]")
+"""What stands between numbers and single words, and between names and sentences."""
 _RANGE = re.compile(r"(\d{1,10})\s*(?:-|–|\.\.|to)\s*(\d{1,10})\Z")
 
 
@@ -40,7 +43,7 @@ class Kind:
     label: str
     short: str = ""
     read: Callable[[str], Any] = str
-    split: str = r"[,;\s]+"
+    split: re.Pattern[str] = BETWEEN_VALUES
     named: Callable[[Any], str] = str
 
 
@@ -63,7 +66,7 @@ def read_axis(kind: Kind, given: str) -> Axis:
     Raises:
         InputError: for no value, one that does not fit the setting, or more than a grid holds.
     """
-    parts = [part.strip() for part in re.split(kind.split, given[:5000].strip()) if part.strip()]
+    parts = [part.strip() for part in kind.split.split(given[:5000].strip()) if part.strip()]
     if kind.read is whole and (found := _RANGE.match(given.strip())):
         first, last = int(found[1]), int(found[2])
         _check(last - first + 1)
@@ -167,13 +170,9 @@ def _first_sample(result: Result) -> dict[str, Any]:
     return payload["samples"][0]
 
 
-def read_outs(results: Mapping[str, Result]) -> dict[str, dict[str, float]]:
-    """Cell → measure → value, of the first sample after damping and clean-up."""
-    found = {}
-    for name, result in results.items():
-        after = (result.readouts[0].get("after") or {}) if result.readouts else {}
-        found[name] = dict(after.get("summary", after))
-    return found
+def read_outs(results: Mapping[str, Result]) -> dict[str, Mapping[str, float]]:
+    """Cell → measure → value, of the first sample after damping and clean-up; without what could not be measured."""
+    return {name: sides(result.readouts[0] if result.readouts else {})[1] for name, result in results.items()}
 
 
 def grid_table(results: Mapping[str, Result]) -> str:
@@ -200,7 +199,7 @@ def grid_table(results: Mapping[str, Result]) -> str:
 
 
 def _cell(
-    key: str, digits: int, mine: Mapping[str, float], everybody: list[dict[str, float]], ranked: bool
+    key: str, digits: int, mine: Mapping[str, float], everybody: Sequence[Mapping[str, float]], ranked: bool
 ) -> str:
     if key not in mine:
         return "<td>–</td>"

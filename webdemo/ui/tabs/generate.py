@@ -13,10 +13,10 @@ from motion import InputError
 from webdemo.inference.actor import SECONDS
 from webdemo.inference.methods import installed, label_of, method
 from webdemo.inference.requests import GenerateRequest
-from webdemo.ui.components.pace import AT_FIRST, FAITHFUL, pace_of
+from webdemo.ui.components.pace import pace_of
 from webdemo.ui.components.settings import UNPLANNED, looked_up
 from webdemo.ui.components.show import arrival_payload
-from webdemo.ui.components.sweep import Kind
+from webdemo.ui.components.sweep import BETWEEN_SENTENCES, Kind
 from webdemo.ui.history import Opened
 from webdemo.ui.text.classes import installed_classes, takes_class
 from webdemo.ui.text.examples import CLIPS, EXAMPLES
@@ -45,6 +45,24 @@ def named_method(known: Mapping[str, str], given: str) -> str:
     return found
 
 
+def _chosen_class(fields: Mapping[str, Any]) -> str:
+    if not fields["class_name"]:
+        raise InputError("No class is chosen: choose what the two people do.")
+    return str(fields["class_name"])
+
+
+def _class_in(sentence: str, label: str) -> str:
+    """The class that a sentence names; raises InputError if it names none."""
+    names, _ = installed_classes()
+    found = next((name for name in names if name in sentence.lower()), None)
+    if found is None:
+        raise InputError(
+            f"The sentence names none of {label}'s classes: write one of them, such as “shake hands”, or change to "
+            "A class, which lists them all."
+        )
+    return found
+
+
 _PLANNED_INFO = (
     "Words such as “walks up”, “sits down” or “waves” set paths and poses; off, the network alone decides."
 )
@@ -62,9 +80,7 @@ class GenerateTab(SweepTab):
         """See :meth:`JobTab.request`; raises InputError if no class is chosen."""
         asked = {name: value for name, value in fields.items() if name != "class_name"}
         if takes_class(fields.get("model", GenerateRequest.model)):
-            asked["prompt"] = fields["class_name"]
-            if not asked["prompt"]:
-                raise InputError("No class is chosen: choose what the two people do.")
+            asked["prompt"] = _chosen_class(fields)
         return GenerateRequest(**asked)
 
     def title(self, request: GenerateRequest) -> str:
@@ -163,12 +179,10 @@ class GenerateTab(SweepTab):
         """Shows the inputs that a method takes, sets its guidance and steps and describes it in a line."""
         found, by_class = method(way), takes_class(way)
         guidance = found.default("guidance", GenerateRequest.guidance)
-        # Few steps were judged for sentences.
-        steps = found.default("steps", FAITHFUL) if by_class else AT_FIRST
         return (
             gr.update(visible=not by_class), gr.update(visible=by_class), gr.update(value=guidance),
-            method_line(found.summary), gr.update(visible=not by_class), gr.update(value=steps),
-            gr.update(value=pace_of(steps)),
+            method_line(found.summary), gr.update(visible=not by_class), gr.update(value=found.steps),
+            gr.update(value=pace_of(found.steps)),
         )  # fmt: skip
 
     def _settings(self) -> None:
@@ -195,8 +209,10 @@ class GenerateTab(SweepTab):
     def kinds(self) -> Sequence[Kind]:
         """Also sentences, and methods."""
         known = {method(name).label.lower(): name for _, name in generate_choices()}
-        models = Kind("model", "Methods", read=partial(named_method, known), split=r"[;\n]", named=label_of)
-        return (*super().kinds(), Kind("prompt", "Sentences", split=r"[;\n]"), models)
+        models = Kind(
+            "model", "Methods", read=partial(named_method, known), split=BETWEEN_SENTENCES, named=label_of
+        )
+        return (*super().kinds(), Kind("prompt", "Sentences", split=BETWEEN_SENTENCES), models)
 
     def presets(self) -> Mapping[str, tuple[str, str]]:
         """Also a sentence beside a class, where there are classes."""
@@ -205,14 +221,20 @@ class GenerateTab(SweepTab):
         return {**super().presets(), **beside}
 
     def cell_fields(self, fields: Mapping[str, Any], cell: Mapping[str, Any]) -> dict[str, Any]:
-        """A method of classes gets the guidance that suits it, and the class that the sentence names."""
+        """A method of classes gets the guidance that suits it, and the class that the sentence names.
+
+        Where the tab asks for a class, the methods of sentences get one of that class.
+        """
         asked = {**fields, **cell}
-        if "model" in cell and takes_class(asked["model"]):
-            if "guidance" not in cell:
-                asked["guidance"] = method(asked["model"]).default("guidance", asked["guidance"])
-            names, _ = installed_classes()
-            said = str(asked.get("prompt") or "").lower()
-            asked["class_name"] = asked.get("class_name") or next((n for n in names if n in said), None)
+        if "model" not in cell:
+            return asked
+        by_class = takes_class(asked["model"])
+        if by_class and "guidance" not in cell:
+            asked["guidance"] = method(asked["model"]).default("guidance", asked["guidance"])
+        if by_class and not takes_class(fields["model"]):
+            asked["class_name"] = _class_in(str(asked.get("prompt") or ""), label_of(asked["model"]))
+        elif not by_class and takes_class(fields["model"]):
+            asked["prompt"] = f"Two people {_chosen_class(fields)}."
         return asked
 
     def describe_model(self) -> str:

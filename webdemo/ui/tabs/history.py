@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
-from pathlib import Path
 from typing import Any
 
 import gradio as gr
@@ -25,6 +24,7 @@ from webdemo.ui.visitor import Visitor, visitor
 from .job import QUIET, JobTab, Updates
 from .study import StudyPanel
 from .sweeps import grid_shown
+from .workspace import WorkspacePanel, room_html, runs_line
 
 LABEL = "History"
 EMPTY = (
@@ -32,8 +32,6 @@ EMPTY = (
     "share it by a link, or check that it comes out the same."
 )
 NOTHING_FOUND = "No run fits: take a filter away."
-LARGEST_IMPORT = 50 * 2**20
-"""Bytes of the largest upload."""
 _CONTROLS = ("prompt", "seconds", "seed", "samples", "guidance", "steps", "damping", "role", "model", "mode")
 """Fields of a request that a tab may have a control of the same name for."""
 _LAST = "last"
@@ -56,6 +54,7 @@ class HistoryTab:
             raise ValueError("The page has no history.")
         self.page, self.jobs, self.tabs = page, jobs, tabs
         self.history: HistoryLike = page.history
+        self.workspace = WorkspacePanel(page, self.history, self.refresh)
 
     # ---- layout ----------------------------------------------------------------------------------
 
@@ -79,14 +78,7 @@ class HistoryTab:
             if self.study is not None:
                 self.study.build()
             self.view = NotebookView(elem_id="history-notebook")
-            with gr.Accordion(
-                "Export everything, or import a workspace", open=False, elem_id="history-workspace"
-            ):
-                self.everything = gr.Button("Export everything", size="sm", elem_id="history-export-all")
-                self.file = gr.File(
-                    label="Import: a .zip of Export", file_types=[".zip"], height=112, elem_id="history-import",
-                    elem_classes="pd-file",
-                )  # fmt: skip
+            self.workspace.build()
         self.removed = gr.State([])
         self._wire(demo, tab, record)
 
@@ -96,10 +88,7 @@ class HistoryTab:
         shown = [self.view, self.who, self.line, self.address, self.saved, self.removed]
         tab.select(self.refresh, inputs=self.removed, outputs=shown[:2], **quick)
         self.view.select(self.act, inputs=self.removed, outputs=shown, **quick)
-        self.everything.click(self.export_all, outputs=[self.line, self.saved], **quick)
-        self.file.upload(
-            self.take_in, inputs=[self.file, self.removed], outputs=[*shown[:3], self.file], **quick
-        )
+        self.workspace.wire(demo, shown[:2], self.line, self.saved, self.removed)
         again = self.view.retry(
             self.again, outputs=[self.line], concurrency_limit=None, trigger_mode="once", **QUIET
         )
@@ -148,12 +137,14 @@ class HistoryTab:
         return shown(found, empty=empty, removed=len(removed), search=search)
 
     def refresh(self, removed: list[str]) -> Updates:
-        """The newest runs, and whose they are."""
+        """The newest runs, whose they are, and how much room these use."""
+        room = ""
         try:
             found = self._found(Search(), removed)
+            room = room_html(self.history.usage(visitor()))
         except Exception as error:
             found = shown(Found((), 0), empty=error_line(error))
-        return gr.update(value=found), _signed_in(visitor())
+        return gr.update(value=found), _signed_in(visitor()) + room
 
     def act(self, removed: list[str], event: gr.EventData) -> Updates:
         """Does what was pressed in the notebook, and shows the list as it is then."""
@@ -166,15 +157,15 @@ class HistoryTab:
                 link, until = self._link(action.one, owner)
                 line, address = status(until, tone="done"), gr.update(value=link, visible=True)
             elif action.act == "export":
-                line, saved = self._export(action.ids)
+                line, saved = self.workspace.export(action.ids)
             elif action.act == "remove":
                 count, removed = self.history.remove(action.ids, owner), action.ids
                 line = status(
-                    f"Removed {_runs(count)}, with {'its' if count == 1 else 'their'} links.", tone="done"
+                    f"Removed {runs_line(count)}, with {'its' if count == 1 else 'their'} links.", tone="done"
                 )
             elif action.act == "restore":
                 count, removed = self.history.restore(removed, owner), []
-                line = status(f"Brought {_runs(count)} back.", tone="done")
+                line = status(f"Brought {runs_line(count)} back.", tone="done")
             elif action.act != "search":
                 line = status(self._one(action, owner), tone="done")
         except Exception as error:
@@ -205,32 +196,6 @@ class HistoryTab:
     def _link(self, run: str, owner: str) -> tuple[str, str]:
         key, until = self.history.link(run, owner)
         return f"{visitor().base}?run={key}", link_line(until)
-
-    def _export(self, runs: Sequence[str]) -> tuple[str, Any]:
-        file = self.page.shelf.folder() / "pas-de-deux-workspace.zip"
-        count = self.history.export(visitor().owner, runs, file)
-        size = file.stat().st_size
-        large = (
-            "" if size <= LARGEST_IMPORT else ", more than can be imported at once: export fewer runs as well"
-        )
-        line = f"{_runs(count).capitalize()} in one file of {size / 2**20:.1f} MB{large}."
-        return status(line, tone="done"), gr.update(value=str(file), visible=True)
-
-    def export_all(self) -> Updates:
-        """Writes every finished run into one file."""
-        try:
-            return self._export(())
-        except Exception as error:
-            return status(error_line(error), tone="error"), gr.update(visible=False)
-
-    def take_in(self, file: str | None, removed: list[str]) -> Updates:
-        """Adds the runs of an exported file."""
-        try:
-            count = self.history.take_in(visitor().owner, Path(file or ""))
-            line = status(f"Imported {_runs(count)}.", tone="done")
-        except Exception as error:
-            line = status(error_line(error), tone="error")
-        return *self.refresh(removed), line, None
 
     def again(self, request: gr.Request, event: gr.EventData) -> Iterator[str]:
         """Runs a kept request once more and says whether it came out the same."""
@@ -354,10 +319,6 @@ def compared(runs: Sequence[Opened]) -> dict[str, Any]:
         number = sum(each.split(" #")[0] == name for each in made)
         made[f"{name} #{number + 1}" if number else name] = replace(run.result, run="")
     return grid_shown(loose([{}] * len(made), list(made)), made, f"{len(made)} runs compared")
-
-
-def _runs(count: int) -> str:
-    return "one run" if count == 1 else f"{count} runs"
 
 
 def _signed_in(who: Visitor) -> str:

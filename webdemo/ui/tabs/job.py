@@ -195,9 +195,10 @@ class JobTab(SamplingTab, ABC):
     def _steps(self, session: str, fields: Mapping[str, Any]) -> Iterator[Updates]:
         """The updates of a run, each with what it changes."""
         self._cancelled.discard(session)
-        asked = snapshot(fields, self.knobs)
         yield self._updates(player=busy("Starting …"), line=status("Starting …", tone="busy"), changed="")
         try:
+            fields = self.settled(fields)
+            asked = snapshot(fields, self.knobs)
             if fields.get("seed", 0) is None:
                 fields = {**fields, "seed": secrets.randbelow(MAX_SEED + 1)}
             for updates in self.answer(session, fields):
@@ -212,6 +213,10 @@ class JobTab(SamplingTab, ABC):
             yield self._stopped(str(stopped), "warning")
         except Exception as error:
             yield self._stopped(error_line(error), "error")
+
+    def settled(self, fields: Mapping[str, Any]) -> Mapping[str, Any]:
+        """The fields that are used and kept; raises InputError where two of them cannot be brought together."""
+        return fields
 
     def complete(self, record: Record, fields: Mapping[str, Any]) -> None:
         """Adds to a record what its files need beside the result."""
@@ -314,7 +319,7 @@ class JobTab(SamplingTab, ABC):
         return found | self._opened_sampling(run.entry.request)
 
     def _stopped(self, line: str, tone: str) -> Updates:
-        return self._updates(player=busy(""), line=status(line, tone=tone))
+        return self._updates(player=busy(""), line=status(line, tone=tone), asked="", changed="")
 
     def rest(self) -> Updates:
         """The buttons once a run is over, however it ended."""

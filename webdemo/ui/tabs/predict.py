@@ -32,7 +32,7 @@ from webdemo.ui.components.prediction_view import (
     without_name,
 )
 from webdemo.ui.components.settings import looked_up
-from webdemo.ui.components.sweep import Kind, grid_table, real
+from webdemo.ui.components.sweep import BETWEEN_SENTENCES, Kind, grid_table, real
 from webdemo.ui.components.upload import chip, example_chips, file_field
 from webdemo.ui.context import PageContext
 from webdemo.ui.history import Opened
@@ -109,7 +109,9 @@ class PredictTab(SweepTab):
     def kinds(self) -> Sequence[Kind]:
         """Methods, where the past ends, and the length."""
         known = {label.lower(): name for label, name in predict_choices()}
-        models = Kind("model", "Methods", read=partial(named_method, known), split=r"[;\n]", named=label_of)
+        models = Kind(
+            "model", "Methods", read=partial(named_method, known), split=BETWEEN_SENTENCES, named=label_of
+        )
         marker = Kind("marker", "Past ends at (s)", "from", real, named=lambda value: f"{value:g} s")
         length = Kind("seconds", "Seconds to predict", read=real, named=lambda value: f"{value:g} s")
         return (models, marker, length)
@@ -118,7 +120,7 @@ class PredictTab(SweepTab):
         """All methods beside each other."""
         return {"Method beside method": ("model", "; ".join(label for label, _ in predict_choices()))}
 
-    def beside_grid(self, made: Mapping[str, Result]) -> dict[str, Any]:
+    def beside_grid(self, made: Mapping[str, Result], fields: Mapping[str, Any]) -> dict[str, Any]:
         """The errors of all cells over their read-outs; the curves of one prediction are hidden."""
         results = [result for result in made.values() if isinstance(result, PredictResult)]
         errors = dict(zip(made, error_lines(*results), strict=True)) if len(results) == len(made) else {}

@@ -33,7 +33,7 @@ from webdemo.ui.components.live_panel import LivePanel, take_of
 from webdemo.ui.components.player import show
 from webdemo.ui.components.settings import looked_up
 from webdemo.ui.components.show import result_payload
-from webdemo.ui.components.sweep import Kind
+from webdemo.ui.components.sweep import BETWEEN_SENTENCES, Kind
 from webdemo.ui.components.upload import chip, example_chips, file_field
 from webdemo.ui.history import Opened
 from webdemo.ui.text.panels import comparison_panel, method_line, notes_lines, status
@@ -108,9 +108,13 @@ class ReactTab(ActorTab):
         known = {label.lower(): key for label, key in react_choices()}
         labels = {key: label for label, key in react_choices()}
         methods = Kind(
-            "method", "Methods", read=partial(named_method, known), split=r"[;\n]", named=labels.__getitem__
+            "method",
+            "Methods",
+            read=partial(named_method, known),
+            split=BETWEEN_SENTENCES,
+            named=labels.__getitem__,
         )
-        return (*super().kinds(), Kind("prompt", "Sentences", split=r"[;\n]"), methods)
+        return (*super().kinds(), Kind("prompt", "Sentences", split=BETWEEN_SENTENCES), methods)
 
     def presets(self) -> Mapping[str, tuple[str, str]]:
         """Also every method beside the others."""
@@ -250,12 +254,11 @@ class ReactTab(ActorTab):
         forced: dict[str, Any] = {} if either else {"value": "a"}
         heard = any("words" in variant.method.takes for variant in both)
         fixed = chosen.method.fixed
-        steps = chosen.method.default("steps", ReactRequest.steps)
         live = live_variant()
         about = _AUTOMATIC if method == AUTOMATIC else chosen.method.summary
         return (
             gr.update(interactive=either, **forced),
-            gr.update(value=steps, interactive="steps" not in fixed),
+            gr.update(value=chosen.method.steps, interactive="steps" not in fixed),
             gr.update(interactive="guidance" not in fixed),
             gr.update(interactive="damping" not in fixed and chosen.mode == "offline"),
             gr.update(interactive=heard, label=_WORDS if heard else f"{_WORDS} Not used: {chosen.label}"),

@@ -132,9 +132,11 @@ class ResultsTab:
             concurrency_limit=1, concurrency_id="character", trigger_mode="once", **QUIET,
         )  # fmt: skip
 
-    def put_on(self, path: str, record: Record | None) -> Updates:
+    def put_on(self, path: str | None, record: Record | None) -> Updates:
         """Puts an uploaded character on both people, here and in the files of this result and of later ones."""
         try:
+            if not path:
+                raise InputError("There is no character: choose a skinned .glb.")
             worn = Worn.read(Path(path), self.page.shelf.folder())
             files: dict[str, Path] = {}
             if record is not None:

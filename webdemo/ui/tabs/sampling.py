@@ -7,8 +7,9 @@ from typing import Any
 
 import gradio as gr
 
+from webdemo.inference.method import DEFAULT_STEPS
 from webdemo.inference.requests import DAMPING, GUIDANCE, MAX_SEED, SAMPLES, SamplingRequest
-from webdemo.ui.components.pace import AT_FIRST, CHOSEN, FAITHFUL, FOLLOWED, pace_of, pace_switch
+from webdemo.ui.components.pace import CHOSEN, FOLLOWED, pace_of, pace_switch
 from webdemo.ui.components.settings import ADVANCED, advanced_label
 
 from .results import QUIET, ResultsTab
@@ -58,7 +59,7 @@ class SamplingTab(ResultsTab):
             )
         if paced:
             self.pace = pace_switch(self._id("pace"))
-        values = (SamplingRequest.guidance, AT_FIRST if paced else FAITHFUL, SamplingRequest.damping)
+        values = (SamplingRequest.guidance, DEFAULT_STEPS, SamplingRequest.damping)
         with gr.Accordion(
             advanced_label(*values), open=False, elem_id=self._id("advanced"), elem_classes="pd-advanced"
         ) as self.folded:

@@ -10,13 +10,12 @@ import gradio as gr
 
 from motion import Duet
 from webdemo.inference.requests import Progress, Result
-from webdemo.inference.story import SceneProgress, SceneRequest, read_words, split_sentence, write_story
-from webdemo.inference.story.beats import seconds_of, story_title
+from webdemo.inference.story import SceneProgress, SceneRequest, write_story
+from webdemo.inference.story.beats import story_title
 from webdemo.ui.components.exports import Record
 from webdemo.ui.components.player import show
 from webdemo.ui.components.scene_parts import (
     FUTURES,
-    laid_out,
     only_sample,
     part_fields,
     part_request,
@@ -24,13 +23,15 @@ from webdemo.ui.components.scene_parts import (
     shown_duet,
     went_on,
 )
-from webdemo.ui.components.story import (
-    StoryLine,
-    motion_marks,
-    story_fields,
-    story_value,
-    ticked,
-    value_of,
+from webdemo.ui.components.story import StoryLine, motion_marks, story_fields, value_of
+from webdemo.ui.components.story_words import (
+    edited,
+    lay_out,
+    said_of,
+    settled,
+    story_text,
+    use_text,
+    written,
 )
 from webdemo.ui.components.upload import chip
 from webdemo.ui.history import Opened
@@ -82,14 +83,19 @@ class SceneTab(SweepTab):
         plain = {f: fields[f] for f in ("seed", "guidance", "steps", "damping")}
         return SceneRequest(**story_fields(fields["story"]), samples=int(fields["samples"]), **plain)
 
-    def cell_fields(self, fields: Mapping[str, Any], cell: Mapping[str, Any]) -> dict[str, Any]:
-        """The story as it is laid out, with the cell's settings."""
-        return {**fields, "story": laid_out(fields), **cell}
+    def settled(self, fields: Mapping[str, Any]) -> Mapping[str, Any]:
+        """The story that is made with the text that stands for it; see :func:`settled`."""
+        if fields.get("part"):
+            return fields
+        story, text = settled(fields["story"], str(fields["prompt"] or ""))
+        return {**fields, "story": story, "prompt": text, "typed": fields["prompt"]}
 
-    def beside_grid(self, made: Mapping[str, Result]) -> dict[str, Any]:
+    def beside_grid(self, made: Mapping[str, Result], fields: Mapping[str, Any]) -> dict[str, Any]:
         """The story of the first cell, without its motion: the cells differ in it."""
         request = SceneRequest.from_dict(next(iter(made.values())).manifest["request"])
-        return {"story": gr.update(value=value_of(request)), "text": write_story(request)}
+        return {
+            "story": gr.update(value=value_of(request)), "text": write_story(request), "prompt": _changed(fields)
+        }  # fmt: skip
 
     def title(self, request: SceneRequest) -> str:
         """The words of its beats."""
@@ -166,8 +172,8 @@ class SceneTab(SweepTab):
         self.earlier = gr.State([], time_to_live=3600)
 
     def more_outputs(self) -> dict[str, Any]:
-        """The story with its text, and the motions that can be gone back to."""
-        return {"story": self.line_up, "text": self.text, "earlier": self.earlier}
+        """The story with its text and its words, and the motions that can be gone back to."""
+        return {"story": self.line_up, "text": self.text, "prompt": self.prompt, "earlier": self.earlier}
 
     def starts(self) -> dict[str, gr.Button]:
         """All buttons that start a run."""
@@ -178,21 +184,18 @@ class SceneTab(SweepTab):
     def _wire_story(self) -> None:
         for button, (_, sentences) in zip(self.chips, EXAMPLES, strict=True):
             button.click(
-                partial(self.lay_out, sentences),
+                partial(lay_out, sentences),
                 inputs=self.line_up,
                 outputs=[self.prompt, self.line_up, self.text, self.line],
                 **QUIET,
             )
-        self.line_up.input(
-            self.edited, inputs=[self.line_up, self.seed], outputs=[self.line_up, self.text, self.line],
-            queue=False, **QUIET,
-        )  # fmt: skip
+        laid = [self.line_up, self.text, self.line, self.prompt]
+        last: dict[str, Any] = {"outputs": laid, "trigger_mode": "always_last", **QUIET}
+        self.line_up.input(edited, inputs=[self.line_up, self.seed], **last)
+        self.prompt.input(None, inputs=self.line_up, outputs=self.line_up, js=_TYPED, **QUIET)
+        self.prompt.blur(written, inputs=[self.prompt, self.line_up, self.seed], **last)
         self.use.click(
-            self.use_text,
-            inputs=[self.text, self.prompt],
-            outputs=[self.line_up, self.line, self.seed],
-            queue=False,
-            **QUIET,
+            use_text, inputs=self.text, outputs=[self.line_up, self.prompt, self.line, self.seed], **QUIET
         )
         self.take.click(
             self.take_shown, inputs=[self.record, self.earlier, self.shown_at], js=_READ_PLACE,
@@ -238,43 +241,6 @@ class SceneTab(SweepTab):
         """Of a part also the whole story."""
         return {"story": fields["story"]} if fields.get("part") else {}
 
-    @staticmethod
-    def lay_out(sentences: str, story: Any = None) -> Updates:
-        """A sentence, and the line with its beats; what was ticked on the line stays so."""
-        beats = split_sentence(sentences)
-        ticks = ticked(story)
-        laid = story_value(beats, **ticks) | {"from": sentences}
-        text = write_story(SceneRequest(beats=beats, **ticks))
-        return sentences, laid, text, status(f"{len(beats)} beats: press Generate.")
-
-    @staticmethod
-    def edited(story: Any, seed: float | None) -> Updates:
-        """The lengths of the beats and the story's text after a change on the line."""
-        lengths: list[float] | None = None
-        try:
-            fields = story_fields(story)
-            lengths = [seconds_of(beat.sentence) for beat in fields["beats"]]
-            text = write_story(SceneRequest(**fields, seed=int(seed or 0)))
-        except Exception as error:
-            line = error_line(error) if isinstance(story, Mapping) and story.get("beats") else ""
-            return gr.update(lengths=lengths), gr.skip(), status(line, tone="warning") if line else status()
-        return gr.update(lengths=lengths), text, status()
-
-    @staticmethod
-    def use_text(text: str, prompt: str) -> Updates:
-        """The line as the text says."""
-        try:
-            fields = read_words(text)
-            request = SceneRequest(**fields)
-        except Exception as error:
-            return gr.skip(), status(error_line(error), tone="error"), gr.skip()
-        line = status(f"{len(request.beats)} beats, {request.seconds:g} s: press Generate.")
-        shown = story_value(
-            fields["beats"], request.paths, request.poses, loop=request.loop, planned=request.planned
-        )
-        shown["from"] = prompt
-        return shown, line, request.seed if "seed" in fields else gr.skip()
-
     def answer(self, session: str, fields: Mapping[str, Any]) -> Iterator[Updates]:
         """Runs the story; parts appear as they are finished and stay if the run is cancelled."""
         if fields.get("grid"):
@@ -285,9 +251,10 @@ class SceneTab(SweepTab):
             wanted = part_request(fields)
             earlier = [*fields["earlier"], fields["record"]][-MOST_EARLIER:]
         else:
-            asked = {**fields, "story": laid_out(fields)}
-            wanted, earlier = self.request(asked), []
-            yield self._updates(story=asked["story"], text=write_story(wanted))
+            wanted, earlier = self.request(fields), []
+            laid = {"text": write_story(wanted), "prompt": _changed(fields)}
+            # Not the story itself: Gradio's page would change it in place into the update after it.
+            yield self._updates(**laid, story=gr.update(value=fields["story"]))
         title = fields["record"].prompt if part is not None else self.title(wanted)
         result = yield from self.made(session, wanted, watch=partial(self._watch, title))
         shown = self._shown(result, title) | {"earlier": earlier}
@@ -296,10 +263,12 @@ class SceneTab(SweepTab):
         marks = motion_marks(duet, result.readouts[0])
         line_up = gr.update(motion=marks)
         if part == "futures":
-            line_up = gr.update(value=went_on(fields["story"], wanted), motion=marks)
+            story = went_on(fields["story"], wanted)
+            line_up = gr.update(value=story, motion=marks)
+            shown["prompt"] = story_text(story_fields(story)["beats"])
         elif part is None:  # again, as a browser may show only the last of several updates
-            line_up = gr.update(value=asked["story"], motion=marks)
-            shown["text"] = write_story(wanted)
+            line_up = gr.update(value=fields["story"], motion=marks)
+            shown |= laid
         yield self._updates(**shown | {"story": line_up})
 
     def start_span(
@@ -380,12 +349,22 @@ class SceneTab(SweepTab):
                 story, text = value_of(request), write_story(request)
             else:
                 story = went_on(whole, request) if request.end is None else whole
-                text = self.edited(story, request.seed)[1]
+                text = edited(story, request.seed)[1]
             found[self.line_up] = gr.update(value=story, motion=motion_marks(duet))
             found[self.text] = text
+            found[self.prompt] = gr.update(value=said_of(str(run.kept.controls.get("prompt") or ""), story))
         return found
 
 
+def _changed(fields: Mapping[str, Any]) -> Any:
+    """An update of the words over the line, where they are not as they were typed."""
+    return gr.skip() if fields.get("typed") == fields.get("prompt") else fields["prompt"]
+
+
+_TYPED = """(story) => ({
+  __type__: "update", ...(story?.ahead ? { value: { ...story, ahead: false } } : {}),
+})"""
+"""JavaScript that tells the line that the words over it are newer than its beats."""
 _READ_PLACE = """(...values) => {
   const player = window.__pasdedeux?.player;
   const place = { frame: Math.round(player?.frameShown ?? 0), sample: player?.sampleIndex ?? 0 };

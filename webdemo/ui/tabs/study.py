@@ -220,6 +220,7 @@ class StudyPanel:
                     question=question or "", title=title or "", sets=sets, checks=int(checks), pairs_each=int(each),
                     shows_sentence=bool(sentence), shows_result=bool(reveal),
                 ),
+                address=visitor().address,
             )  # fmt: skip
         except Exception as error:
             return status(error_line(error), tone="error"), *((gr.skip(),) * (7 + len(uploads) // 2))

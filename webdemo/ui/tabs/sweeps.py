@@ -56,8 +56,8 @@ class SweepTab(JobTab):
         """The tab's fields for a cell."""
         return {**fields, **cell}
 
-    def beside_grid(self, made: Mapping[str, Result]) -> dict[str, Any]:
-        """Further updates of the tab when it shows a grid of these results."""
+    def beside_grid(self, made: Mapping[str, Result], fields: Mapping[str, Any]) -> dict[str, Any]:
+        """Further updates of the tab when it shows a grid of these results, made from ``fields``; {} when opened."""
         return {}
 
     # ---- layout ----------------------------------------------------------------------------------
@@ -133,7 +133,7 @@ class SweepTab(JobTab):
         spent = sum(map(total, made.values()))
         notes = {note: None for result in made.values() for note in notes_lines(result).splitlines() if note}
         yield self._updates(
-            **grid_shown(grid, made, title) | self.beside_grid(made),
+            **grid_shown(grid, made, title) | self.beside_grid(made, asked),
             line=status(f"{len(wanted)} results done in {seconds(spent)}.", tone="done") + "".join(notes),
             under=gr.update(visible=True),
         )
@@ -152,7 +152,7 @@ class SweepTab(JobTab):
             else Named([""] * len(results), [""], [], tuple(names))
         )
         made = dict(zip(names, results, strict=True))
-        shown = grid_shown(grid, made, str(about["title"])) | self.beside_grid(made)
+        shown = grid_shown(grid, made, str(about["title"])) | self.beside_grid(made, {})
         return found | {self.outputs[name]: update for name, update in shown.items()}
 
 

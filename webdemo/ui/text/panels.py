@@ -55,7 +55,7 @@ def model_state(state: str, error: str | None = None) -> str:
 
 def readout_panel(result: Result) -> str:
     """Everything under the player: how it came out, what was asked, measures, contacts, timings."""
-    samples = [_sides(readout) for readout in result.readouts]
+    samples = [sides(readout) for readout in result.readouts]
     parts = [_in_words(samples, _heads(len(samples))), _asked(result)]
     if samples:
         parts += [_tables(_quality_table(samples), _relation_table(samples, result)), legend()]
@@ -75,7 +75,7 @@ def comparison_panel(results: Mapping[str, Result]) -> str:
         readouts=tuple(readout for result in results.values() for readout in result.readouts),
         manifest={},
     )
-    samples = [_sides(readout) for readout in joined.readouts]
+    samples = [sides(readout) for readout in joined.readouts]
     parts = [_in_words(samples, heads), *(_asked(result, name) for name, result in results.items())]
     if samples:
         tables = _quality_table(samples, heads), _relation_table(samples, joined, heads)
@@ -107,11 +107,14 @@ def _heads(count: int) -> list[str]:
     return [f"Sample {i + 1}" for i in range(count)]
 
 
-def _sides(readout: Mapping[str, Any]) -> tuple[Summary | None, Summary]:
-    """(before, after) of a read-out, as :func:`motion.metrics.compare` gives it."""
-    after = readout.get("after") or {}
+def sides(readout: Mapping[str, Any]) -> tuple[Summary | None, Summary]:
+    """(before, after) of a read-out, as :func:`motion.metrics.compare` gives it, without what could not be measured."""
     before = readout.get("before")
-    return (before.get("summary", before) if before else None), after.get("summary", after)
+    return _measured(before) if before else None, _measured(readout.get("after") or {})
+
+
+def _measured(values: Mapping[str, Any]) -> Summary:
+    return {key: value for key, value in values.get("summary", values).items() if value is not None}
 
 
 def _asked(result: Result, name: str | None = None) -> str:
@@ -154,7 +157,8 @@ def _quality_table(
     else:
         head = heads or _heads(len(samples))
     rows = "".join(_quality_row(measure, samples) for measure in QUALITY)
-    return _table("Quality, before → after damping and clean-up", head, rows)
+    compared = any(before is not None for before, _ in samples)
+    return _table("Quality, before → after damping and clean-up" if compared else "Quality", head, rows)
 
 
 def _quality_row(measure: Measure, samples: Sequence[tuple[Summary | None, Summary]]) -> str:
@@ -174,7 +178,9 @@ def _quality_row(measure: Measure, samples: Sequence[tuple[Summary | None, Summa
 def _change(measure: Measure, before: Summary, after: Summary) -> str:
     old, new = before.get(measure.key), after.get(measure.key)
     smallest = 0.5 * 10**-measure.digits
-    if old is None or new is None or _value(measure, before) == _value(measure, after):
+    if old is None or new is None:
+        return "<td>–</td>"
+    if _value(measure, before) == _value(measure, after):
         return '<td class="pd-same">same</td>'
     tone = "pd-better" if new < old else "pd-worse"
     if old < smallest:

@@ -1,0 +1,99 @@
+"""A plan in the plain words on which the network was trained, beat by beat.
+
+A caption is written for one agent, with its verb in brackets: ``{a} [walk] up to {b}`` becomes "person A walks up to
+person B" or "they walk up to each other". ``{b}`` is the other person; ``{part}``, ``{side}``, ``{thing}`` and
+``{direction}`` come from the act, or are left out where it names none; ``{limb}`` is "the left hand" or "both arms".
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Sequence
+
+from .lexicon import Lexicon
+from .plan import Act, Plan
+
+_VERB = re.compile(r"\[([a-z-]+)\]")
+_SLOT = re.compile(r"\{([a-z_]+)\} ?")
+_NAMES = {"a": "person A", "b": "person B"}
+_COUNTS = {1: "once", 2: "twice", 3: "three times"}
+
+
+def singular(verb: str) -> str:
+    """A verb's base form in the third person singular: "passes"."""
+    if verb in ("be", "have"):
+        return {"be": "is", "have": "has"}[verb]
+    if verb.endswith(("s", "sh", "ch", "x", "z", "o")):
+        return f"{verb}es"
+    return f"{verb[:-1]}ies" if verb.endswith("y") and verb[-2:-1] not in "aeiou" else f"{verb}s"
+
+
+def _plural(part: str) -> str:
+    return {"foot": "feet"}.get(part, f"{part}s")
+
+
+def worded(act: Act, caption: str) -> str:
+    """An act in the words of a caption, without a full stop: "person A pats person B on the back twice"."""
+    both = len(act.agents) == 2
+    other = act.patient or ("b" if act.agents[0] == "a" else "a")
+    text = _VERB.sub(lambda m: ("are" if m[1] == "be" else m[1]) if both else singular(m[1]), caption)
+    values = {
+        "a": "they" if both else _NAMES[act.agents[0]],
+        "b": "each other" if both else _NAMES[other],
+        "part": act.part or "",
+        "side": act.side if act.side in ("left", "right") else "",
+        "thing": act.thing or "",
+        "direction": act.direction or "",
+        "limb": f"both {_plural(act.part or 'hand')}"
+        if act.side == "both"
+        else f"the {act.side or ''} {act.part or 'hand'}",
+    }
+
+    def fill(match: re.Match[str]) -> str:
+        value = values.get(match[1]) or ""
+        return f"{value} " if value and match[0].endswith(" ") else value
+
+    text = " ".join(_SLOT.sub(fill, text).split())
+    if act.times is not None and act.times > 1:
+        text += f" {_COUNTS.get(act.times, 'several times')}"
+    for adverb in act.manner[:1]:
+        if adverb not in ("then", "finally"):
+            text += f" {adverb}"
+    return text
+
+
+def beats(plan: Plan, known: Lexicon) -> list[str]:
+    """A sentence for each beat of a plan: what is done at the same time stands in one.
+
+    Acts that are denied, tried, pretended or wished are not done; a person of whom nothing else is told in that beat
+    then stands still.
+    """
+    found = []
+    for group in plan.beats():
+        sentence = _sentence(group, known)
+        if sentence:
+            found.append(sentence)
+    return found
+
+
+def _sentence(group: Sequence[Act], known: Lexicon) -> str:
+    done = [act for act in group if act.happens and act.act in known.entries]
+    parts: list[tuple[str, str]] = []
+    for act in done:
+        parts.append(("".join(act.agents), worded(act, known.entries[act.act].caption[0])))
+    busy: set[str] = {who for act in done for who in act.agents}
+    for act in group:
+        idle = "".join(who for who in act.agents if who not in busy)
+        if not act.happens and idle:
+            parts.append((idle, f"{_NAMES[idle]} stands still" if len(idle) == 1 else "they stand still"))
+            busy.update(idle)
+    text, last = "", ""
+    for who, words in parts:
+        if not text:
+            text = words
+        elif who == last:
+            text += f" and {words.removeprefix('they ').removeprefix('person A ').removeprefix('person B ')}"
+        else:
+            text += f" while {words}"
+        last = who
+    return f"{text[:1].upper()}{text[1:]}." if text else ""

@@ -1,0 +1,57 @@
+"""Checks of lexicon entries by their own examples."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator
+from pathlib import Path
+
+import numpy as np
+
+from motion import InputError
+from motion.metrics.sentences.joints import Motion
+from motion.metrics.sentences.language import RuleError, check
+
+from .lexicon import OURS, Entry, files, lexicon, read_file
+from .reading import read
+
+
+def check_folder(folder: Path) -> Iterator[str]:
+    """A sentence, with file and line, for everything that is wrong with the entries of a folder."""
+    entries: dict[str, Entry] = {}
+    for path in files(folder):
+        yield from read_file(path, entries)
+    folders = () if folder.resolve() == OURS.resolve() else (folder.resolve(),)
+    try:
+        lexicon(folders)
+    except InputError as error:
+        yield str(error)
+        return
+    for name, entry in entries.items():
+        yield from check_entry(name, entry, folders)
+
+
+def check_entry(name: str, entry: Entry, folders: tuple[Path, ...] = ()) -> Iterator[str]:
+    """A sentence for each example of an entry that is not read as it should be."""
+    where = f"{entry.group}.toml, [{name}]"
+    for sentence in entry.reads if entry.shown else ():
+        plan = read(sentence, folders)
+        found = [act.act for act in plan.acts if act.happens]
+        if name not in found:
+            yield f"{where}: “{sentence}” is not read as {name} but as {', '.join(found) or 'nothing'}."
+    for sentence in () if entry.shown else entry.reads:
+        if acts := [act.act for act in read(sentence, folders).acts]:
+            yield f"{where}: “{sentence}” is read as {', '.join(acts)}, and nothing of it can be shown."
+    for sentence in entry.ignores:
+        if any(act.act == name and act.happens for act in read(sentence, folders).acts):
+            yield f"{where}: “{sentence}” is read as {name}, which it should not be."
+    for rule in entry.rule:
+        try:
+            check(cast(rule, "a", "b"), Motion(np.random.default_rng(0).normal(size=(2, 30, 22, 3))))
+        except RuleError as error:
+            yield f"{where}: {error}"
+
+
+def cast(rule: str, who: str, whom: str) -> str:
+    """A rule of the lexicon with the people of an act: ``who`` is the agent, ``whom`` the other."""
+    return re.sub(r"\b(who|whom)\b", lambda m: who if m[1] == "who" else whom, rule)

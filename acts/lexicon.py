@@ -1,0 +1,152 @@
+"""The lexicon: one entry an act, in TOML files grouped by kind; a lab's own folders are merged into it.
+
+An entry gives everything about its act: how it is said, the words on which the network was trained, how long it takes,
+how it is staged, the rule that checks it, and examples that are its tests. ``python -m acts check FOLDER`` says what is
+wrong with an entry, with its file and line.
+"""
+
+from __future__ import annotations
+
+import tomllib
+from collections import defaultdict
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from functools import cache
+from pathlib import Path
+from typing import Annotated, Any, Literal
+
+from pydantic import BaseModel, ConfigDict, Field, ValidationError, model_validator
+
+from motion import InputError
+
+from .frames import Frame
+from .shapes import Shape
+
+OURS = Path(__file__).with_name("lexicon")
+MOST_BYTES = 1_000_000
+"""Bytes of a lexicon file, at most."""
+
+Sentence = Annotated[str, Field(min_length=1, max_length=300)]
+
+
+class Entry(BaseModel):
+    """One act.
+
+    Attributes:
+        frames: how it is said; see :mod:`acts.frames`.
+        synsets: WordNet senses whose other verbs, and those below them, may stand in its frames' place.
+        caption: the network's words, as ``{a} [pat] {b} on the {part}``; see :func:`acts.captions.worded`. The first is
+            used, the others are paraphrases of it.
+        seconds: how long it usually takes.
+        before: what must hold first, after: what holds from then on (a posture).
+        stage: its score; empty leaves it to the network's words.
+        rule: predicates of :mod:`motion.metrics.sentences` that its motion fulfils, with ``who`` for the agent and
+            ``whom`` for the patient.
+        shown: False for what no body shows ("falls in love", "turns on the lamp"): it is known, and stays unread.
+        mutual: done together even where one is named first: "he hugs her" has both arms around.
+        reads, ignores: sentences that have the act and that do not.
+        group: the file that it stands in.
+    """
+
+    model_config = ConfigDict(extra="forbid", frozen=True)
+
+    frames: Annotated[tuple[Sentence, ...], Field(min_length=1, max_length=60)]
+    synsets: Annotated[tuple[str, ...], Field(max_length=20)] = ()
+    caption: Annotated[tuple[Sentence, ...], Field(max_length=12)] = ()
+    seconds: Annotated[float, Field(gt=0, le=60)] = 3.0
+    before: dict[Literal["posture"], str] = {}
+    after: dict[Literal["posture"], str] = {}
+    stage: Annotated[tuple[Shape, ...], Field(max_length=12)] = ()
+    rule: Annotated[tuple[Sentence, ...], Field(max_length=6)] = ()
+    mutual: bool = False
+    shown: bool = True
+    reads: Annotated[tuple[Sentence, ...], Field(min_length=1)]
+    ignores: tuple[Sentence, ...] = ()
+    group: str = ""
+
+    @model_validator(mode="after")
+    def _check(self) -> Entry:
+        if self.shown and not self.caption:
+            raise ValueError("an act that is shown needs a caption")
+        return self
+
+
+@dataclass(frozen=True)
+class Lexicon:
+    """Entries by name, and their frames by the lemma of the verb."""
+
+    entries: Mapping[str, Entry]
+    frames: Mapping[str, list[tuple[str, Frame]]]
+    synsets: Mapping[str, tuple[str, ...]]
+
+    @classmethod
+    def of(cls, entries: Mapping[str, Entry]) -> Lexicon:
+        """Compiles the entries' frames; raises InputError for a frame that is none."""
+        frames: dict[str, list[tuple[str, Frame]]] = defaultdict(list)
+        synsets: dict[str, list[str]] = defaultdict(list)
+        for name, entry in entries.items():
+            for text in entry.frames:
+                frame = Frame.parse(text)
+                for verb in frame.verbs:
+                    frames[verb].append((name, frame))
+            for synset in entry.synsets:
+                synsets[synset].append(name)
+        return cls(entries, dict(frames), {key: tuple(names) for key, names in synsets.items()})
+
+
+@cache
+def lexicon(folders: tuple[Path, ...] = ()) -> Lexicon:
+    """Our entries and those of further folders, of which a later one replaces an earlier one of its name."""
+    entries: dict[str, Entry] = {}
+    for folder in (OURS, *folders):
+        for problem in (p for path in files(folder) for p in read_file(path, entries)):
+            raise InputError(problem)
+    return Lexicon.of(entries)
+
+
+def files(folder: Path) -> list[Path]:
+    """The TOML files of a folder, by name; raises InputError if it is none."""
+    if not folder.is_dir():
+        raise InputError(f"{folder} is no folder of acts: name one that holds .toml files.")
+    return sorted(folder.glob("*.toml"))
+
+
+def read_file(path: Path, into: dict[str, Entry]) -> Iterator[str]:
+    """Adds the entries of a file to ``into``, and yields a sentence, with file and line, for each that is wrong."""
+    if path.stat().st_size > MOST_BYTES:
+        yield f"{path.name} is larger than {MOST_BYTES // 1000} kB: split it."
+        return
+    text = path.read_text(encoding="utf-8", errors="replace")
+    try:
+        tables = tomllib.loads(text)
+    except tomllib.TOMLDecodeError as error:
+        yield f"{path.name} is no TOML: {error}."
+        return
+    for name, fields in tables.items():
+        where = f"{path.name}, line {_line(text, name)}, [{name}]"
+        if not isinstance(fields, dict):
+            yield f"{where}: write the entry as a table, [{name}], with its frames below."
+            continue
+        try:
+            entry = Entry(**{**fields, "group": path.stem})
+            for frame in entry.frames:
+                Frame.parse(frame)
+        except ValidationError as error:
+            yield f"{where}: {_sentence(error)}"
+        except InputError as error:
+            yield f"{where}: {error}"
+        else:
+            into[name] = entry
+
+
+def _line(text: str, name: str) -> int:
+    for number, line in enumerate(text.splitlines(), 1):
+        if line.strip().strip("[]").strip('"') == name:
+            return number
+    return 1
+
+
+def _sentence(error: ValidationError) -> str:
+    first: Any = error.errors()[0]
+    place = ".".join(str(part) for part in first["loc"])
+    return f"{place}: {first['msg']}."

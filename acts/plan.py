@@ -1,0 +1,198 @@
+"""The plan of a scene: what two people do, to whom, in which order, and what of a text was not understood.
+
+A plan is what is shown, edited, stored with a result and sent over the API; reopening a result takes its plan and
+never reads the words again. ``Plan.model_json_schema()`` is the contract.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import Annotated, Literal
+
+from pydantic import BaseModel, ConfigDict, Field, StringConstraints, model_validator
+
+Who = Literal["a", "b"]
+Side = Literal["left", "right", "both"]
+Name = Annotated[str, StringConstraints(max_length=60)]
+Text = Annotated[str, StringConstraints(max_length=2000)]
+
+MOST_ACTS = 60
+"""Acts of a plan, at most: what sixty beats of one act each need."""
+
+
+class _Model(BaseModel):
+    model_config = ConfigDict(extra="forbid", frozen=True)
+
+
+class Span(_Model):
+    """A part of the text, as character offsets ``start`` (first) and ``stop`` (behind the last)."""
+
+    start: Annotated[int, Field(ge=0)]
+    stop: Annotated[int, Field(ge=0)]
+
+
+class Person(_Model):
+    """One of the two people.
+
+    Attributes:
+        id: "a" is the person named first.
+        words: how the text calls them.
+        sex: "m" or "f" where the words say so.
+        age: "child" or "old" where the words say so.
+    """
+
+    id: Who
+    words: tuple[Name, ...] = ()
+    sex: Literal["", "m", "f"] = ""
+    age: Literal["", "child", "old"] = ""
+
+
+class Relation(_Model):
+    """The place of an act in time beside another: after it, with it, while it goes on, until it, or before it."""
+
+    kind: Literal["after", "with", "while", "until", "before"]
+    act: Annotated[str, StringConstraints(max_length=8)]
+
+
+class Act(_Model):
+    """One act of one person or of both.
+
+    Attributes:
+        id: unique in its plan.
+        act: name of the entry in the lexicon.
+        agents: the people who do it.
+        patient: the person to whom it is done, if it is done to one.
+        thing: the object that it is done with, as a noun.
+        part: the part of the body that it is about, and ``part_of`` whose it is.
+        polarity: "not" for what is said not to happen.
+        modality: only what is told happens; an attempt, an offer, a pretence and a wish have shapes of their own.
+        order: relations to other acts.
+        seconds: length in seconds, where the words give one.
+        side: of the body, or of the turn.
+        times: how often, where the words give a number.
+        manner: adverbs, in the text's order.
+        speed: factor beside the act's usual speed.
+        direction: where it goes: "forward", "back", "left", "right", "up", "down", "clockwise", ….
+        distance: metres, where the words give any.
+        words: where it stands in the text; None if a person added it.
+    """
+
+    id: Annotated[str, StringConstraints(min_length=1, max_length=8)]
+    act: Name
+    agents: Annotated[tuple[Who, ...], Field(min_length=1, max_length=2)]
+    patient: Who | None = None
+    thing: Name | None = None
+    part: Name | None = None
+    part_of: Who | None = None
+    polarity: Literal["done", "not"] = "done"
+    modality: Literal["told", "tried", "offered", "pretended", "wished"] = "told"
+    order: Annotated[tuple[Relation, ...], Field(max_length=8)] = ()
+    seconds: Annotated[float, Field(gt=0, le=600)] | None = None
+    side: Side | None = None
+    times: Annotated[int, Field(ge=1, le=100)] | None = None
+    manner: Annotated[tuple[Name, ...], Field(max_length=8)] = ()
+    speed: Annotated[float, Field(gt=0, le=10)] = 1.0
+    direction: Name | None = None
+    distance: Annotated[float, Field(ge=0, le=100)] | None = None
+    words: Span | None = None
+
+    @model_validator(mode="after")
+    def _check(self) -> Act:
+        if len(set(self.agents)) != len(self.agents):
+            raise ValueError("name each agent once")
+        if self.patient is not None and self.patient in self.agents:
+            raise ValueError(
+                "the patient must not be an agent: use {self} entries for what people do to themselves"
+            )
+        return self
+
+    @property
+    def happens(self) -> bool:
+        """True if the act is told and not denied."""
+        return self.polarity == "done" and self.modality == "told"
+
+
+class Unread(_Model):
+    """Words that were not understood.
+
+    Attributes:
+        words: where they stand in the text.
+        why: one sentence.
+        nearest: names of acts that come nearest, the best first.
+    """
+
+    words: Span
+    why: Text
+    nearest: Annotated[tuple[Name, ...], Field(max_length=8)] = ()
+
+
+class Plan(_Model):
+    """The plan of what two people do.
+
+    Attributes:
+        sentence: the text that was read; "" for a plan written by hand.
+        people: a and b.
+        things: nouns of the objects that take part.
+        acts: in the order of the text.
+        unread: what was not understood.
+        notes: sentences on the text as a whole, such as its language.
+        reader: who read the text: "lexicon", a director's model, or "hand".
+    """
+
+    sentence: Text = ""
+    people: tuple[Person, Person] = (Person(id="a"), Person(id="b"))
+    things: Annotated[tuple[Name, ...], Field(max_length=20)] = ()
+    acts: Annotated[tuple[Act, ...], Field(max_length=MOST_ACTS)] = ()
+    unread: Annotated[tuple[Unread, ...], Field(max_length=60)] = ()
+    notes: Annotated[tuple[Text, ...], Field(max_length=20)] = ()
+    reader: Name = "lexicon"
+
+    @model_validator(mode="after")
+    def _check(self) -> Plan:
+        ids = [act.id for act in self.acts]
+        if len(set(ids)) != len(ids):
+            raise ValueError("two acts have the same id")
+        for act in self.acts:
+            for relation in act.order:
+                if relation.act not in ids or relation.act == act.id:
+                    raise ValueError(f"act {act.id} is ordered beside {relation.act}, which is no other act")
+        if [person.id for person in self.people] != ["a", "b"]:
+            raise ValueError("people are a and b, in this order")
+        return self
+
+    def text(self, span: Span) -> str:
+        """The words of a span."""
+        return self.sentence[span.start : span.stop]
+
+    def beats(self) -> list[list[Act]]:
+        """The acts in groups that happen one after another, each group at the same time.
+
+        An act that is "after" others comes a group later than the last of them, one that is "before" another pushes
+        that one back, and one "with", "while" or "until" another shares its group. Contradictory orders are broken
+        in the order of the text, and every act appears exactly once.
+        """
+        level = {act.id: 0 for act in self.acts}
+        for _ in range(len(self.acts)):
+            moved = False
+            for later, kind, other in self._relations():
+                least = level[other] + (kind == "after")
+                if level[later] < least < len(self.acts) + 1:
+                    level[later], moved = least, True
+            if not moved:
+                break
+        groups: dict[int, list[Act]] = {}
+        for act in self.acts:
+            groups.setdefault(level[act.id], []).append(act)
+        return [groups[key] for key in sorted(groups)]
+
+    def _relations(self) -> Iterator[tuple[str, str, str]]:
+        """Each relation as (later or equal act, kind, other act)."""
+        for act in self.acts:
+            for relation in act.order:
+                if relation.kind == "before":
+                    yield relation.act, "after", act.id
+                elif relation.kind == "after":
+                    yield act.id, "after", relation.act
+                else:
+                    yield act.id, "with", relation.act
+                    yield relation.act, "with", act.id

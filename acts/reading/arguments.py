@@ -1,0 +1,188 @@
+"""The arguments and modifiers of a verb: objects, prepositions, particles, counts, measures and directions."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import TYPE_CHECKING
+
+from acts.frames import Event, Ref
+
+from .people import Cast, reference
+from .vocabulary import vocabulary
+
+if TYPE_CHECKING:
+    from spacy.tokens import Token
+
+DENY = frozenset(("not", "n't", "never", "hardly", "barely", "no", "neither", "nor"))
+_MODIFIERS = frozenset(
+    ("prt", "advmod", "acomp", "attr", "oprd", "npadvmod", "amod", "neg", "intj", "compound")
+)
+
+
+class Arguments:
+    """Fills an event with what hangs on its verb.
+
+    Args:
+        cast: the people of the text so far.
+        verbs: lemmas of the lexicon's verbs.
+    """
+
+    def __init__(self, cast: Cast, verbs: frozenset[str]) -> None:
+        self.cast = cast
+        self._verbs = verbs
+        self._words = vocabulary()
+
+    def fill(self, token: Token, event: Event) -> Ref | None:
+        """Takes up the children of a verb; returns the agent of a passive."""
+        subject = event.subject
+        who = subject.who if subject is not None and subject.kind == "person" else ""
+        agent: Ref | None = None
+        for child in token.children:
+            bare = all(c.dep_ not in ("poss", "det") for c in child.children)
+            if child.dep_ in ("dobj", "obj") and child.lower_ in self._words.directions and bare:
+                self._modifier(child, event)
+            elif child.dep_ in ("dobj", "obj"):
+                event.object = self._argument(child, who, event)
+            elif child.dep_ in ("dative", "iobj") and child.pos_ != "ADP":
+                event.dative = self._argument(child, who, event)
+            elif child.dep_ == "agent":
+                agent = next(
+                    (self._argument(n, who, event) for n in child.children if n.dep_ == "pobj"), None
+                )
+            elif child.dep_ in ("prep", "dative") or (
+                child.dep_ == "prt" and any(c.dep_ == "pobj" for c in child.children)
+            ):
+                self._preposition(child, who, event)
+            elif child.dep_ in ("ccomp", "xcomp", "advcl", "oprd") and child.pos_ in ("ADP", "ADV"):
+                for noun in child.children:  # "lifts the second person up", where "up" became a clause
+                    if noun.dep_ in ("nsubj", "pobj") and event.object is None:
+                        event.object = self._argument(noun, who, event)
+                event.words.append(child.lower_)
+                event.particles.append(child.lower_)
+            elif child.dep_ in _MODIFIERS or (child.dep_ in ("xcomp", "ccomp") and child.pos_ == "ADJ"):
+                self._modifier(child, event)
+        return agent
+
+    def _argument(self, token: Token, who: str, event: Event) -> Ref:
+        for child in token.children:
+            if child.dep_ in ("compound", "amod"):
+                event.words.append(child.lemma_.lower())
+            if child.dep_ == "prep":  # "puts a hand on his shoulder": the place may hang on the noun
+                self._preposition(child, who, event)
+            elif child.dep_ == "nummod" or child.lower_ in self._words.numbers:
+                self._count(child, token, event)
+            elif child.lower_ == "no" and child.dep_ == "det":
+                event.denied = not event.denied
+        return reference(token, self.cast, who)
+
+    def _preposition(self, token: Token, who: str, event: Event) -> None:
+        found = False
+        for child in token.children:
+            if child.dep_ == "pcomp":
+                found = True
+                if child.pos_ in ("ADV", "ADP"):  # "from behind"
+                    event.words += [token.lower_, child.lower_]
+            elif child.dep_ in ("pobj", "obj"):
+                found = True
+                if self._measure(child, token, event):
+                    continue
+                event.prepositions.append((token.lower_, self._argument(child, who, event)))
+                for more in child.conjuncts:
+                    if more.i > child.i and more.pos_ in ("NOUN", "PRON", "PROPN"):
+                        event.prepositions.append((token.lower_, self._argument(more, who, event)))
+            elif child.dep_ == "prep":  # "up to her", "over to him", "out of the room"
+                event.words.append(token.lower_)
+                self._preposition(child, who, event)
+                found = True
+        if not found:
+            event.words.append(token.lower_)
+            event.particles.append(token.lower_)
+            self._direction(token.lower_, event)
+
+    def _measure(self, noun: Token, preposition: Token, event: Event) -> bool:
+        """Takes up "for five seconds", "to the left", "at arm's length"; False for other phrases."""
+        lemma = noun.lemma_.lower()
+        if preposition.lower_ in ("for", "within", "after", "over") and lemma in self._words.seconds:
+            event.seconds = self._amount(noun) * self._words.seconds[lemma]
+            return True
+        if preposition.lower_ in ("to", "on", "towards") and lemma in ("left", "right"):
+            event.direction = event.side = lemma
+            event.words.append(lemma)
+            return True
+        if lemma in ("length", "metre", "meter") and preposition.lower_ in ("at", "within", "by"):
+            event.distance = 0.7 if lemma == "length" else self._amount(noun)
+            return True
+        return False
+
+    def _amount(self, noun: Token) -> float:
+        for child in noun.children:
+            if child.lower_ in self._words.numbers:
+                return float(self._words.numbers[child.lower_])
+            if child.like_num:
+                try:
+                    return float(child.text.replace(",", "."))
+                except ValueError:
+                    continue
+        return 1.0
+
+    def _count(self, number: Token, noun: Token, event: Event) -> None:
+        value = self._words.numbers.get(number.lower_)
+        if value is None and number.text.isdecimal() and len(number.text) < 4:
+            value = int(number.text)
+        lemma = noun.lemma_.lower()
+        if value is None or self._words.is_person(lemma) or number.lower_ in ("a", "an"):
+            return
+        if lemma in self._words.metres:
+            event.distance = value * self._words.metres[lemma]
+            event.times = value if lemma in ("step", "pace") else event.times
+        elif not self._words.part(lemma) and value <= 100:
+            event.times = max(value, 1)
+
+    def _modifier(self, token: Token, event: Event) -> None:
+        text, lemma = token.lower_, token.lemma_.lower()
+        if token.dep_ == "intj":
+            event.words.append(text)
+            return
+        if text in DENY or token.dep_ == "neg":
+            return
+        if token.dep_ == "npadvmod" and lemma == "time":
+            event.times = int(self._amount(token))
+            return
+        if token.dep_ == "npadvmod" and lemma in self._words.metres:
+            event.distance = self._amount(token) * self._words.metres[lemma]
+            event.words.append(lemma)
+            return
+        if text in ("once", "twice", "thrice", "repeatedly"):
+            event.times = self._words.numbers[text]
+            return
+        if token.dep_ == "prt":
+            event.particles.append(text)
+        event.words.append(text if token.dep_ in ("prt", "advmod") else lemma)
+        if text in ("left", "right"):
+            event.side = text
+        self._direction(text, event)
+        if token.dep_ == "advmod" and (text.endswith("ly") or text in self._words.speeds):
+            event.adverbs.append(text)
+        for child in token.children:
+            if child.dep_ == "prep":
+                self._preposition(child, event.subject.who if event.subject else "", event)
+            elif child.dep_ in ("advmod", "npadvmod", "amod", "compound", "nummod") or (
+                child.dep_ == "conj" and child.pos_ in ("ADV", "ADJ", "NOUN")
+            ):
+                self._modifier(child, event)
+
+    def _direction(self, text: str, event: Event) -> None:
+        name = self._words.directions.get(text)
+        if name in ("left", "right"):
+            event.side = event.side or name
+            event.words += [name] if name != text else []
+        if event.direction is None and text in self._words.directions:
+            event.direction = self._words.directions[text]
+
+    def light(self, event: Event) -> None:
+        """Turns "gives him a hug" and "takes a bow" into the verb that their noun stands for."""
+        noun = event.object
+        if event.lemma not in self._words.verbs["light"] or noun is None or noun.kind not in ("thing",):
+            return
+        if noun.lemma in self._verbs and noun.lemma not in ("step", "hand"):
+            event.noun = replace(event, lemma=noun.lemma, object=event.dative, dative=None)

@@ -1,0 +1,314 @@
+"""From syntax to events: the verbs of a text with their arguments, denials, modality and order."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from typing import TYPE_CHECKING
+
+from acts.frames import Event, Ref
+
+from .arguments import Arguments
+from .people import Cast, reference
+from .vocabulary import vocabulary
+
+if TYPE_CHECKING:
+    from spacy.tokens import Doc, Token
+
+_CLAUSES = frozenset(
+    (
+        "ROOT",
+        "conj",
+        "advcl",
+        "relcl",
+        "ccomp",
+        "xcomp",
+        "acl",
+        "pcomp",
+        "parataxis",
+        "dep",
+        "csubj",
+        "appos",
+        "prep",
+    )
+)
+_MARKS = {
+    "while": "while", "as": "while", "whereas": "while", "whilst": "while", "by": "while", "with": "while",
+    "when": "main-after", "after": "main-after", "once": "main-after", "upon": "main-after", "until": "main-until",
+    "till": "main-until", "before": "after", "because": "with", "so": "after", "without": "while", "instead": "with",
+}  # fmt: skip
+"""How a clause with this word lies beside its main clause; "main-after" puts the main clause behind it."""
+_THEN = frozenset(
+    ("then", "afterwards", "afterward", "finally", "next", "later", "subsequently", "eventually", "lastly")
+)
+_SOMEBODY = frozenset(("him", "her", "his", "me", "my", "your"))
+_AT_ONCE = frozenset(("simultaneously", "meanwhile"))
+_NEARLY = frozenset(("almost", "nearly"))
+
+
+class Reader:
+    """Takes a parsed text apart into events."""
+
+    def __init__(
+        self, doc: Doc, verbs: frozenset[str], lemmas: dict[int, str], forms: Mapping[str, tuple[str, str]]
+    ) -> None:
+        self.doc = doc
+        self.cast = Cast()
+        self.events: list[Event] = []
+        self._verbs = verbs
+        self._lemmas = lemmas
+        self._forms = forms
+        self._of: dict[int, int] = {}
+        self._subjects: dict[int, Ref | None] = {}
+        self._joints: list[tuple[Event, Token, str, int | None]] = []
+        self._words = vocabulary()
+        self._arguments = Arguments(self.cast, verbs)
+
+    def read(self) -> list[Event]:
+        """The events, in the order of the text."""
+        for token in self.doc:
+            if self._is_clause(token):
+                self._event(token)
+        self._resolve()
+        return self.events
+
+    def _resolve(self) -> None:
+        """Gives each event the number of the one beside which it lies."""
+        for number, (event, token, kind, head) in enumerate(self._joints):
+            if head is None:  # a main clause follows the last sentence's last event
+                first = token.sent.start_char
+                before = [i for i, other in enumerate(self.events) if other.first < first]
+                event.joint, event.beside = ("after", before[-1]) if before else ("", None)
+            else:
+                event.joint, event.beside = kind, self._of.get(head, number - 1 if number else None)
+            if event.beside == number:
+                event.joint, event.beside = "", None
+
+    def lemma(self, token: Token) -> str:
+        """The lemma of a verb, with what is known better than by the parser."""
+        known = self._lemmas.get(token.i)
+        if known is None and token.lemma_.lower() not in self._verbs and token.lower_ in self._forms:
+            known = self._forms[token.lower_][0]  # "stares" is no "star"
+        return known or token.lemma_.lower()
+
+    def _is_clause(self, token: Token) -> bool:
+        if token.pos_ in ("VERB", "AUX") and token.dep_ not in (
+            "aux",
+            "auxpass",
+            "amod",
+            "compound",
+            "punct",
+        ):
+            return True
+        if token.dep_ == "ROOT" and token.pos_ in ("NOUN", "PROPN", "ADJ", "INTJ", "ADV", "ADP", "X"):
+            return self.lemma(token) in self._verbs or token.i in self._lemmas
+        return token.dep_ in ("conj", "pcomp") and token.i in self._lemmas
+
+    def _event(self, token: Token) -> None:
+        lemma = self.lemma(token)
+        head = self._head(token)
+        subject = self._subject(token, head)
+        event = Event(lemma, subject, first=token.idx, last=token.idx + len(token.text))
+        kind, beside = self._joint(token, head)
+        self._polarity(token, head, event)
+        agent = self._arguments.fill(token, event)
+        passive = any(child.dep_ in ("nsubjpass", "auxpass", "agent") for child in token.children)
+        if passive and token.tag_ == "VBN":
+            agent = agent or (_other_person(subject) if subject is not None else None)
+            if event.object is not None and event.dative is None:  # "she is given a book"
+                event.dative, event.subject = subject, agent
+            else:
+                event.object, event.subject = subject, agent
+        if event.object is None and event.dative is not None:
+            event.object, event.dative = event.dative, None
+        self._arguments.light(event)
+        self._of[token.i] = len(self.events)
+        self._subjects[token.i] = subject
+        if kind == "comp" and beside in self._of and self._of[beside] < len(self.events):
+            above = self.events[self._of[beside]]
+            above.words.append(lemma)
+            if above.object is None and subject is not None and subject is not above.subject:
+                above.object = subject  # "helps him stand": in the syntax, he is only the second verb's
+        self._joints.append((event, token, kind, beside))
+        self.events.append(event)
+
+    def _head(self, token: Token) -> Token | None:
+        """The verb on which a clause hangs."""
+        for head in token.ancestors:
+            if head.i in self._of:
+                return head
+        return None
+
+    def _subject(self, token: Token, head: Token | None) -> Ref | None:
+        for child in token.children:
+            if child.dep_ in ("nsubj", "nsubjpass", "csubj", "expl"):
+                if child.tag_ in ("WP", "WDT") and token.dep_ == "relcl":
+                    return self._antecedent(token)
+                ref = reference(child, self.cast, "")
+                if child.lower_ in ("nobody", "neither", "none") or (
+                    child.lower_ == "one" and "no" in {c.lower_ for c in child.children}
+                ):
+                    return Ref("person", "ab", child.lower_, first=ref.first, last=ref.last)
+                if child.lower_ in ("both", "each", "all") and ref.kind != "person":
+                    return Ref("person", "ab", child.lower_, first=ref.first, last=ref.last)
+                return ref
+            if child.dep_ == "poss" and token.dep_ == "ccomp" and head is not None:  # "helps her walk"
+                helper = self._subjects.get(head.i)
+                return reference(child, self.cast, helper.who if helper is not None else "")
+        if token.dep_ in ("relcl", "acl"):
+            return self._antecedent(token)
+        if head is not None:
+            own = self._subjects.get(head.i)
+            if token.dep_ in ("xcomp", "ccomp"):  # "makes her laugh", "asks him to sit"
+                above = self.events[self._of[head.i]] if self._of[head.i] < len(self.events) else None
+                verbs = self._words.verbs
+                if (
+                    above is not None
+                    and above.object is not None
+                    and above.object.kind == "person"
+                    and (above.lemma in verbs["causes"] | verbs["sees"] or above.lemma in verbs["wished"])
+                ):
+                    return above.object
+            return own
+        if token.dep_ == "ROOT" or head is None:
+            alone = any(
+                t.lower_ in _SOMEBODY for t in token.subtree
+            )  # "grab her by the wrist" is said to one
+            return Ref("person", "a" if alone else "ab", "", first=token.idx, last=token.idx)
+        return None
+
+    def _antecedent(self, token: Token) -> Ref | None:
+        noun = token.head
+        who = self.cast.person(noun, "") if noun.pos_ in ("NOUN", "PROPN", "PRON", "ADJ", "NUM") else None
+        if who:
+            return Ref("person", who, noun.lemma_.lower(), first=noun.idx, last=noun.idx + len(noun.text))
+        return reference(noun, self.cast, "") if noun.pos_ in ("NOUN", "PROPN") else None
+
+    def _polarity(self, token: Token, head: Token | None, event: Event) -> None:
+        children = {
+            child.lower_
+            for child in token.children
+            if child.dep_ in ("neg", "det", "preconj", "advmod", "cc")
+        }
+        event.denied = any(child.dep_ == "neg" for child in token.children) or bool(
+            children & {"never", "hardly", "barely"}
+        )
+        if event.subject is not None and event.subject.lemma in ("nobody", "neither", "none", "noone"):
+            event.denied = True
+        for child in token.children:
+            if child.dep_ in ("nsubj", "nsubjpass") and any(
+                c.lower_ in ("no", "neither") for c in child.children
+            ):
+                event.denied = True
+            if child.dep_ == "aux" and child.lower_ in (
+                "could",
+                "would",
+                "should",
+                "might",
+                "may",
+                "must",
+                "ought",
+            ):
+                event.modality = "wished"
+        if children & _NEARLY:
+            event.modality = "tried"
+        if token.dep_ == "pcomp" and (
+            token.head.lower_ in ("without", "instead", "from") or token.head.head.lower_ == "instead"
+        ):
+            event.denied = True
+        if head is None or token.dep_ not in ("xcomp", "ccomp", "pcomp", "advcl"):
+            if head is not None and token.dep_ == "conj":
+                above = self._event_of(head)
+                if above is not None and not any(c.dep_ in ("nsubj", "nsubjpass") for c in token.children):
+                    if above.denied and token.head.i == head.i and self._conjunction(token) == "or":
+                        event.denied = True
+                    if above.modality != "told" and head.dep_ in ("xcomp", "ccomp"):
+                        event.modality, event.denied = above.modality, event.denied or above.denied
+            return
+        above = self._event_of(head)
+        if above is None or token.dep_ == "advcl":
+            return
+        verbs = self._words.verbs
+        for kind in ("tried", "pretended", "wished", "offered"):
+            if above.lemma in verbs[kind]:
+                event.modality = kind
+                event.denied = event.denied or above.denied
+        if above.lemma in verbs["not"]:
+            event.denied = not above.denied
+        elif above.lemma in verbs["begins"] | verbs["causes"]:
+            event.denied = event.denied or above.denied
+            event.modality = above.modality if event.modality == "told" else event.modality
+        elif above.lemma in verbs["ends"]:
+            event.denied = True
+        elif above.lemma == "be" and "about" in above.words:
+            event.modality = "wished"
+
+    def _event_of(self, head: Token) -> Event | None:
+        number = self._of.get(head.i)
+        return self.events[number] if number is not None and number < len(self.events) else None
+
+    @staticmethod
+    def _conjunction(token: Token) -> str:
+        return next((child.lower_ for child in token.head.children if child.dep_ == "cc"), "")
+
+    def _joint(self, token: Token, head: Token | None) -> tuple[str, int | None]:
+        """The place of a clause in time beside another, as (kind, the token of that one's verb).
+
+        The token is None for a main clause, which comes after the sentence before.
+        """
+        marks = {c.lower_ for c in token.children if c.dep_ in ("mark", "advmod", "prep", "cc", "intj")}
+        above = head if head is not None else next((t for t in token.ancestors if self._is_clause(t)), None)
+        previous = max((i for i in self._of if i < token.i), default=None)
+        if marks & _THEN or (above is not None and token.dep_ == "conj" and self._then_before(token)):
+            return "after", previous
+        if marks & _AT_ONCE:
+            return "with", previous
+        if above is None:
+            return "after", None
+        if token.dep_ == "pcomp":
+            return _MARKS.get(token.head.lower_, "with"), above.i
+        if token.dep_ == "advcl":
+            for mark in marks:
+                if mark in _MARKS:
+                    return _MARKS[mark], above.i
+            return "while", above.i
+        if token.dep_ in ("acl", "relcl"):
+            return ("while" if token.tag_ == "VBG" else "with"), above.i
+        if token.dep_ in ("xcomp", "ccomp"):
+            if (
+                token.dep_ == "ccomp"
+                and any(c.dep_ in ("nsubj", "nsubjpass") for c in token.children)
+                and (token.i < above.i)
+            ):
+                return "conj", above.i  # two main clauses with nothing but a comma between them
+            return "comp", above.i
+        return "conj", above.i
+
+    def _then_before(self, token: Token) -> bool:
+        """True if "then" stands between a clause and the verb before it."""
+        before = max((i for i in self._of if i < token.i), default=0)
+        return any(self.doc[i].lower_ in _THEN for i in range(before, token.i))
+
+
+def _other_person(ref: Ref) -> Ref | None:
+    other = {"a": "b", "b": "a"}.get(ref.who)
+    return Ref("person", other) if ref.kind == "person" and other else None
+
+
+def spans(doc: Doc, events: Sequence[Event]) -> Iterator[tuple[int, int]]:
+    """The characters of each event's clause: its verb and what hangs on it, without other events' clauses."""
+    heads = {event.first: event for event in events}
+    for event in events:
+        token = next(t for t in doc if t.idx == event.first)
+        own = [token]
+        waiting = [token]
+        while waiting:
+            for child in waiting.pop().children:
+                if (child.idx in heads and heads[child.idx] is not event) or child.dep_ in (
+                    "punct",
+                    "cc",
+                    "mark",
+                ):
+                    continue
+                own.append(child)
+                waiting.append(child)
+        yield min(t.idx for t in own), max(t.idx + len(t.text) for t in own)

@@ -1,0 +1,239 @@
+"""People: the nouns and pronouns of a whole text as person a, person b or both."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING
+
+from acts.frames import Ref
+from acts.plan import Person
+
+from .vocabulary import Vocabulary, vocabulary
+
+if TYPE_CHECKING:
+    from spacy.tokens import Token
+
+A_NAME, B_NAME = "Adam", "Beth"
+"""Names that stand for "A" and "B" while a text is parsed: the parser takes letters for articles and nouns."""
+
+_FIRST, _SECOND = frozenset(("first", "former")), frozenset(("second", "latter"))
+_THEY = frozenset(("they", "them", "themselves", "we", "us", "ourselves"))
+_HE = {"he": "m", "him": "m", "his": "m", "himself": "m", "she": "f", "her": "f", "hers": "f", "herself": "f"}
+_ANYONE = frozenset(("someone", "somebody", "anyone", "anybody", "person"))
+_NOBODY = frozenset(("nobody", "noone", "none", "neither"))
+
+
+@dataclass
+class _Known:
+    words: list[str] = field(default_factory=list)
+    sex: str = ""
+    age: str = ""
+
+
+class Cast:
+    """The two people of a text, as far as it has been read."""
+
+    def __init__(self) -> None:
+        self._words: Vocabulary = vocabulary()
+        self._known: dict[str, _Known] = {}
+        self.last = ""
+        self.third: list[Token] = []
+        """Mentions of a person who is neither of the two, or of more than two."""
+
+    def people(self) -> tuple[Person, Person]:
+        """The two as a plan has them."""
+        a, b = (self._known.get(who, _Known()) for who in "ab")
+        return (
+            Person(id="a", words=tuple(dict.fromkeys(a.words))[:8], sex=a.sex, age=a.age),  # type: ignore[arg-type]
+            Person(id="b", words=tuple(dict.fromkeys(b.words))[:8], sex=b.sex, age=b.age),  # type: ignore[arg-type]
+        )
+
+    def person(self, token: Token, subject: str = "") -> str | None:
+        """The people whom a noun or pronoun means: "a", "b" or "ab"; None if it means no person.
+
+        Args:
+            token: the head of the noun phrase.
+            subject: the people of the clause's subject, whom its other arguments do not mean.
+        """
+        lemma, text = token.lemma_.lower(), token.lower_
+        children = {child.lower_ for child in token.children}
+        if text in _HE:
+            return self._pronoun(_HE[text], subject)
+        if text in ("i", "me", "myself", "you", "yourself"):
+            return self._named("i" if text in ("i", "me", "myself") else "you")
+        if text in _THEY:
+            return self._they(text, subject)
+        if text == "it":
+            return None
+        if text in _NOBODY or (text == "one" and "no" in children):
+            return "ab"
+        if text == "other" or ("other" in children and (text == "one" or self._words.is_person(lemma))):
+            return self._other(subject) if "each" not in children and "one" not in children else "ab"
+        if text in ("both", "each", "everyone", "everybody", "all") or lemma in self._words.both:
+            return self._many(token, children)
+        if text in _FIRST or children & _FIRST:
+            return self._as("a", lemma)
+        if text in _SECOND or children & _SECOND:
+            return self._as("b", lemma)
+        if text == "one":
+            return self._as("a" if "a" not in self._known or self.last != "a" else "b", "one")
+        if text in ("another", "else"):
+            return self._new(lemma, token)
+        if text in (A_NAME.lower(), B_NAME.lower()) and token.text in (A_NAME, B_NAME):
+            return self._as("a" if token.text == A_NAME else "b", "person")
+        if text in ("someone", "somebody"):
+            return self._new(lemma, token)
+        if token.tag_ == "NNP" and token.pos_ == "PROPN" and not self._words.is_place(lemma):
+            return self._named(text)
+        if not self._words.is_person(lemma) or token.pos_ in ("ADV", "VERB", "ADP"):
+            return None
+        if token.tag_ in ("NNS", "NNPS") or children & {"two", "both"}:
+            return self._many(token, children)
+        return self._noun(token, lemma, children, subject)
+
+    def _noun(self, token: Token, lemma: str, children: set[str], subject: str) -> str | None:
+        if "one" in children:
+            return self._as("a" if "a" not in self._known or self.last == "b" else "b", lemma)
+        if children & {"another", "third"} or (children & {"a", "an"} and self._has(lemma)):
+            return self._new(lemma, token)
+        if "other" in children:
+            return self._other(subject)
+        own = self._has(lemma)
+        if own and not (own == subject and len(subject) == 1):
+            return self._as(own, lemma)
+        if own and "'s" not in children:
+            return self._as(own, lemma) if not subject else self._new(lemma, token)
+        return self._new(lemma, token)
+
+    def _many(self, token: Token, children: set[str]) -> str:
+        if any(self._words.numbers.get(child, 0) > 2 for child in children):  # "three people"
+            self.third.append(token)
+        return "ab"
+
+    def _has(self, word: str) -> str:
+        return next((who for who, known in self._known.items() if word in known.words), "")
+
+    def _named(self, word: str) -> str | None:
+        own = self._has(word)
+        return self._as(own, word) if own else self._new(word, None)
+
+    def _new(self, lemma: str, token: Token | None) -> str | None:
+        free = next((who for who in "ab" if who not in self._known), "")
+        if not free:
+            bare = [
+                who for who in "ab" if set(self._known[who].words) <= _ANYONE | {"one", "other", "another"}
+            ]
+            free = next((who for who in bare if who != self.last), "")
+            if not free and lemma in _ANYONE | {"another"}:
+                free = "b" if self.last == "a" else "a"
+        if not free:
+            if token is not None:
+                self.third.append(token)
+            return None
+        return self._as(free, lemma)
+
+    def _as(self, who: str, word: str) -> str:
+        known = self._known.setdefault(who, _Known())
+        known.words.append(word)
+        if not known.sex:
+            known.sex = self._words.sex(word)
+        if not known.age:
+            known.age = self._words.age(word)
+        self.last = who
+        return who
+
+    def _other(self, subject: str) -> str:
+        one = subject if len(subject) == 1 else self.last
+        return self._as("a" if one == "b" else "b", "other")
+
+    def _pronoun(self, sex: str, subject: str) -> str:
+        fits = [who for who in "ab" if who in self._known and self._known[who].sex == sex and who != subject]
+        open_ = [
+            who for who in "ab" if (who not in self._known or not self._known[who].sex) and who != subject
+        ]
+        if fits:
+            who = self.last if self.last in fits else fits[0]
+        elif open_:
+            known = [who for who in open_ if who in self._known]
+            who = self.last if self.last in known else (known or open_)[0]
+            self._known.setdefault(who, _Known()).sex = sex
+        else:
+            who = ("b" if subject == "a" else "a") if subject else self.last or "a"
+        self.last = who
+        return who
+
+    def _they(self, text: str, subject: str) -> str:
+        if len(subject) == 1 and text in ("them", "us"):
+            return self._other(subject)
+        if text == "they" and set(self._known) == {"a"} and set(self._known["a"].words) <= _ANYONE:
+            return self._as("a", "they")
+        return "ab"
+
+    def owner(self, token: Token, subject: str) -> str:
+        """The owner of a part of the body, by its possessive; "" where the words leave it open."""
+        for child in token.children:
+            if child.dep_ == "poss" or child.tag_ == "PRP$":
+                text = child.lower_
+                if text in ("his", "her"):
+                    return self._possessive(_HE[text], subject)
+                if text in ("their", "our"):
+                    return "ab" if len(subject) == 2 else ""
+                if text in ("my", "your"):
+                    return self._named("i" if text == "my" else "you") or ""
+                if text == "its" and len(subject) == 1:
+                    return self._other(subject)
+                if child.lower_ == "other" and any(c.lower_ in ("each", "one") for c in child.children):
+                    return "each"
+                return self.person(child, subject) or ""
+            if child.lower_ == "own":
+                return subject
+        of = next((child for child in token.children if child.lower_ == "of"), None)
+        for child in of.children if of is not None else ():
+            return self.person(child, subject) or ""
+        return ""
+
+    def _possessive(self, sex: str, subject: str) -> str:
+        if len(subject) == 1:
+            other = "b" if subject == "a" else "a"
+            own = self._known.get(subject, _Known()).sex
+            others = self._known.get(other, _Known()).sex
+            if own == sex and others != sex:
+                return subject
+            if own and own != sex:
+                return other
+            if not own and others == sex:
+                return other
+            return ""
+        return next((who for who in "ab" if who in self._known and self._known[who].sex == sex), "")
+
+
+def reference(token: Token, cast: Cast, subject: str) -> Ref:
+    """The reference of a noun or pronoun; see :class:`acts.frames.Ref`."""
+    words = vocabulary()
+    first, last = token.idx, token.idx + len(token.text)
+    lemma = token.lemma_.lower()
+    children = {child.lower_ for child in token.children}
+    if token.lower_.endswith(("self", "selves")):
+        return Ref("self", subject, lemma, first=first, last=last)
+    if token.lower_ in ("other", "another") and children & {"each", "one"}:
+        return Ref("each", "ab", "other", first=first, last=last)
+    family = words.part(lemma)
+    if family and not (token.ent_type_ or token.pos_ == "PROPN"):
+        owner = cast.owner(token, subject)
+        side = next(
+            (child.lower_ for child in token.children if child.lower_ in ("left", "right", "both")), ""
+        )
+        if not side and token.tag_ == "NNS" and family in ("hand", "arm", "foot", "leg", "knee", "shoulder"):
+            side = "both"
+        kind_of = "ab" if owner == "each" else owner
+        return Ref("part", kind_of, lemma, family, side, first=first, last=last)
+    thirds = len(cast.third)
+    who = cast.person(token, subject)
+    if who:
+        conjuncts = [c for c in token.conjuncts if c.i > token.i and c.dep_ == "conj"]
+        if len(who) == 1 and any(cast.person(c, who) not in (None, who) for c in conjuncts):
+            return Ref("person", "ab", lemma, first=first, last=last)
+        return Ref("person", who, lemma, first=first, last=last)
+    if len(cast.third) > thirds:
+        return Ref("third", "", lemma, first=first, last=last)
+    return Ref("thing", "", lemma, place=lemma in words.places, first=first, last=last)

@@ -1,0 +1,271 @@
+"""Sentence → plan, once: prepared, parsed, taken apart into events, and matched against the lexicon."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from functools import lru_cache
+from pathlib import Path
+
+from acts.frames import Event, Frame, Match, best
+from acts.lexicon import Lexicon, lexicon
+from acts.plan import MOST_ACTS, Act, Plan, Relation, Span, Unread
+from motion import InputError
+
+from . import wordnet
+from .events import Reader, spans
+from .spelling import Speller
+from .syntax import is_word, parse
+from .vocabulary import vocabulary
+from .wording import Text, prepared
+
+MOST_CHARACTERS = 2000
+"""Characters of a text that is read at once."""
+LEAST_SCORE = -1.0
+"""What a frame must score to be taken at all: more beside it than in it is another sentence."""
+_SYNONYM = 0.8
+"""What each step through WordNet costs."""
+_STATES = frozenset(
+    ("be", "become", "seem", "have", "there", "feel", "look", "know", "like", "love", "need", "appear")
+)
+"""Verbs that say how somebody is; where no frame knows them, they show nothing and are passed over."""
+
+
+def read(text: str, folders: tuple[Path, ...] = ()) -> Plan:
+    """The plan of an English text.
+
+    Args:
+        text: one sentence or several, at most :data:`MOST_CHARACTERS`.
+        folders: a lab's own acts beside ours.
+
+    Raises:
+        InputError: if the text is too long, or the parser is not installed.
+    """
+    if len(text) > MOST_CHARACTERS:
+        raise InputError(
+            f"The text has {len(text)} characters: shorten it to {MOST_CHARACTERS}, or use several beats."
+        )
+    return _read(text, folders)
+
+
+@lru_cache(maxsize=512)
+def _read(text: str, folders: tuple[Path, ...]) -> Plan:
+    known = lexicon(folders)
+    if not text.strip():
+        return Plan(sentence=text, notes=("Nothing is said: write what the two people do.",))
+    if (foreign := _other_language(text)) is not None:
+        return Plan(
+            sentence=text,
+            unread=(Unread(words=Span(start=0, stop=len(text)), why=foreign),),
+            notes=(foreign,),
+        )
+    speller = Speller(known)
+    prepared_text = prepared(text, speller.mended, speller.is_form)
+    doc = parse(prepared_text.parsed)
+    lemmas: dict[int, str] = {}
+    if changes := speller.verbs_found(doc):
+        # the new words may be longer: what counts is which of the words they are
+        numbers = {doc_token.i: changes[doc_token.idx] for doc_token in doc if doc_token.idx in changes}
+        prepared_text = prepared_text.replaced({at: word for at, (word, _) in changes.items()})
+        doc = parse(prepared_text.parsed)
+        lemmas = {i: lemma for i, (word, lemma) in numbers.items() if i < len(doc) and doc[i].text == word}
+    reader = Reader(doc, frozenset(known.frames), lemmas, speller.forms)
+    events = reader.read()
+    return _Planner(text, prepared_text, known, events, list(spans(doc, events)), reader).plan()
+
+
+class _Planner:
+    """Turns events into acts."""
+
+    def __init__(
+        self, text: str, prepared_text: Text, known: Lexicon, events: Sequence[Event],
+        clauses: Sequence[tuple[int, int]], reader: Reader,
+    ) -> None:  # fmt: skip
+        self._text, self._prepared, self._known = text, prepared_text, known
+        self._events, self._clauses, self._reader = events, clauses, reader
+        self._acts: list[Act] = []
+        self._unread: list[Unread] = []
+        self._of: dict[int, str] = {}
+        self._taken: set[int] = set()
+
+    def plan(self) -> Plan:
+        """The plan."""
+        for number, event in enumerate(self._events):
+            if number in self._taken or len(self._acts) == MOST_ACTS:
+                continue
+            self._event(number, event)
+        self._order()
+        people = self._reader.cast.people()
+        things = dict.fromkeys(act.thing for act in self._acts if act.thing)
+        notes = []
+        if self._reader.cast.third:
+            notes.append("Only two people can be shown: the others that are named do nothing.")
+        if not self._acts and not self._unread:
+            span = Span(start=0, stop=len(self._text))
+            self._unread.append(Unread(words=span, why="Nothing in this text is something that people do."))
+        return Plan(
+            sentence=self._text, people=people, things=tuple(things)[:20], acts=tuple(self._acts),
+            unread=tuple(self._unread[:60]), notes=tuple(notes),
+        )  # fmt: skip
+
+    def _event(self, number: int, event: Event) -> None:
+        found = best(self._known.frames, event)
+        inner = [
+            i for i, other in enumerate(self._events) if other.beside == number and other.joint == "comp"
+        ]
+        if self._about_another(event) and inner and (found is None or found[2].score < 2.4):
+            return
+        if found is None or found[2].score < LEAST_SCORE:
+            found = self._synonym(event)
+        if found is not None and not self._known.entries[found[0]].shown:
+            self._unread.append(Unread(words=self._span(number), why="This is nothing that bodies show."))
+        elif found is not None:
+            if inner and any(
+                self._events[i].lemma in f for f in (e.words for e in found[1].elements) for i in inner
+            ):
+                self._taken.update(inner)
+            self._add(number, event, *found)
+        elif event.lemma not in _STATES and not (inner and self._about_another(event)):
+            self._not_read(number, event)
+
+    def _about_another(self, event: Event) -> bool:
+        verbs = vocabulary().verbs
+        return any(event.lemma in verbs[k] for k in verbs if k not in ("light", "sees"))
+
+    def _synonym(self, event: Event) -> tuple[str, Frame, Match] | None:
+        """The act whose verbs mean what this one does, of those whose frames fit."""
+        found: tuple[float, tuple[str, Frame, Match]] | None = None
+        names = {wordnet.synset(name): entries for name, entries in self._known.synsets.items()}
+        for sense, cost in wordnet.meanings(event.lemma):
+            for name in names.get(sense, ()):
+                for text in self._known.entries[name].frames:
+                    frame = Frame.parse(text)
+                    match = frame.fits(event)
+                    if match is None:
+                        continue
+                    worth = match.score - _SYNONYM * cost
+                    if worth > LEAST_SCORE and (found is None or worth > found[0]):
+                        found = worth, (name, frame, match)
+        return found[1] if found else None
+
+    def _span(self, number: int) -> Span:
+        start, stop = self._prepared.span(*self._clauses[number])
+        return Span(start=start, stop=max(stop, start))
+
+    def _not_read(self, number: int, event: Event) -> None:
+        subject = event.subject
+        if subject is not None and subject.kind == "third":
+            why = "This is done by a third person; only two can be shown."
+        elif subject is not None and subject.kind == "thing":
+            why = "This is not done by either of the two people."
+        else:
+            why = f"No act is known for “{event.lemma:.40}” in this form."
+        self._unread.append(Unread(words=self._span(number), why=why, nearest=self._nearest(event)))
+
+    def _nearest(self, event: Event) -> tuple[str, ...]:
+        names = {wordnet.synset(name): entries for name, entries in self._known.synsets.items()}
+        near = [name for name, _ in self._known.frames.get(event.lemma, ())]
+        for sense, _ in wordnet.meanings(event.lemma, most=4, height=3):
+            near += names.get(sense, ())
+        return tuple(dict.fromkeys(near))[:5]
+
+    def _add(self, number: int, event: Event, name: str, frame: Frame, match: Match) -> None:
+        number_of = str(len(self._acts) + 1)
+        part = match.part
+        speed = 1.0
+        for adverb in event.adverbs:
+            speed *= vocabulary().speeds.get(adverb, 1.0)
+        side = event.side or (part.side if part is not None and part.side else None)
+        for _, ref in event.prepositions:  # "with the left foot"
+            side = side or (ref.side if ref.kind == "part" else None)
+        patient = match.patient
+        owner = None
+        if part is not None:
+            owner = patient or (match.agents if len(match.agents) == 1 else None)
+        act = Act(
+            id=number_of, act=name, agents=tuple(match.agents),  # type: ignore[arg-type]
+            patient=patient or None, thing=match.thing or None,  # type: ignore[arg-type]
+            part=part.lemma if part is not None else None, part_of=owner,  # type: ignore[arg-type]
+            polarity="not" if event.denied else "done", modality=event.modality,  # type: ignore[arg-type]
+            seconds=event.seconds,
+            side=side if side in ("left", "right", "both") else None,  # type: ignore[arg-type]
+            times=event.times, manner=tuple(event.adverbs[:8]), speed=min(max(speed, 0.2), 3.0),
+            direction=event.direction, distance=event.distance, words=self._span(number),
+        )  # fmt: skip
+        self._acts.append(act)
+        self._of[number] = number_of
+
+    def _order(self) -> None:
+        """Gives the acts their relations, each to one that stands before it or above it in the syntax."""
+        number_of = {name: i for i, name in self._of.items()}
+        found: dict[str, list[Relation]] = {act.id: [] for act in self._acts}
+        acts = {act.id: act for act in self._acts}
+        for act in self._acts:
+            event = self._events[number_of[act.id]]
+            kind, beside, seen = event.joint, event.beside, set[int]()
+            while beside is not None and beside not in self._of and beside not in seen:  # passed over
+                seen.add(beside)
+                passed = self._events[beside]
+                kind = passed.joint if kind in ("comp", "") else kind
+                beside = passed.beside
+            if beside is None or beside not in self._of or self._of[beside] == act.id:
+                continue
+            other = acts[self._of[beside]]
+            if kind == "conj":
+                kind = "after" if _people(other) & _people(act) else "with"  # an answer comes after
+            if kind in ("main-after", "main-until"):
+                found[other.id].append(
+                    Relation(kind="after" if kind == "main-after" else "until", act=act.id)
+                )
+            else:
+                kind = kind if kind in ("after", "with", "while", "before", "until") else "with"
+                found[act.id].append(Relation(kind=kind, act=other.id))  # type: ignore[arg-type]
+        self._acts = [act.model_copy(update={"order": tuple(found[act.id])}) for act in self._acts]
+
+
+def _people(act: Act) -> set[str]:
+    return {*act.agents, act.patient} - {None}  # type: ignore[return-value]
+
+
+def _other_language(text: str) -> str | None:
+    """A sentence for a text that is not in English; None for one that is."""
+    letters = [c for c in text if c.isalpha()]
+    if not letters:
+        return "There are no words in this text: write in English what the two people do."
+    if sum(ord(c) < 0x250 for c in letters) < 0.6 * len(letters):
+        return "This is not in the Latin alphabet: write in English, or let a director's model read other languages."
+    words = [
+        word for word in "".join(c if c.isalpha() or c == "'" else " " for c in text).split() if len(word) > 1
+    ]
+    if len(words) >= 4 and not any(word.lower() in _ENGLISH for word in words):
+        unknown = sum(not is_word(word.lower()) for word in words)
+        if unknown >= 0.4 * len(words):
+            return "This does not seem to be English: write in English, or let a director's model read other languages."
+    return None
+
+
+_ENGLISH = frozenset(
+    [
+        "the",
+        "a",
+        "an",
+        "and",
+        "to",
+        "of",
+        "he",
+        "she",
+        "they",
+        "his",
+        "her",
+        "him",
+        "on",
+        "in",
+        "with",
+        "one",
+        "each",
+        "other",
+        "then",
+        "while",
+        "person",
+        "two",
+    ]
+)

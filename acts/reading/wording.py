@@ -1,0 +1,255 @@
+"""Preparation of a text for the parser: letters become names, missing articles are supplied, spelling is mended.
+
+Each change keeps the offsets, so that what was understood can be shown in the text as it was written.
+"""
+
+from __future__ import annotations
+
+import bisect
+import re
+from collections.abc import Callable, Iterator, Mapping
+
+from .people import A_NAME, B_NAME
+from .vocabulary import vocabulary
+
+_TOKEN = re.compile(r"[Pp][12]\b|[^\W\d_]+(?:['’-][^\W\d_]+)*|\d+(?:[.,]\d+)?|[^\w\s]|_")
+_QUOTES = {"’": "'", "‘": "'", "`": "'", "“": '"', "”": '"', "–": "-", "—": "-"}
+_DETERMINERS = frozenset(
+    [
+        "a",
+        "an",
+        "the",
+        "his",
+        "her",
+        "its",
+        "their",
+        "my",
+        "your",
+        "our",
+        "this",
+        "that",
+        "these",
+        "those",
+        "another",
+        "other",
+        "one",
+        "two",
+        "both",
+        "each",
+        "every",
+        "some",
+        "any",
+        "no",
+        "first",
+        "second",
+        "three",
+        "four",
+        "five",
+        "most",
+        "own",
+        "same",
+        "of",
+    ]
+)
+_LETTER_BEFORE = frozenset(
+    [
+        "person",
+        "actor",
+        "dancer",
+        "player",
+        "figure",
+        "character",
+        "performer",
+        "partner",
+        "agent",
+        "man",
+        "woman",
+    ]
+)
+
+_NUMBERED = {"a": True, "1": True, "one": True, "b": False, "2": False, "two": False}
+"""Letters and numbers behind "person" or "dancer", and whether they name the first."""
+
+
+class Text:
+    """A text and the form in which it is parsed.
+
+    Attributes:
+        original: as it was written.
+        parsed: as the parser gets it.
+    """
+
+    def __init__(self, original: str, pieces: list[tuple[str, int, int]]) -> None:
+        self.original = original
+        self._pieces = pieces
+        self._starts: list[int] = []
+        words = ""
+        for word, _, _ in pieces:
+            words += " " if words else ""
+            self._starts.append(len(words))
+            words += word
+        self.parsed = words
+
+    def replaced(self, words: Mapping[int, str]) -> Text:
+        """The same text, parsed with other words in the place of those that begin at these offsets."""
+        pieces = [
+            (words.get(at, word), start, stop)
+            for at, (word, start, stop) in zip(self._starts, self._pieces, strict=True)
+        ]
+        return Text(self.original, pieces)
+
+    def span(self, first: int, last: int) -> tuple[int, int]:
+        """The offsets in the original of a stretch of what was parsed."""
+        i = max(bisect.bisect_right(self._starts, first) - 1, 0)
+        j = max(bisect.bisect_left(self._starts, last) - 1, i)
+        return self._pieces[i][1], self._pieces[j][2]
+
+
+def _tokens(text: str) -> Iterator[tuple[str, int, int]]:
+    for match in _TOKEN.finditer(text):
+        yield "".join(_QUOTES.get(c, c) for c in match[0]), match.start(), match.end()
+
+
+def prepared(
+    text: str,
+    mended: Callable[[str], str | None] = lambda word: None,
+    is_verb: Callable[[str], bool] = str.isdigit,
+) -> Text:
+    """The text as it is parsed.
+
+    Args:
+        text: as it was written.
+        mended: gives the right spelling of a word, or None if it is right.
+        is_verb: tells forms of verbs.
+    """
+    return _Preparation(text, mended, is_verb).text()
+
+
+class _Preparation:
+    """Goes through the words of a text once."""
+
+    def __init__(
+        self, text: str, mended: Callable[[str], str | None], is_verb: Callable[[str], bool]
+    ) -> None:
+        self._text, self._mended, self._is_verb = text, mended, is_verb
+        self._words = vocabulary()
+        self._tokens = list(_tokens(text))
+        self._letters = _letters([word for word, _, _ in self._tokens], is_verb)
+        self._pieces: list[tuple[str, int, int]] = []
+
+    def text(self) -> Text:
+        """The prepared text."""
+        i = 0
+        while i < len(self._tokens):
+            i += self._pair(i) or self._single(i)
+        return Text(self._text, self._pieces)
+
+    def _lower(self, i: int) -> str:
+        return self._tokens[i][0].lower() if 0 <= i < len(self._tokens) else ""
+
+    def _pair(self, i: int) -> int:
+        """Two tokens that are one word, as "person A" and "high five"; 2 if they were, else 0."""
+        lower, following = self._lower(i), self._lower(i + 1)
+        word = ""
+        if (
+            lower in _LETTER_BEFORE
+            and following in _NUMBERED
+            and _ends_name(self._tokens, i + 2, self._tokens[i + 1][0])
+        ):
+            word = A_NAME if _NUMBERED[following] else B_NAME
+        elif (
+            following.isalpha()
+            and lower not in self._words.numbers
+            and not self._is_verb(lower)
+            and self._is_verb(lower + following)
+        ):
+            word = lower + following
+        if not word:
+            return 0
+        self._pieces.append((word, self._tokens[i][1], self._tokens[i + 1][2]))
+        return 2
+
+    def _single(self, i: int) -> int:
+        """One token; always 1."""
+        word, start, stop = self._tokens[i]
+        self._pieces += self._supplied(i)
+        self._pieces.append((self._letters.get(i) or self._worded(i, word), start, stop))
+        return 1
+
+    def _supplied(self, i: int) -> list[tuple[str, int, int]]:
+        """The article that a bare noun of a person lacks."""
+        word, start, _ = self._tokens[i]
+        bare = (
+            i not in self._letters
+            and word.islower()
+            and not word.endswith("s")
+            and word not in ("one", "person")
+        )
+        if not bare or not self._words.is_usual_person(word) or self._lower(i + 1) == "'":
+            return []
+        return [("the", start, start)] if _begins(self._lower(i - 1)) else []
+
+    def _worded(self, i: int, word: str) -> str:
+        lower, following = word.lower(), self._lower(i + 1)
+        if lower in self._words.shorthand:
+            return self._words.shorthand[lower]
+        if self._words.part(following) and lower.endswith("s") and self._words.is_usual_person(lower[:-1]):
+            return f"{word[:-1]}'s"  # "her brothers back"
+        if (
+            lower in ("left", "right")
+            and self._is_verb(self._lower(i - 1))
+            and not self._words.part(following)
+        ):
+            return f"{lower}wards"  # "turn left": no past of "leave"
+        if word.isalpha() and len(word) > 3 and (right := self._mended(lower)) is not None:
+            return right
+        joined = lower.replace("-", "")
+        if joined != lower and self._is_verb(joined):  # "high-five"
+            return joined
+        return lower if word.isupper() and len(word) > 1 else word
+
+
+def _begins(before: str) -> bool:
+    """True if a noun after this word has no article: at the beginning, after punctuation or a verb."""
+    if not before or not before.isalpha():
+        return before != "'" and before != "-"
+    words = vocabulary()
+    return (
+        before not in _DETERMINERS
+        and not words.is_person(before)
+        and (
+            before.endswith(("s", "ing", "ed"))
+            or before in ("to", "with", "at", "by", "from", "while", "then", "and")
+        )
+    )
+
+
+def _ends_name(tokens: list[tuple[str, int, int]], i: int, letter: str) -> bool:
+    """True if "person a" at this place is a name, and not "… person a hug"."""
+    if letter.isupper() or letter.isdigit() or letter in ("b", "one", "two"):
+        return True
+    return i >= len(tokens) or not tokens[i][0].isalpha() or tokens[i][0].endswith(("s", "ing", "ed"))
+
+
+def _letters(words: list[str], is_verb: Callable[[str], bool]) -> dict[int, str]:
+    """Letters and P1, P2 that are names."""
+    found = {}
+    upper_b = any(word == "B" for word in words)
+    for i, word in enumerate(words):
+        if word in ("P1", "P2", "p1", "p2"):
+            found[i] = A_NAME if word[1] == "1" else B_NAME
+        elif word == "B":
+            found[i] = B_NAME
+        elif (word == "A" and upper_b and (i + 1 == len(words) or not _takes_article(words, i))) or (
+            word == "A"
+            and i + 1 < len(words)
+            and words[i + 1].endswith(("s", "ed"))
+            and is_verb(words[i + 1])
+        ):
+            found[i] = A_NAME
+    return found
+
+
+def _takes_article(words: list[str], i: int) -> bool:
+    following = words[i + 1]
+    return following.isalpha() and vocabulary().is_person(following.lower()) and i + 2 < len(words)

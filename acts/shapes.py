@@ -1,0 +1,158 @@
+"""The shapes of which an act's score is made: few, typed, and the same in the lexicon, in a plan and over the API.
+
+Each shape is a table with a ``do`` in the lexicon's TOML, as ``{do = "go", way = "to", near = 0.6}``. ``who`` says
+which of the act's people it is for: its agents, its patient, or both people.
+"""
+
+from __future__ import annotations
+
+from typing import Annotated, Literal
+
+from pydantic import BaseModel, ConfigDict, Field
+
+Metres = Annotated[float, Field(ge=0, le=20)]
+
+
+class _Shape(BaseModel):
+    model_config = ConfigDict(extra="forbid", frozen=True)
+    who: Literal["agent", "patient", "both"] = "agent"
+
+
+class Go(_Shape):
+    """A way over the floor.
+
+    Attributes:
+        way: relative to the other person, or to where one stands.
+        speed: metres per second.
+        turns: whole turns of a way around the other.
+        metres: length of a way ahead or to and fro; 0 for the usual one.
+        near: metres between the two pelvises at its end; 0 leaves that to the network.
+        backwards: with the face towards where one comes from.
+        linked: the two hold each other by the hands or arms.
+        manner: a gait that the network's words name.
+    """
+
+    do: Literal["go"] = "go"
+    way: Literal[
+        "to", "away", "past", "around", "behind", "along", "after", "back", "aside", "ahead", "to and fro"
+    ]
+    speed: Annotated[float, Field(gt=0, le=4)] = 1.1
+    turns: Annotated[float, Field(gt=0, le=5)] = 0.5
+    metres: Metres = 0.0
+    near: Metres = 0.0
+    backwards: bool = False
+    linked: bool = False
+
+
+class Turn(_Shape):
+    """A turn on the spot: ``to`` the other, ``away`` from them, or ``around`` by so many whole turns."""
+
+    do: Literal["turn"] = "turn"
+    way: Literal["around", "to", "away"] = "around"
+    turns: Annotated[float, Field(gt=0, le=5)] = 0.5
+
+
+class Stay(_Shape):
+    """Standing by: in place, facing the other, with the back to them, or back to back."""
+
+    do: Literal["stay"] = "stay"
+    facing: Literal["", "other", "away", "back to back"] = ""
+
+
+class Posture(_Shape):
+    """A way to hold oneself from then on; ``already`` from the start, ``passing`` only for a moment."""
+
+    do: Literal["posture"] = "posture"
+    posture: Literal["stands", "sits", "kneels", "sits on the ground", "crouches", "bends down", "lies"]
+    already: bool = False
+    passing: bool = False
+
+
+class Jump(_Shape):
+    """A jump on the spot."""
+
+    do: Literal["jump"] = "jump"
+
+
+class Gesture(_Shape):
+    """A gesture of the hands, by its name in the gesture library."""
+
+    do: Literal["gesture"] = "gesture"
+    gesture: Literal[
+        "high",
+        "up",
+        "salutes",
+        "claps",
+        "phone",
+        "ears",
+        "eyes",
+        "photo",
+        "prays",
+        "ahead",
+        "offers",
+        "waves",
+        "points",
+    ]
+    sides: Literal["left", "right", "both"] = "right"
+
+
+class Touch(_Shape):
+    """Hands on a part of the other's body.
+
+    Attributes:
+        part: family of the part; "" for the part that the words name.
+        hands: which; "none" for a kiss, which the head gives.
+        times: how often a short touch is made; 0 for a hand that stays.
+        behind: from behind the other.
+        fells: the other falls from it.
+    """
+
+    do: Literal["touch"] = "touch"
+    part: Literal["", "head", "shoulder", "back", "chest", "waist", "arm", "hand", "leg", "foot"] = ""
+    hands: Literal["left", "right", "both", "none"] = "right"
+    times: Annotated[int, Field(ge=0, le=20)] = 0
+    behind: bool = False
+    fells: bool = False
+
+
+class Hold(_Shape):
+    """Both in a hold while they go round: "closed" as in a waltz, a "ring" with both hands joined, or a "twirl"."""
+
+    do: Literal["hold"] = "hold"
+    hold: Literal["closed", "ring", "twirl"]
+
+
+class Lift(_Shape):
+    """The agent holds the patient off the floor: "up", in the "arms", on the "back", or "drags" them."""
+
+    do: Literal["lift"] = "lift"
+    carry: Literal["up", "arms", "back", "drags"]
+    spins: bool = False
+
+
+class Strike(_Shape):
+    """Blows or throws at the distance they need: with fists, weapons or rackets, or something thrown."""
+
+    do: Literal["strike"] = "strike"
+    bout: Literal["fists", "weapons", "rackets", "throws"]
+    goes_on: bool = False
+
+
+class Limb(_Shape):
+    """A hand, foot or other part moved towards a direction or a part of one's own body; the plan's act names them."""
+
+    do: Literal["limb"] = "limb"
+    part: Literal["", "hand", "arm", "head", "leg", "foot", "knee", "back"] = ""
+    direction: Literal["", "up", "down", "forward", "back", "out", "left", "right", "in"] = ""
+
+
+class Words(_Shape):
+    """Nothing is given: the network makes the act from its caption, which it was trained on."""
+
+    do: Literal["words"] = "words"
+
+
+Shape = Annotated[
+    Go | Turn | Stay | Posture | Jump | Gesture | Touch | Hold | Lift | Strike | Limb | Words,
+    Field(discriminator="do"),
+]

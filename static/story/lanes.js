@@ -1,0 +1,67 @@
+// The parts of the line that show and do nothing else than to be pressed: blocks of beats, the ruler, contacts.
+
+import * as edits from "./edits.js";
+
+const MOST_TICKS = 80;
+
+export const node = (name, className, text) => {
+  const made = document.createElement(name);
+  made.className = className;
+  if (text !== undefined) made.textContent = text;
+  return made;
+};
+
+/** A beat in a lane; `stretch(event, index)` begins to change its length. */
+export function block(beat, index, { lane, name, starts, total, selected, stretch }) {
+  const box = node("div", "pds-block");
+  box.style.left = `${(100 * starts[index]) / total}%`;
+  box.style.width = `${(100 * edits.lengthOf(beat)) / total}%`;
+  const words = beat[lane] ?? "";
+  const cell = node("button", `pds-cell${words ? "" : " pds-none"}`, words || "+");
+  cell.type = "button";
+  cell.dataset.beat = index;
+  cell.dataset.lane = lane;
+  cell.dataset.key = `${lane} ${index}`;
+  cell.title = words;
+  cell.setAttribute("aria-label", `Beat ${index + 1}, ${name}: ${words || "no words"}`);
+  if (selected) cell.classList.add("pds-selected");
+  box.append(cell);
+  if (lane === "words") {
+    const handle = node("span", "pds-handle");
+    handle.tabIndex = 0;
+    handle.dataset.beat = index;
+    handle.dataset.key = `length ${index}`;
+    handle.setAttribute("role", "slider");
+    handle.setAttribute("aria-label", `Length of beat ${index + 1}`);
+    handle.setAttribute("aria-valuenow", edits.lengthOf(beat));
+    handle.setAttribute("aria-valuemin", edits.SHORTEST);
+    handle.setAttribute("aria-valuemax", edits.LONGEST);
+    handle.addEventListener("pointerdown", (event) => stretch(event, index));
+    box.append(handle);
+  }
+  return box;
+}
+
+/** Seconds over the line. */
+export function drawRuler(ruler, total) {
+  ruler.replaceChildren();
+  const step = total > 60 ? 5 : total > 20 ? 2 : 1;
+  for (let second = 0; second <= total; second += step) {
+    const mark = node("span", "", String(second));
+    mark.style.left = `${(100 * second) / total}%`;
+    ruler.append(mark);
+  }
+}
+
+/** Contacts of the motion under the ruler. */
+export function drawTicks(ticks, contacts, total) {
+  ticks.replaceChildren();
+  for (const contact of contacts.slice(0, MOST_TICKS)) {
+    const tick = node("span", "");
+    tick.dataset.kind = contact.kind;
+    tick.title = `${contact.label}, ${contact.start.toFixed(1)} s`;
+    tick.style.left = `${(100 * contact.start) / total}%`;
+    tick.style.width = `${(100 * (contact.stop - contact.start)) / total}%`;
+    ticks.append(tick);
+  }
+}

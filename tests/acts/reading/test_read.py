@@ -1,0 +1,195 @@
+"""The reader's mechanisms on the frames of a few entries; the lexicon's own examples are tests as well."""
+
+from __future__ import annotations
+
+import time
+
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from acts import Act, Plan, read
+from acts.reading.read import MOST_CHARACTERS
+from motion import InputError
+
+
+def said(text: str) -> list[str]:
+    """The acts as "a hug b", with marks for those that do not happen."""
+    return [_said(act) for act in read(text).acts]
+
+
+def _said(act: Act) -> str:
+    mark = "" if act.modality == "told" else f" ({act.modality})"
+    not_ = "not " if act.polarity == "not" else ""
+    return f"{''.join(act.agents)} {not_}{act.act}{f' {act.patient}' if act.patient else ''}{mark}"
+
+
+@pytest.mark.parametrize(
+    ("text", "acts"),
+    [
+        ("A hugs B.", ["a hug b"]),
+        ("A pats B on the back, and then B hugs A.", ["a pat b", "b hug a"]),
+        ("A pats B, and B pats A.", ["a pat b", "b pat a"]),
+        ("Two people hug each other.", ["ab hug"]),
+        ("They don't hug.", ["ab not hug"]),
+        ("Nobody hugs.", ["ab not hug"]),
+        ("He can't hug her.", ["a not hug b"]),
+        ("She refuses to hug him.", ["a not hug b"]),
+        ("He tries to hug her.", ["a hug b (tried)"]),
+        ("She pretends to hug him.", ["a hug b (pretended)"]),
+        ("He almost hugs her.", ["a hug b (tried)"]),
+        ("She pats him without hugging him.", ["a pat b", "a not hug b"]),
+        ("The boy is hugged by the girl.", ["b hug a"]),
+        ("A boy is hugged.", ["b hug a"]),
+        ("He gives her a hug.", ["a hug b"]),
+        ("mum hugs kid", ["a hug b"]),
+        ("He starts hugging her.", ["a hug b"]),
+        ("An old man pats a boy on the shoulder.", ["a pat b"]),
+        ("I hug you.", ["a hug b"]),
+        ("One person pats the other on the back.", ["a pat b"]),
+        ("The first person hugs the second person.", ["a hug b"]),
+        ("P1 hugs P2", ["a hug b"]),
+        ("HE HUGS HER", ["a hug b"]),
+        ("He huggs her.", ["a hug b"]),
+        ("He combs his hair.", ["a comb"]),
+        ("He combs her hair.", ["a touch b"]),
+        ("She puts her hand on his head.", ["a hand-on b"]),
+        ("He helps her walk.", ["a support b"]),
+        ("She is given a book.", ["b hand-over a"]),
+        ("grab her by the wrist", ["a hold-hands b"]),
+    ],
+)
+def test_who_does_what_to_whom(text: str, acts: list[str]) -> None:
+    assert said(text) == acts
+
+
+@pytest.mark.parametrize(
+    ("text", "beats"),
+    [
+        ("She pats him, then he hugs her.", [["1"], ["2"]]),
+        ("She pats him while he hugs her.", [["1", "2"]]),
+        ("Before he hugs her, she pats him.", [["2"], ["1"]]),
+        ("After she pats him, he hugs her.", [["1"], ["2"]]),
+        ("When she pats him, he hugs her.", [["1"], ["2"]]),
+        ("She pats him. He hugs her.", [["1"], ["2"]]),
+        ("She pats him before he hugs her.", [["1"], ["2"]]),
+    ],
+)
+def test_order(text: str, beats: list[list[str]]) -> None:
+    assert [[act.id for act in group] for group in read(text).beats()] == beats
+
+
+def test_what_is_about_others_or_means_nothing_stays_unread() -> None:
+    for text in (
+        "The dog hugs the man.",
+        "He considers his taxes.",
+        "She smurfs him.",
+        "Rain falls on hugs.",
+    ):
+        plan = read(text)
+        assert not plan.acts and plan.unread, text
+    assert "third" in " ".join(read("A man and a woman hug. A waiter pats them.").notes) or read(
+        "A man hugs a woman. A waiter pats the man."
+    ).notes == ("Only two people can be shown: the others that are named do nothing.",)
+
+
+def test_spans_are_those_of_the_text_as_written() -> None:
+    text = "mum  HUGS kid — and kid pats mum on the back!"
+    plan = read(text)
+    assert len(plan.acts) == 2
+    for act in plan.acts:
+        assert act.words is not None and plan.text(act.words).strip()
+    assert "pats mum on the back" in plan.text(plan.acts[1].words)  # type: ignore[arg-type]
+
+
+@pytest.mark.parametrize(
+    "text", ["", "   ", "…!?", "木の下で二人が踊る", "Zwei Leute umarmen sich herzlich draussen"]
+)
+def test_what_is_no_english_is_said(text: str) -> None:
+    plan = read(text)
+    assert not plan.acts and (plan.notes or plan.unread)
+
+
+def test_too_long_a_text_is_refused() -> None:
+    with pytest.raises(InputError, match="shorten it"):
+        read("a" * (MOST_CHARACTERS + 1))
+
+
+LONG = {
+    "one word": "slowly ", "acts": "he hugs her and ", "commas": ",", "letters": "A B ", "stops": "a. ",
+    "names": "Bob ", "digits": "7", "of": "the hand of ", "apostrophes": "'s ", "while": "while he hugs ",
+    "to": "tries to ", "brackets": "([{", "unicode": "é ",
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("kind", sorted(LONG))
+def test_reading_grows_with_the_text_and_not_faster(kind: str) -> None:
+    """Twice the text takes little more than twice the processor's time."""
+    read("They hug.")  # loads the parser
+    spent = []
+    for length in (MOST_CHARACTERS // 2, MOST_CHARACTERS):
+        text = (LONG[kind] * MOST_CHARACTERS)[:length]
+        began = time.process_time()
+        read(text)
+        spent.append(time.process_time() - began)
+    assert spent[1] < 4 * spent[0] + 0.1
+    assert spent[1] < 2
+
+
+_WORDS = st.sampled_from(
+    [
+        "A",
+        "B",
+        "he",
+        "she",
+        "they",
+        "hugs",
+        "pats",
+        "the",
+        "a",
+        "man",
+        "woman",
+        "boy",
+        "and",
+        "then",
+        "while",
+        "before",
+        "without",
+        "not",
+        "hand",
+        "left",
+        "back",
+        "on",
+        "to",
+        "his",
+        "her",
+        "each",
+        "other",
+        "one",
+        "two",
+        "people",
+        "tries",
+        ",",
+        ".",
+        ";",
+        "'",
+        "then",
+        "gives",
+        "kid",
+        "walks",
+        "up",
+        "down",
+    ]
+)
+
+
+@settings(max_examples=150, deadline=None)
+@given(st.lists(_WORDS, max_size=40).map(" ".join) | st.text(max_size=200))
+def test_any_text_gives_a_plan(text: str) -> None:
+    plan = read(text)
+    assert Plan.model_validate_json(plan.model_dump_json()) == plan
+    for act in plan.acts:
+        assert act.words is not None and 0 <= act.words.start < act.words.stop <= len(text)
+    for unread in plan.unread:
+        assert unread.words.stop <= len(text)
+    plan.beats()

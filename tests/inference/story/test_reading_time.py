@@ -1,0 +1,128 @@
+"""Reading a stranger's text takes time in proportion to its length, whatever the text."""
+
+from __future__ import annotations
+
+import subprocess
+import sys
+import time
+from collections.abc import Callable, Iterator
+from typing import Any
+
+import pytest
+
+from motion import InputError
+from webdemo.inference import cancel
+from webdemo.inference.cancel import CancelToken
+from webdemo.inference.pipelines import scene_floor
+from webdemo.inference.pipelines.intergen import InterGenPipeline
+from webdemo.inference.pipelines.scene import SceneMaker
+from webdemo.inference.pipelines.scene_floor import plan_note
+from webdemo.inference.requests import Cancelled, GenerateRequest
+from webdemo.inference.story import Beat, SceneRequest, split_sentence
+from webdemo.inference.story.clauses import Reader, clauses
+from webdemo.inference.story.request import as_scene
+from webdemo.inference.story.roles import of_each
+from webdemo.inference.timer import StageTimer
+
+LONGEST = 500
+"""The longest prompt that the page takes, in characters."""
+_READ = """
+import sys
+from webdemo.inference.story.clauses import clauses
+for before in ("", "A man "):
+    clauses(before + sys.argv[1])
+"""
+
+
+@pytest.mark.parametrize("word", ["slowly", "finally", "suddenly", "eagerly", "simply"])
+def test_an_adverb_repeated_is_read_at_once(word):
+    """Each of these once matched in two ways, and forty of them in 2⁴⁰."""
+    text = f"{word} " * (LONGEST // (len(word) + 1))
+    subprocess.run([sys.executable, "-c", _READ, text], check=True, timeout=60)
+
+
+REPEATED = (
+    "Anna, ", "Tom, with, ", "ran , ", "A. ", "a. ", "a, ", ", ", "(", '"', "a and ", "the ", "man who ", "ing",
+    "lets him ", "he hugs him and ", "then he sits down. ", "she - p1 as ", "\u3042", "\U0001f600 ", "x", "1 ",
+    "Two people walk up to each other and shake hands. ", "slowly ", "the a b ", "helps ", "throws the ",
+)  # fmt: skip
+
+
+@pytest.mark.parametrize("part", REPEATED)
+@pytest.mark.parametrize("before", ["", "A man "])
+def test_a_prompt_of_the_longest_length_is_read_in_a_tenth_of_a_second(before, part):
+    read("Two people walk.")  # loads the phrasebook
+    text = (before + part * LONGEST)[:LONGEST]
+    assert min(read(text, again) for again in range(2)) < 0.1
+
+
+def read(text: str, again: int = 0) -> float:
+    """Processor seconds in which a prompt is split, planned and told of, read for the first time."""
+    clauses.cache_clear()
+    began = time.process_time()
+    scene = as_scene(GenerateRequest(prompt=text, seconds=10.0))
+    of_each(text)
+    if scene is not None:
+        plan_note(scene)
+    return time.process_time() - began
+
+
+def test_a_story_is_read_in_linear_time_and_can_be_stopped():
+    story = "They walk up to each other and hug. " * 30
+    calls: list[int] = []
+    split_sentence(story, lambda: calls.append(1))
+    assert len(calls) == 30
+
+    def stop() -> None:
+        raise Cancelled("Stopped.")
+
+    with pytest.raises(Cancelled):
+        split_sentence(story, stop)
+
+
+def test_a_prompt_of_the_longest_length_is_not_refused_for_its_full_stop():
+    text = ("Two people walk up to each other, shake hands and wave goodbye, " * 9)[: LONGEST - 1] + "y"
+    as_scene(GenerateRequest(prompt=text, seconds=5.0))
+
+
+def generating(token: CancelToken) -> Iterator[Any]:
+    """The run of a prompt of forty sentences, which is not read to its end."""
+    request = GenerateRequest(prompt="They hug. " * 40, seconds=10.0)
+    nothing: Any = None
+    return InterGenPipeline._generate(nothing, request, token, StageTimer.start(), None)
+
+
+def making_a_scene(token: CancelToken) -> Iterator[Any]:
+    """The run of a scene of forty beats, which is not read to its end."""
+    request = SceneRequest(beats=(Beat("They hug.", seconds=2.0),) * 40)
+    nothing: Any = None
+    return SceneMaker(nothing).run(request, token, StageTimer.start())
+
+
+@pytest.mark.parametrize(
+    ("run", "reader", "name"),
+    [(generating, Reader, "read"), (making_a_scene, scene_floor, "_said_together")],
+)
+@pytest.mark.parametrize(("late", "ends"), [(False, Cancelled), (True, InputError)])
+def test_a_run_that_ends_reads_no_further(
+    run: Callable[[CancelToken], Iterator[Any]], reader: Any, name: str, late: bool, ends: type[Exception],
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:  # fmt: skip
+    """It is cancelled, or its time is over, while the third sentence is read."""
+    now, sentences, original = 0.0, 0, getattr(reader, name)
+    monkeypatch.setattr(cancel, "monotonic", lambda: now)
+    token = CancelToken(600).start()
+
+    def counted(*given: Any) -> Any:
+        nonlocal now, sentences
+        sentences += 1
+        if sentences == 3 and late:
+            now = 601.0
+        elif sentences == 3:
+            token.cancel()
+        return original(*given)
+
+    monkeypatch.setattr(reader, name, counted)
+    with pytest.raises(ends, match="10 minutes" if late else "cancelled"):
+        next(run(token))
+    assert sentences == 3

@@ -1,0 +1,228 @@
+"""Predicates on limbs, levels and unison, each shown on a body that does it and on one that does not."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import numpy as np
+import pytest
+
+from motion import SMPL22
+from motion.metrics.sentences import shapes
+from motion.metrics.sentences.joints import Motion
+from motion.metrics.sentences.language import CONDITIONS, RuleError, check
+from motion.metrics.sentences.vocabulary import PREDICATES
+
+FPS, FRAMES = 30.0, 120
+Edit = Callable[[np.ndarray], None]
+
+
+def index(name: str) -> int:
+    return SMPL22.index(name)
+
+
+def duet(*edits: Edit, gap: float = 2.0) -> Motion:
+    """a at the origin, looking along +Z, b ``gap`` metres ahead and looking back, arms hanging; edits change a."""
+    body = SMPL22.rest_positions() + np.array([0.0, 0.96, 0.0])
+    for side in ("left", "right"):
+        shoulder = body[index(f"{side}_shoulder")]
+        body[index(f"{side}_elbow")] = shoulder + np.array([0, -0.27, 0])
+        body[index(f"{side}_wrist")] = shoulder + np.array([0, -0.52, 0.05])
+        body[index(f"{side}_ankle"), 1], body[index(f"{side}_foot"), 1] = 0.08, 0.02
+    both = np.repeat(np.stack([body, body * [-1, 1, -1] + [0, 0, gap]])[:, None], FRAMES, axis=1)
+    for edit in edits:
+        edit(both)
+    return Motion(both, FPS)
+
+
+def put(name: str, place: tuple[float, float, float], who: int = 0, base: str = "pelvis") -> Edit:
+    """Moves a joint to a place relative to another joint of the same body, which must look along +Z."""
+
+    def edit(both: np.ndarray) -> None:
+        both[who, :, index(name)] = both[who, :, index(base)] + place
+
+    return edit
+
+
+def each(part: str, place: tuple[float, float, float], base: str = "pelvis", who: int = 0) -> list[Edit]:
+    """Both joints of a part at a place, the left one's x as given and the right one's mirrored."""
+    x, y, z = place
+    bases = [base if base in SMPL22.joint_names else f"{side}_{base}" for side in ("left", "right")]
+    return [
+        put(f"left_{part}", (x, y, z), who, bases[0]),
+        put(f"right_{part}", (-x, y, z), who, bases[1]),
+    ]
+
+
+def tilt(degrees: float, towards: tuple[float, float]) -> Edit:
+    """Leans a's trunk: the neck goes over the floor along (X, Z)."""
+
+    def edit(both: np.ndarray) -> None:
+        neck = both[0, :, index("neck")]
+        neck[:, [0, 2]] = both[0, :, 0][:, [0, 2]] + np.tan(np.radians(degrees)) * (
+            neck[:, 1:2] - both[0, :, 0, 1:2]
+        ) * np.array(towards)
+
+    return edit
+
+
+def spin(degrees: float, who: int = 0) -> Edit:
+    """Turns a body about its pelvis to the left, evenly over the whole motion."""
+
+    def edit(both: np.ndarray) -> None:
+        angle = np.radians(np.linspace(0, degrees, FRAMES))[:, None]
+        root = both[who, :, :1] * [1, 0, 1]
+        x, y, z = np.moveaxis(both[who] - root, -1, 0)
+        turned = [x * np.cos(angle) + z * np.sin(angle), y, z * np.cos(angle) - x * np.sin(angle)]
+        both[who] = np.stack(turned, axis=-1) + root
+
+    return edit
+
+
+def shift(start: tuple[float, float, float], stop: tuple[float, float, float], who: int = 0) -> Edit:
+    """Moves a whole body evenly from one offset to another."""
+
+    def edit(both: np.ndarray) -> None:
+        both[who] += np.linspace(start, stop, FRAMES)[:, None]
+
+    return edit
+
+
+def swing(who: int, side: str, lag: float = 0.0) -> Edit:
+    """A wrist goes up and down along a path that does not repeat, ``lag`` seconds late."""
+
+    def edit(both: np.ndarray) -> None:
+        t = np.arange(FRAMES) / FPS - lag
+        both[who, :, index(f"{side}_wrist"), 1] += 0.3 * np.sin(2.0 * t**2 * np.sign(t)) + 0.3
+        both[who, :, index(f"{side}_elbow"), 1] += 0.15 * np.sin(2.0 * t**2 * np.sign(t)) + 0.15
+
+    return edit
+
+
+def rise(both: np.ndarray) -> None:
+    for side in ("left", "right"):
+        both[0, 60:, index(f"{side}_ankle"), 1] += 0.08
+
+
+def elbow_on(both: np.ndarray) -> None:
+    both[0, :, index("left_elbow")] = both[1, :, index("right_shoulder")] + [0, 0.1, 0]
+
+
+BENT = [*each("knee", (0.1, -0.2, 0.35)), *each("ankle", (0.1, -0.5, 0.0))]
+DOES: dict[str, tuple[Motion, str]] = {
+    "hand_over_head": (duet(put("left_wrist", (0.2, 0.9, 0.0))), "a, 'left'"),
+    "hand_near_floor": (duet(put("left_wrist", (0.2, -0.7, 0.3))), "a"),
+    "arms_wide": (duet(*each("wrist", (0.5, 0.0, 0.0), "shoulder")), "a"),
+    "arms_crossed": (duet(*each("wrist", (-0.15, 0.2, 0.2))), "a, 0.4"),
+    "holds_in_front": (duet(*each("wrist", (0.15, 0.2, 0.35))), "a"),
+    "hands_ahead": (duet(*each("wrist", (0.15, -0.1, 0.35))), "a"),
+    "hands_apart": (duet(*each("wrist", (0.5, 0.2, 0.0))), "a"),
+    "wrist_over_pelvis": (duet(put("left_wrist", (0.2, 0.5, 0.2))), "a"),
+    "reaches_out": (duet(put("left_wrist", (0.2, -0.3, 0.5))), "a"),
+    "arm_level": (duet(put("left_wrist", (0.0, 0.0, 0.5), base="left_shoulder")), "a, 'left'"),
+    "hand_behind_back": (duet(put("left_wrist", (0.0, 0.0, -0.2))), "a, 'left'"),
+    "knees_bent": (duet(*BENT), "a"),
+    "knee_high": (duet(put("left_knee", (0.1, -0.1, 0.35))), "a, 'left'"),
+    "heels_up": (duet(rise), "a"),
+    "trunk_upright": (duet(), "a"),
+    "foot_up": (duet(put("left_ankle", (0.1, -0.5, 0.0))), "a, 'left'"),
+    "wide_stance": (duet(put("left_ankle", (0.1, -0.88, 0.7))), "a"),
+    "leans": (duet(tilt(30, (0, 1))), "a, 'towards'"),
+    "turned": (duet(spin(180)), "a, 180"),
+    "turns_way": (duet(spin(120)), "a, 'left'"),
+    "off_floor": (duet(shift((0, 0.4, 0), (0, 0.4, 0))), "a"),
+    "goes_at": (duet(shift((0, 0, -2), (0, 0, 0))), "a, 0.3, 0.8"),
+    "goes_ahead": (duet(shift((0, 0, -2), (0, 0, 0))), "a"),
+    "moves": (duet(swing(0, "left")), "a"),
+    "higher": (duet(shift((0, -0.5, 0), (0, -0.5, 0), who=1)), "a"),
+    "back_to_back": (duet(gap=-0.4), ""),
+    "in_front": (duet(), "a"),
+    "at_others_start": (duet(shift((0, 0, 0), (0, 0, 2))), "a"),
+    "arm_on": (duet(elbow_on), "a, 'shoulder'"),
+    "feet_near": (duet(gap=0.3), ""),
+    "shoulders_touch": (duet(gap=0.15), ""),
+    "alike": (duet(swing(0, "left"), swing(1, "left")), ""),
+    "copies": (duet(swing(0, "left"), swing(1, "left", 0.8)), "b"),
+}  # fmt: skip
+
+
+IDLE = duet()
+TILTED = duet(tilt(30, (1, 0)))
+
+
+def test_every_predicate_of_the_module_is_shown() -> None:
+    own = {name for name, found in PREDICATES.items() if found.__module__ == shapes.__name__}
+    assert own == set(DOES)
+
+
+@pytest.mark.parametrize("name", DOES)
+def test_it_holds_for_those_who_do_it_and_not_for_those_who_stand(name: str) -> None:
+    motion, arguments = DOES[name]
+    rule = f"happens({name}({arguments}))"
+    assert check(rule, motion)
+    still = TILTED if name == "trunk_upright" else duet(gap=-2.0) if name == "in_front" else IDLE
+    assert not check(rule, still)
+
+
+@pytest.mark.parametrize(
+    ("name", "arguments"),
+    [
+        ("hand_over_head", "a, 'right'"),
+        ("arm_level", "a, 'right'"),
+        ("hand_behind_back", "a, 'right'"),
+        ("knee_high", "a, 'right'"),
+        ("foot_up", "a, 'right'"),
+        ("leans", "a, 'back'"),
+        ("leans", "a, 'left'"),
+        ("turned", "a, 90, 30"),
+        ("turns_way", "a, 'right'"),
+        ("goes_at", "a, 0.8, 2.0"),
+        ("higher", "b"),
+        ("copies", "a"),
+        ("alike", "mirrored=True"),
+        ("alike", "lag=-0.6"),
+        ("wide_stance", "b"),
+        ("off_floor", "b"),
+        ("at_others_start", "b"),
+        ("arm_on", "b, 'shoulder'"),
+    ],
+)
+def test_it_does_not_hold_for_the_other_side_way_or_person(name: str, arguments: str) -> None:
+    condition = "end" if name == "turned" else "happens"
+    assert not check(f"{condition}({name}({arguments}))", DOES[name][0])
+
+
+def test_a_mirror_and_a_lag_are_told_from_unison() -> None:
+    mirrored, late = duet(swing(0, "left"), swing(1, "right")), duet(swing(0, "left"), swing(1, "left", 0.5))
+    assert check("happens(alike(mirrored=True), 1.0)", mirrored) and not check("happens(alike())", mirrored)
+    assert check("happens(alike(lag=0.5), 1.0)", late)
+    assert not check("happens(alike(lag=90.0))", late)
+
+
+def test_left_and_right_are_the_leaning_persons_own() -> None:
+    assert check("happens(leans(a, 'left'))", TILTED) and not check("happens(leans(a, 'right'))", TILTED)
+
+
+# ---- conditions -------------------------------------------------------------------------------------------
+def test_conditions_are_joined_by_and_and_or() -> None:
+    motion = DOES["goes_ahead"][0]
+    yes, no = "happens(goes_ahead(a))", "happens(goes_ahead(b))"
+    assert check(f"{yes} or {no}", motion) and not check(f"{yes} and {no}", motion)
+    assert check(f"{yes} and ({no} or {yes})", motion)
+    with pytest.raises(RuleError, match="is not known here"):
+        check(f"{yes} or happens(flies(a))", motion)
+    with pytest.raises(RuleError, match="must begin with"):
+        check("not happens(goes_ahead(b))", motion)
+
+
+def test_a_count_is_exact_and_until_needs_an_event_that_ends_it() -> None:
+    motion = duet()
+    mask = np.zeros(FRAMES, dtype=bool)
+    mask[20:30] = mask[60:70] = True
+    exactly, until = CONDITIONS["exactly"], CONDITIONS["until"]
+    assert exactly(motion, mask, 2) and not exactly(motion, mask, 1) and not exactly(motion, mask, 3)
+    going, event = np.arange(FRAMES) < 62, np.arange(FRAMES) >= 60
+    assert until(motion, going, event)
+    assert not until(motion, np.ones(FRAMES, dtype=bool), event), "it goes on"
+    assert not until(motion, ~going, event), "it had not begun"
+    assert not until(motion, going, ~event & False), "nothing ends it"

@@ -1,0 +1,99 @@
+"""What ada has on a server: real things, so that an attack that fails does so because it is refused."""
+
+from __future__ import annotations
+
+import sqlite3
+from collections.abc import Callable
+from contextlib import closing
+from pathlib import Path
+from typing import Any
+
+from webdemo.server.store.database import Database
+from webdemo.server.store.studies import Studies
+from webdemo.study import Stimulus
+from webdemo.ui.studies import NewStudy
+
+from ..lab import stub_module
+from .known import API
+from .target import FIELDS, Target
+
+SECRET, UPLOADED = "SECRET", "HIERARCHY of ada's"
+"""What nobody else may read: her prompt, her study's names, her file."""
+
+
+class Victim:
+    """Ada, who has an upload, a run, its files, a call, a page's session and a study.
+
+    Attributes:
+        things: their paths, keys and ids, by the names that attacks use.
+        owner: whose runs hers are, as the server writes it.
+    """
+
+    def __init__(self, target: Target) -> None:
+        self.target = target
+        upload = target.upload("ada", "hers.bvh", UPLOADED.encode())
+        finished = target.call("ada", "generate", [SECRET, *FIELDS[1:]])
+        (download,) = [word for word in finished.split('"') if word.endswith(".npz") and word[0] == "/"][:1]
+        (run, self.owner) = self.rows("SELECT id, owner FROM runs WHERE state = 'done'")[0]
+        open_call = {"data": [SECRET, *FIELDS[1:]]}
+        call = target.ask("ada", "POST", f"{API}/call/generate", json=open_call).json()["event_id"]
+        join = {**open_call, "fn_index": 1, "session_hash": "adas own"}
+        target.ask("ada", "POST", f"{API}/queue/join", json=join).raise_for_status()
+        walking = stub_module().walking
+        sets = {f"{SECRET} {name}": [Stimulus("They walk.", walking(0.5))] for name in ("plain", "damped")}
+        database = Database(f"sqlite:///{target.data / 'history.db'}")
+        study = Studies(database, target.data / "studies").create(
+            self.owner, NewStudy(question="Which is longer?", title=SECRET, sets=sets, checks=0)
+        )
+        database.close()
+        self.things = {
+            "upload": upload, "download": download, "call": call, "session": "adas own", "run": run,
+            "study": study.id, "study_key": study.key, "here": target.url,
+            "folder_of_ada": str(Path(upload).parents[1]), "canary": str(target.canary),
+            "folder": str(target.folder), "data": str(target.data),
+        }  # fmt: skip
+        self._kept = self._state()
+
+    def live(self) -> str:
+        """A new live stream of hers, since one closes soon when nothing comes; returns its id."""
+        opened = self.target.ask("ada", "POST", "/live", json={"partner": "agent"}).json()
+        self.things["stream"] = opened["id"]
+        return opened["id"]
+
+    def rows(self, query: str) -> list[tuple[Any, ...]]:
+        """What the server's database answers."""
+        with closing(sqlite3.connect(self.target.data / "history.db")) as database:
+            return database.execute(query).fetchall()
+
+    def fill(self, value: Any) -> Any:
+        """A value with her things in place of their names in braces."""
+        if isinstance(value, str):
+            for name, thing in self.things.items():
+                value = value.replace(f"{{{name}}}", thing)
+            return value
+        if isinstance(value, dict):
+            return {key: self.fill(item) for key, item in value.items()}
+        return [self.fill(item) for item in value] if isinstance(value, list) else value
+
+    def _state(self) -> list[Any]:
+        run, study = self.things["run"], self.things["study"]
+        return [
+            self.rows(f"SELECT * FROM {table} WHERE {column} = '{key}'")
+            for table, column, key in (
+                ("runs", "id", run), ("links", "run_id", run), ("notes", "run_id", run), ("studies", "id", study),
+            )
+        ]  # fmt: skip
+
+    def check(self, number: Callable[[str], int]) -> None:
+        """Fails unless all of it is there, as it was, and opens for her: so nothing failed for want of a target.
+
+        Args:
+            number: the index of a backend function by its name.
+        """
+        target, hers = self.target, self.things
+        assert target.ask("ada", "GET", f"{API}/file={hers['upload']}").text == UPLOADED
+        assert target.ask("ada", "GET", f"{API}/file={hers['download']}").content[:2] == b"PK"
+        opened = target.event("ada", number("HistoryTab.open_address"), [hers["run"]])
+        assert SECRET in opened, opened
+        assert hers["study_key"] in target.event("ada", number("StudyPanel.show"), [None])
+        assert self._state() == self._kept

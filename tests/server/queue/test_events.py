@@ -1,0 +1,183 @@
+"""Whose page event is next, and that nobody fills the queue of events for others."""
+
+from __future__ import annotations
+
+import asyncio
+from types import SimpleNamespace
+from typing import Any
+
+import gradio as gr
+import pytest
+from fastapi import HTTPException
+
+from tests.server.attacks.target import Target
+from tests.server.lab import ROOT, stub_module
+from webdemo.server.http.metrics import Figures
+from webdemo.server.queue.events import AT_ONCE, EventLimits, FairEvents
+from webdemo.ui.page import build_page, start_queue
+from webdemo.ui.visitor import Visitor
+
+CLIP = ROOT / "static" / "examples" / "shake-hands.npz"
+OLD_LIMIT = 192
+"""Events of everybody that the server once took at a time."""
+
+
+def made(limits: EventLimits | None = None) -> FairEvents:
+    """A queue of a page with a film (one at a time), a list (four at a time) and a run (any number)."""
+    with gr.Blocks(analytics_enabled=False) as page:
+        for name, limit in (("film", 1), ("list", 4), ("read", 4), ("tidy", 4), ("run", None)):
+            gr.Button().click(lambda: None, concurrency_limit=limit, concurrency_id=name, api_name=name)
+    start_queue(
+        page, lambda **options: FairEvents(limits=limits or EventLimits(), figures=Figures(), **options)
+    )
+    queue = page._queue
+    assert isinstance(queue, FairEvents)
+    queue.active_jobs = [None] * 40
+    return queue
+
+
+def ask(queue: FairEvents, who: str | Visitor, what: str) -> None:
+    visitor = who if isinstance(who, Visitor) else Visitor(who)
+    request: Any = SimpleNamespace(scope={"state": {"visitor": visitor}})
+    number = next(n for n, fn in queue.blocks.fns.items() if fn.api_name == what)
+    body: Any = SimpleNamespace(fn_index=number, session_hash=None, event_id=None, request=request)
+    asyncio.run(queue.push(body, request, None))
+
+
+def begin(queue: FairEvents) -> Any:
+    """The event that the queue begins, as Gradio does; None if none may begin."""
+    found = queue.get_events()
+    if found is None:
+        return None
+    (event,), _, group = found
+    queue.active_jobs[queue.active_jobs.index(None)] = [event]
+    queue.event_queue_per_concurrency_id[group].current_concurrency += 1
+    return event
+
+
+def end(queue: FairEvents, event: Any, seconds: float) -> None:
+    queue.active_jobs[queue.active_jobs.index([event])] = None
+    queue.event_queue_per_concurrency_id[event.concurrency_id].current_concurrency -= 1
+    queue.accounts.charge(event.request.scope["state"]["visitor"].person, seconds)
+
+
+def names(queue: FairEvents, count: int, seconds: float = 1.0) -> list[str]:
+    """The people whose next events are done, one after the other."""
+    found = []
+    for _ in range(count):
+        event = begin(queue)
+        found.append(event.request.scope["state"]["visitor"].person)
+        end(queue, event, seconds)
+    return found
+
+
+def test_the_person_served_least_goes_first() -> None:
+    queue = made()
+    for _ in range(5):
+        ask(queue, "greedy", "film")
+    assert names(queue, 1) == ["greedy"]
+    ask(queue, "late", "film")
+    ask(queue, "late", "film")
+    assert names(queue, 6) == ["greedy", "late", "greedy", "late", "greedy", "greedy"]
+
+
+def test_long_events_cost_later_turns() -> None:
+    queue = made()
+    for _ in range(3):
+        ask(queue, "long", "film")
+        ask(queue, "short", "film")
+    first = begin(queue)
+    assert first.request.scope["state"]["visitor"].person == "long"
+    end(queue, first, 10.0)
+    assert names(queue, 5) == ["short"] * 3 + ["long"] * 2
+
+
+def test_a_person_has_half_of_a_group_and_so_many_in_all() -> None:
+    queue = made()
+    for what in ("list", "read", "tidy"):
+        for _ in range(4):
+            ask(queue, "greedy", what)
+    begun = []
+    while event := begin(queue):
+        begun.append(event.concurrency_id)
+    assert len(begun) == AT_ONCE and max(begun.count(group) for group in begun) == 2
+    ask(queue, "other", "list")
+    assert begin(queue).request.scope["state"]["visitor"].person == "other"
+
+
+def test_strangers_of_one_address_share_half_of_a_group() -> None:
+    queue = made()
+    for i in range(4):
+        ask(queue, Visitor(f"visitor {i}", address="203.0.113.9"), "list")
+    assert begin(queue) and begin(queue) and begin(queue) is None
+    ask(queue, Visitor("visitor x", address="203.0.113.10"), "list")
+    assert begin(queue).request.scope["state"]["visitor"].person == "visitor x"
+
+
+def test_runs_begin_at_once_since_they_wait_elsewhere() -> None:
+    queue = made()
+    for _ in range(6):
+        ask(queue, "one", "run")
+    assert all(begin(queue) for _ in range(6))
+
+
+def test_a_person_and_an_address_have_so_many_unfinished_events() -> None:
+    queue = made(EventLimits(person=3, address=5, total=40))
+    for _ in range(3):
+        ask(queue, "greedy", "film")
+    begin(queue)  # what is worked on counts as well
+    with pytest.raises(HTTPException) as refused:
+        ask(queue, "greedy", "list")
+    assert refused.value.status_code == 429 and refused.value.detail.startswith("3 things that you asked for")
+    for i in range(5):
+        ask(queue, Visitor(f"visitor {i}", address="203.0.113.9"), "film")
+    with pytest.raises(HTTPException, match="5 things that your network"):
+        ask(queue, Visitor("visitor 6", address="203.0.113.9"), "film")
+    ask(queue, "other", "film")
+
+
+def test_nothing_that_computes_goes_past_the_queue() -> None:
+    """What is called directly sets buttons or stops a run: it takes nothing that a client could make large."""
+    page = build_page(stub_module().StubEngine())
+    assert not page.api_open
+    for fn in page.fns.values():
+        if fn.fn is not None and not fn.queue:
+            assert all(isinstance(block, gr.State) for block in fn.inputs), fn.name
+
+
+@pytest.fixture(scope="module")
+def target(tmp_path_factory: pytest.TempPathFactory) -> Any:
+    with Target(tmp_path_factory.mktemp("events"), accounts=True) as target:
+        yield target
+
+
+def sheet(target: Target, who: str) -> list[Any]:
+    """What ``/render`` is given for a contact sheet."""
+    path = target.upload(who, "hands.npz", CLIP.read_bytes())
+    file = {"path": path, "meta": {"_type": "gradio.FileData"}}
+    return [file, "png", "bodies", "light", "threequarter", False, 24, 640, 360, None, ""]
+
+
+def test_one_person_cannot_stop_the_events_of_others(target: Target) -> None:
+    """As many events as once stopped everybody's: a few are taken, and others' turn comes after one of them."""
+    data = sheet(target, "eve")
+    asked = [
+        target.ask("eve", "POST", "/gradio_api/call/render", json={"data": data})
+        for _ in range(OLD_LIMIT + 5)
+    ]
+    refused = [answer for answer in asked if answer.status_code != 200]
+    assert len(refused) > OLD_LIMIT / 2 and {answer.status_code for answer in refused} == {429}
+    assert "things that you asked for are not done yet" in refused[-1].json()["detail"]
+    before = target.ask("ada", "GET", "/gradio_api/queue/status").json()["queue_size"]
+    assert before >= 8  # or nothing is shown below
+    assert "event: complete" in target.call("ada", "render", sheet(target, "ada"))
+    after = target.ask("ada", "GET", "/gradio_api/queue/status").json()["queue_size"]
+    assert before - after <= 4, "one contact sheet of hers waits for no more than a few of the other's"
+    fields = ["Two people walk.", 1, 0, 1, 3, 1, 0, "ddim", "intergen"]
+    assert "event: complete" in target.call("ada", "generate", fields)
+
+
+def test_no_event_is_called_past_the_queue(target: Target) -> None:
+    for path, body in (("render", {"data": sheet(target, "eve")}), ("predict", {"fn_index": 4, "data": []})):
+        answer = target.ask("eve", "POST", f"/gradio_api/run/{path}", json=body)
+        assert answer.status_code in (400, 404), path

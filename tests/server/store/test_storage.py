@@ -1,0 +1,273 @@
+"""Room for each person: who pays for what is too much, what an import may take, and clocks that jump."""
+
+from __future__ import annotations
+
+import json
+import random
+import sqlite3
+import time
+import zipfile
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+from sqlalchemy import select
+
+from motion import InputError
+from tests.server.lab import stub_module
+from webdemo.inference.requests import GenerateRequest
+from webdemo.server.store.database import Database, Run
+from webdemo.server.store.ledger import DAY, LabClock
+from webdemo.server.store.notebook import Notebook
+from webdemo.server.store.scratch import Scratch
+from webdemo.server.store.storage import Storage
+from webdemo.server.store.studies import Studies
+from webdemo.study import Stimulus
+from webdemo.ui.history import Search
+from webdemo.ui.studies import NewStudy
+from webdemo.ui.visitor import Visitor
+
+PEOPLE = ("user ada", "user eve", "user bob")
+
+
+@pytest.fixture
+def notebook(tmp_path: Path) -> Iterator[Notebook]:
+    database = Database(f"sqlite:///{tmp_path / 'h.db'}")
+    scratch = Scratch(tmp_path / "s" / "n", 3e6)
+    storage = Storage(database, tmp_path / "motions", person_bytes=8e5, total_bytes=1.6e6, scratch=scratch)
+    yield Notebook(database, tmp_path / "motions", node="n", storage=storage)
+    database.close()
+
+
+def kept(notebook: Notebook, owner: str, seed: int = 0) -> str:
+    request = GenerateRequest(prompt="They walk.", seconds=2.0, steps=1, seed=seed)
+    run = notebook.begin(owner, request, "They walk.")
+    *_, result = stub_module().StubEngine().run(request)
+    notebook.finish(run, result)
+    return run
+
+
+def runs_of(notebook: Notebook, owner: str) -> set[str]:
+    with notebook.database.session() as session:
+        return set(session.scalars(select(Run.id).where(Run.owner == owner)))
+
+
+def test_nobody_s_deeds_remove_what_is_another_s(notebook: Notebook, tmp_path: Path) -> None:
+    studies = Studies(notebook.database, tmp_path / "studies", storage=notebook.storage)
+    kept(notebook, "user z")
+    file = tmp_path / "workspace.zip"
+    notebook.export("user z", [], file)
+    walk = stub_module().walking(1.0)
+    draw, evicted, refused = random.Random(1), 0, 0
+    for number in range(150):
+        owner = draw.choice(PEOPLE)
+        who = Visitor(owner, owner)
+        before = {each: runs_of(notebook, each) for each in (*PEOPLE, "user z")}
+        starred = {e.id for e in notebook.search(owner, Search(starred=True)).entries}
+        deed = draw.choice(["run"] * 4 + ["import", "favourite", "upload", "film", "study", "clean"])
+        try:
+            if deed == "run":
+                kept(notebook, owner, number)
+            elif deed == "import":
+                list(notebook.take_in(owner, file))
+            elif deed == "favourite" and before[owner]:
+                notebook.favour(draw.choice(sorted(before[owner])), owner, favourite=draw.random() < 0.5)
+                continue
+            elif deed in ("upload", "film"):
+                notebook.storage.admit(who, draw.choice([1e3, 1e5]))
+            elif deed == "study":
+                sets = {name: [Stimulus("They walk.", walk)] for name in "ab"}
+                studies.create(owner, NewStudy(question="Which?", sets=sets, checks=0))
+            else:
+                notebook.clean()
+        except InputError:
+            refused += 1
+        now = {each: runs_of(notebook, each) for each in before}
+        for other in set(before) - {owner}:
+            assert now[other] == before[other], f"{deed} of {owner} removed a run of {other}"
+            assert all((notebook.folder / run / "1.npz").exists() for run in now[other])
+        assert starred <= now[owner], "a favourite was removed"
+        usage = notebook.usage(who)
+        assert usage.used - usage.temporary <= usage.kept + 20_000  # unfinished runs' own rows
+        evicted += len(before[owner] - now[owner])
+    assert evicted > 10 and refused > 0, "the limits were never reached"
+
+
+def test_the_total_is_reached_and_one_s_own_runs_make_way_or_the_run_is_refused(notebook: Notebook) -> None:
+    notebook.storage.person_bytes = 1e9
+    theirs = {kept(notebook, "user ada", seed) for seed in range(40)}
+    notebook.storage.total_bytes = notebook.usage(Visitor("user ada", "user ada")).used + 3e5
+    with pytest.raises(InputError, match="nothing of others is removed for yours"):
+        for seed in range(40):
+            notebook.favour(kept(notebook, "user eve", seed), "user eve", favourite=True)
+    assert runs_of(notebook, "user ada") == theirs
+
+
+def test_a_bomb_is_refused_before_anything_is_written(
+    notebook: Notebook, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    notebook.storage.person_bytes = notebook.storage.total_bytes = 1e12
+    bomb = tmp_path / "bomb.zip"
+    zeros = bytes(20 * 2**20)
+    with zipfile.ZipFile(bomb, "w", zipfile.ZIP_DEFLATED) as archive:
+        for number in range(20):
+            archive.writestr(f"{number}/original", zeros)
+        archive.writestr(
+            "workspace.json", json.dumps({"format": "pas-de-deux-workspace-1", "runs": [{}] * 20})
+        )
+    written: list[int] = []
+    monkeypatch.setattr(Path, "write_bytes", lambda path, data: written.append(len(data)) or len(data))
+    with pytest.raises(InputError, match="would unpack to 400 MB"):
+        list(notebook.take_in("user ada", bomb))
+    assert written == [] and list(notebook.folder.iterdir()) == []
+
+
+def test_a_workspace_larger_than_the_room_is_refused_and_removes_nothing(
+    notebook: Notebook, tmp_path: Path
+) -> None:
+    mine = {kept(notebook, "user ada", seed) for seed in range(5)}
+    file = tmp_path / "workspace.zip"
+    notebook.export("user ada", [], file)
+    notebook.storage.person_bytes = notebook.usage(Visitor("user ada", "user ada")).used / 0.75 + 1000
+    with pytest.raises(InputError, match="of your room are free"):
+        list(notebook.take_in("user ada", file))
+    assert runs_of(notebook, "user ada") == mine
+    assert {path.name for path in notebook.folder.iterdir()} == mine
+
+
+def test_a_cancelled_import_leaves_nothing_and_one_goes_on_at_a_time(
+    notebook: Notebook, tmp_path: Path
+) -> None:
+    runs = {kept(notebook, "user ada", seed) for seed in range(3)}
+    file = tmp_path / "workspace.zip"
+    notebook.export("user ada", [], file)
+    going = notebook.take_in("user eve", file)
+    assert next(going) == (1, 3)
+    with pytest.raises(InputError, match="importing a workspace already"):
+        next(notebook.take_in("user eve", file))
+    assert list(notebook.take_in("user bob", file))[-1] == (3, 3), "another person's goes on beside it"
+    going.close()
+    assert runs_of(notebook, "user eve") == set()
+    assert {path.name for path in notebook.folder.iterdir()} == runs | runs_of(notebook, "user bob")
+    assert list(notebook.take_in("user eve", file))[-1] == (3, 3)
+
+
+def test_what_a_killed_import_left_goes_at_the_start(notebook: Notebook, tmp_path: Path) -> None:
+    run = kept(notebook, "user ada")
+    file = tmp_path / "workspace.zip"
+    notebook.export("user ada", [], file)
+    going = notebook.take_in("user eve", file)
+    next(going)
+    (notebook.folder / ("x" * 24)).mkdir()
+    assert len(list(notebook.folder.iterdir())) == 3
+    Notebook(notebook.database, notebook.folder, node="n").recover()
+    assert {path.name for path in notebook.folder.iterdir()} == {run}
+
+
+def test_damaged_workspaces_are_imported_or_one_sentence(notebook: Notebook, tmp_path: Path) -> None:
+    notebook.storage.person_bytes = notebook.storage.total_bytes = 1e12
+    kept(notebook, "user ada")
+    file, bad = tmp_path / "workspace.zip", tmp_path / "bad.zip"
+    notebook.export("user ada", [], file)
+    with zipfile.ZipFile(file) as archive:
+        parts = {name: archive.read(name) for name in archive.namelist()}
+    draw, refused = random.Random(2), 0
+    for number in range(200):
+        inside = {name: bytearray(content) for name, content in parts.items()}
+        if number % 2:  # inside of the container, which is whole
+            target = inside[draw.choice(sorted(inside))]
+            for _ in range(draw.randint(1, 6)):
+                target[draw.randrange(len(target))] = draw.randrange(256)
+            with zipfile.ZipFile(bad, "w") as archive:
+                for name, content in inside.items():
+                    archive.writestr(name, bytes(content))
+        else:
+            whole = bytearray(file.read_bytes())
+            for _ in range(draw.randint(1, 6)):
+                whole[-draw.randrange(1, 400 if number % 4 else len(whole))] = draw.randrange(256)
+            bad.write_bytes(whole[: draw.choice([len(whole), draw.randrange(len(whole))])])
+        before = runs_of(notebook, "user eve")
+        try:
+            list(notebook.take_in("user eve", bad))
+        except InputError as error:
+            refused += 1
+            assert "\n" not in str(error) and str(tmp_path) not in str(error)
+            assert runs_of(notebook, "user eve") == before
+    assert refused > 50
+
+
+class Hands:
+    """A clock and an uptime that a test moves."""
+
+    def __init__(self) -> None:
+        self.wall, self.up = time.time(), 0.0
+
+
+@pytest.fixture
+def hands(notebook: Notebook) -> Hands:
+    found = Hands()
+    notebook.clock = LabClock(notebook.database, wall=lambda: found.wall, uptime=lambda: found.up)
+    return found
+
+
+@pytest.mark.parametrize("days", [60, -60])
+def test_a_clock_that_jumps_removes_nothing_even_after_a_run(
+    notebook: Notebook, hands: Hands, days: int
+) -> None:
+    runs = {kept(notebook, "user ada")}
+    hands.wall += days * DAY
+    runs.add(kept(notebook, "user ada", 1))
+    assert [notebook.clean(), notebook.clean()] == [0, 0]
+    assert notebook.clock.state().jump == pytest.approx(days * DAY, abs=60)
+    again = LabClock(notebook.database, wall=lambda: hands.wall, uptime=lambda: 0.0)  # a restart
+    assert not again.look() and again.now() == pytest.approx(notebook.clock.now(), abs=60)
+    hands.wall -= days * DAY
+    assert notebook.clean() == 0 and notebook.clock.look()
+    assert runs_of(notebook, "user ada") == runs
+
+
+def test_cleaning_goes_on_after_a_steady_day_and_ages_are_those_of_the_record(
+    notebook: Notebook, hands: Hands
+) -> None:
+    run = kept(notebook, "user ada")
+    hands.wall += 60 * DAY
+    assert not notebook.clock.look()
+    for _ in range(2):
+        hands.wall, hands.up = hands.wall + DAY / 2 + 1, hands.up + DAY / 2 + 1
+        notebook.clean()
+    assert notebook.clock.look() and runs_of(notebook, "user ada") == {run}
+    hands.wall, hands.up = hands.wall + 30 * DAY, hands.up + 30 * DAY
+    assert notebook.clean() == 1
+
+
+@pytest.mark.parametrize(("passed", "removed"), [(True, 1), (False, 0)])
+def test_an_operator_says_that_the_clock_is_right(
+    notebook: Notebook, hands: Hands, passed: bool, removed: int
+) -> None:
+    kept(notebook, "user ada")
+    hands.wall += 60 * DAY
+    assert notebook.clean() == 0
+    notebook.clock.confirm(passed=passed)
+    assert notebook.clean() == removed
+
+
+def test_an_older_database_is_opened_with_all_its_runs(tmp_path: Path) -> None:
+    file = tmp_path / "h.db"
+    database = Database(f"sqlite:///{file}")
+    notebook = Notebook(database, tmp_path / "motions")
+    run = kept(notebook, "user ada")
+    database.close()
+    with sqlite3.connect(file) as old:
+        for index in ("ix_runs_stored", "ix_runs_address", "ix_studies_address"):
+            old.execute(f"DROP INDEX {index}")
+        for table, column in (("runs", "stored"), ("runs", "address"), ("studies", "address")):
+            old.execute(f"ALTER TABLE {table} DROP COLUMN {column}")
+        old.execute("DROP TABLE ledger")
+    database = Database(f"sqlite:///{file}")
+    notebook = Notebook(database, tmp_path / "motions")
+    assert notebook.clean() == 0
+    assert notebook.open(run, "user ada").entry.id == run
+    with database.session() as session:
+        row = session.get_one(Run, run)
+        assert row.stored == row.created and row.address == ""
+    database.close()

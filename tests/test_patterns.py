@@ -1,0 +1,70 @@
+"""No regular expression takes long on the longest text that it may be given, whatever the text."""
+
+from __future__ import annotations
+
+import json
+import re
+import subprocess
+import sys
+
+import pytest
+
+from webdemo.inference.requests import MAX_PROMPT
+from webdemo.inference.story.clauses import LONGEST_READ
+from webdemo.inference.story.splitting import MOST_WORDS
+from webdemo.inference.story.toml import MOST_CHARACTERS
+
+from .compiled_patterns import ANYTHING, ROOT, SENTENCE, STORY, inline
+from .pattern_attacks import attacks, slow
+
+
+@pytest.mark.parametrize(
+    "pattern",
+    [
+        r"^(?:(?:slowly|\w+ly),? )*(?:he|she)\b",
+        r"^(?:(?:first|then|slowly|\w+ly),? )*(?=they )",
+        r"(?:a+)+$",
+        r"(?:\w+\s?)*!",
+        r"(?:x|y(?:b|b)*)*c",
+    ],
+)
+def test_patterns_that_match_in_many_ways_are_found(pattern):
+    assert slow(re.compile(pattern), SENTENCE)
+
+
+@pytest.mark.parametrize("pattern", [r"\s+$", r"\bhelp.* up", r",\s*x|\s+and", rb"[ \t]*\n[ \t]*M"])
+def test_patterns_of_quadratic_time_are_found_on_texts_of_any_length(pattern):
+    assert slow(re.compile(pattern), ANYTHING)
+
+
+@pytest.mark.parametrize("pattern", [r"\w+", r"^(?:(?:now|\w+ly),? )*+he\b", r"[,;]|\band\b", rb"^\s*MOTION"])
+def test_patterns_of_linear_time_are_left_alone(pattern):
+    assert slow(re.compile(pattern), ANYTHING) is None
+
+
+def test_attacks_are_as_long_as_may_be():
+    lengths = {len(text) for text in attacks(re.compile(r"(?:then|\w+ly )+x"), 300)}
+    assert 300 - 10 < max(lengths) <= 300
+
+
+def test_the_limits_are_those_of_the_readers():
+    assert (SENTENCE, STORY) == (LONGEST_READ, MOST_WORDS)
+    assert SENTENCE >= MAX_PROMPT
+    assert MOST_CHARACTERS <= 2 * ANYTHING  # its patterns are of linear time
+
+
+def test_patterns_inside_functions_are_found():
+    files = {file for file, *_ in inline()}
+    assert {"webdemo/inference/story/clauses.py", "webdemo/inference/story/wording.py"} <= files
+
+
+def test_every_pattern_of_the_packages_is_fast():
+    """In a process of its own, which is ended where a pattern does not end."""
+    done = subprocess.run(
+        [sys.executable, "-m", "tests.compiled_patterns"],
+        cwd=ROOT, capture_output=True, text=True, timeout=900,
+    )  # fmt: skip
+    assert done.returncode == 0, done.stderr[-2000:]
+    found = json.loads(done.stdout.splitlines()[-1])
+    assert found["patterns"] > 200
+    assert found["slow"] == []

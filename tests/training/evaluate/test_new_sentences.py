@@ -1,0 +1,120 @@
+"""The two sets with clauses, and the plans of the reading test: well-formed, and fair by the motion of other sentences.
+
+The sealed files' words must not appear in a test's output: parameters and messages name sentences by their ids.
+"""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+import training.evaluate
+from motion.metrics.sentences import Sentence, kept_out, load_sentences, read_sentences
+from motion.metrics.sentences.joints import Motion
+from motion.metrics.sentences.language import check
+from training.evaluate.plans import FIELDS, MODALITIES, ORDERS, Reading, read_plans
+
+from . import ordinary_scripts, sentence_scripts
+from .puppets import play
+
+FOLDER = Path(training.evaluate.__file__).parent
+NAMES = ("lookable", "sealed")
+SECONDS = 8.0
+OTHERS = 40
+VOICES = ("caption", "visitor", "studio")
+
+each_set = pytest.mark.parametrize("name", NAMES)
+
+
+def sentences(name: str) -> tuple[Sentence, ...]:
+    return read_sentences(FOLDER / f"{name}_sentences.toml")
+
+
+def readings(name: str) -> tuple[Reading, ...]:
+    return read_plans(FOLDER / f"{name}_plans.toml")
+
+
+def wrong(ids: list[str]) -> None:
+    """Fails with ids alone: pytest would print the operands of an assert on words."""
+    if ids:
+        pytest.fail(f"not so for {', '.join(ids)}", pytrace=False)
+
+
+@each_set
+def test_there_are_sixty_in_three_voices_and_each_clause_has_a_rule(name: str) -> None:
+    found = sentences(name)
+    assert len({s.words.lower() for s in found}) == len({s.id for s in found}) == 60
+    assert [sum(voice in s.tags for s in found) for voice in VOICES] == [20, 20, 20]
+    wrong([s.id for s in found if not s.rule or len(s.rule) != len(s.clauses) or not 4 <= s.seconds <= 8])
+    wrong([s.id for s in found if not all(part and part in s.words for part in s.clauses)])
+    assert {s.sealed for s in found} == {name == "sealed"}
+
+
+def test_none_is_in_an_older_set_or_in_the_other() -> None:
+    older = list(FOLDER.glob("*_sentences.json"))
+    known = [s.words for s in load_sentences()]
+    new = [s for name in NAMES for s in sentences(name)]
+    wrong([s.id for s in new if kept_out(s.words) or s.words in known])
+    wrong([s.id for s in new for path in older if kept_out(s.words, path)])
+    assert len({s.words for s in new}) == 120
+
+
+@each_set
+def test_no_condition_is_met_by_more_than_a_third_of_other_motions(name: str) -> None:
+    scripts = sorted({*ordinary_scripts.SCRIPTS.values(), *sentence_scripts.SCRIPTS.values()})
+    others = [Motion(play(script, SECONDS)) for script in scripts[:: len(scripts) // OTHERS][:OTHERS]]
+    assert len(others) == OTHERS
+
+    def chance(sentence: Sentence, rule: str) -> float:
+        casts = [lambda m: m] if sentence.named else [lambda m: m, Motion.swapped]
+        return sum(any(check(rule, cast(m)) for cast in casts) for m in others) / OTHERS
+
+    wrong([f"{s.id}: {i}" for s in sentences(name) for i, r in enumerate(s.rule) if chance(s, r) > 1 / 3])
+
+
+@each_set
+def test_standing_still_does_not_do_a_sentence(name: str) -> None:
+    for gap in (0.7, 1.5, 3.0):
+        still = Motion(play(f"gap {gap}", SECONDS))
+        wrong([s.id for s in sentences(name) if s.judge(still).passed])
+
+
+# ---- the reading test ------------------------------------------------------------------------------------
+@each_set
+def test_there_are_fifty_plans_and_ten_leave_something_unread(name: str) -> None:
+    found = readings(name)
+    assert len({r.words.lower() for r in found}) == len({r.id for r in found}) == 50
+    assert sum(bool(r.unread) for r in found) == 10
+    wrong([r.id for r in found if not all(span and span in r.words for span in r.unread)])
+    wrong([r.id for r in found if not r.acts and not r.unread])
+    assert {r.sealed for r in found} == {name == "sealed"}
+
+
+@each_set
+def test_acts_use_known_values_and_point_at_other_acts(name: str) -> None:
+    for reading in readings(name):
+        for i, act in enumerate(reading.acts):
+            good = (
+                act.verb == act.verb.strip().lower() != ""
+                and act.agents in (("a",), ("b",), ("a", "b"))
+                and act.patient in ("a", "b", None)
+                and act.patient not in act.agents[: 1 if len(act.agents) == 1 else 0]
+                and act.polarity in ("done", "not")
+                and act.modality in MODALITIES
+                and act.side in ("left", "right", "both", None)
+                and (act.times is None or act.times >= 1)
+                and all(kind in ORDERS and j != i and 0 <= j < len(reading.acts) for kind, j in act.order)
+            )
+            if not good:
+                wrong([f"{reading.id}, act {i}"])
+
+
+def test_plans_say_what_is_wrong_without_the_words(tmp_path: Path) -> None:
+    path = tmp_path / "x.toml"
+    path.write_text(
+        'sealed = true\n[[reading]]\nid = "one"\nwords = "secret words"\nacts = [{verbs = "walk"}]\n'
+    )
+    with pytest.raises(ValueError, match=r"one of x\.toml") as caught:
+        read_plans(path)
+    assert "secret" not in str(caught.value) and "verb" in FIELDS

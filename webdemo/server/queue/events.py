@@ -1,0 +1,151 @@
+"""The queue of page events: nobody fills it alone, and people take turns.
+
+Gradio's own queue has one length for everybody and serves each group of events (films, files that are read, the
+history) in order of arrival. Runs are admitted at once, since they wait in :mod:`webdemo.server.queue.queue`.
+"""
+
+from __future__ import annotations
+
+import time
+from collections import Counter, defaultdict
+from collections.abc import Iterator
+from dataclasses import dataclass
+from typing import Any
+
+from fastapi import HTTPException, Request
+from gradio.queueing import Event, EventQueue, Queue
+
+from webdemo.server.http.metrics import Figures
+from webdemo.ui.visitor import LOCAL, Visitor
+
+from .turns import Accounts
+
+AT_ONCE = 4
+"""Events of one person that are worked on at a time, without runs: fewer than any page needs, so that two long ones
+leave room for short ones."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class EventLimits:
+    """Limits of unfinished events per person, per address where people have no accounts, and in total."""
+
+    person: int = 16
+    address: int = 128
+    total: int = 256
+
+
+class FairEvents(Queue):
+    """Gradio's queue with a cap for each person, and turns: the person served least goes first.
+
+    A group of events that may run several at a time gives one person, or one address where people have no accounts, at
+    most half of its places.
+
+    Args:
+        limits: unfinished events; ``total`` becomes Gradio's ``max_size``.
+        figures: metrics to update.
+        options: of Gradio's queue.
+    """
+
+    def __init__(self, *, limits: EventLimits, figures: Figures, **options: Any) -> None:
+        super().__init__(**options, max_size=limits.total)
+        self.limits, self.figures = limits, figures
+        self.accounts = Accounts()
+        self._begun: dict[Event, float] = {}
+
+    async def push(self, body: Any, request: Request, username: str | None) -> Any:
+        """Takes an event in.
+
+        Raises:
+            HTTPException: 429 with a sentence, if the person or the address has too many unfinished ones.
+        """
+        who = _visitor(request)
+        known = [_visitor(event.request) for event in self._unfinished()]
+        mine = sum(other.person == who.person for other in known)
+        near = sum(other.address == who.address for other in known) if who.address else 0
+        if mine >= self.limits.person:
+            self.figures.refused.labels("person's share of events").inc()
+            raise HTTPException(
+                429, f"{mine} things that you asked for are not done yet: wait for one of them."
+            )
+        if near >= self.limits.address:
+            self.figures.refused.labels("address's share of events").inc()
+            raise HTTPException(
+                429, f"{near} things that your network asked for are not done yet: try again in a minute."
+            )
+        self.accounts.meet(who.person, {other.person for other in known})
+        return await super().push(body, request, username)
+
+    def get_events(self) -> tuple[list[Event], bool, str] | None:
+        """The next event: of those that may begin, the first one of the person served least."""
+        now = time.monotonic()
+        running = list(self._running())
+        busy = Counter(
+            _visitor(event.request).person for event in running if not self._waits_elsewhere(event)
+        )
+        spent: defaultdict[str, float] = defaultdict(float)
+        for event, began in self._begun.items():
+            spent[_visitor(event.request).person] += now - began
+        chosen: Event | None = None
+        least: tuple[float, float] = (0.0, 0.0)
+        for group in self.event_queue_per_concurrency_id.values():
+            for event in self._able(group, running, busy):
+                person = _visitor(event.request).person
+                due = (self.accounts.served.get(person, 0.0) + spent[person], event.enqueue_time)
+                if chosen is None or due < least:
+                    chosen, least = event, due
+        if chosen is None:
+            return None
+        self.event_queue_per_concurrency_id[chosen.concurrency_id].queue.remove(chosen)
+        return [chosen], False, chosen.concurrency_id
+
+    async def process_events(self, events: list[Event], *rest: Any, **more: Any) -> None:
+        """Works on an event and charges its seconds to its person; the time of a run is charged where it waits."""
+        (event,) = events
+        if self._waits_elsewhere(event):
+            return await super().process_events(events, *rest, **more)
+        self._begun[event] = began = time.monotonic()
+        try:
+            await super().process_events(events, *rest, **more)
+        finally:
+            del self._begun[event]
+            self.accounts.charge(_visitor(event.request).person, time.monotonic() - began)
+
+    # ---- parts -----------------------------------------------------------------------------------
+
+    def _able(self, group: EventQueue, running: list[Event], busy: Counter[str]) -> Iterator[Event]:
+        """The events of a group that may begin now, in order of arrival."""
+        limit = group.concurrency_limit
+        if limit is None:
+            yield from group.queue[:1]
+            return
+        if group.current_concurrency >= limit:
+            return
+        share = max(1, limit // 2)
+        here = Counter(_source(event) for event in running if event.concurrency_id == group.concurrency_id)
+        for event in group.queue:
+            if busy[_visitor(event.request).person] < AT_ONCE and here[_source(event)] < share:
+                yield event
+
+    def _waits_elsewhere(self, event: Event) -> bool:
+        return self.event_queue_per_concurrency_id[event.concurrency_id].concurrency_limit is None
+
+    def _running(self) -> Iterator[Event]:
+        for job in self.active_jobs:
+            yield from job or ()
+
+    def _unfinished(self) -> Iterator[Event]:
+        yield from self._running()
+        for group in self.event_queue_per_concurrency_id.values():
+            yield from group.queue
+
+
+def _visitor(request: Request) -> Visitor:
+    """The person who sent a request, as the guard found them."""
+    found = request.scope.get("state", {}).get("visitor")
+    return found if isinstance(found, Visitor) else LOCAL
+
+
+def _source(event: Event) -> str:
+    """The account, or the address of a person without one."""
+    who = _visitor(event.request)
+    return who.address or who.person

@@ -1,0 +1,230 @@
+"""The room that each person has, and what makes way where it is used up: always something of their own.
+
+Everything that is stored counts: runs with the files that they were made from, imported ones and favourites, studies,
+uploads, films and other files for download. A part of a person's room is set aside for the latter, which are soon
+removed, so that an upload never costs a run.
+"""
+
+from __future__ import annotations
+
+import math
+import shutil
+from collections.abc import Collection
+from pathlib import Path
+from typing import Any, cast
+
+from sqlalchemy import CursorResult, delete, func, select
+from sqlalchemy.orm import Session
+
+from motion import InputError
+from webdemo.server.accounts.visitors import digest
+from webdemo.ui.history import Usage
+from webdemo.ui.visitor import Visitor
+
+from .database import Database, Link, Note, Run, Study, sentences
+from .originals import bytes_of
+from .scratch import Scratch
+
+SET_ASIDE = 0.25
+"""Share of a person's room that runs and studies leave to uploads and files for download."""
+ROW_BYTES = 4096
+"""What a run weighs beside its files, its request and its outcome: its row, its note and its thumbnail."""
+RUN_BYTES = 2**18
+"""Room that there has to be, or that runs can make, before a run begins."""
+MB = 2**20
+
+
+class Storage:
+    """Counts what people store, and makes room.
+
+    Args:
+        database: knows whose everything is.
+        motions: folder of the runs' files.
+        person_bytes: room of one person.
+        total_bytes: room for all people's runs and studies together.
+        address_bytes: room for runs and studies of all who come from one address, where anybody may come.
+        scratch: uploads and files for download; None where they are not counted.
+    """
+
+    def __init__(
+        self, database: Database, motions: Path, *, person_bytes: float = math.inf, total_bytes: float = 2e9,
+        address_bytes: float = math.inf, scratch: Scratch | None = None,
+    ) -> None:  # fmt: skip
+        self.database, self.motions, self.scratch = database, motions, scratch
+        self.person_bytes, self.total_bytes, self.address_bytes = person_bytes, total_bytes, address_bytes
+
+    @property
+    def kept_bytes(self) -> float:
+        """A person's room for runs and studies."""
+        return (1 - SET_ASIDE) * self.person_bytes
+
+    # ---- what there is ---------------------------------------------------------------------------
+
+    @sentences()
+    def usage(self, who: Visitor) -> Usage:
+        """The room that a person uses."""
+        with self.database.session() as session:
+            runs = session.execute(
+                select(Run.favourite, func.sum(Run.size))
+                .where(Run.owner == who.owner)
+                .group_by(Run.favourite)
+            )
+            sizes = {favourite: size or 0 for favourite, size in runs} if who.owner else {}
+            studies = _sum(session, Study, Study.owner == who.owner) if who.owner else 0
+        return Usage(
+            runs=sizes.get(False, 0), favourites=sizes.get(True, 0), studies=studies,
+            temporary=self.scratch.used(digest(who.person)) if self.scratch else 0,
+            allowed=self.person_bytes if math.isfinite(self.person_bytes) else self.total_bytes,
+            kept=min(self.kept_bytes, self.total_bytes),
+        )  # fmt: skip
+
+    def spare(self, owner: str, share: float) -> float:
+        """Bytes that are left of a share of a person's room for runs and studies."""
+        with self.database.session() as session:
+            own = _sum(session, Run, Run.owner == owner) + _sum(session, Study, Study.owner == owner)
+        return share * min(self.kept_bytes, self.total_bytes) - own
+
+    def importable(self, owner: str, address: str) -> float:
+        """Bytes that a person may import: what is free, and what they have removed themselves."""
+        with sentences(), self.database.session() as session:
+            removed = sum(weight for _, weight, removed in _evictable(session, owner, ()) if removed)
+            return min(left for left, _ in self._left(session, owner, address)) + removed
+
+    def _left(self, session: Session, owner: str, address: str) -> list[tuple[float, str]]:
+        """The room left under each limit that holds for a person, and the sentence where it is too little."""
+        own = _sum(session, Run, Run.owner == owner) + _sum(session, Study, Study.owner == owner)
+        left = [(
+            self.kept_bytes - own,
+            f"Your room of {self.kept_bytes / MB:,.0f} MB for runs and studies is used up by favourites and studies, "
+            "which are not removed on their own: stop keeping one, or delete a study.",
+        )]  # fmt: skip
+        total = _sum(session, Run) + _sum(session, Study)
+        left.append((
+            self.total_bytes - total,
+            "The room for everybody's runs on this server is used up, and nothing of others is removed for yours: "
+            "remove runs of your own, or tell the person who runs the server.",
+        ))  # fmt: skip
+        if address:
+            theirs = _sum(session, Run, Run.address == address) + _sum(
+                session, Study, Study.address == address
+            )
+            left.append((
+                self.address_bytes - theirs,
+                "The room for runs of people from your network is used up: remove runs of your own.",
+            ))  # fmt: skip
+        return left
+
+    # ---- making room -----------------------------------------------------------------------------
+
+    def check(self, session: Session, owner: str, address: str, size: float) -> None:
+        """Raises InputError if so much could not be stored even if the person's own runs made way."""
+        rows = _evictable(session, owner, ())
+        self._needed(session, owner, address, size, sum(weight for _, weight, _ in rows))
+
+    def make_room(
+        self, session: Session, owner: str, address: str, size: float, *, spare: Collection[str] = (),
+        only_removed: bool = False,
+    ) -> list[str]:  # fmt: skip
+        """Deletes a person's own runs until so much more can be stored: removed ones first, then the oldest.
+
+        Favourites, studies and runs that go on stay. Where more was stored before than a limit allows, such as after
+        it was lowered, no more makes way than what comes.
+
+        Args:
+            session: in a transaction that has called :func:`.ledger.locked`.
+            owner: whose runs.
+            address: from which they come, as a run has it.
+            size: bytes that come.
+            spare: runs that stay.
+            only_removed: only runs that their owner has removed already make way.
+
+        Returns:
+            the deleted runs, whose files :meth:`drop` removes when the transaction is over.
+
+        Raises:
+            InputError: if that is not enough; nothing is deleted.
+        """
+        rows = [row for row in _evictable(session, owner, spare) if row[2] or not only_removed]
+        needed = self._needed(session, owner, address, size, sum(weight for _, weight, _ in rows))
+        gone, freed = [], 0.0
+        for run, weight, _ in rows:
+            if freed >= needed:
+                break
+            if forget(session, run):
+                gone.append(run)
+            freed += weight
+        return gone
+
+    def _needed(self, session: Session, owner: str, address: str, size: float, can_go: float) -> float:
+        """Bytes that must make way for so many that come; raises InputError if fewer can go."""
+        needed = 0.0
+        for left, sentence in self._left(session, owner, address):
+            missing = min(size - left, size)
+            if missing > max(can_go, 0.0):
+                raise InputError(sentence)
+            needed = max(needed, missing)
+        return needed
+
+    def drop(self, runs: Collection[str]) -> None:
+        """Removes the files of deleted runs."""
+        for run in runs:
+            shutil.rmtree(self.motions / run, ignore_errors=True)
+
+    # ---- uploads and files for download ----------------------------------------------------------
+
+    def admit(self, who: Visitor, size: float) -> None:
+        """Makes room for an upload or a file for download by removing the person's own older ones.
+
+        Raises:
+            InputError: if there is too little room.
+        """
+        if self.scratch is None:
+            return
+        with sentences(), self.database.session() as session:
+            kept = _sum(session, Run, Run.owner == who.owner) + _sum(session, Study, Study.owner == who.owner)
+        self.scratch.admit(digest(who.person), who.address, size, self._aside(kept if who.owner else 0.0))
+
+    def tidy(self, keep: Collection[str] = ()) -> None:
+        """Removes the uploads and files for download that are too old or too many for their owner; ``keep`` stays."""
+        if self.scratch is None:
+            return
+        kept: dict[str, float] = {}
+        with self.database.session() as session:
+            for table in (Run, Study):
+                sizes = select(table.owner, func.sum(table.size)).group_by(table.owner)
+                for owner, size in session.execute(sizes):
+                    kept[digest(owner)] = kept.get(digest(owner), 0.0) + (size or 0)
+        self.scratch.clean(keep, lambda person: self._aside(kept.get(person, 0.0)))
+
+    def _aside(self, kept: float) -> float:
+        return max(self.person_bytes - kept, SET_ASIDE * self.person_bytes)
+
+
+def weight_of(run: Run, folder: Path) -> int:
+    """Bytes of a run: its files, its request and its outcome, and what is written about it."""
+    return ROW_BYTES + bytes_of(folder) + len(run.request) + len(run.outcome or "")
+
+
+def _sum(session: Session, table: type[Run] | type[Study], *conditions: Any) -> int:
+    return session.scalar(select(func.sum(table.size)).where(*conditions)) or 0
+
+
+def _evictable(session: Session, owner: str, spare: Collection[str]) -> list[tuple[str, int, bool]]:
+    """A person's runs that may make way, with their bytes and whether their owner has removed them; first those."""
+    rows = session.execute(
+        select(Run.id, Run.size, Run.favourite, Note.removed).outerjoin(Note)
+        .where(Run.owner == owner, Run.owner != "", Run.state != "running").order_by(Run.stored, Run.id)
+    )  # fmt: skip
+    found = [
+        (run, size, removed is not None)
+        for run, size, favourite, removed in rows
+        if run not in spare and (removed is not None or not favourite)
+    ]
+    return sorted(found, key=lambda row: not row[2])
+
+
+def forget(session: Session, run: str) -> bool:
+    """Deletes a run with its note and its links; False if another process has done so already."""
+    session.execute(delete(Note).where(Note.run_id == run))
+    session.execute(delete(Link).where(Link.run_id == run))
+    return bool(cast(CursorResult[Any], session.execute(delete(Run).where(Run.id == run))).rowcount)

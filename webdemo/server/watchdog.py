@@ -1,0 +1,47 @@
+"""Ends a process that is stuck, so that its supervisor (Docker, systemd) starts it again."""
+
+from __future__ import annotations
+
+import asyncio
+import faulthandler
+import logging
+import os
+from collections.abc import Callable
+
+from starlette.concurrency import run_in_threadpool
+
+log = logging.getLogger(__name__)
+
+SILENT_SECONDS = 60.0
+"""Time after which a server that answers nothing is ended: two of Docker's looks."""
+EVERY = 5.0
+"""Seconds between two signs of life."""
+STDERR = 2
+"""File descriptor, which stays the same whatever takes the place of ``sys.stderr``."""
+STUCK = 70
+"""Exit code of a process that ended itself since a run was stuck."""
+
+
+async def watch(
+    stuck: Callable[[], str], *, silent_seconds: float = SILENT_SECONDS, every: float = EVERY
+) -> None:
+    """Ends the process if something is stuck, or if this coroutine or a thread gets no turn for too long.
+
+    The second holds even where native code keeps Python's interpreter lock for good, since ``faulthandler`` waits in a
+    thread of C. Both write where all threads are to stderr; nothing is tidied up.
+
+    Args:
+        stuck: says what is stuck; empty while all goes on.
+        silent_seconds: time without a turn.
+        every: seconds between two looks.
+    """
+    try:
+        while True:
+            if reason := await run_in_threadpool(stuck):
+                log.critical("The process ends itself, since it is stuck: %s", reason)
+                faulthandler.dump_traceback(STDERR)
+                os._exit(STUCK)
+            faulthandler.dump_traceback_later(silent_seconds, exit=True, file=STDERR)
+            await asyncio.sleep(every)
+    finally:
+        faulthandler.cancel_dump_traceback_later()
