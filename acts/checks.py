@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import re
 from collections.abc import Iterator
 from pathlib import Path
 
@@ -12,6 +11,7 @@ from motion import InputError
 from motion.metrics.sentences.joints import Motion
 from motion.metrics.sentences.language import RuleError, check
 
+from .checking import cast
 from .lexicon import OURS, Entry, files, lexicon, read_file
 from .reading import read
 
@@ -50,8 +50,3 @@ def check_entry(name: str, entry: Entry, folders: tuple[Path, ...] = ()) -> Iter
             check(cast(rule, "a", "b"), Motion(np.random.default_rng(0).normal(size=(2, 30, 22, 3))))
         except RuleError as error:
             yield f"{where}: {error}"
-
-
-def cast(rule: str, who: str, whom: str) -> str:
-    """A rule of the lexicon with the people of an act: ``who`` is the agent, ``whom`` the other."""
-    return re.sub(r"\b(who|whom)\b", lambda m: who if m[1] == "who" else whom, rule)

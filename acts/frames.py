@@ -219,7 +219,11 @@ class Frame:
             if element.family:
                 score += 0.4
             if isinstance(ref, Ref):
-                bound.setdefault(element.slot.partition(".")[2] or element.slot, ref)
+                name = element.slot.partition(".")[2] or element.slot
+                if (
+                    name not in bound or element.slot == "b.part"
+                ):  # "a hand on his shoulder" is about the shoulder
+                    bound[name] = ref
         if event.object is not None and "object" not in taken:
             if not (together and event.object.kind in ("person", "each")):
                 return None

@@ -7,13 +7,14 @@ A rule is one condition over predicates (:mod:`.vocabulary`), or several joined 
 from __future__ import annotations
 
 import ast
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from typing import Any
 
 import numpy as np
 
-from . import paths, poses, shapes, touches  # noqa: F401 (they fill the vocabulary)
+from . import paths, poses, shapes, small, touches  # noqa: F401 (they fill the vocabulary)
 from .joints import Motion
+from .measures import MEASURES
 from .stretches import Mask, longest, stretches
 from .vocabulary import PREDICATES
 
@@ -125,6 +126,35 @@ def check(rule: str, motion: Motion) -> bool:
     except SyntaxError as error:
         raise RuleError(f"The rule {rule!r} cannot be read: {error.msg}.") from error
     return _holds(tree, rule, motion)
+
+
+def measured(rule: str, motion: Motion) -> str:
+    """A plain measure of the first predicate of a rule that has one (:mod:`.measures`), or "".
+
+    Raises:
+        RuleError: as :func:`check`.
+    """
+    for node in _calls(ast.parse(rule, mode="eval").body):
+        if _name(node.func) in MEASURES:
+            return str(_call(node, motion, MEASURES))
+    return ""
+
+
+def masks(rule: str) -> list[str]:
+    """The first predicate of each condition of a rule, as text: what has to be seen for it."""
+    conditions = [c for c in _calls(ast.parse(rule, mode="eval").body) if _name(c.func) in CONDITIONS]
+    return [ast.unparse(condition.args[0]) for condition in conditions if condition.args]
+
+
+def _calls(node: ast.expr) -> Iterator[ast.Call]:
+    """The calls of a rule, from the outside in and from left to right."""
+    if isinstance(node, ast.Call):
+        yield node
+        for argument in node.args:
+            yield from _calls(argument)
+    elif isinstance(node, ast.BoolOp):
+        for part in node.values:
+            yield from _calls(part)
 
 
 def _holds(node: ast.expr, rule: str, motion: Motion) -> bool:

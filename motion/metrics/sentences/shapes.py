@@ -165,7 +165,12 @@ def wide_stance(m: Motion, who: int, metres: float = 0.6) -> Mask:
 
 @predicate
 def leans(m: Motion, who: int, way: str, degrees: float = 15.0) -> Mask:
-    """The trunk leans by ``degrees`` or more "forward", "back", "left", "right", "towards" or "away" (of the other)."""
+    """The trunk leans by ``degrees`` or more "forward", "back", "left", "right", "towards" or "away" (of the other).
+
+    "any" is any of them.
+    """
+    if way == "any":
+        return m.lean(who) > degrees
     trunk = m.joint(who, "neck") - m.joint(who, "pelvis")
     ahead, left, to_other = m.forward[who], _left(m, who), m.towards(who)
     axes = {

@@ -1,0 +1,231 @@
+"""A plan and a motion → which of its acts are done, by the rules of their entries.
+
+A rule is a condition of :mod:`motion.metrics.sentences` in which these names stand for an act's own values: ``who`` is
+its agent and ``whom`` the other; ``side`` and ``way`` are "any" and ``part`` (of the body) is "body" where the words
+name none; ``n`` is how often, 1 where they do not say.
+"""
+
+from __future__ import annotations
+
+import ast
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from functools import lru_cache
+from typing import Any
+
+from motion import SMPL22, Duet
+from motion.metrics.sentences.joints import Motion
+from motion.metrics.sentences.language import check, masks, measured
+from motion.metrics.sentences.touches import BODY
+
+from .captions import worded
+from .lexicon import Entry, Lexicon, lexicon
+from .plan import Act, Plan
+from .reading.vocabulary import vocabulary
+
+ONLY = {
+    "tried": "it is only tried",
+    "offered": "it is only offered",
+    "pretended": "it is only pretended",
+    "wished": "it is only wished",
+}
+"""The reason why an act that is not told cannot be judged, by its modality."""
+
+WAYS = frozenset(("forward", "back", "left", "right"))
+"""Directions that a rule may ask for."""
+
+
+@dataclass(frozen=True)
+class Verdict:
+    """The verdict on one act of a plan.
+
+    Attributes:
+        id: of the act in its plan.
+        act: name of its entry.
+        words: what is done, in plain words: "A pats B on the back".
+        done: None where it cannot be judged.
+        measure: what was measured, such as "hand 34 cm from the shoulder"; "" where the rule has no measure; why it
+            cannot be judged, where it cannot.
+    """
+
+    id: str
+    act: str
+    words: str
+    done: bool | None
+    measure: str = ""
+
+    def to_dict(self) -> dict[str, Any]:
+        """As it stands in a manifest."""
+        return {"act": self.act, "words": self.words, "done": self.done, "measure": self.measure}
+
+
+def checked(plan: Plan, motion: Duet | Motion, known: Lexicon | None = None) -> tuple[Verdict, ...]:
+    """One verdict an act, in the plan's order.
+
+    A denied act is done where its rule does not hold. An act that comes after others is done where its rule holds and
+    what it shows comes after what they show, as far as those are done.
+
+    Args:
+        plan: of the motion.
+        motion: of SMPL's 22 joints.
+        known: the lexicon; ours by default.
+
+    Raises:
+        ValueError: for a motion of another skeleton.
+    """
+    known = lexicon() if known is None else known
+    if isinstance(motion, Duet):
+        if motion.a.skeleton.joint_names != SMPL22.joint_names:
+            raise ValueError("Acts are checked on SMPL's 22 joints: bring the motion there first (to_smpl).")
+        motion = Motion(motion.positions, motion.fps)
+    found: dict[str, Verdict] = {}
+    for act in _in_order(plan):
+        found[act.id] = _verdict(act, plan, motion, known, found)
+    return tuple(found[act.id] for act in plan.acts)
+
+
+def _in_order(plan: Plan) -> Iterator[Act]:
+    """Acts after those that they come after."""
+    for group in plan.beats():
+        yield from group
+
+
+def _verdict(act: Act, plan: Plan, motion: Motion, known: Lexicon, before: Mapping[str, Verdict]) -> Verdict:
+    entry = known.entries.get(act.act)
+    words = _words(act, entry)
+    if why := _unjudged(act, entry):
+        return Verdict(act.id, act.act, words, None, why)
+    assert entry is not None
+    casts = [rule for who in act.agents for rule in _rules(act, entry, who)]
+    failed = [rule for rule in casts if not check(rule, motion)]
+    if act.polarity == "not":
+        seen = not failed
+        return Verdict(act.id, act.act, words, not seen, _measure([], casts, motion))
+    if not failed and (late := _too_early(act, plan, motion, known, before)):
+        return Verdict(act.id, act.act, words, False, late)
+    return Verdict(act.id, act.act, words, not failed, _measure(failed, casts, motion))
+
+
+def _unjudged(act: Act, entry: Entry | None) -> str:
+    """The reason why an act cannot be judged, or ""."""
+    if entry is None:
+        return "the lexicon does not have it"
+    if act.modality != "told":
+        return ONLY[act.modality]
+    if not entry.rule:
+        return "bodies of 22 joints do not show it" if entry.shown else "no body shows it"
+    return ""
+
+
+def _measure(failed: list[str], rules: list[str], motion: Motion) -> str:
+    return next((found for rule in (*failed, *rules) if (found := measured(rule, motion))), "")
+
+
+# ---- order -----------------------------------------------------------------------------------------------
+def _too_early(act: Act, plan: Plan, motion: Motion, known: Lexicon, before: Mapping[str, Verdict]) -> str:
+    """Names the act that an act wrongly comes before, or ""."""
+    acts = {other.id: other for other in plan.acts}
+    earlier = [acts[name] for name in _chain(act, plan) if name in before and before[name].done]
+    mine = _seen(act, known)
+    told = [(other, _seen(other, known)) for other in earlier if other.polarity == "done"]
+    for other, theirs in told:
+        if (
+            theirs
+            and mine
+            and not any(check(f"then({_over(x, motion)}, {y})", motion) for x in theirs for y in mine)
+        ):
+            return f"comes before “{before[other.id].words}”"
+    same = [other for other, _ in told if (other.act, other.agents) == (act.act, act.agents)]
+    if same and mine:  # done again: as many times as it is said
+        sequence = [mask for other, theirs in reversed(told) for mask in theirs[:1]]
+        if len(set(sequence)) > 1 and not check(f"then({', '.join((*sequence, mine[0]))})", motion):
+            return "is not done again"
+    return ""
+
+
+def _chain(act: Act, plan: Plan) -> list[str]:
+    """Ids of the acts that an act comes after, the last of them first."""
+    after: dict[str, list[str]] = {other.id: [] for other in plan.acts}
+    for other in plan.acts:
+        for relation in other.order:
+            if relation.kind == "after":
+                after[other.id].append(relation.act)
+            elif relation.kind == "before":
+                after[relation.act].append(other.id)
+    found: list[str] = []
+    left = list(after[act.id])
+    while left:
+        name = left.pop(0)
+        if name not in found and name != act.id:
+            found.append(name)
+            left += after[name]
+    return found
+
+
+def _seen(act: Act, known: Lexicon) -> list[str]:
+    """The predicates by which an act is seen, one for each agent; none for one that is true all along."""
+    entry = known.entries[act.act]
+    found = [mask for who in act.agents for rule in _rules(act, entry, who)[:1] for mask in masks(rule)[:1]]
+    return [mask for mask in found if not mask.startswith("stays(")]
+
+
+def _over(mask: str, motion: Motion) -> str:
+    """A predicate for an earlier act: of one that still holds at the end, such as sitting, where it begins."""
+    return f"begins({mask})" if check(f"end({mask})", motion) else mask
+
+
+# ---- rules -----------------------------------------------------------------------------------------------
+def _rules(act: Act, entry: Entry, who: str) -> list[str]:
+    whom = "b" if who == "a" else "a"
+    named = act.part or ""
+    part = named if named in BODY else vocabulary().part(named)
+    part = part if part in BODY else "body"
+    way = act.direction if act.direction in WAYS else "any"
+    return [
+        cast(rule, who, whom, side=act.side or "any", part=part, way=way, n=act.times or 1)
+        for rule in entry.rule
+    ]
+
+
+@lru_cache(maxsize=4096)
+def cast(
+    rule: str, who: str, whom: str, *, side: str = "any", part: str = "body", way: str = "any", n: int = 1
+) -> str:
+    """A rule of the lexicon with an act's own values in the place of their names.
+
+    Args:
+        rule: of an entry.
+        who: "a" or "b", the agent.
+        whom: the other.
+        side: "left", "right", "both" or "any".
+        part: a part of the body, as predicates know it.
+        way: "forward", "back", "left", "right" or "any".
+        n: how often.
+    """
+    values: dict[str, ast.expr] = {
+        "who": ast.Name(who),
+        "whom": ast.Name(whom),
+        "side": ast.Constant(side),
+        "part": ast.Constant(part),
+        "way": ast.Constant(way),
+        "n": ast.Constant(n),
+    }
+
+    class Cast(ast.NodeTransformer):
+        def visit_Name(self, node: ast.Name) -> ast.expr:
+            return values.get(node.id, node)
+
+    try:
+        return ast.unparse(Cast().visit(ast.parse(rule, mode="eval")))
+    except SyntaxError:
+        return rule  # its reader says what is wrong with it
+
+
+def _words(act: Act, entry: Entry | None) -> str:
+    """An act in plain words, with the people as A and B."""
+    if entry is None or not entry.caption:
+        return act.act.replace("-", " ")
+    text = worded(act, entry.caption[0])
+    for person, name in (("person A", "A"), ("person B", "B")):
+        text = text.replace(person, name)
+    return f"not: {text}" if act.polarity == "not" else text

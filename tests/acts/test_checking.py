@@ -1,0 +1,231 @@
+"""Acts are done, not done, or cannot be judged: on motions made for it."""
+
+from __future__ import annotations
+
+import time
+
+import numpy as np
+import pytest
+
+from acts import Plan, lexicon, read
+from acts.checking import Verdict, cast, checked
+from acts.plan import Act, Relation
+from motion import Duet
+from motion.metrics.sentences.joints import Motion
+from motion.metrics.sentences.language import check
+from motion.skeleton import SBU15
+from tests.motion.metrics.test_sentence_shapes import duet, each, index, put, shift, spin, tilt
+
+ENTRIES = lexicon().entries
+STANDING = {"turn-to", "listen", "stand-still", "freeze", "keep-distance"}
+"""Acts of two people who stand and look at each other."""
+
+
+def plan(*acts: Act) -> Plan:
+    return Plan(acts=acts)
+
+
+def told(name: str, number: int = 1, who: str = "a", **fields: object) -> Act:
+    return Act(id=str(number), act=name, agents=tuple(who), **fields)  # type: ignore[arg-type]
+
+
+def one(act: Act, motion: Motion) -> Verdict:
+    (verdict,) = checked(plan(act), motion)
+    return verdict
+
+
+def apply(motion: Motion, *edits, frames: slice = slice(None)) -> Motion:
+    """The motion with edits in some of its frames only."""
+    changed = motion.positions.copy()
+    for edit in edits:
+        edit(changed)
+    found = motion.positions.copy()
+    found[:, frames] = changed[:, frames]
+    return Motion(found, motion.fps)
+
+
+def on_other(part: str) -> Motion:
+    """a's left hand on a joint of b."""
+    motion = duet()
+    motion.positions[0, :, index("left_wrist")] = motion.positions[1, :, index(part)]
+    return Motion(motion.positions, motion.fps)
+
+
+# ---- rules -----------------------------------------------------------------------------------------------
+def test_no_rule_passes_on_two_people_who_stand_still() -> None:
+    still = duet(gap=1.5)
+    passing = {
+        name
+        for name, entry in ENTRIES.items()
+        if entry.rule and all(check(cast(rule, "a", "b"), still) for rule in entry.rule)
+    }
+    assert passing <= STANDING
+
+
+def test_what_stands_needs_standing() -> None:
+    away = duet(shift((0, 0, 0), (0, 0, -3)))
+    for name in ("stand-still", "listen", "freeze"):
+        assert one(told(name), duet()).done
+        assert not one(told(name), away).done
+
+
+DOES: dict[str, Motion] = {
+    "walk-away": duet(shift((0, 0, 0), (0, 0, -2))),
+    "walk-up": duet(shift((0, 0, -3), (0, 0, 0))),
+    "turn-around": duet(spin(170)),
+    "spin": duet(spin(370)),
+    "bow": apply(
+        duet(),
+        tilt(50, (0, 1)),
+        lambda both: both[0, :, index("head")].__isub__([0.0, 0.25, -0.3]),
+        frames=slice(40, 80),
+    ),
+    "raise-arm": duet(put("left_wrist", (0.2, 0.9, 0.0))),
+    "lower-arm": apply(duet(), put("left_wrist", (0.2, 0.9, 0.0)), frames=slice(0, 60)),
+    "raise-leg": duet(put("left_ankle", (0.1, -0.5, 0.0))),
+    "arms-out": duet(*each("wrist", (0.5, 0.0, 0.0), "shoulder")),
+    "hands-on-hips": duet(*each("wrist", (0.2, 0.0, 0.05)), *each("elbow", (0.4, 0.2, 0.0))),
+    "fold-arms": duet(*each("wrist", (-0.15, 0.2, 0.12))),
+    "hand-on": on_other("right_shoulder"),
+    "pat": on_other("right_shoulder"),
+    "lean": duet(tilt(30, (0, 1))),
+    "nod": apply(duet(), put("head", (0.0, 0.12, 0.13), base="neck"), frames=slice(40, 60)),
+    "look-down": apply(duet(), put("head", (0.0, 0.1, 0.15), base="neck"), frames=slice(40, 70)),
+    "look-up": apply(duet(), put("head", (0.0, 0.15, -0.1), base="neck"), frames=slice(40, 70)),
+    "tilt-head": duet(put("head", (0.1, 0.15, 0.0), base="neck")),
+    "shrug": apply(duet(), *each("shoulder", (0.2, 0.4, 0.0)), frames=slice(40, 70)),
+    "cross-legs": duet(put("left_ankle", (-0.15, -0.88, 0.1)), put("right_ankle", (0.15, -0.88, 0.0))),
+    "twist-trunk": duet(put("left_shoulder", (0.1, 0.4, 0.15)), put("right_shoulder", (-0.1, 0.4, -0.15))),
+    "hold-thing": duet(*each("wrist", (0.15, 0.2, 0.35))),
+    "lift-up": duet(lambda both: both[1].__iadd__([0.0, 0.4, 0.0])),
+    "face-audience": duet(spin(0), lambda both: both[0].__imul__([-1.0, 1.0, -1.0])),
+}
+
+
+@pytest.mark.parametrize("name", DOES)
+def test_a_rule_holds_on_a_motion_made_for_it(name: str) -> None:
+    assert one(told(name, part="shoulder" if name in ("hand-on", "pat") else None), DOES[name]).done
+
+
+def test_every_tried_entry_fails_on_the_motion_of_another() -> None:
+    for name in ("walk-away", "raise-leg", "hand-on", "bow", "nod", "twist-trunk", "lift-up"):
+        assert not one(told(name), DOES["raise-arm"]).done, name
+
+
+# ---- values of the act -----------------------------------------------------------------------------------
+def test_the_side_of_an_arm_counts() -> None:
+    motion = DOES["raise-arm"]
+    assert one(told("raise-arm", side="left"), motion).done
+    assert one(told("raise-arm", side="right"), motion).done is False
+
+
+def test_the_part_that_is_touched_counts_by_any_of_its_names() -> None:
+    motion = on_other("head")
+    assert one(told("hand-on", part="cheek"), motion).done
+    assert one(told("hand-on", part="knee"), motion).done is False
+    assert one(told("hand-on"), motion).done  # any part
+
+
+def test_jumps_are_counted() -> None:
+    def hop(start: int) -> Motion:
+        return lambda both: both[0, start : start + 10].__iadd__([0.0, 0.2, 0.0])  # type: ignore[return-value]
+
+    twice = duet(hop(30), hop(70))
+    assert one(told("jump", times=2), twice).done
+    assert one(told("jump", times=3), twice).done is False
+
+
+def test_both_people_must_do_it() -> None:
+    assert one(told("raise-arm", who="ab"), DOES["raise-arm"]).done is False
+    both = duet(put("left_wrist", (0.2, 0.9, 0.0)), put("left_wrist", (0.0, 0.9, 0.0), who=1))
+    assert one(told("raise-arm", who="ab"), both).done
+
+
+# ---- denied and unjudged ---------------------------------------------------------------------------------
+def test_a_denied_act_is_done_where_its_rule_does_not_hold() -> None:
+    denied = told("raise-arm", polarity="not")
+    assert one(denied, duet()).done
+    assert one(denied, DOES["raise-arm"]).done is False
+    assert one(denied, duet()).words.startswith("not: ")
+
+
+@pytest.mark.parametrize("modality", ["tried", "offered", "pretended", "wished"])
+def test_what_is_not_told_is_not_judged(modality: str) -> None:
+    verdict = one(told("raise-arm", modality=modality), DOES["raise-arm"])
+    assert verdict.done is None
+    assert modality in verdict.measure
+
+
+def test_what_no_rule_covers_is_not_judged() -> None:
+    assert one(told("sneeze"), duet()).done is None
+    assert one(told("of-another-lab"), duet()).done is None
+
+
+# ---- measures --------------------------------------------------------------------------------------------
+def test_a_measure_says_how_far_off_it_was() -> None:
+    assert one(told("hand-on", part="shoulder"), duet(gap=1.8)).measure.startswith("hand 1.")
+    assert one(told("walk-up"), duet()).measure == "A comes 0.0 m nearer"
+    assert one(told("turn-around"), duet(spin(40))).measure.startswith("A turns by 3")
+    near = duet(gap=0.6)
+    near.positions[0, :, index("left_wrist")] = near.positions[1, :, index("right_shoulder")] + [0, 0.34, 0]
+    assert one(told("hand-on", part="shoulder"), Motion(near.positions, 30.0)).measure.endswith(
+        "cm from the shoulder"
+    )
+
+
+# ---- order -----------------------------------------------------------------------------------------------
+WAVES_UP = put("left_wrist", (0.2, 0.9, 0.0))
+
+
+def arm_then_leg() -> Motion:
+    motion = apply(duet(), WAVES_UP, frames=slice(0, 40))
+    return apply(motion, put("right_ankle", (-0.1, -0.5, 0.0)), frames=slice(70, 110))
+
+
+def test_an_act_after_another_must_come_later() -> None:
+    arm, leg = told("raise-arm", 1), told("raise-leg", 2, order=(Relation(kind="after", act="1"),))
+    assert [v.done for v in checked(plan(arm, leg), arm_then_leg())] == [True, True]
+    leg, arm = told("raise-leg", 1), told("raise-arm", 2, order=(Relation(kind="after", act="1"),))
+    verdicts = checked(plan(leg, arm), arm_then_leg())
+    assert [v.done for v in verdicts] == [True, False]
+    assert "before" in verdicts[1].measure
+
+
+def test_before_is_after_the_other_way_round() -> None:
+    leg, arm = told("raise-leg", 1, order=(Relation(kind="before", act="2"),)), told("raise-arm", 2)
+    assert [v.done for v in checked(plan(leg, arm), arm_then_leg())] == [True, False]
+
+
+def test_an_act_that_failed_holds_up_no_other() -> None:
+    bow, arm = told("bow", 1), told("raise-arm", 2, order=(Relation(kind="after", act="1"),))
+    assert [v.done for v in checked(plan(bow, arm), arm_then_leg())] == [False, True]
+
+
+def test_who_does_it_again_does_it_twice() -> None:
+    after = [(Relation(kind="after", act=str(i)),) for i in (1, 2)]
+    acts = (told("raise-arm", 1), told("raise-leg", 2, order=after[0]), told("raise-arm", 3, order=after[1]))
+    assert [v.done for v in checked(plan(*acts), arm_then_leg())] == [True, True, False]
+    twice = apply(arm_then_leg(), WAVES_UP, frames=slice(112, 120))
+    assert [v.done for v in checked(plan(*acts), twice)] == [True, True, True]
+
+
+# ---- whole -----------------------------------------------------------------------------------------------
+def test_a_sentence_is_checked_in_a_few_milliseconds() -> None:
+    body = duet().positions
+    motion = Duet.from_positions(np.concatenate([body] * 3, axis=1)[:, :300], fps=30.0)
+    found = read("A walks up to B and pats her on the back, then bows, turns around and walks away.")
+    checked(found, motion)
+    best = min(_seconds(found, motion) for _ in range(3))
+    assert best < 0.02
+
+
+def _seconds(found: Plan, motion: Duet) -> float:
+    began = time.perf_counter()
+    assert len(checked(found, motion)) == 5
+    return time.perf_counter() - began
+
+
+def test_another_skeleton_is_refused() -> None:
+    motion = Duet.from_positions(np.zeros((2, 30, 15, 3)), fps=30.0, skeleton=SBU15)
+    with pytest.raises(ValueError, match="SMPL"):
+        checked(plan(told("raise-arm")), motion)
