@@ -34,7 +34,8 @@ class Victim:
         upload = target.upload("ada", "hers.bvh", UPLOADED.encode())
         finished = target.call("ada", "generate", [SECRET, *FIELDS[1:]])
         (download,) = [word for word in finished.split('"') if word.endswith(".npz") and word[0] == "/"][:1]
-        (run, self.owner) = self.rows("SELECT id, owner FROM runs WHERE state = 'done'")[0]
+        # not the first run there is: other tests of the same server run before
+        ((run, self.owner),) = self.rows(f"SELECT id, owner FROM runs WHERE title = '{SECRET}'")
         open_call = {"data": [SECRET, *FIELDS[1:]]}
         call = target.ask("ada", "POST", f"{API}/call/generate", json=open_call).json()["event_id"]
         join = {**open_call, "fn_index": 1, "session_hash": "adas own"}
