@@ -82,7 +82,7 @@ class Ref:
 
     Attributes:
         kind: "person", "part", "self", "each" (each other), "thing", "third" (a person who is neither of the two).
-        who: the people, "a", "b" or "ab"; of a part, its owner, "" where the words leave that open.
+        who: the people, "a", "b" or "ab"; of a part or a thing, its owner, "" where the words leave that open.
         lemma: of the head.
         family: of a part: "hand", "head", ….
         side: of a part, "left", "right" or "both".
@@ -170,8 +170,13 @@ class Frame:
     elements: tuple[_Element, ...]
 
     @classmethod
-    def parse(cls, text: str) -> Frame:
-        """Compiles a frame; raises InputError with a sentence that says what is wrong."""
+    def parse(cls, text: str, to_other: bool = False) -> Frame:
+        """Compiles a frame; raises InputError with a sentence that says what is wrong.
+
+        Args:
+            text: as it stands in an entry.
+            to_other: the act is done to the other person even where the words do not name them.
+        """
         tokens = text.split()
         if len(tokens) < 2 or not (tokens[0].startswith("{") and tokens[0].endswith("}")):
             raise InputError(f'A frame begins with a slot and a verb, as in "{{a}} wave", not {text!r:.80}.')
@@ -192,6 +197,8 @@ class Frame:
             else:
                 elements.append(_element(token, frozenset(), optional, text))
             i += 1
+        if to_other:
+            elements = [replace(e, optional=True) if e == _Element(slot="b") else e for e in elements]
         return cls(text, subject, frozenset(tokens[1].split("|")), tuple(elements))
 
     def fits(self, event: Event) -> Match | None:
@@ -250,7 +257,7 @@ class Frame:
         return Match(
             score,
             agents,
-            who if who not in agents else "",
+            (who if who not in agents else "") or _receiver(event, agents),
             bound["thing"].lemma if "thing" in bound else "",
             part,
         )
@@ -276,6 +283,16 @@ class Frame:
             )
             return subject.who if with_other or (event.object and event.object.kind == "person") else None
         return subject.who
+
+
+def _receiver(event: Event, agents: str) -> str:
+    """The other person, if what the words name beside the frame is theirs or done for them; else ""."""
+    other = _other(agents)
+    named = [ref for word, ref in event.prepositions if word not in ("without", "like", "before")]
+    for ref in (event.object, *named):
+        if other and ref is not None and ref.kind in ("person", "part", "thing") and ref.who == other:
+            return other
+    return ""
 
 
 def _is_particle(token: str, following: str) -> bool:

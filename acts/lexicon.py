@@ -43,6 +43,7 @@ class Entry(BaseModel):
         rule: predicates of :mod:`motion.metrics.sentences` that its motion fulfils, with ``who`` for the agent and
             ``whom`` for the patient.
         shown: False for what no body shows ("falls in love", "turns on the lamp"): it is known, and stays unread.
+        to: "other" for what is done to the other person even where the words do not name them, as a salute.
         mutual: done together even where one is named first: "he hugs her" has both arms around.
         reads, ignores: sentences that have the act and that do not.
         group: the file that it stands in.
@@ -58,6 +59,7 @@ class Entry(BaseModel):
     after: dict[Literal["posture"], str] = {}
     stage: Annotated[tuple[Shape, ...], Field(max_length=12)] = ()
     rule: Annotated[tuple[Sentence, ...], Field(max_length=6)] = ()
+    to: Literal["", "other"] = ""
     mutual: bool = False
     shown: bool = True
     reads: Annotated[tuple[Sentence, ...], Field(min_length=1)]
@@ -86,7 +88,7 @@ class Lexicon:
         synsets: dict[str, list[str]] = defaultdict(list)
         for name, entry in entries.items():
             for text in entry.frames:
-                frame = Frame.parse(text)
+                frame = Frame.parse(text, entry.to == "other")
                 for verb in frame.verbs:
                     frames[verb].append((name, frame))
             for synset in entry.synsets:

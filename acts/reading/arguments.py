@@ -42,7 +42,7 @@ class Arguments:
             if child.dep_ in ("dobj", "obj") and child.lower_ in self._words.directions and bare:
                 self._modifier(child, event)
             elif child.dep_ in ("dobj", "obj"):
-                event.object = self._argument(child, who, event)
+                self._object(child, who, event)
             elif child.dep_ in ("dative", "iobj") and child.pos_ != "ADP":
                 event.dative = self._argument(child, who, event)
             elif child.dep_ == "agent":
@@ -63,6 +63,13 @@ class Arguments:
                 self._modifier(child, event)
         return agent
 
+    def _object(self, token: Token, who: str, event: Event) -> None:
+        """Takes up an object; of two, as in "hands the knight his sword", the person is the receiver."""
+        ref = self._argument(token, who, event)
+        if event.object is not None and event.object.kind == "person" and ref.kind != "person":
+            event.dative = event.object
+        event.object = ref
+
     def _argument(self, token: Token, who: str, event: Event) -> Ref:
         for child in token.children:
             if child.dep_ in ("compound", "amod"):
@@ -73,6 +80,10 @@ class Arguments:
                 self._count(child, token, event)
             elif child.lower_ == "no" and child.dep_ == "det":
                 event.denied = not event.denied
+        if token.tag_ in ("WDT", "WP"):  # "the letter, which he reads"
+            clause = next((t for t in token.ancestors if t.dep_ == "relcl"), None)
+            if clause is not None:
+                return reference(clause.head, self.cast, who)
         return reference(token, self.cast, who)
 
     def _preposition(self, token: Token, who: str, event: Event) -> None:
@@ -150,6 +161,7 @@ class Arguments:
             return
         if token.dep_ == "npadvmod" and lemma in self._words.metres:
             event.distance = self._amount(token) * self._words.metres[lemma]
+            event.times = int(self._amount(token)) if lemma in ("step", "pace") else event.times
             event.words.append(lemma)
             return
         if text in ("once", "twice", "thrice", "repeatedly"):

@@ -40,7 +40,7 @@ _MARKS = {
 _THEN = frozenset(
     ("then", "afterwards", "afterward", "finally", "next", "later", "subsequently", "eventually", "lastly")
 )
-_SOMEBODY = frozenset(("him", "her", "his", "me", "my", "your"))
+_SOMEBODY = frozenset(("him", "her", "his", "me", "my"))
 _AT_ONCE = frozenset(("simultaneously", "meanwhile"))
 _NEARLY = frozenset(("almost", "nearly"))
 
@@ -91,13 +91,13 @@ class Reader:
         return known or token.lemma_.lower()
 
     def _is_clause(self, token: Token) -> bool:
-        if token.pos_ in ("VERB", "AUX") and token.dep_ not in (
-            "aux",
-            "auxpass",
-            "amod",
-            "compound",
-            "punct",
-        ):
+        if token.dep_ == "amod":  # "the sleeping baby"
+            return (
+                token.tag_ == "VBG"
+                and self.lemma(token) in self._verbs
+                and self._words.is_person(token.head.lemma_.lower())
+            )
+        if token.pos_ in ("VERB", "AUX") and token.dep_ not in ("aux", "auxpass", "compound", "punct"):
             return True
         if token.dep_ == "ROOT" and token.pos_ in ("NOUN", "PROPN", "ADJ", "INTJ", "ADV", "ADP", "X"):
             return self.lemma(token) in self._verbs or token.i in self._lemmas
@@ -122,7 +122,6 @@ class Reader:
             event.object, event.dative = event.dative, None
         self._arguments.light(event)
         self._of[token.i] = len(self.events)
-        self._subjects[token.i] = subject
         if kind == "comp" and beside in self._of and self._of[beside] < len(self.events):
             above = self.events[self._of[beside]]
             above.words.append(lemma)
@@ -133,12 +132,16 @@ class Reader:
 
     def _head(self, token: Token) -> Token | None:
         """The verb on which a clause hangs."""
-        for head in token.ancestors:
-            if head.i in self._of:
-                return head
-        return None
+        return next((head for head in token.ancestors if self._is_clause(head)), None)
 
     def _subject(self, token: Token, head: Token | None) -> Ref | None:
+        """The subject of a clause, found once, and before its turn where an earlier clause has the same."""
+        if token.i not in self._subjects:
+            self._subjects[token.i] = None  # ends circles
+            self._subjects[token.i] = self._subject_of(token, head)
+        return self._subjects[token.i]
+
+    def _subject_of(self, token: Token, head: Token | None) -> Ref | None:
         for child in token.children:
             if child.dep_ in ("nsubj", "nsubjpass", "csubj", "expl"):
                 if child.tag_ in ("WP", "WDT") and token.dep_ == "relcl":
@@ -154,12 +157,18 @@ class Reader:
             if child.dep_ == "poss" and token.dep_ == "ccomp" and head is not None:  # "helps her walk"
                 helper = self._subjects.get(head.i)
                 return reference(child, self.cast, helper.who if helper is not None else "")
-        if token.dep_ in ("relcl", "acl"):
+            if child.dep_ == "det" and child.lower_ in (
+                "both",
+                "all",
+                "each",
+            ):  # "the music starts, both freeze"
+                return Ref("person", "ab", child.lower_, first=child.idx, last=child.idx + len(child.text))
+        if token.dep_ in ("relcl", "acl") or token.dep_ == "amod":
             return self._antecedent(token)
         if head is not None:
-            own = self._subjects.get(head.i)
+            own = self._subject(head, self._head(head))
             if token.dep_ in ("xcomp", "ccomp"):  # "makes her laugh", "asks him to sit"
-                above = self.events[self._of[head.i]] if self._of[head.i] < len(self.events) else None
+                above = self._event_of(head)
                 verbs = self._words.verbs
                 if (
                     above is not None
@@ -270,6 +279,10 @@ class Reader:
             for mark in marks:
                 if mark in _MARKS:
                     return _MARKS[mark], above.i
+            if token.tag_ == "VB" and token.i < above.i:  # "walk forward, then turn"
+                return "after", None
+            return "while", above.i
+        if token.dep_ == "amod":
             return "while", above.i
         if token.dep_ in ("acl", "relcl"):
             return ("while" if token.tag_ == "VBG" else "with"), above.i

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING
 
 from acts.frames import Ref
@@ -37,6 +37,8 @@ class Cast:
         self._words: Vocabulary = vocabulary()
         self._known: dict[str, _Known] = {}
         self.last = ""
+        self.thing: Ref | None = None
+        """The part or thing that was named last, which "it" means."""
         self.third: list[Token] = []
         """Mentions of a person who is neither of the two, or of more than two."""
 
@@ -209,7 +211,6 @@ class Cast:
 
 def reference(token: Token, cast: Cast, subject: str) -> Ref:
     """The reference of a noun or pronoun; see :class:`acts.frames.Ref`."""
-    words = vocabulary()
     first, last = token.idx, token.idx + len(token.text)
     lemma = token.lemma_.lower()
     children = {child.lower_ for child in token.children}
@@ -217,6 +218,18 @@ def reference(token: Token, cast: Cast, subject: str) -> Ref:
         return Ref("self", subject, lemma, first=first, last=last)
     if token.lower_ in ("other", "another") and children & {"each", "one"}:
         return Ref("each", "ab", "other", first=first, last=last)
+    if token.lower_ == "it" and cast.thing is not None:
+        return replace(cast.thing, first=first, last=last)
+    ref = _reference(token, cast, subject)
+    if ref.kind in ("part", "thing") and token.pos_ in ("NOUN", "PROPN") and not ref.place:
+        cast.thing = ref
+    return ref
+
+
+def _reference(token: Token, cast: Cast, subject: str) -> Ref:
+    words = vocabulary()
+    first, last = token.idx, token.idx + len(token.text)
+    lemma = token.lemma_.lower()
     family = words.part(lemma)
     if family and not (token.ent_type_ or token.pos_ == "PROPN"):
         owner = cast.owner(token, subject)
@@ -236,4 +249,6 @@ def reference(token: Token, cast: Cast, subject: str) -> Ref:
         return Ref("person", who, lemma, first=first, last=last)
     if len(cast.third) > thirds:
         return Ref("third", "", lemma, first=first, last=last)
-    return Ref("thing", "", lemma, place=lemma in words.places, first=first, last=last)
+    owner = cast.owner(token, subject) if any(c.dep_ == "poss" for c in token.children) else ""
+    owner = "ab" if owner == "each" else owner
+    return Ref("thing", owner, lemma, place=lemma in words.places, first=first, last=last)

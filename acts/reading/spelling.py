@@ -1,4 +1,4 @@
-"""Words that are misspelt, and verbs that the parser took for nouns."""
+"""Words that are misspelt, and the forms of verbs."""
 
 from __future__ import annotations
 
@@ -7,27 +7,22 @@ from typing import TYPE_CHECKING
 
 from acts.lexicon import Lexicon
 
-from .people import A_NAME, B_NAME
+from . import wordnet
+from .repair import verbs_taken_for_nouns
 from .syntax import is_word
 from .vocabulary import vocabulary
 
 if TYPE_CHECKING:
-    from spacy.tokens import Doc, Token
-
-_SAFE = {
-    "s": ("admires", "arrives"),
-    "ing": ("admiring", "arriving"),
-    "ed": ("admired", "arrived"),
-    "": ("admire", "arrive"),
-}
-"""Forms of a verb with and of one without an object that the parser takes for nothing else."""
+    from spacy.tokens import Doc
 
 
 class Speller:
     """Knows the forms of the lexicon's verbs."""
 
     def __init__(self, known: Lexicon) -> None:
-        self.forms = _forms(frozenset(known.frames))
+        verbs = vocabulary().verbs
+        about = frozenset().union(*(verbs[kind] for kind in ("tried", "pretended", "begins", "ends")))
+        self.forms = _forms(frozenset(known.frames) | about)
 
     def is_form(self, word: str) -> bool:
         """True for a form of a verb of the lexicon."""
@@ -37,7 +32,7 @@ class Speller:
         """The verb's form that a word without meaning is nearest to, within one letter or two; None to leave it."""
         if is_word(word) or word in self.forms or len(word) < 4:
             return None
-        if vocabulary().is_person(word.rstrip("s")):
+        if vocabulary().is_person(word.rstrip("s")) or _is_verb_form(word):
             return None
         found = [form for form in self.forms if abs(len(form) - len(word)) < 2 and form[0] == word[0]]
         near = [(distance, form) for form in found if (distance := _distance(word, form)) <= 1]
@@ -45,62 +40,7 @@ class Speller:
 
     def verbs_found(self, doc: Doc) -> dict[int, tuple[str, str]]:
         """Verbs that were taken for something else: offset → (a safe verb in the same form, the true lemma)."""
-        return {
-            token.idx: (_SAFE[form[1]][not self._has_object(token)], form[0])
-            for token in doc
-            if (token.pos_ in ("NOUN", "PROPN", "ADJ", "X", "INTJ") or self._swallowed(token))
-            and (form := self.forms.get(token.lower_)) is not None
-            and self._after_person(token, form[1])
-        }
-
-    @staticmethod
-    def _swallowed(token: Token) -> bool:
-        """True for a verb whose subject became a part of it, as in a compound."""
-        children = list(token.children)
-        return any(
-            child.i == token.i - 1 and child.dep_ in ("compound", "nmod", "amod") for child in children
-        ) and all(child.dep_ not in ("nsubj", "nsubjpass") for child in children)
-
-    @staticmethod
-    def _has_object(token: Token) -> bool:
-        following = token.nbor(1) if token.i + 1 < len(token.doc) else None
-        return following is not None and following.pos_ in ("DET", "PRON", "PROPN", "NOUN", "ADJ", "NUM")
-
-    @staticmethod
-    def _after_person(token: Token, ending: str) -> bool:
-        """True if a noun that might be a verb follows its subject."""
-        before = token.nbor(-1) if token.i else None
-        if (
-            before is None
-            or ending == "ing"
-            or (token.i + 1 < len(token.doc) and token.nbor(1).pos_ == "AUX")
-        ):
-            return False
-        one = before.lower_ in ("one", "other", "both") or before.text in (A_NAME, B_NAME)
-        if before.pos_ == "PRON" and not one:
-            return before.lower_ in (
-                "i",
-                "you",
-                "he",
-                "she",
-                "they",
-                "we",
-                "who",
-                "someone",
-                "somebody",
-                "nobody",
-                "everyone",
-            )
-        many = before.tag_ in ("NNS", "NNPS") or before.lower_ in ("both", "people")
-        if ending != "s" and not many and not one:
-            return False
-        if ending == "s" and many:
-            return False
-        return (
-            one
-            or vocabulary().is_person(before.lemma_.lower())
-            or (many and before.lemma_ in vocabulary().both)
-        )
+        return verbs_taken_for_nouns(doc, self.forms)
 
 
 @lru_cache(maxsize=4)
@@ -120,6 +60,18 @@ def _forms(verbs: frozenset[str]) -> dict[str, tuple[str, str]]:
         for form, ending in ((verb, ""), (third, "s"), (double + "ing", "ing"), (double + "ed", "ed")):
             found.setdefault(form, (verb, ending))
     return found
+
+
+def _is_verb_form(word: str) -> bool:
+    """True for a regular form of a verb that WordNet knows, as "clings"."""
+    stems = {word}
+    for ending in ("s", "es", "ed", "ing"):
+        if word.endswith(ending):
+            stem = word[: -len(ending)]
+            stems |= {stem, f"{stem}e"}
+            if ending in ("ed", "ing") and stem[-2:-1] == stem[-1:]:
+                stems.add(stem[:-1])
+    return any(wordnet.is_verb(stem) for stem in stems)
 
 
 def _distance(one: str, other: str) -> int:

@@ -67,6 +67,13 @@ _LETTER_BEFORE = frozenset(
     ]
 )
 
+_PHRASES = {
+    ("as", "soon", "as"): "when", ("as", "long", "as"): "while", ("the", "moment", "that"): "when",
+    ("every", "time"): "when", ("even", "though"): "although", ("so", "that"): "so",
+    ("in", "order", "to"): "to", ("all", "of", "a", "sudden"): "suddenly", ("at", "once"): "immediately",
+    ("the", "two", "of", "them"): "they", ("the", "pair", "of", "them"): "they", ("a", "bit"): "slightly", ("a", "little", "bit"): "slightly",
+}  # fmt: skip
+"""What the parser takes apart, and one word for it."""
 _NUMBERED = {"a": True, "1": True, "one": True, "b": False, "2": False, "two": False}
 """Letters and numbers behind "person" or "dancer", and whether they name the first."""
 
@@ -141,11 +148,24 @@ class _Preparation:
         """The prepared text."""
         i = 0
         while i < len(self._tokens):
-            i += self._pair(i) or self._single(i)
+            i += self._phrase(i) or self._pair(i) or self._single(i)
         return Text(self._text, self._pieces)
 
     def _lower(self, i: int) -> str:
         return self._tokens[i][0].lower() if 0 <= i < len(self._tokens) else ""
+
+    def _phrase(self, i: int) -> int:
+        """Several words that join clauses as one does, as "as soon as"; how many they were, or 0."""
+        for phrase, word in _PHRASES.items():
+            if all(self._lower(i + k) == part for k, part in enumerate(phrase)):
+                self._pieces.append((word, self._tokens[i][1], self._tokens[i + len(phrase) - 1][2]))
+                return len(phrase)
+        if self._lower(i) == "the" and self._lower(i + 1) == "two" and self._is_verb(self._lower(i + 2)):
+            self._pieces.append(
+                ("they", self._tokens[i][1], self._tokens[i + 1][2])
+            )  # "the two circle round"
+            return 2
+        return 0
 
     def _pair(self, i: int) -> int:
         """Two tokens that are one word, as "person A" and "high five"; 2 if they were, else 0."""
@@ -186,6 +206,8 @@ class _Preparation:
             and word not in ("one", "person")
         )
         if not bare or not self._words.is_usual_person(word) or self._lower(i + 1) == "'":
+            return []
+        if self._lower(i - 1).endswith("ing") and self._lower(i - 2) in _DETERMINERS:  # "the sleeping baby"
             return []
         return [("the", start, start)] if _begins(self._lower(i - 1)) else []
 

@@ -1,0 +1,171 @@
+"""Verbs that the parser took for nouns, found by where they stand."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from typing import TYPE_CHECKING
+
+from acts.frames import PREPOSITIONS
+
+from .people import A_NAME, B_NAME
+from .vocabulary import vocabulary
+
+if TYPE_CHECKING:
+    from spacy.tokens import Doc, Token
+
+_SAFE = {
+    "s": ("admires", "arrives"),
+    "ing": ("admiring", "arriving"),
+    "ed": ("admired", "arrived"),
+    "": ("admire", "arrive"),
+}
+"""Forms of a verb with and of one without an object that the parser takes for nothing else."""
+_SAFE_WITH_VERB = {"s": "starts", "ing": "starting", "ed": "started", "": "start"}
+"""The same before another verb: "mimes drinking"."""
+_SUBJECTS = frozenset(
+    ("i", "you", "he", "she", "they", "we", "who", "someone", "somebody", "nobody", "everyone")
+)
+_JOINS = frozenset(("and", "then", "but", ",", ";", "or"))
+_TAGS = {"VBZ": "s", "VBD": "ed", "VBP": "", "VB": ""}
+"""Endings of finite verbs by their tags."""
+
+
+def verbs_taken_for_nouns(doc: Doc, forms: Mapping[str, tuple[str, str]]) -> dict[int, tuple[str, str]]:
+    """Verbs that were taken for something else: offset → (a safe verb in the same form, the true lemma).
+
+    Args:
+        doc: the text as it was parsed.
+        forms: the forms of verbs, as form → (lemma, ending).
+    """
+    found = {
+        token.idx: (_safe(token, forms[token.lower_][1]), forms[token.lower_][0])
+        for token in _verbless(doc, forms)
+    }
+    last = ""  # the ending of the last finite verb of the sentence
+    for token in doc:
+        last = "" if token.is_sent_start else last
+        form = forms.get(token.lower_)
+        if form is not None and (
+            (_is_other(token) and (_after_person(token, form[1]) or _opens(token, form[1])))
+            or _coordinated(token, form[1], last)
+        ):
+            found[token.idx] = (_safe(token, form[1]), form[0])
+            last = form[1]
+        elif token.pos_ in ("VERB", "AUX") and token.tag_ in _TAGS:
+            last = _TAGS[token.tag_]
+    return found
+
+
+def _verbless(doc: Doc, forms: Mapping[str, tuple[str, str]]) -> Iterator[Token]:
+    """The verb of each sentence that seems to have none: "The man in the hat waves."."""
+    for sentence in doc.sents:
+        if any(token.pos_ in ("VERB", "AUX") for token in sentence):
+            continue
+        known = [
+            token
+            for token in sentence
+            if token.i > sentence.start + 1
+            and token.pos_ in ("NOUN", "PROPN")
+            and forms.get(token.lower_, ("", ""))[1] in ("s", "ed")
+            and token.nbor(-1).pos_ in ("NOUN", "PROPN", "PRON")
+            and _ends_phrase(token)
+        ]
+        yield from known[-1:]
+
+
+def _is_other(token: Token) -> bool:
+    return token.pos_ in ("NOUN", "PROPN", "ADJ", "ADP", "X", "INTJ") or _swallowed(token)
+
+
+def _swallowed(token: Token) -> bool:
+    """True for a verb whose subject became a part of it, as in a compound."""
+    children = list(token.children)
+    return any(
+        child.i == token.i - 1 and child.dep_ in ("compound", "nmod", "amod") for child in children
+    ) and all(child.dep_ not in ("nsubj", "nsubjpass") for child in children)
+
+
+def _next(token: Token) -> Token | None:
+    return token.nbor(1) if token.i + 1 < len(token.doc) else None
+
+
+def _safe(token: Token, ending: str) -> str:
+    following = _next(token)
+    if following is not None and following.tag_ == "VBG":
+        return _SAFE_WITH_VERB[ending]
+    has_object = (
+        following is not None
+        and following.pos_ in ("DET", "PRON", "PROPN", "NOUN", "ADJ", "NUM")
+        and following.lower_ not in PREPOSITIONS
+    )
+    return _SAFE[ending][not has_object]
+
+
+def _ends_phrase(token: Token) -> bool:
+    """True if what follows cannot be the head of a noun phrase that this word belongs to."""
+    following = _next(token)
+    return (
+        following is None
+        or following.pos_ in ("PUNCT", "ADP", "ADV", "PRON", "DET", "SCONJ", "CCONJ", "PART", "NUM")
+        or following.tag_ in ("VBG", "PRP$")
+    )
+
+
+def _coordinated(token: Token, ending: str, last: str) -> bool:
+    """True for a bare noun behind "and" or a comma that has the form of the sentence's last finite verb.
+
+    "He yawns and stretches", "they clink glasses and drink" and "grab her and twirl her", beside "bread and drink".
+    """
+    if token.pos_ not in ("NOUN", "PROPN") or ending != last or not token.i or not _ends_phrase(token):
+        return False
+    before = token.nbor(-1)
+    if before.lower_ not in _JOINS or token.i < 2:
+        return False
+    earlier = token.nbor(-2)
+    if before.text == "," and ending == "":
+        return False
+    bare_noun = earlier.tag_ == "NN" and all(c.dep_ not in ("det", "poss") for c in earlier.children)
+    if ending == "" and bare_noun:
+        return False  # "they have bread and drink"
+    following = _next(token)
+    plural_list = earlier.tag_ == "NNS" and token.dep_ == "conj" and token.head == earlier
+    return not plural_list or following is None or following.lower_ not in ("of", "for")
+
+
+def _opens(token: Token, ending: str) -> bool:
+    """True for "Kneeling, …" and "Mirror each …" at the beginning of a sentence."""
+    following = _next(token)
+    if not token.is_sent_start or following is None:
+        return False
+    if ending == "ing":
+        return following.text == ","
+    return (
+        ending == ""
+        and not vocabulary().is_person(token.lower_)
+        and (following.pos_ in ("DET", "PRON") or following.lower_ in ("each", "one", "your", "both"))
+        and not any(child.dep_ in ("det", "poss") for child in token.children if child.i < token.i)
+    )
+
+
+def _after_person(token: Token, ending: str) -> bool:
+    """True if a noun that might be a verb follows its subject."""
+    before = token.nbor(-1) if token.i else None
+    following = _next(token)
+    if before is None or ending == "ing" or (following is not None and following.pos_ == "AUX"):
+        return False
+    one = before.lower_ in ("one", "other", "both") or before.text in (A_NAME, B_NAME)
+    if before.pos_ == "PRON" and not one:
+        return before.lower_ in _SUBJECTS
+    the_two = before.lower_ == "two" and before.i > 0 and before.nbor(-1).lower_ in ("the", "these", "those")
+    many = before.tag_ in ("NNS", "NNPS") or before.lower_ in ("both", "people") or the_two
+    if ending != "s" and not many and not one:
+        return False
+    if ending == "s" and many and before.lower_ not in ("second", "first"):
+        return False
+    return (
+        one
+        or the_two
+        or before.lower_ == "both"
+        or vocabulary().is_person(before.lemma_.lower())
+        or (many and before.lemma_ in vocabulary().both)
+    )
