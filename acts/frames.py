@@ -148,6 +148,8 @@ class Match:
     patient: str = ""
     thing: str = ""
     part: Ref | None = None
+    rest: tuple[int, ...] = ()
+    """The event's prepositions that no element took, by number."""
 
 
 @dataclass(frozen=True)
@@ -260,6 +262,7 @@ class Frame:
             (who if who not in agents else "") or _receiver(event, agents),
             bound["thing"].lemma if "thing" in bound else "",
             part,
+            tuple(i for i in range(len(event.prepositions)) if i not in used),
         )
 
     def _of_other(self) -> bool:

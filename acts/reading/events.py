@@ -182,11 +182,15 @@ class Reader:
             alone = any(
                 t.lower_ in _SOMEBODY for t in token.subtree
             )  # "grab her by the wrist" is said to one
+            if alone:
+                self.cast.address("a")
             return Ref("person", "a" if alone else "ab", "", first=token.idx, last=token.idx)
         return None
 
     def _antecedent(self, token: Token) -> Ref | None:
         noun = token.head
+        if (known := self.cast.seen.get(noun.i)) is not None:
+            return known
         who = self.cast.person(noun, "") if noun.pos_ in ("NOUN", "PROPN", "PRON", "ADJ", "NUM") else None
         if who:
             return Ref("person", who, noun.lemma_.lower(), first=noun.idx, last=noun.idx + len(noun.text))

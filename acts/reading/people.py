@@ -39,6 +39,8 @@ class Cast:
         self.last = ""
         self.thing: Ref | None = None
         """The part or thing that was named last, which "it" means."""
+        self.seen: dict[int, Ref] = {}
+        """What the tokens mean that were looked at."""
         self.third: list[Token] = []
         """Mentions of a person who is neither of the two, or of more than two."""
 
@@ -110,6 +112,7 @@ class Cast:
     def _many(self, token: Token, children: set[str]) -> str:
         if any(self._words.numbers.get(child, 0) > 2 for child in children):  # "three people"
             self.third.append(token)
+            return ""
         return "ab"
 
     def _has(self, word: str) -> str:
@@ -171,6 +174,11 @@ class Cast:
             return self._as("a", "they")
         return "ab"
 
+    def address(self, who: str) -> None:
+        """Says that an order is given to this person."""
+        if not self._has("you"):
+            self._as(who, "you")
+
     def owner(self, token: Token, subject: str) -> str:
         """The owner of a part of the body, by its possessive; "" where the words leave it open."""
         for child in token.children:
@@ -180,6 +188,8 @@ class Cast:
                     return self._possessive(_HE[text], subject)
                 if text in ("their", "our"):
                     return "ab" if len(subject) == 2 else ""
+                if text == "your" and not self._has("you"):  # of an order: whoever is addressed
+                    return "ab" if len(subject) == 2 else subject
                 if text in ("my", "your"):
                     return self._named("i" if text == "my" else "you") or ""
                 if text == "its" and len(subject) == 1:
@@ -197,6 +207,8 @@ class Cast:
     def _possessive(self, sex: str, subject: str) -> str:
         if len(subject) == 1:
             other = "b" if subject == "a" else "a"
+            if self._has("you") == subject or self._has("i") == subject:
+                return other
             own = self._known.get(subject, _Known()).sex
             others = self._known.get(other, _Known()).sex
             if own == sex and others != sex:
@@ -221,6 +233,7 @@ def reference(token: Token, cast: Cast, subject: str) -> Ref:
     if token.lower_ == "it" and cast.thing is not None:
         return replace(cast.thing, first=first, last=last)
     ref = _reference(token, cast, subject)
+    cast.seen[token.i] = ref
     if ref.kind in ("part", "thing") and token.pos_ in ("NOUN", "PROPN") and not ref.place:
         cast.thing = ref
     return ref

@@ -2,32 +2,35 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
+from dataclasses import replace
 from functools import lru_cache
 from pathlib import Path
+from typing import TYPE_CHECKING
 
-from acts.frames import Event, Frame, Match, best
+from acts.frames import Event, Frame, Match
 from acts.lexicon import Lexicon, lexicon
 from acts.plan import MOST_ACTS, Act, Plan, Relation, Span, Unread
 from motion import InputError
 
-from . import wordnet
 from .events import Reader, spans
-from .spelling import Speller
+from .matching import Found, matcher
+from .spelling import Speller, is_verb_form
 from .syntax import is_word, parse
 from .vocabulary import vocabulary
 from .wording import Text, prepared
 
+if TYPE_CHECKING:
+    from spacy.tokens import Doc
+
 MOST_CHARACTERS = 2000
 """Characters of a text that is read at once."""
-LEAST_SCORE = -1.0
-"""What a frame must score to be taken at all: more beside it than in it is another sentence."""
-_SYNONYM = 0.8
-"""What each step through WordNet costs."""
-_STATES = frozenset(
-    ("be", "become", "seem", "have", "there", "feel", "look", "know", "like", "love", "need", "appear")
-)
+_STATES = frozenset(("be", "become", "seem", "have", "there", "feel", "look", "appear"))
 """Verbs that say how somebody is; where no frame knows them, they show nothing and are passed over."""
+_SHARING = frozenset(("conj", "after", "with"))
+"""Joints of clauses that may share an object."""
+_HELD = frozenset(("crossed", "folded", "cross", "fold", "outstretched", "raised", "raise", "outstretch"))
+"""Participles of postures of the arms, and the parser's lemmas of them."""
 
 
 def read(text: str, folders: tuple[Path, ...] = ()) -> Plan:
@@ -70,7 +73,7 @@ def _read(text: str, folders: tuple[Path, ...]) -> Plan:
         lemmas = {i: lemma for i, (word, lemma) in numbers.items() if i < len(doc) and doc[i].text == word}
     reader = Reader(doc, frozenset(known.frames), lemmas, speller.forms)
     events = reader.read()
-    return _Planner(text, prepared_text, known, events, list(spans(doc, events)), reader).plan()
+    return _Planner(text, prepared_text, known, events, list(spans(doc, events)), reader, folders).plan()
 
 
 class _Planner:
@@ -78,14 +81,17 @@ class _Planner:
 
     def __init__(
         self, text: str, prepared_text: Text, known: Lexicon, events: Sequence[Event],
-        clauses: Sequence[tuple[int, int]], reader: Reader,
+        clauses: Sequence[tuple[int, int]], reader: Reader, folders: tuple[Path, ...],
     ) -> None:  # fmt: skip
         self._text, self._prepared, self._known = text, prepared_text, known
         self._events, self._clauses, self._reader = events, clauses, reader
+        self._matcher = matcher(folders)
         self._acts: list[Act] = []
         self._unread: list[Unread] = []
         self._of: dict[int, str] = {}
         self._taken: set[int] = set()
+        self._nonsense = list(_unknown(reader.doc))
+        self._held_beside: dict[str, str] = {}
 
     def plan(self) -> Plan:
         """The plan."""
@@ -94,6 +100,7 @@ class _Planner:
                 continue
             self._event(number, event)
         self._order()
+        self._unknown_words()
         people = self._reader.cast.people()
         things = dict.fromkeys(act.thing for act in self._acts if act.thing)
         notes = []
@@ -108,14 +115,17 @@ class _Planner:
         )  # fmt: skip
 
     def _event(self, number: int, event: Event) -> None:
-        found = best(self._known.frames, event)
         inner = [
             i for i, other in enumerate(self._events) if other.beside == number and other.joint == "comp"
         ]
+        if self._in_turn(number, event):
+            return
+        found = self._matcher.find(event)
         if self._about_another(event) and inner and (found is None or found[2].score < 2.4):
             return
-        if found is None or found[2].score < LEAST_SCORE:
-            found = self._synonym(event)
+        if found is None:
+            borrowed = (self._matcher.find(other) for other in self._completed(number, event))
+            found = next((other for other in borrowed if other is not None), None)
         if found is not None and not self._known.entries[found[0]].shown:
             self._unread.append(Unread(words=self._span(number), why="This is nothing that bodies show."))
         elif found is not None:
@@ -124,28 +134,60 @@ class _Planner:
             ):
                 self._taken.update(inner)
             self._add(number, event, *found)
+            self._held(number, event, found)
         elif event.lemma not in _STATES and not (inner and self._about_another(event)):
             self._not_read(number, event)
+
+    def _in_turn(self, number: int, event: Event) -> bool:
+        """Passes "take turns" on to the verb of what is done in turn; False for other verbs."""
+        turns = event.lemma == "take" and event.object is not None and event.object.lemma == "turn"
+        done = [other for other in self._events if other.beside == number and turns]
+        for other in done:
+            other.adverbs.append("in turn")
+        return bool(done)
+
+    def _completed(self, number: int, event: Event) -> Iterator[Event]:
+        """The event with the object that a coordinated one has: "he reads and tears up the letter"."""
+        if event.object is not None or event.dative is not None:
+            return
+        beside = self._events[event.beside] if event.beside is not None and event.joint in _SHARING else None
+        after = [other for other in self._events if other.beside == number and other.joint in _SHARING]
+        for other in (beside, *after):
+            if other is not None and other.object is not None and other.subject == event.subject:
+                yield replace(event, object=other.object)
+
+    def _held(self, number: int, event: Event, found: Found) -> None:
+        """Adds the posture that a phrase beside an act names: "begs on his knees", "with folded arms"."""
+        for i in found[2].rest:
+            preposition, ref = event.prepositions[i]
+            own = ref.kind == "part" and (
+                ref.who == found[2].agents or (preposition == "with" and not ref.who)
+            )
+            if not own or (preposition == "on" and ref.family != "knee"):
+                continue
+            words = [word for word in event.words if word in _HELD]
+            if preposition == "with" and not words:
+                continue
+            posture = replace(
+                event, lemma="stand", object=None, dative=None, words=words, particles=[], noun=None, times=None,
+                prepositions=[(preposition, ref)], side=None, direction=None, adverbs=[],
+            )  # fmt: skip
+            held = self._matcher.find(posture)
+            if held is not None and held[0] != found[0] and not held[2].rest and held[2].score > 1.5:
+                self._add(number, posture, *held, beside=str(len(self._acts)))
+
+    def _unknown_words(self) -> None:
+        """Adds the words that are none to what was not read."""
+        for first, last in self._nonsense:
+            start, stop = self._prepared.span(first, last)
+            if not any(u.words.start <= start and stop <= u.words.stop for u in self._unread):
+                self._unread.append(
+                    Unread(words=Span(start=start, stop=stop), why="These words are not known.")
+                )
 
     def _about_another(self, event: Event) -> bool:
         verbs = vocabulary().verbs
         return any(event.lemma in verbs[k] for k in verbs if k not in ("light", "sees"))
-
-    def _synonym(self, event: Event) -> tuple[str, Frame, Match] | None:
-        """The act whose verbs mean what this one does, of those whose frames fit."""
-        found: tuple[float, tuple[str, Frame, Match]] | None = None
-        names = {wordnet.synset(name): entries for name, entries in self._known.synsets.items()}
-        for sense, cost in wordnet.meanings(event.lemma):
-            for name in names.get(sense, ()):
-                for text in self._known.entries[name].frames:
-                    frame = Frame.parse(text)
-                    match = frame.fits(event)
-                    if match is None:
-                        continue
-                    worth = match.score - _SYNONYM * cost
-                    if worth > LEAST_SCORE and (found is None or worth > found[0]):
-                        found = worth, (name, frame, match)
-        return found[1] if found else None
 
     def _span(self, number: int) -> Span:
         start, stop = self._prepared.span(*self._clauses[number])
@@ -159,16 +201,11 @@ class _Planner:
             why = "This is not done by either of the two people."
         else:
             why = f"No act is known for “{event.lemma:.40}” in this form."
-        self._unread.append(Unread(words=self._span(number), why=why, nearest=self._nearest(event)))
+        self._unread.append(Unread(words=self._span(number), why=why, nearest=self._matcher.nearest(event)))
 
-    def _nearest(self, event: Event) -> tuple[str, ...]:
-        names = {wordnet.synset(name): entries for name, entries in self._known.synsets.items()}
-        near = [name for name, _ in self._known.frames.get(event.lemma, ())]
-        for sense, _ in wordnet.meanings(event.lemma, most=4, height=3):
-            near += names.get(sense, ())
-        return tuple(dict.fromkeys(near))[:5]
-
-    def _add(self, number: int, event: Event, name: str, frame: Frame, match: Match) -> None:
+    def _add(
+        self, number: int, event: Event, name: str, frame: Frame, match: Match, beside: str = ""
+    ) -> None:
         number_of = str(len(self._acts) + 1)
         part = match.part
         speed = 1.0
@@ -192,7 +229,10 @@ class _Planner:
             direction=event.direction, distance=event.distance, words=self._span(number),
         )  # fmt: skip
         self._acts.append(act)
-        self._of[number] = number_of
+        if beside:
+            self._held_beside[number_of] = beside
+        else:
+            self._of[number] = number_of
 
     def _order(self) -> None:
         """Gives the acts their relations, each to one that stands before it or above it in the syntax."""
@@ -200,6 +240,9 @@ class _Planner:
         found: dict[str, list[Relation]] = {act.id: [] for act in self._acts}
         acts = {act.id: act for act in self._acts}
         for act in self._acts:
+            if act.id in self._held_beside:
+                found[act.id].append(Relation(kind="with", act=self._held_beside[act.id]))
+                continue
             event = self._events[number_of[act.id]]
             kind, beside, seen = event.joint, event.beside, set[int]()
             while beside is not None and beside not in self._of and beside not in seen:  # passed over
@@ -220,6 +263,20 @@ class _Planner:
                 kind = kind if kind in ("after", "with", "while", "before", "until") else "with"
                 found[act.id].append(Relation(kind=kind, act=other.id))  # type: ignore[arg-type]
         self._acts = [act.model_copy(update={"order": tuple(found[act.id])}) for act in self._acts]
+
+
+def _unknown(doc: Doc) -> Iterator[tuple[int, int]]:
+    """Stretches of small letters that are no English words, as character offsets in what was parsed."""
+    first = last = -1
+    for token in doc:
+        small = token.text.islower() and token.text.isalpha() and len(token.text) > 3
+        if small and not is_word(token.text) and not is_verb_form(token.text):
+            first, last = (token.idx if first < 0 else first), token.idx + len(token.text)
+        elif first >= 0:
+            yield first, last
+            first = -1
+    if first >= 0:
+        yield first, last
 
 
 def _people(act: Act) -> set[str]:

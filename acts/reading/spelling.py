@@ -32,7 +32,7 @@ class Speller:
         """The verb's form that a word without meaning is nearest to, within one letter or two; None to leave it."""
         if is_word(word) or word in self.forms or len(word) < 4:
             return None
-        if vocabulary().is_person(word.rstrip("s")) or _is_verb_form(word):
+        if vocabulary().is_person(word.rstrip("s")) or is_verb_form(word):
             return None
         found = [form for form in self.forms if abs(len(form) - len(word)) < 2 and form[0] == word[0]]
         near = [(distance, form) for form in found if (distance := _distance(word, form)) <= 1]
@@ -62,7 +62,7 @@ def _forms(verbs: frozenset[str]) -> dict[str, tuple[str, str]]:
     return found
 
 
-def _is_verb_form(word: str) -> bool:
+def is_verb_form(word: str) -> bool:
     """True for a regular form of a verb that WordNet knows, as "clings"."""
     stems = {word}
     for ending in ("s", "es", "ed", "ing"):

@@ -67,10 +67,16 @@ def _language() -> Language:
 def parse(text: str) -> Doc:
     """The syntax of a text."""
     with _lock:  # loads once, and spaCy's pipeline is not meant for several threads
+        _words()
         return _language()(text)
 
 
+@cache
+def _words() -> frozenset[str]:
+    return frozenset(_language().vocab.strings)  # before texts are parsed, whose words the parser adds
+
+
 def is_word(text: str) -> bool:
-    """True for a word that the parser has met."""
+    """True for a word that the parser has met in its training."""
     with _lock:
-        return text in _language().vocab.strings
+        return text in _words()

@@ -71,7 +71,8 @@ _PHRASES = {
     ("as", "soon", "as"): "when", ("as", "long", "as"): "while", ("the", "moment", "that"): "when",
     ("every", "time"): "when", ("even", "though"): "although", ("so", "that"): "so",
     ("in", "order", "to"): "to", ("all", "of", "a", "sudden"): "suddenly", ("at", "once"): "immediately",
-    ("the", "two", "of", "them"): "they", ("the", "pair", "of", "them"): "they", ("a", "bit"): "slightly", ("a", "little", "bit"): "slightly",
+    ("the", "two", "of", "them"): "they", ("the", "pair", "of", "them"): "they",
+    ("a", "bit"): "slightly", ("a", "little", "bit"): "slightly",
 }  # fmt: skip
 """What the parser takes apart, and one word for it."""
 _NUMBERED = {"a": True, "1": True, "one": True, "b": False, "2": False, "two": False}

@@ -6,6 +6,7 @@ The tables beside this module are an extract; ``python -m acts.reading.wordnet F
 
 from __future__ import annotations
 
+import bisect
 import sys
 from functools import cache
 from pathlib import Path
@@ -15,6 +16,17 @@ _HERE = Path(__file__).parent
 VERBS, PEOPLE = _HERE / "verbs.tsv", _HERE / "people.tsv"
 _PERSON = "18"
 """WordNet's number for the lexicographer's file of people."""
+
+
+_STARTS = (
+    "00001740", "00109660", "00588221", "00740595", "01072280", "01156852", "01205714", "01617210", "01759344",
+    "01831549", "02105828", "02199608", "02367050", "02603699", "02756558",
+)  # fmt: skip
+_KINDS = (
+    "body", "change", "cognition", "communication", "competition", "consumption", "contact", "creation", "emotion",
+    "motion", "perception", "possession", "social", "stative", "weather",
+)  # fmt: skip
+"""WordNet's kinds of verbs; their synsets stand in this order, each kind from the number in ``_STARTS`` on."""
 
 
 class _Verbs(NamedTuple):
@@ -59,6 +71,21 @@ def synset(name: str) -> str | None:
     lemma, _, number = name.rpartition(".v.")
     senses = _verbs().senses.get(lemma, ())
     return senses[int(number) - 1] if number.isdigit() and 0 < int(number) <= len(senses) else None
+
+
+def senses(lemma: str) -> tuple[str, ...]:
+    """The synsets of a verb, the most frequent first."""
+    return _verbs().senses.get(lemma, ())
+
+
+def above(sense: str) -> tuple[str, ...]:
+    """The synsets above one: its hypernyms."""
+    return _verbs().above.get(sense, ())
+
+
+def kind(sense: str) -> str:
+    """The kind of a verb's synset: "body", "motion", "contact", "cognition", …."""
+    return _KINDS[bisect.bisect_right(_STARTS, sense) - 1]
 
 
 def meanings(lemma: str, most: int = 3, height: int = 2) -> list[tuple[str, float]]:

@@ -1,0 +1,90 @@
+"""The entry of the lexicon that an event means: by its frames, or by those of a verb of like meaning."""
+
+from __future__ import annotations
+
+from collections import defaultdict
+from collections.abc import Iterator
+from dataclasses import replace
+from functools import cache
+from pathlib import Path
+
+from acts.frames import Event, Frame, Match, best
+from acts.lexicon import Lexicon, lexicon
+
+from . import wordnet
+
+LEAST_SCORE = -1.0
+"""What a frame must score to be taken at all: more beside it than in it is another sentence."""
+_SYNONYM = 0.8
+"""What each step through WordNet costs."""
+_FARTHEST = 2.0
+"""Steps through WordNet, at most: ranks of the two verbs' senses and levels up."""
+_BODILY = frozenset(("body", "competition", "consumption", "contact", "motion"))
+"""WordNet's kinds of verbs that bodies show; others are matched only with verbs of the same meaning."""
+
+Found = tuple[str, Frame, Match]
+
+
+class Matcher:
+    """Finds the entries of events in one lexicon."""
+
+    def __init__(self, known: Lexicon) -> None:
+        self._known = known
+        self._named = {wordnet.synset(name): entries for name, entries in known.synsets.items()}
+        self._verbs: dict[str, list[tuple[str, int]]] = defaultdict(list)
+        for lemma in known.frames:
+            for rank, sense in enumerate(wordnet.senses(lemma)[:2]):
+                self._verbs[sense].append((lemma, rank))
+
+    def find(self, event: Event) -> Found | None:
+        """The act that fits an event best; None if none does."""
+        found = best(self._known.frames, event)
+        if found is None or found[2].score < LEAST_SCORE:
+            found = self._synonym(event)
+        return found
+
+    def _synonym(self, event: Event) -> Found | None:
+        """The act whose verbs mean what this one does, of those whose frames fit."""
+        found: Found | None = None
+        most = LEAST_SCORE
+        for cost, (name, frame, match) in self._alike(event):
+            worth = match.score - _SYNONYM * cost
+            if worth > most:
+                most, found = worth, (name, frame, match)
+        return found
+
+    def _alike(self, event: Event) -> Iterator[tuple[float, Found]]:
+        for sense, cost in wordnet.meanings(event.lemma):
+            for name in self._named.get(sense, ()):
+                entry = self._known.entries[name]
+                for text in entry.frames:
+                    frame = Frame.parse(text, entry.to == "other")
+                    if (match := frame.fits(event)) is not None:
+                        yield cost, (name, frame, match)
+        senses = wordnet.senses(event.lemma)[:2]
+        for rank, own in enumerate(senses):
+            bodily = wordnet.kind(own) in _BODILY
+            for sense, level in [(own, 0), *((up, 1) for up in wordnet.above(own) if bodily)]:
+                for lemma, other in self._verbs.get(sense, ()):
+                    cost = rank + level + other
+                    if lemma == event.lemma or cost > _FARTHEST:
+                        continue
+                    found = best(self._known.frames, replace(event, lemma=lemma, noun=None))
+                    if found is not None and found[2].score >= 0.0:
+                        yield cost, found
+
+    def nearest(self, event: Event) -> tuple[str, ...]:
+        """Names of acts that an event that was not read may mean."""
+        near = [name for name, _ in self._known.frames.get(event.lemma, ())]
+        for sense, _ in wordnet.meanings(event.lemma, most=4, height=3):
+            near += self._named.get(sense, ())
+            near += [
+                name for lemma, _ in self._verbs.get(sense, ()) for name, _ in self._known.frames[lemma][:2]
+            ]
+        return tuple(dict.fromkeys(near))[:5]
+
+
+@cache
+def matcher(folders: tuple[Path, ...]) -> Matcher:
+    """The matcher of our entries and those of further folders, made once."""
+    return Matcher(lexicon(folders))
