@@ -22,57 +22,12 @@ from typing import Literal
 
 from motion import InputError
 
-PREPOSITIONS = frozenset(
-    [
-        "about",
-        "above",
-        "across",
-        "after",
-        "against",
-        "along",
-        "alongside",
-        "among",
-        "around",
-        "at",
-        "away",
-        "before",
-        "behind",
-        "below",
-        "beneath",
-        "beside",
-        "between",
-        "beyond",
-        "by",
-        "down",
-        "for",
-        "from",
-        "in",
-        "inside",
-        "into",
-        "like",
-        "near",
-        "next",
-        "of",
-        "off",
-        "on",
-        "onto",
-        "out",
-        "over",
-        "past",
-        "round",
-        "through",
-        "to",
-        "toward",
-        "towards",
-        "under",
-        "underneath",
-        "up",
-        "upon",
-        "with",
-        "within",
-        "without",
-    ]
+_PREPOSITIONS = (
+    "about above across after against along alongside among around at away before behind below beneath "
+    "beside between beyond by down for from in inside into like near next of off on onto out over past "
+    "round through to toward towards under underneath up upon with within without"
 )
+PREPOSITIONS = frozenset(_PREPOSITIONS.split())
 _SLOTS = frozenset(("a", "a+b", "b", "self", "thing", "part", "place"))
 
 
