@@ -194,31 +194,28 @@ class Frame:
             score += 1.0
         if event.dative is not None and "dative" not in taken:
             return None
-        for i, (preposition, ref) in enumerate(event.prepositions):
-            if i in used:
-                continue
-            if together and preposition in ("with", "against", "to") and ref.kind in ("person", "each"):
-                score += 0.8
-            else:
-                score -= 0.7 if ref.kind in ("person", "part") else 0.3
-        score -= 1.5 * sum(word not in taken for word in event.particles)
+        score += _beside(event, used, taken, together)
+        return Match(
+            score,
+            agents,
+            self._patient(bound, agents) or _receiver(event, agents),
+            bound["thing"].lemma if "thing" in bound else "",
+            bound.get("part"),
+            tuple(i for i in range(len(event.prepositions)) if i not in used),
+        )
+
+    def _patient(self, bound: Mapping[str, Ref], agents: str) -> str:
+        """The person to whom it is done, as the slots say; "" if they do not."""
         patient = bound.get("b")
         part = bound.get("part")
         who = patient.who if patient is not None and patient.kind == "person" else ""
         if not who and part is not None and self._of_other() and len(agents) == 1:
             who = _other(agents)
-        if together and len(agents) == 1:
+        if self.subject == "a+b" and len(agents) == 1:
             who = _other(agents)
         if len(who) == 2:
             who = _other(agents) if len(agents) == 1 else ""
-        return Match(
-            score,
-            agents,
-            (who if who not in agents else "") or _receiver(event, agents),
-            bound["thing"].lemma if "thing" in bound else "",
-            part,
-            tuple(i for i in range(len(event.prepositions)) if i not in used),
-        )
+        return who if who not in agents else ""
 
     def _of_other(self) -> bool:
         return any(element.slot == "b.part" for element in self.elements)
@@ -241,6 +238,20 @@ class Frame:
             )
             return subject.who if with_other or (event.object and event.object.kind == "person") else None
         return subject.who
+
+
+def _beside(event: Event, used: list[int], taken: set[str], together: bool) -> float:
+    """What the arguments and particles beside a frame add to its score."""
+    score = 0.0
+    for i, (preposition, ref) in enumerate(event.prepositions):
+        if i in used:
+            continue
+        if together and preposition in ("with", "against", "to") and ref.kind in ("person", "each"):
+            score += 0.8
+        else:
+            score -= 0.7 if ref.kind in ("person", "part") else 0.3
+    score -= 1.5 * sum(word not in taken for word in event.particles)
+    return score
 
 
 def _receiver(event: Event, agents: str) -> str:
