@@ -241,7 +241,7 @@ class Frame:
 
 
 def _beside(event: Event, used: list[int], taken: set[str], together: bool) -> float:
-    """What the arguments and particles beside a frame add to its score."""
+    """The score that arguments and particles beside a frame add."""
     score = 0.0
     for i, (preposition, ref) in enumerate(event.prepositions):
         if i in used:
