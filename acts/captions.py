@@ -10,7 +10,7 @@ from __future__ import annotations
 import re
 from collections.abc import Sequence
 
-from .lexicon import Lexicon
+from .lexicon import Lexicon, lexicon
 from .plan import Act, Plan
 
 _VERB = re.compile(r"\[([a-z-]+)\]")
@@ -68,12 +68,15 @@ def beats(plan: Plan, known: Lexicon) -> list[str]:
     Acts that are denied, tried, pretended or wished are not done; a person of whom nothing else is told in that beat
     then stands still.
     """
-    found = []
-    for group in plan.beats():
-        sentence = _sentence(group, known)
-        if sentence:
-            found.append(sentence)
-    return found
+    return [words for group in plan.beats() if (words := _sentence(group, known))]
+
+
+def sentence(groups: Sequence[Sequence[Act]], known: Lexicon) -> str:
+    """Groups of acts that follow each other closely, as one sentence; "" where nothing is done or left undone."""
+    told = [words.rstrip(".") for group in groups if (words := _sentence(group, known))]
+    return ", and then ".join(
+        [*told[:1], *(f"{words[:1].lower()}{words[1:]}" for words in told[1:])]
+    ) + "." * bool(told)
 
 
 def _sentence(group: Sequence[Act], known: Lexicon) -> str:
@@ -97,3 +100,27 @@ def _sentence(group: Sequence[Act], known: Lexicon) -> str:
             text += f" while {words}"
         last = who
     return f"{text[:1].upper()}{text[1:]}." if text else ""
+
+
+def in_words(plan: Plan) -> str:
+    """The text of a plan; of one that was written by hand its acts in plain words."""
+    return plan.sentence.strip() or " ".join(beats(plan, lexicon()))
+
+
+def of_each(acts: Sequence[Act], known: Lexicon) -> tuple[str, str]:
+    """A sentence for person a and one for person b; "" for who does nothing.
+
+    Both are "" where an act is both people's: then the sentence of the whole beat says it best.
+    """
+    done = [act for act in acts if act.happens and act.act in known.entries and known.entries[act.act].shown]
+    if any(len(act.agents) == 2 or known.entries[act.act].mutual for act in done):
+        return "", ""
+    found: dict[str, list[str]] = {"a": [], "b": []}
+    for act in done:
+        who = act.agents[0]
+        own, other = _NAMES[who], _NAMES["b" if who == "a" else "a"]
+        words = worded(act, known.entries[act.act].caption[0]).removeprefix(f"{own} ")
+        words = words.replace(f"{own}'s", "their").replace(own, "them").replace(other, "the other person")
+        found[who].append(words)
+    a, b = (f"One person {' and '.join(words)}." if words else "" for words in (found["a"], found["b"]))
+    return a, b

@@ -40,6 +40,7 @@ class Entry(BaseModel):
         seconds: how long it usually takes.
         before: what must hold first, after: what holds from then on (a posture).
         stage: its score; empty leaves it to the network's words.
+        refused: what is then shown of a refusal, which leaves the act itself undone.
         rule: predicates of :mod:`motion.metrics.sentences` that its motion fulfils, with ``who`` for the agent and
             ``whom`` for the patient.
         shown: False for what no body shows ("falls in love", "turns on the lamp"): it is known, and stays unread.
@@ -58,6 +59,7 @@ class Entry(BaseModel):
     before: dict[Literal["posture"], str] = {}
     after: dict[Literal["posture"], str] = {}
     stage: Annotated[tuple[Shape, ...], Field(max_length=12)] = ()
+    refused: Annotated[tuple[Shape, ...], Field(max_length=6)] = ()
     rule: Annotated[tuple[Sentence, ...], Field(max_length=6)] = ()
     to: Literal["", "other"] = ""
     mutual: bool = False

@@ -6,10 +6,12 @@ never reads the words again. ``Plan.model_json_schema()`` is the contract.
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-from typing import Annotated, Literal
+from collections.abc import Iterator, Sequence
+from typing import Annotated, Any, Literal
 
-from pydantic import BaseModel, ConfigDict, Field, StringConstraints, model_validator
+from pydantic import BaseModel, ConfigDict, Field, StringConstraints, ValidationError, model_validator
+
+from motion import InputError
 
 Who = Literal["a", "b"]
 Side = Literal["left", "right", "both"]
@@ -67,6 +69,7 @@ class Act(_Model):
         polarity: "not" for what is said not to happen.
         modality: only what is told happens; an attempt, an offer, a pretence and a wish have shapes of their own.
         order: relations to other acts.
+        already: it goes on when its beat begins, as "is sitting" and "keeps walking" say; others begin in it.
         seconds: length in seconds, where the words give one.
         side: of the body, or of the turn.
         times: how often, where the words give a number.
@@ -87,6 +90,7 @@ class Act(_Model):
     polarity: Literal["done", "not"] = "done"
     modality: Literal["told", "tried", "offered", "pretended", "wished"] = "told"
     order: Annotated[tuple[Relation, ...], Field(max_length=8)] = ()
+    already: bool = False
     seconds: Annotated[float, Field(gt=0, le=600)] | None = None
     side: Side | None = None
     times: Annotated[int, Field(ge=1, le=100)] | None = None
@@ -165,34 +169,63 @@ class Plan(_Model):
         return self.sentence[span.start : span.stop]
 
     def beats(self) -> list[list[Act]]:
-        """The acts in groups that happen one after another, each group at the same time.
+        """The acts in groups that happen one after another, each group at the same time; see :func:`beats`."""
+        return beats(self.acts)
 
-        An act that is "after" others comes a group later than the last of them, one that is "before" another pushes
-        that one back, and one "with", "while" or "until" another shares its group. Contradictory orders are broken
-        in the order of the text, and every act appears exactly once.
-        """
-        level = {act.id: 0 for act in self.acts}
-        for _ in range(len(self.acts)):
-            moved = False
-            for later, kind, other in self._relations():
-                least = level[other] + (kind == "after")
-                if level[later] < least < len(self.acts) + 1:
-                    level[later], moved = least, True
-            if not moved:
-                break
-        groups: dict[int, list[Act]] = {}
-        for act in self.acts:
-            groups.setdefault(level[act.id], []).append(act)
-        return [groups[key] for key in sorted(groups)]
 
-    def _relations(self) -> Iterator[tuple[str, str, str]]:
-        """Each relation as (later or equal act, kind, other act)."""
-        for act in self.acts:
-            for relation in act.order:
-                if relation.kind == "before":
-                    yield relation.act, "after", act.id
-                elif relation.kind == "after":
-                    yield act.id, "after", relation.act
-                else:
-                    yield act.id, "with", relation.act
-                    yield relation.act, "with", act.id
+def plan_of(values: Any) -> Plan:
+    """A plan from JSON; a plan stays as it is.
+
+    Raises:
+        InputError: for anything else, with a sentence on the first thing that is wrong.
+    """
+    if isinstance(values, Plan):
+        return values
+    try:
+        return Plan.model_validate(values)
+    except ValidationError as error:
+        raise InputError(f"This is no plan of acts: {problem(error)}") from None
+
+
+def problem(error: ValidationError) -> str:
+    """The first thing that is wrong, as "acts.0.agents: Field required."."""
+    first = error.errors()[0]
+    where = ".".join(str(part) for part in first["loc"])
+    said = first["msg"].removeprefix("Value error, ").rstrip(".")
+    return f"{where}: {said}." if where else f"{said[:1].upper()}{said[1:]}."
+
+
+def beats(acts: Sequence[Act]) -> list[list[Act]]:
+    """Acts in groups that happen one after another, each group at the same time.
+
+    An act that is "after" others comes a group later than the last of them, one that is "before" another pushes that
+    one back, and one "with", "while" or "until" another shares its group. Contradictory orders are broken in the order
+    of the text, relations to acts that are not there are passed over, and every act appears exactly once.
+    """
+    level = {act.id: 0 for act in acts}
+    listed = [each for each in _relations(acts) if each[0] in level and each[2] in level]
+    for _ in range(len(acts)):
+        moved = False
+        for later, kind, other in listed:
+            least = level[other] + (kind == "after")
+            if level[later] < least < len(acts) + 1:
+                level[later], moved = least, True
+        if not moved:
+            break
+    groups: dict[int, list[Act]] = {}
+    for act in acts:
+        groups.setdefault(level[act.id], []).append(act)
+    return [groups[key] for key in sorted(groups)]
+
+
+def _relations(acts: Sequence[Act]) -> Iterator[tuple[str, str, str]]:
+    """Each relation as (later or equal act, kind, other act)."""
+    for act in acts:
+        for relation in act.order:
+            if relation.kind == "before":
+                yield relation.act, "after", act.id
+            elif relation.kind == "after":
+                yield act.id, "after", relation.act
+            else:
+                yield act.id, "with", relation.act
+                yield relation.act, "with", act.id

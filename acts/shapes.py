@@ -59,19 +59,36 @@ class Stay(_Shape):
     facing: Literal["", "other", "away", "back to back"] = ""
 
 
+class Place(_Shape):
+    """Where the two are when a story begins with the act: ``apart`` metres, side by side or back to back."""
+
+    do: Literal["place"] = "place"
+    way: Literal["facing", "beside", "back to back"] = "facing"
+    apart: Metres = 0.0
+
+
 class Posture(_Shape):
-    """A way to hold oneself from then on; ``already`` from the start, ``passing`` only for a moment."""
+    """A way to hold oneself from then on; ``already`` from the start, ``passing`` only for a moment, ``times`` over."""
 
     do: Literal["posture"] = "posture"
     posture: Literal["stands", "sits", "kneels", "sits on the ground", "crouches", "bends down", "lies"]
     already: bool = False
     passing: bool = False
+    times: Annotated[int, Field(ge=1, le=5)] = 1
 
 
 class Jump(_Shape):
-    """A jump on the spot."""
+    """Jumps on the spot, so many where the words give no number."""
 
     do: Literal["jump"] = "jump"
+    times: Annotated[int, Field(ge=1, le=5)] = 1
+
+
+class Bow(_Shape):
+    """A bow from the hips, and a ``deep`` one."""
+
+    do: Literal["bow"] = "bow"
+    deep: bool = False
 
 
 class Gesture(_Shape):
@@ -153,6 +170,6 @@ class Words(_Shape):
 
 
 Shape = Annotated[
-    Go | Turn | Stay | Posture | Jump | Gesture | Touch | Hold | Lift | Strike | Limb | Words,
+    Go | Turn | Stay | Place | Posture | Jump | Bow | Gesture | Touch | Hold | Lift | Strike | Limb | Words,
     Field(discriminator="do"),
 ]

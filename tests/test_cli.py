@@ -86,6 +86,23 @@ def test_generate_writes_a_file_and_one_json_line(run: Run, tmp_path: Path, suff
     assert np.isfinite(duet.positions).all()
 
 
+def test_a_plan_is_made_without_words(run: Run, tmp_path: Path) -> None:
+    plan, out = tmp_path / "plan.json", tmp_path / "x.npz"
+    acts = [{"id": "1", "act": "walk-up", "agents": ["b"], "patient": "a"}]
+    plan.write_text(json.dumps({"plan": {"acts": acts}}))
+    code, said, _ = run("generate", "--plan", plan, "--seconds", 2, "--steps", 2, "--out", out)
+    assert code == 0
+    printed = answer(said)
+    assert printed["manifest"]["request"]["acts"]["acts"][0]["act"] == "walk-up"
+    assert printed["manifest"]["request"]["prompt"] == "Person B walks up to person A."
+    assert any("person B walks up to the other" in note for note in printed["notes"])
+    out.unlink()
+    for wrong in ("{", "[]", '{"acts": 3}', '{"acts": [{"act": "hug"}]}'):
+        plan.write_text(wrong)
+        refused(run("generate", "--plan", plan, "--out", out))
+        assert not out.exists()
+
+
 def test_the_same_command_gives_the_same_bytes(run: Run, tmp_path: Path) -> None:
     for name in ("x.npz", "y.npz"):
         assert generate(run, tmp_path / name)[0] == 0

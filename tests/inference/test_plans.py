@@ -13,8 +13,9 @@ from webdemo.inference import Engine, GenerateRequest, SceneRequest
 from webdemo.inference.known_parts import KnownFrames, KnownPath
 from webdemo.inference.pipelines import intergen, scene_setting
 from webdemo.inference.pipelines.scene import Parts
-from webdemo.inference.plans import Plan, WindowPlan, kept_plan
+from webdemo.inference.plans import KeptPlan, WindowPlan, kept_plan
 from webdemo.inference.story import Beat, FloorPath, FloorPoint, request
+from webdemo.inference.story.told import Told
 
 from .test_scenes import positions, run
 
@@ -47,8 +48,9 @@ def changed_reader(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(scene_setting, "planned", elsewhere)
     monkeypatch.setattr(scene_setting, "wishes", lambda *_: ([], ["Not so."]))
     monkeypatch.setattr(scene_setting, "_anchor", lambda _: (3.0, 3.0, 1.0))
-    for module in (scene_setting, intergen):
-        monkeypatch.setattr(module, "of_each", lambda _: ("One person falls.", "One person jumps."))
+    alone = ("One person falls.", "One person jumps.")
+    monkeypatch.setattr(intergen, "of_each", lambda _: alone)
+    monkeypatch.setattr(request, "told_by", lambda _: Told(alone=alone))
     monkeypatch.setattr(intergen.InterGenPipeline, "notes", lambda *_: ("Read again.",))
     monkeypatch.setattr(request, "split_sentence", lambda *_: (Beat("They hug."), Beat("They bow.")))
 
@@ -112,7 +114,7 @@ def test_a_held_pose_is_written_once_and_numbers_are_kept_to_a_hundredth_of_a_mi
 
 def damaged(change: str) -> dict[str, Any]:
     poses = KnownFrames(0, [1, 2], np.zeros((2, 22, 3)))
-    plan = Plan(windows=(WindowPlan((0.0, 0.0, 0.0), (poses,)),)).to_dict()
+    plan = KeptPlan(windows=(WindowPlan((0.0, 0.0, 0.0), (poses,)),)).to_dict()
     found: Any = copy.deepcopy(plan)
     exec(change, {"plan": found, "part": found["windows"][0]["parts"][0]})
     return found  # type: ignore[no-any-return]
@@ -133,8 +135,8 @@ def damaged(change: str) -> dict[str, Any]:
 )  # fmt: skip
 def test_a_damaged_plan_is_refused_in_one_sentence(change: str) -> None:
     with pytest.raises(InputError, match="plan that was kept with this result is damaged"):
-        Plan.from_dict(damaged(change))
+        KeptPlan.from_dict(damaged(change))
 
 
 def test_no_change_is_no_damage() -> None:
-    assert len(Plan.from_dict(damaged("pass")).windows) == 1
+    assert len(KeptPlan.from_dict(damaged("pass")).windows) == 1

@@ -15,6 +15,8 @@ from webdemo.inference.pipelines.scene_room import BODY, distance, roomy
 from webdemo.inference.story import Beat
 from webdemo.inference.story.floor import Standing
 from webdemo.inference.story.poses import bowing, lying, upright
+from webdemo.inference.story.telling import told_by
+from webdemo.inference.story.told import Told
 
 from .followed import Follower, speeds
 
@@ -29,6 +31,10 @@ FEET = [
 @pytest.fixture
 def follower(monkeypatch: pytest.MonkeyPatch) -> Follower:
     return Follower(monkeypatch)
+
+
+def told(*words: str) -> list[Told]:
+    return [told_by(Beat(each)) for each in words]
 
 
 def scene(follower: Follower, *words: str, **fields: Any) -> np.ndarray:
@@ -103,7 +109,7 @@ def test_the_heads_of_two_who_bow_are_counted_to_their_tops() -> None:
 def test_who_gets_up_sits_up_first_and_keeps_the_feet_low() -> None:
     stand = Standing(np.array([[0.0, 0.0], [0.0, 2.0]]), np.array([0.0, np.pi]))
     last = lying(np.zeros(2), 0.0)
-    poses = dict(postures(["Person A falls over.", "Person A gets up."], 1, 0, 60, 180, stand, last))
+    poses = dict(postures(told("Person A falls over.", "Person A gets up."), 1, 0, 60, 180, stand, last))
     frames = sorted(poses)
     heights = [poses[f][0, 1] for f in frames]
     assert heights == sorted(heights) and heights[-1] > 0.9
@@ -117,6 +123,8 @@ def test_who_gets_up_sits_up_first_and_keeps_the_feet_low() -> None:
 @pytest.mark.parametrize("words", ["sits down", "kneels down", "falls over", "sits down on the floor"])
 def test_nobody_drops_into_a_posture(words: str) -> None:
     stand = Standing(np.array([[0.0, 0.0], [0.0, 2.0]]), np.array([0.0, np.pi]))
-    poses = postures(["They wave.", f"Person A {words}."], 1, 0, 60, 180, stand, upright(np.zeros(2), 0.0))
+    poses = postures(
+        told("They wave.", f"Person A {words}."), 1, 0, 60, 180, stand, upright(np.zeros(2), 0.0)
+    )
     frame, pose = poses[0]
     assert pose[0, 1] < 0.7 and 1.0 <= (frame - 60) / FPS <= 2.0, "seconds that people take for it"

@@ -11,7 +11,7 @@ from motion import Duet
 from webdemo.inference import Cancelled, CancelToken, Engine, GenerateRequest, Result, SceneRequest
 from webdemo.inference.batch import run_batch
 from webdemo.inference.pipelines.scene import WindowRequest
-from webdemo.inference.plans import Plan
+from webdemo.inference.plans import KeptPlan
 from webdemo.inference.story import Beat, FloorPath, FloorPoint, Pose, SceneProgress
 from webdemo.inference.story.request import as_scene
 
@@ -223,7 +223,9 @@ def test_a_scene_shares_its_passes_with_other_requests(engine: Engine) -> None:
 def test_a_network_that_reads_them_is_given_each_persons_own_words(reading_engine: Engine) -> None:
     pipeline = reading_engine.pipeline("intergen")
     beats = [Beat(a="waves with both hands"), Beat(b="waves with both hands"), Beat("They wave.")]
-    asked = [WindowRequest(prompt="They wave.", seconds=2.0, plan=Plan(alone=beat.alone)) for beat in beats]
+    asked = [
+        WindowRequest(prompt="They wave.", seconds=2.0, plan=KeptPlan(alone=beat.alone)) for beat in beats
+    ]
     first, second, neither = (pipeline.conditioning(each).condition for each in asked)
     assert first[:, 1].any() and not first[:, 2].any()
     assert torch.equal(first[:, 1], second[:, 2]) and not second[:, 1].any()

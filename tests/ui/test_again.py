@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from motion import SMPL22, Clip, Duet
-from webdemo.inference.plans import Plan, WindowPlan
+from webdemo.inference.plans import KeptPlan, WindowPlan
 from webdemo.inference.requests import GenerateRequest, ReactRequest, Result
 from webdemo.inference.story import Beat, SceneRequest
 from webdemo.ui.again import request_of, verdict
@@ -61,7 +61,7 @@ def opened_run(asked: Any, manifest: dict[str, Any]) -> Any:
     "asked", [GenerateRequest(prompt="They wave."), SceneRequest(beats=(Beat("They wave."),))]
 )
 def test_a_stored_run_is_made_again_from_its_plan(asked: Any) -> None:
-    plan = Plan(notes=("From the words: nothing.",), windows=(WindowPlan((1.0, 2.0, 0.5)),))
+    plan = KeptPlan(notes=("From the words: nothing.",), windows=(WindowPlan((1.0, 2.0, 0.5)),))
     found: Any = request_of(opened_run(asked, {"plan": plan.to_dict()}))
     assert found.plan is not None and found.plan.to_dict() == plan.to_dict()
     assert found.to_dict() == asked.to_dict()

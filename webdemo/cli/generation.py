@@ -10,7 +10,8 @@ from typing import Any
 
 import numpy as np
 
-from motion import Duet
+from acts.plan import Plan, plan_of
+from motion import Duet, InputError
 from motion.formats.on_rig import check_rig, on_rig
 from webdemo.inference.actor import FPS, read_actor
 from webdemo.inference.methods import AUTOMATIC, automatic, methods
@@ -20,6 +21,9 @@ from webdemo.inference.requests import GenerateRequest, ReactRequest, Result
 from .parser import add_animation, add_sampling, names_of, sampling_fields, with_note
 from .running import check_out, run, write_result
 
+MOST_PLAN_BYTES = 200_000
+"""Bytes of a plan's file, at most."""
+
 
 def add_generate(commands: Any) -> None:
     """Adds ``generate`` to the shell's commands."""
@@ -27,6 +31,7 @@ def add_generate(commands: Any) -> None:
     asked = parser.add_mutually_exclusive_group(required=True)
     asked.add_argument("--prompt", help="what the two people do, in English")
     asked.add_argument("--class", dest="label", help="name of a class of BiGraphDiff, such as 'shake hands'")
+    asked.add_argument("--plan", type=Path, help="JSON file of a plan of acts, as `read` prints it")
     parser.add_argument("--seconds", type=float, default=GenerateRequest.seconds)
     parser.add_argument(
         "--no-split", action="store_true", help="give a sentence of several beats to the network at once"
@@ -48,8 +53,27 @@ def generate(options: argparse.Namespace) -> dict[str, Any]:
     fields = sampling_fields(options)
     words = options.prompt if options.label is None else options.label
     fields |= {"split": not options.no_split, "planned": not options.no_plan}
+    if options.plan is not None:
+        words, fields["acts"] = "", read_plan(options.plan)
     request = GenerateRequest(prompt=words, seconds=options.seconds, **fields)
     return write_result(run(request), options.out)
+
+
+def read_plan(file: Path) -> Plan:
+    """The plan of acts in a JSON file, alone or under "plan".
+
+    Raises:
+        InputError: if it is none.
+    """
+    try:
+        if file.stat().st_size > MOST_PLAN_BYTES:
+            raise InputError(f"{file.name} is larger than {MOST_PLAN_BYTES // 1000} kB, and no plan is.")
+        values = json.loads(file.read_text(encoding="utf-8"))
+    except OSError:
+        raise InputError(f"{file} cannot be read: name a JSON file with a plan of acts.") from None
+    except ValueError:
+        raise InputError(f"{file.name} is not JSON: give a plan as the command read prints it.") from None
+    return plan_of(values.get("plan", values) if isinstance(values, dict) else values)
 
 
 def add_react(commands: Any) -> None:

@@ -80,7 +80,7 @@ class WindowPlan:
 
 
 @dataclass(frozen=True, eq=False)
-class Plan:
+class KeptPlan:
     """The plan of a result.
 
     Attributes:
@@ -106,7 +106,7 @@ class Plan:
         }
 
     @classmethod
-    def from_dict(cls, values: Mapping[str, Any]) -> Plan:
+    def from_dict(cls, values: Mapping[str, Any]) -> KeptPlan:
         """The plan that :meth:`to_dict` gave.
 
         Raises:
@@ -116,7 +116,8 @@ class Plan:
         beats = (_mapping(beat) for beat in _list(values.get("beats"), MOST_WINDOWS))
         return cls(
             tuple(
-                {name: beat.get(name) for name in ("words", "a", "b", "seconds", "seed")} for beat in beats
+                {name: beat.get(name) for name in ("words", "a", "b", "seconds", "seed", "acts")}
+                for beat in beats
             ),
             _pair(values.get("alone")),
             tuple(WindowPlan.from_dict(window) for window in _list(values.get("windows"), MOST_WINDOWS)),
@@ -124,13 +125,13 @@ class Plan:
         )
 
 
-def kept_plan(manifest: Mapping[str, Any]) -> Plan | None:
+def kept_plan(manifest: Mapping[str, Any]) -> KeptPlan | None:
     """The plan in a result's manifest; None in those of versions that kept none.
 
     Raises:
         InputError: if it is damaged.
     """
-    return None if manifest.get("plan") is None else Plan.from_dict(manifest["plan"])
+    return None if manifest.get("plan") is None else KeptPlan.from_dict(manifest["plan"])
 
 
 def _encoded(part: Part) -> dict[str, Any]:

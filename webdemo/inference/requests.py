@@ -14,12 +14,14 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from acts.captions import in_words
+from acts.plan import Plan, plan_of
 from motion import Clip, Duet, InputError
 
 from . import methods
 from .actor import ROLES, check_actor
 from .method import Method
-from .plans import Plan
+from .plans import KeptPlan
 
 MAX_PROMPT = 500
 STEPS = (1, 1000)
@@ -130,25 +132,33 @@ class GenerateRequest(SamplingRequest):
             seconds, by a model that makes scenes. Off, the whole sentence is given to the network at once.
         planned: as in a scene: where the words send people, how they hold themselves and who stands by is read from
             them and given. Only with ``split``.
+        acts: what the two do, as a plan that was written or edited by hand; the words are then read by nobody. Where
+            there are no words, they follow from the acts. Only with ``split`` and ``planned``.
         plan: of an earlier result of this request, which is used instead of reading the words; read them by default.
     """
 
-    prompt: str
+    prompt: str = ""
     seconds: float = 5.0
     split: bool = True
     planned: bool = True
-    plan: Plan | None = field(default=None, compare=False, repr=False)
+    acts: Plan | None = None
+    plan: KeptPlan | None = field(default=None, compare=False, repr=False)
 
     def __post_init__(self) -> None:
         method = methods.method(self.model, "generate")
+        if self.acts is not None:
+            object.__setattr__(self, "acts", plan_of(self.acts))
+            if not self.prompt.strip():
+                object.__setattr__(self, "prompt", in_words(self.acts))
         _words(self.prompt, needed=True)
         object.__setattr__(self, "seconds", _number("Length", self.seconds, *method.seconds, " seconds"))
         self._check(method)
 
     def to_dict(self) -> dict[str, Any]:
         """All fields but the plan, and the kind of the request."""
-        plain = {f.name: getattr(self, f.name) for f in fields(self) if f.name != "plan"}
-        return {"kind": "generate", **plain}
+        plain = {f.name: getattr(self, f.name) for f in fields(self) if f.name not in ("acts", "plan")}
+        acts = {} if self.acts is None else {"acts": self.acts.model_dump(mode="json", exclude_defaults=True)}
+        return {"kind": "generate", **plain, **acts}
 
 
 def clip_facts(clip: Clip) -> dict[str, Any]:

@@ -4,7 +4,14 @@ from __future__ import annotations
 
 import pytest
 
-from webdemo.inference.story.postures import Posture, at_start, bows, changes, leaps
+from webdemo.inference.story import told
+from webdemo.inference.story.postures import Posture, bows, changes, leaps
+from webdemo.inference.story.telling import of_words
+
+
+def at_start(story: list[str], beat: int) -> dict[str, Posture]:
+    return told.at_start([of_words(sentence) for sentence in story], beat)
+
 
 SITS, KNEELS, LIES = Posture.SITS, Posture.KNEELS, Posture.LIES
 CROUCHES, STANDS = Posture.CROUCHES, Posture.STANDS

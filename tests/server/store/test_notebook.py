@@ -17,7 +17,7 @@ import pytest
 from motion import InputError
 from tests.server.clients import DATABASES, database_url
 from tests.server.lab import stub_module
-from webdemo.inference.plans import Plan, WindowPlan
+from webdemo.inference.plans import KeptPlan, WindowPlan
 from webdemo.inference.requests import GenerateRequest, ReactRequest
 from webdemo.server.store import history as history_module
 from webdemo.server.store.database import Database, Table
@@ -25,7 +25,7 @@ from webdemo.server.store.notebook import Notebook
 from webdemo.ui.history import Kept, Search
 
 ME, OTHER = "user ada", "user eve"
-PLAN = Plan(windows=(WindowPlan((1.0, 2.0, 0.5)),))
+PLAN = KeptPlan(windows=(WindowPlan((1.0, 2.0, 0.5)),))
 
 
 @pytest.fixture(params=DATABASES)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import asdict, replace
+from dataclasses import replace
 from pathlib import Path
 
 import torch
@@ -13,7 +13,7 @@ from models.compiled import compile_network
 from models.intergen.compact import CaptionBank, CompactInterGen, load_captions, load_folder
 from models.text import MiniLM
 from webdemo.inference.cancel import CancelToken
-from webdemo.inference.plans import Plan
+from webdemo.inference.plans import KeptPlan
 from webdemo.inference.requests import GenerateRequest, Progress, ReactRequest, Result
 from webdemo.inference.scenes import Scene
 from webdemo.inference.story import understood
@@ -62,10 +62,10 @@ class InterGenPipeline(TwoPersonPipeline[CompactInterGen]):
         """A sentence, made as a scene where it has several beats or a plan."""
         split = as_scene(request, cancel.raise_if_cancelled)
         if split is None:
-            plan = request.plan or Plan(alone=of_each(request.prompt))
+            plan = request.plan or KeptPlan(alone=of_each(request.prompt))
             events = super().run(replace(request, plan=plan), cancel, timer, passes)
         else:
-            plan = Plan(beats=tuple(asdict(beat) for beat in split.beats))
+            plan = KeptPlan(beats=tuple(beat.to_dict() for beat in split.beats))
             notes = [
                 f"This was made as {len(split.beats)} beats, one after another; the tab Scene lets you change them."
             ]

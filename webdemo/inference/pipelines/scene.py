@@ -22,7 +22,7 @@ from webdemo.inference import methods
 from webdemo.inference.actor import FPS, ROLES
 from webdemo.inference.cancel import CancelToken
 from webdemo.inference.joining import closed
-from webdemo.inference.plans import Plan, WindowPlan
+from webdemo.inference.plans import KeptPlan, WindowPlan
 from webdemo.inference.requests import GenerateRequest, Progress, Result, SamplingRequest
 from webdemo.inference.scenes import NAMES
 from webdemo.inference.story.plan import Window, window_seed, windows
@@ -154,7 +154,7 @@ class SceneMaker:
         yield timer.progress("finish")
         yield Result(
             duets=tuple(duets),
-            manifest={"plan": Plan(windows=tuple(made_plans), notes=tuple(planning)).to_dict()},
+            manifest={"plan": KeptPlan(windows=tuple(made_plans), notes=tuple(planning)).to_dict()},
             readouts=tuple(compare(None, duet) for duet in duets),
             timings={**timer.stages, "total": round(timer.elapsed, 4)},
             notes=tuple(dict.fromkeys(said)),
@@ -198,7 +198,7 @@ def _asked(
     plain = {f.name: getattr(request, f.name) for f in fields(SamplingRequest)} | {"samples": 1}
     plain["seed"] = window_seed(request, sample, window)
     prompt = request.beats[window.beat].sentence
-    return WindowRequest(prompt=prompt, seconds=frames / FPS, plan=Plan(alone=plan.alone), **plain)
+    return WindowRequest(prompt=prompt, seconds=frames / FPS, plan=KeptPlan(alone=plan.alone), **plain)
 
 
 def _blank(request: SceneRequest) -> Array:

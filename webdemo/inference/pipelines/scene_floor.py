@@ -11,19 +11,17 @@ from motion import SMPL22
 from motion.transforms import heading
 from webdemo.inference.actor import FPS, Placement
 from webdemo.inference.known_parts import KnownFrames, Part
-from webdemo.inference.story.beginnings import beginning, keeps_place
-from webdemo.inference.story.contacts import contact
 from webdemo.inference.story.floor import Standing, Way2D, plan, starting
-from webdemo.inference.story.gestures import Hand, gestures
-from webdemo.inference.story.holds import Hold, hold, leads_by_both_hands, twirls
-from webdemo.inference.story.idle import gesturing, idle, is_planned, touches
-from webdemo.inference.story.lifts import lift
-from webdemo.inference.story.moves import Move, goes, moves
+from webdemo.inference.story.gestures import Hand
+from webdemo.inference.story.holds import Hold
+from webdemo.inference.story.moves import Move, goes
 from webdemo.inference.story.plan import Window
 from webdemo.inference.story.poses import ARMS, standing, upright
-from webdemo.inference.story.postures import Change, Posture, changes, leaps
+from webdemo.inference.story.postures import Change, Posture
 from webdemo.inference.story.request import SceneRequest
-from webdemo.inference.story.strikes import Bout, strike
+from webdemo.inference.story.strikes import Bout
+from webdemo.inference.story.telling import told_by
+from webdemo.inference.story.told import Told
 from webdemo.inference.story.track import HALT
 from webdemo.inference.story.ways import Way
 
@@ -61,33 +59,32 @@ def planned(
         taken: the people whose way or poses the request gives. Two who hold or carry each other are then left to the
             network.
     """
-    words = request.beats[window.beat].sentence
-    if taken and any(read(words) for read in (lift, twirls, hold)):
+    if taken and request.told[window.beat].joined:
         return []
     return [part for part in _parts(request, window, scene, placement) if part.person not in taken]
 
 
 def _parts(request: SceneRequest, window: Window, scene: Array, placement: Placement) -> list[Part]:
-    words = request.beats[window.beat].sentence
-    found, still = moves(words), idle(words)
+    told = request.told[window.beat]
+    found, still = told.moves, told.idle
     start, stop = request.edges[window.beat], request.edges[window.beat + 1]
     if not start and (request.paths or request.poses):
         return []
-    if not start and not is_planned(words):
+    if not start and not told.is_planned:
         return _apart(request, window, placement)
     before = scene[:, max(start - 4, 0) : start]
     stand = _stand(before) if start else _beginning(request)
-    lifted = lift(words)
+    lifted = told.lift
     room = _room(request, window, scene, stand, still, found)
     stand = room.stand
     parts, posed = ([], {}) if lifted else _held(request, window, scene, room, still, found, placement)
     parts += room.steps(start, window, placement)
-    touch, found = meeting(contact(words), found, posed, stand)
+    touch, found = meeting(told.contact, found, posed, stand)
     if lifted is not None and not start and not lifted.comes:  # they are held from the first frame
         found = tuple(m for m in found if (m.person, m.way) != (lifted.carrier, Way.STAY))
     if touch is not None:
         parts = [part for part in parts if part.person != "ab".index(touch.person)]
-    if not start and not parts and not found and keeps_place(words):
+    if not start and not parts and not found and told.keeps_place:
         found = tuple(Move(who, Way.AVERTED) for who in "ab")
     ways = {way.person: way for way in plan(found, stand, stop - start, first=not start)}
     ways = {person: way for person, way in ways.items() if person not in {part.person for part in parts}}
@@ -101,14 +98,14 @@ def _parts(request: SceneRequest, window: Window, scene: Array, placement: Place
         part := given_contact(touch, ways, posed, stand, start, stop, window, placement)
     ):
         parts.append(part)
-    led = Hold.RING if any(move.backwards for move in found) and leads_by_both_hands(words) else None
-    if (held := hold(words) or led) is not None and len(ways) == 2:
+    led = Hold.RING if any(move.backwards for move in found) and told.by_both_hands else None
+    if (held := told.hold or led) is not None and len(ways) == 2:
         parts += given_hold(held, ways, stand, start, stop, window, placement)
-    if len(ways) == 2 and twirls(words):
+    if len(ways) == 2 and told.twirls:
         parts += given_twirl(ways, stand, start, stop, window, placement)
-    if (struck := strike(words)) is not None and "ab".index(struck.turns[0]) in ways:
-        parts += given_blows(struck, words, ways, stand, start, stop, window, placement)
-    for person, (gesture, frames, wrists) in hands(words, found, ways, posed, stand, stop - start).items():
+    if (struck := told.strike) is not None and "ab".index(struck.turns[0]) in ways:
+        parts += given_blows(struck, told, ways, stand, start, stop, window, placement)
+    for person, (gesture, frames, wrists) in hands(told, found, ways, posed, stand, stop - start).items():
         inside = (frames + start >= window.start) & (frames + start < window.stop)
         if inside.any():
             shift = start - window.start + window.past
@@ -125,14 +122,13 @@ def _room(
     found: Sequence[Move],
 ) -> Room:
     """The room that the postures of a beat need, in which nobody goes anywhere or touches the other."""
-    words = request.beats[window.beat].sentence
-    if any(read(words) for read in (lift, twirls, hold, strike, contact)) or _going(found):
+    told = request.told[window.beat]
+    if told.joined or told.strike or told.contact or _going(found):
         return Room(stand)
     start, stop = request.edges[window.beat], request.edges[window.beat + 1]
-    sentences = [beat.sentence for beat in request.beats]
     poses = {
         person: postures(
-            sentences, window.beat, person, start, stop, stand, scene[person, start - 1] if start else None
+            request.told, window.beat, person, start, stop, stand, scene[person, start - 1] if start else None
         )
         for person, who in enumerate("ab")
         if who not in still
@@ -162,20 +158,19 @@ def _held(
     """The poses of bystanders and of those whose posture is given, and a pose of each of the latter."""
     stand, stop = room.stand, request.edges[window.beat + 1]
     start = request.edges[window.beat] + room.delay
-    sentences = [beat.sentence for beat in request.beats]
     gone = {move.person for move in found if move.way not in (Way.STAY, Way.BACKS)}
     parts: list[Part] = []
     posed: dict[int, Array] = {}
     for person, who in enumerate("ab"):
         last = scene[person, start - room.delay - 1] if start else None
         up = last is None or last[0, 1] > UPRIGHT
-        if up and (who in still or (who in gesturing(sentences[window.beat]) and who not in gone)):
+        if up and (who in still or (who in request.told[window.beat].gesturing and who not in gone)):
             free = () if who in still else ARMS
             parts += _posed(person, stand, window, start, stop, placement, request.seed, free)
             if free:
                 posed[person] = upright(stand.places[person], float(stand.headings[person]))
         elif who not in gone:
-            poses = postures(sentences, window.beat, person, start, stop, stand, last)
+            poses = postures(request.told, window.beat, person, start, stop, stand, last)
             if len(poses) > 1:
                 posed[person] = poses[-1][1]
             for joints, frames, known in led(poses, window.start, window.stop):
@@ -192,13 +187,10 @@ def plan_note(request: SceneRequest, go_on: Callable[[], None] = lambda: None) -
     said = []
     for number, beat in enumerate(request.beats, 1):
         go_on()
-        ways = _said_together(beat.sentence) or [
-            *_said_postures(beat.sentence),
-            *(
-                f"person {m.person.upper()} {m.way.value}"
-                for m in moves(beat.sentence)
-                if m.way is not Way.STAY
-            ),
+        told = told_by(beat)
+        ways = _said_together(told) or [
+            *_said_postures(told),
+            *(f"person {m.person.upper()} {m.way.value}" for m in told.moves if m.way is not Way.STAY),
         ]
         if ways:
             said.append(
@@ -211,60 +203,57 @@ def plan_note(request: SceneRequest, go_on: Callable[[], None] = lambda: None) -
     ]
 
 
-def _said_together(sentence: str) -> list[str]:
+def _said_together(told: Told) -> list[str]:
     """A lift, a twirl or the blows of a beat, in words."""
-    if (lifted := lift(sentence)) is not None:
+    if (lifted := told.lift) is not None:
         turns = " and turns round" if lifted.spins else ""
         return [f"person {lifted.carrier.upper()} {lifted.carry.words}{turns}"]
-    if leader := twirls(sentence):
+    if leader := told.twirls:
         return [f"person {'B' if leader == 'a' else 'A'} turns under the other's arm"]
-    if (struck := strike(sentence)) is not None:
+    if (struck := told.strike) is not None:
         verb = "throws something" if struck.bout is Bout.THROWS else "strikes"
         return [f"person {who.upper()} {verb}" for who in dict.fromkeys(struck.turns)]
     return []
 
 
-def _said_postures(sentence: str) -> Iterator[str]:
+def _said_postures(told: Told) -> Iterator[str]:
     """The changes of posture and the jumps of a beat, in words."""
-    for who, listed in changes(sentence).items():
+    for who, listed in told.changes.items():
         for change in listed:
             up = change.posture is Posture.STANDS
             yield f"person {who.upper()} {'gets up' if up else change.posture.value}"
-    for who in leaps(sentence):
+    for who in told.leaps:
         yield f"person {who.upper()} jumps"
 
 
 def _beginning(request: SceneRequest) -> Standing:
     """Places before the first beat, so that the first moves of the story can begin."""
-    first = request.beats[0].sentence
-    if (lift(first) or twirls(first) or strike(first) or not _going(moves(first))) and (
-        placed := beginning(first)
-    ) is not None:
-        return placed
-    if any(gesture.hand is Hand.OFFERS for gesture in gestures(first).values()):
+    first = request.told[0]
+    if (first.lift or first.twirls or first.strike or not _going(first.moves)) and first.placed is not None:
+        return first.placed
+    if any(gesture.hand is Hand.OFFERS for gesture in first.gestures.values()):
         return starting((), request.beats[0].length)
-    lies = any(listed[0] == Change(Posture.LIES, already=True) for listed in changes(first).values())
-    near = lies or touches(first)
-    touch = contact(first)
-    if touch is not None and touch.behind and not goes(moves(first)):
+    lies = any(listed[0] == Change(Posture.LIES, already=True) for listed in first.changes.values())
+    near = lies or first.touches
+    touch = first.contact
+    if touch is not None and touch.behind and not goes(first.moves):
         averted = Move("b" if touch.person == "a" else "a", Way.AVERTED)
         return starting((averted,), request.beats[0].length, near=True)
-    for beat in request.beats:
-        found = moves(beat.sentence)
-        if goes(found):
-            return starting(found, beat.length, near=near)
+    for beat, told in zip(request.beats, request.told, strict=True):
+        if goes(told.moves):
+            return starting(told.moves, beat.length, near=near)
     return starting((), request.beats[0].length, near=near)
 
 
 def _apart(request: SceneRequest, window: Window, placement: Placement) -> list[Part]:
     """The places where two people begin who only come or go in a later beat; free if they touch before."""
-    for beat in request.beats[1:]:
-        found = moves(beat.sentence)
+    for beat, told in zip(request.beats[1:], request.told[1:], strict=True):
+        found = told.moves
         if goes(found):
             if (
                 not any(move.way in (Way.TO, Way.AWAY) for move in found)
                 or window.part
-                or touches(request.beats[0].sentence)
+                or request.told[0].touches
             ):
                 return []
             return _given_places(starting(found, beat.length), window, placement)

@@ -13,8 +13,9 @@ from motion.transforms import heading_matrix
 from webdemo.inference.actor import FPS, Placement
 from webdemo.inference.known_parts import KnownFrames
 from webdemo.inference.story.floor import Standing, Way2D
-from webdemo.inference.story.gestures import Gesture, Hand, gestures, wrist
+from webdemo.inference.story.gestures import Gesture, Hand, wrist
 from webdemo.inference.story.moves import Move
+from webdemo.inference.story.told import Told
 from webdemo.inference.story.ways import Way
 
 Array = NDArray[np.floating]
@@ -55,7 +56,7 @@ class Course:
 
 
 def hands(
-    sentence: str,
+    told: Told,
     moves: Sequence[Move],
     ways: Mapping[int, Way2D],
     posed: Mapping[int, Array],
@@ -65,8 +66,8 @@ def hands(
     """The gestures of those whose way or posture is given.
 
     Args:
-        sentence: of the beat.
-        moves: as they are read from it.
+        told: by the beat.
+        moves: of the beat, where they were changed since.
         ways: by person.
         posed: a pose (22, 3) of those whose posture is given, by person.
         stand: where the people are when the beat begins.
@@ -76,7 +77,7 @@ def hands(
         By person the gesture, the frames of the beat (N,) and the wrists' places beside the pelvis in the scene's
         world, (N, sides, 3) metres.
     """
-    found = gestures(sentence)
+    found = dict(told.gestures)
     if {move.way for move in moves if move.linked} == {Way.ALONG}:
         inner = _inner(ways)
         found |= {who: Gesture(Hand.LINKED, (side,)) for who, side in inner.items()}

@@ -29,7 +29,8 @@ from webdemo.inference.story.poses import (
     seated,
     upright,
 )
-from webdemo.inference.story.postures import Change, Posture, at_start, bows, changes, leaps
+from webdemo.inference.story.postures import Change, Posture
+from webdemo.inference.story.told import Told, at_start
 from webdemo.inference.story.track import HALT
 
 Array = NDArray[np.floating]
@@ -69,26 +70,26 @@ _MAKES: dict[Posture, Callable[[Array, float], Array]] = {
 
 
 def postures(
-    sentences: list[str], beat: int, person: int, start: int, stop: int, stand: Standing, last: Array | None
+    story: Sequence[Told], beat: int, person: int, start: int, stop: int, stand: Standing, last: Array | None
 ) -> list[Pose]:
     """The poses by which a person's posture is held in a beat; none where the words leave them on their feet.
 
     Args:
-        sentences: of all beats.
+        story: what all beats tell.
         beat: which one.
         person: 0 for a, 1 for b.
         start, stop: the beat's first frame and the one after its last.
         stand: where the people are when it begins.
         last: the person's pose (22, 3) before it; None in a first beat.
     """
-    who = "ab"[person]
-    now = at_start(sentences, beat)[who]
-    own = [change for change in changes(sentences[beat]).get(who, ()) if not change.already]
+    who, told = "ab"[person], story[beat]
+    now = at_start(story, beat)[who]
+    own = [change for change in told.changes.get(who, ()) if not change.already]
     if last is not None and now is not Posture.STANDS and last[0, 1] > UPRIGHT:  # as in a given motion
         now, own = Posture.STANDS, [Change(now), *own]
-    jumps, nods = leaps(sentences[beat]).get(who, 0), bows(sentences[beat]).get(who)
+    jumps, nods = told.leaps.get(who, 0), told.bows.get(who)
     if now is Posture.STANDS and not own and not jumps and not nods:
-        others = [*changes(sentences[beat]).values(), *leaps(sentences[beat]), *bows(sentences[beat])]
+        others = [*told.changes, *told.leaps, *told.bows]
         return [(start, upright(*_place(person, stand, None)))] if last is None and others else []
     place, angle = _place(person, stand, last)
     if last is None and now is Posture.LIES:  # across the other's way, and not with the feet towards them

@@ -19,7 +19,6 @@ from webdemo.inference.plans import WindowPlan
 from webdemo.inference.requests import GenerateRequest
 from webdemo.inference.story.plan import MOST_FRAMES, Window
 from webdemo.inference.story.request import SceneRequest
-from webdemo.inference.story.roles import of_each
 
 from .scene_floor import planned
 from .scene_wishes import wishes
@@ -118,7 +117,7 @@ def _plan(
     parts, notes = wishes(request, window, scene, placement)
     if request.planned and request.end is None and not request.loop:
         parts += planned(request, window, scene, placement, {part.person for part in parts})
-    alone = beat.alone if any(beat.alone) else of_each(beat.sentence)
+    alone = beat.alone if any(beat.alone) else request.told[window.beat].alone
     return WindowPlan(place, tuple(parts), alone, tuple(notes))
 
 

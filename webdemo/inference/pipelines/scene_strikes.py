@@ -14,8 +14,8 @@ from webdemo.inference.story.floor import Standing, Way2D
 from webdemo.inference.story.gestures import SIDES
 from webdemo.inference.story.plan import Window
 from webdemo.inference.story.poses import TRUNK
-from webdemo.inference.story.postures import changes
 from webdemo.inference.story.strikes import FIRST, Bout, Strike, blows, catching, poses, ready
+from webdemo.inference.story.told import Told
 
 from .scene_contacts import course_of
 from .scene_hands import Course
@@ -30,7 +30,7 @@ _NEARLY = 0.15
 
 def given_blows(
     struck: Strike,
-    words: str,
+    told: Told,
     ways: Mapping[int, Way2D],
     stand: Standing,
     start: int,
@@ -42,7 +42,7 @@ def given_blows(
 
     Args:
         struck: the blows of the beat.
-        words: of the beat.
+        told: by the beat.
         ways: by person.
         stand: where the people are when the beat begins.
         start, stop: the beat's first frame and the one after its last.
@@ -50,7 +50,7 @@ def given_blows(
         placement: from the scene's world to the network's frame.
     """
     courses = [course_of(person, ways, stand, stop - start) for person in (0, 1)]
-    first = _first(struck, words, courses)
+    first = _first(struck, told, courses)
     given: dict[tuple[int, tuple[str, ...]], dict[int, Array]] = {}
     if not start:
         for person in {"ab".index(who) for who in struck.turns}:
@@ -79,14 +79,14 @@ def given_blows(
     ]
 
 
-def _first(struck: Strike, words: str, courses: Sequence[Course]) -> int:
+def _first(struck: Strike, told: Told, courses: Sequence[Course]) -> int:
     """The frame of the beat at which the two are near, or so long before the first blow that it meets its answer."""
     apart, frames = np.linalg.norm(courses[0].places - courses[1].places, axis=1), len(courses[0].places)
     there = np.flatnonzero(np.abs(apart - struck.bout.value) < _NEARLY)
     near = int(there[0]) if len(there) else 0
     if not struck.answered:
         return near
-    change = next(iter(changes(words).get("b" if struck.turns[0] == "a" else "a", ())), None)
+    change = next(iter(told.changes.get("b" if struck.turns[0] == "a" else "a", ())), None)
     at = round((0.35 if change is None else change.after) * frames)
     if change is not None and change.passing:  # the fist goes over them
         at = min(at + DUCKING + (frames - at) // 4, frames - DUCKING)

@@ -4,9 +4,13 @@ from __future__ import annotations
 
 import re
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, fields, replace
 from typing import Any
 
+from pydantic import ValidationError
+
+from acts.lexicon import lexicon
+from acts.plan import MOST_ACTS, Act, beats, problem
 from motion import InputError
 from webdemo.inference.requests import MAX_PROMPT, MAX_SEED
 
@@ -67,6 +71,7 @@ class Beat:
         b: what person b does.
         seconds: length; by default it follows from the words.
         seed: makes this beat another way than its neighbours; by default the story's seed.
+        acts: of a plan, which are then done in place of what the words say; the network still reads the words.
     """
 
     words: str = ""
@@ -74,6 +79,13 @@ class Beat:
     b: str = ""
     seconds: float | None = None
     seed: int | None = None
+    acts: tuple[Act, ...] = ()
+
+    def to_dict(self) -> dict[str, Any]:
+        """As JSON; acts only where there are any."""
+        plain = {f.name: getattr(self, f.name) for f in fields(self) if f.name != "acts"}
+        written = [act.model_dump(mode="json", exclude_defaults=True) for act in self.acts]
+        return plain | ({"acts": written} if written else {})
 
     @property
     def sentence(self) -> str:
@@ -95,8 +107,10 @@ class Beat:
 
     @property
     def length(self) -> float:
-        """Seconds, as set or as they follow from the words."""
-        return self.seconds if self.seconds is not None else seconds_of(self.sentence)
+        """Seconds, as set or as they follow from the acts or the words."""
+        if self.seconds is not None:
+            return self.seconds
+        return seconds_of_acts(self.acts) if self.acts else seconds_of(self.sentence)
 
     def check(self, number: int) -> None:
         """Raises InputError if something is wrong with it; ``number`` from 1 is for the message."""
@@ -152,6 +166,30 @@ def _of_person(text: str, who: str) -> str:
 def is_known_act(words: str) -> bool:
     """True if the words have an act whose usual length is known."""
     return any(act.search(words) for act, _ in _ACTS)
+
+
+def acts_of(values: Sequence[Any]) -> tuple[Act, ...]:
+    """Acts from JSON; raises InputError for anything else, with a sentence on the first that is wrong."""
+    if not isinstance(values, (list, tuple)) or len(values) > MOST_ACTS:
+        raise InputError(f"The acts of a beat are a list of {MOST_ACTS} at most.")
+    try:
+        return tuple(value if isinstance(value, Act) else Act.model_validate(value) for value in values)
+    except ValidationError as error:
+        raise InputError(f"An act of a beat is wrong: {problem(error)}") from None
+
+
+def seconds_of_acts(acts: Sequence[Act]) -> float:
+    """The length of acts of one beat: of the longest of those that happen one after another, in half seconds."""
+    known = lexicon().entries
+    total = 0.0
+    for group in beats(acts):
+        lengths = [
+            act.seconds or known[act.act].seconds * min(act.times or 1, 3) ** 0.5 / act.speed**0.5
+            for act in group
+            if act.act in known
+        ]
+        total += max(lengths, default=DEFAULT_SECONDS)
+    return min(max(round(2 * total) / 2, 1.5), 10.0)
 
 
 def seconds_of(sentence: str) -> float:

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import math
 import re
+from collections.abc import Sequence
+from dataclasses import dataclass
 
 import numpy as np
 
@@ -12,7 +14,7 @@ from .holds import TWIRL, twirls
 from .lifts import Carry, Lift, lift
 from .poses import grounded, seated
 from .postures import Posture, changes
-from .strikes import Bout, strike
+from .strikes import Bout, Strike, strike
 
 _BESIDE = re.compile(
     r"\b(?:side by side|shoulder to shoulder|next to (?:each other|one another|him|her|person [ab]|the other)"
@@ -35,22 +37,54 @@ def keeps_place(sentence: str) -> bool:
     return bool(_BACKS.search(words) or _BESIDE.search(words))
 
 
+@dataclass(frozen=True)
+class Setting:
+    """What of a first beat says where its people are.
+
+    Attributes:
+        backs: they are back to back.
+        beside: they are side by side.
+        postures: that they take up or are in.
+        lift, strike: of the beat.
+        twirls: one turns under the other's arm.
+        apart: metres between them where they face each other; 0 leaves it free.
+    """
+
+    backs: bool = False
+    beside: bool = False
+    postures: Sequence[Posture] = ()
+    lift: Lift | None = None
+    strike: Strike | None = None
+    twirls: bool = False
+    apart: float = 0.0
+
+
 def beginning(sentence: str) -> Standing | None:
-    """Places of two people of whom a sentence says that they are side by side or back to back; None of others."""
+    """Places of two people of whom a sentence says where they are; None of others."""
     words = sentence.lower()
-    if _BACKS.search(words):
-        held = (change.posture for listed in changes(sentence).values() for change in listed)
-        seat = next((_SEATS[posture] for posture in held if posture in _SEATS), None)
+    held = [change.posture for listed in changes(sentence).values() for change in listed]
+    return standing(
+        Setting(
+            bool(_BACKS.search(words)), bool(_BESIDE.search(words)), held, lift(sentence), strike(sentence),
+            bool(twirls(sentence)), KICK if _KICKS.search(words) else 0.0,
+        )
+    )  # fmt: skip
+
+
+def standing(setting: Setting) -> Standing | None:
+    """The places of two people in a setting; None where it leaves them free."""
+    if setting.backs:
+        seat = next((_SEATS[posture] for posture in setting.postures if posture in _SEATS), None)
         behind = float(seat(np.zeros(2), 0.0)[0, 2]) if seat else 0.0  # the feet are where they stand
         apart = BACKS - 2 * behind
         return Standing(np.array([[0.0, 0.0], [0.0, -apart]]), np.array([0.0, math.pi]))
-    if _BESIDE.search(words):
+    if setting.beside:
         return Standing(np.array([[0.0, 0.0], [-ABREAST, 0.0]]), np.zeros(2))
-    if (lifted := lift(sentence)) is not None and not lifted.comes:
-        return _carried(lifted)
-    struck = strike(sentence)
-    if twirls(sentence) or (struck and struck.answered) or _KICKS.search(words):
-        apart = TWIRL if twirls(sentence) else Bout.FISTS.value if struck else KICK
+    if setting.lift is not None and not setting.lift.comes:
+        return _carried(setting.lift)
+    struck = setting.strike
+    if setting.twirls or (struck and struck.answered) or setting.apart:
+        apart = TWIRL if setting.twirls else Bout.FISTS.value if struck else setting.apart
         return Standing(np.array([[0.0, 0.0], [0.0, apart]]), np.array([0.0, math.pi]))
     return None
 

@@ -114,7 +114,8 @@ _ACCEPTS = re.compile(r"\b(?:shak|accept|grab|grasp|high[- ]five|catch|clasp|hol
 _COMPILED = tuple((hand, re.compile(pattern)) for hand, pattern in _PATTERNS)
 _NOT = re.compile(r"\b(?:do(?:es)?n't|not|without|never|refus\w+ to|lowers?|drops?)\b")
 _SIDE = re.compile(r"\b(left|right)(?:[- ]hand(?:ed)?| arm)?\b")
-_OF_BOTH = (Hand.HIGH, Hand.AHEAD, Hand.CLAPS, Hand.EARS, Hand.EYES, Hand.PHOTO, Hand.PRAYS)
+OF_BOTH = (Hand.HIGH, Hand.AHEAD, Hand.CLAPS, Hand.EARS, Hand.EYES, Hand.PHOTO, Hand.PRAYS)
+"""Gestures of both hands."""
 _OWN = (Hand.PHONE, Hand.EARS, Hand.EYES, Hand.PHOTO, Hand.PRAYS)
 STOOD = (Hand.CLAPS, Hand.SALUTES, Hand.AHEAD, Hand.OFFERS, *_OWN)
 """Gestures that are given also to those who only stand."""
@@ -141,7 +142,7 @@ def gestures(sentence: str) -> dict[str, Gesture]:
             if match is None or (denied and denied.start() < match.start()):
                 continue
             side = _SIDE.search(clause.words)
-            sides = SIDES if hand in _OF_BOTH else (side[1],) if side else ("right",)
+            sides = SIDES if hand in OF_BOTH else (side[1],) if side else ("right",)
             found |= dict.fromkeys(clause.who, Gesture(hand, sides))
             break
     return found

@@ -132,7 +132,9 @@ def moves(sentence: str) -> tuple[Move, ...]:
     if held is not None:
         return tuple(Move(person, Way.HOLD, near=held.value, turns=held.turns) for person in "ab")
     if (lifted := lift(sentence)) is not None:
-        return _lifted(lifted, clauses(sentence))
+        comes = lifted.comes or lifted.carrier
+        ways = [c.words for c in clauses(sentence) if c.who == comes and way_of(c.words) is Way.TO]
+        return lifted_moves(lifted, _speed(ways[0]) if ways else 1.1)
     if leader := twirls(sentence):
         other = "b" if leader == "a" else "a"
         return (
@@ -141,7 +143,13 @@ def moves(sentence: str) -> tuple[Move, ...]:
             Move(other, Way.TURN, turns=1.0),
         )
     if (struck := strike(sentence)) is not None:
-        return _struck(struck, clauses(sentence))
+        other = "b" if struck.turns[0] == "a" else "a"
+        own = [clause.words for clause in clauses(sentence) if clause.who == other]
+        return struck_moves(
+            struck,
+            backs=any(way_of(words) is Way.BACK for words in own),
+            down=any(_FLOOR.search(words) or "duck" in words for words in own),
+        )
     found = clauses(sentence)
     if any(is_moved(clause) or STRUCK.search(clause.words) for clause in found):
         return ()
@@ -164,7 +172,7 @@ def moves(sentence: str) -> tuple[Move, ...]:
         ):
             clause = replace(clause, words="circle each other")
         made += _of_clause(clause, late=late)
-    made = _led_backwards(_followed(made, until=any(clause.until for clause in found)))
+    made = finished(made, until=any(clause.until for clause in found))
     if _LINKED.search(sentence.lower()):
         made = [replace(move, linked=True) for move in made]
     for i, clause in enumerate(found):
@@ -210,25 +218,28 @@ def _speed(words: str) -> float:
     return next((value for pattern, value in _SPEEDS if pattern.search(words)), 1.1)
 
 
-def _struck(found: Strike, listed: Sequence[Clause]) -> tuple[Move, ...]:
-    """The places of two of whom at least one strikes, and a step back of the other."""
+def finished(made: Sequence[Move], *, until: bool) -> list[Move]:
+    """The moves, where somebody who is followed or leads backwards goes ahead; ``until`` something ends that early."""
+    return _led_backwards(_followed(list(made), until=until))
+
+
+def struck_moves(found: Strike, *, backs: bool, down: bool) -> tuple[Move, ...]:
+    """The places of two of whom at least one strikes; the other steps back, goes down or stays."""
     near, first = found.bout.value, found.turns[0]
     if not found.answered:
         return tuple(Move(person, Way.SPAR, near=near, turns=turning(found.bout)) for person in "ab")
     other = "b" if first == "a" else "a"
     comes = Move(first, Way.TO, near=near)
-    own = [clause.words for clause in listed if clause.who == other]
-    if any(way_of(words) is Way.BACK for words in own):
+    if backs:
         return comes, Move(other, Way.BACK, late=True)
-    return (comes,) if any(_FLOOR.search(w) or "duck" in w for w in own) else (comes, Move(other, Way.STAY))
+    return (comes,) if down else (comes, Move(other, Way.STAY))
 
 
-def _lifted(found: Lift, listed: Sequence[Clause]) -> tuple[Move, ...]:
-    """The way to the other of the one who comes, and of one who picks them up and walks on with them or turns round."""
+def lifted_moves(found: Lift, speed: float) -> tuple[Move, ...]:
+    """The way to the other, at a speed, of the one who comes, and of one who picks them up and walks on or turns."""
     comes = found.comes or found.carrier
-    ways = [clause.words for clause in listed if clause.who == comes and way_of(clause.words) is Way.TO]
     made = [
-        Move(comes, Way.TO, _speed(ways[0]) if ways else 1.1, near=found.carry.near),
+        Move(comes, Way.TO, speed, near=found.carry.near),
         Move("b" if comes == "a" else "a", Way.STAY),
     ]
     if found.spins:

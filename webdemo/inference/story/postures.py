@@ -8,13 +8,10 @@ head of those who lie or bend down.
 from __future__ import annotations
 
 import re
-from collections.abc import Sequence
 from dataclasses import dataclass
 from enum import Enum
 
 from .clauses import Clause, clauses
-from .moves import moves
-from .ways import Way
 
 
 class Posture(Enum):
@@ -270,35 +267,7 @@ _ON_FEET = re.compile(
 """Acts that need legs: who does them is on their feet again, also where no word says that they get up."""
 
 
-def _gets_going(sentence: str) -> set[str]:
-    """The people, "a" and "b", who walk, jump, dance or the like in a beat's sentence."""
-    going = {move.person for move in moves(sentence) if move.way not in (Way.STAY, Way.FACE, Way.BACKS)}
+def on_feet(sentence: str) -> frozenset[str]:
+    """The people, "a" and "b", who do what needs legs in a beat's sentence."""
     acts = [clause for clause in clauses(sentence) if _says(_ON_FEET, clause.words)]
-    return going | {who for clause in acts for who in clause.who} | set(leaps(sentence))
-
-
-def _from_the_start(sentences: Sequence[str]) -> dict[str, Posture]:
-    """The postures of people of whom a later beat first says that they are down already."""
-    found: dict[str, Posture] = {}
-    told: set[str] = set()
-    for sentence in sentences:
-        for person, listed in changes(sentence).items():
-            if person not in told and listed[0].already:
-                found[person] = listed[0].posture
-        told |= set(changes(sentence)) | _gets_going(sentence)
-    return found
-
-
-def at_start(sentences: Sequence[str], beat: int) -> dict[str, Posture]:
-    """The postures of both people, "a" and "b", when a beat of a story begins."""
-    held = dict.fromkeys("ab", Posture.STANDS)
-    for person, posture in _from_the_start(sentences).items():
-        held[person] = posture
-    for i, sentence in enumerate(sentences[: beat + 1]):
-        held |= dict.fromkeys(_gets_going(sentence), Posture.STANDS)
-        for person, listed in changes(sentence).items():
-            if i == 0 and listed[0].posture is Posture.STANDS:
-                held[person] = Posture.SITS  # who gets up was down
-            if i < beat and not listed[-1].passing:
-                held[person] = listed[-1].posture
-    return held
+    return frozenset(who for clause in acts for who in clause.who)

@@ -5,6 +5,7 @@ from __future__ import annotations
 import hashlib
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import asdict, dataclass, field, fields, replace
+from functools import cached_property
 from typing import Any
 
 import numpy as np
@@ -12,13 +13,15 @@ import numpy as np
 from motion import Duet, InputError
 from webdemo.inference import methods
 from webdemo.inference.actor import FPS
-from webdemo.inference.plans import Plan
+from webdemo.inference.plans import KeptPlan
 from webdemo.inference.predict_request import check_motion
 from webdemo.inference.requests import GenerateRequest, SamplingRequest, _number
 
-from .beats import MOST_BEATS, SHORTEST, Beat
-from .idle import is_planned
+from .beats import MOST_BEATS, SHORTEST, Beat, acts_of
+from .scripting import beats_of
 from .splitting import split_sentence
+from .telling import told_by
+from .told import Told
 from .wishes import MOST_POSES, FloorPath, FloorPoint, Pose, check_together
 
 MOST_SECONDS = 180.0
@@ -60,7 +63,7 @@ class SceneRequest(SamplingRequest):
     motion: Duet | None = None
     start: float | None = None
     end: float | None = None
-    plan: Plan | None = field(default=None, compare=False, repr=False)
+    plan: KeptPlan | None = field(default=None, compare=False, repr=False)
 
     def __post_init__(self) -> None:
         set_ = object.__setattr__
@@ -196,6 +199,11 @@ class SceneRequest(SamplingRequest):
         """The first frame that is made, and the one after the last."""
         return self.edges[0], self.edges[-1]
 
+    @cached_property
+    def told(self) -> tuple[Told, ...]:
+        """What each beat has its people do."""
+        return tuple(told_by(beat) for beat in self.beats)
+
     @property
     def num_frames(self) -> int:
         """Frames of the whole motion that results."""
@@ -209,7 +217,7 @@ class SceneRequest(SamplingRequest):
         plain = {f.name: getattr(self, f.name) for f in fields(self) if f.name not in own}
         written = {
             "kind": "scene",
-            "beats": [asdict(beat) for beat in self.beats],
+            "beats": [beat.to_dict() for beat in self.beats],
             "paths": [asdict(path) for path in self.paths],
             "poses": [pose.to_dict() for pose in self.poses],
             "loop": self.loop,
@@ -235,7 +243,7 @@ class SceneRequest(SamplingRequest):
 
     @classmethod
     def from_dict(
-        cls, values: Mapping[str, Any], motion: Duet | None = None, plan: Plan | None = None
+        cls, values: Mapping[str, Any], motion: Duet | None = None, plan: KeptPlan | None = None
     ) -> SceneRequest:
         """The request that :meth:`to_dict` gave, with the motion that it was given, and the plan of its result.
 
@@ -272,7 +280,7 @@ def as_scene(request: GenerateRequest, go_on: Callable[[], None] = lambda: None)
     if not request.split or "scene" not in methods.method(request.model).tasks:
         return None
     try:
-        beats = split_sentence(request.prompt, go_on)
+        beats = split_sentence(request.prompt, go_on) if request.acts is None else beats_of(request.acts)
         if len(beats) > request.seconds / LEAST_SHARE:
             beats = (Beat(request.prompt),)
         for number, beat in enumerate(beats, 1):
@@ -280,7 +288,7 @@ def as_scene(request: GenerateRequest, go_on: Callable[[], None] = lambda: None)
     except InputError:
         go_on()  # may be what raised it
         return None
-    if len(beats) < 2 and not (request.planned and is_planned(request.prompt)):
+    if len(beats) < 2 and not (request.planned and told_by(beats[0]).is_planned):
         return None
     factor = request.seconds / sum(beat.length for beat in beats)
     edges = np.round(np.cumsum([0.0, *(beat.length * factor for beat in beats)]) * FPS) / FPS
@@ -293,7 +301,8 @@ def as_scene(request: GenerateRequest, go_on: Callable[[], None] = lambda: None)
 
 def beat_of(values: Mapping[str, Any]) -> Beat:
     """A beat from its fields."""
-    return Beat(**{f.name: values[f.name] for f in fields(Beat) if values.get(f.name) is not None})
+    plain = {f.name: values[f.name] for f in fields(Beat) if values.get(f.name) is not None}
+    return Beat(**{**plain, "acts": acts_of(plain.get("acts", ()))})
 
 
 def path_of(values: Mapping[str, Any]) -> FloorPath:

@@ -1,0 +1,147 @@
+"""Acts of a plan in the terms of the stage: what each entry's shapes become, and who stands by."""
+
+from __future__ import annotations
+
+import pytest
+
+from acts import lexicon, read
+from acts.plan import Act, Plan, Relation
+from motion import InputError
+from webdemo.inference.requests import GenerateRequest
+from webdemo.inference.story.beats import Beat, acts_of
+from webdemo.inference.story.contacts import Region
+from webdemo.inference.story.gestures import Hand
+from webdemo.inference.story.holds import Hold
+from webdemo.inference.story.lifts import Carry
+from webdemo.inference.story.postures import Posture
+from webdemo.inference.story.request import as_scene, beat_of
+from webdemo.inference.story.scripting import beats_of
+from webdemo.inference.story.staging import staged
+from webdemo.inference.story.strikes import Bout
+from webdemo.inference.story.telling import of_words
+from webdemo.inference.story.told import Told
+from webdemo.inference.story.ways import Way
+
+
+def told(text: str) -> Told:
+    plan = read(text)
+    assert plan.acts and not plan.unread
+    return staged(plan.acts)
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        "Person A walks up to person B.", "Person A walks past person B.", "Person B follows person A.",
+        "Person A sits down.", "Person B lies down.", "They waltz.", "Person A jumps.", "They bow.",
+        "Person A waves to person B.", "Person B salutes.", "Person A pats person B on the shoulder twice.",
+        "Person A kisses person B.", "Person A carries person B on their back.", "Person A ducks.",
+        "They stand back to back.", "Person A twirls person B under their arm.", "They fight.",
+        "Person A walks around person B.", "Person B steps back.", "They hug.",
+    ],
+)  # fmt: skip
+def test_acts_tell_what_the_plain_words_tell(text: str) -> None:
+    """The two ways to the stage agree where both know the words."""
+    by_acts, by_words = told(text), of_words(text)
+    for name in ("contact", "hold", "twirls", "leaps", "bows", "keeps_place"):
+        assert getattr(by_acts, name) == getattr(by_words, name), name
+    assert {(m.person, m.way) for m in by_acts.moves} == {(m.person, m.way) for m in by_words.moves}
+    assert {p: g.hand for p, g in by_acts.gestures.items()} == {
+        p: g.hand for p, g in by_words.gestures.items()
+    }
+    assert {p: [c.posture for c in listed] for p, listed in by_acts.changes.items()} == {
+        p: [c.posture for c in listed] for p, listed in by_words.changes.items()
+    }
+    assert (by_acts.lift and by_acts.lift.carry) == (by_words.lift and by_words.lift.carry)
+    assert by_acts.is_planned == by_words.is_planned
+
+
+def test_shapes_of_several_acts_make_one_beat() -> None:
+    both = told("Person A waves while person B sits down.")
+    assert both.gestures["a"].hand is Hand.WAVES and both.changes["b"][0].posture is Posture.SITS
+    assert not both.idle
+    assert told("Person A salutes.").idle == {"b"}, "who does nothing beside a gesture stands by"
+    assert not told("Person A hugs person B.").idle
+
+
+def test_who_refuses_leaves_the_other_with_a_hand_held_out() -> None:
+    refused = staged((Act(id="1", act="shake-hands", agents=("b",), patient="a", polarity="not"),))
+    assert refused.gestures["a"].hand is Hand.OFFERS and "b" in refused.idle
+
+
+@pytest.mark.parametrize(
+    ("name", "carry"), [("carry", Carry.ARMS), ("ride-back", Carry.BACK), ("drag", Carry.DRAGS)]
+)
+def test_who_carries(name: str, carry: Carry) -> None:
+    lifted = staged((Act(id="1", act=name, agents=("a",), patient="b"),)).lift
+    assert lifted is not None
+    assert (lifted.carry, lifted.carrier) == (carry, "b" if name == "ride-back" else "a")
+
+
+def test_numbers_sides_and_speeds_reach_the_stage() -> None:
+    wave = staged((Act(id="1", act="wave", agents=("a",), side="left"),))
+    assert wave.gestures["a"].sides == ("left",)
+    assert staged((Act(id="1", act="jump", agents=("b",), times=3),)).leaps == {"b": 3}
+    slow, fast = (
+        staged((Act(id="1", act="walk-up", agents=("a",), speed=s),)).moves[0].speed for s in (0.6, 1.5)
+    )
+    assert fast == pytest.approx(2.5 * slow)
+    squats = staged((Act(id="1", act="squats", agents=("a",)),)).changes["a"]
+    assert len(squats) == 3 and all(change.passing for change in squats)
+    seated = staged((Act(id="1", act="sit-down", agents=("a",), already=True),)).changes["a"][0]
+    assert seated.already and seated.posture is Posture.SITS
+    pat = staged((Act(id="1", act="pat", agents=("a",), patient="b", part="shoulder", times=2),)).contact
+    assert pat is not None and (pat.region, pat.times) == (Region.SHOULDER, 2)
+
+
+@pytest.mark.parametrize(
+    ("text", "groups"),
+    [
+        ("He walks up to her and pats her on the back.", [["walk-up"], ["pat"]]),
+        ("He punches her and she falls down.", [["punch", "fall-down"]]),
+        ("She runs away and he follows her.", [["run-away", "follow"]]),
+        ("Person A turns around and walks away.", [["turn-around", "walk-away"]]),
+        ("They shake hands. Then they hug.", [["shake-hands"], ["hug"]]),
+    ],
+)
+def test_answers_share_a_beat(text: str, groups: list[list[str]]) -> None:
+    beats = beats_of(read(text))
+    assert [[act.act for act in beat.acts] for beat in beats] == groups
+    assert all(beat.words.endswith(".") for beat in beats)
+
+
+def test_a_plan_by_hand_is_made_and_not_read() -> None:
+    first = Act(id="1", act="walk-up", agents=("b",), patient="a")
+    then = Act(id="2", act="waltz", agents=("a", "b"), order=(Relation(kind="after", act="1"),))
+    request = GenerateRequest(acts=Plan(acts=(first, then)), seconds=8.0)
+    assert request.prompt == "Person B walks up to person A. They waltz with each other."
+    scene = as_scene(request)
+    assert scene is not None and [beat.acts for beat in scene.beats] == [(first,), (then,)]
+    assert [move.way for move in scene.told[0].moves] == [Way.TO, Way.STAY]
+    assert scene.told[1].hold is Hold.CLOSED
+    assert GenerateRequest(acts=request.to_dict()["acts"], seconds=8.0) == request, "as JSON"
+    beat = scene.beats[0]
+    assert beat_of(beat.to_dict()) == beat
+
+
+@pytest.mark.parametrize("acts", [[{"act": "hug"}], "hug", [3], [{"id": "1", "act": "hug", "agents": ["c"]}]])
+def test_what_is_no_act_is_said(acts: object) -> None:
+    with pytest.raises(InputError):
+        acts_of(acts)  # type: ignore[arg-type]
+    with pytest.raises(InputError, match="This is no plan of acts"):
+        GenerateRequest(prompt="They hug.", acts={"acts": acts})  # type: ignore[arg-type]
+
+
+def test_every_entry_can_be_staged() -> None:
+    known = lexicon()
+    for name, entry in known.entries.items():
+        act = Act(id="1", act=name, agents=("a",), patient="b", part="shoulder")
+        found = staged((act,))
+        if {shape.do for shape in entry.stage} & {"go", "posture", "jump", "bow", "touch", "gesture"}:
+            assert found != Told(alone=found.alone, on_feet=found.on_feet, touches=found.touches), name
+
+
+def test_struck_people_answer_in_the_beat() -> None:
+    told_ = staged(beats_of(read("He punches her and she falls down."))[0].acts)
+    assert told_.strike is not None and told_.strike.bout is Bout.FISTS and told_.strike.answered
+    assert Beat("", acts=(Act(id="1", act="waltz", agents=("a", "b")),)).length == 8.0

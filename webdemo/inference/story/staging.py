@@ -1,0 +1,304 @@
+"""The acts of a beat in the terms of the stage: each entry's shapes become moves, touches, postures and the like.
+
+What several acts of one beat ask for is settled here, in one place: who is held, carried or struck takes part in that
+and in nothing else, who is named by no act stands by, and a denied act leaves its people where they are.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+from functools import lru_cache
+
+from acts import shapes
+from acts.captions import of_each
+from acts.lexicon import Entry, Lexicon, lexicon
+from acts.plan import Act, beats
+from acts.reading.vocabulary import vocabulary
+
+from .beginnings import Setting, standing
+from .contacts import Contact, Region
+from .gestures import OF_BOTH, SIDES, STOOD, Gesture, Hand
+from .holds import TWIRL, Hold
+from .lifts import Carry, Lift
+from .moves import Move, finished, goes, lifted_moves, struck_moves
+from .postures import Change, Posture
+from .strikes import Bout, Strike
+from .told import Told
+from .ways import Way
+
+_WAYS = {
+    "to": Way.TO, "away": Way.AWAY, "past": Way.PAST, "around": Way.ROUND, "behind": Way.BEHIND, "along": Way.ALONG,
+    "after": Way.AFTER, "back": Way.BACK, "aside": Way.ASIDE, "ahead": Way.AHEAD, "to and fro": Way.PACE,
+}  # fmt: skip
+_TURNS = {"around": Way.TURN, "to": Way.FACE, "away": Way.AVERTED}
+_REGIONS = {
+    "head": Region.HEAD, "shoulder": Region.SHOULDER, "back": Region.BACK, "chest": Region.CHEST,
+    "waist": Region.CHEST, "arm": Region.ARM, "hand": Region.HAND, "leg": Region.LEG, "knee": Region.LEG,
+    "foot": Region.FOOT,
+}  # fmt: skip
+"""Families of parts of the body and the region of each."""
+_NEAR = frozenset(("touch", "fight", "dance"))
+"""Groups of the lexicon whose acts two people do within each other's reach."""
+_LEGS = frozenset(("dance", "fight", "ways", "play"))
+"""Groups whose acts are done on one's feet."""
+
+
+def staged(acts: Sequence[Act], known: Lexicon | None = None) -> Told:
+    """What the acts of one beat tell, which happen at the same time.
+
+    Args:
+        acts: of the beat; those that the lexicon does not have are passed over.
+        known: the lexicon; ours by default.
+    """
+    return _staged(tuple(acts)) if known is None else _Stage(acts, known).told()
+
+
+@lru_cache(maxsize=512)
+def _staged(acts: tuple[Act, ...]) -> Told:
+    return _Stage(acts, lexicon()).told()
+
+
+class _Stage:
+    """One beat's acts, taken shape by shape."""
+
+    def __init__(self, acts: Sequence[Act], known: Lexicon) -> None:
+        self.acts, self.known = acts, known
+        self.done = [
+            (act, known.entries[act.act]) for act in acts if act.happens and act.act in known.entries
+        ]
+        groups = beats(self.acts)
+        self.level = {act.id: level for level, group in enumerate(groups) for act in group}
+        self.levels = len(groups)
+        self.moves: list[Move] = []
+        self.gestures: dict[str, Gesture] = {}
+        self.changes: dict[str, tuple[Change, ...]] = {}
+        self.leaps: dict[str, int] = {}
+        self.bows: dict[str, tuple[int, bool]] = {}
+        self.contact: Contact | None = None
+        self.hold: Hold | None = None
+        self.twirls = ""
+        self.lift: Lift | None = None
+        self.blows: list[tuple[tuple[str, ...], shapes.Strike]] = []
+        self.setting = Setting()
+
+    def told(self) -> Told:
+        """All that they tell."""
+        for act, entry in sorted(self.done, key=lambda pair: self.level[pair[0].id]):
+            for shape in entry.stage:
+                self._take(act, shape, entry)
+        for act in self.acts:
+            if act.polarity == "not" and act.modality == "told" and act.act in self.known.entries:
+                for shape in self.known.entries[act.act].refused:
+                    self._take(act, shape, self.known.entries[act.act])
+        struck = self._strike()
+        moves = self._moves(struck)
+        idle = self._idle()
+        return Told(
+            moves=moves, idle=idle, gesturing=self._gesturing(moves), gestures=self.gestures, contact=self.contact,
+            hold=self.hold, by_both_hands=any(m.backwards and m.way is Way.AWAY for m in moves), twirls=self.twirls,
+            lift=self.lift, strike=struck, changes=self.changes, leaps=self.leaps, bows=self.bows,
+            on_feet=frozenset(who for act, e in self.done if e.group in _LEGS for who in act.agents),
+            placed=standing(
+                replace(
+                    self.setting, lift=self.lift, strike=struck, twirls=bool(self.twirls),
+                    postures=[change.posture for listed in self.changes.values() for change in listed],
+                )
+            ),
+            keeps_place=self.setting.backs or self.setting.beside,
+            touches=any(e.group in _NEAR and (e.mutual or act.patient) for act, e in self.done),
+            alone=of_each(self.acts, self.known),
+        )  # fmt: skip
+
+    # ---- shapes --------------------------------------------------------------------------------------
+
+    def _take(self, act: Act, shape: shapes.Shape, entry: Entry) -> None:
+        people = self._people(act, shape)
+        match shape:
+            case shapes.Go():
+                self.moves += [self._go(act, shape, who) for who in people]
+            case shapes.Turn():
+                turns = float(act.times or 1) * shape.turns
+                late = self._late(act)
+                self.moves += [Move(who, _TURNS[shape.way], turns=turns, late=late) for who in people]
+            case shapes.Stay():
+                self.setting = replace(
+                    self.setting, backs=self.setting.backs or shape.facing == "back to back"
+                )
+                if shape.facing == "away":
+                    self.moves += [Move(who, Way.AVERTED) for who in people]
+            case shapes.Place():
+                here = self.setting
+                self.setting = replace(
+                    here,
+                    backs=here.backs or shape.way == "back to back",
+                    beside=here.beside or shape.way == "beside",
+                    apart=here.apart or shape.apart,
+                )
+                if shape.way == "back to back":
+                    self.moves += [Move(who, Way.BACKS) for who in "ab"]
+            case shapes.Posture():
+                posture = Posture(shape.posture)
+                after = max(self.level[act.id] / self.levels, 0.4 if shape.who == "patient" else 0.0)
+                already = shape.already or act.already
+                times = min(act.times or shape.times, 5) if shape.passing else 1
+                listed = tuple(
+                    Change(
+                        posture, already, 0.0 if already else after + (1 - after) * i / times, shape.passing
+                    )
+                    for i in range(times)
+                )
+                for who in people:
+                    self.changes[who] = (*self.changes.get(who, ()), *listed)
+            case shapes.Jump():
+                self.leaps |= dict.fromkeys(people, min(act.times or shape.times, 5))
+            case shapes.Bow():
+                self.bows |= dict.fromkeys(people, (min(act.times or 1, 5), shape.deep or _is_deep(act)))
+            case shapes.Gesture():
+                hand = Hand[shape.gesture.upper()]
+                side = act.side or shape.sides
+                sides = SIDES if hand in OF_BOTH or side == "both" else (side,)
+                self.gestures |= dict.fromkeys(people, Gesture(hand, sides))
+            case shapes.Touch():
+                self._touch(act, shape)
+            case shapes.Hold(hold="twirl"):
+                self.twirls = people[0]
+            case shapes.Hold():
+                self.hold = Hold.CLOSED if shape.hold == "closed" else Hold.RING
+            case shapes.Lift():
+                carry = Carry[shape.carry.upper()]
+                if self.lift is None or self.lift.carry is Carry.UP:
+                    self.lift = Lift(people[0], carry, shape.spins, self.lift.comes if self.lift else "")
+            case shapes.Strike():
+                self.blows.append((people, shape))
+
+    def _people(self, act: Act, shape: shapes.Shape) -> tuple[str, ...]:
+        """Whom a shape is for."""
+        if shape.who == "both":
+            return ("a", "b")
+        if shape.who == "patient":
+            return (act.patient or _other(act.agents[0]),)
+        return act.agents
+
+    def _go(self, act: Act, shape: shapes.Go, who: str) -> Move:
+        way = _WAYS[shape.way]
+        metres = act.distance if act.distance is not None and way is Way.AHEAD else shape.metres
+        turns = shape.turns * (act.times or 1) if way is Way.ROUND else shape.turns
+        return Move(
+            who, way, min(shape.speed * act.speed, 3.0), turns, any(r.kind == "until" for r in act.order),
+            shape.linked, way is not Way.AFTER and self._late(act), metres, shape.near, shape.backwards,
+        )  # fmt: skip
+
+    def _late(self, act: Act) -> bool:
+        """True if an act comes after one that is done in place."""
+        before = (e for other, e in self.done if self.level[other.id] < self.level[act.id])
+        return any(not _goes(entry) for entry in before)
+
+    def _touch(self, act: Act, shape: shapes.Touch) -> None:
+        if self.contact is not None:
+            return
+        giver = act.agents[0]
+        family = shape.part or vocabulary().part(act.part or "") or (act.part or "")
+        region = Region.WAIST if family == "waist" and shape.behind else _REGIONS.get(family)
+        if region is None:
+            return
+        sides = {"both": SIDES, "none": ()}.get(shape.hands, (shape.hands,))
+        times = min(act.times or shape.times, 5) if shape.times else 0
+        self.contact = Contact(giver, region, sides, times, behind=shape.behind, fells=shape.fells)
+        if shape.fells:
+            fallen = Change(Posture.LIES, after=0.4)
+            self.changes[_other(giver)] = (*self.changes.get(_other(giver), ()), fallen)
+
+    # ---- what follows from all of them ---------------------------------------------------------------
+
+    def _strike(self) -> Strike | None:
+        """The blows, in the order in which they are told."""
+        if not self.blows:
+            return None
+        people, shape = self.blows[0]
+        bout = Bout[shape.bout.upper()]
+        if len(people) == 2:
+            return Strike(bout, "ab")
+        turns = "".join(dict.fromkeys("".join(each) for each, _ in self.blows))
+        hit = _other(people[0])
+        answered = any(
+            hit in other.agents and shape.do in ("posture", "go")
+            for other, e in self.done
+            for shape in e.stage
+        )
+        goes_on = shape.goes_on or (len(self.blows) > 1 and not answered)
+        return Strike(bout, turns, goes_on, answered and len(turns) == 1)
+
+    def _moves(self, struck: Strike | None) -> tuple[Move, ...]:
+        if self.hold is not None:
+            return tuple(Move(who, Way.HOLD, near=self.hold.value, turns=self.hold.turns) for who in "ab")
+        if self.lift is not None:
+            return lifted_moves(self.lift, 1.1)
+        if self.twirls:
+            other = _other(self.twirls)
+            turned = Move(other, Way.FACE, late=True), Move(other, Way.TURN, turns=1.0)
+            return Move(self.twirls, Way.TO, near=TWIRL), *turned
+        low = set(self.changes) | set(self.leaps)
+        if struck is not None:
+            other = _other(struck.turns[0])
+            backs = any(m.person == other and m.way is Way.BACK for m in self.moves)
+            return struck_moves(struck, backs=backs, down=other in self.changes)
+        made = finished(self.moves, until=any(move.until for move in self.moves))
+        if not goes(made):
+            return tuple(made)
+        backs = any(move.way in (Way.BACK, Way.ASIDE) for move in made)
+        for who in "ab":
+            if all(move.person != who for move in made) and who not in low and not backs:
+                made.append(Move(who, Way.STAY))
+        return tuple(move for move in made if move.way is not Way.STAY or move.person not in low)
+
+    def _idle(self) -> frozenset[str]:
+        """The people who stand by: of whom nothing is told that happens, while the other does something alone."""
+        found = set()
+        for who in "ab":
+            other = _other(who)
+            own = [(act, e) for act, e in self.done if who in act.agents]
+            theirs = [(act, e) for act, e in self.done if other in act.agents and who not in act.agents]
+            denied = any(who in act.agents and not act.happens for act in self.acts)
+            waits = bool(own) and all(_only_stays(e) for _, e in own)
+            touched = any(_reaches(act, e) for act, e in theirs)
+            if touched or (own and not waits):
+                continue
+            if waits or denied or any(not _goes(e) for _, e in theirs):
+                found.add(who)
+        return frozenset(found)
+
+    def _gesturing(self, moves: Sequence[Move]) -> frozenset[str]:
+        gone = {move.person for move in moves if move.way not in (Way.STAY, Way.BACKS)}
+        each = len(self.gestures) == 2 and not any(len(act.agents) == 2 for act, _ in self.done)
+        own = {who: sum(who in act.agents for act, _ in self.done) for who in "ab"}
+        return frozenset(
+            who
+            for who, gesture in self.gestures.items()
+            if (gesture.hand in STOOD or each) and own[who] < 2 and who not in gone
+        )
+
+
+def _other(who: str) -> str:
+    return "b" if who == "a" else "a"
+
+
+def _is_deep(act: Act) -> bool:
+    return any(adverb in ("deeply", "low", "deep") for adverb in act.manner)
+
+
+def _only_stays(entry: Entry) -> bool:
+    """True for an act of somebody who stands by."""
+    return bool(entry.stage) and all(shape.do == "stay" for shape in entry.stage)
+
+
+def _goes(entry: Entry) -> bool:
+    return any(shape.do == "go" for shape in entry.stage)
+
+
+def _reaches(act: Act, entry: Entry) -> bool:
+    """True for an act that the other takes part in: it touches, holds, lifts or strikes them, or needs an answer."""
+    shown = {shape.do for shape in entry.stage}
+    if shown & {"touch", "hold", "lift", "strike"} or entry.mutual:
+        return True
+    return act.patient is not None and not shown

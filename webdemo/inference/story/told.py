@@ -1,0 +1,114 @@
+"""What a beat has its two people do, in the terms of the stage: the one form between words or acts and what is given.
+
+The pipelines read no words. They take a :class:`Told`, which comes from the acts of a plan (:mod:`.staging`) or, where
+those are not all known, from a sentence (:mod:`.telling`).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+
+from .contacts import Contact
+from .floor import Standing
+from .gestures import Gesture
+from .holds import Hold
+from .lifts import Lift
+from .moves import Move, goes
+from .postures import Change, Posture
+from .strikes import Strike
+from .ways import Way
+
+_IN_PLACE = (Way.STAY, Way.FACE, Way.BACKS)
+"""Moves that need no legs."""
+
+
+@dataclass(frozen=True)
+class Told:
+    """What a beat has its people do. People are "a" and "b".
+
+    Attributes:
+        moves: of each person in order; () where nobody is sent anywhere.
+        idle: those who stand by.
+        gesturing: those who only stand and make a gesture that the network knows little of.
+        gestures: of hands, by person.
+        contact: the first touch.
+        hold: in which both dance or spin.
+        by_both_hands: one holds both of the other's hands.
+        twirls: under whose raised arm the other turns; "" if nobody does.
+        lift: of one by the other.
+        strike: blows or throws.
+        changes: of posture in order, by person.
+        leaps: the number of jumps, by person.
+        bows: the number of bows, by person, and True where they are deep.
+        on_feet: those who do what needs legs.
+        placed: where both are when the story begins with this beat.
+        keeps_place: they are side by side or back to back, and stay so.
+        touches: one touches the other in some way.
+        alone: a sentence on what a does and one on what b does; "" for who has none of their own.
+    """
+
+    moves: tuple[Move, ...] = ()
+    idle: frozenset[str] = frozenset()
+    gesturing: frozenset[str] = frozenset()
+    gestures: Mapping[str, Gesture] = field(default_factory=dict)
+    contact: Contact | None = None
+    hold: Hold | None = None
+    by_both_hands: bool = False
+    twirls: str = ""
+    lift: Lift | None = None
+    strike: Strike | None = None
+    changes: Mapping[str, tuple[Change, ...]] = field(default_factory=dict)
+    leaps: Mapping[str, int] = field(default_factory=dict)
+    bows: Mapping[str, tuple[int, bool]] = field(default_factory=dict)
+    on_feet: frozenset[str] = frozenset()
+    placed: Standing | None = None
+    keeps_place: bool = False
+    touches: bool = False
+    alone: tuple[str, str] = ("", "")
+
+    @property
+    def is_planned(self) -> bool:
+        """True if people go somewhere, stand by, sit, kneel, lie down, jump, bow or touch."""
+        found = (self.contact, self.idle, self.changes, self.leaps, self.bows, self.gesturing, self.placed)
+        return goes(self.moves) or any(
+            each is not None and each != {} and each != frozenset() for each in found
+        )
+
+    @property
+    def going(self) -> set[str]:
+        """The people who walk, jump, dance or the like."""
+        going = {move.person for move in self.moves if move.way not in _IN_PLACE}
+        return going | self.on_feet | set(self.leaps)
+
+    @property
+    def joined(self) -> bool:
+        """True if two hold or carry each other, so that neither can be placed alone."""
+        return bool(self.lift or self.twirls or self.hold)
+
+
+def at_start(story: Sequence[Told], beat: int) -> dict[str, Posture]:
+    """The postures of both people, "a" and "b", when a beat of a story begins."""
+    held = dict.fromkeys("ab", Posture.STANDS)
+    for person, posture in _from_the_start(story).items():
+        held[person] = posture
+    for i, told in enumerate(story[: beat + 1]):
+        held |= dict.fromkeys(told.going, Posture.STANDS)
+        for person, listed in told.changes.items():
+            if i == 0 and listed[0].posture is Posture.STANDS:
+                held[person] = Posture.SITS  # who gets up was down
+            if i < beat and not listed[-1].passing:
+                held[person] = listed[-1].posture
+    return held
+
+
+def _from_the_start(story: Sequence[Told]) -> dict[str, Posture]:
+    """The postures of people of whom a later beat first says that they are down already."""
+    found: dict[str, Posture] = {}
+    known: set[str] = set()
+    for told in story:
+        for person, listed in told.changes.items():
+            if person not in known and listed[0].already:
+                found[person] = listed[0].posture
+        known |= set(told.changes) | told.going
+    return found
