@@ -132,9 +132,7 @@ def moves(sentence: str) -> tuple[Move, ...]:
     if held is not None:
         return tuple(Move(person, Way.HOLD, near=held.value, turns=held.turns) for person in "ab")
     if (lifted := lift(sentence)) is not None:
-        comes = lifted.comes or lifted.carrier
-        ways = [c.words for c in clauses(sentence) if c.who == comes and way_of(c.words) is Way.TO]
-        return lifted_moves(lifted, _speed(ways[0]) if ways else 1.1)
+        return _lifted(lifted, clauses(sentence))
     if leader := twirls(sentence):
         other = "b" if leader == "a" else "a"
         return (
@@ -143,13 +141,7 @@ def moves(sentence: str) -> tuple[Move, ...]:
             Move(other, Way.TURN, turns=1.0),
         )
     if (struck := strike(sentence)) is not None:
-        other = "b" if struck.turns[0] == "a" else "a"
-        own = [clause.words for clause in clauses(sentence) if clause.who == other]
-        return struck_moves(
-            struck,
-            backs=any(way_of(words) is Way.BACK for words in own),
-            down=any(_FLOOR.search(words) or "duck" in words for words in own),
-        )
+        return _struck(struck, clauses(sentence))
     found = clauses(sentence)
     if any(is_moved(clause) or STRUCK.search(clause.words) for clause in found):
         return ()
@@ -221,6 +213,21 @@ def _speed(words: str) -> float:
 def finished(made: Sequence[Move], *, until: bool) -> list[Move]:
     """The moves, where somebody who is followed or leads backwards goes ahead; ``until`` something ends that early."""
     return _led_backwards(_followed(list(made), until=until))
+
+
+def _struck(found: Strike, listed: Sequence[Clause]) -> tuple[Move, ...]:
+    other = "b" if found.turns[0] == "a" else "a"
+    own = [clause.words for clause in listed if clause.who == other]
+    backs = any(way_of(words) is Way.BACK for words in own)
+    return struck_moves(
+        found, backs=backs, down=any(_FLOOR.search(words) or "duck" in words for words in own)
+    )
+
+
+def _lifted(found: Lift, listed: Sequence[Clause]) -> tuple[Move, ...]:
+    comes = found.comes or found.carrier
+    ways = [clause.words for clause in listed if clause.who == comes and way_of(clause.words) is Way.TO]
+    return lifted_moves(found, _speed(ways[0]) if ways else 1.1)
 
 
 def struck_moves(found: Strike, *, backs: bool, down: bool) -> tuple[Move, ...]:
