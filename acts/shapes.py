@@ -60,7 +60,7 @@ class Stay(_Shape):
 
 
 class Place(_Shape):
-    """Where the two are when a story begins with the act: ``apart`` metres, side by side or back to back."""
+    """The place of the two when a story begins with the act: ``apart`` metres, side by side or back to back."""
 
     do: Literal["place"] = "place"
     way: Literal["facing", "beside", "back to back"] = "facing"

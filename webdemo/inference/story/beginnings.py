@@ -39,7 +39,7 @@ def keeps_place(sentence: str) -> bool:
 
 @dataclass(frozen=True)
 class Setting:
-    """What of a first beat says where its people are.
+    """The part of a first beat that says where its people are.
 
     Attributes:
         backs: they are back to back.

@@ -201,7 +201,7 @@ class SceneRequest(SamplingRequest):
 
     @cached_property
     def told(self) -> tuple[Told, ...]:
-        """What each beat has its people do."""
+        """The stage of each beat."""
         return tuple(told_by(beat) for beat in self.beats)
 
     @property

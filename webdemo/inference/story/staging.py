@@ -45,7 +45,7 @@ _LEGS = frozenset(("dance", "fight", "ways", "play"))
 
 
 def staged(acts: Sequence[Act], known: Lexicon | None = None) -> Told:
-    """What the acts of one beat tell, which happen at the same time.
+    """Tells the stage what the acts of one beat ask for.
 
     Args:
         acts: of the beat; those that the lexicon does not have are passed over.

@@ -1,4 +1,4 @@
-"""What a beat tells: by its acts where it has any, and by its words otherwise."""
+"""The stage of a beat, from its acts where it has any, and from its words otherwise."""
 
 from __future__ import annotations
 
@@ -17,13 +17,13 @@ from .told import Told
 
 
 def told_by(beat: Beat) -> Told:
-    """What a beat tells: by its acts, or by its words."""
+    """Reads a beat by its acts, or by its words."""
     return staged(beat.acts) if beat.acts else of_words(beat.sentence)
 
 
 @lru_cache(maxsize=512)
 def of_words(sentence: str) -> Told:
-    """What a sentence tells."""
+    """Reads a sentence for the stage."""
     return Told(
         moves=moves.moves(sentence), idle=idle.idle(sentence), gesturing=idle.gesturing(sentence),
         gestures=gestures(sentence), contact=contact(sentence), hold=hold(sentence),

@@ -1,4 +1,4 @@
-"""What a beat has its two people do, in the terms of the stage: the one form between words or acts and what is given.
+"""A beat in the terms of the stage: the one form between words or acts and what is given.
 
 The pipelines read no words. They take a :class:`Told`, which comes from the acts of a plan (:mod:`.staging`) or, where
 those are not all known, from a sentence (:mod:`.telling`).
@@ -25,7 +25,7 @@ _IN_PLACE = (Way.STAY, Way.FACE, Way.BACKS)
 
 @dataclass(frozen=True)
 class Told:
-    """What a beat has its people do. People are "a" and "b".
+    """All that a beat has its people do, who are "a" and "b".
 
     Attributes:
         moves: of each person in order; () where nobody is sent anywhere.
