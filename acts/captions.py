@@ -10,13 +10,19 @@ from __future__ import annotations
 import re
 from collections.abc import Sequence
 
-from .lexicon import Lexicon, lexicon
+from .frames import Frame
+from .lexicon import Entry, Lexicon, lexicon
 from .plan import Act, Plan
 
 _VERB = re.compile(r"\[([a-z-]+)\]")
 _SLOT = re.compile(r"\{([a-z_]+)\} ?")
 _NAMES = {"a": "person A", "b": "person B"}
 _COUNTS = {1: "once", 2: "twice", 3: "three times"}
+_PLAIN = frozenset(("a", "an", "the", "their"))
+_BEFORE_PEOPLE = frozenset(("to", "with", "at", "of"))
+_LEAN = frozenset(("to", "with", "at", "of", "on", "by", "in", "past", "from", "around", "behind", "into"))
+_AHEAD = {"tried": "try to", "offered": "offer to", "pretended": "pretend to", "wished": "want to"}
+_TURNS = frozenset(("left", "right", "clockwise", "counterclockwise", "anticlockwise"))
 
 
 def singular(verb: str) -> str:
@@ -124,3 +130,61 @@ def of_each(acts: Sequence[Act], known: Lexicon) -> tuple[str, str]:
         found[who].append(words)
     a, b = (f"One person {' and '.join(words)}." if words else "" for words in (found["a"], found["b"]))
     return a, b
+
+
+def short(act: Act, entry: Entry | None) -> str:
+    """An act in a few words, without its people: "pats right shoulder ×2", "does not wave".
+
+    They are those of the entry's caption, or of its name where the caption describes the act by another verb, since
+    it keeps to the words of the network. An act without an entry goes by its name.
+    """
+    both = len(act.agents) == 2
+    ahead = _AHEAD.get(act.modality, "")
+    if act.polarity == "not":
+        ahead = f"{'do' if both else 'does'} not {ahead}".strip()
+    elif ahead and not both:
+        verb, _, rest = ahead.partition(" ")
+        ahead = f"{singular(verb)} {rest}"
+    plain = ahead or both
+    phrase = _phrase(act, entry)
+    text = f"{ahead} {_VERB.sub(lambda m: m[1] if plain else singular(m[1]), phrase)}".strip()
+    said = text.split()
+    told = [act.side] if act.side in ("left", "right") else []
+    told += [act.direction] if act.direction in _TURNS else []
+    told += [adverb for adverb in act.manner[:1] if adverb not in ("then", "finally")]
+    text = " ".join([text, *dict.fromkeys(word for word in told if word and word not in said)])
+    return f"{text} ×{act.times}" if act.times is not None and act.times > 1 else text
+
+
+def _phrase(act: Act, entry: Entry | None) -> str:
+    """The words of :func:`short` with their verbs in brackets."""
+    name = act.act.split("-")
+    if entry is None or not entry.caption:
+        return " ".join(name)
+    caption = entry.caption[0]
+    named = f"[{name[0]}] {' '.join(name[1:])}".strip().replace(" thing", f" {act.thing or 'something'}")
+    verb = _VERB.search(caption)
+    other = verb is None or verb[1] != name[0] or caption.startswith("{b}")
+    no_limb = "{limb}" in caption and not act.part
+    if no_limb or (other and "{limb}" not in caption and "{part}" not in caption):
+        verbs = {verb for frame in entry.frames for verb in Frame.parse(frame).verbs} | {"be"}
+        if name[0] in verbs and not verbs.intersection(name[1:]):
+            return named
+    side = f"{act.side} " if act.side in ("left", "right") and "{side}" not in caption else ""
+    values = {
+        "a": "", "b": "*",
+        "part": f"{side}{act.part}" if act.part else "",
+        "side": side.strip(), "thing": act.thing or "something", "direction": act.direction or "",
+        "limb": f"both {_plural(act.part or 'hand')}" if act.side == "both" else f"{side}{act.part or 'hand'}",
+    }  # fmt: skip
+    filled = _SLOT.sub(lambda m: f"{values.get(m[1], '')} ", caption.replace("{b} on the {part}", "{part}"))
+    kept: list[str] = []
+    for word in filled.split():
+        if word in ("*", "'s"):
+            while word == "*" and kept and kept[-1] in (_LEAN if act.patient is None else _BEFORE_PEOPLE):
+                kept.pop()
+        elif word not in _PLAIN:
+            kept.append(word)
+    while kept and kept[-1] in ("on", "of", "to", "with", "at"):
+        kept.pop()
+    return " ".join(kept)

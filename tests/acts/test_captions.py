@@ -1,9 +1,11 @@
 from __future__ import annotations
 
+from typing import Any
+
 import pytest
 
-from acts import lexicon, read
-from acts.captions import beats, singular
+from acts import Act, lexicon, read
+from acts.captions import beats, short, singular
 
 
 @pytest.mark.parametrize(
@@ -27,3 +29,40 @@ def test_a_plan_in_plain_words(text: str, said: list[str]) -> None:
 def test_third_persons_of_verbs() -> None:
     verbs = ["pass", "carry", "play", "be", "have", "go"]
     assert [singular(verb) for verb in verbs] == ["passes", "carries", "plays", "is", "has", "goes"]
+
+
+@pytest.mark.parametrize(
+    ("fields", "said"),
+    [
+        (
+            {"act": "pat", "patient": "b", "part": "shoulder", "side": "right", "times": 2},
+            "pats right shoulder ×2",
+        ),
+        ({"act": "walk-up", "patient": "b", "direction": "up"}, "walks up"),
+        ({"act": "skip"}, "skips"),
+        ({"act": "skip", "patient": "b"}, "skips past"),
+        ({"act": "curtsy"}, "curtsies"),  # not the caption's "bows"
+        ({"act": "raise-leg", "part": "leg", "side": "left"}, "lifts left leg"),
+        ({"act": "raise-leg"}, "raises leg"),
+        ({"act": "be-twirled", "patient": "b"}, "is twirled"),
+        ({"act": "lift-spin", "patient": "b"}, "picks up and spins around"),
+        ({"act": "put-down-thing", "thing": "cup"}, "puts down cup"),
+        ({"act": "hug", "agents": ("a", "b")}, "hug"),
+        ({"act": "hug", "patient": "b", "modality": "tried"}, "tries to hug"),
+        ({"act": "wave", "polarity": "not", "side": "left"}, "does not wave left"),
+        ({"act": "shake-hands", "agents": ("a", "b"), "polarity": "not"}, "do not shake hands"),
+        ({"act": "turn-around", "side": "left", "manner": ("slowly",)}, "turns around left slowly"),
+        ({"act": "of-a-lab"}, "of a lab"),
+    ],
+)
+def test_an_act_in_a_few_words(fields: dict[str, Any], said: str) -> None:
+    act = Act(**{"id": "1", "agents": ("a",), **fields})
+    assert short(act, lexicon().entries.get(act.act)) == said
+
+
+def test_every_act_has_few_words_without_slots() -> None:
+    for name, entry in lexicon().entries.items():
+        for patient in (None, "b"):
+            words = short(Act(id="1", act=name, agents=("a",), patient=patient), entry)
+            assert words.strip() == words and 0 < len(words) <= 60, name
+            assert not set("{}[]*'") & set(words), name
