@@ -149,7 +149,7 @@ def short(act: Act, entry: Entry | None) -> str:
     phrase = _phrase(act, entry)
     text = f"{ahead} {_VERB.sub(lambda m: m[1] if plain else singular(m[1]), phrase)}".strip()
     said = text.split()
-    told = [act.side] if act.side in ("left", "right") else []
+    told: list[str | None] = [act.side] if act.side in ("left", "right") else []
     told += [act.direction] if act.direction in _TURNS else []
     told += [adverb for adverb in act.manner[:1] if adverb not in ("then", "finally")]
     text = " ".join([text, *dict.fromkeys(word for word in told if word and word not in said)])

@@ -9,6 +9,8 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import Any, Protocol
 
+from acts import read
+from motion import InputError
 from webdemo.inference.cancel import CancelToken
 from webdemo.inference.requests import Cancelled, Progress, Result
 
@@ -121,18 +123,19 @@ class Runs:
 
 
 class Loader:
-    """Loads an engine's networks in a thread of its own, once, and reports the outcome."""
+    """Loads an engine's networks and the parser of sentences in a thread of its own, once, and reports the outcome."""
 
     def __init__(self, engine: EngineLike) -> None:
         self.engine = engine
         self._lock = threading.Lock()
         self._thread: threading.Thread | None = None
+        self._reads = False
         self.error: str | None = None
 
     def start(self) -> None:
         """Begins to load where nothing has begun yet; a load that failed is tried again."""
         with self._lock:
-            if self.engine.ready or (self._thread is not None and self._thread.is_alive()):
+            if (self.engine.ready and self._reads) or (self._thread is not None and self._thread.is_alive()):
                 return
             self.error = None
             self._thread = threading.Thread(target=self._load, name="warm-up", daemon=True)
@@ -146,6 +149,16 @@ class Loader:
         return "failed" if self.error else "loading"
 
     def _load(self) -> None:
+        if not self.engine.ready:
+            self._load_networks()
+        if not self._reads:
+            self._reads = True
+            try:  # so that the first sentence that somebody types is read as fast as later ones
+                read("They wave.")
+            except InputError as error:  # the page says so under what is typed
+                log.warning("Sentences cannot be read: %s", error)
+
+    def _load_networks(self) -> None:
         try:
             self.engine.warm_up()
         except ValueError as error:  # InputError: a sentence for the user

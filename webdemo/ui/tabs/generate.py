@@ -14,6 +14,7 @@ from webdemo.inference.actor import SECONDS
 from webdemo.inference.methods import installed, label_of, method
 from webdemo.inference.requests import GenerateRequest
 from webdemo.ui.components.pace import pace_of
+from webdemo.ui.components.reading import Reading
 from webdemo.ui.components.settings import UNPLANNED, looked_up
 from webdemo.ui.components.show import arrival_payload
 from webdemo.ui.components.sweep import BETWEEN_SENTENCES, Kind
@@ -122,6 +123,7 @@ class GenerateTab(SweepTab):
         }  # fmt: skip
         self._wire_run([self.go.click, self.prompt.submit], record)
         self._wire_sweeps()
+        self.reading.follow(self.prompt, **QUIET)
         for chip, (_, sentence) in zip(self.chips, EXAMPLES, strict=True):
             focus = "document.querySelector('#prompt textarea').focus();"
             chip.click(
@@ -164,6 +166,7 @@ class GenerateTab(SweepTab):
                         gr.Button(name, size="sm", elem_classes="pd-chip", min_width=0)
                         for name, _ in EXAMPLES
                     ]
+                self.reading = Reading(elem_id=self._id("reading"), elem_classes="pd-reading")
             self.class_name = gr.Dropdown(
                 classes,
                 value=None,

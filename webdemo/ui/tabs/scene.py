@@ -14,6 +14,7 @@ from webdemo.inference.story import SceneProgress, SceneRequest, write_story
 from webdemo.inference.story.beats import story_title
 from webdemo.ui.components.exports import Record
 from webdemo.ui.components.player import show
+from webdemo.ui.components.reading import Reading
 from webdemo.ui.components.scene_parts import (
     FUTURES,
     only_sample,
@@ -131,6 +132,7 @@ class SceneTab(SweepTab):
         self._wire_sweeps()
         self._wire_parts()
         self._wire_story()
+        self.reading.follow(self.prompt, **QUIET)
 
     def _ask(self) -> None:
         with gr.Column(elem_classes="pd-panel pd-ask", min_width=0):
@@ -146,6 +148,7 @@ class SceneTab(SweepTab):
                     chip(name, elem_id=self._id(f"example-{i}")) for i, (name, _) in enumerate(EXAMPLES)
                 ]
                 self.last = chip("Take the last result", elem_id=self._id("last"))
+            self.reading = Reading(elem_id=self._id("reading"), elem_classes="pd-reading")
             self._go("Generate")
 
     def _story(self) -> None:
