@@ -1,4 +1,4 @@
-"""What is understood of a prompt, under it: the sentence with its marks, and its plan as chips on two lanes.
+"""The reading of a prompt, under it: the sentence with its marks, and its plan as chips on two lanes.
 
 The browser (``static/reading``) asks as somebody types; what is shown is made here, from the plan that
 :func:`acts.read` gives. What a user typed travels as data and is set as text.
@@ -39,7 +39,7 @@ _TYPED = """(text) => ({ __type__: "update", props: { text: text ?? "" } })"""
 
 
 class SentReading(Sent):
-    """What the browser sends: the ``text`` that is to be read."""
+    """The value as the browser sends it: the ``text`` that is to be read."""
 
     text: Text = ""
 
@@ -77,7 +77,7 @@ class Reading(gr.HTML):
         )  # fmt: skip
 
     def preprocess(self, payload: Any) -> Any:
-        """What the browser sent."""
+        """The value as the browser sent it."""
         return payload
 
     def postprocess(self, value: Any) -> Any:
