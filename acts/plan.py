@@ -198,9 +198,10 @@ def problem(error: ValidationError) -> str:
 def beats(acts: Sequence[Act]) -> list[list[Act]]:
     """Acts in groups that happen one after another, each group at the same time.
 
-    An act that is "after" others comes a group later than the last of them, one that is "before" another pushes that
-    one back, and one "with", "while" or "until" another shares its group. Contradictory orders are broken in the order
-    of the text, relations to acts that are not there are passed over, and every act appears exactly once.
+    An act that is "after" others comes a group later than the last of them, one that is "before" another or goes on
+    "until" another pushes that one back, and one "with" or "while" another shares its group. Contradictory orders are
+    broken in the order of the text, relations to acts that are not there are passed over, and every act appears
+    exactly once.
     """
     level = {act.id: 0 for act in acts}
     listed = [each for each in _relations(acts) if each[0] in level and each[2] in level]
@@ -226,6 +227,8 @@ def _relations(acts: Sequence[Act]) -> Iterator[tuple[str, str, str]]:
                 yield relation.act, "after", act.id
             elif relation.kind == "after":
                 yield act.id, "after", relation.act
+            elif relation.kind == "until":
+                yield relation.act, "after", act.id
             else:
                 yield act.id, "with", relation.act
                 yield relation.act, "with", act.id

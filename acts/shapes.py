@@ -53,10 +53,10 @@ class Turn(_Shape):
 
 
 class Stay(_Shape):
-    """Standing by: in place, facing the other, with the back to them, or back to back."""
+    """Standing by: in place, facing the other, or with the back to them."""
 
     do: Literal["stay"] = "stay"
-    facing: Literal["", "other", "away", "back to back"] = ""
+    facing: Literal["", "other", "away"] = ""
 
 
 class Place(_Shape):
@@ -139,6 +139,12 @@ class Hold(_Shape):
     hold: Literal["closed", "ring", "twirl"]
 
 
+class Link(_Shape):
+    """The two hold each other by the hand, also while they walk."""
+
+    do: Literal["link"] = "link"
+
+
 class Lift(_Shape):
     """The agent holds the patient off the floor: "up", in the "arms", on the "back", or "drags" them."""
 
@@ -170,6 +176,20 @@ class Words(_Shape):
 
 
 Shape = Annotated[
-    Go | Turn | Stay | Place | Posture | Jump | Bow | Gesture | Touch | Hold | Lift | Strike | Limb | Words,
+    Go
+    | Turn
+    | Stay
+    | Place
+    | Posture
+    | Jump
+    | Bow
+    | Gesture
+    | Touch
+    | Hold
+    | Link
+    | Lift
+    | Strike
+    | Limb
+    | Words,
     Field(discriminator="do"),
 ]

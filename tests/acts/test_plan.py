@@ -21,7 +21,7 @@ def test_beats_follow_the_order_of_acts() -> None:
     assert ids(Plan(acts=(act(1), act(2, ("after", 1)), act(3, ("while", 2))))) == [["1"], ["2", "3"]]
     assert ids(Plan(acts=(act(1, ("after", 2)), act(2)))) == [["2"], ["1"]]
     assert ids(Plan(acts=(act(1, ("before", 2)), act(2)))) == [["1"], ["2"]]
-    assert ids(Plan(acts=(act(1), act(2), act(3, ("until", 1))))) == [["1", "2", "3"]]
+    assert ids(Plan(acts=(act(1), act(2), act(3, ("until", 1))))) == [["2", "3"], ["1"]]
 
 
 _KINDS = st.sampled_from(["after", "with", "while", "until", "before"])

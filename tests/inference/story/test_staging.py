@@ -14,12 +14,13 @@ from webdemo.inference.story.gestures import Hand
 from webdemo.inference.story.holds import Hold
 from webdemo.inference.story.lifts import Carry
 from webdemo.inference.story.postures import Posture
-from webdemo.inference.story.request import as_scene, beat_of
+from webdemo.inference.story.request import SceneRequest, as_scene, beat_of
 from webdemo.inference.story.scripting import beats_of
 from webdemo.inference.story.staging import staged
 from webdemo.inference.story.strikes import Bout
 from webdemo.inference.story.telling import of_words
 from webdemo.inference.story.told import Told
+from webdemo.inference.story.toml import read_story, write_story
 from webdemo.inference.story.ways import Way
 
 
@@ -145,3 +146,24 @@ def test_struck_people_answer_in_the_beat() -> None:
     told_ = staged(beats_of(read("He punches her and she falls down."))[0].acts)
     assert told_.strike is not None and told_.strike.bout is Bout.FISTS and told_.strike.answered
     assert Beat("", acts=(Act(id="1", act="waltz", agents=("a", "b")),)).length == 8.0
+
+
+def test_acts_of_a_story_are_read_and_written() -> None:
+    text = """
+        [[beat]]
+        acts = [{ act = "wave", agents = ["b"] }, { act = "sit-down", agents = ["a"], speed = 0.6 }]
+        seconds = 3
+    """
+    request = SceneRequest(**read_story(text))
+    assert request.beats[0].sentence == "Person B waves while person A sits down."
+    assert request.told[0].gestures["b"].hand is Hand.WAVES
+    assert read_story(write_story(request))["beats"] == request.beats
+    with pytest.raises(InputError, match=r"Line 2: .* agents"):
+        read_story('[[beat]]\nacts = [{ act = "wave" }]')
+    with pytest.raises(InputError, match="60 at most"):
+        read_story("[[beat]]\nacts = [" + '{ act = "wave", agents = ["a"] },' * 61 + "]")
+
+
+def test_who_holds_hands_holds_them_while_they_walk() -> None:
+    assert all(move.linked for move in told("They walk side by side while they hold hands.").moves)
+    assert not any(move.linked for move in told("They walk side by side.").moves)

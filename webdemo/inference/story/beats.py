@@ -9,6 +9,7 @@ from typing import Any
 
 from pydantic import ValidationError
 
+from acts.captions import sentence
 from acts.lexicon import lexicon
 from acts.plan import MOST_ACTS, Act, beats, problem
 from motion import InputError
@@ -89,7 +90,7 @@ class Beat:
 
     @property
     def sentence(self) -> str:
-        """All its words as one sentence, for a model that reads one."""
+        """All its words as one sentence, or its acts where it has no words, for a model that reads one."""
         alone = [
             _of_person(text, who)
             for text, who in ((self.a, "one person"), (self.b, "the other person"))
@@ -97,6 +98,8 @@ class Beat:
         ]
         own = ", while ".join(alone)
         parts = [part.strip().rstrip(".") for part in (self.words, own) if part.strip()]
+        if self.acts and not parts:
+            return sentence(beats(self.acts), lexicon())
         return " ".join(_sentence(part) for part in parts)
 
     @property
@@ -173,7 +176,10 @@ def acts_of(values: Sequence[Any]) -> tuple[Act, ...]:
     if not isinstance(values, (list, tuple)) or len(values) > MOST_ACTS:
         raise InputError(f"The acts of a beat are a list of {MOST_ACTS} at most.")
     try:
-        return tuple(value if isinstance(value, Act) else Act.model_validate(value) for value in values)
+        return tuple(
+            Act.model_validate({"id": str(i), **value} if isinstance(value, Mapping) else value)
+            for i, value in enumerate(values, 1)
+        )
     except ValidationError as error:
         raise InputError(f"An act of a beat is wrong: {problem(error)}") from None
 

@@ -81,16 +81,17 @@ class _Stage:
         self.lift: Lift | None = None
         self.blows: list[tuple[tuple[str, ...], shapes.Strike]] = []
         self.setting = Setting()
+        self.linked = False
 
     def told(self) -> Told:
         """All that they tell."""
         for act, entry in sorted(self.done, key=lambda pair: self.level[pair[0].id]):
             for shape in entry.stage:
-                self._take(act, shape, entry)
+                self._take(act, shape)
         for act in self.acts:
             if act.polarity == "not" and act.modality == "told" and act.act in self.known.entries:
                 for shape in self.known.entries[act.act].refused:
-                    self._take(act, shape, self.known.entries[act.act])
+                    self._take(act, shape)
         struck = self._strike()
         moves = self._moves(struck)
         idle = self._idle()
@@ -112,51 +113,27 @@ class _Stage:
 
     # ---- shapes --------------------------------------------------------------------------------------
 
-    def _take(self, act: Act, shape: shapes.Shape, entry: Entry) -> None:
+    def _take(self, act: Act, shape: shapes.Shape) -> None:
         people = self._people(act, shape)
         match shape:
             case shapes.Go():
                 self.moves += [self._go(act, shape, who) for who in people]
             case shapes.Turn():
-                turns = float(act.times or 1) * shape.turns
-                late = self._late(act)
+                late, turns = self._late(act), float(act.times or 1) * shape.turns
                 self.moves += [Move(who, _TURNS[shape.way], turns=turns, late=late) for who in people]
-            case shapes.Stay():
-                self.setting = replace(
-                    self.setting, backs=self.setting.backs or shape.facing == "back to back"
-                )
-                if shape.facing == "away":
-                    self.moves += [Move(who, Way.AVERTED) for who in people]
+            case shapes.Stay() if shape.facing == "away":
+                self.moves += [Move(who, Way.AVERTED) for who in people]
             case shapes.Place():
-                here = self.setting
-                self.setting = replace(
-                    here,
-                    backs=here.backs or shape.way == "back to back",
-                    beside=here.beside or shape.way == "beside",
-                    apart=here.apart or shape.apart,
-                )
-                if shape.way == "back to back":
-                    self.moves += [Move(who, Way.BACKS) for who in "ab"]
+                self._place(shape)
             case shapes.Posture():
-                posture = Posture(shape.posture)
-                after = max(self.level[act.id] / self.levels, 0.4 if shape.who == "patient" else 0.0)
-                already = shape.already or act.already
-                times = min(act.times or shape.times, 5) if shape.passing else 1
-                listed = tuple(
-                    Change(
-                        posture, already, 0.0 if already else after + (1 - after) * i / times, shape.passing
-                    )
-                    for i in range(times)
-                )
                 for who in people:
-                    self.changes[who] = (*self.changes.get(who, ()), *listed)
+                    self.changes[who] = (*self.changes.get(who, ()), *self._changed(act, shape))
             case shapes.Jump():
                 self.leaps |= dict.fromkeys(people, min(act.times or shape.times, 5))
             case shapes.Bow():
                 self.bows |= dict.fromkeys(people, (min(act.times or 1, 5), shape.deep or _is_deep(act)))
             case shapes.Gesture():
-                hand = Hand[shape.gesture.upper()]
-                side = act.side or shape.sides
+                hand, side = Hand[shape.gesture.upper()], act.side or shape.sides
                 sides = SIDES if hand in OF_BOTH or side == "both" else (side,)
                 self.gestures |= dict.fromkeys(people, Gesture(hand, sides))
             case shapes.Touch():
@@ -165,12 +142,28 @@ class _Stage:
                 self.twirls = people[0]
             case shapes.Hold():
                 self.hold = Hold.CLOSED if shape.hold == "closed" else Hold.RING
-            case shapes.Lift():
-                carry = Carry[shape.carry.upper()]
-                if self.lift is None or self.lift.carry is Carry.UP:
-                    self.lift = Lift(people[0], carry, shape.spins, self.lift.comes if self.lift else "")
+            case shapes.Link():
+                self.linked = True
+            case shapes.Lift() if self.lift is None or self.lift.carry is Carry.UP:
+                self.lift = Lift(people[0], Carry[shape.carry.upper()], shape.spins)
             case shapes.Strike():
                 self.blows.append((people, shape))
+
+    def _place(self, shape: shapes.Place) -> None:
+        here, backs = self.setting, shape.way == "back to back"
+        beside = here.beside or shape.way == "beside"
+        self.setting = replace(
+            here, backs=here.backs or backs, beside=beside, apart=here.apart or shape.apart
+        )
+        self.moves += [Move(who, Way.BACKS) for who in "ab" if backs]
+
+    def _changed(self, act: Act, shape: shapes.Posture) -> list[Change]:
+        """The changes of posture of an act, one after another where it is done several times."""
+        posture, already = Posture(shape.posture), shape.already or act.already
+        after = max(self.level[act.id] / self.levels, 0.4 if shape.who == "patient" else 0.0)
+        times = min(act.times or shape.times, 5) if shape.passing else 1
+        shares = [0.0 if already else after + (1 - after) * i / times for i in range(times)]
+        return [Change(posture, already, share, shape.passing) for share in shares]
 
     def _people(self, act: Act, shape: shapes.Shape) -> tuple[str, ...]:
         """Whom a shape is for."""
@@ -191,8 +184,9 @@ class _Stage:
 
     def _late(self, act: Act) -> bool:
         """True if an act comes after one that is done in place."""
-        before = (e for other, e in self.done if self.level[other.id] < self.level[act.id])
-        return any(not _goes(entry) for entry in before)
+        before = [other for other in self.acts if self.level[other.id] < self.level[act.id]]
+        going = {other.id for other, entry in self.done if _goes(entry)}
+        return any(other.id not in going for other in before)
 
     def _touch(self, act: Act, shape: shapes.Touch) -> None:
         if self.contact is not None:
@@ -243,7 +237,8 @@ class _Stage:
             other = _other(struck.turns[0])
             backs = any(m.person == other and m.way is Way.BACK for m in self.moves)
             return struck_moves(struck, backs=backs, down=other in self.changes)
-        made = finished(self.moves, until=any(move.until for move in self.moves))
+        told = [replace(move, linked=move.linked or self.linked) for move in dict.fromkeys(self.moves)]
+        made = finished(told, until=any(move.until for move in self.moves))
         if not goes(made):
             return tuple(made)
         backs = any(move.way in (Way.BACK, Way.ASIDE) for move in made)

@@ -12,6 +12,9 @@
     b = "stands and waves goodbye"
     seconds = 5
 
+    [[beat]]
+    acts = [{ act = "hug", agents = ["a", "b"] }]    # as `read` prints them, in place of words
+
     [[path]]
     person = "a"
     points = [[8.5, 0, 0], [13, -3, -2]]    # seconds, x, z, and a heading in degrees if it matters
@@ -57,6 +60,7 @@ _BEAT: dict[str, tuple[type, ...]] = {
     "b": _TEXT,
     "seconds": _NUMBER,
     "seed": (int,),
+    "acts": (list,),
 }
 _PATH: dict[str, tuple[type, ...]] = {"person": _TEXT, "points": (list,)}
 _POSE: dict[str, tuple[type, ...]] = {
@@ -104,7 +108,7 @@ def read_story(text: str, folder: Path | None = None) -> dict[str, Any]:
             _check_keys(entry, known, lines, table, i, f"a {table}")
     plain = {f.name: found[f.name] for f in fields(SamplingRequest) if f.name in found}
     return plain | {
-        "beats": tuple(beat_of(entry) for entry in found.get("beat", ())),
+        "beats": tuple(_beat(entry, i, lines) for i, entry in enumerate(found.get("beat", ()))),
         "paths": tuple(_path(entry, i, lines) for i, entry in enumerate(found.get("path", ()))),
         "poses": tuple(_pose(entry, i, lines, folder) for i, entry in enumerate(found.get("pose", ()))),
         "loop": found.get("loop", False),
@@ -162,7 +166,18 @@ def _beat_lines(beat: Beat) -> list[str]:
         out.append(f"seconds = {beat.seconds:g}")
     if beat.seed is not None:
         out.append(f"seed = {beat.seed}")
+    if beat.acts:
+        out += ["acts = [", *(f"  {_inline(act)}," for act in beat.to_dict()["acts"]), "]"]
     return out
+
+
+def _inline(value: Any) -> str:
+    """A value as TOML on one line."""
+    if isinstance(value, Mapping):
+        return "{ " + ", ".join(f"{key} = {_inline(each)}" for key, each in value.items()) + " }"
+    if isinstance(value, list):
+        return f"[{', '.join(map(_inline, value))}]"
+    return _quoted(value) if isinstance(value, str) else json.dumps(value)
 
 
 def _points(path: FloorPath) -> str:
@@ -209,6 +224,13 @@ def _check_keys(
         if not isinstance(value, kinds) or (isinstance(value, bool) and bool not in kinds):
             wanted = _KINDS[kinds[-1]]
             raise InputError(f"{lines.where(table, index, key)}{key} must be {wanted}, not {value!r:.40}.")
+
+
+def _beat(entry: Mapping[str, Any], index: int, lines: Lines) -> Beat:
+    try:
+        return beat_of(entry)
+    except InputError as error:
+        raise InputError(f"{lines.where('beat', index, 'acts')}{error}") from None
 
 
 def _path(entry: Mapping[str, Any], index: int, lines: Lines) -> FloorPath:
