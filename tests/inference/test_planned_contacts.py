@@ -7,6 +7,7 @@ import pytest
 
 from motion import SMPL22
 from webdemo.inference import Engine
+from webdemo.inference.engine import WEIGHTS
 
 from .test_planned_scenes import made
 
@@ -181,3 +182,34 @@ def test_who_is_twirled_turns_all_the_way_round_under_joined_hands(engine: Engin
     gap = nearest(found, 0, ["right_wrist"], ["right_wrist"])[20:130]
     assert np.mean(gap < 0.2) > 0.9
     assert found[0, 20:130, SMPL22.index("right_wrist"), 1].min() > 1.6
+
+
+@pytest.fixture(scope="module")
+def shipped() -> Engine:
+    """With the shipped weights: an untrained network has no wish to turn to anybody."""
+    return Engine(WEIGHTS)
+
+
+@pytest.mark.parametrize(
+    ("prompt", "people"),
+    [
+        ("They stand side by side.", (0, 1)),
+        ("They stand back to back.", (0, 1)),
+        ("Person A hugs person B from behind.", (1,)),
+    ],
+)
+def test_who_turns_their_back_keeps_the_trunk_over_the_feet(
+    shipped: Engine, prompt: str, people: tuple[int, ...]
+) -> None:
+    """The network would turn the shoulders to the other, half a turn against the hips."""
+    found = made(shipped, prompt)
+    for person in people:
+        hips, shoulders = (
+            found[person, :, SMPL22.index(f"left_{part}")] - found[person, :, SMPL22.index(f"right_{part}")]
+            for part in ("hip", "shoulder")
+        )
+        flat = hips[:, [0, 2]], shoulders[:, [0, 2]]
+        cosine = (flat[0] * flat[1]).sum(-1) / np.prod(
+            [np.linalg.norm(each, axis=-1) for each in flat], axis=0
+        )
+        assert cosine[10:-10].min() > 0.3, prompt

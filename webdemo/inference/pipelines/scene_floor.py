@@ -16,7 +16,7 @@ from webdemo.inference.story.gestures import Hand
 from webdemo.inference.story.holds import Hold
 from webdemo.inference.story.moves import Move, goes
 from webdemo.inference.story.plan import Window
-from webdemo.inference.story.poses import ARMS, standing, upright
+from webdemo.inference.story.poses import ARMS, HANDS, standing, upright
 from webdemo.inference.story.postures import Change, Posture
 from webdemo.inference.story.request import SceneRequest
 from webdemo.inference.story.strikes import Bout
@@ -38,6 +38,8 @@ Array = NDArray[np.floating]
 
 POSED = 15
 """Frames between two poses of somebody who stands by."""
+TURNED = 5
+"""Frames between two poses of somebody whose trunk the network would turn to the other."""
 SETTLES = 24
 """Frames after which who stood in another way before stands so."""
 
@@ -156,7 +158,7 @@ def _held(
     placement: Placement,
 ) -> tuple[list[Part], dict[int, Array]]:
     """The poses of bystanders and of those whose posture is given, and a pose of each of the latter."""
-    stand, stop = room.stand, request.edges[window.beat + 1]
+    stand, stop, told = room.stand, request.edges[window.beat + 1], request.told[window.beat]
     start = request.edges[window.beat] + room.delay
     gone = {move.person for move in found if move.way not in (Way.STAY, Way.BACKS)}
     parts: list[Part] = []
@@ -164,8 +166,9 @@ def _held(
     for person, who in enumerate("ab"):
         last = scene[person, start - room.delay - 1] if start else None
         up = last is None or last[0, 1] > UPRIGHT
-        if up and (who in still or (who in request.told[window.beat].gesturing and who not in gone)):
-            free = () if who in still else ARMS
+        turned = last is None and _keeps_back(told, who)
+        if up and (who in still or ((turned or who in told.gesturing) and who not in gone)):
+            free = () if who in still else HANDS if turned else ARMS
             parts += _posed(person, stand, window, start, stop, placement, request.seed, free)
             if free:
                 posed[person] = upright(stand.places[person], float(stand.headings[person]))
@@ -177,6 +180,12 @@ def _held(
                 shifted = [frame - window.start + window.past for frame in frames]
                 parts.append(KnownFrames(person, shifted, placement.to_network(known), joints))
     return parts, posed
+
+
+def _keeps_back(told: Told, who: str) -> bool:
+    """True for a person who stands so that the network would turn their trunk to the other, against their feet."""
+    touch, down = told.contact, who in told.changes
+    return not down and (told.keeps_place or (touch is not None and touch.behind and touch.person != who))
 
 
 def plan_note(request: SceneRequest, go_on: Callable[[], None] = lambda: None) -> list[str]:
@@ -271,7 +280,7 @@ def _posed(
     free: Collection[int] = (),
 ) -> list[Part]:  # fmt: skip
     """The poses of a bystander that fall into a window, but for the joints that are ``free``."""
-    frames = np.arange(start + (SETTLES if start else 0), stop, POSED)
+    frames = np.arange(start + (SETTLES if start else 0), stop, TURNED if free == HANDS else POSED)
     frames = frames[(frames >= window.start) & (frames < window.stop)]
     if not len(frames):
         return []

@@ -30,6 +30,8 @@ LOWER = tuple(
 ARMS = tuple(
     SMPL22.index(f"{side}_{name}") for side in ("left", "right") for name in ("shoulder", "elbow", "wrist")
 )
+HANDS = tuple(SMPL22.index(f"{side}_{name}") for side in ("left", "right") for name in ("elbow", "wrist"))
+"""Joints that move where the shoulders are held."""
 FLAT = (
     *LOWER,
     *(

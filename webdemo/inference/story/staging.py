@@ -40,6 +40,8 @@ _REGIONS = {
 """Families of parts of the body and the region of each."""
 _NEAR = frozenset(("touch", "fight", "dance"))
 """Groups of the lexicon whose acts two people do within each other's reach."""
+_JOINS = frozenset(("touch", "hold", "link", "lift", "strike"))
+"""Shapes that take the other along."""
 _LEGS = frozenset(("dance", "fight", "ways", "play"))
 """Groups whose acts are done on one's feet."""
 
@@ -284,7 +286,8 @@ def _is_deep(act: Act) -> bool:
 
 def _only_stays(entry: Entry) -> bool:
     """True for an act of somebody who stands by."""
-    return bool(entry.stage) and all(shape.do == "stay" for shape in entry.stage)
+    shown = {shape.do for shape in entry.stage}
+    return "stay" in shown and shown <= {"stay", "place"}
 
 
 def _goes(entry: Entry) -> bool:
@@ -293,7 +296,6 @@ def _goes(entry: Entry) -> bool:
 
 def _reaches(act: Act, entry: Entry) -> bool:
     """True for an act that the other takes part in: it touches, holds, lifts or strikes them, or needs an answer."""
-    shown = {shape.do for shape in entry.stage}
-    if shown & {"touch", "hold", "lift", "strike"} or entry.mutual:
+    if entry.mutual or any(shape.who != "agent" or shape.do in _JOINS for shape in entry.stage):
         return True
-    return act.patient is not None and not shown
+    return act.patient is not None and all(shape.do in ("place", "stay") for shape in entry.stage)
