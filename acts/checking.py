@@ -150,7 +150,7 @@ def _chain(act: Act, plan: Plan) -> list[str]:
         for relation in other.order:
             if relation.kind == "after":
                 after[other.id].append(relation.act)
-            elif relation.kind == "before":
+            elif relation.kind in ("before", "until"):
                 after[relation.act].append(other.id)
     found: list[str] = []
     left = list(after[act.id])

@@ -110,7 +110,7 @@ def test_both_samplers_and_no_guidance_run(engine: Engine) -> None:
 
 
 def test_a_far_prompt_gets_a_note_with_the_nearest_caption(engine: Engine) -> None:
-    assert result_of(engine, REQUEST).notes == ()
+    assert all("far from" not in note for note in result_of(engine, REQUEST).notes)
     notes = result_of(engine, replace(REQUEST, prompt="quarterly tax law for submarines")).notes
     assert ["Not understood" in note for note in notes] == [True, False]
     assert "far from anything" in notes[1]

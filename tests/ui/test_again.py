@@ -31,7 +31,7 @@ def test_the_first_pose_of_a_stored_reaction_is_read(request_: ReactRequest, key
     stored[key] = stored.pop("first_pose")
     opened: Any = SimpleNamespace(
         entry=SimpleNamespace(kind="react", request=stored, title="A reaction"),
-        result=SimpleNamespace(duets=(duet(),)),
+        result=SimpleNamespace(duets=(duet(),), manifest={}),
     )
     found = request_of(opened)
     assert isinstance(found, ReactRequest) and found.first_pose is not None

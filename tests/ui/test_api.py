@@ -97,7 +97,7 @@ def test_the_endpoint_is_documented(client: Client) -> None:
     endpoint = client.view_api(return_format="dict", print_info=False)["named_endpoints"]["/generate"]
     parameters = {p["parameter_name"]: p for p in endpoint["parameters"]}
     assert list(parameters) == [
-        "prompt", "seconds", "seed", "samples", "guidance", "steps", "damping", "sampler", "model"
+        "prompt", "seconds", "seed", "samples", "guidance", "steps", "damping", "sampler", "model", "tries",
     ]  # fmt: skip
     assert all(p["parameter_has_default"] for name, p in parameters.items() if name != "prompt")
     assert "two-person .npz" in endpoint["description"]

@@ -18,7 +18,7 @@ from webdemo.inference.methods import AUTOMATIC, automatic, methods
 from webdemo.inference.predict_request import LONGEST, PredictRequest, PredictResult
 from webdemo.inference.requests import GenerateRequest, ReactRequest, Result
 
-from .parser import add_animation, add_sampling, names_of, sampling_fields, with_note
+from .parser import add_animation, add_sampling, add_tries, names_of, sampling_fields, with_note
 from .running import check_out, run, write_result
 
 MOST_PLAN_BYTES = 200_000
@@ -42,6 +42,7 @@ def add_generate(commands: Any) -> None:
         help="do not read from the words where people go, who stands by, sits down or jumps",
     )
     add_sampling(parser, "generate")
+    add_tries(parser, GenerateRequest.tries)
     parser.set_defaults(job=generate)
 
 
@@ -52,7 +53,7 @@ def generate(options: argparse.Namespace) -> dict[str, Any]:
         options.model = next(m.name for m in methods("generate") if "class" in m.takes)
     fields = sampling_fields(options)
     words = options.prompt if options.label is None else options.label
-    fields |= {"split": not options.no_split, "planned": not options.no_plan}
+    fields |= {"split": not options.no_split, "planned": not options.no_plan, "tries": options.tries}
     if options.plan is not None:
         words, fields["acts"] = "", read_plan(options.plan)
     request = GenerateRequest(prompt=words, seconds=options.seconds, **fields)

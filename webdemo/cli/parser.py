@@ -67,6 +67,14 @@ def add_sampling(parser: argparse.ArgumentParser, task: Task) -> None:
     )
 
 
+def add_tries(parser: argparse.ArgumentParser, default: int | None = None) -> None:
+    """The option that tries further seeds; without a ``default`` it is the story's own."""
+    parser.add_argument(
+        "--tries", type=int, default=default, metavar="N",
+        help="try up to N seeds (1 to 4) until the motion shows all that is said, and keep the best",
+    )  # fmt: skip
+
+
 def sampling_fields(options: argparse.Namespace) -> dict[str, Any]:
     """The fields of a request, from the options of :func:`add_sampling`."""
     names = ("seed", "samples", "guidance", "steps", "damping", "sampler", "model")

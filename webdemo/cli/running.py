@@ -52,5 +52,7 @@ def run(request: GenerateRequest | ReactRequest | PredictRequest | SceneRequest)
                 print("\r\033[K", end="", file=sys.stderr)
             return event
         if show and isinstance(event, Progress):
-            print(f"\r\033[K{event.stage} {event.step}/{event.total}", end="", file=sys.stderr, flush=True)
+            number = f"try {event.attempt}/{event.attempts}: " if event.attempts > 1 else ""
+            line = f"{number}{event.stage} {event.step}/{event.total}"
+            print(f"\r\033[K{line}", end="", file=sys.stderr, flush=True)
     raise InputError("The run ended without a result: try again.")

@@ -12,7 +12,7 @@ from webdemo.inference.requests import SamplingRequest
 from webdemo.inference.story import SceneRequest, read_story, split_sentence
 from webdemo.inference.story.request import MOST_SECONDS
 
-from .parser import add_animation, names_of, with_note
+from .parser import add_animation, add_tries, names_of, with_note
 from .running import check_out, run, write_result
 
 
@@ -43,6 +43,7 @@ def add_scene(commands: Any) -> None:
     parser.add_argument("--damping", type=float, help=default)
     parser.add_argument("--sampler", help=f"ddim or dpm++; {default}")
     parser.add_argument("--model", help=f"{names_of('scene')}; {default}")
+    add_tries(parser)
     parser.set_defaults(job=scene)
 
 

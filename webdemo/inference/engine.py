@@ -32,6 +32,8 @@ from .predict_request import PredictRequest
 from .requests import GenerateRequest, Progress, ReactRequest, Result, SamplingRequest
 from .story.request import SceneRequest
 from .timer import StageTimer
+from .tries import run_tries
+from .verdicts import checked_rows
 
 Request = GenerateRequest | ReactRequest | PredictRequest | SceneRequest | LiveTake
 
@@ -102,12 +104,16 @@ class Engine:
         if isinstance(request, LiveTake):  # its motion is there
             events = request.results(timer)
         else:
-            events = pipeline.run(request, cancel, timer, **options)
+            events = run_tries(
+                request, lambda one: pipeline.run(one, cancel, timer, **options), cancel, timer
+            )
         for event in events:
             if isinstance(event, Result):
                 manifest = _manifest(request, pipeline) | event.manifest
                 duets = tuple(
-                    replace(duet, manifest=manifest | {"sample": i}) if isinstance(duet, Duet) else duet
+                    replace(duet, manifest=manifest | checked_rows(duet) | {"sample": i})
+                    if isinstance(duet, Duet)
+                    else duet
                     for i, duet in enumerate(event.duets)
                 )
                 event = replace(event, duets=duets, manifest=manifest)

@@ -26,6 +26,7 @@ from .plans import KeptPlan
 MAX_PROMPT = 500
 STEPS = (1, 1000)
 SAMPLES = (1, 8)
+TRIES = (1, 4)
 GUIDANCE = (0.0, 10.0)
 DAMPING = (0.0, 1.0)
 MAX_SEED = 2**32 - 1
@@ -92,6 +93,8 @@ class SamplingRequest:
         sampler: "ddim" (η = 0) or "dpm++" (DPM-Solver++ multistep).
         model: the name of a generator in the registry.
         cleanup: project the result onto constant bones and planted feet.
+        tries: of a sentence or a story, the seeds from ``seed`` on that are tried until a motion shows all that is
+            said; the best is kept (:mod:`.tries`).
     """
 
     seed: int = 0
@@ -102,6 +105,7 @@ class SamplingRequest:
     sampler: str = "ddim"
     model: str = "intergen"
     cleanup: bool = True
+    tries: int = 1
 
     def _check(self, method: Method) -> None:
         set_ = object.__setattr__
@@ -111,6 +115,7 @@ class SamplingRequest:
             set_(self, name, value)
         set_(self, "seed", _whole("Seed", self.seed, 0, MAX_SEED))
         set_(self, "samples", _whole("Samples", self.samples, *SAMPLES))
+        set_(self, "tries", _whole("Tries", self.tries, *TRIES))
         set_(self, "guidance", _number("Guidance scale", self.guidance, *GUIDANCE))
         set_(self, "steps", _whole("DDIM steps", self.steps, *STEPS))
         set_(self, "damping", _number("Damping threshold", self.damping, *DAMPING))
@@ -219,6 +224,7 @@ class ReactRequest(SamplingRequest):
         if self.first_pose is not None:
             self._check_first_pose(method)
         self._check(method)
+        object.__setattr__(self, "tries", 1)  # a reaction is not judged by its words
         if self.mode == "online":  # a frame that was already sent cannot be corrected
             object.__setattr__(self, "damping", 0.0)
 
@@ -238,7 +244,11 @@ class ReactRequest(SamplingRequest):
 
     def to_dict(self) -> dict[str, Any]:
         """All fields except the motion, which its SHA-256 represents."""
-        plain = {f.name: getattr(self, f.name) for f in fields(self) if f.name not in ("actor", "first_pose")}
+        plain = {
+            f.name: getattr(self, f.name)
+            for f in fields(self)
+            if f.name not in ("actor", "first_pose", "tries")
+        }
         if self.first_pose is not None:
             plain["first_pose"] = np.asarray(self.first_pose).tolist()
         return {"kind": "react", "actor": clip_facts(self.actor), **plain}
@@ -254,6 +264,7 @@ class Progress:
         total: all steps of the stage.
         elapsed: seconds since the request began.
         unit: what is counted: "step" for denoising steps, "frame", "pass".
+        attempt: the number of the try, from 1, of ``attempts``.
     """
 
     stage: str
@@ -261,6 +272,8 @@ class Progress:
     total: int = 1
     elapsed: float = 0.0
     unit: str = "step"
+    attempt: int = 1
+    attempts: int = 1
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -21,6 +21,7 @@ from webdemo.inference.requests import (
     with_current_names,
 )
 from webdemo.inference.story import SceneRequest
+from webdemo.inference.tries import replayed
 from webdemo.ui.components.actors import Source
 
 from .history import Entry, Opened
@@ -37,7 +38,7 @@ def request_of(opened: Opened) -> Request:
     Raises:
         InputError: for a kind that keeps too little of what it was made from, or fields that no longer fit.
     """
-    asked = with_current_names(opened.entry.request)
+    asked = replayed(with_current_names(opened.entry.request), opened.result.manifest)
     if asked.get("live"):
         raise InputError(
             "A live stream cannot be run again: its partner answered as it happened. React to its actor in the tab "
@@ -125,7 +126,7 @@ def _changed(old: Mapping[str, Any], new: Mapping[str, Any]) -> list[str]:
         for name in sorted({*before, *after})
         if before.get(name) != after.get(name)
     ]
-    asked = (with_current_names(manifest.get("request") or {}) for manifest in (old, new))
+    asked = (replayed(with_current_names(m.get("request") or {}), m) for m in (old, new))
     if len({json.dumps(request, sort_keys=True) for request in asked}) > 1:
         found.append("the request")
     return found

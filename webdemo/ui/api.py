@@ -150,6 +150,10 @@ class GenerateEndpoint(Endpoint):
                     GenerateRequest.model,
                     label=" or ".join(m.name for m in methods("generate") if "words" in m.takes),
                 ),
+                gr.Number(
+                    GenerateRequest.tries,
+                    label="tries, 1 to 4: seeds until all that is said is seen, or the best",
+                ),
             ]
             self._publish(self.generate, "generate", inputs)
 
@@ -164,6 +168,7 @@ class GenerateEndpoint(Endpoint):
         damping: float = SamplingRequest.damping,
         sampler: str = SamplingRequest.sampler,
         model: str = GenerateRequest.model,
+        tries: int = GenerateRequest.tries,
         progress: gr.Progress = PROGRESS,
     ) -> Answer:
         """Two people from one sentence.
@@ -175,7 +180,7 @@ class GenerateEndpoint(Endpoint):
         return self._answer(
             lambda: GenerateRequest(
                 prompt=prompt, seconds=seconds, seed=seed, samples=samples, guidance=guidance, steps=steps,
-                damping=damping, sampler=sampler, model=model,
+                damping=damping, sampler=sampler, model=model, tries=tries,
             ),
             prompt,
             progress,

@@ -12,7 +12,7 @@ from webdemo.ui.components.exports import Record
 from webdemo.ui.tabs.generate import GenerateTab
 
 FIELDS = {"prompt": "two people walk", "seconds": 2.0, "seed": 3, "samples": 1, "guidance": 2.5, "steps": 5,
-          "damping": 0.7}  # fmt: skip
+          "damping": 0.7, "tries": 1}  # fmt: skip
 
 
 def run(tab: GenerateTab, **changed: Any) -> list[dict[str, Any]]:

@@ -21,7 +21,7 @@ from webdemo.ui.tabs.scene import EXAMPLES, SceneTab
 
 from ..stub_engine import StubEngine, walking
 
-SETTINGS = {"seed": 3, "samples": 1, "guidance": 4.3, "steps": 2, "damping": 0.7}
+SETTINGS = {"seed": 3, "samples": 1, "guidance": 4.3, "steps": 2, "damping": 0.7, "tries": 1}
 PLACE = '{"frame": 60, "sample": 0}'
 
 

@@ -29,7 +29,7 @@ MOST_SECONDS = 180.0
 LEAST_SHARE = 1.25
 """Seconds for each beat of a sentence below which it is made in one."""
 MOST_MADE = 360.0
-"""Seconds of motion that one request makes, over all samples."""
+"""Seconds of motion that one request makes, over all samples and tries."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -79,9 +79,10 @@ class SceneRequest(SamplingRequest):
             raise InputError(
                 f"The scene would last {self.total_seconds:.0f} s: shorten it to {MOST_SECONDS:g} s or less."
             )
-        if self.seconds * self.samples > MOST_MADE:
+        if (made := self.seconds * self.samples * self.tries) > MOST_MADE:
+            tries = f"{self.tries} tries of " if self.tries > 1 else ""
             raise InputError(
-                f"{self.samples} samples of {self.seconds:.0f} s are {self.seconds * self.samples:.0f} s of motion: "
+                f"{tries}{self.samples} samples of {self.seconds:.0f} s are {made:.0f} s of motion: "
                 f"ask for {MOST_MADE:g} s or less in all."
             )
         self._check_wishes()

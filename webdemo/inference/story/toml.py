@@ -51,7 +51,7 @@ _LOOKS_LIKE_TOML = re.compile(r"^[ \t]*+(?:\[\[?[ \t]*\w++[ \t]*\]|\w++[ \t]*=)"
 _NUMBER, _TEXT = (int, float), (str,)
 _TOP: dict[str, tuple[type, ...]] = {
     "seed": (int,), "samples": (int,), "guidance": _NUMBER, "steps": (int,), "damping": _NUMBER, "sampler": _TEXT,
-    "model": _TEXT, "cleanup": (bool,), "loop": (bool,),
+    "model": _TEXT, "cleanup": (bool,), "tries": (int,), "loop": (bool,),
     "planned": (bool,), "beat": (list,), "path": (list,), "pose": (list,),
 }  # fmt: skip
 _BEAT: dict[str, tuple[type, ...]] = {

@@ -11,14 +11,18 @@ from typing import Any
 def units(request: Any) -> float:
     """The work of a request: samples × denoising steps × seconds of motion, plus a constant overhead.
 
-    A factor that a kind of request lacks counts as 1 (5 s for the length).
+    Of further tries half are counted: the first that does all is the last. A factor that a kind of request lacks counts
+    as 1 (5 s for the length).
     """
     seconds = getattr(request, "seconds", None)
     if seconds is None:
         actor = getattr(request, "actor", None)
         seconds = actor.seconds if actor is not None else 5.0
-    return float(getattr(request, "samples", 1)) * (
-        float(seconds) * float(getattr(request, "steps", 1)) + 10.0
+    tries = (1 + float(getattr(request, "tries", 1))) / 2
+    return (
+        tries
+        * float(getattr(request, "samples", 1))
+        * (float(seconds) * float(getattr(request, "steps", 1)) + 10.0)
     )
 
 

@@ -11,7 +11,7 @@ from motion import Clip, Duet, InputError
 MOST_BESIDE = 8
 """Runs of a grid beside its first."""
 _NUMBERS = (
-    "seconds", "seed", "samples", "guidance", "steps", "damping", "start", "end", "marker", "fps", "animation",
+    "seconds", "seed", "samples", "guidance", "steps", "damping", "tries", "start", "end", "marker", "fps", "animation",
 )  # fmt: skip
 _SWITCHES = ("keep",)
 _TEXTS = ("prompt", "class_name", "model", "method", "other", "person", "role", "up", "unit", "order")

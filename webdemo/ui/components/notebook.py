@@ -29,7 +29,7 @@ ACTS = (
 _SETTINGS = (
     ("seconds", "Seconds"), ("seed", "Seed"), ("samples", "Samples"), ("guidance", "Guidance"), ("steps", "Steps"),
     ("damping", "Damping"), ("sampler", "Sampler"), ("marker", "Past ends at"), ("cleanup", "Clean-up"),
-    ("planned", "Plan from the words"),
+    ("tries", "Tries"), ("planned", "Plan from the words"),
 )  # fmt: skip
 _ROLES = {"a": "acts first", "b": "reacts"}
 _MARKS = {

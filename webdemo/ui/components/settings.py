@@ -14,16 +14,18 @@ CHANGED = "Settings changed: run again to see what they do."
 
 UNPLANNED = ", no paths"
 """Ends the line over the folded settings where words do not become paths."""
-ADVANCED = f"""(guidance, steps, damping, planned = true) => ({{
+ADVANCED = f"""(guidance, steps, damping, tries = 1, planned = true) => ({{
   __type__: "update",
-  label: `Guidance ${{guidance}}, ${{steps}} steps, damping ${{damping}}${{planned ? "" : "{UNPLANNED}"}}`,
+  label: `Guidance ${{guidance}}, ${{steps}} steps, damping ${{damping}}`
+    + (tries > 1 ? `, ${{tries}} tries` : "") + (planned ? "" : "{UNPLANNED}"),
 }})"""
 """JavaScript that gives the line over the folded settings; :func:`advanced_label` begins it in Python."""
 
 
-def advanced_label(guidance: float, steps: int, damping: float) -> str:
+def advanced_label(guidance: float, steps: int, damping: float, tries: int = 1) -> str:
     """The line over the folded settings, where words become paths."""
-    return f"Guidance {guidance:g}, {steps} steps, damping {damping:g}"
+    more = f", {tries} tries" if tries > 1 else ""
+    return f"Guidance {guidance:g}, {steps} steps, damping {damping:g}{more}"
 
 
 def snapshot(fields: Mapping[str, Any], names: Collection[str]) -> str:

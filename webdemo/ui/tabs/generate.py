@@ -116,10 +116,11 @@ class GenerateTab(SweepTab):
                 with gr.Accordion("About the model", open=False, elem_classes="pd-panel pd-about"):
                     self.card = gr.HTML(elem_id="model-card")
             self._results(first=arrival_payload(CLIPS / ARRIVAL))
+        assert self.tries is not None  # as in every tab of sentences
         self.controls = {
             "model": self.model, "prompt": self.prompt, "class_name": self.class_name,
             "seconds": self.seconds, "seed": self.seed, "samples": self.samples, "guidance": self.guidance,
-            "steps": self.steps, "damping": self.damping, "planned": self.planned,
+            "steps": self.steps, "damping": self.damping, "tries": self.tries, "planned": self.planned,
         }  # fmt: skip
         self._wire_run([self.go.click, self.prompt.submit], record)
         self._wire_sweeps()
@@ -196,7 +197,7 @@ class GenerateTab(SweepTab):
                     info="Length of the motion.", elem_id="seconds",
                 )  # fmt: skip
                 self.samples = self._samples()
-            self._sampling(self._plan, paced=True)
+            self._sampling(self._plan, said=True)
             self._sweeps()
 
     def _plan(self) -> Sequence[gr.Checkbox]:

@@ -8,7 +8,7 @@ from typing import Any
 import gradio as gr
 
 from webdemo.inference.method import DEFAULT_STEPS
-from webdemo.inference.requests import DAMPING, GUIDANCE, MAX_SEED, SAMPLES, SamplingRequest
+from webdemo.inference.requests import DAMPING, GUIDANCE, MAX_SEED, SAMPLES, TRIES, SamplingRequest
 from webdemo.ui.components.pace import CHOSEN, FOLLOWED, pace_of, pace_switch
 from webdemo.ui.components.settings import ADVANCED, advanced_label
 
@@ -22,6 +22,7 @@ _DAMPING_INFO = (
 )
 _GUIDANCE_INFO = "How strongly the words steer; 1 = no guidance."
 _STEPS_INFO = "Denoising steps: fewer are faster, more are finer."
+_TRIES_INFO = "Seeds tried until all that is said is seen; the best is kept."
 _SEED_INFO = "Same seed, same motion; empty for a new one."
 _SAMPLES_INFO = "Motions to generate."
 
@@ -35,6 +36,8 @@ class SamplingTab(ResultsTab):
     """Holds the settings that are rarely needed, where the tab has them."""
     pace: gr.Radio | None = None
     """Switches between few steps and many, where the tab has it."""
+    tries: gr.Slider | None = None
+    """Tries until all that is said is seen, where the tab takes sentences."""
     compare: dict[str, Any]
     """The event that says what was changed since the result; set where runs are wired."""
 
@@ -44,10 +47,10 @@ class SamplingTab(ResultsTab):
             elem_id=self._id("samples"),
         )  # fmt: skip
 
-    def _sampling(self, more: Callable[[], Sequence[gr.Checkbox]] = tuple, *, paced: bool = False) -> None:
+    def _sampling(self, more: Callable[[], Sequence[gr.Checkbox]] = tuple, *, said: bool = False) -> None:
         """The seed; and guidance, steps, damping and ``more``, folded under a line with their values.
 
-        ``paced`` puts a switch over them: fast or faithful.
+        ``said``, in a tab of sentences, puts a switch over them, fast or faithful, and tries below.
         """
         with gr.Row(elem_classes="pd-seed"):
             self.seed = gr.Number(
@@ -57,7 +60,7 @@ class SamplingTab(ResultsTab):
             self.dice = gr.Button(
                 "Random", size="sm", elem_id=self._id("dice"), elem_classes="pd-dice", min_width=0
             )
-        if paced:
+        if said:
             self.pace = pace_switch(self._id("pace"))
         values = (SamplingRequest.guidance, DEFAULT_STEPS, SamplingRequest.damping)
         with gr.Accordion(
@@ -75,8 +78,14 @@ class SamplingTab(ResultsTab):
                 *DAMPING, value=values[2], step=0.05, label="Damping threshold",
                 info=_DAMPING_INFO, elem_id=self._id("damping"),
             )  # fmt: skip
+            if said:
+                self.tries = gr.Slider(
+                    *TRIES, value=SamplingRequest.tries, step=1, label="Tries", info=_TRIES_INFO,
+                    elem_id=self._id("tries"),
+                )  # fmt: skip
             added = more()
-        parts: list[Any] = [self.guidance, self.steps, self.damping, *added]
+        tries = [] if self.tries is None else [self.tries]
+        parts: list[Any] = [self.guidance, self.steps, self.damping, *tries, *added]
         # A folded part tells nobody of its changes before it was seen, so others also use this.
         self.tell_advanced = {"inputs": parts, "outputs": self.folded, "js": ADVANCED, **QUIET}
         gr.on([part.change for part in parts], None, **self.tell_advanced)
@@ -97,8 +106,11 @@ class SamplingTab(ResultsTab):
         """Updates that show the settings of a kept request."""
         found: dict[Any, Any] = {}
         values: list[Any] = [request.get(name) for name in ("guidance", "steps", "damping")]
+        values.append(request.get("tries") or 1)
         if self.folded is not None and None not in values:
             found[self.folded] = gr.update(label=advanced_label(*values))
+        if self.tries is not None:
+            found[self.tries] = gr.update(value=values[-1])
         if self.pace is not None:
             found[self.pace] = gr.update(value=pace_of(request.get("steps")))
         return found

@@ -37,7 +37,7 @@ from webdemo.ui.components.story_words import (
 from webdemo.ui.components.upload import chip
 from webdemo.ui.history import Opened
 from webdemo.ui.text.panels import status
-from webdemo.ui.text.words import error_line
+from webdemo.ui.text.words import error_line, tries_line
 from webdemo.view.payload import player_payload
 
 from .job import QUIET, Updates
@@ -82,6 +82,7 @@ class SceneTab(SweepTab):
     def request(self, fields: Mapping[str, Any]) -> SceneRequest:
         """The whole story; raises InputError where it cannot be made."""
         plain = {f: fields[f] for f in ("seed", "guidance", "steps", "damping")}
+        plain["tries"] = fields.get("tries", SceneRequest.tries)  # older grids have none
         return SceneRequest(**story_fields(fields["story"]), samples=int(fields["samples"]), **plain)
 
     def settled(self, fields: Mapping[str, Any]) -> Mapping[str, Any]:
@@ -116,7 +117,7 @@ class SceneTab(SweepTab):
                 self._ask()
                 with gr.Column(elem_classes="pd-panel pd-settings", min_width=0):
                     self.samples = self._samples()
-                    self._sampling(paced=True)
+                    self._sampling(said=True)
                     self._sweeps()
                 with gr.Accordion("The story as text", open=False, elem_classes="pd-panel pd-about"):
                     self.text = gr.Textbox(
@@ -124,9 +125,10 @@ class SceneTab(SweepTab):
                     )  # fmt: skip
                     self.use = gr.Button("Use this text", size="sm", elem_id=self._id("use-text"))
             self._results(EMPTY_TEXT, self._story)
+        assert self.tries is not None  # as in every tab of sentences
         self.controls = {
             "prompt": self.prompt, "story": self.line_up, "seed": self.seed, "samples": self.samples,
-            "guidance": self.guidance, "steps": self.steps, "damping": self.damping,
+            "guidance": self.guidance, "steps": self.steps, "damping": self.damping, "tries": self.tries,
         }  # fmt: skip
         self._wire_run([self.go.click, self.prompt.submit], record)
         self._wire_sweeps()
@@ -294,7 +296,7 @@ class SceneTab(SweepTab):
         """Shows a finished window at once."""
         if not isinstance(event, SceneProgress) or event.sample:
             return None
-        line = f"Beat {event.beat + 1} is there. Step {event.step} of {event.total}."
+        line = f"{tries_line(event)}Beat {event.beat + 1} is there. Step {event.step} of {event.total}."
         return {"player": show(player_payload(event.motion, title=title)), "line": status(line, tone="busy")}
 
     def take_last(self, record: Record | None) -> Updates:

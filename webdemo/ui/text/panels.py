@@ -35,7 +35,10 @@ def status(line: str = "", *, tone: str = "quiet") -> str:
 
 def notes_lines(result: Result) -> str:
     """The notes of a result, which stand right beside "Done"."""
-    return "".join(status(note, tone="warning") for note in result.notes)
+    return "".join(
+        status(note, tone="done" if note.startswith("Done") and "Not seen:" not in note else "warning")
+        for note in result.notes
+    )
 
 
 def method_line(summary: str) -> str:
@@ -127,6 +130,7 @@ def _asked(result: Result, name: str | None = None) -> str:
         ("Guidance", _plain(request.get("guidance"))),
         ("Steps", request.get("steps")),
         ("Damping", _plain(request.get("damping"))),
+        ("Tries", tries if (tries := request.get("tries", 1)) != 1 else None),
         ("Plan from the words", "off" if request.get("planned") is False else None),
     ]
     items = "".join(

@@ -47,15 +47,23 @@ def progress_line(progress: Progress) -> str:
         return f"Waiting in line: place {progress.step} of {progress.total}{soon} …"
     if progress.stage == "sample":
         stage = _SAMPLING.get(progress.unit, "Generating")
-        return f"{stage}: {progress.unit} {progress.step} of {progress.total}{_left(progress)}"
-    return f"{_STAGES.get(progress.stage, progress.stage.capitalize())} …"
+        line = f"{stage}: {progress.unit} {progress.step} of {progress.total}{_left(progress)}"
+    else:
+        line = f"{_STAGES.get(progress.stage, progress.stage.capitalize())} …"
+    return f"{tries_line(progress)}{line}"
+
+
+def tries_line(progress: Progress) -> str:
+    """The words before the progress of one of several tries: "Try 2 of 4. "; "" where there is one."""
+    return f"Try {progress.attempt} of {progress.attempts}. " if progress.attempts > 1 else ""
 
 
 def _left(progress: Progress) -> str:
     """The time left at the pace so far; empty while there is no pace, or if little is left."""
     if progress.step < max(_PACE_STEPS, progress.total / 10):
         return ""
-    left = progress.elapsed * (progress.total / progress.step - 1)
+    done = (progress.attempt - 1) * progress.total + progress.step  # earlier tries took their time as well
+    left = progress.elapsed / done * (progress.total - progress.step)
     return f", about {_about(left)} left" if left >= _SHORT else ""
 
 
@@ -68,7 +76,8 @@ def cancelled_line(progress: Progress | None) -> str:
     """The sentence after a cancellation, with the last step that was done."""
     if progress is None or progress.stage != "sample":
         return "Cancelled before the first step."
-    return f"Cancelled at {progress.unit} {progress.step} of {progress.total}."
+    number = f" of try {progress.attempt}" if progress.attempts > 1 else ""
+    return f"Cancelled at {progress.unit} {progress.step} of {progress.total}{number}."
 
 
 def error_line(error: Exception) -> str:

@@ -1,0 +1,207 @@
+"""Tries with further seeds: the first that does all that is said, or the best, and what is said of it."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+import pytest
+
+from acts import Act, Plan, Relation
+from motion import Duet, InputError
+from motion.skeleton import SBU15
+from tests.motion.metrics.test_sentence_shapes import duet, put, shift, spin
+from webdemo.inference import Cancelled, CancelToken, Engine, GenerateRequest, Progress, Result, SceneRequest
+from webdemo.inference.requests import MAX_SEED
+from webdemo.inference.story import Beat
+from webdemo.inference.timer import StageTimer
+from webdemo.inference.tries import replayed, run_tries
+from webdemo.inference.verdicts import judged, note
+
+SENTENCE = "A raises the left arm and turns around."
+UP = put("left_wrist", (0.2, 0.9, 0.0))
+STILL, ONE, ALL = duet(), duet(UP), duet(UP, spin(170))
+
+
+def made(*motions: Any) -> Result:
+    return Result(duets=tuple(Duet.from_positions(m.positions, fps=30.0) for m in motions), manifest={})
+
+
+class Runs:
+    """Gives motions by how far a request's seed is from the first, and keeps the requests."""
+
+    def __init__(self, *motions: Any, first: int = 0) -> None:
+        self.motions, self.first = motions, first
+        self.asked: list[Any] = []
+
+    def __call__(self, request: Any) -> Iterator[Progress | Result]:
+        self.asked.append(request)
+        number = len(self.asked) - 1
+        yield Progress(stage="sample", step=1, total=2)
+        yield made(*[self.motions[number]] * request.samples)
+
+
+def tried(request: Any, runs: Runs, cancel: CancelToken | None = None) -> list[Progress | Result]:
+    return list(run_tries(request, runs, cancel or CancelToken(), StageTimer.start()))
+
+
+def result(request: Any, runs: Runs) -> Result:
+    *_, last = tried(request, runs)
+    assert isinstance(last, Result)
+    return last
+
+
+REQUEST = GenerateRequest(prompt=SENTENCE, tries=4, seed=7)
+
+
+def test_the_first_that_does_all_is_kept_and_ends_the_tries() -> None:
+    runs = Runs(ONE, ALL, ALL)
+    found = result(REQUEST, runs)
+    assert [(asked.seed, asked.tries) for asked in runs.asked] == [(7, 1), (8, 1)]
+    assert found.manifest["tries"] == {"asked": 4, "made": 2, "won": 2, "seed": 8}
+    assert [row["done"] for row in found.manifest["checked"]] == [True, True]
+    assert found.notes[-1].startswith("Done at the 2nd of 4 tries: ")
+    np.testing.assert_array_equal(found.duets[0].positions, ALL.positions.astype("f4"))
+
+
+def test_where_none_does_all_the_best_is_kept_of_equals_the_first() -> None:
+    found = result(REQUEST, Runs(STILL, ONE, STILL, ONE))
+    assert found.manifest["tries"] == {"asked": 4, "made": 4, "won": 2, "seed": 8}
+    assert found.notes[-1].startswith("Best of 4 tries, 1 of 2 acts. Done: ")
+    assert "Not seen: A turns" in found.notes[-1]
+
+
+def test_one_try_says_what_is_done_without_counting() -> None:
+    found = result(replace(REQUEST, tries=1), Runs(ONE))
+    assert "tries" not in found.manifest
+    assert found.notes[-1].startswith("Done: A raises the left arm. Not seen: A turns around (A turns by ")
+
+
+def test_progress_says_which_try_it_is() -> None:
+    events = [e for e in tried(REQUEST, Runs(ONE, ALL)) if isinstance(e, Progress)]
+    assert [(e.attempt, e.attempts) for e in events] == [(1, 4), (2, 4)]
+    alone = [e for e in tried(replace(REQUEST, tries=1), Runs(ONE)) if isinstance(e, Progress)]
+    assert [(e.attempt, e.attempts) for e in alone] == [(1, 1)]
+
+
+def test_cancelling_ends_the_tries_between_two() -> None:
+    cancel, runs = CancelToken(), Runs(STILL, STILL, STILL, STILL)
+    with pytest.raises(Cancelled):
+        for _ in run_tries(REQUEST, runs, cancel, StageTimer.start()):
+            cancel.cancel()  # at the first try's progress; the try itself does not look
+    assert len(runs.asked) == 1
+
+
+def test_seeds_go_on_from_zero_after_the_last() -> None:
+    runs = Runs(STILL, ALL)
+    assert result(replace(REQUEST, seed=MAX_SEED), runs).manifest["tries"]["seed"] == 0
+    assert [asked.seed for asked in runs.asked] == [MAX_SEED, 0]
+
+
+def test_what_cannot_be_judged_is_tried_once() -> None:
+    runs = Runs(STILL, STILL, STILL, STILL)
+    found = result(replace(REQUEST, prompt="A sneezes."), runs)
+    assert len(runs.asked) == 1
+    assert [row["done"] for row in found.manifest["checked"]] == [None]
+    assert not found.notes
+
+
+def test_a_replay_is_one_try_of_the_seed_that_won() -> None:
+    found = result(REQUEST, Runs(ONE, ALL))
+    fields = replayed(REQUEST.to_dict(), found.manifest)
+    assert (fields["seed"], fields["tries"], fields["prompt"]) == (8, 1, SENTENCE)
+    assert replayed(REQUEST.to_dict(), {}) == REQUEST.to_dict()
+
+
+@pytest.mark.parametrize("tries", [0, 5, 1.5, True, "2"])
+def test_tries_are_one_to_four(tries: Any) -> None:
+    with pytest.raises(InputError, match="Tries"):
+        GenerateRequest(prompt=SENTENCE, tries=tries)
+
+
+def test_tries_count_towards_the_motion_of_a_scene() -> None:
+    beats = tuple(Beat("They wave.", seconds=10.0) for _ in range(12))
+    assert SceneRequest(beats=beats, tries=3).tries == 3
+    with pytest.raises(InputError, match="4 tries of 1 samples of 120 s are 480 s"):
+        SceneRequest(beats=beats, tries=4)
+
+
+# ---- verdicts --------------------------------------------------------------------------------------------
+def test_every_sample_has_its_own_verdicts_and_the_note_counts_them() -> None:
+    found = judged(replace(REQUEST, samples=2), made(ONE, ALL))
+    assert [d.manifest["checked"][1]["done"] for d in found.result.duets] == [False, True]  # type: ignore[union-attr, index]
+    assert found.counts == (3, 4)
+    assert "A turns around (in 1 of 2 samples)" in note(found.rows)
+
+
+def test_each_beat_is_judged_on_its_own_frames() -> None:
+    body = np.concatenate([STILL.positions[:, :60], duet(shift((0, 0, 0), (0, 0, -2))).positions], axis=1)
+    motion = Result(duets=(Duet.from_positions(body, fps=30.0),), manifest={})
+    first, second = Beat("A walks away from B.", seconds=2.0), Beat("A walks away from B.", seconds=4.0)
+    rows = judged(SceneRequest(beats=(first, second)), motion).rows[0]
+    assert [(row["beat"], row["done"]) for row in rows] == [(1, False), (2, True)]
+
+
+def test_the_acts_of_a_plan_take_the_place_of_the_words() -> None:
+    order = (Relation(kind="after", act="9"),)
+    act = Act(
+        id="1", act="raise-arm", agents=("a",), side="left", order=order
+    )  # after an act of another beat
+    beat = Beat("They wave.", seconds=4.0, acts=(act,))
+    rows = judged(SceneRequest(beats=(beat,)), made(ONE)).rows[0]
+    assert [(row["act"], row["done"]) for row in rows] == [("raise-arm", True)]
+    plan = Plan(acts=(act.model_copy(update={"order": ()}),))
+    rows = judged(GenerateRequest(prompt="They wave.", acts=plan), made(ONE)).rows[0]
+    assert [(row["act"], row["done"]) for row in rows] == [("raise-arm", True)]
+
+
+def test_other_joints_are_not_judged() -> None:
+    strange = Duet.from_positions(np.zeros((2, 60, 15, 3)), fps=30.0, skeleton=SBU15)
+    assert not judged(REQUEST, Result(duets=(strange,), manifest={})).rows
+
+
+def test_a_long_note_names_the_first_few() -> None:
+    rows = [[{"act": "wave", "words": f"act {i}", "done": True, "measure": ""} for i in range(9)]]
+    assert note(rows) == "Done: act 0; act 1; act 2; act 3; act 4; act 5; and 3 more."
+
+
+# ---- with a network --------------------------------------------------------------------------------------
+QUICK = GenerateRequest(prompt="A falls down and B walks away.", seconds=2.0, steps=2, seed=3, tries=3)
+
+
+def test_a_result_of_tries_is_that_of_its_seed(engine: Engine) -> None:
+    *_, found = engine.run(QUICK)
+    assert isinstance(found, Result)
+    tries = found.manifest["tries"]
+    assert found.manifest["request"]["tries"] == 3 and found.manifest["request"]["seed"] == 3
+    *_, again = engine.run(
+        GenerateRequest(**{k: v for k, v in replayed(QUICK.to_dict(), found.manifest).items() if k != "kind"})
+    )
+    assert isinstance(again, Result)
+    assert again.manifest["request"]["seed"] == tries["seed"]
+    assert found.duets[0].positions.tobytes() == again.duets[0].positions.tobytes()
+    assert found.manifest["checked"] == again.manifest["checked"]
+    assert found.duets[0].manifest["checked"] == found.manifest["checked"]  # type: ignore[index, union-attr]
+
+
+def test_a_scene_is_tried_as_a_whole(engine: Engine) -> None:
+    beats = (Beat("A lies down.", seconds=1.0), Beat("B kneels.", seconds=1.0))
+    events = list(engine.run(SceneRequest(beats=beats, steps=2, damping=0.0, tries=2, planned=False)))
+    found = events[-1]
+    assert isinstance(found, Result)
+    assert found.manifest["tries"]["asked"] == 2
+    assert {e.attempt for e in events if isinstance(e, Progress) and e.stage == "sample"} == set(
+        range(1, found.manifest["tries"]["made"] + 1)
+    )
+
+
+def test_a_try_can_be_cancelled_within(engine: Engine) -> None:
+    cancel, steps = CancelToken(), 0
+    with pytest.raises(Cancelled):
+        for event in engine.run(replace(QUICK, steps=6), cancel=cancel):
+            if isinstance(event, Progress) and event.stage == "sample":
+                steps += 1
+                cancel.cancel()
+    assert steps == 1

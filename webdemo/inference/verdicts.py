@@ -1,0 +1,152 @@
+"""The acts of a request's words that its motion shows: for the manifest, the note under a result, and further tries."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
+from typing import Any
+
+from acts import Act, Plan, read
+from acts.checking import checked
+from motion import SMPL22, Clip, Duet, InputError
+from motion.metrics.sentences.joints import Motion
+
+from . import methods
+from .requests import GenerateRequest, Result
+from .story.request import SceneRequest
+
+MOST_NAMED = 6
+"""Acts that a note names of each kind, at most."""
+_ORDINALS = ("1st", "2nd", "3rd", "4th")
+
+Rows = list[dict[str, Any]]
+"""Verdicts as a manifest holds them: ``act``, ``words``, ``done``, ``measure``, and ``beat`` where it has several."""
+
+
+@dataclass(frozen=True)
+class Judged:
+    """A result with what its samples show of the words.
+
+    Attributes:
+        result: with ``checked`` in the manifests, of the first sample in that of all.
+        rows: of each sample; () where the request has no words that can be read.
+    """
+
+    result: Result
+    rows: tuple[Rows, ...] = ()
+
+    @property
+    def counts(self) -> tuple[int, int]:
+        """Acts that are done and that can be judged, over all samples."""
+        found = [row["done"] for rows in self.rows for row in rows if row["done"] is not None]
+        return sum(found), len(found)
+
+    @property
+    def share(self) -> float:
+        """Acts that are done among those that can be judged; 1 where there are none."""
+        done, told = self.counts
+        return done / told if told else 1.0
+
+
+def judged(request: Any, result: Result) -> Judged:
+    """A result with the verdicts on the acts of its request's words; as it is where there are none to judge."""
+    plans = list(_plans(request))
+    rows = tuple(_rows(plans, duet) for duet in result.duets) if plans else ()
+    if not any(rows):
+        return Judged(result)
+    manifest = {**result.manifest, "checked": rows[0]}
+    duets = tuple(_with_rows(duet, own) for duet, own in zip(result.duets, rows, strict=True))
+    return Judged(replace(result, manifest=manifest, duets=duets), rows)
+
+
+def _with_rows(duet: Duet | Clip, rows: Rows) -> Duet | Clip:
+    return (
+        replace(duet, manifest={**(duet.manifest or {}), "checked": rows}) if isinstance(duet, Duet) else duet
+    )
+
+
+def checked_rows(duet: Duet) -> dict[str, Rows]:
+    """The part of a sample's manifest that holds its own verdicts; empty where there are none."""
+    return {"checked": duet.manifest["checked"]} if duet.manifest and "checked" in duet.manifest else {}
+
+
+def _plans(request: Any) -> Iterator[tuple[Plan, int, int | None, int | None]]:
+    """The plans of a request's words, with the frames of each and the number of its beat, where there are several."""
+    if isinstance(request, SceneRequest):
+        edges = request.edges
+        several = len(request.beats) > 1
+        for i, beat in enumerate(request.beats):
+            plan = _of_acts(beat.acts) if beat.acts else _read(beat.sentence)
+            if plan is not None:
+                yield plan, edges[i], edges[i + 1], i + 1 if several else None
+        return
+    if isinstance(request, GenerateRequest) and "words" in methods.method(request.model).takes:
+        plan = _read(request.prompt) if request.acts is None else request.acts
+        if plan is not None:
+            yield plan, 0, None, None
+
+
+def _of_acts(acts: Sequence[Act]) -> Plan:
+    """The plan of a beat's acts alone, without their relations to acts of other beats."""
+    here = {act.id for act in acts}
+    kept = [act.model_copy(update={"order": tuple(r for r in act.order if r.act in here)}) for act in acts]
+    return Plan(acts=tuple(kept))
+
+
+def _read(sentence: str) -> Plan | None:
+    """The plan of a sentence; None without words, or where no parser is installed."""
+    try:
+        return read(sentence) if sentence.strip() else None
+    except InputError:
+        return None
+
+
+def _rows(plans: Sequence[tuple[Plan, int, int | None, int | None]], duet: Duet | Clip) -> Rows:
+    if not isinstance(duet, Duet) or duet.skeleton.joint_names != SMPL22.joint_names:
+        return []
+    found = []
+    for plan, start, stop, beat in plans:
+        part = Motion(duet.positions[:, start:stop], duet.fps)
+        for verdict in checked(plan, part):
+            found.append(verdict.to_dict() | ({} if beat is None else {"beat": beat}))
+    return found
+
+
+# ---- the note --------------------------------------------------------------------------------------------
+def note(rows: Sequence[Rows], tries: Mapping[str, Any] | None = None) -> str:
+    """The sentence under a result: what is done of its words, what is not, and in how many tries; "" for nothing.
+
+    Args:
+        rows: of each sample; with several, an act counts how often it is done.
+        tries: as the manifest holds them.
+    """
+    acts = [[row for row in column if row["done"] is not None] for column in zip(*rows, strict=True)]
+    acts = [column for column in acts if column]
+    if not acts:
+        return ""
+    done = [column[0]["words"] for column in acts if all(row["done"] for row in column)]
+    missed = [_missed(column) for column in acts if not all(row["done"] for row in column)]
+    parts = [f"Done: {_listed(done)}."] if done else []
+    if missed:
+        parts.append(f"Not seen: {_listed(missed)}.")
+    if tries is None:
+        return " ".join(parts)
+    if missed:
+        met = sum(row["done"] for column in acts for row in column)
+        return f"Best of {tries['made']} tries, {met} of {sum(map(len, acts))} acts. {' '.join(parts)}"
+    return f"Done at the {_ORDINALS[tries['won'] - 1]} of {tries['asked']} tries: {_listed(done)}."
+
+
+def _missed(column: Sequence[Mapping[str, Any]]) -> str:
+    """An act that is not done, with what was measured; of several samples with the number of those that show it."""
+    words = str(column[0]["words"])
+    if len(column) > 1:
+        met = sum(row["done"] for row in column)
+        return f"{words} (in {met} of {len(column)} samples)"
+    return f"{words} ({column[0]['measure']})" if column[0]["measure"] else words
+
+
+def _listed(words: Sequence[str]) -> str:
+    words = list(dict.fromkeys(words))
+    more = f"; and {len(words) - MOST_NAMED} more" if len(words) > MOST_NAMED else ""
+    return "; ".join(words[:MOST_NAMED]) + more
