@@ -13,6 +13,7 @@ from gradio.blocks import Blocks
 from gradio.routes import App
 from starlette.routing import Mount
 
+from acts import Act
 from tests.ui.stub_engine import walking
 from webdemo.inference.story import Beat, FloorPath, FloorPoint, Pose
 from webdemo.server.http import payloads
@@ -23,10 +24,11 @@ from webdemo.ui.components.reading import Reading
 from webdemo.ui.components.story import StoryLine, story_fields, story_value
 
 FILE = {"path": "/uploads/ada/x.glb", "meta": {"_type": "gradio.FileData"}}
+HUG = Act(id="1", act="hug", agents=("a", "b"))
 STORY: dict[str, Any] = json.loads(
     json.dumps(
         story_value(
-            (Beat("They bow.", a="waves", b="nods", seconds=2.0, seed=3), Beat("They hug.")),
+            (Beat("They bow.", a="waves", b="nods", seconds=2.0, seed=3), Beat("They hug.", acts=(HUG,))),
             (FloorPath("a", (FloorPoint(0.0, 1.0, 0.0, 90.0), FloorPoint(1.0, 1.0))),),
             (Pose("b", 0.5, np.asarray(walking(1.0).b.positions[0])),),
         )

@@ -8,13 +8,13 @@ from __future__ import annotations
 
 import json
 from collections.abc import Mapping
-from dataclasses import asdict
 from pathlib import Path
 from typing import Any
 
 import gradio as gr
 from pydantic import Field, TypeAdapter
 
+from acts import Act
 from motion import Duet, InputError
 from motion.metrics import compare
 from webdemo.inference.story import Beat, FloorPath, Pose, SceneRequest
@@ -40,7 +40,7 @@ import(file(%s)).then((story) => story.mount(element, props, watch, trigger));
 
 
 class SentBeat(Sent):
-    """A beat as the browser sends it; ``auto`` is the length that follows from its words."""
+    """A beat as the browser sends it; ``auto`` is the length that follows from its words or from its ``acts``."""
 
     words: Text = ""
     a: Text = ""
@@ -48,6 +48,7 @@ class SentBeat(Sent):
     seconds: Finite | None = None
     seed: Finite | None = None
     auto: Finite | None = None
+    acts: list[Act] = Field(default_factory=list)
 
 
 class SentPath(Sent):
@@ -139,7 +140,7 @@ def story_value(
 ) -> dict[str, Any]:
     """A story as the component holds it."""
     return {
-        "beats": [asdict(beat) | {"auto": beat.length} for beat in beats],
+        "beats": [beat.to_dict() | {"auto": beat.length} for beat in beats],
         "paths": [
             {
                 "person": path.person,
