@@ -109,6 +109,18 @@ class Gesture(_Shape):
         "offers",
         "waves",
         "points",
+        "spread",
+        "hips",
+        "chest",
+        "belly",
+        "head",
+        "mouth",
+        "behind",
+        "crossed",
+        "flaps",
+        "circles",
+        "swings",
+        "shakes",
     ]
     sides: Literal["left", "right", "both"] = "right"
 
@@ -162,11 +174,35 @@ class Strike(_Shape):
 
 
 class Limb(_Shape):
-    """A hand, foot or other part moved towards a direction or a part of one's own body; the plan's act names them."""
+    """Legs, trunk or head that move by themselves; the act names the side, the direction and the number.
+
+    Attributes:
+        does: which movement.
+        side: of the leg, where the words name none.
+        direction: likewise.
+    """
 
     do: Literal["limb"] = "limb"
-    part: Literal["", "hand", "arm", "head", "leg", "foot", "knee", "back"] = ""
-    direction: Literal["", "up", "down", "forward", "back", "out", "left", "right", "in"] = ""
+    does: Literal[
+        "raises leg",
+        "raises knee",
+        "swings leg",
+        "kicks",
+        "stamps",
+        "taps foot",
+        "stands on one leg",
+        "bends knees",
+        "on tiptoe",
+        "crosses legs",
+        "leans",
+        "twists",
+        "sways",
+        "moves head",
+        "rolls head",
+        "nods",
+    ]
+    side: Literal["left", "right", "both"] = "right"
+    direction: Literal["", "up", "down", "forward", "back", "out", "left", "right"] = ""
 
 
 class Words(_Shape):

@@ -14,6 +14,7 @@ from webdemo.inference.known_parts import KnownFrames, Part
 from webdemo.inference.story.floor import Standing, Way2D, plan, starting
 from webdemo.inference.story.gestures import Hand
 from webdemo.inference.story.holds import Hold
+from webdemo.inference.story.limbs import Limb, limbed
 from webdemo.inference.story.moves import Move, goes
 from webdemo.inference.story.plan import Window
 from webdemo.inference.story.poses import ARMS, HANDS, standing, upright
@@ -38,6 +39,8 @@ Array = NDArray[np.floating]
 
 POSED = 15
 """Frames between two poses of somebody who stands by."""
+LIMBED = 3
+"""Frames between two poses of somebody who moves limbs of their own."""
 TURNED = 5
 """Frames between two poses of somebody whose trunk the network would turn to the other."""
 SETTLES = 24
@@ -166,6 +169,10 @@ def _held(
     for person, who in enumerate("ab"):
         last = scene[person, start - room.delay - 1] if start else None
         up = last is None or last[0, 1] > UPRIGHT
+        if up and who in told.limbs and who not in gone:
+            parts += _limbed(told.limbs[who], person, stand, window, start, stop, placement)
+            posed[person] = upright(stand.places[person], float(stand.headings[person]))
+            continue
         turned = last is None and _keeps_back(told, who)
         if up and (who in still or ((turned or who in told.gesturing) and who not in gone)):
             free = () if who in still else HANDS if turned else ARMS
@@ -289,6 +296,27 @@ def _posed(
     shift = window.past - window.start
     joints = [joint for joint in range(SMPL22.num_joints) if joint not in free]
     return [KnownFrames(person, (frames + shift).tolist(), placement.to_network(poses), joints)]
+
+
+def _limbed(
+    limbs: Sequence[Limb],
+    person: int,
+    stand: Standing,
+    window: Window,
+    start: int,
+    stop: int,
+    placement: Placement,
+) -> list[Part]:
+    """All of somebody who moves limbs of their own but their arms, as far as it falls into a window."""
+    frames = np.arange(start + SETTLES // 2 if start else 0, stop, LIMBED)
+    frames = frames[(frames >= window.start) & (frames < window.stop)]
+    if not len(frames):
+        return []
+    place = stand.places[person] + (HALT * stand.speeds[person] if start else 0.0)
+    poses = limbed(limbs, place, float(stand.headings[person]), (frames - start) / FPS, (stop - start) / FPS)
+    joints = [joint for joint in range(SMPL22.num_joints) if joint not in HANDS]
+    shifted = (frames + window.past - window.start).tolist()
+    return [KnownFrames(person, shifted, placement.to_network(poses), joints)]
 
 
 def _stand(poses: Array) -> Standing:

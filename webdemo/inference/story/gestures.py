@@ -40,6 +40,18 @@ class Hand(Enum):
     WAVES = "waves"
     POINTS = "points at the other"
     LINKED = "holds the other's hand"
+    SPREAD = "stretched out to the side"
+    HIPS = "on the hip"
+    CHEST = "on the chest"
+    BELLY = "on the belly"
+    HEAD = "on the back of the head"
+    MOUTH = "before the mouth"
+    BEHIND = "behind the back"
+    CROSSED = "folded before the chest"
+    FLAPS = "flaps like a wing"
+    CIRCLES = "goes round in circles"
+    SWINGS = "swings to and fro"
+    SHAKES = "is shaken out"
 
 
 @dataclass(frozen=True)
@@ -117,7 +129,16 @@ _SIDE = re.compile(r"\b(left|right)(?:[- ]hand(?:ed)?| arm)?\b")
 OF_BOTH = (Hand.HIGH, Hand.AHEAD, Hand.CLAPS, Hand.EARS, Hand.EYES, Hand.PHOTO, Hand.PRAYS)
 """Gestures of both hands."""
 _OWN = (Hand.PHONE, Hand.EARS, Hand.EYES, Hand.PHOTO, Hand.PRAYS)
-STOOD = (Hand.CLAPS, Hand.SALUTES, Hand.AHEAD, Hand.OFFERS, *_OWN)
+_AT_BODY = {
+    Hand.HIPS: (0.21, 0.1, 0.0), Hand.CHEST: (0.02, 0.36, 0.2), Hand.BELLY: (0.04, 0.14, 0.2),
+    Hand.HEAD: (0.12, 0.66, -0.05), Hand.MOUTH: (0.04, 0.54, 0.2), Hand.BEHIND: (0.04, 0.02, -0.18),
+    Hand.CROSSED: (-0.13, 0.27, 0.15), Hand.SHAKES: (0.28, -0.02, 0.12),
+}  # fmt: skip
+"""Metres from the pelvis to the left wrist of hands that are held at one's own body."""
+STOOD = (
+    Hand.CLAPS, Hand.SALUTES, Hand.AHEAD, Hand.OFFERS, *_OWN,
+    *_AT_BODY, Hand.SPREAD, Hand.FLAPS, Hand.CIRCLES, Hand.SWINGS,
+)  # fmt: skip
 """Gestures that are given also to those who only stand."""
 _REACH = 0.47
 """Metres from the shoulder to the wrist of an arm that is nearly straight."""
@@ -184,7 +205,7 @@ def wrist(gesture: Gesture, side: str, seconds: Array, towards: Array) -> Array:
     pose = upright(np.zeros(2), 0.0)
     shoulder = pose[SMPL22.index(f"{side}_shoulder")] - pose[0]
     out = 1.0 if side == "left" else -1.0
-    offset = np.zeros((len(seconds), 3))
+    offset: Array = np.zeros((len(seconds), 3))
     match gesture.hand:
         case Hand.HIGH:
             offset[:] = [0.1 * out, 0.45, 0.08]
@@ -215,4 +236,29 @@ def wrist(gesture: Gesture, side: str, seconds: Array, towards: Array) -> Array:
         case Hand.LINKED:
             shoulder = np.zeros(3)
             offset[:] = [0.22 * out, 0.0, 0.08]
+        case _:
+            offset = _beside(gesture.hand, out, np.asarray(seconds), shoulder)
     return shoulder + offset
+
+
+def _beside(hand: Hand, out: float, seconds: Array, shoulder: Array) -> Array:
+    """A wrist's way (N, 3) beside the shoulder, of hands at one's own body and of arms that move by themselves."""
+    turn, offset = 2 * np.pi * seconds, np.zeros((len(seconds), 3))
+    match hand:
+        case Hand.SPREAD:
+            offset[:] = [0.45 * out, 0.0, 0.06]
+        case Hand.FLAPS:
+            offset[:] = [0.4 * out, 0.0, 0.06]
+            offset[:, 1] = 0.22 * np.sin(turn * 1.2) - 0.06
+        case Hand.CIRCLES:
+            offset[:, 0] = 0.14 * out
+            offset[:, 1], offset[:, 2] = 0.42 * np.cos(turn / 1.3), 0.42 * np.sin(turn / 1.3)
+        case Hand.SWINGS:
+            angle = 0.9 * np.sin(turn / 1.4)
+            offset[:, 0] = 0.06 * out
+            offset[:, 1], offset[:, 2] = -0.44 * np.cos(angle), 0.44 * np.sin(angle)
+        case _:
+            offset[:] = _AT_BODY[hand] * np.array([out, 1.0, 1.0]) - shoulder
+            if hand is Hand.SHAKES:
+                offset[:, 1] += 0.05 * np.sin(turn * 3.0)
+    return offset

@@ -106,7 +106,7 @@ _BENDS: Mapping[str, float] = {
 }  # fmt: skip
 _BENT = 0.9
 """Radians by which somebody who bends down is bent."""
-_STANDS: Mapping[str, float] = {
+STANDS: Mapping[str, float] = {
     "hip": -0.06,
     "knee": 0.12,
     "ankle": -0.06,
@@ -126,7 +126,7 @@ _FLIES: Mapping[str, float] = {
 
 def upright(place: Array, angle: float) -> Array:
     """Somebody who stands still: (22, 3) metres."""
-    return _on_floor(_posed(angle, _STANDS)[None], place, angle)[0]
+    return _on_floor(_posed(angle, STANDS)[None], place, angle)[0]
 
 
 def seated(place: Array, angle: float) -> Array:

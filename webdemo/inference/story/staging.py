@@ -21,6 +21,7 @@ from .contacts import Contact, Region
 from .gestures import OF_BOTH, SIDES, STOOD, Gesture, Hand
 from .holds import TWIRL, Hold
 from .lifts import Carry, Lift
+from .limbs import Limb
 from .moves import Move, finished, goes, lifted_moves, struck_moves
 from .postures import Change, Posture
 from .strikes import Bout, Strike
@@ -76,6 +77,7 @@ class _Stage:
         self.gestures: dict[str, Gesture] = {}
         self.changes: dict[str, tuple[Change, ...]] = {}
         self.leaps: dict[str, int] = {}
+        self.limbs: dict[str, tuple[Limb, ...]] = {}
         self.bows: dict[str, tuple[int, bool]] = {}
         self.contact: Contact | None = None
         self.hold: Hold | None = None
@@ -100,7 +102,8 @@ class _Stage:
         return Told(
             moves=moves, idle=idle, gesturing=self._gesturing(moves), gestures=self.gestures, contact=self.contact,
             hold=self.hold, by_both_hands=any(m.backwards and m.way is Way.AWAY for m in moves), twirls=self.twirls,
-            lift=self.lift, strike=struck, changes=self.changes, leaps=self.leaps, bows=self.bows,
+            lift=self.lift, strike=struck, changes=self.changes, limbs=self.limbs,
+            leaps=self.leaps, bows=self.bows,
             on_feet=frozenset(who for act, e in self.done if e.group in _LEGS for who in act.agents),
             placed=standing(
                 replace(
@@ -130,6 +133,10 @@ class _Stage:
             case shapes.Posture():
                 for who in people:
                     self.changes[who] = (*self.changes.get(who, ()), *self._changed(act, shape))
+            case shapes.Limb():
+                side, direction = act.side or shape.side, act.direction or shape.direction
+                limb = Limb(shape.does, side, direction, act.times or 0)
+                self.limbs |= {who: (*self.limbs.get(who, ()), limb) for who in people}
             case shapes.Jump():
                 self.leaps |= dict.fromkeys(people, min(act.times or shape.times, 5))
             case shapes.Bow():

@@ -14,6 +14,7 @@ from .floor import Standing
 from .gestures import Gesture
 from .holds import Hold
 from .lifts import Lift
+from .limbs import Limb
 from .moves import Move, goes
 from .postures import Change, Posture
 from .strikes import Strike
@@ -39,6 +40,7 @@ class Told:
         lift: of one by the other.
         strike: blows or throws.
         changes: of posture in order, by person.
+        limbs: legs, trunk and head that move by themselves, by person.
         leaps: the number of jumps, by person.
         bows: the number of bows, by person, and True where they are deep.
         on_feet: those who do what needs legs.
@@ -59,6 +61,7 @@ class Told:
     lift: Lift | None = None
     strike: Strike | None = None
     changes: Mapping[str, tuple[Change, ...]] = field(default_factory=dict)
+    limbs: Mapping[str, tuple[Limb, ...]] = field(default_factory=dict)
     leaps: Mapping[str, int] = field(default_factory=dict)
     bows: Mapping[str, tuple[int, bool]] = field(default_factory=dict)
     on_feet: frozenset[str] = frozenset()
@@ -70,7 +73,16 @@ class Told:
     @property
     def is_planned(self) -> bool:
         """True if people go somewhere, stand by, sit, kneel, lie down, jump, bow or touch."""
-        found = (self.contact, self.idle, self.changes, self.leaps, self.bows, self.gesturing, self.placed)
+        found = (
+            self.contact,
+            self.idle,
+            self.changes,
+            self.leaps,
+            self.bows,
+            self.limbs,
+            self.gesturing,
+            self.placed,
+        )
         return goes(self.moves) or any(
             each is not None and each != {} and each != frozenset() for each in found
         )

@@ -1,0 +1,76 @@
+"""Limbs that move by themselves: bones keep their lengths, the other foot stays, and the acts' own rules see it."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from acts import lexicon
+from acts.checking import checked
+from acts.plan import Act, Plan
+from motion import SMPL22, Duet
+from webdemo.inference.actor import FPS
+from webdemo.inference.scenes import NAMES
+from webdemo.inference.story.limbs import MOVES, RAISES, Limb, limbed
+from webdemo.inference.story.poses import upright
+from webdemo.inference.story.staging import staged
+
+SECONDS = np.arange(150) / FPS
+
+
+def motion(does: str, **fields: object) -> np.ndarray:
+    return limbed([Limb(does, **fields)], np.array([0.5, 1.0]), 0.7, SECONDS, 5.0)  # type: ignore[arg-type]
+
+
+@pytest.mark.parametrize("does", sorted(MOVES))
+@pytest.mark.parametrize("side", ["left", "right", "both"])
+def test_bodies_stay_whole_and_on_the_floor(does: str, side: str) -> None:
+    found = motion(does, side=side)
+    parents, children = np.array(SMPL22.bones).T
+    lengths = np.linalg.norm(found[:, children] - found[:, parents], axis=-1)
+    np.testing.assert_allclose(lengths, lengths[:1].repeat(len(lengths), axis=0), atol=1e-6)
+    feet = found[:, [SMPL22.index("left_foot"), SMPL22.index("right_foot")]]
+    assert feet[..., 1].min() > 0.0 and feet[..., 1].min(axis=1).max() < 0.03
+    np.testing.assert_allclose(found[0], upright(np.array([0.5, 1.0]), 0.7), atol=1e-6)
+    assert np.abs(np.diff(found, axis=0)).max() * FPS < 6.0, "metres a second of a joint"
+
+
+@pytest.mark.parametrize("does", sorted(RAISES))
+def test_the_foot_that_is_not_raised_stays(does: str) -> None:
+    left = SMPL22.index("left_foot")
+    assert np.ptp(motion(does, side="right")[:, left], axis=0).max() < 1e-6
+    assert np.ptp(motion(does, side="left")[:, left, 1]) > 0.02
+
+
+def names() -> list[str]:
+    return [n for n, e in lexicon().entries.items() if e.rule and {s.do for s in e.stage} == {"limb"}]
+
+
+@pytest.mark.parametrize("name", names())
+def test_an_act_of_limbs_does_what_its_rule_asks_for(name: str) -> None:
+    """The rule fails on somebody who stands, and holds for the poses that the stage gives."""
+    act = Act(id="1", act=name, agents=("a",))
+    other = np.tile(upright(np.array([0.0, 1.2]), np.pi), (len(SECONDS), 1, 1))
+    moved = limbed(staged((act,)).limbs["a"], np.zeros(2), 0.0, SECONDS, 5.0)
+    plain = np.tile(upright(np.zeros(2), 0.0), (len(SECONDS), 1, 1))
+    plan = Plan(acts=(act,))
+    (still,), (done,) = (
+        checked(plan, Duet.from_positions(np.stack([own, other]), fps=FPS, roles=NAMES))
+        for own in (plain, moved)
+    )
+    assert done.done and not still.done
+
+
+def test_sides_directions_and_numbers_reach_the_limbs() -> None:
+    (limb,) = staged(
+        (Act(id="1", act="raise-leg", agents=("b",), side="left", direction="back", times=2),)
+    ).limbs["b"]
+    assert limb == Limb("raises leg", "left", "back", 2)
+    ahead, back = (
+        motion("raises leg", direction=d)[75, SMPL22.index("right_foot")] for d in ("forward", "back")
+    )
+    towards = np.array([np.sin(0.7), 0.0, np.cos(0.7)])
+    assert (ahead - back) @ towards > 0.5
+    once, twice = (motion("kicks", times=t)[:, SMPL22.index("right_foot"), 1] for t in (1, 2))
+    rises = [np.count_nonzero(np.diff((h > 0.3).astype(int)) == 1) for h in (once, twice)]
+    assert rises == [1, 2]

@@ -1,0 +1,241 @@
+"""Legs, trunk and head that do something by themselves: a leg that is raised, a trunk that leans, a head that drops.
+
+No caption of the training data names them, so the whole body but the arms is given, by the angles of its joints.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from motion import SMPL22
+from motion.kinematics import forward_kinematics
+from motion.transforms import heading_matrix
+
+from .poses import SOLE, STANDS, TOES, about
+
+Array = NDArray[np.floating]
+Turns = dict[str, Array]
+
+RAMP = 0.7
+"""Seconds in which a limb gets to its place, and back."""
+BEGINS = 0.4
+"""Seconds of a beat before it moves."""
+SWING = 1.5
+"""Seconds of a swing to and fro."""
+
+
+@dataclass(frozen=True)
+class Limb:
+    """A part of one's own body that is moved.
+
+    Attributes:
+        does: a name of :data:`MOVES`.
+        side: "left", "right" or "both", of the leg or towards which trunk and head go.
+        direction: "forward", "back", "left", "right", "out", "up" or "down"; "" for the usual one.
+        times: how often, of what is repeated; 0 for as long as the beat lasts.
+    """
+
+    does: str
+    side: str = "right"
+    direction: str = ""
+    times: int = 0
+
+
+def limbed(limbs: Sequence[Limb], place: Array, angle: float, seconds: Array, length: float) -> Array:
+    """Somebody who stands and moves limbs of their own.
+
+    Args:
+        limbs: which, at the same time.
+        place: (2,) x and z of the pelvis in metres.
+        angle: heading in radians from +Z towards +X.
+        seconds: (N,) moments of the beat.
+        length: seconds of the beat.
+
+    Returns:
+        (N, 22, 3) metres; a foot that is not raised is on the floor where it stood.
+    """
+    seconds = np.asarray(seconds, dtype=float)
+    held = _ramp(seconds - BEGINS) * _ramp(length - 0.2 - seconds)
+    angles: dict[str, Array] = {}
+    for limb in limbs:
+        for joint, turn in MOVES[limb.does](limb, held, np.maximum(seconds - BEGINS, 0.0)).items():
+            angles[joint] = angles[joint] @ turn if joint in angles else turn
+    still, poses = _posed({}, 1, angle)[0], _posed(angles, len(seconds), angle)
+    stance = [TOES[i] for i in _stance(limbs)]
+    shift = still[stance].mean(axis=0) - poses[:, stance].mean(axis=1)
+    shift[:, 1] = SOLE - poses[:, stance, 1].min(axis=1)
+    ahead = 0.12 * np.array([np.sin(angle), 0.0, np.cos(angle)])
+    toes = still[list(TOES)].mean(axis=0) * [1, 0, 1]
+    return poses + shift[:, None] + np.array([place[0], 0.0, place[1]]) + ahead - toes
+
+
+def _ramp(seconds: Array) -> Array:
+    """From 0 to 1 along a minimum-jerk course."""
+    share = np.clip(seconds / RAMP, 0.0, 1.0)
+    return share**3 * (10 - 15 * share + 6 * share**2)
+
+
+def _posed(angles: Mapping[str, Array], count: int, angle: float) -> Array:
+    """Poses (N, 22, 3) around the origin of somebody who stands, with further rotations of joints."""
+    turns = np.tile(np.eye(3), (count, SMPL22.num_joints, 1, 1))
+    turns[:, 0] = heading_matrix(angle)
+    for side, sign in (("left", 1.0), ("right", -1.0)):
+        turns[:, SMPL22.index(f"{side}_shoulder")] = about(2, -sign * STANDS["shoulder"])
+        turns[:, SMPL22.index(f"{side}_elbow")] = heading_matrix(-sign * STANDS["elbow"])
+        turns[:, SMPL22.index(f"{side}_hip")] = about(2, -sign * 0.02) @ about(0, STANDS["hip"])
+        for joint in ("knee", "ankle"):
+            turns[:, SMPL22.index(f"{side}_{joint}")] = about(0, STANDS[joint])
+    for joint, turn in angles.items():
+        turns[:, SMPL22.index(joint)] = turns[:, SMPL22.index(joint)] @ turn
+    return forward_kinematics(turns, np.zeros((count, 3)))
+
+
+def _stance(limbs: Sequence[Limb]) -> list[int]:
+    """The feet that stay on the floor: 0 for the left one, 1 for the right one."""
+    raised = [side for limb in limbs if limb.does in RAISES for side in _legs(limb)]
+    return [i for i, side in enumerate(("left", "right")) if side not in raised] or [0, 1]
+
+
+def _legs(limb: Limb) -> list[str]:
+    """The legs that are raised; both cannot be at once, so then it is the right one."""
+    return [limb.side if limb.side in ("left", "right") else "right"]
+
+
+def _swing(since: Array, held: Array, times: int, period: float = SWING) -> Array:
+    """A swing between -1 and 1, so many times or as long as it is held."""
+    ends = since <= times * period if times else np.ones_like(since, dtype=bool)
+    return np.sin(2 * np.pi * since / period) * held * ends
+
+
+def _pulses(since: Array, held: Array, times: int, period: float = 1.0) -> Array:
+    """Rises from 0 to 1 and back, so many times or as long as it is held."""
+    ends = since <= times * period if times else np.ones_like(since, dtype=bool)
+    return np.sin(np.pi * since / period) ** 2 * held * ends
+
+
+def _leg(limb: Limb, hip: Array, knee: Array, out: Array | float = 0.0) -> Turns:
+    found: Turns = {}
+    for side in _legs(limb):
+        sign = 1.0 if side == "left" else -1.0
+        found[f"{side}_hip"] = about(2, sign * np.asarray(out) + np.zeros_like(hip)) @ about(0, -hip)
+        found[f"{side}_knee"] = about(0, knee)
+    return found
+
+
+def _raised_leg(limb: Limb, held: Array, since: Array) -> Turns:
+    if limb.direction == "back":
+        return _leg(limb, -0.55 * held, 0.25 * held) | {"spine1": about(0, 0.2 * held)}
+    if limb.direction in ("out", "left", "right"):
+        return _leg(limb, 0.1 * held, 0.0 * held, 0.7 * held)
+    return _leg(limb, 1.0 * held, 0.15 * held)
+
+
+def _swung_leg(limb: Limb, held: Array, since: Array) -> Turns:
+    swing = _swing(since, held, limb.times)
+    return _leg(limb, 0.15 * held + 0.55 * swing, 0.15 * held + 0.2 * np.maximum(-swing, 0))
+
+
+def _kicked_leg(limb: Limb, held: Array, since: Array) -> Turns:
+    pulse = _pulses(since, held, limb.times or 2, 1.1)
+    return _leg(limb, 1.3 * pulse, 0.5 * pulse * (1 - pulse))
+
+
+def _stamped_foot(limb: Limb, held: Array, since: Array) -> Turns:
+    pulse = _pulses(since, held, limb.times, 0.8)
+    return _leg(limb, 0.7 * pulse, 1.2 * pulse)
+
+
+def _tapped_foot(limb: Limb, held: Array, since: Array) -> Turns:
+    pulse = _pulses(since, held, limb.times, 0.6)
+    return _leg(limb, 0.6 * pulse, 1.0 * pulse)
+
+
+def _both_knees(limb: Limb, held: Array, since: Array) -> Turns:
+    bent = _pulses(since, held, limb.times, 1.6) if limb.times > 1 else held
+    joints = {"hip": -0.75, "knee": 1.2, "ankle": -0.45}
+    return {f"{side}_{name}": about(0, a * bent) for side in ("left", "right") for name, a in joints.items()}
+
+
+def _tiptoes(limb: Limb, held: Array, since: Array) -> Turns:
+    return {f"{side}_ankle": about(0, 0.6 * held) for side in ("left", "right")}
+
+
+def _crossed_legs(limb: Limb, held: Array, since: Array) -> Turns:
+    sign = 1.0 if limb.side == "left" else -1.0
+    return _leg(limb, 0.12 * held, 0.1 * held, -0.3 * held) | {
+        f"{'right' if sign > 0 else 'left'}_hip": about(2, sign * 0.05 * held)
+    }
+
+
+def _aside(limb: Limb) -> float:
+    """The sign of a turn or tilt to the side that is named: 1 for the left."""
+    return 1.0 if "left" in (limb.direction, limb.side) and limb.direction != "right" else -1.0
+
+
+def _leaning(limb: Limb, held: Array, since: Array) -> Turns:
+    if limb.direction in ("left", "right", "out"):
+        return {joint: about(2, -_aside(limb) * 0.22 * held) for joint in ("spine1", "spine2")}
+    sign = -0.2 if limb.direction == "back" else 0.28
+    return {joint: about(0, sign * held) for joint in ("spine1", "spine2")}
+
+
+def _twisted(limb: Limb, held: Array, since: Array) -> Turns:
+    turned = (
+        _aside(limb) * held if limb.direction or limb.side != "both" else _swing(since, held, limb.times, 2.2)
+    )
+    return {joint: heading_matrix(0.26 * turned) for joint in ("spine1", "spine2", "spine3")}
+
+
+def _swaying(limb: Limb, held: Array, since: Array) -> Turns:
+    swing = _swing(since, held, limb.times, 2.2)
+    hips = {f"{side}_hip": about(2, 0.15 * swing) for side in ("left", "right")}
+    return hips | {"pelvis": about(2, -0.15 * swing), "spine2": about(2, -0.12 * swing)}
+
+
+def _head(limb: Limb, held: Array, since: Array) -> Turns:
+    if limb.direction in ("left", "right", "out"):
+        return {joint: about(2, -_aside(limb) * 0.3 * held) for joint in ("neck", "head")}
+    sign = -0.35 if limb.direction in ("up", "back") else 0.4
+    return {joint: about(0, sign * held) for joint in ("neck", "head")}
+
+
+def _rolled_head(limb: Limb, held: Array, since: Array) -> Turns:
+    round_ = 2 * np.pi * since / 2.4
+    return {
+        joint: about(0, 0.3 * held * np.cos(round_)) @ about(2, 0.3 * held * np.sin(round_))
+        for joint in ("neck", "head")
+    }
+
+
+def _nodding(limb: Limb, held: Array, since: Array) -> Turns:
+    pulse = _pulses(since, held, limb.times, 0.7)
+    return {joint: about(0, 0.28 * pulse) for joint in ("neck", "head")}
+
+
+MOVES: Mapping[str, Callable[[Limb, Array, Array], Turns]] = {
+    "raises leg": _raised_leg,
+    "raises knee": lambda limb, held, since: _leg(limb, 1.45 * held, 1.7 * held),
+    "swings leg": _swung_leg,
+    "kicks": _kicked_leg,
+    "stamps": _stamped_foot,
+    "taps foot": _tapped_foot,
+    "stands on one leg": lambda limb, held, since: _leg(limb, 0.7 * held, 1.3 * held),
+    "bends knees": _both_knees,
+    "on tiptoe": _tiptoes,
+    "crosses legs": _crossed_legs,
+    "leans": _leaning,
+    "twists": _twisted,
+    "sways": _swaying,
+    "moves head": _head,
+    "rolls head": _rolled_head,
+    "nods": _nodding,
+}
+"""The movements: rotations (N, 3, 3) of joints, of how far each is held (N,) and of the seconds since it began (N,)."""
+RAISES = frozenset(
+    ("raises leg", "raises knee", "swings leg", "kicks", "stamps", "stands on one leg", "crosses legs")
+)
+"""Those in which a foot leaves the floor."""
