@@ -215,6 +215,7 @@ def test_files_are_short() -> None:
 
 TESTED_FROM_OUTSIDE = {
     "e2e",  # the page in a browser
+    "e2e/tour",  # the page as a visitor who uses everything twice
     "second_programs",  # files as other programs read them
     "server/attacks",  # a server as an attacker sees it
 }

@@ -173,6 +173,7 @@ def launch_options() -> dict[str, Any]:
         "head": HEAD,
         "footer_links": ["api"],
         "run_history": False,
+        "i18n": gr.I18n(en={"common.upload": "Add files"}),  # a name that Gradio uses and does not know
         "ssr_mode": False,
         "show_error": True,
         "max_file_size": MAX_BYTES,

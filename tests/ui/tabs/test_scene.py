@@ -165,10 +165,12 @@ def test_an_edit_gives_lengths_and_text(tab: SceneTab) -> None:
 
 
 def test_the_text_becomes_the_line(tab: SceneTab) -> None:
-    story, words, line, seed = use_text('seed = 9\n[[beat]]\nwords = "They bow."\n')
-    assert (story["beats"][0]["words"], words, seed) == ("They bow.", "They bow.", 9) and "1 beats" in line
-    story, words, line, seed = use_text("[[beat]]\nwrods = 1\n")
-    assert story == words == gr.skip() and "Line 2" in line
+    text = 'seed = 9\nsteps = 12\nguidance = 5.5\n[[beat]]\nwords = "They bow."\n'
+    story, words, line, *settings = use_text(text)
+    assert (story["beats"][0]["words"], words) == ("They bow.", "They bow.") and "1 beats" in line
+    assert settings == [9, gr.skip(), 5.5, 12, gr.skip()], "what the text does not name stays"
+    story, words, line, *settings = use_text("[[beat]]\nwrods = 1\n")
+    assert story == words == gr.skip() and "Line 2" in line and settings == 5 * [gr.skip()]
 
 
 def part(tab: SceneTab, which: str, record: Record | None, story: Any, words: str = "") -> dict[str, Any]:
@@ -273,6 +275,7 @@ def test_both_tracks_are_marked_on_the_floor() -> None:
     tracks = np.array(marks["tracks"])
     assert tracks.shape == (2, 30, 2)
     np.testing.assert_allclose(tracks, duet.positions[:, ::3, 0][..., [0, 2]], atol=0.006)
+    assert all(place == round(place, 2) for place in tracks.flat), "as they are read out"
 
 
 def test_a_span_keeps_the_poses_and_the_way_that_fall_into_it(tab: SceneTab) -> None:

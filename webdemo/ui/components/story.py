@@ -220,5 +220,5 @@ def motion_marks(duet: Duet, readout: Mapping[str, Any] | None = None) -> dict[s
         for c in found
     ]
     every = max(1, round(TRACK_STEP * duet.fps))
-    tracks = duet.positions[:, ::every, 0][..., [0, 2]].round(2).tolist()
+    tracks = duet.positions[:, ::every, 0][..., [0, 2]].astype(float).round(2).tolist()
     return {"seconds": duet.seconds, "contacts": contacts, "tracks": tracks, "step": every / duet.fps}

@@ -18,6 +18,8 @@ from webdemo.ui.text.words import error_line
 from .story import story_fields, story_value, ticked
 
 Updates = tuple[Any, ...]
+SETTINGS = ("seed", "samples", "guidance", "steps", "damping")
+"""What a story in TOML may set beside its beats, and the page has a control for."""
 
 
 def story_text(beats: Sequence[Beat]) -> str:
@@ -151,14 +153,16 @@ def written(text: str, story: Any, seed: float | None) -> Updates:
 
 
 def use_text(text: str | None) -> Updates:
-    """The line and its words as the text says."""
+    """The line and its words as the text says, and those of ``SETTINGS`` that it names."""
     try:
         fields = read_words(text or "", in_time())
         request = SceneRequest(**fields)
     except Exception as error:
-        return gr.skip(), gr.skip(), status(error_line(error), tone="error"), gr.skip()
+        kept = (gr.skip(),) * len(SETTINGS)
+        return gr.skip(), gr.skip(), status(error_line(error), tone="error"), *kept
     line = status(f"{len(request.beats)} beats, {request.seconds:g} s: press Generate.")
     shown = story_value(
         fields["beats"], request.paths, request.poses, loop=request.loop, planned=request.planned
     )
-    return shown, story_text(fields["beats"]), line, request.seed if "seed" in fields else gr.skip()
+    named = (getattr(request, name) if name in fields else gr.skip() for name in SETTINGS)
+    return shown, story_text(fields["beats"]), line, *named

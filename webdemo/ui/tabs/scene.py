@@ -26,6 +26,7 @@ from webdemo.ui.components.scene_parts import (
 )
 from webdemo.ui.components.story import StoryLine, motion_marks, story_fields, value_of
 from webdemo.ui.components.story_words import (
+    SETTINGS,
     edited,
     lay_out,
     said_of,
@@ -199,8 +200,9 @@ class SceneTab(SweepTab):
         self.line_up.input(edited, inputs=[self.line_up, self.seed], **last)
         self.prompt.input(None, inputs=self.line_up, outputs=self.line_up, js=_TYPED, **QUIET)
         self.prompt.blur(written, inputs=[self.prompt, self.line_up, self.seed], **last)
+        knobs = [self.controls[name] for name in SETTINGS]
         self.use.click(
-            use_text, inputs=self.text, outputs=[self.line_up, self.prompt, self.line, self.seed], **QUIET
+            use_text, inputs=self.text, outputs=[self.line_up, self.prompt, self.line, *knobs], **QUIET
         )
         self.take.click(
             self.take_shown, inputs=[self.record, self.earlier, self.shown_at], js=_READ_PLACE,
