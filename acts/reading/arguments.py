@@ -179,9 +179,11 @@ class Arguments:
             if child.dep_ == "prep":
                 self._preposition(child, event.subject.who if event.subject else "", event)
             elif child.dep_ in ("advmod", "npadvmod", "amod", "compound", "nummod") or (
-                child.dep_ == "conj" and child.pos_ in ("ADV", "ADJ", "NOUN")
+                child.dep_ == "conj" and child.pos_ in ("ADV", "ADJ", "NOUN", "ADP")
             ):
                 self._modifier(child, event)
+            elif child.dep_ == "pobj":  # "up and down the room"
+                event.prepositions.append((text, self._argument(child, "", event)))
 
     def _direction(self, text: str, event: Event) -> None:
         name = self._words.directions.get(text)

@@ -59,6 +59,11 @@ class Reader:
         self._forms = forms
         self._of: dict[int, int] = {}
         self._subjects: dict[int, Ref | None] = {}
+        self._mains: list[int] = []
+        """The verbs of main clauses so far, by token."""
+        self._main: dict[int, bool] = {}
+        self._heads: dict[int, Token | None] = {}
+        self._clauses: dict[int, bool] = {}
         self._joints: list[tuple[Event, Token, str, int | None]] = []
         self._words = vocabulary()
         self._arguments = Arguments(self.cast, verbs)
@@ -68,6 +73,8 @@ class Reader:
         for token in self.doc:
             if self._is_clause(token):
                 self._event(token)
+            elif token.dep_ == "conj" and token.head.i in self._of:
+                self._gapped(token)
         self._resolve()
         return self.events
 
@@ -91,6 +98,11 @@ class Reader:
         return known or token.lemma_.lower()
 
     def _is_clause(self, token: Token) -> bool:
+        if token.i not in self._clauses:
+            self._clauses[token.i] = self._has_verb(token)
+        return self._clauses[token.i]
+
+    def _has_verb(self, token: Token) -> bool:
         if token.dep_ == "amod":  # "the sleeping baby"
             return (
                 token.tag_ == "VBG"
@@ -109,6 +121,8 @@ class Reader:
         subject = self._subject(token, head)
         event = Event(lemma, subject, first=token.idx, last=token.idx + len(token.text))
         kind, beside = self._joint(token, head)
+        if self._is_main(token):
+            self._mains.append(token.i)
         self._polarity(token, head, event)
         agent = self._arguments.fill(token, event)
         passive = any(child.dep_ in ("nsubjpass", "auxpass", "agent") for child in token.children)
@@ -130,15 +144,56 @@ class Reader:
         self._joints.append((event, token, kind, beside))
         self.events.append(event)
 
+    def _gapped(self, token: Token) -> None:
+        """Adds the clause whose verb is left out: "A waves with the right hand and B with the left"."""
+        ref = reference(token, self.cast, "")
+        if ref.kind != "person" or all(child.dep_ not in ("prep", "dobj") for child in token.children):
+            return
+        before = self.events[self._of[token.head.i]]
+        event = Event(
+            before.lemma, ref, before.object, before.dative, denied=before.denied, modality=before.modality,
+            first=token.idx, last=token.idx + len(token.text),
+        )  # fmt: skip
+        self._arguments.fill(token, event)
+        self._joints.append((event, token, "with", token.head.i))
+        self.events.append(event)
+
     def _head(self, token: Token) -> Token | None:
-        """The verb on which a clause hangs."""
-        return next((head for head in token.ancestors if self._is_clause(head)), None)
+        """The verb on which a clause hangs; a finite one goes with a finite one: "does not want to …, and pushes"."""
+        if token.i not in self._heads:
+            clauses = (head for head in token.ancestors if self._is_clause(head))
+            first = next(clauses, None)
+            if first is not None and token.dep_ == "conj" and token.tag_ in ("VBZ", "VBD"):
+                finite = (h for h in (first, *clauses) if _is_finite(h))
+                first = next(finite, first)
+            self._heads[token.i] = first
+        return self._heads[token.i]
+
+    def _is_main(self, token: Token) -> bool:
+        """True for a clause that stands by itself in the order of the text."""
+        passed: list[int] = []
+        above: Token | None = token
+        while (
+            above is not None and above.i not in self._main and above.dep_ != "ROOT" and _may_be_main(above)
+        ):
+            passed.append(above.i)
+            above = self._head(above) if above.dep_ in ("conj", "parataxis") else above.head
+        main = above is not None and self._main.get(above.i, above.dep_ == "ROOT")
+        self._main.update((i, main) for i in passed)
+        return main
 
     def _subject(self, token: Token, head: Token | None) -> Ref | None:
         """The subject of a clause, found once, and before its turn where an earlier clause has the same."""
-        if token.i not in self._subjects:
-            self._subjects[token.i] = None  # ends circles
-            self._subjects[token.i] = self._subject_of(token, head)
+        waiting = [(token, head)]
+        while (above := waiting[-1][1]) is not None and above.i not in self._subjects:
+            if len(waiting) > len(self.doc) or any(
+                c.dep_ in ("nsubj", "nsubjpass") for c in waiting[-1][0].children
+            ):
+                break
+            waiting.append((above, self._head(above)))
+        for clause, its_head in reversed(waiting):  # from above, so that none calls another in turn
+            if clause.i not in self._subjects:
+                self._subjects[clause.i] = self._subject_of(clause, its_head)
         return self._subjects[token.i]
 
     def _subject_of(self, token: Token, head: Token | None) -> Ref | None:
@@ -275,6 +330,9 @@ class Reader:
             return "after", previous
         if marks & _AT_ONCE:
             return "with", previous
+        if self._is_main(token):
+            mains = [i for i in self._mains if self.doc[i].sent.start == token.sent.start]
+            return ("conj", mains[-1]) if mains else ("after", None)
         if above is None:
             return "after", None
         if token.dep_ == "pcomp":
@@ -283,20 +341,12 @@ class Reader:
             for mark in marks:
                 if mark in _MARKS:
                     return _MARKS[mark], above.i
-            if token.tag_ == "VB" and token.i < above.i:  # "walk forward, then turn"
-                return "after", None
             return "while", above.i
         if token.dep_ == "amod":
             return "while", above.i
         if token.dep_ in ("acl", "relcl"):
             return ("while" if token.tag_ == "VBG" else "with"), above.i
         if token.dep_ in ("xcomp", "ccomp"):
-            if (
-                token.dep_ == "ccomp"
-                and any(c.dep_ in ("nsubj", "nsubjpass") for c in token.children)
-                and (token.i < above.i)
-            ):
-                return "conj", above.i  # two main clauses with nothing but a comma between them
             return "comp", above.i
         return "conj", above.i
 
@@ -304,6 +354,20 @@ class Reader:
         """True if "then" stands between a clause and the verb before it."""
         before = max((i for i in self._of if i < token.i), default=0)
         return any(self.doc[i].lower_ in _THEN for i in range(before, token.i))
+
+
+def _is_finite(token: Token) -> bool:
+    return token.tag_ not in ("VBG", "VBN") and token.dep_ not in ("xcomp", "pcomp")
+
+
+def _may_be_main(token: Token) -> bool:
+    """True for a clause that is a main one if the one above it is."""
+    if token.dep_ == "ccomp":  # of two clauses with nothing but a comma between them, the first
+        return token.i < token.head.i and any(c.dep_ in ("nsubj", "nsubjpass") for c in token.children)
+    if token.dep_ == "advcl":
+        marks = any(c.dep_ in ("mark", "aux") or c.lower_ in _MARKS for c in token.children)
+        return not marks and token.tag_ in ("VB", "VBP", "VBZ")
+    return token.dep_ in ("conj", "parataxis")
 
 
 def _other_person(ref: Ref) -> Ref | None:

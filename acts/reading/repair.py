@@ -25,6 +25,7 @@ _SAFE_WITH_VERB = {"s": "starts", "ing": "starting", "ed": "started", "": "start
 _SUBJECTS = frozenset(
     ("i", "you", "he", "she", "they", "we", "who", "someone", "somebody", "nobody", "everyone")
 )
+_CROWDS = frozenset(("audience", "crowd", "public", "class", "team", "band", "orchestra", "jury", "family"))
 _JOINS = frozenset(("and", "then", "but", ",", ";", "or"))
 _TAGS = {"VBZ": "s", "VBD": "ed", "VBP": "", "VB": ""}
 """Endings of finite verbs by their tags."""
@@ -165,6 +166,7 @@ def _after_person(token: Token, ending: str) -> bool:
     return (
         one
         or the_two
+        or before.lower_ in _CROWDS
         or before.lower_ == "both"
         or vocabulary().is_person(before.lemma_.lower())
         or (many and before.lemma_ in vocabulary().both)

@@ -69,7 +69,8 @@ _LETTER_BEFORE = frozenset(
 
 _PHRASES = {
     ("as", "soon", "as"): "when", ("as", "long", "as"): "while", ("the", "moment", "that"): "when",
-    ("every", "time"): "when", ("even", "though"): "although", ("so", "that"): "so",
+    ("at", "the", "same", "time"): "simultaneously", ("every", "time"): "when",
+    ("even", "though"): "although", ("so", "that"): "so",
     ("in", "order", "to"): "to", ("all", "of", "a", "sudden"): "suddenly", ("at", "once"): "immediately",
     ("the", "two", "of", "them"): "they", ("the", "pair", "of", "them"): "they",
     ("a", "bit"): "slightly", ("a", "little", "bit"): "slightly",
@@ -161,6 +162,12 @@ class _Preparation:
             if all(self._lower(i + k) == part for k, part in enumerate(phrase)):
                 self._pieces.append((word, self._tokens[i][1], self._tokens[i + len(phrase) - 1][2]))
                 return len(phrase)
+        if self._lower(i) == "'" and self._lower(i + 1) == "s":  # "person 2's"
+            self._pieces.append(("'s", self._tokens[i][1], self._tokens[i + 1][2]))
+            return 2
+        if self._lower(i) == "her" and self._lower(i + 1) == "back" and self._lower(i + 2) in ("on", "to"):
+            self._pieces += [("her", *self._tokens[i][1:]), ("own", *self._tokens[i][1:])]  # no adverb
+            return 1
         if self._lower(i) == "the" and self._lower(i + 1) == "two" and self._is_verb(self._lower(i + 2)):
             self._pieces.append(
                 ("they", self._tokens[i][1], self._tokens[i + 1][2])
@@ -257,9 +264,11 @@ def _ends_name(tokens: list[tuple[str, int, int]], i: int, letter: str) -> bool:
 def _letters(words: list[str], is_verb: Callable[[str], bool]) -> dict[int, str]:
     """Letters and P1, P2 that are names."""
     found = {}
-    upper_b = any(word == "B" for word in words)
+    upper_b = any(word in ("B", "B's") for word in words)
     for i, word in enumerate(words):
-        if word in ("P1", "P2", "p1", "p2"):
+        if word in ("A's", "B's"):
+            found[i] = f"{A_NAME if word[0] == 'A' else B_NAME}'s"
+        elif word in ("P1", "P2", "p1", "p2"):
             found[i] = A_NAME if word[1] == "1" else B_NAME
         elif word == "B":
             found[i] = B_NAME
