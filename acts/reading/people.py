@@ -20,6 +20,9 @@ _FIRST, _SECOND = frozenset(("first", "former")), frozenset(("second", "latter")
 _THEY = frozenset(("they", "them", "themselves", "we", "us", "ourselves"))
 _HE = {"he": "m", "him": "m", "his": "m", "himself": "m", "she": "f", "her": "f", "hers": "f", "herself": "f"}
 _ANYONE = frozenset(("someone", "somebody", "anyone", "anybody", "person"))
+_ACTING = frozenset(("model", "host", "guide", "lead", "date", "star", "pet", "mark", "help"))
+"""Nouns that are people where they act: "the model poses"."""
+_ARTICLES = frozenset(("a", "an", "the", "his", "her", "their"))
 _NOBODY = frozenset(("nobody", "noone", "none", "neither"))
 
 
@@ -89,7 +92,12 @@ class Cast:
             return self._new(lemma, token)
         if token.tag_ == "NNP" and token.pos_ == "PROPN" and not self._words.is_place(lemma):
             return self._named(text)
-        if not self._words.is_person(lemma) or token.pos_ in ("ADV", "VERB", "ADP"):
+        acting = lemma in _ACTING and token.dep_ in ("nsubj", "nsubjpass") and children & _ARTICLES
+        if not (self._words.is_person(lemma) or self._has(lemma) or acting) or token.pos_ in (
+            "ADV",
+            "VERB",
+            "ADP",
+        ):
             return None
         if token.tag_ in ("NNS", "NNPS") or children & {"two", "both"}:
             return self._many(token, children)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import replace
 from functools import lru_cache
 from pathlib import Path
@@ -15,7 +15,7 @@ from motion import InputError
 
 from .events import Reader, spans
 from .matching import Found, matcher
-from .spelling import Speller, is_verb_form
+from .spelling import Speller
 from .syntax import is_word, parse
 from .vocabulary import vocabulary
 from .wording import Text, prepared
@@ -90,7 +90,7 @@ class _Planner:
         self._unread: list[Unread] = []
         self._of: dict[int, str] = {}
         self._taken: set[int] = set()
-        self._nonsense = list(_unknown(reader.doc))
+        self._nonsense = list(_unknown(reader.doc, Speller(known).knows))
         self._held_beside: dict[str, str] = {}
 
     def plan(self) -> Plan:
@@ -211,10 +211,13 @@ class _Planner:
         speed = 1.0
         for adverb in event.adverbs:
             speed *= vocabulary().speeds.get(adverb, 1.0)
-        side = event.side or (part.side if part is not None and part.side else None)
-        for _, ref in event.prepositions:  # "with the left foot"
-            side = side or (ref.side if ref.kind == "part" else None)
+        refs = [event.object, part, *(ref for _, ref in event.prepositions)]  # "with the left foot"
+        parts = [ref for ref in refs if ref is not None and ref.kind == "part" and ref.side]
+        own = [ref.side for ref in parts if ref.who in ("", match.agents)]
+        side = event.side or next((side for side in (*own, *(ref.side for ref in parts))), None)
         patient = match.patient
+        if self._known.entries[name].to == "other" and len(match.agents) == 1:
+            patient = patient or ("b" if match.agents == "a" else "a")
         owner = None
         if part is not None:
             owner = patient or (match.agents if len(match.agents) == 1 else None)
@@ -265,12 +268,12 @@ class _Planner:
         self._acts = [act.model_copy(update={"order": tuple(found[act.id])}) for act in self._acts]
 
 
-def _unknown(doc: Doc) -> Iterator[tuple[int, int]]:
+def _unknown(doc: Doc, is_verb: Callable[[str], bool]) -> Iterator[tuple[int, int]]:
     """Stretches of small letters that are no English words, as character offsets in what was parsed."""
     first = last = -1
     for token in doc:
         small = token.text.islower() and token.text.isalpha() and len(token.text) > 3
-        if small and not is_word(token.text) and not is_verb_form(token.text):
+        if small and not is_word(token.text) and not is_verb(token.text):
             first, last = (token.idx if first < 0 else first), token.idx + len(token.text)
         elif first >= 0:
             yield first, last

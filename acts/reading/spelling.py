@@ -28,6 +28,10 @@ class Speller:
         """True for a form of a verb of the lexicon."""
         return word in self.forms
 
+    def knows(self, word: str) -> bool:
+        """True for a form of a verb, of the lexicon or of WordNet."""
+        return word in self.forms or is_verb_form(word)
+
     def mended(self, word: str) -> str | None:
         """The verb's form that a word without meaning is nearest to, within one letter or two; None to leave it."""
         if is_word(word) or word in self.forms or len(word) < 4:
