@@ -229,7 +229,7 @@ def test_any_text_gives_a_plan(text: str) -> None:
             ["walk-past", "stand-still", "turn-around"],
         ),
         ("Two fighters bow, fight for a moment and bow again.", ["bow", "fight", "bow"]),
-        ("A sits on the chair until B taps A, then A gets up.", ["sit-down pat", "stand-up"]),
+        ("A sits on the chair until B taps A, then A gets up.", ["sit-down", "pat", "stand-up"]),
         ("He bows and waves at the same time.", ["bow wave"]),
     ],
 )
@@ -241,7 +241,8 @@ def test_clauses_follow_each_other_as_the_text_says_them(text: str, beats: list[
     "text",
     [
         "She inherits a fortune.", "They postponed the wedding.", "He resembles his brother.", "The company hired her.",
-        "Quantum fluctuations hug the vacuum.", "They agree on the contract.", "He owns a house.", "She deserves a prize.",
+        "Quantum fluctuations hug the vacuum.",
+        "They agree on the contract.", "He owns a house.", "She deserves a prize.",
         "The water evaporates.", "They love each other deeply.",
     ],
 )  # fmt: skip
