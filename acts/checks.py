@@ -7,26 +7,22 @@ from pathlib import Path
 
 import numpy as np
 
-from motion import InputError
 from motion.metrics.sentences.joints import Motion
 from motion.metrics.sentences.language import RuleError, check
 
 from .checking import cast
-from .lexicon import OURS, Entry, files, lexicon, read_file
+from .lexicon import OURS, Entry, files, read_file
 from .reading import read
 
 
 def check_folder(folder: Path) -> Iterator[str]:
     """A sentence, with file and line, for everything that is wrong with the entries of a folder."""
     entries: dict[str, Entry] = {}
-    for path in files(folder):
-        yield from read_file(path, entries)
-    folders = () if folder.resolve() == OURS.resolve() else (folder.resolve(),)
-    try:
-        lexicon(folders)
-    except InputError as error:
-        yield str(error)
+    problems = [problem for path in files(folder) for problem in read_file(path, entries)]
+    yield from problems
+    if problems:
         return
+    folders = () if folder.resolve() == OURS.resolve() else (folder.resolve(),)
     for name, entry in entries.items():
         yield from check_entry(name, entry, folders)
 

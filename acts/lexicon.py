@@ -1,4 +1,4 @@
-"""The lexicon: one entry an act, in TOML files grouped by kind; a lab's own folders are merged into it.
+"""The lexicon: one entry an act, in TOML files grouped by kind; a lab's own (:mod:`acts.own`) are merged into it.
 
 An entry gives everything about its act: how it is said, the words on which the network was trained, how long it takes,
 how it is staged, the rule that checks it, and examples that are its tests. ``python -m acts check FOLDER`` says what is
@@ -7,11 +7,13 @@ wrong with an entry, with its file and line.
 
 from __future__ import annotations
 
+import logging
+import re
 import tomllib
 from collections import defaultdict
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass
-from functools import cache
+from dataclasses import dataclass, replace
+from functools import lru_cache
 from pathlib import Path
 from typing import Annotated, Any, Literal
 
@@ -20,11 +22,16 @@ from pydantic import BaseModel, ConfigDict, Field, ValidationError, model_valida
 from motion import InputError
 
 from .frames import Frame
+from .own import OwnFiles, own_files
 from .shapes import Shape
+
+log = logging.getLogger(__name__)
 
 OURS = Path(__file__).with_name("lexicon")
 MOST_BYTES = 1_000_000
 """Bytes of a lexicon file, at most."""
+
+_NAME = re.compile(r"[a-z0-9-]{1,60}")
 
 Sentence = Annotated[str, Field(min_length=1, max_length=300)]
 
@@ -75,13 +82,23 @@ class Entry(BaseModel):
         return self
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Lexicon:
-    """Entries by name, and their frames by the lemma of the verb."""
+    """Entries by name, and their frames by the lemma of the verb. Two lexicons are equal if they are the same object.
+
+    Attributes:
+        entries: by name, a lab's own among them.
+        frames: (name, frame) by the lemma of the verb.
+        synsets: names by the WordNet sense that stands for them.
+        own: names of the entries that the lab of the settings added or replaced.
+        problems: a sentence, with file and line, for each of its entries that was left out.
+    """
 
     entries: Mapping[str, Entry]
     frames: Mapping[str, list[tuple[str, Frame]]]
     synsets: Mapping[str, tuple[str, ...]]
+    own: tuple[str, ...] = ()
+    problems: tuple[str, ...] = ()
 
     @classmethod
     def of(cls, entries: Mapping[str, Entry]) -> Lexicon:
@@ -98,14 +115,42 @@ class Lexicon:
         return cls(entries, dict(frames), {key: tuple(names) for key, names in synsets.items()})
 
 
-@cache
 def lexicon(folders: tuple[Path, ...] = ()) -> Lexicon:
-    """Our entries and those of further folders, of which a later one replaces an earlier one of its name."""
+    """Our entries, those of the lab's own folders in the settings, and those of further folders.
+
+    A later entry replaces an earlier one of its name. What is wrong in the lab's own folders is left out and stands in
+    ``problems``; their files are read again when they change.
+
+    Raises:
+        InputError: for the first thing that is wrong in the further folders.
+    """
+    return _lexicon(folders, own_files())
+
+
+@lru_cache(maxsize=8)
+def _lexicon(folders: tuple[Path, ...], own: OwnFiles) -> Lexicon:
     entries: dict[str, Entry] = {}
-    for folder in (OURS, *folders):
-        for problem in (p for path in files(folder) for p in read_file(path, entries)):
-            raise InputError(problem)
-    return Lexicon.of(entries)
+    _read_all(OURS, entries)
+    added: dict[str, Entry] = {}
+    problems = [*own.problems, *(problem for path, *_ in own.files for problem in read_file(path, added))]
+    for problem in problems:
+        log.warning("Left out of the lab's own acts: %s", problem)
+    entries |= added
+    for folder in folders:
+        _read_all(folder, entries)
+    return replace(Lexicon.of(entries), own=tuple(added), problems=tuple(problems))
+
+
+def _read_all(folder: Path, into: dict[str, Entry]) -> None:
+    for problem in (p for path in files(folder) for p in read_file(path, into)):
+        raise InputError(problem)
+
+
+def look_at_own_acts() -> None:
+    """Reads the lab's own acts if the settings name any, so that the log says at start what is wrong with them."""
+    found = own_files()
+    if found.files or found.problems:
+        lexicon()
 
 
 def files(folder: Path) -> list[Path]:
@@ -117,10 +162,14 @@ def files(folder: Path) -> list[Path]:
 
 def read_file(path: Path, into: dict[str, Entry]) -> Iterator[str]:
     """Adds the entries of a file to ``into``, and yields a sentence, with file and line, for each that is wrong."""
-    if path.stat().st_size > MOST_BYTES:
-        yield f"{path.name} is larger than {MOST_BYTES // 1000} kB: split it."
+    try:
+        if path.stat().st_size > MOST_BYTES:
+            yield f"{path.name} is larger than {MOST_BYTES // 1000} kB: split it."
+            return
+        text = path.read_text(encoding="utf-8", errors="replace")
+    except OSError as error:
+        yield f"{path.name} cannot be read: {error.strerror}."
         return
-    text = path.read_text(encoding="utf-8", errors="replace")
     try:
         tables = tomllib.loads(text)
     except tomllib.TOMLDecodeError as error:
@@ -130,6 +179,9 @@ def read_file(path: Path, into: dict[str, Entry]) -> Iterator[str]:
         where = f"{path.name}, line {_line(text, name)}, [{name}]"
         if not isinstance(fields, dict):
             yield f"{where}: write the entry as a table, [{name}], with its frames below."
+            continue
+        if not _NAME.fullmatch(name):
+            yield f"{where}: a name has at most 60 small letters, digits and dashes."
             continue
         try:
             entry = Entry(**{**fields, "group": path.stem})

@@ -5,11 +5,10 @@ from __future__ import annotations
 from collections import defaultdict
 from collections.abc import Iterator
 from dataclasses import replace
-from functools import cache
-from pathlib import Path
+from functools import lru_cache
 
 from acts.frames import Event, Frame, Match, best
-from acts.lexicon import Lexicon, lexicon
+from acts.lexicon import Lexicon
 
 from . import wordnet
 
@@ -84,7 +83,7 @@ class Matcher:
         return tuple(dict.fromkeys(near))[:5]
 
 
-@cache
-def matcher(folders: tuple[Path, ...]) -> Matcher:
-    """The matcher of our entries and those of further folders, made once."""
-    return Matcher(lexicon(folders))
+@lru_cache(maxsize=4)
+def matcher(known: Lexicon) -> Matcher:
+    """The matcher of a lexicon, made once."""
+    return Matcher(known)

@@ -38,7 +38,7 @@ def read(text: str, folders: tuple[Path, ...] = ()) -> Plan:
 
     Args:
         text: one sentence or several, at most :data:`MOST_CHARACTERS`.
-        folders: a lab's own acts beside ours.
+        folders: further folders of acts, beside ours and those of the settings.
 
     Raises:
         InputError: if the text is too long, or the parser is not installed.
@@ -47,12 +47,11 @@ def read(text: str, folders: tuple[Path, ...] = ()) -> Plan:
         raise InputError(
             f"The text has {len(text)} characters: shorten it to {MOST_CHARACTERS}, or use several beats."
         )
-    return _read(text, folders)
+    return _read(text, lexicon(folders))
 
 
 @lru_cache(maxsize=512)
-def _read(text: str, folders: tuple[Path, ...]) -> Plan:
-    known = lexicon(folders)
+def _read(text: str, known: Lexicon) -> Plan:
     if not text.strip():
         return Plan(sentence=text, notes=("Nothing is said: write what the two people do.",))
     if (foreign := _other_language(text)) is not None:
@@ -73,7 +72,7 @@ def _read(text: str, folders: tuple[Path, ...]) -> Plan:
         lemmas = {i: lemma for i, (word, lemma) in numbers.items() if i < len(doc) and doc[i].text == word}
     reader = Reader(doc, frozenset(known.frames), lemmas, speller.forms)
     events = reader.read()
-    return _Planner(text, prepared_text, known, events, list(spans(doc, events)), reader, folders).plan()
+    return _Planner(text, prepared_text, known, events, list(spans(doc, events)), reader).plan()
 
 
 class _Planner:
@@ -81,11 +80,11 @@ class _Planner:
 
     def __init__(
         self, text: str, prepared_text: Text, known: Lexicon, events: Sequence[Event],
-        clauses: Sequence[tuple[int, int]], reader: Reader, folders: tuple[Path, ...],
+        clauses: Sequence[tuple[int, int]], reader: Reader,
     ) -> None:  # fmt: skip
         self._text, self._prepared, self._known = text, prepared_text, known
         self._events, self._clauses, self._reader = events, clauses, reader
-        self._matcher = matcher(folders)
+        self._matcher = matcher(known)
         self._acts: list[Act] = []
         self._unread: list[Unread] = []
         self._of: dict[int, str] = {}

@@ -13,6 +13,7 @@ import numpy as np
 from acts.plan import Plan, plan_of
 from motion import Duet, InputError
 from motion.formats.on_rig import check_rig, on_rig
+from webdemo.inference.acting import acted
 from webdemo.inference.actor import FPS, read_actor
 from webdemo.inference.methods import AUTOMATIC, automatic, methods
 from webdemo.inference.predict_request import LONGEST, PredictRequest, PredictResult
@@ -56,7 +57,7 @@ def generate(options: argparse.Namespace) -> dict[str, Any]:
     fields |= {"split": not options.no_split, "planned": not options.no_plan, "tries": options.tries}
     if options.plan is not None:
         words, fields["acts"] = "", read_plan(options.plan)
-    request = GenerateRequest(prompt=words, seconds=options.seconds, **fields)
+    request = acted(GenerateRequest(prompt=words, seconds=options.seconds, **fields))
     return write_result(run(request), options.out)
 
 

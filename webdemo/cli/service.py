@@ -8,6 +8,7 @@ import sys
 from pathlib import Path
 from typing import Any
 
+from acts import lexicon
 from motion import InputError
 from webdemo.inference.methods import failed, methods
 
@@ -59,7 +60,7 @@ def info(options: argparse.Namespace) -> dict[str, Any]:
     from motion.formats import FORMATS, can_read, can_write
     from webdemo.inference.engine import Engine
 
-    engine = Engine()
+    engine, known = Engine(), lexicon()
     card = {name: value for name, value in engine.info().items() if name != "ready"}  # nothing is loaded here
     found = {
         "model": card,
@@ -73,6 +74,7 @@ def info(options: argparse.Namespace) -> dict[str, Any]:
             for found in methods()
         },
         "failed": failed(),
+        "acts": {"all": len(known.entries), "own": list(known.own), "problems": list(known.problems)},
         "weights": sorted({file.parent.name for file in engine.weights.glob("*/*.safetensors")}),
         "formats": {s: {"read": can_read(s), "write": can_write(s)} for s in FORMATS},
         "versions": {name: version(name) for name in ("gradio", "torch", "numpy", "plotly", "diffusers")},

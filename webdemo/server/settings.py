@@ -11,17 +11,19 @@ import os
 import socket
 import tempfile
 from pathlib import Path
-from typing import Any, Literal
+from typing import Annotated, Any, Literal
 
-from pydantic import Field, ValidationError
+from pydantic import Field, ValidationError, field_validator
 from pydantic_settings import (
     BaseSettings,
+    NoDecode,
     PydanticBaseSettingsSource,
     SettingsConfigDict,
     SettingsError,
     TomlConfigSettingsSource,
 )
 
+from acts.config import listed
 from motion import InputError
 from motion.cores import usable_cores
 
@@ -143,6 +145,12 @@ class Settings(BaseSettings):
         {}, description="released checkpoints and Python classes, one table for each: see docs/own-model.md"
     )
 
+    # ---- acts of the lab's own
+    acts: Annotated[list[Path], NoDecode] = Field(
+        [],
+        description="folders of acts beside ours, with : between them in the environment: see docs/acts.md",
+    )
+
     # ---- limits
     rate: int = Field(240, ge=1, description="requests per person and minute that change something")
     address_people: int = Field(
@@ -161,6 +169,12 @@ class Settings(BaseSettings):
     # ---- logs
     log_level: str = Field("info", pattern="^(debug|info|warning|error)$", description="least severe line")
     log_content: bool = Field(False, description="let logs contain prompts and what errors say about them")
+
+    @field_validator("acts", mode="before")
+    @classmethod
+    def _folders(cls, value: Any) -> Any:
+        """Splits the variable's text, as :mod:`acts.config` does, which reads the setting wherever acts are read."""
+        return listed(value) if isinstance(value, str) else value
 
     @classmethod
     def settings_customise_sources(

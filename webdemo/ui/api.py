@@ -13,6 +13,7 @@ import gradio as gr
 from motion import InputError
 from motion.formats import animation_note, read
 from motion.formats.on_rig import check_rig
+from webdemo.inference.acting import acted
 from webdemo.inference.actor import read_actor
 from webdemo.inference.methods import AUTOMATIC, methods
 from webdemo.inference.predict_request import LONGEST, PredictRequest, PredictResult
@@ -178,9 +179,11 @@ class GenerateEndpoint(Endpoint):
         manifest .json. An error is one sentence that says what to change.
         """
         return self._answer(
-            lambda: GenerateRequest(
-                prompt=prompt, seconds=seconds, seed=seed, samples=samples, guidance=guidance, steps=steps,
-                damping=damping, sampler=sampler, model=model, tries=tries,
+            lambda: acted(
+                GenerateRequest(
+                    prompt=prompt, seconds=seconds, seed=seed, samples=samples, guidance=guidance, steps=steps,
+                    damping=damping, sampler=sampler, model=model, tries=tries,
+                )
             ),
             prompt,
             progress,

@@ -12,6 +12,8 @@ from typing import Any
 import gradio as gr
 from gradio.queueing import Queue
 
+from acts import lexicon
+from acts.own import own_files
 from motion.formats.files import MAX_BYTES
 from webdemo.ui.components.exports import Shelf
 from webdemo.ui.tabs.generate import GenerateTab
@@ -21,6 +23,7 @@ from webdemo.ui.tabs.predict import PredictTab
 from webdemo.ui.tabs.react import ReactTab
 from webdemo.ui.tabs.results import QUIET
 from webdemo.ui.tabs.scene import SceneTab
+from webdemo.ui.text.own_acts import own_acts
 from webdemo.ui.text.panels import model_state
 
 from .api import ClassEndpoint, GenerateEndpoint, PredictEndpoint, ReactEndpoint
@@ -102,6 +105,8 @@ def build_page(
             gr.HTML(_HEADER)
             mark = gr.HTML(model_state("loading"), elem_id="model-state")
         _build_tabs(page, demo)
+        own = gr.HTML("", elem_id="own-acts", padding=False)
+        demo.load(_own_acts, outputs=own, concurrency_limit=None, **QUIET)
         demo.load(loading, outputs=mark, concurrency_limit=None, **QUIET)
         demo.unload(leave)
     start_queue(demo, partial(Queue, max_size=64))
@@ -149,6 +154,12 @@ def _build_tabs(page: PageContext, demo: gr.Blocks) -> None:
         if page.history is not None:
             with gr.Tab(HISTORY, id=HISTORY.lower()) as past:
                 HistoryTab(page, jobs, tabs).build(demo, past, record)
+
+
+def _own_acts() -> str:
+    """What the lab added to the lexicon; where it names no folder, nothing is loaded for it."""
+    found = own_files()
+    return own_acts(lexicon()) if found.files or found.problems else ""
 
 
 def watch_loading(loader: Loader, *, interval: float = 0.3) -> Iterator[str]:

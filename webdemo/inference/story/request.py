@@ -283,13 +283,15 @@ def as_scene(request: GenerateRequest, go_on: Callable[[], None] = lambda: None)
     try:
         beats = split_sentence(request.prompt, go_on) if request.acts is None else beats_of(request.acts)
         if len(beats) > request.seconds / LEAST_SHARE:
-            beats = (Beat(request.prompt),)
+            beats = (Beat(request.prompt) if request.acts is None else Beat(acts=request.acts.acts),)
         for number, beat in enumerate(beats, 1):
             beat.check(number)
     except InputError:
         go_on()  # may be what raised it
         return None
-    if len(beats) < 2 and not (request.planned and told_by(beats[0]).is_planned):
+    if not beats or (
+        len(beats) < 2 and request.acts is None and not (request.planned and told_by(beats[0]).is_planned)
+    ):
         return None
     factor = request.seconds / sum(beat.length for beat in beats)
     edges = np.round(np.cumsum([0.0, *(beat.length * factor for beat in beats)]) * FPS) / FPS

@@ -54,12 +54,12 @@ def staged(acts: Sequence[Act], known: Lexicon | None = None) -> Told:
         acts: of the beat; those that the lexicon does not have are passed over.
         known: the lexicon; ours by default.
     """
-    return _staged(tuple(acts)) if known is None else _Stage(acts, known).told()
+    return _staged(tuple(acts), lexicon() if known is None else known)
 
 
 @lru_cache(maxsize=512)
-def _staged(acts: tuple[Act, ...]) -> Told:
-    return _Stage(acts, lexicon()).told()
+def _staged(acts: tuple[Act, ...], known: Lexicon) -> Told:
+    return _Stage(acts, known).told()
 
 
 class _Stage:

@@ -10,6 +10,7 @@ from typing import Any
 import gradio as gr
 
 from motion import InputError
+from webdemo.inference.acting import acted
 from webdemo.inference.actor import SECONDS
 from webdemo.inference.methods import installed, label_of, method
 from webdemo.inference.requests import GenerateRequest
@@ -82,7 +83,7 @@ class GenerateTab(SweepTab):
         asked = {name: value for name, value in fields.items() if name != "class_name"}
         if takes_class(fields.get("model", GenerateRequest.model)):
             asked["prompt"] = _chosen_class(fields)
-        return GenerateRequest(**asked)
+        return acted(GenerateRequest(**asked))
 
     def title(self, request: GenerateRequest) -> str:
         """The sentence or class."""
