@@ -1,4 +1,4 @@
-"""What the settings say about acts: folders of a lab's own, and the director.
+"""Settings about acts: folders of a lab's own, and the director.
 
 As with a lab's own models, every process that reads sentences looks here: the page, the shell, Ray's replicas and a
 program that imports :mod:`acts`. The environment goes before the settings file, which is ``pasdedeux.toml`` in the
@@ -53,7 +53,7 @@ def listed(text: str) -> list[str]:
 
 
 def settings_file() -> tuple[Mapping[str, Any], Path]:
-    """What the settings file holds, and its folder; nothing if there is none.
+    """Contents of the settings file, and its folder; nothing if there is none.
 
     Raises:
         InputError: if it cannot be read.

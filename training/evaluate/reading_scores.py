@@ -113,11 +113,11 @@ def _reported(words: str, plan: Plan) -> bool:
     return any(span.start < start + len(words) and start < span.stop for span in spans) or bool(plan.notes)
 
 
-def main() -> None:
+def main(argv: Sequence[str] | None = None) -> None:
     """The command."""
     parser = argparse.ArgumentParser(description="Scores the reader of sentences on a file of plans.")
     parser.add_argument("file", type=Path)
-    print(json.dumps(vars(score(read_plans(parser.parse_args().file)))))
+    print(json.dumps(vars(score(read_plans(parser.parse_args(argv).file)))))
 
 
 if __name__ == "__main__":

@@ -157,7 +157,7 @@ def _build_tabs(page: PageContext, demo: gr.Blocks) -> None:
 
 
 def _own_acts() -> str:
-    """What the lab added to the lexicon; where it names no folder, nothing is loaded for it."""
+    """The list of what the lab added to the lexicon; where it names no folder, nothing is loaded for it."""
     found = own_files()
     return own_acts(lexicon()) if found.files or found.problems else ""
 

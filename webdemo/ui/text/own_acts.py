@@ -12,7 +12,7 @@ MOST_LISTED = 200
 
 
 def own_acts(known: Lexicon) -> str:
-    """What the lab added to the lexicon, and what of it was left out; empty where it added nothing."""
+    """HTML on what the lab added to the lexicon and what of it was left out; empty where it added nothing."""
     if not known.own and not known.problems:
         return ""
     rows = []
