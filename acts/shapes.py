@@ -192,6 +192,7 @@ class Limb(_Shape):
         "taps foot",
         "stands on one leg",
         "bends knees",
+        "reaches down",
         "on tiptoe",
         "crosses legs",
         "leans",

@@ -14,7 +14,7 @@ from webdemo.inference.known_parts import KnownFrames, Part
 from webdemo.inference.story.floor import Standing, Way2D, plan, starting
 from webdemo.inference.story.gestures import Hand
 from webdemo.inference.story.holds import Hold
-from webdemo.inference.story.limbs import Limb, limbed
+from webdemo.inference.story.limbs import WITH_ARMS, Limb, limbed
 from webdemo.inference.story.moves import Move, goes
 from webdemo.inference.story.plan import Window
 from webdemo.inference.story.poses import ARMS, HANDS, standing, upright
@@ -314,7 +314,8 @@ def _limbed(
         return []
     place = stand.places[person] + (HALT * stand.speeds[person] if start else 0.0)
     poses = limbed(limbs, place, float(stand.headings[person]), (frames - start) / FPS, (stop - start) / FPS)
-    joints = [joint for joint in range(SMPL22.num_joints) if joint not in HANDS]
+    free = () if any(limb.does in WITH_ARMS for limb in limbs) else HANDS
+    joints = [joint for joint in range(SMPL22.num_joints) if joint not in free]
     shifted = (frames + window.past - window.start).tolist()
     return [KnownFrames(person, shifted, placement.to_network(poses), joints)]
 

@@ -90,7 +90,8 @@ def _posed(angles: Mapping[str, Array], count: int, angle: float) -> Array:
         for joint in ("knee", "ankle"):
             turns[:, SMPL22.index(f"{side}_{joint}")] = about(0, STANDS[joint])
     for joint, turn in angles.items():
-        turns[:, SMPL22.index(joint)] = turns[:, SMPL22.index(joint)] @ turn
+        i = SMPL22.index(joint)
+        turns[:, i] = turn @ turns[:, i] if "shoulder" in joint else turns[:, i] @ turn
     return forward_kinematics(turns, np.zeros((count, 3)))
 
 
@@ -160,6 +161,13 @@ def _both_knees(limb: Limb, held: Array, since: Array) -> Turns:
     return {f"{side}_{name}": about(0, a * bent) for side in ("left", "right") for name, a in joints.items()}
 
 
+def _reached_down(limb: Limb, held: Array, since: Array) -> Turns:
+    down = _pulses(since, held, limb.times or 1, 3.0) ** 0.5
+    legs = {"hip": -1.6, "knee": 1.9, "ankle": -0.45, "shoulder": -0.75}
+    bent = {f"{side}_{name}": about(0, a * down) for side in ("left", "right") for name, a in legs.items()}
+    return bent | {joint: about(0, 0.3 * down) for joint in ("spine1", "spine2")}
+
+
 def _tiptoes(limb: Limb, held: Array, since: Array) -> Turns:
     return {f"{side}_ankle": about(0, 0.6 * held) for side in ("left", "right")}
 
@@ -225,6 +233,7 @@ MOVES: Mapping[str, Callable[[Limb, Array, Array], Turns]] = {
     "taps foot": _tapped_foot,
     "stands on one leg": lambda limb, held, since: _leg(limb, 0.7 * held, 1.3 * held),
     "bends knees": _both_knees,
+    "reaches down": _reached_down,
     "on tiptoe": _tiptoes,
     "crosses legs": _crossed_legs,
     "leans": _leaning,
@@ -235,6 +244,8 @@ MOVES: Mapping[str, Callable[[Limb, Array, Array], Turns]] = {
     "nods": _nodding,
 }
 """The movements: rotations (N, 3, 3) of joints, of how far each is held (N,) and of the seconds since it began (N,)."""
+WITH_ARMS = frozenset(("reaches down",))
+"""Those that the hands belong to."""
 RAISES = frozenset(
     ("raises leg", "raises knee", "swings leg", "kicks", "stamps", "stands on one leg", "crosses legs")
 )
