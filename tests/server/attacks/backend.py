@@ -23,6 +23,7 @@ class Backend:
         folder: for its data.
 
     Attributes:
+        blocks: the page's components, by their ids.
         routes: "METHOD /path" of each, with the names of its parameters.
         functions: the page's functions that run on the server, by their index.
         names: their names, such as "HistoryTab.act"; several indexes may share one.
@@ -35,6 +36,7 @@ class Backend:
         found = list(_routes(app.routes))
         self.routes = {f"{method} {route.path}" for route in found for method in route.methods}
         (page,) = [route.app.blocks for route in app.routes if isinstance(getattr(route, "app", None), App)]
+        self.blocks = page.blocks
         self.functions = {number: fn for number, fn in page.fns.items() if fn.fn is not None}
         self.names = {number: _name(fn.fn) for number, fn in self.functions.items()}
         app.state.lab.database.close()

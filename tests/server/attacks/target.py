@@ -8,6 +8,7 @@ import socket
 import subprocess
 import sys
 import time
+import zipfile
 from functools import cached_property
 from pathlib import Path
 from types import TracebackType
@@ -142,6 +143,20 @@ class Target:
         """Uploads a file; returns its path there."""
         (path,) = self.ask(who, "POST", "/gradio_api/upload", files={"files": (name, content)}).json()
         return path
+
+    def files_of(self, who: str) -> list[Path]:
+        """Files that the server keeps for somebody while they use the page: uploads, downloads, thumbnails."""
+        folder = Path(self.upload(who, "mark.bvh", who.encode())).parents[1]
+        return [path for path in folder.rglob("*") if path.is_file()]
+
+    @staticmethod
+    def holds(path: Path, text: str) -> bool:
+        """True if a text is in a file, or in one that an archive holds."""
+        content = [path.read_bytes()]
+        if zipfile.is_zipfile(path):
+            with zipfile.ZipFile(path) as archive:
+                content += [archive.read(name) for name in archive.namelist()]
+        return any(text.encode() in part for part in content)
 
     def copies(self, text: str) -> list[Path]:
         """Files that the server made which hold a text."""
