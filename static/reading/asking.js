@@ -23,10 +23,15 @@ export class Asking {
 
   /** Reads the text at once. */
   now() {
+    this.settled();
+    this.ask(this.text);
+  }
+
+  /** The text that stands there now needs no reading any more. */
+  settled() {
     this.timers.clearTimeout(this.timer);
     this.timer = null;
     this.asked = this.text;
-    this.ask(this.text);
   }
 
   /** True if an answer is for the text that stands there now. */

@@ -1,100 +1,167 @@
-// What is understood of the prompt, under it: the sentence with its marks, and its plan as chips on two lanes.
+// How a prompt is understood, under it: the sentence with its marks, and its plan as chips on two lanes to be edited.
 
 import { Asking } from "./asking.js";
+import { Editor } from "./editor.js";
 import { people, pieces, spoken, summary, wordsOf } from "./marks.js";
+import * as edits from "./plan.js";
 
 const NAMES = { a: "A", b: "B", ab: "A and B" };
+const MARKS = { true: ["✓", "done"], false: ["✗", "not done"] };
+const DROPPED = "Your edits were dropped, because the sentence changed.";
 
 /** An element with a class and a text. */
 function node(tag, kind, text = "") {
   const made = document.createElement(tag);
   made.className = kind;
   made.textContent = text;
+  if (tag === "button") made.type = "button";
   return made;
 }
 
 class View {
-  /** `ask` sends a text to the server. */
-  constructor(root, ask) {
+  /** `keep` takes the component's value, and `ask` sends it to the server; `editable` plans can be edited. */
+  constructor(root, { keep, ask, editable }) {
     this.root = root;
-    this.asking = new Asking(ask);
-    this.shown = null;
+    this.keep = keep;
+    this.ask = ask;
+    this.editable = editable;
+    this.asking = new Asking(() => this.send());
+    this.shown = null; // as the server gave it
+    this.draft = null; // its plan and beats, as they were edited since
+    this.edited = false;
+    this.number = 0; // of what was asked last
+    this.entries = null; // all acts
+    this.note = "";
+    this.checks = null;
+    this.editor = new Editor(root, this);
     for (const kind of ["pointerover", "focusin"]) root.addEventListener(kind, (event) => this.point(event.target));
     for (const kind of ["pointerleave", "focusout"]) root.addEventListener(kind, () => this.point(null));
+    root.addEventListener("click", (event) => this.press(event.target));
+    root.addEventListener("keydown", (event) => this.key(event));
+    this.find(".pdr-again").addEventListener("click", () => this.readAgain());
+    this.find(".pdr-add").addEventListener("click", () => this.editor.show());
+    this.find(".pdr-fold").addEventListener("click", () => this.fold(false));
+    const asks = root.closest(".pd-ask");
+    asks?.addEventListener("click", (event) => event.target.closest(".pd-run") && this.fold(true));
+    asks?.addEventListener("keydown", (event) => {
+      if (event.key === "Enter" && !event.shiftKey && event.target.matches("textarea")) this.fold(true);
+    });
+    asks?.addEventListener("focusin", (event) => event.target.matches("textarea") && this.fold(false));
+  }
+
+  /** On a phone, a line stands for the reading while a motion is made and watched. */
+  fold(folded) {
+    this.root.classList.toggle("pdr-folded", folded);
   }
 
   find(selector) {
     return this.root.querySelector(selector);
   }
 
-  /** What is typed now. */
+  get said() {
+    return this.shown?.said ?? {};
+  }
+
+  /** The props of the component as they are now. */
+  sync(props) {
+    if (props.acts) this.entries = props.acts;
+    this.checks = props.checked ?? null;
+    this.answer(props.shown);
+    this.typed(props.text ?? "");
+    this.answer(props.shown);
+    if (this.shown) this.draw();
+  }
+
   typed(text) {
     if (!this.asking.typed(text)) return;
+    this.fold(false);
+    if (this.edited) this.note = DROPPED;
+    this.edited = false;
+    this.hold();
     const current = this.asking.answers(this.shown);
     this.root.hidden = !text.trim() || !this.shown;
     this.root.classList.toggle("pdr-old", !current);
   }
 
-  /** What the server understood. */
+  /** The value of the component: the text, and the plan where it was edited. */
+  hold(more = {}) {
+    const plan = this.edited ? JSON.stringify(this.draft.plan) : null;
+    this.keep({ text: this.asking.text, plan, number: this.number, list: false, ...more });
+  }
+
+  send(more = {}) {
+    this.number += 1;
+    this.hold(more);
+    this.ask();
+  }
+
+  /** A plan as the server shows it. What is given unasked, with a result from the history, has no number. */
   answer(shown) {
     if (!shown || shown === this.shown || !this.asking.answers(shown)) return;
-    this.shown = shown;
-    this.draw();
-  }
-
-  draw() {
-    const { plan, error } = this.shown;
-    this.root.classList.remove("pdr-old");
-    this.root.hidden = false;
-    this.find(".pdr-said").replaceChildren(...(plan ? this.sentence(plan) : []));
-    this.find(".pdr-unread").replaceChildren(...(plan ? plan.unread.map((part) => this.unread(part)) : []));
-    this.find(".pdr-plan").hidden = !plan?.acts.length;
-    this.find(".pdr-beats").replaceChildren(...(plan ? this.shown.beats.map((beat) => this.beat(beat)) : []));
-    const notes = plan ? plan.notes.filter((note) => !plan.unread.some((part) => part.why === note)) : [error];
-    this.find(".pdr-notes").replaceChildren(...notes.map((note) => node("p", plan ? "" : "pdr-error", note)));
-    this.find(".pdr-heard").textContent = plan ? summary(plan) : error;
-  }
-
-  sentence(plan) {
-    return pieces(plan.sentence, plan.acts, plan.unread).map((piece) => {
-      if (!piece.who && piece.unread < 0) return document.createTextNode(piece.text);
-      const made = node("span", `pdr-words ${[...piece.who].map((who) => `pdr-${who}`).join(" ")}`, piece.text);
-      made.classList.toggle("pdr-lost", piece.unread >= 0);
-      made.dataset.acts = piece.acts.join(" ");
-      const said = piece.acts.map((id) => this.shown.said[id]).join(", ");
-      made.title = piece.who ? `${NAMES[piece.who]}: ${said}` : plan.unread[piece.unread].why;
-      return made;
-    });
-  }
-
-  unread(part) {
-    const row = node("li", "");
-    row.append(node("q", "pdr-lost", wordsOf(this.shown.plan.sentence, part.words)), ` ${part.why}`);
-    if (part.nearest.length) {
-      const near = part.nearest.map((name) => this.shown.nearest[name] ?? name);
-      row.append(node("span", "pdr-near", ` Nearest: ${near.join(", ")}.`));
+    if (shown.number != null && shown.number !== this.number) return;
+    if (shown.error && this.edited) {
+      this.note = shown.error;
+      this.draft = this.shown;
+      this.edited = this.shown.edited;
+      this.hold();
+      return;
     }
-    return row;
+    this.asking.settled();
+    if (!shown.edited && shown.number == null) this.note = "";
+    this.shown = shown;
+    this.draft = shown.plan ? shown : null;
+    this.edited = shown.edited;
+    this.hold();
   }
 
-  beat(ids) {
-    const row = node("li", "pdr-beat");
-    const acts = this.shown.plan.acts;
-    row.append(...ids.map((id) => this.chip(acts.find((act) => act.id === id))));
-    return row;
+  /** A change by hand. */
+  edit(draft) {
+    if (draft.plan === this.draft.plan) return;
+    this.note = "";
+    this.draft = draft;
+    this.edited = true;
+    this.send();
   }
 
-  chip(act) {
-    const said = this.shown.said[act.id];
-    const made = node("span", `pdr-chip pdr-${act.agents.join("")}`);
-    made.classList.toggle("pdr-not", act.polarity === "not" || act.modality !== "told");
-    made.dataset.id = act.id;
-    const heard = node("span", "pdr-heard", spoken(act, said));
-    const seen = node("span", "");
-    seen.ariaHidden = "true";
-    seen.append(node("b", "", people(act)), ` ${said}`);
-    made.append(seen, heard);
-    return made;
+  removeAct(id) {
+    const ids = this.draft.beats.flat();
+    const next = ids[ids.indexOf(id) + 1] ?? ids.at(-2) ?? null;
+    this.edit(edits.remove(this.draft, id));
+    this.focusNext = next;
+  }
+
+  readAgain() {
+    this.note = "";
+    this.edited = false;
+    this.send();
+  }
+
+  /** Asks for the list of all acts, once. */
+  wantList() {
+    if (!this.entries) this.send({ list: true });
+  }
+
+  focusChip(id) {
+    const chip = id && this.find(`.pdr-chip[data-id="${id}"]`);
+    (chip || this.find(".pdr-add")).focus();
+  }
+
+  // ---- events
+
+  press(target) {
+    const chip = target.closest("button.pdr-chip");
+    if (chip) this.editor.show(chip.dataset.id);
+    const near = target.closest("[data-near]");
+    if (!near) return;
+    const entry = this.shown.nearest[near.dataset.near];
+    this.edit(edits.understand(this.draft, Number(near.dataset.unread), entry));
+  }
+
+  key(event) {
+    const chip = event.target.closest?.("button.pdr-chip");
+    if (!chip || !["Delete", "Backspace"].includes(event.key)) return;
+    event.preventDefault();
+    this.removeAct(chip.dataset.id);
   }
 
   /** The words of the chip under the pointer stand out, and the chips of the words under it. */
@@ -106,20 +173,123 @@ class View {
       each.classList.toggle("pdr-on", own.some((id) => on.has(id)));
     }
   }
+
+  // ---- drawing
+
+  draw() {
+    const { plan, error, text } = this.shown;
+    const current = this.asking.answers(this.shown);
+    const focused = this.focusNext ?? (this.root.contains(document.activeElement) && document.activeElement.dataset.id);
+    this.focusNext = null;
+    this.root.classList.toggle("pdr-old", !current);
+    this.root.hidden = !this.asking.text.trim() || !text.trim();
+    this.find(".pdr-state").hidden = !this.edited;
+    this.find(".pdr-add").hidden = !(this.editable && plan);
+    this.find(".pdr-said").replaceChildren(...(plan ? this.sentence(plan) : []));
+    this.find(".pdr-unread").replaceChildren(...(plan ? plan.unread.map((part, i) => this.unread(part, i)) : []));
+    this.find(".pdr-plan").hidden = !plan?.acts.length;
+    this.find(".pdr-beats").replaceChildren(...(plan ? this.shown.beats.map((beat) => this.beat(beat)) : []));
+    const notes = plan ? plan.notes.filter((note) => !plan.unread.some((part) => part.why === note)) : [];
+    const warnings = [error, this.note].filter(Boolean);
+    this.find(".pdr-notes").replaceChildren(
+      ...warnings.map((warning) => node("p", "pdr-error", warning)), ...notes.map((note) => node("p", "", note)),
+    );
+    this.find(".pdr-heard").textContent = [...warnings, plan ? summary(plan) : ""].join(" ").trim();
+    this.find(".pdr-fold").textContent = plan ? this.line(plan) : error;
+    if (focused) this.focusChip(focused);
+    this.editor.draw();
+  }
+
+  /** What is understood and done, in a line. */
+  line(plan) {
+    const done = plan.acts.map((act) => this.checked(act)).filter(Boolean);
+    const seen = done.filter((each) => each.done).length;
+    return `${summary(plan)}${done.length ? ` ${seen} of ${done.length} done.` : ""}`;
+  }
+
+  sentence(plan) {
+    return pieces(plan.sentence, plan.acts, plan.unread).map((piece) => {
+      if (!piece.who && piece.unread < 0) return document.createTextNode(piece.text);
+      const made = node("span", `pdr-words ${[...piece.who].map((who) => `pdr-${who}`).join(" ")}`, piece.text);
+      made.classList.toggle("pdr-lost", piece.unread >= 0);
+      made.dataset.acts = piece.acts.join(" ");
+      const said = piece.acts.map((id) => this.said[id]).join(", ");
+      made.title = piece.who ? `${NAMES[piece.who]}: ${said}` : plan.unread[piece.unread].why;
+      return made;
+    });
+  }
+
+  unread(part, number) {
+    const row = node("li", "");
+    row.append(node("q", "pdr-lost", wordsOf(this.shown.plan.sentence, part.words)), ` ${part.why}`);
+    const near = part.nearest.filter((name) => this.shown.nearest[name]);
+    if (near.length && this.editable) {
+      const buttons = node("span", "pdr-near");
+      buttons.append("Put in: ", ...near.map((name) => this.nearest(name, number)));
+      row.append(buttons);
+    } else if (near.length) {
+      row.append(` Nearest: ${near.map((name) => this.shown.nearest[name].said).join(", ")}.`);
+    }
+    return row;
+  }
+
+  nearest(name, number) {
+    const made = node("button", "pdr-small", this.shown.nearest[name].said);
+    made.dataset.near = name;
+    made.dataset.unread = number;
+    return made;
+  }
+
+  beat(ids) {
+    const row = node("li", "pdr-beat");
+    const acts = this.shown.plan.acts;
+    row.append(...ids.map((id) => this.chip(acts.find((act) => act.id === id))));
+    return row;
+  }
+
+  chip(act) {
+    const said = this.said[act.id];
+    const made = node(this.editable ? "button" : "span", `pdr-chip pdr-${act.agents.join("")}`);
+    made.classList.toggle("pdr-not", act.polarity === "not" || act.modality !== "told");
+    made.dataset.id = act.id;
+    made.classList.toggle("pdr-open", this.editor.open && this.editor.id === act.id);
+    const seen = node("span", "");
+    seen.ariaHidden = "true";
+    seen.append(node("b", "", people(act)), ` ${said}`);
+    const check = this.check(act);
+    made.append(seen, ...(check ? [check] : []), node("span", "pdr-heard", this.heard(act, said)));
+    return made;
+  }
+
+  /** What the last result did of an act, where it is known. */
+  checked(act) {
+    if (!this.checks || this.checks.text !== this.asking.text) return null;
+    const found = this.checks.acts.find((each) => each.id === act.id && each.act === act.act);
+    return found && found.done !== null ? found : null;
+  }
+
+  check(act) {
+    const found = this.checked(act);
+    if (!found) return null;
+    const made = node("span", `pdr-check pdr-check-${found.done}`, `${MARKS[found.done][0]} ${found.measure}`.trim());
+    made.ariaHidden = "true";
+    return made;
+  }
+
+  heard(act, said) {
+    const found = this.checked(act);
+    const done = found ? `; ${MARKS[found.done][1]}${found.measure ? `, ${found.measure}` : ""}` : "";
+    return `${spoken(act, said)}${done}${this.editable ? ". Press to change." : ""}`;
+  }
 }
 
 /** `element` holds reading.html; `props` are the component's, watched by `watch`; `trigger` tells the server. */
 export function mount(element, props, watch, trigger) {
   const root = element.querySelector(".pdr");
-  const view = new View(root, (text) => {
-    props.value = { text };
-    trigger("input");
-  });
-  const sync = () => {
-    view.typed(props.text ?? "");
-    view.answer(props.shown);
-  };
-  watch(["text", "shown"], sync);
+  const keep = (value) => (props.value = value);
+  const view = new View(root, { keep, ask: () => trigger("input"), editable: props.editable });
+  const sync = () => view.sync(props);
+  watch(["text", "shown", "acts", "checked"], sync);
   sync();
   root.view = view;
 }

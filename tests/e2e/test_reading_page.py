@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable
 
 import pytest
@@ -49,3 +50,69 @@ def test_a_story_is_read_as_well(page: Page) -> None:
     page.get_by_role("tab", name="Scene").click()
     page.fill("#scene-prompt textarea", "They wave. Then they hug.")
     expect(page.locator("#scene-reading .pdr-chip")).to_have_count(2, timeout=SLOW)
+
+
+def test_a_plan_is_edited_and_made(lab: str, open_page: Callable[..., Page]) -> None:
+    page = live(open_page(lab, width=1200, height=1000))
+    reading, chips = page.locator("#reading .pdr"), page.locator("#reading .pdr-chip")
+    page.fill("#prompt textarea", "A waves to B. Then B bows. Then they hug.")
+    expect(chips).to_have_count(3, timeout=SLOW)
+    expect(reading.locator(".pdr-badge")).to_be_hidden()
+    # Deleted with the keyboard, and the next chip is at hand.
+    chips.nth(1).focus()
+    page.keyboard.press("Delete")
+    expect(chips).to_have_count(2, timeout=SLOW)
+    expect(reading.locator(".pdr-badge")).to_be_visible()
+    expect(chips.nth(1)).to_be_focused()
+    # Another act, from the list of all.
+    chips.nth(1).press("Enter")
+    search = reading.get_by_role("combobox")
+    search.fill("shake hand")
+    expect(reading.get_by_role("option").first).to_contain_text("shakes hands", timeout=SLOW)
+    search.press("Enter")
+    expect(chips.nth(1)).to_contain_text("shake hands", timeout=SLOW)
+    # The other person's, and earlier.
+    chips.nth(0).press("Enter")
+    reading.get_by_role("button", name="Other person").click()
+    expect(chips.nth(0)).to_contain_text("B → A waves", timeout=SLOW)
+    reading.get_by_role("button", name="Close").click()
+    page.click("button#generate")
+    expect(page.locator("#status .pd-done").first).to_be_visible(timeout=SLOW)
+    made = page.evaluate("document.querySelector('#reading .pdr').view.draft.plan.acts.map((act) => act.act)")
+    assert made == ["wave", "shake-hands"]
+    expect(chips.nth(0).locator(".pdr-check")).to_be_visible(timeout=SLOW)
+    assert page.locator("#reading .pdr-check").first.inner_text()[0] in "✓✗"
+    # Words that are typed are read anew, and the page says what that does.
+    page.locator("#prompt textarea").press_sequentially(" B nods.")
+    expect(reading.locator(".pdr-badge")).to_be_hidden(timeout=SLOW)
+    expect(chips).to_have_count(4, timeout=SLOW)
+    expect(reading.locator(".pdr-notes")).to_contain_text("Your edits were dropped")
+
+
+def test_acts_are_added_and_words_are_read_again(lab: str, open_page: Callable[..., Page]) -> None:
+    page = live(open_page(lab, width=390, height=844))
+    reading, chips = page.locator("#reading .pdr"), page.locator("#reading .pdr-chip")
+    page.fill("#prompt textarea", "A waves to B.")
+    expect(chips).to_have_count(1, timeout=SLOW)
+    reading.get_by_role("button", name="Add an act").click()
+    reading.get_by_label("B", exact=True).check()
+    reading.get_by_role("combobox").fill("bows")
+    reading.get_by_role("option").first.click(timeout=SLOW)
+    expect(chips).to_have_count(2, timeout=SLOW)
+    expect(chips.nth(1)).to_have_class("pdr-chip pdr-b")
+    assert page.evaluate("document.documentElement.scrollWidth <= innerWidth")
+    reading.get_by_role("button", name="Read again").click()
+    expect(chips).to_have_count(1, timeout=SLOW)
+    expect(reading.locator(".pdr-badge")).to_be_hidden()
+
+
+def test_a_line_stands_for_the_reading_on_a_phone_once_it_is_made(page: Page) -> None:
+    reading, chips = page.locator("#reading .pdr"), page.locator("#reading .pdr-chip")
+    page.fill("#prompt textarea", "A waves to B.")
+    expect(chips).to_be_visible(timeout=SLOW)
+    page.click("button#generate")
+    expect(page.locator("#status .pd-done").first).to_be_visible(timeout=SLOW)
+    expect(chips).to_be_hidden()
+    expect(reading.locator(".pdr-fold")).to_have_text(re.compile(r"1 act is understood\. [01] of 1 done\."))
+    reading.locator(".pdr-fold").click()
+    expect(chips).to_be_visible()

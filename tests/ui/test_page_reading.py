@@ -2,15 +2,19 @@
 
 from __future__ import annotations
 
+import json
 from typing import Any
 
-from acts import Act, Plan, Span, Unread
-from webdemo.ui.components.reading import answer, shown
+import pytest
+
+from acts import Act, Plan, Span, Unread, read
+from motion import InputError
+from webdemo.ui.components.reading import checked, edited_plan, reread, shown
 
 
 def of(text: Any) -> dict[str, Any]:
     """What is shown for a text that the browser sent."""
-    return answer({"text": text})["shown"]
+    return reread({"text": text})["shown"]
 
 
 def test_a_sentence_becomes_chips_in_the_order_of_the_beats() -> None:
@@ -30,8 +34,9 @@ def test_what_is_near_to_words_that_were_not_read_is_said_in_few_words() -> None
         sentence="He flumps.", acts=(Act(id="1", act="bow", agents=("a",)),),
         unread=(Unread(words=Span(start=0, stop=9), why="No act is known.", nearest=("walk-up", "gone-act")),),
     )  # fmt: skip
-    found = shown("He flumps.", plan)
-    assert found["nearest"] == {"walk-up": "walks up", "gone-act": "gone act"}
+    found = shown(plan)["nearest"]
+    assert set(found) == {"walk-up"}, "an act that is gone is not offered"
+    assert (found["walk-up"]["said"], found["walk-up"]["patient"]) == ("walks up", True)
 
 
 def test_a_text_that_cannot_be_read_is_answered_by_a_sentence() -> None:
@@ -44,4 +49,78 @@ def test_a_text_that_cannot_be_read_is_answered_by_a_sentence() -> None:
 
 def test_whatever_else_is_sent_is_read_as_nothing() -> None:
     for sent in (None, {}, {"text": None}, "They wave."):
-        assert answer(sent)["shown"]["plan"]["acts"] == []
+        assert reread(sent)["shown"]["plan"]["acts"] == []
+
+
+def edited(text: str, **changes: Any) -> dict[str, Any]:
+    """A text with a plan as the browser sends them after an edit; ``changes`` are of its first act."""
+    plan = read(text).model_dump(mode="json")
+    plan["acts"][0] |= changes
+    return {"text": text, "plan": json.dumps(plan), "number": 3, "list": False}
+
+
+def test_an_edited_plan_is_shown_in_place_of_the_words() -> None:
+    found = reread(edited("They bow.", act="hug"))["shown"]
+    assert (found["said"], found["edited"], found["number"]) == ({"1": "hug"}, True, 3)
+
+
+@pytest.mark.parametrize(
+    ("changes", "said"),
+    [
+        ({"act": "levitate"}, "no act “levitate”"),
+        ({"agents": []}, "acts.0.agents"),
+        ({"more": 1}, "acts.0.more"),
+        ({"order": [{"kind": "after", "act": "1"}]}, "ct 1 is ordered beside 1"),
+    ],
+)
+def test_a_plan_that_is_none_is_answered_by_a_sentence(changes: dict[str, Any], said: str) -> None:
+    found = reread(edited("They bow.", **changes))["shown"]
+    assert said in found["error"] and "plan" not in found
+    with pytest.raises(InputError, match=said.split(".")[0]):
+        edited_plan(edited("They bow.", **changes), "They bow.")
+
+
+def test_a_damaged_plan_is_answered_by_a_sentence() -> None:
+    for plan in ("{", "[" * 100_000, "3"):
+        found = reread({"text": "They bow.", "plan": plan})["shown"]
+        assert "plan" not in found and found["error"].count(".") == 1, found
+
+
+def test_an_edited_plan_counts_for_its_own_text_alone() -> None:
+    sent = edited("They bow.", act="hug")
+    plan = edited_plan(sent, "They bow.")
+    assert plan is not None and plan.acts[0].act == "hug"
+    assert edited_plan(sent, "They wave.") is None
+    assert edited_plan({**sent, "plan": None}, "They bow.") is None
+    assert edited_plan(None, "") is None
+
+
+def test_the_list_of_acts_comes_when_it_is_wanted() -> None:
+    assert "acts" not in reread({"text": "They bow."})
+    found = reread({"text": "They bow.", "list": True})["acts"]
+    assert len(found) > 200 and found == sorted(found, key=lambda act: act["said"])
+    (hug,) = (act for act in found if act["name"] == "hug")
+    assert hug == {
+        "name": "hug",
+        "said": "hugs",
+        "caption": "hugs the other",
+        "patient": True,
+        "mutual": True,
+    }
+
+
+def test_marks_are_of_the_acts_that_were_checked() -> None:
+    plan = read("They wave, then they hug.")
+    rows = [
+        {"act": "wave", "words": "They wave", "done": None, "measure": ""},
+        {"act": "hug", "words": "They hug", "done": False, "measure": "0.6 m apart"},
+    ]
+    assert checked(plan.sentence, plan, {"checked": rows}) == {
+        "text": plan.sentence,
+        "acts": [
+            {"id": "1", "act": "wave", "done": None, "measure": ""},
+            {"id": "2", "act": "hug", "done": False, "measure": "0.6 m apart"},
+        ],
+    }
+    assert checked(plan.sentence, plan, {"checked": rows[1:]}) is None, "rows of another plan"
+    assert checked(plan.sentence, plan, {}) is None

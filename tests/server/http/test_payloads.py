@@ -28,7 +28,10 @@ HUG = Act(id="1", act="hug", agents=("a", "b"))
 STORY: dict[str, Any] = json.loads(
     json.dumps(
         story_value(
-            (Beat("They bow.", a="waves", b="nods", seconds=2.0, seed=3), Beat("They hug.", acts=(HUG,))),
+            (
+                Beat("They bow.", a="waves", b="nods", seconds=2.0, seed=3),
+                Beat("They hug.", acts=(Act(id="1", act="hug", agents=("a", "b")),)),
+            ),
             (FloorPath("a", (FloorPoint(0.0, 1.0, 0.0, 90.0), FloorPoint(1.0, 1.0))),),
             (Pose("b", 0.5, np.asarray(walking(1.0).b.positions[0])),),
         )
@@ -51,7 +54,7 @@ TYPICAL: dict[type, Any] = {
     gr.File: FILE | {"orig_name": "x.glb", "size": 12, "url": "http://127.0.0.1/x", "is_stream": False},
     gr.UploadButton: [FILE],
     StoryLine: STORY,
-    Reading: {"text": "They bow."},
+    Reading: {"text": "They bow.", "plan": "{}", "number": 3, "list": True},
 }
 EVENTS: dict[type, tuple[Any, ...]] = {NotebookView: (ACTION, DESCRIBED)}
 

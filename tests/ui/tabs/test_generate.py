@@ -12,6 +12,7 @@ from typing import Any
 import gradio as gr
 import pytest
 
+from motion import InputError
 from tests.ui.stub_engine import StubEngine
 from tests.ui.tab_events import built, changes
 from tests.ui.tabs.generating import FIELDS, result_of, run
@@ -154,7 +155,14 @@ def test_an_empty_seed_is_drawn_and_shown(tab: GenerateTab) -> None:
 
     seeds = set()
     for _ in range(2):
-        fields = {**FIELDS, "seed": None, "model": "intergen", "class_name": None, "planned": True}
+        fields = {
+            **FIELDS,
+            "seed": None,
+            "model": "intergen",
+            "class_name": None,
+            "planned": True,
+            "acts": None,
+        }
         steps = tab.start({part: fields[name] for name, part in tab.controls.items()}, Visit())
         last = [changes(tab.outputs, step) for step in steps][-1]
         seed = last["record"].result.manifest["request"]["seed"]
@@ -298,3 +306,35 @@ def test_a_kept_run_opens_with_paths_from_words_as_it_was_made(
     assert found[tab.planned]["value"] is planned
     assert found[tab.planned]["visible"] is ("model" not in changed)
     assert ("no paths" in found[tab.folded]["label"]) is not planned
+
+
+def test_an_edited_plan_is_made_in_place_of_its_sentence(tab: GenerateTab) -> None:
+    plan = json.dumps({"acts": [{"id": "1", "act": "hug", "agents": ["a", "b"]}]})
+    fields = {"prompt": "They bow.", "model": "intergen", "class_name": None}
+    sent = {"text": "They bow.", "plan": plan}
+    request = tab.request({**fields, "acts": sent})
+    assert request.acts is not None and [act.act for act in request.acts.acts] == ["hug"]
+    assert tab.request({**fields, "acts": {**sent, "text": "They wave."}}).acts is None, (
+        "the plan of another sentence"
+    )
+    assert tab.request({**fields, "acts": None}).acts is None
+    with pytest.raises(InputError, match="not followed"):
+        tab.request({**fields, "planned": False, "acts": sent})
+    with pytest.raises(InputError, match="no act"):
+        tab.request({**fields, "acts": {**sent, "plan": plan.replace("hug", "levitate")}})
+
+
+def test_a_kept_run_opens_with_its_own_plan(tab: GenerateTab) -> None:
+    acts = {"acts": [{"id": "7", "act": "hug", "agents": ["a", "b"]}]}
+    by_hand = {**acts, "reader": "hand"}
+    for asked, said, edited in (
+        ({"acts": by_hand}, {"7": "hug"}, True),
+        ({"acts": acts}, {"7": "hug"}, False),  # as a lab's own acts are kept
+        ({}, {"1": "wave"}, False),
+    ):
+        result = result_of(tab).result
+        request = {**result.manifest["request"], "prompt": "They wave.", **asked}
+        entry = Entry(id="x", kind="generate", title="t", state="done", request=request)
+        found = tab.opened(Opened(entry=entry, result=result, kept=Kept(controls={})))
+        shown = found[tab.reading]["shown"]
+        assert (shown["said"], shown["edited"], shown["number"]) == (said, edited, None)

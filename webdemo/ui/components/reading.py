@@ -15,10 +15,12 @@ import gradio as gr
 from pydantic import TypeAdapter
 
 from acts import Act, Plan, lexicon, read
-from acts.captions import short
+from acts.captions import short, worded
+from acts.plan import plan_of
+from motion import InputError
 from webdemo.ui.text.words import error_line
 
-from .accepts import Sent, Text
+from .accepts import Finite, Flag, Sent, Text
 
 READING_FOLDER = Path(__file__).resolve().parents[3] / "static" / "reading"
 
@@ -39,22 +41,39 @@ _TYPED = """(text) => ({ __type__: "update", props: { text: text ?? "" } })"""
 
 
 class SentReading(Sent):
-    """The value as the browser sends it: the ``text`` that is to be read."""
+    """The value as the browser sends it.
+
+    Attributes:
+        text: stands in the prompt.
+        plan: of this text, as JSON, where it was edited; otherwise the text is read.
+        number: of the question; its answer has the same.
+        list: true where the list of all acts is wanted as well.
+    """
 
     text: Text = ""
+    plan: Text | None = None
+    number: Finite = 0
+    list: Flag = False
 
 
 class Reading(gr.HTML):
-    """Shows how a text is understood.
+    """Shows how a text is understood, and lets its plan be edited.
 
-    Props beside the value, which is a :class:`SentReading`: ``text``, what is typed; ``shown``, see :func:`shown`.
+    Props beside the value, which is a :class:`SentReading`: ``text``, what is typed; ``shown``, see :func:`shown`;
+    ``acts``, all acts, see :func:`entry_facts`; ``checked``, see :func:`checked`.
+
+    Args:
+        value: as the browser sends it.
+        editable: whether the plan can be edited.
+        elem_id: id of the element in the page.
     """
 
     accepts = TypeAdapter(SentReading | None)
 
     def __init__(
-        self, value: dict[str, Any] | None = None, *, elem_id: str | None = None, **kwargs: Any
-    ) -> None:
+        self, value: dict[str, Any] | None = None, *, editable: bool = False, elem_id: str | None = None,
+        **kwargs: Any,
+    ) -> None:  # fmt: skip
         kwargs = {
             "html_template": (READING_FOLDER / "reading.html").read_text(encoding="utf-8"),
             "css_template": (READING_FOLDER / "reading.css")
@@ -64,6 +83,9 @@ class Reading(gr.HTML):
             "apply_default_css": False,
             "text": "",
             "shown": None,
+            "acts": None,
+            "checked": None,
+            "editable": editable,
             **kwargs,
         }
         super().__init__(value, elem_id=elem_id, **kwargs)
@@ -72,7 +94,7 @@ class Reading(gr.HTML):
         """Reads what is typed into a prompt; ``quiet`` are the options of the page's own events."""
         prompt.change(None, inputs=prompt, outputs=self, js=_TYPED, **quiet)
         self.input(
-            answer, inputs=self, outputs=self, trigger_mode="always_last",
+            reread, inputs=self, outputs=self, trigger_mode="always_last",
             concurrency_limit=READERS, concurrency_id="reading", **quiet,
         )  # fmt: skip
 
@@ -86,7 +108,7 @@ class Reading(gr.HTML):
 
     def api_info(self) -> dict[str, Any]:
         """Describes the component's value for the API page."""
-        return {"type": "object", "description": "a text that is to be read, or null"}
+        return {"type": "object", "description": "a text that is to be read, or its edited plan; or null"}
 
     def example_payload(self) -> None:
         """None: the component takes no example."""
@@ -101,35 +123,94 @@ class Reading(gr.HTML):
         return "html"
 
 
-def answer(sent: Any) -> dict[str, Any]:
-    """The update that shows how the text that was sent is understood."""
-    text = str(sent.get("text") or "") if isinstance(sent, Mapping) else ""
+def reread(sent: Any) -> dict[str, Any]:
+    """The update that shows how the text that was sent is understood, or the plan that was sent with it."""
+    fields = sent if isinstance(sent, Mapping) else {}
+    text = str(fields.get("text") or "")
+    asked = {"text": text, "number": fields.get("number"), "edited": bool(fields.get("plan"))}
     try:
-        found = shown(text, read(text))
+        plan = edited_plan(sent, text) or read(text)
+        found = shown(plan)
     except Exception as error:
-        found = {"text": text, "error": error_line(error)}
-    return gr.update(shown=found)
+        found = {"error": error_line(error)}
+    if fields.get("list"):
+        return gr.update(shown=asked | found, acts=known_acts())
+    return gr.update(shown=asked | found)
 
 
-def shown(text: str, plan: Plan) -> dict[str, Any]:
+def edited_plan(sent: Any, text: str) -> Plan | None:
+    """The plan that was edited, if it is for this text; otherwise None.
+
+    Raises:
+        InputError: if it is no plan, or of acts that nobody knows.
+    """
+    if not isinstance(sent, Mapping) or not sent.get("plan") or sent.get("text") != text:
+        return None
+    try:
+        values = json.loads(str(sent["plan"]))
+    except (ValueError, RecursionError):
+        raise InputError("The plan on the page is damaged: press Read again.") from None
+    plan = plan_of(values)
+    for act in plan.acts:
+        if act.act not in lexicon().entries:
+            raise InputError(f"There is no act “{act.act}”: choose one of the list.")
+    return plan
+
+
+def shown(plan: Plan) -> dict[str, Any]:
     """A plan as the component draws it.
 
     Returns:
-        ``text``, for which it was asked; ``plan`` as JSON; ``beats``, the ids of its acts, one list for each; ``said``,
-        each act in a few words by its id; ``nearest``, the same by the name of each act that is offered for words that
-        were not understood.
+        ``plan`` as JSON; ``beats``, the ids of its acts, one list for each; ``said``, each act in a few words by its
+        id; ``nearest``, the facts of each act that is offered for words that were not understood, by its name.
     """
     entries = lexicon().entries
-    nearest = dict.fromkeys(name for part in plan.unread for name in part.nearest)
+    nearest = dict.fromkeys(name for part in plan.unread for name in part.nearest if name in entries)
     return {
-        "text": text,
         "plan": plan.model_dump(mode="json"),
         "beats": [[act.id for act in group] for group in plan.beats()],
         "said": {act.id: short(act, entries.get(act.act)) for act in plan.acts},
-        "nearest": {name: entry_words(name) for name in nearest},
+        "nearest": {name: entry_facts(name) for name in nearest},
     }
 
 
-def entry_words(name: str) -> str:
-    """An act of the lexicon in a few words, as one person does it."""
-    return short(Act(id="1", act=name, agents=("a",), patient="b"), lexicon().entries.get(name))
+def known_acts() -> list[dict[str, Any]]:
+    """The facts of all acts that bodies show, in the order of their words."""
+    found = [entry_facts(name) for name, entry in lexicon().entries.items() if entry.shown]
+    return sorted(found, key=lambda act: str(act["said"]))
+
+
+def entry_facts(name: str) -> dict[str, Any]:
+    """An act of the lexicon as the list of acts has it.
+
+    Returns:
+        its ``name``; ``said``, in a few words; its ``caption``, as one person does it; whether it has a ``patient``;
+        whether it is ``mutual``.
+    """
+    entry = lexicon().entries[name]
+    act = Act(id="1", act=name, agents=("a",), patient="b")
+    caption = worded(act, entry.caption[0]) if entry.caption else ""
+    return {
+        "name": name,
+        "said": short(act, entry),
+        "caption": caption.replace("person A ", "").replace("person B", "the other"),
+        "patient": any("{b" in text for text in (*entry.caption, *entry.frames)),
+        "mutual": entry.mutual,
+    }
+
+
+def checked(text: str, plan: Plan, manifest: Mapping[str, Any]) -> dict[str, Any] | None:
+    """The verdicts on a result's acts, as the component marks them; None where there are none.
+
+    Args:
+        text: its prompt.
+        plan: whose acts were checked.
+        manifest: of the result, or of its first sample; ``checked`` has a row for each act, in the plan's order, with
+            the ``act``, whether it is ``done`` or None, and a ``measure`` in words.
+    """
+    acts = [
+        {"id": act.id, "act": act.act, "done": row.get("done"), "measure": row.get("measure") or ""}
+        for act, row in zip(plan.acts, manifest.get("checked") or (), strict=False)
+        if row.get("act") == act.act
+    ]
+    return {"text": text, "acts": acts} if acts else None

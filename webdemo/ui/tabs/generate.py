@@ -9,13 +9,15 @@ from typing import Any
 
 import gradio as gr
 
+from acts import read
+from acts.plan import plan_of
 from motion import InputError
 from webdemo.inference.acting import acted
 from webdemo.inference.actor import SECONDS
 from webdemo.inference.methods import installed, label_of, method
-from webdemo.inference.requests import GenerateRequest
+from webdemo.inference.requests import GenerateRequest, Result
 from webdemo.ui.components.pace import pace_of
-from webdemo.ui.components.reading import Reading
+from webdemo.ui.components.reading import Reading, checked, edited_plan, reread, shown
 from webdemo.ui.components.settings import UNPLANNED, looked_up
 from webdemo.ui.components.show import arrival_payload
 from webdemo.ui.components.sweep import BETWEEN_SENTENCES, Kind
@@ -65,8 +67,21 @@ def _class_in(sentence: str, label: str) -> str:
     return found
 
 
+def _marks(text: str, asked: Mapping[str, Any], result: Result) -> dict[str, Any] | None:
+    """The marks of a result's acts; None where they were not checked, or their plan cannot be had."""
+    if not result.manifest.get("checked"):
+        return None
+    try:
+        return checked(text, plan_of(asked["acts"]) if asked.get("acts") else read(text), result.manifest)
+    except InputError:
+        return None
+
+
 _PLANNED_INFO = (
     "Words such as “walks up”, “sits down” or “waves” set paths and poses; off, the network alone decides."
+)
+_EDITED_UNPLANNED = (
+    "The plan was edited, but it is not followed: tick Plan from the words, or press Read again."
 )
 ARRIVAL = "shake-hands.npz"
 """The example that plays before anything is asked for."""
@@ -79,10 +94,14 @@ class GenerateTab(SweepTab):
     restored = ("by_sentence", "class_name", "about", "folded")
 
     def request(self, fields: Mapping[str, Any]) -> GenerateRequest:
-        """See :meth:`JobTab.request`; raises InputError if no class is chosen."""
-        asked = {name: value for name, value in fields.items() if name != "class_name"}
+        """See :meth:`JobTab.request`; raises InputError if no class is chosen, or the edited plan is none."""
+        asked = {name: value for name, value in fields.items() if name not in ("class_name", "acts")}
         if takes_class(fields.get("model", GenerateRequest.model)):
             asked["prompt"] = _chosen_class(fields)
+        elif (plan := edited_plan(fields.get("acts"), str(fields.get("prompt") or ""))) is not None:
+            if not asked.get("planned", True):
+                raise InputError(_EDITED_UNPLANNED)
+            asked["acts"] = plan
         return acted(GenerateRequest(**asked))
 
     def title(self, request: GenerateRequest) -> str:
@@ -97,11 +116,31 @@ class GenerateTab(SweepTab):
         if takes_class(model):
             label = gr.update(value=asked.get("prompt"), visible=True)
         found = super().opened(run)
+        if not takes_class(model):
+            found[self.reading] = self._opened_reading(asked, run.result)
         planned = bool(asked.get("planned", takes_class(model)))  # once, words did not become paths
         if not planned and self.folded in found:
             found[self.folded]["label"] += UNPLANNED
         found[self.planned] = plan | {"value": planned}
         return found | {self.by_sentence: sentence, self.class_name: label, self.about: about}
+
+    def _opened_reading(self, asked: Mapping[str, Any], result: Result) -> dict[str, Any]:
+        """The update that shows the plan of a kept run: as it was edited, or else as its words are read."""
+        text = str(asked.get("prompt") or "")
+        update = reread({"text": text})
+        if asked.get("acts"):
+            plan = plan_of(asked["acts"])
+            update["shown"] |= {**shown(plan), "edited": plan.reader == "hand"}
+        return update | {"checked": _marks(text, asked, result)}
+
+    def more_outputs(self) -> dict[str, Any]:
+        """The reading, whose acts are marked as done or not."""
+        return {**super().more_outputs(), "reading": self.reading}
+
+    def _shown(self, result: Result, title: str) -> dict[str, Any]:
+        asked = result.manifest.get("request") or {}
+        marks = _marks(str(asked.get("prompt") or ""), asked, result)
+        return {**super()._shown(result, title), "reading": gr.update(checked=marks)}
 
     def build(self, demo: gr.Blocks, record: gr.State | None = None) -> None:
         """Lays out the tab inside ``demo`` and wires its events.
@@ -122,6 +161,7 @@ class GenerateTab(SweepTab):
             "model": self.model, "prompt": self.prompt, "class_name": self.class_name,
             "seconds": self.seconds, "seed": self.seed, "samples": self.samples, "guidance": self.guidance,
             "steps": self.steps, "damping": self.damping, "tries": self.tries, "planned": self.planned,
+            "acts": self.reading,
         }  # fmt: skip
         self._wire_run([self.go.click, self.prompt.submit], record)
         self._wire_sweeps()
@@ -168,7 +208,7 @@ class GenerateTab(SweepTab):
                         gr.Button(name, size="sm", elem_classes="pd-chip", min_width=0)
                         for name, _ in EXAMPLES
                     ]
-                self.reading = Reading(elem_id=self._id("reading"), elem_classes="pd-reading")
+                self.reading = Reading(editable=True, elem_id=self._id("reading"), elem_classes="pd-reading")
             self.class_name = gr.Dropdown(
                 classes,
                 value=None,
