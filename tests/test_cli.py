@@ -86,6 +86,19 @@ def test_generate_writes_a_file_and_one_json_line(run: Run, tmp_path: Path, suff
     assert np.isfinite(duet.positions).all()
 
 
+def test_generate_tries_further_seeds(run: Run, tmp_path: Path) -> None:
+    out = tmp_path / "x.npz"
+    code, said, err = run(
+        "generate", "--prompt", "A falls down and B walks away.", *QUICK, "--tries", 2, "--out", out
+    )
+    assert code == 0
+    manifest = answer(said)["manifest"]
+    assert manifest["tries"]["asked"] == manifest["request"]["tries"] == 2
+    assert {row["act"] for row in manifest["checked"]} == {"fall-down", "walk-away"}
+    assert " tries" in err
+    refused(run("generate", "--prompt", PROMPT, "--tries", 5, "--out", tmp_path / "y.npz"))
+
+
 def test_a_plan_is_made_without_words(run: Run, tmp_path: Path) -> None:
     plan, out = tmp_path / "plan.json", tmp_path / "x.npz"
     acts = [{"id": "1", "act": "walk-up", "agents": ["b"], "patient": "a"}]

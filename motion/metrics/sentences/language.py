@@ -141,9 +141,9 @@ def measured(rule: str, motion: Motion) -> str:
 
 
 def masks(rule: str) -> list[str]:
-    """The first predicate of each condition of a rule, as text: what has to be seen for it."""
+    """The predicate of each condition of a rule, as text; of several in an order the last, which fulfils it."""
     conditions = [c for c in _calls(ast.parse(rule, mode="eval").body) if _name(c.func) in CONDITIONS]
-    return [ast.unparse(condition.args[0]) for condition in conditions if condition.args]
+    return [ast.unparse(c.args[-1 if _name(c.func) == "then" else 0]) for c in conditions if c.args]
 
 
 def _calls(node: ast.expr) -> Iterator[ast.Call]:

@@ -14,6 +14,7 @@ from webdemo.inference.story.toml import MOST_CHARACTERS
 
 STORY = """
 seed = 4
+tries = 3
 loop = true
 
 [[beat]]
@@ -33,7 +34,9 @@ points = [[0, 0, 1.5], [2, 0.5, 2, 90], [3, 0, 2]]
 def test_a_story_is_read_and_written() -> None:
     found = read_story(STORY)
     assert [beat.words for beat in found["beats"]] == ['They "meet".', ""]
-    assert found["beats"][1].seed == 9 and found["seed"] == 4 and found["loop"] is True
+    assert (
+        found["beats"][1].seed == 9 and found["seed"] == 4 and found["tries"] == 3 and found["loop"] is True
+    )
     assert found["paths"][0].points[1] == FloorPoint(0.5, 2, 2, 90)
     request = SceneRequest(**found)
     again = SceneRequest(**read_story(write_story(request)))

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import html
 import re
+from dataclasses import replace
 
 import pytest
 
@@ -136,6 +137,10 @@ def test_progress_and_cancellation_name_the_step() -> None:
     assert progress_line(paced) == "Denoising: step 12 of 50, about 20 s left"
     assert progress_line(Progress(stage="sample", step=2, total=50, elapsed=1.0)).endswith("of 50")
     assert progress_line(Progress(stage="sample", step=49, total=50, elapsed=10.0)).endswith("of 50")
+    second = Progress(stage="sample", step=12, total=50, elapsed=62.0, attempt=2, attempts=4)
+    assert progress_line(second) == "Try 2 of 4. Denoising: step 12 of 50, about 40 s left"
+    assert progress_line(replace(second, stage="text", step=0)) == "Try 2 of 4. Reading the prompt …"
+    assert cancelled_line(second) == "Cancelled at step 12 of 50 of try 2."
     assert cancelled_line(event) == "Cancelled at step 12 of 50."
     assert cancelled_line(Progress(stage="text")) == "Cancelled before the first step."
     assert cancelled_line(None) == "Cancelled before the first step."

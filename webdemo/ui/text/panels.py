@@ -36,7 +36,7 @@ def status(line: str = "", *, tone: str = "quiet") -> str:
 def notes_lines(result: Result) -> str:
     """The notes of a result, which stand right beside "Done"."""
     return "".join(
-        status(note, tone="done" if note.startswith("Done") and "Not seen:" not in note else "warning")
+        status(note, tone="quiet" if note.startswith("Done") and "Not seen:" not in note else "warning")
         for note in result.notes
     )
 
