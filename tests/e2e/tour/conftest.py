@@ -46,13 +46,14 @@ def visit(
 
 
 @pytest.fixture
-def page(visit: SimpleNamespace, tour: Tour) -> Iterator[Page]:
+def page(request: pytest.FixtureRequest, visit: SimpleNamespace, tour: Tour) -> Iterator[Page]:
+    """The page, on which nothing may go wrong but the refusals that a module's ``EXPECTED`` names."""
     yield visit.page
     visit.page.evaluate(STILL)
     wrong = tour.wrong[:]
     tour.wrong.clear()
     assert not wrong, f"the page told of errors: {wrong}"
-    visit.tabs.check()
+    visit.tabs.check(getattr(request.module, "EXPECTED", ()))
     assert tour.errors_in_log() == []
 
 
