@@ -66,6 +66,7 @@ class Event:
         particles: those of ``words`` that belong to the verb, as "up" in "picks up".
         prepositions: (preposition, argument).
         denied, modality: of the clause.
+        ongoing: it goes on when the clause begins, as in "is sitting" and "keeps walking".
         joint: how it is joined to event ``beside``, as in :class:`acts.plan.Relation`.
         first, last: character offsets in the text that was parsed.
         adverbs, seconds, times, distance, direction, side: modifiers.
@@ -79,6 +80,7 @@ class Event:
     particles: list[str] = field(default_factory=list)
     prepositions: list[tuple[str, Ref]] = field(default_factory=list)
     denied: bool = False
+    ongoing: bool = False
     modality: str = "told"
     joint: str = ""
     beside: int | None = None

@@ -9,6 +9,7 @@ from acts.frames import Event, Ref
 
 from .arguments import Arguments
 from .people import Cast, reference
+from .syntax import is_ongoing
 from .vocabulary import vocabulary
 
 if TYPE_CHECKING:
@@ -123,6 +124,7 @@ class Reader:
         kind, beside = self._joint(token, head)
         if self._is_main(token):
             self._mains.append(token.i)
+        event.ongoing = is_ongoing(token, lemma)
         self._polarity(token, head, event)
         agent = self._arguments.fill(token, event)
         passive = any(child.dep_ in ("nsubjpass", "auxpass", "agent") for child in token.children)

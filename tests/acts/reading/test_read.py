@@ -260,3 +260,21 @@ def test_words_that_are_none_are_reported_beside_what_is_read() -> None:
 def test_a_word_that_was_read_once_is_still_misspelt_the_next_time() -> None:
     read("The zorble huggss.")
     assert [plan.text(u.words) for plan in [read("A zorble hugs B.")] for u in plan.unread] == ["zorble"]
+
+
+@pytest.mark.parametrize(
+    ("text", "already"),
+    [
+        ("Tom is sitting. Anna walks up to him.", [True, False]),
+        ("A stands up, B keeps sitting.", [False, True]),
+        ("A man sits on a chair.", [True]),
+        ("A man sits down on a chair.", [False]),
+        ("They are sitting down.", [False]),
+        ("While she kneels, he waves.", [True, False]),
+        ("He waves while she sits down.", [False, False]),
+        ("He walks in and sits on the floor.", [False, False]),
+        ("The sleeping child is carried by the nurse.", [True, False]),
+    ],
+)
+def test_what_goes_on_when_the_text_begins(text: str, already: list[bool]) -> None:
+    assert [act.already for act in read(text).acts] == already
