@@ -19,8 +19,11 @@ import pytest
 from motion import InputError
 from motion.formats.importing import import_motion
 from tests.motion.bodies import marching
+from tests.motion.formats.characters import glb_motion
 from tests.motion.formats.rigs import RIGS, bvh_text
+from webdemo.inference.story.toml import read_story
 
+from .containers import changed_archive, changed_glb, changed_story
 from .known import API
 from .target import FIELDS, Target
 
@@ -42,6 +45,22 @@ HEADERS = (
     "x-forwarded-proto", "authorization", "if-none-match", "x-gradio-user", "content-encoding", "te",
 )  # fmt: skip
 BYTES = (b"\0", b"\xff", b"-", b"9" * 400, b"nan", b"\n", b"{", b"}", b"ROOT", b"1e400", b"PK\x03\x04", b"\r")
+
+
+STORY = b"""seed = 1
+
+[[beat]]
+words = "They walk."
+seconds = 3.0
+
+[[beat]]
+a = "They bow."
+b = "They wait."
+
+[[path]]
+person = "a"
+points = [[0.0, 0.0, 0.0], [3.0, 1.0, 2.0]]
+"""
 
 
 def mutated_json(dice: random.Random) -> bytes:
@@ -133,19 +152,25 @@ def samples() -> dict[str, bytes]:
     sbu = b"\n".join(b"%d," % i + b",".join(b"0.%d" % (k % 9 + 1) for k in range(90)) for i in range(5))
     return {
         "a.bvh": bvh, "a.npy": array.getvalue(), "a.npz": archive.getvalue(), "a.skeleton": skeleton,
-        "a.txt": sbu,
+        "a.txt": sbu, "a.glb": glb_motion(rotations, positions[:, 0]), "a.toml": STORY,
     }  # fmt: skip
 
 
-def read_mutants(name: str, data: bytes, count: int, send: Callable[[str], None]) -> None:
+Change = Callable[[bytes, random.Random], bytes]
+
+
+def read_mutants(name: str, data: bytes, change: Change, count: int, send: Callable[[str], None]) -> None:
     """Reads changed files in a process of bounded memory; says of the first that was no sentence."""
     resource.setrlimit(resource.RLIMIT_AS, (READER_BYTES, READER_BYTES))
     dice = random.Random(count)
     for i in range(count):
-        mutant = mutated(data, dice)
+        mutant = change(data, dice)
         began = time.process_time()
         try:
-            import_motion(mutant, name=name)
+            if name == "a.toml":
+                read_story(mutant.decode("utf-8", "replace"))
+            else:
+                import_motion(mutant, name=name)
         except InputError:
             pass
         except BaseException as error:
@@ -157,11 +182,17 @@ def read_mutants(name: str, data: bytes, count: int, send: Callable[[str], None]
     send("")
 
 
-@pytest.mark.parametrize("name", ["a.bvh", "a.npy", "a.npz", "a.skeleton", "a.txt"])
-def test_files_end_in_a_motion_or_a_sentence(name: str) -> None:
+WHOLE = ("a.bvh", "a.npy", "a.npz", "a.skeleton", "a.txt", "a.glb", "a.toml")
+INSIDE: tuple[tuple[str, Change], ...] = (
+    ("a.npz", changed_archive), ("a.glb", changed_glb), ("a.toml", changed_story),
+)  # fmt: skip
+
+
+@pytest.mark.parametrize(("name", "change"), [*((name, mutated) for name in WHOLE), *INSIDE])
+def test_files_end_in_a_motion_or_a_sentence(name: str, change: Change) -> None:
     context = multiprocessing.get_context("fork")
     receive, send = context.Pipe(duplex=False)
-    reader = context.Process(target=read_mutants, args=(name, samples()[name], COUNT, send.send))
+    reader = context.Process(target=read_mutants, args=(name, samples()[name], change, COUNT, send.send))
     reader.start()
     try:
         assert receive.poll(60 + COUNT), f"{name}: no answer"
