@@ -7,12 +7,16 @@ working folder or what ``PASDEDEUX_SETTINGS`` names.
 
 from __future__ import annotations
 
+import ipaddress
 import json
 import os
 import tomllib
 from collections.abc import Mapping
 from pathlib import Path
-from typing import Any
+from typing import Any, Literal
+from urllib.parse import urlsplit
+
+from pydantic import BaseModel, ConfigDict, Field, ValidationError
 
 from motion import InputError
 
@@ -65,3 +69,80 @@ def settings_file() -> tuple[Mapping[str, Any], Path]:
         return tomllib.loads(path.read_text(encoding="utf-8")), path.resolve().parent
     except (OSError, ValueError) as error:
         raise InputError(f"The settings file {path.name} cannot be read: {error}.") from None
+
+
+class DirectorSettings(BaseModel):
+    """A language model that writes plans, as ``[director]`` of the settings names it.
+
+    Attributes:
+        url: of an OpenAI-compatible API, up to ``/v1``.
+        model: its name there.
+        key: sent as a bearer token; never shown.
+        when: "unread" asks only where the lexicon leaves words unread, "always" for every text.
+        seconds: limit of one reading, with its repair.
+        plain_http: True allows ``http://`` to other machines, which sends texts and key in the clear.
+    """
+
+    model_config = ConfigDict(extra="forbid", frozen=True)
+
+    url: str
+    model: str
+    key: str = Field("", repr=False)
+    when: Literal["unread", "always"] = "unread"
+    seconds: float = 10.0
+    plain_http: bool = False
+
+
+def director_settings() -> DirectorSettings | None:
+    """The director of ``PASDEDEUX_DIRECTOR_URL``, ``_MODEL``, … or the settings file; None if there is none.
+
+    Raises:
+        InputError: one sentence on what is wrong with it, which holds no value of it.
+    """
+    table = settings_file()[0].get("director", {})
+    if not isinstance(table, dict):
+        raise InputError("The setting director must be a table: [director] with url and model.")
+    given = dict(table)
+    for name in DirectorSettings.model_fields:
+        if text := os.environ.get(f"{PREFIX}DIRECTOR_{name.upper()}", "").strip():
+            given[name] = text
+    if not given:
+        return None
+    try:
+        found = DirectorSettings.model_validate(given)
+    except ValidationError as error:
+        first = error.errors()[0]
+        where = ".".join(str(part) for part in first["loc"])[:60]
+        raise InputError(f"The setting director.{where} cannot be used: {first['msg']}.") from None
+    _check_address(found)
+    return found
+
+
+def _check_address(found: DirectorSettings) -> None:
+    try:
+        parts = urlsplit(found.url)
+        host, _ = parts.hostname or "", parts.port
+    except ValueError:
+        host = ""
+    if not host or parts.scheme not in ("http", "https") or parts.username or parts.query or parts.fragment:
+        raise InputError(
+            "The setting director.url must be http://HOST/v1 or https://HOST/v1, without a name or key."
+        )
+    if not found.model or not 0 < found.seconds <= 60 or any(ord(c) < 33 or ord(c) > 126 for c in found.key):
+        raise InputError(
+            "The setting director needs a model, at most 60 seconds, and a key of plain characters."
+        )
+    if parts.scheme == "http" and not is_loopback(host) and not found.plain_http:
+        raise InputError(
+            "The setting director.url is http:// to another machine: use https://, or allow it with plain_http = true."
+        )
+
+
+def is_loopback(host: str) -> bool:
+    """True if an address or name is this machine's loopback."""
+    if host == "localhost":
+        return True
+    try:
+        return ipaddress.ip_address(host).is_loopback
+    except ValueError:
+        return False

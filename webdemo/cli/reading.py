@@ -7,6 +7,7 @@ from pathlib import Path
 from typing import Any
 
 from acts import read
+from acts.reading.director import directed
 
 
 def add_read(commands: Any) -> None:
@@ -25,5 +26,8 @@ def add_read(commands: Any) -> None:
 
 
 def _plan(options: argparse.Namespace) -> dict[str, Any]:
-    plan = read(options.sentence, tuple(folder.resolve() for folder in options.acts))
+    if options.acts:
+        plan = read(options.sentence, tuple(folder.resolve() for folder in options.acts))
+    else:
+        plan = directed(options.sentence)
     return plan.model_dump(mode="json")

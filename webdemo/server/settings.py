@@ -151,6 +151,11 @@ class Settings(BaseSettings):
         description="folders of acts beside ours, with : between them in the environment: see docs/acts.md",
     )
 
+    director: dict[str, Any] = Field(
+        {}, description="language model that reads what the lexicon does not: PASDEDEUX_DIRECTOR_URL, _MODEL and "
+        "_KEY, or a table with url, model and key: see docs/acts.md",
+    )  # fmt: skip
+
     # ---- limits
     rate: int = Field(240, ge=1, description="requests per person and minute that change something")
     address_people: int = Field(
@@ -236,6 +241,7 @@ class Settings(BaseSettings):
         plain = self.model_dump(mode="json")
         plain["database"] = _without_password(self.database_url)
         plain["person_megabytes"] = self.person_bytes / 2**20
+        plain["director"] = {k: "set" if k == "key" else v for k, v in self.director.items()}
         plain["metrics_token"] = "set" if self.metrics_token else ""
         return plain
 
@@ -268,6 +274,8 @@ def read_settings(**given: Any) -> Settings:
             raise InputError(
                 f"There is no setting {name!r}: see `python -m webdemo serve --print-settings`."
             ) from None
+        if name.startswith("director"):  # which holds a key
+            raise InputError("The setting director must be a table with url and model.") from None
         raise InputError(
             f"The setting {name} ({PREFIX}{name.upper()}) cannot be {first['input']!r:.60}: "
             f"{first['msg'][:1].lower()}{first['msg'][1:]}."

@@ -6,7 +6,7 @@ from typing import Any
 
 import gradio as gr
 
-from acts import read
+from acts.reading.director import directed
 from webdemo.ui.text.words import error_line
 
 from .api import READING, Endpoint
@@ -31,6 +31,6 @@ class ReadEndpoint(Endpoint):
         """
         try:
             with READING:
-                return read(text or "").model_dump(mode="json")
+                return directed(text or "").model_dump(mode="json")
         except Exception as error:
             raise gr.Error(error_line(error), print_exception=False) from None

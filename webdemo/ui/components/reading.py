@@ -14,9 +14,10 @@ from typing import Any
 import gradio as gr
 from pydantic import TypeAdapter
 
-from acts import Act, Plan, lexicon, read
+from acts import Act, Plan, lexicon
 from acts.captions import short, worded
 from acts.plan import plan_of
+from acts.reading.director import directed
 from motion import InputError
 from webdemo.ui.text.words import error_line
 
@@ -129,7 +130,7 @@ def reread(sent: Any) -> dict[str, Any]:
     text = str(fields.get("text") or "")
     asked = {"text": text, "number": fields.get("number"), "edited": bool(fields.get("plan"))}
     try:
-        plan = edited_plan(sent, text) or read(text)
+        plan = edited_plan(sent, text) or directed(text, ask=False)
         found = shown(plan)
     except Exception as error:
         found = {"error": error_line(error)}
