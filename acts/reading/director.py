@@ -181,7 +181,7 @@ def schema(known: Lexicon) -> dict[str, Any]:
 
 
 def _task(known: Lexicon) -> str:
-    """What the model is told: the same for every text, so that servers keep it."""
+    """The system message: the same for every text, so that servers keep it."""
     acts = [f"{name}: {entry.caption[0]}" for name, entry in sorted(known.entries.items()) if entry.shown]
     fields = ", ".join(schema(known)["$defs"]["Act"]["properties"])
     return (
