@@ -132,7 +132,7 @@ _OWN = (Hand.PHONE, Hand.EARS, Hand.EYES, Hand.PHOTO, Hand.PRAYS)
 _AT_BODY = {
     Hand.HIPS: (0.21, 0.1, 0.0), Hand.CHEST: (0.02, 0.36, 0.2), Hand.BELLY: (0.04, 0.14, 0.2),
     Hand.HEAD: (0.12, 0.66, -0.05), Hand.MOUTH: (0.04, 0.54, 0.2), Hand.BEHIND: (0.04, 0.02, -0.18),
-    Hand.CROSSED: (-0.13, 0.27, 0.15), Hand.SHAKES: (0.28, -0.02, 0.12),
+    Hand.CROSSED: (-0.13, 0.27, 0.15), Hand.SHAKES: (0.28, 0.08, 0.12),
 }  # fmt: skip
 """Metres from the pelvis to the left wrist of hands that are held at one's own body."""
 STOOD = (

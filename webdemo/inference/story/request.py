@@ -18,9 +18,9 @@ from webdemo.inference.predict_request import check_motion
 from webdemo.inference.requests import GenerateRequest, SamplingRequest, _number
 
 from .beats import MOST_BEATS, SHORTEST, Beat, acts_of
-from .scripting import beats_of
+from .scripting import beats_of, understood
 from .splitting import split_sentence
-from .telling import told_by
+from .telling import of_words, told_by
 from .told import Told
 from .wishes import MOST_POSES, FloorPath, FloorPoint, Pose, check_together
 
@@ -281,16 +281,16 @@ def as_scene(request: GenerateRequest, go_on: Callable[[], None] = lambda: None)
     if not request.split or "scene" not in methods.method(request.model).tasks:
         return None
     try:
-        beats = split_sentence(request.prompt, go_on) if request.acts is None else beats_of(request.acts)
-        if len(beats) > request.seconds / LEAST_SHARE:
-            beats = (Beat(request.prompt) if request.acts is None else Beat(acts=request.acts.acts),)
+        beats = _beats(request, go_on)
         for number, beat in enumerate(beats, 1):
             beat.check(number)
     except InputError:
         go_on()  # may be what raised it
         return None
     if not beats or (
-        len(beats) < 2 and request.acts is None and not (request.planned and told_by(beats[0]).is_planned)
+        len(beats) < 2
+        and request.acts is None
+        and not (request.planned and (beats[0].acts or of_words(beats[0].sentence).is_planned))
     ):
         return None
     factor = request.seconds / sum(beat.length for beat in beats)
@@ -300,6 +300,24 @@ def as_scene(request: GenerateRequest, go_on: Callable[[], None] = lambda: None)
         for beat, s in zip(beats, np.diff(edges), strict=True)
     )
     return SceneRequest(beats=timed, planned=request.planned, **plain)
+
+
+def _beats(request: GenerateRequest, go_on: Callable[[], None]) -> tuple[Beat, ...]:
+    """The beats of a request: of its acts, of its phrases, or of the acts that its words are read as."""
+    most = request.seconds / LEAST_SHARE
+    if request.acts is not None:
+        beats = beats_of(request.acts)
+        return beats if len(beats) <= most else (Beat(acts=request.acts.acts),)
+    beats = split_sentence(request.prompt, go_on)
+    if len(beats) > most:
+        beats = (Beat(request.prompt),)
+    if not beats or len(beats) > 1 or not request.planned or of_words(beats[0].sentence).moves_bodies:
+        return beats
+    script = understood(request.prompt)
+    by_acts = beats_of(script) if script is not None else ()
+    if len(by_acts) > most or not any(told_by(beat).is_planned for beat in by_acts):
+        return beats
+    return by_acts if len(by_acts) > 1 else (replace(by_acts[0], words=request.prompt),)
 
 
 def beat_of(values: Mapping[str, Any]) -> Beat:

@@ -1,4 +1,4 @@
-"""The stage of a beat, from its acts where it has any, and from its words otherwise."""
+"""The stage of a beat: by its acts, by its phrases, or by the acts that its words are read as."""
 
 from __future__ import annotations
 
@@ -11,14 +11,21 @@ from .gestures import gestures
 from .holds import hold, leads_by_both_hands, twirls
 from .lifts import lift
 from .roles import of_each
+from .scripting import understood
 from .staging import staged
 from .strikes import strike
 from .told import Told
 
 
 def told_by(beat: Beat) -> Told:
-    """Reads a beat by its acts, or by its words."""
-    return staged(beat.acts) if beat.acts else of_words(beat.sentence)
+    """Reads a beat by its acts, or by its words; by the acts of its words where phrases plan nothing."""
+    if beat.acts:
+        return staged(beat.acts)
+    told = of_words(beat.sentence)
+    if told.moves_bodies or (plan := understood(beat.sentence)) is None:
+        return told
+    by_acts = staged(plan.acts)
+    return by_acts if by_acts.is_planned else told
 
 
 @lru_cache(maxsize=512)
