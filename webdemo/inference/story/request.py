@@ -303,7 +303,10 @@ def as_scene(request: GenerateRequest, go_on: Callable[[], None] = lambda: None)
 
 
 def _beats(request: GenerateRequest, go_on: Callable[[], None]) -> tuple[Beat, ...]:
-    """The beats of a request: of its acts, of its phrases, or of the acts that its words are read as."""
+    """The beats of a request: of its acts, or of its words, as phrases or as the acts that they are read as.
+
+    Acts are only taken where all words are understood, and where they plan more than the phrases do.
+    """
     most = request.seconds / LEAST_SHARE
     if request.acts is not None:
         beats = beats_of(request.acts)
@@ -311,11 +314,10 @@ def _beats(request: GenerateRequest, go_on: Callable[[], None]) -> tuple[Beat, .
     beats = split_sentence(request.prompt, go_on)
     if len(beats) > most:
         beats = (Beat(request.prompt),)
-    if not beats or len(beats) > 1 or not request.planned or of_words(beats[0].sentence).moves_bodies:
-        return beats
-    script = understood(request.prompt)
+    script = understood(request.prompt) if beats and request.planned else None
     by_acts = beats_of(script) if script is not None else ()
-    if len(by_acts) > most or not any(told_by(beat).is_planned for beat in by_acts):
+    phrases = sum(of_words(beat.sentence).size for beat in beats)
+    if len(by_acts) > most or sum(told_by(beat).size for beat in by_acts) <= phrases:
         return beats
     return by_acts if len(by_acts) > 1 else (replace(by_acts[0], words=request.prompt),)
 

@@ -68,7 +68,9 @@ class _Stage:
     def __init__(self, acts: Sequence[Act], known: Lexicon) -> None:
         self.acts, self.known = acts, known
         self.done = [
-            (act, known.entries[act.act]) for act in acts if act.happens and act.act in known.entries
+            (act, known.entries[act.act])
+            for act in acts
+            if act.act in known.entries and (act.happens or _is_attempt(act, known.entries[act.act]))
         ]
         groups = beats(self.acts)
         self.level = {act.id: level for level, group in enumerate(groups) for act in group}
@@ -112,7 +114,7 @@ class _Stage:
                 )
             ),
             keeps_place=self.setting.backs or self.setting.beside,
-            touches=any(e.group in _NEAR and (e.mutual or act.patient) for act, e in self.done),
+            touches=any(e.group in _NEAR and _reaches(act, e) for act, e in self.done),
             alone=of_each(self.acts, self.known),
         )  # fmt: skip
 
@@ -285,6 +287,12 @@ class _Stage:
 
 def _other(who: str) -> str:
     return "b" if who == "a" else "a"
+
+
+def _is_attempt(act: Act, entry: Entry) -> bool:
+    """True for a blow that is only tried: it is struck, and the other is elsewhere."""
+    tried = act.polarity == "done" and act.modality == "tried"
+    return tried and any(shape.do == "strike" for shape in entry.stage)
 
 
 def _is_deep(act: Act) -> bool:

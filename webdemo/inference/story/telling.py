@@ -18,14 +18,13 @@ from .told import Told
 
 
 def told_by(beat: Beat) -> Told:
-    """Reads a beat by its acts, or by its words; by the acts of its words where phrases plan nothing."""
+    """Reads a beat by its acts, or by its words: as acts where these plan more than its phrases do."""
     if beat.acts:
         return staged(beat.acts)
     told = of_words(beat.sentence)
-    if told.moves_bodies or (plan := understood(beat.sentence)) is None:
-        return told
-    by_acts = staged(plan.acts)
-    return by_acts if by_acts.is_planned else told
+    plan = understood(beat.sentence)
+    by_acts = None if plan is None else staged(plan.acts)
+    return told if by_acts is None or by_acts.size <= told.size else by_acts
 
 
 @lru_cache(maxsize=512)

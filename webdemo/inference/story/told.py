@@ -73,13 +73,16 @@ class Told:
     @property
     def is_planned(self) -> bool:
         """True if people go somewhere, stand by, sit, kneel, lie down, jump, bow or touch."""
-        return self.moves_bodies or bool(self.idle or self.gesturing)
+        found = (self.contact, self.changes, self.leaps, self.bows, self.limbs, self.idle, self.gesturing)
+        return goes(self.moves) or self.placed is not None or any(found)
 
     @property
-    def moves_bodies(self) -> bool:
-        """True if more is planned than who stands by and a gesture."""
-        found = (self.contact, self.changes, self.leaps, self.bows, self.limbs)
-        return goes(self.moves) or self.placed is not None or any(found)
+    def size(self) -> int:
+        """The number of things that are planned, without who stands by."""
+        ways = {(move.person, move.way) for move in self.moves if move.way is not Way.STAY}
+        single = (self.contact, self.hold, self.lift, self.strike, self.twirls, self.keeps_place)
+        listed = [*self.changes.values(), *self.limbs.values(), self.gestures, self.leaps, self.bows, ways]
+        return sum(map(bool, single)) + sum(map(len, listed))
 
     @property
     def going(self) -> set[str]:
