@@ -305,7 +305,7 @@ def as_scene(request: GenerateRequest, go_on: Callable[[], None] = lambda: None)
 def _beats(request: GenerateRequest, go_on: Callable[[], None]) -> tuple[Beat, ...]:
     """The beats of a request: of its acts, or of its words, as phrases or as the acts that they are read as.
 
-    Acts are only taken where all words are understood, and where they plan more than the phrases do.
+    Acts are only taken where all words are understood, the phrases move nobody, and the acts plan more.
     """
     most = request.seconds / LEAST_SHARE
     if request.acts is not None:
@@ -314,10 +314,10 @@ def _beats(request: GenerateRequest, go_on: Callable[[], None]) -> tuple[Beat, .
     beats = split_sentence(request.prompt, go_on)
     if len(beats) > most:
         beats = (Beat(request.prompt),)
-    script = understood(request.prompt) if beats and request.planned else None
+    told = of_words(beats[0].sentence) if len(beats) == 1 and request.planned else None
+    script = understood(request.prompt) if told is not None and not told.moves_bodies else None
     by_acts = beats_of(script) if script is not None else ()
-    phrases = sum(of_words(beat.sentence).size for beat in beats)
-    if len(by_acts) > most or sum(told_by(beat).size for beat in by_acts) <= phrases:
+    if told is None or len(by_acts) > most or sum(told_by(beat).size for beat in by_acts) <= told.size:
         return beats
     return by_acts if len(by_acts) > 1 else (replace(by_acts[0], words=request.prompt),)
 

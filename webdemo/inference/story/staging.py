@@ -171,7 +171,10 @@ class _Stage:
     def _changed(self, act: Act, shape: shapes.Posture) -> list[Change]:
         """The changes of posture of an act, one after another where it is done several times."""
         posture, already = Posture(shape.posture), shape.already or act.already
-        after = max(self.level[act.id] / self.levels, 0.4 if shape.who == "patient" else 0.0)
+        after = max(
+            self.level[act.id] / self.levels,
+            0.4 if posture is Posture.LIES and shape.who == "patient" else 0.0,
+        )
         times = min(act.times or shape.times, 5) if shape.passing else 1
         shares = [0.0 if already else after + (1 - after) * i / times for i in range(times)]
         return [Change(posture, already, share, shape.passing) for share in shares]

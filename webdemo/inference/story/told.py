@@ -73,7 +73,12 @@ class Told:
     @property
     def is_planned(self) -> bool:
         """True if people go somewhere, stand by, sit, kneel, lie down, jump, bow or touch."""
-        found = (self.contact, self.changes, self.leaps, self.bows, self.limbs, self.idle, self.gesturing)
+        return self.moves_bodies or bool(self.idle or self.gesturing)
+
+    @property
+    def moves_bodies(self) -> bool:
+        """True if more is planned than who stands by and a gesture."""
+        found = (self.contact, self.changes, self.leaps, self.bows, self.limbs)
         return goes(self.moves) or self.placed is not None or any(found)
 
     @property
