@@ -167,3 +167,22 @@ def test_acts_of_a_story_are_read_and_written() -> None:
 def test_who_holds_hands_holds_them_while_they_walk() -> None:
     assert all(move.linked for move in told("They walk side by side while they hold hands.").moves)
     assert not any(move.linked for move in told("They walk side by side.").moves)
+
+
+@pytest.mark.parametrize(
+    ("prompt", "acts"),
+    [
+        ("She raises her left leg.", ["raise-leg"]),
+        ("He does squats while she yawns.", ["squats", "yawn"]),
+        ("Person A walks past person B.", []),  # its phrases say it
+        ("Person A flurbles person B.", None),  # not understood: the network has the words
+    ],
+)
+def test_words_whose_phrases_move_nobody_are_read_as_acts(prompt: str, acts: list[str] | None) -> None:
+    scene = as_scene(GenerateRequest(prompt=prompt, seconds=5.0))
+    assert (None if scene is None else [act.act for beat in scene.beats for act in beat.acts]) == acts
+
+
+def test_a_blow_that_is_only_tried_is_struck_past_the_other() -> None:
+    struck = staged(read("Person 1 tries to punch person 2, who dodges it.").acts).strike
+    assert struck is not None and struck.turns == "a"
