@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 
 from .errors import InputError
 from .skeleton import SMPL22, Skeleton
+from .things.thing import MOST_THINGS, Thing
 
 Array = NDArray[np.floating]
 
@@ -78,12 +79,14 @@ class Duet:
         b: the second person; the reactor.
         roles: what the two are called.
         manifest: everything that reproduces the motion, where it was generated.
+        things: beside them in the same world, each with a track of as many frames.
     """
 
     a: Clip
     b: Clip
     roles: tuple[str, str] = ("a", "b")
     manifest: dict[str, Any] | None = field(default=None, repr=False)
+    things: tuple[Thing, ...] = ()
 
     def __post_init__(self) -> None:
         if self.a.num_frames != self.b.num_frames or self.a.fps != self.b.fps:
@@ -93,6 +96,14 @@ class Duet:
             )
         if self.a.skeleton.joint_names != self.b.skeleton.joint_names:
             raise InputError("The two people must have the same joints: retarget one of them.")
+        if len(self.things) > MOST_THINGS:
+            raise InputError(f"There may be {MOST_THINGS} things beside two people, not {len(self.things)}.")
+        for thing in self.things:
+            if thing.num_frames != self.num_frames:
+                raise InputError(
+                    f"The {thing.name} has {thing.num_frames} frames and the people {self.num_frames}: "
+                    "give its track as many."
+                )
 
     @classmethod
     def from_positions(
@@ -142,15 +153,17 @@ class Duet:
 
     def cut(self, start: int = 0, stop: int | None = None) -> Duet:
         """Frames ``start`` to ``stop`` (exclusive)."""
-        return replace(self, a=self.a.cut(start, stop), b=self.b.cut(start, stop))
+        things = tuple(thing.cut(start, stop) for thing in self.things)
+        return replace(self, a=self.a.cut(start, stop), b=self.b.cut(start, stop), things=things)
 
     def swapped(self) -> Duet:
         """The same motion with the two people's places exchanged; roles stay with the place."""
         return replace(self, a=self.b, b=self.a)
 
     def with_positions(self, positions: Sequence[Array] | Array) -> Duet:
-        """The same two people with other positions (2, T, J, 3)."""
-        return replace(self, a=self.a.with_positions(positions[0]), b=self.b.with_positions(positions[1]))
+        """The same two people with other positions (2, T, J, 3); things no longer fit and are dropped."""
+        a, b = self.a.with_positions(positions[0]), self.b.with_positions(positions[1])
+        return replace(self, a=a, b=b, things=())
 
 
 def stacked_positions(motion: Clip | Duet) -> Array:

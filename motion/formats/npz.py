@@ -24,6 +24,7 @@ from motion.kinematics import forward_kinematics
 from motion.representation import NUM_FEATURES, RAW_FEATURES, decode_positions, read_raw
 from motion.skeleton import SKELETONS, SMPL22, Skeleton
 
+from . import npz_things
 from .crowd import MAX_PEOPLE, Motion, gathered
 from .files import check_duration, read_bytes, write_files
 from .joint_order import likely_skeleton
@@ -44,22 +45,26 @@ ZIP_ERRORS = (
 """Errors that :mod:`zipfile` raises over damaged files, from wrong sums to sizes below zero."""
 _KEYS = (
     "positions", "fps", "joint_names", "parents", "roles", "manifest",
-    "poses", "trans", "mocap_framerate", "mocap_frame_rate",
+    "poses", "trans", "mocap_framerate", "mocap_frame_rate", *npz_things.KEYS,
 )  # fmt: skip
 
 
 def write_npz(duet: Duet, path: str | Path) -> list[Path]:
-    """Writes a duet's positions (2, T, J, 3) float32 with fps, joint_names, parents, roles and manifest."""
+    """Writes a duet's positions (2, T, J, 3) float32 with fps, joint_names, parents, roles and manifest.
+
+    Things beside the people are further arrays, see :mod:`.npz_things`.
+    """
+    arrays: dict[str, Any] = {
+        "positions": duet.positions,
+        "fps": np.float64(duet.fps),
+        "joint_names": np.array(duet.skeleton.joint_names),
+        "parents": np.array(duet.skeleton.parents, dtype=np.int64),
+        "roles": np.array(duet.roles),
+        "manifest": np.array(json.dumps(duet.manifest or {}, ensure_ascii=False)),
+        **npz_things.arrays_of(duet.things),
+    }
     buffer = io.BytesIO()
-    np.savez_compressed(
-        buffer,
-        positions=duet.positions,
-        fps=np.float64(duet.fps),
-        joint_names=np.array(duet.skeleton.joint_names),
-        parents=np.array(duet.skeleton.parents, dtype=np.int64),
-        roles=np.array(duet.roles),
-        manifest=np.array(json.dumps(duet.manifest or {}, ensure_ascii=False)),
-    )
+    np.savez_compressed(buffer, **arrays)
     return write_files({Path(path): buffer.getvalue()})
 
 
@@ -200,7 +205,8 @@ def _from_arrays(arrays: dict[str, Array], label: str, fps: float | None, everyo
     if not isinstance(made, Duet):
         return made
     known = manifest if isinstance(manifest, dict) and manifest else None
-    return Duet(made.a, made.b, (roles[0], roles[1]) if len(roles) == 2 else ("a", "b"), known)
+    named = (roles[0], roles[1]) if len(roles) == 2 else ("a", "b")
+    return Duet(made.a, made.b, named, known, npz_things.things_of(arrays, made.num_frames, label))
 
 
 def _from_amass(arrays: dict[str, Array], label: str, fps: float | None) -> Clip:

@@ -59,7 +59,8 @@ export function coarser(body, most) {
   };
 }
 
-function normalsOf(vertices, faces) {
+/** Unit normals of a surface's vertices. */
+export function normalsOf(vertices, faces) {
   const out = new Float32Array(vertices.length);
   const at = (i) => [vertices[3 * i], vertices[3 * i + 1], vertices[3 * i + 2]];
   for (let f = 0; f < faces.length; f += 3) {

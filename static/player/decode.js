@@ -1,5 +1,7 @@
 // The browser's side of webdemo/view/payload.py: JSON in, typed arrays out.
 
+import { decodeThing, Things } from "./things.js";
+
 /** Undoes pack_positions: metres as Float32Array in (people, frames, joints, 3) order. */
 export function unpackPositions(packed) {
   const bytes = Uint8Array.from(atob(packed.data), (c) => c.charCodeAt(0));
@@ -48,6 +50,7 @@ export function poseAt(motion, frame) {
 const unpackSample = (sample) => ({
   ...sample,
   motion: unpackPositions(sample.positions),
+  things: new Things((sample.things ?? []).map(decodeThing)),
   ghostMotion: sample.ghost ? unpackPositions(sample.ghost) : null,
   beside: sample.beside ? unpackSample(sample.beside) : null,
   cells: sample.cells?.map(unpackSample) ?? null,

@@ -78,9 +78,9 @@ export class Shadow {
 
   /**
    * Shades the floor under poses of [x, y, z] a joint; `figures` (or none) press their soles on it.
-   * `tint` [r, g, b] is what full shade multiplies the floor by.
+   * `tint` [r, g, b] is what full shade multiplies the floor by; `shades` are [x, y, width, darkness] of things.
    */
-  cast(poses, skeleton, figures, tint) {
+  cast(poses, skeleton, figures, tint, shades = []) {
     const all = poses.flat();
     const low = [0, 1].map((i) => Math.min(...all.map((p) => p[i])) - 0.9);
     const high = [0, 1].map((i) => Math.max(...all.map((p) => p[i])) + 0.9);
@@ -101,6 +101,7 @@ export class Shadow {
         }
       }
     }
+    for (const spot of shades) this.splat(...spot);
     for (const figure of figures) this.press(figure);
     for (let i = 0; i < this.field.length; i++) {
       const dark = 1 - Math.exp(-this.field[i]);

@@ -76,6 +76,9 @@ export class Pane {
         scene.setTriangles(`body${"AB"[person]}`, { positions: body.positions, colors: body.colors, alpha });
       });
       this.drop(["bodyA", "bodyB"].slice(bodies.length));
+      const { things } = this.sample;
+      if (things.figures.length) scene.setTriangles("things", things.at(clock.shown, theme.lamps, lens, scene.scale));
+      else this.drop(["things"]);
       const colors = given ? theme.given : theme.people;
       const wide = bodies.length || show.skeletons ? 1 : WIDE;
       const thin = show.skeletons || !bodies.length ? pose : [];
@@ -84,7 +87,7 @@ export class Pane {
         put(`joints${"AB"[person]}`, figure.joints(points, skeleton, colors[person], lens, wide));
       });
       this.drop(["bonesA", "jointsA", "bonesB", "jointsB"].slice(2 * thin.length));
-      this.paintShadow(pose, skeleton, bodies, theme);
+      this.paintShadow(pose, skeleton, bodies, things, theme);
       const ghosts = futures?.at(clock.shown) ?? [];
       const company = show.bodies ? futures?.mesh(ghosts, theme, lens, scene.scale) : null;
       if (company) scene.setTriangles("futures", company);
@@ -116,12 +119,12 @@ export class Pane {
     scene.setTriangles("ground", { positions: ground.positions, colors: ground.colors, places: ground.places });
   }
 
-  paintShadow(pose, skeleton, bodies, theme) {
+  paintShadow(pose, skeleton, bodies, things, theme) {
     const { scene, ground } = this;
     if (scene.mode !== "fast") return;
     const { shadow } = ground;
     const before = `${shadow.origin} ${shadow.span}`;
-    shadow.cast(pose, skeleton, bodies, theme.shade);
+    shadow.cast(pose, skeleton, bodies, theme.shade, things.shades);
     scene.setShade("ground", shadow.pixels, shadow.size);
     if (before === `${shadow.origin} ${shadow.span}`) return;
     ground.place(scene.scale);

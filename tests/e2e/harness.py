@@ -5,6 +5,7 @@ from __future__ import annotations
 import os
 import sys
 from collections.abc import Callable
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -15,6 +16,7 @@ import gradio as gr
 import numpy as np
 
 from motion import SMPL22, Duet
+from motion.things import Thing, shape
 from webdemo.ui.components.player import MotionPlayer, busy, player_payload, show
 from webdemo.view.payload import build_payload, sample_payload
 
@@ -83,6 +85,23 @@ def _hang(body: np.ndarray, side: str, names: list[str]) -> None:
         body[:, SMPL22.index(name)] = shoulder + np.array([out * length / 0.26, -length, 0.0])
 
 
+def duet_with_things() -> Duet:
+    """The same two between a chair and a table, and a ball that flies from one to the other and turns."""
+    duet = walking_duet()
+    share = np.linspace(0, 1, duet.num_frames)
+    zero = np.zeros_like(share)
+    places = np.stack([zero + 0.6, 1 + 3 * share * (1 - share), 3 * share], axis=1)
+    c, s = np.cos(6 * share), np.sin(6 * share)
+    turns = np.stack([c, -s, zero, s, c, zero, zero, zero, zero + 1], axis=1).reshape(-1, 3, 3)
+    things = (
+        Thing.at_rest("chair", shape("chair"), np.array([-0.9, 0.0, 0.4]), 0.6, duet.num_frames),
+        Thing.at_rest("table", shape("table"), np.array([-1.2, 0.0, 2.2]), 0.2, duet.num_frames),
+        Thing.at_rest("cup", shape("cup"), np.array([-1.0, 0.785, 2.2]), 0.2, duet.num_frames),
+        Thing("ball", shape("ball"), places, turns),
+    )
+    return replace(duet, things=things)
+
+
 def apart_duet(seconds: float = 4.0) -> Duet:
     """The same two on a long way: they come from ten metres apart and pass the place where they meet."""
     positions = walking_duet(seconds).positions.copy()
@@ -119,6 +138,7 @@ UPDATES: dict[str, Callable[[], dict[str, Any]]] = {
     "busy": lambda: busy("Step 12 of 50 ${1+1}", progress=0.24),
     "clear": lambda: show(None),
     "far": lambda: show(player_payload(apart_duet())),
+    "things": lambda: show(player_payload(duet_with_things())),
     "beside": lambda: show(side_by_side()),
     "arrival": lambda: show(ask_nobody()),
 }

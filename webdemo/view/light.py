@@ -21,6 +21,8 @@ SHADOW_SIZE = 192
 _LEAST_SPAN = 5.0
 _HIGHEST = 1.8
 _SAMPLES = 3
+THING_SHADE = 0.3
+"""Darkness of a thing's shadow for each square metre of its surface, of which a floor sees a quarter or more."""
 _RADII = {"head": 0.09, "spine1": 0.11, "spine2": 0.11, "spine3": 0.11, "hip": 0.09, "knee": 0.07}
 _RADIUS = 0.05
 
@@ -35,13 +37,34 @@ def shaded(body: Body, vertices: Array, worn: Worn, lamps: Lamps, camera: Camera
         lamps: of the theme.
         camera: from which it is seen.
     """
-    normals = vertex_normals(vertices, body.faces)
+    palette = np.array([worn.get(zone, worn["top"]) for zone in body.zones])
+    return lit(vertices, body.faces, palette[body.face_zones], body.sky, lamps, camera)
+
+
+def lit(
+    vertices: Array,
+    faces: NDArray[np.integer],
+    colours: Array,
+    opened: Array,
+    lamps: Lamps,
+    camera: Camera,
+) -> Array:
+    """Colours (F, 3, 3) of the corners of any surface's triangles, under lamps that move with the camera.
+
+    Args:
+        vertices: (V, 3) where they are, metres.
+        faces: (F, 3) vertex indices.
+        colours: (F, 3) sRGB of the triangles, 0 to 1.
+        opened: (V,) ambient light that reaches each vertex, 0 to 1.
+        lamps: of the theme.
+        camera: from which it is seen.
+    """
+    normals = vertex_normals(vertices, faces)
     right, _, forward = camera.axes
     flat = forward * np.array([1.0, 0.0, 1.0])
     key = _unit(-0.75 * flat - 0.75 * right + np.array([0.0, 0.95, 0.0]))
     rim = _unit(0.8 * flat + 0.9 * right + np.array([0.0, 0.55, 0.0]))
     to_eye = _unit(camera.eye - vertices)
-    opened = body.sky
     above = 0.5 + 0.5 * normals[:, 1]
     front = np.maximum((normals @ key + 0.25) / 1.25, 0.0) * (0.35 + 0.65 * opened)
     edge = 1 - np.maximum(np.einsum("vi,vi->v", normals, to_eye), 0.0)
@@ -53,10 +76,9 @@ def shaded(body: Body, vertices: Array, worn: Worn, lamps: Lamps, camera: Camera
         [(1 - above) * grounded * opened**2, above * opened**2, front, behind], axis=1
     )  # of ground, sky, key and rim
     light = shares @ np.array([lamps.ground, lamps.sky, lamps.key, lamps.rim])
-    palette = np.array([worn.get(zone, worn["top"]) for zone in body.zones]) ** _GAMMA
-    glow = (lamps.shine * shine * opened)[body.faces, None]
-    colours = palette[body.face_zones][:, None] * light[body.faces] + glow
-    return np.clip(colours, 0.0, 1.0) ** (1 / _GAMMA)
+    glow = (lamps.shine * shine * opened)[faces, None]
+    bright = (colours**_GAMMA)[:, None] * light[faces] + glow
+    return np.clip(bright, 0.0, 1.0) ** (1 / _GAMMA)
 
 
 class Shadow:
@@ -68,8 +90,13 @@ class Shadow:
         span: metres across the picture.
     """
 
-    def __init__(self, poses: Array, skeleton: Skeleton, surfaces: Sequence[Array]) -> None:
-        """Shades the floor under poses (people, J, 3); the soles of surfaces (V, 3) darken it at contact."""
+    def __init__(
+        self, poses: Array, skeleton: Skeleton, surfaces: Sequence[Array], spots: Array | None = None
+    ) -> None:
+        """Shades the floor under poses (people, J, 3); the soles of surfaces (V, 3) darken it at contact.
+
+        ``spots`` (N, 4) are places of things in the world and the square metres about each.
+        """
         floor = poses[..., [0, 2]].reshape(-1, 2)
         low, high = floor.min(axis=0) - 0.9, floor.max(axis=0) + 0.9
         self.span = max(float(np.ceil((high - low).max())), _LEAST_SPAN)
@@ -87,6 +114,10 @@ class Shadow:
         field = self._splats(
             points.reshape(-1, 3), 0.05 + 0.17 * np.maximum(height, 0).ravel(), amount.ravel()
         )
+        if spots is not None and len(spots):
+            height = np.maximum(spots[:, 1], 0.0)
+            amount = THING_SHADE * spots[:, 3] * np.maximum(1 - height / _HIGHEST, 0.0) ** 2
+            field += self._splats(spots[:, :3], 0.05 + 0.17 * height, amount)
         soles = [surface[surface[:, 1] < 0.07] for surface in surfaces]
         if soles and sum(map(len, soles)):
             near = np.concatenate(soles)

@@ -17,6 +17,7 @@ from numpy.typing import NDArray
 from motion.body import Body
 from motion.clip import Clip, Duet
 from motion.skeleton import Skeleton
+from motion.things.thing import Mesh, Thing
 
 from .camera import Camera
 from .stage import Pane, Style
@@ -56,7 +57,7 @@ class Job:
 
 
 KINDS: dict[str, type] = {
-    kind.__name__: kind for kind in (Job, Pane, Style, Body, Clip, Duet, Skeleton, Camera)
+    kind.__name__: kind for kind in (Job, Pane, Style, Body, Clip, Duet, Mesh, Thing, Skeleton, Camera)
 }
 """The classes that a parcel may hold, by name."""
 

@@ -20,6 +20,7 @@ from motion.errors import InputError
 from motion.metrics import Contact, contact_events
 
 from .curves import Curve, distance_curves
+from .things import thing_payload
 
 Array = NDArray[np.floating]
 Payload = dict[str, Any]
@@ -122,7 +123,13 @@ def sample_payload(
         "contacts": [{"start": c.start, "stop": c.stop, "kind": c.kind, "label": c.label} for c in contacts],
         "ghost": None if ghost is None else pack_positions(_people(ghost)),
         "past_until": past_until,
-    }
+    } | _things(motion)
+
+
+def _things(motion: Duet | Clip) -> dict[str, Any]:
+    """The things beside two people; nothing where there are none."""
+    things = motion.things if isinstance(motion, Duet) else ()
+    return {"things": [thing_payload(thing) for thing in things]} if things else {}
 
 
 def _people(motion: Duet | Clip) -> Array:

@@ -20,10 +20,12 @@ from motion.clip import Clip, Duet, stacked_positions
 from motion.errors import InputError
 from motion.formats.files import replacing
 from motion.skeleton import SMPL22
+from motion.things.thing import Mesh
 
 from .camera import Camera, cameras, project_shadow
-from .light import shaded
+from .light import lit, shaded
 from .stage import Pane, Stage, Style, paste, side_of, words
+from .things import drawn_things
 
 Array = NDArray[np.floating]
 
@@ -242,9 +244,10 @@ def _vector(
     axes.set_axis_off()
     if title:
         axes.text(small / 2, small * 1.3, title, size=small, color=theme.ink)
-    people = stacked_positions(motion).astype(np.float64)
+    people, things = stacked_positions(motion).astype(np.float64), drawn_things(motion)
     for frame, camera, (x, y) in zip(moments, views, _places(len(moments), tile, head), strict=True):
-        _draw_tile(axes, motion, people[:, frame], camera, np.array([x, y]), style)
+        seen = [(thing.mesh, thing.at(frame)) for thing in things]
+        _draw_tile(axes, motion, people[:, frame], seen, camera, np.array([x, y]), style)
         axes.text(
             x + small / 2,
             y + tile[1] + small * 1.3,
@@ -257,7 +260,10 @@ def _vector(
         figure.savefig(path, format=kind, metadata=metadata)
 
 
-def _draw_tile(axes, motion: Clip | Duet, pose: Array, camera: Camera, corner: Array, style: Style) -> None:
+def _draw_tile(
+    axes, motion: Clip | Duet, pose: Array, seen_things: list[tuple[Mesh, Array]], camera: Camera,
+    corner: Array, style: Style,
+) -> None:  # fmt: skip
     from matplotlib.collections import LineCollection, PolyCollection
     from matplotlib.patches import PathPatch, Rectangle
 
@@ -277,15 +283,22 @@ def _draw_tile(axes, motion: Clip | Duet, pose: Array, camera: Camera, corner: A
     dressed = style.look != "skeletons" and motion.skeleton.joint_names == SMPL22.joint_names
     triangles, depths, colours = [], [], []
     bodies = style.worn(len(pose), small=True) if dressed else ()
+    solid = []
     for person, (body, points) in enumerate(zip(bodies, pose, strict=False)):
         surface = skin(body, points[None])[0].astype(np.float64)
+        shades = shaded(body, surface, theme.bodies[person], theme.lamps, camera)
+        solid.append((body.faces, surface, shades))
+    for mesh, surface in seen_things:
+        bright = lit(surface, mesh.faces, mesh.colours / 255, np.ones(len(surface)), theme.lamps, camera)
+        solid.append((mesh.faces, surface, bright))
+    for faces, surface, shades in solid:
         pixels, depth = camera.project(surface)
-        corners = pixels[body.faces]
+        corners = pixels[faces]
         seen = _facing(corners)
         triangles.append(corners[seen])
-        depths.append(depth[body.faces][seen].mean(axis=1))
-        colours.append(shaded(body, surface, theme.bodies[person], theme.lamps, camera)[seen].mean(axis=1))
-        shade = camera.project(project_shadow(surface))[0][body.faces]
+        depths.append(depth[faces][seen].mean(axis=1))
+        colours.append(shades[seen].mean(axis=1))
+        shade = camera.project(project_shadow(surface))[0][faces]
         dark = np.array(theme.floor) * (1 + np.array(theme.shade)) / 2
         shadow = PathPatch(
             _outlines(shade[_facing(shade)] + corner), facecolor=dark, edgecolor="none", zorder=2
@@ -294,9 +307,9 @@ def _draw_tile(axes, motion: Clip | Duet, pose: Array, camera: Camera, corner: A
         shadow.set_clip_path(frame)
     if triangles:
         order = np.argsort(-np.concatenate(depths))
-        faces = np.concatenate(colours)[order]
+        fill = np.concatenate(colours)[order]
         shapes = np.concatenate(triangles)[order]
-        add(PolyCollection, shapes, facecolors=faces, edgecolors=faces, linewidths=0.5)
+        add(PolyCollection, shapes, facecolors=fill, edgecolors=fill, linewidths=0.5)
     if style.look != "bodies" or not dressed:
         bones = np.array(motion.skeleton.bones)
         sides = [side_of(motion.skeleton.joint_names[joint]) for _, joint in bones]

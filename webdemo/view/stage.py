@@ -17,10 +17,12 @@ from motion.body import BODIES, Body, load_body, skin
 from motion.clip import Clip, Duet, stacked_positions
 from motion.errors import InputError
 from motion.skeleton import SMPL22
+from motion.things.thing import Thing
 
 from .camera import Camera, sampled
-from .light import Shadow, shaded
+from .light import Shadow, lit, shaded
 from .theme import THEMES, Colour, Theme, mix
+from .things import drawn_things, shadow_spots
 
 Array = NDArray[np.floating]
 Picture = NDArray[np.uint8]
@@ -107,6 +109,7 @@ class Stage:
     size: tuple[int, int]
     people: Array = field(init=False, repr=False)
     bodies: tuple[Body, ...] = field(init=False, repr=False)
+    things: tuple[Thing, ...] = field(init=False, repr=False)
 
     def __post_init__(self) -> None:
         motion = self.pane.motion
@@ -115,6 +118,7 @@ class Stage:
         # Most of a small picture's triangles would be smaller than its pixels.
         small = self.size[1] < 400
         self.bodies = self.style.worn(len(self.people), small=small) if dressed else ()
+        self.things = drawn_things(motion)
 
     def pictures(self, times: Array, cameras: Sequence[Camera]) -> Iterator[Picture]:
         """The pictures (height, width, 4) at moments in seconds, without captions, each from its camera."""
@@ -133,7 +137,8 @@ class Stage:
         given = seconds * motion.fps < self.pane.past_until
         renderer = RendererAgg(*self.size, 72)
         canvas = np.asarray(renderer.buffer_rgba())
-        shadow = Shadow(pose, motion.skeleton, surfaces)
+        frame = seconds * motion.fps
+        shadow = Shadow(pose, motion.skeleton, surfaces, shadow_spots(self.things, frame))
         canvas.view(np.uint32)[..., 0] = _ground(camera, theme, shadow)
         pen = _Pen(renderer, camera)
         pen.grid(theme)
@@ -143,11 +148,16 @@ class Stage:
         if self.style.trails:
             self._trails(pen, seconds, theme)
         worn = theme.given_bodies if given else theme.bodies
-        pen.bodies(
-            [(body, surface, shaded(body, surface, worn[person], theme.lamps, camera))
-             for person, (body, surface) in enumerate(zip(self.bodies, surfaces, strict=True))],
-            _TRANSLUCENT if self.style.look == "both" else 1.0,
-        )  # fmt: skip
+        alpha = _TRANSLUCENT if self.style.look == "both" else 1.0
+        solid = [
+            (body.faces, surface, shaded(body, surface, worn[person], theme.lamps, camera), alpha)
+            for person, (body, surface) in enumerate(zip(self.bodies, surfaces, strict=True))
+        ]
+        for thing in self.things:
+            mesh, surface = thing.mesh, thing.at(frame)
+            shades = lit(surface, mesh.faces, mesh.colours / 255, np.ones(len(surface)), theme.lamps, camera)
+            solid.append((mesh.faces, surface, shades, 1.0))
+        pen.surfaces(solid)
         if self.style.look != "bodies" or not self.bodies:
             limbs = theme.given if given else theme.people
             order = np.argsort(-pen.camera.project(pose[:, 0])[1])
@@ -254,26 +264,26 @@ class _Pen:
         self.lines(np.repeat(points[:, None], 2, axis=1) + np.array([[0, 0, 0], [1e-4, 0, 0]]),
                    [limbs[side] for side in sides], dots)  # fmt: skip
 
-    def bodies(self, people: Sequence[tuple[Body, Array, Array]], alpha: float) -> None:
-        """Smooth triangles of all people, the farthest first."""
+    def surfaces(self, solid: Sequence[tuple[NDArray[np.integer], Array, Array, float]]) -> None:
+        """Smooth triangles of surfaces as (faces, vertices, colours, alpha), the farthest first."""
         triangles, depths, colours = [], [], []
-        for body, surface, shades in people:
+        for faces, surface, shades, alpha in solid:
             pixels, depth = self.camera.project(surface)
-            corners = pixels[body.faces]
+            corners = pixels[faces]
             one, other = corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]
-            far = depth[body.faces]
+            far = depth[faces]
             seen = (one[:, 0] * other[:, 1] - one[:, 1] * other[:, 0] < 0) & (far.min(axis=1) > 0.1)
             triangles.append(corners[seen])
             depths.append(far[seen].mean(axis=1))
-            colours.append(shades[seen])
+            filled = np.full((int(seen.sum()), 3, 4), alpha)
+            filled[..., :3] = shades[seen]
+            colours.append(filled)
         if not triangles:
             return
         order = np.argsort(-np.concatenate(depths))
-        shades = np.concatenate(colours)[order]
-        filled = np.concatenate([shades, np.full((*shades.shape[:2], 1), alpha)], axis=-1)
         plain = self.renderer.new_gc()
         self.renderer.draw_gouraud_triangles(
-            plain, self._up(np.concatenate(triangles)[order]), filled, self.nowhere
+            plain, self._up(np.concatenate(triangles)[order]), np.concatenate(colours)[order], self.nowhere
         )
 
     def _up(self, pixels: Array) -> Array:

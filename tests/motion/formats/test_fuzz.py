@@ -14,6 +14,8 @@ from hypothesis import strategies as st
 from motion import Clip, InputError
 from motion.formats import FORMATS
 from motion.formats.importing import AXES, ORDERS, UNITS, ImportChoices, import_motion
+from motion.formats.npz_things import arrays_of
+from motion.things import Thing, shape
 from tests.motion.bodies import marching
 
 from .characters import glb_motion, glb_takes
@@ -39,9 +41,13 @@ def array_file(array: np.ndarray) -> bytes:
     return buffer.getvalue()
 
 
+CUP = Thing.at_rest("cup", shape("cup"), np.zeros(3), 0.0, len(POSITIONS))
 BVH = bvh_text(ROTATIONS, POSITIONS[:, 0], RIGS["mixamo"], unit=100)
 VALID = {
     "ours.npz": saved(positions=np.stack([POSITIONS, POSITIONS + 1]), fps=np.float64(30)),
+    "things.npz": saved(
+        positions=np.stack([POSITIONS, POSITIONS + 1]), fps=np.float64(30), **arrays_of([CUP])
+    ),
     "crowd.npz": saved(positions=np.stack([POSITIONS, POSITIONS + 1, POSITIONS - 1])),
     "amass.npz": saved(
         poses=np.zeros((40, 156)),

@@ -1,0 +1,42 @@
+// Things: what Python packs comes back, and moves as it says.
+
+import assert from "node:assert/strict";
+import test from "node:test";
+
+import { decodeThing, poseOf, ThingFigure } from "../../../static/player/things.js";
+
+const text = (values) => Buffer.from(values.buffer).toString("base64");
+const near = (found, wanted, message) => found.forEach((value, i) => assert.ok(Math.abs(value - wanted[i]) < 2e-3, `${message}: ${[...found]}`));
+
+/** One triangle that moves by a metre along Y and turns by a quarter about Y. */
+const stored = {
+  kind: "own", name: "kite", frames: 2,
+  vertices: text(new Float32Array([0, 0, 0, 1, 0, 0, 0, 0, -1])),
+  faces: text(new Uint16Array([0, 1, 2])),
+  face_colours: text(new Uint8Array([1])),
+  palette: ["#000000", "#ff8000"],
+  spots: [[1, 0, 0, 0.5]],
+  places: text(new Float32Array([0, 0, 0, 0, 1, 0])),
+  turns: text(new Int16Array([0, 0, 0, 32767, 0, 23170, 0, 23170])),
+};
+
+test("a thing is decoded with its colours and normals", () => {
+  const thing = decodeThing(stored);
+  near(thing.colors[thing.zones[thing.faceZones[0]]], [1, 128 / 255, 0], "colour");
+  near(thing.normals.slice(0, 3), [0, 1, 0], "normal");
+});
+
+test("its pose lies between its frames and ends with the last", () => {
+  const thing = decodeThing(stored);
+  near(poseOf(thing, 0.5).place, [0, 0.5, 0], "place");
+  near(poseOf(thing, 9).place, [0, 1, 0], "after the end");
+  const { rotation } = poseOf(thing, 0.5);
+  near(rotation, [Math.SQRT1_2, 0, Math.SQRT1_2, 0, 1, 0, -Math.SQRT1_2, 0, Math.SQRT1_2], "an eighth of a turn");
+});
+
+test("its surface is moved into the scene's axes, z, x, y, with what shades the floor", () => {
+  const figure = new ThingFigure(decodeThing(stored));
+  figure.move(1);
+  near(figure.vertices, [0, 0, 1, -1, 0, 1, 0, -1, 1], "vertices");
+  near(figure.spots[0], [-1, 0, 1, 0.5], "spot");
+});

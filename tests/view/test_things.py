@@ -1,0 +1,105 @@
+"""Things in films, sheets and the player's payload."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from PIL import Image
+
+from motion import SMPL22, Duet
+from motion.things import KINDS, Thing, shape
+from webdemo.view.camera import cameras
+from webdemo.view.parcel import KINDS as SENT
+from webdemo.view.payload import player_payload
+from webdemo.view.sheet import write_sheet
+from webdemo.view.stage import Pane, Stage, Style
+from webdemo.view.things import divided, thing_payload
+
+REST = SMPL22.rest_positions() + np.array([0.0, 0.95, 0.0])
+PEOPLE = Duet.from_positions(
+    np.repeat(np.stack([REST, REST + np.array([0, 0, 3.0])])[:, None], 4, axis=1), fps=30
+)
+BALL = Thing.at_rest("ball", shape("ball", width=0.6), np.array([1.6, 0.5, 1.5]), 0.0, 4)
+WITH_BALL = replace(PEOPLE, things=(BALL,))
+
+
+def red(picture: np.ndarray) -> int:
+    """Pixels as red as the ball is, which no body wears."""
+    levels = picture[..., :3].astype(int)
+    red, green, blue = levels[..., 0], levels[..., 1], levels[..., 2]
+    return int(((red > 120) & (red > 2 * green) & (abs(green - blue) < 20)).sum())
+
+
+def drawn(duet: Duet, **style: object) -> np.ndarray:
+    views = cameras([PEOPLE], size=(320, 240), times=np.zeros(1))
+    return next(iter(Stage(Pane(duet), Style(**style), (320, 240)).pictures(np.zeros(1), views)))
+
+
+@pytest.mark.parametrize("look", ["bodies", "skeletons", "both"])
+def test_a_film_shows_things_with_every_look(look):
+    assert red(drawn(WITH_BALL, look=look)) > 100 > red(drawn(PEOPLE, look=look))
+
+
+def test_things_throw_a_shadow_on_the_floor():
+    low = replace(
+        PEOPLE, things=(replace(BALL, mesh=shape("table", width=1.2), places=BALL.places * [1, 0, 1]),)
+    )
+    assert drawn(low)[..., :3].astype(int).sum() < drawn(PEOPLE)[..., :3].astype(int).sum()
+
+
+@pytest.mark.parametrize("suffix", [".png", ".svg"])
+def test_sheets_show_things(suffix, tmp_path):
+    paths = [
+        write_sheet(d, tmp_path / f"{i}{suffix}", frames=1, width=400)
+        for i, d in enumerate((PEOPLE, WITH_BALL))
+    ]
+    if suffix == ".png":
+        assert red(np.asarray(Image.open(paths[0]))) < 50 < red(np.asarray(Image.open(paths[1])))
+    else:
+        assert paths[1].read_text().count("<path") > paths[0].read_text().count("<path") + 100
+
+
+def test_a_process_that_draws_is_sent_things():
+    assert SENT["Thing"] is Thing
+
+
+@pytest.mark.parametrize("kind", KINDS)
+def test_dividing_changes_neither_area_nor_colours(kind):
+    def areas(mesh):
+        a, b, c = (mesh.vertices[mesh.faces[:, i]] for i in range(3))
+        area = np.linalg.norm(np.cross(b - a, c - a), axis=1)
+        return {
+            tuple(c): area[(mesh.colours == c).all(axis=1)].sum() for c in np.unique(mesh.colours, axis=0)
+        }
+
+    whole, fine = shape(kind), divided(shape(kind))
+    assert areas(fine) == pytest.approx(areas(whole), rel=1e-4)
+    edges = fine.vertices[fine.faces] - np.roll(fine.vertices[fine.faces], 1, axis=1)
+    assert np.linalg.norm(edges, axis=2).max() < 0.141 and len(fine.faces) < 6001
+
+
+def test_the_payload_holds_things_only_where_there_are_some():
+    assert "things" not in player_payload(PEOPLE)["samples"][0]
+    (thing,) = player_payload(WITH_BALL)["samples"][0]["things"]
+    assert thing["frames"] == 1, "one that stands still is sent once"
+    assert thing["kind"] == "ball" and len(thing["palette"]) == 2
+
+
+def test_quaternions_do_not_jump_between_frames():
+    angle = np.linspace(0, 4 * np.pi, 40)
+    c, s, zero = np.cos(angle), np.sin(angle), np.zeros(40)
+    turns = np.stack([c, -s, zero, s, c, zero, zero, zero, zero + 1], axis=1).reshape(-1, 3, 3)
+    import base64
+
+    packed = thing_payload(Thing("ball", shape("ball"), np.zeros((40, 3)), turns))
+    sent = np.frombuffer(base64.b64decode(packed["turns"]), "<i2").reshape(-1, 4) / 32767
+    assert np.abs(np.diff(sent, axis=0)).max() < 0.4
+
+
+def test_a_thing_of_many_colours_is_sent_with_few():
+    mesh = shape("ball")
+    many = replace(mesh, colours=np.random.default_rng(0).integers(0, 256, mesh.faces.shape).astype(np.uint8))
+    packed = thing_payload(Thing.at_rest("own", many, np.zeros(3), 0.0, 4))
+    assert len(packed["palette"]) <= 255

@@ -1,0 +1,89 @@
+"""Things as pictures need them: finer where painters sort by depth, and as compact JSON for the player."""
+
+from __future__ import annotations
+
+import base64
+from collections.abc import Sequence
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.spatial.transform import Rotation
+
+from motion.clip import Clip, Duet
+from motion.things.thing import Mesh, Thing
+
+Array = NDArray[np.floating]
+
+_FINE = 0.14
+"""Metres of an edge, at most, where triangles are drawn from the farthest to the nearest."""
+_MOST_FINE = 6000
+"""Triangles to which a surface is divided, at most."""
+
+
+def drawn_things(motion: Clip | Duet) -> tuple[Thing, ...]:
+    """The things beside a motion, their large triangles divided so that they can be sorted by depth."""
+    things = motion.things if isinstance(motion, Duet) else ()
+    return tuple(replace(thing, mesh=divided(thing.mesh)) for thing in things)
+
+
+def divided(mesh: Mesh) -> Mesh:
+    """A surface whose edges are at most 14 cm long, as far as that takes no more than 6,000 triangles."""
+    vertices, faces, colours = mesh.vertices.astype(np.float64), mesh.faces, mesh.colours
+    while True:
+        ends = vertices[faces]
+        lengths = np.linalg.norm(np.roll(ends, -1, axis=1) - ends, axis=2)  # of ab, bc, ca
+        long = lengths.max(axis=1) > _FINE
+        if not long.any() or len(faces) + long.sum() > _MOST_FINE:
+            return Mesh(vertices, faces, colours)
+        # Each is cut in two across its longest edge.
+        first = lengths[long].argmax(axis=1)
+        a, b, c = (faces[long, (first + turn) % 3] for turn in range(3))
+        middle = len(vertices) + np.arange(long.sum())
+        vertices = np.concatenate([vertices, (vertices[a] + vertices[b]) / 2])
+        halves = (np.stack([a, middle, c], axis=1), np.stack([middle, b, c], axis=1))
+        faces = np.concatenate([faces[~long], *halves])
+        colours = np.concatenate([colours[~long], np.tile(colours[long], (2, 1))])
+
+
+def shadow_spots(things: Sequence[Thing], frame: float) -> Array:
+    """(N, 4) places in the world, and the square metres about each, that shade the floor at a frame."""
+    found = []
+    for thing in things:
+        spots = thing.mesh.spots()
+        found.append(np.c_[_moved(thing, spots[:, :3], frame), spots[:, 3]])
+    return np.concatenate(found) if found else np.zeros((0, 4))
+
+
+def _moved(thing: Thing, points: Array, frame: float) -> Array:
+    index = int(np.clip(round(frame), 0, thing.num_frames - 1))
+    return points @ thing.rotations[index].T + thing.places[index]
+
+
+def thing_payload(thing: Thing) -> dict[str, Any]:
+    """A thing as ``static/player/things.js`` reads it; one that stands still has a track of one frame."""
+    mesh = thing.mesh
+    palette, which = np.unique(mesh.colours, axis=0, return_inverse=True)
+    if len(palette) > 255:  # such as an uploaded thing with a picture: near colours become one
+        palette, which = np.unique(mesh.colours // 64 * 64 + 32, axis=0, return_inverse=True)
+    frames = thing.num_frames if thing.moves else 1
+    turns = Rotation.from_matrix(thing.rotations[:frames].astype(np.float64)).as_quat()
+    flips = np.sign(np.einsum("ti,ti->t", turns[1:], turns[:-1]) + 1e-9)
+    turns[1:] *= np.cumprod(flips)[:, None]  # of two signs the one nearer to the frame before
+    return {
+        "kind": thing.kind,
+        "name": thing.name,
+        "frames": frames,
+        "vertices": _text(mesh.vertices, "<f4"),
+        "faces": _text(mesh.faces, "<u2"),
+        "face_colours": _text(which.reshape(-1), "u1"),
+        "palette": ["#" + "".join(f"{level:02x}" for level in colour) for colour in palette.tolist()],
+        "spots": mesh.spots().round(4).tolist(),
+        "places": _text(thing.places[:frames], "<f4"),
+        "turns": _text(np.rint(32767 * turns), "<i2"),
+    }
+
+
+def _text(values: NDArray, kind: str) -> str:
+    return base64.b64encode(np.ascontiguousarray(values).astype(kind).tobytes()).decode("ascii")
