@@ -1,4 +1,4 @@
-"""What the shapes of things are put together from: boxes, rods, tubes and balls with a colour each."""
+"""Parts that the shapes of things are put together from: boxes, rods, tubes and balls with a colour each."""
 
 from __future__ import annotations
 
@@ -47,7 +47,7 @@ def ball(
 
 
 def turned(profile: Sequence[Sequence[float]], colour: str, *, sides: int = 16) -> Part:
-    """What a lathe makes of a line of (radius, height) pairs, about the Y axis."""
+    """The solid that a lathe makes of a line of (radius, height) pairs, about the Y axis."""
     made = trimesh.creation.revolve(np.asarray(profile, dtype=float), sections=sides)
     made.apply_transform(trimesh.transformations.rotation_matrix(-np.pi / 2, [1, 0, 0]))
     if made.volume < 0:
