@@ -26,8 +26,8 @@ from .lab import stub_module
 JOIN, UPLOAD, CALL = "/gradio_api/queue/join", "/gradio_api/upload", "/gradio_api/call"
 HERE = "http://127.0.0.1"
 HTML = {"accept": "text/html"}
-FIELDS = ["Two people walk.", 1, 0, 1, 3, 1, 0, "ddim", "intergen"]
-"""What /generate is given: a second, one step."""
+FIELDS = ["Two people walk.", 1, 0, 1, 3, 1, 0, "ddim", "intergen", 1]
+"""What /generate is given: a second, one step, one try."""
 
 
 def settings_for(folder: Path, **fields: Any) -> Settings:

@@ -20,11 +20,10 @@ from webdemo.server import memory
 from webdemo.server.http import page_sessions as sessions
 from webdemo.server.http.page_sessions import LeanStates
 
-from .clients import client_of, settings_for
+from .clients import FIELDS, client_of, settings_for
 from .lab import ROOT
 
 CALL = "/gradio_api/call/generate"
-FIELDS = ["Two people walk.", 1, 0, 1, 3, 1, 0, "ddim", "intergen"]
 
 
 @pytest.fixture

@@ -75,7 +75,7 @@ class Process:
 
     def ask(self, steps: int) -> str:
         """Begins a run; returns where its result will come."""
-        data = ["Two people walk.", 1, 3, 1, 3, steps, 0, "ddim", "intergen"]
+        data = ["Two people walk.", 1, 3, 1, 3, steps, 0, "ddim", "intergen", 1]
         asked = httpx.post(f"{self.url}{CALL}", json={"data": data}, timeout=60)
         return f"{self.url}{CALL}/{asked.json()['event_id']}"
 

@@ -8,8 +8,8 @@ from pathlib import Path
 
 import pytest
 
-from tests.server.attacks.target import FIELDS, Target
-from tests.server.clients import client_of, lab_of, settings_for
+from tests.server.attacks.target import Target
+from tests.server.clients import FIELDS, client_of, lab_of, settings_for
 from tests.server.lab import ROOT, stub_module
 from tests.server.queue.test_queue import make, request, wait_for
 from webdemo.server.http.health import Health

@@ -95,8 +95,7 @@ def test_a_full_disk_at_sign_in_is_a_sentence(shared: TestClient) -> None:
 def test_a_page_session_is_its_persons(shared: TestClient) -> None:
     ada, eve = sign_in(shared, "ada"), sign_in(shared, "eve")
     fn = find_fn(shared, ada, "generate")
-    fields = ["Two people walk.", 1, 0, 1, 3, 1, 0, "ddim", "intergen"]
-    body = {"data": fields, "fn_index": fn, "session_hash": "adas"}
+    body = {"data": FIELDS, "fn_index": fn, "session_hash": "adas"}
     assert shared.post(JOIN, json=body, headers=ada).status_code == 200
     assert shared.post(JOIN, json=body, headers=eve).status_code == 403
     assert shared.get("/gradio_api/queue/data?session_hash=adas", headers=eve).status_code == 403
@@ -115,7 +114,7 @@ def test_a_notebook_signs_in(shared: TestClient) -> None:
     answer = shared.post("/login", data={"username": "eve", "password": "password of eve"})
     shared.cookies.clear()
     cookies = {"cookie": f"pasdedeux_session={answer.cookies['pasdedeux_session']}"}
-    body = {"data": ["impossible", 1, 0, 1, 3, 1, 0, "ddim", "intergen"]}
+    body = {"data": ["impossible", *FIELDS[1:]]}
     event = shared.post("/gradio_api/call/generate", json=body, headers=cookies).json()["event_id"]
     text = shared.get(f"/gradio_api/call/generate/{event}", headers=cookies).text
     assert "event: error" in text and "The stub cannot do this: ask for something possible." in text

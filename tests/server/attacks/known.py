@@ -9,7 +9,7 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 from typing import Any
 
-from .target import FIELDS
+from ..clients import FIELDS
 
 API = "/gradio_api"
 FORM = "multipart/form-data; boundary=x"

@@ -22,8 +22,6 @@ from webdemo.server.accounts.users import Users
 
 from ..lab import ROOT
 
-FIELDS = ["Two people walk.", 1, 0, 1, 3, 1, 0, "ddim", "intergen"]
-"""What /generate is given: a second, one step."""
 CANARY = "the canary that nobody may read"
 
 

@@ -6,7 +6,8 @@ from typing import Any
 
 import pytest
 
-from .target import CANARY, FIELDS, Target
+from ..clients import FIELDS
+from .target import CANARY, Target
 
 REACT = ["", "", 0, 0, "a", 0, 1, 3, 1, 0, "ddim", "intergen", "offline", False, False, ""]
 PREDICT = [0, 1, "still", ""]

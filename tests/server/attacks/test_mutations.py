@@ -23,9 +23,10 @@ from tests.motion.formats.characters import glb_motion
 from tests.motion.formats.rigs import RIGS, bvh_text
 from webdemo.inference.story.toml import read_story
 
+from ..clients import FIELDS
 from .containers import changed_archive, changed_glb, changed_story
 from .known import API
-from .target import FIELDS, Target
+from .target import Target
 
 COUNT = int(os.environ.get("PASDEDEUX_MUTATIONS", "150"))
 SLOWEST = 20.0

@@ -14,8 +14,8 @@ import pytest
 from webdemo.server.accounts import users
 from webdemo.server.accounts.users import Users
 
-from ..clients import read_all
-from .target import FIELDS, Target
+from ..clients import FIELDS, read_all
+from .target import Target
 
 
 @pytest.fixture

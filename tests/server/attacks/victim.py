@@ -13,9 +13,10 @@ from webdemo.server.store.studies import Studies
 from webdemo.study import Stimulus
 from webdemo.ui.studies import NewStudy
 
+from ..clients import FIELDS
 from ..lab import stub_module
 from .known import API
-from .target import FIELDS, Target
+from .target import Target
 
 SECRET, UPLOADED = "SECRET", "HIERARCHY of ada's"
 """What nobody else may read: her prompt, her study's names, her file."""

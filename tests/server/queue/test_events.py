@@ -11,6 +11,7 @@ import pytest
 from fastapi import HTTPException
 
 from tests.server.attacks.target import Target
+from tests.server.clients import FIELDS
 from tests.server.lab import ROOT, stub_module
 from webdemo.server.http.metrics import Figures
 from webdemo.server.queue.events import AT_ONCE, EventLimits, FairEvents
@@ -173,8 +174,7 @@ def test_one_person_cannot_stop_the_events_of_others(target: Target) -> None:
     assert "event: complete" in target.call("ada", "render", sheet(target, "ada"))
     after = target.ask("ada", "GET", "/gradio_api/queue/status").json()["queue_size"]
     assert before - after <= 4, "one contact sheet of hers waits for no more than a few of the other's"
-    fields = ["Two people walk.", 1, 0, 1, 3, 1, 0, "ddim", "intergen"]
-    assert "event: complete" in target.call("ada", "generate", fields)
+    assert "event: complete" in target.call("ada", "generate", FIELDS)
 
 
 def test_no_event_is_called_past_the_queue(target: Target) -> None:

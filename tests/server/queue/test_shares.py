@@ -98,7 +98,7 @@ def test_what_was_before_this_process_counts_for_nobody(
 
 def test_two_servers_tell_each_other(pair: tuple[TestClient, TestClient]) -> None:
     """What a person had, and how many runs they have."""
-    body = {"data": ["Two people walk.", 1, 0, 1, 3, 40, 0, "ddim", "intergen"]}
+    body = {"data": [*FIELDS[:5], 40, *FIELDS[6:]]}
     queues = [lab_of(client).queue for client in pair]
     ada, eve = sign_in(pair[0], "ada"), sign_in(pair[0], "eve")
     wait_for(lambda: all(queue._turns._elsewhere is not None for queue in queues))
