@@ -20,6 +20,7 @@ from webdemo.server.http.networks import network_of
 from webdemo.server.store.scratch import Scratch
 
 from .app import Lab, create_app
+from .audit import set_up_audit
 from .logs import set_up_logs
 from .memory import share_heaps
 from .settings import Settings
@@ -116,6 +117,13 @@ def make_server(settings: Settings, *, scratch: bool = False, **parts: Any) -> S
     With ``scratch`` all files of this process, Gradio's as well, lie in the data folder.
     """
     node = InstanceLock(settings.data, settings.node)
+    set_up_audit(
+        settings.audit,
+        settings.data,
+        node.name,
+        megabytes=settings.audit_megabytes,
+        files=settings.audit_files,
+    )
     if scratch:
         parts["scratch"] = Scratch(
             settings.data / "scratch" / quote(node.name, safe=""), settings.scratch_megabytes * 2**20

@@ -172,6 +172,12 @@ class Settings(BaseSettings):
     address_connections: int = Field(400, ge=1, description="open connections per address")
 
     # ---- logs
+    audit: Literal["file", "log", "off"] = Field(
+        "file", description="where sign-ins, links, imports, deletions and acts of administrators are written down: "
+        "in files in the data folder, in the log, or nowhere",
+    )  # fmt: skip
+    audit_megabytes: float = Field(10, gt=0, description="size at which a file of the audit log is put aside")
+    audit_files: int = Field(10, ge=1, le=1000, description="earlier files of the audit log that are kept")
     log_level: str = Field("info", pattern="^(debug|info|warning|error)$", description="least severe line")
     log_content: bool = Field(False, description="let logs contain prompts and what errors say about them")
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import asyncio
+from contextlib import suppress
 from functools import partial
 from urllib.parse import urlsplit
 
@@ -11,6 +12,7 @@ from starlette.concurrency import run_in_threadpool
 from starlette.responses import HTMLResponse, JSONResponse, RedirectResponse, Response
 
 from motion import InputError
+from webdemo.server.audit import audit
 from webdemo.server.http.body_limits import Refused
 from webdemo.server.http.cookies import set_cookie
 from webdemo.server.http.error_pages import sign_in_card
@@ -62,13 +64,13 @@ def login_routes(settings: Settings, sign_ins: SignIns, visitors: Visitors) -> A
             error, status = str(reason), 429
         except InputError:
             raise Refused(503, NO_ACCOUNTS, "accounts") from None
+        await run_in_threadpool(_note, sign_ins, name, token, status)
         if token is None:
             if in_browser:
                 return page(_own_path(next), name=username, error=error, status=status)
             return JSONResponse({"detail": error}, status_code=status)
-        response: Response = JSONResponse({"success": True})
-        if in_browser:
-            response = RedirectResponse(f"{root}{_own_path(next)}", status_code=303)
+        opened = RedirectResponse(f"{root}{_own_path(next)}", status_code=303)
+        response: Response = opened if in_browser else JSONResponse({"success": True})
         keep(response, request, SESSION_COOKIE, token, sign_ins.seconds)
         keep(response, request, KNOWN_COOKIE, sign_ins.known_browser(name), KNOWN_SECONDS)
         return response
@@ -82,11 +84,21 @@ def login_routes(settings: Settings, sign_ins: SignIns, visitors: Visitors) -> A
         if token := request.cookies.get(SESSION_COOKIE, ""):
             await run_in_threadpool(sign_ins.end, token)
             visitors.forget(token)
+            audit("sign-out")
         response = RedirectResponse(f"{root}/login", status_code=303)
         keep(response, request, SESSION_COOKIE, "", 0)
         return response
 
     return router
+
+
+def _note(sign_ins: SignIns, name: str, token: str | None, status: int) -> None:
+    """Writes a try into the audit log. A name that is none may be a password in the wrong field: it is left out."""
+    known = token is not None
+    with suppress(InputError):  # the accounts cannot be read any more
+        known = known or sign_ins.users.entry(name) is not None
+    why = None if token else "too many tries" if status == 429 else "wrong name or password"
+    audit("sign-in", ok=token is not None, person=name if known else "(unknown)", how="password", reason=why)
 
 
 def _keep(root: str, response: Response, request: Request, cookie: str, value: str, seconds: float) -> None:

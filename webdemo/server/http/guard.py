@@ -21,6 +21,7 @@ from starlette.types import ASGIApp, Receive, Scope, Send
 
 from motion import InputError
 from webdemo.server.accounts.visitors import VISITOR_COOKIE, Bindings, Visitors, new_token
+from webdemo.server.audit import SENDER
 from webdemo.server.logs import REFERENCE
 from webdemo.server.settings import Settings, is_loopback, on_a_space
 from webdemo.server.store.database import is_full
@@ -107,6 +108,8 @@ class Guard:
             return
         exchange = Exchange(scope, send, root=self.settings.root_path)
         REFERENCE.set(exchange.reference)
+        address = (scope.get("client") or ("", 0))[0]
+        SENDER.set(("", address))
         route = "(none)"
         try:
             path = path_below(self.settings.root_path, scope["path"], scope.get("query_string", b""))
@@ -140,6 +143,7 @@ class Guard:
             **scope.get("state", {}), "visitor": visitor, "reference": exchange.reference,
         }  # fmt: skip
         PERSON.set(visitor.person)
+        SENDER.set((visitor.account or visitor.person, SENDER.get()[1]))
         self.answers.count += route in _ANSWERS
         try:
             await self.app(scope, exchange.body or receive, exchange.answer)

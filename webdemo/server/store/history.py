@@ -23,6 +23,7 @@ from motion import InputError, formats
 from webdemo.inference.predict_request import PredictResult
 from webdemo.inference.requests import Result
 from webdemo.server.accounts.visitors import digest
+from webdemo.server.audit import audit, fingerprint
 from webdemo.ui.history import Entry, Opened
 
 from .database import Database, Link, Note, Run, sentence_of, sentences
@@ -257,6 +258,7 @@ class History:
             if run is None or not owner or run.owner != owner:
                 link = session.get(Link, key)
                 run = link.run if link is not None and link.until > time.time() else None
+                audit("link-opened", ok=run is not None and not _removed(run), link=fingerprint(key))
             if run is None or _removed(run):
                 raise InputError(_MISSING)
             entry = entry_of(run)
@@ -294,6 +296,7 @@ class History:
             if found.state != "done":
                 raise InputError(f"This run has no result to show: it is {found.state}.")
             session.add(Link(token=token, run_id=found.id, until=until))
+        audit("link-made", run=run, link=fingerprint(token))
         return token, until
 
     @sentences()
@@ -301,8 +304,9 @@ class History:
         """Ends all links to a run; returns how many there were."""
         with self.database.session.begin() as session:
             found = self._own(session, run, owner)
-            ended = session.execute(delete(Link).where(Link.run_id == found.id))
-            return cast(CursorResult[Any], ended).rowcount
+            ended = cast(CursorResult[Any], session.execute(delete(Link).where(Link.run_id == found.id)))
+        audit("links-ended", run=run, count=ended.rowcount)
+        return ended.rowcount
 
     # ---- expiry ----------------------------------------------------------------------------------
 

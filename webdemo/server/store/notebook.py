@@ -18,6 +18,7 @@ from sqlalchemy.orm import Session, selectinload
 from motion import Clip, InputError, formats
 from webdemo.inference.requests import Result
 from webdemo.server.accounts.visitors import digest
+from webdemo.server.audit import audit
 from webdemo.ui.history import Entry, Found, Kept, Opened, Search, Usage
 from webdemo.ui.visitor import Visitor
 from webdemo.view.thumbnail import thumbnail
@@ -198,6 +199,7 @@ class Notebook(History):
                     raise InputError("A run that goes on cannot be removed: cancel it first.")
                 _note(session, found.id).removed = now
                 session.execute(update(Note).where(Note.part_of == found.id).values(removed=now))
+        audit("runs-removed", runs=" ".join(runs), count=len(runs))
         return len(runs)
 
     @sentences()
@@ -221,6 +223,7 @@ class Notebook(History):
             for note in found:
                 note.removed = None
                 session.execute(update(Note).where(Note.part_of == note.run_id).values(removed=None))
+        audit("runs-restored", runs=" ".join(note.run_id for note in found), count=len(found))
         return len(found)
 
     # ---- one file --------------------------------------------------------------------------------
@@ -282,6 +285,7 @@ class Notebook(History):
             with sentences():
                 gone = self._enter_all(owner, address, taken, folder)
         self.storage.drop(gone)
+        audit("import", count=len(taken), made_way=len(gone))
 
     @contextmanager
     def _alone(self, owner: str) -> Iterator[None]:

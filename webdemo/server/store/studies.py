@@ -16,6 +16,7 @@ from sqlalchemy.orm import Session
 from motion import Clip, Duet, InputError, formats
 from motion.formats.files import replacing
 from webdemo.server.accounts.visitors import digest
+from webdemo.server.audit import audit
 from webdemo.study import Pair, StudyResult, matched_pairs, tally
 from webdemo.study.pairs import FIRST, as_shown, check_sources, shuffled
 from webdemo.study.results import write_votes
@@ -126,6 +127,7 @@ class Studies(Voting):
             session.execute(delete(Rater).where(Rater.study_id == row.id))
             session.delete(row)
         shutil.rmtree(self.folder / study, ignore_errors=True)
+        audit("study-deleted", study=study)
 
     @sentences()
     def export(self, study: str, owner: str, file: Path, person: str = "") -> int:
