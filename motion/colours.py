@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import TypeAlias
 
 Colour: TypeAlias = tuple[float, float, float]
@@ -23,3 +24,8 @@ def rgb(colour: str) -> Colour:
 def linear(colour: str) -> list[float]:
     """``"#rrggbb"`` as light, which is what glTF's materials hold (IEC 61966-2-1)."""
     return [c / 12.92 if c <= 0.04045 else ((c + 0.055) / 1.055) ** 2.4 for c in rgb(colour)]
+
+
+def hex_of(levels: Sequence[int]) -> str:
+    """Three levels from 0 to 255 as ``"#rrggbb"``."""
+    return "#" + "".join(f"{level:02x}" for level in levels)

@@ -1,4 +1,4 @@
-"""glTF binary: two skinned, animated people in one file, as every 3D program and browser plays them.
+"""glTF binary: two skinned, animated people and their things in one file, as 3D programs and browsers play them.
 
 Each person is a node called by their role that carries 22 joints, and a body of :mod:`motion.body` bound to
 them. One animation turns all joints and moves both roots. glTF's axes are ours: Y up, right-handed, metres.
@@ -25,6 +25,7 @@ from motion.skeleton import SMPL22
 
 from .files import write_files
 from .glb_nodes import quaternions
+from .glb_things import add_things
 
 if TYPE_CHECKING:
     import pygltflib
@@ -94,6 +95,7 @@ def glb_bytes(duet: Duet) -> bytes:
     times = buffer.add((np.arange(duet.num_frames) / duet.fps).astype(np.float32), gl.SCALAR, bounds=True)
     for name, clip, role, zones in zip(BODIES, duet.people, duet.roles, COLOURS, strict=True):
         _add_person(buffer, clip, role, load_body(name), zones, times)
+    add_things(buffer, duet.things, times)
     buffer.data += bytes(-len(buffer.data) % 4)
     gltf.buffers.append(gl.Buffer(byteLength=len(buffer.data)))
     gltf.set_binary_blob(bytes(buffer.data))

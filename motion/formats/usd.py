@@ -1,4 +1,4 @@
-"""OpenUSD as text (.usda): two skinned, animated people for Blender, Houdini, Maya, Unreal and Omniverse.
+"""OpenUSD as text (.usda): two skinned, animated people and their things, for Blender, Houdini, Maya, Unreal …
 
 Each person is a scope called by their role with a UsdSkel root: a skeleton of 22 joints, its animation, and a body of
 :mod:`motion.body` bound to it. The stage is in metres and Y up, and a time code is a frame.
@@ -7,10 +7,8 @@ Each person is a scope called by their role with a UsdSkel root: a skeleton of 2
 from __future__ import annotations
 
 import json
-import re
 from collections.abc import Iterable, Mapping
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -26,6 +24,8 @@ from motion.skeleton import SMPL22
 from .files import write_files
 from .glb import bone_offsets
 from .glb_nodes import quaternions
+from .usd_text import identifier, matrices, rows, samples, tuple_of
+from .usd_things import things_text
 
 Array = NDArray[np.floating]
 
@@ -56,7 +56,7 @@ def write_usd(duet: Duet, path: str | Path) -> list[Path]:
 
 def usd_text(duet: Duet) -> str:
     """The file's text."""
-    names = [_identifier(role) for role in duet.roles]
+    names = [identifier(role, "person") for role in duet.roles]
     if names[0].lower() == names[1].lower():
         names = [f"{name}_{letter}" for name, letter in zip(names, "ab", strict=True)]
     # A string's escapes are those of JSON.
@@ -84,7 +84,7 @@ def Xform "duet" (
     kind = "assembly"
 )
 {{
-{"".join(people)}}}
+{"".join(people)}{things_text(duet.things, names)}}}
 """
 
 
@@ -104,15 +104,15 @@ def _person(clip: Clip, name: str, body: Body, colours: Mapping[str, str]) -> st
     {{
         def SkelRoot "person"
         {{
-            float3[] extent = {_rows(box)}
+            float3[] extent = {rows(box)}
 
             def Skeleton "{name}" (
                 prepend apiSchemas = ["SkelBindingAPI"]
             )
             {{
                 uniform token[] joints = {_JOINTS}
-                uniform matrix4d[] bindTransforms = {_matrices(bind)}
-                uniform matrix4d[] restTransforms = {_matrices(rest)}
+                uniform matrix4d[] bindTransforms = {matrices(bind)}
+                uniform matrix4d[] restTransforms = {matrices(rest)}
                 rel skel:animationSource = <{place}/{name}/animation>
 {_animation(positions, world, rest[:, 3, :3])}
             }}
@@ -139,9 +139,9 @@ def _animation(positions: Array, world: Array, offsets: Array) -> str:
                 def SkelAnimation "animation"
                 {{
                     uniform token[] joints = {_JOINTS}
-                    quatf[] rotations.timeSamples = {_samples(turns[..., [3, 0, 1, 2]])}
+                    quatf[] rotations.timeSamples = {samples(turns[..., [3, 0, 1, 2]])}
                     half3[] scales = {_ONES}
-                    float3[] translations.timeSamples = {_samples(places)}
+                    float3[] translations.timeSamples = {samples(places)}
                 }}"""
 
 
@@ -151,13 +151,13 @@ def _surface(body: Body) -> str:
     joints = np.where(weights > 0, body.bones, 0)
     four = '(\nelementSize = 4\ninterpolation = "vertex"\n)'
     return f"""                uniform token subdivisionScheme = "none"
-                float3[] extent = {_rows(np.stack([body.vertices.min(axis=0), body.vertices.max(axis=0)]))}
+                float3[] extent = {rows(np.stack([body.vertices.min(axis=0), body.vertices.max(axis=0)]))}
                 int[] faceVertexCounts = {[3] * len(body.faces)}
                 int[] faceVertexIndices = {body.faces.reshape(-1).tolist()}
-                point3f[] points = {_rows(body.vertices)}
+                point3f[] points = {rows(body.vertices)}
                 int[] primvars:skel:jointIndices = {joints.reshape(-1).tolist()} {four}
                 float[] primvars:skel:jointWeights = {weights.reshape(-1).tolist()} {four}
-                matrix4d primvars:skel:geomBindTransform = {_matrices(np.eye(4)[None])[1:-1]}"""
+                matrix4d primvars:skel:geomBindTransform = {matrices(np.eye(4)[None])[1:-1]}"""
 
 
 def _subsets(body: Body, place: str) -> str:
@@ -184,18 +184,12 @@ def _materials(body: Body, place: str, colours: Mapping[str, str]) -> str:
                 def Shader "surface"
                 {{
                     uniform token info:id = "UsdPreviewSurface"
-                    color3f inputs:diffuseColor = {_tuple(np.round(linear(colours[zone]), 5))}
+                    color3f inputs:diffuseColor = {tuple_of(np.round(linear(colours[zone]), 5))}
                     float inputs:roughness = 0.8
                     token outputs:surface
                 }}
             }}
 """ for zone in body.zones)  # fmt: skip
-
-
-def _identifier(role: str) -> str:
-    """A role as the name of a prim: ASCII letters, digits and underscores, not beginning with a digit."""
-    name = re.sub(r"\W+", "_", role, flags=re.ASCII).strip("_")[:40] or "person"
-    return f"_{name}" if name[0].isdigit() else name
 
 
 def _paths() -> Iterable[str]:
@@ -207,23 +201,3 @@ def _paths() -> Iterable[str]:
 
 
 _JOINTS = json.dumps(list(_paths()))
-
-
-def _tuple(values: Any) -> str:
-    return str(tuple(np.asarray(values).tolist()))
-
-
-def _rows(values: Array) -> str:
-    """(N, k) numbers as an array of tuples."""
-    return str(list(map(tuple, np.round(values.astype(np.float64), 6).tolist())))
-
-
-def _matrices(values: Array) -> str:
-    """(N, 4, 4) as an array of tuples of rows."""
-    return str([tuple(map(tuple, each)) for each in np.round(values, 7).tolist()])
-
-
-def _samples(values: Array) -> str:
-    """(T, N, k) as an array of tuples for each frame."""
-    frames = "".join(f"{frame}: {_rows(each)},\n" for frame, each in enumerate(values))
-    return f"{{\n{frames}}}"

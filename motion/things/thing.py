@@ -57,6 +57,19 @@ class Mesh:
         """(3,) metres along each of its axes."""
         return np.ptp(self.vertices, axis=0)
 
+    def by_colour(self, most: int = 32) -> tuple[NDArray[np.uint8], NDArray[np.integer]]:
+        """Its different colours (C, 3) and, for each triangle (F,), the number of its own.
+
+        Where there are more than ``most``, near ones become one.
+        """
+        step, colours = 1, self.colours.astype(np.int64)
+        while True:
+            coarse = np.minimum(colours // step * step + step // 2, 255)
+            found, which = np.unique(coarse, axis=0, return_inverse=True)
+            if len(found) <= most:
+                return found.astype(np.uint8), which.reshape(-1)
+            step *= 2
+
     def spots(self) -> Array:
         """(N, 4) a few places in its own frame and the square metres about each, for soft shadows."""
         corners = self.vertices[self.faces].astype(np.float64)

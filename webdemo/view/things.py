@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 from scipy.spatial.transform import Rotation
 
 from motion.clip import Clip, Duet
+from motion.colours import hex_of
 from motion.things.thing import Mesh, Thing
 
 Array = NDArray[np.floating]
@@ -64,9 +65,7 @@ def _moved(thing: Thing, points: Array, frame: float) -> Array:
 def thing_payload(thing: Thing) -> dict[str, Any]:
     """A thing as ``static/player/things.js`` reads it; one that stands still has a track of one frame."""
     mesh = thing.mesh
-    palette, which = np.unique(mesh.colours, axis=0, return_inverse=True)
-    if len(palette) > 255:  # such as an uploaded thing with a picture: near colours become one
-        palette, which = np.unique(mesh.colours // 64 * 64 + 32, axis=0, return_inverse=True)
+    palette, which = mesh.by_colour(255)
     frames = thing.num_frames if thing.moves else 1
     turns = Rotation.from_matrix(thing.rotations[:frames].astype(np.float64)).as_quat()
     flips = np.sign(np.einsum("ti,ti->t", turns[1:], turns[:-1]) + 1e-9)
@@ -77,8 +76,8 @@ def thing_payload(thing: Thing) -> dict[str, Any]:
         "frames": frames,
         "vertices": _text(mesh.vertices, "<f4"),
         "faces": _text(mesh.faces, "<u2"),
-        "face_colours": _text(which.reshape(-1), "u1"),
-        "palette": ["#" + "".join(f"{level:02x}" for level in colour) for colour in palette.tolist()],
+        "face_colours": _text(which, "u1"),
+        "palette": [hex_of(colour) for colour in palette.tolist()],
         "spots": mesh.spots().round(4).tolist(),
         "places": _text(thing.places[:frames], "<f4"),
         "turns": _text(np.rint(32767 * turns), "<i2"),
