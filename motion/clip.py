@@ -26,6 +26,7 @@ class Clip:
         skeleton: names and parents of the J joints.
         rotations: (T, J, 3, 3) local rotations against the skeleton's rest pose, where they are known.
         name: shown in messages and file names.
+        notes: sentences on how well its file could be read, such as that it does not give its frame rate.
     """
 
     positions: Array = field(repr=False)
@@ -33,6 +34,7 @@ class Clip:
     skeleton: Skeleton = SMPL22
     rotations: Array | None = field(default=None, repr=False)
     name: str = ""
+    notes: tuple[str, ...] = field(default=(), repr=False)
 
     def __post_init__(self) -> None:
         positions = np.asarray(self.positions, dtype=np.float32)

@@ -8,6 +8,7 @@ where that is a standing one. The root's path is scaled by leg length, so that s
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import overload
 
 import numpy as np
@@ -20,7 +21,7 @@ from .ik import body_scale, fit_skeleton
 from .kinematics import project_to_skeleton
 from .rigs import BodyParts, RigMotion, match_joints
 from .skeleton import SMPL22
-from .transforms import resample
+from .transforms import axis_to_y, resample
 
 Array = NDArray[np.floating]
 
@@ -110,7 +111,9 @@ def to_smpl(motion: Clip | Duet) -> Clip | Duet:
     ]
     floor = min(_floor_height(person) for person in fitted)
     clips = [
-        _finished(person - np.array([0.0, floor, 0.0]), motion.fps, clip.name, True)
+        replace(
+            _finished(person - np.array([0.0, floor, 0.0]), motion.fps, clip.name, True), notes=clip.notes
+        )
         for person, clip in zip(fitted, people, strict=True)
     ]
     return Duet(clips[0], clips[1], motion.roles, motion.manifest) if isinstance(motion, Duet) else clips[0]
@@ -173,11 +176,11 @@ def up_rotation(rig: RigMotion, parts: BodyParts | None = None) -> Array:
     tall_rest = _rest_positions(rig)[heads[0]] - _rest_positions(rig)[ankles].mean(axis=0)
     if rig.up is not None:
         axis = "xyz".index(rig.up)
-        return _to_y(axis, -1.0 if tall[axis] < -0.5 * np.linalg.norm(tall) else 1.0)
+        return axis_to_y(axis, -1.0 if tall[axis] < -0.5 * np.linalg.norm(tall) else 1.0)
     for vector in (tall, tall_rest):
         axis = int(np.argmax(np.abs(vector)))
         if abs(vector[axis]) > 0.8 * np.linalg.norm(vector) and np.linalg.norm(vector) > 0.7:
-            return _to_y(axis, float(np.sign(vector[axis])))
+            return axis_to_y(axis, float(np.sign(vector[axis])))
     return np.eye(3)
 
 
@@ -191,21 +194,12 @@ def _rest_up(rig: RigMotion, parts: BodyParts) -> Array:
     ])  # fmt: skip
     axis = int(np.argmax(np.abs(tall)))
     stands = abs(tall[axis]) > max(_STRAIGHT * np.linalg.norm(tall), _TALL * 2 * legs)
-    return _to_y(axis, float(np.sign(tall[axis]))) if stands and axis != 1 else np.eye(3)
+    return axis_to_y(axis, float(np.sign(tall[axis]))) if stands and axis != 1 else np.eye(3)
 
 
 def up_axis(rig: RigMotion) -> str:
     """The file's axis that is taken to be up: "x", "y" or "z"."""
     return "xyz"[int(np.argmax(np.abs(up_rotation(rig)[1])))]
-
-
-def _to_y(axis: int, sign: float) -> Array:
-    """(3, 3) the quarter or half turn that takes a signed coordinate axis to +Y."""
-    if axis == 1:
-        return np.diag([1.0, sign, sign])
-    if axis == 2:
-        return np.array([[1.0, 0, 0], [0, 0, sign], [0, -sign, 0]])
-    return np.array([[0, -sign, 0], [sign, 0, 0], [0, 0, 1.0]])
 
 
 def _bodies(positions: Array, rig: RigMotion, parts: BodyParts, upright: Array) -> dict[str, Array]:
@@ -248,7 +242,7 @@ def _standing_rest(rig: RigMotion, parts: BodyParts) -> dict[str, Array] | None:
     across = (bodies["left_hip"] - bodies["right_hip"])[0]
     if not straight or np.linalg.norm(across) < 0.05:
         return None
-    bodies = _bodies(rest, rig, parts, _to_y(axis, float(np.sign(tall[axis]))))
+    bodies = _bodies(rest, rig, parts, axis_to_y(axis, float(np.sign(tall[axis]))))
     frame = _frame(np.array([[0.0, 1.0, 0.0]]), bodies["left_hip"] - bodies["right_hip"])[0]
     bodies = {name: place @ frame for name, place in bodies.items()}
     legs_down = all(

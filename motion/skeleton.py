@@ -195,4 +195,16 @@ CMU17 = _topology(
 )  # fmt: skip
 """The 17 joints that motion-prediction papers keep of CMU MoCap, in their order."""
 
-SKELETONS: dict[str, Skeleton] = {s.name: s for s in (SMPL22, SBU15, K3HI15, NTU25, CMU17)}
+POINTS17 = _topology(
+    "points17",
+    [
+        ("pelvis", None), ("left_hip", "pelvis"), ("left_knee", "left_hip"), ("left_ankle", "left_knee"),
+        ("left_foot", "left_ankle"), ("right_hip", "pelvis"), ("right_knee", "right_hip"),
+        ("right_ankle", "right_knee"), ("right_foot", "right_ankle"), ("neck", "pelvis"), ("head", "neck"),
+        ("left_shoulder", "neck"), ("left_elbow", "left_shoulder"), ("left_wrist", "left_elbow"),
+        ("right_shoulder", "neck"), ("right_elbow", "right_shoulder"), ("right_wrist", "right_elbow"),
+    ],
+)  # fmt: skip
+"""Joint centres that are found from markers or key points (:mod:`motion.formats.markers`)."""
+
+SKELETONS: dict[str, Skeleton] = {s.name: s for s in (SMPL22, SBU15, K3HI15, NTU25, CMU17, POINTS17)}

@@ -6,6 +6,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from importlib.util import find_spec
 from pathlib import Path
+from typing import Any
 
 from motion import SMPL22, Clip, Duet, InputError
 from motion.retarget import retarget, retarget_duet, to_smpl
@@ -13,6 +14,7 @@ from motion.rigs import RigMotion
 
 from .bvh import read_bvh, read_bvh_people
 from .bvh_writer import write_bvh
+from .c3d_points import read_c3d
 from .crowd import Crowd, Motion, gathered
 from .glb import write_glb
 from .glb_animations import Animation
@@ -20,11 +22,14 @@ from .glb_motion import animations_in, read_glb_people
 from .kinect import read_kinect
 from .npz import read_npy, read_npz, write_npy, write_npz
 from .one_person import write_clip
+from .pairs import Source, in_folder, in_zip
+from .smpl import on_floor, write_smpl
+from .trc import read_trc
 from .usd import write_usd
 
 __all__ = [
     "FORMATS", "Animation", "Format", "animation_note", "can_read", "can_write", "read", "read_everyone", "read_pair",
-    "write",
+    "suffix_of", "with_stem", "write",
 ]  # fmt: skip
 
 
@@ -38,7 +43,7 @@ class Format:
         reader: ``reader(source, name=…, fps=…, everyone=…)`` gives a clip, a duet or, where everyone is
             wanted, a crowd; ``None`` where it is only written.
         writer: ``writer(duet, path)`` gives the paths it wrote; ``None`` where it is only read.
-        needs: a package that must be installed for writing.
+        needs: a package that must be installed for reading or writing.
     """
 
     suffix: str
@@ -92,6 +97,12 @@ def own_clip(rig: RigMotion) -> Clip | None:
     return Clip(rig.positions[:, order], rig.fps, SMPL22, rotations, rig.name)
 
 
+def _read_zip(
+    source: str | Path | bytes, *, name: str | None = None, fps: float | None = None, everyone: bool = False
+) -> Motion:
+    return _together(in_zip(source, _READABLE, name=name), fps=fps, everyone=everyone)
+
+
 FORMATS: dict[str, Format] = {
     f.suffix: f
     for f in (
@@ -102,11 +113,30 @@ FORMATS: dict[str, Format] = {
         Format(".txt", "Kinect text", read_kinect),
         Format(".glb", "glTF binary", _read_rig_clips, write_glb, needs="pygltflib"),
         Format(".usda", "USD as text", None, write_usd),
+        Format(".smpl.npz", "SMPL parameters", None, write_smpl),
+        Format(".trc", "Marker trajectories", read_trc),
+        Format(".c3d", "C3D points", read_c3d, needs="c3d"),
+        Format(".zip", "Two people's files", _read_zip),
     )
 }
 
 
 _READABLE = [f.suffix for f in FORMATS.values() if f.reader]
+_NEAR_FLOOR = (-0.05, 0.15)
+"""Metres: people of two files whose lowest joint is between these are left at their height."""
+
+
+def suffix_of(path: str | Path) -> str:
+    """The suffix by which a path's format is known, lower case: ".smpl.npz" is one, ".tar.gz" is none."""
+    name = Path(path).name.lower()
+    known = [suffix for suffix in FORMATS if name.endswith(suffix)]
+    return max(known, key=len, default=Path(name).suffix)
+
+
+def with_stem(path: Path, added: str) -> Path:
+    """The path with something added to its name before its suffix."""
+    suffix = suffix_of(path)
+    return path.with_name(f"{path.name[: len(path.name) - len(suffix)]}{added}{path.name[-len(suffix) :]}")
 
 
 def can_read(suffix: str) -> bool:
@@ -136,7 +166,8 @@ def read(
     """Reads one motion file.
 
     Args:
-        path: the file, or its bytes; then ``name`` must end in its suffix.
+        path: the file, or a folder with a file of each of two people; or a file's bytes, and then ``name`` must end in
+            its suffix.
         name: the file's name in messages, if not its own.
         fps: the rate to resample other rigs' BVH to, and that of arrays without one; 30 by default.
         keep_skeleton: keep the joints of arrays in other layouts (Kinect's, CMU's).
@@ -151,16 +182,32 @@ def read(
     Raises:
         InputError: one sentence saying what is wrong with the file and what to do.
     """
-    label = name or (path.name if isinstance(path, Path) else path if isinstance(path, str) else "")
-    suffix = Path(label).suffix.lower()
-    known = FORMATS.get(suffix)
-    if known is None or known.reader is None:
-        raise InputError(_unknown(suffix, "read", _READABLE))
-    motion = known.reader(path, name=Path(label).name, fps=fps, **_choice(animation, label))
+    motion, label = _reading(path, name, animation, fps=fps)
     assert not isinstance(motion, Crowd)  # not everyone was asked for
     if longest is not None and motion.seconds > longest:
         raise InputError(f"{label} lasts {motion.seconds:.0f} s: cut it to {longest:g} s or less.")
     return motion if keep_skeleton else to_smpl(motion)
+
+
+def read_everyone(
+    path: str | Path | bytes, *, name: str | None = None, fps: float | None = None,
+    animation: Animation | None = None,
+) -> Motion:  # fmt: skip
+    """Like :func:`read`, but returns all people, even more than two, with the file's own joints."""
+    return _reading(path, name, animation, fps=fps, everyone=True)[0]
+
+
+def _reading(
+    path: str | Path | bytes, name: str | None, animation: Animation | None, **asked: Any
+) -> tuple[Motion, str]:
+    """The people of a file, or of a folder with a file each, and what to call it."""
+    label = name or ("" if isinstance(path, bytes) else str(path))
+    if not isinstance(path, bytes) and Path(path).is_dir():
+        return _together(in_folder(Path(path), _READABLE), **asked), Path(path).name
+    known = FORMATS.get(Path(label).suffix.lower())
+    if known is None or known.reader is None:
+        raise InputError(_unknown(Path(label).suffix.lower(), "read", _READABLE))
+    return known.reader(path, name=Path(label).name, **asked, **_choice(animation, label)), label
 
 
 def animation_note(path: str | Path, animation: Animation | None = None) -> str:
@@ -177,17 +224,6 @@ def _choice(animation: Animation | None, label: str) -> dict[str, Animation]:
     return {"animation": animation}
 
 
-def read_everyone(
-    path: str | Path | bytes, *, name: str | None = None, animation: Animation | None = None
-) -> Motion:
-    """Like :func:`read`, but returns all people, even more than two, with the file's own joints."""
-    label = name or str(path)
-    known = FORMATS.get(Path(label).suffix.lower())
-    if known is None or known.reader is None:
-        raise InputError(_unknown(Path(label).suffix.lower(), "read", _READABLE))
-    return known.reader(path, name=Path(label).name, everyone=True, **_choice(animation, label))
-
-
 def read_pair(
     a: str | Path, b: str | Path, *, fps: float | None = None, roles: tuple[str, str] = ("a", "b")
 ) -> Duet:
@@ -198,22 +234,48 @@ def read_pair(
     Raises:
         InputError: if a file cannot be read, holds two people, or the rates differ.
     """
-    paths = (Path(a), Path(b))
-    if all(path.suffix.lower() == ".bvh" for path in paths):
-        rigs = [read_bvh(path, fps=fps or 30.0) for path in paths]
+    return _pair((Path(a), None), (Path(b), None), fps=fps, roles=roles)
+
+
+def _pair(a: Source, b: Source, *, fps: float | None, roles: tuple[str, str] = ("a", "b")) -> Duet:
+    sources = (a, b)
+    if all(_label(source).lower().endswith(".bvh") for source in sources):
+        rigs = [read_bvh(data, name=name, fps=fps or 30.0) for data, name in sources]
         own = [own_clip(rig) for rig in rigs]
         if own[0] is None or own[1] is None:
             return retarget_duet(rigs[0], rigs[1], fps=fps or 30.0, roles=roles)
         clips = [clip for clip in own if clip is not None]
     else:
-        clips = []
-        for path in paths:
-            motion = read(path, fps=fps)
-            if isinstance(motion, Duet):
-                raise InputError(f"{path.name} already holds two people: give it alone.")
-            clips.append(motion)
+        clips = [_one_of_two(source, fps) for source in sources]
+        if not _NEAR_FLOOR[0] <= min(float(c.positions[..., 1].min()) for c in clips) <= _NEAR_FLOOR[1]:
+            clips = on_floor(*clips)
     frames = min(clip.num_frames for clip in clips)
     return Duet(clips[0].cut(0, frames), clips[1].cut(0, frames), roles)
+
+
+def _one_of_two(source: Source, fps: float | None) -> Clip:
+    """The person of a file, at the height at which the file has them."""
+    label = _label(source)
+    as_they_are = {".npz": read_npz, ".npy": read_npy}.get(Path(label).suffix.lower())
+    if as_they_are is not None:
+        motion = as_they_are(source[0], name=source[1], fps=fps, floor=False)
+    else:
+        motion = read(source[0], name=source[1], fps=fps, keep_skeleton=True)
+    if not isinstance(motion, Clip):
+        raise InputError(f"{label} already holds two people: give it alone.")
+    return to_smpl(motion)
+
+
+def _together(sources: list[Source], *, fps: float | None = None, everyone: bool = False) -> Motion:
+    """The people of one file or two files of one folder or archive."""
+    if len(sources) == 2:
+        return _pair(sources[0], sources[1], fps=fps)
+    data, name = sources[0]
+    return read_everyone(data, name=name, fps=fps) if everyone else read(data, name=name, fps=fps)
+
+
+def _label(source: Source) -> str:
+    return source[1] or Path(str(source[0])).name
 
 
 def write(duet: Duet | Clip, path: str | Path) -> list[Path]:
@@ -226,10 +288,11 @@ def write(duet: Duet | Clip, path: str | Path) -> list[Path]:
         InputError: for an unknown suffix, a full disk or a folder that cannot be written; nothing is left.
     """
     path = Path(path)
-    known = FORMATS.get(path.suffix.lower())
+    suffix = suffix_of(path)
+    known = FORMATS.get(suffix)
     if known is None or known.writer is None:
-        raise InputError(_unknown(path.suffix, "written", [f.suffix for f in FORMATS.values() if f.writer]))
-    if not can_write(path.suffix):
+        raise InputError(_unknown(suffix, "written", [f.suffix for f in FORMATS.values() if f.writer]))
+    if not can_write(suffix):
         raise InputError(f"{known.label} files need the package {known.needs}: install it with pip.")
     return write_clip(duet, path) if isinstance(duet, Clip) else known.writer(duet, path)
 

@@ -18,6 +18,7 @@ from motion.retarget import retarget, retarget_duet, to_smpl, up_axis
 from motion.rigs import RigMotion, matched_names
 
 from . import NO_ANIMATIONS, RIGS, own_clip, read_everyone, read_rigs
+from .arrays import says_no_rate
 from .crowd import clips_of
 from .files import MAX_SECONDS
 from .glb_animations import Animation, Animations, check_animation
@@ -82,6 +83,7 @@ class Imported:
         joints: (joint of the file, joint of SMPL22).
         order: joint order of an array, if several orders have that number of joints.
         animations: those of a .glb file, and which of them this is; None for any other file.
+        asks_rate: True if the file does not give its frame rate, and nobody did.
     """
 
     people: tuple[Clip, ...]
@@ -91,6 +93,13 @@ class Imported:
     joints: tuple[tuple[str, str], ...] = field(repr=False)
     order: str | None = None
     animations: Animations | None = None
+    asks_rate: bool = False
+
+    @property
+    def notes(self) -> tuple[str, ...]:
+        """Sentences on how well the file could be read, and on which animation was taken."""
+        chosen = (self.animations.note,) if self.animations and self.animations.note else ()
+        return (*chosen, *dict.fromkeys(note for person in self.people for note in person.notes))
 
     @cached_property
     def motion(self) -> Clip | Duet:
@@ -134,6 +143,9 @@ def import_motion(
     people = tuple(
         _ordered(clip, choices.order, label) for clip in clips_of(read_everyone(source, name=name))
     )
+    if choices.fps is not None:
+        people = tuple(_without_rate_note(clip) for clip in people)
+    asks_rate = any(says_no_rate(note) for clip in people for note in clip.notes)
     up = choices.up or _up_of(people[0])
     unit = choices.unit or _unit_of(people[0], "xyz".index(up))
     people = tuple(_upright(clip, up, UNITS[unit], choices.fps or clip.fps) for clip in people)
@@ -146,7 +158,11 @@ def import_motion(
         if ours >= 0
     )
     order = skeleton.name if skeleton.name in ORDERS else None
-    return Imported(people, up, unit, people[0].fps, joints, order)
+    return Imported(people, up, unit, people[0].fps, joints, order, asks_rate=asks_rate)
+
+
+def _without_rate_note(clip: Clip) -> Clip:
+    return replace(clip, notes=tuple(note for note in clip.notes if not says_no_rate(note)))
 
 
 def _ordered(clip: Clip, order: str | None, label: str) -> Clip:
@@ -233,4 +249,4 @@ def _upright(clip: Clip, up: str, metres: float, fps: float) -> Clip:
         positions = positions[..., [0, 2, 1]] * np.array([1.0, 1.0, -1.0])
     elif up == "x":
         positions = positions[..., [1, 0, 2]] * np.array([-1.0, 1.0, 1.0])
-    return Clip(positions.astype(np.float32), fps, clip.skeleton, name=clip.name)
+    return Clip(positions.astype(np.float32), fps, clip.skeleton, name=clip.name, notes=clip.notes)

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from motion.skeleton import SKELETONS, Skeleton
+from motion.skeleton import POINTS17, SKELETONS, Skeleton
 
 Array = NDArray[np.floating]
 
@@ -15,7 +15,9 @@ _FRAMES = 200
 
 def skeletons_of(joints: int) -> tuple[Skeleton, ...]:
     """The known skeletons of a number of joints: two share 15, SBU's order and K3HI's."""
-    return tuple(skeleton for skeleton in SKELETONS.values() if skeleton.num_joints == joints)
+    # Points of markers come with their names, so an array of 17 joints is CMU's.
+    known = (skeleton for skeleton in SKELETONS.values() if skeleton is not POINTS17)
+    return tuple(skeleton for skeleton in known if skeleton.num_joints == joints)
 
 
 def likely_skeleton(positions: Array) -> Skeleton | None:

@@ -1,4 +1,4 @@
-"""NumPy files: our two-person .npz, single arrays, and AMASS' parameters.
+"""NumPy files: our two-person .npz, single arrays, and the parameters of SMPL bodies.
 
 Uploads are never unpickled, and nothing is unpacked before the sizes that a file declares have been checked.
 """
@@ -7,46 +7,33 @@ from __future__ import annotations
 
 import io
 import json
-import lzma
-import struct
-import zipfile
-import zlib
 from pathlib import Path
-from typing import IO, Any
+from typing import Any
 
 import numpy as np
-import scipy  # its parts are loaded with their first use
 from numpy.typing import NDArray
 
 from motion.clip import Clip, Duet
 from motion.errors import InputError
-from motion.kinematics import forward_kinematics
 from motion.representation import NUM_FEATURES, RAW_FEATURES, decode_positions, read_raw
 from motion.skeleton import SKELETONS, SMPL22, Skeleton
 
 from . import npz_things
+from .arrays import frame_rate, load_array, load_members, no_rate, numbers
 from .crowd import MAX_PEOPLE, Motion, gathered
 from .files import check_duration, read_bytes, write_files
 from .joint_order import likely_skeleton
+from .smpl import FPS_KEYS, PARAMETER_KEYS, has_parameters, on_floor, read_parameters
 
 Array = NDArray[Any]
 
-MAX_UNPACKED = 128 * 2**20
-_MOST_MEMBERS = 200
 _SMPL24 = 24
 _JOINT_COUNTS = "15 (Kinect v1), 17 (CMU), 22 or 24 (SMPL) or 25 (Kinect v2) joints"
-_MAX_HEADER = 4096
-_AT_ONCE = 4096
-"""Frames of which rotations are made at a time."""
-ZIP_ERRORS = (
-    zipfile.BadZipFile, zlib.error, struct.error, lzma.LZMAError, EOFError, NotImplementedError, RuntimeError,
-    OSError, ValueError, OverflowError, IndexError, KeyError,
-)  # fmt: skip
-"""Errors that :mod:`zipfile` raises over damaged files, from wrong sums to sizes below zero."""
-_KEYS = (
-    "positions", "fps", "joint_names", "parents", "roles", "manifest",
-    "poses", "trans", "mocap_framerate", "mocap_frame_rate", *npz_things.KEYS,
-)  # fmt: skip
+_INTERHUMAN = 492
+"""InterHuman's processed frames: 62 joints' positions and 51 joints' rotations, the body's first in both."""
+_BODY_POSITIONS, _BODY_ROTATIONS = slice(0, 66), slice(186, 312)
+_COLUMNS = (NUM_FEATURES, 2 * NUM_FEATURES, RAW_FEATURES, _INTERHUMAN)
+_KEYS = ("positions", "fps", "joint_names", "parents", "roles", "manifest", *npz_things.KEYS)
 
 
 def write_npz(duet: Duet, path: str | Path) -> list[Path]:
@@ -76,62 +63,82 @@ def write_npy(duet: Duet, path: str | Path) -> list[Path]:
 
 
 def read_npz(
-    source: str | Path | bytes, *, name: str | None = None, fps: float | None = None, everyone: bool = False
-) -> Motion:
-    """Reads our .npz (one person or two) or AMASS' (one person).
+    source: str | Path | bytes, *, name: str | None = None, fps: float | None = None, everyone: bool = False,
+    floor: bool = True,
+) -> Motion:  # fmt: skip
+    """Reads our .npz (one person or two), AMASS' or Inter-X' (one person a file).
 
     Args:
         source: a path, or the file's bytes.
         name: its name in messages.
-        fps: frame rate where the file gives none; 30 by default.
+        fps: frame rate where the file gives none; 30 by default, 120 for Inter-X, as its authors say.
         everyone: return all people instead of the first two.
+        floor: put a person of SMPL's parameters on the floor; where two share a world, they are put on it together.
 
     Raises:
         InputError: one sentence saying what is wrong with the file.
     """
     data, label = read_bytes(source, name)
-    arrays = _load_members(data, label)
+    arrays = load_members(data, label, (*_KEYS, *PARAMETER_KEYS, *FPS_KEYS))
     if "positions" in arrays:
         return _from_arrays(arrays, label, fps, everyone)
-    if "poses" in arrays and "trans" in arrays:
-        return _from_amass(arrays, label, fps)
+    if has_parameters(arrays):
+        person = read_parameters(arrays, label, fps)
+        return on_floor(person)[0] if floor else person
     raise InputError(
-        f"{label} holds neither 'positions' (2, frames, 22, 3) nor AMASS' 'poses' and 'trans': save it so."
+        f"{label} holds none of 'positions' (2, frames, 22, 3), AMASS' 'poses' and 'trans', and Inter-X' 'pose_body', "
+        "'root_orient' and 'trans': save it so."
     )
 
 
 def read_npy(
-    source: str | Path | bytes, *, name: str | None = None, fps: float | None = None, everyone: bool = False
-) -> Motion:
-    """Reads a single array: positions (2, T, J, 3) or (T, J, 3), features (T, 262) or (T, 524), raw (T, 192).
+    source: str | Path | bytes, *, name: str | None = None, fps: float | None = None, everyone: bool = False,
+    floor: bool = True,
+) -> Motion:  # fmt: skip
+    """Reads a single array: positions (2, T, J, 3) or (T, J, 3), InterGen's features, or InterHuman's frames.
+
+    Features are (T, 262) or (T, 524). InterHuman's processed files, one person each, are (T, 492): 62 joints'
+    positions, Z up, and 51 joints' rotations. Of these the 22 of the body are read, as they are of the (T, 192) that
+    InterGen's loader cuts out of them.
 
     Args:
         source: a path, or the file's bytes.
         name: its name in messages.
         fps: frame rate; 30 by default, as the file has none.
         everyone: return all people instead of the first two.
+        floor: put a person of InterHuman's on the floor; where two share a world, they are put on it together.
 
     Raises:
         InputError: one sentence saying what is wrong with the file.
     """
     data, label = read_bytes(source, name)
-    array = _load_array(io.BytesIO(data), len(data), label)
+    array = load_array(io.BytesIO(data), len(data), label)
     rate = fps or 30.0
-    if array.ndim == 2 and array.shape[-1] in (NUM_FEATURES, 2 * NUM_FEATURES, RAW_FEATURES) and len(array):
-        array = _numbers(array, label)
+    notes = () if fps else (no_rate(label, rate),)
+    if array.ndim == 2 and array.shape[-1] in _COLUMNS and len(array):
         check_duration(len(array), rate, label)
-        positions = read_raw(array)[0] if array.shape[-1] == RAW_FEATURES else decode_positions(array)
-        return _motion(positions, rate, SMPL22, label)
+        if array.shape[-1] in (RAW_FEATURES, _INTERHUMAN):
+            person = Clip(read_raw(numbers(_body_columns(array), label))[0], rate, name=label, notes=notes)
+            return on_floor(person)[0] if floor else person
+        return _motion(decode_positions(numbers(array, label)), rate, SMPL22, label, notes=notes)
     if array.ndim not in (3, 4):
         raise InputError(
-            f"{label} has the shape {array.shape}: give positions (2, frames, 22, 3) or (frames, 22, 3)."
+            f"{label} has the shape {array.shape}: give positions (2, frames, 22, 3) or (frames, 22, 3), or a person "
+            f"of InterHuman (frames, {_INTERHUMAN})."
         )
-    array = _numbers(_body(array), label)
+    array = numbers(_body(array), label)
     _check_people(array, rate, label)
     skeleton = likely_skeleton(array)
     if skeleton is None:
         raise InputError(f"{label} has {array.shape[-2]} joints a frame: give {_JOINT_COUNTS}.")
-    return _motion(array, rate, skeleton, label, everyone=everyone)
+    return _motion(array, rate, skeleton, label, everyone=everyone, notes=notes)
+
+
+def _body_columns(raw: Array) -> Array:
+    """(T, 192) of InterHuman's (T, 492); (T, 192) as it is."""
+    if raw.shape[-1] == RAW_FEATURES:
+        return raw
+    return np.concatenate([raw[:, _BODY_POSITIONS], raw[:, _BODY_ROTATIONS]], axis=-1)
 
 
 def _body(positions: Array) -> Array:
@@ -140,57 +147,11 @@ def _body(positions: Array) -> Array:
     return positions[..., : SMPL22.num_joints, :] if is_smpl else positions
 
 
-def _load_members(data: bytes, label: str) -> dict[str, Array]:
-    arrays = {}
-    if data.count(b"PK\x01\x02") > _MOST_MEMBERS:
-        raise InputError(f"{label} holds more than {_MOST_MEMBERS} parts: save its arrays alone.")
-    try:
-        with zipfile.ZipFile(io.BytesIO(data)) as archive:
-            members = {m.filename.removesuffix(".npy"): m for m in archive.infolist()}
-            wanted = [members[key] for key in _KEYS if key in members]
-            if any(m.compress_type not in (zipfile.ZIP_STORED, zipfile.ZIP_DEFLATED) for m in wanted):
-                raise InputError(f"{label} is not packed the way NumPy does it: save it with numpy.savez.")
-            total = sum(member.file_size for member in wanted)
-            if total > MAX_UNPACKED:
-                raise InputError(
-                    f"{label} would unpack to {total / 2**20:.0f} MB, more than is allowed: cut it."
-                )
-            for member in wanted:
-                key = member.filename.removesuffix(".npy")
-                with archive.open(member) as stream:  # gives no more than the declared size
-                    arrays[key] = _load_array(stream, member.file_size, f"{label}, {key}")
-    except InputError:
-        raise
-    except ZIP_ERRORS as error:
-        raise InputError(f"{label} is not a whole .npz file, or it is damaged: save it again.") from error
-    return arrays
-
-
-def _load_array(stream: IO[bytes], size: int, label: str) -> Array:
-    """One .npy, whose header is checked against the bytes that are there before anything is made."""
-    try:
-        version = np.lib.format.read_magic(stream)
-        reader = {(1, 0): np.lib.format.read_array_header_1_0, (2, 0): np.lib.format.read_array_header_2_0}
-        shape, _, dtype = reader[version](stream, max_header_size=_MAX_HEADER)
-    except Exception:  # the header is parsed as Python literals, which can fail in any way
-        raise InputError(
-            f"{label} is not a NumPy array file: save it with numpy.save or numpy.savez."
-        ) from None
-    if dtype.hasobject:
-        raise InputError(f"{label} holds Python objects, which are not read: save plain numbers.")
-    count = 1
-    for length in shape:
-        count *= int(length)
-    if count * dtype.itemsize != size - stream.tell():
-        raise InputError(f"{label} is damaged: its header says {shape}, its data has another size.")
-    stream.seek(0)
-    return np.lib.format.read_array(stream, allow_pickle=False, max_header_size=_MAX_HEADER)
-
-
 def _from_arrays(arrays: dict[str, Array], label: str, fps: float | None, everyone: bool) -> Motion:
-    rate = _rate(arrays.get("fps"), fps, label)
+    rate = frame_rate(arrays.get("fps"), fps, label)
+    notes = () if fps or "fps" in arrays else (no_rate(label, rate),)
     _check_people(arrays["positions"], rate, label)
-    positions = _numbers(arrays["positions"], label)
+    positions = numbers(arrays["positions"], label)
     if "joint_names" not in arrays:
         positions = _body(positions)
     skeleton = _skeleton(arrays, positions, label)
@@ -201,7 +162,7 @@ def _from_arrays(arrays: dict[str, Array], label: str, fps: float | None, everyo
             manifest = json.loads(str(arrays["manifest"]))
         except (ValueError, RecursionError):
             raise InputError(f"{label}: its manifest is not JSON text: save it again.") from None
-    made = _motion(positions, rate, skeleton, label, everyone=everyone)
+    made = _motion(positions, rate, skeleton, label, everyone=everyone, notes=notes)
     if not isinstance(made, Duet):
         return made
     known = manifest if isinstance(manifest, dict) and manifest else None
@@ -209,39 +170,15 @@ def _from_arrays(arrays: dict[str, Array], label: str, fps: float | None, everyo
     return Duet(made.a, made.b, named, known, npz_things.things_of(arrays, made.num_frames, label))
 
 
-def _from_amass(arrays: dict[str, Array], label: str, fps: float | None) -> Clip:
-    """AMASS: axis-angle ``poses`` (T, 3·J), ``trans`` (T, 3), Z up; body joints only, on SMPL22's bones."""
-    poses, trans = arrays["poses"], arrays["trans"]
-    if poses.ndim != 2 or poses.shape[1] < 66 or trans.shape != (len(poses), 3) or len(poses) == 0:
-        raise InputError(f"{label}: AMASS poses must be (frames, 66 or more) and trans (frames, 3).")
-    rate = _rate(arrays.get("mocap_framerate", arrays.get("mocap_frame_rate")), fps, label)
-    check_duration(len(poses), rate, label)
-    poses, trans = _numbers(poses[:, :66], label), _numbers(trans, label)
-    z_up_to_y_up = np.array([[1.0, 0, 0], [0, 0, 1], [0, -1, 0]])
-    rotations = np.empty((len(poses), 22, 3, 3), dtype=np.float32)
-    positions = np.empty((len(poses), 22, 3), dtype=np.float32)
-    for first in range(0, len(poses), _AT_ONCE):
-        part = slice(first, first + _AT_ONCE)
-        turns = (
-            scipy.spatial.transform.Rotation.from_rotvec(poses[part].reshape(-1, 3))
-            .as_matrix()
-            .reshape(-1, 22, 3, 3)
-        )
-        turns[:, 0] = z_up_to_y_up @ turns[:, 0]
-        positions[part] = forward_kinematics(turns, trans[part] @ z_up_to_y_up.T)
-        rotations[part] = turns
-    positions[..., 1] -= positions[..., 1].min()
-    return Clip(positions, rate, SMPL22, rotations, label)
-
-
 def _motion(
-    positions: Array, fps: float, skeleton: Skeleton, label: str, *, everyone: bool = False
-) -> Motion:
+    positions: Array, fps: float, skeleton: Skeleton, label: str, *, everyone: bool = False,
+    notes: tuple[str, ...] = (),
+) -> Motion:  # fmt: skip
     """(T, J, 3) or (people, T, J, 3) as clips."""
     people = positions[None] if positions.ndim < 4 else positions
     check_duration(people.shape[1] if people.ndim > 3 else 0, fps, label)
     try:
-        clips = tuple(Clip(person, fps, skeleton, name=label) for person in people)
+        clips = tuple(Clip(person, fps, skeleton, name=label, notes=notes) for person in people)
     except InputError as error:
         raise InputError(f"{label}: {error}") from None
     return gathered(clips, label, everyone=everyone)
@@ -252,31 +189,6 @@ def _check_people(positions: Array, fps: float, label: str) -> None:
     if positions.ndim == 4 and not 1 <= len(positions) <= MAX_PEOPLE:
         raise InputError(f"{label} holds {len(positions)} people: give 1 to {MAX_PEOPLE} a file.")
     check_duration(positions.shape[-3] if positions.ndim > 2 else 0, fps, label)
-
-
-def _numbers(array: Array, label: str) -> Array:
-    if array.dtype.kind not in "fiu":
-        raise InputError(f"{label} holds {array.dtype} where numbers are needed: save float32 metres.")
-    with np.errstate(all="ignore"):
-        numbers = array.astype(np.float32, copy=False)
-    low, high = (float(numbers.min()), float(numbers.max())) if numbers.size else (0.0, 0.0)
-    if not (np.isfinite(low) and np.isfinite(high)):
-        raise InputError(f"{label} holds NaN or infinite numbers: remove or repair those frames.")
-    if max(-low, high) > 1e4:
-        raise InputError(f"{label} holds places more than 10 km away: save metres.")
-    return numbers
-
-
-def _rate(stored: Array | None, given: float | None, label: str) -> float:
-    if stored is None:
-        return given or 30.0
-    try:
-        rate = float(np.asarray(stored).reshape(()))
-    except (TypeError, ValueError):
-        raise InputError(f"{label}: its frame rate is not one number: save fps as a number.") from None
-    if not 1.0 <= rate <= 1000.0:
-        raise InputError(f"{label}: a frame rate of {rate:g} is not possible: save frames a second.")
-    return rate
 
 
 def _skeleton(arrays: dict[str, Array], positions: Array, label: str) -> Skeleton:

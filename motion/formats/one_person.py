@@ -11,8 +11,9 @@ from motion import Clip, InputError
 
 from .bvh_writer import bvh_text
 from .files import write_files
+from .smpl import SUFFIX, smpl_bytes
 
-SUFFIXES = (".npz", ".bvh", ".npy")
+SUFFIXES = (".npz", ".bvh", ".npy", SUFFIX)
 
 
 def write_clip(clip: Clip, path: str | Path) -> list[Path]:
@@ -32,6 +33,8 @@ def write_clip(clip: Clip, path: str | Path) -> list[Path]:
         raise InputError(
             f"{path.name}: one person is written as {', '.join(SUFFIXES[:-1])} or {SUFFIXES[-1]}: choose one."
         )
+    if path.name.lower().endswith(SUFFIX):
+        return write_files({path: smpl_bytes(clip)})
     if suffix == ".bvh":
         return write_files({path: bvh_text(clip).encode()})
     buffer = io.BytesIO()

@@ -8,7 +8,7 @@ from dataclasses import fields
 from pathlib import Path
 from typing import Any, NoReturn
 
-from motion import InputError
+from motion import Clip, Duet, InputError
 from webdemo.inference.method import Task
 from webdemo.inference.methods import AUTOMATIC, method, methods
 from webdemo.inference.requests import ReactRequest, SamplingRequest
@@ -36,13 +36,25 @@ def add_animation(parser: argparse.ArgumentParser, of: str) -> None:
     )  # fmt: skip
 
 
-def with_note(written: dict[str, Any], path: Path, animation: str | None) -> dict[str, Any]:
-    """A report with a note on which animation of its file was taken, also on stderr, where there are several."""
+def add_rate(parser: argparse.ArgumentParser) -> None:
+    """The option that gives the frame rate of a file that has none."""
+    parser.add_argument(
+        "--file-fps", type=float, metavar="FPS", help="frames a second of a file that does not give its rate, such as "
+        "InterHuman's .npy (30 by default) or Inter-X' .npz (120)",
+    )  # fmt: skip
+
+
+def with_notes(
+    written: dict[str, Any], path: Path, animation: str | None, motion: Clip | Duet | None = None
+) -> dict[str, Any]:
+    """A report with notes on how a file was read, also on stderr: which of several animations was taken, and so on."""
     from motion.formats import animation_note
 
-    if note := animation_note(path, animation):
-        print(note, file=sys.stderr)
-        written["notes"] = [note, *written.get("notes", ())]
+    people = motion.people if isinstance(motion, Duet) else () if motion is None else (motion,)
+    notes = dict.fromkeys([animation_note(path, animation), *(n for person in people for n in person.notes)])
+    if found := [note for note in notes if note]:
+        print("\n".join(found), file=sys.stderr)
+        written["notes"] = [*found, *written.get("notes", ())]
     return written
 
 

@@ -1,4 +1,4 @@
-"""The command ``render``: films and contact sheets of any motion file."""
+"""The command ``render``: films, contact sheets, figures and meshes of any motion file."""
 
 from __future__ import annotations
 
@@ -6,20 +6,24 @@ import argparse
 from pathlib import Path
 from typing import Any
 
-from motion import InputError
+from motion import Clip, Duet, InputError
 
-from .parser import add_animation, with_note
+from .parser import add_animation, add_rate, with_notes
 
 
 def add_render(commands: Any) -> None:
     """Adds ``render`` to the shell's commands."""
-    parser = commands.add_parser("render", help="draw a film or a contact sheet of any motion file")
+    parser = commands.add_parser(
+        "render", help="draw a film, a contact sheet, a figure or a mesh of any motion file"
+    )
     parser.add_argument("file", type=Path, help="motion file: .npz, .bvh, .glb …")
     parser.add_argument("second", type=Path, nargs="?", help="the other person, if each has a file")
     add_animation(parser, "the file")
+    add_rate(parser)
     parser.add_argument(
         "--out", type=Path,
-        help="film: .mp4, .webm or .gif; contact sheet: .png, .svg or .pdf; a .png beside the file by default",
+        help="film: .mp4, .webm or .gif; contact sheet: .png, .svg or .pdf; plotly figure: .html; mesh: .ply or .obj; "
+        "a .png beside the file by default",
     )  # fmt: skip
     parser.add_argument(
         "--beside", type=Path, action="append", default=[], help="film: a motion to show beside it"
@@ -40,6 +44,7 @@ def add_render(commands: Any) -> None:
     parser.add_argument(
         "--frames", default="8", help="contact sheet: how many moments, 1 to 24, or which, as in 0,30,75"
     )
+    parser.add_argument("--frame", type=int, help="mesh: which frame; the middle one by default")
     parser.add_argument(
         "--width", type=int, default=1600, help="contact sheet: pixels (points for .svg, .pdf)"
     )
@@ -47,13 +52,13 @@ def add_render(commands: Any) -> None:
 
 
 def render(options: argparse.Namespace) -> dict[str, Any]:
-    """Draws a film or a contact sheet of a motion file; a BVH pair may be given as two files, or by its first."""
+    """Draws a motion file; two people with a file each may be given as two files, by the first, or as a folder."""
     from motion.character import character_body
     from motion.formats.glb_reader import read_character
-    from webdemo.view import film, sheet
+    from webdemo.view import film, mesh, plotly_figure, sheet
     from webdemo.view.stage import Pane, Style
 
-    motion = _motion(options.file, options.second, options.animation)
+    motion = _motion(options.file, options.second, options.animation, options.file_fps)
     out = options.out or options.file.with_suffix(".png")
     title = options.file.stem if options.title is None else options.title
     suffix = out.suffix.lower()
@@ -87,24 +92,32 @@ def render(options: argparse.Namespace) -> dict[str, Any]:
             style=style,
             view=options.view,
         )
+    elif suffix == plotly_figure.SUFFIX:
+        fps = min(options.fps, plotly_figure.FPS)
+        plotly_figure.write_figure(motion, out, title=title, theme=options.theme, fps=fps)
+    elif suffix in mesh.SUFFIXES:
+        frame = motion.num_frames // 2 if options.frame is None else options.frame
+        mesh.write_mesh(motion, out, frame=frame, style=style)
     else:
         raise InputError(
-            f"{out.name} cannot be rendered: give --out a name that ends in .mp4, .webm, .gif, .png, .svg or .pdf."
+            f"{out.name} cannot be rendered: give --out a name that ends in .mp4, .webm, .gif, .png, .svg, .pdf, "
+            ".html, .ply or .obj."
         )
     written = {"files": [str(out)], "frames": motion.num_frames, "fps": motion.fps, "seconds": motion.seconds}
-    return with_note(written, options.file, options.animation)
+    return with_notes(written, options.file, options.animation, motion)
 
 
-def _motion(file: Path, second: Path | None, animation: str | None = None) -> Any:
+def _motion(
+    file: Path, second: Path | None, animation: str | None = None, fps: float | None = None
+) -> Clip | Duet:
     """The motion of a file, or of a pair of files of which the second may be left to be found."""
     from motion.formats import read, read_pair
+    from motion.formats.pairs import partner_file
 
-    if second is None and file.stem.endswith("_a"):
-        other = file.with_stem(file.stem[:-2] + "_b")
-        second = other if other.exists() else None
+    second = second or partner_file(file)
     if second is not None and animation is not None:
         raise InputError("--animation chooses within one file: leave it out, or the second file.")
-    return read(file, animation=animation) if second is None else read_pair(file, second)
+    return read(file, fps=fps, animation=animation) if second is None else read_pair(file, second, fps=fps)
 
 
 def _size(words: str) -> tuple[int, int]:

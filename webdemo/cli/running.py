@@ -14,9 +14,9 @@ from webdemo.inference.story.request import SceneRequest
 
 def check_out(path: Path) -> None:
     """Raises :class:`InputError` where no motion can be written under this name."""
-    from motion.formats import can_write
+    from motion.formats import can_write, suffix_of
 
-    if not can_write(path.suffix):
+    if not can_write(suffix_of(path)):
         raise InputError(
             f"{path.name} has a suffix that cannot be written: choose another, such as .npz, .bvh or .glb."
         )
@@ -24,12 +24,12 @@ def check_out(path: Path) -> None:
 
 def write_result(result: Result, out: Path) -> dict[str, Any]:
     """Writes the duets of a result and returns what the last line on stdout reports of them."""
-    from motion.formats import write
+    from motion.formats import with_stem, write
 
     paths: list[Path] = []
     for i, duet in enumerate(result.duets):
         number = f"_{i + 1}" if len(result.duets) > 1 else ""
-        paths += write(duet, out.with_stem(out.stem + number))
+        paths += write(duet, with_stem(out, number))
     for note in result.notes:
         print(note, file=sys.stderr)
     return {

@@ -12,7 +12,7 @@ from webdemo.inference.requests import SamplingRequest
 from webdemo.inference.story import SceneRequest, read_story, split_sentence
 from webdemo.inference.story.request import MOST_SECONDS
 
-from .parser import add_animation, add_tries, names_of, with_note
+from .parser import add_animation, add_tries, names_of, with_notes
 from .running import check_out, run, write_result
 
 
@@ -61,7 +61,7 @@ def scene(options: argparse.Namespace) -> dict[str, Any]:
     motion = _motion(options.motion, options.animation) if options.motion is not None else None
     request = SceneRequest(**asked, motion=motion, start=options.start, end=options.end)
     written = write_result(run(request), options.out)
-    return written if options.motion is None else with_note(written, options.motion, options.animation)
+    return written if options.motion is None else with_notes(written, options.motion, options.animation)
 
 
 def _story(options: argparse.Namespace) -> dict[str, Any]:

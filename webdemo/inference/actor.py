@@ -123,6 +123,7 @@ def read_actor(
     end: float | None = None,
     keep_start: bool = False,
     animation: Animation | None = None,
+    fps: float | None = None,
 ) -> tuple[Clip, Array | None]:
     """One person of a motion file, trimmed, on SMPL22 and at 30 fps; only what is used is fitted.
 
@@ -131,12 +132,13 @@ def read_actor(
         person, start, end: as in :func:`choose_actor`.
         keep_start: also give :func:`other_pose`, else None.
         animation: of a .glb with several, the name or the number, from 1, of the one to read; the first by default.
+        fps: frames a second of a file that does not give its rate.
 
     Raises:
         InputError: if the file or a choice is wrong, or the part longer than a network takes.
     """
     name = Path(path).name
-    people = clips_of(read_everyone(Path(path), name=name, animation=animation))
+    people = clips_of(read_everyone(Path(path), name=name, fps=fps, animation=animation))
     clip = choose_actor(people, person=person, start=start, end=end, name=name)
     pose = other_pose(people, person=person, start=start, name=name) if keep_start else None
     check_length(clip, SECONDS)
@@ -146,7 +148,7 @@ def read_actor(
 def at_30_fps(clip: Clip) -> Clip:
     """The clip at the networks' rate, without rotations; its positions are the same array if it has it."""
     positions = clip.positions if clip.fps == FPS else resample(clip.positions, clip.fps, FPS)
-    return Clip(positions, FPS, clip.skeleton, name=clip.name)
+    return Clip(positions, FPS, clip.skeleton, name=clip.name, notes=clip.notes)
 
 
 def check_actor(clip: Any, seconds: tuple[float, float]) -> Clip:

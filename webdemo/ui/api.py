@@ -10,7 +10,7 @@ from typing import Any
 
 import gradio as gr
 
-from motion import InputError
+from motion import Clip, Duet, InputError
 from motion.formats import animation_note, read
 from motion.formats.on_rig import check_rig
 from webdemo.inference.acting import acted
@@ -39,6 +39,7 @@ from .context import PageContext
 Answer = tuple[dict[str, Any], list[str]]
 Given = tuple[Path, str | None]
 """A file that was sent, and which of its animations is wanted."""
+RATE = "frames a second of a file that does not give its rate; 0 for the usual rate of its kind"
 WHICH = "of a .glb with several animations, the name or the number (from 1) of one; empty for the first"
 PROGRESS = gr.Progress()
 """A default value that makes Gradio report a job's progress in ``job.status()``."""
@@ -103,7 +104,8 @@ class Endpoint:
         try:
             with READING:
                 request = make()
-                note = animation_note(*given) if given is not None else ""
+                notes = [animation_note(*given)] if given is not None else []
+                notes += reading_notes(request)
                 if rig is not None:
                     check_rig(rig)
             result = self._run(request, progress)
@@ -119,7 +121,7 @@ class Endpoint:
             "manifest": result.manifest,
             "readouts": list(result.readouts),
             "timings": result.timings,
-            "notes": [*([note] if note else []), *result.notes],
+            "notes": [*filter(None, notes), *result.notes],
             "files": {key: [path.name for path in paths] for key, paths in files.items()},
         }
         if isinstance(result, PredictResult):
@@ -135,6 +137,13 @@ class Endpoint:
             share = (event.step, event.total) if event.stage == "sample" else (0, 1)
             progress(share, desc=progress_line(event), unit=event.unit)
         raise Cancelled("The run ended without a result.")
+
+
+def reading_notes(request: Any) -> list[str]:
+    """Sentences on how well the motion that a request was given could be read."""
+    given = getattr(request, "actor", None) or getattr(request, "motion", None)
+    people = given.people if isinstance(given, Duet) else (given,) if isinstance(given, Clip) else ()
+    return list(dict.fromkeys(note for person in people for note in person.notes))
 
 
 class GenerateEndpoint(Endpoint):
@@ -175,8 +184,8 @@ class GenerateEndpoint(Endpoint):
         """Two people from one sentence.
 
         Returns the manifest, read-outs, timings, notes and file names; and the files: for every sample a
-        two-person .npz, two .bvh, a .usda (and a .glb where the server writes them), a contact sheet .png, and a
-        manifest .json. An error is one sentence that says what to change.
+        two-person .npz, two .bvh, two .smpl.npz, a .usda (and a .glb where the server writes them), a contact sheet
+        .png, and a manifest .json. An error is one sentence that says what to change.
         """
         return self._answer(
             lambda: acted(
@@ -239,7 +248,7 @@ class ReactEndpoint(Endpoint):
         posed = " or ".join(m.name for m in found if "first pose" in m.takes)
         with gr.Row(visible=False):
             inputs = [
-                gr.File(label="the given person: .bvh, .glb, .npz or .npy, up to 50 MB"),
+                gr.File(label="the given person: .bvh, .glb, .npz, .c3d …, up to 50 MB"),
                 gr.Textbox("", label="what the two people do, in English; may be empty"),
                 gr.Textbox("", label="a to f, if the file holds several people"),
                 gr.Number(0, label="start of the part to use, in seconds"),
@@ -257,6 +266,7 @@ class ReactEndpoint(Endpoint):
                     False, label="also the new person on the rig of the file: a .bvh or .glb of one person"
                 ),
                 gr.Textbox("", label=WHICH),
+                gr.Number(0, label=RATE),
             ]
             self._publish(self.react, "react", inputs)
 
@@ -279,14 +289,15 @@ class ReactEndpoint(Endpoint):
         keep_start: bool = False,
         own_rig: bool = False,
         animation: str = "",
+        fps: float = 0.0,
         progress: gr.Progress = PROGRESS,
     ) -> Answer:
         """A second person for a given one, who stays exactly as they are (at 30 frames a second).
 
         Returns the manifest, read-outs, timings, notes and file names; and the files: for every sample a
-        two-person .npz, two .bvh, a .usda (and a .glb where the server writes them), a contact sheet .png, and a
-        manifest .json. With own_rig there is also the new person of every sample on the rig of the file, and that
-        file as it is. An error is one sentence that says what to change.
+        two-person .npz, two .bvh, two .smpl.npz, a .usda (and a .glb where the server writes them), a contact sheet
+        .png, and a manifest .json. With own_rig there is also the new person of every sample on the rig of the file,
+        and that file as it is. An error is one sentence that says what to change.
         """
 
         def request() -> ReactRequest:
@@ -294,7 +305,7 @@ class ReactEndpoint(Endpoint):
                 raise InputError("There is no actor: send a motion file, such as a .bvh.")
             clip, pose = read_actor(
                 actor, person=person or None, start=start, end=end or None, keep_start=keep_start,
-                animation=animation or None,
+                animation=animation or None, fps=fps or None,
             )  # fmt: skip
             return ReactRequest(
                 actor=clip, prompt=prompt, role=role, seed=seed, samples=samples, guidance=guidance,
@@ -315,16 +326,17 @@ class PredictEndpoint(Endpoint):
         """Adds the endpoint to the page that is being built."""
         with gr.Row(visible=False):
             inputs = [
-                gr.File(label="the motion of one person or two: .bvh, .glb, .npz or .npy, up to 50 MB"),
+                gr.File(label="the motion of one person or two: .bvh, .glb, .npz, .c3d …, up to 50 MB"),
                 gr.Number(0, label="the second at which the past ends; 0 is the end of the file"),
                 gr.Number(PredictRequest.seconds, label="how much to predict in seconds, 0.5 to 4"),
                 gr.Textbox(PredictRequest.model, label=" or ".join(m.name for m in methods("predict"))),
                 gr.Textbox("", label=WHICH),
+                gr.Number(0, label=RATE),
             ]
             self._publish(self.predict, "predict", inputs)
 
     def predict(
-        self, past: str, marker: float, seconds: float, model: str, animation: str = "",
+        self, past: str, marker: float, seconds: float, model: str, animation: str = "", fps: float = 0.0,
         progress: gr.Progress = PROGRESS,
     ) -> Answer:  # fmt: skip
         """Predicts what comes after the past of a motion, for one person or two.
@@ -338,7 +350,7 @@ class PredictEndpoint(Endpoint):
             if not past:
                 raise InputError("There is no past: send a motion file, such as a .bvh.")
             return PredictRequest(
-                motion=read(Path(past), longest=LONGEST, animation=animation or None),
+                motion=read(Path(past), fps=fps or None, longest=LONGEST, animation=animation or None),
                 marker=marker or None, seconds=seconds, model=model,
             )  # fmt: skip
 

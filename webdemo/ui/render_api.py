@@ -1,4 +1,4 @@
-"""``/render``: a motion file → a film or a contact sheet, for programs."""
+"""``/render``: a motion file → a film, a contact sheet, a figure or a mesh, for programs."""
 
 from __future__ import annotations
 
@@ -15,16 +15,20 @@ from webdemo.ui.components.film import LONGEST
 from webdemo.ui.text.words import error_line
 from webdemo.view.camera import VIEWS
 from webdemo.view.film import FPS, SIZE, write_film
+from webdemo.view.mesh import SUFFIXES as MESHES
+from webdemo.view.mesh import frame_at, write_mesh
+from webdemo.view.plotly_figure import SUFFIX as FIGURE
+from webdemo.view.plotly_figure import write_figure
 from webdemo.view.sheet import SUFFIXES as SHEETS
 from webdemo.view.sheet import write_sheet
 from webdemo.view.stage import LOOKS, Pane, Style
 
-from .api import READING, WHICH
+from .api import RATE, READING, WHICH
 from .context import PageContext
 
 
 class RenderEndpoint:
-    """``/render``: a motion file → a film or a contact sheet.
+    """``/render``: a motion file → a film, a contact sheet, a plotly figure or a mesh.
 
     Args:
         page: what tabs and endpoints share.
@@ -37,8 +41,11 @@ class RenderEndpoint:
         """Adds the endpoint to the page that is being built."""
         with gr.Row(visible=False):
             inputs = [
-                gr.File(label="the motion of one person or two: .bvh, .glb, .npz or .npy, up to 50 MB"),
-                gr.Textbox("mp4", label="film: mp4, webm or gif; contact sheet: png, svg or pdf"),
+                gr.File(label="the motion of one person or two: .bvh, .glb, .npz, .c3d …, up to 50 MB"),
+                gr.Textbox(
+                    "mp4",
+                    label="film: mp4, webm, gif; contact sheet: png, svg, pdf; plotly figure: html; mesh: ply, obj",
+                ),
                 gr.Textbox(Style.look, label=" or ".join(LOOKS)),
                 gr.Textbox(Style.theme, label="light or dark"),
                 gr.Textbox("threequarter", label=" or ".join(VIEWS)),
@@ -50,17 +57,19 @@ class RenderEndpoint:
                     label="a skinned character for everybody to wear: .glb, up to 50 MB; may be left out"
                 ),
                 gr.Textbox("", label=WHICH),
+                gr.Number(0, label=RATE),
+                gr.Number(0, label="second of the motion that a mesh shows"),
             ]
             gr.Button().click(
-                self.render, inputs=inputs, outputs=gr.File(label="the film or sheet"), api_name="render",
+                self.render, inputs=inputs, outputs=gr.File(label="the film, sheet, figure or mesh"), api_name="render",
                 concurrency_limit=1, concurrency_id="film",
             )  # fmt: skip
 
     def render(
         self, motion: str, kind: str, look: str, theme: str, view: str, trails: bool, fps: float, width: float,
-        height: float, character: str | None = None, animation: str = "",
+        height: float, character: str | None = None, animation: str = "", file_fps: float = 0.0, second: float = 0.0,
     ) -> str:  # fmt: skip
-        """A film or a contact sheet of a motion file. An error is one sentence that says what to change."""
+        """A film, a contact sheet, a plotly figure or a mesh of a motion file. An error is one sentence."""
         folder = self.page.shelf.folder()
         try:
             if not motion:
@@ -73,13 +82,17 @@ class RenderEndpoint:
             if width > 1920 or height > 1080:
                 raise InputError("Pictures have 1920x1080 pixels at most here: ask for less.")
             with READING:
-                found = read(Path(motion), longest=LONGEST, animation=animation or None)
+                found = read(Path(motion), fps=file_fps or None, longest=LONGEST, animation=animation or None)
                 body = character_body(read_character(Path(character))) if character else None
             name, suffix = Path(motion).stem, f".{kind.lower().lstrip('.')}"
             out = folder / f"{file_name(name, {})}{suffix}"
             style = Style(look=look, theme=theme, trails=trails, names=suffix not in SHEETS, body=body)
             if suffix in SHEETS:
                 return str(write_sheet(found, out, width=int(width), title=name, style=style, view=view))
+            if suffix == FIGURE:
+                return str(write_figure(found, out, title=name, theme=theme))
+            if suffix in MESHES:
+                return str(write_mesh(found, out, frame=frame_at(found, second), style=style))
             size = (int(width), int(height))
             return str(write_film([Pane(found)], out, fps=fps, size=size, style=style, view=view, title=name))
         except Exception as error:

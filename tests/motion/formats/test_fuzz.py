@@ -21,6 +21,8 @@ from tests.motion.bodies import marching
 from .characters import glb_motion, glb_takes
 from .rigs import RIGS, bvh_text
 from .test_kinect import sbu_text, skeleton_text
+from .test_markers import c3d_bytes, keypoints, trc_text
+from .test_smpl import interhuman, interx, zipped
 
 SECONDS = 2.0
 """The most that a file of these sizes may keep the processor."""
@@ -55,6 +57,11 @@ VALID = {
         mocap_framerate=np.float64(120),
         gender=np.array("x"),
     ),
+    "P1.npz": saved(**interx(POSITIONS)),
+    "interhuman.npy": array_file(interhuman(POSITIONS)),
+    "two.zip": zipped({"P1.npz": saved(**interx(POSITIONS)), "P2.npz": saved(**interx(POSITIONS + 1))}),
+    "key-points.trc": trc_text(keypoints()).encode(),
+    "markers.c3d": c3d_bytes(keypoints()),
     "walk.glb": glb_motion(ROTATIONS, POSITIONS[:, 0], unit=100.0),
     "bones.glb": glb_motion(ROTATIONS, POSITIONS[:, 0], skinned=False, way="CUBICSPLINE"),
     "takes.glb": glb_takes(

@@ -14,6 +14,7 @@ from motion.formats.importing import import_motion
 from tests.motion.bodies import marching
 
 from .rigs import RIGS, bvh_text
+from .test_markers import keypoints, trc_text
 
 MEGABYTE = 2**20
 FULL = MAX_BYTES - 1000
@@ -48,6 +49,12 @@ HOSTILE: dict[str, tuple[Callable[[], bytes], str]] = {
     "short.bvh": (lambda: moving(50_000, ""), "cut short"),
     "parts.npz": (lambda: b"PK\x01\x02" * (FULL // 4), "200 parts"),
     "noise.npz": (lambda: b"\x13\x37" * (FULL // 2), "not a whole .npz"),
+    "parts.zip": (lambda: b"PK\x01\x02" * (FULL // 4), "200 parts"),
+    "noise.zip": (lambda: b"\x13\x37" * (FULL // 2), "not a whole .zip"),
+    "head.trc": (lambda: b"DataRate\t" * (FULL // 9), "head of five lines"),
+    "line.trc": (lambda: trc_text(keypoints()).encode() + b"1\t" * (FULL // 2 - 10_000), "is longer than"),
+    "hours.trc": (lambda: trc_text(keypoints()).encode() + b"1\t0\n" * (FULL // 4 - 10_000), "600 s allowed"),
+    "noise.c3d": (lambda: b"\x02\x50" * (FULL // 2), "damaged"),
     "noise.npy": (lambda: b"\x93NUMPY\x01\x00\xff\xff" + b"(" * FULL, "not a NumPy"),
 }
 

@@ -10,7 +10,7 @@ from types import TracebackType
 from typing import Any
 
 from motion import InputError
-from motion.formats.npz import ZIP_ERRORS
+from motion.formats.arrays import ZIP_ERRORS
 
 LARGEST = 1000 * 2**20
 """Bytes of all files together when unpacked."""

@@ -79,6 +79,7 @@ class Source:
         notes: sentences about how well it could be read.
         read_with: what was known of the file: up axis, unit, rate, order of its joints, and its chosen animation.
         animations: labels of those in the file, where there is one to choose.
+        asks_rate: True if the file does not give its frame rate and nobody did.
         key: differs between any two.
     """
 
@@ -90,6 +91,7 @@ class Source:
     notes: tuple[str, ...] = ()
     read_with: ReadWith = ("auto", "auto", None, "auto", None)
     animations: tuple[str, ...] = ()
+    asks_rate: bool = False
     key: str = field(default_factory=lambda: uuid.uuid4().hex, compare=False)
     _fitted: dict[Any, tuple[Clip, ...]] = field(default_factory=dict, repr=False, compare=False)
     """What was fitted last, by what was asked."""
@@ -215,7 +217,8 @@ def read_source(path: str | Path, name: str | None = None, read_with: ReadWith |
         tuple(at_30_fps(person) for person in found.people),
         path=path,
         found=Found(found.describe(), found.joints),
-        notes=(found.animations.note,) if found.animations and found.animations.note else (),
+        notes=found.notes,
+        asks_rate=found.asks_rate,
         read_with=read_with or Source.read_with,
         animations=animation_labels(found.animations),
     )

@@ -75,6 +75,7 @@ KINDS = (
     Kind("bvh", "BVH pair"),
     Kind("glb", "Animated .glb"),
     Kind("usda", "Animated .usda"),
+    Kind("smpl.npz", "SMPL .npz"),
     Kind("png", "Contact sheet"),
     Kind("json", "Manifest"),
     Kind("csv", "Read-outs .csv"),

@@ -1,4 +1,4 @@
-"""A film of what the player shows, made when somebody asks for it."""
+"""A film, a figure and a mesh of what the player shows, made when somebody asks for them."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ import numpy as np
 from motion import Clip, Duet, InputError
 from webdemo.inference.predict_request import PredictResult
 from webdemo.inference.requests import Result
-from webdemo.view import film
+from webdemo.view import film, mesh, plotly_figure
 from webdemo.view.camera import VIEWS
 from webdemo.view.stage import LOOKS, Pane, Style
 from webdemo.view.theme import THEMES
@@ -86,6 +86,38 @@ def make_film(record: Record | None, shown: str, folder: Path) -> Path:
             yaw=number_of(state, "yaw", -1000.0, 1000.0),
             elevation=number_of(state, "elevation", -0.05, 1.5),
         )
+    except InputError as error:
+        raise without_place(error, folder) from None
+
+
+def make_figure(record: Record | None, shown: str, folder: Path) -> tuple[Path, Path]:
+    """The sample that the player shows as a plotly figure that plays offline, and its moment as a mesh.
+
+    Args:
+        record: the result, or None where there is none yet; of compared ones the first is taken.
+        shown: as in :func:`make_film`.
+        folder: where both files are written.
+
+    Returns:
+        the .html and the .ply.
+
+    Raises:
+        InputError: where there is nothing to show, or it is too long.
+    """
+    if record is None:
+        raise InputError("There is no motion to show yet: make one first.")
+    state = read_player(shown)
+    motion = _pane(record.result, state.get("sample"), "").motion
+    path = folder / file_name(record.prompt, record.result.manifest)
+    theme = _one_of(state, "theme", tuple(THEMES), "light")
+    frame = int(number_of(state, "frame", 0, motion.num_frames - 1) or 0)
+    worn = record.worn.body if record.worn and state.get("character") is True else None
+    try:
+        page = plotly_figure.write_figure(
+            motion, path.with_name(f"{path.name}.html"), title=record.prompt, theme=theme
+        )
+        surface = path.with_name(f"{path.name}-frame{frame}.ply")
+        return page, mesh.write_mesh(motion, surface, frame=frame, style=Style(theme=theme, body=worn))
     except InputError as error:
         raise without_place(error, folder) from None
 

@@ -7,7 +7,7 @@ from pathlib import Path
 
 import gradio as gr
 
-FILE_TYPES = [".bvh", ".glb", ".npz", ".npy", ".skeleton", ".txt"]
+FILE_TYPES = [".bvh", ".glb", ".npz", ".npy", ".c3d", ".trc", ".zip", ".skeleton", ".txt"]
 
 
 def file_field(label: str, *, elem_id: str) -> gr.File:

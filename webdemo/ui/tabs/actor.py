@@ -57,6 +57,7 @@ class ActorTab(SweepTab):
     take: dict[str, gr.Button]
     trim: gr.Column
     animation: gr.Dropdown
+    reading: gr.Accordion
     person: gr.Radio
     begin: gr.Slider
     end: gr.Slider
@@ -68,7 +69,7 @@ class ActorTab(SweepTab):
 
     def _import_choices(self) -> None:
         """The line on how the file was read, and its settings."""
-        with gr.Accordion("How the file was read", open=False, elem_id="react-import"):
+        with gr.Accordion("How the file was read", open=False, elem_id="react-import") as self.reading:
             with gr.Row(elem_classes="pd-pair"):
                 self.up = gr.Dropdown(
                     [(_DETECTED, AUTO), *AXES], value=AUTO, label="Up axis", elem_id="react-up",
@@ -162,6 +163,10 @@ class ActorTab(SweepTab):
         self.source.change(
             offered_animations, inputs=self.source, outputs=self.animation, queue=False, **QUIET
         )
+        self.source.change(
+            lambda source: gr.update(open=True) if source is not None and source.asks_rate else gr.skip(),
+            inputs=self.source, outputs=self.reading, queue=False, **QUIET,
+        )  # fmt: skip
         self.file.clear(self.forget, outputs=changed, queue=False, **QUIET)
         trim = [self.source, self.person, self.begin, self.end]
         gr.on(

@@ -24,7 +24,7 @@ from webdemo.ui.components.exports import (
     write_on_rig,
     write_record,
 )
-from webdemo.ui.components.film import READ_PLAYER, make_film
+from webdemo.ui.components.film import READ_PLAYER, make_figure, make_film
 from webdemo.ui.components.film import suffix as film_suffix
 from webdemo.ui.components.player import EMPTY_TEXT, MotionPlayer, wear
 from webdemo.ui.context import PageContext
@@ -86,7 +86,7 @@ class ResultsTab:
                     self.downloads = [
                         gr.DownloadButton(
                             kind.label, size="sm", interactive=False, min_width=0,
-                            visible=kind.offered(), elem_id=self._id(f"download-{kind.key}"),
+                            visible=kind.offered(), elem_id=self._id(f"download-{kind.key.replace('.', '-')}"),
                         )
                         for kind in KINDS
                     ]  # fmt: skip
@@ -95,6 +95,15 @@ class ResultsTab:
                         f"Film {film_suffix()}", size="sm", interactive=False, min_width=0,
                         elem_id=self._id("download-film"),
                     )  # fmt: skip
+                    self.figure = gr.Button(
+                        "Figure and mesh", size="sm", min_width=0, elem_id=self._id("figure")
+                    )
+                    self.figured = [
+                        gr.DownloadButton(
+                            label, size="sm", interactive=False, min_width=0, elem_id=self._id(name)
+                        )
+                        for label, name in (("Figure .html", "download-html"), ("Mesh .ply", "download-ply"))
+                    ]
                     self.player_state = gr.Textbox(visible=False)
                     self.character = gr.UploadButton(
                         "Wear a character .glb", file_types=[".glb"], size="sm", min_width=0,
@@ -119,6 +128,10 @@ class ResultsTab:
     def _wire_results(self) -> None:
         self.film.click(
             self.make_film, inputs=[self.record, self.player_state], outputs=[self.line, self.filmed],
+            js=READ_PLAYER, concurrency_limit=1, concurrency_id="film", trigger_mode="once", **QUIET,
+        )  # fmt: skip
+        self.figure.click(
+            self.make_figure, inputs=[self.record, self.player_state], outputs=[self.line, *self.figured],
             js=READ_PLAYER, concurrency_limit=1, concurrency_id="film", trigger_mode="once", **QUIET,
         )  # fmt: skip
         self.link.click(
@@ -165,6 +178,20 @@ class ResultsTab:
             f"The film is ready, drawn in {seconds(time.perf_counter() - began)}: press Film {path.suffix}."
         )
         yield status(line, tone="done"), gr.update(value=path, interactive=True)
+
+    def make_figure(self, record: Record | None, shown: str) -> Iterator[Updates]:
+        """Makes a plotly figure of the last result, and a mesh of the moment that the player shows."""
+        off = gr.update(value=None, interactive=False)
+        yield status("Making the figure and the mesh …", tone="busy"), off, off
+        try:
+            paths = make_figure(record, shown, self.page.shelf.folder())
+        except Exception as error:
+            yield status(error_line(error), tone="error"), gr.skip(), gr.skip()
+            return
+        line = (
+            "Ready: Figure .html plays offline in any browser; Mesh .ply is the moment that the player shows."
+        )
+        yield status(line, tone="done"), *(gr.update(value=path, interactive=True) for path in paths)
 
     def make_link(self, record: Record | None, shown: str) -> Updates:
         """Makes a link to the shown run, at the moment and from the side that the player shows."""

@@ -1,0 +1,190 @@
+"""From the markers of a laboratory, or the key points of a camera, to the joints of bodies.
+
+Names decide: Plug-in Gait's and CMU's markers (``LASI``, ``LKNE``, ``C7`` …), OpenCap's and Pose2Sim's key points
+(``LHip``, ``LKnee``, ``LBigToe`` …) and joint centres (``LHJC``, ``LKJC`` …). A prefix such as ``Anna:`` tells people
+of one file apart.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Mapping, Sequence
+
+import numpy as np
+from numpy.typing import NDArray
+
+from motion.clip import Clip
+from motion.errors import InputError
+from motion.skeleton import POINTS17
+from motion.transforms import axis_to_y
+
+Array = NDArray[np.floating]
+Points = Mapping[str, Array]
+
+_FARTHEST = 1000.0  # metres
+_OFTEN_UNSEEN = 0.2
+"""Share of the frames; a joint that is interpolated for longer is mentioned."""
+_SIDED: dict[str, tuple[tuple[str, ...], ...]] = {
+    "hip": (("*hjc",), ("*hjcstudy",), ("*hipjc",), ("*hip",), ("%hip",), ("*hipcenter",)),
+    "knee": (
+        ("*kjc",), ("*kneejc",), ("*kne", "*knem"), ("*kneestudy", "*mkneestudy"), ("*knee", "*mknee"), ("*kne",),
+        ("*knee",), ("%knee",),
+    ),
+    "ankle": (
+        ("*ajc",), ("*anklejc",), ("*ank", "*ankm"), ("*ank", "*med"), ("*anklestudy", "*mankstudy"),
+        ("*anklestudy", "*manklestudy"), ("*ankle", "*mankle"), ("*ank",), ("*ankle",), ("%ankle",),
+    ),
+    "foot": (
+        ("*toe",), ("*bigtoe",), ("*bigtoe", "*smalltoe"), ("*toestudy",), ("*mt1", "*mt5"), ("%toe",), ("%foot",),
+    ),
+    "shoulder": (("*sjc",), ("*sho",), ("*shoulder",), ("%shoulder",), ("*acr",)),
+    "elbow": (("*ejc",), ("*elb", "*elbm"), ("*elb",), ("*elbow",), ("%elbow",)),
+    "wrist": (("*wjc",), ("*wra", "*wrb"), ("*wri",), ("*wrist",), ("%wrist",), ("*wrb",), ("*wra",)),
+}  # fmt: skip
+"""Markers whose mean is the joint, by preference; "*" is l or r, "%" left or right."""
+_MIDDLE: dict[str, tuple[tuple[str, ...], ...]] = {
+    "head": (("lfhd", "rfhd", "lbhd", "rbhd"), ("lfhd", "rfhd"), ("head",), ("lear", "rear"), ("nose",)),
+    "neck": (("c7", "clav"), ("neck",), ("c7",), ("t1",)),
+}
+_PELVIS = (
+    ("lasi", "rasi", "lpsi", "rpsi"),
+    ("lasis", "rasis", "lpsis", "rpsis"),
+    ("lfwt", "rfwt", "lbwt", "rbwt"),
+)
+"""Four markers around the pelvis: both in front, both behind."""
+_NEEDED = ("hip", "knee", "ankle", "shoulder", "elbow", "wrist")
+_SACRUM = ("sacr", "vsacr")
+
+
+def people_of(names: Sequence[str], points: Array, fps: float, label: str) -> tuple[Clip, ...]:
+    """Everybody whom markers show, in the order in which their prefixes appear.
+
+    Args:
+        names: of P markers.
+        points: (T, P, 3) metres, NaN where a marker was not seen; any axis may be up.
+        fps: frames a second.
+        label: the file's name in messages.
+
+    Returns:
+        clips on :data:`~motion.skeleton.POINTS17`, Y up; joints are interpolated while they were not seen.
+
+    Raises:
+        InputError: if nobody has the markers of a whole body, or places are not possible.
+    """
+    if np.nanmax(np.abs(points), initial=0.0) > _FARTHEST or np.isinf(points).any():
+        raise InputError(f"{label} holds points more than {_FARTHEST:g} m away: is its unit right?")
+    people, missing = [], ""
+    for markers in _by_person(names, points):
+        joints, lacks = _joints(markers)
+        if lacks:
+            missing = missing or lacks
+        else:
+            people.append(joints)
+    if not people:
+        shown = ", ".join(re.sub(r"[^\x20-\x7e]", "?", name)[:20] for name in names[:4])
+        raise InputError(
+            f"{label} has no marker or key point for {missing.replace('_', ' ') or 'a body'} among {shown}, …: use "
+            "names such as LKNE, LKnee or LKJC."
+        )
+    upright = _upright(people)
+    return tuple(_clip(joints, upright, fps, label) for joints in people)
+
+
+def _by_person(names: Sequence[str], points: Array) -> list[dict[str, Array]]:
+    """Markers (T, 3) by plain name, a group a prefix; those that were never seen are left out."""
+    found: dict[str, dict[str, Array]] = {}
+    for column, name in enumerate(names):
+        person, _, marker = name.rpartition(":")
+        plain = re.sub(r"[^a-z0-9]", "", marker.lower())
+        if np.isfinite(points[:, column]).all(-1).any():
+            found.setdefault(person, {}).setdefault(plain, points[:, column])
+    return list(found.values())
+
+
+def _joints(markers: Points) -> tuple[dict[str, Array], str]:
+    """(T, 3) of the joints that are found, and the first that is needed and is not."""
+    found: dict[str, Array] = {}
+    for side in ("left", "right"):
+        for part, choices in _SIDED.items():
+            names = [[n.replace("*", side[0]).replace("%", side) for n in choice] for choice in choices]
+            if (place := _mean_of(markers, names)) is not None:
+                found[f"{side}_{part}"] = place
+    for part, choices in _MIDDLE.items():
+        if (place := _mean_of(markers, choices)) is not None:
+            found[part] = place
+    _add_hips(found, markers)
+    lacks = (f"{side}_{part}" for part in _NEEDED for side in ("left", "right"))
+    return found, next((joint for joint in lacks if joint not in found), "")
+
+
+def _mean_of(markers: Points, choices: Sequence[Sequence[str]]) -> Array | None:
+    """The mean of the first set of markers that are all there."""
+    for choice in choices:
+        if all(name in markers for name in choice):
+            return np.mean([markers[name] for name in choice], axis=0)
+    return None
+
+
+def _add_hips(found: dict[str, Array], markers: Points) -> None:
+    """Centres of the hips from four markers of the pelvis (Bell, Pedersen and Brand 1990), where they have no own."""
+    for left, right, left_back, right_back in _PELVIS:
+        back = [name for name in (left_back, right_back, *_SACRUM) if name in markers]
+        if left not in markers or right not in markers or not back:
+            continue
+        front = (markers[left] + markers[right]) / 2
+        wide = markers[left] - markers[right]
+        width = np.linalg.norm(wide, axis=-1, keepdims=True)
+        across = wide / np.maximum(width, 1e-9)
+        behind = np.mean([markers[name] for name in back], axis=0) - front
+        behind -= np.sum(behind * across, axis=-1, keepdims=True) * across
+        behind /= np.maximum(np.linalg.norm(behind, axis=-1, keepdims=True), 1e-9)
+        down = np.cross(behind, across)
+        for side, sign in (("left", 1.0), ("right", -1.0)):
+            found.setdefault(
+                f"{side}_hip", front + width * (0.36 * sign * across + 0.19 * behind + 0.30 * down)
+            )
+        return
+
+
+def _upright(people: Sequence[Mapping[str, Array]]) -> Array:
+    """(3, 3) rotation that turns the axis along which the first person stands to +Y."""
+    first = people[0]
+    top = (first["left_shoulder"] + first["right_shoulder"]) / 2
+    tall = np.nanmedian(top - (first["left_ankle"] + first["right_ankle"]) / 2, axis=0)
+    axis = int(np.argmax(np.abs(np.nan_to_num(tall))))
+    return axis_to_y(axis, -1.0 if tall[axis] < 0 else 1.0)
+
+
+def _clip(joints: Mapping[str, Array], upright: Array, fps: float, label: str) -> Clip:
+    """The joints that were found with those that follow from them, without gaps."""
+    unseen = {name: float(np.mean(~np.isfinite(place).all(-1))) for name, place in joints.items()}
+    places = {name: _filled(place) @ upright.T for name, place in joints.items()}
+    hips, shoulders = ((places[f"left_{part}"] + places[f"right_{part}"]) / 2 for part in ("hip", "shoulder"))
+    trunk = _unit(shoulders - hips)
+    across = _unit(places["left_hip"] - places["right_hip"])
+    places["pelvis"] = hips + 0.09 * trunk
+    places.setdefault("neck", shoulders + 0.03 * trunk)
+    places.setdefault("head", places["neck"] + 0.1 * trunk)
+    for side in ("left", "right"):
+        ahead = np.cross(across, _unit(places[f"{side}_knee"] - places[f"{side}_ankle"]))
+        places.setdefault(
+            f"{side}_foot", places[f"{side}_ankle"] + 0.13 * ahead + np.array([0.0, -0.06, 0.0])
+        )
+    positions = np.stack([places[name] for name in POINTS17.joint_names], axis=1)
+    often = [name.replace("_", " ") for name, share in unseen.items() if share > _OFTEN_UNSEEN]
+    note = f"Interpolated, as their markers were often not seen: {', '.join(often)}."
+    try:
+        return Clip(positions, fps, POINTS17, name=label, notes=(note,) if often else ())
+    except InputError as error:
+        raise InputError(f"{label}: {error}") from None
+
+
+def _filled(place: Array) -> Array:
+    """(T, 3) with frames that lack the joint interpolated, and held at the ends."""
+    seen = np.flatnonzero(np.isfinite(place).all(-1))
+    times = np.arange(len(place))
+    return np.stack([np.interp(times, seen, column[seen]) for column in place.T], axis=1)
+
+
+def _unit(vector: Array) -> Array:
+    return vector / np.maximum(np.linalg.norm(vector, axis=-1, keepdims=True), 1e-9)

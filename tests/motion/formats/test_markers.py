@@ -1,0 +1,171 @@
+"""Marker files, .trc and .c3d: the joints of bodies out of named points."""
+
+from __future__ import annotations
+
+import io
+from collections.abc import Mapping
+
+import numpy as np
+import pytest
+
+from motion import SMPL22, Clip, Duet, InputError, formats
+from motion.formats.importing import import_motion
+from motion.formats.markers import people_of
+from motion.skeleton import POINTS17
+from tests.motion.bodies import marching
+
+c3d = pytest.importorskip("c3d")
+
+POSITIONS, _ = marching(24)
+JOINT = {name: POSITIONS[:, index] for index, name in enumerate(SMPL22.joint_names)}
+TO_Z_UP = np.array([[1.0, 0, 0], [0, 0, -1], [0, 1, 0]])
+
+
+def keypoints(shift: tuple[float, float, float] = (0, 0, 0)) -> dict[str, np.ndarray]:
+    """Pose2Sim's names of a body's joints, (T, 3) metres, Y up."""
+    names = {"foot": "BigToe"}
+    sided = {
+        f"{side[0].upper()}{names.get(part, part.title())}": JOINT[f"{side}_{part}"]
+        for side in ("left", "right")
+        for part in ("hip", "knee", "ankle", "foot", "shoulder", "elbow", "wrist")
+    }
+    both = {**sided, "Neck": JOINT["neck"], "Head": JOINT["head"]}
+    return {name: place + np.array(shift) for name, place in both.items()}
+
+
+def trc_text(
+    points: Mapping[str, np.ndarray], *, rate: object = 30, unit: str = "m", scale: float = 1.0
+) -> str:
+    """A .trc file as OpenSim writes it."""
+    names, frames = list(points), len(next(iter(points.values())))
+    head = [
+        "PathFileType\t4\t(X/Y/Z)\ttest.trc",
+        "DataRate\tCameraRate\tNumFrames\tNumMarkers\tUnits\tOrigDataRate\tOrigDataStartFrame\tOrigNumFrames",
+        f"{rate}\t{rate}\t{frames}\t{len(names)}\t{unit}\t{rate}\t1\t{frames}",
+        "Frame#\tTime\t" + "\t\t\t".join(names) + "\t\t",
+        "\t\t" + "\t".join(f"X{n}\tY{n}\tZ{n}" for n in range(1, len(names) + 1)),
+    ]
+    for frame in range(frames):
+        values = [value * scale for name in names for value in points[name][frame]]
+        cells = ["" if np.isnan(value) else f"{value:.5f}" for value in values]
+        head.append("\t".join([str(frame + 1), f"{frame / 30:.4f}", *cells]))
+    return "\n".join(head) + "\n"
+
+
+def c3d_bytes(points: Mapping[str, np.ndarray], *, rate: float = 100.0) -> bytes:
+    """A .c3d file of points (T, 3) in metres, in millimetres and Z up, as laboratories record."""
+    writer = c3d.Writer(point_rate=rate)
+    writer.set_point_labels(list(points))
+    stacked = np.stack(list(points.values()), axis=1) @ TO_Z_UP.T * 1000.0
+    for frame in stacked:
+        row = np.zeros((len(points), 5), dtype=np.float32)
+        row[:, :3] = np.nan_to_num(frame)
+        row[:, 3] = np.where(np.isnan(frame).any(-1), -1.0, 0.0)
+        writer.add_frames([(row, np.zeros((0, 0)))])
+    buffer = io.BytesIO()
+    writer.write(buffer)
+    return buffer.getvalue()
+
+
+def error_of(found: Clip) -> float:
+    """The largest distance in metres from the body that the markers were put on, at the joints that they show."""
+    names = [name for name in POINTS17.joint_names if name not in ("pelvis",)]
+    theirs = [POINTS17.index(name) for name in names]
+    ours = [SMPL22.index(name) for name in names]
+    return float(np.linalg.norm(found.positions[:, theirs] - POSITIONS[:, ours], axis=-1).max())
+
+
+@pytest.mark.parametrize(("unit", "scale"), [("m", 1.0), ("mm", 1000.0), ("cm", 100.0)])
+def test_key_points_of_a_trc_are_the_joints(unit: str, scale: float) -> None:
+    clip = formats.read(
+        trc_text(keypoints(), unit=unit, scale=scale).encode(), name="walk.trc", keep_skeleton=True
+    )
+    assert isinstance(clip, Clip) and clip.fps == 30 and clip.notes == ()
+    assert error_of(clip) < 1e-4
+
+
+def test_points_are_fitted_to_the_22_joints() -> None:
+    clip = formats.read(c3d_bytes(keypoints()), name="walk.c3d")
+    assert isinstance(clip, Clip) and clip.skeleton is SMPL22 and clip.fps == 100
+    between = np.linalg.norm(clip.positions - POSITIONS, axis=-1)
+    assert np.median(between) < 0.03
+
+
+def test_two_people_of_a_c3d_are_told_apart_by_their_prefix() -> None:
+    points = {f"Anna:{name}": place for name, place in keypoints().items()}
+    points |= {f"Ben:{name}": place for name, place in keypoints((0.5, 0, 1)).items()}
+    found = import_motion(c3d_bytes(points), name="two.c3d")
+    assert len(found.people) == 2 and found.fps == 100 and not found.asks_rate
+    apart = found.people[1].positions - found.people[0].positions
+    np.testing.assert_allclose(apart, np.broadcast_to([0.5, 0, 1], apart.shape), atol=1e-3)
+    assert isinstance(formats.read(trc_text(points).encode(), name="two.trc"), Duet)
+
+
+def test_hips_come_from_the_markers_of_a_pelvis() -> None:
+    """A pelvis 24 cm wide in front: hips 0.36, 0.30 and 0.19 of that beside, below and behind the middle."""
+    still = {name: np.repeat(place[:1], 3, axis=0) for name, place in keypoints().items()}
+    markers = {name: place for name, place in still.items() if name not in ("LHip", "RHip")}
+    markers |= {
+        "LASI": np.full((3, 3), (0.12, 1.0, 0.1)), "RASI": np.full((3, 3), (-0.12, 1.0, 0.1)),
+        "LPSI": np.full((3, 3), (0.05, 1.0, -0.1)), "RPSI": np.full((3, 3), (-0.05, 1.0, -0.1)),
+    }  # fmt: skip
+    names = list(markers)
+    (clip,) = people_of(names, np.stack([markers[name] for name in names], axis=1), 100.0, "x.c3d")
+    np.testing.assert_allclose(
+        clip.positions[0, POINTS17.index("left_hip")],
+        [0.36 * 0.24, 1.0 - 0.30 * 0.24, 0.1 - 0.19 * 0.24],
+        atol=1e-6,
+    )
+
+
+@pytest.mark.parametrize("kind", ["trc", "c3d"])
+def test_gaps_are_interpolated_and_long_ones_are_said(kind: str) -> None:
+    points = keypoints()
+    points["LWrist"] = points["LWrist"].copy()
+    points["LWrist"][5:15] = np.nan
+    data = trc_text(points).encode() if kind == "trc" else c3d_bytes(points)
+    clip = formats.read(data, name=f"gap.{kind}", keep_skeleton=True)
+    assert clip.notes == ("Interpolated, as their markers were often not seen: left wrist.",)
+    wrist = clip.positions[:, POINTS17.index("left_wrist")]
+    middle = points["LWrist"][4] + 0.5 * (points["LWrist"][15] - points["LWrist"][4])
+    np.testing.assert_allclose((wrist[9] + wrist[10]) / 2, middle, atol=2e-4)
+
+
+WHOLE = trc_text(keypoints())
+
+
+@pytest.mark.parametrize(
+    ("text", "says"),
+    [
+        ("hello", "head of five lines"),
+        ("\n" * 10, "DataRate"),
+        (WHOLE.replace("30\t30", "x\t30", 1), "DataRate as a number"),
+        (WHOLE.replace("30\t30", "0\t30", 1), "not possible"),
+        (WHOLE.replace("30\t30", "nan\t30", 1), "not possible"),
+        (WHOLE.replace("\tm\t", "\tfurlong\t", 1), "unit 'furlong'"),
+        (WHOLE.replace("LKnee", "Tail"), "left knee"),
+        (WHOLE.replace("\t0.0000\t", "\t0.0000\twing", 1), "line 6: 'wing"),
+        (WHOLE.replace("\t0.0000\t", "\t0.0000\tinf", 1), "not a number|m away"),
+        ("\n".join(WHOLE.split("\n")[:5]) + "\n", "no frames"),
+        (trc_text(keypoints(), scale=1e6), "is its unit right"),
+        (WHOLE + "\t" * 100_000, "line 30 is longer"),
+    ],
+)
+def test_wrong_trc_files_are_one_sentence(text: str, says: str) -> None:
+    with pytest.raises(InputError, match=says):
+        formats.read(text.encode(), name="x.trc")
+
+
+@pytest.mark.parametrize(
+    ("data", "says"),
+    [
+        (b"\2", "not a C3D"),
+        (b"\2\x50" + b"\0" * 600, "damaged"),
+        (c3d_bytes({"Tail": POSITIONS[:, 0]}), "no marker or key point"),
+        (c3d_bytes(keypoints(), rate=0.01), "not possible"),
+        (c3d_bytes(keypoints())[:1500], "damaged|holds"),
+    ],
+)
+def test_wrong_c3d_files_are_one_sentence(data: bytes, says: str) -> None:
+    with pytest.raises(InputError, match=says):
+        formats.read(data, name="x.c3d")

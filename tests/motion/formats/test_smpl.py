@@ -1,0 +1,246 @@
+"""Parameters of SMPL bodies, InterHuman's frames, and two people in two files."""
+
+from __future__ import annotations
+
+import io
+import zipfile
+from pathlib import Path
+
+import numpy as np
+import pytest
+from scipy.spatial.transform import Rotation
+
+from motion import SMPL22, Clip, Duet, InputError, formats
+from motion.formats.importing import ImportChoices, import_motion
+from motion.formats.smpl import PELVIS, SHAPE_UNUSED
+from motion.kinematics import fit_rotations
+from tests.motion.bodies import marching
+
+POSITIONS, ROTATIONS = marching(20)
+APART = POSITIONS + np.array([0.4, 0.0, 1.2])
+DUET = Duet.from_positions(np.stack([POSITIONS, APART]), fps=30)
+TO_Z_UP = np.array([[1.0, 0, 0], [0, 0, -1], [0, 1, 0]])
+
+
+def saved(**arrays: np.ndarray) -> bytes:
+    buffer = io.BytesIO()
+    np.savez_compressed(buffer, **arrays)
+    return buffer.getvalue()
+
+
+def array_file(array: np.ndarray) -> bytes:
+    buffer = io.BytesIO()
+    np.save(buffer, array)
+    return buffer.getvalue()
+
+
+def interx(positions: np.ndarray, *, z_up: bool = True, flat: bool = True) -> dict[str, np.ndarray]:
+    """Inter-X' arrays of a motion on SMPL22's bones."""
+    turn = TO_Z_UP if z_up else np.eye(3)
+    rotations = fit_rotations(positions)
+    rotations[:, 0] = turn @ rotations[:, 0]
+    vectors = Rotation.from_matrix(rotations.reshape(-1, 3, 3)).as_rotvec().reshape(-1, 22, 3)
+    body = vectors[:, 1:].reshape(len(positions), 63) if flat else vectors[:, 1:]
+    return {
+        "root_orient": vectors[:, 0], "pose_body": body, "trans": positions[:, 0] @ turn.T - PELVIS,
+        "pose_lhand": np.zeros((len(positions), 45)), "betas": np.ones((1, 10)), "gender": np.array("male"),
+    }  # fmt: skip
+
+
+def interhuman(positions: np.ndarray) -> np.ndarray:
+    """(T, 492) of InterHuman: 62 joints, Z up, then 51 rotations."""
+    frames = np.random.default_rng(0).normal(size=(len(positions), 492)).astype(np.float32)
+    frames[:, :66] = (positions @ TO_Z_UP.T).reshape(-1, 66)
+    return frames
+
+
+def zipped(parts: dict[str, bytes]) -> bytes:
+    buffer = io.BytesIO()
+    with zipfile.ZipFile(buffer, "w", zipfile.ZIP_DEFLATED) as archive:
+        for name, data in parts.items():
+            archive.writestr(name, data)
+    return buffer.getvalue()
+
+
+# ---- Inter-X and InterHuman --------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("z_up", [True, False])
+@pytest.mark.parametrize("flat", [True, False])
+def test_interx_stands_upright_where_it_was(z_up: bool, flat: bool) -> None:
+    clip = formats.read(saved(**interx(POSITIONS, z_up=z_up, flat=flat)), name="P1.npz")
+    assert isinstance(clip, Clip) and clip.fps == 120
+    np.testing.assert_allclose(clip.positions, POSITIONS, atol=1e-5)
+
+
+def test_interx_says_that_rate_and_bones_are_assumed() -> None:
+    found = import_motion(saved(**interx(POSITIONS)), name="P1.npz")
+    assert found.asks_rate and found.fps == 120
+    assert any("120 frames a second are assumed" in note for note in found.notes)
+    assert SHAPE_UNUSED.format("P1.npz") in found.notes
+    known = import_motion(saved(**interx(POSITIONS)), name="P1.npz", choices=ImportChoices(fps=60))
+    assert not known.asks_rate and known.fps == 60 and len(known.notes) == 1
+
+
+def test_interhuman_is_read_by_its_body_joints() -> None:
+    found = import_motion(array_file(interhuman(POSITIONS)), name="12.npy")
+    assert found.asks_rate and found.fps == 30
+    np.testing.assert_allclose(found.motion.positions, POSITIONS - [0, POSITIONS[..., 1].min(), 0], atol=1e-5)
+
+
+@pytest.mark.parametrize(
+    ("arrays", "says"),
+    [
+        ({"pose_body": np.zeros((4, 60))}, "pose_body must be"),
+        ({"trans": np.zeros((3, 3))}, "same number of frames"),
+        ({"root_orient": np.zeros((4, 4))}, "root_orient"),
+        ({"trans": np.zeros(())}, "must be"),
+        ({"pose_body": np.full((4, 63), np.nan)}, "NaN"),
+        ({"trans": np.full((4, 3), 1e9)}, "10 km"),
+        ({"fps": np.array([1.0, 2.0])}, "not one number"),
+        ({"fps": np.array(0.0)}, "not possible"),
+        ({"pose_body": np.zeros((4, 63), dtype="S3")}, "numbers are needed"),
+        ({"trans": np.zeros((0, 3)), "pose_body": np.zeros((0, 63)), "root_orient": np.zeros((0, 3))}, "must be"),
+    ],
+)  # fmt: skip
+def test_wrong_parameters_are_one_sentence(arrays: dict[str, np.ndarray], says: str) -> None:
+    whole = {"root_orient": np.zeros((4, 3)), "pose_body": np.zeros((4, 63)), "trans": np.zeros((4, 3))}
+    with pytest.raises(InputError, match=says):
+        formats.read(saved(**(whole | arrays)), name="P1.npz")
+
+
+def test_wrong_interhuman_is_one_sentence() -> None:
+    with pytest.raises(InputError, match="492"):
+        formats.read(array_file(np.zeros((5, 491))), name="1.npy")
+    with pytest.raises(InputError, match="NaN"):
+        formats.read(array_file(np.full((5, 492), np.nan)), name="1.npy")
+
+
+# ---- two files ---------------------------------------------------------------------------------------
+
+
+def pair_of(kind: str) -> tuple[dict[str, bytes], float]:
+    lifted = 0.7  # metres above the floor: both people are shifted by the same
+    if kind == "interhuman":
+        a, b = (
+            array_file(interhuman(person + np.array([0, up, 0])))
+            for person, up in ((POSITIONS, lifted), (APART, 0.9))
+        )
+        return {"take/person1/3.npy": a, "take/person2/3.npy": b, "annots/3.txt": b"two people meet"}, 30
+    a, b = (
+        saved(**interx(person + np.array([0, up, 0])))
+        for person, up in ((POSITIONS, lifted), (APART[:15], 0.9))
+    )
+    return {"G001/P1.npz": a, "G001/P2.npz": b, "__MACOSX/G001/._P1.npz": b"x"}, 120
+
+
+@pytest.mark.parametrize("kind", ["interhuman", "interx"])
+@pytest.mark.parametrize("packed", [True, False])
+def test_two_files_keep_one_world(kind: str, packed: bool, tmp_path: Path) -> None:
+    parts, fps = pair_of(kind)
+    if packed:
+        duet = formats.read(zipped(parts), name="take.zip")
+    else:
+        for name, data in parts.items():
+            (tmp_path / name).parent.mkdir(parents=True, exist_ok=True)
+            (tmp_path / name).write_bytes(data)
+        duet = formats.read(tmp_path)
+    assert isinstance(duet, Duet) and duet.fps == fps
+    frames = duet.num_frames
+    assert frames == (20 if kind == "interhuman" else 15)  # the longer one is cut
+    assert abs(duet.positions[..., 1].min()) < 0.01  # the height of both is one floor's
+    between = duet.b.positions - duet.a.positions
+    np.testing.assert_allclose(
+        between, (APART + np.array([0, 0.2, 0]) - POSITIONS)[:frames].astype(np.float32), atol=1e-4
+    )
+
+
+def test_the_page_reads_two_files_of_a_zip() -> None:
+    found = import_motion(zipped(pair_of("interx")[0]), name="take.zip")
+    assert len(found.people) == 2 and found.asks_rate
+    assert found.fps == 120
+
+
+@pytest.mark.parametrize(
+    ("parts", "says"),
+    [
+        ({"readme.md": b"x"}, "holds no motion files"),
+        ({f"P{n}.npz": saved(**interx(POSITIONS)) for n in (1, 2, 3)}, "holds 3 motion files"),
+        ({"P1.npz": b"x" * 100, "P2.npz": b"y"}, "P1.npz"),
+        ({"a.zip": b"PK"}, "holds no motion files"),
+        (
+            {"P1.npz": saved(positions=DUET.positions), "P2.npz": saved(positions=DUET.positions)},
+            "two people",
+        ),
+        ({f"{n}.md": b"" for n in range(201)}, "more than 200 parts"),
+    ],
+)
+def test_wrong_archives_are_one_sentence(parts: dict[str, bytes], says: str) -> None:
+    with pytest.raises(InputError, match=says):
+        formats.read(zipped(parts), name="take.zip")
+
+
+def test_an_archive_that_grows_is_refused_before_it_does() -> None:
+    bomb = zipped({"P1.npy": b"\0" * (60 * 2**20)})
+    assert len(bomb) < 100_000
+    with pytest.raises(InputError, match="unpack to more than 50 MB"):
+        formats.read(bomb, name="take.zip")
+
+
+# ---- writing -----------------------------------------------------------------------------------------
+
+
+def joints_again(file: Path) -> np.ndarray:
+    """(T, 22, 3) of a written file as another program makes them, without a line of ours but the bones: SMPL's rule.
+
+    Each joint's rotation is the product of those on the way from the root; the pelvis lies at trans plus its place in
+    the body's own frame.
+    """
+    with np.load(file, allow_pickle=False) as stored:
+        poses, trans = stored["poses"].reshape(-1, 52, 3), stored["trans"]
+    turns: list[Rotation] = []
+    joints = np.zeros((len(poses), 22, 3))
+    for joint, parent in enumerate(SMPL22.parents):
+        own = Rotation.from_rotvec(poses[:, joint])
+        turns.append(own if parent < 0 else turns[parent] * own)
+        joints[:, joint] = (
+            trans + np.array([-0.00179506, -0.22333382, 0.02821918])
+            if parent < 0
+            else joints[:, parent] + turns[parent].apply(SMPL22.offsets[joint])
+        )
+    return joints[..., [0, 2, 1]] * [1, 1, -1]  # (x, y, z) of a Z-up world is (x, z, -y) here
+
+
+def test_written_parameters_give_the_joints_within_a_millimetre(tmp_path: Path) -> None:
+    files = formats.write(DUET, tmp_path / "meet.smpl.npz")
+    assert [file.name for file in files] == ["meet_a.smpl.npz", "meet_b.smpl.npz"]
+    for file, person in zip(files, DUET.people, strict=True):
+        assert np.abs(joints_again(file) - person.positions).max() < 0.001
+        with np.load(file, allow_pickle=False) as stored:
+            assert stored["poses"].shape == (20, 156) and stored["betas"].shape == (16,)
+            assert str(stored["gender"]) == "neutral" and not stored["betas"].any()
+            assert float(stored["mocap_frame_rate"]) == float(stored["mocap_framerate"]) == 30
+
+
+def test_written_parameters_come_back(tmp_path: Path) -> None:
+    files = formats.write(DUET, tmp_path / "meet.smpl.npz")
+    back = formats.read_pair(*files)
+    np.testing.assert_allclose(back.positions, DUET.positions, atol=1e-4)
+    assert back.fps == 30 and back.a.notes == ()  # nothing was assumed
+    (alone,) = formats.write(DUET.a, tmp_path / "alone.smpl.npz")
+    assert isinstance(formats.read(alone), Clip)
+
+
+def test_parameters_need_the_joints_of_smpl(tmp_path: Path) -> None:
+    from motion.skeleton import SBU15
+
+    duet = Duet.from_positions(np.zeros((2, 3, 15, 3)), fps=15, skeleton=SBU15)
+    with pytest.raises(InputError, match="22 joints"):
+        formats.write(duet, tmp_path / "x.smpl.npz")
+    assert not list(tmp_path.iterdir())
+
+
+def test_names_with_two_suffixes(tmp_path: Path) -> None:
+    assert formats.suffix_of("x/meet.SMPL.npz") == ".smpl.npz" and formats.suffix_of("meet.npz") == ".npz"
+    assert formats.with_stem(tmp_path / "meet.smpl.npz", "_2") == tmp_path / "meet_2.smpl.npz"
+    assert formats.with_stem(tmp_path / "meet.bvh", "_2") == tmp_path / "meet_2.bvh"
