@@ -27,7 +27,7 @@ def test_the_button_plays_the_figure(chromium, tmp_path: Path) -> None:
         page.on("request", lambda request: asked.append(request.url))
         page.goto(path.as_uri())
         page.wait_for_selector("text=Two people march")
-        shown = "() => document.querySelector('.js-plotly-plot').data[2].x.slice(0, 2)"
+        shown = "() => Array.from(document.querySelector('.js-plotly-plot')._fullData[2].x.slice(0, 2))"
         first = page.evaluate(shown)
         page.click("text=▶ Play")
         page.wait_for_function(f"first => String(({shown})()) !== String(first)", arg=first)

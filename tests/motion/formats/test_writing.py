@@ -130,7 +130,9 @@ def test_nothing_but_smpl_is_posed(tmp_path):
 
 
 def test_unknown_endings_name_the_known_ones(tmp_path):
-    with pytest.raises(InputError, match=r"'.fbx' cannot be written: use .npz, .bvh, .npy, .glb or .usda"):
+    with pytest.raises(
+        InputError, match=r"'.fbx' cannot be written: use .npz, .bvh, .npy, .glb, .usda or .smpl.npz"
+    ):
         formats.write(DUET, tmp_path / "x.fbx")
     with pytest.raises(InputError, match=r"'.fbx' cannot be read: use "):
         formats.read(tmp_path / "x.fbx")
