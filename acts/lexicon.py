@@ -24,6 +24,7 @@ from motion import InputError
 from .frames import Frame
 from .own import OwnFiles, own_files
 from .shapes import Shape
+from .things import Does
 
 log = logging.getLogger(__name__)
 
@@ -52,6 +53,8 @@ class Entry(BaseModel):
             ``whom`` for the patient.
         shown: False for what no body shows ("falls in love", "turns on the lamp"): it is known, and stays unread.
         to: "other" for what is done to the other person even where the words do not name them, as a salute.
+        thing: what it does with the thing that its words name, see :mod:`acts.things`; who "sits" has a seat even where
+            they name none.
         mutual: done together even where one is named first: "he hugs her" has both arms around.
         reads, ignores: sentences that have the act and that do not.
         group: the file that it stands in.
@@ -69,6 +72,7 @@ class Entry(BaseModel):
     refused: Annotated[tuple[Shape, ...], Field(max_length=6)] = ()
     rule: Annotated[tuple[Sentence, ...], Field(max_length=6)] = ()
     to: Literal["", "other"] = ""
+    thing: Does = ""
     mutual: bool = False
     shown: bool = True
     reads: Annotated[tuple[Sentence, ...], Field(min_length=1)]

@@ -31,9 +31,10 @@ from .partner import PARTNERS, LivePartner
 from .predict_request import PredictRequest
 from .requests import GenerateRequest, Progress, ReactRequest, Result, SamplingRequest
 from .story.request import SceneRequest
+from .things import furnished
 from .timer import StageTimer
 from .tries import run_tries
-from .verdicts import checked_rows
+from .verdicts import kept_rows, plans_of
 
 Request = GenerateRequest | ReactRequest | PredictRequest | SceneRequest | LiveTake
 
@@ -109,9 +110,10 @@ class Engine:
             )
         for event in events:
             if isinstance(event, Result):
+                event = furnished(event, list(plans_of(request)))
                 manifest = _manifest(request, pipeline) | event.manifest
                 duets = tuple(
-                    replace(duet, manifest=manifest | checked_rows(duet) | {"sample": i})
+                    replace(duet, manifest=manifest | kept_rows(duet) | {"sample": i})
                     if isinstance(duet, Duet)
                     else duet
                     for i, duet in enumerate(event.duets)

@@ -50,7 +50,7 @@ class Judged:
 
 def judged(request: Any, result: Result) -> Judged:
     """A result with the verdicts on the acts of its request's words; as it is where there are none to judge."""
-    plans = list(_plans(request))
+    plans = list(plans_of(request))
     rows = tuple(_rows(plans, duet) for duet in result.duets) if plans else ()
     if not any(rows):
         return Judged(result)
@@ -65,12 +65,13 @@ def _with_rows(duet: Duet | Clip, rows: Rows) -> Duet | Clip:
     )
 
 
-def checked_rows(duet: Duet) -> dict[str, Rows]:
-    """The part of a sample's manifest that holds its own verdicts; empty where there are none."""
-    return {"checked": duet.manifest["checked"]} if duet.manifest and "checked" in duet.manifest else {}
+def kept_rows(duet: Duet) -> dict[str, Any]:
+    """The part of a sample's manifest that is its own: its verdicts and its things; empty where there are none."""
+    manifest = duet.manifest or {}
+    return {key: manifest[key] for key in ("checked", "things") if key in manifest}
 
 
-def _plans(request: Any) -> Iterator[tuple[Plan, int, int | None, int | None]]:
+def plans_of(request: Any) -> Iterator[tuple[Plan, int, int | None, int | None]]:
     """The plans of a request's words, with the frames of each and the number of its beat, where there are several."""
     if isinstance(request, SceneRequest):
         edges = request.edges

@@ -1,0 +1,44 @@
+"""Nouns and the kinds of things that they name."""
+
+from __future__ import annotations
+
+import pytest
+
+from acts import Act
+from acts.lexicon import lexicon
+from acts.things import kind_of, on_floor, thing_of
+from motion.things import KINDS
+
+
+@pytest.mark.parametrize(
+    ("noun", "kind"),
+    [
+        ("mugs", "cup"), ("a red rose", "flower"), ("paper bag", "bag"), ("knives", "sword"), ("boxes", "box"),
+        ("Sofa", "bench"), ("piano", ""), ("", ""), ("the boss's desk", "table"), ("happiness", ""),
+    ],
+)  # fmt: skip
+def test_nouns_name_kinds(noun, kind):
+    assert kind_of(noun) == kind
+
+
+def test_every_kind_in_the_table_has_a_shape_and_every_shape_a_noun():
+    from acts.things import _tables
+
+    assert set(_tables()[0].values()) == set(KINDS)
+
+
+def test_a_things_noun_comes_from_the_act_and_else_from_its_words():
+    act = Act(id="1", act="hold-thing", agents=("a",), thing="cup")
+    assert thing_of(act, "he lifts a sword") == ("cup", "cup")
+    bare = act.model_copy(update={"thing": None})
+    assert thing_of(bare, "he lifts a sword") == ("sword", "sword")
+    assert thing_of(bare, "he waves") == ("", "")
+
+
+def test_floors_are_known():
+    assert on_floor("sits on the grass") and not on_floor("sits on a chair")
+
+
+def test_entries_say_what_they_do_with_their_thing():
+    found = {name: entry.thing for name, entry in lexicon().entries.items()}
+    assert found["hand-over"] == "gives" and found["sit-down"] == "sits" and found["wave"] == ""

@@ -1,0 +1,282 @@
+"""The course of one thing through a motion: who holds it, gives it, throws it, and where it is put."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from motion.things import Mesh, Thing, shape
+
+from .holding import Hands, Track, frame_of, held, level, smoothed, unit, yaw_of
+from .timing import WITHIN, lowest, meeting, release
+from .tracks import BLEND, Course, at_rest, put, thrown
+from .uses import Use
+
+Array = NDArray[np.floating]
+
+SPEED = 5.5
+"""Metres a second of a throw, along the floor."""
+SHORTEST, LONGEST = 0.4, 1.1
+"""Seconds of a flight."""
+TABLE = 0.74
+"""Height of a table in metres, where the hand does not say it."""
+TABLES = (0.45, 1.0)
+"""Heights that a hand may ask for."""
+
+
+@dataclass
+class ThingCourse:
+    """What happens to one thing.
+
+    Args:
+        hands: of both people.
+        uses: of the thing, in order.
+        mesh: its surface; that of its kind by default.
+    """
+
+    hands: Hands
+    uses: Sequence[Use]
+    mesh: Mesh | None = None
+    events: list[dict[str, Any]] = field(default_factory=list)
+    tables: list[Thing] = field(default_factory=list)
+
+    def __post_init__(self) -> None:
+        first = self.uses[0]
+        self.kind, self.name = first.kind, first.name
+        self.surface = self.mesh or shape(self.kind)
+        if first.does == "carries" and self.mesh is None:
+            self.surface = self._carried_shape()
+        self.holder: int | None = None
+        self.side = 1
+        self.course = Course(self._first(first), self.hands.fps)
+
+    def made(self) -> Thing:
+        """The thing with its track."""
+        for use in self.uses:
+            getattr(self, f"_{use.does}")(use)
+        places, rotations = self.course.track
+        return Thing("own" if self.mesh else self.kind, self.surface, places, rotations, self.name)
+
+    # ---- where it begins -------------------------------------------------------------------------------
+    def _first(self, use: Use) -> Track:
+        who = use.agents[0]
+        if use.does == "carries":
+            return self._between_both()
+        if use.does == "lifts":
+            return self._on_floor(who, lowest(self.hands, who, use.start, use.stop).frame)
+        if use.does in ("takes", "catches") and use.other is not None:
+            who = use.other
+        return self._in_hand(who, self._side_of(use, who))
+
+    def _side_of(self, use: Use, who: int) -> int:
+        """The hand with which a person begins to hold it."""
+        hands = self.hands
+        if use.does == "gives" or use.does == "takes":
+            giver = use.agents[0] if use.does == "gives" else 1 - use.agents[0]
+            return meeting(hands, giver, use.start, use.stop).sides[0]
+        if use.does in ("throws", "catches"):
+            return self._release(who, use).sides[0]
+        if use.does == "puts":
+            return lowest(hands, who, use.start, use.stop).sides[0]
+        return hands.better_side(who, use.start, use.stop, use.side)
+
+    def _in_hand(self, who: int, side: int) -> Track:
+        self.holder, self.side = who, side
+        return held(self.hands, who, side, self.kind if not self.mesh else "own", self.surface)
+
+    def _on_floor(self, who: int, frame: int) -> Track:
+        self.holder = None
+        hands = self.hands
+        spot = hands.palms[who, :, frame].mean(axis=0)
+        pelvis, ahead = hands.joint(who, "pelvis")[frame], hands.ahead[who, frame]
+        short = 0.3 + self.surface.size[2] / 2 - float((spot - pelvis) @ ahead)
+        spot = (spot + max(short, 0.0) * ahead) * [1, 0, 1]
+        return at_rest(self.kind, self.surface, spot, ahead, hands.frames)
+
+    # ---- what happens to it ----------------------------------------------------------------------------
+    def _say(self, use: Use, frame: int | None, **more: Any) -> None:
+        at = None if frame is None else round(frame / self.hands.fps, 2)
+        self.events.append({"act": use.id, "does": use.does, "by": "ab"[use.agents[0]], "at": at} | more)
+
+    def _taken_up(self, use: Use, who: int) -> None:
+        """Sees to it that a person holds it when their act begins."""
+        if self.holder == who:
+            return
+        if self.holder is None:
+            self._lifts(use)
+        else:
+            self._pass(use, self.holder, who)
+
+    def _pass(self, use: Use, giver: int, receiver: int) -> None:
+        """From hand to hand where these meet; it stays with the giver where they do not."""
+        found = meeting(self.hands, giver, use.start, use.stop)
+        if found.metres > WITHIN + self.surface.size.max() / 4:
+            self._say(use, None, why=f"hands stay {found.metres:.1f} m apart")
+            return
+        if self.side != found.sides[0]:
+            self.course.then(
+                max(found.frame - round(0.5 * self.hands.fps), 0), self._in_hand(giver, found.sides[0])
+            )
+        self.course.then(found.frame, self._in_hand(receiver, found.sides[1]), max(BLEND, found.metres / 3))
+        self._say(use, found.frame, to="ab"[receiver])
+
+    def _gives(self, use: Use) -> None:
+        self._taken_up(use, use.agents[0])
+        if self.holder == use.agents[0] and use.other is not None:
+            self._pass(use, use.agents[0], use.other)
+
+    def _takes(self, use: Use) -> None:
+        if self.holder is None:
+            self._lifts(use)
+        elif self.holder != use.agents[0]:
+            self._pass(use, self.holder, use.agents[0])
+
+    def _holds(self, use: Use) -> None:
+        self._taken_up(use, use.agents[0])
+
+    _plays = _fights = _holds
+
+    def _lifts(self, use: Use) -> None:
+        if self.holder is not None:
+            return
+        who = use.agents[0]
+        found = lowest(self.hands, who, use.start, use.stop)
+        self.course.then(found.frame, self._in_hand(who, found.sides[0]), 0.25)
+        self._say(use, found.frame)
+
+    def _puts(self, use: Use) -> None:
+        who = use.agents[0]
+        self._taken_up(use, who)
+        if self.holder != who:
+            return
+        found = lowest(self.hands, who, use.start, use.stop, self.side)
+        self._let_go(use, who, found.frame)
+
+    def _drops(self, use: Use) -> None:
+        who = use.agents[0]
+        self._taken_up(use, who)
+        if self.holder == who:
+            self._let_go(use, who, (use.start + use.stop) // 2)
+
+    def _let_go(self, use: Use, who: int, frame: int) -> None:
+        hands = self.hands
+        spot, ahead = self.course.places[frame].copy(), hands.ahead[who, frame]
+        near = float((spot - hands.joint(who, "pelvis")[frame]) @ ahead)
+        spot = spot + max(0.38 - near, 0.0) * ahead  # not between the feet
+        support = 0.0
+        if use.on:
+            below = -(self.surface.vertices @ self.course.rotations[frame].T)[:, 1].min()
+            support = round(float(np.clip(spot[1] - below, *TABLES)), 2)
+            mesh = shape("table", height=support)
+            place = (spot + (mesh.size[2] / 2 - 0.15) * ahead) * [1, 0, 1]
+            self.tables.append(Thing.at_rest("table", mesh, place, yaw_of(ahead), hands.frames))
+        rest = at_rest(self.kind, self.surface, spot * [1, 0, 1] + [0, support, 0], ahead, hands.frames)
+        put(self.course, frame, rest)
+        self.holder = None
+        self._say(use, frame, on=use.on or "floor")
+
+    # ---- throws ----------------------------------------------------------------------------------------
+    def _release(self, thrower: int, use: Use) -> Any:
+        way = level(
+            (self.hands.joint(1 - thrower, "pelvis") - self.hands.joint(thrower, "pelvis")).mean(axis=0)
+        )
+        towards = way + np.array([0.0, 0.4, 0.0])
+        return release(self.hands, thrower, use.start, use.stop, towards)
+
+    def _throws(self, use: Use) -> None:
+        who = use.agents[0]
+        self._taken_up(use, who)
+        if self.holder != who:
+            return
+        found = self._release(who, use)
+        if found.sides[0] != self.side:
+            before = max(found.frame - round(0.6 * self.hands.fps), 0)
+            self.course.then(before, self._in_hand(who, found.sides[0]))
+        caught = next((u for u in self._after(use) if u.does == "catches"), None)
+        if use.other is None and caught is None:
+            self._throw_away(use, who, found.frame)
+        else:
+            catcher = caught.agents[0] if caught else use.other
+            assert catcher is not None
+            self._fly(use, found.frame, catcher)
+
+    def _after(self, use: Use) -> Sequence[Use]:
+        """The next use of the thing, in a list of one, or none."""
+        place = list(self.uses).index(use)
+        return self.uses[place + 1 : place + 2]
+
+    def _fly(self, use: Use, frame: int, catcher: int) -> None:
+        """A throw that is caught by the hand that is nearest when it comes down."""
+        hands, last = self.hands, self.hands.frames - 1
+        gap = float(
+            np.linalg.norm((hands.palms[catcher, :, frame].mean(axis=0) - self.course.places[frame])[[0, 2]])
+        )
+        seconds = float(np.clip(gap / SPEED, SHORTEST, LONGEST)) if catcher != use.agents[0] else LONGEST
+        down = frame + round(seconds * hands.fps)
+        at = min(down, last)
+        side = int(hands.palms[catcher, :, at, 1].argmax())
+        if abs(float(np.diff(hands.palms[catcher, :, at, 1])[0])) < 0.1:
+            reach = np.linalg.norm(hands.palms[catcher, :, at] - self.course.places[frame], axis=-1)
+            side = int(reach.argmin())
+        goal = self._in_hand(catcher, side)
+        thrown(self.course, frame, down, goal[0][at])
+        if down < last:
+            self.course.places[down:] = goal[0][down:]
+            self.course.then(down + round(0.15 * hands.fps), (self.course.places, goal[1]), 0.15)
+        self._say(use, frame, to="ab"[catcher], caught=round(down / hands.fps, 2))
+
+    def _throw_away(self, use: Use, who: int, frame: int) -> None:
+        """A throw that nobody catches: it comes down three metres ahead."""
+        hands = self.hands
+        spot = (self.course.places[frame] + 3.0 * hands.ahead[who, frame]) * [1, 0, 1]
+        rest = at_rest(self.kind, self.surface, spot, hands.ahead[who, frame], hands.frames)
+        down = frame + round(0.8 * hands.fps)
+        thrown(self.course, frame, down, rest[0][0])
+        if down < hands.frames - 1:
+            self.course.then(down + round(0.1 * hands.fps), rest, 0.1)
+        self.holder = None
+        self._say(use, frame)
+
+    def _catches(self, use: Use) -> None:
+        who = use.agents[0]
+        if self.holder == who:
+            return
+        if self.holder is None:
+            self._lifts(use)
+            return
+        found = self._release(self.holder, use)
+        self._fly(use, found.frame, who)
+
+    # ---- carried by two --------------------------------------------------------------------------------
+    def _carries(self, use: Use) -> None:
+        if len(use.agents) == 1:
+            self._holds(use)
+        else:
+            self.holder = None
+            self._say(use, use.start, to="ab"[use.agents[1]])
+
+    def _carried_shape(self) -> Mesh:
+        """As long as the way between the two people leaves room for."""
+        gap = np.linalg.norm(
+            (self.hands.joint(0, "pelvis") - self.hands.joint(1, "pelvis"))[:, [0, 2]], axis=1
+        )
+        width = round(float(np.clip(np.median(gap) - 0.55, 0.5, 2.2)), 1)
+        return shape(self.kind, width=width)
+
+    def _between_both(self) -> Track:
+        """Between the hands of both, along the line between them, upright."""
+        hands = self.hands
+        ends = hands.palms.mean(axis=1)  # (2, T, 3)
+        middle = smoothed(ends.mean(axis=0), 5)
+        along = smoothed(level(hands.joint(1, "pelvis") - hands.joint(0, "pelvis")), 9)
+        up = np.broadcast_to(np.array([0.0, 1.0, 0.0]), middle.shape)
+        rotations = frame_of(up, unit(along))
+        top = float(self.surface.vertices[:, 1].max())
+        standing = float(self.surface.vertices[:, 1].min()) >= 0.0
+        place = middle.copy()
+        place[:, 1] = np.maximum(middle[:, 1] - (top - 0.05 if standing else 0.0), 0.03 if standing else 0.0)
+        return place, rotations

@@ -1,0 +1,126 @@
+"""The acts of a plan that are done with things, each with its frames."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass
+from itertools import pairwise
+from typing import Any
+
+import numpy as np
+
+from acts import Act, Plan, lexicon
+from acts.things import Does, kind_of, nouns_in, on_floor, thing_of
+
+_THROUGH = re.compile(r"\bthrough (?:the|an?) ((?:\w+ )?(?:door|doorway|gate))\b")
+_ON = re.compile(r"\b(?:on|onto|upon|at|to) (?:the|an?|his|her|their) ((?:\w+ )?\w+)")
+
+
+@dataclass(frozen=True)
+class Use:
+    """One act with one thing.
+
+    Attributes:
+        id: of the act.
+        does: what is done with it.
+        kind: of the thing; "" for the seat of a person of whom no seat is named.
+        name: what the words call it.
+        agents: indices of the people who do it.
+        other: index of the other person who takes part, or None.
+        side: "left", "right" or "".
+        start, stop: frames between which it happens.
+        on: kind of furniture that it is put on, or that people sit at; "" for none.
+        words: of the act.
+    """
+
+    id: str
+    does: Does
+    kind: str
+    name: str
+    agents: tuple[int, ...]
+    other: int | None
+    side: str
+    start: int
+    stop: int
+    on: str = ""
+    words: str = ""
+
+
+def uses_of(plan: Plan, start: int, stop: int, lengths: Sequence[float] = ()) -> list[Use]:
+    """The uses of things in a plan, in the order of time.
+
+    Args:
+        plan: of the frames from ``start`` to ``stop`` (exclusive).
+        start, stop: frames.
+        lengths: seconds of the beats into which the sentence was split, where it was.
+    """
+    groups = [[act for act in group if act.happens] for group in plan.beats()]
+    edges = _edges(groups, start, stop, lengths)
+    found = []
+    for group, (first, last) in zip(groups, pairwise(edges), strict=True):
+        for act in group:
+            words = plan.text(act.words) if act.words else ""
+            found += [use for use in (_use(act, words, first, last), _door(act, words, first, last)) if use]
+    return found
+
+
+def _edges(groups: Sequence[Sequence[Act]], start: int, stop: int, lengths: Sequence[float]) -> list[int]:
+    """Frames at which the groups of a plan begin, and the last one ends."""
+    if len(lengths) == len(groups):
+        shares = np.array(lengths, dtype=float)
+    else:
+        shares = np.array([max((_seconds(act) for act in group), default=1.0) for group in groups])
+    return [
+        start + round(x) for x in np.r_[0.0, np.cumsum(shares) / max(shares.sum(), 1e-9)] * (stop - start)
+    ]
+
+
+def _seconds(act: Act) -> float:
+    entry = lexicon().entries.get(act.act)
+    return act.seconds or (entry.seconds if entry else 3.0)
+
+
+def _use(act: Act, words: str, start: int, stop: int) -> Use | None:
+    entry = lexicon().entries.get(act.act)
+    does: Does = entry.thing if entry else ""
+    if not does:
+        return None
+    agents = tuple("ab".index(who) for who in act.agents)
+    other = "ab".index(act.patient) if act.patient else (1 - agents[0] if len(agents) == 1 else None)
+    side = act.side if act.side in ("left", "right") else ""
+    place = _place(words)
+    if does == "sits":
+        if on_floor(words) and not place:
+            return None
+        seats = [noun for noun in nouns_in(words) if noun[1] in ("chair", "bench", "bed")]
+        name, kind = seats[0] if seats else ("chair", "")
+        return Use(act.id, does, kind, name, agents, other, side, start, stop, place, words)
+    name, kind = thing_of(act, words)
+    if not kind:
+        return None
+    if does == "holds" and len(agents) == 2 and act.thing:
+        does = "carries"
+    on = place if does in ("puts", "drops") and place != kind else ""
+    return Use(act.id, does, kind, name, agents, other, side, start, stop, on, words)
+
+
+def _place(words: str) -> str:
+    """ "table" where the words name one as a place, "" elsewhere."""
+    return "table" if any(kind_of(noun) == "table" for noun in _ON.findall(words.lower())) else ""
+
+
+def _door(act: Act, words: str, start: int, stop: int) -> Use | None:
+    """The door frame of one who goes through a door."""
+    if not (found := _THROUGH.search(words.lower())):
+        return None
+    agents = tuple("ab".index(who) for who in act.agents)
+    return Use(act.id, "passes", "door frame", found[1], agents, None, "", start, stop, words=words)
+
+
+def lengths_of(manifest: Mapping[str, Any]) -> list[float]:
+    """Seconds of the beats into which a sentence was split, from a result's manifest; [] where it was not."""
+    plan = manifest.get("plan")
+    beats: Iterable[Any] = plan.get("beats", ()) if isinstance(plan, Mapping) else ()
+    found = [beat.get("seconds") for beat in beats if isinstance(beat, Mapping)]
+    return [float(seconds) for seconds in found if isinstance(seconds, int | float)]
