@@ -47,7 +47,7 @@ def on_floor(text: str) -> bool:
 
 
 def thing_of(act: Act, words: str) -> tuple[str, str]:
-    """What an act is done with, as its noun and its kind; ("", "") where the words name nothing that has a shape.
+    """The thing of an act, as its noun and its kind; ("", "") where the words name nothing that has a shape.
 
     Args:
         act: of a plan.

@@ -30,7 +30,7 @@ TABLES = (0.45, 1.0)
 
 @dataclass
 class ThingCourse:
-    """What happens to one thing.
+    """One thing and all that happens to it.
 
     Args:
         hands: of both people.

@@ -1,4 +1,4 @@
-"""Where hands hold things: the frames of palms, and what is held, kind by kind."""
+"""Holds of things: the frames of palms, and what is held, kind by kind."""
 
 from __future__ import annotations
 

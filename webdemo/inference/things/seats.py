@@ -69,7 +69,7 @@ def furniture(hands: Hands, uses: Sequence[Use]) -> Iterator[tuple[Use, tuple[in
 
 
 Spot = tuple[Array, Array, float]
-"""Where hips rest (3,), the way they face (3,), and the height of a seat under them."""
+"""The place where hips rest (3,), the way they face (3,), and the height of a seat under them."""
 
 
 def _spot(hands: Hands, person: int, rest: tuple[int, int]) -> Spot:
