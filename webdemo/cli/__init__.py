@@ -1,6 +1,7 @@
 """The same jobs from a shell: ``python -m webdemo COMMAND``.
 
-The commands are generate, react, predict, scene, read, render, score, study, info, benchmark, serve, clock and user.
+The commands are generate, react, predict, scene, read, render, score, study, info, benchmark, serve, clock, user
+and database.
 The last line on stdout is one JSON object. An error is one line on stderr that says what is
 wrong and what to do, with exit code 2. A cancelled run (Ctrl+C) ends with 130, and one whose reader has gone
 with 141. No file is left half-written.
@@ -27,6 +28,7 @@ from .scenes import add_scene
 from .scoring import add_score
 from .service import add_service
 from .studies import add_study
+from .upkeep import add_upkeep
 
 __all__ = ["main"]
 
@@ -45,6 +47,7 @@ def main(argv: Sequence[str] | None = None) -> int:
         add_score,
         add_study,
         add_service,
+        add_upkeep,
     ):
         add(commands)
     began = time.perf_counter()

@@ -1,4 +1,7 @@
-"""The tables: runs, what is written on them, the links that open them for others, studies and sign-ins."""
+"""The tables: runs, what is written on them, the links that open them for others, studies and sign-ins.
+
+A change of a table needs a file in ``migrations/versions`` as well.
+"""
 
 from __future__ import annotations
 
@@ -15,7 +18,7 @@ from sqlalchemy.orm import DeclarativeBase, Mapped, mapped_column, relationship,
 
 from motion import InputError
 
-from .upgrade import upgrade
+from .migrations import upgrade
 
 log = logging.getLogger(__name__)
 
@@ -201,7 +204,7 @@ class Ballot(Table):
 
 
 class Database:
-    """A connection to the tables, which are made, or brought up to date, where that is needed.
+    """A connection to the tables, which are made or migrated where that is needed (:mod:`.migrations`).
 
     Args:
         url: as SQLAlchemy takes it.
@@ -211,26 +214,11 @@ class Database:
     """
 
     def __init__(self, url: str) -> None:
-        try:
-            self.engine = create_engine(url, pool_pre_ping=True)
-            if self.engine.dialect.name == "sqlite":
-                _prepare_sqlite(self.engine)
-            upgrade(self.engine, Table.metadata)
+        with opening():
+            self.engine = engine_of(url)
+            upgrade(self.engine)
             with self.engine.begin() as connection:  # rows of an earlier version
                 connection.execute(update(Run).where(Run.stored == 0).values(stored=Run.created))
-        except (ArgumentError, NoSuchModuleError):
-            raise InputError(
-                "The database's URL is not understood: write it as sqlite:///FILE or postgresql+psycopg://…"
-            ) from None
-        except ModuleNotFoundError as error:
-            raise InputError(
-                f"The database needs the Python package {error.name}: install it, or use SQLite."
-            ) from None
-        except (SQLAlchemyError, OSError) as error:
-            reason = str(getattr(error, "orig", None) or error).partition("\n")[0]
-            raise InputError(
-                f"The database cannot be opened ({reason}): check its URL, or move the damaged file away."
-            ) from None
         self._sound_until = 0.0
         self.session = sessionmaker(self.engine, expire_on_commit=False)
 
@@ -248,6 +236,34 @@ class Database:
     def close(self) -> None:
         """Closes all connections."""
         self.engine.dispose()
+
+
+def engine_of(url: str) -> Engine:
+    """Connections to a database as it is; raises what SQLAlchemy does where the URL is none."""
+    engine = create_engine(url, pool_pre_ping=True)
+    if engine.dialect.name == "sqlite":
+        _prepare_sqlite(engine)
+    return engine
+
+
+@contextmanager
+def opening() -> Iterator[None]:
+    """Turns what fails when a database is opened into an InputError with one sentence."""
+    try:
+        yield
+    except (ArgumentError, NoSuchModuleError):
+        raise InputError(
+            "The database's URL is not understood: write it as sqlite:///FILE or postgresql+psycopg://…"
+        ) from None
+    except ModuleNotFoundError as error:
+        raise InputError(
+            f"The database needs the Python package {error.name}: install it, or use SQLite."
+        ) from None
+    except (SQLAlchemyError, OSError) as error:
+        reason = str(getattr(error, "orig", None) or error).partition("\n")[0]
+        raise InputError(
+            f"The database cannot be opened ({reason}): check its URL, or move the damaged file away."
+        ) from None
 
 
 def sentence_of(error: SQLAlchemyError) -> InputError:
