@@ -19,6 +19,7 @@ from numpy.typing import NDArray
 
 from .clip import Clip
 from .errors import InputError
+from .hands import NUMBERS, SHAPES, Fingers
 from .kinematics import swing
 from .skeleton import SMPL22
 
@@ -47,6 +48,7 @@ class Body:
         turns: (22, 3, 3) rotation that takes each bone from the pose of binding to SMPL22's T-pose.
         bones: (V, 4) joints that move each vertex.
         weights: (V, 4) their shares, which sum to 1.
+        fingers: how its hands take shapes; None where they are stiff, as those of an uploaded character.
     """
 
     name: str
@@ -59,6 +61,7 @@ class Body:
     turns: Array = field(repr=False)
     bones: NDArray[np.integer] = field(repr=False)
     weights: Array = field(repr=False)
+    fingers: Fingers | None = field(default=None, repr=False)
 
 
 @lru_cache(maxsize=4)
@@ -74,8 +77,11 @@ def load_body(name: str, *, small: bool = False) -> Body:
     try:
         stored = json.loads(path.read_text(encoding="utf-8"))
 
+        def decoded(text: str, kind: str, columns: int) -> NDArray:
+            return np.frombuffer(base64.b64decode(text), dtype=kind).reshape(-1, columns)
+
         def numbers(key: str, kind: str, columns: int) -> NDArray:
-            return np.frombuffer(base64.b64decode(stored[key]), dtype=kind).reshape(-1, columns)
+            return decoded(stored[key], kind, columns)
 
         vertices = np.array(stored["min"]) + np.array(stored["scale"]) * numbers("vertices", "<u2", 3)
         return Body(
@@ -89,16 +95,18 @@ def load_body(name: str, *, small: bool = False) -> Body:
             turns=np.array(stored["turns"]),
             bones=numbers("bones", "u1", 4).astype(np.int64),
             weights=numbers("weights", "u1", 4) / 255,
+            fingers=Fingers.from_stored(stored["fingers"], decoded),
         )
     except (OSError, ValueError, KeyError) as error:
         raise InputError(f"The body {path.name} cannot be read ({error}): restore static/bodies.") from error
 
 
-def skin(body: Body, motion: Clip | Array) -> Array:
+def skin(body: Body, motion: Clip | Array, hands: Array | None = None) -> Array:
     """The body's surface in each frame.
 
     Args:
         motion: a clip on SMPL22, or positions (T, 22, 3) in metres.
+        hands: (T, 2, 20) finger shapes as :func:`motion.hands.angles` gives them; relaxed by default.
 
     Returns:
         (T, V, 3) float32 metres.
@@ -116,7 +124,22 @@ def skin(body: Body, motion: Clip | Array) -> Array:
         placed = (body.vertices[vertex] - body.joints[joint]) @ np.swapaxes(turned[:, joint], -1, -2)
         placed += positions[:, None, joint]
         surface[:, vertex] += (body.weights[vertex, slot, None] * placed).astype(np.float32)
+    if body.fingers is not None:
+        _shape_hands(body, turned, surface, hands)
     return surface
+
+
+def _shape_hands(body: Body, turned: Array, surface: Array, hands: Array | None) -> None:
+    """Moves the fingers of a posed surface (T, V, 3); ``turned`` (T, 22, 3, 3) are its bones."""
+    assert body.fingers is not None
+    shapes = np.broadcast_to(SHAPES["relaxed"], (len(turned), 2, NUMBERS)) if hands is None else hands
+    shift = body.fingers.shift(body.vertices, shapes)
+    left = body.vertices[body.fingers.vertices, 0] > 0
+    for side, chosen in (("left", left), ("right", ~left)):
+        wrist = turned[:, _J[f"{side}_wrist"]]
+        surface[:, body.fingers.vertices[chosen]] += (shift[:, chosen] @ np.swapaxes(wrist, -1, -2)).astype(
+            np.float32
+        )
 
 
 def vertex_normals(vertices: Array, faces: NDArray[np.integer]) -> Array:

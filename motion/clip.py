@@ -10,6 +10,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .errors import InputError
+from .hands import Grip
+from .hands import cut as cut_grips
 from .skeleton import SMPL22, Skeleton
 from .things.thing import MOST_THINGS, Thing
 
@@ -82,6 +84,7 @@ class Duet:
         roles: what the two are called.
         manifest: everything that reproduces the motion, where it was generated.
         things: beside them in the same world, each with a track of as many frames.
+        grips: shapes that their hands hold for a while; they are relaxed otherwise.
     """
 
     a: Clip
@@ -89,6 +92,7 @@ class Duet:
     roles: tuple[str, str] = ("a", "b")
     manifest: dict[str, Any] | None = field(default=None, repr=False)
     things: tuple[Thing, ...] = ()
+    grips: tuple[Grip, ...] = ()
 
     def __post_init__(self) -> None:
         if self.a.num_frames != self.b.num_frames or self.a.fps != self.b.fps:
@@ -156,16 +160,18 @@ class Duet:
     def cut(self, start: int = 0, stop: int | None = None) -> Duet:
         """Frames ``start`` to ``stop`` (exclusive)."""
         things = tuple(thing.cut(start, stop) for thing in self.things)
-        return replace(self, a=self.a.cut(start, stop), b=self.b.cut(start, stop), things=things)
+        first, last, _ = slice(start, stop).indices(self.num_frames)
+        grips = cut_grips(self.grips, first, last)
+        return replace(self, a=self.a.cut(start, stop), b=self.b.cut(start, stop), things=things, grips=grips)
 
     def swapped(self) -> Duet:
         """The same motion with the two people's places exchanged; roles stay with the place."""
         return replace(self, a=self.b, b=self.a)
 
     def with_positions(self, positions: Sequence[Array] | Array) -> Duet:
-        """The same two people with other positions (2, T, J, 3); things no longer fit and are dropped."""
+        """The same two people with other positions (2, T, J, 3); things and grips no longer fit and are dropped."""
         a, b = self.a.with_positions(positions[0]), self.b.with_positions(positions[1])
-        return replace(self, a=a, b=b, things=())
+        return replace(self, a=a, b=b, things=(), grips=())
 
 
 def stacked_positions(motion: Clip | Duet) -> Array:

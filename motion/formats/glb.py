@@ -1,7 +1,7 @@
 """glTF binary: two skinned, animated people and their things in one file, as 3D programs and browsers play them.
 
-Each person is a node called by their role that carries 22 joints, and a body of :mod:`motion.body` bound to
-them. One animation turns all joints and moves both roots. glTF's axes are ours: Y up, right-handed, metres.
+Each person is a node called by their role that carries 22 joints and 30 of fingers, and a body of :mod:`motion.body`
+bound to them. One animation turns all joints and moves both roots. glTF's axes are ours: Y up, right-handed, metres.
 """
 
 from __future__ import annotations
@@ -20,17 +20,25 @@ from motion.clip import Clip, Duet
 from motion.colours import BODIES as COLOURS
 from motion.colours import linear
 from motion.errors import InputError
+from motion.hands import angles
 from motion.kinematics import local_rotations
 from motion.skeleton import SMPL22
 
 from .files import write_files
 from .glb_nodes import quaternions
 from .glb_things import add_things
+from .hand_rig import FINGER_JOINTS, PARENTS, HandRig
 
 if TYPE_CHECKING:
     import pygltflib
 
 Array = NDArray[np.floating]
+
+_CHILDREN = [
+    [joint for joint, above in enumerate((*SMPL22.parents, *PARENTS)) if above == parent]
+    for parent in range(SMPL22.num_joints + len(PARENTS))
+]
+"""The joints below each, of SMPL22's and the fingers'."""
 
 
 @dataclass
@@ -94,7 +102,8 @@ def glb_bytes(duet: Duet) -> bytes:
     buffer = Buffer(gltf)
     times = buffer.add((np.arange(duet.num_frames) / duet.fps).astype(np.float32), gl.SCALAR, bounds=True)
     for name, clip, role, zones in zip(BODIES, duet.people, duet.roles, COLOURS, strict=True):
-        _add_person(buffer, clip, role, load_body(name), zones, times)
+        shapes = angles(duet.grips, BODIES.index(name), np.arange(float(duet.num_frames)), duet.fps)
+        _add_person(buffer, clip, role, load_body(name), zones, times, shapes)
     add_things(buffer, duet.things, times)
     buffer.data += bytes(-len(buffer.data) % 4)
     gltf.buffers.append(gl.Buffer(byteLength=len(buffer.data)))
@@ -103,7 +112,7 @@ def glb_bytes(duet: Duet) -> bytes:
 
 
 def _add_person(
-    buffer: Buffer, clip: Clip, role: str, body: Body, colours: Mapping[str, str], times: int
+    buffer: Buffer, clip: Clip, role: str, body: Body, colours: Mapping[str, str], times: int, shapes: Array
 ) -> None:
     import pygltflib as gl
 
@@ -116,21 +125,29 @@ def _add_person(
     # A node of the person's own above the joints: programs make one armature of each, not one of both.
     gltf.nodes.append(gl.Node(name=role, children=[first]))
     for joint, name in enumerate(SMPL22.joint_names):
-        children = [first + child for child in SMPL22.children[joint]]
+        children = [first + child for child in _CHILDREN[joint]]
         node = gl.Node(name=f"{role}_{name}", children=children)
         # Without its animation a person stands in T-pose where they begin.
         node.translation = (positions[0, 0] if joint == 0 else offsets[joint]).tolist()
         gltf.nodes.append(node)
+    rig = HandRig.of(body)
+    fingers = [quaternions(each) for each in np.swapaxes(rig.rotations(body, shapes), 0, 1)]
+    for finger, name in enumerate(FINGER_JOINTS):
+        children = [first + child for child in _CHILDREN[SMPL22.num_joints + finger]]
+        node = gl.Node(name=f"{role}_{name}", children=children)
+        node.translation, node.rotation = rig.offsets[finger].tolist(), fingers[finger][0].tolist()
+        gltf.nodes.append(node)
 
-    inverse = np.tile(np.eye(4), (SMPL22.num_joints, 1, 1))
-    inverse[:, :3, :3] = body.turns
-    inverse[:, :3, 3] = -np.einsum("jik,jk->ji", body.turns, body.joints)
+    turns, places = np.concatenate([body.turns, rig.turns]), np.concatenate([body.joints, rig.joints])
+    inverse = np.tile(np.eye(4), (len(turns), 1, 1))
+    inverse[:, :3, :3] = turns
+    inverse[:, :3, 3] = -np.einsum("jik,jk->ji", turns, places)
     columns = np.swapaxes(inverse, 1, 2).reshape(-1, 16).astype(np.float32)  # glTF stores columns first
-    joints = list(range(first, first + SMPL22.num_joints))
+    joints = list(range(first, first + len(turns)))
     gltf.skins.append(
         gl.Skin(name=role, joints=joints, skeleton=first, inverseBindMatrices=buffer.add(columns, gl.MAT4))
     )
-    gltf.meshes.append(gl.Mesh(name=f"{role}_body", primitives=_surface(buffer, body, role, colours)))
+    gltf.meshes.append(gl.Mesh(name=f"{role}_body", primitives=_surface(buffer, body, rig, role, colours)))
     # A skinned mesh belongs at the top: what stands above it does not move it.
     gltf.nodes.append(gl.Node(name=f"{role}_body", mesh=len(gltf.meshes) - 1, skin=len(gltf.skins) - 1))
     gltf.scenes[0].nodes += [holder, len(gltf.nodes) - 1]
@@ -147,6 +164,9 @@ def _add_person(
     rotations = local_rotations(world)
     for joint in range(SMPL22.num_joints):
         animate(first + joint, "rotation", quaternions(rotations[:, joint]), gl.VEC4)
+    for finger, quats in enumerate(fingers):
+        if np.ptp(quats, axis=0).max() > 1e-6:  # a hand that keeps its shape needs no key frames
+            animate(first + SMPL22.num_joints + finger, "rotation", quats, gl.VEC4)
 
 
 def bone_offsets(positions: Array, world: Array) -> Array:
@@ -158,18 +178,20 @@ def bone_offsets(positions: Array, world: Array) -> Array:
     return offsets
 
 
-def _surface(buffer: Buffer, body: Body, role: str, colours: Mapping[str, str]) -> list[pygltflib.Primitive]:
+def _surface(
+    buffer: Buffer, body: Body, rig: HandRig, role: str, colours: Mapping[str, str]
+) -> list[pygltflib.Primitive]:
     """The body's surface in its pose of binding: a primitive and a material for skin, top, shoes and so on."""
     import pygltflib as gl
 
     normals = vertex_normals(body.vertices, body.faces)
     normals[np.linalg.norm(normals, axis=1) < 0.5] = (0.0, 1.0, 0.0)  # of a vertex whose faces have no area
-    weights = body.weights / body.weights.sum(axis=1, keepdims=True)
+    weights = rig.weights
     attributes = gl.Attributes(
         POSITION=buffer.add(body.vertices.astype(np.float32), gl.VEC3, target=gl.ARRAY_BUFFER, bounds=True),
         NORMAL=buffer.add(normals.astype(np.float32), gl.VEC3, target=gl.ARRAY_BUFFER),
         JOINTS_0=buffer.add(
-            np.where(weights > 0, body.bones, 0).astype(np.uint8), gl.VEC4, target=gl.ARRAY_BUFFER
+            np.where(weights > 0, rig.bones, 0).astype(np.uint8), gl.VEC4, target=gl.ARRAY_BUFFER
         ),
         WEIGHTS_0=buffer.add(weights.astype(np.float32), gl.VEC4, target=gl.ARRAY_BUFFER),
     )

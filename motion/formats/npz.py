@@ -33,13 +33,22 @@ _INTERHUMAN = 492
 """InterHuman's processed frames: 62 joints' positions and 51 joints' rotations, the body's first in both."""
 _BODY_POSITIONS, _BODY_ROTATIONS = slice(0, 66), slice(186, 312)
 _COLUMNS = (NUM_FEATURES, 2 * NUM_FEATURES, RAW_FEATURES, _INTERHUMAN)
-_KEYS = ("positions", "fps", "joint_names", "parents", "roles", "manifest", *npz_things.KEYS)
+_KEYS = (
+    "positions",
+    "fps",
+    "joint_names",
+    "parents",
+    "roles",
+    "manifest",
+    *npz_things.KEYS,
+    npz_things.GRIPS,
+)
 
 
 def write_npz(duet: Duet, path: str | Path) -> list[Path]:
     """Writes a duet's positions (2, T, J, 3) float32 with fps, joint_names, parents, roles and manifest.
 
-    Things beside the people are further arrays, see :mod:`.npz_things`.
+    Things beside the people and the grips of their hands are further arrays, see :mod:`.npz_things`.
     """
     arrays: dict[str, Any] = {
         "positions": duet.positions,
@@ -49,6 +58,7 @@ def write_npz(duet: Duet, path: str | Path) -> list[Path]:
         "roles": np.array(duet.roles),
         "manifest": np.array(json.dumps(duet.manifest or {}, ensure_ascii=False)),
         **npz_things.arrays_of(duet.things),
+        **npz_things.grips_array(duet.grips),
     }
     buffer = io.BytesIO()
     np.savez_compressed(buffer, **arrays)
@@ -167,7 +177,8 @@ def _from_arrays(arrays: dict[str, Array], label: str, fps: float | None, everyo
         return made
     known = manifest if isinstance(manifest, dict) and manifest else None
     named = (roles[0], roles[1]) if len(roles) == 2 else ("a", "b")
-    return Duet(made.a, made.b, named, known, npz_things.things_of(arrays, made.num_frames, label))
+    things = npz_things.things_of(arrays, made.num_frames, label)
+    return Duet(made.a, made.b, named, known, things, npz_things.grips_in(arrays, label))
 
 
 def _motion(

@@ -9,11 +9,13 @@
 ``thing_vertices``        (V, 3) float32 metres, one thing after another, each in its own frame
 ``thing_faces``           (F, 3) int32, counted from each thing's own first vertex
 ``thing_colours``         (F, 3) uint8 sRGB
+``grips``                 JSON text: person, side, shape, first frame and last frame of each, see :mod:`motion.hands`
 ========================  ======================================================================================
 """
 
 from __future__ import annotations
 
+import json
 from collections.abc import Mapping, Sequence
 from typing import Any
 
@@ -21,6 +23,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from motion.errors import InputError
+from motion.hands import Grip, grips_of, to_lists
 from motion.things.thing import MOST_THINGS, Mesh, Thing
 
 Array = NDArray[Any]
@@ -29,6 +32,8 @@ KEYS = (
     "thing_kinds", "thing_names", "thing_places", "thing_rotations", "thing_sizes", "thing_vertices",
     "thing_faces", "thing_colours",
 )  # fmt: skip
+GRIPS = "grips"
+"""Name of the array of grips."""
 _SHAPES = {
     "thing_places": ("f", 3), "thing_rotations": ("f", 4), "thing_sizes": ("iu", 2), "thing_vertices": ("f", 2),
     "thing_faces": ("iu", 2), "thing_colours": ("u", 2),
@@ -95,3 +100,20 @@ def _thing(arrays: Mapping[str, Array], i: int, starts: Array, ends: Array) -> T
     mesh = Mesh(vertices, arrays["thing_faces"][rows], arrays["thing_colours"][rows])
     kind, name = (str(arrays[key][i])[:40] for key in ("thing_kinds", "thing_names"))
     return Thing(kind, mesh, arrays["thing_places"][i], arrays["thing_rotations"][i], name)
+
+
+def grips_array(grips: Sequence[Grip]) -> dict[str, Array]:
+    """The array of some grips; none for none."""
+    return {GRIPS: np.array(json.dumps(to_lists(grips)))} if grips else {}
+
+
+def grips_in(arrays: Mapping[str, Array], label: str) -> tuple[Grip, ...]:
+    """The grips of a file whose arrays have been read; raises InputError for what is none."""
+    if GRIPS not in arrays:
+        return ()
+    try:
+        return grips_of(json.loads(str(arrays[GRIPS])))
+    except InputError as error:
+        raise InputError(f"{label}: {error}") from None
+    except (ValueError, RecursionError):
+        raise InputError(f"{label}: its grips are not JSON text: save it again.") from None

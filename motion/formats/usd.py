@@ -1,7 +1,7 @@
 """OpenUSD as text (.usda): two skinned, animated people and their things, for Blender, Houdini, Maya, Unreal …
 
-Each person is a scope called by their role with a UsdSkel root: a skeleton of 22 joints, its animation, and a body of
-:mod:`motion.body` bound to it. The stage is in metres and Y up, and a time code is a frame.
+Each person is a scope called by their role with a UsdSkel root: a skeleton of 22 joints and 30 of fingers, its
+animation, and a body of :mod:`motion.body` bound to it. The stage is in metres and Y up, and a time code is a frame.
 """
 
 from __future__ import annotations
@@ -18,12 +18,14 @@ from motion.clip import Clip, Duet
 from motion.colours import BODIES as COLOURS
 from motion.colours import linear
 from motion.errors import InputError
+from motion.hands import angles
 from motion.kinematics import local_rotations
 from motion.skeleton import SMPL22
 
 from .files import write_files
 from .glb import bone_offsets
 from .glb_nodes import quaternions
+from .hand_rig import FINGER_JOINTS, PARENTS, HandRig
 from .usd_text import identifier, matrices, rows, samples, tuple_of
 from .usd_things import things_text
 
@@ -31,7 +33,8 @@ Array = NDArray[np.floating]
 
 _AROUND = 0.4
 """Metres from the joints to the edge of the box that holds a body."""
-_ONES = f"[{', '.join(['(1, 1, 1)'] * SMPL22.num_joints)}]"
+_NAMES = (*SMPL22.joint_names, *FINGER_JOINTS)
+_ONES = f"[{', '.join(['(1, 1, 1)'] * len(_NAMES))}]"
 
 
 def write_usd(duet: Duet, path: str | Path) -> list[Path]:
@@ -61,9 +64,12 @@ def usd_text(duet: Duet) -> str:
         names = [f"{name}_{letter}" for name, letter in zip(names, "ab", strict=True)]
     # A string's escapes are those of JSON.
     manifest = json.dumps(json.dumps(duet.manifest or {}, default=str))
+    now = np.arange(float(duet.num_frames))
     people = (
-        _person(clip, name, load_body(body), zones)
-        for clip, name, body, zones in zip(duet.people, names, BODIES, COLOURS, strict=True)
+        _person(clip, name, load_body(body), zones, angles(duet.grips, person, now, duet.fps))
+        for person, (clip, name, body, zones) in enumerate(
+            zip(duet.people, names, BODIES, COLOURS, strict=True)
+        )
     )
     return f"""#usda 1.0
 (
@@ -88,16 +94,18 @@ def Xform "duet" (
 """
 
 
-def _person(clip: Clip, name: str, body: Body, colours: Mapping[str, str]) -> str:
+def _person(clip: Clip, name: str, body: Body, colours: Mapping[str, str], shapes: Array) -> str:
     positions = clip.positions.astype(np.float64)
     world = bone_rotations(positions)
-    rest = np.tile(
-        np.eye(4), (SMPL22.num_joints, 1, 1)
-    )  # USD stores rows: points stand to the left of matrices
-    rest[:, 3, :3] = bone_offsets(positions, world)
+    rig = HandRig.of(body)
+    # USD stores rows: points stand to the left of matrices.
+    rest = np.tile(np.eye(4), (len(_NAMES), 1, 1))
+    rest[:, 3, :3] = np.concatenate([bone_offsets(positions, world), rig.offsets])
     rest[0, 3, :3] = positions[0, 0]
-    bind = np.tile(np.eye(4), (SMPL22.num_joints, 1, 1))
-    bind[:, :3, :3], bind[:, 3, :3] = body.turns, body.joints
+    bind = np.tile(np.eye(4), (len(_NAMES), 1, 1))
+    bind[:, :3, :3] = np.concatenate([body.turns, rig.turns])
+    bind[:, 3, :3] = np.concatenate([body.joints, rig.joints])
+    local = np.concatenate([local_rotations(world), rig.rotations(body, shapes)], axis=1)
     place = f"/duet/{name}/person"
     box = np.stack([positions.min(axis=(0, 1)) - _AROUND, positions.max(axis=(0, 1)) + _AROUND])
     return f"""    def Scope "{name}"
@@ -114,7 +122,7 @@ def _person(clip: Clip, name: str, body: Body, colours: Mapping[str, str]) -> st
                 uniform matrix4d[] bindTransforms = {matrices(bind)}
                 uniform matrix4d[] restTransforms = {matrices(rest)}
                 rel skel:animationSource = <{place}/{name}/animation>
-{_animation(positions, world, rest[:, 3, :3])}
+{_animation(positions, local, rest[:, 3, :3])}
             }}
 
             def Mesh "{name}_body" (
@@ -122,17 +130,16 @@ def _person(clip: Clip, name: str, body: Body, colours: Mapping[str, str]) -> st
             )
             {{
                 rel skel:skeleton = <{place}/{name}>
-{_surface(body)}
+{_surface(body, rig)}
 {_subsets(body, place)}            }}
 {_materials(body, place, colours)}        }}
     }}
 """
 
 
-def _animation(positions: Array, world: Array, offsets: Array) -> str:
+def _animation(positions: Array, local: Array, offsets: Array) -> str:
     """The motion: quaternions real part first, and where each joint is against the one above it."""
-    local = local_rotations(world)
-    turns = np.stack([quaternions(local[:, joint]) for joint in range(SMPL22.num_joints)], axis=1)
+    turns = np.stack([quaternions(local[:, joint]) for joint in range(len(_NAMES))], axis=1)
     places = np.repeat(offsets[None], len(positions), axis=0)
     places[:, 0] = positions[:, 0]
     return f"""
@@ -145,10 +152,10 @@ def _animation(positions: Array, world: Array, offsets: Array) -> str:
                 }}"""
 
 
-def _surface(body: Body) -> str:
+def _surface(body: Body, rig: HandRig) -> str:
     """The body as it is bound; each vertex follows four joints."""
-    weights = np.round(body.weights / body.weights.sum(axis=1, keepdims=True), 6)
-    joints = np.where(weights > 0, body.bones, 0)
+    weights = np.round(rig.weights, 6)
+    joints = np.where(weights > 0, rig.bones, 0)
     four = '(\nelementSize = 4\ninterpolation = "vertex"\n)'
     return f"""                uniform token subdivisionScheme = "none"
                 float3[] extent = {rows(np.stack([body.vertices.min(axis=0), body.vertices.max(axis=0)]))}
@@ -195,7 +202,7 @@ def _materials(body: Body, place: str, colours: Mapping[str, str]) -> str:
 def _paths() -> Iterable[str]:
     """The joints as USD calls them: "pelvis/left_hip/left_knee"."""
     found: list[str] = []
-    for name, parent in zip(SMPL22.joint_names, SMPL22.parents, strict=True):
+    for name, parent in zip(_NAMES, (*SMPL22.parents, *PARENTS), strict=True):
         found.append(f"{found[parent]}/{name}" if parent >= 0 else name)
     return found
 

@@ -1,5 +1,6 @@
 // A body from static/bodies, posed by joint positions and lit: motion/body.py's skin in the browser.
 
+import { decodeFingers, RELAXED, shapeHands } from "./hands.js";
 import { apply, dot, multiply, Poser, smoothStep, unit } from "./pose.js";
 
 const bytes = (text) => Uint8Array.from(atob(text), (c) => c.charCodeAt(0));
@@ -23,6 +24,7 @@ export function decodeBody(stored) {
     weights: Float32Array.from(bytes(stored.weights), (v) => v / 255),
     joints: stored.joints,
     turns: stored.turns.map((rows) => rows.flat()),
+    fingers: decodeFingers(stored.fingers, bytes),
     poser: new Poser(stored.joint_names, stored.rest),
   };
 }
@@ -53,6 +55,7 @@ export function coarser(body, most) {
   }
   return {
     ...body,
+    fingers: null,
     vertices: thinned(vertices, 3), normals: thinned(body.normals, 3), sky: thinned(body.sky, 1),
     bones: thinned(body.bones, 4), weights: thinned(body.weights, 4),
     faces: Uint16Array.from(corners), faceZones: Uint8Array.from(zones),
@@ -90,8 +93,18 @@ export class Figure {
     this.moves = new Float32Array(12 * body.joints.length);
   }
 
-  /** Brings the surface to joints [x, y, z] in scene axes. */
-  pose(points) {
+  /** The surface as it is bound, with its hands in other shapes. */
+  shape(hands) {
+    const { body } = this;
+    if (!body.fingers || (this.hands && hands.every((hand, side) => hand.every((v, i) => v === this.hands[side][i])))) return;
+    this.hands = hands;
+    this.bound ??= { vertices: Float32Array.from(body.vertices), normals: Float32Array.from(body.normals) };
+    shapeHands(body, hands, this.bound.vertices, this.bound.normals);
+  }
+
+  /** Brings the surface to joints [x, y, z] in scene axes; `hands` are the finger shapes of the left and the right. */
+  pose(points, hands = RELAXED) {
+    this.shape(hands);
     const { body, moves, vertices, normals } = this;
     const world = points.map(([z, x, y]) => [x, y, z]);
     const rotations = body.poser.rotations(world);
@@ -103,7 +116,8 @@ export class Figure {
         moves[12 * joint + 4 * row + 3] = world[joint][axis] - start[axis];
       });
     });
-    const { bones, weights, vertices: rest, normals: straight } = body;
+    const { bones, weights } = body;
+    const { vertices: rest, normals: straight } = this.bound ?? body;
     const m = new Float32Array(12);
     for (let v = 0, i = 0; i < rest.length; v += 4, i += 3) {
       const first = 12 * bones[v];

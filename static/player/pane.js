@@ -4,6 +4,7 @@ import { Figure } from "./body.js";
 import { poseAt } from "./decode.js";
 import * as figure from "./figure.js";
 import { Ground } from "./ground.js";
+import { shapesAt } from "./hands.js";
 import { FIELD_OF_VIEW } from "./orbit.js";
 import { Labels, project } from "./overlay.js";
 import { FUTURES } from "./palette.js";
@@ -70,7 +71,7 @@ export class Pane {
       const given = clock.shown < (this.sample.past_until ?? 0);
       const bodies = show.bodies && skeleton.wears ? this.figures.slice(0, pose.length) : [];
       bodies.forEach((body, person) => {
-        body.pose(pose[person]);
+        body.pose(pose[person], shapesAt(this.sample.grips, person, clock.shown, this.sample.fps));
         const alpha = show.skeletons ? TRANSLUCENT : 1;
         body.shade((given ? theme.givenBodies : theme.bodies)[person], theme.lamps, lens, scene.scale, alpha);
         scene.setTriangles(`body${"AB"[person]}`, { positions: body.positions, colors: body.colors, alpha });

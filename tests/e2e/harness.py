@@ -16,6 +16,7 @@ import gradio as gr
 import numpy as np
 
 from motion import SMPL22, Duet
+from motion.hands import Grip
 from motion.things import Thing, shape
 from webdemo.ui.components.player import MotionPlayer, busy, player_payload, show
 from webdemo.view.payload import build_payload, sample_payload
@@ -99,7 +100,8 @@ def duet_with_things() -> Duet:
         Thing.at_rest("cup", shape("cup"), np.array([-1.0, 0.785, 2.2]), 0.2, duet.num_frames),
         Thing("ball", shape("ball"), places, turns),
     )
-    return replace(duet, things=things)
+    grips = (Grip(0, "right", "fist", 30, 120), Grip(1, "left", "point", 91, 140))
+    return replace(duet, things=things, grips=grips)
 
 
 def apart_duet(seconds: float = 4.0) -> Duet:

@@ -11,6 +11,7 @@ from motion.skeleton import SMPL22
 
 from .binding import bind
 from .clothes import bun, dressed, eyes, shoes
+from .fingers import fingers
 from .makehuman import J, Look, MakeHuman
 from .reduction import ZONES, reduced, with_seams
 
@@ -44,7 +45,9 @@ def sky(vertices: np.ndarray, faces: np.ndarray, normals: np.ndarray, rays: int 
 def build(mh: MakeHuman, look: Look, count: int) -> dict:
     """One body as it is stored."""
     weights = mh.weights()
-    shape, joints, turns = bind(mh, mh.shape(look), weights, look)
+    before = mh.shape(look)
+    shape, joints, turns = bind(mh, before, weights, look)
+    bound = shape
     used = mh.used("body")
     index = np.full(len(shape), -1)
     index[used] = np.arange(len(used))
@@ -75,10 +78,11 @@ def build(mh: MakeHuman, look: Look, count: int) -> dict:
     light = sky(vertices, faces, normals)
     bones = np.argsort(-weights, axis=1)[:, :4]
     share = np.take_along_axis(weights, bones, axis=1)
-    return {
+    made = {
         "joints": joints, "turns": turns, "vertices": vertices, "faces": faces, "zones": zone, "sky": light,
         "bones": bones, "weights": share / share.sum(axis=1, keepdims=True),
     }  # fmt: skip
+    return made | {"fingers": fingers(mh, before, bound, made)}
 
 
 def stored(body: dict) -> dict:
@@ -105,4 +109,5 @@ def stored(body: dict) -> dict:
         "sky": text(np.rint(255 * body["sky"]), "u1"),
         "faces": text(body["faces"], "<u2"),
         "face_zones": text(body["zones"], "u1"),
+        "fingers": body["fingers"],
     }

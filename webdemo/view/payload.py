@@ -17,6 +17,7 @@ from numpy.typing import NDArray
 
 from motion.clip import Clip, Duet
 from motion.errors import InputError
+from motion.hands import to_lists
 from motion.metrics import Contact, contact_events
 
 from .curves import Curve, distance_curves
@@ -127,9 +128,13 @@ def sample_payload(
 
 
 def _things(motion: Duet | Clip) -> dict[str, Any]:
-    """The things beside two people; nothing where there are none."""
-    things = motion.things if isinstance(motion, Duet) else ()
-    return {"things": [thing_payload(thing) for thing in things]} if things else {}
+    """The things beside two people and the grips of their hands; nothing where there are none."""
+    if not isinstance(motion, Duet):
+        return {}
+    things = [thing_payload(thing) for thing in motion.things]
+    return ({"things": things} if things else {}) | (
+        {"grips": to_lists(motion.grips)} if motion.grips else {}
+    )
 
 
 def _people(motion: Duet | Clip) -> Array:

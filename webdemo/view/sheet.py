@@ -25,7 +25,7 @@ from motion.things.thing import Mesh
 from .camera import Camera, cameras, project_shadow
 from .light import lit, shaded
 from .stage import Pane, Stage, Style, paste, side_of, words
-from .things import drawn_things
+from .things import drawn_things, hands_of
 
 Array = NDArray[np.floating]
 
@@ -247,7 +247,7 @@ def _vector(
     people, things = stacked_positions(motion).astype(np.float64), drawn_things(motion)
     for frame, camera, (x, y) in zip(moments, views, _places(len(moments), tile, head), strict=True):
         seen = [(thing.mesh, thing.at(frame)) for thing in things]
-        _draw_tile(axes, motion, people[:, frame], seen, camera, np.array([x, y]), style)
+        _draw_tile(axes, motion, frame, people[:, frame], seen, camera, np.array([x, y]), style)
         axes.text(
             x + small / 2,
             y + tile[1] + small * 1.3,
@@ -261,7 +261,7 @@ def _vector(
 
 
 def _draw_tile(
-    axes, motion: Clip | Duet, pose: Array, seen_things: list[tuple[Mesh, Array]], camera: Camera,
+    axes, motion: Clip | Duet, frame_number: int, pose: Array, seen_things: list[tuple[Mesh, Array]], camera: Camera,
     corner: Array, style: Style,
 ) -> None:  # fmt: skip
     from matplotlib.collections import LineCollection, PolyCollection
@@ -285,7 +285,8 @@ def _draw_tile(
     bodies = style.worn(len(pose), small=True) if dressed else ()
     solid = []
     for person, (body, points) in enumerate(zip(bodies, pose, strict=False)):
-        surface = skin(body, points[None])[0].astype(np.float64)
+        hands = hands_of(motion, person, np.array([frame_number]))
+        surface = skin(body, points[None], hands)[0].astype(np.float64)
         shades = shaded(body, surface, theme.bodies[person], theme.lamps, camera)
         solid.append((body.faces, surface, shades))
     for mesh, surface in seen_things:

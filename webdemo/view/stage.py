@@ -22,7 +22,7 @@ from motion.things.thing import Thing
 from .camera import Camera, sampled
 from .light import Shadow, lit, shaded
 from .theme import THEMES, Colour, Theme, mix
-from .things import drawn_things, shadow_spots
+from .things import drawn_things, hands_of, shadow_spots
 
 Array = NDArray[np.floating]
 Picture = NDArray[np.uint8]
@@ -125,7 +125,11 @@ class Stage:
         for start in range(0, len(times), _BLOCK):
             block = times[start : start + _BLOCK]
             poses = sampled(self.people, self.pane.motion.fps, block)
-            surfaces = [skin(body, way) for body, way in zip(self.bodies, poses, strict=False)]
+            frames = block * self.pane.motion.fps
+            surfaces = [
+                skin(body, way, hands_of(self.pane.motion, person, frames))
+                for person, (body, way) in enumerate(zip(self.bodies, poses, strict=False))
+            ]
             for i, seconds in enumerate(block):
                 worn = [surface[i].astype(np.float64) for surface in surfaces]
                 yield self._draw(float(seconds), poses[:, i], worn, cameras[start + i])

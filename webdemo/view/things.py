@@ -13,6 +13,7 @@ from scipy.spatial.transform import Rotation
 
 from motion.clip import Clip, Duet
 from motion.colours import hex_of
+from motion.hands import angles
 from motion.things.thing import Mesh, Thing
 
 Array = NDArray[np.floating]
@@ -46,6 +47,12 @@ def divided(mesh: Mesh) -> Mesh:
         halves = (np.stack([a, middle, c], axis=1), np.stack([middle, b, c], axis=1))
         faces = np.concatenate([faces[~long], *halves])
         colours = np.concatenate([colours[~long], np.tile(colours[long], (2, 1))])
+
+
+def hands_of(motion: Clip | Duet, person: int, frames: Array) -> Array | None:
+    """(T, 2, 20) finger shapes of a person at frames (T,), which may lie between two; None where they are relaxed."""
+    grips = motion.grips if isinstance(motion, Duet) else ()
+    return angles(grips, person, frames, motion.fps) if grips else None
 
 
 def shadow_spots(things: Sequence[Thing], frame: float) -> Array:

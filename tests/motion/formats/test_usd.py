@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import re
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -13,6 +14,7 @@ from scipy.spatial.transform import Rotation
 from motion import SMPL22, Clip, Duet, InputError, formats
 from motion.body import BODIES, load_body, skin
 from motion.formats.usd import usd_text
+from motion.hands import Grip, angles
 from motion.skeleton import SBU15
 from motion.transforms import turn
 from tests.motion.bodies import marching
@@ -40,7 +42,8 @@ def test_rotations_and_places_give_the_joints() -> None:
     text = usd_text(DUET)
     turns = samples(text, r"quatf\[\] rotations", 4)
     places = samples(text, r"float3\[\] translations", 3)
-    assert turns.shape == (2, 24, 22, 4) and places.shape == (2, 24, 22, 3)
+    assert turns.shape == (2, 24, 52, 4) and places.shape == (2, 24, 52, 3)
+    turns, places = turns[:, :, :22], places[:, :, :22]  # fingers come last
     for clip, quaternions, local in zip(DUET.people, turns, places, strict=True):
         matrices = Rotation.from_quat(quaternions[..., [1, 2, 3, 0]].reshape(-1, 4)).as_matrix()
         world, at = matrices.reshape(24, 22, 3, 3).copy(), local.copy()
@@ -91,21 +94,22 @@ def test_openusd_reads_the_same_joints_and_bodies(tmp_path: Path) -> None:
     pytest.importorskip("pxr", reason="usd-core is not installed")
     from pxr import Usd, UsdGeom, UsdShade, UsdSkel, Vt
 
-    (path,) = formats.write(DUET, tmp_path / "take.usda")
+    grips = (Grip(0, "right", "fist", 5, 20),)
+    (path,) = formats.write(replace(DUET, grips=grips), tmp_path / "take.usda")
     stage = Usd.Stage.Open(str(path))
     assert UsdGeom.GetStageUpAxis(stage) == "Y" and UsdGeom.GetStageMetersPerUnit(stage) == 1.0
     assert (stage.GetStartTimeCode(), stage.GetEndTimeCode(), stage.GetTimeCodesPerSecond()) == (0, 23, 30)
     assert json.loads(stage.GetRootLayer().customLayerData["manifest"]) == DUET.manifest
     cache = UsdSkel.Cache()
-    for clip, role, name in zip(DUET.people, DUET.roles, BODIES, strict=True):
+    for number, (clip, role, name) in enumerate(zip(DUET.people, DUET.roles, BODIES, strict=True)):
         person = f"/duet/{role}/person"
         assert stage.GetPrimAtPath(f"/duet/{role}").GetTypeName() == "Scope"
         assert cache.Populate(UsdSkel.Root(stage.GetPrimAtPath(person)), Usd.PrimDefaultPredicate)
         skeleton = cache.GetSkelQuery(UsdSkel.Skeleton(stage.GetPrimAtPath(f"{person}/{role}")))
         mesh = stage.GetPrimAtPath(f"{person}/{role}_body")
-        surfaces = skin(load_body(name), clip)
+        surfaces = skin(load_body(name), clip, angles(grips, number, np.arange(24.0), 30))
         for frame in (0, 11, 23):
-            joints = np.array(skeleton.ComputeJointSkelTransforms(frame))[:, 3, :3]
+            joints = np.array(skeleton.ComputeJointSkelTransforms(frame))[:22, 3, :3]
             np.testing.assert_allclose(joints, clip.positions[frame], atol=2e-5)
             points = Vt.Vec3fArray(UsdGeom.Mesh(mesh).GetPointsAttr().Get())
             cache.GetSkinningQuery(mesh).ComputeSkinnedPoints(

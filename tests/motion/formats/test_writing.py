@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import errno
 import os
+from dataclasses import replace
 from pathlib import Path
 
 import bvhio
@@ -13,6 +14,8 @@ from scipy.spatial.transform import Rotation
 
 from motion import SMPL22, Clip, Duet, InputError, formats
 from motion.body import BODIES, load_body, skin
+from motion.formats.hand_rig import FINGER_JOINTS
+from motion.hands import Grip, angles
 from motion.skeleton import SBU15
 from motion.transforms import turn
 from tests.motion.bodies import marching
@@ -72,7 +75,7 @@ def test_glb_plays_the_motion(tmp_path):
     assert len(found.gltf.skins) == 2 and len(found.gltf.animations) == 1
     np.testing.assert_allclose(found.times, np.arange(24) / 30, atol=1e-6)
     for person in (0, 1):
-        np.testing.assert_allclose(found.joints(person)[..., :3, 3], DUET.positions[person], atol=1e-4)
+        np.testing.assert_allclose(found.joints(person)[:, :22, :3, 3], DUET.positions[person], atol=1e-4)
 
 
 def test_glb_has_a_node_of_their_own_for_each_person(tmp_path):
@@ -83,7 +86,7 @@ def test_glb_has_a_node_of_their_own_for_each_person(tmp_path):
     assert [nodes[holder].name for holder in holders] == ["actor", "reactor"]
     assert all(holder not in found.parents for holder in holders)
     names = [nodes[joint].name for joint in found.gltf.skins[1].joints]
-    assert names == [f"reactor_{name}" for name in SMPL22.joint_names]
+    assert names == [f"reactor_{name}" for name in (*SMPL22.joint_names, *FINGER_JOINTS)]
     assert len(found.gltf.meshes) == 2, "one a person and nothing else"
     assert [node.name for node in nodes if node.mesh is not None] == ["actor_body", "reactor_body"]
 
@@ -119,6 +122,18 @@ def test_a_glb_shows_the_body_of_the_player(tmp_path):
     found = Skinned(formats.write(DUET, tmp_path / "x.glb")[0])
     for person, (name, clip) in enumerate(zip(BODIES, DUET.people, strict=True)):
         np.testing.assert_allclose(found.surface(person)[0], skin(load_body(name), clip), atol=1e-3)
+
+
+def test_hands_of_a_glb_take_their_shapes(tmp_path):
+    grips = (Grip(0, "left", "fist", 6, 20), Grip(1, "right", "point", 0, 24))
+    found = Skinned(formats.write(replace(DUET, grips=grips), tmp_path / "x.glb")[0])
+    for person, (name, clip) in enumerate(zip(BODIES, DUET.people, strict=True)):
+        shapes = angles(grips, person, np.arange(24.0), 30)
+        surface = skin(load_body(name), clip, shapes)
+        np.testing.assert_allclose(found.surface(person)[0], surface, atol=1e-3)
+        assert np.abs(surface - skin(load_body(name), clip)).max() > 0.03
+    names = [found.gltf.nodes[c.target.node].name for c in found.animation.channels]
+    assert "a_left_index1" in names and "a_right_index1" not in names, "still fingers have no key frames"
 
 
 def test_nothing_but_smpl_is_posed(tmp_path):
