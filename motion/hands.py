@@ -119,7 +119,7 @@ def strength(grip: Grip, times: Array, fps: float) -> Array:
 
 @dataclass(frozen=True, eq=False)
 class Fingers:
-    """How the hands of a body are bound.
+    """The binding of a body's hands.
 
     Attributes:
         joints: (2, 5, 3, 3) places in the pose of binding, by side, finger and joint from the palm out.

@@ -25,7 +25,7 @@ _WRISTS = np.array([SMPL22.index(f"{side}_wrist") for side in SIDES])
 
 @dataclass(frozen=True, eq=False)
 class HandRig:
-    """How 30 finger joints hang on a body's wrists.
+    """The 30 finger joints that hang on a body's wrists.
 
     Attributes:
         offsets: (30, 3) metres from the joint above, in the T-pose.

@@ -47,7 +47,6 @@ def build(mh: MakeHuman, look: Look, count: int) -> dict:
     weights = mh.weights()
     before = mh.shape(look)
     shape, joints, turns = bind(mh, before, weights, look)
-    bound = shape
     used = mh.used("body")
     index = np.full(len(shape), -1)
     index[used] = np.arange(len(used))
@@ -82,7 +81,7 @@ def build(mh: MakeHuman, look: Look, count: int) -> dict:
         "joints": joints, "turns": turns, "vertices": vertices, "faces": faces, "zones": zone, "sky": light,
         "bones": bones, "weights": share / share.sum(axis=1, keepdims=True),
     }  # fmt: skip
-    return made | {"fingers": fingers(mh, before, bound, made)}
+    return made | {"fingers": fingers(mh, before, shape, made)}
 
 
 def stored(body: dict) -> dict:

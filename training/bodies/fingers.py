@@ -1,4 +1,4 @@
-"""Fingers of a stored body: where their joints are, which way they bend, and which vertices they move."""
+"""Fingers of a stored body: their joints, the axes about which they bend, and the vertices that they move."""
 
 from __future__ import annotations
 
