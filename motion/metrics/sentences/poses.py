@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 import numpy as np
+import scipy  # its parts are loaded with their first use
 from scipy.ndimage import gaussian_filter1d
-from scipy.signal import find_peaks
 
 from .joints import SIDES, Array, Motion
 from .stretches import Mask, keep
@@ -181,7 +181,7 @@ def beckons(m: Motion, who: int) -> Mask:
     for path, ready in zip(m.pair(who, "wrist") - m.pair(who, "shoulder"), over_waist, strict=True):
 
         def strokes(i: int, j: int, path: Array = path) -> bool:
-            return max(len(find_peaks(axis, prominence=0.06)[0]) for axis in path[i:j].T) >= 2
+            return max(len(scipy.signal.find_peaks(axis, prominence=0.06)[0]) for axis in path[i:j].T) >= 2
 
         found |= keep(ready, m.fps, strokes)
     return found

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from typing import Any
 
-from scipy.stats import binomtest
+import scipy  # its parts are loaded with their first use
 
 from motion import Duet
 from motion.metrics.physical import PHYSICAL, physical
@@ -72,7 +72,7 @@ def share(passed: int, count: int) -> str:
     """A share with its 95 % Wilson interval, as text."""
     if not count:
         return "–"
-    bounds = binomtest(passed, count).proportion_ci(method="wilson")
+    bounds = scipy.stats.binomtest(passed, count).proportion_ci(method="wilson")
     return (
         f"{100 * passed / count:.0f} % ({passed}/{count}; {100 * bounds.low:.0f}–{100 * bounds.high:.0f} %)"
     )

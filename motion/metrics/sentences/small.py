@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import numpy as np
-from scipy.signal import find_peaks
+import scipy  # its parts are loaded with their first use
 
 from .joints import Array, Motion
 from .shapes import _flat, _left
@@ -22,14 +22,16 @@ def _pitch(m: Motion, who: int) -> Array:
 
 def _strokes(path: Array, least: float) -> int:
     """Counts how often a path (T,) turns back after ``least`` of its unit or more."""
-    return len(find_peaks(path, prominence=least)[0]) + len(find_peaks(-path, prominence=least)[0])
+    return len(scipy.signal.find_peaks(path, prominence=least)[0]) + len(
+        scipy.signal.find_peaks(-path, prominence=least)[0]
+    )
 
 
 @predicate
 def nods(m: Motion, who: int, degrees: float = 6.0) -> Mask:
     """The head goes down and up again, by ``degrees`` or more against the trunk, while the pelvis stays up."""
     found = np.zeros(m.frames, dtype=bool)
-    for peak in find_peaks(_pitch(m, who), prominence=degrees)[0]:
+    for peak in scipy.signal.find_peaks(_pitch(m, who), prominence=degrees)[0]:
         found[max(0, peak - round(0.15 * m.fps)) : peak + round(0.15 * m.fps) + 1] = True
     return found & (m.height(who) > 0.8)
 
