@@ -96,7 +96,7 @@ def _verdict(act: Act, plan: Plan, motion: Motion, known: Lexicon, before: Mappi
     if why := _unjudged(act, entry):
         return Verdict(act.id, act.act, words, None, why)
     assert entry is not None
-    casts = [rule for who in act.agents for rule in _rules(act, entry, who)]
+    casts = [rule for who in act.agents for rule in rules_of(act, entry, who)]
     failed = [rule for rule in casts if not check(rule, motion)]
     if act.polarity == "not":
         seen = not failed
@@ -165,7 +165,7 @@ def _chain(act: Act, plan: Plan) -> list[str]:
 def _seen(act: Act, known: Lexicon) -> list[str]:
     """The predicates by which an act is seen, one for each agent; none for one that is true all along."""
     entry = known.entries[act.act]
-    found = [mask for who in act.agents for rule in _rules(act, entry, who)[:1] for mask in masks(rule)[:1]]
+    found = [mask for who in act.agents for rule in rules_of(act, entry, who)[:1] for mask in masks(rule)[:1]]
     return [mask for mask in found if not mask.startswith("stays(")]
 
 
@@ -175,7 +175,8 @@ def _over(mask: str, motion: Motion) -> str:
 
 
 # ---- rules -----------------------------------------------------------------------------------------------
-def _rules(act: Act, entry: Entry, who: str) -> list[str]:
+def rules_of(act: Act, entry: Entry, who: str) -> list[str]:
+    """The rules of an act with its own values in the place of their names, for one of its agents."""
     whom = "b" if who == "a" else "a"
     named = act.part or ""
     part = named if named in BODY else vocabulary().part(named)

@@ -55,6 +55,7 @@ class Entry(BaseModel):
         to: "other" for what is done to the other person even where the words do not name them, as a salute.
         thing: what it does with the thing that its words name, see :mod:`acts.things`; who "sits" has a seat even where
             they name none.
+        hand: the shape of the fingers while it is done (:mod:`motion.hands`); "" where none is special.
         mutual: done together even where one is named first: "he hugs her" has both arms around.
         reads, ignores: sentences that have the act and that do not.
         group: the file that it stands in.
@@ -73,6 +74,7 @@ class Entry(BaseModel):
     rule: Annotated[tuple[Sentence, ...], Field(max_length=6)] = ()
     to: Literal["", "other"] = ""
     thing: Does = ""
+    hand: Literal["", "flat", "fist", "point", "grasp", "clasp", "thumbs up", "pinch"] = ""
     mutual: bool = False
     shown: bool = True
     reads: Annotated[tuple[Sentence, ...], Field(min_length=1)]

@@ -146,6 +146,15 @@ def masks(rule: str) -> list[str]:
     return [ast.unparse(c.args[-1 if _name(c.func) == "then" else 0]) for c in conditions if c.args]
 
 
+def mask_of(predicate: str, motion: Motion) -> Mask:
+    """(T,) the frames at which a predicate holds, as :func:`masks` gives it.
+
+    Raises:
+        RuleError: as :func:`check`.
+    """
+    return np.asarray(_value(ast.parse(predicate, mode="eval").body, motion), dtype=bool)
+
+
 def _calls(node: ast.expr) -> Iterator[ast.Call]:
     """The calls of a rule, from the outside in and from left to right."""
     if isinstance(node, ast.Call):

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from motion.things import Mesh, Thing, shape
 
-from .holding import Hands, Track, frame_of, held, level, smoothed, unit, yaw_of
+from .holding import Hands, Track, frame_of, held, level, smoothed, takes_both_hands, unit, yaw_of
 from .timing import WITHIN, lowest, meeting, release
 from .tracks import BLEND, Course, at_rest, put, thrown
 from .uses import Use
@@ -43,6 +43,8 @@ class ThingCourse:
     mesh: Mesh | None = None
     events: list[dict[str, Any]] = field(default_factory=list)
     tables: list[Thing] = field(default_factory=list)
+    holders: list[tuple[int, tuple[int, ...], tuple[int, ...]]] = field(default_factory=list)
+    """From which frame on who holds it, with which hands: 0 left, 1 right."""
 
     def __post_init__(self) -> None:
         first = self.uses[0]
@@ -53,6 +55,9 @@ class ThingCourse:
         self.holder: int | None = None
         self.side = 1
         self.course = Course(self._first(first), self.hands.fps)
+        self._hold_from(0)
+        if first.does == "carries" and len(first.agents) == 2:
+            self.holders = [(0, (0, 1), (0, 1))]
 
     def made(self) -> Thing:
         """The thing with its track."""
@@ -97,6 +102,12 @@ class ThingCourse:
         spot = (spot + max(short, 0.0) * ahead) * [1, 0, 1]
         return at_rest(self.kind, self.surface, spot, ahead, hands.frames)
 
+    def _hold_from(self, frame: int) -> None:
+        """Notes who holds it from a frame on."""
+        both = takes_both_hands(self.kind, self.surface, own=self.mesh is not None)
+        sides = (0, 1) if both else (self.side,)
+        self.holders.append((frame, () if self.holder is None else (self.holder,), sides))
+
     # ---- what happens to it ----------------------------------------------------------------------------
     def _say(self, use: Use, frame: int | None, **more: Any) -> None:
         at = None if frame is None else round(frame / self.hands.fps, 2)
@@ -118,10 +129,11 @@ class ThingCourse:
             self._say(use, None, why=f"hands stay {found.metres:.1f} m apart")
             return
         if self.side != found.sides[0]:
-            self.course.then(
-                max(found.frame - round(0.5 * self.hands.fps), 0), self._in_hand(giver, found.sides[0])
-            )
+            before = max(found.frame - round(0.5 * self.hands.fps), 0)
+            self.course.then(before, self._in_hand(giver, found.sides[0]))
+            self._hold_from(before)
         self.course.then(found.frame, self._in_hand(receiver, found.sides[1]), max(BLEND, found.metres / 3))
+        self._hold_from(found.frame)
         self._say(use, found.frame, to="ab"[receiver])
 
     def _gives(self, use: Use) -> None:
@@ -146,6 +158,7 @@ class ThingCourse:
         who = use.agents[0]
         found = lowest(self.hands, who, use.start, use.stop)
         self.course.then(found.frame, self._in_hand(who, found.sides[0]), 0.25)
+        self._hold_from(found.frame)
         self._say(use, found.frame)
 
     def _puts(self, use: Use) -> None:
@@ -177,6 +190,7 @@ class ThingCourse:
         rest = at_rest(self.kind, self.surface, spot * [1, 0, 1] + [0, support, 0], ahead, hands.frames)
         put(self.course, frame, rest)
         self.holder = None
+        self._hold_from(frame)
         self._say(use, frame, on=use.on or "floor")
 
     # ---- throws ----------------------------------------------------------------------------------------
@@ -196,6 +210,7 @@ class ThingCourse:
         if found.sides[0] != self.side:
             before = max(found.frame - round(0.6 * self.hands.fps), 0)
             self.course.then(before, self._in_hand(who, found.sides[0]))
+            self._hold_from(before)
         caught = next((u for u in self._after(use) if u.does == "catches"), None)
         if use.other is None and caught is None:
             self._throw_away(use, who, found.frame)
@@ -222,7 +237,10 @@ class ThingCourse:
         if abs(float(np.diff(hands.palms[catcher, :, at, 1])[0])) < 0.1:
             reach = np.linalg.norm(hands.palms[catcher, :, at] - self.course.places[frame], axis=-1)
             side = int(reach.argmin())
+        self.holder = None
+        self._hold_from(frame)
         goal = self._in_hand(catcher, side)
+        self._hold_from(max(down - round(0.1 * hands.fps), frame))
         thrown(self.course, frame, down, goal[0][at])
         if down < last:
             self.course.places[down:] = goal[0][down:]
@@ -239,6 +257,7 @@ class ThingCourse:
         if down < hands.frames - 1:
             self.course.then(down + round(0.1 * hands.fps), rest, 0.1)
         self.holder = None
+        self._hold_from(frame)
         self._say(use, frame)
 
     def _catches(self, use: Use) -> None:

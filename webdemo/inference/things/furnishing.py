@@ -12,6 +12,7 @@ from motion.things import FURNITURE, MOST_THINGS, Mesh, Thing
 
 from ..requests import Result
 from .courses import ThingCourse
+from .grips import fitting, grips_of_contact, grips_of_plan, grips_of_things
 from .holding import Hands
 from .seats import furniture
 from .uses import Use, lengths_of, uses_of
@@ -21,7 +22,7 @@ Planned = tuple[Plan, int, int | None, int | None]
 
 
 def furnished(result: Result, plans: Sequence[Planned], own: Mesh | None = None) -> Result:
-    """A result whose duets have the things that their plans' acts are done with.
+    """A result whose duets have the things that their plans' acts are done with, and hands that take shapes.
 
     Args:
         result: of two people on SMPL22; another is returned as it is.
@@ -29,7 +30,7 @@ def furnished(result: Result, plans: Sequence[Planned], own: Mesh | None = None)
         own: the surface that the first thing has, in place of that of its kind.
 
     Returns:
-        the result, with ``things`` in the manifests where there are some.
+        the result, with ``things`` in the manifests where there are some, and with shapes of hands.
     """
     duets: list[Duet | Clip] = []
     lists: list[list[dict[str, Any]]] = []
@@ -37,9 +38,8 @@ def furnished(result: Result, plans: Sequence[Planned], own: Mesh | None = None)
         made, rows = _furnished(duet, plans, lengths_of(result.manifest), own)
         duets.append(made)
         lists.append(rows)
-    if not any(lists):
-        return result
-    return replace(result, duets=tuple(duets), manifest={**result.manifest, "things": lists[0]})
+    manifest = {**result.manifest, "things": lists[0]} if any(lists) else result.manifest
+    return replace(result, duets=tuple(duets), manifest=manifest)
 
 
 def _furnished(
@@ -47,19 +47,23 @@ def _furnished(
 ) -> tuple[Duet | Clip, list[dict[str, Any]]]:
     if not isinstance(duet, Duet) or duet.skeleton.joint_names != SMPL22.joint_names:
         return duet, []
+    hands = Hands.of(duet)
     uses: list[Use] = []
+    grips = list(grips_of_contact(hands))
     for plan, start, stop, beat in plans:
         end = duet.num_frames if stop is None else stop
-        uses += uses_of(plan, start, end, lengths if beat is None else ())
-    if not uses and own is None:
-        return duet, []
-    hands = Hands.of(duet)
+        split = lengths if beat is None else ()
+        uses += uses_of(plan, start, end, split)
+        grips += grips_of_plan(plan, hands, duet, start, end, split)
     things, rows = list[Thing](), list[dict[str, Any]]()
-    for course in _courses(hands, uses, own):
+    courses = _courses(hands, uses, own)
+    for course in courses:
         thing = course.made()
         things += [thing, *course.tables]
         rows.append({"kind": thing.kind, "name": thing.name, "events": course.events})
         rows += [{"kind": table.kind, "name": table.name, "events": []} for table in course.tables]
+    grips += grips_of_things(courses, duet.num_frames)
+    duet = replace(duet, grips=fitting(grips, duet.num_frames))
     for use, people, thing in furniture(hands, uses):
         if any(_same(thing, other) for other in things):
             continue

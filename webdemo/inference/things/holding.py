@@ -92,7 +92,7 @@ def held(hands: Hands, person: int, side: int, kind: str, mesh: Mesh) -> Track:
     """The track of a thing in a person's hand, or before their trunk if it takes two hands."""
     if kind == "guitar":
         return _played(hands, person)
-    if kind == "box" or mesh.size.max() > 1.3 or (kind == "own" and mesh.size.min() > 0.16):
+    if takes_both_hands(kind, mesh, own=kind == "own"):
         return _before(hands, person, mesh)
     palm, out = hands.palms[person, side], hands.out[person, side]
     fingers, thumbs = hands.fingers[person, side], hands.thumbs[person, side]
@@ -113,6 +113,13 @@ def held(hands: Hands, person: int, side: int, kind: str, mesh: Mesh) -> Track:
     # What has an upright stays upright, beside the palm that holds it.
     aside = 0.04 if kind == "cup" else 0.0
     return palm + aside * level(out), frame_of(np.broadcast_to(_UP, palm.shape), -level(out))
+
+
+def takes_both_hands(kind: str, mesh: Mesh, *, own: bool) -> bool:
+    """True for what is held before the body, and for a guitar."""
+    if kind == "guitar" and not own:
+        return True
+    return kind == "box" or float(mesh.size.max()) > 1.3 or (own and float(mesh.size.min()) > 0.16)
 
 
 def _before(hands: Hands, person: int, mesh: Mesh) -> Track:

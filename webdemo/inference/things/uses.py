@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from itertools import pairwise
 from typing import Any
@@ -55,14 +55,22 @@ def uses_of(plan: Plan, start: int, stop: int, lengths: Sequence[float] = ()) ->
         start, stop: frames.
         lengths: seconds of the beats into which the sentence was split, where it was.
     """
+    found = []
+    for act, first, last in act_frames(plan, start, stop, lengths):
+        words = plan.text(act.words) if act.words else ""
+        found += [use for use in (_use(act, words, first, last), _door(act, words, first, last)) if use]
+    return found
+
+
+def act_frames(
+    plan: Plan, start: int, stop: int, lengths: Sequence[float] = ()
+) -> Iterator[tuple[Act, int, int]]:
+    """The acts of a plan that happen, each with its frames; the arguments are those of :func:`uses_of`."""
     groups = [[act for act in group if act.happens] for group in plan.beats()]
     edges = _edges(groups, start, stop, lengths)
-    found = []
     for group, (first, last) in zip(groups, pairwise(edges), strict=True):
         for act in group:
-            words = plan.text(act.words) if act.words else ""
-            found += [use for use in (_use(act, words, first, last), _door(act, words, first, last)) if use]
-    return found
+            yield act, first, last
 
 
 def _edges(groups: Sequence[Sequence[Act]], start: int, stop: int, lengths: Sequence[float]) -> list[int]:
