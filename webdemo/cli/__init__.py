@@ -1,7 +1,7 @@
 """The same jobs from a shell: ``python -m webdemo COMMAND``.
 
-The commands are generate, react, predict, scene, read, render, score, study, info, benchmark, serve, clock, user
-and database.
+The commands are generate, react, predict, scene, read, render, score, study, info, benchmark, serve, clock, user,
+database, backup and restore.
 The last line on stdout is one JSON object. An error is one line on stderr that says what is
 wrong and what to do, with exit code 2. A cancelled run (Ctrl+C) ends with 130, and one whose reader has gone
 with 141. No file is left half-written.

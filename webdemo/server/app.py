@@ -21,6 +21,7 @@ from starlette.responses import JSONResponse, PlainTextResponse, Response
 from starlette.routing import Mount
 
 from acts.lexicon import look_at_own_acts
+from motion import InputError
 from webdemo.server.accounts.login import login_routes
 from webdemo.server.accounts.visitors import Visitors
 from webdemo.server.cluster.instance_lock import InstanceLock
@@ -35,6 +36,7 @@ from webdemo.server.queue.events import EventLimits, FairEvents
 from webdemo.server.queue.places import SEEN_EVERY
 from webdemo.server.queue.shares import SHARE_EVERY
 from webdemo.server.queue.turns import Batcher
+from webdemo.server.store import backup
 from webdemo.server.store.personal_files import keep_files_apart, visitors_folder
 from webdemo.server.store.recorder import Recorder
 from webdemo.server.store.scratch import Scratch
@@ -52,6 +54,8 @@ CLEAN_EVERY = 900.0
 """Seconds between two cleanings of the history."""
 SWEEP_EVERY = 5.0
 """Seconds between two looks for idle live streams."""
+BACKUP_EVERY = 60.0
+"""Seconds between two looks whether a backup is due."""
 TIDY_EVERY = 60.0
 """Seconds between two cleanings of temporary files."""
 GIVE_BACK_EVERY = 5.0
@@ -166,6 +170,8 @@ async def _lifespan(app: FastAPI) -> AsyncIterator[None]:
         asyncio.create_task(_every(SHARE_EVERY, lab.share)),
         asyncio.create_task(_every(SWEEP_EVERY, lab.streams.sweep)),
     ]
+    if lab.settings.backup is not None:
+        tasks.append(asyncio.create_task(_every(BACKUP_EVERY, partial(_back_up, lab, lab.settings.backup))))
     if lab.settings.exit_when_stuck:
         tasks.append(asyncio.create_task(watch(lab.health.stuck)))
     try:
@@ -179,6 +185,15 @@ async def _lifespan(app: FastAPI) -> AsyncIterator[None]:
         lab.database.close()
         if lab.node is not None:
             lab.node.close()
+
+
+def _back_up(lab: Lab, folder: Path) -> None:
+    settings = lab.settings
+    parts = backup.Lab(lab.database.engine, settings.data, settings.users)
+    try:
+        backup.back_up_if_due(parts, folder, hours=settings.backup_hours, keep=settings.backup_keep)
+    except InputError as error:
+        log.error("No backup: %s", error)
 
 
 async def _later(seconds: float, job: Callable[[], Any]) -> None:

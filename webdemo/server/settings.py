@@ -105,6 +105,13 @@ class Settings(BaseSettings):
         2000, gt=0, description="total size of all people's uploads and download files"
     )
 
+    # ---- backups
+    backup: Path | None = Field(
+        None, description="folder in which backups are made regularly; without one, none are"
+    )
+    backup_hours: float = Field(24, gt=0, le=8760, description="hours between two backups")
+    backup_keep: int = Field(7, ge=1, le=1000, description="newest backups that are kept")
+
     # ---- the queue
     running: int = Field(2, ge=1, description="runs of one person at the same time")
     waiting: int = Field(4, ge=1, description="runs of one person that may wait")

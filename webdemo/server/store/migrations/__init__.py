@@ -57,6 +57,11 @@ def upgrade(engine: Engine) -> None:
         log.warning("The database was brought from revision %s to %s.", revision, NEWEST)
 
 
+def migrate(engine: Engine, revision: str) -> None:
+    """Brings an empty or older database to a revision, without a copy of it."""
+    _migrate(engine, "upgrade", revision)
+
+
 def downgrade(engine: Engine, revision: str) -> None:
     """Takes a database back to an earlier revision, for the version of the program that made it.
 
