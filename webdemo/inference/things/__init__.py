@@ -6,5 +6,6 @@ motion give the same things.
 """
 
 from .furnishing import furnished
+from .own import with_own_thing
 
-__all__ = ["furnished"]
+__all__ = ["furnished", "with_own_thing"]

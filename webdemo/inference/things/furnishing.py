@@ -6,6 +6,8 @@ from collections.abc import Iterable, Sequence
 from dataclasses import replace
 from typing import Any
 
+import numpy as np
+
 from acts import Plan
 from motion import SMPL22, Clip, Duet, InputError
 from motion.things import FURNITURE, MOST_THINGS, Mesh, Thing
@@ -13,7 +15,7 @@ from motion.things import FURNITURE, MOST_THINGS, Mesh, Thing
 from ..requests import Result
 from .courses import ThingCourse
 from .grips import fitting, grips_of_contact, grips_of_plan, grips_of_things
-from .holding import Hands
+from .holding import Hands, level, yaw_of
 from .seats import furniture
 from .uses import Use, lengths_of, uses_of
 
@@ -67,14 +69,32 @@ def _furnished(
     for use, people, thing in furniture(hands, uses):
         if any(_same(thing, other) for other in things):
             continue
-        things.append(thing)
+        things.append(thing if own is None or things else _shaped(thing, own))
         event = {"act": use.id, "does": use.does, "by": "".join("ab"[who] for who in people)}
-        rows.append({"kind": thing.kind, "name": thing.name, "events": [event]})
+        rows.append({"kind": things[-1].kind, "name": thing.name, "events": [event]})
+    if own is not None and not things:
+        things.append(_beside(hands, own))
+        rows.append({"kind": "own", "name": "own", "events": []})
     if not things:
         return duet, []
     things, rows = things[:MOST_THINGS], rows[:MOST_THINGS]
     manifest = {**(duet.manifest or {}), "things": rows}
     return replace(duet, things=tuple(things), manifest=manifest), rows
+
+
+def _shaped(thing: Thing, own: Mesh) -> Thing:
+    """A piece of furniture with another surface, which stands on the floor."""
+    lift = np.array([0.0, -float(own.vertices[:, 1].min()), 0.0], dtype=np.float32)
+    return Thing("own", own, thing.places + lift, thing.rotations, thing.name)
+
+
+def _beside(hands: Hands, own: Mesh) -> Thing:
+    """One's own thing on the floor beside two people, where the words name none."""
+    one, other = (hands.joint(person, "pelvis")[0] for person in (0, 1))
+    across = level(np.cross([0.0, 1.0, 0.0], other - one))
+    place = (one + other) / 2 * [1, 0, 1] + (0.5 + float(own.size[[0, 2]].max()) / 2) * across
+    place[1] = -float(own.vertices[:, 1].min())
+    return Thing.at_rest("own", own, place, yaw_of(-across), hands.frames)
 
 
 def _same(one: Thing, other: Thing) -> bool:
