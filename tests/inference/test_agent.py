@@ -203,3 +203,13 @@ def test_the_shipped_agent_names_the_example_actors(name: str, gesture: str) -> 
     eye = Eye(WEIGHTS / "agent", PredictorPipeline(WEIGHTS / "motion-mlp"))
     decision = eye.decide(eye.looks(person.positions))
     assert decision.place is not None and eye.recogniser.config.labels[decision.place] == gesture
+
+
+def test_the_environment_chooses_who_looks_ahead(monkeypatch: pytest.MonkeyPatch) -> None:
+    import importlib
+
+    from webdemo.inference.methods import agent as module
+
+    for value, wanted in (("mawgan", "mawgan"), ("", "motion-mlp")):
+        monkeypatch.setenv(module.PREDICTOR_VARIABLE, value)
+        assert importlib.reload(module).METHOD.needs[0] == wanted

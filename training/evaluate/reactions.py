@@ -3,7 +3,11 @@
 The thesis' table (Chopin, Tables 3.2–3.3) on SBU and K3HI: classification accuracy, FVD and diversity of the
 reacting person, for recorded motion, zero velocity and the reaction models of the engine. The classifiers
 (:mod:`training.evaluate.deep_gru`) are trained on recorded reactions of the published training lists and judge those
-to the actors of the test lists, which no model was trained on.
+to the actors of the test lists, which no model was trained on. Two baselines of :mod:`training.evaluate.baselines`
+know the same recorded pairs.
+
+With ``--strict`` the clips are those of :mod:`training.corpus.strict_pairs`: all of the lists, in the data sets' own
+classes.
 """
 
 from __future__ import annotations
@@ -25,6 +29,8 @@ from motion.formats.files import replacing
 from motion.metrics import summary
 from training.core.shell import exit_code
 from training.corpus.pairs import load_pairs
+from training.corpus.strict_pairs import strict_pairs
+from training.evaluate.baselines import Baseline, nearest, plain_transformer
 from training.evaluate.deep_gru import accuracy, deep_features, diversity_score, fit, frechet_distance
 from training.evaluate.judge.reactions import METHODS, installed, react
 from webdemo.inference import Engine
@@ -84,6 +90,41 @@ def recorded(
     if not kinds[False]:
         raise InputError(f"{data} holds no test clips of {DATASETS[dataset]}: give the whole release.")
     return kinds[True], kinds[False], classes
+
+
+def strictly(
+    data: Path, cache: Path | None, dataset: str
+) -> tuple[list[Reaction], list[Reaction], list[str]]:
+    """Every listed training and test pair of a data set, and its classes."""
+    pairs = [pair for pair in strict_pairs(data, cache) if pair.dataset == dataset]
+    classes = sorted({pair.label for pair in pairs})
+    kinds: dict[bool, list[Reaction]] = {True: [], False: []}
+    for pair in pairs:
+        kinds[pair.test].append(Reaction(pair.positions, classes.index(pair.label)))
+    return kinds[False], kinds[True], classes
+
+
+def long_enough(people: Array) -> Array:
+    """The pair (2, T, 22, 3) with its last poses held where it is shorter than a model's second."""
+    missing = max(0, SHORTEST - people.shape[1])
+    return np.concatenate([people, np.repeat(people[:, -1:], missing, axis=1)], axis=1)
+
+
+def baselines(
+    train: Sequence[Reaction], test: Sequence[Reaction], seeds: int, *, steps: int = 400
+) -> dict[str, list[list[Array]]]:
+    """Per baseline and seed, a person b for each test clip. The nearest reaction has no seed."""
+    known = [reaction.people for reaction in train]
+
+    def all_of(react: Baseline) -> list[Array]:
+        return [react(reaction.people) for reaction in test]
+
+    return {
+        "Nearest recorded reaction": [all_of(nearest(known))],
+        "Plain Transformer": [
+            all_of(plain_transformer(known, seed=seed, steps=steps)) for seed in range(seeds)
+        ],
+    }
 
 
 def zero_velocity(reaction: Reaction, _: int) -> Array:
@@ -193,6 +234,7 @@ def main(argv: list[str] | None = None) -> int:
     parser.add_argument("--datasets", nargs="+", choices=list(DATASETS), default=list(DATASETS))
     parser.add_argument("--methods", nargs="*", choices=list(METHODS), default=installed())
     parser.add_argument("--weights", type=Path, default=WEIGHTS, help="folder that holds a folder a model")
+    parser.add_argument("--strict", action="store_true", help="the thesis' lists and classes, unfiltered")
     parser.add_argument("--seeds", type=int, default=3, help="classifiers, each with a seed of its own")
     parser.add_argument("--samples", type=int, default=3, help="reactions to every actor")
     options = parser.parse_args(argv)
@@ -202,17 +244,15 @@ def main(argv: list[str] | None = None) -> int:
 def _run(options: argparse.Namespace) -> None:
     engine, scores = Engine(options.weights), {}
     for dataset in options.datasets:
-        train, test, classes = recorded(options.data, options.cache, dataset)
+        read = strictly if options.strict else recorded
+        train, test, classes = read(options.data, options.cache, dataset)
         made = {"Zero velocity": [[zero_velocity(reaction, 0) for reaction in test]]}
+        made |= baselines(train, test, options.samples)
         for method in options.methods:
             made[method] = []
             for seed in range(options.samples):
                 print(f"{dataset}: {method}, seed {seed}", file=sys.stderr, flush=True)
-                duets = [
-                    react(engine, Duet.from_positions(one.people, fps=30.0), seed, METHODS[method])
-                    for one in test
-                ]
-                made[method].append([np.asarray(duet.b.positions) for duet in duets])
+                made[method].append([_reacted(engine, one.people, seed, method) for one in test])
         shown = {"Recorded": [reaction.people[1] for reaction in test]}
         shown |= {method: samples[0] for method, samples in made.items()}
         scores[dataset] = {
@@ -228,6 +268,12 @@ def _run(options: argparse.Namespace) -> None:
     if options.table:
         with replacing(options.table) as temporary:
             temporary.write_text(table(scores))
+
+
+def _reacted(engine: Engine, people: Array, seed: int, method: str) -> Array:
+    """Person b (T, 22, 3) as a method makes them for a recorded pair."""
+    whole = Duet.from_positions(long_enough(people), fps=30.0)
+    return np.asarray(react(engine, whole, seed, METHODS[method]).b.positions)[: people.shape[1]]
 
 
 if __name__ == "__main__":

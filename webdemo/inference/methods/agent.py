@@ -2,9 +2,14 @@
 
 from __future__ import annotations
 
+import os
 from pathlib import Path
 
 from webdemo.inference.method import Method, Pipeline
+
+
+PREDICTOR_VARIABLE = "PASDEDEUX_AGENT_PREDICTOR"
+"""Environment variable that names the method that looks two seconds ahead: motion-mlp, the default, or mawgan."""
 
 
 def load(folder: Path, predictor: Pipeline, partner: Pipeline) -> Pipeline:
@@ -22,6 +27,6 @@ METHOD = Method(
     tasks=("react",),
     takes=frozenset({"actor"}),
     weights="agent",
-    needs=("motion-mlp", "intergen"),
+    needs=(os.environ.get(PREDICTOR_VARIABLE) or "motion-mlp", "intergen"),
     load=load,
 )

@@ -1,0 +1,90 @@
+"""InterHuman's files become a corpus on which the trainer runs, stops and goes on."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+import torch
+
+from motion.transforms import canonicalize
+from tests.motion.bodies import marching
+from tests.training.trainers.runs import SETTINGS, begin, take
+from training import prepare
+from training.corpus import interhuman
+
+POSITIONS, _ = marching(60)
+OTHER = POSITIONS * [-1, 1, -1] + np.array([0.0, 0.0, 1.5])
+
+
+def frames_of(positions: np.ndarray) -> np.ndarray:
+    """(T, 492), Z up, with noise in the columns that hold fingers and rotations."""
+    found = np.random.default_rng(0).normal(size=(len(positions), 492)).astype(np.float32)
+    found[:, :66] = (positions[..., [0, 2, 1]] * [1, -1, 1]).reshape(-1, 66)
+    return found
+
+
+@pytest.fixture(scope="module")
+def data(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    folder = tmp_path_factory.mktemp("InterHuman")
+    for person, positions in (("person1", POSITIONS), ("person2", OTHER)):
+        (folder / "motions_processed" / person).mkdir(parents=True)
+        np.save(folder / "motions_processed" / person / "7.npy", frames_of(positions))
+    (folder / "annots").mkdir()
+    (folder / "annots" / "7.txt").write_text(
+        "Two people march.\n\nThey walk in step.\nBoth lift their knees.\n"
+    )
+    return folder
+
+
+@pytest.fixture(scope="module")
+def corpus(data: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
+    out = tmp_path_factory.mktemp("corpus")
+    assert interhuman.main(["--data", str(data), "--out", str(out)]) == 0
+    return out
+
+
+def test_a_motion_keeps_its_people_and_its_sentences(corpus: Path) -> None:
+    motions, (row,) = prepare.load_corpus(corpus)
+    assert row["captions"] == ["Two people march.", "They walk in step.", "Both lift their knees."]
+    assert row["split"] == "train" and row["sources"] == ["interhuman/7"] and row["frames"] == 60
+    wanted = canonicalize(np.stack([POSITIONS, OTHER]))
+    np.testing.assert_allclose(np.asarray(motions).swapaxes(0, 1), wanted, atol=0.002)
+
+
+def test_ten_steps_on_two_files_and_on_from_where_it_stopped(corpus: Path, tmp_path: Path) -> None:
+    scenes = tmp_path / "scenes.safetensors"
+    assert prepare.main(["--corpus", str(corpus), "--out", str(scenes)]) == 0
+    settings = replace(SETTINGS, batch=1, steps=10)
+    whole = take(begin(scenes, tmp_path / "whole", settings), 10)
+    take(begin(scenes, tmp_path / "halves", settings), 4)
+    again = begin(scenes, tmp_path / "halves", settings)
+    assert again.step == 4
+    take(again, 6)
+    assert again.step == whole.step == 10
+    for a, b in zip(whole.model.parameters(), again.model.parameters(), strict=True):
+        torch.testing.assert_close(a, b)
+    fresh = begin(scenes, tmp_path / "fresh", settings)
+    assert any(
+        not torch.equal(a, b) for a, b in zip(fresh.model.parameters(), whole.model.parameters(), strict=True)
+    )
+
+
+def test_lists_give_the_split_and_what_is_damaged_is_left_out(
+    data: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    import shutil
+
+    shutil.copytree(data, tmp_path / "copy")
+    (tmp_path / "copy" / "split").mkdir()
+    (tmp_path / "copy" / "split" / "test.txt").write_text("7\n")
+    np.save(tmp_path / "copy" / "motions_processed" / "person1" / "8.npy", np.full((40, 492), np.nan))
+    (scene,) = interhuman.read_interhuman(tmp_path / "copy")
+    assert scene.split == "test" and "8.npy" in capsys.readouterr().err
+
+
+def test_another_folder_is_one_sentence(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    assert interhuman.main(["--data", str(tmp_path), "--out", str(tmp_path / "out")]) == 2
+    assert "person1" in capsys.readouterr().err and not (tmp_path / "out").exists()
