@@ -7,7 +7,6 @@ from pathlib import Path
 
 from webdemo.inference.method import Method, Pipeline
 
-
 PREDICTOR_VARIABLE = "PASDEDEUX_AGENT_PREDICTOR"
 """Environment variable that names the method that looks two seconds ahead: motion-mlp, the default, or mawgan."""
 
