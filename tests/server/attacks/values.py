@@ -64,7 +64,7 @@ def _filled(schema: dict[str, Any], known: dict[str, Any], text: str) -> Any:
             return _filled((texts or choices)[0], known, text)
         case {"type": "string"}:
             return text
-        case {"type": "number"}:
+        case {"type": "number" | "integer"}:
             return 1
         case {"type": "boolean"}:
             return True

@@ -11,9 +11,9 @@ from fastapi.testclient import TestClient
 
 from tests.server.clients import HERE, HTML, JOIN, client_of, lab_of, settings_for
 from webdemo.server.app import PAGES
-from webdemo.server.http.body_limits import Refused
 from webdemo.server.http.page_html import PageCache
 from webdemo.server.http.rate_limit import RateLimit
+from webdemo.server.http.refused import Refused
 
 
 def test_the_page_and_its_headers(local: TestClient) -> None:

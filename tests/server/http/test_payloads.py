@@ -17,8 +17,8 @@ from acts import Act
 from tests.ui.stub_engine import walking
 from webdemo.inference.story import Beat, FloorPath, FloorPoint, Pose
 from webdemo.server.http import payloads
-from webdemo.server.http.body_limits import Refused
 from webdemo.server.http.payloads import Payloads, check_value
+from webdemo.server.http.refused import Refused
 from webdemo.ui.components.notebook import Action, NotebookView
 from webdemo.ui.components.reading import Reading
 from webdemo.ui.components.story import StoryLine, story_fields, story_value

@@ -3,8 +3,8 @@
 import pytest
 
 from webdemo.server.http import rate_limit
-from webdemo.server.http.body_limits import Refused
 from webdemo.server.http.rate_limit import RateLimit
+from webdemo.server.http.refused import Refused
 
 
 class Clock:

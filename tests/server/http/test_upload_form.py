@@ -2,7 +2,7 @@
 
 import pytest
 
-from webdemo.server.http.body_limits import Refused
+from webdemo.server.http.refused import Refused
 from webdemo.server.http.upload_form import MOST_FILES, UploadForm
 
 TYPE = b"multipart/form-data; boundary=xyz"

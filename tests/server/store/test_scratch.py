@@ -20,8 +20,8 @@ from tests.server.lab import stub_module
 from tests.server.queue.test_queue import wait_for
 from webdemo.server import app as app_module
 from webdemo.server.app import create_app
-from webdemo.server.http.body_limits import Refused
 from webdemo.server.http.rate_limit import RateLimit
+from webdemo.server.http.refused import Refused
 from webdemo.server.store.scratch import KEPT_SECONDS, Scratch
 
 MB = 2**20

@@ -13,10 +13,10 @@ from starlette.responses import HTMLResponse, JSONResponse, RedirectResponse, Re
 
 from motion import InputError
 from webdemo.server.audit import audit
-from webdemo.server.http.body_limits import Refused
 from webdemo.server.http.cookies import set_cookie
 from webdemo.server.http.error_pages import sign_in_card
 from webdemo.server.http.networks import network_of
+from webdemo.server.http.refused import Refused
 from webdemo.server.settings import Settings
 
 from .throttle import TooManyTries

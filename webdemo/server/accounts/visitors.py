@@ -10,8 +10,8 @@ from collections import OrderedDict
 from collections.abc import Mapping
 
 from motion import InputError
-from webdemo.server.http.body_limits import Refused
 from webdemo.server.http.networks import network_of
+from webdemo.server.http.refused import Refused
 from webdemo.server.settings import Settings, is_loopback
 from webdemo.ui.visitor import Visitor
 

@@ -4,26 +4,12 @@ from __future__ import annotations
 
 import asyncio
 import time
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from starlette.types import Message, Receive
 
-if TYPE_CHECKING:
-    from .upload_form import UploadForm
-
-
-class Refused(Exception):
-    """A refused request.
-
-    Attributes:
-        status: the HTTP status.
-        sentence: the message for the client.
-        reason: its label in the metrics.
-    """
-
-    def __init__(self, status: int, sentence: str, reason: str) -> None:
-        super().__init__(sentence)
-        self.status, self.sentence, self.reason = status, sentence, reason
+from .refused import Refused
+from .upload_form import UploadForm
 
 
 def declared_length(headers: dict[bytes, bytes]) -> int:

@@ -17,7 +17,7 @@ from pydantic import TypeAdapter, ValidationError
 from webdemo.server.store.personal_files import owns
 from webdemo.ui.components.accepts import Upload, accepts, accepts_event
 
-from .body_limits import Refused
+from .refused import Refused
 
 _FOREIGN = "A file must be uploaded before it can be used: choose it again."
 

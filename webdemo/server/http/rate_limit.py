@@ -6,7 +6,7 @@ import time
 from collections import OrderedDict
 from collections.abc import Callable
 
-from .body_limits import Refused
+from .refused import Refused
 
 _MOST = 20_000
 """Buckets that are kept; the one that has been idle longest goes first."""

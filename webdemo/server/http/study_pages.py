@@ -24,7 +24,7 @@ from webdemo.ui.components.player import PLAYER_FOLDER, PLOTLY_JS
 from webdemo.ui.visitor import Visitor
 from webdemo.view.payload import Payload, build_payload, grid_sample, sample_payload
 
-from .body_limits import Refused
+from .refused import Refused
 
 STUDY_FOLDER = PLAYER_FOLDER.parent / "study"
 LONGEST_VOTE = 1000

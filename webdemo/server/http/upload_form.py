@@ -7,7 +7,7 @@ from pathlib import PurePath
 from python_multipart.exceptions import FormParserError
 from python_multipart.multipart import MultipartParser, parse_options_header
 
-from .body_limits import Refused
+from .refused import Refused
 
 MOST_FILES = 16
 """Files in one upload."""
