@@ -183,6 +183,7 @@ export class Notebook {
       again: one && one.state !== "running", stop: true, favour: Boolean(one),
       compare: done.length > 1 && done.length === chosen.length && done.length <= 9,
       study: done.length > 0 && done.length === chosen.length,
+      publish: done.length > 0 && done.length === chosen.length,
       export: done.length > 0 && done.length === chosen.length,
       remove: chosen.length > 0 && chosen.every((entry) => entry.state !== "running" && !entry.favourite),
     };
@@ -201,7 +202,7 @@ export class Notebook {
 export function mount(element, props, watch, trigger) {
   const link = Object.assign(document.createElement("link"), { rel: "stylesheet", href: new URL("notebook.css", import.meta.url).href });
   document.head.append(link);
-  const events = { open: "submit", compare: "like", study: "edit", again: "retry", stop: "stop" }; // the others are "select"
+  const events = { open: "submit", compare: "like", study: "edit", publish: "apply", again: "retry", stop: "stop" }; // the others are "select"
   const notebook = new Notebook(element.querySelector(".pdn"), (action) => trigger(events[action.act] ?? "select", action));
   let shown = null;
   const sync = () => {

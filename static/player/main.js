@@ -43,10 +43,11 @@ const hooks = {
 
 /**
  * `element` holds player.html; `props` are the component's, watched by `watch`; `plotly` is the address of our
- * copy of it, and `empty` what is said while there is no motion.
+ * copy of it, `empty` what is said while there is no motion, and `styles` the address of player.css where that is not
+ * beside this module.
  * Safe to call again for an element that was hidden and shown.
  */
-export async function mount(element, props, watch, { plotly, empty }) {
+export async function mount(element, props, watch, { plotly, empty, styles: address = null }) {
   const root = element.querySelector(".pdd");
   const player = new Player(root);
   root.player = player; // for what stands under it and follows its clock
@@ -79,7 +80,7 @@ export async function mount(element, props, watch, { plotly, empty }) {
   sync();
   watch(["value", "busy", "progress", "live", "character"], sync);
   try {
-    const styles = loadStyles(new URL("player.css", import.meta.url).href);
+    const styles = loadStyles(address ?? new URL("player.css", import.meta.url).href);
     const styled = styles.finally(() => root.classList.add("pdd-styled")); // the empty state is there at once
     const [Plotly] = await Promise.all([loadPlotly(plotly), styled]);
     if (!root.isConnected) return;

@@ -1,7 +1,7 @@
 """The same jobs from a shell: ``python -m webdemo COMMAND``.
 
-The commands are generate, react, predict, scene, read, render, score, study, info, benchmark, serve, clock, user,
-database, backup and restore.
+The commands are generate, react, predict, scene, read, render, score, study, share, info, benchmark, serve, clock,
+user, database, backup and restore.
 The last line on stdout is one JSON object. An error is one line on stderr that says what is
 wrong and what to do, with exit code 2. A cancelled run (Ctrl+C) ends with 130, and one whose reader has gone
 with 141. No file is left half-written.
@@ -27,6 +27,7 @@ from .rendering import add_render
 from .scenes import add_scene
 from .scoring import add_score
 from .service import add_service
+from .sharing import add_share
 from .studies import add_study
 from .upkeep import add_upkeep
 
@@ -46,6 +47,7 @@ def main(argv: Sequence[str] | None = None) -> int:
         add_render,
         add_score,
         add_study,
+        add_share,
         add_service,
         add_upkeep,
     ):

@@ -29,6 +29,7 @@ from webdemo.server.http.guard import Guard, may_read_figures
 from webdemo.server.http.page_html import PageCache
 from webdemo.server.http.page_sessions import keep_states_lean, kept_in_cache
 from webdemo.server.http.payloads import Payloads
+from webdemo.server.http.public_pages import public_routes
 from webdemo.server.http.study_pages import study_routes
 from webdemo.server.lab import Lab, engine_of, make_lab
 from webdemo.server.live.routes import live_routes
@@ -94,7 +95,7 @@ def create_app(
     lab = make_lab(settings, engine, batcher, node, scratch)
     page = build_page(
         engine, loader=Loader(engine), runs=Recorder(lab.queue, lab.history, lab.places), history=lab.history,
-        studies=lab.studies, files=Path(get_upload_folder()), owner=visitors_folder,
+        studies=lab.studies, sharing=lab.publishing, files=Path(get_upload_folder()), owner=visitors_folder,
         admit=lambda size: lab.storage.admit(visitor(), size),
     )  # fmt: skip
     app = FastAPI(title="Pas de Deux", docs_url=None, redoc_url=None, openapi_url=None, lifespan=_lifespan)
@@ -104,6 +105,7 @@ def create_app(
     _add_routes(app, lab)
     app.include_router(live_routes(lab.streams))
     app.include_router(study_routes(settings, lab.studies))
+    app.include_router(public_routes(settings, lab.publishing))
     if lab.sign_ins is not None:
         app.include_router(login_routes(settings, lab.sign_ins, visitors))
     app.add_middleware(CORSMiddleware)  # no other site may read anything; Gradio's own would let some
@@ -163,6 +165,7 @@ async def _lifespan(app: FastAPI) -> AsyncIterator[None]:
         asyncio.create_task(_later(WARM_UP_AFTER, look_at_own_acts)),
         asyncio.create_task(_collect_when_loaded(lab)),
         asyncio.create_task(_every(CLEAN_EVERY, lab.history.clean)),
+        asyncio.create_task(_every(CLEAN_EVERY, lab.publishing.clean)),
         asyncio.create_task(_every(TIDY_EVERY, app.state.tidy)),
         asyncio.create_task(_every(GIVE_BACK_EVERY, lambda: give_back(resting=not lab.busy))),
         asyncio.create_task(_every(GIVE_BACK_EVERY, lab.history.settle)),

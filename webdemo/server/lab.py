@@ -22,6 +22,7 @@ from webdemo.server.queue.shares import Shares
 from webdemo.server.queue.turns import Batcher, QueueLimits
 from webdemo.server.store.database import Database
 from webdemo.server.store.notebook import Notebook
+from webdemo.server.store.publishing import Publishing
 from webdemo.server.store.scratch import ADDRESS_SHARE, Scratch
 from webdemo.server.store.storage import Storage
 from webdemo.server.store.studies import Studies
@@ -44,6 +45,7 @@ class Lab:
     database: Database
     history: Notebook
     studies: Studies
+    publishing: Publishing
     storage: Storage
     queue: FairQueue
     places: Places
@@ -120,8 +122,10 @@ def make_lab(
         live=lambda: streams.count,
     )  # fmt: skip
     storage = storage_of(settings, database, scratch)
+    history = history_of(settings, storage, name)
     return Lab(
-        settings=settings, database=database, history=_history(settings, storage, name), queue=queue,
+        settings=settings, database=database, history=history, queue=queue,
+        publishing=Publishing(history, days=settings.publish_days),
         studies=studies_of(settings, database, storage), storage=storage,
         places=Places(database, name, settings.running + settings.waiting), shares=shares, health=health,
         figures=figures, answers=OpenAnswers(), streams=streams, node=node,
@@ -139,7 +143,8 @@ def storage_of(settings: Settings, database: Database, scratch: Scratch | None =
     )  # fmt: skip
 
 
-def _history(settings: Settings, storage: Storage, name: str) -> Notebook:
+def history_of(settings: Settings, storage: Storage, name: str) -> Notebook:
+    """The history of a lab, for the process of a name."""
     return Notebook(
         storage.database, settings.motions, node=name, storage=storage, keep_days=settings.keep_days,
         keep_favourites=settings.keep_favourites, link_days=settings.link_days,

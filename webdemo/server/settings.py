@@ -98,6 +98,13 @@ class Settings(BaseSettings):
     )  # fmt: skip
     keep_favourites: int = Field(200, ge=0, description="favourites per person")
     link_days: float = Field(30, gt=0, le=3650, description="days for which a link opens a run for others")
+    publish_days: float = Field(
+        30, ge=0, le=3650, description="days for which a public page lasts at most; 0: no public pages"
+    )
+    frame_sites: list[Annotated[str, Field(pattern=r"^(\*|https?://[\w.*-]+(:\d+)?)$")]] = Field(
+        ["*"],
+        description="sites that may show the player of a public page in a frame, as https://lab.example",
+    )
     free_megabytes: float = Field(
         100, ge=0, description="free disk space below which runs and uploads are refused"
     )

@@ -8,6 +8,7 @@ from webdemo.ui.components.exports import Shelf
 
 from .history import HistoryLike
 from .runs import EngineLike, Loader, RunsLike
+from .sharing import SharingLike
 from .studies import StudiesLike
 
 
@@ -22,6 +23,7 @@ class PageContext:
         shelf: where files for downloads are put.
         history: runs that can be found again; None where nothing is kept.
         studies: blind studies of those runs; None where nothing is kept.
+        sharing: public pages of those runs; None where nothing is kept.
     """
 
     engine: EngineLike
@@ -30,3 +32,4 @@ class PageContext:
     shelf: Shelf
     history: HistoryLike | None = None
     studies: StudiesLike | None = None
+    sharing: SharingLike | None = None

@@ -34,6 +34,7 @@ from .read_api import ReadEndpoint
 from .render_api import RenderEndpoint
 from .runs import EngineLike, Loader, Runs, RunsLike
 from .scene_api import SceneEndpoint
+from .sharing import SharingLike
 from .studies import StudiesLike
 from .theme import HEAD, style_sheet, theme
 
@@ -66,6 +67,7 @@ def build_page(
     runs: RunsLike | None = None,
     history: HistoryLike | None = None,
     studies: StudiesLike | None = None,
+    sharing: SharingLike | None = None,
 ) -> gr.Blocks:
     """Builds the page for an engine.
 
@@ -78,6 +80,7 @@ def build_page(
         runs: the line that requests wait in; by default one of the page's own, one run at a time.
         history: runs that can be found again, in a tab of its own; none by default.
         studies: blind studies of those runs; none by default.
+        sharing: public pages of those runs; none by default.
 
     Returns:
         the page; launch it with :func:`launch_options`.
@@ -89,6 +92,7 @@ def build_page(
         shelf=Shelf(files, owner=owner, admit=admit),
         history=history,
         studies=studies,
+        sharing=sharing,
     )
 
     def leave(request: gr.Request) -> None:

@@ -237,6 +237,25 @@ STUDIES = [
       for vote in ([], 7, {"ticket": "x"}, {"ticket": ["x"], "answer": "1"}, {"ticket": "x" * 2000, "answer": "1"})),
 ]  # fmt: skip
 
+PUBLIC_PAGES = [
+    get("a public page", "/share/{public}", 200, who="stranger", holds="SECRET",
+        never=("user ada", "local", "manifest", "{run}", "{data}")),
+    get("its player alone", "/embed/{public}", 200, who="stranger", holds="SECRET", never=("user ada", "{run}")),
+    get("its only result", "/share/{public}/1", 200, who="stranger", holds='id="motion"'),
+    get("the player of its only result", "/embed/{public}/1", 200, who="stranger", holds='id="motion"'),
+    *(get(f"a place {place} on a public page", f"/{kind}/{{public}}/{place}", 404, who="stranger", never=("SECRET",))
+      for kind in ("share", "embed") for place in ("0", "2", "-1", "1e0", "x", "9" * 400, "%D9%A1", "1%2f..%2f1")),
+    *(get(f"a public page by {name}", f"/{kind}/{{{name}}}", 404, who="stranger", never=("SECRET",))
+      for kind in ("share", "embed") for name in ("run", "study", "study_key", "session")),
+    get("a script in a public page's key", f"/share/{SCRIPT}", 404, who="stranger", never=(SCRIPT,),
+        headers={"accept": "text/html"}),
+    post("a change of a public page", "/share/{public}", 401, 404, 405, who="stranger", body={}),
+    get("a file of public pages", "/shown/player/main.js", 200, who="stranger", holds="export"),
+    *(get(f"no file of public pages at {path}", f"/shown/{path}", 401, 404, who="stranger")
+      for path in ("share/page.html", "../app.py", "player/../../app.py", "%2e%2e/app.py", "/etc/passwd", "{upload}",
+                   "{canary}", "player", "")),
+]  # fmt: skip
+
 OTHER_ROUTES = [
     *(get(f"nothing of hers in {path}", path, 200, never=("SECRET", "{data}", "password"))
       for path in ("/config/", f"{API}/app_id", f"{API}/app_id/", f"{API}/info/", f"{API}/login_check",
@@ -297,4 +316,5 @@ KNOWN = [
     *STRANGERS,
     *SCRIPTS,
     *STUDIES,
+    *PUBLIC_PAGES,
 ]

@@ -20,7 +20,7 @@ from .values import WRONG, event_data, filled, takes_text, usual
 from .victim import SECRET, UPLOADED, Victim
 
 Victims = Callable[[Target], Victim]
-NAMED = ("run", "study", "study_key", "upload", "download", "stream", "canary")
+NAMED = ("run", "study", "study_key", "public", "upload", "download", "stream", "canary")
 """What of ada's stands where a function takes a text."""
 STORY = '[[beat]]\nwords = "They wait."\n\n[[pose]]\nperson = "a"\nseconds = 0.0\nfile = "%s"\nframe = 0\n'
 TEXTS = (

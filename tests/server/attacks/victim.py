@@ -9,6 +9,8 @@ from pathlib import Path
 from typing import Any
 
 from webdemo.server.store.database import Database
+from webdemo.server.store.notebook import Notebook
+from webdemo.server.store.publishing import Publishing
 from webdemo.server.store.studies import Studies
 from webdemo.study import Stimulus
 from webdemo.ui.studies import NewStudy
@@ -23,7 +25,7 @@ SECRET, UPLOADED = "SECRET", "HIERARCHY of ada's"
 
 
 class Victim:
-    """Ada, who has an upload, a run, its files, a call, a page's session and a study.
+    """Ada, who has an upload, a run, its files, a call, a page's session, a study and a public page.
 
     Attributes:
         things: their paths, keys and ids, by the names that attacks use.
@@ -47,10 +49,12 @@ class Victim:
         study = Studies(database, target.data / "studies").create(
             self.owner, NewStudy(question="Which is longer?", title=SECRET, sets=sets, checks=0)
         )
+        history = Notebook(database, target.data / "motions")
+        page = Publishing(history).publish(self.owner, [run], title="To be watched")
         database.close()
         self.things = {
             "upload": upload, "download": download, "call": call, "session": "adas own", "run": run,
-            "study": study.id, "study_key": study.key, "here": target.url,
+            "study": study.id, "study_key": study.key, "public": page.key, "here": target.url,
             "folder_of_ada": str(Path(upload).parents[1]), "canary": str(target.canary),
             "folder": str(target.folder), "data": str(target.data),
         }  # fmt: skip
@@ -83,6 +87,7 @@ class Victim:
             self.rows(f"SELECT * FROM {table} WHERE {column} = '{key}'")
             for table, column, key in (
                 ("runs", "id", run), ("links", "run_id", run), ("notes", "run_id", run), ("studies", "id", study),
+                ("published_runs", "run_id", run),
             )
         ]  # fmt: skip
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 import time
 import uuid
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 
 from starlette.datastructures import MutableHeaders
 from starlette.responses import HTMLResponse, JSONResponse, Response
@@ -13,8 +13,10 @@ from starlette.types import Message, Scope, Send
 
 from webdemo.server.settings import on_a_space
 
-from .body_limits import BoundedBody, Refused
+from .body_limits import BoundedBody
 from .error_pages import message_card
+from .refused import Refused
+from .routes import is_embed, is_public_page
 
 _POLICY = (
     "default-src 'none'",
@@ -31,8 +33,20 @@ _POLICY = (
     "base-uri 'self'",
 )
 """Content security policy: the page loads everything from this server, nothing from other hosts."""
+_PUBLIC_POLICY = (
+    "default-src 'none'",
+    "script-src 'self' 'unsafe-eval' blob:",  # drawing by WebGL compiles
+    "worker-src 'self' blob:",
+    "style-src 'self' 'unsafe-inline'",
+    "img-src 'self' data: blob:",
+    "connect-src 'self' data: blob:",
+    "form-action 'none'",
+    "base-uri 'none'",
+)
+"""That of public pages, which run no script within the page and send nothing."""
 _NOT_FRAMED = "frame-ancestors 'self'"
 """Not on a Space, which shows its page in a frame."""
+_NOBODY = "'none'"
 
 
 class Exchange:
@@ -42,6 +56,7 @@ class Exchange:
         scope: the request's.
         send: where the answer goes.
         root: path under which the page is.
+        frame_sites: sites that may show the player of a public page in a frame.
 
     Attributes:
         reference: the request's id.
@@ -50,11 +65,14 @@ class Exchange:
         first_byte: seconds until the answer began.
         body: the request's; a refusal of it is the answer, whatever its reader makes of that.
         cookie: a Set-Cookie header that the answer gets.
+        path: below ``root``; "" until the guard has read it.
         heard: is given every part of the answer's body before it is sent.
     """
 
-    def __init__(self, scope: Scope, send: Send, *, root: str) -> None:
+    def __init__(self, scope: Scope, send: Send, *, root: str, frame_sites: Sequence[str] = ()) -> None:
         self.scope, self._send, self._root = scope, send, root
+        self._frame_sites = frame_sites
+        self.path = ""
         self.reference = uuid.uuid4().hex[:12]
         self.headers: dict[bytes, bytes] = dict(scope["headers"])
         self.status, self.first_byte = 0, 0.0
@@ -116,10 +134,16 @@ class Exchange:
         headers["X-Request-ID"] = self.reference
         headers["X-Content-Type-Options"] = "nosniff"
         headers["Referrer-Policy"] = "same-origin"  # the address of an opened run is its key
-        policy = _POLICY if on_a_space() else (*_POLICY, _NOT_FRAMED)
-        headers["Content-Security-Policy"] = "; ".join(policy)
+        headers["Content-Security-Policy"] = "; ".join(self._policy())
         if self.cookie:
             headers.append("Set-Cookie", self.cookie)
+
+    def _policy(self) -> tuple[str, ...]:
+        """The content security policy of the answer."""
+        if is_embed(self.path):
+            return *_PUBLIC_POLICY, f"frame-ancestors {' '.join(self._frame_sites) or _NOBODY}"
+        policy = _PUBLIC_POLICY if is_public_page(self.path) else _POLICY
+        return policy if on_a_space() else (*policy, _NOT_FRAMED)
 
     def _refusal(self, refused: Refused) -> Response:
         if self.in_browser:

@@ -28,14 +28,15 @@ from webdemo.server.store.database import is_full
 from webdemo.server.store.personal_files import PERSON
 from webdemo.ui.visitor import Visitor
 
-from .body_limits import BoundedBody, Refused, declared_length, too_large
+from .body_limits import BoundedBody, declared_length, too_large
 from .cookies import read_cookies, set_cookie
 from .exchange import Exchange
 from .metrics import Figures
 from .networks import network_of
 from .payloads import Payloads
 from .rate_limit import RateLimit
-from .routes import API, LIVE, MESSAGE, PUBLIC, is_upload, path_below, route_of
+from .refused import Refused
+from .routes import API, LIVE, MESSAGE, is_public_page, is_upload, needs_no_sign_in, path_below, route_of
 from .upload_form import UploadForm
 
 log = logging.getLogger(__name__)
@@ -106,13 +107,14 @@ class Guard:
         if scope["type"] != "http":
             await self.app(scope, receive, send)
             return
-        exchange = Exchange(scope, send, root=self.settings.root_path)
+        exchange = Exchange(scope, send, root=self.settings.root_path, frame_sites=self.settings.frame_sites)
         REFERENCE.set(exchange.reference)
         address = (scope.get("client") or ("", 0))[0]
         SENDER.set(("", address))
         route = "(none)"
         try:
             path = path_below(self.settings.root_path, scope["path"], scope.get("query_string", b""))
+            exchange.path = path
             route = route_of(path)
             heard = [pair for pair in scope["headers"] if pair[0] not in _NOT_HEARD or on_a_space()]
             scope = {**scope, "path": path, "raw_path": path.encode(), "headers": heard}
@@ -221,9 +223,9 @@ class Guard:
                 raise
             visitor = None
         nobody = Visitor(f"address {network_of(address)}", "", exchange.reference, base)
-        if visitor is None and (path in PUBLIC or path.startswith("/login/")):
+        if visitor is None and needs_no_sign_in(path):
             visitor = nobody
-        if scope["method"] in _CHANGING:
+        if scope["method"] in _CHANGING or is_public_page(path):  # a motion is read for each of these
             self._take(visitor or nobody, self._weight(scope, headers))
         return visitor
 

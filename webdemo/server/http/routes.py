@@ -4,10 +4,13 @@ from __future__ import annotations
 
 import re
 
-from .body_limits import Refused
+from .refused import Refused
 
 PUBLIC = ("/login", "/logout", "/healthz", "/metrics")
 """Paths that need no sign-in; /metrics has its own rule."""
+_PUBLIC_PAGES = ("/share/", "/embed/")
+_SHOWN = "/shown/"
+"""Path of the files that public pages load."""
 API = "/gradio_api/"
 LIVE = "/live/"
 """Path of the messages of live streams."""
@@ -27,6 +30,9 @@ _ROUTES = frozenset(
         "login",
         "logout",
         "study",
+        "share",
+        "embed",
+        "shown",
         "healthz",
         "live",
         "metrics",
@@ -55,6 +61,21 @@ def path_below(root: str, path: str, query: bytes) -> str:
     if _CLOSED.match(path):
         raise Refused(404, _NOTHING, "closed")
     return path
+
+
+def is_public_page(path: str) -> bool:
+    """True for pages that need no sign-in since their address is a secret."""
+    return path.startswith(_PUBLIC_PAGES)
+
+
+def is_embed(path: str) -> bool:
+    """True for pages that other sites may show in a frame."""
+    return path.startswith("/embed/")
+
+
+def needs_no_sign_in(path: str) -> bool:
+    """True for what a stranger may ask for."""
+    return path in PUBLIC or path.startswith(("/login/", _SHOWN, *_PUBLIC_PAGES))
 
 
 def is_upload(path: str) -> bool:

@@ -109,6 +109,43 @@ class Link(Table):
     run: Mapped[Run] = relationship(back_populates="links")
 
 
+class Published(Table):
+    """A page that shows results to anybody, until it expires or is revoked.
+
+    Attributes:
+        key: unguessable; the page's address.
+        owner: whose results they are.
+        title: above the results.
+        until: when it ends.
+    """
+
+    __tablename__ = "published"
+
+    key: Mapped[str] = mapped_column(primary_key=True)
+    owner: Mapped[str] = mapped_column(index=True)
+    title: Mapped[str] = mapped_column(Text)
+    created: Mapped[float] = mapped_column(default=time.time)
+    until: Mapped[float]
+    runs: Mapped[list[PublishedRun]] = relationship(
+        order_by="PublishedRun.place", cascade="all, delete-orphan", passive_deletes=True
+    )
+
+
+class PublishedRun(Table):
+    """A run on a published page.
+
+    Attributes:
+        place: on the page, from 1; it stays where another run is removed.
+    """
+
+    __tablename__ = "published_runs"
+
+    key: Mapped[str] = mapped_column(ForeignKey("published.key", ondelete="CASCADE"), primary_key=True)
+    place: Mapped[int] = mapped_column(primary_key=True)
+    run_id: Mapped[str] = mapped_column(ForeignKey("runs.id", ondelete="CASCADE"), index=True)
+    run: Mapped[Run] = relationship()
+
+
 class SignIn(Table):
     """A session of a signed-in person, known by the hash of its cookie.
 
@@ -225,7 +262,7 @@ class Database:
     def check(self) -> None:
         """Raises SQLAlchemyError if the database does not answer, or what people need cannot be read."""
         with self.engine.connect() as connection:
-            for table in (Run, Note, Link, SignIn, Study, Rater, Ballot):
+            for table in (Run, Note, Link, Published, PublishedRun, SignIn, Study, Rater, Ballot):
                 connection.execute(select(table).limit(CHECKED_ROWS)).all()
             if self.engine.dialect.name == "sqlite" and time.monotonic() > self._sound_until:
                 (found,) = connection.exec_driver_sql("PRAGMA quick_check(1)").one()

@@ -23,8 +23,8 @@ STEP = 60
 """Runs that are shown at first, and how many more at a time."""
 MOST_SHOWN = 500
 ACTS = (
-    "search", "open", "favour", "link", "revoke", "again", "stop", "compare", "study", "export", "remove", "restore",
-    "describe",
+    "search", "open", "favour", "link", "revoke", "again", "stop", "compare", "study", "publish", "export", "remove",
+    "restore", "describe",
 )  # fmt: skip
 _SETTINGS = (
     ("seconds", "Seconds"), ("seed", "Seed"), ("samples", "Samples"), ("guidance", "Guidance"), ("steps", "Steps"),

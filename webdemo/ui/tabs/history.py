@@ -22,6 +22,7 @@ from webdemo.ui.text.words import cancelled_line, error_line, link_line, progres
 from webdemo.ui.visitor import Visitor, visitor
 
 from .job import QUIET, JobTab, Updates
+from .sharing import SharingPanel
 from .study import StudyPanel
 from .sweeps import grid_shown
 from .workspace import WorkspacePanel, room_html, runs_line
@@ -77,6 +78,9 @@ class HistoryTab:
             self.study = StudyPanel(self.page) if self.page.studies is not None else None
             if self.study is not None:
                 self.study.build()
+            self.sharing = SharingPanel(self.page) if self.page.sharing is not None else None
+            if self.sharing is not None:
+                self.sharing.build()
             self.view = NotebookView(elem_id="history-notebook")
             self.workspace.build()
         self.removed = gr.State([])
@@ -96,6 +100,8 @@ class HistoryTab:
         self.view.stop(self.cancel, queue=False, **QUIET)
         if self.study is not None:
             self.study.wire(tab, self.view.edit)
+        if self.sharing is not None:
+            self.sharing.wire(tab, self.view.apply)
         parts = [self.tabs, record, self.line, *(c for job in self.jobs.values() for c in _parts(job))]
         self.opened = list({part._id: part for part in parts}.values())
         named = gr.Textbox(visible=False)

@@ -1,0 +1,100 @@
+"""Public pages of a real process: open to strangers, framed by other sites where that is allowed, and nothing more."""
+
+from __future__ import annotations
+
+import json
+import os
+import subprocess
+import sys
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from tests.server.attacks.target import Target
+from tests.server.clients import FIELDS
+from tests.server.lab import ROOT
+
+HOSTILE = '"@body@</script><script>alert(1)</script>'
+
+
+@pytest.fixture(scope="module")
+def lab(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Target]:
+    sites = '["https://blog.example", "https://*.school.example"]'
+    with Target(tmp_path_factory.mktemp("public"), accounts=True, frame_sites=sites) as target:
+        yield target
+
+
+def share(lab: Target, *words: str, code: int = 0) -> dict[str, Any]:
+    """What ``python -m webdemo share`` prints at the end, or its error as ``error``."""
+    said = subprocess.run(
+        [sys.executable, "-m", "webdemo", "share", *words], cwd=ROOT, capture_output=True, text=True,
+        env={**os.environ, **lab.env, "PASDEDEUX_DATA": str(lab.data)},
+    )  # fmt: skip
+    assert said.returncode == code, said.stderr
+    return {"error": said.stderr} if code else json.loads(said.stdout.splitlines()[-1])
+
+
+@pytest.fixture(scope="module")
+def runs(lab: Target) -> list[str]:
+    """Two runs of ada's; the newer one first."""
+    for prompt in ("Two people bow.", HOSTILE):
+        assert "complete" in lab.call("ada", "generate", [prompt, *FIELDS[1:]])
+    return [run["id"] for run in share(lab, "runs", "--user", "ada")["runs"]]
+
+
+def test_a_gallery_is_made_shown_to_a_stranger_and_revoked_from_a_shell(lab: Target, runs: list[str]) -> None:
+    made = share(lab, "link", "--user", "ada", "--title", "Bows", "--base", f"{lab.url}/", "--", *runs)
+    assert made["runs"] == 2 and made["address"] == f"{lab.url}/share/{made['key']}"
+    gallery = lab.ask("stranger", "GET", f"/share/{made['key']}")
+    assert gallery.status_code == 200 and gallery.headers["cache-control"] == "no-store"
+    assert "<h1>Bows</h1>" in gallery.text and gallery.text.count("data-thumbnail=") == 2
+    assert HOSTILE not in gallery.text and "&quot;@body@&lt;/script&gt;" in gallery.text
+    assert "set-cookie" not in gallery.headers
+    hostile = lab.ask("stranger", "GET", f"/share/{made['key']}/1")
+    assert (hostile.text.count("<script"), hostile.text.count("</script")) == (2, 2), "the motion, the module"
+    payload = hostile.text.split('id="motion">')[1].split("</script>")[0]
+    assert json.loads(payload)["samples"][0]["frames"] == 30
+    assert f"{lab.url}/embed/{made['key']}/1" in hostile.text
+    listed = share(lab, "list")["pages"]
+    assert [(each["key"], each["owner"]) for each in listed] == [(made["key"], "user ada")]
+    share(lab, "revoke", made["key"][:8])
+    for path in ("share/{}", "share/{}/1", "embed/{}", "embed/{}/2"):
+        gone = lab.ask("stranger", "GET", "/" + path.format(made["key"]))
+        assert gone.status_code == 404 and "it has ended" in gone.text
+
+
+def test_only_the_player_alone_may_be_framed_and_only_by_the_sites_of_the_settings(
+    lab: Target, runs: list[str]
+) -> None:
+    key = share(lab, "link", "--user", "ada", "--", runs[0])["key"]
+    for path, frames in (
+        (f"/embed/{key}", "frame-ancestors https://blog.example https://*.school.example"),
+        (f"/share/{key}", "frame-ancestors 'self'"),
+        ("/login", "frame-ancestors 'self'"),
+        (f"/shown/../embed/{key}/../../login", "frame-ancestors 'self'"),
+    ):
+        policy = lab.ask("stranger", "GET", path).headers["content-security-policy"]
+        assert policy.endswith(frames), path
+    policy = lab.ask("stranger", "GET", f"/embed/{key}").headers["content-security-policy"]
+    assert "script-src 'self' 'unsafe-eval' blob:;" in policy and "form-action 'none'" in policy
+
+
+def test_the_files_of_public_pages_are_open_and_nothing_beside_them(lab: Target, runs: list[str]) -> None:
+    main = lab.ask("stranger", "GET", "/shown/player/main.js")
+    assert main.status_code == 200 and "max-age" in main.headers["cache-control"]
+    assert lab.ask("stranger", "GET", "/shown/bodies/a.json").status_code == 200
+    assert lab.ask("stranger", "GET", "/shown/share/page.html").status_code == 404
+    assert lab.ask("stranger", "GET", "/gradio_api/file=static/player/main.js").status_code == 401
+
+
+def test_eve_cannot_publish_what_is_ada_s(lab: Target, runs: list[str]) -> None:
+    said = share(lab, "link", "--user", "eve", "--", runs[0], code=2)
+    assert "0 runs begin with" in said["error"]
+
+
+def test_somebody_who_asks_for_pages_too_often_waits(tmp_path: Path) -> None:
+    with Target(tmp_path, accounts=True, rate=20) as lab:
+        asked = [lab.ask("stranger", "GET", f"/share/{'0' * 32}").status_code for _ in range(25)]
+    assert asked[:15] == [404] * 15 and asked[-1] == 429

@@ -1,0 +1,152 @@
+"""The command ``share``: the public pages of a lab, for the person who runs it."""
+
+from __future__ import annotations
+
+import argparse
+import time
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
+from pathlib import Path
+from typing import Any
+
+from motion import InputError
+
+
+def add_share(commands: Any) -> None:
+    """Adds ``share`` to the shell's commands."""
+    parser = commands.add_parser("share", help="public pages of this lab: runs, link, list, revoke, export")
+    actions = parser.add_subparsers(required=True, metavar="ACTION", parser_class=type(parser))
+    of_owner = argparse.ArgumentParser(add_help=False)
+    of_owner.add_argument("--user", help="account whose runs they are; without accounts, leave it out")
+
+    listed = actions.add_parser("runs", parents=[of_owner], help="the newest runs with their ids")
+    listed.set_defaults(job=runs)
+
+    made = actions.add_parser("link", parents=[of_owner], help="make a page of runs and print its address")
+    made.add_argument(
+        "runs",
+        nargs="+",
+        metavar="RUN",
+        help="id of a run, or how it begins, after -- if with a dash; see `share runs`",
+    )
+    made.add_argument("--title", default="", help="above the results; the run's name by default")
+    made.add_argument(
+        "--days", type=float, help="days until it ends; the most that the lab allows by default"
+    )
+    made.add_argument("--base", help="address of the lab, as https://lab.example/; its own by default")
+    made.set_defaults(job=link)
+
+    pages = actions.add_parser("list", help="all public pages that have not ended")
+    pages.set_defaults(job=list_pages)
+
+    ended = actions.add_parser("revoke", help="end a page")
+    ended.add_argument("key", help="of the page, or how it begins; see `share list`")
+    ended.set_defaults(job=revoke)
+
+    folder = actions.add_parser(
+        "export", parents=[of_owner], help="write pages that play without a network, as a .zip"
+    )
+    folder.add_argument(
+        "runs", nargs="*", metavar="RUN", help="id of a run, or how it begins; all by default"
+    )
+    folder.add_argument("--out", type=Path, required=True, help=".zip file to write")
+    folder.add_argument("--title", default="Motions of two people", help="of the gallery")
+    folder.set_defaults(job=export)
+
+
+@contextmanager
+def _publishing() -> Iterator[Any]:
+    """The public pages of the lab that the settings name."""
+    from webdemo.server.lab import history_of, storage_of
+    from webdemo.server.settings import read_settings
+    from webdemo.server.store.database import Database
+    from webdemo.server.store.publishing import Publishing
+
+    settings = read_settings()
+    if not settings.database and not (settings.data / "history.db").is_file():
+        raise InputError(
+            f"There is no lab's history in {settings.data}: name its folder with PASDEDEUX_DATA."
+        )
+    database = Database(settings.database_url)
+    try:
+        history = history_of(settings, storage_of(settings, database), settings.node)
+        yield Publishing(history, days=settings.publish_days)
+    finally:
+        database.close()
+
+
+def _owner(options: argparse.Namespace) -> str:
+    return f"user {options.user}" if options.user else "local"
+
+
+def _found(publishing: Any, options: argparse.Namespace) -> list[str]:
+    """The ids of the runs that begin as was said."""
+    entries = publishing.history.entries(_owner(options))
+    return [_only(begin, [entry.id for entry in entries], "runs", "share runs") for begin in options.runs]
+
+
+def _only(begin: str, known: Sequence[str], what: str, see: str) -> str:
+    found = [each for each in known if each.startswith(begin)]
+    if len(found) != 1:
+        raise InputError(f"{len(found)} {what} begin with {begin!r:.40}: see `{see}` for their ids.")
+    return found[0]
+
+
+def runs(options: argparse.Namespace) -> dict[str, Any]:
+    """The newest finished runs of a person."""
+    with _publishing() as publishing:
+        entries = [entry for entry in publishing.history.entries(_owner(options)) if entry.state == "done"]
+    return {"runs": [{"id": e.id, "title": e.title, "created": _moment(e.created)} for e in entries]}
+
+
+def link(options: argparse.Namespace) -> dict[str, Any]:
+    """Makes a page."""
+    from webdemo.server.settings import read_settings
+    from webdemo.ui.public_html import frame_code
+
+    base = (options.base or read_settings().url).rstrip("/")
+    with _publishing() as publishing:
+        page = publishing.publish(
+            _owner(options), _found(publishing, options), title=options.title, days=options.days
+        )
+    address = f"{base}/share/{page.key}"
+    print(f"{address} until {_moment(page.until)}")
+    return _about(page) | {"address": address, "frame": frame_code(f"{base}/embed/{page.key}", page.title)}
+
+
+def list_pages(options: argparse.Namespace) -> dict[str, Any]:
+    """All pages that have not ended, with their owners."""
+    with _publishing() as publishing:
+        return {"pages": [{"owner": owner} | _about(page) for owner, page in publishing.everybodys()]}
+
+
+def revoke(options: argparse.Namespace) -> dict[str, Any]:
+    """Ends a page of anybody's."""
+    with _publishing() as publishing:
+        owners = {page.key: owner for owner, page in publishing.everybodys()}
+        key = _only(options.key, list(owners), "public pages", "share list")
+        publishing.revoke(key, owners[key])
+    return {"revoked": key}
+
+
+def export(options: argparse.Namespace) -> dict[str, Any]:
+    """Writes a folder of pages."""
+    from webdemo.ui.site import write_site
+
+    if options.out.suffix.lower() != ".zip":
+        raise InputError(f"{options.out.name} is no .zip: give --out FILE.zip.")
+    with _publishing() as publishing:
+        results = publishing.results(_owner(options), _found(publishing, options))
+        write_site(results, options.out, title=options.title)
+    return {"runs": len(results), "files": [str(options.out)]}
+
+
+def _about(page: Any) -> dict[str, Any]:
+    return {
+        "key": page.key, "title": page.title, "runs": page.runs, "created": _moment(page.created),
+        "until": _moment(page.until),
+    }  # fmt: skip
+
+
+def _moment(seconds: float) -> str:
+    return time.strftime("%Y-%m-%dT%H:%M:%SZ", time.gmtime(seconds))

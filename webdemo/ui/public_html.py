@@ -1,0 +1,167 @@
+"""Pages that show results to anybody: a gallery, one result, or the player alone for a frame of another site's.
+
+The server sends them under a public address (:mod:`webdemo.server.http.public_pages`), and a folder of them plays from
+a disk (:mod:`webdemo.ui.site`). What somebody wrote is text in them, and the motion is data that no browser runs.
+"""
+
+from __future__ import annotations
+
+import html
+import json
+import re
+import time
+from collections.abc import Mapping
+from dataclasses import dataclass
+from functools import cache
+
+from webdemo.inference.methods import label_of
+from webdemo.inference.predict_request import PredictResult
+from webdemo.ui.components.notebook import NOTEBOOK_FOLDER
+from webdemo.ui.components.player import BODIES_FOLDER, PLAYER_FOLDER, PLOTLY_JS
+from webdemo.ui.components.prediction_view import prediction_payload
+from webdemo.ui.components.show import result_payload
+from webdemo.ui.history import Entry, Opened
+from webdemo.view.payload import Payload
+
+SHARE_FOLDER = PLAYER_FOLDER.parent / "share"
+FILES = {
+    "plotly.min.js": PLOTLY_JS,
+    **{f"share/{name}": SHARE_FOLDER / name for name in ("share.js", "share.css")},
+    "notebook/thumbnail.js": NOTEBOOK_FOLDER / "thumbnail.js",
+    "player/player.css": PLAYER_FOLDER / "player.css",
+    **{f"player/{path.name}": path for path in sorted(PLAYER_FOLDER.glob("*.js"))},
+    **{f"bodies/{path.name}": path for path in sorted(BODIES_FOLDER.glob("*.json"))},
+}
+"""All that the pages load, by the names under which they do."""
+MODULES = '<script type="module" src="@files@share/share.js"></script>'
+
+
+@dataclass(frozen=True, kw_only=True)
+class Place:
+    """The place of a page.
+
+    Attributes:
+        files: before the names of :data:`FILES`.
+        scripts: HTML that loads ``share/share.js``; ``@files@`` in it is ``files``.
+        back: address of the gallery that a result is in; empty for none.
+        embed: address of the player alone; empty where there is none.
+    """
+
+    files: str
+    scripts: str = MODULES
+    back: str = ""
+    embed: str = ""
+
+
+def payload_of(opened: Opened) -> Payload:
+    """The player's value for a result, whose title is on the page around it."""
+    result = opened.result
+    return prediction_payload(result) if isinstance(result, PredictResult) else result_payload(result)
+
+
+def caption(entry: Entry) -> str:
+    """One line on how a result was made: by which method, how long, and its seed."""
+    asked = entry.request
+    found = [label_of(str(asked["model"]))] if asked.get("model") else []
+    found += [f"{asked['seconds']:g} s"] if isinstance(asked.get("seconds"), (int, float)) else []
+    found += [f"seed {asked['seed']}"] if isinstance(asked.get("seed"), int) else []
+    return " · ".join(found)
+
+
+def gallery_html(
+    title: str,
+    entries: Mapping[int, Entry],
+    addresses: Mapping[int, str],
+    place: Place,
+    *,
+    until: float | None,
+) -> str:
+    """A page of cards.
+
+    Args:
+        title: above them.
+        entries: by their numbers.
+        addresses: of their pages, by the same numbers.
+        place: of this page.
+        until: when it ends, in seconds since 1970; None for never.
+    """
+    cards = "\n".join(
+        f'<li><a href="{_text(addresses[number])}"><canvas width="320" height="320" '
+        f'data-thumbnail="{_text(entry.thumbnail)}" aria-hidden="true"></canvas>'
+        f'<div><strong>{_text(entry.title)}</strong><span class="psh-facts">{_text(caption(entry))}</span></div>'
+        "</a></li>"
+        for number, entry in entries.items()
+    )
+    body = f'<main><h1>{_text(title)}</h1>\n<ol class="psh-cards">\n{cards}\n</ol>\n{_end(until)}</main>'
+    return _page("gallery", title, body, place)
+
+
+def player_html(entry: Entry, payload: Payload, place: Place, *, until: float | None) -> str:
+    """A page with one result; ``until`` as in :func:`gallery_html`."""
+    back = f'<a class="psh-back" href="{_text(place.back)}">← All results</a>' if place.back else ""
+    body = (
+        f'<main><header>{back}<h1>{_text(entry.title)}</h1><p class="psh-facts">{_text(caption(entry))}</p></header>\n'
+        f"{_stage(payload)}\n{_embed_code(entry, place)}{_end(until)}</main>"
+    )
+    return _page("player", entry.title, body, place)
+
+
+def embed_html(entry: Entry, payload: Payload, place: Place) -> str:
+    """The player alone, as large as the frame that holds it."""
+    return _page("embed", entry.title, _stage({**payload, "title": entry.title}), place)
+
+
+def frame_code(address: str, title: str) -> str:
+    """The HTML by which another page shows the player alone."""
+    return (
+        f'<iframe src="{_text(address)}" title="{_text(title)}" width="720" height="560" '
+        'style="border:0;max-width:100%" allow="fullscreen" loading="lazy"></iframe>'
+    )
+
+
+def _stage(payload: Payload) -> str:
+    # "<" in a script would begin or end a tag; in JSON it can only be inside a string
+    data = json.dumps(payload, separators=(",", ":")).replace("<", "\\u003c")
+    return f'<div class="psh-stage">{_markup()}</div>\n<script type="application/json" id="motion">{data}</script>'
+
+
+def _embed_code(entry: Entry, place: Place) -> str:
+    if not place.embed:
+        return ""
+    code = _text(frame_code(place.embed, entry.title))
+    return (
+        '<details class="psh-more"><summary>Show it in a page of your own</summary>'
+        f'<textarea readonly rows="3" aria-label="HTML of the frame">{code}</textarea></details>\n'
+    )
+
+
+def _end(until: float | None) -> str:
+    if until is None:
+        return ""
+    day = time.strftime("%d %B %Y", time.gmtime(until)).lstrip("0")
+    return f'<p class="psh-end">Shown until {day}. Made with Pas de Deux.</p>\n'
+
+
+def _page(kind: str, heading: str, body: str, place: Place) -> str:
+    files = _text(place.files)
+    parts = {
+        "kind": kind, "heading": _text(heading), "body": body, "files": files,
+        "scripts": place.scripts.replace("@files@", files),
+    }  # fmt: skip
+    return re.sub(
+        r"@(\w+)@", lambda found: parts[found[1]], _template()
+    )  # once: nothing in a part is replaced
+
+
+@cache
+def _template() -> str:
+    return (SHARE_FOLDER / "page.html").read_text(encoding="utf-8")
+
+
+@cache
+def _markup() -> str:
+    return (PLAYER_FOLDER / "player.html").read_text(encoding="utf-8")
+
+
+def _text(value: str) -> str:
+    return html.escape(value, quote=True)
