@@ -116,7 +116,8 @@ def test_a_study_whose_motions_are_gone_is_left_out(tmp_path: Path) -> None:
     with database.session.begin() as session:
         session.add(
             Study(
-                id="0" * 24, owner="user ada", key="k" * 24, title="t", question="q", sets="[]", pairs="[]", pairs_each=1,
+                id="0" * 24, owner="user ada", key="k" * 24, title="t", question="q", sets="[]", pairs="[]",
+                pairs_each=1,
                 shows_sentence=True, shows_result=True,
             )
         )  # fmt: skip
@@ -141,7 +142,7 @@ def test_a_damaged_backup_is_refused_and_nothing_written(harm: str, tmp_path: Pa
     else:
         (made / "manifest.json").unlink()
     parts = lab_at(f"sqlite:///{tmp_path / 'new.db'}", tmp_path / "new")
-    with pytest.raises(InputError, match="damaged|newer version|no backup"):
+    with pytest.raises(InputError, match=r"damaged|newer version|no backup"):
         restore(made, parts)
     parts.engine.dispose()
     assert not (tmp_path / "new").exists()

@@ -86,7 +86,7 @@ def back_up(lab: Lab, folder: Path, *, keep: int = 0) -> Path:
                 shutil.rmtree(old)
     except OSError as error:
         raise InputError(
-            f"The backup cannot be written to {folder} ({error.strerror or error}): choose another folder, or make room."
+            f"The backup cannot be written to {folder} ({error.strerror or error}): choose another, or make room."
         ) from None
     audit("backup", name=name, runs=runs)
     return folder / name
@@ -259,7 +259,8 @@ def _continue_numbers(connection: Connection, tables: MetaData) -> None:
     """Lets PostgreSQL number new rows after those that came with their numbers."""
     if connection.dialect.name != "postgresql" or "raters" not in tables.tables:
         return
-    after = "SELECT setval(pg_get_serial_sequence('raters', 'id'), (SELECT coalesce(max(id), 0) + 1 FROM raters), false)"
+    following = "(SELECT coalesce(max(id), 0) + 1 FROM raters)"
+    after = f"SELECT setval(pg_get_serial_sequence('raters', 'id'), {following}, false)"
     connection.execute(text(after))
 
 
