@@ -13,7 +13,9 @@ from typing import Any
 import av
 import gradio as gr
 import pytest
+import trimesh
 
+from motion import Duet, formats
 from motion.character import character_body
 from motion.formats.glb_reader import read_character
 from tests.motion.formats.characters import glb_character, unpacked
@@ -190,3 +192,28 @@ def test_a_file_that_is_no_character_is_a_sentence(tab: GenerateTab, tmp_path: P
     (tmp_path / "x.glb").write_bytes(content)
     line, *rest = tab.put_on(str(tmp_path / "x.glb"), None)
     assert "pd-error" in line and "x.glb" in line and rest == [gr.skip()] * 4
+
+
+def test_an_uploaded_thing_is_in_the_player_and_in_the_files(tab: GenerateTab, tmp_path: Path) -> None:
+    trimesh.creation.box((0.1, 0.2, 0.1)).export(tmp_path / "mine.stl")
+    record = result_of(tab)
+    line, player, *offered = tab.bring(str(tmp_path / "mine.stl"), record, None)
+    assert "mine.stl is in the scene" in line
+    (thing,) = player["value"]["samples"][0]["things"]
+    assert thing["kind"] == "own"
+    files = dict(zip([kind.key for kind in KINDS], offered, strict=True))
+    back = formats.read(files["npz"]["value"])
+    assert isinstance(back, Duet) and [each.kind for each in back.things] == ["own"]
+
+
+@pytest.mark.parametrize("name", ["x.stl", "x.glb", "x.fbx"])
+def test_a_file_that_is_no_thing_is_a_sentence(tab: GenerateTab, tmp_path: Path, name: str) -> None:
+    (tmp_path / name).write_bytes(b"nothing")
+    record = result_of(tab)
+    before = record.result
+    line, *rest = tab.bring(str(tmp_path / name), record, None)
+    assert "pd-error" in line and name in line and record.result is before
+    assert rest == [gr.skip()] * (1 + len(KINDS))
+    assert "pd-error" in tab.bring(None, record, None)[0]
+    trimesh.creation.box((0.1, 0.2, 0.1)).export(tmp_path / "mine.stl")
+    assert "make a motion first" in tab.bring(str(tmp_path / "mine.stl"), None, None)[0]

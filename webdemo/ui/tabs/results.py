@@ -26,7 +26,9 @@ from webdemo.ui.components.exports import (
 )
 from webdemo.ui.components.film import READ_PLAYER, make_figure, make_film
 from webdemo.ui.components.film import suffix as film_suffix
-from webdemo.ui.components.player import EMPTY_TEXT, MotionPlayer, wear
+from webdemo.ui.components.own_thing import FILE_TYPES, bring
+from webdemo.ui.components.player import EMPTY_TEXT, MotionPlayer, show, wear
+from webdemo.ui.components.show import result_payload
 from webdemo.ui.context import PageContext
 from webdemo.ui.text.panels import status
 from webdemo.ui.text.words import error_line, link_line, seconds
@@ -110,6 +112,10 @@ class ResultsTab:
                         elem_id=self._id("character"), elem_classes="pd-character",
                     )  # fmt: skip
                     self.worn = gr.State(None, time_to_live=3600)
+                    self.thing = gr.UploadButton(
+                        "Bring a thing .glb .obj …", file_types=FILE_TYPES, size="sm", min_width=0,
+                        elem_id=self._id("thing"), elem_classes="pd-character",
+                    )  # fmt: skip
                     self.link = gr.Button(
                         "Link to this view", size="sm", min_width=0, elem_id=self._id("link"),
                         elem_classes="pd-onward", visible=self.page.history is not None,
@@ -144,6 +150,26 @@ class ResultsTab:
             outputs=[self.line, self.worn, self.player, *(self.downloads[number] for number in _WORN)],
             concurrency_limit=1, concurrency_id="character", trigger_mode="once", **QUIET,
         )  # fmt: skip
+
+        self.thing.upload(
+            self.bring, inputs=[self.thing, self.record, self.worn],
+            outputs=[self.line, self.player, *self.downloads],
+            concurrency_limit=1, concurrency_id="character", trigger_mode="once", **QUIET,
+        )  # fmt: skip
+
+    def bring(self, path: str | None, record: Record | None, worn: Worn | None) -> Updates:
+        """Puts an uploaded thing into this result, as the first thing of its words, here and in its files."""
+        try:
+            result = bring(record, path)
+            assert record is not None
+            record.result, record.exported = result, False
+        except Exception as error:
+            return status(error_line(error), tone="error"), *((gr.skip(),) * (1 + len(KINDS)))
+        line, *files = self.export(record, worn)
+        name = Path(str(path)).name[:60]
+        if line == gr.skip():
+            line = status(f"{name} is in the scene, in films and in the files as well.", tone="done")
+        return line, show(result_payload(result, title=record.prompt)), *files
 
     def put_on(self, path: str | None, record: Record | None) -> Updates:
         """Puts an uploaded character on both people, here and in the files of this result and of later ones."""
