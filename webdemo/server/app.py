@@ -23,6 +23,7 @@ from starlette.routing import Mount
 from acts.lexicon import look_at_own_acts
 from motion import InputError
 from webdemo.server.accounts.login import login_routes
+from webdemo.server.accounts.own_account import account_routes
 from webdemo.server.accounts.visitors import Visitors
 from webdemo.server.cluster.instance_lock import InstanceLock
 from webdemo.server.http.guard import Guard, may_read_figures
@@ -108,6 +109,7 @@ def create_app(
     app.include_router(public_routes(settings, lab.publishing))
     if lab.sign_ins is not None:
         app.include_router(login_routes(settings, lab.sign_ins, visitors))
+        app.include_router(account_routes(settings, lab.sign_ins, visitors))
     app.add_middleware(CORSMiddleware)  # no other site may read anything; Gradio's own would let some
     app.add_middleware(PageCache)
     app.add_middleware(

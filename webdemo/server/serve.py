@@ -12,9 +12,11 @@ from urllib.parse import quote
 
 import uvicorn
 from starlette.concurrency import run_in_threadpool
+from uvicorn.middleware.proxy_headers import ProxyHeadersMiddleware
 from uvicorn.protocols.http.h11_impl import H11Protocol
 
 from motion import InputError
+from webdemo.server.accounts.proxy import PeerNoted
 from webdemo.server.cluster.instance_lock import InstanceLock
 from webdemo.server.http.networks import network_of
 from webdemo.server.store.scratch import Scratch
@@ -130,9 +132,11 @@ def make_server(settings: Settings, *, scratch: bool = False, **parts: Any) -> S
         )
         parts["scratch"].take_uploads()
     app = create_app(settings, node=node, **parts)
+    forwarded: Any = ProxyHeadersMiddleware
     config = uvicorn.Config(
-        app, host=settings.host, port=settings.port, http=bounded_protocol(settings), ws="none",
-        proxy_headers=True, forwarded_allow_ips=settings.proxies, access_log=False, log_config=None,
+        PeerNoted(forwarded(app, trusted_hosts=settings.proxies)), host=settings.host,
+        port=settings.port, http=bounded_protocol(settings), ws="none", proxy_headers=False, access_log=False,
+        log_config=None,
         server_header=False, timeout_graceful_shutdown=CLOSING_SECONDS, timeout_keep_alive=30,
         loop="asyncio", h11_max_incomplete_event_size=32 * 1024, backlog=512,
     )  # fmt: skip

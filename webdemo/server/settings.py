@@ -75,6 +75,14 @@ class Settings(BaseSettings):
 
     # ---- who may use it
     users: Path | None = Field(None, description="file of accounts; without one there are no accounts")
+    proxy_user: str = Field(
+        "", pattern=r"^[A-Za-z0-9-]*$",
+        description="header by which a trusted proxy says who signed in there, as X-Remote-User; empty: none",
+    )  # fmt: skip
+    proxy_groups: str = Field(
+        "", pattern=r"^[A-Za-z0-9-]*$", description="header by which it lists the person's groups"
+    )
+    groups: list[str] = Field([], description="groups of which a person must have one; empty: anybody may")
     open: bool = Field(default_factory=on_a_space, description="serve other machines without accounts")
     session_hours: float = Field(24 * 14, gt=0, le=24 * 365, description="how long a sign-in lasts")
     metrics_token: str = Field(
@@ -222,7 +230,7 @@ class Settings(BaseSettings):
     @property
     def accounts(self) -> bool:
         """True if people sign in."""
-        return self.users is not None
+        return self.users is not None or bool(self.proxy_user)
 
     @property
     def person_bytes(self) -> float:
@@ -250,6 +258,13 @@ class Settings(BaseSettings):
 
     def check(self) -> None:
         """Raises InputError if the server would be open to others without anybody having said so."""
+        if self.proxy_user and "*" in self.proxies:
+            raise InputError(
+                f"With {PREFIX}PROXY_USER, {PREFIX}PROXIES cannot be *, or anybody could claim to be anybody: name the "
+                "addresses of the proxies."
+            )
+        if self.groups and not self.proxy_groups:
+            raise InputError(f"{PREFIX}GROUPS needs the header that lists them: set {PREFIX}PROXY_GROUPS.")
         if not self.local and not self.accounts and not self.open:
             raise InputError(
                 f"{self.host} can be reached from other machines and there are no accounts: make some with "

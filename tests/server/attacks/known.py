@@ -256,6 +256,23 @@ PUBLIC_PAGES = [
                    "{canary}", "player", "")),
 ]  # fmt: skip
 
+OWN_ACCOUNT = [
+    get("her account", "/account", 200, at="closed", holds="Signed in as eve", never=("ada",)),
+    get("a stranger's account", "/account", 401, at="closed", who="stranger"),
+    get("an account where there are none", "/account", 404, at="open"),
+    post("another's password for one's own", "/account/password", 401, at="closed",
+         headers={"content-type": "application/x-www-form-urlencoded"},
+         content=b"now=password+of+ada&new=something+else&again=something+else&name=ada"),
+    post("another site changes a password", "/account/password", 403, at="closed", who="ada",
+         headers={"origin": "https://evil.example", "content-type": "application/x-www-form-urlencoded"},
+         content=b"now=password+of+ada&new=something+else&again=something+else"),
+    post("another site signs somebody out everywhere", "/account/sign-out", 403, at="closed", who="ada",
+         headers={"origin": "https://evil.example"}),
+    post("a stranger signs somebody out everywhere", "/account/sign-out", 401, at="closed", who="stranger"),
+    get("a name by a header that the settings do not name", "/config", 401, at="closed", who="stranger",
+        headers={"x-remote-user": "ada"}),
+]  # fmt: skip
+
 OTHER_ROUTES = [
     *(get(f"nothing of hers in {path}", path, 200, never=("SECRET", "{data}", "password"))
       for path in ("/config/", f"{API}/app_id", f"{API}/app_id/", f"{API}/info/", f"{API}/login_check",
@@ -317,4 +334,5 @@ KNOWN = [
     *SCRIPTS,
     *STUDIES,
     *PUBLIC_PAGES,
+    *OWN_ACCOUNT,
 ]

@@ -11,8 +11,9 @@ import secrets
 import threading
 import time
 from pathlib import Path
+from typing import Any, cast
 
-from sqlalchemy import delete
+from sqlalchemy import CursorResult, delete
 
 from motion import InputError
 from motion.formats.files import replacing
@@ -183,6 +184,38 @@ class SignIns:
         if found is None or found.until < time.time() or found.entry != self.users.entry(found.person):
             return None
         return found.person
+
+    def change(self, name: str, password: str, new: str, address: str) -> str | None:
+        """Gives an account another password, which ends all its sessions; returns a new session's token.
+
+        Args:
+            name: of the account.
+            password: that it has now.
+            new: the one that it gets.
+            address: where the try comes from.
+
+        Returns:
+            None if ``password`` is not the account's.
+
+        Raises:
+            TooManyTries: after too many wrong passwords.
+            InputError: if the new password is too short or too long, or the accounts cannot be read or written.
+        """
+        with self._lock:
+            self._throttle.take(name, address)
+        if not self.users.knows(name, password):
+            return None
+        with self._lock:
+            self._throttle.give_back(name, address)
+        self.users.add(name, new)
+        self.end_all(name)
+        return self.begin(name, new, address)
+
+    def end_all(self, name: str) -> int:
+        """Ends all sessions of an account; returns how many there were."""
+        with self.database.session.begin() as session:
+            ended = session.execute(delete(SignIn).where(SignIn.person == name))
+            return cast(CursorResult[Any], ended).rowcount
 
     def end(self, token: str) -> None:
         """Signs a session out."""

@@ -15,6 +15,7 @@ from webdemo.server.http.refused import Refused
 from webdemo.server.settings import Settings, is_loopback
 from webdemo.ui.visitor import Visitor
 
+from .proxy import not_by_proxy
 from .users import SignIns
 
 SESSION_COOKIE = "pasdedeux_session"
@@ -39,12 +40,20 @@ class Visitors:
         self._lock = threading.Lock()
         self._known: OrderedDict[str, tuple[str | None, float]] = OrderedDict()
 
-    def of(self, cookies: Mapping[str, str], address: str, *, reference: str, base: str) -> Visitor | None:
-        """The visitor, or None if they must sign in first.
+    def of(
+        self, cookies: Mapping[str, str], address: str, *, reference: str, base: str, by_proxy: str = ""
+    ) -> Visitor | None:
+        """The visitor, or None if they must sign in first; ``by_proxy`` is the name that a trusted proxy gives.
 
         Raises:
-            Refused: if a request from elsewhere arrives at a server that is not open.
+            Refused: if a request from elsewhere arrives at a server that is not open, or at one whose people sign in
+                at its proxy alone.
         """
+        if by_proxy:
+            name = f"user {by_proxy}"
+            return Visitor(name, name, reference, base, by_proxy)
+        if self.sign_ins is None and self.settings.proxy_user:
+            raise not_by_proxy()
         if self.sign_ins is not None:
             person = self._signed_in(cookies.get(SESSION_COOKIE, ""))
             name = f"user {person}"
@@ -67,6 +76,12 @@ class Visitors:
         """Drops a signed-out session from the cache."""
         with self._lock:
             self._known.pop(digest(token), None)
+
+    def forget_person(self, name: str) -> None:
+        """Drops all sessions of an account from the cache."""
+        with self._lock:
+            for key in [key for key, (person, _) in self._known.items() if person == name]:
+                del self._known[key]
 
     def _signed_in(self, token: str) -> str | None:
         if not token or self.sign_ins is None:

@@ -46,6 +46,34 @@ def message_card(sentence: str, *, home: str, reference: str) -> str:
     )
 
 
+def account_card(*, home: str, name: str, error: str = "", done: str = "") -> str:
+    """A person's own page.
+
+    Args:
+        home: address of the lab.
+        name: of the account.
+        error: what went wrong.
+        done: what was done.
+    """
+    said = f'<p role="alert">{html.escape(error)}</p>' if error else ""
+    said += f'<p role="status">{html.escape(done)}</p>' if done else ""
+    fields = "".join(
+        f'<label>{label}<input name="{key}" type="password" autocomplete="{kind}" required></label>'
+        for label, key, kind in (
+            ("Password now", "now", "current-password"),
+            ("New password", "new", "new-password"),
+            ("New password again", "again", "new-password"),
+        )
+    )
+    action = html.escape(f"{home}account", quote=True)
+    return card(
+        f'<p>Signed in as {html.escape(name)}. <a href="{html.escape(home, quote=True)}">Open the lab</a></p>{said}'
+        f'<form method="post" action="{action}/password">{fields}<button>Change the password</button></form>'
+        f'<form method="post" action="{action}/sign-out"><button>Sign out everywhere</button></form>'
+        "<p><small>A new password signs you out in every other browser as well.</small></p>"
+    )
+
+
 def sign_in_card(*, action: str, wanted: str, name: str = "", error: str = "") -> str:
     """The form by which people sign in.
 

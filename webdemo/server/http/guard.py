@@ -20,6 +20,7 @@ from starlette.responses import JSONResponse, RedirectResponse, Response
 from starlette.types import ASGIApp, Receive, Scope, Send
 
 from motion import InputError
+from webdemo.server.accounts.proxy import person_by_proxy
 from webdemo.server.accounts.visitors import VISITOR_COOKIE, Bindings, Visitors, new_token
 from webdemo.server.audit import SENDER
 from webdemo.server.logs import REFERENCE
@@ -216,10 +217,12 @@ class Guard:
         base = f"{scope['scheme']}://{host}{self.settings.root_path}/"
         try:
             visitor = await run_in_threadpool(
-                self.visitors.of, read_cookies(headers), address, reference=exchange.reference, base=base
-            )
-        except (Refused, SQLAlchemyError):
-            if path not in ("/healthz", "/metrics"):  # they say what is wrong
+                self.visitors.of, read_cookies(headers), address, reference=exchange.reference, base=base,
+                by_proxy=person_by_proxy(self.settings, scope),
+            )  # fmt: skip
+        except (Refused, SQLAlchemyError) as error:
+            outside = isinstance(error, Refused) and error.reason == "proxy" and needs_no_sign_in(path)
+            if path not in ("/healthz", "/metrics") and not outside:  # those two say what is wrong
                 raise
             visitor = None
         nobody = Visitor(f"address {network_of(address)}", "", exchange.reference, base)

@@ -31,6 +31,7 @@ _ROUTES = frozenset(
         "logout",
         "study",
         "share",
+        "account",
         "embed",
         "shown",
         "healthz",

@@ -333,7 +333,8 @@ def _signed_in(who: Visitor) -> str:
         return ""
     return (
         f'<form class="pd-status pd-account" method="post" action="{text(who.base)}logout">'
-        f"Signed in as {text(who.account)} ·\u2002<button>Sign out</button></form>"
+        f"Signed in as {text(who.account)} ·\u2002<button>Sign out</button>"
+        f'\u2002<a href="{text(who.base)}account">Your account</a></form>'
     )
 
 
