@@ -29,6 +29,7 @@ class Go(_Shape):
         near: metres between the two pelvises at its end; 0 leaves that to the network.
         backwards: with the face towards where one comes from.
         linked: the two hold each other by the hands or arms.
+        stops: it ends early, before what comes next.
         manner: a gait that the network's words name.
     """
 
@@ -42,6 +43,7 @@ class Go(_Shape):
     near: Metres = 0.0
     backwards: bool = False
     linked: bool = False
+    stops: bool = False
 
 
 class Turn(_Shape):
@@ -60,10 +62,10 @@ class Stay(_Shape):
 
 
 class Place(_Shape):
-    """The place of the two when a story begins with the act: ``apart`` metres, side by side or back to back."""
+    """The place of the two when a story begins with the act: ``apart`` metres, side by side, back to back, or behind."""
 
     do: Literal["place"] = "place"
-    way: Literal["facing", "beside", "back to back"] = "facing"
+    way: Literal["facing", "beside", "back to back", "behind"] = "facing"
     apart: Metres = 0.0
 
 

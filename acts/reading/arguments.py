@@ -14,6 +14,8 @@ if TYPE_CHECKING:
     from spacy.tokens import Token
 
 DENY = frozenset(("not", "n't", "never", "hardly", "barely", "no", "neither", "nor"))
+_LENGTHS = frozenset(("step", "pace", "metre", "meter", "yard"))
+_RECEIVES = frozenset(("get", "receive", "take", "have"))
 _MODIFIERS = frozenset(
     ("prt", "advmod", "acomp", "attr", "oprd", "npadvmod", "amod", "neg", "intj", "compound")
 )
@@ -39,8 +41,14 @@ class Arguments:
         agent: Ref | None = None
         for child in token.children:
             bare = all(c.dep_ not in ("poss", "det") for c in child.children)
-            if child.dep_ in ("dobj", "obj") and child.lower_ in self._words.directions and bare:
+            if child.dep_ == "aux" and child.lemma_.lower() == "come":  # "comes running"
+                event.words.append("come")
+            elif child.dep_ in ("dobj", "obj") and child.lower_ in self._words.directions and bare:
                 self._modifier(child, event)
+            elif child.dep_ in ("dobj", "obj") and self._is_measure(child, event):  # "walk a few steps"
+                event.words.append(child.lemma_.lower())
+                for number in child.children:
+                    self._count(number, child, event)
             elif child.dep_ in ("dobj", "obj"):
                 self._object(child, who, event)
             elif child.dep_ in ("dative", "iobj") and child.pos_ != "ADP":
@@ -62,6 +70,9 @@ class Arguments:
             elif child.dep_ in _MODIFIERS or (child.dep_ in ("xcomp", "ccomp") and child.pos_ == "ADJ"):
                 self._modifier(child, event)
         return agent
+
+    def _is_measure(self, noun: Token, event: Event) -> bool:
+        return noun.lemma_.lower() in _LENGTHS and event.lemma not in self._words.verbs["light"]
 
     def _object(self, token: Token, who: str, event: Event) -> None:
         """Takes up an object; of two, as in "hands the knight his sword", the person is the receiver."""
@@ -196,7 +207,23 @@ class Arguments:
     def light(self, event: Event) -> None:
         """Turns "gives him a hug" and "takes a bow" into the verb that their noun stands for."""
         noun = event.object
+        if noun is not None and noun.kind == "thing" and noun.lemma in self._verbs:
+            for kind in ("tried", "wished", "not"):  # "wants a hug", "refuses the dance"
+                if event.lemma in self._words.verbs[kind] and event.lemma not in ("hope", "promise"):
+                    event.lemma, event.object, event.dative = noun.lemma, event.dative, None
+                    event.modality = event.modality if kind == "not" else kind
+                    event.denied = event.denied != (kind == "not")
+                    return
         if event.lemma not in self._words.verbs["light"] or noun is None or noun.kind not in ("thing",):
             return
-        if noun.lemma in self._verbs and noun.lemma not in ("step", "hand"):
-            event.noun = replace(event, lemma=noun.lemma, object=event.dative, dative=None)
+        if noun.lemma not in self._verbs or noun.lemma in ("step", "hand"):
+            return
+        event.noun = replace(event, lemma=noun.lemma, object=event.dative, dative=None)
+        giver = next(
+            (i for i, (p, ref) in enumerate(event.prepositions) if p == "from" and ref.kind == "person"), -1
+        )
+        if event.lemma in _RECEIVES and giver >= 0:  # "gets a massage from her": she massages him
+            rest = [each for i, each in enumerate(event.prepositions) if i != giver]
+            event.noun = replace(
+                event.noun, subject=event.prepositions[giver][1], object=event.subject, prepositions=rest
+            )

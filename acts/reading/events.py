@@ -38,6 +38,8 @@ _MARKS = {
     "till": "main-until", "before": "after", "because": "with", "so": "after", "without": "while", "instead": "with",
 }  # fmt: skip
 """How a clause with this word lies beside its main clause; "main-after" puts the main clause behind it."""
+_NOUN_MARKS = {"after": "main-after", "following": "main-after", "upon": "main-after", "before": "after"}
+"""Prepositions behind which a noun stands for an act of its own."""
 _THEN = frozenset(
     ("then", "afterwards", "afterward", "finally", "next", "later", "subsequently", "eventually", "lastly")
 )
@@ -110,8 +112,17 @@ class Reader:
                 and self.lemma(token) in self._verbs
                 and self._words.is_person(token.head.lemma_.lower())
             )
+        if token.dep_ != "ROOT" and any(c.lower_ == "where" and c.dep_ == "advmod" for c in token.children):
+            return False  # "to where she came from" is a place
         if token.pos_ in ("VERB", "AUX") and token.dep_ not in ("aux", "auxpass", "compound", "punct"):
             return True
+        if token.dep_ == "pobj" and token.pos_ == "NOUN" and token.head.lower_ in _NOUN_MARKS:
+            known = self.lemma(token) in self._verbs and token.tag_ == "NN"  # "after a quick hug"
+            return (
+                known
+                and token.head.head.pos_ in ("VERB", "AUX")
+                and not self._words.is_person(token.lemma_.lower())
+            )
         if token.dep_ == "ROOT" and token.pos_ in ("NOUN", "PROPN", "ADJ", "INTJ", "ADV", "ADP", "X"):
             return self.lemma(token) in self._verbs or token.i in self._lemmas
         return token.dep_ in ("conj", "pcomp") and token.i in self._lemmas
@@ -130,6 +141,8 @@ class Reader:
         passive = any(child.dep_ in ("nsubjpass", "auxpass", "agent") for child in token.children)
         if passive and token.tag_ == "VBN":
             agent = agent or (_other_person(subject) if subject is not None else None)
+            if agent is None and subject is not None and subject.kind == "thing":  # "is held out to her"
+                agent = next((_other_person(r) for _, r in event.prepositions if r.kind == "person"), None)
             if event.object is not None and event.dative is None:  # "she is given a book"
                 event.dative, event.subject = subject, agent
             else:
@@ -137,6 +150,17 @@ class Reader:
         if event.object is None and event.dative is not None:
             event.object, event.dative = event.dative, None
         self._arguments.light(event)
+        if (
+            token.dep_ == "acl"
+            and token.tag_ != "VBG"
+            and event.subject is not None
+            and event.subject.kind == "part"
+        ):
+            event.object, event.subject = (
+                event.subject,
+                self._owner(event.subject, head),
+            )  # "with both arms raised"
+            event.ongoing, kind = True, "with"
         self._of[token.i] = len(self.events)
         if kind == "comp" and beside in self._of and self._of[beside] < len(self.events):
             above = self.events[self._of[beside]]
@@ -145,6 +169,12 @@ class Reader:
                 above.object = subject  # "helps him stand": in the syntax, he is only the second verb's
         self._joints.append((event, token, kind, beside))
         self.events.append(event)
+
+    def _owner(self, part: Ref, head: Token | None) -> Ref | None:
+        """The person whose part of the body a phrase names: its owner, or whose clause it stands in."""
+        if part.who:
+            return Ref("person", part.who, first=part.first, last=part.last)
+        return self._subjects.get(head.i) if head is not None else None
 
     def _gapped(self, token: Token) -> None:
         """Adds the clause whose verb is left out: "A waves with the right hand and B with the left"."""
@@ -167,9 +197,16 @@ class Reader:
             first = next(clauses, None)
             if first is not None and token.dep_ == "conj" and token.tag_ in ("VBZ", "VBD"):
                 finite = (h for h in (first, *clauses) if _is_finite(h))
-                first = next(finite, first)
+                first = self._nearer(token, next(finite, first))
             self._heads[token.i] = first
         return self._heads[token.i]
+
+    def _nearer(self, token: Token, head: Token) -> Token:
+        """The main clause behind ``head`` that has a subject of its own: "he talks, but she turns and covers her ears"."""
+        if any(child.dep_ in ("nsubj", "nsubjpass") for child in token.children):
+            return head
+        later = [self.doc[i] for i in self._mains if head.i < i < token.i and self.doc[i].sent == token.sent]
+        return next((t for t in reversed(later) if any(c.dep_ == "nsubj" for c in t.children)), head)
 
     def _is_main(self, token: Token) -> bool:
         """True for a clause that stands by itself in the order of the text."""
@@ -199,7 +236,10 @@ class Reader:
         return self._subjects[token.i]
 
     def _subject_of(self, token: Token, head: Token | None) -> Ref | None:
-        for child in token.children:
+        moving = (
+            c for aux in token.children if aux.dep_ == "aux" for c in aux.children
+        )  # "he comes running"
+        for child in (*token.children, *moving):
             if child.dep_ in ("nsubj", "nsubjpass", "csubj", "expl"):
                 if child.tag_ in ("WP", "WDT") and token.dep_ == "relcl":
                     return self._antecedent(token)
@@ -235,6 +275,11 @@ class Reader:
                 ):
                     return above.object
             return own
+        main = next((i for i in reversed(self._mains) if self.doc[i].sent == token.sent), None)
+        if (
+            main is not None and main < token.i
+        ):  # "creeps up, covers her eyes", where the second became the main one
+            return self._subjects.get(main)
         if token.dep_ == "ROOT" or head is None:
             alone = any(
                 t.lower_ in _SOMEBODY for t in token.subtree
@@ -337,6 +382,8 @@ class Reader:
             return ("conj", mains[-1]) if mains else ("after", None)
         if above is None:
             return "after", None
+        if token.dep_ == "pobj":
+            return _NOUN_MARKS[token.head.lower_], above.i
         if token.dep_ == "pcomp":
             return _MARKS.get(token.head.lower_, "with"), above.i
         if token.dep_ == "advcl":

@@ -260,6 +260,7 @@ def _reference(token: Token, cast: Cast, subject: str) -> Ref:
         if not side and token.tag_ == "NNS" and family in ("hand", "arm", "foot", "leg", "knee", "shoulder"):
             side = "both"
         kind_of = "ab" if owner == "each" else owner
+        lemma = "back" if lemma == "spine" else lemma
         return Ref("part", kind_of, lemma, family, side, first=first, last=last)
     thirds = len(cast.third)
     who = cast.person(token, subject)

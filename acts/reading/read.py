@@ -8,9 +8,10 @@ from functools import lru_cache
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from acts.frames import Event, Frame, Match
+from acts.frames import Event, Frame, Match, Ref
 from acts.lexicon import Lexicon, lexicon
 from acts.plan import MOST_ACTS, Act, Plan, Relation, Span, Unread
+from acts.shapes import Go
 from motion import InputError
 
 from .events import Reader, spans
@@ -29,6 +30,12 @@ _STATES = frozenset(("be", "become", "seem", "have", "there", "feel", "look", "a
 """Verbs that say how somebody is; where no frame knows them, they show nothing and are passed over."""
 _SHARING = frozenset(("conj", "after", "with"))
 """Joints of clauses that may share an object."""
+_SAME = frozenset(("same", "it", "that", "this", "likewise", "so"))
+_MOVEMENTS = frozenset(("movement", "move", "gesture", "motion", "pose", "step", "action"))
+_LINE = Ref("thing", lemma="line")
+_BESIDE = frozenset(("gesture", "limb", "words"))
+"""Shapes of what somebody can do on their way."""
+_ARRIVES = frozenset(("to", "behind", "back", "aside"))
 _HELD = frozenset(("crossed", "folded", "cross", "fold", "outstretched", "raised", "raise", "outstretch"))
 """Participles of postures of the arms, and the parser's lemmas of them."""
 
@@ -91,6 +98,8 @@ class _Planner:
         self._taken: set[int] = set()
         self._nonsense = list(_unknown(reader.doc, Speller(known).knows))
         self._held_beside: dict[str, str] = {}
+        self._answers: set[str] = set()
+        """Acts that repeat the one before."""
 
     def plan(self) -> Plan:
         """The plan."""
@@ -117,7 +126,7 @@ class _Planner:
         inner = [
             i for i, other in enumerate(self._events) if other.beside == number and other.joint == "comp"
         ]
-        if self._in_turn(number, event):
+        if self._in_turn(number, event) or self._repeated(number, event, bool(inner)):
             return
         found = self._matcher.find(event)
         if self._about_another(event) and inner and (found is None or found[2].score < 2.4):
@@ -134,6 +143,7 @@ class _Planner:
                 self._taken.update(inner)
             self._add(number, event, *found)
             self._held(number, event, found)
+            self._beside(number, event, found)
         elif event.lemma not in _STATES and not (inner and self._about_another(event)):
             self._not_read(number, event)
 
@@ -144,6 +154,56 @@ class _Planner:
         for other in done:
             other.adverbs.append("in turn")
         return bool(done)
+
+    def _repeated(self, number: int, event: Event, has_inner: bool) -> bool:
+        """Adds the last act once more, for whom the words say it of: "and B copies it", "he does", "she doesn't want to"."""
+        verbs, subject, last = vocabulary().verbs, event.subject, next(reversed(self._acts), None)
+        repeats = event.lemma in verbs["repeats"]
+        named = event.object is None or event.object.lemma in _SAME or event.object.kind == "person"
+        named = named or (repeats and (event.object.kind == "part" or event.object.lemma in _MOVEMENTS))
+        if last is None or subject is None or subject.kind != "person" or not named or has_inner:
+            return False
+        declines = event.lemma in verbs["not"] | verbs["wished"]
+        if event.lemma != "do" and not repeats and not declines:
+            return False
+        if declines and (event.object is not None or not (event.denied or event.lemma in verbs["not"])):
+            return False
+        agents, other = tuple(subject.who), "b" if subject.who == "a" else "a"
+        if len(last.agents) > 1 or (len(agents) > 1 and event.lemma != "do"):
+            return False
+        both = len(agents) > 1 or last.patient is None
+        patient = None if both else (last.patient if agents == last.agents else other)
+        denied = declines or event.denied
+        number_of = str(len(self._acts) + 1)
+        told = {
+            "id": number_of,
+            "agents": agents,
+            "patient": patient,
+            "modality": "told",
+            "order": (),
+            "already": False,
+        }
+        self._acts.append(
+            last.model_copy(
+                update={**told, "polarity": "not" if denied else "done", "words": self._span(number)}
+            )
+        )
+        self._of[number] = number_of
+        self._answers.add(number_of)
+        return True
+
+    def _beside(self, number: int, event: Event, found: Found) -> None:
+        """Adds that two people are side by side in what they do: "they sit next to each other"."""
+        start, stop = self._span(number).start, self._span(number).stop
+        phrases = [
+            span for span in self._prepared.phrases("together") if start <= span[0] and span[1] <= stop
+        ]
+        if not phrases or any(shape.do in ("go", "place") for shape in self._known.entries[found[0]].stage):
+            return
+        beside = Event("form", event.subject, first=event.first, last=event.last, object=_LINE)
+        line = self._matcher.find(beside)
+        if line is not None:
+            self._add(number, beside, *line, beside=str(len(self._acts)))
 
     def _completed(self, number: int, event: Event) -> Iterator[Event]:
         """The event with the object that a coordinated one has: "he reads and tears up the letter"."""
@@ -210,6 +270,9 @@ class _Planner:
         speed = 1.0
         for adverb in event.adverbs:
             speed *= vocabulary().speeds.get(adverb, 1.0)
+        usual = Go.model_fields["speed"].default
+        if any(isinstance(shape, Go) and shape.speed == usual for shape in self._known.entries[name].stage):
+            speed *= vocabulary().gaits.get(event.lemma, 1.0)
         refs = [event.object, part, *(ref for _, ref in event.prepositions)]  # "with the left foot"
         parts = [ref for ref in refs if ref is not None and ref.kind == "part" and ref.side]
         own = [ref.side for ref in parts if ref.who in ("", match.agents)]
@@ -262,7 +325,12 @@ class _Planner:
                 continue
             other = acts[self._of[beside]]
             if kind == "conj":
-                kind = "after" if _people(other) & _people(act) else "with"  # an answer comes after
+                kind = self._coordinated(other, act)
+            if kind == "after":
+                act = acts[act.id] = self._turned_to(other, act)
+            apart = not set(other.agents) & set(act.agents)
+            if kind == "after" and apart and (other.already or act.already):
+                kind = "while"  # what goes on, goes on
             if kind in ("main-after", "main-until"):
                 found[other.id].append(
                     Relation(kind="after" if kind == "main-after" else "until", act=act.id)
@@ -270,7 +338,44 @@ class _Planner:
             else:
                 kind = kind if kind in ("after", "with", "while", "before", "until") else "with"
                 found[act.id].append(Relation(kind=kind, act=other.id))  # type: ignore[arg-type]
-        self._acts = [act.model_copy(update={"order": tuple(found[act.id])}) for act in self._acts]
+        self._acts = [acts[act.id].model_copy(update={"order": tuple(found[act.id])}) for act in self._acts]
+
+    def _turned_to(self, first: Act, then: Act) -> Act:
+        """The act, where somebody who is touched turns around: to the one who touched them."""
+        touched = first.patient in then.agents and any(
+            s.do == "touch" for s in self._known.entries[first.act].stage
+        )
+        turns = any(s.do == "turn" and s.way == "around" for s in self._known.entries[then.act].stage)
+        if not touched or not turns or then.patient or then.direction:
+            return then
+        return then.model_copy(update={"patient": first.agents[0]})
+
+    def _coordinated(self, first: Act, then: Act) -> str:
+        """The relation of an act to one that stands before it and "and"."""
+        if then.id in self._answers:
+            return "after"
+        if not _people(first) & _people(then):
+            return "with"
+        if first.agents == then.agents and (self._accompanies(first, then) or self._linked(first, then)):
+            return "with"
+        return "after"
+
+    def _linked(self, first: Act, then: Act) -> bool:
+        """True if two people go on hand in hand: "hold hands, walk"."""
+        held = any(s.do == "link" for s in self._known.entries[first.act].stage)
+        return held and any(isinstance(s, Go) for s in self._known.entries[then.act].stage)
+
+    def _accompanies(self, first: Act, then: Act) -> bool:
+        """True for what somebody does on their way, or beside a gesture: "walks away and waves", "points and laughs"."""
+        one, other = self._known.entries[first.act], self._known.entries[then.act]
+        shown, later = {shape.do for shape in one.stage}, {shape.do for shape in other.stage}
+        if not first.happens or not then.happens or other.mutual or not later <= _BESIDE:
+            return False
+        on_way = any(isinstance(shape, Go) and shape.way not in _ARRIVES for shape in one.stage)
+        jumps = shown == {"jump"} and "gesture" in later
+        return (
+            on_way or jumps or first.already or (not later and shown <= _BESIDE and other.group == "feelings")
+        )
 
 
 def _unknown(doc: Doc, is_verb: Callable[[str], bool]) -> Iterator[tuple[int, int]]:

@@ -155,6 +155,8 @@ def _after_person(token: Token, ending: str) -> bool:
     if before is None or ending == "ing" or (following is not None and following.pos_ == "AUX"):
         return False
     one = before.lower_ in ("one", "other", "both") or before.text in (A_NAME, B_NAME)
+    if before.lower_ in ("one", "other") and ending == "":
+        return False  # "one knee"
     if before.pos_ == "PRON" and not one:
         return before.lower_ in _SUBJECTS
     the_two = before.lower_ == "two" and before.i > 0 and before.nbor(-1).lower_ in ("the", "these", "those")

@@ -77,6 +77,7 @@ def _words() -> frozenset[str]:
 
 
 _GOES_ON = frozenset(("keep", "stay", "remain", "continue"))
+_IN_PLACE = frozenset(("sleep", "kneel", "stand", "crouch", "squat", "lean"))
 _STATES = frozenset(("sit", "lie"))
 """Verbs that say how somebody is, and with "down" what they do."""
 
@@ -84,9 +85,13 @@ _STATES = frozenset(("sit", "lie"))
 def is_ongoing(token: Token, lemma: str) -> bool:
     """True if a verb's act goes on when its clause begins: "is sitting", "stays seated", "the sleeping child"."""
     children = {child.lower_ for child in token.children}
+    if lemma in _GOES_ON and any(child.dep_ == "acomp" for child in token.children):  # "stays seated"
+        return True
     if "down" in children:
         return False
     if lemma in _STATES or children & {"still", "already", "there"}:
+        return True
+    if token.dep_ == "relcl" and lemma in _IN_PLACE:  # "B, who sleeps on the floor"
         return True
     if token.dep_ in ("xcomp", "acomp", "advcl") and token.head.lemma_.lower() in _GOES_ON:
         return True

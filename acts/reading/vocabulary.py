@@ -28,6 +28,8 @@ class Vocabulary:
         self.seconds: dict[str, float] = dict(tables["seconds"])
         self.directions = {w: name for name, text in tables["directions"].items() for w in text.split()}
         self.speeds = {w: float(value) for value, text in tables["speeds"].items() for w in text.split()}
+        self.gaits = {w: float(value) for value, text in tables["gaits"].items() for w in text.split()}
+        """Factors of speed that a verb brings along, beside a walk."""
         self.verbs = {kind: frozenset(text.split()) for kind, text in tables["verbs"].items()}
         self.modals = {kind: frozenset(text.split()) for kind, text in tables["modals"].items()}
 

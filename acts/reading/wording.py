@@ -74,8 +74,13 @@ _PHRASES = {
     ("in", "order", "to"): "to", ("all", "of", "a", "sudden"): "suddenly", ("at", "once"): "immediately",
     ("the", "two", "of", "them"): "they", ("the", "pair", "of", "them"): "they",
     ("a", "bit"): "slightly", ("a", "little", "bit"): "slightly",
+    ("side", "by", "side"): "together", ("shoulder", "to", "shoulder"): "together",
+    ("next", "to", "each", "other"): "together", ("next", "to", "one", "another"): "together",
+    ("beside", "each", "other"): "together", ("beside", "one", "another"): "together",
 }  # fmt: skip
 """What the parser takes apart, and one word for it."""
+_BEHIND_BACK = frozenset(("on", "to", "turned", "towards", "toward"))
+"""Words behind "her back" after which it is a part of the body."""
 _NUMBERED = {"a": True, "1": True, "one": True, "b": False, "2": False, "two": False}
 """Letters and numbers behind "person" or "dancer", and whether they name the first."""
 
@@ -106,6 +111,10 @@ class Text:
             for at, (word, start, stop) in zip(self._starts, self._pieces, strict=True)
         ]
         return Text(self.original, pieces)
+
+    def phrases(self, word: str) -> list[tuple[int, int]]:
+        """The offsets in the original of the phrases of several words that are parsed as one word."""
+        return [(i, j) for found, i, j in self._pieces if found == word and " " in self.original[i:j]]
 
     def span(self, first: int, last: int) -> tuple[int, int]:
         """The offsets in the original of a stretch of what was parsed."""
@@ -142,7 +151,7 @@ class _Preparation:
     ) -> None:
         self._text, self._mended, self._is_verb = text, mended, is_verb
         self._words = vocabulary()
-        self._tokens = list(_tokens(text))
+        self._tokens = _without_speech(list(_tokens(text)))
         self._letters = _letters([word for word, _, _ in self._tokens], is_verb)
         self._pieces: list[tuple[str, int, int]] = []
 
@@ -165,8 +174,8 @@ class _Preparation:
         if self._lower(i) == "'" and self._lower(i + 1) == "s":  # "person 2's"
             self._pieces.append(("'s", self._tokens[i][1], self._tokens[i + 1][2]))
             return 2
-        if self._lower(i) == "her" and self._lower(i + 1) == "back" and self._lower(i + 2) in ("on", "to"):
-            self._pieces += [("her", *self._tokens[i][1:]), ("own", *self._tokens[i][1:])]  # no adverb
+        if self._lower(i) == "back" and self._lower(i - 1) == "her" and self._lower(i + 1) in _BEHIND_BACK:
+            self._pieces.append(("spine", *self._tokens[i][1:]))  # the noun, and no adverb
             return 1
         if self._lower(i) == "the" and self._lower(i + 1) == "two" and self._is_verb(self._lower(i + 2)):
             self._pieces.append(
@@ -178,13 +187,14 @@ class _Preparation:
     def _pair(self, i: int) -> int:
         """Two tokens that are one word, as "person A" and "high five"; 2 if they were, else 0."""
         lower, following = self._lower(i), self._lower(i + 1)
-        word = ""
+        word, owner = "", "'s" * following.endswith("'s")
+        letter = following.removesuffix("'s")
         if (
             lower in _LETTER_BEFORE
-            and following in _NUMBERED
-            and _ends_name(self._tokens, i + 2, self._tokens[i + 1][0])
+            and letter in _NUMBERED
+            and (owner or _ends_name(self._tokens, i + 2, self._tokens[i + 1][0]))
         ):
-            word = A_NAME if _NUMBERED[following] else B_NAME
+            word = (A_NAME if _NUMBERED[letter] else B_NAME) + owner
         elif (
             following.isalpha()
             and lower not in self._words.numbers
@@ -215,7 +225,9 @@ class _Preparation:
         )
         if not bare or not self._words.is_usual_person(word) or self._lower(i + 1) == "'":
             return []
-        if self._lower(i - 1).endswith("ing") and self._lower(i - 2) in _DETERMINERS:  # "the sleeping baby"
+        if (
+            self._lower(i - 2) in _DETERMINERS and self._lower(i - 1) not in _DETERMINERS
+        ):  # "an unconscious man"
             return []
         return [("the", start, start)] if _begins(self._lower(i - 1)) else []
 
@@ -233,10 +245,20 @@ class _Preparation:
             return f"{lower}wards"  # "turn left": no past of "leave"
         if word.isalpha() and len(word) > 3 and (right := self._mended(lower)) is not None:
             return right
+        if lower == "goodbye" and self._lower(i - 1).startswith(("hug", "kiss", "embrac")):
+            return "fondly"  # the parser takes the two for a compound
         joined = lower.replace("-", "")
         if joined != lower and self._is_verb(joined):  # "high-five"
             return joined
         return lower if word.isupper() and len(word) > 1 else word
+
+
+def _without_speech(tokens: list[tuple[str, int, int]]) -> list[tuple[str, int, int]]:
+    """The tokens without those that somebody says, between quotation marks; all of them if nothing else is told."""
+    marks = [i for i, (word, _, _) in enumerate(tokens) if word == '"']
+    spoken = {i for first, last in zip(marks[::2], marks[1::2], strict=False) for i in range(first, last + 1)}
+    told = [token for i, token in enumerate(tokens) if i not in spoken]
+    return told if sum(word.isalpha() for word, _, _ in told) > 1 else tokens
 
 
 def _begins(before: str) -> bool:

@@ -220,7 +220,9 @@ def _struck(found: Strike, listed: Sequence[Clause]) -> tuple[Move, ...]:
     own = [clause.words for clause in listed if clause.who == other]
     backs = any(way_of(words) is Way.BACK for words in own)
     return struck_moves(
-        found, backs=backs, down=any(_FLOOR.search(words) or "duck" in words for words in own)
+        found,
+        Move(other, Way.BACK) if backs else None,
+        down=any(_FLOOR.search(words) or "duck" in words for words in own),
     )
 
 
@@ -230,15 +232,15 @@ def _lifted(found: Lift, listed: Sequence[Clause]) -> tuple[Move, ...]:
     return lifted_moves(found, _speed(ways[0]) if ways else 1.1)
 
 
-def struck_moves(found: Strike, *, backs: bool, down: bool) -> tuple[Move, ...]:
-    """The places of two of whom at least one strikes; the other steps back, goes down or stays."""
+def struck_moves(found: Strike, dodge: Move | None, *, down: bool) -> tuple[Move, ...]:
+    """The places of two of whom at least one strikes; the other dodges, goes down or stays."""
     near, first = found.bout.value, found.turns[0]
     if not found.answered:
         return tuple(Move(person, Way.SPAR, near=near, turns=turning(found.bout)) for person in "ab")
     other = "b" if first == "a" else "a"
     comes = Move(first, Way.TO, near=near)
-    if backs:
-        return comes, Move(other, Way.BACK, late=True)
+    if dodge is not None:
+        return comes, replace(dodge, late=True)
     return (comes,) if down else (comes, Move(other, Way.STAY))
 
 

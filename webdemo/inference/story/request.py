@@ -18,10 +18,11 @@ from webdemo.inference.predict_request import check_motion
 from webdemo.inference.requests import GenerateRequest, SamplingRequest, _number
 
 from .beats import MOST_BEATS, SHORTEST, Beat, acts_of
+from .postures import Posture
 from .scripting import beats_of, understood
 from .splitting import split_sentence
 from .telling import of_words, told_by
-from .told import Told
+from .told import Told, at_start
 from .wishes import MOST_POSES, FloorPath, FloorPoint, Pose, check_together
 
 MOST_SECONDS = 180.0
@@ -203,7 +204,13 @@ class SceneRequest(SamplingRequest):
     @cached_property
     def told(self) -> tuple[Told, ...]:
         """The stage of each beat."""
-        return tuple(told_by(beat) for beat in self.beats)
+        story = [told_by(beat) for beat in self.beats]
+        _told_before(story)
+        for i in range(len(story)):  # who is down does not stand by
+            down = {who for who, held in at_start(story, i).items() if held is not Posture.STANDS}
+            if story[i].idle & down:
+                story[i] = replace(story[i], idle=story[i].idle - down)
+        return tuple(story)
 
     @property
     def num_frames(self) -> int:
@@ -320,6 +327,20 @@ def _beats(request: GenerateRequest, go_on: Callable[[], None]) -> tuple[Beat, .
     if told is None or len(by_acts) > most or sum(told_by(beat).size for beat in by_acts) <= told.size:
         return beats
     return by_acts if len(by_acts) > 1 else (replace(by_acts[0], words=request.prompt),)
+
+
+def _told_before(story: list[Told]) -> None:
+    """Leaves out the postures in which people of a later beat are "already", where an earlier one has put them."""
+    known: set[str] = set()
+    for i, told in enumerate(story):
+        again = {
+            who
+            for who, listed in told.changes.items()
+            if who in known and listed[0].already and len(listed) > 1
+        }
+        changes = {who: listed[1:] if who in again else listed for who, listed in told.changes.items()}
+        story[i] = replace(told, changes=changes) if again else told
+        known |= set(told.changes) | told.going
 
 
 def beat_of(values: Mapping[str, Any]) -> Beat:

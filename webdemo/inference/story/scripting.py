@@ -31,17 +31,24 @@ def beats_of(plan: Plan, known: Lexicon | None = None) -> tuple[Beat, ...]:
     known = known or lexicon()
     found: list[list[list[Act]]] = []
     for group in plan.beats():
-        if found and _same_beat(found[-1][-1], group, known):
+        if found and (_goes_on(found[-1], group) or _same_beat(found[-1][-1], group, known)):
             found[-1].append(group)
         else:
             found.append([group])
     if len(found) > 1 and not any(act.happens for group in found[0] for act in group):
-        found[1:2] = [found.pop(0) + found[0]]
+        found[:2] = [found[0] + found[1]]
     return tuple(
         Beat(words, acts=tuple(act for group in groups for act in group))
         for groups in found
         if (words := sentence(groups, known))
     )
+
+
+def _goes_on(before: Sequence[Sequence[Act]], group: Sequence[Act]) -> bool:
+    """True if before a group only others do something, which goes on while it happens: "A sits until B taps him"."""
+    earlier = [act for acts in before for act in acts]
+    busy = {who for act in group if act.happens for who in act.agents}
+    return all(act.already and not busy & set(act.agents) for act in earlier)
 
 
 def _same_beat(before: Sequence[Act], group: Sequence[Act], known: Lexicon) -> bool:
@@ -68,7 +75,17 @@ def _belongs(act: Act, entry: Entry, later: Act, after: Entry) -> bool:
     if way == "to" and len(act.agents) == 2 and after.mutual and not then:
         return True  # the network walks two people up to each other and into each other's arms
     same = later.agents == act.agents
-    return same and (("lift" in does and "lift" in then) or ("turn" in does and next_way == "away"))
+    if "lift" in does and getattr(then.get("hold"), "hold", "") == "twirl":
+        return True  # "picks her up and spins her around"
+    if "lift" in does and "lift" in then:
+        return same
+    if not same:
+        fallen = getattr(does.get("posture"), "posture", "") == "lies" and not getattr(act, "already", False)
+        return fallen and "touch" in then and later.patient in act.agents  # "she faints and he catches her"
+    if "turn" in does:
+        return next_way == "away" or after.mutual or "touch" in then
+    led = bool(does.keys() & {"link", "touch"}) and getattr(then.get("go"), "linked", False)
+    return led or (way == "away" and next_way == "away")
 
 
 def _with_entries(acts: Sequence[Act], known: Lexicon) -> list[tuple[Act, Entry]]:

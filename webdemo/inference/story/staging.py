@@ -32,15 +32,21 @@ _WAYS = {
     "to": Way.TO, "away": Way.AWAY, "past": Way.PAST, "around": Way.ROUND, "behind": Way.BEHIND, "along": Way.ALONG,
     "after": Way.AFTER, "back": Way.BACK, "aside": Way.ASIDE, "ahead": Way.AHEAD, "to and fro": Way.PACE,
 }  # fmt: skip
-_TURNS = {"around": Way.TURN, "to": Way.FACE, "away": Way.AVERTED}
+_TURNS = {"around": Way.TURN, "to": Way.FACE, "away": Way.TURN}
 _REGIONS = {
     "head": Region.HEAD, "shoulder": Region.SHOULDER, "back": Region.BACK, "chest": Region.CHEST,
     "waist": Region.CHEST, "arm": Region.ARM, "hand": Region.HAND, "leg": Region.LEG, "knee": Region.LEG,
     "foot": Region.FOOT,
 }  # fmt: skip
 """Families of parts of the body and the region of each."""
-_NEAR = frozenset(("touch", "fight", "dance"))
+_NEAR = frozenset(("touch", "fight", "dance", "care"))
 """Groups of the lexicon whose acts two people do within each other's reach."""
+_HANDED = frozenset(("things", "handling", "daily"))
+"""Groups whose acts with the other person pass something from hand to hand."""
+_JUMPS = 3
+"""Jumps of somebody who is jumping when their beat begins."""
+_DODGES = (Way.BACK, Way.ASIDE)
+"""Ways in which somebody gets out of a blow's reach."""
 _JOINS = frozenset(("touch", "hold", "link", "lift", "strike"))
 """Shapes that take the other along."""
 _LEGS = frozenset(("dance", "fight", "ways", "play"))
@@ -88,6 +94,8 @@ class _Stage:
         self.blows: list[tuple[tuple[str, ...], shapes.Strike]] = []
         self.setting = Setting()
         self.linked = False
+        self.behind: set[str] = set()
+        """Those who stand behind the other."""
 
     def told(self) -> Told:
         """All that they tell."""
@@ -98,6 +106,7 @@ class _Stage:
             if act.polarity == "not" and act.modality == "told" and act.act in self.known.entries:
                 for shape in self.known.entries[act.act].refused:
                     self._take(act, shape)
+        self._agree()
         struck = self._strike()
         moves = self._moves(struck)
         idle = self._idle()
@@ -114,7 +123,7 @@ class _Stage:
                 )
             ),
             keeps_place=self.setting.backs or self.setting.beside,
-            touches=any(e.group in _NEAR and _reaches(act, e) for act, e in self.done),
+            touches=any(_is_near(act, e) for act, e in self.done),
             alone=of_each(self.acts, self.known),
         )  # fmt: skip
 
@@ -123,15 +132,20 @@ class _Stage:
     def _take(self, act: Act, shape: shapes.Shape) -> None:
         people = self._people(act, shape)
         match shape:
+            case shapes.Go(way="after") if len(people) == 2:
+                self._chase(act, shape)
             case shapes.Go():
                 self.moves += [self._go(act, shape, who) for who in people]
             case shapes.Turn():
                 late, turns = self._late(act), float(act.times or 1) * shape.turns
-                self.moves += [Move(who, _TURNS[shape.way], turns=turns, late=late) for who in people]
+                way = (
+                    Way.FACE if shape.way == "around" and act.patient and not act.part else _TURNS[shape.way]
+                )
+                self.moves += [Move(who, way, turns=turns, late=late) for who in people]
             case shapes.Stay() if shape.facing == "away":
                 self.moves += [Move(who, Way.AVERTED) for who in people]
             case shapes.Place():
-                self._place(shape)
+                self._place(act, shape)
             case shapes.Posture():
                 for who in people:
                     self.changes[who] = (*self.changes.get(who, ()), *self._changed(act, shape))
@@ -140,7 +154,8 @@ class _Stage:
                 limb = Limb(shape.does, side, direction, act.times or 0)
                 self.limbs |= {who: (*self.limbs.get(who, ()), limb) for who in people}
             case shapes.Jump():
-                self.leaps |= dict.fromkeys(people, min(act.times or shape.times, 5))
+                times = act.times or (max(shape.times, _JUMPS) if act.already else shape.times)
+                self.leaps |= dict.fromkeys(people, min(times, 5))
             case shapes.Bow():
                 self.bows |= dict.fromkeys(people, (min(act.times or 1, 5), shape.deep or _is_deep(act)))
             case shapes.Gesture():
@@ -160,7 +175,10 @@ class _Stage:
             case shapes.Strike():
                 self.blows.append((people, shape))
 
-    def _place(self, shape: shapes.Place) -> None:
+    def _place(self, act: Act, shape: shapes.Place) -> None:
+        if shape.way == "behind":
+            self.behind.update(act.agents)
+            return
         here, backs = self.setting, shape.way == "back to back"
         beside = here.beside or shape.way == "beside"
         self.setting = replace(
@@ -190,14 +208,24 @@ class _Stage:
     def _go(self, act: Act, shape: shapes.Go, who: str) -> Move:
         way = _WAYS[shape.way]
         metres = act.distance if act.distance is not None and way is Way.AHEAD else shape.metres
-        turns = shape.turns * (act.times or 1) if way is Way.ROUND else shape.turns
+        turns = float(act.times) if act.times and way is Way.ROUND else shape.turns
         return Move(
-            who, way, min(shape.speed * act.speed, 3.0), turns, any(r.kind == "until" for r in act.order),
+            who, way, min(shape.speed * act.speed, 3.0), turns,
+            shape.stops or any(r.kind == "until" for r in act.order),
             shape.linked, way is not Way.AFTER and self._late(act), metres, shape.near, shape.backwards,
         )  # fmt: skip
 
+    def _chase(self, act: Act, shape: shapes.Go) -> None:
+        """Both run after each other: a goes ahead, unless the words say further on who runs after whom."""
+        told = [each for each, entry in self.done if any(_is_after(s) for s in entry.stage)]
+        if all(len(each.agents) == 2 for each in told):
+            self.moves.append(self._go(act, shape, "b"))
+
     def _late(self, act: Act) -> bool:
-        """True if an act comes after one that is done in place."""
+        """True if an act comes after one that is done in place, or after one that is refused."""
+        refused = (other for other in self.acts if not other.happens and other.act in self.known.entries)
+        if any(self.known.entries[other.act].refused for other in refused):
+            return True
         before = [other for other in self.acts if self.level[other.id] < self.level[act.id]]
         going = {other.id for other, entry in self.done if _goes(entry)}
         return any(other.id not in going for other in before)
@@ -210,14 +238,37 @@ class _Stage:
         region = Region.WAIST if family == "waist" and shape.behind else _REGIONS.get(family)
         if region is None:
             return
-        sides = {"both": SIDES, "none": ()}.get(shape.hands, (shape.hands,))
+        hands = act.side if act.side and shape.hands in ("left", "right") else shape.hands
+        sides = {"both": SIDES, "none": ()}.get(hands, (hands,))
         times = min(act.times or shape.times, 5) if shape.times else 0
-        self.contact = Contact(giver, region, sides, times, behind=shape.behind, fells=shape.fells)
+        late = any(self.level[act.id] > self.level[other.id] for other, _ in self.done)
+        behind = shape.behind or giver in self.behind
+        self.contact = Contact(giver, region, sides, times, late, behind, shape.fells)
         if shape.fells:
             fallen = Change(Posture.LIES, after=0.4)
             self.changes[_other(giver)] = (*self.changes.get(_other(giver), ()), fallen)
 
     # ---- what follows from all of them ---------------------------------------------------------------
+
+    def _agree(self) -> None:
+        """Settles what two shapes ask of one body: who is low keeps their trunk, a lifted person is turned round."""
+        low = {who for who, listed in self.changes.items() if listed[-1].posture is not Posture.STANDS}
+        self.limbs = {who: limbs for who, limbs in self.limbs.items() if who not in low}
+        if self.lift is not None and self.twirls:
+            self.lift, self.twirls = replace(self.lift, spins=self.lift.carry is not Carry.BACK), ""
+        for (
+            who,
+            listed,
+        ) in self.changes.items():  # "gets up" from where they are, and from a seat if nothing says
+            self.changes[who] = (listed[0], *(c for c in listed[1:] if not c.already))
+        self.changes = {
+            who: tuple(
+                c
+                for i, c in enumerate(listed)
+                if not i or c.passing or c.posture is not listed[i - 1].posture
+            )
+            for who, listed in self.changes.items()
+        }
 
     def _strike(self) -> Strike | None:
         """The blows, in the order in which they are told."""
@@ -235,7 +286,7 @@ class _Stage:
             for shape in e.stage
         )
         goes_on = shape.goes_on or (len(self.blows) > 1 and not answered)
-        return Strike(bout, turns, goes_on, answered and len(turns) == 1)
+        return Strike(bout, turns, goes_on, answered)
 
     def _moves(self, struck: Strike | None) -> tuple[Move, ...]:
         if self.hold is not None:
@@ -249,12 +300,13 @@ class _Stage:
         low = set(self.changes) | set(self.leaps)
         if struck is not None:
             other = _other(struck.turns[0])
-            backs = any(m.person == other and m.way is Way.BACK for m in self.moves)
-            return struck_moves(struck, backs=backs, down=other in self.changes)
+            own = next((m for m in self.moves if m.person == other and m.way in _DODGES), None)
+            return struck_moves(struck, own, down=other in self.changes)
         told = [replace(move, linked=move.linked or self.linked) for move in dict.fromkeys(self.moves)]
         made = finished(told, until=any(move.until for move in self.moves))
         if not goes(made):
-            return tuple(made)
+            stay = self.done and all(_only_stays(e) and len(act.agents) == 2 for act, e in self.done)
+            return tuple(Move(who, Way.STAY) for who in "ab") if stay and not made else tuple(made)
         backs = any(move.way in (Way.BACK, Way.ASIDE) for move in made)
         for who in "ab":
             if all(move.person != who for move in made) and who not in low and not backs:
@@ -310,6 +362,16 @@ def _only_stays(entry: Entry) -> bool:
 
 def _goes(entry: Entry) -> bool:
     return any(shape.do == "go" for shape in entry.stage)
+
+
+def _is_after(shape: shapes.Shape) -> bool:
+    return isinstance(shape, shapes.Go) and shape.way == "after"
+
+
+def _is_near(act: Act, entry: Entry) -> bool:
+    """True for an act that two people do within each other's reach."""
+    handed = entry.group in _HANDED and (act.patient is not None or entry.mutual) and not _goes(entry)
+    return handed or (entry.group in _NEAR and _reaches(act, entry))
 
 
 def _reaches(act: Act, entry: Entry) -> bool:
