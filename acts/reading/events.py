@@ -202,7 +202,7 @@ class Reader:
         return self._heads[token.i]
 
     def _nearer(self, token: Token, head: Token) -> Token:
-        """The main clause behind ``head`` with its own subject: "he talks, but she turns and covers her ears"."""
+        """The main clause behind ``head`` that has a subject of its own: "he talks, but she turns and covers her ears"."""
         if any(child.dep_ in ("nsubj", "nsubjpass") for child in token.children):
             return head
         later = [self.doc[i] for i in self._mains if head.i < i < token.i and self.doc[i].sent == token.sent]

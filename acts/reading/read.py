@@ -156,7 +156,7 @@ class _Planner:
         return bool(done)
 
     def _repeated(self, number: int, event: Event, has_inner: bool) -> bool:
-        """Adds the last act once more where the words say so: "and B copies it", "he does", "she refuses"."""
+        """Adds the last act once more, for whom the words say it of: "and B copies it", "he does", "she doesn't want to"."""
         verbs, subject, last = vocabulary().verbs, event.subject, next(reversed(self._acts), None)
         repeats = event.lemma in verbs["repeats"]
         named = event.object is None or event.object.lemma in _SAME or event.object.kind == "person"
@@ -366,7 +366,7 @@ class _Planner:
         return held and any(isinstance(s, Go) for s in self._known.entries[then.act].stage)
 
     def _accompanies(self, first: Act, then: Act) -> bool:
-        """True for what somebody does on their way or beside a gesture: "walks away and waves", "points and laughs"."""
+        """True for what somebody does on their way, or beside a gesture: "walks away and waves", "points and laughs"."""
         one, other = self._known.entries[first.act], self._known.entries[then.act]
         shown, later = {shape.do for shape in one.stage}, {shape.do for shape in other.stage}
         if not first.happens or not then.happens or other.mutual or not later <= _BESIDE:

@@ -138,8 +138,9 @@ class _Stage:
                 self.moves += [self._go(act, shape, who) for who in people]
             case shapes.Turn():
                 late, turns = self._late(act), float(act.times or 1) * shape.turns
-                faces = shape.way == "around" and shape.turns < 1 and act.patient and not act.part
-                way = Way.FACE if faces else _TURNS[shape.way]
+                way = (
+                    Way.FACE if shape.way == "around" and act.patient and not act.part else _TURNS[shape.way]
+                )
                 self.moves += [Move(who, way, turns=turns, late=late) for who in people]
             case shapes.Stay() if shape.facing == "away":
                 self.moves += [Move(who, Way.AVERTED) for who in people]
@@ -225,7 +226,7 @@ class _Stage:
         refused = (other for other in self.acts if not other.happens and other.act in self.known.entries)
         if any(self.known.entries[other.act].refused for other in refused):
             return True
-        before = [other for other, _ in self.done if self.level[other.id] < self.level[act.id]]
+        before = [other for other in self.acts if self.level[other.id] < self.level[act.id]]
         going = {other.id for other, entry in self.done if _goes(entry)}
         return any(other.id not in going for other in before)
 
