@@ -42,6 +42,7 @@ def worded(act: Act, caption: str) -> str:
     """An act in the words of a caption, without a full stop: "person A pats person B on the back twice"."""
     both = len(act.agents) == 2
     other = act.patient or ("b" if act.agents[0] == "a" else "a")
+    caption = caption if act.part else caption.replace(" on the {part}", "")
     text = _VERB.sub(lambda m: ("are" if m[1] == "be" else m[1]) if both else singular(m[1]), caption)
     values = {
         "a": "they" if both else _NAMES[act.agents[0]],
@@ -93,7 +94,7 @@ def _sentence(group: Sequence[Act], known: Lexicon) -> str:
     busy: set[str] = {who for act in done for who in act.agents}
     for act in group:
         idle = "".join(who for who in act.agents if who not in busy)
-        if not act.happens and idle:
+        if not act.happens and idle and not _is_still(act, known):
             parts.append((idle, f"{_NAMES[idle]} stands still" if len(idle) == 1 else "they stand still"))
             busy.update(idle)
     text, last = "", ""
@@ -106,6 +107,12 @@ def _sentence(group: Sequence[Act], known: Lexicon) -> str:
             text += f" while {words}"
         last = who
     return f"{text[:1].upper()}{text[1:]}." if text else ""
+
+
+def _is_still(act: Act, known: Lexicon) -> bool:
+    """True for standing still, which nobody does of whom it is denied."""
+    entry = known.entries.get(act.act)
+    return entry is not None and {shape.do for shape in entry.stage} == {"stay"}
 
 
 def in_words(plan: Plan) -> str:

@@ -62,7 +62,7 @@ class Stay(_Shape):
 
 
 class Place(_Shape):
-    """The place of the two when a story begins with the act: ``apart`` metres, side by side, back to back, or behind."""
+    """The place of the two when a story begins with the act: ``apart`` metres, beside each other, one behind, …."""
 
     do: Literal["place"] = "place"
     way: Literal["facing", "beside", "back to back", "behind"] = "facing"

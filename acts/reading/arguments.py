@@ -41,7 +41,7 @@ class Arguments:
         agent: Ref | None = None
         for child in token.children:
             bare = all(c.dep_ not in ("poss", "det") for c in child.children)
-            if child.dep_ == "aux" and child.lemma_.lower() == "come":  # "comes running"
+            if child.dep_ == "aux" and child.lower_ in ("come", "comes", "came"):  # "comes running"
                 event.words.append("come")
             elif child.dep_ in ("dobj", "obj") and child.lower_ in self._words.directions and bare:
                 self._modifier(child, event)
@@ -67,7 +67,9 @@ class Arguments:
                         event.object = self._argument(noun, who, event)
                 event.words.append(child.lower_)
                 event.particles.append(child.lower_)
-            elif child.dep_ in _MODIFIERS or (child.dep_ in ("xcomp", "ccomp") and child.pos_ == "ADJ"):
+            elif child.dep_ in _MODIFIERS or (
+                child.dep_ in ("xcomp", "ccomp", "advcl") and child.pos_ == "ADJ"
+            ):
                 self._modifier(child, event)
         return agent
 

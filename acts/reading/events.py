@@ -38,6 +38,8 @@ _MARKS = {
     "till": "main-until", "before": "after", "because": "with", "so": "after", "without": "while", "instead": "with",
 }  # fmt: skip
 """How a clause with this word lies beside its main clause; "main-after" puts the main clause behind it."""
+_LEAVES = frozenset(("leave", "find"))
+"""Verbs whose object does what follows, beside those that cause or see it."""
 _NOUN_MARKS = {"after": "main-after", "following": "main-after", "upon": "main-after", "before": "after"}
 """Prepositions behind which a noun stands for an act of its own."""
 _THEN = frozenset(
@@ -202,7 +204,7 @@ class Reader:
         return self._heads[token.i]
 
     def _nearer(self, token: Token, head: Token) -> Token:
-        """The main clause behind ``head`` that has a subject of its own: "he talks, but she turns and covers her ears"."""
+        """The main clause behind ``head`` with its own subject: "he talks, but she turns and covers her ears"."""
         if any(child.dep_ in ("nsubj", "nsubjpass") for child in token.children):
             return head
         later = [self.doc[i] for i in self._mains if head.i < i < token.i and self.doc[i].sent == token.sent]
@@ -271,7 +273,10 @@ class Reader:
                     above is not None
                     and above.object is not None
                     and above.object.kind == "person"
-                    and (above.lemma in verbs["causes"] | verbs["sees"] or above.lemma in verbs["wished"])
+                    and (
+                        above.lemma in verbs["causes"] | verbs["sees"] | _LEAVES
+                        or above.lemma in verbs["wished"]
+                    )
                 ):
                     return above.object
             return own

@@ -14,6 +14,7 @@ from acts.plan import MOST_ACTS, Act, Plan, Relation, Span, Unread
 from acts.shapes import Go
 from motion import InputError
 
+from . import order
 from .events import Reader, spans
 from .matching import Found, matcher
 from .spelling import Speller
@@ -33,9 +34,6 @@ _SHARING = frozenset(("conj", "after", "with"))
 _SAME = frozenset(("same", "it", "that", "this", "likewise", "so"))
 _MOVEMENTS = frozenset(("movement", "move", "gesture", "motion", "pose", "step", "action"))
 _LINE = Ref("thing", lemma="line")
-_BESIDE = frozenset(("gesture", "limb", "words"))
-"""Shapes of what somebody can do on their way."""
-_ARRIVES = frozenset(("to", "behind", "back", "aside"))
 _HELD = frozenset(("crossed", "folded", "cross", "fold", "outstretched", "raised", "raise", "outstretch"))
 """Participles of postures of the arms, and the parser's lemmas of them."""
 
@@ -144,6 +142,7 @@ class _Planner:
             self._add(number, event, *found)
             self._held(number, event, found)
             self._beside(number, event, found)
+            self._seated(number, event, found)
         elif event.lemma not in _STATES and not (inner and self._about_another(event)):
             self._not_read(number, event)
 
@@ -156,11 +155,12 @@ class _Planner:
         return bool(done)
 
     def _repeated(self, number: int, event: Event, has_inner: bool) -> bool:
-        """Adds the last act once more, for whom the words say it of: "and B copies it", "he does", "she doesn't want to"."""
+        """Adds the last act once more where the words say so: "and B copies it", "he does", "she refuses"."""
         verbs, subject, last = vocabulary().verbs, event.subject, next(reversed(self._acts), None)
         repeats = event.lemma in verbs["repeats"]
-        named = event.object is None or event.object.lemma in _SAME or event.object.kind == "person"
-        named = named or (repeats and (event.object.kind == "part" or event.object.lemma in _MOVEMENTS))
+        ref = event.object
+        named = ref is None or ref.lemma in _SAME or ref.kind == "person"
+        named = named or (repeats and ref is not None and (ref.kind == "part" or ref.lemma in _MOVEMENTS))
         if last is None or subject is None or subject.kind != "person" or not named or has_inner:
             return False
         declines = event.lemma in verbs["not"] | verbs["wished"]
@@ -191,6 +191,23 @@ class _Planner:
         self._of[number] = number_of
         self._answers.add(number_of)
         return True
+
+    def _seated(self, number: int, event: Event, found: Found) -> None:
+        """Adds that somebody sits where a phrase beside the act says so: "reads in his armchair"."""
+        entry = self._known.entries[found[0]]
+        in_seat = any(p in ("in", "on") and ref.lemma in vocabulary().seats for p, ref in event.prepositions)
+        told = {agent for act in self._acts[:-1] for agent in act.agents}
+        if (
+            not in_seat
+            or told & set(found[2].agents)
+            or not {s.do for s in entry.stage} <= order.BESIDE | {"stay"}
+        ):
+            return
+        sits = Event("sit", event.subject, first=event.first, last=event.last, ongoing=True)
+        seat = self._matcher.find(sits)
+        if seat is not None:
+            self._add(number, sits, *seat, beside=str(len(self._acts)))
+            self._acts[-1] = self._acts[-1].model_copy(update={"already": True})
 
     def _beside(self, number: int, event: Event, found: Found) -> None:
         """Adds that two people are side by side in what they do: "they sit next to each other"."""
@@ -325,11 +342,12 @@ class _Planner:
                 continue
             other = acts[self._of[beside]]
             if kind == "conj":
-                kind = self._coordinated(other, act)
+                kind = order.coordinated(other, act, self._known, repeats=act.id in self._answers)
             if kind == "after":
-                act = acts[act.id] = self._turned_to(other, act)
+                act = acts[act.id] = order.turned_to(other, act, self._known)
             apart = not set(other.agents) & set(act.agents)
-            if kind == "after" and apart and (other.already or act.already):
+            waits = {shape.do for shape in self._known.entries[act.act].stage} == {"stay"}
+            if kind == "after" and apart and (other.already or act.already or waits):
                 kind = "while"  # what goes on, goes on
             if kind in ("main-after", "main-until"):
                 found[other.id].append(
@@ -339,43 +357,6 @@ class _Planner:
                 kind = kind if kind in ("after", "with", "while", "before", "until") else "with"
                 found[act.id].append(Relation(kind=kind, act=other.id))  # type: ignore[arg-type]
         self._acts = [acts[act.id].model_copy(update={"order": tuple(found[act.id])}) for act in self._acts]
-
-    def _turned_to(self, first: Act, then: Act) -> Act:
-        """The act, where somebody who is touched turns around: to the one who touched them."""
-        touched = first.patient in then.agents and any(
-            s.do == "touch" for s in self._known.entries[first.act].stage
-        )
-        turns = any(s.do == "turn" and s.way == "around" for s in self._known.entries[then.act].stage)
-        if not touched or not turns or then.patient or then.direction:
-            return then
-        return then.model_copy(update={"patient": first.agents[0]})
-
-    def _coordinated(self, first: Act, then: Act) -> str:
-        """The relation of an act to one that stands before it and "and"."""
-        if then.id in self._answers:
-            return "after"
-        if not _people(first) & _people(then):
-            return "with"
-        if first.agents == then.agents and (self._accompanies(first, then) or self._linked(first, then)):
-            return "with"
-        return "after"
-
-    def _linked(self, first: Act, then: Act) -> bool:
-        """True if two people go on hand in hand: "hold hands, walk"."""
-        held = any(s.do == "link" for s in self._known.entries[first.act].stage)
-        return held and any(isinstance(s, Go) for s in self._known.entries[then.act].stage)
-
-    def _accompanies(self, first: Act, then: Act) -> bool:
-        """True for what somebody does on their way, or beside a gesture: "walks away and waves", "points and laughs"."""
-        one, other = self._known.entries[first.act], self._known.entries[then.act]
-        shown, later = {shape.do for shape in one.stage}, {shape.do for shape in other.stage}
-        if not first.happens or not then.happens or other.mutual or not later <= _BESIDE:
-            return False
-        on_way = any(isinstance(shape, Go) and shape.way not in _ARRIVES for shape in one.stage)
-        jumps = shown == {"jump"} and "gesture" in later
-        return (
-            on_way or jumps or first.already or (not later and shown <= _BESIDE and other.group == "feelings")
-        )
 
 
 def _unknown(doc: Doc, is_verb: Callable[[str], bool]) -> Iterator[tuple[int, int]]:
@@ -390,10 +371,6 @@ def _unknown(doc: Doc, is_verb: Callable[[str], bool]) -> Iterator[tuple[int, in
             first = -1
     if first >= 0:
         yield first, last
-
-
-def _people(act: Act) -> set[str]:
-    return {*act.agents, act.patient} - {None}  # type: ignore[return-value]
 
 
 def _other_language(text: str) -> str | None:

@@ -49,6 +49,7 @@ def verbs_taken_for_nouns(doc: Doc, forms: Mapping[str, tuple[str, str]]) -> dic
         if form is not None and (
             (_is_other(token) and (_after_person(token, form[1]) or _opens(token, form[1])))
             or _coordinated(token, form[1], last)
+            or _is_kept(token, form[1])
         ):
             found[token.idx] = (_safe(token, form[1]), form[0])
             last = form[1]
@@ -72,6 +73,19 @@ def _verbless(doc: Doc, forms: Mapping[str, tuple[str, str]]) -> Iterator[Token]
             and _ends_phrase(token)
         ]
         yield from known[-1:]
+
+
+def _is_kept(token: Token, ending: str) -> bool:
+    """True for "clapping" in "keeps clapping", which the parser may take for an object."""
+    verbs = vocabulary().verbs
+    about = verbs["begins"] | verbs["ends"]
+    before = token.nbor(-1) if token.i else None
+    return (
+        ending == "ing"
+        and before is not None
+        and token.pos_ == "NOUN"
+        and before.lemma_.lower() in about - {"come", "go", "get"}
+    )
 
 
 def _is_other(token: Token) -> bool:

@@ -19,6 +19,7 @@ class Vocabulary:
         self._people = people
         self.shorthand: dict[str, str] = dict(tables["shorthand"])
         self.places = frozenset(tables["places"]["nouns"].split())
+        self.seats = frozenset(tables["places"]["seats"].split())
         self.both = frozenset(tables["groups"]["both"].split())
         self._parts = {
             word: family for family, text in tables["body"].items() for word in (family, *text.split())

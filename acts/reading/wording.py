@@ -254,9 +254,15 @@ class _Preparation:
 
 
 def _without_speech(tokens: list[tuple[str, int, int]]) -> list[tuple[str, int, int]]:
-    """The tokens without those that somebody says, between quotation marks; all of them if nothing else is told."""
+    """The tokens without what is said in quotation marks or stands in brackets; all if nothing else is told."""
     marks = [i for i, (word, _, _) in enumerate(tokens) if word == '"']
     spoken = {i for first, last in zip(marks[::2], marks[1::2], strict=False) for i in range(first, last + 1)}
+    opened = -1
+    for i, (word, _, _) in enumerate(tokens):
+        opened = i if word == "(" else opened
+        if word == ")" and opened >= 0:
+            spoken.update(range(opened, i + 1))
+            opened = -1
     told = [token for i, token in enumerate(tokens) if i not in spoken]
     return told if sum(word.isalpha() for word, _, _ in told) > 1 else tokens
 

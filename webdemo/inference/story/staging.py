@@ -138,9 +138,8 @@ class _Stage:
                 self.moves += [self._go(act, shape, who) for who in people]
             case shapes.Turn():
                 late, turns = self._late(act), float(act.times or 1) * shape.turns
-                way = (
-                    Way.FACE if shape.way == "around" and act.patient and not act.part else _TURNS[shape.way]
-                )
+                faces = shape.way == "around" and shape.turns < 1 and act.patient and not act.part
+                way = Way.FACE if faces else _TURNS[shape.way]
                 self.moves += [Move(who, way, turns=turns, late=late) for who in people]
             case shapes.Stay() if shape.facing == "away":
                 self.moves += [Move(who, Way.AVERTED) for who in people]
@@ -173,7 +172,8 @@ class _Stage:
             case shapes.Lift() if self.lift is None or self.lift.carry is Carry.UP:
                 self.lift = Lift(people[0], Carry[shape.carry.upper()], shape.spins)
             case shapes.Strike():
-                self.blows.append((people, shape))
+                both = self.known.entries[act.act].mutual
+                self.blows.append((("a", "b") if both else people, shape))
 
     def _place(self, act: Act, shape: shapes.Place) -> None:
         if shape.way == "behind":
@@ -226,7 +226,7 @@ class _Stage:
         refused = (other for other in self.acts if not other.happens and other.act in self.known.entries)
         if any(self.known.entries[other.act].refused for other in refused):
             return True
-        before = [other for other in self.acts if self.level[other.id] < self.level[act.id]]
+        before = [other for other, _ in self.done if self.level[other.id] < self.level[act.id]]
         going = {other.id for other, entry in self.done if _goes(entry)}
         return any(other.id not in going for other in before)
 
@@ -235,7 +235,7 @@ class _Stage:
             return
         giver = act.agents[0]
         family = shape.part or vocabulary().part(act.part or "") or (act.part or "")
-        region = Region.WAIST if family == "waist" and shape.behind else _REGIONS.get(family)
+        region = Region.WAIST if family == "waist" and shape.behind else _REGIONS.get(family or "shoulder")
         if region is None:
             return
         hands = act.side if act.side and shape.hands in ("left", "right") else shape.hands
@@ -254,6 +254,9 @@ class _Stage:
         """Settles what two shapes ask of one body: who is low keeps their trunk, a lifted person is turned round."""
         low = {who for who, listed in self.changes.items() if listed[-1].posture is not Posture.STANDS}
         self.limbs = {who: limbs for who, limbs in self.limbs.items() if who not in low}
+        comes = next((move.person for move in self.moves if move.way is Way.TO), "")
+        if self.lift is not None and comes:
+            self.lift = replace(self.lift, comes=comes)
         if self.lift is not None and self.twirls:
             self.lift, self.twirls = replace(self.lift, spins=self.lift.carry is not Carry.BACK), ""
         for (
@@ -320,7 +323,7 @@ class _Stage:
             other = _other(who)
             own = [(act, e) for act, e in self.done if who in act.agents]
             theirs = [(act, e) for act, e in self.done if other in act.agents and who not in act.agents]
-            denied = any(who in act.agents and not act.happens for act in self.acts)
+            denied = any(who in act.agents and not act.happens and not self._stays(act) for act in self.acts)
             waits = bool(own) and all(_only_stays(e) for _, e in own)
             touched = any(_reaches(act, e) for act, e in theirs)
             if touched or (own and not waits):
@@ -328,6 +331,10 @@ class _Stage:
             if waits or denied or any(not _goes(e) for _, e in theirs):
                 found.add(who)
         return frozenset(found)
+
+    def _stays(self, act: Act) -> bool:
+        entry = self.known.entries.get(act.act)
+        return entry is not None and _only_stays(entry)
 
     def _gesturing(self, moves: Sequence[Move]) -> frozenset[str]:
         gone = {move.person for move in moves if move.way not in (Way.STAY, Way.BACKS)}
