@@ -19,7 +19,7 @@ def add_service(commands: Any) -> None:
     info_parser.set_defaults(job=info)
     bench = commands.add_parser("benchmark", help="measure the speed of this machine, as figures and ratios")
     bench.add_argument("--seconds", type=float, default=10.0, help="length of the motion")
-    bench.add_argument("--steps", type=int, default=50)
+    bench.add_argument("--steps", type=int, help="denoising steps (50; with --motion 8)")
     bench.add_argument("--repeats", type=int, default=3)
     bench.add_argument("--browser", action="store_true", help="also the page and the player, in Chromium")
     bench.add_argument(
@@ -29,6 +29,20 @@ def add_service(commands: Any) -> None:
         "--model", help="instead: a released InterGen of the settings beside a plain run of it"
     )
     bench.add_argument("--live", action="store_true", help="instead: many people with live partners")
+    bench.add_argument(
+        "--motion",
+        action="store_true",
+        help="instead: planned motion beside the network's own and recorded motion, by kind of act",
+    )
+    bench.add_argument(
+        "--recorded",
+        type=Path,
+        metavar="FOLDER",
+        help="with --motion: measure the recordings in FOLDER/KIND anew",
+    )
+    bench.add_argument(
+        "--kinds", nargs="+", default=[], metavar="KIND", help="with --motion: only these kinds"
+    )
     bench.add_argument("--people", type=int, default=20, help="with --load or --live")
     bench.add_argument("--minutes", type=float, default=5.0, help="with --load or --live")
     bench.set_defaults(job=benchmark)
@@ -87,6 +101,11 @@ def benchmark(options: argparse.Namespace) -> dict[str, Any]:
     """Speed figures of :mod:`webdemo.benchmark`, or how a server bears many people."""
     from webdemo.benchmark.suite import run_benchmark
 
+    if options.motion:
+        from webdemo.benchmark.motion import run_motion
+
+        return run_motion(steps=options.steps or 8, recorded=options.recorded, only=options.kinds)
+    options.steps = 50 if options.steps is None else options.steps
     if options.model:
         from webdemo.benchmark.released import measure_released
 

@@ -1,0 +1,145 @@
+"""Measures of how planned a motion looks: feet, jolts, arms that mirror each other, limbs in the other's body.
+
+Each takes one person's joints, or a duet, on the skeleton SMPL22. They are compared with the same measures of
+recorded people who do the same kind of thing: what is recorded is not still, not smooth and not symmetric.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from motion import SMPL22, Duet
+from motion.cleaning import ANKLE_HEIGHT, TOE_HEIGHT
+from motion.transforms import facing
+
+from .bodies import Capsules, capsules, segment_segment_distance, sideless
+
+Array = NDArray[np.floating]
+
+DEEP = 0.02
+"""Metres that a limb may be in the other's body: soft tissue gives way as far as that."""
+SLOW = 1.0
+"""Hertz below which people's arms have most of their energy (Hogan and Sternad 2007 hold jerk to be set by tempo)."""
+_TOES = [SMPL22.index("left_foot"), SMPL22.index("right_foot")]
+_ANKLES = [SMPL22.index("left_ankle"), SMPL22.index("right_ankle")]
+_WRISTS = [SMPL22.index("left_wrist"), SMPL22.index("right_wrist")]
+_ARMS = [SMPL22.index(f"{side}_{joint}") for side in ("left", "right") for joint in ("elbow", "wrist")]
+_LIMBS = ("elbow", "wrist", "knee", "ankle", "foot")
+
+
+@dataclass(frozen=True)
+class Naturalness:
+    """The measures of one person in a scene.
+
+    Attributes:
+        standing_foot: mean speed over the floor of the foot that stands, cm/s; NaN where none does.
+        jerk: 95th percentile over joints and frames of the third derivative, m/s³.
+        fastest: the fastest joint at any frame, m/s.
+        mirror_gap: mean distance between one wrist and the mirror image of the other, cm.
+        slow_arms: share of the energy of elbows and wrists beside the pelvis under 1 Hz, 0 to 1.
+        deep: share of frames with a limb of theirs deeper than 2 cm in the other's body, 0 to 1; NaN if alone.
+    """
+
+    standing_foot: float
+    jerk: float
+    fastest: float
+    mirror_gap: float
+    slow_arms: float
+    deep: float = float("nan")
+
+
+def naturalness(positions: Array, fps: float, other: Array | None = None) -> Naturalness:
+    """All measures of a person.
+
+    Args:
+        positions: (T, 22, 3) metres, Y up, floor at 0, T of at least 4.
+        fps: frames a second.
+        other: (T, 22, 3), the other person.
+    """
+    return Naturalness(
+        standing_foot=standing_foot(positions, fps),
+        jerk=jerk_percentile(positions, fps),
+        fastest=float(joint_speeds(positions, fps).max()),
+        mirror_gap=mirror_gap(positions),
+        slow_arms=slow_arms(positions, fps),
+        deep=float("nan") if other is None else float((limb_depth(positions, other) > DEEP).mean()),
+    )
+
+
+def of_duet(duet: Duet) -> tuple[Naturalness, Naturalness]:
+    """The measures of both people of a duet on SMPL22."""
+    a, b = duet.positions.astype(np.float64)
+    return naturalness(a, duet.fps, b), naturalness(b, duet.fps, a)
+
+
+def standing_foot(positions: Array, fps: float) -> float:
+    """Mean speed over the floor, in cm/s, of the foot that stands: the slower one of the feet that are on the floor.
+
+    A foot is on the floor where its toe joint is below 5 cm and its ankle joint below 12. No speed is asked of it, so
+    that a foot that glides is not taken for one that swings.
+    """
+    low = (positions[:, _TOES, 1] < TOE_HEIGHT) & (positions[:, _ANKLES, 1] < ANKLE_HEIGHT)
+    speed = np.linalg.norm(np.diff(positions[:, _TOES][..., [0, 2]], axis=0), axis=-1) * fps
+    slower = np.where(low[1:] & low[:-1], speed, np.inf).min(axis=1)
+    slower = slower[np.isfinite(slower)]
+    return float(100 * slower.mean()) if len(slower) else float("nan")
+
+
+def jerk_percentile(positions: Array, fps: float, share: float = 95.0) -> float:
+    """A percentile of the length of the third derivative over all joints and frames, in m/s³."""
+    third = np.diff(positions, n=3, axis=0) * fps**3
+    return float(np.percentile(np.linalg.norm(third, axis=-1), share))
+
+
+def joint_speeds(positions: Array, fps: float) -> Array:
+    """(T - 1, J) metres a second of each joint."""
+    return np.asarray(np.linalg.norm(np.diff(positions, axis=0), axis=-1) * fps)
+
+
+def mirror_gap(positions: Array) -> float:
+    """Mean distance in cm of one wrist from the mirror image of the other in the body's middle plane.
+
+    The plane goes through the pelvis, upright, along the way that the hips face. Two arms that do the same at the same
+    time have 0.
+    """
+    forward = facing(positions)
+    left = np.stack([forward[:, 2], np.zeros(len(forward)), -forward[:, 0]], axis=-1)
+    one, other = (positions[:, wrist] - positions[:, 0] for wrist in _WRISTS)
+    image = other - 2 * np.sum(other * left, axis=-1, keepdims=True) * left
+    return float(100 * np.linalg.norm(one - image, axis=-1).mean())
+
+
+def slow_arms(positions: Array, fps: float) -> float:
+    """Share of the kinetic energy of elbows and wrists, as seen from the pelvis, that is slower than 1 Hz."""
+    beside = positions[:, _ARMS] - positions[:, :1]
+    velocity = np.diff(beside, axis=0) * fps
+    power = (np.abs(np.fft.rfft(velocity, axis=0)) ** 2).sum(axis=(1, 2))
+    slow = np.fft.rfftfreq(len(velocity), 1 / fps) < SLOW
+    return float(power[slow].sum() / max(power.sum(), 1e-12))
+
+
+def limb_depth(person: Array, other: Array) -> Array:
+    """(T,) metres that the forearms, upper arms, shanks, thighs and feet of a person are in the other's body.
+
+    Bodies are capsules (:func:`~motion.metrics.bodies.capsules`): the depth of two is the sum of their radii less the
+    distance between their middle lines. Hands are no part of it: hands that are held are not in each other.
+    """
+    body = capsules(SMPL22)
+    limbs = body.part([sideless(SMPL22.joint_names[end]) in _LIMBS for end in body.ends])
+    return _depth(person, limbs, other, body)
+
+
+def _depth(first: Array, one: Capsules, second: Array, two: Capsules) -> Array:
+    near = np.flatnonzero(np.linalg.norm(first[:, 0] - second[:, 0], axis=-1) < 2.4)
+    depth = np.zeros(len(first))
+    if not len(near):
+        return depth
+    pairs = (len(near), len(one.starts), len(two.starts), 3)
+    ends = [np.broadcast_to(first[near][:, side, None], pairs) for side in (one.starts, one.ends)]
+    ends += [np.broadcast_to(second[near][:, None, side], pairs) for side in (two.starts, two.ends)]
+    gap = segment_segment_distance(*(end.reshape(-1, 3) for end in ends)).reshape(pairs[:-1])
+    depth[near] = (one.radii[:, None] + two.radii - gap).max(axis=(1, 2)).clip(min=0.0)
+    return depth

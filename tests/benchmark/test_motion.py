@@ -1,0 +1,47 @@
+"""The table of how planned motion looks."""
+
+import json
+import math
+import shutil
+from pathlib import Path
+
+import pytest
+
+from motion import InputError
+from webdemo.benchmark import motion as bench
+from webdemo.benchmark.motion import COLUMNS, MEASURES, kinds, measured_folder, run_motion, table
+
+EXAMPLES = Path(__file__).resolve().parents[2] / "static" / "examples"
+
+
+def test_every_kind_is_asked_for_in_several_ways_and_most_were_recorded() -> None:
+    listed, real = kinds(), json.loads(bench.RECORDED.read_text())
+    assert all(len(sentences) >= 2 for sentences in listed.values())
+    assert set(real) <= {*listed, "all"} and len(real) > 8
+    assert all(set(MEASURES) >= set(row) - {"people"} for row in real.values())
+
+
+def test_recordings_are_measured_by_kind(tmp_path: Path) -> None:
+    (tmp_path / "gesture").mkdir()
+    shutil.copy(EXAMPLES / "wave.npz", tmp_path / "gesture")
+    (tmp_path / "gesture" / "notes.txt").write_text("no motion")
+    found = measured_folder(tmp_path, kinds())
+    assert set(found) == {"gesture", "all"} and found["gesture"]["people"] == 2
+    assert found["gesture"]["fastest"] > 0.5 and found["gesture"] == found["all"]
+
+
+def test_a_folder_without_recordings_is_an_error(tmp_path: Path) -> None:
+    with pytest.raises(InputError, match="a folder of motion files for each kind"):
+        measured_folder(tmp_path, kinds())
+
+
+def test_an_unknown_kind_is_an_error() -> None:
+    with pytest.raises(InputError, match="no kind of act 'sing'"):
+        run_motion(only=["sing"])
+
+
+def test_the_table_has_a_line_for_each_kind_of_each_measure() -> None:
+    row = {measure: dict.fromkeys(COLUMNS, 0.5) for measure in MEASURES}
+    row["deep"]["recorded"] = math.nan
+    shown = table({"walk": row, "all": row})
+    assert shown.count("walk") == len(MEASURES) and "–" in shown and "goal 110" in shown
