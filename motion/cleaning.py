@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
-import itertools
-
 import numpy as np
 import scipy  # its parts are loaded with their first use
 from numpy.typing import NDArray
 
 from .skeleton import SMPL22, Skeleton
+from .smoothing import REACH, frames_from, least_jerk, led
 from .transforms import facing
 
 Array = NDArray[np.floating]
@@ -18,11 +17,20 @@ ANKLE_HEIGHT, TOE_HEIGHT = 0.12, 0.05
 # How much faster and higher than a standing joint must be one that has left the floor.
 _LOOSE = 1.5
 _SIDES = ("left", "right")
+_BENT, _STRAIGHT, _STEADY = 0.12, 1e-3, 0.1
+"""Metres of a joint beside the line of its limb from which its side is certain, the weight of the side of a straight
+limb, and the weight of what was made against least jerk."""
+_FOLDED = (0.15, 0.35)
+"""Shares of a limb's length between its ends up to which it is folded, and from which it is not."""
+_LEANS = 0.03
+"""Metres by which the side of a limb leans towards the one to which people bend it."""
 # A foot that drifts further than this within one contact was stepping or turning, not standing (metres).
 _MAX_DRIFT = 0.25
 # What a correction may move a joint from frame to frame (metres).
 _MAX_STEP = 0.03
 _REST_ANKLE = (0.03, 0.09)
+_SOFT = 0.01
+"""Share of a leg's length by which it is never straight: its knee would tremble."""
 
 
 def foot_contacts(
@@ -98,7 +106,10 @@ def plant_feet(
         ankles.append(goals[0])
         toes.append(goals[1])
 
-    sink = _needed_sink(result, ankles, skeleton) * (1 - _fade(stays, blend)[:, 0])
+    # A leg is kept from being straight where its foot stands or is led to where it stands, and free frames stay free.
+    near = _ease(1 - frames_from(contacts.any(axis=1)) / (REACH + 1))[:, None]
+    soft = _SOFT * near * (1 - _fade(stays, blend))
+    sink = _needed_sink(result, ankles, soft[:, 0], skeleton) * (1 - _fade(stays, blend)[:, 0])
     result[..., 1] -= sink[:, None]
     forward = facing(result, skeleton)
     for name, ankle_goal, toe_goal in zip(_SIDES, ankles, toes, strict=True):
@@ -106,22 +117,32 @@ def plant_feet(
             skeleton.index(f"{name}_{part}") for part in ("hip", "knee", "ankle", "foot")
         )
         new_knee, new_ankle = solve_two_bones(
-            result[:, hip], result[:, knee], result[:, ankle], ankle_goal, forward
+            result[:, hip], result[:, knee], result[:, ankle], ankle_goal, forward, soft=soft
         )
-        result[:, knee] = new_knee
+        result[:, knee] = steadied(
+            result[:, hip], new_knee, new_ankle, result[:, knee], forward, free=near[:, 0] * ~stays
+        )
         result[:, ankle] = new_ankle
         result[:, toe] = toe_goal + (new_ankle - ankle_goal)
     result[stays] = positions[stays]
     return result
 
 
-def solve_two_bones(root: Array, middle: Array, end: Array, goal: Array, pole: Array) -> tuple[Array, Array]:
+def solve_two_bones(
+    root: Array, middle: Array, end: Array, goal: Array, pole: Array, *, soft: Array | float = 0.0
+) -> tuple[Array, Array]:
     """Analytic IK of a limb of two bones.
+
+    The middle joint of a limb that is nearly straight moves by centimetres where its end moves by a millimetre. With
+    ``soft`` the last part of the reach is used up ever more slowly, and the limb is never quite straight (Nicholson
+    2009, "Soft IK").
 
     Args:
         root, middle, end: (…, 3) the limb's joints; they give the bone lengths and the plane it bends in.
         goal: (…, 3) where the end should go; out of reach, it is drawn in along the line to the root.
         pole: (…, 3) the direction in which a straight limb bends.
+        soft: share of the limb's length before its end that is softened, a number or (…, 1); the goal is missed by
+            less than half of it.
 
     Returns:
         (…, 3) new middle joint, and (…, 3) new end.
@@ -131,6 +152,9 @@ def solve_two_bones(root: Array, middle: Array, end: Array, goal: Array, pole: A
     reach = goal - root
     distance = np.linalg.norm(reach, axis=-1, keepdims=True)
     axis = reach / np.maximum(distance, 1e-9)
+    margin = np.maximum(soft * (upper + lower), 1e-9)
+    over = distance - (upper + lower - margin)
+    distance = np.where(over > 0, upper + lower - margin * np.exp(-over.clip(0) / margin), distance)
     distance = np.clip(distance, np.abs(upper - lower) + 1e-6, upper + lower - 1e-6)
     along = (distance**2 + upper**2 - lower**2) / (2 * distance)
     aside = np.sqrt(np.maximum(upper**2 - along**2, 0.0))
@@ -161,14 +185,16 @@ def _foot_goals(
     held: NDArray[np.bool_],
 ) -> tuple[Array, Array]:
     """Targets of the ankle and the toe of one foot: (T, 3) each, at the distance of the bone's length."""
-    toe_shift = _pin(toe, toe_stands, blend, (0.0, 0.0), held)
-    ankle_shift = _pin(ankle, ankle_stands, blend, _REST_ANKLE, held)
-    # Where only one end is pinned, the other moves with it.
-    toe_weight, ankle_weight = _fade(toe_stands, blend), _fade(ankle_stands, blend)
-    total = np.maximum(toe_weight + ankle_weight, 1e-9)
-    shared = (toe_shift * toe_weight + ankle_shift * ankle_weight) / total
-    new_toe = toe + shared + toe_weight * (toe_shift - shared)
-    new_ankle = ankle + shared + ankle_weight * (ankle_shift - shared)
+    toe_goal, toe_fixed = _pins(toe, toe_stands, blend, (0.0, 0.0), held)
+    ankle_goal, ankle_fixed = _pins(ankle, ankle_stands, blend, _REST_ANKLE, held)
+    # The foot first moves as a whole: where only one end is pinned, the other goes with it.
+    share = np.stack([toe_fixed, ankle_fixed], axis=-1).astype(np.float64)
+    wanted = share[:, :1] * (toe_goal - toe) + share[:, 1:] * (ankle_goal - ankle)
+    middle = (toe + ankle) / 2
+    pinned = middle + wanted / np.maximum(share.sum(axis=-1, keepdims=True), 1.0)
+    moved = led(pinned, toe_fixed | ankle_fixed) - middle
+    new_toe = led(np.where(toe_fixed[:, None], toe_goal, toe + moved), toe_fixed)
+    new_ankle = led(np.where(ankle_fixed[:, None], ankle_goal, ankle + moved), ankle_fixed)
     for place, floor in ((new_toe, 0.0), (new_ankle, _REST_ANKLE[0])):
         lift = np.maximum(floor - place[:, 1], 0.0)
         place[:, 1] += _smooth(lift, blend) * (1 - _fade(held, blend)[:, 0]) if held.any() else lift
@@ -178,37 +204,24 @@ def _foot_goals(
     return new_toe + bone, new_toe
 
 
-def _pin(
+def _pins(
     joint: Array,
     stands: NDArray[np.bool_],
     blend: int,
     heights: tuple[float, float],
     held: NDArray[np.bool_],
-) -> Array:
-    """(T, 3) shift that holds a joint still through each contact and fades between contacts, and to frames held."""
-    shift = np.zeros_like(joint)
+) -> tuple[Array, NDArray[np.bool_]]:
+    """Places (T, 3) of a joint that is still through each contact, and the frames (T,) at which it has to be there."""
+    goal, fixed = np.array(joint), np.zeros(len(joint), dtype=bool)
     runs: list[tuple[int, int]] = []
     for start, stop in _runs(stands & ~held):
         runs.extend(_split(joint, start, stop, blend))
     for start, stop in runs:
-        shift[start:stop] = _goal(joint, start, stop, stands & held, heights) - joint[start:stop]
-    runs = _with_room_to_step(shift, sorted([*runs, *_runs(held)]), held, stands & held)
-    kept = np.zeros(len(joint), dtype=bool)
-    for start, stop in runs:
-        kept[start:stop] = True
-    shift[~kept] = 0.0
-    edges = [(0, 0), *runs, (len(joint), len(joint))]
-    for (_, before), (after, _) in itertools.pairwise(edges):
-        gap = after - before
-        if gap <= 0:
-            continue
-        reach = min(blend, gap)
-        steps = np.arange(1, gap + 1)[:, None]
-        if before > 0:
-            shift[before:after] += _ease(1 - steps / (reach + 1)) * shift[before - 1]
-        if after < len(joint):
-            shift[before:after] += _ease(1 - (gap + 1 - steps) / (reach + 1)) * shift[after]
-    return shift
+        goal[start:stop] = _goal(joint, start, stop, stands & held, heights)
+    for start, stop in _with_room_to_step(goal - joint, sorted([*runs, *_runs(held)]), held, stands & held):
+        fixed[start:stop] = True
+    goal[~fixed] = joint[~fixed]
+    return goal, fixed
 
 
 def _goal(
@@ -288,14 +301,15 @@ def _ease(x: Array) -> Array:
     return x * x * (3 - 2 * x)
 
 
-def _needed_sink(positions: Array, ankles: list[Array], skeleton: Skeleton) -> Array:
+def _needed_sink(positions: Array, ankles: list[Array], soft: Array, skeleton: Skeleton) -> Array:
     """(T,) metres the body must go down for both legs to reach their goals, at most 0.12, smooth."""
     need = np.zeros(len(positions))
     for name, goal in zip(_SIDES, ankles, strict=True):
         hip, knee, ankle = (
             positions[:, skeleton.index(f"{name}_{part}")] for part in ("hip", "knee", "ankle")
         )
-        leg = np.linalg.norm(knee - hip, axis=-1) + np.linalg.norm(ankle - knee, axis=-1) - 1e-3
+        leg = np.linalg.norm(knee - hip, axis=-1) + np.linalg.norm(ankle - knee, axis=-1)
+        leg = (1 - soft) * leg - 1e-3
         aside = hip - goal
         height = np.sqrt(np.maximum(leg**2 - aside[:, 0] ** 2 - aside[:, 2] ** 2, 0.0))
         need = np.maximum(need, aside[:, 1] - height)
@@ -309,3 +323,46 @@ def _smooth(need: Array, reach: int) -> Array:
     """(T,) at least about ``need`` (T,), without kinks; it begins some 3 * ``reach`` frames earlier."""
     widened = scipy.ndimage.maximum_filter1d(need, 2 * reach + 1, mode="nearest")
     return scipy.ndimage.gaussian_filter1d(widened, 0.75 * reach, mode="nearest")
+
+
+def steadied(
+    root: Array, middle: Array, end: Array, guide: Array, pole: Array, *, free: Array | float = 1.0
+) -> Array:
+    """(T, 3) the middle joints of a limb, turned about the line between its ends so that they go round it smoothly.
+
+    Where a limb is nearly straight, the side to which it bends is noise, and its middle joint jumps from one side to
+    the other. There the side follows from the frames around it, and more and more from the pole.
+
+    Args:
+        root, middle, end: (T, 3) the limb's joints.
+        guide: (T, 3) where the middle joint was seen, on bones of any length.
+        pole: (T, 3) the direction in which a straight limb bends.
+        free: (T,) from 1, where the joint may move, to 0, where it stays.
+    """
+    axis = end - root
+    axis = axis / np.maximum(np.linalg.norm(axis, axis=-1, keepdims=True), 1e-9)
+    along = _along(middle - root, axis)
+    aside = np.linalg.norm(middle - root - along, axis=-1, keepdims=True)
+    share = np.broadcast_to(np.asarray(free, dtype=np.float64), (len(root),))[:, None]
+    share = share * open_limb(root, middle, end)
+    out = guide - root - _along(guide - root, axis)
+    out = share * (out + _LEANS * (pole - _along(pole, axis))) + (1 - share) * (middle - root - along)
+    length = np.linalg.norm(out, axis=-1, keepdims=True)
+    side = out / np.maximum(length, 1e-9)
+    sure = np.clip((length[:, 0] / _BENT) ** 2, _STRAIGHT, 1.0) * _STEADY
+    side = least_jerk(side, np.where(share[:, 0] > 0, sure, 1e6))
+    side = side - _along(side, axis)
+    length = np.linalg.norm(side, axis=-1, keepdims=True)
+    found = root + along + aside * side / np.maximum(length, 1e-9)
+    return np.where((length > 0.1) & (share > 0), found, middle)
+
+
+def open_limb(root: Array, middle: Array, end: Array) -> Array:
+    """(…, 1) from 0, where a limb is folded so far that the line between its ends has no direction, to 1."""
+    length = np.linalg.norm(middle - root, axis=-1) + np.linalg.norm(end - middle, axis=-1)
+    reach = np.linalg.norm(end - root, axis=-1) / np.maximum(length, 1e-9)
+    return _ease((reach - _FOLDED[0]) / (_FOLDED[1] - _FOLDED[0]))[..., None]
+
+
+def _along(vector: Array, axis: Array) -> Array:
+    return np.asarray(np.sum(vector * axis, axis=-1, keepdims=True) * axis)

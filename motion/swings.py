@@ -7,6 +7,7 @@ import scipy  # its parts are loaded with their first use
 from numpy.typing import NDArray
 
 from .skeleton import SMPL22, Skeleton
+from .smoothing import least_jerk
 from .transforms import facing
 
 Array = NDArray[np.floating]
@@ -21,6 +22,10 @@ _OVERTAKES = 1.4
 """Times the speed of the hips that a foot reaches at least in its swing; a slower one glides along with the body."""
 _SOFT = 0.035
 """Seconds over which what is raised begins and ends."""
+_LEAST = 1e-4
+"""Metres by which a toe is raised at least."""
+_SOFT_TURN = 0.3
+"""Weight of the raised toe against least jerk: a foot that hung behind its ankle comes forward in 0.1 s."""
 _HANGS = 0.03
 """Metres over the floor between ankle and toe below which a foot hangs."""
 _UPRIGHT = 0.6
@@ -56,8 +61,19 @@ def lift_swinging_feet(positions: Array, fps: float, *, skeleton: Skeleton = SMP
         height = _heights(result[:, toe], hips, result[:, 0, 1] > _UPRIGHT, forward, fps)
         lift = np.maximum(height - result[:, toe, 1], 0.0)
         lift = scipy.ndimage.gaussian_filter1d(lift, _SOFT * fps, mode="nearest")
-        result[:, toe] = _raised(result[:, ankle], result[:, toe], lift, forward)
+        raised = _raised(result[:, ankle], result[:, toe], lift, forward)
+        result[:, toe] = _turned(result[:, ankle], result[:, toe], raised, lift > _LEAST)
     return result
+
+
+def _turned(ankle: Array, toe: Array, raised: Array, moved: NDArray[np.bool_]) -> Array:
+    """(T, 3) a toe that goes to where it is ``raised`` and back no faster than feet turn."""
+    if not moved.any():
+        return toe
+    bone = least_jerk(np.where(moved[:, None], raised, toe) - ankle, np.where(moved, _SOFT_TURN, 1e7))
+    length = np.linalg.norm(toe - ankle, axis=-1, keepdims=True)
+    turned = ankle + bone * length / np.maximum(np.linalg.norm(bone, axis=-1, keepdims=True), 1e-9)
+    return np.where(moved[:, None], turned, toe)
 
 
 def _heights(toe: Array, hips: Array, upright: NDArray[np.bool_], forward: Array, fps: float) -> Array:
@@ -98,7 +114,7 @@ def _raised(ankle: Array, toe: Array, lift: Array, forward: Array) -> Array:
     along /= np.maximum(np.linalg.norm(along, axis=-1, keepdims=True), 1e-9)
     turned = ankle + along * np.sqrt(np.maximum(length**2 - drop**2, 0.0))[:, None]
     turned[:, 1] = ankle[:, 1] - drop
-    return np.where((lift > 1e-4)[:, None], turned, toe)
+    return np.where((lift > _LEAST)[:, None], turned, toe)
 
 
 def _speed(place: Array, fps: float) -> Array:

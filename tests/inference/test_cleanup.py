@@ -77,3 +77,14 @@ def test_toes_that_swing_are_raised(monkeypatch: pytest.MonkeyPatch) -> None:
 def test_bodies_are_kept_above_the_floor() -> None:
     sunk = np.repeat(lying(np.zeros(2), 0.0)[None], 20, axis=0) - [0.0, 0.3, 0.0]
     assert clean_person(sunk)[:, 0, 1].min() > 0.05
+
+
+def test_an_arm_that_folds_over_its_shoulder_does_not_fling_its_elbow() -> None:
+    """The line from shoulder to wrist has no direction where they meet, so the elbow turned about it at 11 m/s."""
+    moving = np.repeat((SMPL22.rest_positions() + np.array([0, 0.98, 0]))[None], 60, axis=0)
+    shoulder, elbow, wrist = (SMPL22.index(f"left_{joint}") for joint in ("shoulder", "elbow", "wrist"))
+    moving[:, elbow] = moving[:, shoulder] + [0.26, 0.0, 0.0]
+    height = np.linspace(-0.2, 0.2, 60)
+    moving[:, wrist] = moving[:, shoulder] + np.stack([0.02 + 0 * height, height, 0.01 + 0 * height], axis=-1)
+    cleaned = clean_person(moving)
+    assert np.linalg.norm(np.diff(cleaned[:, elbow], axis=0), axis=-1).max() * 30 < 2.0

@@ -7,7 +7,7 @@ import pytest
 from scipy.ndimage import gaussian_filter1d
 
 from motion import SMPL22
-from motion.cleaning import foot_contacts, plant_feet, solve_two_bones
+from motion.cleaning import foot_contacts, plant_feet, solve_two_bones, steadied
 from motion.kinematics import project_to_skeleton
 from motion.skeleton import FEET
 
@@ -125,3 +125,36 @@ def test_a_foot_between_held_frames_moves_evenly_from_place_to_place():
     np.testing.assert_array_equal(planted[held], positions[held])
     feet = planted[:, list(FEET)]
     assert np.linalg.norm(np.diff(feet, axis=0), axis=-1).max() < 0.005
+
+
+def test_a_foot_leaves_where_it_stood_without_a_jolt():
+    """A foot that glides by 8 cm while it stands, and is then lifted."""
+    positions = np.repeat((SMPL22.rest_positions() + np.array([0, 0.98, 0]))[None], 90, axis=0)
+    left = [SMPL22.index("left_ankle"), SMPL22.index("left_foot")]
+    time = np.arange(90)
+    positions[:, left, 2] += (0.002 * time.clip(max=40) + 0.02 * (time - 40).clip(0, 12))[:, None]
+    positions[:, left, 1] += 0.12 * np.sin(np.pi * (time - 40).clip(0, 12) / 12)[:, None]
+    planted = plant_feet(positions, foot_contacts(positions, FPS))
+    assert np.ptp(planted[5:35, left], axis=0).max() < 1e-6
+    third = np.linalg.norm(np.diff(planted[:, left], n=3, axis=0), axis=-1) * FPS**3
+    assert third.max() < 900
+    knee = planted[:, SMPL22.index("left_knee")]
+    assert np.linalg.norm(np.diff(knee, axis=0), axis=-1).max() * FPS < 2.5
+
+
+def test_a_straight_limb_with_soft_reach_does_not_tremble():
+    hip, knee, ankle = np.zeros((60, 3)), np.tile([0, -0.4, 0.01], (60, 1)), np.tile([0, -0.8, 0.0], (60, 1))
+    goal = ankle + 0.003 * np.sin(np.arange(60))[:, None] * np.array([0, 1.0, 0])
+    pole = np.tile([0, 0, 1.0], (60, 1))
+    hard, soft = (solve_two_bones(hip, knee, ankle, goal, pole, soft=share)[0] for share in (0.0, 0.04))
+    assert np.ptp(soft[:, 2]) < 0.3 * np.ptp(hard[:, 2])
+
+
+def test_an_elbow_does_not_jump_from_side_to_side():
+    shoulder, wrist = np.zeros((60, 3)), np.tile([0, -0.5, 0.0], (60, 1))
+    side = np.where(np.arange(60) == 30, -1.0, 1.0)[:, None] * np.array([0.03, 0, 0])
+    elbow = np.array([0, -0.25, 0]) + side
+    found = steadied(shoulder, elbow, wrist, elbow, np.tile([0, 0, -1.0], (60, 1)))
+    np.testing.assert_allclose(np.linalg.norm(found, axis=-1), np.linalg.norm(elbow, axis=-1), atol=1e-9)
+    assert np.abs(np.diff(elbow, axis=0)).max() > 0.05
+    assert np.abs(np.diff(found, axis=0)).max() < 0.015

@@ -6,14 +6,19 @@ import numpy as np
 from numpy.typing import NDArray
 
 from motion import SMPL22
-from motion.cleaning import foot_contacts, plant_feet, solve_two_bones
+from motion.cleaning import foot_contacts, open_limb, plant_feet, solve_two_bones, steadied
 from motion.ground import above_floor
 from motion.kinematics import project_to_skeleton
+from motion.smoothing import least_jerk
 from motion.swings import lift_swinging_feet
 from motion.transforms import facing
 
 Array = NDArray[np.floating]
 
+_CALM = 0.3
+"""Weight of what a network made against least jerk: what is slower than 4 Hz stays."""
+_SOFT = 0.04
+"""Share of a limb's length before its end that is used up ever more slowly: a straight limb trembles."""
 _ARMS = [
     tuple(SMPL22.index(f"{side}_{j}") for j in ("shoulder", "elbow", "wrist")) for side in ("left", "right")
 ]
@@ -26,7 +31,8 @@ def clean_person(positions: Array, fps: float = 30.0) -> Array:
     """One person on SMPL22's constant bones, above the floor, feet planted where they stand, swinging toes raised.
 
     Bones are made constant by their directions, from the pelvis outwards; wrists and ankles are then taken
-    back to their places by two-bone IK, so hands that met still meet.
+    back to their places by two-bone IK, so hands that met still meet. Elbows and knees go round their limbs smoothly,
+    and what trembles faster than people do is smoothed first.
 
     Args:
         positions: (T, 22, 3) metres as a network gave them.
@@ -34,24 +40,61 @@ def clean_person(positions: Array, fps: float = 30.0) -> Array:
     Returns:
         (T, 22, 3) metres.
     """
-    result = above_floor(on_constant_bones(positions))
+    seen = least_jerk(positions, np.full(len(positions), _CALM))
+    bones, _ = project_to_skeleton(seen)
+    result = above_floor(_steady_limbs(_limbs_back(_steady_bones(bones), seen), seen))
     return lift_swinging_feet(plant_feet(result, foot_contacts(result, fps)), fps)
 
 
 def on_constant_bones(positions: Array) -> Array:
     """One person (T, 22, 3) on SMPL22's constant bones, frame by frame; see :func:`clean_person`."""
     target = np.asarray(positions, dtype=np.float64)
-    result, _ = project_to_skeleton(target)
+    return _limbs_back(project_to_skeleton(target)[0], target)
+
+
+def _steady_bones(positions: Array) -> Array:
+    """Positions (T, 22, 3) whose bones turn smoothly: a trunk that is fitted to single frames jumps where it folds."""
+    parents, children = np.array(SMPL22.bones).T
+    bones = positions[:, children] - positions[:, parents]
+    calm = least_jerk(bones, np.full(len(bones), _CALM))
+    calm *= np.linalg.norm(bones, axis=-1, keepdims=True) / np.maximum(
+        np.linalg.norm(calm, axis=-1, keepdims=True), 1e-9
+    )
+    result = np.array(positions)
+    for (parent, child), bone in zip(SMPL22.bones, np.moveaxis(calm, 1, 0), strict=True):
+        result[:, child] = result[:, parent] + bone
+    return result
+
+
+def _limbs_back(result: Array, target: Array) -> Array:
+    """Positions (T, 22, 3) whose wrists and ankles are taken as near as they reach to where ``target`` has them."""
     forward = facing(result)
     for shoulder, elbow, wrist in _ARMS:
-        backwards_and_down = -forward + np.array([0.0, -1.0, 0.0])
-        result[:, elbow], result[:, wrist] = solve_two_bones(
-            result[:, shoulder], result[:, elbow], result[:, wrist], target[:, wrist], backwards_and_down
-        )
+        limb = result[:, shoulder], result[:, elbow], result[:, wrist]
+        goal = result[:, wrist] + open_limb(*limb) * (target[:, wrist] - result[:, wrist])
+        result[:, elbow], result[:, wrist] = solve_two_bones(*limb, goal, _elbow_pole(forward), soft=_SOFT)
     for hip, knee, ankle, toe in _LEGS:
         foot = result[:, toe] - result[:, ankle]
         result[:, knee], result[:, ankle] = solve_two_bones(
-            result[:, hip], result[:, knee], result[:, ankle], target[:, ankle], forward
+            result[:, hip], result[:, knee], result[:, ankle], target[:, ankle], forward, soft=_SOFT
         )
         result[:, toe] = result[:, ankle] + foot
     return result
+
+
+def _steady_limbs(result: Array, seen: Array) -> Array:
+    """Positions (T, 22, 3) whose elbows and knees go round their limbs smoothly, on the side where they were seen."""
+    forward = facing(result)
+    for shoulder, elbow, wrist in _ARMS:
+        guide = seen[:, elbow] - seen[:, shoulder] + result[:, shoulder]
+        limb = result[:, shoulder], result[:, elbow], result[:, wrist]
+        result[:, elbow] = steadied(*limb, guide, _elbow_pole(forward))
+    for hip, knee, ankle, _ in _LEGS:
+        guide = seen[:, knee] - seen[:, hip] + result[:, hip]
+        result[:, knee] = steadied(result[:, hip], result[:, knee], result[:, ankle], guide, forward)
+    return result
+
+
+def _elbow_pole(forward: Array) -> Array:
+    """(T, 3) the direction in which a straight arm bends: backwards and down."""
+    return np.asarray(-forward + np.array([0.0, -1.0, 0.0]))
