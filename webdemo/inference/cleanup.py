@@ -7,6 +7,7 @@ from numpy.typing import NDArray
 
 from motion import SMPL22
 from motion.cleaning import foot_contacts, open_limb, plant_feet, solve_two_bones, steadied
+from motion.footsteps import stepping
 from motion.ground import above_floor
 from motion.kinematics import project_to_skeleton
 from motion.smoothing import least_jerk
@@ -28,7 +29,7 @@ _LEGS = [
 
 
 def clean_person(positions: Array, fps: float = 30.0) -> Array:
-    """One person on SMPL22's constant bones, above the floor, feet planted where they stand, swinging toes raised.
+    """One person on constant bones, above the floor, in steps, feet planted where they stand, swinging toes raised.
 
     Bones are made constant by their directions, from the pelvis outwards; wrists and ankles are then taken
     back to their places by two-bone IK, so hands that met still meet. Elbows and knees go round their limbs smoothly,
@@ -40,10 +41,18 @@ def clean_person(positions: Array, fps: float = 30.0) -> Array:
     Returns:
         (T, 22, 3) metres.
     """
-    seen = least_jerk(positions, np.full(len(positions), _CALM))
+    seen = _calmed(positions)
     bones, _ = project_to_skeleton(seen)
     result = above_floor(_steady_limbs(_limbs_back(_steady_bones(bones), seen), seen))
+    result = stepping(result, fps)
     return lift_swinging_feet(plant_feet(result, foot_contacts(result, fps)), fps)
+
+
+def _calmed(positions: Array) -> Array:
+    """Positions (T, 22, 3) without what trembles faster than people do; the pelvis, whose way is given, moves least."""
+    pelvis = np.asarray(positions[:, :1], dtype=np.float64)
+    beside = least_jerk(positions - pelvis, np.full(len(positions), _CALM))
+    return np.asarray(least_jerk(pelvis, np.ones(len(positions))) + beside)
 
 
 def on_constant_bones(positions: Array) -> Array:
