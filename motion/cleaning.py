@@ -90,22 +90,7 @@ def plant_feet(
     """
     result = np.array(positions, dtype=np.float64)
     stays = np.zeros(len(result), dtype=bool) if held is None else held
-    ankles, toes = [], []
-    for side, name in enumerate(_SIDES):
-        ankle, toe = skeleton.index(f"{name}_ankle"), skeleton.index(f"{name}_foot")
-        foot_length = float(np.median(np.linalg.norm(result[:, toe] - result[:, ankle], axis=-1)))
-        goals = _foot_goals(
-            result[:, ankle],
-            result[:, toe],
-            contacts[:, 2 * side],
-            contacts[:, 2 * side + 1],
-            foot_length,
-            blend,
-            stays,
-        )
-        ankles.append(goals[0])
-        toes.append(goals[1])
-
+    ankles, toes = _goals(result, contacts, blend, stays, skeleton)
     # A leg is kept from being straight where its foot stands or is led to where it stands, and free frames stay free.
     near = _ease(1 - frames_from(contacts.any(axis=1)) / (REACH + 1))[:, None]
     soft = _SOFT * near * (1 - _fade(stays, blend))
@@ -173,6 +158,21 @@ def solve_two_bones(
 
 def _feet(skeleton: Skeleton) -> list[int]:
     return [skeleton.index(f"{side}_{part}") for side in _SIDES for part in ("ankle", "foot")]
+
+
+def _goals(
+    positions: Array, contacts: NDArray[np.bool_], blend: int, held: NDArray[np.bool_], skeleton: Skeleton
+) -> tuple[list[Array], list[Array]]:
+    """Targets (T, 3) of the ankle and of the toe of each side."""
+    ankles, toes = [], []
+    for side, name in enumerate(_SIDES):
+        ankle, toe = (positions[:, skeleton.index(f"{name}_{part}")] for part in ("ankle", "foot"))
+        stands = contacts[:, 2 * side], contacts[:, 2 * side + 1]
+        length = float(np.median(np.linalg.norm(toe - ankle, axis=-1)))
+        ankle_goal, toe_goal = _foot_goals(ankle, toe, *stands, length, blend, held)
+        ankles.append(ankle_goal)
+        toes.append(toe_goal)
+    return ankles, toes
 
 
 def _foot_goals(

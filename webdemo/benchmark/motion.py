@@ -1,4 +1,4 @@
-"""How planned motion looks beside the network's own and recorded motion, by kind of act.
+"""Measures of planned motion beside the network's own and recorded motion, by kind of act.
 
 ``python -m webdemo benchmark --motion`` makes the sentences of ``motion.toml`` with and without their plans and prints
 medians over people (:mod:`motion.metrics.naturalness`), so that walks are compared with walks. What was recorded is in
