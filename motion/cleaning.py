@@ -92,7 +92,7 @@ def plant_feet(
     stays = np.zeros(len(result), dtype=bool) if held is None else held
     ankles, toes = _goals(result, contacts, blend, stays, skeleton)
     # A leg is kept from being straight where its foot stands or is led to where it stands, and free frames stay free.
-    near = _ease(1 - frames_from(contacts.any(axis=1)) / (REACH + 1))[:, None]
+    near = _ease(1 - frames_from(np.asarray(contacts.any(axis=1))) / (REACH + 1))[:, None]
     soft = _SOFT * near * (1 - _fade(stays, blend))
     sink = _needed_sink(result, ankles, soft[:, 0], skeleton) * (1 - _fade(stays, blend)[:, 0])
     result[..., 1] -= sink[:, None]

@@ -102,7 +102,9 @@ def _maker(steps: int) -> Callable[[Asked, int, bool], Duet]:
         )
         *_, result = engine.run(request)
         assert isinstance(result, Result)  # the last event of a run
-        return result.duets[0]
+        duet = result.duets[0]
+        assert isinstance(duet, Duet)  # both people are made
+        return duet
 
     return make
 
