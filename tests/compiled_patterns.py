@@ -58,7 +58,7 @@ def record() -> Found:
     try:
         for package in PACKAGES:
             for module in pkgutil.walk_packages([str(ROOT / package)], f"{package}."):
-                if not module.name.endswith("__main__"):
+                if not module.name.endswith(("__main__", ".migrations.env")):  # those run
                     importlib.import_module(module.name)
         for target in COMPILING.values():
             name, function = target.split(":")

@@ -30,7 +30,7 @@ def open_to_all(tmp_path_factory: pytest.TempPathFactory) -> Iterator[TestClient
 
 
 def react(client: TestClient, actor: Any) -> str:
-    rest = ["", "", 0, 0, "a", 0, 1, 3, 1, 0, "ddim", "intergen", "offline", False, False, ""]
+    rest = ["", "", 0, 0, "a", 0, 1, 3, 1, 0, "ddim", "intergen", "offline", False, False, "", 0]
     return events_of(client, "react", [actor, *rest])
 
 
