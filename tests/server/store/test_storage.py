@@ -262,7 +262,8 @@ def test_an_older_database_is_opened_with_all_its_runs(tmp_path: Path) -> None:
             old.execute(f"DROP INDEX {index}")
         for table, column in (("runs", "stored"), ("runs", "address"), ("studies", "address")):
             old.execute(f"ALTER TABLE {table} DROP COLUMN {column}")
-        old.execute("DROP TABLE ledger")
+        for table in ("published", "ledger", "alembic_version"):
+            old.execute(f"DROP TABLE {table}")
     database = Database(f"sqlite:///{file}")
     notebook = Notebook(database, tmp_path / "motions")
     assert notebook.clean() == 0
