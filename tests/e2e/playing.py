@@ -17,6 +17,15 @@ def hook(page, name: str):
     return page.evaluate(f"window.__pasdedeux.{name}")
 
 
+def unfold(page, *folds: str) -> None:
+    """Opens folded parts of the page, by their selectors; what is open already stays so."""
+    for fold in folds:
+        button = page.locator(f"{fold} > button.label-wrap")
+        button.wait_for()
+        if "open" not in (button.get_attribute("class") or "").split():
+            button.click()
+
+
 def choose(page, box: str, option: str) -> None:
     """Chooses in a dropdown of the page; another one's list may still be fading out beside it."""
     page.click(f"{box} input")

@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 from playwright.sync_api import Page, expect
 
-from .playing import choose, stage_pixels
+from .playing import choose, stage_pixels, unfold
 from .serving import live
 
 pytestmark = pytest.mark.e2e
@@ -43,7 +43,7 @@ def test_nine_results_share_one_context_and_one_opens_large(
     )  # fmt: skip
     live(page, slow=SLOW)
     page.fill("#prompt textarea", "Two people shake hands.")
-    page.click("#grid button >> nth=0")
+    unfold(page, "#grid")
     sweep(page, "across", "Seeds", "1-500")
     page.click("#grid-make")
     expect(page.locator("#status .pd-error")).to_contain_text("A grid has 1 to 9 cells", timeout=SLOW)
@@ -82,6 +82,7 @@ def test_nine_results_share_one_context_and_one_opens_large(
     expect(page.locator("#player .pdd-strip")).to_be_visible()
     page.click("#player .pdd-back")
     page.wait_for_function(f"{PLAYER}.focus === null && {PLAYER}.grid.cells.length === 9")
+    unfold(page, "#downloads")
     expect(page.locator("#download-csv")).to_be_enabled(timeout=SLOW)
     with page.expect_download(timeout=SLOW) as download:
         page.click("#download-csv")

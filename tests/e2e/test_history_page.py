@@ -13,7 +13,7 @@ from playwright.sync_api import expect
 from motion.formats import write
 from tests.ui.stub_engine import walking
 
-from .playing import choose
+from .playing import choose, unfold
 
 pytestmark = [pytest.mark.e2e, pytest.mark.slow]
 SLOW = 120_000
@@ -23,7 +23,7 @@ def test_a_result_is_kept_and_its_link_opens_it_with_all_controls(lab: str, open
     page = open_page(lab)
     page.set_default_timeout(SLOW)
     page.fill("#prompt textarea", "Two people walk up to each other.")
-    page.locator("#advanced button").first.click()
+    unfold(page, "#more")
     for control, value in (("seed", "77"), ("steps", "12"), ("guidance", "4.5"), ("seconds", "2.5")):
         page.locator(f"#{control} input[type=number]").first.fill(value)
         page.locator(f"#{control} input[type=number]").first.press("Tab")
@@ -50,8 +50,10 @@ def test_a_result_is_kept_and_its_link_opens_it_with_all_controls(lab: str, open
     assert other.input_value("#prompt textarea") == "Two people walk up to each other."
     expect(other.locator("#advanced")).to_contain_text("Guidance 4.5, 12 steps, damping 0.7")
     expect(other.locator("#changed")).not_to_contain_text("Settings changed")
+    unfold(other, "#more")
     for control, value in (("seed", "77"), ("seconds", "2.5")):
         assert other.locator(f"#{control} input[type=number]").first.input_value() == value
+    unfold(other, "#downloads")
     other.wait_for_selector("#download-npz:not([disabled])")
 
     page.click("#history-revoke")
@@ -64,7 +66,7 @@ def test_a_result_of_several_tries_says_so_under_it(lab: str, open_page: Callabl
     page = open_page(lab)
     page.set_default_timeout(SLOW)
     page.fill("#prompt textarea", "A falls down and B walks away.")
-    page.locator("#advanced button").first.click()
+    unfold(page, "#more")
     for control, value in (("seed", "5"), ("steps", "2"), ("seconds", "2"), ("tries", "3")):
         page.locator(f"#{control} input[type=number]").first.fill(value)
         page.locator(f"#{control} input[type=number]").first.press("Tab")
@@ -136,7 +138,6 @@ def test_a_class_and_a_reaction_open_with_their_method(lab: str, open_page: Call
     page.click(".pd-chip:visible >> nth=0")
     page.wait_for_selector("#react-status :text('0.0 to')")
     choose(page, "#react-method", "ReGenNet, offline")
-    page.locator("#react-advanced button").first.click()
     page.locator("#react-steps input[type=number]").fill("7")
     page.locator("#react-steps input[type=number]").press("Tab")
     page.click("button#react-generate")
@@ -193,6 +194,7 @@ def test_a_notebook_is_searched_written_in_and_taken_along(
     page.evaluate(
         "(() => { const p = window.__pasdedeux.player; p.act('play'); p.seek(42); p.orbit.turn(0.5, 0.1); })()"
     )
+    unfold(page, "#share")
     page.click("#link")
     address = "document.querySelector('#address textarea, #address input')?.value"
     page.wait_for_function(address)

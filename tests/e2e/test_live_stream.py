@@ -8,6 +8,8 @@ from collections.abc import Callable
 import pytest
 from playwright.sync_api import Page, expect
 
+from .playing import unfold
+
 pytestmark = [pytest.mark.e2e, pytest.mark.slow]
 
 PANEL = "#react-live"
@@ -54,6 +56,7 @@ def keep_it(page: Page) -> None:
     page.click(f"{PANEL} .pdlive-keep")
     expect(page.locator("#react-status")).to_contain_text("Kept: 5.0 s live.", timeout=SLOW)
     expect(page.locator("#react-readouts")).to_contain_text("Foot skate")
+    unfold(page, "#react-downloads")
     expect(page.locator("#react-download-npz")).to_be_enabled(timeout=SLOW)
     page.wait_for_function("!window.__pasdedeux.player.data.id.startsWith('stream-')", timeout=SLOW)
     assert page.evaluate("window.__pasdedeux.player.sample.frames") == 150

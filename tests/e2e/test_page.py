@@ -19,6 +19,7 @@ from playwright.sync_api import Page, Route, expect
 
 from webdemo.ui.tabs import results
 
+from .playing import unfold
 from .serving import SLOW, live
 
 pytestmark = pytest.mark.e2e
@@ -239,6 +240,7 @@ def test_hostile_prompts_are_shown_literally_and_run_nothing(page: Page) -> None
 def test_the_used_seed_is_shown_and_repeats_the_motion(
     page: Page, server: SimpleNamespace, slow_steps: None
 ) -> None:
+    unfold(page, "#more")
     page.locator("#seed input").fill("")
     ask(page, "two people walk")
     status(page, "done")
@@ -257,6 +259,7 @@ def test_the_used_seed_is_shown_and_repeats_the_motion(
 
 
 def test_samples_become_tabs_and_columns(page: Page) -> None:
+    unfold(page, "#more")
     set_number(page, "#samples", 3)
     ask(page, "two people walk")
     assert status(page, "done").startswith("3 samples")
@@ -267,6 +270,7 @@ def test_samples_become_tabs_and_columns(page: Page) -> None:
 def test_downloads_are_files(page: Page, tmp_path: Path) -> None:
     ask(page, "two people walk home")
     status(page, "done")
+    unfold(page, "#downloads", "#share")
     button = page.locator("#download-json")
     expect(button).to_be_enabled(timeout=SLOW)
     with page.expect_download() as waiting:
@@ -303,8 +307,9 @@ def test_the_phone_layout_has_the_player_high_and_no_sideways_scroll(phone: Page
     ask(phone, "two people walk")
     status(phone, "done")
     assert phone.evaluate("document.documentElement.scrollWidth") <= 390
-    top = {name: phone.locator(name).bounding_box()["y"] for name in ("#prompt", "#player", "#seed")}
-    assert top["#prompt"] < top["#player"] < top["#seed"]
+    top = {name: phone.locator(name).bounding_box()["y"] for name in ("#prompt", "#player", "#seconds")}
+    assert top["#prompt"] < top["#player"] < top["#seconds"]
+    expect(phone.locator("#guidance")).to_be_hidden()  # folded, as every setting is that can wait
     assert top["#player"] < 400
 
 
@@ -321,10 +326,40 @@ def test_every_control_has_a_name_and_the_focus_is_visible(page: Page) -> None:
     assert page.evaluate("getComputedStyle(document.activeElement).outlineStyle") != "none"
 
 
-def test_nothing_but_buttons_takes_room_in_the_row_of_files(page: Page) -> None:
+def test_nothing_but_buttons_takes_room_in_the_rows_of_files(page: Page) -> None:
     ask(page, "Two people walk home.")
     status(page, "done")
-    wide = page.locator("#downloads > *").evaluate_all(
+    unfold(page, "#downloads", "#share")
+    wide = page.locator(".pd-menu .pd-downloads > *").evaluate_all(
         "(all) => all.filter((each) => each.offsetWidth > 0).map((each) => each.tagName)"
     )
-    assert len(wide) > 8 and set(wide) == {"BUTTON"}
+    assert len(wide) > 10 and set(wide) == {"BUTTON"}
+
+
+@pytest.mark.parametrize("tab", ["Generate", "React", "Predict"])
+def test_the_button_and_the_whole_stage_are_in_view_together_on_a_small_laptop(
+    server: SimpleNamespace, open_page: Callable[..., Page], tab: str
+) -> None:
+    page = live(open_page(server.url, width=1024, height=700), None if tab == "Generate" else tab)
+    prefix = "" if tab == "Generate" else f"{tab.lower()}-"
+    page.locator(f"#{prefix}player .pdd-stage").wait_for()
+    for part in (f"button#{prefix}generate", f"#{prefix}player .pdd"):
+        box = page.locator(part).bounding_box()
+        assert box and box["y"] >= 0 and box["y"] + box["height"] <= 700, part
+    player = page.locator(f"#{prefix}player .pdd").bounding_box()
+    assert player and player["width"] > 600 and player["height"] > 600
+    page.mouse.wheel(0, 2000)  # the stage stays while the panels scroll
+    page.wait_for_timeout(300)
+    box = page.locator(f"#{prefix}player .pdd").bounding_box()
+    assert box and box["y"] >= 0
+
+
+def test_what_was_folded_or_opened_stays_so(page: Page) -> None:
+    expect(page.locator("#guidance")).to_be_visible()
+    unfold(page, "#more")
+    page.locator("#advanced > button").click()
+    expect(page.locator("#guidance")).to_be_hidden()
+    page.reload()
+    live(page)
+    expect(page.locator("#seed")).to_be_visible(timeout=SLOW)
+    expect(page.locator("#guidance")).to_be_hidden()

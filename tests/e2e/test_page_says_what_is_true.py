@@ -13,7 +13,7 @@ from motion.formats import write
 from tests.ui.stub_engine import walking
 from webdemo.inference.methods import method
 
-from .playing import choose
+from .playing import choose, unfold
 from .serving import live
 
 pytestmark = pytest.mark.e2e
@@ -68,6 +68,7 @@ def open_react(page: Page, file: Path) -> None:
 
 def test_controls_that_differ_from_what_is_shown_say_so(page: Page, server: SimpleNamespace) -> None:
     changed = page.locator("#changed")
+    unfold(page, "#more")
     set_number(page, "#seed", "3")
     assert changed.inner_text().strip() == "", "nothing is shown yet that the settings could differ from"
     generate(page, "Two people walk.")

@@ -13,7 +13,7 @@ from playwright.sync_api import Page, expect
 from motion.formats import write
 from tests.ui.stub_engine import walking
 
-from .playing import choose
+from .playing import choose, unfold
 from .serving import SLOW, live
 
 pytestmark = pytest.mark.e2e
@@ -65,6 +65,7 @@ def test_the_past_ends_at_the_marker_and_the_truth_is_a_ghost(page: Page, tmp_pa
     expect(page.locator("#predict-curves .main-svg").first).to_be_visible(timeout=SLOW)
     for name in ("Motion MLP", "Last pose held", "What really followed"):
         expect(page.locator("#predict-curves .legendtext", has_text=name)).to_be_visible(timeout=SLOW)
+    unfold(page, "#predict-downloads")
     expect(page.locator("#predict-download-npz")).to_be_enabled(timeout=SLOW)
     with page.expect_download(timeout=SLOW) as download:
         page.click("#predict-download-npz")
@@ -80,6 +81,7 @@ def test_the_past_ends_at_the_marker_and_the_truth_is_a_ghost(page: Page, tmp_pa
 def test_two_methods_go_on_side_by_side_on_one_clock(page: Page, tmp_path: Path) -> None:
     upload(page, write(walking(3.0).a, tmp_path / "walker.npz")[0])
     people(page, 1)
+    unfold(page, "#predict-grid")
     choose(page, "#predict-other", "Zero velocity (the last pose, held)")
     page.click("button#predict-generate")
     expect(page.locator("#predict-status .pd-done")).to_contain_text("Both done", timeout=SLOW)

@@ -14,7 +14,7 @@ from tests.motion.bodies import marching
 from tests.motion.formats.characters import glb_takes
 from tests.ui.stub_engine import walking
 
-from .playing import choose
+from .playing import choose, unfold
 from .serving import SLOW, live
 
 pytestmark = pytest.mark.e2e
@@ -44,6 +44,7 @@ def test_an_uploaded_person_is_seen_trimmed_and_gets_a_partner(page: Page, tmp_p
     expect(page.locator("#react-status .pd-done")).to_be_visible(timeout=SLOW)
     people(page, 2)
     expect(page.locator("#react-readouts")).to_contain_text("walkers.npz")
+    unfold(page, "#react-downloads")
     button = page.locator("#react-download-npz")
     expect(button).to_be_enabled(timeout=SLOW)
 
@@ -101,6 +102,7 @@ def test_a_streamed_reaction_comes_while_the_actor_plays_and_can_be_cancelled(
     server.engine.live_waits_at = None
     expect(page.locator("#react-status .pd-done")).to_contain_text("longest", timeout=SLOW)
     page.wait_for_function(f"{known} === null && window.__pasdedeux?.player?.sample.frames === 120")
+    unfold(page, "#react-downloads")
     expect(page.locator("#react-download-npz")).to_be_enabled(timeout=SLOW)
 
     server.engine.live_waits_at = 72
@@ -117,6 +119,7 @@ def test_two_methods_are_seen_side_by_side_on_one_clock(page: Page, tmp_path: Pa
     page.set_input_files("#react-file input[type=file]", file)
     people(page, 1)
     choose(page, "#react-method", "InterGen, person to person")
+    unfold(page, "#react-grid")
     choose(page, "#react-other", "ReGenNet, online")
     page.click("button#react-generate")
     expect(page.locator("#react-status .pd-done")).to_contain_text("Both done", timeout=SLOW)
@@ -126,6 +129,7 @@ def test_two_methods_are_seen_side_by_side_on_one_clock(page: Page, tmp_path: Pa
     left, right = (captions.nth(i).locator("..").bounding_box() for i in (0, 1))
     assert left and right and abs(left["width"] - right["width"]) < 2 and left["x"] < right["x"]
     expect(page.locator("#react-readouts thead").first).to_contain_text("ReGenNet, online")
+    unfold(page, "#react-downloads")
     with page.expect_download(timeout=SLOW) as download:
         page.click("#react-download-npz")
     assert download.value.suggested_filename.endswith(".zip")
@@ -155,6 +159,7 @@ def test_the_names_of_the_methods_are_shown_whole(
     server: SimpleNamespace, open_page: Callable[..., Page], width: int
 ) -> None:
     tab = live(open_page(server.url, width=width, height=844), "React")
+    unfold(tab, "#react-grid")
     for field in ("#react-method", "#react-other"):
         tab.locator(f"{field} input").wait_for()
         room = tab.evaluate(_ROOM, [field, "InterGen, person to person"])

@@ -31,7 +31,7 @@ def test_words_and_beats_follow_each_other(server: SimpleNamespace, open_page: C
     page.keyboard.press("End")
     page.keyboard.type(" They nod.")
     page.wait_for_function("!document.querySelector('.pds').editor.story.ahead")
-    page.locator("#scene-seed input").focus()
+    page.locator("#scene-text, #scene-advanced button").first.focus()
     expect(cells).to_have_text(["They bow.", "They wave.", "They nod."])
     # Both people of the motion are on the floor, where they stand when the selected beat begins.
     page.locator(".pds-floor summary").click()

@@ -13,6 +13,8 @@ from playwright.sync_api import Page, expect
 from motion.formats import write
 from tests.ui.stub_engine import walking
 
+from .playing import unfold
+
 pytestmark = [pytest.mark.e2e, pytest.mark.slow]
 SLOW = 120_000
 CELLS = "window.__pasdedeux?.player?.grid?.cells.length"
@@ -38,8 +40,10 @@ def test_a_grid_is_linked_compared_and_voted_on(lab: str, open_page: Callable, t
     owner.fill("#prompt textarea", "Two people shake hands.")
     owner.locator("#seconds input[type=number]").fill("1.5")  # files of short motions are written sooner
     owner.locator("#seconds input[type=number]").press("Tab")
+    unfold(owner, "#grid")
     owner.get_by_role("button", name="Plain beside damped").first.click()
     expect(owner.locator("#status .pd-done")).to_contain_text("2 results done", timeout=SLOW)
+    unfold(owner, "#share")
     owner.click("#link")
     linked = open_page(link_in(owner, "#address"), **small)
     linked.wait_for_function(f"{CELLS} === 2", timeout=SLOW)

@@ -16,6 +16,7 @@ from acts import lexicon
 from acts.own import own_files
 from motion.formats.files import MAX_BYTES
 from webdemo.ui.components.exports import Shelf
+from webdemo.ui.components.folds import remember_folds
 from webdemo.ui.tabs.generate import GenerateTab
 from webdemo.ui.tabs.history import LABEL as HISTORY
 from webdemo.ui.tabs.history import HistoryTab
@@ -155,6 +156,8 @@ def _build_tabs(page: PageContext, demo: gr.Blocks) -> None:
             if isinstance(onwards, PredictTab):
                 for job in jobs.values():
                     onwards.continues(job.onward, tabs, onwards.label.lower())
+        folds = [fold for job in jobs.values() for fold in (job.folded, job.more) if fold is not None]
+        remember_folds(demo, {str(fold.elem_id): fold for fold in folds}, **QUIET)
         if page.history is not None:
             with gr.Tab(HISTORY, id=HISTORY.lower()) as past:
                 HistoryTab(page, jobs, tabs).build(demo, past, record)

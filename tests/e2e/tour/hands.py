@@ -83,6 +83,7 @@ def made(page: Page, tour: Tour, prefix: str = "", times: int = 2) -> None:
 
 def with_result(page: Page, tour: Tour, prefix: str, character: Path) -> None:
     """Uses what is offered for a result: a character, a film, and a link."""
+    open_all(page)
     for _ in range(2):
         uploaded(page, tour, f"#{prefix}character", character)
         pressed(page, tour, f"#{prefix}film", 1)

@@ -21,6 +21,7 @@ from tests.ui.tab_events import built, changes
 from webdemo.inference.live import LiveRequest
 from webdemo.inference.methods import variants
 from webdemo.inference.requests import ReactRequest
+from webdemo.ui.components.exports import KINDS
 from webdemo.ui.components.live import BATCH, REPEATED
 from webdemo.ui.tabs.react import ReactTab
 from webdemo.view.payload import unpack_positions
@@ -86,7 +87,7 @@ def test_two_methods_stand_side_by_side(tab: ReactTab, walker: Path) -> None:
     for head in ("InterGen, person to person, 2", "ReGenNet, online, 1"):
         assert head in last["readouts"]
     _, *buttons = tab.export(last["record"])
-    with zipfile.ZipFile(buttons[0]["value"]) as archive:
+    with zipfile.ZipFile(buttons[[kind.key for kind in KINDS].index("npz")]["value"]) as archive:
         assert [re.sub("-[0-9a-f]{4}-", "-", name) for name in sorted(archive.namelist())] == [
             f"{method}-reaction-to-walker-a-bvh-seed3-{i}.npz"
             for method in ("intergen", "regennet-online")

@@ -169,7 +169,7 @@ def test_both_wear_an_uploaded_character_in_this_result_and_the_next(
     file = tmp_path / "robot.glb"
     file.write_bytes(glb_character("unreal"))
     line, worn, player, *offered = tab.put_on(str(file), None)
-    assert "Both wear robot.glb" in line and worn.body.zones == ("character",) and offered == [gr.skip()] * 2
+    assert "Both wear robot.glb" in line and worn.body.zones == ("character",) and offered == [gr.skip()] * 3
     assert player["character"]["zones"] == ["character"] and player["character"]["id"]
     record = result_of(tab)
     _, *updates = tab.export(record, worn)
@@ -179,6 +179,10 @@ def test_both_wear_an_uploaded_character_in_this_result_and_the_next(
     _, _, _, *offered = tab.put_on(str(file), plain)
     assert all(each["interactive"] for each in offered) and plain.worn is not None
     sheets = [Path(path).read_bytes() for path in (later[1], offered[1]["value"])]
+    with zipfile.ZipFile(offered[2]["value"]) as archive:
+        assert {Path(name).suffix for name in archive.namelist()} == {".glb", ".png"}
+    with zipfile.ZipFile(updates[[kind.key for kind in KINDS].index("all")]["value"]) as archive:
+        assert {".glb", ".bvh", ".npz", ".png", ".json"} <= {Path(name).suffix for name in archive.namelist()}
     stock = bare[[kind.key for kind in KINDS].index("png")]["value"]
     assert sheets[0] == sheets[1] != Path(stock).read_bytes(), "the contact sheet shows it, too"
     for path in (later[0], offered[0]["value"]):
@@ -191,7 +195,7 @@ def test_both_wear_an_uploaded_character_in_this_result_and_the_next(
 def test_a_file_that_is_no_character_is_a_sentence(tab: GenerateTab, tmp_path: Path, content: bytes) -> None:
     (tmp_path / "x.glb").write_bytes(content)
     line, *rest = tab.put_on(str(tmp_path / "x.glb"), None)
-    assert "pd-error" in line and "x.glb" in line and rest == [gr.skip()] * 4
+    assert "pd-error" in line and "x.glb" in line and rest == [gr.skip()] * 5
 
 
 def test_an_uploaded_thing_is_in_the_player_and_in_the_files(tab: GenerateTab, tmp_path: Path) -> None:

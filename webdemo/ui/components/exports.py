@@ -60,7 +60,7 @@ class Kind:
 
     def offered(self) -> bool:
         """True if this installation can write it for every result."""
-        return self.key in _PLAIN or formats.can_write(f".{self.key}")
+        return self.key in (*_PLAIN, ALL) or formats.can_write(f".{self.key}")
 
 
 _PLAIN = ("png", "json", "csv")
@@ -70,17 +70,27 @@ WORN = ("glb", "png")
 RIG = "rig"
 """The key of the partner on the rig of an uploaded file; its button shows only where there is one."""
 
+ALL = "all"
+"""The key of everything in one archive."""
+
 KINDS = (
-    Kind("npz", "Motion .npz"),
-    Kind("bvh", "BVH pair"),
     Kind("glb", "Animated .glb"),
+    Kind("bvh", "BVH pair"),
     Kind("usda", "Animated .usda"),
+    Kind("npz", "Motion .npz"),
     Kind("smpl.npz", "SMPL .npz"),
-    Kind("png", "Contact sheet"),
-    Kind("json", "Manifest"),
     Kind("csv", "Read-outs .csv"),
+    Kind("json", "Manifest"),
+    Kind("png", "Contact sheet"),
     Kind(RIG, "On your rig"),
+    Kind(ALL, "All files .zip"),
 )
+PURPOSES = {
+    "Blender and game engines": ("glb", "bvh", "usda", RIG),
+    "Numbers": ("npz", "smpl.npz", "csv", "json"),
+    "Everything": (ALL,),
+}
+"""What files are for, the likeliest first, and their kinds; a contact sheet is there to be shown instead."""
 
 
 @dataclass(frozen=True)
@@ -116,6 +126,7 @@ class Record:
         result: what the engine gave.
         prompt: names the files.
         exported: whether its files were written.
+        files: those that were written, by the key of their kind.
         compared: the results that stand side by side, by method; ``result`` is the first of them.
         grid: columns, rows, names and title of the grid that they stand in; empty for none.
         worn: an uploaded character whom both people wear in the files of :data:`WORN` and in films; None for the
@@ -127,6 +138,7 @@ class Record:
     result: Result = field(repr=False)
     prompt: str
     exported: bool = False
+    files: Mapping[str, list[Path]] = field(default_factory=dict, repr=False)
     compared: Mapping[str, Result] = field(default_factory=dict, repr=False)
     grid: Mapping[str, Any] = field(default_factory=dict)
     rig: Path | None = None
@@ -258,7 +270,7 @@ def write_files(
         return {
             kind.key: _write_kind(kind, result, folder, name, prompt, worn)
             for kind in KINDS
-            if kind.offered() and kind.key not in leave_out and _holds(kind, result)
+            if kind.offered() and kind.key not in (*leave_out, ALL) and _holds(kind, result)
         }
 
 
@@ -335,8 +347,9 @@ def _write_motion(duet: Duet | Clip, path: Path, *, title: str, worn: Worn | Non
 
 
 def for_download(files: Mapping[str, list[Path]], name: str | None = None) -> dict[str, Path]:
-    """One file a kind: the file itself, or a .zip of several, called after the first or ``name``."""
+    """One file a kind: the file itself, or a .zip of several, called after the first or ``name``; and one of all."""
     name = name or files["json"][0].stem
+    files = {**files, ALL: [path for paths in files.values() for path in paths]}
     return {
         key: paths[0] if len(paths) == 1 else _zipped(paths, paths[0].with_name(f"{name}-{key}.zip"))
         for key, paths in files.items()

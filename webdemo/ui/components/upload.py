@@ -15,7 +15,7 @@ def file_field(label: str, *, elem_id: str) -> gr.File:
     named = (
         f"{label}: {' '.join(FILE_TYPES[:4])} …"  # all of them would lie under the cross that takes it away
     )
-    return gr.File(label=named, file_types=FILE_TYPES, height=112, elem_id=elem_id, elem_classes="pd-file")
+    return gr.File(label=named, file_types=FILE_TYPES, height=64, elem_id=elem_id, elem_classes="pd-file")
 
 
 def chip(label: str, *, elem_id: str | None = None) -> gr.Button:

@@ -152,6 +152,7 @@ class GenerateTab(SweepTab):
         with gr.Row(elem_classes="pd-lab", equal_height=False):
             with gr.Column(elem_classes="pd-controls", min_width=0):
                 self._ask()
+                self._handed_out()
                 self._settings()
                 with gr.Accordion("About the model", open=False, elem_classes="pd-panel pd-about"):
                     self.card = gr.HTML(elem_id="model-card")
@@ -232,12 +233,10 @@ class GenerateTab(SweepTab):
 
     def _settings(self) -> None:
         with gr.Column(elem_classes="pd-panel pd-settings", min_width=0):
-            with gr.Row(elem_classes="pd-pair"):
-                self.seconds = gr.Slider(
-                    *SECONDS, value=GenerateRequest.seconds, step=0.5, label="Seconds",
-                    info="Length of the motion.", elem_id="seconds",
-                )  # fmt: skip
-                self.samples = self._samples()
+            self.seconds = gr.Slider(
+                *SECONDS, value=GenerateRequest.seconds, step=0.5, label="Seconds",
+                info="Length of the motion.", elem_id="seconds",
+            )  # fmt: skip
             self._sampling(self._plan, said=True)
             self._sweeps()
 

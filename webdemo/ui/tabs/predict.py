@@ -138,6 +138,7 @@ class PredictTab(SweepTab):
         with gr.Row(elem_classes="pd-lab", equal_height=False):
             with gr.Column(elem_classes="pd-controls", min_width=0):
                 self._ask()
+                self._handed_out(self._curves)
                 with gr.Column(elem_classes="pd-panel pd-settings", min_width=0):
                     self.marker = gr.Slider(
                         0, 10, value=PAST_SECONDS, step=0.1, label="The past ends at (s)",
@@ -149,18 +150,14 @@ class PredictTab(SweepTab):
                         label="Seconds to predict",
                         elem_id="predict-seconds",
                     )  # fmt: skip
-                    with gr.Row(elem_classes="pd-pair"):
+                    with gr.Row(elem_classes="pd-rows"):
                         self.model = gr.Dropdown(
                             predict_choices(), value=PredictRequest.model, label="Method",
                             elem_id="predict-method", min_width=0, filterable=False,
                         )  # fmt: skip
-                        self.other = gr.Dropdown(
-                            [("nothing", ""), *predict_choices()], value="", label="Compare with",
-                            elem_id="predict-other", min_width=0, filterable=False,
-                        )  # fmt: skip
                     self.about = gr.HTML(self.method_about(PredictRequest.model), elem_id="predict-about")
-                    self._sweeps()
-            self._results(EMPTY_TEXT, self._curves)
+                    self._sweeps(self._beside)
+            self._results(EMPTY_TEXT)
         self.source = gr.State(None, time_to_live=3600)
         self.given = gr.Textbox("", visible=False)
         self.controls = {
@@ -180,6 +177,14 @@ class PredictTab(SweepTab):
             self.camera = CameraPanel(elem_id="predict-camera")
             self.animation = animation_field("predict-animation")
             self._go("Predict")
+
+    def _beside(self) -> None:
+        """A second method, whose prediction is shown beside the first one's."""
+        with gr.Row(elem_classes="pd-rows"):
+            self.other = gr.Dropdown(
+                [("nothing", ""), *predict_choices()], value="", label="Compare with",
+                elem_id="predict-other", min_width=0, filterable=False,
+            )  # fmt: skip
 
     def _curves(self) -> None:
         with gr.Column(elem_classes="pd-panel pd-curves", min_width=0, visible=False) as self.curves:

@@ -148,10 +148,10 @@ class ReactTab(ActorTab):
         with gr.Row(elem_classes="pd-lab", equal_height=False):
             with gr.Column(elem_classes="pd-controls", min_width=0):
                 self._ask()
+                self._handed_out()
                 with gr.Column(elem_classes="pd-panel pd-settings", min_width=0):
-                    self.samples = self._samples()
                     self._sampling()
-                    self._sweeps()
+                    self._sweeps(self._beside)
             self._results(EMPTY_TEXT)
         self.source = gr.State(None, time_to_live=3600)
         self.given = gr.Textbox("", visible=False)
@@ -188,8 +188,9 @@ class ReactTab(ActorTab):
                     person: chip(f"{person.upper()} of the last result", elem_id=f"react-take-{person}")
                     for person in ("a", "b")
                 }
-            self.camera = CameraPanel(elem_id="react-camera")
-            self.live = LivePanel(elem_id="react-live")
+            with gr.Row(elem_classes="pd-cameras"):
+                self.camera = CameraPanel(elem_id="react-camera")
+                self.live = LivePanel(elem_id="react-live")
             with gr.Column(visible=False, min_width=0, elem_classes="pd-settings") as self.trim:
                 self.animation = animation_field("react-animation")
                 self.person = gr.Radio(
@@ -215,10 +216,6 @@ class ReactTab(ActorTab):
                     react_choices(), value=AUTOMATIC, label="Method",
                     elem_id="react-method", min_width=0, filterable=False,
                 )  # fmt: skip
-                self.other = gr.Dropdown(
-                    [("nothing", ""), *react_choices()], value="", label="Compare with",
-                    elem_id="react-other", min_width=0, filterable=False,
-                )  # fmt: skip
             self.about = gr.HTML(self.fit_method(AUTOMATIC)[-1], elem_id="react-about")
             self.prompt = gr.Textbox(
                 label=_WORDS,
@@ -228,6 +225,14 @@ class ReactTab(ActorTab):
                 elem_id="react-prompt",
             )
             self._go("React", self._stream_button)
+
+    def _beside(self) -> None:
+        """A second method, whose partner is shown beside the first one's."""
+        with gr.Row(elem_classes="pd-rows"):
+            self.other = gr.Dropdown(
+                [("nothing", ""), *react_choices()], value="", label="Compare with",
+                elem_id="react-other", min_width=0, filterable=False,
+            )  # fmt: skip
 
     def _stream_button(self) -> None:
         self.stream = gr.Button(

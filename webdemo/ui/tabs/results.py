@@ -1,4 +1,4 @@
-"""The results of a tab: the player, and under it files, a film, a link and read-outs."""
+"""The results of a tab: the player, and beside it files, a film, a link and read-outs."""
 
 from __future__ import annotations
 
@@ -13,7 +13,9 @@ import gradio as gr
 from motion import InputError
 from webdemo.ui.components.address import link_address
 from webdemo.ui.components.exports import (
+    ALL,
     KINDS,
+    PURPOSES,
     RIG,
     WORN,
     Record,
@@ -44,8 +46,13 @@ QUIET: dict[str, Any] = {"api_visibility": "private", "show_progress": "hidden",
 Without the empty list the browser would still note the state of a run at every component that it may change, once
 an update, and count the seconds of each in every frame."""
 
-_WORN = [[kind.key for kind in KINDS].index(key) for key in WORN]
-"""The downloads that show an uploaded character."""
+_TAKE_PICTURE = """() => {
+  const shown = [...document.querySelectorAll(".pdd")].find((each) => each.clientWidth);
+  shown?.querySelector("[data-act=picture]")?.click();
+}"""
+"""JavaScript that presses the picture button of the player in view."""
+_CHANGED = (*WORN, ALL)
+"""The downloads that change when a character is put on."""
 
 Updates = tuple[Any, ...]
 
@@ -66,6 +73,7 @@ class ResultsTab:
 
     def __init__(self, page: PageContext) -> None:
         self.page = page
+        self._buttons: dict[str, gr.DownloadButton] = {}
 
     def _id(self, name: str) -> str:
         return self.prefix + name
@@ -76,60 +84,89 @@ class ResultsTab:
         below: Callable[[], None] = lambda: None,
         first: Payload | None = None,
     ) -> None:
-        """The player, and under it the files and read-outs of a result and what ``below`` lays out.
-
-        ``first`` is played before anything is asked for.
-        """
+        """The player, and under it what ``below`` lays out. ``first`` is played before anything is asked for."""
         with gr.Column(elem_classes="pd-results", min_width=0):
             with gr.Column(elem_classes="pd-panel pd-stage", min_width=0):
                 self.player = MotionPlayer(first, elem_id=self._id("player"), empty_text=empty_text)
-            with gr.Column(elem_classes="pd-panel pd-under", min_width=0, visible=False) as self.under:
-                with gr.Row(elem_classes="pd-downloads", elem_id=self._id("downloads")):
-                    self.downloads = [
-                        gr.DownloadButton(
-                            kind.label, size="sm", interactive=False, min_width=0,
-                            visible=kind.offered(), elem_id=self._id(f"download-{kind.key.replace('.', '-')}"),
-                        )
-                        for kind in KINDS
-                    ]  # fmt: skip
-                    self.film = gr.Button("Make a film", size="sm", min_width=0, elem_id=self._id("film"))
-                    self.filmed = gr.DownloadButton(
-                        f"Film {film_suffix()}", size="sm", interactive=False, min_width=0,
-                        elem_id=self._id("download-film"),
-                    )  # fmt: skip
-                    self.figure = gr.Button(
-                        "Figure and mesh", size="sm", min_width=0, elem_id=self._id("figure")
-                    )
-                    self.figured = [
-                        gr.DownloadButton(
-                            label, size="sm", interactive=False, min_width=0, elem_id=self._id(name)
-                        )
-                        for label, name in (("Figure .html", "download-html"), ("Mesh .ply", "download-ply"))
-                    ]
-                    self.player_state = gr.Textbox(visible=False)
-                    self.character = gr.UploadButton(
-                        "Wear a character .glb", file_types=[".glb"], size="sm", min_width=0,
-                        elem_id=self._id("character"), elem_classes="pd-character",
-                    )  # fmt: skip
-                    self.worn = gr.State(None, time_to_live=3600)
-                    self.thing = gr.UploadButton(
-                        "Bring a thing .glb .obj …", file_types=FILE_TYPES, size="sm", min_width=0,
-                        elem_id=self._id("thing"), elem_classes="pd-character",
-                    )  # fmt: skip
-                    self.link = gr.Button(
-                        "Link to this view", size="sm", min_width=0, elem_id=self._id("link"),
-                        elem_classes="pd-onward", visible=self.page.history is not None,
-                    )  # fmt: skip
-                    self.onward = gr.Button(
-                        "What comes next", size="sm", min_width=0, elem_id=self._id("continue"),
-                        elem_classes="pd-onward",
-                    )  # fmt: skip
-                self.address = gr.Textbox(
-                    label="Link", interactive=False, visible=False, buttons=["copy"],
-                    elem_id=self._id("address"),
-                )  # fmt: skip
-                self.readouts = gr.HTML(elem_id=self._id("readouts"))
             below()
+
+    def _handed_out(self, below: Callable[[], None] = lambda: None) -> None:
+        """The panel of a result: how it came out, *Share*, *Export* and what ``below`` lays out."""
+        with gr.Column(elem_classes="pd-panel pd-under", min_width=0, visible=False) as self.under:
+            self.readouts = gr.HTML(elem_id=self._id("readouts"))
+            with gr.Column(elem_classes="pd-menus", min_width=0):
+                self._share()
+                self._export()
+            self.onward = gr.Button(
+                "What comes next", size="sm", min_width=0, elem_id=self._id("continue"),
+                elem_classes="pd-onward",
+            )  # fmt: skip
+        below()
+
+    def _share(self) -> None:
+        """Ways to show a result to somebody, the likeliest first."""
+        with gr.Accordion("Share", open=False, elem_id=self._id("share"), elem_classes="pd-menu"):
+            with gr.Row(elem_classes="pd-downloads"):
+                self.link = gr.Button(
+                    "Link to this view", size="sm", min_width=0, elem_id=self._id("link"),
+                    elem_classes="pd-onward", visible=self.page.history is not None,
+                )  # fmt: skip
+                self.film = gr.Button("Make a film", size="sm", min_width=0, elem_id=self._id("film"))
+                self.filmed = gr.DownloadButton(
+                    f"Film {film_suffix()}", size="sm", interactive=False, min_width=0,
+                    elem_id=self._id("download-film"),
+                )  # fmt: skip
+                self.picture = gr.Button(
+                    "Save a picture", size="sm", min_width=0, elem_id=self._id("picture")
+                )
+                self._download("png")
+                self.player_state = gr.Textbox(visible=False)
+            self.address = gr.Textbox(
+                label="Link", interactive=False, visible=False, buttons=["copy"],
+                elem_id=self._id("address"),
+            )  # fmt: skip
+
+    def _export(self) -> None:
+        """Files of a result, by what they are for."""
+        with gr.Accordion("Export", open=False, elem_id=self._id("downloads"), elem_classes="pd-menu"):
+            for purpose, keys in PURPOSES.items():
+                gr.HTML(f'<p class="pd-purpose">{purpose}</p>', padding=False)
+                with gr.Row(elem_classes="pd-downloads"):
+                    for key in keys:
+                        self._download(key)
+                    if "npz" in keys:
+                        self._figure()
+                    if RIG in keys:
+                        self.character = gr.UploadButton(
+                            "Wear a character .glb", file_types=[".glb"], size="sm", min_width=0,
+                            elem_id=self._id("character"), elem_classes="pd-character",
+                        )  # fmt: skip
+                        self.thing = gr.UploadButton(
+                            "Bring a thing .glb .obj …", file_types=FILE_TYPES, size="sm", min_width=0,
+                            elem_id=self._id("thing"), elem_classes="pd-character",
+                        )  # fmt: skip
+            self.worn = gr.State(None, time_to_live=3600)
+
+    def _figure(self) -> None:
+        """The button that makes a figure and a mesh, and theirs."""
+        self.figure = gr.Button("Figure and mesh", size="sm", min_width=0, elem_id=self._id("figure"))
+        self.figured = [
+            gr.DownloadButton(label, size="sm", interactive=False, min_width=0, elem_id=self._id(name))
+            for label, name in (("Figure .html", "download-html"), ("Mesh .ply", "download-ply"))
+        ]
+
+    def _download(self, key: str) -> None:
+        """The button of one kind of file."""
+        kind = next(kind for kind in KINDS if kind.key == key)
+        self._buttons[key] = gr.DownloadButton(
+            kind.label, size="sm", interactive=False, min_width=0,
+            visible=kind.offered(), elem_id=self._id(f"download-{key.replace('.', '-')}"),
+        )  # fmt: skip
+
+    @property
+    def downloads(self) -> list[gr.DownloadButton]:
+        """The buttons of all kinds of files, in the order of :data:`KINDS`."""
+        return [self._buttons[kind.key] for kind in KINDS]
 
     def _wire_results(self) -> None:
         self.film.click(
@@ -140,6 +177,7 @@ class ResultsTab:
             self.make_figure, inputs=[self.record, self.player_state], outputs=[self.line, *self.figured],
             js=READ_PLAYER, concurrency_limit=1, concurrency_id="film", trigger_mode="once", **QUIET,
         )  # fmt: skip
+        self.picture.click(None, js=_TAKE_PICTURE, **QUIET)
         self.link.click(
             self.make_link, inputs=[self.record, self.player_state], outputs=[self.line, self.address],
             js=READ_PLAYER, **QUIET,
@@ -147,7 +185,7 @@ class ResultsTab:
 
         self.character.upload(
             self.put_on, inputs=[self.character, self.record],
-            outputs=[self.line, self.worn, self.player, *(self.downloads[number] for number in _WORN)],
+            outputs=[self.line, self.worn, self.player, *(self._buttons[key] for key in _CHANGED)],
             concurrency_limit=1, concurrency_id="character", trigger_mode="once", **QUIET,
         )  # fmt: skip
 
@@ -180,15 +218,15 @@ class ResultsTab:
             files: dict[str, Path] = {}
             if record is not None:
                 record.worn = worn
-                written = write_character(record, self.page.shelf.folder())
-                files = for_download(written, file_name(record.prompt, record.result.manifest))
+                record.files = {**record.files, **write_character(record, self.page.shelf.folder())}
+                files = for_download(record.files, file_name(record.prompt, record.result.manifest))
         except Exception as error:
-            return status(error_line(error), tone="error"), *((gr.skip(),) * (2 + len(WORN)))
+            return status(error_line(error), tone="error"), *((gr.skip(),) * (2 + len(_CHANGED)))
         sentence = (
             f"Both wear {worn.body.name}, in films, in the .glb and on the contact sheet as well. "
             "The figure button of the player shows bodies again."
         )
-        offered = (_offered(key, files[key]) if key in files else gr.skip() for key in WORN)
+        offered = (_offered(key, files[key]) if key in files else gr.skip() for key in _CHANGED)
         return status(sentence, tone="done"), worn, wear(worn.body), *offered
 
     def make_film(self, record: Record | None, shown: str) -> Iterator[Updates]:
@@ -240,7 +278,8 @@ class ResultsTab:
             files = write_record(record, self.page.shelf.folder())
             name = file_name(record.prompt, record.result.manifest)
             line, on_rig = self._on_rig(record)
-            found = for_download(files | ({RIG: on_rig} if on_rig else {}), name)
+            record.files = files | ({RIG: on_rig} if on_rig else {})
+            found = for_download(record.files, name)
         except Exception as error:
             off = gr.update(value=None, interactive=False)
             return (status(f"The motion is ready, but its files are not. {error_line(error)}", tone="error"),

@@ -33,6 +33,8 @@ class SamplingTab(ResultsTab):
     dice: gr.Button | None = None
     """Draws a seed, where the tab's motion is random."""
     folded: gr.Accordion | None = None
+    """Holds guidance, steps and damping, where the tab has them."""
+    more: gr.Accordion | None = None
     """Holds the settings that are rarely needed, where the tab has them."""
     pace: gr.Radio | None = None
     """Switches between few steps and many, where the tab has it."""
@@ -41,30 +43,16 @@ class SamplingTab(ResultsTab):
     compare: dict[str, Any]
     """The event that says what was changed since the result; set where runs are wired."""
 
-    def _samples(self) -> gr.Slider:
-        return gr.Slider(
-            *SAMPLES, value=SamplingRequest.samples, step=1, label="Samples", info=_SAMPLES_INFO,
-            elem_id=self._id("samples"),
-        )  # fmt: skip
-
     def _sampling(self, more: Callable[[], Sequence[gr.Checkbox]] = tuple, *, said: bool = False) -> None:
-        """The seed; and guidance, steps, damping and ``more``, folded under a line with their values.
+        """Guidance, steps and damping under a line with their values; in *More* samples, the seed and ``more``.
 
-        ``said``, in a tab of sentences, puts a switch over them, fast or faithful, and tries below.
+        ``said``, in a tab of sentences, puts a switch over them, fast or faithful, and tries into *More*.
         """
-        with gr.Row(elem_classes="pd-seed"):
-            self.seed = gr.Number(
-                value=SamplingRequest.seed, label="Seed", info=_SEED_INFO,
-                elem_id=self._id("seed"), elem_classes="pd-seed-field", min_width=0,
-            )  # fmt: skip
-            self.dice = gr.Button(
-                "Random", size="sm", elem_id=self._id("dice"), elem_classes="pd-dice", min_width=0
-            )
         if said:
             self.pace = pace_switch(self._id("pace"))
         values = (SamplingRequest.guidance, DEFAULT_STEPS, SamplingRequest.damping)
         with gr.Accordion(
-            advanced_label(*values), open=False, elem_id=self._id("advanced"), elem_classes="pd-advanced"
+            advanced_label(*values), open=True, elem_id=self._id("advanced"), elem_classes="pd-advanced"
         ) as self.folded:
             self.guidance = gr.Slider(
                 *GUIDANCE, value=values[0], step=0.1, label="Guidance scale", info=_GUIDANCE_INFO,
@@ -78,12 +66,10 @@ class SamplingTab(ResultsTab):
                 *DAMPING, value=values[2], step=0.05, label="Damping threshold",
                 info=_DAMPING_INFO, elem_id=self._id("damping"),
             )  # fmt: skip
-            if said:
-                self.tries = gr.Slider(
-                    *TRIES, value=SamplingRequest.tries, step=1, label="Tries", info=_TRIES_INFO,
-                    elem_id=self._id("tries"),
-                )  # fmt: skip
-            added = more()
+        with gr.Accordion(
+            "More", open=False, elem_id=self._id("more"), elem_classes="pd-advanced"
+        ) as self.more:
+            added = self._more(more, said=said)
         tries = [] if self.tries is None else [self.tries]
         parts: list[Any] = [self.guidance, self.steps, self.damping, *tries, *added]
         # A folded part tells nobody of its changes before it was seen, so others also use this.
@@ -91,6 +77,27 @@ class SamplingTab(ResultsTab):
         gr.on([part.change for part in parts], None, **self.tell_advanced)
         if self.pace is not None:
             self.steps.change(None, inputs=self.steps, outputs=self.pace, js=FOLLOWED, **QUIET)
+
+    def _more(self, more: Callable[[], Sequence[gr.Checkbox]], *, said: bool) -> Sequence[gr.Checkbox]:
+        """The settings that are rarely needed; returns those of ``more``."""
+        self.samples = gr.Slider(
+            *SAMPLES, value=SamplingRequest.samples, step=1, label="Samples", info=_SAMPLES_INFO,
+            elem_id=self._id("samples"),
+        )  # fmt: skip
+        with gr.Row(elem_classes="pd-seed"):
+            self.seed = gr.Number(
+                value=SamplingRequest.seed, label="Seed", info=_SEED_INFO,
+                elem_id=self._id("seed"), elem_classes="pd-seed-field", min_width=0,
+            )  # fmt: skip
+            self.dice = gr.Button(
+                "Random", size="sm", elem_id=self._id("dice"), elem_classes="pd-dice", min_width=0
+            )
+        if said:
+            self.tries = gr.Slider(
+                *TRIES, value=SamplingRequest.tries, step=1, label="Tries", info=_TRIES_INFO,
+                elem_id=self._id("tries"),
+            )  # fmt: skip
+        return more()
 
     def _wire_sampling(self) -> None:
         """The switch of the pace and the button that draws a seed, where the tab has them."""

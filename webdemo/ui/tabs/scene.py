@@ -116,8 +116,8 @@ class SceneTab(SweepTab):
         with gr.Row(elem_classes="pd-lab", equal_height=False):
             with gr.Column(elem_classes="pd-controls", min_width=0):
                 self._ask()
+                self._handed_out()
                 with gr.Column(elem_classes="pd-panel pd-settings", min_width=0):
-                    self.samples = self._samples()
                     self._sampling(said=True)
                     self._sweeps()
                 with gr.Accordion("The story as text", open=False, elem_classes="pd-panel pd-about"):

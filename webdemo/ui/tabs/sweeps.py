@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from typing import Any
 
 import gradio as gr
@@ -62,13 +62,13 @@ class SweepTab(JobTab):
 
     # ---- layout ----------------------------------------------------------------------------------
 
-    def _sweeps(self) -> None:
-        """The settings of a grid, folded away."""
+    def _sweeps(self, beside: Callable[[], None] = lambda: None) -> None:
+        """The menu *Compare*, folded away: grids that are one press away, ``beside``, and the settings of a grid."""
         choices = [("nothing", ""), *((kind.label, kind.field) for kind in self.kinds())]
-        with gr.Accordion(
-            "Grid: several settings side by side", open=False, elem_id=self._id("grid"),
-            elem_classes="pd-advanced",
-        ):  # fmt: skip
+        with gr.Accordion("Compare", open=False, elem_id=self._id("grid"), elem_classes="pd-advanced"):
+            with gr.Row(elem_classes="pd-chips"):
+                self.preset_chips = [chip(label) for label in self.presets()]
+            beside()
             gr.HTML(f'<p class="pd-method">{_INFO}</p>')
             self.sides: dict[str, tuple[gr.Dropdown, gr.Textbox]] = {}
             for side in _SIDES:
@@ -82,8 +82,6 @@ class SweepTab(JobTab):
                     )
                     self.sides[side] = (field, values)
             self.make_grid = gr.Button("Make the grid", size="sm", elem_id=self._id("grid-make"))
-        with gr.Row(elem_classes="pd-chips"):
-            self.preset_chips = [chip(label) for label in self.presets()]
 
     def _wire_sweeps(self) -> None:
         parts = [part for side in _SIDES for part in self.sides[side]]

@@ -16,6 +16,8 @@ Summary = Mapping[str, float]
 
 QUALITY = tuple(measure for measure in MEASURES if measure.better)
 RELATION = tuple(measure for measure in MEASURES if not measure.better)
+_NO_WARNINGS = ("This was made as ", "From the words: ", "Read as ")
+"""Beginnings of notes that say how a sentence was understood."""
 _MOST_IN_WORDS = 4
 """Samples: more than these are not described in words."""
 
@@ -25,7 +27,7 @@ def status(line: str = "", *, tone: str = "quiet") -> str:
 
     Args:
         line: one sentence.
-        tone: "quiet", "busy", "done", "warning" or "error"; errors are announced at once.
+        tone: "quiet", "note", "busy", "done", "warning" or "error"; errors are announced at once.
     """
     if not line:
         return ""
@@ -35,10 +37,16 @@ def status(line: str = "", *, tone: str = "quiet") -> str:
 
 def notes_lines(result: Result) -> str:
     """The notes of a result, which stand right beside "Done"."""
-    return "".join(
-        status(note, tone="quiet" if note.startswith("Done") and "Not seen:" not in note else "warning")
-        for note in result.notes
-    )
+    return "".join(status(note, tone=_note_tone(note)) for note in result.notes)
+
+
+def _note_tone(note: str) -> str:
+    """The tone of a note: what was not done is a warning; how the sentence was read, and what was done, is not."""
+    if "Not seen:" in note:
+        return "warning"
+    if note.startswith("Done"):
+        return "quiet"
+    return "note" if note.startswith(_NO_WARNINGS) else "warning"
 
 
 def method_line(summary: str) -> str:
@@ -59,11 +67,11 @@ def model_state(state: str, error: str | None = None) -> str:
 def readout_panel(result: Result) -> str:
     """Everything under the player: how it came out, what was asked, measures, contacts, timings."""
     samples = [sides(readout) for readout in result.readouts]
-    parts = [_in_words(samples, _heads(len(samples))), _asked(result)]
+    parts = [_asked(result)]
     if samples:
         parts += [_tables(_quality_table(samples), _relation_table(samples, result)), legend()]
     parts.append(_timings(result.timings))
-    return '<div class="pd-readouts">' + "".join(parts) + "</div>"
+    return _panel(_in_words(samples, _heads(len(samples))), parts)
 
 
 def comparison_panel(results: Mapping[str, Result]) -> str:
@@ -79,12 +87,18 @@ def comparison_panel(results: Mapping[str, Result]) -> str:
         manifest={},
     )
     samples = [sides(readout) for readout in joined.readouts]
-    parts = [_in_words(samples, heads), *(_asked(result, name) for name, result in results.items())]
+    parts = [_asked(result, name) for name, result in results.items()]
     if samples:
         tables = _quality_table(samples, heads), _relation_table(samples, joined, heads)
         parts += [_tables(*tables), legend()]
     parts += [_timings(result.timings, name) for name, result in results.items()]
-    return '<div class="pd-readouts">' + "".join(parts) + "</div>"
+    return _panel(_in_words(samples, heads), parts)
+
+
+def _panel(in_words: str, parts: Sequence[str]) -> str:
+    """Read-outs: the result in words, and behind a line all figures."""
+    figures = f'<details class="pd-figures"><summary>All figures</summary>{"".join(parts)}</details>'
+    return f'<div class="pd-readouts">{in_words}{figures}</div>'
 
 
 def prediction_lines(lines: Mapping[str, str]) -> str:
