@@ -355,7 +355,11 @@ def test_the_button_and_the_whole_stage_are_in_view_together_on_a_small_laptop(
 
 
 def test_what_was_folded_or_opened_stays_so(page: Page) -> None:
+    page.evaluate("localStorage.removeItem('pas-de-deux-folds')")
+    page.reload()
+    live(page)
     expect(page.locator("#guidance")).to_be_visible()
+    expect(page.locator("#seed")).to_be_hidden()
     unfold(page, "#more")
     page.locator("#advanced > button").click()
     expect(page.locator("#guidance")).to_be_hidden()

@@ -154,6 +154,17 @@ def test_the_console_stays_quiet_while_runs_are_started(
     assert not [line for line in said if "arguments" in line or "Uncaught" in line]
 
 
+def test_the_button_stays_in_view_once_a_person_is_chosen(
+    server: SimpleNamespace, open_page: Callable[..., Page]
+) -> None:
+    page = live(open_page(server.url, width=1024, height=700), "React")
+    page.locator("#react-file").locator("xpath=..").locator("button.pd-chip").first.click()
+    expect(page.locator("#react-status")).to_contain_text("0.0 to", timeout=SLOW)
+    for part in ("button#react-generate", "#react-player .pdd-stage"):
+        box = page.locator(part).bounding_box()
+        assert box and box["y"] >= 0 and box["y"] + box["height"] <= 700, part
+
+
 @pytest.mark.parametrize("width", [1280, 390])
 def test_the_names_of_the_methods_are_shown_whole(
     server: SimpleNamespace, open_page: Callable[..., Page], width: int

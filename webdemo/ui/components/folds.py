@@ -11,6 +11,8 @@ import gradio as gr
 _KEPT = "pas-de-deux-folds"
 """The entry of the browser's storage that says which parts are open."""
 _READ = f"""let kept = {{}};
+  const narrow = matchMedia("(max-width: 960px)").matches;
+  const key = (name) => name + (narrow ? " narrow" : "");
   try {{ kept = JSON.parse(localStorage.getItem("{_KEPT}")) ?? {{}}; }} catch {{ /* a browser may keep nothing */ }}"""
 
 
@@ -18,8 +20,7 @@ def _begin(names: list[str]) -> str:
     """JavaScript that opens and folds parts as the visitor left them; on a narrow screen all are folded at first."""
     return f"""() => {{
   {_READ}
-  const narrow = matchMedia("(max-width: 960px)").matches;
-  const open = (name) => (name in kept ? {{ open: Boolean(kept[name]) }} : narrow ? {{ open: false }} : {{}});
+  const open = (name) => (key(name) in kept ? {{ open: Boolean(kept[key(name)]) }} : narrow ? {{ open: false }} : {{}});
   return {json.dumps(names)}.map((name) => ({{ __type__: "update", ...open(name) }}));
 }}"""
 
@@ -28,7 +29,7 @@ def _keep(name: str, *, is_open: bool) -> str:
     """JavaScript that notes that a part was opened or folded."""
     return f"""() => {{
   {_READ}
-  kept[{json.dumps(name)}] = {json.dumps(is_open)};
+  kept[key({json.dumps(name)})] = {json.dumps(is_open)};
   try {{ localStorage.setItem("{_KEPT}", JSON.stringify(kept)); }} catch {{ /* nothing is kept then */ }}
 }}"""
 
