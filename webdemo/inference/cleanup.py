@@ -58,7 +58,7 @@ def _calmed(positions: Array) -> Array:
 def on_constant_bones(positions: Array) -> Array:
     """One person (T, 22, 3) on SMPL22's constant bones, frame by frame; see :func:`clean_person`."""
     target = np.asarray(positions, dtype=np.float64)
-    return _limbs_back(project_to_skeleton(target)[0], target)
+    return _limbs_back(project_to_skeleton(target)[0], target, soft=0.0)
 
 
 def _steady_bones(positions: Array) -> Array:
@@ -75,17 +75,18 @@ def _steady_bones(positions: Array) -> Array:
     return result
 
 
-def _limbs_back(result: Array, target: Array) -> Array:
+def _limbs_back(result: Array, target: Array, *, soft: float = _SOFT) -> Array:
     """Positions (T, 22, 3) whose wrists and ankles are taken as near as they reach to where ``target`` has them."""
     forward = facing(result)
     for shoulder, elbow, wrist in _ARMS:
         limb = result[:, shoulder], result[:, elbow], result[:, wrist]
-        goal = result[:, wrist] + open_limb(*limb) * (target[:, wrist] - result[:, wrist])
-        result[:, elbow], result[:, wrist] = solve_two_bones(*limb, goal, _elbow_pole(forward), soft=_SOFT)
+        share = open_limb(*limb) if soft else 1.0
+        goal = result[:, wrist] + share * (target[:, wrist] - result[:, wrist])
+        result[:, elbow], result[:, wrist] = solve_two_bones(*limb, goal, _elbow_pole(forward), soft=soft)
     for hip, knee, ankle, toe in _LEGS:
         foot = result[:, toe] - result[:, ankle]
         result[:, knee], result[:, ankle] = solve_two_bones(
-            result[:, hip], result[:, knee], result[:, ankle], target[:, ankle], forward, soft=_SOFT
+            result[:, hip], result[:, knee], result[:, ankle], target[:, ankle], forward, soft=soft
         )
         result[:, toe] = result[:, ankle] + foot
     return result
