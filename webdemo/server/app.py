@@ -109,6 +109,10 @@ def create_app(
     app.include_router(public_routes(settings, lab.publishing))
     if lab.sign_ins is not None:
         app.include_router(login_routes(settings, lab.sign_ins, visitors))
+        if settings.openid_issuer:
+            from webdemo.server.accounts.openid import openid_routes  # Authlib is loaded where it is used
+
+            app.include_router(openid_routes(settings, lab.sign_ins))
         app.include_router(account_routes(settings, lab.sign_ins, visitors))
     app.add_middleware(CORSMiddleware)  # no other site may read anything; Gradio's own would let some
     app.add_middleware(PageCache)

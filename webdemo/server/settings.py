@@ -82,6 +82,17 @@ class Settings(BaseSettings):
     proxy_groups: str = Field(
         "", pattern=r"^[A-Za-z0-9-]*$", description="header by which it lists the person's groups"
     )
+    openid_issuer: str = Field(
+        "",
+        pattern=r"^(https?://\S+)?$",
+        description="address of an OpenID Connect provider; needs users as well",
+    )
+    openid_client: str = Field("", description="client id that the provider gave this lab")
+    openid_secret: str = Field("", description="client secret that it gave")
+    openid_name: str = Field(
+        "email", description="claim that names a person; email counts if the provider has verified it"
+    )
+    openid_scope: str = Field("openid email profile", description="scopes that are asked for")
     groups: list[str] = Field([], description="groups of which a person must have one; empty: anybody may")
     open: bool = Field(default_factory=on_a_space, description="serve other machines without accounts")
     session_hours: float = Field(24 * 14, gt=0, le=24 * 365, description="how long a sign-in lasts")
@@ -263,8 +274,13 @@ class Settings(BaseSettings):
                 f"With {PREFIX}PROXY_USER, {PREFIX}PROXIES cannot be *, or anybody could claim to be anybody: name the "
                 "addresses of the proxies."
             )
-        if self.groups and not self.proxy_groups:
+        if self.groups and self.proxy_user and not self.proxy_groups:
             raise InputError(f"{PREFIX}GROUPS needs the header that lists them: set {PREFIX}PROXY_GROUPS.")
+        if self.openid_issuer and not (self.openid_client and self.openid_secret and self.users):
+            raise InputError(
+                f"{PREFIX}OPENID_ISSUER needs {PREFIX}OPENID_CLIENT, {PREFIX}OPENID_SECRET and {PREFIX}USERS: set "
+                "all of them."
+            )
         if not self.local and not self.accounts and not self.open:
             raise InputError(
                 f"{self.host} can be reached from other machines and there are no accounts: make some with "
@@ -277,6 +293,7 @@ class Settings(BaseSettings):
         plain["database"] = _without_password(self.database_url)
         plain["person_megabytes"] = self.person_bytes / 2**20
         plain["director"] = {k: "set" if k == "key" else v for k, v in self.director.items()}
+        plain["openid_secret"] = "set" if self.openid_secret else ""
         plain["metrics_token"] = "set" if self.metrics_token else ""
         return plain
 

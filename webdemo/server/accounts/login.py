@@ -5,7 +5,7 @@ from __future__ import annotations
 import asyncio
 from contextlib import suppress
 from functools import partial
-from urllib.parse import urlsplit
+from urllib.parse import quote, urlsplit
 
 from fastapi import APIRouter, Form, Request
 from starlette.concurrency import run_in_threadpool
@@ -37,7 +37,7 @@ def login_routes(settings: Settings, sign_ins: SignIns, visitors: Visitors) -> A
     places = asyncio.Semaphore(AT_ONCE)
 
     def page(wanted: str, *, name: str = "", error: str = "", status: int = 200) -> HTMLResponse:
-        body = sign_in_card(action=f"{root}/login", wanted=wanted, name=name[:40], error=error)
+        body = _card(settings, wanted, name, error)
         return HTMLResponse(body, status_code=status, headers={"Cache-Control": "no-store"})
 
     keep = partial(_keep, root)
@@ -90,6 +90,14 @@ def login_routes(settings: Settings, sign_ins: SignIns, visitors: Visitors) -> A
         return response
 
     return router
+
+
+def _card(settings: Settings, wanted: str, name: str, error: str) -> str:
+    """The sign-in page's HTML."""
+    root = settings.root_path
+    elsewhere = f"{root}/login/openid?next={quote(wanted, safe='')}" if settings.openid_issuer else ""
+    action = f"{root}/login"
+    return sign_in_card(action=action, wanted=wanted, name=name[:40], error=error, elsewhere=elsewhere)
 
 
 def _note(sign_ins: SignIns, name: str, token: str | None, status: int) -> None:

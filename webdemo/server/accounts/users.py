@@ -25,6 +25,8 @@ NAME = re.compile(r"[a-z0-9][a-z0-9._-]{0,39}\Z")
 SHORTEST = 8
 """Characters of a password at least."""
 LONGEST = 256
+OUTSIDE = "outside"
+"""In place of a password's fingerprint, for people who sign in elsewhere; it ends once an account has their name."""
 _COST = {"n": 2**14, "r": 8, "p": 1}
 """scrypt's cost: 16 MB and about 50 ms a try."""
 _HEADER = (
@@ -164,12 +166,7 @@ class SignIns:
             return None
         with self._lock:
             self._throttle.give_back(*counted)
-        token = secrets.token_urlsafe(32)
-        now = time.time()
-        with self.database.session.begin() as session:
-            session.execute(delete(SignIn).where(SignIn.until < now))
-            session.add(SignIn(digest=_digest(token), person=name, entry=entry, until=now + self.seconds))
-        return token
+        return self._begin(name, entry)
 
     def person(self, token: str) -> str | None:
         """The owner of a session; None if it is unknown, has expired, or belongs to an earlier password.
@@ -181,9 +178,21 @@ class SignIns:
             return None
         with self.database.session() as session:
             found = session.get(SignIn, _digest(token))
-        if found is None or found.until < time.time() or found.entry != self.users.entry(found.person):
+        if found is None or found.until < time.time():
             return None
-        return found.person
+        entry = self.users.entry(found.person)
+        return found.person if found.entry == (entry or OUTSIDE) else None
+
+    def begin_outside(self, name: str) -> str:
+        """A new session's token for somebody who has signed in elsewhere and has no password here."""
+        return self._begin(name, OUTSIDE)
+
+    def _begin(self, name: str, entry: str) -> str:
+        token, now = secrets.token_urlsafe(32), time.time()
+        with self.database.session.begin() as session:
+            session.execute(delete(SignIn).where(SignIn.until < now))
+            session.add(SignIn(digest=_digest(token), person=name, entry=entry, until=now + self.seconds))
+        return token
 
     def change(self, name: str, password: str, new: str, address: str) -> str | None:
         """Gives an account another password, which ends all its sessions; returns a new session's token.

@@ -74,7 +74,7 @@ def account_card(*, home: str, name: str, error: str = "", done: str = "") -> st
     )
 
 
-def sign_in_card(*, action: str, wanted: str, name: str = "", error: str = "") -> str:
+def sign_in_card(*, action: str, wanted: str, name: str = "", error: str = "", elsewhere: str = "") -> str:
     """The form by which people sign in.
 
     Args:
@@ -82,6 +82,7 @@ def sign_in_card(*, action: str, wanted: str, name: str = "", error: str = "") -
         wanted: the path that is opened then.
         name: who tried before.
         error: what went wrong then.
+        elsewhere: address at which people sign in by another service; empty for none.
     """
     alert = f'<p role="alert">{html.escape(error)}</p>' if error else ""
     why = (
@@ -90,6 +91,11 @@ def sign_in_card(*, action: str, wanted: str, name: str = "", error: str = "") -
         else "to vote in the study that you were invited to"
         if wanted.startswith("/study/")
         else "to generate motion of two people"
+    )
+    other = (
+        f'<p><a href="{html.escape(elsewhere, quote=True)}">Sign in with your organisation</a></p>'
+        if elsewhere
+        else ""
     )
     focus = ("", " autofocus") if name else (" autofocus", "")
     fields = "".join(
@@ -103,7 +109,7 @@ def sign_in_card(*, action: str, wanted: str, name: str = "", error: str = "") -
     return card(
         f'<p>Sign in {why}.</p>{alert}<form method="post" action="{html.escape(action, quote=True)}">'
         f'<input type="hidden" name="next" value="{html.escape(wanted, quote=True)}">'
-        f"{fields}<button>Sign in</button></form>"
+        f"{fields}<button>Sign in</button></form>{other}"
         "<p><small>No account, or forgotten your password? Ask the person who runs this server."
         "</small></p>"
     )
