@@ -18,6 +18,7 @@ from tests.server.lab import stub_module
 from webdemo.inference.requests import GenerateRequest
 from webdemo.server.store.database import Database, Run
 from webdemo.server.store.ledger import DAY, LabClock
+from webdemo.server.store.migrations import REVISIONS, downgrade
 from webdemo.server.store.notebook import Notebook
 from webdemo.server.store.scratch import Scratch
 from webdemo.server.store.storage import Storage
@@ -256,13 +257,14 @@ def test_an_older_database_is_opened_with_all_its_runs(tmp_path: Path) -> None:
     database = Database(f"sqlite:///{file}")
     notebook = Notebook(database, tmp_path / "motions")
     run = kept(notebook, "user ada")
+    downgrade(database.engine, REVISIONS[0])
     database.close()
     with sqlite3.connect(file) as old:
         for index in ("ix_runs_stored", "ix_runs_address", "ix_studies_address"):
             old.execute(f"DROP INDEX {index}")
         for table, column in (("runs", "stored"), ("runs", "address"), ("studies", "address")):
             old.execute(f"ALTER TABLE {table} DROP COLUMN {column}")
-        for table in ("published", "ledger", "alembic_version"):
+        for table in ("ledger", "alembic_version"):
             old.execute(f"DROP TABLE {table}")
     database = Database(f"sqlite:///{file}")
     notebook = Notebook(database, tmp_path / "motions")
