@@ -1,7 +1,7 @@
 """The same jobs from a shell: ``python -m webdemo COMMAND``.
 
 The commands are generate, react, predict, scene, read, render, score, study, share, info, benchmark, serve, clock,
-user, database, backup and restore.
+user, database, backup, restore and admin.
 The last line on stdout is one JSON object. An error is one line on stderr that says what is
 wrong and what to do, with exit code 2. A cancelled run (Ctrl+C) ends with 130, and one whose reader has gone
 with 141. No file is left half-written.
@@ -20,6 +20,7 @@ from typing import Any
 
 from motion import InputError
 
+from .admin import add_admin
 from .generation import add_generate, add_predict, add_react
 from .parser import Parser
 from .reading import add_read
@@ -50,6 +51,7 @@ def main(argv: Sequence[str] | None = None) -> int:
         add_share,
         add_service,
         add_upkeep,
+        add_admin,
     ):
         add(commands)
     began = time.perf_counter()

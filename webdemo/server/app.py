@@ -26,6 +26,7 @@ from webdemo.server.accounts.login import login_routes
 from webdemo.server.accounts.own_account import account_routes
 from webdemo.server.accounts.visitors import Visitors
 from webdemo.server.cluster.instance_lock import InstanceLock
+from webdemo.server.http.admin_pages import admin_routes
 from webdemo.server.http.guard import Guard, may_read_figures
 from webdemo.server.http.page_html import PageCache
 from webdemo.server.http.page_sessions import keep_states_lean, kept_in_cache
@@ -97,7 +98,7 @@ def create_app(
     page = build_page(
         engine, loader=Loader(engine), runs=Recorder(lab.queue, lab.history, lab.places), history=lab.history,
         studies=lab.studies, sharing=lab.publishing, files=Path(get_upload_folder()), owner=visitors_folder,
-        admit=lambda size: lab.storage.admit(visitor(), size),
+        admit=lambda size: lab.storage.admit(visitor(), size), announced=lab.people.announced,
     )  # fmt: skip
     app = FastAPI(title="Pas de Deux", docs_url=None, redoc_url=None, openapi_url=None, lifespan=_lifespan)
     app.state.lab = lab
@@ -114,6 +115,7 @@ def create_app(
 
             app.include_router(openid_routes(settings, lab.sign_ins))
         app.include_router(account_routes(settings, lab.sign_ins, visitors))
+        app.include_router(admin_routes(lab))
     app.add_middleware(CORSMiddleware)  # no other site may read anything; Gradio's own would let some
     app.add_middleware(PageCache)
     app.add_middleware(

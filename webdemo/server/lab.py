@@ -10,6 +10,7 @@ from functools import partial
 from typing import Any
 
 from webdemo.server.accounts.users import SignIns, Users
+from webdemo.server.admin import Administration
 from webdemo.server.cluster.instance_lock import InstanceLock
 from webdemo.server.http.guard import OpenAnswers
 from webdemo.server.http.health import Health, check_disk
@@ -22,6 +23,7 @@ from webdemo.server.queue.shares import Shares
 from webdemo.server.queue.turns import Batcher, QueueLimits
 from webdemo.server.store.database import Database
 from webdemo.server.store.notebook import Notebook
+from webdemo.server.store.people import People
 from webdemo.server.store.publishing import Publishing
 from webdemo.server.store.scratch import ADDRESS_SHARE, Scratch
 from webdemo.server.store.storage import Storage
@@ -54,6 +56,8 @@ class Lab:
     figures: Figures
     answers: OpenAnswers
     streams: Streams
+    people: People
+    administration: Administration | None = None
     sign_ins: SignIns | None = None
     node: InstanceLock | None = None
 
@@ -65,6 +69,7 @@ class Lab:
     def share(self) -> None:
         """Exchanges the work done for people with the other processes."""
         self.queue.charge_elsewhere(self.shares.exchange())
+        self.people.write()
 
     def stop(self) -> None:
         """Accepts no more runs and waits for running ones, at most for the grace period of the settings."""
@@ -111,10 +116,10 @@ def make_lab(
         "live stream": lambda: streams.stuck,
     }
     health = Health(engine, wants, works=works, stuck_seconds=settings.stuck_seconds)
-    shares = Shares(database, name)
+    shares, people = Shares(database, name), People(database)
     queue = FairQueue(
         engine, _limits(settings, engine), batcher=batcher, figures=figures, broken=health.broken,
-        served=shares.add,
+        served=shares.add, computed=people.add,
     )  # fmt: skip
     streams = _streams(settings, engine)
     figures.watch(
@@ -128,9 +133,15 @@ def make_lab(
         publishing=Publishing(history, days=settings.publish_days),
         studies=studies_of(settings, database, storage), storage=storage,
         places=Places(database, name, settings.running + settings.waiting), shares=shares, health=health,
-        figures=figures, answers=OpenAnswers(), streams=streams, node=node,
+        figures=figures, answers=OpenAnswers(), streams=streams, node=node, people=people,
+        administration=administration_of(settings, database, users) if users is not None else None,
         sign_ins=SignIns(database, users, settings.session_hours) if users is not None else None,
     )  # fmt: skip
+
+
+def administration_of(settings: Settings, database: Database, users: Users) -> Administration:
+    """The acts of administrators of a lab."""
+    return Administration(database, users, settings.data, settings.person_bytes)
 
 
 def storage_of(settings: Settings, database: Database, scratch: Scratch | None = None) -> Storage:
@@ -139,7 +150,7 @@ def storage_of(settings: Settings, database: Database, scratch: Scratch | None =
     address = min(settings.address_people * settings.person_bytes, ADDRESS_SHARE * total)
     return Storage(
         database, settings.motions, person_bytes=settings.person_bytes, total_bytes=total, address_bytes=address,
-        scratch=scratch,
+        scratch=scratch, bytes_of=People(database).bytes_of,
     )  # fmt: skip
 
 

@@ -23,7 +23,7 @@ from webdemo.server.store.scratch import Scratch
 
 from .app import Lab, create_app
 from .audit import set_up_audit
-from .logs import set_up_logs
+from .logs import keep_last_errors, set_up_logs
 from .memory import share_heaps
 from .settings import Settings
 
@@ -126,6 +126,7 @@ def make_server(settings: Settings, *, scratch: bool = False, **parts: Any) -> S
         megabytes=settings.audit_megabytes,
         files=settings.audit_files,
     )
+    keep_last_errors()
     if scratch:
         parts["scratch"] = Scratch(
             settings.data / "scratch" / quote(node.name, safe=""), settings.scratch_megabytes * 2**20

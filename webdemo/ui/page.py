@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import html
 import sys
 import time
 from collections.abc import Callable, Iterator
@@ -69,6 +70,7 @@ def build_page(
     history: HistoryLike | None = None,
     studies: StudiesLike | None = None,
     sharing: SharingLike | None = None,
+    announced: Callable[[], str] | None = None,
 ) -> gr.Blocks:
     """Builds the page for an engine.
 
@@ -82,6 +84,7 @@ def build_page(
         history: runs that can be found again, in a tab of its own; none by default.
         studies: blind studies of those runs; none by default.
         sharing: public pages of those runs; none by default.
+        announced: the line that everybody is shown; none by default.
 
     Returns:
         the page; launch it with :func:`launch_options`.
@@ -109,9 +112,9 @@ def build_page(
         with gr.Row(elem_classes="pd-header", equal_height=True):
             gr.HTML(_HEADER)
             mark = gr.HTML(model_state("loading"), elem_id="model-state")
+        _build_announcement(announced, demo)
         _build_tabs(page, demo)
-        own = gr.HTML("", elem_id="own-acts", padding=False)
-        demo.load(_own_acts, outputs=own, concurrency_limit=None, **QUIET)
+        _build_own_acts(demo)
         demo.load(loading, outputs=mark, concurrency_limit=None, **QUIET)
         demo.unload(leave)
     start_queue(demo, partial(Queue, max_size=64))
@@ -161,6 +164,23 @@ def _build_tabs(page: PageContext, demo: gr.Blocks) -> None:
         if page.history is not None:
             with gr.Tab(HISTORY, id=HISTORY.lower()) as past:
                 HistoryTab(page, jobs, tabs).build(demo, past, record)
+
+
+def _build_own_acts(demo: gr.Blocks) -> None:
+    own = gr.HTML("", elem_id="own-acts", padding=False)
+    demo.load(_own_acts, outputs=own, concurrency_limit=None, **QUIET)
+
+
+def _build_announcement(announced: Callable[[], str] | None, demo: gr.Blocks) -> None:
+    if announced is not None:
+        line = gr.HTML("", elem_id="announcement", padding=False)
+        demo.load(partial(_announcement, announced), outputs=line, concurrency_limit=None, **QUIET)
+
+
+def _announcement(announced: Callable[[], str]) -> str:
+    text = announced()
+    style = "border:1px solid var(--border-color-primary);border-radius:10px;padding:.6em 1em"
+    return f'<p role="status" style="{style}">{html.escape(text)}</p>' if text else ""
 
 
 def _own_acts() -> str:

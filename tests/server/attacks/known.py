@@ -159,6 +159,13 @@ UPLOADS = [
     upload("a page as an upload", part('name="files"; filename="a.html"', "<script>alert(1)</script>"), 200),
 ]  # fmt: skip
 
+ADMIN = [
+    get("the administrators' page", "/admin", 403, at="closed", holds="administrators"),
+    post("an act of administrators", "/admin", 403, at="closed", headers={"origin": "{here}"},
+         content=b"act=delete&name=ada&confirm=ada"),
+    post("an act of administrators by a program", "/admin", 403, at="closed", content=b"act=delete&name=ada"),
+]  # fmt: skip
+
 OTHER_SITES = [
     post(f"another site's page, {name}", f"{API}/queue/join", 403, headers=headers,
          body={**OWN, "data": FIELDS})
@@ -323,6 +330,7 @@ LIVE = [
 ]  # fmt: skip
 
 KNOWN = [
+    *ADMIN,
     *OTHER_ROUTES,
     *LIVE,
     *PATHS,

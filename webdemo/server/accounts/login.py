@@ -20,7 +20,7 @@ from webdemo.server.http.refused import Refused
 from webdemo.server.settings import Settings
 
 from .throttle import TooManyTries
-from .users import SignIns
+from .users import SignIns, Suspended
 from .visitors import KNOWN_COOKIE, NO_ACCOUNTS, SESSION_COOKIE, Visitors
 
 AT_ONCE = 2
@@ -60,8 +60,8 @@ def login_routes(settings: Settings, sign_ins: SignIns, visitors: Visitors) -> A
             async with places:
                 known = request.cookies.get(KNOWN_COOKIE, "")
                 token = await run_in_threadpool(sign_ins.begin, name, password, address, known)
-        except TooManyTries as reason:
-            error, status = str(reason), 429
+        except (TooManyTries, Suspended) as reason:
+            error, status = str(reason), 429 if isinstance(reason, TooManyTries) else 403
         except InputError:
             raise Refused(503, NO_ACCOUNTS, "accounts") from None
         await run_in_threadpool(_note, sign_ins, name, token, status)
@@ -105,7 +105,8 @@ def _note(sign_ins: SignIns, name: str, token: str | None, status: int) -> None:
     known = token is not None
     with suppress(InputError):  # the accounts cannot be read any more
         known = known or sign_ins.users.entry(name) is not None
-    why = None if token else "too many tries" if status == 429 else "wrong name or password"
+    whys = {401: "wrong name or password", 403: "suspended", 429: "too many tries"}
+    why = None if token else whys[status]
     audit("sign-in", ok=token is not None, person=name if known else "(unknown)", how="password", reason=why)
 
 

@@ -18,6 +18,7 @@ from sqlalchemy import CursorResult, delete
 from motion import InputError
 from motion.formats.files import replacing
 from webdemo.server.store.database import Database, SignIn
+from webdemo.server.store.people import People
 
 from .throttle import Throttle
 
@@ -131,6 +132,10 @@ def _parse(text: str) -> dict[str, tuple[bytes, bytes]]:
     return entries
 
 
+class Suspended(InputError):
+    """The account is suspended, and the password was right."""
+
+
 class SignIns:
     """Sessions of signed-in people; only the hash of the cookie is stored.
 
@@ -142,6 +147,7 @@ class SignIns:
 
     def __init__(self, database: Database, users: Users, hours: float) -> None:
         self.database, self.users, self.seconds = database, users, hours * 3600
+        self.people = People(database)
         self._throttle = Throttle()
         self._lock = threading.Lock()
 
@@ -156,6 +162,7 @@ class SignIns:
 
         Raises:
             TooManyTries: after too many wrong passwords.
+            Suspended: if an administrator has suspended the account.
             InputError: if the accounts cannot be read.
         """
         entry = self.users.entry(name)  # read before the password is checked, which may change meanwhile
@@ -166,6 +173,8 @@ class SignIns:
             return None
         with self._lock:
             self._throttle.give_back(*counted)
+        if self.people.of(name).suspended:
+            raise Suspended("This account is suspended: ask the person who runs this server.")
         return self._begin(name, entry)
 
     def person(self, token: str) -> str | None:
@@ -181,7 +190,9 @@ class SignIns:
         if found is None or found.until < time.time():
             return None
         entry = self.users.entry(found.person)
-        return found.person if found.entry == (entry or OUTSIDE) else None
+        if found.entry != (entry or OUTSIDE) or self.people.of(found.person).suspended:
+            return None
+        return found.person
 
     def begin_outside(self, name: str) -> str:
         """A new session's token for somebody who has signed in elsewhere and has no password here."""

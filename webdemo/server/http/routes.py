@@ -27,6 +27,7 @@ _LONGEST_URL = 4096
 _ROUTES = frozenset(
     f"/{name}"
     for name in (
+        "admin",
         "login",
         "logout",
         "study",

@@ -201,6 +201,19 @@ class Streams:
         with self._lock:
             self._end(stream, UNKNOWN)
 
+    def opened(self) -> list[LiveStream]:
+        """All open streams."""
+        with self._lock:
+            return list(self._open.values())
+
+    def end(self, key: str, reason: str) -> bool:
+        """Ends the stream of an id; its person is told why. False if there is none."""
+        with self._lock:
+            stream = self._open.get(key)
+            if stream is not None:
+                self._end(stream, reason)
+        return stream is not None
+
     def sweep(self) -> None:
         """Ends streams that are idle or too old."""
         now = self.clock()

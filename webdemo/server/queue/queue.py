@@ -40,6 +40,7 @@ class FairQueue:
         figures: metrics to update.
         broken: called with errors of the program, not those of the user.
         served: called with a person and the units of work when a run starts.
+        computed: called with a person and the seconds of a worker when a run has ended; of a shared pass, its part.
     """
 
     def __init__(
@@ -51,7 +52,9 @@ class FairQueue:
         figures: Figures | None = None,
         broken: Callable[[BaseException], None] = lambda error: None,
         served: Callable[[str, float], None] = lambda person, units: None,
+        computed: Callable[[str, float], None] = lambda person, seconds: None,
     ) -> None:
+        self.computed = computed
         self.engine = engine
         self.limits = limits or QueueLimits()
         self.batcher = batcher
@@ -98,6 +101,22 @@ class FairQueue:
                 token.cancel()
                 self._change.notify_all()
         return token is not None
+
+    def jobs(self) -> list[tuple[Job, bool]]:
+        """All runs here, and whether each has begun."""
+        with self._change:
+            return [(job, True) for job in self._running] + [(job, False) for job in self._waiting]
+
+    def end(self, key: str, sentence: str) -> bool:
+        """Ends the run of an id; its person is told the sentence. False if there is none."""
+        with self._change:
+            for job in (*self._running, *self._waiting):
+                if job.id == key:
+                    job.ended = sentence
+                    job.token.cancel()
+                    self._change.notify_all()
+                    return True
+        return False
 
     def charge_elsewhere(self, totals: Mapping[str, float]) -> None:
         """Adds work done at other processes; see :meth:`Turns.charge_elsewhere`."""
@@ -211,6 +230,8 @@ class FairQueue:
                 event = job.events.get(timeout=TICK)
             except queue.Empty:
                 event = None
+            if job.ended:
+                raise InputError(job.ended)
             if isinstance(event, Exception):
                 raise event
             if not isinstance(event, Result) or job.token.cancelled:  # a result that is there is not too late
@@ -268,6 +289,8 @@ class FairQueue:
             if whole:
                 self.pace.of(group).learn(sum(job.cost for job in batch), time.monotonic() - began)
             self._count(group, batch, began)
+            for job in batch:
+                self.computed(job.person, (time.monotonic() - began) / len(batch))
 
     def _next(self, group: str) -> list[Job]:
         self._waiting = [job for job in self._waiting if not job.token.cancelled]

@@ -7,6 +7,7 @@ requests brings no advantage, and a long run delays its owner's later ones.
 from __future__ import annotations
 
 import queue
+import secrets
 import time
 from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
@@ -61,6 +62,8 @@ class Job:
         moved: when its pass last began or made progress.
         estimate: estimated wait in seconds when it arrived.
         batch: number of runs that shared its pass.
+        ended: the sentence with which an administrator has ended it.
+        id: names it for administrators.
     """
 
     person: str
@@ -76,6 +79,8 @@ class Job:
     moved: float = 0.0
     estimate: float | None = None
     batch: int = 1
+    ended: str = ""
+    id: str = field(default_factory=lambda: secrets.token_hex(6))
 
 
 class Accounts:

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import math
 import shutil
-from collections.abc import Collection
+from collections.abc import Callable, Collection
 from pathlib import Path
 from typing import Any, cast
 
@@ -44,19 +44,26 @@ class Storage:
         total_bytes: room for all people's runs and studies together.
         address_bytes: room for runs and studies of all who come from one address, where anybody may come.
         scratch: uploads and files for download; None where they are not counted.
+        bytes_of: a person's own room, where it is not everybody's.
     """
 
     def __init__(
         self, database: Database, motions: Path, *, person_bytes: float = math.inf, total_bytes: float = 2e9,
         address_bytes: float = math.inf, scratch: Scratch | None = None,
+        bytes_of: Callable[[str], float | None] = lambda owner: None,
     ) -> None:  # fmt: skip
+        self.bytes_of = bytes_of
         self.database, self.motions, self.scratch = database, motions, scratch
         self.person_bytes, self.total_bytes, self.address_bytes = person_bytes, total_bytes, address_bytes
 
-    @property
-    def kept_bytes(self) -> float:
+    def room(self, owner: str) -> float:
+        """A person's room altogether."""
+        own = self.bytes_of(owner)
+        return self.person_bytes if own is None else own
+
+    def kept_bytes(self, owner: str) -> float:
         """A person's room for runs and studies."""
-        return (1 - SET_ASIDE) * self.person_bytes
+        return (1 - SET_ASIDE) * self.room(owner)
 
     # ---- what there is ---------------------------------------------------------------------------
 
@@ -74,15 +81,15 @@ class Storage:
         return Usage(
             runs=sizes.get(False, 0), favourites=sizes.get(True, 0), studies=studies,
             temporary=self.scratch.used(digest(who.person)) if self.scratch else 0,
-            allowed=self.person_bytes if math.isfinite(self.person_bytes) else self.total_bytes,
-            kept=min(self.kept_bytes, self.total_bytes),
+            allowed=room if math.isfinite(room := self.room(who.owner)) else self.total_bytes,
+            kept=min(self.kept_bytes(who.owner), self.total_bytes),
         )  # fmt: skip
 
     def spare(self, owner: str, share: float) -> float:
         """Bytes that are left of a share of a person's room for runs and studies."""
         with self.database.session() as session:
             own = _sum(session, Run, Run.owner == owner) + _sum(session, Study, Study.owner == owner)
-        return share * min(self.kept_bytes, self.total_bytes) - own
+        return share * min(self.kept_bytes(owner), self.total_bytes) - own
 
     def importable(self, owner: str, address: str) -> float:
         """Bytes that a person may import: what is free, and what they have removed themselves."""
@@ -93,9 +100,10 @@ class Storage:
     def _left(self, session: Session, owner: str, address: str) -> list[tuple[float, str]]:
         """The room left under each limit that holds for a person, and the sentence where it is too little."""
         own = _sum(session, Run, Run.owner == owner) + _sum(session, Study, Study.owner == owner)
+        kept = self.kept_bytes(owner)
         left = [(
-            self.kept_bytes - own,
-            f"Your room of {self.kept_bytes / MB:,.0f} MB for runs and studies is used up by favourites and studies, "
+            kept - own,
+            f"Your room of {kept / MB:,.0f} MB for runs and studies is used up by favourites and studies, "
             "which are not removed on their own: stop keeping one, or delete a study.",
         )]  # fmt: skip
         total = _sum(session, Run) + _sum(session, Study)
@@ -182,22 +190,30 @@ class Storage:
             return
         with sentences(), self.database.session() as session:
             kept = _sum(session, Run, Run.owner == who.owner) + _sum(session, Study, Study.owner == who.owner)
-        self.scratch.admit(digest(who.person), who.address, size, self._aside(kept if who.owner else 0.0))
+        self.scratch.admit(
+            digest(who.person),
+            who.address,
+            size,
+            self._aside(kept if who.owner else 0.0, self.room(who.owner)),
+        )
 
     def tidy(self, keep: Collection[str] = ()) -> None:
         """Removes the uploads and files for download that are too old or too many for their owner; ``keep`` stays."""
         if self.scratch is None:
             return
         kept: dict[str, float] = {}
+        rooms: dict[str, float] = {}
         with self.database.session() as session:
             for table in (Run, Study):
                 sizes = select(table.owner, func.sum(table.size)).group_by(table.owner)
                 for owner, size in session.execute(sizes):
                     kept[digest(owner)] = kept.get(digest(owner), 0.0) + (size or 0)
-        self.scratch.clean(keep, lambda person: self._aside(kept.get(person, 0.0)))
+                    rooms[digest(owner)] = self.room(owner)
+        self.scratch.clean(keep, lambda p: self._aside(kept.get(p, 0.0), rooms.get(p, self.person_bytes)))
 
-    def _aside(self, kept: float) -> float:
-        return max(self.person_bytes - kept, SET_ASIDE * self.person_bytes)
+    @staticmethod
+    def _aside(kept: float, room: float) -> float:
+        return max(room - kept, SET_ASIDE * room)
 
 
 def weight_of(run: Run, folder: Path) -> int:

@@ -1,0 +1,109 @@
+"""Administrators, against a real server: their page and the shell."""
+
+from __future__ import annotations
+
+import json
+import os
+import subprocess
+import sys
+import threading
+import time
+from collections.abc import Iterator
+from typing import Any
+
+import pytest
+
+from webdemo.server.audit import audited
+
+from .attacks.target import Target
+from .clients import FIELDS
+from .lab import ROOT
+
+
+@pytest.fixture(scope="module")
+def lab(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Target]:
+    """A server whose steps take a while, of which eve is an administrator."""
+    with Target(tmp_path_factory.mktemp("admin"), accounts=True, stub_pause=0.2) as target:
+        shell(target, "make-admin", "eve")
+        yield target
+
+
+def shell(lab: Target, *words: str) -> dict[str, Any]:
+    env = {**os.environ, **lab.env, "PASDEDEUX_DATA": str(lab.data)}
+    done = subprocess.run(
+        [sys.executable, "-m", "webdemo", "admin", *words], cwd=ROOT, env=env, capture_output=True, text=True
+    )
+    assert done.returncode == 0, done.stderr
+    return json.loads(done.stdout.splitlines()[-1])
+
+
+def act(lab: Target, **form: str) -> Any:
+    return lab.ask("eve", "POST", "/admin", data=form, headers={"origin": lab.url})
+
+
+def test_only_administrators_and_only_their_own_page(lab: Target) -> None:
+    assert lab.ask("ada", "GET", "/admin").status_code == 403
+    assert lab.ask("ada", "POST", "/admin", data={"act": "suspend", "name": "eve"},
+                   headers={"origin": lab.url}).status_code == 403  # fmt: skip
+    shown = lab.ask("eve", "GET", "/admin")
+    assert shown.status_code == 200 and "<script" not in shown.text and "ada" in shown.text
+    for headers in ({}, {"origin": "https://evil.example"}):
+        assert (
+            lab.ask(
+                "eve", "POST", "/admin", data={"act": "suspend", "name": "ada"}, headers=headers
+            ).status_code
+            == 403
+        )
+    assert act(lab, act="burn", name="ada").status_code == 422
+
+
+def test_a_run_is_ended_and_its_person_told(lab: Target) -> None:
+    said: list[str] = []
+    long = [*FIELDS[:5], 300, *FIELDS[6:]]
+    thread = threading.Thread(target=lambda: said.append(lab.call("ada", "generate", long)))
+    thread.start()
+    until = time.monotonic() + 30
+    while "end-run" not in (page := lab.ask("eve", "GET", "/admin").text):
+        assert time.monotonic() < until
+        time.sleep(0.1)
+    key = page.split('value="end-run"')[1].split('name="id" value="')[1].split('"')[0]
+    assert act(lab, act="end-run", id=key).status_code == 303
+    thread.join(timeout=60)
+    assert "The person who runs this server ended this" in said[0]
+    line = next(line for line in audited(lab.data, 100) if line["act"] == "admin-end-run")
+    assert (line["person"], line["ok"], line["id"]) == ("eve", True, key)
+
+
+def test_a_person_at_their_quota_is_shown_and_refused(lab: Target) -> None:
+    assert act(lab, act="room", name="ada", megabytes="1").status_code == 303
+    assert shell(lab, "list")["people"][0]["room"] == 1.0
+    assert 'value="1"' in lab.ask("eve", "GET", "/admin").text
+    assert act(lab, act="room", name="ada", megabytes="much").status_code == 422
+    shell(lab, "room", "ada")
+    assert shell(lab, "list")["people"][0]["own_room"] is False
+
+
+def test_suspended_and_signed_out_everywhere(lab: Target) -> None:
+    assert "event: complete" in lab.call("ada", "generate", FIELDS)
+    shell(lab, "suspend", "ada")
+    given = {"username": "ada", "password": "password of ada"}
+    refused = lab.ask("stranger", "POST", "/login", data=given)
+    assert refused.status_code == 403 and "suspended" in refused.text
+    time.sleep(10.5)  # a sign-in is remembered for so long
+    assert lab.ask("ada", "GET", "/config").status_code == 401
+    assert act(lab, act="let-in", name="ada").status_code == 303
+    assert lab.ask("stranger", "POST", "/login", data=given).status_code == 200
+
+
+def test_everybody_is_shown_the_announcement(lab: Target) -> None:
+    assert act(lab, act="announce", text="Closed on <Friday>.").status_code == 303
+    assert shell(lab, "list")["announced"] == "Closed on <Friday>."
+    assert "Closed on &lt;Friday&gt;." in lab.ask("eve", "GET", "/admin").text
+
+
+def test_a_deleted_account_leaves_nothing(lab: Target) -> None:
+    assert act(lab, act="delete", name="ada", confirm="no").status_code == 422
+    assert any((lab.data / "motions").iterdir())
+    assert act(lab, act="delete", name="ada", confirm="ada").status_code == 303
+    assert not any((lab.data / "motions").iterdir())
+    assert [row["name"] for row in shell(lab, "list")["people"]] == ["eve"]

@@ -1,0 +1,78 @@
+"""The acts of administrators from a shell: ``admin``."""
+
+from __future__ import annotations
+
+import argparse
+from dataclasses import asdict
+from typing import Any
+
+from motion import InputError
+
+
+def add_admin(commands: Any) -> None:
+    """Adds ``admin`` to the shell's commands."""
+    parser = commands.add_parser(
+        "admin", help="people's use, rooms, roles; suspend, sign out, delete, announce"
+    )
+    parser.add_argument(
+        "action",
+        choices=(
+            "list",
+            "make-admin",
+            "end-admin",
+            "room",
+            "suspend",
+            "let-in",
+            "sign-out",
+            "delete",
+            "announce",
+            "audit",
+        ),
+    )
+    parser.add_argument("name", nargs="?", help="of the account; with announce, the line (empty: none)")
+    parser.add_argument(
+        "--megabytes", type=float, help="with room: the person's room; without it, everybody's"
+    )
+    parser.set_defaults(job=admin)
+
+
+def admin(options: argparse.Namespace) -> dict[str, Any]:
+    """Does one act, audited, in the lab that the settings name; a running server heeds it at once."""
+    from webdemo.server.accounts.users import Users
+    from webdemo.server.audit import SENDER, audited, set_up_audit
+    from webdemo.server.lab import administration_of
+    from webdemo.server.settings import read_settings
+    from webdemo.server.store.database import Database, sentences
+
+    settings, name, action = read_settings(), options.name or "", options.action
+    if settings.users is None:
+        raise InputError("There are no accounts: set PASDEDEUX_USERS to their file.")
+    if action == "audit":
+        return {"lines": audited(settings.data, 100)}
+    if action not in ("list", "announce") and not name:
+        raise InputError(f"Name the account: `admin {action} NAME`.")
+    set_up_audit(
+        settings.audit, settings.data, "shell", megabytes=settings.audit_megabytes, files=settings.audit_files
+    )
+    SENDER.set(("(shell)", ""))
+    database = Database(settings.database_url)
+    try:
+        with sentences():
+            acts = administration_of(settings, database, Users(settings.users))
+            if action == "list":
+                return {"people": [asdict(row) for row in acts.rows()], "announced": acts.people.announced()}
+            if action in ("make-admin", "end-admin"):
+                acts.set_role(name, admin=action == "make-admin")
+            elif action == "room":
+                acts.set_room(name, options.megabytes)
+            elif action in ("suspend", "let-in"):
+                acts.suspend(name, suspended=action == "suspend")
+            elif action == "sign-out":
+                acts.sign_out(name)
+            elif action == "delete":
+                acts.delete(name)
+            else:
+                acts.announce(name)
+    finally:
+        database.close()
+    return {"done": action, "name": name}
