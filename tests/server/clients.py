@@ -14,7 +14,7 @@ from typing import Any
 
 import pytest
 from fastapi.testclient import TestClient
-from sqlalchemy import event
+from sqlalchemy import Engine, MetaData, event
 
 from webdemo.server.app import Lab, create_app
 from webdemo.server.serve import make_server
@@ -45,6 +45,13 @@ def database_url(kind: str, folder: Path) -> str:
     if not (url := os.environ.get("PASDEDEUX_TEST_DATABASE", "")):
         pytest.skip("PASDEDEUX_TEST_DATABASE names no other database")
     return url
+
+
+def drop_tables(engine: Engine) -> None:
+    """Removes all tables, the one of the migrations as well, so that the next test finds an empty database."""
+    tables = MetaData()
+    tables.reflect(engine)
+    tables.drop_all(engine)
 
 
 def client_of(settings: Settings, *, pause: float = 0.0, **options: Any) -> TestClient:

@@ -10,9 +10,9 @@ import pytest
 from sqlalchemy import func, select, update
 
 from motion import InputError
-from tests.server.clients import DATABASES, database_url
+from tests.server.clients import DATABASES, database_url, drop_tables
 from webdemo.server.queue.places import LOST_AFTER, Place, Places
-from webdemo.server.store.database import Database, Table
+from webdemo.server.store.database import Database
 
 
 @pytest.fixture(params=DATABASES)
@@ -20,7 +20,7 @@ def two(request: pytest.FixtureRequest, tmp_path: Path) -> Iterator[tuple[Places
     """The places of two processes, of which each person may have three."""
     databases = [Database(database_url(request.param, tmp_path)) for _ in range(2)]
     yield Places(databases[0], "one", 3), Places(databases[1], "two", 3)
-    Table.metadata.drop_all(databases[0].engine)
+    drop_tables(databases[0].engine)
     for database in databases:
         database.close()
 

@@ -12,12 +12,21 @@ from fastapi.testclient import TestClient
 from sqlalchemy import update
 
 from motion import InputError
-from tests.server.clients import CALL, DATABASES, FIELDS, database_url, events_of, lab_of, sign_in
+from tests.server.clients import (
+    CALL,
+    DATABASES,
+    FIELDS,
+    database_url,
+    drop_tables,
+    events_of,
+    lab_of,
+    sign_in,
+)
 from tests.server.lab import ROOT
 from webdemo.inference.requests import GenerateRequest
 from webdemo.server.cluster.instance_lock import InstanceLock
 from webdemo.server.queue.shares import KEPT_SECONDS, Shares, Work
-from webdemo.server.store.database import Database, Table
+from webdemo.server.store.database import Database
 from webdemo.server.store.history import History
 
 from .test_queue import make, request, wait_for
@@ -28,7 +37,7 @@ def two(request: pytest.FixtureRequest, tmp_path: Path) -> Iterator[tuple[Shares
     """What two processes know of each other."""
     databases = [Database(database_url(request.param, tmp_path)) for _ in range(2)]
     yield Shares(databases[0], "one"), Shares(databases[1], "two")
-    Table.metadata.drop_all(databases[0].engine)
+    drop_tables(databases[0].engine)
     for database in databases:
         database.close()
 

@@ -14,7 +14,7 @@ import pytest
 from sqlalchemy import update
 
 from motion import InputError, formats, stacked_positions
-from tests.server.clients import DATABASES, database_url, no_room
+from tests.server.clients import DATABASES, database_url, drop_tables, no_room
 from tests.server.lab import stub_module
 from webdemo.inference import Engine
 from webdemo.inference.cancel import CancelToken
@@ -22,7 +22,7 @@ from webdemo.inference.predict_request import PredictRequest, PredictResult
 from webdemo.inference.requests import GenerateRequest, ReactRequest, Result
 from webdemo.server.queue.shared_engine import SharedEngine
 from webdemo.server.queue.wait_estimate import units
-from webdemo.server.store.database import Database, Link, Run, Table
+from webdemo.server.store.database import Database, Link, Run
 from webdemo.server.store.history import DAY, History
 from webdemo.server.store.recorder import title_of
 from webdemo.ui.again import request_of, verdict
@@ -34,7 +34,7 @@ ME, OTHER = "user ada", "user eve"
 def history(request: pytest.FixtureRequest, tmp_path: Path) -> Iterator[History]:
     database = Database(database_url(request.param, tmp_path))
     yield History(database, tmp_path / "motions", node="n")
-    Table.metadata.drop_all(database.engine)
+    drop_tables(database.engine)
     database.close()
 
 

@@ -15,12 +15,12 @@ import numpy as np
 import pytest
 
 from motion import InputError
-from tests.server.clients import DATABASES, database_url
+from tests.server.clients import DATABASES, database_url, drop_tables
 from tests.server.lab import stub_module
 from webdemo.inference.plans import KeptPlan, WindowPlan
 from webdemo.inference.requests import GenerateRequest, ReactRequest
 from webdemo.server.store import history as history_module
-from webdemo.server.store.database import Database, Table
+from webdemo.server.store.database import Database
 from webdemo.server.store.notebook import Notebook
 from webdemo.ui.history import Kept, Search
 
@@ -32,7 +32,7 @@ PLAN = KeptPlan(windows=(WindowPlan((1.0, 2.0, 0.5)),))
 def notebook(request: pytest.FixtureRequest, tmp_path: Path) -> Iterator[Notebook]:
     database = Database(database_url(request.param, tmp_path))
     yield Notebook(database, tmp_path / "motions", node="n")
-    Table.metadata.drop_all(database.engine)
+    drop_tables(database.engine)
     database.close()
 
 

@@ -11,11 +11,11 @@ from typing import Any
 import pytest
 
 from motion import InputError
-from tests.server.clients import DATABASES, database_url
+from tests.server.clients import DATABASES, database_url, drop_tables
 from tests.server.lab import stub_module
 from webdemo.inference.requests import ReactRequest
 from webdemo.server.store import originals
-from webdemo.server.store.database import Database, Run, Table
+from webdemo.server.store.database import Database, Run
 from webdemo.server.store.notebook import Notebook
 from webdemo.ui.history import Kept, Original, Search, clean_name
 
@@ -27,7 +27,7 @@ BYTES = b"HIERARCHY \xff\x00 as it was"
 def notebook(request: pytest.FixtureRequest, tmp_path: Path) -> Iterator[Notebook]:
     database = Database(database_url(request.param, tmp_path))
     yield Notebook(database, tmp_path / "motions", node="n")
-    Table.metadata.drop_all(database.engine)
+    drop_tables(database.engine)
     database.close()
 
 

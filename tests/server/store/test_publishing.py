@@ -10,9 +10,9 @@ import pytest
 from sqlalchemy import update
 
 from motion import InputError
-from tests.server.clients import DATABASES, database_url
+from tests.server.clients import DATABASES, database_url, drop_tables
 from webdemo.server.store import publishing as module
-from webdemo.server.store.database import Database, Published, Table
+from webdemo.server.store.database import Database, Published
 from webdemo.server.store.notebook import Notebook
 from webdemo.server.store.publishing import Publishing
 
@@ -23,7 +23,7 @@ from .test_notebook import ME, OTHER, kept
 def publishing(request: pytest.FixtureRequest, tmp_path: Path) -> Iterator[Publishing]:
     database = Database(database_url(request.param, tmp_path))
     yield Publishing(Notebook(database, tmp_path / "motions", node="n"), days=30)
-    Table.metadata.drop_all(database.engine)
+    drop_tables(database.engine)
     database.close()
 
 

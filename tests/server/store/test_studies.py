@@ -11,11 +11,11 @@ import numpy as np
 import pytest
 
 from motion import Duet, InputError
-from tests.server.clients import DATABASES, database_url, no_room
+from tests.server.clients import DATABASES, database_url, drop_tables, no_room
 from tests.server.lab import stub_module
 from webdemo.server.lab import studies_of
 from webdemo.server.settings import Settings
-from webdemo.server.store.database import Database, Table
+from webdemo.server.store.database import Database
 from webdemo.server.store.studies import Studies
 from webdemo.server.store.voting import SOONEST
 from webdemo.study import Stimulus
@@ -36,7 +36,7 @@ class Clock:
 def studies(request: pytest.FixtureRequest, tmp_path: Path) -> Iterator[Studies]:
     database = Database(database_url(request.param, tmp_path))
     yield Studies(database, tmp_path / "studies", clock=Clock(), address_people=2)
-    Table.metadata.drop_all(database.engine)
+    drop_tables(database.engine)
     database.close()
 
 
