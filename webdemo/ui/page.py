@@ -173,14 +173,16 @@ def _build_own_acts(demo: gr.Blocks) -> None:
 
 def _build_announcement(announced: Callable[[], str] | None, demo: gr.Blocks) -> None:
     if announced is not None:
-        line = gr.HTML("", elem_id="announcement", padding=False)
+        line = gr.HTML("", elem_id="announcement", padding=False, visible=False)  # an empty one takes a gap
         demo.load(partial(_announcement, announced), outputs=line, concurrency_limit=None, **QUIET)
 
 
-def _announcement(announced: Callable[[], str]) -> str:
+def _announcement(announced: Callable[[], str]) -> gr.HTML:
     text = announced()
     style = "border:1px solid var(--border-color-primary);border-radius:10px;padding:.6em 1em"
-    return f'<p role="status" style="{style}">{html.escape(text)}</p>' if text else ""
+    return gr.HTML(
+        f'<p role="status" style="{style}">{html.escape(text)}</p>' if text else "", visible=bool(text)
+    )
 
 
 def _own_acts() -> str:
