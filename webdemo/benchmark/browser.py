@@ -236,6 +236,8 @@ def _follow_a_run(page: Any) -> dict[str, float]:
 
 def _wait_for_a_long_run(page: Any, browser: Any) -> float:
     """Cores that the browser takes in the middle of a run: what a click and a result cost is left out."""
+    if (folded := page.locator("#more > button.label-wrap:not(.open)")).count():
+        folded.click()  # what is folded is not on the page
     for name, value in LONG_RUN.items():
         field = page.locator(f"#{name} input[type=number]")
         field.fill(str(value))

@@ -91,6 +91,12 @@ def with_result(page: Page, tour: Tour, prefix: str, character: Path) -> None:
         pressed(page, tour, f"#{prefix}link", 1)
 
 
+def read_out(page: Page, tour: Tour, prefix: str) -> None:
+    """Folds the figures under a result away and out again, twice."""
+    for name in ("All figures", "What the figures mean"):
+        pressed(page, tour, f"#{prefix}readouts summary:has-text('{name}')", 4)
+
+
 def all_used(page: Page, tour: Tour, tab: str, *excused: str) -> None:
     """Uses what is left of a tab; fails where something could be seen and was not used twice, but for patterns."""
     patterns = (*EXCUSED, *excused)

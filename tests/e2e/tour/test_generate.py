@@ -13,6 +13,9 @@ from .touring import Tour
 
 pytestmark = [pytest.mark.e2e, pytest.mark.slow]
 
+EXCUSED_HERE = ("^Generate / reading / ",)
+"""Chips are named after what was measured, which changes with each result; test_reading_page uses them."""
+
 
 def test_generate(page: Page, tour: Tour, character: Path) -> None:
     open_all(page)
@@ -43,4 +46,4 @@ def test_generate(page: Page, tour: Tour, character: Path) -> None:
     pressed(page, tour, "#grid-make")
     made(page, tour)
     with_result(page, tour, "", character)
-    all_used(page, tour, "Generate")
+    all_used(page, tour, "Generate", *EXCUSED_HERE)

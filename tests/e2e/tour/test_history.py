@@ -54,8 +54,9 @@ def test_history(page: Page, tour: Tour, tmp_path: Path) -> None:
     expect(page.locator(CARD.format(0))).to_contain_text("They wave.", timeout=SLOW)
     for title in ("A greeting", "Another greeting"):
         described(page, tour, title)
+    everything = page.locator(".pdn-card").count()  # other tests of the tour have made some
     searched(page, tour, "another tour late", 1)
-    searched(page, tour, "", page.locator(".pdn-card").count() and 2)
+    searched(page, tour, "", everything)
     for _ in range(2):
         chosen(page, 0)
         acted(page, tour, "open")

@@ -37,6 +37,8 @@ def test_predict(page: Page, tour: Tour, character: Path, tmp_path: Path) -> Non
     for _ in range(2):
         pressed(page, tour, "#predict-continue", 1)
         made(page, tour, "predict-", times=1)
+    open_all(page)
+    pressed(page, tour, "#predict-readouts summary:has-text('All figures')", 4)
     with_result(page, tour, "predict-", character)
     choose(page, "#predict-grid-across", "Seconds to predict")
     page.fill("#predict-grid-across-values textarea", "1, 2")

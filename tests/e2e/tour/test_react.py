@@ -12,7 +12,7 @@ from tests.ui.stub_engine import walking
 from webdemo.ui.components.actors import react_choices
 
 from ..playing import choose
-from .hands import all_used, cancelled, given, made, number, open_all, pressed, visited, with_result
+from .hands import all_used, cancelled, given, made, number, open_all, pressed, read_out, visited, with_result
 from .touring import Tour
 
 pytestmark = [pytest.mark.e2e, pytest.mark.slow]
@@ -30,12 +30,14 @@ def test_every_method_answers(page: Page, tour: Tour, tmp_path: Path) -> None:
     given(page, tour, "#react-file", file)
     open_all(page)
     number(page, "react-steps", 100)
+    number(page, "react-samples", 4)
     choose(page, "#react-method", "InterGen, person to person")
     for _ in range(2):
         cancelled(page, tour, "react-")
     methods = [name for name, _ in react_choices()]
     page.fill("#react-prompt textarea", "They wave.")
     number(page, "react-steps", 4)
+    number(page, "react-samples", 1)
     for name in methods:
         choose(page, "#react-method", name)
         made(page, tour, "react-", times=1)
@@ -51,7 +53,8 @@ def test_every_method_answers(page: Page, tour: Tour, tmp_path: Path) -> None:
 
 
 def test_whatever_else_the_tab_offers(page: Page, tour: Tour, character: Path) -> None:
-    pressed(page, tour, "#react-readouts summary")
+    open_all(page)
+    read_out(page, tour, "react-")
     with_result(page, tour, "react-", character)
 
     choose(page, "#react-method", react_choices()[0][0])
