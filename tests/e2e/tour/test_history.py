@@ -12,8 +12,9 @@ from .touring import SLOW, Tour
 
 pytestmark = [pytest.mark.e2e, pytest.mark.slow]
 
-ELSEWHERE = ("^History / study", "history-import / Clear")
-"""The panel of a study, and a button that is there only until a file is read: the field empties itself."""
+ELSEWHERE = ("^History / study", "history-import / Clear", "history-publish / ")
+"""The panel of a study, a button that is there only until a file is read (the field empties itself), and public pages,
+which test_public_pages makes and ends."""
 CARD = ".pdn-card >> nth={}"
 
 
