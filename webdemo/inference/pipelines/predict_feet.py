@@ -48,6 +48,7 @@ def with_planted_feet(past: Array, future: Array, fps: float) -> Array:
             np.concatenate([held, after]),
             np.concatenate([np.repeat(stood[None], len(after), axis=0), contacts]),
             blend=_BLEND,
+            held=np.arange(2 * len(after)) < len(after),
         )
         planted = whole[len(after) :]
         if _step(before[-1], planted[0]) <= max(_step(before[-1], after[0]), _largest_step(before)):
