@@ -21,7 +21,7 @@ from .public_html import FILES, SHARE_FOLDER, Place, gallery_html, payload_of, p
 
 ROOT = "pas-de-deux/"
 """Before the names of the modules, so that they resolve by the page's map alone."""
-_IMPORT = re.compile(r"""(\bfrom\s*|\bimport\s*\(?\s*)(["'])(\.{1,2}/[^"']+)\2""")
+_IMPORT = re.compile(r"""(\bfrom\s*+|\bimport\s*+\(?\s*+)(["'])(\.{1,2}/[^"']+)\2""")
 _SCRIPTS = '<script src="@files@bodies.js"></script>\n<script src="@files@offline.js"></script>'
 _PLAIN = ("plotly.min.js", "share/share.css", "player/player.css")
 _PLACE = Place(files="files/", scripts=_SCRIPTS)
