@@ -199,5 +199,5 @@ def test_an_error_does_not_say_where_the_files_are(
     monkeypatch.setattr(formats, "write", full)
     said = events_of(local, "generate", ["They walk to the end of the road.", *FIELDS[1:]])
     assert "event: error" in said
-    assert re.search(r"road-seed0-[0-9a-f]{4}\.npz could not be written because the disk is full", said)
+    assert re.search(r"road-seed0-[0-9a-f]{4}\.\w+ could not be written because the disk is full", said)
     assert "/" not in said.partition("data: ")[2]
