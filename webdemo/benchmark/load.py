@@ -288,7 +288,7 @@ def _generation(dice: random.Random, steps: int) -> Job:
         prompt=dice.choice(PROMPTS), seconds=dice.choice((2.0, 4.0, 5.0)), seed=dice.randrange(2**32),
         samples=dice.choice((1, 1, 1, 2)), steps=dice.choice((max(steps // 2, 1), steps)),
     )  # fmt: skip
-    data = (
+    run = (
         r.prompt,
         r.seconds,
         r.seed,
@@ -300,7 +300,7 @@ def _generation(dice: random.Random, steps: int) -> Job:
         r.model,
         r.tries,
     )
-    return Job("generate", data, json.loads(json.dumps(r.to_dict())), units(r))
+    return Job("generate", run, json.loads(json.dumps(r.to_dict())), units(r))
 
 
 def _reaction(dice: random.Random, steps: int) -> Job:
@@ -323,13 +323,14 @@ def _reaction(dice: random.Random, steps: int) -> Job:
         False,
         False,
         "",
+        0,
     )
     return Job("react", data, {"kind": "react", "seed": seed, "steps": steps}, seconds * steps + 10)
 
 
 def _prediction(dice: random.Random, steps: int) -> Job:
     seconds = dice.choice((0.5, 1.0, 1.5))
-    data = (None, 1.5, seconds, "motion-mlp", "")
+    data = (None, 1.5, seconds, "motion-mlp", "", 0)
     return Job("predict", data, {"kind": "predict", "seconds": seconds}, seconds + 10)
 
 
@@ -347,6 +348,8 @@ def _sheet(dice: random.Random, steps: int) -> Job:
         360,
         NOBODY,
         "",
+        0,
+        0,
     )
     return Job(SHEET, data, {}, 1.0)
 
