@@ -289,17 +289,8 @@ def _generation(dice: random.Random, steps: int) -> Job:
         samples=dice.choice((1, 1, 1, 2)), steps=dice.choice((max(steps // 2, 1), steps)),
     )  # fmt: skip
     run = (
-        r.prompt,
-        r.seconds,
-        r.seed,
-        r.samples,
-        r.guidance,
-        r.steps,
-        r.damping,
-        r.sampler,
-        r.model,
-        r.tries,
-    )
+        r.prompt, r.seconds, r.seed, r.samples, r.guidance, r.steps, r.damping, r.sampler, r.model, r.tries
+    )  # fmt: skip
     return Job("generate", run, json.loads(json.dumps(r.to_dict())), units(r))
 
 

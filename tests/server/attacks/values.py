@@ -53,7 +53,7 @@ def event_data(component: Any, text: str) -> Iterator[Any]:
 
 
 def _filled(schema: dict[str, Any], known: dict[str, Any], text: str) -> Any:
-    """A value of a JSON schema; raises NotImplementedError for what it does not know, so that it is added here."""
+    """A value of a JSON schema; raises TypeError for what it does not know, so that it is added here."""
     match schema:
         case {"$ref": str(name)}:
             return _filled(known[name.rsplit("/", 1)[1]], known, text)
@@ -74,4 +74,4 @@ def _filled(schema: dict[str, Any], known: dict[str, Any], text: str) -> Any:
             return [_filled(items, known, text)]
         case {"type": "object", "properties": fields}:
             return {name: _filled(field, known, text) for name, field in fields.items()}
-    raise NotImplementedError(schema)
+    raise TypeError(f"No value is known for {schema}: add a case.")
