@@ -6,6 +6,7 @@ beginning of the pattern, is repeated up to the longest text that the pattern ma
 
 from __future__ import annotations
 
+import functools
 import re
 import signal
 import time
@@ -15,7 +16,9 @@ from types import FrameType
 from typing import Any
 
 SLOWEST = 0.05
-"""Seconds of processor time that a pattern may take on its longest text."""
+"""Seconds of processor time that a pattern may take on its longest text, on a machine of the usual pace."""
+_YARDSTICK = (re.compile(r"[a-z]{80}!"), "a" * 200_000, 0.02)
+"""A pattern, a text and the seconds that the two take at the usual pace."""
 _GIVES_UP = 0.5
 """Seconds of processor time after which a match is stopped."""
 _MOST = 40
@@ -47,9 +50,16 @@ def attacks(pattern: re.Pattern[Any], longest: int) -> Iterator[str]:
 def slow(pattern: re.Pattern[Any], longest: int) -> str | None:
     """The attack on which a pattern takes longer than :data:`SLOWEST`, in a few words; None if there is none."""
     for text in attacks(pattern, longest):
-        if all(seconds(pattern, text) > SLOWEST for _ in range(2)):  # not for another reason, once
+        if all(seconds(pattern, text) > SLOWEST * pace() for _ in range(2)):  # not for another reason, once
             return f"{text[:80]!r} … {text[-12:]!r} ({len(text)} characters)"
     return None
+
+
+@functools.cache
+def pace() -> float:
+    """How many times as long as usual this machine takes to match a pattern, and at least 1."""
+    pattern, text, usual = _YARDSTICK
+    return max(1.0, min(seconds(pattern, text) for _ in range(5)) / usual)
 
 
 def seconds(pattern: re.Pattern[Any], text: str) -> float:

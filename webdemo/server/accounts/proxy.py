@@ -17,7 +17,7 @@ from webdemo.server.settings import Settings
 
 PEER = "pasdedeux.peer"
 """Key of a request's scope: the address that its connection came from."""
-NAME = re.compile(r"[a-z0-9][a-z0-9._@+-]{0,79}\Z")
+NAME = re.compile(r"\A[a-z0-9][a-z0-9._@+-]{0,79}\Z")
 """Names of people who sign in elsewhere, in lower case: also addresses of mail."""
 _NOT_BY_PROXY = "This lab is reached through its proxy, where you sign in: open its usual address."
 _BAD_NAME = "The proxy's name for you cannot be used here: tell the person who runs this server."

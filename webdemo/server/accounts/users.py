@@ -22,7 +22,7 @@ from webdemo.server.store.people import People
 
 from .throttle import Throttle
 
-NAME = re.compile(r"[a-z0-9][a-z0-9._-]{0,39}\Z")
+NAME = re.compile(r"\A[a-z0-9][a-z0-9._-]{0,39}\Z")
 SHORTEST = 8
 """Characters of a password at least."""
 LONGEST = 256

@@ -12,7 +12,7 @@ from gradio.state_holder import SessionState, StateHolder
 
 CALLS = 64
 """States kept of single API calls. No client returns to one, and they must not displace those of pages."""
-_CALL = re.compile(r"[0-9a-f]{32}\Z")
+_CALL = re.compile(r"\A[0-9a-f]{32}\Z")
 """Gradio's session name of a call outside any session."""
 
 

@@ -40,7 +40,7 @@ UNDO_SECONDS = 600.0
 _TRUTH = "truth.npz"
 """What really followed the past of a prediction."""
 _PREDICTION = ("past_frames", "error", "speed", "true_speed")
-_KEY = re.compile(r"[A-Za-z0-9_-]{16,64}\Z")
+_KEY = re.compile(r"\A[A-Za-z0-9_-]{16,64}\Z")
 _MISSING = "There is no such run, or its link has expired: ask the person who sent it for a new one."
 
 

@@ -28,7 +28,7 @@ MOST_PAGES = 200
 MOST_EXPORTED = 500
 """Results in one folder of pages."""
 LONGEST_TITLE = 200
-_KEY = re.compile(r"[A-Za-z0-9_-]{16,64}\Z")
+_KEY = re.compile(r"\A[A-Za-z0-9_-]{16,64}\Z")
 _ENDED = "There is no such page, or it has ended: ask the person who sent it to you."
 _OFF = "This lab makes no public pages: the person who runs it can set PASDEDEUX_PUBLISH_DAYS."
 
