@@ -20,7 +20,7 @@ SLOW = 240_000
 
 
 @pytest.fixture
-def filming(chromium, lab: str, tmp_path: Path) -> Iterator[Page]:
+def filming(chromium, lab: str, tmp_path: Path, expected_errors: list[str]) -> Iterator[Page]:
     """The React tab in a browser whose webcam shows the film over and over."""
     flags = [
         "--use-fake-ui-for-media-stream",
@@ -37,7 +37,7 @@ def filming(chromium, lab: str, tmp_path: Path) -> Iterator[Page]:
     page.click("#react-camera .pdcam-open")
     yield page
     browser.close()
-    tabs.check()
+    tabs.check(expected_errors)
 
 
 def as_mjpeg(film: Path, path: Path) -> Path:

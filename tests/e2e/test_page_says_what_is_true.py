@@ -96,6 +96,7 @@ def test_controls_that_differ_from_what_is_shown_say_so(page: Page, server: Simp
         assert button and panel and button["height"] < 30
         assert button["x"] + button["width"] <= panel["x"] + panel["width"] + 1, width
     page.set_viewport_size({"width": 1280, "height": 800})
+    unfold(page, "#advanced")
     set_number(page, "#steps", "12")
     expect(folded).to_contain_text("Guidance 4.3, 12 steps, damping 0.7")
     expect(page.locator("#pace input:checked")).to_have_count(0)

@@ -45,7 +45,10 @@ def twice(action: Callable[[], object]) -> None:
 def cancelled(page: Page, tour: Tour, prefix: str = "") -> None:
     """Starts a long run and cancels it."""
     page.click(f"#{prefix}generate:enabled")
-    page.click(f"#{prefix}cancel:enabled")
+    cancel = page.locator(f"#{prefix}cancel:enabled").locator("visible=true")
+    cancel.dispatch_event(
+        "click"
+    )  # at once: a click waits until the page stands still, and the run may end before
     expect(page.locator(f"#{prefix}status .pd-warning")).to_contain_text("Cancelled", timeout=SLOW)
     tour.settle(page)
 
