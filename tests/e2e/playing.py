@@ -44,8 +44,11 @@ def settled_box(locator) -> dict[str, float]:
     raise AssertionError("It does not come to rest.")
 
 
-def until(page, expression: str, seconds: float = 60) -> None:
-    page.wait_for_function(expression, timeout=1000 * seconds)
+def until(page, expression: str, seconds: float = 120) -> None:
+    """Waits until an expression is true; it may speak of what the page has not made yet."""
+    page.wait_for_function(
+        f"() => {{ try {{ return {expression}; }} catch {{ return false; }} }}", timeout=1000 * seconds
+    )
 
 
 def pause(page) -> None:

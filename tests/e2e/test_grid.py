@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 from playwright.sync_api import Page, expect
 
-from .playing import choose, stage_pixels, unfold
+from .playing import choose, stage_pixels, unfold, until
 from .serving import live
 
 pytestmark = pytest.mark.e2e
@@ -47,14 +47,14 @@ def test_nine_results_share_one_context_and_one_opens_large(
     sweep(page, "across", "Seeds", "1-500")
     page.click("#grid-make")
     expect(page.locator("#status .pd-error")).to_contain_text("A grid has 1 to 9 cells", timeout=SLOW)
-    page.wait_for_function(f"{PLAYER}.scene.mode === 'fast'")
+    until(page, f"{PLAYER}.scene.mode === 'fast'")
     before = page.evaluate("window.contexts")
 
     sweep(page, "across", "Seeds", "1-3")
     sweep(page, "down", "Damping", "0, 0.4, 0.7")
     page.click("#grid-make")
     expect(page.locator("#status .pd-done")).to_contain_text("9 results done", timeout=SLOW)
-    page.wait_for_function(f"{PLAYER}.grid.cells.length === 9 && window.__pasdedeux?.frame > 0")
+    until(page, f"{PLAYER}.grid.cells.length === 9 && window.__pasdedeux?.frame > 0")
     assert page.evaluate("window.contexts") == before, "a cell has a context of its own"
     expect(page.locator("#player .pdd-head:not(:empty)")).to_have_text(
         ["seed 1", "seed 2", "seed 3", "damping 0", "damping 0.4", "damping 0.7"]
@@ -65,7 +65,7 @@ def test_nine_results_share_one_context_and_one_opens_large(
     )
     page.evaluate(f"{PLAYER}.act('play')")
     page.wait_for_function("window.__pasdedeux?.loops === 0")
-    page.wait_for_function(f"{PLAYER}.clothes.bodies")
+    until(page, f"{PLAYER}.clothes.bodies")
     pixels = stage_pixels(page)
     rows = np.array_split(pixels, 3)
     cells = [cell for row in rows for cell in np.array_split(row, 3, axis=1)]
@@ -77,11 +77,11 @@ def test_nine_results_share_one_context_and_one_opens_large(
     box = page.locator("#player .pdd-cell").nth(4).bounding_box()
     assert box
     page.mouse.click(box["x"] + 30, box["y"] + 30)
-    page.wait_for_function(f"{PLAYER}.focus === 4")
+    until(page, f"{PLAYER}.focus === 4")
     expect(page.locator("#player .pdd-caption").first).to_have_text("damping 0.4 · seed 2")
     expect(page.locator("#player .pdd-strip")).to_be_visible()
     page.click("#player .pdd-back")
-    page.wait_for_function(f"{PLAYER}.focus === null && {PLAYER}.grid.cells.length === 9")
+    until(page, f"{PLAYER}.focus === null && {PLAYER}.grid.cells.length === 9")
     unfold(page, "#downloads")
     expect(page.locator("#download-csv")).to_be_enabled(timeout=SLOW)
     with page.expect_download(timeout=SLOW) as download:

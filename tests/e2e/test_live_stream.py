@@ -8,7 +8,7 @@ from collections.abc import Callable
 import pytest
 from playwright.sync_api import Page, expect
 
-from .playing import unfold
+from .playing import unfold, until
 
 pytestmark = [pytest.mark.e2e, pytest.mark.slow]
 
@@ -58,7 +58,7 @@ def keep_it(page: Page) -> None:
     expect(page.locator("#react-readouts")).to_contain_text("Foot skate")
     unfold(page, "#react-downloads")
     expect(page.locator("#react-download-npz")).to_be_enabled(timeout=SLOW)
-    page.wait_for_function("!window.__pasdedeux.player.data.id.startsWith('stream-')", timeout=SLOW)
+    until(page, "!window.__pasdedeux.player.data.id.startsWith('stream-')", seconds=SLOW / 1000)
     assert page.evaluate("window.__pasdedeux.player.sample.frames") == 150
     assert page.evaluate("window.__pasdedeux.positions.length") == 2
     assert len(before) == 2 and frame is not None
