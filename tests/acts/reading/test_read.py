@@ -278,3 +278,11 @@ def test_a_word_that_was_read_once_is_still_misspelt_the_next_time() -> None:
 )
 def test_what_goes_on_when_the_text_begins(text: str, already: list[bool]) -> None:
     assert [act.already for act in read(text).acts] == already
+
+
+def test_an_act_that_the_parser_takes_for_a_noun_behind_to_is_read() -> None:
+    """Spoken captions such as these have been taken as "to <noun>", which named no order and broke the reading."""
+    plan = read(
+        "First one player offers to hug the other player, then the second player says no with their head."
+    )
+    assert [(act.act, act.agents) for act in plan.acts] == [("hug", ("a",)), ("shake-head", ("b",))]
