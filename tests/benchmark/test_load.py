@@ -57,7 +57,8 @@ def test_a_server_that_ends_is_one_sentence(tmp_path: Path, monkeypatch: pytest.
 
 
 def test_shares_are_compared_by_work() -> None:
-    tally = Tally(done=3, waits={0: [1.0, 3.0], 1: [6.0]}, memory=[5.0, 9.0, 7.0, 6.0])
+    waits = {0: {"react": [(1.0, 1.0), (9.0, 4.0)]}, 1: {"generate": [(12.0, 2.0)], "render": [(90.0, 1.0)]}}
+    tally = Tally(done=3, kinds=waits, memory=[5.0, 9.0, 7.0, 6.0])
     figures = tally.figures()
     assert figures["longest_wait_over_fair_share"] == 1.5
     assert (figures["memory_first_quarter_mb"], figures["memory_last_quarter_mb"]) == (5.0, 6.0)
@@ -66,17 +67,24 @@ def test_shares_are_compared_by_work() -> None:
 
 def test_what_attackers_leave_is_compared_with_a_fair_share() -> None:
     """Two attackers beside two people are entitled to half, so that waits twice as long are fair."""
-    calm = Tally(kinds={0: {"generate": [1.0], "render": [4.0]}, 1: {"generate": [3.0]}})
-    attacked = Tally(kinds={0: {"generate": [4.0]}, 1: {"generate": [8.0], "render": [40.0]}})
+    calm = Tally(kinds={0: {"generate": [(1.0, 1.0)], "render": [(4.0, 1.0)]}, 1: {"generate": [(3.0, 1.0)]}})
+    attacked = Tally(
+        kinds={
+            0: {"generate": [(9.0, 1.0), (15.0, 5.0)]},
+            1: {"generate": [(8.0, 1.0)], "render": [(40.0, 1.0)]},
+        }
+    )
     calm.live = Person(delays=[0.2, 0.1, 0.3], frames=60, seconds=2.0)
     attacked.live = Person(delays=[1.2], frames=30, seconds=2.0)
     figures = attacked_figures(calm, attacked, 2)
-    assert figures["attacked_waits_over_fair_share"] == [1.0, 3.5]
-    assert figures["attacked_longest_wait_over_fair_share"] == 3.5
+    assert figures["attacked_waits_over_fair_share"] == [1.0, 4.0]
+    assert figures["attacked_longest_wait_over_fair_share"] == 4.0
     assert figures["attacked_live_wait_over_fair_share"] == pytest.approx(2.0)
     assert figures["attacked_live_frames_over_fair_share"] == 1.0
     calm.live = Person(refused="The server is too busy.")
-    assert "attacked_live_wait_over_fair_share" not in attacked_figures(calm, attacked, 2)
+    figures = attacked_figures(calm, attacked, 2)
+    assert "attacked_live_wait_over_fair_share" not in figures
+    assert figures["live_refused"] == ["The server is too busy."]
 
 
 def test_the_command_says_which_goals_are_missed(

@@ -9,7 +9,7 @@ from dataclasses import replace
 
 from webdemo.inference.requests import GenerateRequest
 
-from .load import PROMPTS
+from .jobs import PROMPTS
 
 BATCHED_GOAL = 1.8
 """Throughput of eight requests of four seconds that share passes, over that of the same in turn."""

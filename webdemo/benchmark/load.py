@@ -13,7 +13,7 @@ import statistics
 import subprocess
 import tempfile
 import time
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
@@ -21,22 +21,15 @@ from typing import Any
 import httpx
 
 from motion import InputError
-from webdemo.inference.requests import GenerateRequest
 from webdemo.server.accounts.visitors import VISITOR_COOKIE, new_token
-from webdemo.server.queue.wait_estimate import units
 
 from .attackers import ATTACKERS, attack
+from .jobs import KINDS, NOBODY, SHEET, Job
 from .live import Person, stream
 from .served import ROOT, errors_logged, ready, serving
 
 PROBE_EVERY = 2.0
 """Seconds between two looks at how quickly the page answers."""
-PROMPTS = (
-    "Two people walk up to each other and shake hands.",
-    "One person waves and the other waves back.",
-    "Two people dance together.",
-    "One person punches and the other steps back.",
-)
 CLIP = ROOT / "static" / "examples" / "shake-hands.npz"
 """The file that is uploaded for reactions and predictions."""
 GOALS: dict[str, tuple[float, float]] = {
@@ -59,9 +52,6 @@ GOALS: dict[str, tuple[float, float]] = {
 REST_SECONDS = 10.0
 """Seconds before memory is read; the server frees the memory of ended runs every few seconds."""
 _API = "gradio_api"
-SHEET = "render"
-NOBODY = object()
-"""Stands for no character, since None stands for the uploaded file."""
 
 
 @dataclass
@@ -69,8 +59,7 @@ class Tally:
     """Everything that a run of the load test recorded.
 
     Attributes:
-        waits: seconds a unit of work that each person waited for each run.
-        kinds: the same for runs and other events, by person and endpoint.
+        kinds: (seconds waited, units of work) of each job, by person and endpoint.
         live: the stream of one more person.
         latencies: seconds from asking to the result.
         page: seconds that the page took to answer, each time it was asked.
@@ -85,8 +74,7 @@ class Tally:
     latencies: list[float] = field(default_factory=list)
     page: list[float] = field(default_factory=list)
     memory: list[float] = field(default_factory=list)
-    waits: dict[int, list[float]] = field(default_factory=dict)
-    kinds: dict[int, dict[str, list[float]]] = field(default_factory=dict)
+    kinds: dict[int, dict[str, list[tuple[float, float]]]] = field(default_factory=dict)
     live: Person | None = None
     work: float = 0.0
 
@@ -94,15 +82,18 @@ class Tally:
         """Records a job that is done."""
         self.done += 1
         self.latencies.append(took)
-        self.kinds.setdefault(person, {}).setdefault(job.endpoint, []).append(took / job.work)
+        self.kinds.setdefault(person, {}).setdefault(job.endpoint, []).append((took, job.work))
         if job.endpoint != SHEET:
-            self.waits.setdefault(person, []).append(took / job.work)
             self.work += job.work
 
     def figures(self) -> dict[str, Any]:
         """The tally as plain numbers."""
-        means = {person: statistics.mean(waits) for person, waits in self.waits.items() if waits}
-        share = statistics.mean(means.values()) if means else float("nan")
+        runs = [
+            [wait for endpoint, waits in kinds.items() if endpoint != SHEET for wait in waits]
+            for kinds in self.kinds.values()
+        ]
+        waited = [seconds_a_unit(waits) for waits in runs if waits]
+        share = statistics.mean(waited) if waited else float("nan")
         quarter = max(len(self.memory) // 4, 1)
         return {
             "runs_done": self.done,
@@ -112,7 +103,7 @@ class Tally:
             "first_errors": self.errors[:3],
             "latency_median_seconds": statistics.median(self.latencies) if self.latencies else None,
             "latency_worst_seconds": max(self.latencies, default=None),
-            "longest_wait_over_fair_share": max(means.values(), default=float("nan")) / share,
+            "longest_wait_over_fair_share": max(waited, default=float("nan")) / share,
             "people_served": len(self.kinds),
             "page_median_seconds": statistics.median(self.page) if self.page else None,
             "page_worst_seconds": max(self.page, default=None),
@@ -127,27 +118,32 @@ class Tally:
         }
 
 
+def seconds_a_unit(waits: Sequence[tuple[float, float]]) -> float:
+    """Seconds that somebody waited for a unit of work, over all their (seconds, units)."""
+    return sum(took for took, _ in waits) / sum(work for _, work in waits)
+
+
 def attacked_figures(calm: Tally, attacked: Tally, people: int) -> dict[str, Any]:
     """Figures of what people got while they were attacked, over their fair share.
 
     An attacker is entitled to as much as anybody else, so a fair share is what a person got before, divided among as
-    many people more. A live stream is one of two then.
+    many people more. A live stream is one of two then. Waiting is weighed by work: a short run waits for the same turn
+    as a long one, and alone says little of its owner's share.
     """
-    usual: dict[str, list[float]] = {}
+    usual: dict[str, list[tuple[float, float]]] = {}
     for kinds in calm.kinds.values():
         for endpoint, waits in kinds.items():
             usual.setdefault(endpoint, []).extend(waits)
     more = (people + ATTACKERS) / people
-    ratios = {
-        person: statistics.mean(
-            wait / statistics.mean(usual[endpoint]) / more
-            for endpoint, waits in kinds.items()
-            if endpoint in usual
-            for wait in waits
+    ratios: dict[int, float] = {}
+    for person, kinds in attacked.kinds.items():
+        known = {endpoint: waits for endpoint, waits in kinds.items() if endpoint in usual}
+        waited = sum(took for waits in known.values() for took, _ in waits)
+        fair = sum(
+            work * seconds_a_unit(usual[endpoint]) for endpoint, waits in known.items() for _, work in waits
         )
-        for person, kinds in attacked.kinds.items()
-        if kinds.keys() & usual.keys()
-    }
+        if known:
+            ratios[person] = waited / fair / more
     figures: dict[str, Any] = {
         f"attacked_{name}": value
         for name, value in attacked.figures().items()
@@ -156,14 +152,15 @@ def attacked_figures(calm: Tally, attacked: Tally, people: int) -> dict[str, Any
     figures["attacked_waits_over_fair_share"] = [round(ratio, 2) for _, ratio in sorted(ratios.items())]
     figures["attacked_longest_wait_over_fair_share"] = max(ratios.values(), default=float("nan"))
     before, after = calm.live, attacked.live
+    figures["live_refused"] = [person.refused for person in (before, after) if person and person.refused]
     if before and after and before.delays and after.delays:
         delays = [statistics.median(person.delays) for person in (before, after)]
-        waits = [sum(person.delays) / person.frames for person in (before, after)]  # seconds a frame
+        a_frame = [sum(person.delays) / person.frames for person in (before, after)]  # seconds
         frames = [person.frames / person.seconds for person in (before, after)]
         figures |= {
             "live_delay_median_ms": 1000 * delays[0],
             "attacked_live_delay_median_ms": 1000 * delays[1],
-            "attacked_live_wait_over_fair_share": waits[1] / (2 * waits[0]),
+            "attacked_live_wait_over_fair_share": a_frame[1] / (2 * a_frame[0]),
             "live_frames_a_second": frames[0],
             "attacked_live_frames_a_second": frames[1],
             "attacked_live_frames_over_fair_share": 2 * frames[1] / frames[0],
@@ -264,89 +261,6 @@ async def _probe(client: httpx.AsyncClient, tally: Tally) -> None:
         tally.page.append(time.monotonic() - began)
         tally.memory.append(await _memory(client))
         await asyncio.sleep(PROBE_EVERY)
-
-
-@dataclass(frozen=True)
-class Job:
-    """A request that a simulated person sends.
-
-    Attributes:
-        endpoint: name of the endpoint.
-        data: its arguments; None stands for an uploaded :data:`CLIP`.
-        asked: fields of the request that the result's manifest must hold.
-        work: units of work, see :mod:`webdemo.server.queue.wait_estimate`.
-    """
-
-    endpoint: str
-    data: tuple[Any, ...]
-    asked: dict[str, Any]
-    work: float
-
-
-def _generation(dice: random.Random, steps: int) -> Job:
-    r = GenerateRequest(
-        prompt=dice.choice(PROMPTS), seconds=dice.choice((2.0, 4.0, 5.0)), seed=dice.randrange(2**32),
-        samples=dice.choice((1, 1, 1, 2)), steps=dice.choice((max(steps // 2, 1), steps)),
-    )  # fmt: skip
-    run = (
-        r.prompt, r.seconds, r.seed, r.samples, r.guidance, r.steps, r.damping, r.sampler, r.model, r.tries
-    )  # fmt: skip
-    return Job("generate", run, json.loads(json.dumps(r.to_dict())), units(r))
-
-
-def _reaction(dice: random.Random, steps: int) -> Job:
-    seed, seconds = dice.randrange(2**32), 2.0
-    data = (
-        None,
-        "",
-        "a",
-        0,
-        seconds,
-        "a",
-        seed,
-        1,
-        3.0,
-        steps,
-        0.7,
-        "ddim",
-        "intergen",
-        "offline",
-        False,
-        False,
-        "",
-        0,
-    )
-    return Job("react", data, {"kind": "react", "seed": seed, "steps": steps}, seconds * steps + 10)
-
-
-def _prediction(dice: random.Random, steps: int) -> Job:
-    seconds = dice.choice((0.5, 1.0, 1.5))
-    data = (None, 1.5, seconds, "motion-mlp", "", 0)
-    return Job("predict", data, {"kind": "predict", "seconds": seconds}, seconds + 10)
-
-
-def _sheet(dice: random.Random, steps: int) -> Job:
-    """A contact sheet, which waits in the queue of events."""
-    data = (
-        None,
-        "png",
-        "bodies",
-        "light",
-        "threequarter",
-        False,
-        24,
-        dice.choice((480, 640)),
-        360,
-        NOBODY,
-        "",
-        0,
-        0,
-    )
-    return Job(SHEET, data, {}, 1.0)
-
-
-KINDS = (_generation, _generation, _generation, _generation, _reaction, _sheet, _prediction)
-"""Jobs are drawn from these, so a kind that stands here twice is twice as frequent; a person's first is fixed."""
 
 
 async def _person(

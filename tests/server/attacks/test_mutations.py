@@ -120,6 +120,7 @@ def mutated_request(dice: random.Random) -> tuple[str, str, dict[str, Any]]:
     return method, path, {"content": content if method not in ("GET", "HEAD") else None, "headers": headers}
 
 
+@pytest.mark.timeout(300 + COUNT)  # a request takes 0.1 s on an idle machine
 def test_requests_end_in_no_error_of_the_programs(target: Target) -> None:
     dice = random.Random(COUNT)
     begun = target.memory()
