@@ -1,19 +1,28 @@
-"""The colour of each person in files and films: those of the player's light theme (``palette.js``)."""
+"""The colours of people in files, films and on the page, which ``static/player/colours.js`` holds for all of them."""
 
 from __future__ import annotations
 
+import json
 from collections.abc import Sequence
-from typing import TypeAlias
+from functools import cache
+from pathlib import Path
+from typing import Any, TypeAlias
 
 Colour: TypeAlias = tuple[float, float, float]
 
-BODIES = (
-    {"top": "#2a6bdc", "trousers": "#1f3c7d", "shoes": "#16233f", "skin": "#dfd3cb", "hair": "#28375a",
-     "eyes": "#10141d"},
-    {"top": "#e87a1c", "trousers": "#7d421a", "shoes": "#3f2413", "skin": "#e6d3c3", "hair": "#5d3a22",
-     "eyes": "#140f0c"},
-)  # fmt: skip
-"""Colours (sRGB) of the zones of :class:`motion.body.Body`, person a's and b's."""
+FILE = Path(__file__).resolve().parents[1] / "static" / "player" / "colours.js"
+
+
+@cache
+def themes() -> dict[str, dict[str, Any]]:
+    """What the file exports, which is JSON: a theme's colours (``"#rrggbb"``) and lamps under its name."""
+    _, data = FILE.read_text(encoding="utf-8").split("export default", 1)
+    found: dict[str, dict[str, Any]] = json.loads(data.strip().removesuffix(";"))
+    return found
+
+
+BODIES: tuple[dict[str, str], dict[str, str]] = tuple(themes()["light"]["bodies"])
+"""Colours (sRGB) of the zones of :class:`motion.body.Body` in the light theme, person a's and b's."""
 
 
 def rgb(colour: str) -> Colour:

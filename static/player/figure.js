@@ -1,6 +1,6 @@
 // From a pose to the lines that the scene draws: bones and joints, trails, ghosts, the grid on the floor.
 
-import { mix } from "./palette.js";
+import { floorAt, mix, smooth } from "./palette.js";
 import { FIELD_OF_VIEW } from "./orbit.js";
 
 const GAP = [NaN, NaN, NaN];
@@ -119,8 +119,8 @@ export function floor(center, radius, theme) {
   const out = { points: [], colors: [], sizes: [] };
   const [cx, cy] = center.map(Math.round);
   const fade = (x, y, strong) => {
-    const t = Math.min(Math.hypot(x - cx, y - cy) / radius, 1);
-    return mix(strong ? theme.gridStrong : theme.grid, theme.background, t * t * (3 - 2 * t));
+    const away = Math.hypot(x - cx, y - cy);
+    return mix(strong ? theme.gridStrong : theme.grid, floorAt(theme, away), smooth(Math.min(away / radius, 1)));
   };
   const n = Math.ceil(radius);
   const line = (at, strong) => {

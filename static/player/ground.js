@@ -3,11 +3,11 @@
 // Floor and sky are one mesh of rings about the point that the camera follows. The shadow is a small picture
 // that its texture multiplies onto the floor; beyond the picture's edge nothing is shaded.
 
-import { mix } from "./palette.js";
+import { floorAt, skyAt } from "./palette.js";
 
 const SIDES = 40;
-const RADII = [0, 0.6, 1.3, 2.1, 3, 4.2, 5.8, 8, 11, 15, 21, 30, 45];
-const HEIGHTS = [0.35, 0.9, 2, 4, 8, 16, 30]; // of the sky, at the last radius
+const RADII = [0, 0.6, 1.3, 2.1, 3, 4.2, 5.8, 8, 10, 12, 14, 16, 18, 30, 45];
+const HEIGHTS = [0.7, 2, 4, 6, 8.5, 11.5, 15, 19, 24, 30]; // of the sky, at the last radius; the first is a soft edge
 const SIZE = 192; // pixels of the shadow's picture, each way
 const LEAST_SPAN = 5; // metres across it
 const BELOW = 0.004; // metres by which the floor lies under the lines drawn on it
@@ -41,8 +41,7 @@ export class Ground {
     [...RADII, ...HEIGHTS].forEach((value, ring) => {
       const onFloor = ring < RADII.length;
       const [radius, height] = onFloor ? [value, -BELOW] : [far, value];
-      const t = onFloor ? Math.min(radius / 24, 1) : Math.min(Math.atan2(height, far) / 0.55, 1);
-      shades.push(onFloor ? mix(theme.floor, theme.horizon, t * t * (3 - 2 * t)) : mix(theme.horizon, theme.sky, Math.sqrt(t)));
+      shades.push(onFloor ? floorAt(theme, radius) : skyAt(theme, Math.atan2(height, far)));
       points.push([radius, height]);
     });
     this.corners.forEach(([ring, side], i) => {

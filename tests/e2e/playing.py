@@ -66,10 +66,9 @@ def stage_pixels(page) -> np.ndarray:
 
 
 def has_color(pixels: np.ndarray, *, blue: bool) -> bool:
-    """Whether some thousand pixels are clearly of A's blue or B's orange."""
-    red, _, blue_channel = pixels[..., 0], pixels[..., 1], pixels[..., 2]
-    strength = blue_channel - red if blue else red - blue_channel
-    return int((strength > 80).sum()) > 1000
+    """Whether some thousand pixels are clearly of A's blue or of B's orange, which is stronger than skin."""
+    warmth = pixels[..., 0] - pixels[..., 2]
+    return int((warmth < -80 if blue else warmth > 130).sum()) > 1000
 
 
 def drag(page, dx: float, dy: float, steps: int = 12) -> None:

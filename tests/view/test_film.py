@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-import re
+import json
+import subprocess
 from pathlib import Path
 
 import av
@@ -17,6 +18,7 @@ from motion.skeleton import SBU15
 from motion.transforms import turn
 from tests.motion.bodies import marching
 from tests.motion.formats.characters import glb_character
+from tests.static.test_node import newest_node
 from webdemo.view import film
 from webdemo.view.camera import VIEWS, Camera, cameras
 from webdemo.view.sheet import chosen_frames, write_sheet
@@ -35,9 +37,9 @@ def _frames(path: Path) -> list[np.ndarray]:
 
 
 def _look(picture: np.ndarray, red_over_blue: bool) -> float:
-    """The share of pixels that are plainly orange, or plainly blue."""
+    """The share of pixels that are plainly orange, more so than skin, or plainly blue."""
     difference = picture[..., 0].astype(int) - picture[..., 2]
-    return float(((difference if red_over_blue else -difference) > 70).mean())
+    return float((difference > 130 if red_over_blue else difference < -70).mean())
 
 
 @pytest.mark.parametrize("suffix", [".mp4", ".webm"])
@@ -182,14 +184,45 @@ def test_the_camera_sees_right_on_the_right_and_up_above():
 
 
 def test_colours_are_those_of_the_player():
-    text = PALETTE.read_text(encoding="utf-8")
-    written = set(re.findall(r"#[0-9a-f]{6}", text))
-    for theme in THEMES.values():
-        own = [*theme.bodies[0].values(), *theme.bodies[1].values(), theme.floor, theme.horizon, theme.sky,
-               theme.grid, theme.grid_strong, theme.ghost]  # fmt: skip
-        own += [colour for person in (*theme.people, *theme.given) for colour in person]
-        for colour in own:
-            assert "#" + "".join(f"{round(255 * c):02x}" for c in colour) in written
+    """The page's modules turn the one file into the numbers that films are drawn with."""
+    script = f"import {{ THEMES }} from {PALETTE.as_uri()!r}; console.log(JSON.stringify(THEMES));"
+    command = [newest_node(), "--input-type=module", "--eval", script]
+    said = subprocess.run(command, capture_output=True, text=True, check=True, cwd=PALETTE.parent).stdout
+    for name, page in json.loads(said).items():
+        own = THEMES[name]
+        for place in ("sky", "horizon", "floor", "far", "grid", "ghost", "ink", "shade"):
+            assert getattr(own, place) == pytest.approx(page[place]), (name, place)
+        for lamp in ("key", "sky", "ground", "rim", "shine"):
+            assert getattr(own.lamps, lamp) == pytest.approx(page["lamps"][lamp]), (name, lamp)
+        for ours, theirs in ((own.bodies, page["bodies"]), (own.given_bodies, page["givenBodies"])):
+            for one, other in zip(ours, theirs, strict=True):
+                assert {zone: pytest.approx(colour) for zone, colour in one.items()} == other
+        for ours, theirs in ((own.people, page["people"]), (own.given, page["given"])):
+            for one, other in zip(ours, theirs, strict=True):
+                assert list(one) == [pytest.approx(other[side]) for side in ("middle", "left", "right")]
+
+
+@pytest.mark.parametrize("theme", list(THEMES))
+def test_people_have_skin_and_hair_and_clothes_in_two_tones(theme):
+    for person in THEMES[theme].bodies:
+        red, green, blue = person["skin"]
+        assert red > green > blue and red - blue > 0.2, "skin is warm"
+        assert max(person["hair"]) - min(person["hair"]) < 0.45 and person["hair"][0] > person["hair"][2]
+        assert sum(person["trousers"]) < 0.75 * sum(person["top"])
+    a, b = (person["hair"] for person in THEMES[theme].bodies)
+    assert sum(b) > sum(a) + 0.2
+
+
+@pytest.mark.parametrize("theme", list(THEMES))
+def test_floor_and_sky_meet_at_a_horizon(theme):
+    level = Camera(np.array([0.0, 1.0, 0.0]), 0.0, 0.1, 5.0, SMALL)
+    stage = Stage(Pane(DUET), Style(theme=theme, names=False), SMALL)
+    (picture,) = stage.pictures(np.zeros(1), [level])
+    column = picture[:, 2].astype(int)
+    steps = np.abs(np.diff(column, axis=0)).sum(axis=1)
+    colours = THEMES[theme]
+    edge = 255 * np.abs(np.array(colours.horizon) - np.array(colours.far)).sum()
+    assert steps.max() > 0.7 * edge > 3 * np.median(steps)
 
 
 @pytest.mark.parametrize("suffix", [".png", ".svg", ".pdf"])
