@@ -15,7 +15,7 @@ FILE = Path(__file__).resolve().parents[1] / "static" / "player" / "colours.js"
 
 @cache
 def themes() -> dict[str, dict[str, Any]]:
-    """What the file exports, which is JSON: a theme's colours (``"#rrggbb"``) and lamps under its name."""
+    """The JSON that the file exports: each theme's colours (``"#rrggbb"``) and lamps under its name."""
     _, data = FILE.read_text(encoding="utf-8").split("export default", 1)
     found: dict[str, dict[str, Any]] = json.loads(data.strip().removesuffix(";"))
     return found

@@ -1,4 +1,4 @@
-"""What the people of the load test ask for: :data:`KINDS` of jobs, drawn by their own dice."""
+"""The jobs that people of the load test ask for: :data:`KINDS` of them, drawn by their own dice."""
 
 from __future__ import annotations
 
