@@ -12,6 +12,8 @@ from torch import Tensor
 from models.compiled import compile_network
 from models.intergen.compact import CaptionBank, CompactInterGen, load_captions, load_folder
 from models.text import MiniLM
+from motion import Clip, Duet
+from motion.arms import arms_apart
 from webdemo.inference.cancel import CancelToken
 from webdemo.inference.plans import KeptPlan
 from webdemo.inference.requests import GenerateRequest, Progress, ReactRequest, Result
@@ -74,6 +76,8 @@ class InterGenPipeline(TwoPersonPipeline[CompactInterGen]):
             )
         for event in events:
             if isinstance(event, Result):
+                if split is None and request.cleanup:
+                    event = replace(event, duets=tuple(_apart(duet) for duet in event.duets))
                 own = plan.to_dict()
                 said = () if request.plan is not None else understood.notes(request.prompt)
                 kept = {**own, **event.manifest.get("plan", {}), "beats": own["beats"]}
@@ -114,3 +118,8 @@ class InterGenPipeline(TwoPersonPipeline[CompactInterGen]):
         condition, vector = self.condition(request.prompt, None if plan is None else plan.alone)
         (touch,) = self.model.touches(condition)
         return Conditioning(condition, request.guidance, touch, self.notes(request.prompt, vector))
+
+
+def _apart(duet: Duet | Clip) -> Duet | Clip:
+    """A duet whose arms are not in the other's body."""
+    return duet.with_positions(arms_apart(duet.positions)) if isinstance(duet, Duet) else duet

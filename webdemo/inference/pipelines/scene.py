@@ -17,6 +17,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from motion import Duet, InputError
+from motion.arms import arms_apart
 from motion.metrics import compare
 from webdemo.inference import methods
 from webdemo.inference.actor import FPS, ROLES
@@ -214,6 +215,8 @@ def _blank(request: SceneRequest) -> Array:
 
 def _duet(request: SceneRequest, scene: Array) -> Duet:
     if request.motion is None:
+        if request.cleanup and not (request.loop or request.poses):  # these stay as they are
+            scene = arms_apart(scene).astype(np.float32)
         return Duet.from_positions(scene, fps=FPS, roles=NAMES)
     return replace(request.motion.with_positions(scene), manifest=None)
 

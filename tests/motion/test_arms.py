@@ -1,0 +1,73 @@
+"""Arms beside the other's body instead of in it."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from motion import SMPL22
+from motion.arms import arms_apart
+from motion.metrics.naturalness import DEEP, limb_depth
+from motion.transforms import heading_matrix
+
+J = SMPL22.index
+FRAMES = 40
+
+
+def _pair(gap: float) -> np.ndarray:
+    """Two people face to face whose arms are held out straight, ``gap`` metres apart: (2, T, 22, 3)."""
+    rest = SMPL22.rest_positions()
+    rest = rest - rest[:, 1].min() * np.array([0.0, 1.0, 0.0])
+    for side in ("left", "right"):
+        shoulder = rest[J(f"{side}_shoulder")]
+        for joint, reach in ((f"{side}_elbow", 0.26), (f"{side}_wrist", 0.527)):
+            rest[J(joint)] = shoulder + np.array([-0.25 * np.sign(shoulder[0]), -0.1, 0.96]) * reach
+    other = rest @ heading_matrix(np.pi).T + np.array([0.05, 0.0, gap])
+    other[:, 1] -= 0.06  # arms that lie exactly in each other have no way out
+    return np.stack([np.tile(one, (FRAMES, 1, 1)) for one in (rest, other)])
+
+
+def _bones(people: np.ndarray) -> np.ndarray:
+    return np.stack([np.linalg.norm(people[:, :, c] - people[:, :, p], axis=-1) for p, c in SMPL22.bones])
+
+
+def test_arms_leave_the_other_body() -> None:
+    pair = _pair(0.5)
+    before = max(limb_depth(pair[0], pair[1]).max(), limb_depth(pair[1], pair[0]).max())
+    found = arms_apart(pair)
+    after = max(limb_depth(found[0], found[1]).max(), limb_depth(found[1], found[0]).max())
+    assert before > 2 * DEEP
+    assert after < 0.5 * before
+
+
+def test_only_arms_move_and_bones_keep_their_lengths() -> None:
+    pair = _pair(0.5)
+    found = arms_apart(pair)
+    moved = np.abs(found - pair).max(axis=(0, 1, 3)) > 1e-9
+    assert {SMPL22.joint_names[j] for j in np.flatnonzero(moved)} <= {
+        "left_elbow", "right_elbow", "left_wrist", "right_wrist",
+    }  # fmt: skip
+    np.testing.assert_allclose(_bones(found), _bones(pair), atol=2e-3)
+
+
+@pytest.mark.parametrize("gap", [1.2, 3.0])
+def test_people_who_do_not_touch_stay_as_they_are(gap: float) -> None:
+    pair = _pair(gap)
+    np.testing.assert_array_equal(arms_apart(pair), pair)
+
+
+def test_what_may_not_change_stays() -> None:
+    pair = _pair(0.5)
+    free = np.stack([np.zeros(FRAMES), np.ones(FRAMES)])
+    found = arms_apart(pair, free)
+    np.testing.assert_allclose(found[0], pair[0], atol=1e-9)
+    assert np.abs(found[1] - pair[1]).max() > 0.01
+
+
+def test_hands_that_hold_each_other_stay() -> None:
+    pair = _pair(0.95)
+    between = pair[0, 0, J("left_wrist")] - pair[1, 0, J("right_wrist")]
+    pair[1] += between * [1, 1, 0] + [0.0, 0.03, 0.0]
+    found = arms_apart(pair)
+    assert np.abs(found[0, :, J("left_wrist")] - pair[0, :, J("left_wrist")]).max() < 0.003
+    assert np.abs(found[1, :, J("right_wrist")] - pair[1, :, J("right_wrist")]).max() < 0.003
