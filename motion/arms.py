@@ -27,7 +27,7 @@ _NEAR = 1.5
 """Metres between two pelvises beyond which no arm reaches the other."""
 _ROUNDS = 8
 _SMOOTH = 2.0
-"""Frames over which a push is spread (standard deviation)."""
+"""Frames over which a push is spread (standard deviation): pushes that follow the other closely are jolts."""
 _SHARES = ((0.0, 0.6), (0.0, 1.0), (0.35, 1.0), (0.7, 1.0), (1.0, 1.0))
 """Points of an arm: the share of the forearm and of the upper arm at which each lies."""
 _RADII = np.array([0.045, 0.045, 0.038, 0.036, 0.035])
@@ -39,6 +39,8 @@ ARMS = tuple(
     tuple(SMPL22.index(f"{side}_{joint}") for joint in ("shoulder", "elbow", "wrist"))
     for side in ("left", "right")
 )
+_BENDS = np.array([arm[1:] for arm in ARMS])
+"""(side, elbow and wrist) of the joints that are pushed."""
 _THIN = ("ankle", "foot")
 
 
@@ -67,8 +69,9 @@ def _touching(pair: Array, near: NDArray[np.bool_]) -> NDArray[np.bool_]:
     """(T,) frames at which an arm is in the other's body."""
     found = np.zeros(pair.shape[1], dtype=bool)
     at = np.flatnonzero(near)
+    grips = _grips(pair[:, at])
     for person in (0, 1):
-        push = _pushes(pair[person][at], pair[1 - person][at])
+        push = _pushes(pair[person][at], pair[1 - person][at], grips[person])
         found[at] |= np.abs(push).max(axis=(1, 2, 3)) > 0
     return found
 
@@ -83,13 +86,12 @@ def _stretches(marked: NDArray[np.bool_]) -> list[tuple[int, int]]:
 
 def _resolved(pair: Array, share: Array) -> Array:
     """Some frames (2, N, 22, 3) with their arms pushed out."""
-    moved = np.zeros((2, pair.shape[1], 2, 2, 3))  # person, frame, side, elbow and wrist
     result, grips = pair.copy(), _grips(pair)
     for _ in range(_ROUNDS):
-        pushes = np.stack([_pushes(result[p], result[1 - p]) for p in (0, 1)])
+        pushes = np.stack([_pushes(result[p], result[1 - p], grips[p]) for p in (0, 1)])
         if not pushes.any():
             break
-        moved += pushes
+        moved = (result - pair)[:, :, _BENDS] + pushes
         moved = scipy.ndimage.gaussian_filter1d(moved, _SMOOTH, axis=1, mode="nearest")
         for person in (0, 1):
             wanted = share[person][:, None, None, None] * moved[person]
@@ -108,13 +110,13 @@ def _grips(pair: Array) -> Array:
 def _bent(person: Array, moved: Array, grips: Array) -> Array:
     """A person (N, 22, 3) whose elbows and wrists are moved (N, side, 2, 3), on bones as long as before.
 
-    Hands that hold the other's (``grips`` (N, side)) stay where they are.
+    Hands that hold the other's (``grips`` (N, side)) go where they are pushed, and no further to spare their elbows.
     """
     result = person.copy()
     for side, (shoulder, elbow, wrist) in enumerate(ARMS):
         bend = person[:, elbow] + moved[:, side, 0]
         grip = grips[:, side, None]
-        goal = person[:, wrist] + (1 - grip) * moved[:, side, 1]
+        goal = person[:, wrist] + moved[:, side, 1]
         upper = bend - person[:, shoulder]
         length = np.linalg.norm(person[:, elbow] - person[:, shoulder], axis=-1, keepdims=True)
         bend = person[:, shoulder] + upper * length / np.maximum(
@@ -137,10 +139,11 @@ def _body() -> Capsules:
     return body.part([sideless(SMPL22.joint_names[end]) not in _THIN for end in body.ends])
 
 
-def _pushes(own: Array, other: Array) -> Array:
+def _pushes(own: Array, other: Array, grips: Array) -> Array:
     """(N, side, elbow and wrist, 3) metres that take the arms of ``own`` (N, 22, 3) out of ``other``.
 
-    An arm that is in the other's arm goes half of the way: the other's goes the rest.
+    An arm that is in the other's arm goes half of the way: the other's goes the rest. Where its hand holds one of the
+    other's (``grips`` (N, side)) the other's arms do not push it.
     """
     body = _body()
     starts, along = other[:, body.starts], other[:, body.ends] - other[:, body.starts]
@@ -165,6 +168,7 @@ def _pushes(own: Array, other: Array) -> Array:
         depth = np.maximum(_RADII[:, None] + body.radii - soft - distance, 0.0)
         if not depth.any():
             continue
+        depth *= np.where(an_arm, 1 - grips[:, side, None], 1.0)[:, None]
         weights = depth * give
         total = weights.sum(axis=-1)
         way = np.einsum("npc,npci->npi", weights / np.maximum(distance, _AROUND), out)

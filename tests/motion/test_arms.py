@@ -7,7 +7,7 @@ import pytest
 
 from motion import SMPL22
 from motion.arms import arms_apart
-from motion.metrics.naturalness import DEEP, limb_depth
+from motion.metrics.naturalness import DEEP, jerk_percentile, limb_depth
 from motion.transforms import heading_matrix
 
 J = SMPL22.index
@@ -71,3 +71,31 @@ def test_hands_that_hold_each_other_stay() -> None:
     found = arms_apart(pair)
     assert np.abs(found[0, :, J("left_wrist")] - pair[0, :, J("left_wrist")]).max() < 0.003
     assert np.abs(found[1, :, J("right_wrist")] - pair[1, :, J("right_wrist")]).max() < 0.003
+
+
+def _from_behind() -> np.ndarray:
+    """Two people who look the same way, the first with arms through the other's trunk, who come to it and leave it."""
+    pair = _pair(0.3)
+    rest = SMPL22.rest_positions()
+    pair[1] = rest - rest[:, 1].min() * np.array([0.0, 1.0, 0.0]) + [0.02, 0.0, 0.0]
+    for side in ("left", "right"):  # at their sides
+        for joint, reach in ((f"{side}_elbow", 0.26), (f"{side}_wrist", 0.5)):
+            pair[1, :, J(joint)] = pair[1, :, J(f"{side}_shoulder")] - [0.0, reach, 0.0]
+    away = 0.5 + 0.2 * np.cos(2 * np.pi * np.arange(FRAMES) / FRAMES)
+    pair[1, :, :, 2] += away[:, None]
+    return pair
+
+
+def test_an_arm_that_has_no_way_out_is_not_thrown_about() -> None:
+    pair = _from_behind()
+    found = arms_apart(pair)
+    assert np.abs(found - pair).max() > 0.02
+    assert jerk_percentile(found[0], 30) < 45  # 80 where pushes add up while nothing gives way
+
+
+def test_a_hand_that_is_held_leaves_the_trunk_all_the_same() -> None:
+    pair = _from_behind()
+    held = pair[0, :, J("left_wrist")]
+    pair[1, :, J("right_wrist")] = held + np.array([0.0, 0.0, 0.02])
+    found = arms_apart(pair)
+    assert np.abs(found[0, :, J("left_wrist")] - held).max() > 0.03
