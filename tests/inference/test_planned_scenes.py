@@ -9,9 +9,9 @@ import pytest
 
 from motion import SMPL22
 from webdemo.inference import Engine, GenerateRequest, SceneRequest
-from webdemo.inference.pipelines.scene_postures import led
+from webdemo.inference.pipelines.scene_postures import led, still_down
 from webdemo.inference.story import Beat
-from webdemo.inference.story.poses import bending, lying, seated
+from webdemo.inference.story.poses import bending, lying, seated, upright
 
 from .test_scenes import positions, run
 
@@ -108,6 +108,21 @@ def test_who_lies_rests_head_and_shoulders(engine: Engine) -> None:
     found = made(engine, "Person A is lying on the floor.")[0]
     upper = [SMPL22.index(name) for name in ("head", "left_shoulder", "right_shoulder")]
     assert found[:90, upper, 1].max() < 0.4
+
+
+def test_who_lies_stays_on_the_floor_in_the_next_beat(engine: Engine) -> None:
+    beats = (Beat("Person A lies down.", seconds=3.7), Beat("Person B watches.", seconds=2.0))
+    result = run(engine, SceneRequest(beats=beats, **QUICK))
+    assert heights(positions(result), 0)[60:].max() < 0.3
+    given = [part["frames"] for part in result.manifest["plan"]["windows"][0]["parts"] if part["person"] == 0]
+    assert max(map(max, given)) == 111 + 8 - 1, "lying also in the frames that are thrown away"
+
+
+def test_who_is_down_at_the_end_of_a_beat_is_so_behind_it() -> None:
+    down, up = lying(np.zeros(2), 0.0), upright(np.zeros(2), 0.0)
+    assert [frame for frame, _ in still_down([(3, up), (9, down)], 10, 8)] == [3, 9, 10, 16, 17]
+    for poses, more in (([(9, up)], 8), ([(5, down)], 8), ([(9, down)], 0), ([], 8)):
+        assert still_down(poses, 10, more) == poses
 
 
 def test_who_lies_is_given_the_trunk_and_who_sits_the_legs_alone() -> None:

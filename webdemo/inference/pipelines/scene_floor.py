@@ -30,7 +30,7 @@ from .scene_contacts import given_contact, given_hold, given_twirl, meeting
 from .scene_hands import hands, known_hands
 from .scene_lifts import Carrying
 from .scene_paths import path_of
-from .scene_postures import UPRIGHT, led, postures
+from .scene_postures import UPRIGHT, led, postures, still_down
 from .scene_room import Room, roomy
 from .scene_strikes import given_blows
 
@@ -183,7 +183,8 @@ def _held(
             poses = postures(request.told, window.beat, person, start, stop, stand, last)
             if len(poses) > 1:
                 posed[person] = poses[-1][1]
-            for joints, frames, known in led(poses, window.start, window.stop):
+            tail = window.tail(request.edges[-1])
+            for joints, frames, known in led(still_down(poses, stop, tail), window.start, window.stop + tail):
                 shifted = [frame - window.start + window.past for frame in frames]
                 parts.append(KnownFrames(person, shifted, placement.to_network(known), joints))
     return parts, posed

@@ -124,6 +124,17 @@ def postures(
     return [(frame, found[frame]) for frame in sorted(found) if start <= frame < stop]
 
 
+def still_down(poses: list[Pose], stop: int, more: int) -> list[Pose]:
+    """Poses of a beat that ends before frame ``stop``, and of ``more`` frames behind it if it ends on the floor.
+
+    A network that is free there may put a trunk far into the floor. The body is raised out of it, smoothly, and so are
+    the frames before.
+    """
+    if not more or not poses or poses[-1][0] < stop - 1 or poses[-1][1][0, 1] > UPRIGHT:
+        return poses
+    return [*poses, *sorted(_stays(poses[-1][1], stop, stop + more).items(), key=lambda pose: pose[0])]
+
+
 def led(poses: list[Pose], first: int, last: int) -> Iterator[tuple[Sequence[int], list[int], Array]]:
     """The joints, frames and poses (N, 22, 3) from ``first`` to before ``last`` that are given.
 

@@ -17,7 +17,7 @@ from webdemo.inference.directed import Directed, directed
 from webdemo.inference.known_parts import KnownFrames, Part
 from webdemo.inference.plans import WindowPlan
 from webdemo.inference.requests import GenerateRequest
-from webdemo.inference.story.plan import MOST_FRAMES, Window
+from webdemo.inference.story.plan import Window
 from webdemo.inference.story.request import SceneRequest
 
 from .scene_floor import planned
@@ -27,10 +27,6 @@ if TYPE_CHECKING:
     from .intergen import InterGenPipeline
 
 Array = NDArray[np.floating]
-
-TAIL = 8
-"""Frames that are made behind a window and thrown away where another follows: the network is least sure of the last
-ones, and its feet are fast there."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -77,8 +73,7 @@ class Setting:
             if window.after:
                 behind = range(past + length, past + length + window.after)
                 parts.append(KnownFrames(person, behind, placement.to_network(after[person])))
-        ends = window.after or window.stop == request.edges[-1]
-        tail = window.after if ends else min(TAIL, MOST_FRAMES - past - length)
+        tail = window.after or window.tail(request.edges[-1])
         frames = max(past + length + tail, round(SECONDS[0] * FPS))
         return cls(window, frames, (*parts, *plan.parts), placement, plan)
 

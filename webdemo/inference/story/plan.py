@@ -16,6 +16,10 @@ AFTER = 36
 MOST_FRAMES = 300
 """Frames of a window with what it sees: the longest motion that the networks were trained on."""
 
+TAIL = 8
+"""Frames that are made behind a window and thrown away where another follows: the network is least sure of the last
+ones, and its feet are fast there."""
+
 
 @dataclass(frozen=True)
 class Window:
@@ -38,6 +42,12 @@ class Window:
     def past(self) -> int:
         """Frames before it that it sees."""
         return min(PAST, self.start)
+
+    def tail(self, last: int) -> int:
+        """Frames that are made behind it and thrown away, in a scene whose last part ends before frame ``last``."""
+        if self.after or self.stop == last:
+            return 0
+        return min(TAIL, MOST_FRAMES - self.past - (self.stop - self.start))
 
 
 def windows(request: SceneRequest) -> list[Window]:
