@@ -15,7 +15,7 @@ export function aim(player) {
   if (sample) player.select(Math.round(sample));
   player.clock.pause();
   player.clock.seek(Math.round(number("frame", 0, player.clock.frames - 1) ?? 0));
-  player.orbit.jump(player.framing.wanted().target);
+  player.orbit.jump(player.framing.wanted().targets);
   player.orbit.goTo({ yaw: number("yaw", -1000, 1000), elevation: number("elevation", -0.05, 1.5), distance: number("distance", 0.8, 40) }, null);
   player.orbit.framing = !asked.has("distance");
   player.framing.preset = null;

@@ -13,9 +13,8 @@ const GHOSTS = 5;
 
 /** Turns metres at a point into CSS pixels for the present view. */
 export class Lens {
-  constructor(orbit, heightPx) {
-    this.eye = orbit.eye;
-    const center = orbit.center;
+  constructor({ eye, center }, heightPx) {
+    this.eye = eye;
     const toward = center.map((v, i) => v - this.eye[i]);
     const n = Math.hypot(...toward) || 1;
     this.forward = toward.map((v) => v / n);

@@ -6,7 +6,7 @@ export class Framing {
   constructor(player) {
     this.player = player;
     this.preset = "threequarter"; // null once a hand has turned the view
-    this.box = { width: 960, height: 640, inset: { top: 44, right: 64, bottom: 22, left: 24 } };
+    this.boxes = [{ width: 960, height: 640, inset: { top: 44, right: 64, bottom: 22, left: 24 } }];
   }
 
   /** Glides to a preset; at once where `now` is null. */
@@ -16,7 +16,7 @@ export class Framing {
     this.preset = name;
     const view = preset(name, heading(player.everybody(clock.shown), skeleton));
     const wanted = this.wanted(view);
-    if (!orbit.following || now === null) orbit.jump(wanted.target);
+    if (!orbit.following || now === null) orbit.jump(wanted.targets);
     orbit.goTo({ ...view, distance: wanted.distance }, now);
     player.refresh();
   }
@@ -26,29 +26,38 @@ export class Framing {
     this.goTo("threequarter", null);
   }
 
-  /** What the camera should look at, and from how far, to hold everybody in all views about this moment. */
+  /**
+   * What the camera of each view should look at, to hold its own people about this moment, and from how far: from
+   * equally far in all of them, so that people are equally large.
+   */
   wanted(view) {
-    const { orbit, clock, futures, skeleton } = this.player;
-    const now = this.player.everybody(clock.shown);
-    const all = (frame) => [...this.player.everybody(frame), ...futures.at(frame).flatMap(({ people }) => people)];
-    const soon = moments(clock.shown, clock).flatMap(all);
-    return fit(now, soon, skeleton, view ?? orbit.glide?.to ?? orbit, this.box);
+    const { orbit, clock, futures, skeleton, shown } = this.player;
+    const times = moments(clock.shown, clock);
+    const ghosts = times.flatMap((frame) => futures.at(frame).flatMap(({ people }) => people));
+    const pairs = shown.map((pane, index) => ({
+      now: pane.poseAt(clock.shown),
+      soon: [...times.flatMap((frame) => pane.poseAt(frame)), ...ghosts],
+      box: this.boxes[index] ?? this.boxes[0],
+    }));
+    return fit(pairs, skeleton, view ?? orbit.glide?.to ?? orbit);
   }
 
-  /** Measures the room for people in a view, in pixels: what names, captions and tools leave of it. */
+  /** Measures the room for people in each view, in pixels: what names, captions and tools leave of it. */
   measure() {
-    const { panes, grid, sample } = this.player;
+    const { panes, grid, shown } = this.player;
     const { clientWidth: width, clientHeight: height } = panes[0].host;
     if (!width || !height) return; // in a closed tab there is no size yet
     if (grid.cells.length) {
-      this.box = { width, height, inset: { top: 12, right: 8, bottom: 24, left: 8 } };
+      this.boxes = [{ width, height, inset: { top: 12, right: 8, bottom: 24, left: 8 } }];
       return;
     }
-    const inset = { top: 44, right: 24, bottom: 22, left: 24 };
     const tools = this.player.find(".pdd-tools").getBoundingClientRect();
-    if (tools.width > tools.height) inset.bottom += tools.height; // on narrow stages they lie below
-    else inset.right += tools.width;
-    if (sample?.caption) inset.bottom = Math.max(inset.bottom, 48);
-    this.box = { width, height, inset };
+    this.boxes = shown.map(({ host, sample }, index) => {
+      const inset = { top: 44, right: 24, bottom: 22, left: 24 };
+      if (tools.width > tools.height) inset.bottom += tools.height; // on narrow stages they lie below
+      else if (index === shown.length - 1) inset.right += tools.width;
+      if (sample?.caption) inset.bottom = Math.max(inset.bottom, 48);
+      return { width: host.clientWidth, height: host.clientHeight, inset };
+    });
   }
 }

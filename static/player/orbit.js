@@ -1,4 +1,6 @@
 // The camera: an orbit around a target in scene axes (x towards where A faces at first, z up), metres.
+// Views beside each other share its angles and its distance, so that people are equally large in them, and each has its
+// own target.
 
 const LOWEST = -0.05; // radians of elevation; the floor hides what lies under it
 const HIGHEST = 1.5;
@@ -18,24 +20,29 @@ export class Orbit {
     this.yaw = 0.9;
     this.elevation = 0.3;
     this.distance = 5;
-    this.target = [0, 0, 0.9];
+    this.targets = [[0, 0, 0.9]]; // one a view
     this.pan = [0, 0, 0]; // what the user moved the target by
     this.glide = null;
     this.following = true;
     this.framing = true; // whether the distance adapts, until the user zooms
   }
 
+  /** The first view's centre and eye. */
   get center() {
-    return this.target.map((v, i) => v + this.pan[i]);
+    return this.view().center;
   }
 
   get eye() {
-    const [c, flat] = [this.center, this.distance * Math.cos(this.elevation)];
-    return [
-      c[0] + flat * Math.cos(this.yaw),
-      c[1] + flat * Math.sin(this.yaw),
-      c[2] + this.distance * Math.sin(this.elevation),
-    ];
+    return this.view().eye;
+  }
+
+  /** Where the camera of a view stands: { target, center, eye, matrix }. */
+  view(index = 0) {
+    const target = this.targets[index] ?? this.targets[0];
+    const center = target.map((v, i) => v + this.pan[i]);
+    const { back } = axesOf(this.yaw, this.elevation);
+    const eye = center.map((v, i) => v + this.distance * back[i]);
+    return { target, center, eye, matrix: matrixOf(eye, center) };
   }
 
   /** Turns by radians. */
@@ -75,7 +82,7 @@ export class Orbit {
     }
   }
 
-  /** Follows `wanted` ({ target, distance } or null) smoothly and plays a glide. `seconds` since the last call. */
+  /** Follows `wanted` ({ targets, distance } or null) smoothly and plays a glide. `seconds` since the last call. */
   step(now, seconds, wanted) {
     if (this.glide) {
       const { from, to, start } = this.glide;
@@ -89,18 +96,18 @@ export class Orbit {
     }
     if (!this.following || !wanted || this.settled(wanted)) return;
     const k = 1 - Math.exp(-seconds / FOLLOW_SECONDS);
-    this.target = this.target.map((v, i) => v + k * (wanted.target[i] - v));
+    this.targets = wanted.targets.map((want, n) => (this.targets[n] ?? want).map((v, i) => v + k * (want[i] - v)));
     if (this.framing && !this.glide) this.distance += (1 - Math.exp(-seconds / FRAME_SECONDS)) * (wanted.distance - this.distance);
   }
 
-  jump(target) {
-    this.target = target.slice();
+  jump(targets) {
+    this.targets = targets.map((target) => target.slice());
   }
 
   /** Takes what is to be followed in view at once, where the people too are elsewhere at once. */
   cut(wanted) {
     if (!this.following || !wanted) return;
-    this.jump(wanted.target);
+    this.jump(wanted.targets);
     if (this.framing && !this.glide) this.distance = wanted.distance;
   }
 
@@ -108,24 +115,25 @@ export class Orbit {
   settled(wanted) {
     if (this.glide) return false;
     if (!this.following || !wanted) return true;
-    const away = Math.hypot(...wanted.target.map((v, i) => v - this.target[i]));
-    return away < SETTLED && (!this.framing || Math.abs(wanted.distance - this.distance) < SETTLED);
+    if (wanted.targets.length !== this.targets.length) return false;
+    const away = wanted.targets.map((want, n) => Math.hypot(...want.map((v, i) => v - this.targets[n][i])));
+    return Math.max(...away) < SETTLED && (!this.framing || Math.abs(wanted.distance - this.distance) < SETTLED);
   }
 
-  /** The view matrix, column-major as WebGL wants it. */
-  matrix() {
-    const { eye, center } = this;
-    const back = normalise(eye.map((v, i) => v - center[i]));
-    const right = normalise([-back[1], back[0], 0]);
-    const up = cross(back, right);
-    const dot = (a) => -(a[0] * eye[0] + a[1] * eye[1] + a[2] * eye[2]);
-    return [
-      right[0], up[0], back[0], 0,
-      right[1], up[1], back[1], 0,
-      right[2], up[2], back[2], 0,
-      dot(right), dot(up), dot(back), 1,
-    ];
-  }
+}
+
+/** The view matrix from an eye to a centre, column-major as WebGL wants it. */
+function matrixOf(eye, center) {
+  const back = normalise(eye.map((v, i) => v - center[i]));
+  const right = normalise([-back[1], back[0], 0]);
+  const up = cross(back, right);
+  const dot = (a) => -(a[0] * eye[0] + a[1] * eye[1] + a[2] * eye[2]);
+  return [
+    right[0], up[0], back[0], 0,
+    right[1], up[1], back[1], 0,
+    right[2], up[2], back[2], 0,
+    dot(right), dot(up), dot(back), 1,
+  ];
 }
 
 /** Right, up and back of a camera that looks from there: scene axes. */

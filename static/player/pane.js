@@ -59,15 +59,16 @@ export class Pane {
     this.painted.floor = "";
   }
 
-  /** Draws `pose` of this pane's motion, or the floor alone for null. */
-  paint(pose, { orbit, matrix, theme, themeName, clock, skeleton, show, pinned, futures }) {
+  /** Draws `pose` of this pane's motion, or the floor alone for null; `view` is of Orbit.view(), `ground` the floor's middle. */
+  paint(pose, { view, ground, theme, themeName, clock, skeleton, show, pinned, futures }) {
     const { scene } = this;
+    const { matrix } = view;
     const [width, height] = [this.host.clientWidth, this.host.clientHeight];
     const put = (name, layer) => scene.set(name, layer);
-    scene.setView(matrix, orbit.eye, orbit.center);
-    this.paintFloor(orbit.target, theme, themeName);
+    scene.setView(matrix, view.eye, view.center);
+    this.paintFloor(ground, theme, themeName);
     if (pose) {
-      const lens = new figure.Lens(orbit, height);
+      const lens = new figure.Lens(view, height);
       const given = clock.shown < (this.sample.past_until ?? 0);
       const bodies = show.bodies && skeleton.wears ? this.figures.slice(0, pose.length) : [];
       bodies.forEach((body, person) => {

@@ -16,21 +16,13 @@ import { THEMES, themeName } from "./palette.js";
 import { Pane } from "./pane.js";
 import { Posing } from "./posing.js";
 import { Rate } from "./rate.js";
+import { remember } from "./remember.js";
 import { describe } from "./skeleton.js";
 import { Strip } from "./strip.js";
 
 const STILL_AFTER = 250; // ms
 const LIVE_PAUSE = 48; // ms between pictures that the processor draws of a person who moves now
 export const loops = { running: 0 }; // animation loops alive on the page; a leak shows here
-
-/** Marks this browser tab as one that has made something, which a reload then brings back (ui/tabs/history.py). */
-function remember() {
-  try {
-    sessionStorage.setItem("pas-de-deux-made", "1");
-  } catch {
-    // a browser may keep nothing; a reload then begins anew
-  }
-}
 
 export class Player {
   constructor(root) {
@@ -353,15 +345,16 @@ export class Player {
   }
 
   paint(pose) {
-    const { futures, orbit, theme, themeName, clock, skeleton, show } = this;
-    const matrix = orbit.matrix();
+    const { futures, grid, orbit, theme, themeName, clock, skeleton, show } = this;
     const posed = this.posing?.pose;
     const pinned = pose && !posed && !clock.playing ? this.posesAt(Math.round(clock.shown)) : [];
-    for (const pane of this.shown) {
+    this.shown.forEach((pane, index) => {
       const people = posed ?? (pose && pane.poseAt(clock.shown));
-      pane.paint(people, { orbit, matrix, theme, themeName, clock, skeleton, show, pinned, futures });
-    }
-    futures.place(clock.shown, matrix);
+      const view = orbit.view(index);
+      const ground = grid.cells.length ? orbit.targets[0] : view.target; // one floor for all cells, which one scene draws
+      pane.paint(people, { view, ground, theme, themeName, clock, skeleton, show, pinned, futures });
+    });
+    futures.place(clock.shown, orbit.view().matrix);
     this.posing?.place(this.panes[0].spots);
     if (pose) this.hover.show();
     this.controls.show(this);

@@ -1,12 +1,12 @@
-// Camera presets, which follow from the places of the two people, and the view that holds everybody.
+// Camera presets, which follow from the places of the two people, and the views that hold everybody.
 
 import { FIELD_OF_VIEW, axesOf } from "./orbit.js";
 
 const AROUND = 0.13; // metres about a joint that must be in view: palms and the sides of a body
 const ABOVE = 0.24; // metres over the joint of a head: its crown
 const NEAREST = 2.6; // metres; nearer, one face would fill the stage
-const SPAN = [-1.5, 1.5]; // seconds about the moment in which nobody leaves the view
-const MOMENTS = 12; // looked at within them
+const SPAN = [-0.2, 1.2]; // seconds about the moment in which nobody leaves the view
+const MOMENTS = 8; // looked at within them
 
 /** Angle of the line from A to B on the floor; of the way A faces where there is nobody else. */
 export function heading(pose, skeleton) {
@@ -37,13 +37,26 @@ export function moments(frame, { frames, fps }) {
 }
 
 /**
- * Where the camera must look, and from how far, so that people are in view.
+ * Where the cameras of views beside each other must look, and from how far all of them, so that people are in view.
  *
- * `now` and `soon` are poses: all of `soon` fit into the distance, and the middle is that of `now`. The box is
- * `width` × `height` pixels, of which `inset` { top, right, bottom, left } are taken by names and buttons.
+ * `pairs` are { now, soon, box } a view. `now` and `soon` are poses: all of `soon` fit into the distance, and the middle
+ * is that of `now`. The box is `width` × `height` pixels, of which `inset` { top, right, bottom, left } are taken by
+ * names and buttons.
  */
-export function fit(now, soon, skeleton, { yaw, elevation }, { width, height, inset }) {
-  const { right, up, back } = axesOf(yaw, elevation);
+export function fit(pairs, skeleton, { yaw, elevation }) {
+  const axes = axesOf(yaw, elevation);
+  const needed = pairs.map((pair) => need(pair, skeleton, axes));
+  const distance = Math.max(...needed.map(({ least }) => least), NEAREST);
+  const { right, up, back } = axes;
+  const targets = needed.map(({ here, slopes, depth }) => {
+    const [x, y] = [0, 2].map((k) => (here[k] - here[k + 1] - (slopes[k] - slopes[k + 1]) * (distance + depth)) / 2);
+    return [0, 1, 2].map((i) => right[i] * x + up[i] * y + back[i] * depth);
+  });
+  return { targets, distance };
+}
+
+/** How far a pair's people reach to each side of its view, and the least distance from which all are in it. */
+function need({ now, soon, box: { width, height, inset } }, skeleton, { right, up, back }) {
   const half = height / 2 || 1;
   const slope = (pixels) => Math.max(Math.tan(FIELD_OF_VIEW / 2) * (pixels / half), 0.05);
   const slopes = [slope(width / 2 - inset.right), slope(width / 2 - inset.left), slope(half - inset.top), slope(half - inset.bottom)];
@@ -65,15 +78,10 @@ export function fit(now, soon, skeleton, { yaw, elevation }, { width, height, in
     return most;
   };
   const all = reach(soon);
-  const least = [0, 2].map((k) => (all[k] + all[k + 1]) / (slopes[k] + slopes[k + 1]));
-  // `all` is measured from the world's origin: the depth of the centre is free, so it is taken amidst everybody.
-  const here = reach(now);
+  // They are measured from the world's origin: the depth of the centre is free, so it is taken amidst everybody.
   const depth = mean(now.flatMap((points) => points.map((p) => along(back, p))));
-  const d = Math.max(...least);
-  const centre = [0, 2].map((k) => (here[k] - slopes[k] * d - (here[k + 1] - slopes[k + 1] * d)) / 2);
-  const distance = Math.max(d - depth, NEAREST);
-  const target = [0, 1, 2].map((i) => right[i] * centre[0] + up[i] * centre[1] + back[i] * depth);
-  return { target, distance };
+  const least = Math.max(...[0, 2].map((k) => (all[k] + all[k + 1]) / (slopes[k] + slopes[k + 1]))) - depth;
+  return { here: reach(now), slopes, depth, least };
 }
 
 const mean = (values) => values.reduce((sum, v) => sum + v, 0) / Math.max(values.length, 1);
