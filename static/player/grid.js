@@ -1,4 +1,4 @@
-// Up to nine motions under one camera and on one clock, all drawn by the one scene of the player's first view.
+// Up to nine motions from one side and on one clock, all drawn by the one scene of the player's first view.
 //
 // Browsers allow about sixteen WebGL contexts, so a cell has none: the scene, as large as a cell and out of sight, draws
 // each cell in its turn, and the picture is copied into the cell's own canvas.
