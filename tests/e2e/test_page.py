@@ -354,6 +354,16 @@ def test_the_button_and_the_whole_stage_are_in_view_together_on_a_small_laptop(
     assert box and box["y"] >= 0
 
 
+def test_no_example_is_cut_off_unseen(server: SimpleNamespace, open_page: Callable[..., Page]) -> None:
+    page = live(open_page(server.url, width=1440, height=900))
+    ends = "row => [row.scrollWidth - row.clientWidth, getComputedStyle(row).scrollbarWidth]"
+    row = page.locator(".pd-ask .pd-chips").first
+    assert row.evaluate(ends)[0] <= 1, "with room for all of them, they wrap"
+    page.set_viewport_size({"width": 1024, "height": 700})
+    hidden, scrollbar = row.evaluate(ends)
+    assert hidden > 1 and scrollbar == "thin", "on a low screen a scroll bar says that there are more"
+
+
 def test_what_was_folded_or_opened_stays_so(page: Page) -> None:
     page.evaluate("localStorage.removeItem('pas-de-deux-folds')")
     page.reload()
