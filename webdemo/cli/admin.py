@@ -45,7 +45,7 @@ def admin(options: argparse.Namespace) -> dict[str, Any]:
     from webdemo.server.store.database import Database, sentences
 
     settings, name, action = read_settings(), options.name or "", options.action
-    if settings.users is None:
+    if not settings.accounts:
         raise InputError("There are no accounts: set PASDEDEUX_USERS to their file.")
     if action == "audit":
         return {"lines": audited(settings.data, 100)}
@@ -58,7 +58,7 @@ def admin(options: argparse.Namespace) -> dict[str, Any]:
     database = Database(settings.database_url)
     try:
         with sentences():
-            acts = administration_of(settings, database, Users(settings.users))
+            acts = administration_of(settings, database, Users(settings.users) if settings.users else None)
             if action == "list":
                 return {"people": [asdict(row) for row in acts.rows()], "announced": acts.people.announced()}
             if action in ("make-admin", "end-admin"):

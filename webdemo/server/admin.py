@@ -46,17 +46,35 @@ class Administration:
 
     Args:
         database: of the lab.
-        users: the accounts.
+        users: the accounts; None where people sign in elsewhere alone.
         data: the data folder.
         person_bytes: room of a person for whom none is set.
+        elsewhere: people may sign in elsewhere, so that not everybody is among the accounts.
     """
 
-    def __init__(self, database: Database, users: Users, data: Path, person_bytes: float) -> None:
+    def __init__(
+        self,
+        database: Database,
+        users: Users | None,
+        data: Path,
+        person_bytes: float,
+        *,
+        elsewhere: bool = False,
+    ) -> None:
         self.database, self.users, self.data, self.person_bytes = database, users, data, person_bytes
-        self.people = People(database)
+        self.people, self.elsewhere = People(database), elsewhere
+
+    @property
+    def names(self) -> list[str]:
+        """Everybody with an account, and everybody who has signed in elsewhere."""
+        return sorted({*self._accounts, *(self.people.all() if self.elsewhere else ())})
+
+    @property
+    def _accounts(self) -> list[str]:
+        return self.users.names if self.users is not None else []
 
     def rows(self) -> list[Row]:
-        """All accounts with what they use."""
+        """All people with what they use."""
         with self.database.session() as session:
             counts = dict(session.execute(select(Run.owner, func.count()).group_by(Run.owner)).tuples().all())
             sizes: dict[str, float] = {}
@@ -67,7 +85,7 @@ class Administration:
                     sizes[owner] = sizes.get(owner, 0.0) + (size or 0)
         known, computed = self.people.all(), self.people.computed()
         found = []
-        for name in self.users.names:
+        for name in sorted({*self._accounts, *(known if self.elsewhere else ())}):
             owner, row = f"user {name}", known.get(name)
             room = row.megabytes if row is not None else None
             runs, seconds = computed.get(owner, (0, 0.0))
@@ -112,7 +130,8 @@ class Administration:
     def delete(self, name: str) -> int:
         """Deletes an account with its runs, studies and files; returns the number of runs."""
         self._check(name)
-        self.users.remove(name)
+        if self.users is not None and name in self._accounts:
+            self.users.remove(name)
         owner = f"user {name}"
         with self.database.session.begin() as session:
             runs = list(session.scalars(select(Run.id).where(Run.owner == owner)))
@@ -137,7 +156,7 @@ class Administration:
         audit("admin-announce", characters=len(text))
 
     def _check(self, name: str) -> None:
-        if name not in self.users.names:
+        if name not in self.names:
             raise InputError(f"There is no account {name!r:.60}: see `admin list`.")
 
 

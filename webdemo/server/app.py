@@ -103,7 +103,7 @@ def create_app(
     app = FastAPI(title="Pas de Deux", docs_url=None, redoc_url=None, openapi_url=None, lifespan=_lifespan)
     app.state.lab = lab
     app.state.tidy = lambda: lab.storage.tidy(kept_in_cache(page))
-    visitors = Visitors(settings, lab.sign_ins)
+    visitors = Visitors(settings, lab.sign_ins, lab.people)
     _add_routes(app, lab)
     app.include_router(live_routes(lab.streams))
     app.include_router(study_routes(settings, lab.studies))
@@ -115,6 +115,7 @@ def create_app(
 
             app.include_router(openid_routes(settings, lab.sign_ins))
         app.include_router(account_routes(settings, lab.sign_ins, visitors))
+    if lab.administration is not None:
         app.include_router(admin_routes(lab))
     app.add_middleware(CORSMiddleware)  # no other site may read anything; Gradio's own would let some
     app.add_middleware(PageCache)

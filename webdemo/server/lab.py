@@ -134,14 +134,15 @@ def make_lab(
         studies=studies_of(settings, database, storage), storage=storage,
         places=Places(database, name, settings.running + settings.waiting), shares=shares, health=health,
         figures=figures, answers=OpenAnswers(), streams=streams, node=node, people=people,
-        administration=administration_of(settings, database, users) if users is not None else None,
+        administration=administration_of(settings, database, users) if settings.accounts else None,
         sign_ins=SignIns(database, users, settings.session_hours) if users is not None else None,
     )  # fmt: skip
 
 
-def administration_of(settings: Settings, database: Database, users: Users) -> Administration:
+def administration_of(settings: Settings, database: Database, users: Users | None) -> Administration:
     """The acts of administrators of a lab."""
-    return Administration(database, users, settings.data, settings.person_bytes)
+    elsewhere = bool(settings.proxy_user or settings.openid_issuer)
+    return Administration(database, users, settings.data, settings.person_bytes, elsewhere=elsewhere)
 
 
 def storage_of(settings: Settings, database: Database, scratch: Scratch | None = None) -> Storage:

@@ -94,6 +94,9 @@ class Settings(BaseSettings):
     )
     openid_scope: str = Field("openid email profile", description="scopes that are asked for")
     groups: list[str] = Field([], description="groups of which a person must have one; empty: anybody may")
+    admin_groups: list[str] = Field(
+        [], description="groups whose members are administrators; empty: administrators are made by hand"
+    )
     open: bool = Field(default_factory=on_a_space, description="serve other machines without accounts")
     session_hours: float = Field(24 * 14, gt=0, le=24 * 365, description="how long a sign-in lasts")
     metrics_token: str = Field(
@@ -274,8 +277,9 @@ class Settings(BaseSettings):
                 f"With {PREFIX}PROXY_USER, {PREFIX}PROXIES cannot be *, or anybody could claim to be anybody: name the "
                 "addresses of the proxies."
             )
-        if self.groups and self.proxy_user and not self.proxy_groups:
-            raise InputError(f"{PREFIX}GROUPS needs the header that lists them: set {PREFIX}PROXY_GROUPS.")
+        if (self.groups or self.admin_groups) and self.proxy_user and not self.proxy_groups:
+            name = "GROUPS" if self.groups else "ADMIN_GROUPS"
+            raise InputError(f"{PREFIX}{name} needs the header that lists them: set {PREFIX}PROXY_GROUPS.")
         if self.openid_issuer and not (self.openid_client and self.openid_secret and self.users):
             raise InputError(
                 f"{PREFIX}OPENID_ISSUER needs {PREFIX}OPENID_CLIENT, {PREFIX}OPENID_SECRET and {PREFIX}USERS: set "

@@ -83,6 +83,7 @@ def lab(provider: Provider, tmp_path_factory: pytest.TempPathFactory) -> Iterato
     settings = {
         "openid_issuer": provider.issuer, "openid_client": "lab", "openid_secret": "s" * 40,
         "openid_name": "preferred_username", "groups": '["dancers"]',
+        "admin_groups": '["staff"]',
     }  # fmt: skip
     with Target(tmp_path_factory.mktemp("openid"), accounts=True, **settings) as target:
         yield target
@@ -161,3 +162,35 @@ def test_a_sign_in_ends_in_the_browser_that_began_it(lab: Target, provider: Prov
     assert back(browser, asked["state"]).status_code == 403
     provider.asked = asked
     assert back(browser, asked["state"]).headers["location"] == "/"
+
+
+def signed_in(lab: Target, provider: Provider, name: str, *groups: str) -> httpx.Client:
+    provider.claims = {"preferred_username": name, "groups": ["dancers", *groups]}
+    browser, asked = begun(lab, provider)
+    browser.headers["origin"] = lab.url
+    answer = back(browser, asked["state"])
+    assert answer.status_code == 303, answer.text
+    return browser
+
+
+def test_groups_make_administrators_who_see_and_suspend_whoever_signed_in(
+    lab: Target, provider: Provider
+) -> None:
+    mary, lead = signed_in(lab, provider, "mary"), signed_in(lab, provider, "lead", "staff")
+    assert mary.get("/admin").status_code == 403
+    shown = lead.get("/admin")
+    assert shown.status_code == 200 and "<strong>mary</strong>" in shown.text
+    assert "<strong>lead</strong> admin" in shown.text and "<strong>ada</strong>" in shown.text
+    form = {"act": "room", "name": "mary", "megabytes": "5"}
+    assert lead.post("/admin", data=form).status_code == 303
+    assert 'value="5"' in lead.get("/admin").text
+    assert lead.post("/admin", data={"act": "suspend", "name": "mary"}).status_code == 303
+    browser, asked = begun(lab, provider)
+    provider.claims = {"preferred_username": "mary", "groups": ["dancers"]}
+    answer = back(browser, asked["state"])
+    assert answer.status_code == 403 and "suspended" in answer.json()["detail"]
+    assert lead.post("/admin", data={"act": "let-in", "name": "mary"}).status_code == 303
+    assert signed_in(lab, provider, "mary").get("/config").status_code == 200
+    assert lead.post("/admin", data={"act": "delete", "name": "mary", "confirm": "mary"}).status_code == 303
+    assert "<strong>mary</strong>" not in lead.get("/admin").text
+    assert signed_in(lab, provider, "lead").get("/admin").status_code == 403  # left the group

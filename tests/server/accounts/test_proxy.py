@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import socket
+import time
 from collections.abc import Iterator
 from pathlib import Path
 
@@ -26,7 +27,7 @@ class Proxied(Target):
     def __init__(self, folder: Path) -> None:
         super().__init__(
             folder, accounts=False, host="0.0.0.0", proxies='["127.0.0.1"]', proxy_user=NAME, proxy_groups=GROUPS,
-            groups='["dancers"]',
+            groups='["dancers"]', admin_groups='["staff"]',
         )  # fmt: skip
         del self.env["PASDEDEUX_OPEN"]
 
@@ -87,6 +88,20 @@ def test_each_has_a_history_of_their_own(lab: Target) -> None:
         eve = client.get(f"/gradio_api/call/generate/{event}", headers=given | {"X-Remote-User": "eve"})
         assert eve.status_code == 403 and "They bow" not in eve.text
         assert "complete" in client.get(f"/gradio_api/call/generate/{event}", headers=given).text
+
+
+def test_groups_make_administrators_who_see_and_suspend_whoever_came(lab: Target) -> None:
+    assert asked(lab, X_Remote_User="mary", X_Remote_Groups="dancers").status_code == 200
+    assert asked(lab, "/admin", X_Remote_User="mary", X_Remote_Groups="dancers").status_code == 403
+    lead = {"X-Remote-User": "lead", "X-Remote-Groups": "dancers, staff", "origin": lab.url}
+    with httpx.Client(base_url=lab.url, headers=lead, timeout=30) as client:
+        assert "<strong>mary</strong>" in client.get("/admin").text
+        assert client.post("/admin", data={"act": "suspend", "name": "mary"}).status_code == 303
+        time.sleep(10.5)  # who somebody is, is remembered for so long
+        refused = asked(lab, X_Remote_User="mary", X_Remote_Groups="dancers")
+        assert refused.status_code == 403 and "suspended" in refused.json()["detail"]
+        assert client.get("/admin", headers={"X-Remote-Groups": "dancers"}).status_code == 403
+        assert client.get("/admin").status_code == 200
 
 
 def test_addresses_networks_and_groups_are_read() -> None:

@@ -32,7 +32,7 @@ from webdemo.server.settings import Settings
 from webdemo.ui.visitor import Visitor
 
 from .proxy import NAME
-from .users import SignIns
+from .users import SignIns, Suspended
 from .visitors import SESSION_COOKIE
 
 COOKIE = "pasdedeux_openid"
@@ -150,8 +150,9 @@ def openid_routes(settings: Settings, sign_ins: SignIns) -> APIRouter:
             raise Refused(403, _BEGIN, "openid")
         name = ""
         try:
-            name = _person(settings, sign_ins, provider.claims(_back(request), code, kept))
-            token = sign_ins.begin_outside(name)
+            claims = provider.claims(_back(request), code, kept)
+            name = _person(settings, sign_ins, claims)
+            token = _begun(settings, sign_ins, name, claims)
         except Refused as refused:
             audit("sign-in", ok=False, person=name or "(unknown)", how="openid", reason=str(refused))
             raise
@@ -166,8 +167,7 @@ def openid_routes(settings: Settings, sign_ins: SignIns) -> APIRouter:
 
 def _person(settings: Settings, sign_ins: SignIns, claims: dict[str, Any]) -> str:
     """The account's name; raises Refused for one that cannot be used here."""
-    groups = claims.get("groups")
-    if settings.groups and not set(settings.groups) & set(groups if isinstance(groups, list) else ()):
+    if settings.groups and not set(settings.groups) & _groups(claims):
         raise Refused(403, _NOT_ALLOWED, "openid")
     name = str(claims.get(settings.openid_name) or "").lower()
     if not NAME.match(name) or (settings.openid_name == "email" and claims.get("email_verified") is not True):
@@ -179,6 +179,20 @@ def _person(settings: Settings, sign_ins: SignIns, claims: dict[str, Any]) -> st
     if taken:
         raise Refused(403, _TAKEN, "openid")
     return name
+
+
+def _begun(settings: Settings, sign_ins: SignIns, name: str, claims: dict[str, Any]) -> str:
+    """A new session's token; raises Refused for somebody who is suspended."""
+    admin = bool(set(settings.admin_groups) & _groups(claims)) if settings.admin_groups else None
+    try:
+        return sign_ins.begin_outside(name, admin=admin)
+    except Suspended as error:
+        raise Refused(403, str(error), "suspended") from None
+
+
+def _groups(claims: dict[str, Any]) -> set[str]:
+    groups = claims.get("groups")
+    return {group for group in groups if isinstance(group, str)} if isinstance(groups, list) else set()
 
 
 def _back(request: Request) -> str:

@@ -74,6 +74,13 @@ def person_by_proxy(settings: Settings, scope: Scope) -> str:
     return name
 
 
+def admin_by_proxy(settings: Settings, scope: Scope) -> bool | None:
+    """True if the sender's groups make them an administrator; None where groups do not decide that."""
+    if not settings.admin_groups:
+        return None
+    return bool(set(groups_of(_values(scope, settings.proxy_groups))) & set(settings.admin_groups))
+
+
 def groups_of(values: Sequence[str]) -> list[str]:
     """The groups that are listed, with commas, semicolons or bars between them."""
     return [group.strip() for value in values for group in re.split("[,;|]", value) if group.strip()]

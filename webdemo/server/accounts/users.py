@@ -28,6 +28,7 @@ SHORTEST = 8
 LONGEST = 256
 OUTSIDE = "outside"
 """In place of a password's fingerprint, for people who sign in elsewhere; it ends once an account has their name."""
+SUSPENDED = "This account is suspended: ask the person who runs this server."
 _COST = {"n": 2**14, "r": 8, "p": 1}
 """scrypt's cost: 16 MB and about 50 ms a try."""
 _HEADER = (
@@ -174,7 +175,7 @@ class SignIns:
         with self._lock:
             self._throttle.give_back(*counted)
         if self.people.of(name).suspended:
-            raise Suspended("This account is suspended: ask the person who runs this server.")
+            raise Suspended(SUSPENDED)
         return self._begin(name, entry)
 
     def person(self, token: str) -> str | None:
@@ -194,8 +195,18 @@ class SignIns:
             return None
         return found.person
 
-    def begin_outside(self, name: str) -> str:
-        """A new session's token for somebody who has signed in elsewhere and has no password here."""
+    def begin_outside(self, name: str, *, admin: bool | None = None) -> str:
+        """A new session's token for somebody who has signed in elsewhere and has no password here.
+
+        Args:
+            name: theirs.
+            admin: whether their groups make them an administrator; None where groups do not decide that.
+
+        Raises:
+            Suspended: if an administrator has suspended them.
+        """
+        if not self.people.arrive(name, admin=admin):
+            raise Suspended(SUSPENDED)
         return self._begin(name, OUTSIDE)
 
     def _begin(self, name: str, entry: str) -> str:

@@ -13,10 +13,11 @@ from motion import InputError
 from webdemo.server.http.networks import network_of
 from webdemo.server.http.refused import Refused
 from webdemo.server.settings import Settings, is_loopback
+from webdemo.server.store.people import People
 from webdemo.ui.visitor import Visitor
 
 from .proxy import not_by_proxy
-from .users import SignIns
+from .users import SUSPENDED, SignIns
 
 SESSION_COOKIE = "pasdedeux_session"
 VISITOR_COOKIE = "pasdedeux_visitor"
@@ -33,23 +34,40 @@ class Visitors:
     Args:
         settings: whether there are accounts, and whether other machines may connect.
         sign_ins: sessions of people with accounts; None without accounts.
+        people: notes those whom a proxy names.
     """
 
-    def __init__(self, settings: Settings, sign_ins: SignIns | None) -> None:
-        self.settings, self.sign_ins = settings, sign_ins
+    def __init__(self, settings: Settings, sign_ins: SignIns | None, people: People) -> None:
+        self.settings, self.sign_ins, self.people = settings, sign_ins, people
         self._lock = threading.Lock()
         self._known: OrderedDict[str, tuple[str | None, float]] = OrderedDict()
 
     def of(
-        self, cookies: Mapping[str, str], address: str, *, reference: str, base: str, by_proxy: str = ""
+        self,
+        cookies: Mapping[str, str],
+        address: str,
+        *,
+        reference: str,
+        base: str,
+        by_proxy: str = "",
+        admin: bool | None = None,
     ) -> Visitor | None:
-        """The visitor, or None if they must sign in first; ``by_proxy`` is the name that a trusted proxy gives.
+        """The visitor, or None if they must sign in first.
+
+        Args:
+            cookies: of the request.
+            address: that it came from.
+            reference: names the request.
+            base: address of the page.
+            by_proxy: the name that a trusted proxy gives.
+            admin: whether the groups that it gives make an administrator; None where they do not decide that.
 
         Raises:
             Refused: if a request from elsewhere arrives at a server that is not open, or at one whose people sign in
                 at its proxy alone.
         """
         if by_proxy:
+            self._arrive(by_proxy, admin)
             name = f"user {by_proxy}"
             return Visitor(name, name, reference, base, by_proxy)
         if self.sign_ins is None and self.settings.proxy_user:
@@ -83,6 +101,23 @@ class Visitors:
             for key in [key for key, (person, _) in self._known.items() if person == name]:
                 del self._known[key]
 
+    def _arrive(self, name: str, admin: bool | None) -> None:
+        """Notes somebody whom a proxy names; raises Refused if they are suspended."""
+        key, now = f"proxy {admin} {name}", time.monotonic()
+        with self._lock:
+            known = self._known.get(key)
+        if known is None or known[1] <= now:
+            known = (name if self.people.arrive(name, admin=admin) else None, now + _REMEMBERED)
+            self._remember(key, known)
+        if known[0] is None:
+            raise Refused(403, SUSPENDED, "suspended")
+
+    def _remember(self, key: str, known: tuple[str | None, float]) -> None:
+        with self._lock:
+            self._known[key] = known
+            while len(self._known) > _MOST:
+                self._known.popitem(last=False)
+
     def _signed_in(self, token: str) -> str | None:
         if not token or self.sign_ins is None:
             return None
@@ -95,10 +130,7 @@ class Visitors:
             person = self.sign_ins.person(token)
         except InputError:
             raise Refused(503, NO_ACCOUNTS, "accounts") from None
-        with self._lock:
-            self._known[key] = (person, now + _REMEMBERED)
-            while len(self._known) > _MOST:
-                self._known.popitem(last=False)
+        self._remember(key, (person, now + _REMEMBERED))
         return person
 
 

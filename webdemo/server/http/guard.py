@@ -20,7 +20,7 @@ from starlette.responses import JSONResponse, RedirectResponse, Response
 from starlette.types import ASGIApp, Receive, Scope, Send
 
 from motion import InputError
-from webdemo.server.accounts.proxy import person_by_proxy
+from webdemo.server.accounts.proxy import admin_by_proxy, person_by_proxy
 from webdemo.server.accounts.visitors import VISITOR_COOKIE, Bindings, Visitors, new_token
 from webdemo.server.audit import SENDER
 from webdemo.server.logs import REFERENCE
@@ -218,7 +218,7 @@ class Guard:
         try:
             visitor = await run_in_threadpool(
                 self.visitors.of, read_cookies(headers), address, reference=exchange.reference, base=base,
-                by_proxy=person_by_proxy(self.settings, scope),
+                by_proxy=person_by_proxy(self.settings, scope), admin=admin_by_proxy(self.settings, scope),
             )  # fmt: skip
         except (Refused, SQLAlchemyError) as error:
             outside = isinstance(error, Refused) and error.reason == "proxy" and needs_no_sign_in(path)

@@ -6,6 +6,7 @@ import threading
 from typing import Any, cast
 
 from sqlalchemy import CursorResult, Text, delete, select, update
+from sqlalchemy.exc import IntegrityError
 from sqlalchemy.orm import Mapped, mapped_column
 
 from .database import Database, SignIn, Table
@@ -83,6 +84,31 @@ class People:
                 session.add(row)
             for field, value in values.items():
                 setattr(row, field, value)
+
+    def arrive(self, name: str, *, admin: bool | None = None) -> bool:
+        """Notes somebody who signs in elsewhere, so that administrators see them.
+
+        Args:
+            name: theirs.
+            admin: whether their groups make them an administrator; None where groups do not decide that.
+
+        Returns:
+            False if they are suspended.
+        """
+        try:
+            return self._arrive(name, admin)
+        except IntegrityError:  # they came by two requests at once
+            return self._arrive(name, admin)
+
+    def _arrive(self, name: str, admin: bool | None) -> bool:
+        with self.database.session.begin() as session:
+            row = session.get(Person, name)
+            if row is None:
+                row = Person(name=name, role="", suspended=False)
+                session.add(row)
+            if admin is not None:
+                row.role = ADMIN if admin else ""
+            return not row.suspended
 
     def bytes_of(self, owner: str) -> float | None:
         """The room of a history's owner in bytes, where it is not everybody's."""
