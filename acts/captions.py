@@ -34,6 +34,19 @@ def singular(verb: str) -> str:
     return f"{verb[:-1]}ies" if verb.endswith("y") and verb[-2:-1] not in "aeiou" else f"{verb}s"
 
 
+_DOUBLED = re.compile(r"[^aeiouy][aeiou][bdgmnpt]")
+
+
+def gerund(verb: str) -> str:
+    """A verb's base form with "-ing": "hugging", "waving", "high-fiving"."""
+    if verb.endswith("ie"):
+        return f"{verb[:-2]}ying"
+    short = verb.rpartition("-")[2]
+    if _DOUBLED.fullmatch(short[-3:]) and len(re.findall("[aeiouy]+", short)) == 1:
+        return f"{verb}{verb[-1]}ing"
+    return f"{verb[:-1] if re.search('[^eoy]e$', verb) and verb != 'be' else verb}ing"
+
+
 def _plural(part: str) -> str:
     return {"foot": "feet"}.get(part, f"{part}s")
 

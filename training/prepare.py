@@ -43,7 +43,7 @@ class Scenes:
     Attributes:
         control: (total knots, 2, 70) float16, the scenes one after the other.
         rows: for each scene {"start", "tokens", "family", "captions", "alone", "split", "events", "sources",
-            "beats", "hand"}, see :class:`training.corpus.scene.Scene` and
+            "beats", "label", "hand"}, see :class:`training.corpus.scene.Scene` and
             :func:`training.core.handedness.leading_hand`.
         layout: frames a knot and knots a token.
     """
@@ -101,7 +101,7 @@ def prepare(
         positions = torch.from_numpy(motion).transpose(0, 1)
         control = encode(positions, foot_contacts(positions), layout)
         parts.append(control.transpose(0, 1).half())
-        kept = ("family", "captions", "alone", "split", "events", "sources", "beats")
+        kept = ("family", "captions", "alone", "split", "events", "sources", "beats", "label")
         hand = leading_hand(motion.swapaxes(0, 1), entry.get("events"))
         row = {"start": start, "tokens": tokens, "hand": hand} | {key: entry.get(key) for key in kept}
         if captions and row["split"] == "train":

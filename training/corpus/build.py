@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import json
 import logging
-import zlib
 from collections import Counter
 from collections.abc import Sequence
 from dataclasses import dataclass, field
@@ -21,7 +20,6 @@ from .families import Family, load_families
 from .library import Library
 from .scene import Scene
 from .sources import load_sources
-from .stage import write_alone
 
 logger = logging.getLogger(__name__)
 TEST_SHARE = 0.08
@@ -133,8 +131,6 @@ def _recorded(data_dir: str | Path, tally: Tally, cache: Path | None) -> list[Sc
         return []
     kept = [scene for scene in pairs if scene.split != "benchmark"]
     for scene in kept:
-        rng = np.random.default_rng(zlib.crc32(scene.sources[0].encode()))
-        scene.alone = write_alone(rng, scene.family, {}, scene.split)
         tally.frames[f"recorded {scene.family}"] += scene.positions.shape[1]
         tally.scenes[f"recorded {scene.family}"] += 1
     return kept
@@ -150,6 +146,8 @@ def save(scenes: Sequence[Scene], folder: Path) -> None:
     index, start = [], 0
     for scene in scenes:
         frames = int(scene.positions.shape[1])
+        if scene.label is None:
+            raise ValueError(f"a scene of {scene.family} was not described")
         index.append(
             {
                 "start": start,
@@ -161,6 +159,7 @@ def save(scenes: Sequence[Scene], folder: Path) -> None:
                 "events": scene.events,
                 "alone": list(scene.alone),
                 "beats": scene.beats,
+                "label": scene.label.row(),
             }
         )
         start += frames

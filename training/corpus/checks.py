@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from dataclasses import dataclass
 
 import numpy as np
@@ -28,14 +29,16 @@ SLIDING = {
     **dict.fromkeys(("dance-together", "dance-mirrored", "dance-watch"), 0.3),
 }
 """Foot skate allowed where the recorded motion itself flies or pivots on the foot, metres a second."""
-FLYING = {"run", "jump", "jumping", "dance", "spin", "crawl", "roll", "cartwheel", "kick", "push", "fall", "victory",
-          "chase", "throw", "rage", "slash", "punch"}  # fmt: skip
-"""First words of acts during which nobody stands on a foot, or pivots on it."""
+FLYING = {"run", "jump", "jumping", "dance", "spin", "crawl", "somersault", "cartwheel", "kick", "push", "fall",
+          "cheer", "chase", "throw", "rage", "swing", "punch", "shadow"}  # fmt: skip
+"""First words of entries during which nobody stands on a foot, or pivots on it."""
 
 
 def allowed_skate(scene: Scene) -> float:
     """Foot skate allowed in a scene, metres a second."""
-    acts = {act.split("-")[0] for beat in scene.beats for act in beat["acts"]}
+    acts = {
+        name.split("-")[0] for beat in scene.beats for cue in beat["acts"] for name in re.split("[>+]", cue)
+    }
     if "run" in acts or "chase" in acts:
         return 0.8
     return 0.3 if acts & FLYING else SLIDING.get(scene.family, 0.15)

@@ -25,21 +25,35 @@ from motion.cleaning import plant_feet, solve_two_bones
 from motion.skeleton import SMPL22
 from motion.transforms import canonicalize, facing
 
-from .captions import Phrasebook
 from .checks import foot_skate
+from .cues import STILL
 from .k3hi import read_k3hi
 from .kinect import ANKLE, FPS, fit_pair
 from .sbu import KinectPair, read_sbu
-from .scene import Scene
+from .scene import Scene, played
+from .telling import describe as write_words
 
 Array = NDArray[np.floating]
 
-CACHE_VERSION = 1
+CACHE_VERSION = 2
 _ANKLES = [SMPL22.index("left_ankle"), SMPL22.index("right_ankle")]
 _TOES = [SMPL22.index("left_foot"), SMPL22.index("right_foot")]
 _LEFT, _RIGHT = "left", "right"
 # Metres between the wrists of two hands that touch.
 _TOUCH = {"handshake": 0.10, "exchange": 0.18}
+SHOWS = {
+    "approach": ("walk-up", STILL),
+    "depart": ("walk-away", STILL),
+    "exchange": ("hand-over", "take-from"),
+    "handshake": ("shake-hands", "shake-hands"),
+    "kick": ("kick", ""),
+    "meet": ("walk-up", "walk-up"),
+    "part": ("part", "part"),
+    "point": ("point", ""),
+    "punch": ("punch", ""),
+    "push": ("push", ""),
+}
+"""The cues of a and b that a recorded family shows; what the other does of a blow is left open."""
 _MEANT_TO_FACE = {"kick", "push", "handshake", "exchange", "punch"}
 
 
@@ -115,16 +129,13 @@ def build_scene(pair: KinectPair, report: Report | None = None) -> Scene | None:
     source = f"{pair.dataset}/{pair.name}"
     slots, events = describe(people, family)
     split = "benchmark" if pair.split == "benchmark" else "train"
-    captions = _captions(source, family, slots)
-    return Scene(people.astype(np.float32), family, captions, (source,), split, events)
+    return _told(Scene(people.astype(np.float32), family, (source,), split, events, slots))
 
 
-def _captions(source: str, family: str, slots: dict[str, Any]) -> list[str]:
-    rng = np.random.default_rng(zlib.crc32(source.encode()))
-    found = Phrasebook(family).sample(rng, slots, n=12, name_side=False)
-    if family == "push" and slots.get("side_a") != "both":
-        found = [caption for caption in found if "both hands" not in caption]
-    return found[:8]
+def _told(scene: Scene) -> Scene:
+    """The scene with its label and captions."""
+    scene.played = played(scene, SHOWS[scene.family], "while")
+    return write_words(np.random.default_rng(zlib.crc32(scene.sources[0].encode())), scene, sides=False)
 
 
 def _as_seen(family: str, people: Array) -> tuple[str, Array]:
@@ -288,7 +299,7 @@ def _off_target(people: Array) -> float:
 
 
 def describe(people: Array, family: str) -> tuple[dict[str, Any], dict[str, Any]]:
-    """(slots of the phrase book, events of the scene) that the motion shows.
+    """(what is said of the scene, its events) that the motion shows.
 
     Args:
         people: (2, T, 22, 3) metres.
@@ -337,7 +348,7 @@ def _save(path: Path, scenes: list[Scene], report: Report) -> None:
     meta = [
         {
             "family": s.family,
-            "captions": s.captions,
+            "said": s.said,
             "sources": s.sources,
             "split": s.split,
             "events": s.events,
@@ -366,5 +377,7 @@ def _load(path: Path, report: Report | None) -> list[Scene]:
         report.kept.update(summary["kept"])
         report.dropped.update(summary["dropped"])
         report.errors.update(summary["errors"])
-    return [Scene(positions, **{**entry, "sources": tuple(entry["sources"])})
-            for positions, entry in zip(parts, meta, strict=False)]  # fmt: skip
+    return [
+        _told(Scene(positions, **{**entry, "sources": tuple(entry["sources"])}))
+        for positions, entry in zip(parts, meta, strict=False)
+    ]

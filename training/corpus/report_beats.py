@@ -6,6 +6,7 @@ Writes ``corpus-beats.md``, one row an act, and ``corpus/beats/ACT.webp``, a con
 from __future__ import annotations
 
 import argparse
+import re
 import textwrap
 from collections import Counter, defaultdict
 from pathlib import Path
@@ -21,15 +22,16 @@ from training.core.shell import exit_code
 from training.prepare import load_corpus
 from webdemo.view.contact_sheet import contact_sheet
 
+from .cues import STILL, steps
+from .phrasing import phrases
 from .report import touch_gap
 from .vocabulary import ANIMATED
-from .words.lexicon import count, phrases
 
 FPS = 30.0
 MEASURED = 250
 """Scenes of each kind that are measured."""
 PICTURE_WIDTH = 640
-_QUIET = {"stand", "join", "turn-along", "listen", "take", "get-up", "go-on", "walk-and-listen"}
+_QUIET = {STILL, "join-side", "turn-to", "listen", "take-from", "stand-up", "walk-ahead"}
 """Acts that show in the picture of what the other does."""
 
 
@@ -51,7 +53,7 @@ def report(motions: NDArray[np.floating], index: list[dict[str, Any]], out: Path
         link = "–"
         if act not in _QUIET:
             _draw(motions, *min(found, key=lambda pair: _plainness(pair[1])), act, pictures)
-            link = f"[sheet](corpus/beats/{act}.webp)"
+            link = f"[sheet](corpus/beats/{_file(act)}.webp)"
         rows.append(
             f"| {act} | {len(found)} | {minutes:.1f} | {', '.join(name for name, _ in answers)} "
             f"| {f'{np.median(gaps):.0f}' if gaps else '–'} | {link} |"
@@ -77,7 +79,8 @@ def _head(
             {c for scene in scenes for beat in scene["beats"] for c in beat["captions"]},
         )
     )
-    written, spoken = count()
+    entries = {name for cue in _acts(scenes) for group in steps(cue) for name, *_ in group}
+    spoken = sum(len(phrases(name)) for name in entries)
     recorded = [s for s in index if str(s["sources"][0]).startswith(("sbu", "k3hi"))]
     measures = ["| | Foot skate, cm/s | Jerk, m/s³ | Penetration, cm |", "|---|---|---|---|"]
     walking = [s for s in scenes if all(a in _WALKS for beat in s["beats"] for a in beat["acts"])]
@@ -95,8 +98,7 @@ def _head(
         _wrapped(
             f"{len(scenes):,} scenes, {hours:.1f} hours: {spread} beats in the captions, transitions not counted. "
             f"There are {joint:,} different captions of both people, {alone:,} of one person alone and "
-            f"{single:,} of single beats, made from {written:,} sentences written by hand and {spoken} phrases "
-            f"for {len(phrases())} acts, of which {len(_acts(scenes))} occur here. "
+            f"{single:,} of single beats, made from {spoken} phrases of {len(entries)} entries of the lexicon. "
             f"{made / FPS / 3600:.1f} hours include hand-animated clips (Mesh2Motion, smoothed and slowed to "
             "what a body can do)."
         ),
@@ -113,9 +115,8 @@ def _head(
     ]
 
 
-_WALKS = {"stand", "walk-up", "walk-away", "meet", "part", "follow", "walk-together", "circle", "turn-along",
-          "pace", "turn-to", "turn-away", "step-back", "step-up", "step-aside", "walk-past", "join", "stop",
-          "go-on"}  # fmt: skip
+_WALKS = {STILL, "walk-up", "walk-away", "part", "follow", "walk-together", "walk-around", "pace", "turn-to",
+          "turn-away", "step-back", "step-forward", "step-aside", "walk-past", "join-side", "walk-ahead"}  # fmt: skip
 
 
 def _acts(scenes: list[dict[str, Any]]) -> set[str]:
@@ -128,7 +129,7 @@ def _other(beat: dict[str, Any], act: str) -> str:
 
 def _plainness(beat: dict[str, Any]) -> tuple[bool, int]:
     """Beats in which the other stands, and short ones, show an act best."""
-    return "stand" not in beat["acts"], abs(beat["end"] - beat["start"] - 75)
+    return STILL not in beat["acts"], abs(beat["end"] - beat["start"] - 75)
 
 
 def _touch(motions: NDArray[np.floating], scene: dict[str, Any], beat: dict[str, Any]) -> float | None:
@@ -144,8 +145,13 @@ def _draw(
     duet = _duet(motions, scene, beat["start"], beat["end"])
     sheet = contact_sheet(duet, title=f"{act}: {(beat['captions'] or scene['captions'])[0]}", frames=6)
     sheet = sheet.resize((PICTURE_WIDTH, round(sheet.height * PICTURE_WIDTH / sheet.width)))
-    with replacing(folder / f"{act}.webp") as temporary:
+    with replacing(folder / f"{_file(act)}.webp") as temporary:
         sheet.save(temporary, "webp", quality=45)
+
+
+def _file(cue: str) -> str:
+    """The name of a cue's picture."""
+    return re.sub("[^a-z-]", "-", cue)
 
 
 def _duet(

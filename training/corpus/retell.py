@@ -1,7 +1,6 @@
-"""``python -m training.corpus.retell --corpus DIR``: writes the captions of composed beats anew.
+"""``python -m training.corpus.retell --corpus DIR``: writes the captions of a corpus anew from its labels.
 
-Motion takes long to build and stays; the scenes of beats get other sentences, as the present words have them.
-Scenes of the other families keep theirs.
+Motion takes long to build and stays; the scenes get other sentences, as the lexicon has them now.
 """
 
 from __future__ import annotations
@@ -16,29 +15,30 @@ import numpy as np
 from motion.formats.files import replacing
 from training.core.shell import exit_code
 
-from .beats.play import Beat
-from .words import Narrator
-from .words.narrator import ALONE, JOINT, ONE_BEAT
+from .cues import Label
+from .telling import Teller, texts
 
 
 def retold(scene: dict[str, Any], rng: np.random.Generator) -> dict[str, Any]:
-    """The row of the index with new captions, where it has beats that tell enough."""
-    rows = scene.get("beats") or []
-    if not rows:
+    """The row of the index with new captions, where it has a label that tells enough."""
+    if not scene.get("label"):
         return scene
-    beats = [Beat.of_row(row) for row in rows]
-    narrator = Narrator(rng, beats, scene["split"])
-    captions = narrator.together(JOINT)
+    known = Label.of_row(scene["label"])
+    teller = Teller(rng, known, scene["split"], sides="side" in (scene.get("events") or {}))
+    captions = texts(teller.scene())
     if len(captions) < 3:
         return scene
-    alone = [narrator.alone(person, ALONE) for person in (0, 1)]
-    retold_rows = [{**row, "captions": narrator.beat(k, ONE_BEAT)} for k, row in enumerate(rows)]
-    return {**scene, "captions": captions, "alone": alone, "beats": retold_rows}
+    alone = [texts(teller.alone(who)) for who in "ab"]
+    beats = [
+        {**row, "captions": texts(teller.beat(ids))}
+        for row, ids in zip(scene.get("beats") or (), known.beats, strict=False)
+    ]
+    return {**scene, "captions": captions, "alone": alone, "beats": beats}
 
 
 def main(argv: list[str] | None = None) -> int:
     """Runs the command; returns its exit code."""
-    parser = argparse.ArgumentParser(description="Write new captions for the scenes of beats in a corpus.")
+    parser = argparse.ArgumentParser(description="Write new captions for the scenes of a corpus.")
     parser.add_argument("--corpus", type=Path, required=True, help="what `python -m training.corpus` wrote")
     parser.add_argument("--seed", type=int, default=0)
     options = parser.parse_args(argv)

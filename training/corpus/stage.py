@@ -11,7 +11,6 @@ from motion.kinematics import forward_kinematics
 from motion.skeleton import SMPL22
 from motion.transforms import canonicalize, facing
 
-from .captions import Phrasebook
 from .compose import FPS, Array, Motion, facing_at, join, look_at, place, realise, time_warp
 from .library import Library, Take, extend, feet_together
 from .scene import Scene
@@ -190,13 +189,12 @@ def finish(
     slots: Mapping[str, Any] | None = None,
     events: Mapping[str, Any] | None = None,
     gaze: tuple[float, float] = (0.8, 0.8),
-    captions: int = 8,
     most: int = 270,
 ) -> Scene:
-    """The finished scene: same length, eyes on each other, feet planted, canonical, captioned.
+    """The finished scene: same length, eyes on each other, feet planted, canonical.
 
     Args:
-        slots: what the captions may say; see :meth:`training.corpus.captions.Phrasebook.sample`.
+        slots: what is said of it; see :attr:`training.corpus.scene.Scene.said`.
         gaze: how much each looks at the other, 0 to 1.
         most: frames at most.
     """
@@ -209,11 +207,10 @@ def finish(
     return Scene(
         positions.astype(np.float32),
         family,
-        write(rng, family, slots or {}, captions, library.split),
         tuple(sorted(set(a.sources + b.sources))),
         library.split,
         verified(positions, events or {}),
-        write_alone(rng, family, slots or {}, library.split),
+        dict(slots or {}),
     )
 
 
@@ -233,38 +230,6 @@ def verified(positions: Array, events: Mapping[str, Any]) -> dict[str, Any]:
     return kept
 
 
-def write(rng: Rng, family: str, slots: Mapping[str, Any], count: int, split: str) -> list[str]:
-    """Captions of one scene, three in five of which name the manner, and most the side."""
-    slots = {
-        key: value
-        for key, value in slots.items()
-        if value is not None and not (key.startswith("manner") and value == "normal")
-    }
-    book = Phrasebook(family)
-    plain = {key: value for key, value in slots.items() if not key.startswith("manner")}
-    found = book.sample(rng, slots, max(round(count * 0.6), 1), split)
-    for caption in book.sample(rng, plain, count - len(found), split) if len(found) < count else []:
-        if caption not in found:
-            found.append(caption)
-    return found
-
-
-def write_alone(
-    rng: Rng, family: str, slots: Mapping[str, Any], split: str, *, count: int = 3
-) -> tuple[list[str], list[str]]:
-    """Sentences on each person alone."""
-    known = {
-        k: v for k, v in slots.items() if v is not None and not (k.startswith("manner") and v == "normal")
-    }
-    book = Phrasebook(family)
-    return book.alone(rng, 0, known, count, split), book.alone(rng, 1, known, count, split)
-
-
 def pace_word(speed: float, *, slow: float = 0.75, fast: float = 1.6) -> str | None:
     """ "slow" or "fast" where a pace in metres a second deserves the word."""
     return "slow" if speed < slow else "fast" if speed > fast else None
-
-
-def how_far(distance: float) -> str | None:
-    """ "near" or "far" where a distance in metres deserves the word."""
-    return "near" if distance < 1.15 else "far" if distance > 2.6 else None

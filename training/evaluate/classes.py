@@ -22,13 +22,14 @@ from torch import Tensor, nn
 from motion import Duet
 from motion.metrics.generation import frechet_distance
 from training.core.shell import exit_code
+from training.corpus.cues import class_of
 from training.evaluate.extractor import Extractor, load_extractor
 from training.evaluate.judge.prompts import real_duet
 from training.evaluate.judge.report import PHYSICAL, score
 from training.evaluate.judge.rules import CHECKS, Task
 from training.evaluate.prediction import put_into
 from training.prepare import Scenes, load
-from training.trainers.bigraphdiff import CLASSES, of_classes
+from training.trainers.bigraphdiff import of_classes
 from webdemo.inference import GenerateRequest, Result
 from webdemo.inference.engine import WEIGHTS, Engine
 from webdemo.inference.methods import method
@@ -68,7 +69,7 @@ def right_handed(rows: list[dict[str, Any]]) -> list[dict[str, Any]]:
 
 def tasks_of(scenes: Scenes, label: str, rng: np.random.Generator, count: int) -> list[Task]:
     """The tasks of motions of a class: the events of ``count`` recorded ones, drawn by ``rng``."""
-    rows = right_handed([row for row in scenes.split("train") if CLASSES[row["family"]] == label])
+    rows = right_handed([row for row in scenes.split("train") if class_of(row) == label])
     chosen = [rows[i] for i in rng.integers(len(rows), size=count)]
     return [
         Task(label, row["family"], row["events"] or {}, scenes.layout.num_frames(row["tokens"]))
@@ -99,7 +100,7 @@ def evaluate(
 
     def recorded(split: str) -> tuple[list[Duet], Tensor]:
         rows = right_handed(scenes.split(split))
-        where = torch.tensor([place[CLASSES[row["family"]]] for row in rows])
+        where = torch.tensor([place[class_of(row)] for row in rows])
         return [real_duet(scenes, row) for row in rows], where
 
     duets, where = recorded("train")
@@ -137,8 +138,8 @@ def _tested(scenes: Scenes) -> dict[str, list[str]]:
     trained = {source for row in scenes.split("train") for source in row["sources"]}
     tested = right_handed(scenes.split("test"))
     return {
-        "tested": sorted({CLASSES[row["family"]] for row in tested}),
-        "known": sorted({CLASSES[row["family"]] for row in tested if trained & set(row["sources"])}),
+        "tested": sorted({class_of(row) for row in tested}),
+        "known": sorted({class_of(row) for row in tested if trained & set(row["sources"])}),
     }
 
 

@@ -24,7 +24,7 @@ from motion.metrics.generation import r_precision
 from motion.metrics.sentences.scores import share
 from motion.transforms import canonicalize
 from training.core.shell import exit_code
-from training.corpus.phrases import ENTRIES
+from training.corpus.families import load_families
 from training.evaluate.extractor import load_extractor
 from training.evaluate.judge.draw import Sampling, draw
 from training.evaluate.judge.prompts import choose, real_duet
@@ -40,8 +40,9 @@ POOLS = 20
 
 
 def of_two_parts(family: str) -> bool:
-    """True if the words of a family give the two people different parts: none say that both do it."""
-    return family in ENTRIES and not ENTRIES[family].both
+    """True if a family gives the two people different parts."""
+    known = load_families().get(family)
+    return known is not None and known.shows[:1] != known.shows[-1:]
 
 
 def exchanged(duet: Duet) -> Duet:

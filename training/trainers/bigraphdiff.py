@@ -1,6 +1,6 @@
 """Trains the compact BiGraphDiff: ``python -m training.trainers.bigraphdiff --scenes FILE --out DIR``.
 
-Chopin's thesis, chapter 4, on the scenes of :mod:`training.prepare`: the family that a scene was composed as
+Chopin's thesis, chapter 4, on the scenes of :mod:`training.prepare`: what a scene shows by its label
 is its class. The loss is that of :mod:`training.trainers.intergen` (x0 prediction and InterGen's damped regularisers),
 where the thesis has the noise's alone (eq. 4.12). A scene in which one hand leads is shown right-handed, as a
 class names no side; the others are mirrored half of the time.
@@ -31,70 +31,12 @@ from training.core.ahead import moved
 from training.core.loop import Loop, adamw
 from training.core.precision import mixed_precision
 from training.core.shell import add_run_options, chosen, exit_code
+from training.corpus.cues import class_of
 from training.prepare import Scenes, load
 from training.trainers import intergen_data
 from training.trainers.intergen import draw_timesteps
 from training.trainers.touch import touch_of
 
-CLASSES: dict[str, str] = {
-    "approach": "approach",
-    "arm-around": "arm around the shoulders",
-    "bow-back": "bow to each other",
-    "call-come": "call, and come",
-    "chase": "chase",
-    "cheer": "cheer together",
-    "circle": "walk around the other",
-    "circle-each-other": "circle each other",
-    "copy": "copy the other",
-    "dance-mirrored": "dance mirrored",
-    "dance-together": "dance together",
-    "dance-watch": "dance, and watch",
-    "depart": "walk away",
-    "elbow-bump": "bump elbows",
-    "fist-bump": "bump fists",
-    "exchange": "hand over an object",
-    "follow": "follow",
-    "goodbye": "wave goodbye",
-    "hand-on-shoulder": "lay a hand on the shoulder",
-    "hand-over": "hand over an object",
-    "handshake": "shake hands",
-    "help-up": "help up",
-    "high-five": "high five",
-    "high-ten": "high ten",
-    "hold-hands": "hold hands",
-    "hug": "hug",
-    "kick": "kick",
-    "kick-step-back": "kick, and step back",
-    "lead-by-hand": "lead by the hand",
-    "leave": "walk away",
-    "low-five": "low five",
-    "make-way": "make way",
-    "meet": "walk up to each other",
-    "part": "part from each other",
-    "pat-back": "pat on the back",
-    "pat-shoulder": "pat on the shoulder",
-    "point": "point, and look",
-    "punch": "punch",
-    "punch-dodge": "punch, and dodge",
-    "punch-recoil": "punch, and recoil",
-    "push": "push",
-    "raise-copy": "raise a hand together",
-    "run-together": "run together",
-    "spar": "spar",
-    "step-back": "step back from the other",
-    "sword-fight": "fight with swords",
-    "sword-retreat": "strike with a sword, and retreat",
-    "talk": "talk",
-    "tap-turn": "tap on the shoulder, and turn",
-    "turn-away": "turn away",
-    "walk-hand-in-hand": "walk hand in hand",
-    "walk-past": "walk past each other",
-    "walk-together": "walk side by side",
-    "walk-up": "approach",
-    "wave-back": "wave to each other",
-    "whisper": "whisper into the ear",
-}
-"""The class of a scene by its family; scenes of other families are not used."""
 SUMMARY = (
     "BiGraphDiff (Chopin et al.) at width 192 over spline tokens: two people from a class. Research and "
     "non-commercial use only."
@@ -135,10 +77,12 @@ class Settings:
 
 
 def of_classes(scenes: Scenes) -> Scenes:
-    """The scenes whose family is a class; raises InputError if there are none."""
-    rows = [row for row in scenes.rows if row["family"] in CLASSES]
+    """The scenes that are of one class: without beats or an order of acts; raises InputError if there are none."""
+    rows = [
+        row for row in scenes.rows if row.get("label") and not row["beats"] and "order" not in row["events"]
+    ]
     if not rows:
-        raise InputError(f"The scenes hold no family of {', '.join(CLASSES)}: build the corpus anew.")
+        raise InputError("The scenes hold none with a label of its own: build the corpus anew.")
     return Scenes(scenes.control, rows, scenes.layout)
 
 
@@ -147,7 +91,7 @@ def labels_of(scenes: Scenes) -> tuple[tuple[str, ...], tuple[Touch, ...]]:
     counts: dict[str, Counter[Touch]] = {}
     for row in scenes.split("train"):
         touch = touch_of(row, mirror=row.get("hand") == "left")
-        counts.setdefault(CLASSES[row["family"]], Counter())[touch] += 1
+        counts.setdefault(class_of(row), Counter())[touch] += 1
     touches = []
     for name in sorted(counts):
         touch, count = counts[name].most_common(1)[0]
@@ -164,7 +108,7 @@ class Data(intergen_data.Data):
 
     def sentences(self, row: dict[str, Any], draw: Sequence[float]) -> tuple[list[str], list[bool]]:
         """The class as the joint condition, nothing for each person alone, and which of them are given."""
-        return [CLASSES[row["family"]], "", ""], [True, False, False]
+        return [class_of(row), "", ""], [True, False, False]
 
     def continued(self, row: dict[str, Any], draw: Sequence[float]) -> None:
         """No scene is cut: its class is that of the whole."""

@@ -10,12 +10,12 @@ from motion.transforms import heading
 from tests.training.corpus.test_compose import bone_error, bow, clips, motion, walk
 from training.corpus import checks
 from training.corpus.beats import script
+from training.corpus.beats.stories import pattern
 from training.corpus.compose import realise
 from training.corpus.families.gestures import deepened
 from training.corpus.library import Library
 from training.corpus.retell import retold
 from training.corpus.scene import Scene, SourceClip
-from training.corpus.words.lexicon import pattern
 
 J = SMPL22.index
 
@@ -64,7 +64,7 @@ def test_free_scenes_are_sound(library: Library) -> None:
     made = jolts = 0
     for seed in range(12):
         try:
-            scene = script.compose(np.random.default_rng(seed), library, stories=0.0)
+            scene = script.compose(np.random.default_rng(seed), library, told=0.0)
         except LookupError:
             continue
         made += 1
@@ -87,7 +87,7 @@ def test_the_same_seed_makes_the_same_scene(library: Library) -> None:
 
 
 def test_one_comes_the_other_stands_they_touch_and_one_leaves(library: Library) -> None:
-    scene = staged(library, "walk-up / stand ; handshake ; walk-away / stand")
+    scene = staged(library, "walk-up / stand-still ; shake-hands ; walk-away / stand-still")
     first, touch, last = main(scene)
     walker = first["acts"].index("walk-up")
     assert np.linalg.norm(path(scene, walker, first)[-1] - path(scene, walker, first)[0]) > 0.6
@@ -105,9 +105,9 @@ def test_one_comes_the_other_stands_they_touch_and_one_leaves(library: Library) 
 
 
 def test_a_refused_hand_is_held_out_and_not_taken(library: Library) -> None:
-    scene = staged(library, "offer-hand / refuse")
+    scene = staged(library, "shake-hands? / stand-still")
     beat = main(scene)[0]
-    i = beat["acts"].index("offer-hand")
+    i = beat["acts"].index("shake-hands?")
     hand = J(f"{beat['sides'][i]}_wrist")
     body = scene.positions[i, beat["start"] : beat["end"]]
     reach = np.linalg.norm((body[:, hand] - body[:, 0])[:, [0, 2]], axis=-1)
@@ -118,7 +118,7 @@ def test_a_refused_hand_is_held_out_and_not_taken(library: Library) -> None:
 
 
 def test_hands_stay_joined_while_walking(library: Library) -> None:
-    scene = staged(library, "hand-in-hand")
+    scene = staged(library, "walk-hand-in-hand")
     contact = scene.events["contact"][0]
     held = slice(contact["start"] + 2, contact["end"] - 1)
     one, other = scene.positions[0, held], scene.positions[1, held]
@@ -127,9 +127,9 @@ def test_hands_stay_joined_while_walking(library: Library) -> None:
 
 
 def test_who_waves_while_coming_does_both_at_once(library: Library) -> None:
-    scene = staged(library, "up-and-wave / stand")
+    scene = staged(library, "walk-up+wave / stand-still")
     beat = main(scene)[0]
-    i = beat["acts"].index("up-and-wave")
+    i = beat["acts"].index("walk-up+wave")
     body = scene.positions[i, beat["start"] : beat["end"]]
     raised = body[:, [J("left_wrist"), J("right_wrist")], 1].max(axis=-1) > body[:, J("neck"), 1]
     speed = np.linalg.norm(np.diff(body[:, 0][:, [0, 2]], axis=0), axis=-1) * 30
@@ -137,15 +137,15 @@ def test_who_waves_while_coming_does_both_at_once(library: Library) -> None:
 
 
 def test_one_stops_while_the_other_goes_on(library: Library) -> None:
-    scene = staged(library, "walk-together ; stop / go-on")
-    beat = next(b for b in scene.beats if "stop" in b["acts"])
-    i = beat["acts"].index("stop")
+    scene = staged(library, "walk-together ; stand-still / walk-ahead")
+    beat = next(b for b in scene.beats if "walk-ahead" in b["acts"])
+    i = beat["acts"].index("stand-still")
     gone = [np.linalg.norm(path(scene, k, beat)[-1] - path(scene, k, beat)[0]) for k in (i, 1 - i)]
     assert gone[1] > gone[0] + 0.4
 
 
 def test_a_full_turn_is_one(library: Library) -> None:
-    scene = staged(library, "spin / stand")
+    scene = staged(library, "spin / stand-still")
     beat = main(scene)[0]
     i = beat["acts"].index("spin")
     angles = np.unwrap(heading(scene.positions[i, beat["start"] : beat["end"]]))
@@ -164,16 +164,17 @@ def test_bows_are_deep() -> None:
 
 def test_feet_hold_where_people_walk_and_turn(library: Library) -> None:
     own = checks.foot_skate(realise(motion(walk(200))))  # the made-up walk slides by itself
-    for story in ("walk-up / stand", "walk-away / stand", "walk-together"):
+    for story in ("walk-up / stand-still", "walk-away / stand-still", "walk-together"):
         scene = staged(library, story)
         assert max(checks.foot_skate(person) for person in scene.positions) < own + 0.02, story
-    scene = staged(library, "turn-to / stand")
+    scene = staged(library, "turn-to / stand-still")
     assert max(checks.foot_skate(person) for person in scene.positions) < 0.08
 
 
 def test_captions_can_be_written_anew(library: Library) -> None:
-    scene = staged(library, "walk-up / stand ; handshake")
-    row = {"beats": scene.beats, "split": "train", "captions": scene.captions, "alone": list(scene.alone)}
+    scene = staged(library, "walk-up / stand-still ; shake-hands")
+    assert scene.label
+    row = {"beats": scene.beats, "split": "train", "captions": scene.captions, "label": scene.label.row()}
     again = retold(row, np.random.default_rng(8))
     assert again["captions"] != scene.captions and len(again["captions"]) >= 3
     assert [beat["acts"] for beat in again["beats"]] == [beat["acts"] for beat in scene.beats]

@@ -12,9 +12,10 @@ import numpy as np
 from motion.metrics.sentences import Sentence
 from motion.metrics.sentences.joints import Motion
 from motion.transforms import mirrored
-from training.corpus.captions import Phrasebook
-from training.corpus.grammar import expand
-from training.corpus.phrases import ACTIONS, ENTRIES
+from training.corpus import phrasing
+from training.corpus.beats.stories import stories
+from training.corpus.cues import Beat, label, steps
+from training.corpus.telling import Teller, texts
 
 from .puppets import play
 
@@ -60,20 +61,21 @@ class Puppets:
         ]
 
 
-def captions_of(family: str, split: str = "train") -> list[str]:
-    """Captions of a family of the corpus; of another draw for each family and split."""
-    rng = np.random.default_rng(zlib.crc32(f"{family} {split}".encode()))
-    acts = sorted(ACTIONS)
-    slots = {key: str(rng.choice(acts)) for key in ("act_a", "act_b", "first", "second")}
-    return Phrasebook(family).sample(rng, slots, n=40, split=split)
+CUES = sorted({pair for story in stories() for pair in story})
+"""What A and B do in the beats that the corpus plays."""
+
+
+def captions_of(acts: tuple[str, str], split: str = "train") -> list[str]:
+    """Captions of a beat of the corpus; of another draw for each beat and split."""
+    rng = np.random.default_rng(zlib.crc32(f"{acts} {split}".encode()))
+    sides = ("left", None) if rng.random() < 0.5 else (None, None)
+    teller = Teller(rng, label([Beat(acts, 0, 60, relation="while", sides=sides)], 60), split)
+    return texts([*teller.scene(12), *teller.alone("a", 4)])
 
 
 def phrases() -> Iterator[str]:
-    """All sentences and keywords of the phrase book, with people for its marks."""
-    people = {"{A}": "one person", "{B}": "the other"}
-    for entry in ENTRIES.values():
-        for pattern in (*entry.nouns, *entry.sentences, *entry.both, *entry.a, *entry.b):
-            for text in expand(pattern):
-                for mark, word in people.items():
-                    text = text.replace(mark, word)
-                yield re.sub(r"\*|\{[^}]*\}", "", text)
+    """All phrases of the entries that the corpus shows, with people for their slots."""
+    for name in sorted({name for cues in CUES for cue in cues for group in steps(cue) for name, *_ in group}):
+        for text in phrasing.phrases(name):
+            plain = text.replace("{a+b}", "They").replace("{a}", "One person").replace("{b}", "the other")
+            yield re.sub(r"[\[\]]|\{[^}]*\}", "", plain)

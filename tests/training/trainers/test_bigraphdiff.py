@@ -13,8 +13,9 @@ from models.bigraphdiff.compact import load_folder
 from motion import InputError
 from tests.training.trainers.runs import write_corpus
 from training import prepare
+from training.corpus.cues import Beat, label
 from training.trainers import bigraphdiff
-from training.trainers.bigraphdiff import CLASSES, Settings, Trainer, labels_of, of_classes
+from training.trainers.bigraphdiff import Settings, Trainer, labels_of, of_classes
 
 SETTINGS = Settings(
     latent_dim=32, ff_size=16, num_layers=1, num_heads=2, embed_dim=16, cond_dim=8, batch=4, steps=6, warmup=2
@@ -23,32 +24,31 @@ SETTINGS = Settings(
 
 @pytest.fixture(scope="module")
 def scenes(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """Half of the scenes are handshakes, the others wave; one is of a family that is no class."""
+    """Half of the scenes are handshakes, in the others both wave; one is of two acts in order, which is no class."""
     folder = tmp_path_factory.mktemp("classes")
     corpus = write_corpus(folder / "corpus", scenes=13)
     rows = json.loads((corpus / "index.json").read_text())
     for i, row in enumerate(rows):
-        row["family"] = "sequence" if i == 4 else "handshake" if i % 2 else "wave-back"
+        cue = "shake-hands" if i % 2 else "wave"
+        row["label"] = label([Beat((cue, cue), 0, row["frames"], relation="while")], row["frames"]).row()
+        row["beats"] = []
+        if i == 4:
+            row["events"]["order"] = ["bow", "wave"]
     (corpus / "index.json").write_text(json.dumps(rows))
     out = folder / "scenes.safetensors"
     assert prepare.main(["--corpus", str(corpus), "--out", str(out)]) == 0
     return out
 
 
-def test_families_are_classes_and_what_most_of_their_scenes_touch_is_theirs(scenes: Path) -> None:
+def test_labels_are_classes_and_what_most_of_their_scenes_touch_is_theirs(scenes: Path) -> None:
     loaded = of_classes(prepare.load(scenes))
-    assert {row["family"] for row in loaded.rows} == {"handshake", "wave-back"}
+    assert len(loaded.rows) == 12
     names, touches = labels_of(loaded)
-    assert names == ("shake hands", "wave to each other")
+    assert names == ("shake hands", "wave")
     assert touches == ((("right_wrist", "right_wrist"),), ())
-    loaded.rows = [row | {"family": "sequence"} for row in loaded.rows]
-    with pytest.raises(InputError, match="hold no family of"):
+    loaded.rows = [row | {"label": None} for row in loaded.rows]
+    with pytest.raises(InputError, match="build the corpus anew"):
         of_classes(loaded)
-
-
-def test_names_of_classes_tell_them_apart_in_any_case() -> None:
-    assert len({name.casefold() for name in CLASSES.values()}) == len(set(CLASSES.values()))
-    assert all(name == " ".join(name.split()) for name in CLASSES.values())
 
 
 def test_a_run_that_stops_goes_on_as_if_it_never_had(scenes: Path, tmp_path: Path) -> None:

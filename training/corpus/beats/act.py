@@ -36,12 +36,9 @@ class Act:
         needs: source actions it is made of.
         weight: how often it is drawn.
         room: metres that must be free in front.
-        over: the source action whose arms can be laid over a walk, or None.
-        calm: whether others may be done at the same time by someone who stands near.
     """
 
     make: Make
     needs: tuple[str, ...]
     weight: float = 1.0
     room: float = 0.9
-    over: str | None = None

@@ -270,7 +270,9 @@ fold_arms = _pose(
 shrug = _pose(lambda body, side: on_body(body, f"{side}_shoulder", 0.26 * _out(side), -0.2, 0.22), 1.2, 1.8)
 stop_hand = _pose(lambda body, side: on_body(body, f"{side}_shoulder", 0.0, 0.02, 0.5), 1.2, 2.0, both=False)
 phone = _pose(lambda body, side: on_body(body, "head", 0.13 * _out(side), -0.02, 0.03), 1.8, 3.0, both=False)
-heart = _pose(lambda body, side: on_body(body, "spine3", 0.03 * _out(side), 0.0, 0.13), 1.3, 2.2, both=False)
+hand_on_chest = _pose(
+    lambda body, side: on_body(body, "spine3", 0.03 * _out(side), 0.0, 0.13), 1.3, 2.2, both=False
+)
 open_arms = _pose(
     lambda body, side: on_body(body, f"{side}_shoulder", 0.38 * _out(side), -0.06, 0.24), 1.3, 2.2
 )
@@ -317,18 +319,28 @@ def arms_over(
     return layer(base, take.motion, start=start, joints=UPPER, blend=10), take
 
 
+def wave(play: Play, i: int) -> Done:
+    """Person i waves with one hand, or goodbye as the recording has it."""
+    if play.library.has("bye") and play.rng.random() < 0.33:
+        return taken("bye", (50, 100))(play, i)
+    return taken("wave", (50, 100), one=True)(play, i)
+
+
+def raise_arm(play: Play, i: int) -> Done:
+    """Person i raises one hand or both."""
+    both = play.rng.random() < 0.38
+    return taken("raise-hand", (40, 80), side="both" if both else None, one=not both)(play, i)
+
+
 ACTS: dict[str, Act] = {
-    "wave": Act(taken("wave", (50, 100), one=True), ("wave",), 3.0, over="wave"),
-    "bye": Act(taken("bye", (50, 100)), ("bye",), 1.5, over="bye"),
+    "wave": Act(wave, ("wave",), 4.5),
     "bow": Act(bow, ("bow",), 3.0),
-    "raise-hand": Act(taken("raise-hand", (40, 80), one=True), ("raise-hand",), 2.0, over="raise-hand"),
-    "raise-hands": Act(taken("raise-hand", (40, 80), side="both"), ("raise-hand",), 1.2, over="raise-hand"),
-    "call": Act(taken("call", (50, 100)), ("call",), 1.0),
-    "guide": Act(taken("guide", (50, 100)), ("guide",), 1.0),
-    "talk": Act(talk, ("guide",), 2.0, over="guide"),
+    "raise-arm": Act(raise_arm, ("raise-hand",), 3.2),
+    "beckon": Act(taken("call", (50, 100)), ("call",), 1.0),
+    "talk": Act(talk, ("guide",), 3.0),
     "point": Act(point, ("idle",), 2.0),
     "nod": Act(nodding, ("idle",), 2.0),
-    "head-shake": Act(head_shake, ("idle",), 1.5),
+    "shake-head": Act(head_shake, ("idle",), 1.5),
     "clap": Act(clap, ("idle",), 2.0),
     "hands-on-hips": Act(hands_on_hips, ("idle",), 1.0),
     "cover-face": Act(cover_face, ("idle",), 1.0),
@@ -336,31 +348,30 @@ ACTS: dict[str, Act] = {
     "shrug": Act(shrug, ("idle",), 1.2),
     "stop-hand": Act(stop_hand, ("idle",), 1.0),
     "phone": Act(phone, ("idle",), 1.0),
-    "heart": Act(heart, ("idle",), 0.7),
-    "open-arms": Act(open_arms, ("idle",), 1.0),
+    "hand-on-chest": Act(hand_on_chest, ("idle",), 0.7),
+    "arms-out": Act(open_arms, ("idle",), 1.0),
     "dance": Act(dance, ("dance",), 1.6, room=1.4),
     "spin": Act(spin, ("idle",), 1.5),
     "look-around": Act(look_around, ("idle",), 1.0),
     "jump": Act(taken("jump", (30, 110)), ("jump",), 2.0, room=1.6),
     "jumping-jacks": Act(jacks, ("jumping-jacks",), 1.2),
-    "sit": Act(sit, ("sit-down", "sitting", "stand-up"), 2.5),
+    "sit-down>stand-up": Act(sit, ("sit-down", "sitting", "stand-up"), 2.5),
     "kneel": Act(taken("kneel", (60, 110)), ("kneel",), 1.6),
-    "fall": Act(fall, ("fall", "get-up-back"), 1.5, room=1.4),
-    "crawl": Act(crawl, ("lie-down-front", "crawl", "get-up-front"), 1.0, room=2.6),
-    "push-up": Act(push_up, ("lie-down-front", "push-up", "get-up-front"), 0.8, room=2.0),
-    "roll": Act(taken("roll", (40, 110)), ("roll",), 1.0, room=2.2),
+    "fall-down>stand-up": Act(fall, ("fall", "get-up-back"), 1.5, room=1.4),
+    "lie-down>crawl>stand-up": Act(crawl, ("lie-down-front", "crawl", "get-up-front"), 1.0, room=2.6),
+    "lie-down>push-ups>stand-up": Act(push_up, ("lie-down-front", "push-up", "get-up-front"), 0.8, room=2.0),
+    "somersault": Act(taken("roll", (40, 110)), ("roll",), 1.0, room=2.2),
     "cartwheel": Act(taken("cartwheel", (40, 110)), ("cartwheel",), 0.7, room=3.2),
-    "pick-up": Act(taken("pick-up", (60, 120)), ("pick-up",), 1.5),
-    "throw": Act(taken("throw", (40, 90)), ("throw",), 1.0, room=1.2),
+    "pick-up-thing": Act(taken("pick-up", (60, 120)), ("pick-up",), 1.5),
     "rage": Act(rage, ("rage",), 1.2),
     "scratch-head": Act(taken("scratch-head", (50, 100)), ("scratch-head",), 1.0),
     "drink": Act(taken("drink", (60, 110)), ("drink",), 1.2),
-    "reject": Act(taken("reject", (50, 110)), ("reject",), 1.5),
-    "victory": Act(taken("victory", (40, 90)), ("victory",), 1.2),
-    "fist-pump": Act(taken("fist-pump", (40, 90)), ("fist-pump",), 1.0),
-    "guard": Act(taken("guard", (25, 60)), ("guard",), 0.6),
-    "punch": Act(strike("punch"), ("punch",), 1.2, room=1.5),
-    "kick": Act(strike("kick"), ("kick",), 1.2, room=1.7),
-    "slash": Act(strike("slash"), ("slash",), 0.6, room=1.9),
+    "wave-off": Act(taken("reject", (50, 110)), ("reject",), 1.5),
+    "cheer": Act(taken("victory", (40, 90)), ("victory",), 1.2),
+    "make-fist": Act(taken("fist-pump", (40, 90)), ("fist-pump",), 1.0),
+    "block": Act(taken("guard", (25, 60)), ("guard",), 0.6),
+    "shadow-box": Act(strike("punch"), ("punch",), 1.2, room=1.5),
+    "kick-air:leg": Act(strike("kick"), ("kick",), 1.2, room=1.7),
+    "swing-sword": Act(strike("slash"), ("slash",), 0.6, room=1.9),
 }  # fmt: skip
-"""Acts of one person by the names of the phrase book."""
+"""What one person does alone, by its cue."""

@@ -8,12 +8,15 @@ import numpy as np
 
 from ..compose import Array
 from ..contact import envelope, impulse, lean_to, nod, on_body, reach, towards
+from ..cues import STILL
 from ..families import combat
 from ..stage import stride
 from ..touches import Touches
 from .acts import ACTS
 from .moves import close_in, come
 from .play import Play
+
+FALL = "fall-down>stand-up"
 
 
 def push(play: Play, i: int) -> None:
@@ -25,12 +28,12 @@ def push(play: Play, i: int) -> None:
     own.hold(hit + 34)
     other.hold(hit + 6)
     falls = play.library.has("fall", "get-up-back")
-    answer = play.wanted(("stumble", "stumble", "fall"), 1) if falls else "stumble"
-    if answer == "fall":
-        ACTS["fall"].make(play, 1 - i)
+    answer = play.wanted(("stumble", "stumble", FALL), 1) if falls else "stumble"
+    if answer == FALL:
+        ACTS[FALL].make(play, 1 - i)
     else:
         other.perform(stride(rng, play.library, "walk-back", rng.uniform(0.5, 1.3)).motion)
-    depth, leaning = rng.uniform(0.25, 0.4) * (0.5 if answer == "fall" else 1.0), rng.uniform(0.12, 0.25)
+    depth, leaning = rng.uniform(0.25, 0.4) * (0.5 if answer == FALL else 1.0), rng.uniform(0.12, 0.25)
 
     def effect(a: Array, b: Array) -> tuple[Array, Array, Touches]:
         frames = len(a)
@@ -62,27 +65,27 @@ def blow_at(name: str) -> Callable[[Play, int], None]:
         rng = play.rng
         take = combat.blow(rng, play.library, name, most=1)
         start = play.sync()
-        answers = {"punch": ("dodge", "recoil", "step-back", "fall"), "kick": ("step-back", "recoil", "fall")}
+        answers = {"punch": ("dodge", "flinch", "step-back", FALL), "kick": ("step-back", "flinch", FALL)}
         answer = play.wanted(answers[name], 1)
-        if answer == "fall" and not play.library.has("fall", "get-up-back"):
-            answer = "recoil"
+        if answer == FALL and not play.library.has("fall", "get-up-back"):
+            answer = "flinch"
         far = play.gap
         close_in(play, i, combat.reach(take) + rng.uniform(0.1, 0.25))
         begun = play.sync()
         if far - play.gap > 0.6:
-            play.note_span(("walk-up", "stand"), start, begun, i=i, relation="while", minor=True)
+            play.note_span(("walk-up", STILL), start, begun, i=i, relation="while", minor=True)
         own, other = play.people[i], play.people[1 - i]
         first, _ = own.perform(take.motion, aim=take.aim)
         hit = first + take.peaks[0]
         if answer == "step-back":
             other.hold_until(max(hit - 12, len(other)))
             other.perform(stride(rng, play.library, "walk-back", rng.uniform(0.5, 1.1)).motion)
-        elif answer == "fall":
+        elif answer == FALL:
             other.hold_until(max(hit - 2, len(other)))
-            ACTS["fall"].make(play, 1 - i)
+            ACTS[FALL].make(play, 1 - i)
         else:
             other.hold_until(max(len(own), hit + 34))
             other.motion = (combat.dodge if answer == "dodge" else combat.recoil)(rng, other.motion, hit)
-        play.note((f"{name}-at", answer), begun, i=i, sides=(take.side, None))
+        play.note((name, answer), begun, i=i, sides=(take.side, None))
 
     return make

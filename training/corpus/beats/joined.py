@@ -6,6 +6,7 @@ import numpy as np
 
 from ..compose import Array, steer
 from ..contact import envelope
+from ..cues import STILL
 from ..library import pick
 from ..stage import stride
 from ..touches import Touches, arm_around, joined_hands, meet_hands, opposite
@@ -27,7 +28,7 @@ def arm_around_beat(play: Play, i: int) -> None:
         person.hold(length + 20)
     hand, own_rng = "left" if side > 0 else "right", np.random.default_rng(rng.integers(2**32))
     play.effect(start, start + length + 36, lambda a, b: arm_around(own_rng, a, b, 2, length, hand), i=i)
-    play.note(("arm-around", "stand"), start, i=i, relation="while", sides=(hand, None))
+    play.note(("arm-around", STILL), start, i=i, relation="while", sides=(hand, None))
 
 
 def _held(sides: tuple[str, str], height: float, start: int, arrive: int, leave: int) -> Effect:
@@ -54,7 +55,7 @@ def hand_in_hand(play: Play, i: int) -> None:
         name, stop = "hold-hands", play.frames
     else:
         start, stop, _, side = abreast(play, i, gap, length=(2.0, 2.8 if play.brisk else 4.2))
-        name = "hand-in-hand"
+        name = "walk-hand-in-hand"
     if start - begun > 35:
         play.beats_before(begun, start - 14, i)
     hand = "left" if side > 0 else "right"
@@ -101,5 +102,4 @@ def carousel(play: Play, i: int) -> None:
         return a, b, [(f"{own}_wrist", f"{to}_wrist", 18, last - 6) for own, to in pairs]
 
     play.effect(start, stop + 14, effect, i=i)
-    direction = "clockwise" if side == "left" else "counterclockwise"
-    play.note(("carousel", "carousel"), start, i=i, relation="while", more={"direction": direction})
+    play.note(("ring", "ring"), start, i=i, relation="while")

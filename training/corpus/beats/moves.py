@@ -6,6 +6,7 @@ import numpy as np
 
 from ..blending import ease
 from ..compose import Array, Motion, steer, tempo
+from ..cues import STILL
 from ..library import Take, pick
 from ..stage import stride
 from .acts import ACTS, arms_over
@@ -26,7 +27,7 @@ def leftwards(angle: float) -> Array:
 def gait(play: Play, *, fast: float = 0.15) -> tuple[str, str]:
     """(source action, name in the phrase book) of a way to go."""
     rng = play.rng
-    wish = play.wish[0].split("-")[0] if play.wish else ""
+    wish = play.wish[0].split("-")[0].replace("creep", "sneak") if play.wish else ""
     if wish in ("walk", "run", "sneak") and play.library.has(wish):
         return wish, wish
     if play.library.has("run") and rng.random() < fast:
@@ -74,7 +75,7 @@ def come(play: Play, i: int, distance: float) -> int:
     both = far > 1.6 and play.rng.random() < 0.3
     take = close_in(play, i, distance, both=both)
     if far > 0.5:
-        acts = ("meet", "meet") if both else ("walk-up", "stand")
+        acts = ("walk-up", "walk-up") if both else ("walk-up", STILL)
         play.note_span(
             acts, start, play.frames, i=i, relation="while", styles=(take.style if take else "normal", "normal"),
             minor=bool(play.wish) or bool(play.rng.random() < 0.4),
@@ -89,7 +90,7 @@ def make_room(play: Play, i: int, room: float) -> None:
     start = play.sync()
     steps = stride(play.rng, play.library, "walk-back", max(room - play.gap, 0.4))
     play.people[i].perform(steps.motion)
-    play.note(("step-back", "stand"), start, i=i, relation="while", minor=True)
+    play.note(("step-back", STILL), start, i=i, relation="while", minor=True)
 
 
 def walk_up(play: Play, i: int, *, distance: float | None = None) -> None:
@@ -97,10 +98,10 @@ def walk_up(play: Play, i: int, *, distance: float | None = None) -> None:
     rng = play.rng
     start = play.sync()
     action, name = gait(play, fast=0.25)
-    both = play.wish[0] == "meet" if play.wish else rng.random() < 0.25
+    both = play.wish == ("walk-up", "walk-up") if play.wish else rng.random() < 0.25
     take = close_in(play, i, distance or rng.uniform(0.8, 1.3), both=both, action=action)
     style = take.style if take else "normal"
-    acts = ("meet", "meet") if both else (f"{name}-up", "stand")
+    acts = ("walk-up", "walk-up") if both else ("creep-up" if name == "sneak" else f"{name}-up", STILL)
     play.note(acts, start, i=i, relation="while", styles=(style, "normal"))
 
 
@@ -112,17 +113,17 @@ def leave(play: Play, i: int, *, distance: tuple[float, float] = (1.6, 3.0)) -> 
     action, name = gait(play)
     way = own.angle + np.pi + rng.normal(0, 0.35) if abs(play.off(i)) < 1.2 else own.angle
     answer = play.wanted(
-        ("stand", "stand", "wave", "bye", "call", "turn-away", "head-shake", "shrug", "point"), 1
+        (STILL, STILL, "wave", "wave", "beckon", "turn-away", "shake-head", "shrug", "point"), 1
     )
     if answer in ACTS and not play.library.has(*ACTS[answer].needs):
-        answer = "stand"
+        answer = STILL
     take = own.go(
         own.spot + rng.uniform(*distance) * ahead(way), None, action=action, stop=rng.random() < 0.6
     )
     side, style = None, "normal"
     if answer == "turn-away":
         _turn_off(play, 1 - i, start)
-    elif answer != "stand":
+    elif answer != STILL:
         play.people[1 - i].hold(play.seconds(0.3, 0.9))
         done = ACTS[answer].make(play, 1 - i)
         side, style = done.side, done.style
@@ -159,7 +160,7 @@ def turn_away(play: Play, i: int) -> None:
     """A turns away from B."""
     start = play.sync()
     _turn_off(play, i, start)
-    play.note(("turn-away", "stand"), start, i=i, relation="while")
+    play.note(("turn-away", STILL), start, i=i, relation="while")
 
 
 def turn_to(play: Play, i: int) -> None:
@@ -167,14 +168,14 @@ def turn_to(play: Play, i: int) -> None:
     start = play.sync()
     play.people[i].hold(6)
     play.people[i].turn(play.off(i))
-    play.note(("turn-to", "stand"), start, i=i, relation="while")
+    play.note(("turn-to", STILL), start, i=i, relation="while")
 
 
 def turn_round(play: Play, i: int) -> None:
     """A full turn on the spot, the other watching."""
     start = play.sync()
     ACTS["spin"].make(play, i)
-    play.note(("spin", "stand"), start, i=i, relation="while")
+    play.note(("spin", STILL), start, i=i, relation="while")
 
 
 def step_back(play: Play, i: int) -> None:
@@ -185,12 +186,12 @@ def step_back(play: Play, i: int) -> None:
     if alone:
         walk = stride(rng, play.library, "walk-back", rng.uniform(0.5, 1.2))
         play.people[i].perform(walk.motion)
-        play.note(("step-back", "stand"), start, i=i, relation="while", styles=(walk.style, "normal"))
+        play.note(("step-back", STILL), start, i=i, relation="while", styles=(walk.style, "normal"))
         return
     close_in(play, i, max(play.gap - rng.uniform(0.5, 0.8), 0.7))
     walk = stride(rng, play.library, "walk-back", rng.uniform(0.5, 1.2))
     play.people[1 - i].perform(walk.motion)
-    play.note(("step-up", "step-back"), start, i=i, styles=("normal", walk.style))
+    play.note(("step-forward", "step-back"), start, i=i, styles=("normal", walk.style))
 
 
 def step_aside(play: Play, i: int) -> None:
@@ -202,7 +203,7 @@ def step_aside(play: Play, i: int) -> None:
     step = walk.motion.root[-1] - walk.motion.root[0]
     course = wrap(float(np.arctan2(step[0], step[2]) - walk.motion.headings.mean()))
     play.people[i].perform(walk.motion, aim=course - (1 if side == "left" else -1) * np.pi / 2)
-    play.note(("step-aside", "stand"), start, i=i, relation="while", sides=(side, None))
+    play.note(("step-aside", STILL), start, i=i, relation="while", sides=(side, None))
 
 
 def circle(play: Play, i: int) -> None:
@@ -218,13 +219,13 @@ def circle(play: Play, i: int) -> None:
     arc = rng.uniform(0.55, 1.05) * 2 * np.pi
     take, walk = curve(own, radius * arc, side / radius)
     own.append(walk)
-    follows = play.wanted(("stand", "turn-along"), 1) == "turn-along"
+    follows = play.wanted((STILL, "turn-to"), 1) == "turn-to"
     if follows:
         other.hold_until(start + (len(own) - start) // 5)
         other.hold(int((len(own) - len(other)) * 0.9), turn=side * arc * 0.85)
     direction = "counterclockwise" if side > 0 else "clockwise"
     play.note(
-        ("circle", "turn-along" if follows else "stand"), start, i=i, relation="while",
+        ("walk-around", "turn-to" if follows else STILL), start, i=i, relation="while",
         styles=(take.style, "normal"), more={"direction": direction},
     )  # fmt: skip
 
@@ -245,7 +246,7 @@ def pace_about(play: Play, i: int) -> None:
     home = person.spot
     take = person.go(home + rng.uniform(1.0, 1.5) * ahead(angle), None, stop=False)
     person.go(home, None, stop=True)
-    play.note(("pace", "stand"), start, i=i, relation="while", styles=(take.style, "normal"))
+    play.note(("pace", STILL), start, i=i, relation="while", styles=(take.style, "normal"))
 
 
 def follow(play: Play, i: int) -> None:
@@ -306,13 +307,13 @@ def walk_together(play: Play, i: int) -> None:
     """Side by side, with or without talk; or one stops while the other goes on."""
     rng = play.rng
     begun = play.sync()
-    far = (3.2, 4.2) if play.wish and play.wish[0] == "stop" else (2.2, 3.2 if play.brisk else 4.0)
+    far = (3.2, 4.2) if play.wish and play.wish[0] == STILL else (2.2, 3.2 if play.brisk else 4.0)
     start, stop, take, _ = abreast(play, i, rng.uniform(0.65, 0.95), length=far)
     own, other = play.people[i], play.people[1 - i]
     style = (take.style, take.style)
     if start - begun > 35:
         play.beats_before(begun, start, i)
-    kind = {"stop": 0.0, "walk-and-talk": 0.5, "walk-together": 0.9}.get(
+    kind = {STILL: 0.0, "walk-together+talk": 0.5, "walk-together": 0.9}.get(
         play.wish[0] if play.wish else "", rng.random()
     )
     if kind < 0.3 and stop - start > 66:  # i stops, the other goes on
@@ -320,7 +321,7 @@ def walk_together(play: Play, i: int) -> None:
         own.motion = own.motion[: cut + 8]
         play.note_span(("walk-together", "walk-together"), start, cut, i=i, relation="while", styles=style)
         own.hold_until(len(other))
-        play.note(("stop", "go-on"), cut, i=i, relation="while", styles=style)
+        play.note((STILL, "walk-ahead"), cut, i=i, relation="while", styles=style)
         return
     if kind < 0.65 and play.library.has("guide"):  # talking while strolling
         who = i if play.wish or rng.random() < 0.6 else 1 - i
@@ -329,7 +330,9 @@ def walk_together(play: Play, i: int) -> None:
             play.library, rng, speaker.motion, pick(rng, _spoken(play)), start + 12, None
         )
         play.look(who, start, stop, 0.6)
-        acts = ("walk-and-talk", "walk-and-listen") if who == i else ("walk-and-listen", "walk-and-talk")
+        acts = (
+            ("walk-together+talk", "walk-together") if who == i else ("walk-together", "walk-together+talk")
+        )
         play.note(acts, start, i=i, relation="while", styles=style)
         return
     play.note(("walk-together", "walk-together"), start, i=i, relation="while", styles=style)
@@ -339,6 +342,10 @@ def _spoken(play: Play) -> list[str]:
     return [name for name in ("guide", "respond", "talking") if play.library.has(name)]
 
 
+_SAID = {"wave": "wave", "bye": "wave", "raise-hand": "raise-arm"}
+"""The entry of a source action whose arms are laid over a walk."""
+
+
 def walk_and(play: Play, i: int) -> None:
     """i walks away or up and waves, talks or raises a hand meanwhile."""
     rng = play.rng
@@ -346,8 +353,9 @@ def walk_and(play: Play, i: int) -> None:
     own, other = play.people[i], play.people[1 - i]
     ways = [n for n in ("wave", "wave", "bye", "raise-hand") if play.library.has(n)]
     wish = play.wish[0] if play.wish else ""
-    over = wish.partition("-and-")[2] if wish else pick(rng, ways)
-    up = wish.startswith("up") if wish else play.gap > 2.2
+    wished = {"raise-arm": "raise-hand"}.get(wish.partition("+")[2], wish.partition("+")[2])
+    over = wished if wish else pick(rng, ways)
+    up = wish.startswith("walk-up") if wish else play.gap > 2.2
     if over not in ways:
         raise LookupError("no arms for it")
     side = pick(rng, ("left", "right")) if over != "bye" else None
@@ -362,7 +370,7 @@ def walk_and(play: Play, i: int) -> None:
     own.hold(14)
     own.motion, gesture = arms_over(play.library, rng, own.motion, over, start, side, most=length)
     play.note(
-        (f"{'up' if up else 'back'}-and-{over}", "stand"), start, i=i, relation="while",
+        (f"{'walk-up' if up else 'step-back'}+{_SAID[over]}", STILL), start, i=i, relation="while",
         sides=(gesture.side, None), styles=(take.style, "normal"),
     )  # fmt: skip
 

@@ -6,6 +6,7 @@ import numpy as np
 
 from ..compose import Array
 from ..contact import axes, envelope, on_body, reach_arm
+from ..cues import STILL
 from ..library import pick
 from ..stage import stride
 from ..touches import Touches, chosen_side
@@ -14,21 +15,16 @@ from .moves import close_in, come
 from .play import Play
 
 _OFFERS = {
-    "offer-hand": (0.95, (-0.02, -0.34, 0.46)),
-    "offer-five": (0.92, (0.02, 0.22, 0.36)),
-    "offer-thing": (1.0, (-0.06, -0.2, 0.46)),
-    "offer-hug": (0.95, (0.34, -0.06, 0.3)),
+    "shake-hands?": (0.95, (-0.02, -0.34, 0.46)),
+    "high-five?": (0.92, (0.02, 0.22, 0.36)),
+    "hand-over?": (1.0, (-0.06, -0.2, 0.46)),
+    "hug?": (0.95, (0.34, -0.06, 0.3)),
 }
 """Offers that can be refused: metres apart, and where the hand goes from its shoulder: out, up, ahead."""
 
 
-_REFUSALS = {
-    "stand": "refuse",
-    "head-shake": "refuse-shake",
-    "turn-away": "refuse-turn",
-    "step-back": "refuse-back",
-}
-"""Answers to an offer and the names under which the words know them."""
+_REFUSALS = (STILL, "shake-head", "turn-away", "step-back", "fold-arms", "stop-hand")
+"""Answers to an offer that leave it where it is."""
 
 
 def refused(play: Play, i: int) -> None:
@@ -38,12 +34,10 @@ def refused(play: Play, i: int) -> None:
     distance, (out, up, front) = _OFFERS[offer]
     start = come(play, i, rng.uniform(distance, distance + 0.15))
     side, _ = chosen_side(rng)
-    sides = ("left", "right") if offer == "offer-hug" else (side,)
-    answers = ["stand", "head-shake", "turn-away", "step-back", "fold-arms", "stop-hand"]
-    answers += ["reject"] if play.library.has("reject") else []
+    sides = ("left", "right") if offer == "hug?" else (side,)
+    answers = [*_REFUSALS, "wave-off"] if play.library.has("reject") else list(_REFUSALS)
     wish = play.wish[1] if play.wish else ""
-    named = {refusal: plain for plain, refusal in _REFUSALS.items()}.get(wish, wish.removeprefix("refuse-"))
-    answer = named if named in answers else pick(rng, answers)
+    answer = wish if wish in answers else pick(rng, answers)
     other = play.people[1 - i]
     other.hold(play.seconds(0.7, 1.2))
     if answer == "turn-away":
@@ -51,7 +45,7 @@ def refused(play: Play, i: int) -> None:
         play.look(1 - i, start + 20, len(other) + 40, 0.0)
     elif answer == "step-back":
         other.perform(stride(rng, play.library, "walk-back", rng.uniform(0.4, 0.9)).motion)
-    elif answer != "stand":
+    elif answer != STILL:
         ACTS[answer].make(play, 1 - i)
     play.people[i].hold_until(max(len(other) + 10, start + 66))
     stop = play.sync()
@@ -66,7 +60,7 @@ def refused(play: Play, i: int) -> None:
 
     play.effect(start, stop, effect, i=i)
     play.note(
-        (offer, _REFUSALS.get(answer, f"refuse-{answer}")),
+        (offer, answer),
         start,
         i=i,
         sides=(None if len(sides) > 1 else side, None),
@@ -96,4 +90,4 @@ def throw_catch(play: Play, i: int) -> None:
 
     stop = play.sync()
     play.effect(start, stop, effect, i=i)
-    play.note(("throw-to", "catch"), start, i=i, sides=(take.side, None))
+    play.note(("throw-ball", "catch-thing"), start, i=i, sides=(take.side, None))

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, field, replace
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -11,63 +11,12 @@ import numpy as np
 from motion.transforms import canonicalize
 
 from ..compose import FPS, Array, look_at, realise
+from ..cues import STILL, Beat
 from ..library import Library
 from ..touches import Touches
 from .performer import Performer, Rng, bearing, wrap
 
 Effect = Callable[[Array, Array], tuple[Array, Array, Touches]]
-
-
-@dataclass
-class Beat:
-    """One stretch of a scene, in which each of the two does one thing.
-
-    Attributes:
-        acts: what a and b do, by the names of the phrase book; "stand" who only looks on.
-        start, end: frames, ``end`` exclusive.
-        first: 0 where a acts first or both at once, 1 where b does.
-        relation: "reply" (the second answers the first), "while" (at the same time) or "order".
-        sides, styles: of a and b, "left", "right", "both" or None; a style's name.
-        minor: a transition that a caption may leave out.
-        more: "direction", "speed", "thing" and what else the words may name.
-    """
-
-    acts: tuple[str, str]
-    start: int
-    end: int
-    first: int = 0
-    relation: str = "reply"
-    sides: tuple[str | None, str | None] = (None, None)
-    styles: tuple[str, str] = ("normal", "normal")
-    minor: bool = False
-    more: dict[str, Any] = field(default_factory=dict)
-
-    def row(self, frames: int, captions: list[str]) -> dict[str, Any]:
-        """The beat as the index has it, cut to the scene's ``frames``."""
-        return {
-            "start": int(self.start),
-            "end": int(min(self.end, frames)),
-            "acts": list(self.acts),
-            "first": self.first,
-            "minor": self.minor,
-            "relation": self.relation,
-            "sides": list(self.sides),
-            "styles": list(self.styles),
-            **self.more,
-            "captions": captions,
-        }
-
-    @classmethod
-    def of_row(cls, row: Mapping[str, Any]) -> Beat:
-        """The beat that a row of the index describes."""
-        own = {key: row[key] for key in ("start", "end", "first", "relation", "minor")}
-        return cls(**own, **{key: tuple(row[key]) for key in ("acts", "sides", "styles")})
-
-    def swapped(self) -> Beat:
-        """The same with the two people exchanged."""
-        return replace(
-            self, acts=self.acts[::-1], first=1 - self.first, sides=self.sides[::-1], styles=self.styles[::-1]
-        )
 
 
 @dataclass
@@ -149,7 +98,7 @@ class Play:
 
     def beats_before(self, start: int, end: int, i: int) -> None:
         """Writes down that the other has come to i's side."""
-        self.note_span(("join", "stand"), start, end, i=1 - i, relation="while", minor=True)
+        self.note_span(("join-side", STILL), start, end, i=1 - i, relation="while", minor=True)
 
     def effect(self, start: int, stop: int, effect: Effect, *, i: int = 0) -> None:
         """Has ``effect`` change the positions of (person i, the other) from ``start`` to ``stop``."""

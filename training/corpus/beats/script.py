@@ -9,17 +9,16 @@ from typing import Any
 
 import numpy as np
 
+from ..cues import STILL
 from ..library import Library, pick
 from ..scene import Scene
-from ..words import Narrator
-from ..words.lexicon import ANSWERS as REPLIES
-from ..words.lexicon import Pair, sentences
-from ..words.narrator import ALONE, JOINT, ONE_BEAT
+from ..telling import describe
 from . import moves
 from .act import Done
 from .acts import ACTS
 from .performer import Rng
 from .play import Play
+from .stories import Pair, stories
 from .touching import TOUCH_BEATS
 
 MOST = 300
@@ -66,8 +65,9 @@ def _close(play: Play, i: int) -> bool:
     return play.gap < 2.4
 
 
-ANSWERS = ("nod", "clap", "wave", "head-shake", "shrug", "bow", "point", "fold-arms", "open-arms", "raise-hand",
-           "talk", "hands-on-hips", "jump", "fist-pump", "cover-face", "reject", "rage", "dance", "heart")  # fmt: skip
+ANSWERS = ("nod", "clap", "wave", "shake-head", "shrug", "bow", "point", "fold-arms", "arms-out", "raise-arm",
+           "talk", "hands-on-hips", "jump", "make-fist", "cover-face",
+           "wave-off", "rage", "dance", "hand-on-chest")  # fmt: skip
 
 
 def solo(name: str) -> Callable[[Play, int], None]:
@@ -97,7 +97,7 @@ def _face(play: Play, i: int) -> int:
     if abs(play.off(i)) > 1.0 and (play.wish or play.rng.random() < 0.8):
         play.people[i].turn(play.off(i))
         if len(play.people[i]) - start > 25:
-            play.note(("turn-to", "stand"), start, i=i, relation="while", minor=True)
+            play.note(("turn-to", STILL), start, i=i, relation="while", minor=True)
             start = play.sync()
     return start
 
@@ -115,13 +115,13 @@ def _draw_answer(play: Play, name: str, draw: float) -> str:
         return pick(play.rng, [a for a in ANSWERS if a != name and play.library.has(*ACTS[a].needs)])
     if draw < 0.68:
         return "turn-away"
-    return "turn-to" if draw < 0.72 else "stand"
+    return "turn-to" if draw < 0.72 else STILL
 
 
 def _play_answer(play: Play, i: int, answer: str, done: Done) -> tuple[str, str, Done | None]:
     """Person i answers what the other has ``done``: the act that came of it, its relation, how it was done.
 
-    An answer that does not fit where the two stand becomes "stand".
+    An answer that does not fit where the two stand becomes :data:`STILL`.
     """
     rng, person = play.rng, play.people[i]
     if answer in ACTS and play.gap > ACTS[answer].room - (0.4 if play.wish else 0.0):
@@ -144,7 +144,7 @@ def _play_answer(play: Play, i: int, answer: str, done: Done) -> tuple[str, str,
         person.hold_until(done.start + play.seconds(0.2, 0.8))
         person.turn(play.off(i))
         return answer, "reply", None
-    return "stand", "while", None
+    return STILL, "while", None
 
 
 def _room(name: str) -> Callable[[Play, int], bool]:
@@ -161,7 +161,7 @@ MENU: dict[str, Option] = {
     "turn-to": Option(moves.turn_to, ("idle",), 9.0, _turned),
     "step-back": Option(moves.step_back, ("walk-back",), 2.5, _close),
     "step-aside": Option(moves.step_aside, ("walk-left", "walk-right"), 1.5, _near),
-    "circle": Option(moves.circle, ("walk",), 3.0, _close),
+    "walk-around": Option(moves.circle, ("walk",), 3.0, _close),
     "pace": Option(moves.pace_about, ("walk",), 1.2, _near),
     "follow": Option(moves.follow, ("walk",), 3.0, _close),
     "walk-together": Option(moves.walk_together, ("walk",), 6.0, _near),
@@ -170,23 +170,20 @@ MENU: dict[str, Option] = {
 }  # fmt: skip
 
 
-APPROACHES = (
-    "walk-up",
-    "run-up",
-    "sneak-up",
-    "meet",
-    "up-and-wave",
-    "up-and-bye",
-    "up-and-raise-hand",
-    "walk-past",
-)
-_STAGED_BY = {
-    **dict.fromkeys(("run-up", "sneak-up", "meet"), "walk-up"),
+APPROACHES = ("walk-up", "run-up", "creep-up", "walk-up+wave", "walk-up+raise-arm", "walk-past")
+_CAUSES = ("push", "hand-over", "throw-ball", "punch", "kick", "help-up", "whisper")
+"""Cues that the other's part follows from."""
+_STAGED_BY: dict[str | Pair, str] = {
+    **dict.fromkeys(("run-up", "creep-up"), "walk-up"),
     **dict.fromkeys(("walk-away", "run-away", "sneak-away"), "leave"),
-    **dict.fromkeys(("walk-together", "walk-and-talk", "stop"), "walk-together"),
-    **dict.fromkeys(("offer-hand", "offer-five", "offer-thing", "offer-hug"), "refused"),
-    "step-up": "step-back",
-    "hold-hands": "hand-in-hand",
+    **dict.fromkeys(("walk-together+talk", (STILL, "walk-ahead")), "walk-together"),
+    **dict.fromkeys(("shake-hands?", "high-five?", "hand-over?", "hug?"), "refused"),
+    **dict.fromkeys(
+        ("walk-up+wave", "walk-up+raise-arm", "step-back+wave", "step-back+raise-arm"), "walk-and"
+    ),
+    ("pat:shoulder", "turn-to"): "tap",
+    "step-forward": "step-back",
+    "hold-hands": "walk-hand-in-hand",
 }
 """Which entry of the menu plays an act that is not an entry itself."""
 
@@ -196,11 +193,9 @@ def staged_by(acts: Pair) -> tuple[str, bool] | None:
     for begins, (own, other) in ((False, acts), (True, acts[::-1])):
         if other in ("follow", "chase"):
             return "follow", begins
-        if (other in REPLIES and own not in REPLIES) or (own == "stand" and other != "stand"):
+        if (other in _CAUSES and own not in _CAUSES) or (own == STILL and other not in (STILL, "walk-ahead")):
             continue
-        if "-and-" in own and own.split("-")[0] in ("up", "back"):
-            return "walk-and", begins
-        name = _STAGED_BY.get(own, own)
+        name = _STAGED_BY.get((own, other)) or _STAGED_BY.get(own, own)
         if name in MENU:
             return name, begins
     return None
@@ -219,7 +214,7 @@ def opening(rng: Rng, library: Library, story: Sequence[Pair] = (), first: int =
         kind = 0.3 + 0.7 * kind if kind < 0.85 else kind
         if any(act in APPROACHES for act in early):
             kind = 0.6
-        elif "turn-to" in story[0] or "tap" in story[0]:
+        elif "turn-to" in story[0]:
             kind = 0.85
         else:
             kind = 0.0 if kind < 0.9 else 0.95
@@ -245,17 +240,17 @@ def opening(rng: Rng, library: Library, story: Sequence[Pair] = (), first: int =
     return Play(rng, library, spots, (styles[0], styles[1]))
 
 
-def compose(rng: Rng, library: Library, *, first: str | None = None, stories: float = 0.55) -> Scene:
+def compose(rng: Rng, library: Library, *, first: str | None = None, told: float = 0.55) -> Scene:
     """A scene of beats.
 
     Args:
         first: the beat to begin with; drawn otherwise.
-        stories: how often the beats are those of a sentence that was written by hand.
+        told: how often the beats are those of a story.
 
     Raises:
         LookupError: where nothing fits.
     """
-    if first is None and rng.random() < stories:
+    if first is None and rng.random() < told:
         return tell(rng, library, draw_story(rng, library))
     play = opening(rng, library)
     _begin(play)
@@ -311,8 +306,7 @@ def draw_story(rng: Rng, library: Library) -> tuple[Pair, ...]:
 def _stories(split: str, menu: tuple[str, ...]) -> tuple[list[tuple[Pair, ...]], list[tuple[Pair, ...]]]:
     """Stories of one beat and of more whose beats are all on the menu."""
     found: tuple[list[tuple[Pair, ...]], list[tuple[Pair, ...]]] = ([], [])
-    for key in sentences():
-        story = tuple((own, "stand" if other == "*" else other) for own, other in key)
+    for story in stories():
         entries = [staged_by(acts) for acts in story]
         if all(entry and entry[0] in menu for entry in entries):
             found[len(story) > 1].append(story)
@@ -332,7 +326,7 @@ def tell(rng: Rng, library: Library, story: Sequence[Pair]) -> Scene:
     k = 0
     while k < len(story):
         acts = story[k]
-        if k + 1 < len(story) and story[k + 1] == ("stop", "go-on"):
+        if k + 1 < len(story) and story[k + 1] == (STILL, "walk-ahead"):
             k += 1
             acts = story[k]
         entry = staged_by(acts)
@@ -372,18 +366,8 @@ def as_scene(rng: Rng, play: Play, split: str) -> Scene:
     positions, touches = play.finish(MOST)
     frames = positions.shape[1]
     beats = [beat for beat in play.beats if beat.start < frames - 5]
-    narrator = Narrator(rng, beats, split)
-    rows = [beat.row(frames, narrator.beat(k, ONE_BEAT)) for k, beat in enumerate(beats)]
-    events: dict[str, Any] = {}
-    if touches:
-        events["contact"] = touches
-    return Scene(
-        positions.astype(np.float32),
-        f"beats-{min(sum(not beat.minor for beat in beats) or 1, 4)}",
-        narrator.together(JOINT),
-        play.sources(),
-        split,
-        events,
-        alone=(narrator.alone(0, ALONE), narrator.alone(1, ALONE)),
-        beats=rows,
+    events: dict[str, Any] = {"contact": touches} if touches else {}
+    family = f"beats-{min(sum(not beat.minor for beat in beats) or 1, 4)}"
+    return describe(
+        rng, Scene(positions.astype(np.float32), family, play.sources(), split, events, played=beats)
     )

@@ -10,6 +10,7 @@ from motion.skeleton import SMPL22
 
 from ..compose import Array
 from ..contact import UP, envelope, on_body, reach
+from ..cues import STILL
 from ..library import pick
 from ..stage import stride
 from ..touches import TOUCHES, Touches, chosen_side, help_up, hug, pat_back, pats, whisper
@@ -22,13 +23,18 @@ from .play import Play
 
 AFTER = 34
 """Frames for which hands may still be on their way back when a touch is over."""
+_CUES = {"handshake": "shake-hands", "pat-shoulder": "pat:shoulder",
+         "hand-on-shoulder": "hand-on:shoulder"}  # fmt: skip
+"""The cues of touches that go by another name than their entry."""
 
 
 def face_to_face(name: str) -> Callable[[Play, int], None]:
     """A beat of one of :data:`~training.corpus.touches.TOUCHES`."""
 
     def make(play: Play, i: int) -> None:
-        rng, touch = play.rng, TOUCHES[name]
+        rng = play.rng
+        both = name == "high-five" and rng.random() < 0.3
+        touch = TOUCHES["high-ten" if both else name]
         start = come(play, i, rng.uniform(*touch.distance))
         length = play.seconds(touch.hold[0], min(touch.hold[1], 2.4))
         side, _ = chosen_side(rng)
@@ -39,10 +45,10 @@ def face_to_face(name: str) -> Callable[[Play, int], None]:
             start, start + length + AFTER + 16,
             lambda a, b: touch.make(own_rng, a, b, 2, length, side), i=i,
         )  # fmt: skip
-        both = name in ("high-ten",)
-        answer = {"hand-over": "take", "pat-shoulder": "stand", "hand-on-shoulder": "stand"}.get(name, name)
-        sides = ("both",) * 2 if both else (side, side if answer == name else None)
-        play.note((name, answer), start, i=i, relation="while", sides=sides)
+        cue = _CUES.get(name, name)
+        answer = {"hand-over": "take-from", "pat-shoulder": STILL, "hand-on-shoulder": STILL}.get(name, cue)
+        sides = ("both",) * 2 if both else (side, side if answer == cue else None)
+        play.note((cue, answer), start, i=i, relation="while", sides=sides)
 
     return make
 
@@ -85,7 +91,7 @@ def _from_the_side(make: Callable, name: str, answer: str) -> Callable[[Play, in
         own.hold(12, turn=wrap(way - own.angle), shift=spot - own.spot)
         start = play.sync()
         if not near:
-            play.note_span(("walk-up", "stand"), begun, start, i=i, relation="while", minor=True)
+            play.note_span(("walk-up", STILL), begun, start, i=i, relation="while", minor=True)
         length = play.seconds(1.6, 2.4)
         for person in play.people:
             person.hold(length + 22)
@@ -117,7 +123,7 @@ def _help_up(play: Play, i: int) -> None:
         return helped[0], _on_bones(mixed, b), helped[2]
 
     play.effect(down, start + length + 24, effect, i=i)
-    play.note(("help-up", "get-up"), begun, i=i, sides=(side, None))
+    play.note(("help-up", "stand-up"), begun, i=i, sides=(side, None))
 
 
 def _on_bones(positions: Array, like: Array) -> Array:
@@ -149,7 +155,7 @@ def _tap_turn(play: Play, i: int) -> None:
     own.hold(10, turn=wrap(way - own.angle), shift=spot - own.spot)
     start = play.sync()
     if start - begun > 30:
-        play.note_span(("walk-behind", "stand"), begun, start, i=i, relation="while", minor=True)
+        play.note_span(("come-behind", STILL), begun, start, i=i, relation="while", minor=True)
     arrive = int(rng.integers(14, 20))
     leave = arrive + int(rng.integers(14, 22))
     own.hold(leave + 40)
@@ -166,25 +172,25 @@ def _tap_turn(play: Play, i: int) -> None:
         return a, b, [(f"{side}_wrist", f"{side}_shoulder", arrive, leave - 4)]
 
     play.effect(start, start + leave + 24, effect, i=i)
-    play.note(("tap", "turn-to"), start, i=i, sides=(side, None))
+    play.note(("pat:shoulder", "turn-to"), start, i=i, sides=(side, None))
 
 
 TOUCH_BEATS: dict[str, tuple[Callable[[Play, int], None], float, tuple[str, ...]]] = {
-    **{name: (face_to_face(name), weight, ("walk", "idle")) for name, weight in (
-        ("handshake", 4.0), ("high-five", 3.0), ("low-five", 1.2), ("high-ten", 1.3), ("fist-bump", 1.8),
+    **{_CUES.get(name, name): (face_to_face(name), weight, ("walk", "idle")) for name, weight in (
+        ("handshake", 4.0), ("high-five", 4.3), ("low-five", 1.2), ("fist-bump", 1.8),
         ("elbow-bump", 1.0), ("hand-over", 2.5), ("pat-shoulder", 1.5), ("hand-on-shoulder", 1.5))},
     "hug": (_hug, 4.0, ("walk", "idle", "walk-back")),
-    "pat-back": (_from_the_side(pat_back, "pat-back", "stand"), 1.5, ("walk", "idle")),
+    "pat:back": (_from_the_side(pat_back, "pat:back", STILL), 1.5, ("walk", "idle")),
     "whisper": (_from_the_side(whisper, "whisper", "listen"), 1.5, ("walk", "idle")),
     "arm-around": (arm_around_beat, 1.3, ("walk", "idle")),
-    "hand-in-hand": (hand_in_hand, 3.0, ("walk", "idle")),
-    "carousel": (carousel, 2.0, ("walk-left", "walk-right")),
+    "walk-hand-in-hand": (hand_in_hand, 3.0, ("walk", "idle")),
+    "ring": (carousel, 2.0, ("walk-left", "walk-right")),
     "push": (push, 2.5, ("walk", "walk-back")),
     "help-up": (_help_up, 1.5, ("walk", "idle")),
     "tap": (_tap_turn, 1.8, ("walk", "idle")),
     "refused": (refused, 5.0, ("walk", "walk-back")),
-    "throw-to": (throw_catch, 1.5, ("throw",)),
-    "punch-at": (blow_at("punch"), 1.8, ("punch", "walk-back")),
-    "kick-at": (blow_at("kick"), 1.5, ("kick", "walk-back")),
+    "throw-ball": (throw_catch, 1.5, ("throw",)),
+    "punch": (blow_at("punch"), 1.8, ("punch", "walk-back")),
+    "kick": (blow_at("kick"), 1.5, ("kick", "walk-back")),
 }  # fmt: skip
 """(beat, how often it is drawn, source actions it needs) by name."""

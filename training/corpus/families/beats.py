@@ -7,14 +7,11 @@ import numpy as np
 from motion.kinematics import forward_kinematics
 from motion.transforms import canonicalize
 
-from ..beats.play import Beat
 from ..beats.script import compose
 from ..compose import FPS, Motion, mirror, motion_from_positions, place, realise
 from ..library import Library
 from ..scene import Scene, SourceClip
 from ..stage import Rng, seconds
-from ..words import Narrator
-from ..words.narrator import ALONE, JOINT, ONE_BEAT
 from . import register
 
 DANCERS = ("formation-a", "formation-b", "formation-c")
@@ -26,7 +23,7 @@ def beats(rng: Rng, library: Library) -> Scene:
     return compose(rng, library)
 
 
-@register("formation", needs=DANCERS, weight=4.0)
+@register("formation", "dance", needs=DANCERS, weight=4.0)
 def formation(rng: Rng, library: Library) -> Scene:
     """Two of three dancers, as they were recorded in one formation."""
     chosen = rng.permutation(3)[:2]
@@ -41,18 +38,8 @@ def formation(rng: Rng, library: Library) -> Scene:
     if rng.random() < 0.5:
         a, b = mirror(a), mirror(b)
     positions = canonicalize(np.stack([realise(m[start : start + frames]) for m in (a, b)]))
-    beat = Beat(("formation", "formation"), 0, frames, relation="while")
-    narrator = Narrator(rng, [beat], library.split)
-    return Scene(
-        positions.astype(np.float32),
-        "formation",
-        narrator.together(JOINT),
-        tuple(sorted(set(a.sources + b.sources))),
-        library.split,
-        {},
-        (narrator.alone(0, ALONE), narrator.alone(1, ALONE)),
-        [beat.row(frames, narrator.beat(0, ONE_BEAT))],
-    )
+    sources = tuple(sorted(set(a.sources + b.sources)))
+    return Scene(positions.astype(np.float32), "formation", sources, library.split)
 
 
 def _liveliness(motion: Motion) -> float:

@@ -103,13 +103,23 @@ def _strike(rng: Rng, library: Library, family: str) -> Scene:
     )
 
 
-@register("punch", needs=("punch", "idle", "walk-back"), weight=1.5, contact=True)
+@register(
+    "punch",
+    "punch",
+    "flinch",
+    relation="reply",
+    needs=("punch", "idle", "walk-back"),
+    weight=1.5,
+    contact=True,
+)
 def punch(rng: Rng, library: Library) -> Scene:
     """A punches B, who is hit."""
     return _strike(rng, library, "punch")
 
 
-@register("kick", needs=("kick", "idle", "walk-back"), weight=1.5, contact=True)
+@register(
+    "kick", "kick", "flinch", relation="reply", needs=("kick", "idle", "walk-back"), weight=1.5, contact=True
+)
 def kick(rng: Rng, library: Library) -> Scene:
     """A kicks B, who is hit."""
     return _strike(rng, library, "kick")

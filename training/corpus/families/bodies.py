@@ -18,6 +18,7 @@ from ..contact import (
     reach_arm,
     towards,
 )
+from ..cues import STILL
 from ..library import Library, pick
 from ..scene import Scene
 from ..stage import Rng, act, beside, forward, pad, seconds, stride
@@ -32,7 +33,7 @@ from .gestures import about
 from .meeting import Encounter, come_together, conclude, side_by_side
 
 
-@register("hug", needs=("walk", "idle", "walk-back"), weight=3.0, contact=True)
+@register("hug", "hug", needs=("walk", "idle", "walk-back"), weight=3.0, contact=True)
 def hug(rng: Rng, library: Library) -> Scene:
     """Two people walk up to each other and hug."""
     meet = come_together(rng, library, rng.uniform(0.4, 0.46), (1.8, 3.2), near=0.12, leave=0.0)
@@ -47,7 +48,7 @@ def hug(rng: Rng, library: Library) -> Scene:
     return conclude(rng, library, "hug", meet, a, b, touches=touches)
 
 
-@register("pat-back", needs=("idle",), weight=1.5, contact=True)
+@register("pat-back", "pat:back", STILL, needs=("idle",), weight=1.5, contact=True)
 def pat_back(rng: Rng, library: Library) -> Scene:
     """A pats B on the back."""
     side, named = chosen_side(rng)
@@ -81,7 +82,7 @@ def _standing_beside(rng: Rng, library: Library, side: str, hold: tuple[float, f
     return Encounter(a, b, start, start + length)
 
 
-@register("arm-around", needs=("idle",), weight=1.2, contact=True)
+@register("arm-around", "arm-around", STILL, needs=("idle",), weight=1.2, contact=True)
 def arm_around(rng: Rng, library: Library) -> Scene:
     """Two people stand side by side, and A puts an arm around B."""
     side = pick(rng, ("left", "right"))
@@ -93,7 +94,9 @@ def arm_around(rng: Rng, library: Library) -> Scene:
     )
 
 
-@register("push", needs=("walk", "idle", "walk-back"), weight=2.0, contact=True)
+@register(
+    "push", "push", "stumble", relation="reply", needs=("walk", "idle", "walk-back"), weight=2.0, contact=True
+)
 def push(rng: Rng, library: Library) -> Scene:
     """A pushes B, who stumbles back."""
     meet = come_together(rng, library, rng.uniform(0.52, 0.62), (1.0, 1.5), leave=0.0)
@@ -130,7 +133,7 @@ def push(rng: Rng, library: Library) -> Scene:
     return conclude(rng, library, "push", meet, a, b, touches=touches)
 
 
-@register("whisper", needs=("walk", "idle"), weight=1.3, contact=True)
+@register("whisper", "whisper", "listen", needs=("walk", "idle"), weight=1.3, contact=True)
 def whisper(rng: Rng, library: Library) -> Scene:
     """A whispers something in B's ear."""
     side, _ = chosen_side(rng)
@@ -139,7 +142,7 @@ def whisper(rng: Rng, library: Library) -> Scene:
     return conclude(rng, library, "whisper", meet, a, b, touches=[])
 
 
-@register("help-up", needs=("walk", "idle"), weight=1.2, contact=True)
+@register("help-up", "help-up", "stand-up", needs=("walk", "idle"), weight=1.2, contact=True)
 def help_up(rng: Rng, library: Library) -> Scene:
     """A helps B up from a crouch."""
     meet = come_together(rng, library, rng.uniform(0.82, 0.95), (3.0, 4.0), leave=0.1)
@@ -148,7 +151,9 @@ def help_up(rng: Rng, library: Library) -> Scene:
     return conclude(rng, library, "help-up", meet, a, b, touches=touches, side=side if named else None)
 
 
-@register("tap-turn", needs=("walk", "idle"), weight=1.3, contact=True)
+@register(
+    "tap-turn", "pat:shoulder", "turn-to", relation="reply", needs=("walk", "idle"), weight=1.3, contact=True
+)
 def tap_turn(rng: Rng, library: Library) -> Scene:
     """A taps B's shoulder from behind, and B turns around."""
     side, named = chosen_side(rng)

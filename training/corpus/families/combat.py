@@ -84,6 +84,7 @@ def _attack(
     a, starts = act(rng, library, (start, take.motion, take.aim), tail=seconds(rng, 0.4, 0.9))
     hits = [starts[0] + peak for peak in take.peaks]
     frames = min(max(len(a), 60), 260)
+    acts = {"acts": ("punch", "step-back")} if (action, answer) == ("punch", "retreat") else {}
     if answer == "retreat":
         b = retreat(rng, library, hits[0] - int(rng.integers(10, 16)))
     elif answer == "recoil":
@@ -110,31 +111,33 @@ def _attack(
         family,
         a,
         b,
-        slots={"side_a": side if action != "slash" else None},
+        slots={"side_a": side if action != "slash" else None} | acts,
         events=events | {"facing": True},
         gaze=(0.3, 0.6),
     )
 
 
-@register("punch-dodge", needs=("punch", "walk-back"), weight=1.5)
+@register("punch-dodge", "punch", "dodge", relation="reply", needs=("punch", "walk-back"), weight=1.5)
 def punch_dodge(rng: Rng, library: Library) -> Scene:
     """A punches, and B dodges or retreats."""
     return _attack(rng, library, "punch-dodge", "punch", pick(rng, ("dodge", "retreat")), (0.12, 0.3))
 
 
-@register("punch-recoil", needs=("punch", "walk-back"), weight=1.3)
+@register("punch-recoil", "punch", "flinch", relation="reply", needs=("punch", "walk-back"), weight=1.3)
 def punch_recoil(rng: Rng, library: Library) -> Scene:
     """A punches, and B recoils without being touched."""
     return _attack(rng, library, "punch-recoil", "punch", "recoil", (0.12, 0.22))
 
 
-@register("kick-step-back", needs=("kick", "walk-back"), weight=1.5)
+@register("kick-step-back", "kick", "step-back", relation="reply", needs=("kick", "walk-back"), weight=1.5)
 def kick_step_back(rng: Rng, library: Library) -> Scene:
     """A kicks, and B steps back."""
     return _attack(rng, library, "kick-step-back", "kick", "retreat", (0.1, 0.45))
 
 
-@register("sword-retreat", needs=("slash", "walk-back"), weight=1.3)
+@register(
+    "sword-retreat", "swing-sword", "step-back", relation="reply", needs=("slash", "walk-back"), weight=1.3
+)
 def sword_retreat(rng: Rng, library: Library) -> Scene:
     """A cuts with a sword, and B retreats."""
     return _attack(rng, library, "sword-retreat", "slash", "retreat", (0.4, 1.0))
@@ -155,13 +158,13 @@ def _exchange(rng: Rng, library: Library, family: str, action: str, distance: tu
     return finish(rng, library, family, a, b, events={"facing": True, "distance": "keep"}, gaze=(0.2, 0.2))
 
 
-@register("spar", needs=("punch",), weight=1.5)
+@register("spar", "fight", needs=("punch",), weight=1.5)
 def spar(rng: Rng, library: Library) -> Scene:
     """Two people exchange punches that miss."""
     return _exchange(rng, library, "spar", "punch", (1.0, 1.4))
 
 
-@register("sword-fight", needs=("slash",), weight=1.5)
+@register("sword-fight", "sword-fight", needs=("slash",), weight=1.5)
 def sword_fight(rng: Rng, library: Library) -> Scene:
     """Two people exchange sword cuts."""
     return _exchange(rng, library, "sword-fight", "slash", (1.5, 2.1))

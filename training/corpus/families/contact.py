@@ -7,6 +7,7 @@ from functools import partial
 import numpy as np
 
 from ..contact import envelope
+from ..cues import STILL
 from ..library import Library
 from ..scene import Scene
 from ..stage import Rng
@@ -25,21 +26,21 @@ def _together(name: str, rng: Rng, library: Library) -> Scene:
     return conclude(rng, library, name, meet, a, b, touches=touches, side=side if named else None)
 
 
-for _name, _weight in (
-    ("handshake", 3.0),
-    ("high-five", 2.5),
-    ("low-five", 1.2),
-    ("high-ten", 1.5),
-    ("fist-bump", 1.5),
-    ("elbow-bump", 1.0),
-    ("hand-over", 2.0),
-    ("pat-shoulder", 1.3),
-    ("hand-on-shoulder", 1.3),
+for _name, _weight, *_shows in (
+    ("handshake", 3.0, "shake-hands"),
+    ("high-five", 2.5, "high-five"),
+    ("low-five", 1.2, "low-five"),
+    ("high-ten", 1.5, "high-five@both"),
+    ("fist-bump", 1.5, "fist-bump"),
+    ("elbow-bump", 1.0, "elbow-bump"),
+    ("hand-over", 2.0, "hand-over", "take-from"),
+    ("pat-shoulder", 1.3, "pat:shoulder", STILL),
+    ("hand-on-shoulder", 1.3, "hand-on:shoulder", STILL),
 ):
-    register(_name, needs=("walk", "idle"), weight=_weight, contact=True)(partial(_together, _name))
+    register(_name, *_shows, needs=("walk", "idle"), weight=_weight, contact=True)(partial(_together, _name))
 
 
-@register("hold-hands", needs=("idle",), weight=1.3, contact=True)
+@register("hold-hands", "hold-hands", needs=("idle",), weight=1.3, contact=True)
 def hold_hands(rng: Rng, library: Library) -> Scene:
     """Two people stand side by side and hold hands."""
     side = "left" if rng.random() < 0.5 else "right"
@@ -54,7 +55,7 @@ def hold_hands(rng: Rng, library: Library) -> Scene:
     return conclude(rng, library, "hold-hands", meet, a, b, touches=touches)
 
 
-@register("walk-hand-in-hand", needs=("walk",), weight=1.3, contact=True)
+@register("walk-hand-in-hand", "walk-hand-in-hand", needs=("walk",), weight=1.3, contact=True)
 def walk_hand_in_hand(rng: Rng, library: Library) -> Scene:
     """Two people walk hand in hand."""
     side = "left" if rng.random() < 0.5 else "right"
@@ -68,7 +69,7 @@ def walk_hand_in_hand(rng: Rng, library: Library) -> Scene:
     return conclude(rng, library, "walk-hand-in-hand", meet, a, b, touches=touches)
 
 
-@register("lead-by-hand", needs=("walk",), weight=1.3, contact=True)
+@register("lead-by-hand", "lead", "follow", needs=("walk",), weight=1.3, contact=True)
 def lead_by_hand(rng: Rng, library: Library) -> Scene:
     """A leads B by the hand."""
     side = "left" if rng.random() < 0.5 else "right"

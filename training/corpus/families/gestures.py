@@ -12,8 +12,9 @@ from training.corpus.blending import ease, slerp
 from training.corpus.compose import ARMS, Motion, drift, lean, mirror, place, steer, tempo, turned
 from training.corpus.library import Library, Take, pick
 from training.corpus.scene import Scene
-from training.corpus.stage import Rng, act, finish, how_far, manner, oppose, pad, seconds, stride, waiting
+from training.corpus.stage import Rng, act, finish, manner, oppose, pad, seconds, stride, waiting
 
+from ..cues import STILL
 from . import register
 
 SIDES = ("left", "right")
@@ -81,7 +82,7 @@ def pair(
     frames = min(max(len(a), len(b)), 270)
     a, b = pad(rng, library, a, frames), pad(rng, library, b, frames)
     gap = rng.uniform(*distance)
-    known = {"manner_a": first.style, "side_a": first.side, "distance": how_far(gap)}
+    known = {"manner_a": first.style, "side_a": first.side}
     if second is not None:
         known |= {"manner_b": second.style, "side_b": second.side}
     known |= slots or {}
@@ -95,7 +96,7 @@ def pair(
     return finish(rng, library, family, a, b, slots=known, events=found)
 
 
-@register("wave-back", needs=("wave",), weight=2.0)
+@register("wave-back", "wave", relation="reply", needs=("wave",), weight=2.0)
 def wave_back(rng: Rng, library: Library) -> Scene:
     """A waves, and B waves back."""
     style = manner(rng, library, "wave")
@@ -112,7 +113,7 @@ def wave_back(rng: Rng, library: Library) -> Scene:
     return scene
 
 
-@register("bow-back", needs=("bow",), weight=1.5)
+@register("bow-back", "bow", relation="reply", needs=("bow",), weight=1.5)
 def bow_back(rng: Rng, library: Library) -> Scene:
     """A bows, and B bows in return."""
     style = manner(rng, library, "bow")
@@ -121,7 +122,7 @@ def bow_back(rng: Rng, library: Library) -> Scene:
     return pair(rng, library, "bow-back", first, second, distance=(1.5, 2.6))
 
 
-@register("raise-copy", needs=("raise-hand",), weight=1.3)
+@register("raise-copy", "raise-arm", relation="reply", needs=("raise-hand",), weight=1.3)
 def raise_copy(rng: Rng, library: Library) -> Scene:
     """A raises a hand, and B does the same."""
     side, style = pick(rng, ("left", "right", "both")), manner(rng, library, "raise-hand")
@@ -138,7 +139,7 @@ def raise_copy(rng: Rng, library: Library) -> Scene:
     )
 
 
-@register("raise-watch", needs=("raise-hand",), weight=1.3)
+@register("raise-watch", "raise-arm", STILL, needs=("raise-hand",), weight=1.3)
 def raise_watch(rng: Rng, library: Library) -> Scene:
     """A raises a hand while B watches."""
     side = pick(rng, ("left", "right", "both"))
@@ -146,7 +147,7 @@ def raise_watch(rng: Rng, library: Library) -> Scene:
     return pair(rng, library, "raise-watch", first, None, slots={"side_a": side}, distance=(1.0, 3.0))
 
 
-@register("goodbye", needs=("bye", "wave", "walk"), weight=1.5)
+@register("goodbye", "wave", relation="reply", needs=("bye", "wave", "walk"), weight=1.5)
 def goodbye(rng: Rng, library: Library) -> Scene:
     """Two people say goodbye, and one may leave."""
     first = gesture(rng, library, "bye", style=manner(rng, library, "bye"))
@@ -158,7 +159,8 @@ def goodbye(rng: Rng, library: Library) -> Scene:
     b, _ = act(rng, library, (start + seconds(rng, 0.2, 0.8), second.motion))
     frames = min(max(len(a) - 5, 90), 270)
     b = oppose(rng, a, pad(rng, library, b, frames), rng.uniform(1.2, 2.2))
-    return finish(rng, library, "goodbye", a, b, slots={"manner_a": first.style}, events={"distance": "part"})
+    slots = {"manner_a": first.style, "acts": ("wave>walk-away", "wave")}
+    return finish(rng, library, "goodbye", a, b, slots=slots, events={"distance": "part"})
 
 
 def walk_off(rng: Rng, library: Library, *, style: str | None = None, distance: float = 2.2) -> Motion:
@@ -177,7 +179,7 @@ def about(rng: Rng, walk: Motion, *, angle: float | None = None) -> Motion:
     return steer(tempo(walk, scale), extra)
 
 
-@register("cheer", needs=("raise-hand",), weight=1.2)
+@register("cheer", "cheer", needs=("raise-hand",), weight=1.2)
 def cheer(rng: Rng, library: Library) -> Scene:
     """Two people cheer together."""
     style = pick(rng, ("normal", "active", "youthful", "happy"))
@@ -195,7 +197,7 @@ def cheer(rng: Rng, library: Library) -> Scene:
     )
 
 
-@register("point", needs=("idle",), weight=1.0)
+@register("point", "point", STILL, needs=("idle",), weight=1.0)
 def point(rng: Rng, library: Library) -> Scene:
     """A points at B."""
     side, gap = pick(rng, SIDES), rng.uniform(1.2, 3.0)
@@ -211,7 +213,7 @@ def point(rng: Rng, library: Library) -> Scene:
         "point",
         a,
         b,
-        slots={"side_a": side if rng.random() < 0.7 else None, "distance": how_far(gap)},
+        slots={"side_a": side if rng.random() < 0.7 else None},
         events={"side": {"a": side}, "facing": True},
     )
 
@@ -244,7 +246,7 @@ def pointing(
     return Motion(rotations, motion.root, motion.contacts, motion.sources)
 
 
-@register("call-come", needs=("call", "walk"), weight=1.5)
+@register("call-come", "beckon", "walk-up", relation="reply", needs=("call", "walk"), weight=1.5)
 def call_come(rng: Rng, library: Library) -> Scene:
     """A beckons, and B comes."""
     call = gesture(rng, library, pick(rng, ("call", "call", "guide")) if library.has("guide") else "call")
@@ -262,12 +264,12 @@ def call_come(rng: Rng, library: Library) -> Scene:
         "call-come",
         a,
         b,
-        slots={"manner_b": walk.style, "speed": "fast" if runs else None},
+        slots={"manner_b": walk.style, "acts": ("beckon", "run-up" if runs else "walk-up")},
         events={"distance": "approach", "facing": True},
     )
 
 
-@register("talk", needs=("guide", "respond"), weight=1.3)
+@register("talk", "talk", STILL, needs=("guide", "respond"), weight=1.3)
 def talk(rng: Rng, library: Library) -> Scene:
     """Two people talk to each other."""
     style = manner(rng, library, "guide")
@@ -277,19 +279,27 @@ def talk(rng: Rng, library: Library) -> Scene:
         rng, library, (seconds(rng, 0.0, 0.5), first.motion), (None, more.motion), tail=seconds(rng, 0.2, 1)
     )
     if rng.random() < 0.5:
+        acts = ("talk", "talk")
         answer = gesture(rng, library, pick(rng, ("respond", "guide")))
         b, _ = act(rng, library, (seconds(rng, 1.5, 3.5), answer.motion))
     else:
+        acts = ("talk", "listen")
         b = waiting(rng, library, len(a))
     frames = min(max(len(a), 90), 270)
     a, b = pad(rng, library, a, frames), pad(rng, library, b, frames)
     b = oppose(rng, a, b, rng.uniform(1.0, 1.8))
     return finish(
-        rng, library, "talk", a, b, slots={"manner_a": style}, events={"facing": True, "distance": "keep"}
+        rng,
+        library,
+        "talk",
+        a,
+        b,
+        slots={"manner_a": style, "acts": acts},
+        events={"facing": True, "distance": "keep"},
     )
 
 
-@register("turn-away", needs=("walk",), weight=0.8)
+@register("turn-away", "turn-away>walk-away", STILL, needs=("walk",), weight=0.8)
 def turn_away(rng: Rng, library: Library) -> Scene:
     """A turns away from B."""
     walk = about(
@@ -300,13 +310,13 @@ def turn_away(rng: Rng, library: Library) -> Scene:
     return finish(rng, library, "turn-away", a, b, events={"distance": "part"})
 
 
-@register("idle", needs=("idle",), weight=0.8)
+@register("idle", STILL, needs=("idle",), weight=0.8)
 def idle(rng: Rng, library: Library) -> Scene:
     """Two people stand and wait."""
     frames, gap = seconds(rng, 3, 7), rng.uniform(0.9, 3.0)
     a, b = waiting(rng, library, frames), waiting(rng, library, frames)
     b = oppose(rng, a, b, gap)
-    return finish(rng, library, "idle", a, b, slots={"distance": how_far(gap)}, events={"distance": "keep"})
+    return finish(rng, library, "idle", a, b, events={"distance": "keep"})
 
 
 # ---- dances ------------------------------------------------------------------------------------------------
@@ -320,7 +330,7 @@ def dance_piece(rng: Rng, library: Library) -> Take:
     return Take(take.motion[start : start + frames], take.action, take.style)
 
 
-@register("dance-together", needs=("dance",), weight=1.3)
+@register("dance-together", "dance", needs=("dance",), weight=1.3)
 def dance_together(rng: Rng, library: Library) -> Scene:
     """Two people dance together."""
     first = dance_piece(rng, library).motion
@@ -340,7 +350,7 @@ def dance_together(rng: Rng, library: Library) -> Scene:
     return finish(rng, library, "dance-together", a, b, gaze=(0.0, 0.0))
 
 
-@register("dance-mirrored", needs=("dance",), weight=1.2)
+@register("dance-mirrored", "dance+mirror", needs=("dance",), weight=1.2)
 def dance_mirrored(rng: Rng, library: Library) -> Scene:
     """Two people dance as mirror images."""
     a = place(dance_piece(rng, library).motion, 0.0, 0.0, 0.0)
@@ -351,7 +361,7 @@ def dance_mirrored(rng: Rng, library: Library) -> Scene:
     return finish(rng, library, "dance-mirrored", a[lag:], b[: len(b) - lag], gaze=(0.0, 0.0))
 
 
-@register("dance-watch", needs=("dance", "idle"), weight=1.0)
+@register("dance-watch", "dance", STILL, needs=("dance", "idle"), weight=1.0)
 def dance_watch(rng: Rng, library: Library) -> Scene:
     """A dances while B watches."""
     a = dance_piece(rng, library).motion

@@ -23,6 +23,7 @@ from training.corpus.stage import (
     waiting,
 )
 
+from ..cues import STILL
 from . import register
 from .gestures import about, gesture, walk_off
 
@@ -65,19 +66,19 @@ def _abreast(rng: Rng, library: Library, family: str, action: str) -> Scene:
     )
 
 
-@register("walk-together", needs=("walk",), weight=1.6)
+@register("walk-together", "walk-together", needs=("walk",), weight=1.6)
 def walk_together(rng: Rng, library: Library) -> Scene:
     """Two people walk side by side."""
     return _abreast(rng, library, "walk-together", "walk")
 
 
-@register("run-together", needs=("run",), weight=1.2)
+@register("run-together", "run-together", needs=("run",), weight=1.2)
 def run_together(rng: Rng, library: Library) -> Scene:
     """Two people run side by side."""
     return _abreast(rng, library, "run-together", "run")
 
 
-@register("meet", needs=("walk", "idle"), weight=1.8)
+@register("meet", "walk-up", needs=("walk", "idle"), weight=1.8)
 def meet(rng: Rng, library: Library) -> Scene:
     """Both walk towards each other and stop face to face."""
     style = _styled(rng, library)
@@ -101,13 +102,13 @@ def meet(rng: Rng, library: Library) -> Scene:
     )
 
 
-@register("walk-up", needs=("walk", "idle"), weight=1.8)
+@register("walk-up", "walk-up", STILL, needs=("walk", "idle"), weight=1.8)
 def walk_up(rng: Rng, library: Library) -> Scene:
     """a walks up to b, who waits."""
     return _approach(rng, library, "walk-up")
 
 
-@register("approach", needs=("walk", "idle"), weight=0.8)
+@register("approach", "walk-up", STILL, needs=("walk", "idle"), weight=0.8)
 def approach(rng: Rng, library: Library) -> Scene:
     """The same in the words of the recorded data sets' class."""
     return _approach(rng, library, "approach")
@@ -132,7 +133,7 @@ def _approach(rng: Rng, library: Library, family: str) -> Scene:
     )
 
 
-@register("part", needs=("walk", "idle"), weight=1.5)
+@register("part", "part", needs=("walk", "idle"), weight=1.5)
 def part(rng: Rng, library: Library) -> Scene:
     """They stand face to face, turn about and walk apart."""
     style = _styled(rng, library)
@@ -160,13 +161,13 @@ def part(rng: Rng, library: Library) -> Scene:
     )
 
 
-@register("leave", needs=("walk", "idle"), weight=1.5)
+@register("leave", "walk-away", STILL, needs=("walk", "idle"), weight=1.5)
 def leave(rng: Rng, library: Library) -> Scene:
     """a turns about and walks away from b, who stays."""
     return _leave(rng, library, "leave")
 
 
-@register("depart", needs=("walk", "idle"), weight=0.8)
+@register("depart", "walk-away", STILL, needs=("walk", "idle"), weight=0.8)
 def depart(rng: Rng, library: Library) -> Scene:
     """The same in the words of the recorded data sets' class."""
     return _leave(rng, library, "depart")
@@ -220,20 +221,20 @@ def _behind(
     )
 
 
-@register("follow", needs=("walk",), weight=1.5)
+@register("follow", "walk-ahead", "follow", needs=("walk",), weight=1.5)
 def follow(rng: Rng, library: Library) -> Scene:
     """A follows B."""
     return _behind(rng, library, "follow", ("walk", "walk"), (0.9, 1.8), (3, 6.5))
 
 
-@register("chase", needs=("run",), weight=1.5)
+@register("chase", "run-away", "chase", needs=("run",), weight=1.5)
 def chase(rng: Rng, library: Library) -> Scene:
     """A runs after B."""
     actions = [name for name in ("run", "dash") if library.has(name)]
     return _behind(rng, library, "chase", (pick(rng, actions), pick(rng, actions)), (1.2, 2.2), (2.0, 3.6))
 
 
-@register("guide-follow", needs=("guide", "walk"), weight=1.3)
+@register("guide-follow", "walk-ahead", "follow", needs=("guide", "walk"), weight=1.3)
 def guide_follow(rng: Rng, library: Library) -> Scene:
     """a shows the way, turns and walks ahead; b follows."""
     show = gesture(rng, library, "guide", style=manner(rng, library, "guide"))
@@ -275,7 +276,7 @@ def _round(
     return steer(walk, side * np.cumsum(np.maximum(steps, 0)) / radius), pace(walk)
 
 
-@register("circle", needs=("walk", "idle"), weight=1.5)
+@register("circle", "walk-around", STILL, needs=("walk", "idle"), weight=1.5)
 def circle(rng: Rng, library: Library) -> Scene:
     """a walks around b, who stands."""
     side, radius = pick(rng, (-1, 1)), rng.uniform(1.0, 1.5)
@@ -299,7 +300,7 @@ def circle(rng: Rng, library: Library) -> Scene:
     )
 
 
-@register("circle-each-other", needs=("walk",), weight=1.3)
+@register("circle-each-other", "circle-together", needs=("walk",), weight=1.3)
 def circle_each_other(rng: Rng, library: Library) -> Scene:
     """Two people circle each other."""
     side, radius = pick(rng, (-1, 1)), rng.uniform(0.8, 1.3)
@@ -318,7 +319,7 @@ def circle_each_other(rng: Rng, library: Library) -> Scene:
     )
 
 
-@register("walk-past", needs=("walk",), weight=1.5)
+@register("walk-past", "walk-past", needs=("walk",), weight=1.5)
 def walk_past(rng: Rng, library: Library) -> Scene:
     """Two people walk past each other."""
     style = _styled(rng, library)
@@ -372,13 +373,20 @@ def _advance(rng: Rng, library: Library, family: str, action: str, gap: float) -
     )
 
 
-@register("step-back", needs=("walk", "walk-back"), weight=1.3)
+@register("step-back", "walk-up", "step-back", relation="reply", needs=("walk", "walk-back"), weight=1.3)
 def step_back(rng: Rng, library: Library) -> Scene:
     """A comes, and B steps back."""
     return _advance(rng, library, "step-back", "walk-back", rng.uniform(0.6, 1.0))
 
 
-@register("make-way", needs=("walk", "walk-left", "walk-right"), weight=1.2)
+@register(
+    "make-way",
+    "walk-up",
+    "step-aside",
+    relation="reply",
+    needs=("walk", "walk-left", "walk-right"),
+    weight=1.2,
+)
 def make_way(rng: Rng, library: Library) -> Scene:
     """A comes, and B steps aside."""
     return _advance(rng, library, "make-way", pick(rng, ("walk-left", "walk-right")), rng.uniform(0.3, 0.8))

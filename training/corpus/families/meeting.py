@@ -22,8 +22,6 @@ from training.corpus.stage import (
     pad,
     seconds,
     stride,
-    write,
-    write_alone,
 )
 
 from .gestures import about
@@ -91,8 +89,10 @@ def come_together(
         else:
             b = library.idle(rng, len(a))
         start = arrives
-        slots = {"manner_a": style, "manner_b": style if both else None}
+        slots = {"manner_a": style, "manner_b": style if both else None, "came": "ab" if both else "a"}
+    stays = len(a)
     a, b = leave_after(rng, library, a, b, start + length, leave)
+    slots["left"] = len(a) != stays
     b = oppose(rng, a, b, distance, frame_a=start + length // 3, frame_b=start + length // 3, aside=0.03)
     return Encounter(a, b, start, start + length, slots, events)
 
@@ -153,13 +153,13 @@ def conclude(
     touches: Sequence[tuple[str, str, int, int]],
     side: str | None = None,
     slots: Mapping[str, Any] | None = None,
-    captions: int = 8,
 ) -> Scene:
     """The finished scene from two people who have touched.
 
     Args:
         touches: (joint of a, joint of b, first frame, last frame) of what touches.
         side: the side that the captions name, where they do.
+        slots: what else is said of it; see :attr:`training.corpus.scene.Scene.said`.
     """
     positions = canonicalize(np.stack([a, b]))
     positions[..., 1] -= np.percentile(positions[..., 1].min(axis=(0, 2)), 20)
@@ -171,13 +171,17 @@ def conclude(
     ]
     if side is not None:
         events["side"] = {"a": side}
-    said = {**encounter.slots, **(slots or {}), "side_a": side}
+    said = {
+        **encounter.slots,
+        **(slots or {}),
+        "side_a": side,
+        "span": (encounter.start, min(encounter.stop, last + 1)),
+    }
     return Scene(
         positions.astype(np.float32),
         family,
-        write(rng, family, said, captions, library.split),
         tuple(sorted(set(encounter.a.sources + encounter.b.sources))),
         library.split,
         events,
-        write_alone(rng, family, said, library.split),
+        said,
     )

@@ -2,15 +2,18 @@
 
 from __future__ import annotations
 
+from training.corpus.cues import STILL
 from training.corpus.library import Library, pick
 from training.corpus.scene import Scene
-from training.corpus.stage import Rng, act, finish, how_far, manner, oppose, pad, seconds, waiting
+from training.corpus.stage import Rng, act, finish, manner, oppose, pad, seconds, waiting
 
 from . import register
 from .gestures import gesture, pair
 
 GESTURES = ("bow", "wave", "raise-hand", "raise-hands", "bye")
 SIDED = ("wave", "raise-hand", "bye")
+CUES = {"raise-hand": "raise-arm", "raise-hands": "raise-arm@both", "bye": "wave"}
+"""The cues of gestures that go by another name than their entry."""
 
 
 def _two(rng: Rng) -> tuple[str, str]:
@@ -20,11 +23,15 @@ def _two(rng: Rng) -> tuple[str, str]:
     return first, pick(rng, ["bow", *others] if "bow" in others else others)
 
 
+def _cues(*names: str) -> tuple[str, ...]:
+    return tuple(CUES.get(name, name) for name in names)
+
+
 def _style(rng: Rng, library: Library, name: str) -> str | None:
     return manner(rng, library, {"raise-hands": "raise-hand"}.get(name, name))
 
 
-@register("ordered", needs=("bow", "wave", "raise-hand", "bye"), weight=12.0)
+@register("ordered", STILL, relation="order", needs=("bow", "wave", "raise-hand", "bye"), weight=12.0)
 def ordered(rng: Rng, library: Library) -> Scene:
     """a does one thing; when it is over, b does another."""
     names = _two(rng) if rng.random() < 0.8 else (pick(rng, GESTURES),) * 2
@@ -43,16 +50,14 @@ def ordered(rng: Rng, library: Library) -> Scene:
             sides[person] = take.side
     events = {"order": list(names), "facing": True, "distance": "keep"} | ({"side": sides} if sides else {})
     slots = {
-        "act_a": names[0],
-        "act_b": names[1],
+        "acts": _cues(*names),
         "manner_a": first.style,
         "manner_b": second.style,
-        "distance": how_far(gap),
     } | {f"side_{person}": side for person, side in sides.items()}
     return finish(rng, library, "ordered", a, b, slots=slots, events=events, most=285)
 
 
-@register("sequence", needs=("bow", "wave", "raise-hand", "bye"), weight=12.0)
+@register("sequence", STILL, needs=("bow", "wave", "raise-hand", "bye"), weight=12.0)
 def sequence(rng: Rng, library: Library) -> Scene:
     """a does two things one after the other while b watches."""
     names = _two(rng)
@@ -81,13 +86,13 @@ def sequence(rng: Rng, library: Library) -> Scene:
         "sequence",
         a,
         b,
-        slots={"first": names[0], "second": names[1], "manner_a": manner_a, "side_a": side},
+        slots={"acts": (">".join(_cues(*names)), STILL), "manner_a": manner_a, "side_a": side},
         events={"order": list(names), "facing": True, "distance": "keep"} | said,
         most=285,
     )
 
 
-@register("together", needs=("bow", "wave", "raise-hand", "bye"), weight=6.0)
+@register("together", STILL, needs=("bow", "wave", "raise-hand", "bye"), weight=6.0)
 def together(rng: Rng, library: Library) -> Scene:
     """Both act at the same time: the same gesture, by the same hand or each by their own, or two gestures."""
     names = (pick(rng, GESTURES),) * 2 if rng.random() < 0.5 else _two(rng)
@@ -110,11 +115,11 @@ def together(rng: Rng, library: Library) -> Scene:
         first,
         second,
         delay=(-0.1, 0.25),
-        slots={"act_a": names[0], "act_b": names[1], "side_a": None, "side_b": None} | sides,
+        slots={"acts": _cues(*names), "side_a": None, "side_b": None} | sides,
     )
 
 
-@register("copy", needs=("bow", "wave", "raise-hand"), weight=1.2)
+@register("copy", STILL, relation="reply", needs=("bow", "wave", "raise-hand"), weight=1.2)
 def copy(rng: Rng, library: Library) -> Scene:
     """b repeats what a does."""
     name = pick(rng, GESTURES)
@@ -122,14 +127,28 @@ def copy(rng: Rng, library: Library) -> Scene:
     second = gesture(rng, library, name, side=first.side, style=first.style)
     named = {"side_a": first.side} if name in SIDED and rng.random() < 0.6 else {"side_a": None}
     return pair(
-        rng, library, "copy", first, second, delay=(0.6, 1.8), slots={"act_a": name, "side_b": None} | named
+        rng,
+        library,
+        "copy",
+        first,
+        second,
+        delay=(0.6, 1.8),
+        slots={"acts": _cues(name, name), "side_b": None} | named,
     )
 
 
-@register("watch", needs=("bow", "wave", "raise-hand"), weight=2.0)
+@register("watch", STILL, needs=("bow", "wave", "raise-hand"), weight=2.0)
 def watch(rng: Rng, library: Library) -> Scene:
     """a does something, b watches."""
     name = pick(rng, (*GESTURES, "wave", "raise-hand"))
     first = gesture(rng, library, name, style=_style(rng, library, name))
     named = {"side_a": first.side} if name in SIDED and rng.random() < 0.7 else {"side_a": None}
-    return pair(rng, library, "watch", first, None, distance=(1.0, 3.0), slots={"act_a": name} | named)
+    return pair(
+        rng,
+        library,
+        "watch",
+        first,
+        None,
+        distance=(1.0, 3.0),
+        slots={"acts": (*_cues(name), STILL)} | named,
+    )

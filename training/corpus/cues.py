@@ -1,0 +1,257 @@
+"""What a scene shows, as entries of the lexicon: the cues of its beats, and the plan that is its label.
+
+A cue says what one person does in a beat: the name of an entry (``wave``), with a part of the body behind a colon
+(``pat:shoulder``), a side of its own (``raise-arm@both``), a question mark for what is only offered
+(``shake-hands?``), ``+`` between what is done at the same time (``walk-up+wave``) and ``>`` between what follows
+(``fall-down>stand-up``).
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field, replace
+from functools import cache
+from typing import Any
+
+from acts import Act, Plan, Relation
+from acts.lexicon import Entry, lexicon
+from acts.plan import plan_of
+
+STILL = "stand-still"
+"""The entry of a person who does nothing."""
+STYLES = {
+    "active": "energetically", "angry": "angrily", "childish": "playfully", "chimpira": "roughly",
+    "elderly": "stiffly", "exhausted": "wearily", "giant": "heavily", "happy": "happily", "musical": "rhythmically",
+    "not-confident": "shyly", "old": "stiffly", "proud": "proudly", "sad": "sadly", "tired": "tiredly",
+    "youthful": "youthfully", "slow": "slowly", "fast": "quickly", "brisk": "briskly",
+}  # fmt: skip
+"""The manner of a recording's style; other styles are told without one."""
+SPEEDS = {"slow": 0.7, "fast": 1.4, "brisk": 1.2}
+"""Speed of a style or pace against the usual one."""
+Step = tuple[str, str | None, str | None, bool]
+"""An act of a cue: entry, part of the body, side, whether it is only offered."""
+Groups = tuple[tuple[Step, ...], ...]
+_STEP = re.compile(r"([a-z-]+)(?::([a-z]+))?(?:@(left|right|both))?(\?)?")
+
+
+@dataclass
+class Beat:
+    """One stretch of a scene, in which each of the two does one thing.
+
+    Attributes:
+        acts: the cues of a and b.
+        start, end: frames, ``end`` exclusive.
+        first: 0 where a acts first or both at once, 1 where b does.
+        relation: "reply" (the second answers the first), "while" (at the same time) or "order".
+        sides, styles: of a and b, "left", "right", "both" or None; a style's name.
+        minor: a transition that a caption may leave out.
+        more: "direction" and "speed" ("slow" or "fast"), where they are known.
+    """
+
+    acts: tuple[str, str]
+    start: int
+    end: int
+    first: int = 0
+    relation: str = "reply"
+    sides: tuple[str | None, str | None] = (None, None)
+    styles: tuple[str | None, str | None] = ("normal", "normal")
+    minor: bool = False
+    more: dict[str, Any] = field(default_factory=dict)
+
+    def row(self, frames: int, captions: list[str]) -> dict[str, Any]:
+        """The beat as the index has it, cut to the scene's ``frames``."""
+        return {
+            "start": int(self.start),
+            "end": int(min(self.end, frames)),
+            "acts": list(self.acts),
+            "first": self.first,
+            "minor": self.minor,
+            "relation": self.relation,
+            "sides": list(self.sides),
+            "styles": list(self.styles),
+            **self.more,
+            "captions": captions,
+        }
+
+    @classmethod
+    def of_row(cls, row: Mapping[str, Any]) -> Beat:
+        """The beat that a row of the index describes."""
+        own = {key: row[key] for key in ("start", "end", "first", "relation", "minor")}
+        more = {key: row[key] for key in ("direction", "speed") if key in row}
+        return cls(**own, **{key: tuple(row[key]) for key in ("acts", "sides", "styles")}, more=more)
+
+    def swapped(self) -> Beat:
+        """The same with the two people exchanged."""
+        return replace(
+            self, acts=self.acts[::-1], first=1 - self.first, sides=self.sides[::-1], styles=self.styles[::-1]
+        )
+
+
+@dataclass(frozen=True)
+class Label:
+    """The label of a scene.
+
+    Attributes:
+        plan: its acts, in the order in which they begin.
+        spans: first and last frame (exclusive) of each act, by its id.
+        minor: ids of transitions that a caption may leave out.
+        beats: ids of the acts of each beat.
+    """
+
+    plan: Plan
+    spans: dict[str, tuple[int, int]]
+    minor: frozenset[str] = frozenset()
+    beats: tuple[tuple[str, ...], ...] = ()
+
+    def row(self) -> dict[str, Any]:
+        """The label as the index has it."""
+        return {
+            "plan": self.plan.model_dump(mode="json", exclude_defaults=True),
+            "spans": {act: list(span) for act, span in self.spans.items()},
+            "minor": sorted(self.minor),
+            "beats": [list(ids) for ids in self.beats],
+        }
+
+    @classmethod
+    def of_row(cls, row: Mapping[str, Any]) -> Label:
+        """The label that a row of the index holds."""
+        spans = {act: (int(start), int(stop)) for act, (start, stop) in row["spans"].items()}
+        return cls(plan_of(row["plan"]), spans, frozenset(row["minor"]), tuple(map(tuple, row["beats"])))
+
+
+@cache
+def steps(cue: str) -> Groups:
+    """The acts of a cue, in groups that follow each other; none of an empty cue, of which nothing is known.
+
+    Raises:
+        KeyError: if an entry is not in the lexicon.
+    """
+    groups = []
+    for step in cue.split(">") if cue else ():
+        found = []
+        for text in step.split("+"):
+            match = _STEP.fullmatch(text)
+            if match is None:
+                raise KeyError(
+                    f"{text!r} in the cue {cue!r} is no act: write an entry's name, as in pat:shoulder."
+                )
+            entry(match[1])
+            found.append((match[1], match[2], match[3], bool(match[4])))
+        groups.append(tuple(found))
+    return tuple(groups)
+
+
+def entry(name: str) -> Entry:
+    """An entry of the lexicon; raises KeyError with its name."""
+    found = lexicon().entries.get(name)
+    if found is None:
+        raise KeyError(f"No entry {name!r} in the lexicon of acts.")
+    return found
+
+
+def _to_other(found: Entry) -> bool:
+    return found.to == "other" or any("{b}" in caption for caption in found.caption[:1])
+
+
+def label(beats: Sequence[Beat], frames: int) -> Label:
+    """The label of a scene of ``frames`` frames from its beats."""
+    writer = _Writer(frames)
+    ids = []
+    for beat in beats:
+        begun = len(writer.acts)
+        writer.add(beat)
+        ids.append(tuple(act.id for act in writer.acts[begun:]))
+    plan = Plan(acts=tuple(writer.acts), reader="corpus")
+    return Label(plan, writer.spans, frozenset(writer.minor), tuple(ids))
+
+
+class _Writer:
+    """Collects the acts of one beat after the other."""
+
+    def __init__(self, frames: int) -> None:
+        self.frames = frames
+        self.acts: list[Act] = []
+        self.spans: dict[str, tuple[int, int]] = {}
+        self.minor: set[str] = set()
+        self.before: list[str] = []
+
+    def add(self, beat: Beat) -> None:
+        """Adds the acts of a beat behind those of the beats before."""
+        together = beat.relation == "while"
+        one, other = (steps(beat.acts[person]) for person in (beat.first, 1 - beat.first))
+        shared: set[Step] = set()
+        if together and len(one) == len(other) == 1:
+            alike = beat.sides[0] == beat.sides[1]
+            shared = {step for step in set(one[0]) & set(other[0]) if alike or entry(step[0]).mutual}
+        begun = len(self.acts)
+        ends = self._chain(beat, beat.first, one, shared, _after(self.before))
+        beside = tuple(Relation(kind="while", act=act.id) for act in self.acts[begun : begun + 1])
+        order = beside if together else _after(ends)
+        rest = tuple(tuple(step for step in group if step not in shared) for group in other)
+        self.before = ends + self._chain(beat, 1 - beat.first, rest, set(), order)
+
+    def _chain(
+        self, beat: Beat, person: int, groups: Groups, shared: set[Step], order: tuple[Relation, ...]
+    ) -> list[str]:
+        """Adds what one person does, group after group; the acts that end it."""
+        made: list[str] = []
+        for k, group in enumerate(groups):
+            if made:
+                order = _after(made)
+            made = []
+            for step in group:
+                people = (person, 1 - person) if step in shared else (person,)
+                beside = (Relation(kind="while", act=made[0]),) if made else order
+                made.append(self._add(beat, people, step, beside))
+                self.spans[made[-1]] = _part(beat, k, len(groups), self.frames)
+        return made
+
+    def _add(self, beat: Beat, people: tuple[int, ...], step: Step, order: tuple[Relation, ...]) -> str:
+        name, part, side, offered = step
+        style = beat.styles[people[0]] or "normal"
+        pace = beat.more.get("speed") or style
+        adverb = STYLES.get(style) or STYLES.get(pace)
+        made = str(len(self.acts) + 1)
+        act = Act(
+            id=made,
+            act=name,
+            agents=tuple("ab"[person] for person in people),
+            patient="ab"[1 - people[0]] if len(people) == 1 and _to_other(entry(name)) else None,
+            part=part,
+            modality="offered" if offered else "told",
+            order=order,
+        )
+        if name != STILL:
+            act = act.model_copy(
+                update={
+                    "side": side or beat.sides[people[0]],
+                    "manner": () if adverb is None else (adverb,),
+                    "speed": SPEEDS.get(pace, 1.0),
+                    "direction": beat.more.get("direction"),
+                }
+            )
+        self.acts.append(act)
+        if beat.minor:
+            self.minor.add(made)
+        return made
+
+
+def _after(acts: Sequence[str]) -> tuple[Relation, ...]:
+    return tuple(Relation(kind="after", act=act) for act in acts)
+
+
+def _part(beat: Beat, k: int, count: int, frames: int) -> tuple[int, int]:
+    """The ``k``-th of ``count`` equal parts of a beat, which ends with the scene."""
+    length = min(beat.end, frames) - beat.start
+    return int(beat.start + length * k // count), int(beat.start + length * (k + 1) // count)
+
+
+def class_of(row: Mapping[str, Any]) -> str:
+    """The class of a scene by its row's label: "shake hands", or "punch, dodge" of two entries.
+
+    Transitions and people who stand still do not count.
+    """
+    known = Label.of_row(row["label"])
+    names = [act.act for act in known.plan.acts if act.act != STILL and act.id not in known.minor]
+    return ", ".join(dict.fromkeys(names or [STILL])).replace("-", " ")

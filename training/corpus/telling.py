@@ -1,0 +1,310 @@
+"""Captions of a scene from its label: of both people, of one alone, and of one beat, each with the plan that it tells.
+
+A caption tells less than the label knows: a transition, a person who stands still, a side or a manner may be left out.
+What it does tell is its own plan, so that reading it back (:func:`acts.read`) can be checked.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Collection, Iterator, Sequence
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+
+from acts import Act, Plan, Relation
+from acts.plan import beats
+from motion.metrics.sentences import kept_out
+
+from .cues import STILL, Label, label
+from .people import Cast, Names, draw_cast
+from .phrasing import fitting, held_out, names_side, spoken
+from .scene import Scene
+
+Rng = np.random.Generator
+JOINT, ALONE, ONE_BEAT = 8, 3, 2
+"""Numbers of captions of a scene, of each single person, and of each beat."""
+LONGEST = 320
+"""Characters of a caption, at most."""
+_THEN = (", then {}", ", and then {}", " and then {}", ". Then {}", ". Then {}", ". After that, {}", ". Next, {}",
+         ". {}")  # fmt: skip
+_PAIRS = ("After {}, {}", "First {}, then {}", "{}, and {}", "{} and then {}")
+"""How two clauses that follow each other may stand in one sentence."""
+
+
+@dataclass(frozen=True)
+class Told:
+    """A caption.
+
+    Attributes:
+        text: a sentence or a few.
+        plan: the acts that it tells, in its own words; "a" is the person it names first.
+        test: whether it uses words that are kept for the test split.
+    """
+
+    text: str
+    plan: Plan
+    test: bool
+
+
+def describe(rng: Rng, scene: Scene, *, sides: bool = True) -> Scene:
+    """The scene with its label and captions, from the beats that were played.
+
+    Args:
+        sides: every caption names the sides of a scene whose events name one.
+    """
+    frames = scene.positions.shape[1]
+    scene.label = label(scene.played, frames)
+    teller = Teller(rng, scene.label, scene.split, sides=sides and "side" in scene.events)
+    scene.captions = texts(teller.scene())
+    _keep_named_sides(scene)
+    scene.alone = (texts(teller.alone("a")), texts(teller.alone("b")))
+    if scene.family.startswith("beats"):
+        scene.beats = [
+            beat.row(frames, texts(teller.beat(ids)))
+            for beat, ids in zip(scene.played, scene.label.beats, strict=True)
+        ]
+    return scene
+
+
+def _keep_named_sides(scene: Scene) -> None:
+    """Takes the sides that not every caption names out of the scene's events, which a judge would ask for."""
+    sides = {side for side in (scene.events.get("side") or {}).values() if side}
+    if not all(re.search(rf"\b{side}\b", text) for side in sides for text in scene.captions):
+        scene.events = {key: value for key, value in scene.events.items() if key != "side"}
+
+
+def texts(told: Sequence[Told]) -> list[str]:
+    """The captions alone."""
+    return [one.text for one in told]
+
+
+class Teller:
+    """Writes the captions of one scene.
+
+    Args:
+        split: "train" or "test": a test caption uses a phrase or names that no training caption uses.
+        sides: whether every side that the label knows is told.
+    """
+
+    def __init__(self, rng: Rng, label: Label, split: str, *, sides: bool = False) -> None:
+        self.rng, self.label, self.split, self.sides = rng, label, split, sides
+
+    @cached_property
+    def _groups(self) -> list[list[Act]]:
+        return self.label.plan.beats()
+
+    def scene(self, count: int = JOINT) -> list[Told]:
+        """Up to ``count`` different captions of the whole scene."""
+        return self._collect(count, None, "ab")
+
+    def alone(self, who: str, count: int = ALONE) -> list[Told]:
+        """Up to ``count`` different captions of what one person does."""
+        return self._collect(count, None, who)
+
+    def beat(self, acts: Collection[str], count: int = ONE_BEAT) -> list[Told]:
+        """Up to ``count`` different captions of some of the acts, by their ids."""
+        return self._collect(count, acts, "ab")
+
+    def _collect(self, count: int, only: Collection[str] | None, people: str) -> list[Told]:
+        found: dict[str, Told] = {}
+        for _ in range(15 * count):
+            groups = self._chosen(only, people)
+            if not groups:
+                break
+            cast = draw_cast(self.rng, joint=len(groups[0][0].agents) == 2)
+            told = _Writer(self.rng, cast, self.split, self.sides, alone=len(people) == 1).write(groups)
+            if told.test != (self.split == "test") or len(told.text) > LONGEST or kept_out(told.text):
+                continue
+            found.setdefault(told.text, told)
+            if len(found) == count:
+                break
+        return list(found.values())
+
+    def _chosen(self, only: Collection[str] | None, people: str) -> list[list[Act]]:
+        """The acts that a caption tells, in groups that follow each other."""
+        everything = [act for group in self._groups for act in group if only is None or act.id in only]
+        acts = [act for act in everything if set(act.agents) & set(people)]
+        if len(people) == 1:
+            acts = [act.model_copy(update={"agents": (people,)}) for act in acts]
+        active = [act for act in acts if act.act != STILL]
+        keep_still = len(people) == 1 or self.rng.random() < 0.25
+        chosen = acts if keep_still or not active else active
+        main = [
+            act
+            for act in chosen
+            if only is not None or act.id not in self.label.minor or self.rng.random() < 0.5
+        ]
+        kept = {act.id for act in main or chosen}
+        told = {act.id: act for act in acts}
+        groups = [[told[act.id] for act in group if act.id in kept] for group in self._groups]
+        return _without_repeats([group for group in groups if group])
+
+
+def _without_repeats(groups: list[list[Act]]) -> list[list[Act]]:
+    """Groups in which nobody stands still twice in a row."""
+    found: list[list[Act]] = []
+    for group in groups:
+        if found and len(group) == 1 and group[0].act == STILL and any(
+            act.act == STILL and act.agents == group[0].agents for act in found[-1]
+        ):  # fmt: skip
+            continue
+        found.append(group)
+    return found
+
+
+class _Writer:
+    """One caption in the making."""
+
+    def __init__(self, rng: Rng, cast: Cast, split: str, sides: bool, *, alone: bool) -> None:
+        self.rng, self.split, self.sides, self.alone = rng, split, sides, alone
+        self.names = Names(rng, cast)
+        self.test = held_out(cast.first[0] + cast.first[1])
+        self.told: list[Act] = []
+
+    def write(self, groups: Sequence[Sequence[Act]]) -> Told:
+        """The caption of acts in groups that follow each other."""
+        text = ""
+        links = self._pair() if len(groups) == 2 and not self.alone else None
+        clauses: list[str] = []
+        last: list[str] = []
+        for k, group in enumerate(groups):
+            made, subjects = self._clause(group, last if links is None else [], k)
+            if links is not None:
+                clauses.append(made)
+            elif k == 0:
+                text = made
+            elif subjects and subjects == last and not made.startswith("\0"):
+                text += self._then().format(made)
+            else:
+                text += made.removeprefix("\0") if made.startswith("\0") else self._then().format(made)
+            last = subjects
+        if links is not None:
+            text = links.format(*clauses)
+        return Told(finished(text), self._plan(groups), self.test)
+
+    def _pick(self, items: Sequence[str]) -> str:
+        """One phrase; a training caption avoids those that are held out, unless there are no others."""
+        free = [text for text in items if not held_out(text)]
+        pool = free if free and self.split != "test" else items
+        chosen = pool[int(self.rng.integers(len(pool)))]
+        self.test |= bool(free) and held_out(chosen)
+        return chosen
+
+    def _then(self) -> str:
+        return _THEN[int(self.rng.integers(len(_THEN)))]
+
+    def _pair(self) -> str | None:
+        return _PAIRS[int(self.rng.integers(len(_PAIRS)))] if self.rng.random() < 0.4 else None
+
+    # ---- clauses ----------------------------------------------------------------------------------------
+    def _clause(self, group: Sequence[Act], last: Sequence[str], number: int) -> tuple[str, list[str]]:
+        """A clause on acts at the same time, and its subjects.
+
+        It begins with a zero character where it goes on with the subject of the clause before.
+        """
+        subjects = list(dict.fromkeys("".join(sorted(act.agents)) for act in group))
+        goes_on = subjects == list(last) and len(subjects) == 1
+        if number and goes_on and (self.alone or self.rng.random() < 0.6):
+            link = (", and then ", " and then ", " and ", ", then ")[int(self.rng.integers(4))]
+            return f"\0{link}{self._phrases(group, subjects[0])}", subjects
+        parts = []
+        for subject in subjects:
+            name = self.names.subject(subject)
+            parts.append(
+                f"{name} {self._phrases([a for a in group if ''.join(sorted(a.agents)) == subject], subject)}"
+            )
+        return " while ".join(parts), subjects
+
+    def _phrases(self, acts: Sequence[Act], subject: str) -> str:
+        """The verb phrases of acts of one subject at the same time."""
+        form = "plural" if len(subject) == 2 else "s"
+        first, *others = (self._phrase(act, form if k == 0 else "ing") for k, act in enumerate(acts))
+        return " while ".join([first, *others])
+
+    def _phrase(self, act: Act, form: str) -> str:
+        sided = act.side is not None and (self.sides or self.rng.random() < 0.5)
+        phrase = self._pick(fitting(act, sided=sided))
+        both = len(act.agents) == 2
+        other = "b" if act.agents[0] == "a" else "a"
+        whom = ""
+        if "{b}" in phrase:  # "pats her shoulder" may be one's own
+            whom = "each other" if both else self.names.object(other, pronoun="{b}'s" not in phrase)
+        base = phrase
+        if act.modality == "offered":
+            phrase = re.sub(r"\[([a-z-]+)\]", r"[offer] to \1", phrase, count=1)
+        text = spoken(act, phrase, whom, self.names.own(act.agents), form)
+        told: dict[str, object] = {
+            "patient": other if not both and "{b}" in phrase else None,
+            "side": act.side if names_side(base) else None,
+            "part": act.part if "{part}" in base or "{limb}" in base else None,
+            "manner": (),
+            "speed": 1.0,
+            "direction": act.direction if "{direction}" in base else None,
+        }
+        if act.manner and self.rng.random() < 0.4:
+            text, told["manner"], told["speed"] = f"{text} {act.manner[0]}", act.manner, act.speed
+        self.told.append(act.model_copy(update=told))
+        return text
+
+    def _plan(self, groups: Sequence[Sequence[Act]]) -> Plan:
+        """What was told, in the order of its groups; a is the person named first."""
+        swap = self.names.order[:1] == ["b"]
+        told, before = [], []
+        by_id = {act.id: act for act in self.told}
+        for group in groups:
+            now: list[str] = []
+            for act in group:
+                order = (
+                    [Relation(kind="while", act=now[0])]
+                    if now
+                    else [Relation(kind="after", act=x) for x in before]
+                )
+                one = by_id[act.id].model_copy(update={"order": tuple(order)})
+                told.append(_swapped(one) if swap else one)
+                now.append(act.id)
+            before = now
+        return Plan(acts=tuple(told), reader="corpus")
+
+
+def _swapped(act: Act) -> Act:
+    other = {"a": "b", "b": "a"}
+    agents = tuple(other[who] for who in act.agents)
+    return act.model_copy(update={"agents": agents, "patient": other.get(act.patient or "")})
+
+
+def finished(text: str) -> str:
+    """Capitalised, with a full stop, single spaces."""
+    text = re.sub(r"\s+", " ", text).strip().rstrip(".") + "."
+    text = re.sub(r"([.!?] )([a-z])", lambda match: match[1] + match[2].upper(), text)
+    return text[:1].upper() + text[1:]
+
+
+def agrees(read: Plan, told: Plan) -> bool:
+    """True if a plan that was read from a caption is the one that it tells.
+
+    The same acts by the same people, in the same order; patients, sides, parts and directions where both name them.
+    An act of one person that is done together by its nature ("he hugs her") may be read as both people's.
+    """
+    one, other = (list(_facts(plan)) for plan in (read, told))
+    return len(one) == len(other) and all(_alike(*pair) for pair in zip(one, other, strict=True))
+
+
+def _facts(plan: Plan) -> Iterator[tuple[int, Act]]:
+    for level, group in enumerate(beats(plan.acts)):
+        for act in sorted(group, key=lambda act: (act.act, act.agents)):
+            yield level, act
+
+
+def _alike(read: tuple[int, Act], told: tuple[int, Act]) -> bool:
+    (level, one), (wanted, other) = read, told
+    named = [(getattr(one, key), getattr(other, key)) for key in ("patient", "side", "direction")]
+    return (
+        level == wanted
+        and one.act == other.act
+        and set(one.agents) == set(other.agents)
+        and one.modality == other.modality
+        and all(a == b for a, b in named if a is not None and b is not None)
+        and (other.side is None or one.side is not None)
+    )
