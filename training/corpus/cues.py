@@ -1,4 +1,4 @@
-"""What a scene shows, as entries of the lexicon: the cues of its beats, and the plan that is its label.
+"""Cues of a scene's beats, as entries of the lexicon, and the plan that is its label.
 
 A cue says what one person does in a beat: the name of an entry (``wave``), with a part of the body behind a colon
 (``pat:shoulder``), a side of its own (``raise-arm@both``), a question mark for what is only offered

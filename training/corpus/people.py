@@ -1,4 +1,4 @@
-"""How captions call two people: names at their first mention and later, and pronouns."""
+"""Names of two people in captions, at their first mention and later, and pronouns."""
 
 from __future__ import annotations
 

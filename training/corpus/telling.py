@@ -249,7 +249,7 @@ class _Writer:
         return text
 
     def _plan(self, groups: Sequence[Sequence[Act]]) -> Plan:
-        """What was told, in the order of its groups; a is the person named first."""
+        """The acts that were told, in the order of its groups; a is the person named first."""
         swap = self.names.order[:1] == ["b"]
         told, before = [], []
         by_id = {act.id: act for act in self.told}

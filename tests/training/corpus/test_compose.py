@@ -297,7 +297,7 @@ def test_people_meet_face_to_face(library: Library) -> None:
 
 
 def _scene(positions: np.ndarray) -> Scene:
-    return Scene(positions, "idle", ["a", "b", "c"], ("one",), "train")
+    return Scene(positions, "idle", ("one",), "train", captions=["a", "b", "c"])
 
 
 def test_checks_turn_bad_scenes_away() -> None:

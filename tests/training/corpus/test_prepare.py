@@ -11,6 +11,7 @@ import torch
 from models.motion_tokens import TokenLayout
 from training import prepare
 from training.corpus import build
+from training.corpus.cues import Beat, label
 from training.corpus.scene import Scene
 
 BEAT = {"start": 0, "end": 70, "acts": ["wave", "stand"], "captions": ["A wave."]}
@@ -22,7 +23,9 @@ def scene(seed: int) -> Scene:
     positions = np.cumsum(0.001 * rng.normal(size=(2, 70, 22, 3)), axis=1).astype(np.float32)
     captions = [f"Scene {seed}, sentence {k}." for k in range(6)]
     alone = ([f"a {seed} {k}" for k in range(6)], [])
-    return Scene(positions, "wave", captions, ("one",), "train", {}, alone, [BEAT, LATE])
+    made = Scene(positions, "wave", ("one",), "train", captions=captions, alone=alone, beats=[BEAT, LATE])
+    made.label = label([Beat(("wave", "stand-still"), 0, 70, relation="while")], 70)
+    return made
 
 
 def written(folder: Path, seed: int) -> Path:

@@ -63,14 +63,20 @@ def test_a_folder_without_a_corpus(tmp_path: Path, capsys: pytest.CaptureFixture
 
 def test_beats_are_reported_act_by_act(corpus: Path, tmp_path: Path) -> None:
     index = json.loads((corpus / "index.json").read_text())
-    beat = {"start": 0, "end": 60, "acts": ["handshake", "handshake"], "minor": False, "captions": ["They."]}
+    beat = {
+        "start": 0,
+        "end": 60,
+        "acts": ["shake-hands", "shake-hands"],
+        "minor": False,
+        "captions": ["They."],
+    }
     known = {"alone": [["A."], ["B."]], "sources": ["mesh2motion_Bow"]}
     index[0] |= known | {"beats": [beat]}
-    index[2] |= known | {"beats": [beat | {"acts": ["wave", "stand"]}]}
+    index[2] |= known | {"beats": [beat | {"acts": ["wave", "stand-still"]}]}
     (corpus / "index.json").write_text(json.dumps(index))
     text = report_beats.report(*report_beats.load_corpus(corpus), tmp_path / "docs")
     assert "2 scenes, 0.0 hours: 2 with 1 beats" in text
-    assert "| handshake | 1 | 0.0 | handshake | 6 | [sheet](corpus/beats/handshake.webp) |" in text
-    assert "| stand | 1 | 0.0 | wave | – | – |" in text
+    assert "| shake-hands | 1 | 0.0 | shake-hands | 6 | [sheet](corpus/beats/shake-hands.webp) |" in text
+    assert "| stand-still | 1 | 0.0 | wave | – | – |" in text
     drawn = {path.stem for path in (tmp_path / "docs" / "corpus" / "beats").iterdir()}
-    assert drawn == {"handshake", "wave"}
+    assert drawn == {"shake-hands", "wave"}

@@ -32,9 +32,7 @@ def test_errors_are_in_centimetres_and_degrees_the_short_way_round() -> None:
 
 def test_only_long_recordings_of_the_test_lists_count() -> None:
     def scene(split: str, frames: int) -> Scene:
-        return Scene(
-            positions=pair(1.0, frames=frames), family="x", captions=["x"], sources=("x",), split=split
-        )
+        return Scene(positions=pair(1.0, frames=frames), family="x", sources=("x",), split=split)
 
     wanted = scene("benchmark", 45)
     assert held_out([scene("train", 90), scene("benchmark", 35), wanted]) == [wanted]

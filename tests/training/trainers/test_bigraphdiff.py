@@ -80,7 +80,7 @@ def test_the_shell_writes_the_folder_that_is_shipped(
     words = ["--scenes", str(scenes), "--out", str(tmp_path / "run"), *sizes]
     assert bigraphdiff.main([*words, "--steps", "2", "--export", str(tmp_path / "weights")]) == 0
     model, source = load_folder(tmp_path / "weights")
-    assert model.config.labels == ("shake hands", "wave to each other")
+    assert model.config.labels == ("shake hands", "wave")
     assert source.meta["trained_steps"] == 2 and "class" in source.meta["card"]["summary"]
     assert bigraphdiff.main([*words, "--latent-dim", "40", "--steps", "2"]) == 2
     assert "multiple of 16" in capsys.readouterr().err

@@ -94,7 +94,7 @@ def test_benchmark_clips_stay_out_and_weights_are_written(
     scenes, tmp_path: Path, monkeypatch, capsys
 ) -> None:
     pairs = [
-        Scene(people, "push", [], (f"sbu/{i}",), "benchmark" if i == 9 else "train")
+        Scene(people, "push", (f"sbu/{i}",), "benchmark" if i == 9 else "train")
         for i, people in enumerate(scenes)
     ]
     monkeypatch.setattr(interformer, "load_pairs", lambda *_: pairs)
