@@ -146,7 +146,7 @@ def save(scenes: Sequence[Scene], folder: Path) -> None:
     index, start = [], 0
     for scene in scenes:
         frames = int(scene.positions.shape[1])
-        if scene.label is None:
+        if scene.label is None and not scene.captions:
             raise ValueError(f"a scene of {scene.family} was not described")
         index.append(
             {
@@ -159,7 +159,7 @@ def save(scenes: Sequence[Scene], folder: Path) -> None:
                 "events": scene.events,
                 "alone": list(scene.alone),
                 "beats": scene.beats,
-                "label": scene.label.row(),
+                "label": scene.label.row() if scene.label else None,
             }
         )
         start += frames

@@ -60,7 +60,8 @@ def read_interhuman(data: Path, *, fps: float = FPS) -> Iterator[Scene]:
         ])  # fmt: skip
         if sentences and people.shape[1] >= SHORTEST:
             split = splits.get(name, "train")
-            yield Scene(canonicalize(people), "interhuman", sentences, (f"interhuman/{name}",), split, {})
+            source = (f"interhuman/{name}",)
+            yield Scene(canonicalize(people), "interhuman", source, split, captions=sentences)
 
 
 def _number(name: str) -> tuple[int, str]:
