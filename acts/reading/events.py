@@ -373,13 +373,14 @@ class Reader:
     def _joint(self, token: Token, head: Token | None) -> tuple[str, int | None]:
         """The place of a clause in time beside another, as (kind, the token of that one's verb).
 
-        The token is None for a main clause, which comes after the sentence before.
+        The token is None for a main clause, which comes after the sentence before; the kind is "then" where the text
+        says so in a word of its own.
         """
         marks = {c.lower_ for c in token.children if c.dep_ in ("mark", "advmod", "prep", "cc", "intj")}
         above = head if head is not None else next((t for t in token.ancestors if self._is_clause(t)), None)
         previous = max((i for i in self._of if i < token.i), default=None)
         if marks & _THEN or (above is not None and token.dep_ == "conj" and self._then_before(token)):
-            return "after", previous
+            return "then", previous
         if marks & _AT_ONCE:
             return "with", previous
         if self._is_main(token):

@@ -322,6 +322,9 @@ class _Planner:
         ongoing = event.ongoing or event.joint == "while"
         return ongoing and event.direction != "down" and not told & set(agents)
 
+    def _waits(self, act: Act) -> bool:
+        return {shape.do for shape in self._known.entries[act.act].stage} == {"stay"}
+
     def _order(self) -> None:
         """Gives the acts their relations, each to one that stands before it or above it in the syntax."""
         number_of = {name: i for i, name in self._of.items()}
@@ -341,12 +344,16 @@ class _Planner:
             if beside is None or beside not in self._of or self._of[beside] == act.id:
                 continue
             other = acts[self._of[beside]]
+            told, kind = kind == "then", "after" if kind == "then" else kind
+            if kind == "after" and (other.already or self._waits(other)):
+                above = next((r.act for r in found[other.id] if r.kind == "while"), None)
+                other = acts[above] if above else other  # what follows "A talks while B waits" follows the talk
             if kind == "conj":
                 kind = order.coordinated(other, act, self._known, repeats=act.id in self._answers)
             if kind == "after":
                 act = acts[act.id] = order.turned_to(other, act, self._known)
             apart = not set(other.agents) & set(act.agents)
-            waits = {shape.do for shape in self._known.entries[act.act].stage} == {"stay"}
+            waits = self._waits(act) and not told  # "then she waits" is said of what comes next
             if kind == "after" and apart and (other.already or act.already or waits):
                 kind = "while"  # what goes on, goes on
             if kind in ("main-after", "main-until"):

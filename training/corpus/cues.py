@@ -178,7 +178,7 @@ class _Writer:
 
     def add(self, beat: Beat) -> None:
         """Adds the acts of a beat behind those of the beats before."""
-        together = beat.relation == "while"
+        together = beat.relation == "while" or STILL in beat.acts  # nobody waits to stand still
         one, other = (steps(beat.acts[person]) for person in (beat.first, 1 - beat.first))
         shared: set[Step] = set()
         if together and len(one) == len(other) == 1:

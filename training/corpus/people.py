@@ -100,7 +100,7 @@ class Names:
             if len(self.named) == 1 and not self.together:
                 self._name("b" if "a" in self.named else "a")
             self.together = True
-            return ("they", "the two", "both", "the two of them")[int(self.rng.integers(4))]
+            return ("they", "the two", "the two of them")[int(self.rng.integers(3))]  # "both" may be hands
         self.together = True
         for who in "ab":
             self._slot(who)

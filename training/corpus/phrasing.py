@@ -14,7 +14,7 @@ from acts import Act
 from acts.captions import gerund, singular
 from acts.frames import Frame
 from acts.lexicon import Entry, lexicon
-from acts.reading import wordnet
+from acts.reading import read, wordnet
 
 from .cues import entry
 
@@ -75,6 +75,28 @@ def _same(verb: str, other: str) -> bool:
     return other not in _LIGHT and wordnet.senses(verb)[:1] == wordnet.senses(other)[:1] != ()
 
 
+@cache
+def reads_back(name: str, phrase: str, *, both: bool) -> bool:
+    """True if a sentence by this phrase is read as the entry and as nothing else.
+
+    Args:
+        both: as it is said of two people at once; else of one.
+    """
+    act = Act(
+        id="1",
+        act=name,
+        agents=("a", "b") if both else ("a",),
+        part="shoulder" if "{part}" in phrase else None,
+        direction="forward" if "{direction}" in phrase else None,
+        side="left" if names_side(phrase) else None,
+    )
+    if both:
+        text = f"A man jumps, and then they {spoken(act, phrase, 'each other', 'their', 'plural')}."
+    else:
+        text = f"A man jumps, and then he {spoken(act, phrase, 'the woman', 'his', 's')}."
+    return [one.act for one in read(text).acts] == ["jump", name]
+
+
 def fitting(act: Act, *, sided: bool) -> list[str]:
     """The phrases that fit an act's number of people and what is known of it.
 
@@ -86,6 +108,7 @@ def fitting(act: Act, *, sided: bool) -> list[str]:
     if both and entry(act.act).to != "other":
         mutual = [text for text in found if text.startswith("{a+b}") or "{b}" in text]
         found = mutual or found
+    found = [text for text in found if reads_back(act.act, text, both=both)] or found
     found = [text for text in found if act.part or "{part}" not in text]
     found = [text for text in found if act.direction or "{direction}" not in text]
     if both and act.side != "both":  # "they wave with the left hand" has one hand of the two

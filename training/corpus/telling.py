@@ -29,7 +29,7 @@ LONGEST = 320
 """Characters of a caption, at most."""
 _THEN = (", then {}", ", and then {}", " and then {}", ". Then {}", ". Then {}", ". After that, {}", ". Next, {}",
          ". {}")  # fmt: skip
-_PAIRS = ("After {}, {}", "First {}, then {}", "{}, and {}", "{} and then {}")
+_PAIRS = ("After {}, {}", "First {}, then {}", "{} and then {}")
 """How two clauses that follow each other may stand in one sentence."""
 
 
@@ -143,14 +143,14 @@ class Teller:
 
 
 def _without_repeats(groups: list[list[Act]]) -> list[list[Act]]:
-    """Groups in which nobody stands still twice in a row."""
+    """The groups without saying again that a person stands still, where the group before says it."""
     found: list[list[Act]] = []
+    still: set[tuple[str, ...]] = set()
     for group in groups:
-        if found and len(group) == 1 and group[0].act == STILL and any(
-            act.act == STILL and act.agents == group[0].agents for act in found[-1]
-        ):  # fmt: skip
-            continue
-        found.append(group)
+        kept = [act for act in group if act.act != STILL or act.agents not in still]
+        still = {act.agents for act in group if act.act == STILL}
+        if kept:
+            found.append(kept)
     return found
 
 
