@@ -9,7 +9,6 @@ from pathlib import Path
 import pytest
 
 from models.weights_io import WeightsFolder
-from training.corpus.words import lexicon
 from training.trainers.intergen_data import Settings
 
 ROOT = Path(__file__).resolve().parents[1]
@@ -125,9 +124,7 @@ def test_scores_are_those_of_the_shipped_weights(page: str) -> None:
 
 def test_acts_gestures_classes_and_losses_are_counted() -> None:
     beats = (ROOT / "docs/corpus-beats.md").read_text()
-    written, spoken = lexicon.count()
-    acts, shown = shares(beats, rf"{written:,} sentences .* {spoken} phrases for (\d+) acts, of which (\d+) ")
-    assert int(acts) == len(lexicon.phrases())
+    (shown,) = shares(beats, r"for \d+ acts, of which (\d+) occur")
     assert int(shown) == len(re.findall(r"^\| [a-z-]+ \| \d", beats, re.MULTILINE))
     labels = WeightsFolder(ROOT / "models/weights/agent").meta["model"]["labels"]
     assert labels[0] == "nothing"

@@ -347,7 +347,9 @@ class _Planner:
             told, kind = kind == "then", "after" if kind == "then" else kind
             if kind == "after" and (other.already or self._waits(other)):
                 above = next((r.act for r in found[other.id] if r.kind == "while"), None)
-                other = acts[above] if above else other  # what follows "A talks while B waits" follows the talk
+                other = (
+                    acts[above] if above else other
+                )  # what follows "A talks while B waits" follows the talk
             if kind == "conj":
                 kind = order.coordinated(other, act, self._known, repeats=act.id in self._answers)
             if kind == "after":

@@ -17,6 +17,7 @@ from typing import Any
 from acts import Act, Plan, Relation
 from acts.lexicon import Entry, lexicon
 from acts.plan import plan_of
+from motion import InputError
 
 STILL = "stand-still"
 """The entry of a person who does nothing."""
@@ -251,7 +252,15 @@ def class_of(row: Mapping[str, Any]) -> str:
     """The class of a scene by its row's label: "shake hands", or "punch, dodge" of two entries.
 
     Transitions and people who stand still do not count.
+
+    Raises:
+        InputError: if the row has no label, as those of InterHuman.
     """
+    if not row.get("label"):
+        raise InputError(
+            f"A scene of {row.get('family', 'unknown origin')} has no label and so no class: build the corpus with "
+            "`python -m training.corpus`."
+        )
     known = Label.of_row(row["label"])
     names = [act.act for act in known.plan.acts if act.act != STILL and act.id not in known.minor]
     return ", ".join(dict.fromkeys(names or [STILL])).replace("-", " ")

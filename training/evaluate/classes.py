@@ -19,7 +19,7 @@ import torch
 import torch.nn.functional as F
 from torch import Tensor, nn
 
-from motion import Duet
+from motion import Duet, InputError
 from motion.metrics.generation import frechet_distance
 from training.core.shell import exit_code
 from training.corpus.cues import class_of
@@ -77,6 +77,22 @@ def tasks_of(scenes: Scenes, label: str, rng: np.random.Generator, count: int) -
     ]
 
 
+def known_classes(scenes: Scenes, labels: Sequence[str]) -> Scenes:
+    """The scenes whose class is one of the network's ``labels``.
+
+    Raises:
+        InputError: if the training or the test split has none, or a label has no right-handed training scene.
+    """
+    rows = [row for row in scenes.rows if class_of(row) in labels]
+    found = Scenes(scenes.control, rows, scenes.layout)
+    shown = {class_of(row) for row in right_handed(found.split("train"))}
+    missing = sorted(set(labels) - shown)
+    if missing or not right_handed(found.split("test")):
+        lacks = f"no training scene of {', '.join(missing[:5])}" if missing else "no test scene of any class"
+        raise InputError(f"There is {lacks}: score these weights on the corpus on which they were trained.")
+    return found
+
+
 def evaluate(
     scenes: Scenes,
     extractor: Extractor,
@@ -94,7 +110,7 @@ def evaluate(
         samples: motions of each, all of the length of a recorded one of the class.
         sampling: fields of the requests, such as ``steps``.
     """
-    scenes = of_classes(scenes)
+    scenes = known_classes(of_classes(scenes), labels)
     rng = np.random.default_rng(0)
     place = {label: i for i, label in enumerate(labels)}
 

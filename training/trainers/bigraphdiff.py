@@ -77,12 +77,21 @@ class Settings:
 
 
 def of_classes(scenes: Scenes) -> Scenes:
-    """The scenes that are of one class: without beats or an order of acts; raises InputError if there are none."""
+    """The scenes that are of one class: labelled, without beats or an order of acts.
+
+    Raises:
+        InputError: if there are none.
+    """
     rows = [
-        row for row in scenes.rows if row.get("label") and not row["beats"] and "order" not in row["events"]
+        row
+        for row in scenes.rows
+        if row.get("label") and not row.get("beats") and "order" not in (row.get("events") or {})
     ]
     if not rows:
-        raise InputError("The scenes hold none with a label of its own: build the corpus anew.")
+        raise InputError(
+            "No scene has a label of one class (those of InterHuman and of older corpora have none): build the "
+            "corpus anew with `python -m training.corpus`."
+        )
     return Scenes(scenes.control, rows, scenes.layout)
 
 

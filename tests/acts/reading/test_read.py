@@ -95,6 +95,10 @@ def test_who_does_what_to_whom(text: str, acts: list[str]) -> None:
         ("When she pats him, he hugs her.", [["1"], ["2"]]),
         ("She pats him. He hugs her.", [["1"], ["2"]]),
         ("She pats him before he hugs her.", [["1"], ["2"]]),
+        ("She bows, then he waits.", [["1"], ["2"]]),
+        ("She bows. He waits.", [["1", "2"]]),
+        ("She bows while he waits, and then she pats him.", [["1", "2"], ["3"]]),
+        ("She bows while he waits. Then he waits while she leaves.", [["1", "2"], ["3", "4"]]),
     ],
 )
 def test_order(text: str, beats: list[list[str]]) -> None:

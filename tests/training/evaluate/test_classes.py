@@ -10,11 +10,20 @@ import numpy as np
 import pytest
 import torch
 
+from motion import InputError
 from tests.training.trainers.runs import HANDS_MEET, write_corpus
 from training import prepare
 from training.corpus.cues import Beat
 from training.corpus.cues import label as label_of
-from training.evaluate.classes import accuracy, evaluate, fit_classifier, right_handed, table, tasks_of
+from training.evaluate.classes import (
+    accuracy,
+    evaluate,
+    fit_classifier,
+    known_classes,
+    right_handed,
+    table,
+    tasks_of,
+)
 from training.evaluate.judge.prompts import real_duet
 from training.prepare import Scenes
 from webdemo.inference import GenerateRequest, Result
@@ -91,3 +100,12 @@ def test_recorded_motion_given_as_made_scores_as_recorded_motion(scenes: Scenes)
     wrong = evaluate(scenes, extractor, swapped, LABELS, samples=2, steps=2)
     assert wrong["generated"]["accuracy"][0] == 0 and wrong["missed"] == dict.fromkeys(LABELS, 2)
     assert "Most often taken for another class: shake hands (2); wave (2)." in table(wrong, "")
+
+
+def test_weights_are_scored_on_their_own_classes_alone(scenes: Scenes) -> None:
+    assert {row["family"] for row in known_classes(scenes, ["wave"]).rows} == {"wave-back"}
+    with pytest.raises(InputError, match=r"no training scene of spar: score these weights on the corpus"):
+        known_classes(scenes, ["wave", "spar"])
+    train = Scenes(scenes.control, scenes.split("train"), scenes.layout)
+    with pytest.raises(InputError, match="no test scene"):
+        known_classes(train, LABELS)
