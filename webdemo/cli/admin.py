@@ -18,6 +18,7 @@ def add_admin(commands: Any) -> None:
         "action",
         choices=(
             "list",
+            "invite",
             "make-admin",
             "end-admin",
             "room",
@@ -31,8 +32,9 @@ def add_admin(commands: Any) -> None:
     )
     parser.add_argument("name", nargs="?", help="of the account; with announce, the line (empty: none)")
     parser.add_argument(
-        "--megabytes", type=float, help="with room: the person's room; without it, everybody's"
+        "--megabytes", type=float, help="with room and invite: the person's room; without it, everybody's"
     )
+    parser.add_argument("--days", type=float, default=7.0, help="with invite: how long the link works")
     parser.set_defaults(job=admin)
 
 
@@ -61,6 +63,9 @@ def admin(options: argparse.Namespace) -> dict[str, Any]:
             acts = administration_of(settings, database, Users(settings.users) if settings.users else None)
             if action == "list":
                 return {"people": [asdict(row) for row in acts.rows()], "announced": acts.people.announced()}
+            if action == "invite":
+                path = acts.invite(name, megabytes=options.megabytes, days=options.days)
+                return {"done": action, "name": name, "path": settings.root_path + path}
             if action in ("make-admin", "end-admin"):
                 acts.set_role(name, admin=action == "make-admin")
             elif action == "room":

@@ -16,7 +16,7 @@ from .victim import Victim
 OPEN = {
     "GET /healthz", "GET /metrics", "GET /login", "POST /login", "POST /login/", "GET /logout", "POST /logout",
     "GET /share/{key}", "GET /share/{key}/{place}", "GET /embed/{key}", "GET /embed/{key}/{place}",
-    "GET /shown/{name:path}",
+    "GET /shown/{name:path}", "GET /login/invited/{key}", "POST /login/invited/{key}",
 }  # fmt: skip
 """Routes that need no sign-in: /metrics has its own rule, and a public page's key is a secret."""
 THINGS = {

@@ -60,16 +60,20 @@ class Users:
 
     def add(self, name: str, password: str) -> bool:
         """Adds a person, or changes their password; whether they are new."""
+        self.check(name, password)
+        entries = self._entries() if self.path.exists() else {}
+        new = name not in entries
+        self._write(entries | {name: _hashed(password)})
+        return new
+
+    def check(self, name: str, password: str) -> None:
+        """Raises InputError for a name or a password that no account can have."""
         if not NAME.match(name):
             raise InputError(
                 f"{name!r:.60} is not a valid account name: use up to 40 of a-z, 0-9, '.', '_' and '-'."
             )
         if not SHORTEST <= len(password) <= LONGEST:
             raise InputError(f"The password must have {SHORTEST} to {LONGEST} characters.")
-        entries = self._entries() if self.path.exists() else {}
-        new = name not in entries
-        self._write(entries | {name: _hashed(password)})
-        return new
 
     def remove(self, name: str) -> None:
         """Removes a person; raises InputError if there is none of that name."""

@@ -13,6 +13,7 @@ from starlette.concurrency import run_in_threadpool
 from starlette.responses import HTMLResponse, RedirectResponse, Response
 
 from motion import InputError
+from webdemo.server.accounts.invitations import DAYS
 from webdemo.server.admin import Administration, versions
 from webdemo.server.audit import audit, audited
 from webdemo.server.logs import LAST_ERRORS
@@ -60,6 +61,9 @@ def admin_routes(lab: Lab) -> APIRouter:
         given = {name: value for name, value in form.items() if isinstance(value, str)}
         done = given.get("act", "")
         try:
+            if done == "invite":
+                said = await run_in_threadpool(_invite, lab, given, _base(request))
+                return HTMLResponse(_page(lab, said), headers={"Cache-Control": "no-store"})
             await run_in_threadpool(_act, lab, done, given)
         except InputError as error:
             raise Refused(422, str(error), "admin") from None
@@ -103,6 +107,19 @@ def _end(end: Callable[[str, str], bool], act: str, key: str) -> None:
         raise InputError("It has ended already: go back and reload the page.")
 
 
+def _invite(lab: Lab, given: Mapping[str, str], base: str) -> str:
+    """Makes an invitation; returns the sentence that shows its link, which is nowhere else."""
+    assert lab.administration is not None
+    name = given.get("name", "").strip().lower()
+    path = lab.administration.invite(name, megabytes=_megabytes(given.get("megabytes", "")))
+    return f"Send {name} this link, which works once, within {DAYS:g} days: {base}{path.removeprefix('/')}"
+
+
+def _base(request: Request) -> str:
+    visitor: Visitor = request.scope["state"]["visitor"]
+    return visitor.base
+
+
 def _megabytes(text: str) -> float | None:
     try:
         return float(text) if text.strip() else None
@@ -128,6 +145,7 @@ def _page(lab: Lab, done: str) -> str:
     action = f"{lab.settings.root_path}/admin"
     parts = [
         ("People", _people(lab, lab.administration, action)),
+        *([("Invitation", _invitation(action))] if lab.sign_ins is not None else []),
         ("Runs and streams", _work(lab, action)),
         ("Announcement", _announcement(lab, action)),
         ("Health", _health(lab)),
@@ -191,6 +209,14 @@ def _people(lab: Lab, admin: Administration, action: str) -> str:
         "Acts",
     )
     return table(heads, rows, "no accounts")
+
+
+def _invitation(action: str) -> str:
+    fields = (
+        '<label>Name of the new account <input name="name" maxlength="40" autocapitalize="none" required></label>'
+        '<label>Its room in megabytes; empty: as everybody <input name="megabytes" inputmode="decimal"></label>'
+    )
+    return _button(action, "invite", "Make a link", fields)
 
 
 def _work(lab: Lab, action: str) -> str:

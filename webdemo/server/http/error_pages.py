@@ -74,6 +74,29 @@ def account_card(*, home: str, name: str, error: str = "", done: str = "") -> st
     )
 
 
+def invitation_card(*, action: str, name: str, error: str = "") -> str:
+    """The form by which an invited person chooses a password.
+
+    Args:
+        action: where it is sent.
+        name: of the account.
+        error: what went wrong before.
+    """
+    said = f'<p role="alert">{html.escape(error)}</p>' if error else ""
+    fields = "".join(
+        f'<label>{label}<input name="{key}" type="password" autocomplete="new-password" required></label>'
+        for label, key in (("Password", "new"), ("Password again", "again"))
+    )
+    shown = html.escape(name, quote=True)
+    return card(
+        f"<p>You are invited. Choose a password for your account <strong>{shown}</strong>.</p>{said}"
+        f'<form method="post" action="{html.escape(action, quote=True)}">'
+        f'<input name="username" value="{shown}" autocomplete="username" hidden readonly>'
+        f"{fields}<button>Make the account</button></form>"
+        "<p><small>The link works once. You sign in with this name and password from now on.</small></p>"
+    )
+
+
 def sign_in_card(*, action: str, wanted: str, name: str = "", error: str = "", elsewhere: str = "") -> str:
     """The form by which people sign in.
 

@@ -161,6 +161,22 @@ class SignIn(Table):
     until: Mapped[float]
 
 
+class Invitation(Table):
+    """A link by which somebody makes an account, known by the hash of its key.
+
+    Attributes:
+        name: of the account.
+        megabytes: its room; None: as everybody's.
+    """
+
+    __tablename__ = "invitations"
+
+    digest: Mapped[str] = mapped_column(primary_key=True)
+    name: Mapped[str]
+    megabytes: Mapped[float | None] = mapped_column(default=None)
+    until: Mapped[float]
+
+
 class Study(Table):
     """A blind study; its motions are in a folder of its name.
 
