@@ -17,6 +17,7 @@ from acts import lexicon
 from acts.own import own_files
 from motion.formats.files import MAX_BYTES
 from webdemo.ui.components.exports import Shelf
+from webdemo.ui.components.finder import Finder
 from webdemo.ui.components.folds import remember_folds
 from webdemo.ui.tabs.generate import GenerateTab
 from webdemo.ui.tabs.history import LABEL as HISTORY
@@ -111,7 +112,9 @@ def build_page(
             endpoint(page).publish()
         with gr.Row(elem_classes="pd-header", equal_height=True):
             gr.HTML(_HEADER)
+            finder = Finder(elem_id="finder")
             mark = gr.HTML(model_state("loading"), elem_id="model-state")
+        finder.wire(history, **QUIET)
         _build_announcement(announced, demo)
         _build_tabs(page, demo)
         _build_own_acts(demo)

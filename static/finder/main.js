@@ -1,0 +1,144 @@
+// The page's search: Ctrl K opens a dialog, arrows choose, Enter goes there. webdemo/ui/components/finder.py has its data.
+
+import { placesOf, search } from "./finder.js";
+
+const PATIENCE = 8000; // ms until what was chosen must be on the page
+
+const make = (tag, className, text) => Object.assign(document.createElement(tag), { className, textContent: text });
+
+/** The element once it is on the page and seen; null if it does not come. */
+async function appeared(find) {
+  const end = performance.now() + PATIENCE;
+  for (;;) {
+    const element = find();
+    if (element?.offsetParent) return element;
+    if (performance.now() > end) return null;
+    await new Promise((done) => setTimeout(done, 50));
+  }
+}
+
+async function openTab(label) {
+  const tabs = [...document.querySelectorAll(".pd-tabs [role=tab]")];
+  tabs.find((tab) => tab.textContent.trim() === label && tab.ariaSelected !== "true")?.click();
+}
+
+/** Opens the tab and the folded parts around a control, brings it into view and puts the focus on it. */
+async function goTo({ tab, folds, target }) {
+  await openTab(tab);
+  if (!target) return;
+  for (const id of folds) {
+    const fold = await appeared(() => document.querySelector(`#${id} > button.label-wrap`));
+    if (fold && !fold.classList.contains("open")) fold.click();
+  }
+  const element = await appeared(() => document.getElementById(target));
+  if (!element) return;
+  element.scrollIntoView({ block: "center" });
+  const field = element.matches("button") ? element : element.querySelector("input:not([type=file]), textarea, select, button");
+  (field ?? element).focus();
+}
+
+/** Puts a sentence into the prompt, as if it had been typed. */
+async function say(sentence) {
+  await openTab("Generate");
+  const prompt = await appeared(() => document.querySelector("#prompt textarea, #prompt input"));
+  if (!prompt) return;
+  Object.getOwnPropertyDescriptor(Object.getPrototypeOf(prompt), "value").set.call(prompt, sentence);
+  prompt.dispatchEvent(new Event("input", { bubbles: true }));
+  prompt.focus();
+}
+
+class Finder {
+  constructor(root, ask) {
+    this.ask = ask;
+    this.dialog = root.querySelector("dialog");
+    this.field = root.querySelector("input");
+    this.list = root.querySelector("[role=listbox]");
+    this.entries = [];
+    this.places = placesOf(window.gradio_config);
+    root.querySelector(".pdq-open").addEventListener("click", () => this.open());
+    root.querySelector(".pdq-open kbd").textContent = /Mac|iP(hone|ad)/.test(navigator.platform) ? "⌘ K" : "Ctrl K";
+    this.field.addEventListener("input", () => this.show());
+    this.dialog.addEventListener("keydown", (event) => this.type(event));
+    this.dialog.addEventListener("click", (event) => {
+      if (event.target === this.dialog) return this.dialog.close(); // beside it
+      const row = event.target.closest("[role=option]");
+      if (row) this.take(Number(row.dataset.index));
+    });
+    const pressed = (event) => {
+      if (!root.isConnected) return document.removeEventListener("keydown", pressed);
+      if (event.key.toLowerCase() !== "k" || !(event.ctrlKey || event.metaKey) || event.altKey || event.shiftKey) return;
+      event.preventDefault();
+      this.dialog.open ? this.dialog.close() : this.open();
+    };
+    document.addEventListener("keydown", pressed);
+  }
+
+  open() {
+    this.ask(); // runs change, and acts are read when they are first wanted
+    this.field.value = "";
+    this.dialog.showModal();
+    this.field.focus();
+    this.show();
+  }
+
+  /** Takes what Python knows: { acts: [name, sentence], runs: [id, title, facts] }. */
+  load({ acts, runs }) {
+    this.entries = [
+      ...this.places,
+      ...acts.map(([name, sentence]) => ({ kind: "Act", name, more: sentence, sentence })),
+      ...runs.map(([run, name, more]) => ({ kind: "Run", name, more, run })),
+    ];
+    if (this.dialog.open) this.show();
+  }
+
+  show() {
+    this.found = search(this.entries.length ? this.entries : this.places, this.field.value);
+    this.at = 0;
+    this.list.replaceChildren(...this.found.map((entry, index) => {
+      const row = make("li", "pdq-row", "");
+      Object.assign(row, { id: `pdq-${index}`, role: "option" });
+      row.dataset.index = index;
+      row.append(make("span", "pdq-kind", entry.kind), make("span", "pdq-name", entry.name), make("span", "pdq-more", entry.more));
+      return row;
+    }));
+    if (!this.found.length) this.list.append(make("li", "pdq-none", "Nothing has these words."));
+    this.mark();
+  }
+
+  mark() {
+    [...this.list.children].forEach((row, index) => {
+      row.ariaSelected = String(index === this.at);
+      if (index === this.at) row.scrollIntoView({ block: "nearest" });
+    });
+    if (this.found.length) this.field.setAttribute("aria-activedescendant", `pdq-${this.at}`);
+    else this.field.removeAttribute("aria-activedescendant");
+  }
+
+  type(event) {
+    const step = { ArrowDown: 1, ArrowUp: -1 }[event.key];
+    if (step && this.found.length) {
+      this.at = (this.at + step + this.found.length) % this.found.length;
+      this.mark();
+    } else if (event.key === "Enter") this.take(this.at);
+    else return;
+    event.preventDefault();
+  }
+
+  take(index) {
+    const entry = this.found[index];
+    if (!entry) return;
+    this.dialog.close();
+    if (entry.sentence) say(entry.sentence);
+    else if (entry.run) window.location.search = `?run=${encodeURIComponent(entry.run)}`;
+    else goTo(entry);
+  }
+}
+
+/** `element` holds finder.html; `props` are the component's, watched by `watch`; `trigger` tells Python. */
+export function mount(element, props, watch, trigger) {
+  const root = element.querySelector(".pdq");
+  const finder = new Finder(root, () => trigger("input"));
+  const sync = () => props.known && finder.load(props.known);
+  watch(["known"], sync);
+  sync();
+}

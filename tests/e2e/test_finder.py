@@ -1,0 +1,66 @@
+"""The search that Ctrl K opens, in the served page."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable
+from types import SimpleNamespace
+
+import pytest
+from playwright.sync_api import Page, expect
+
+from .playing import until
+from .serving import SLOW, live
+
+pytestmark = pytest.mark.e2e
+
+FIELD = "#finder dialog input"
+FIRST = "#finder [aria-selected=true]"
+
+
+def test_an_act_a_control_and_a_run_are_found_by_keyboard_alone(
+    server: SimpleNamespace, open_page: Callable[..., Page]
+) -> None:
+    page = live(open_page(server.url, width=1280, height=800))
+    page.keyboard.press("Control+k")
+    expect(page.locator(FIELD)).to_be_focused()
+    page.keyboard.type("arm wrestl")
+    expect(page.locator(FIRST)).to_contain_text("Act", timeout=SLOW)
+    page.keyboard.press("Enter")
+    expect(page.locator("#finder dialog")).to_be_hidden()
+    expect(page.locator("#prompt textarea, #prompt input")).to_have_value(re.compile("wrestl"))
+
+    page.locator("button#generate").click()
+    expect(page.locator("#status .pd-done")).to_be_visible(timeout=SLOW)
+
+    page.keyboard.press("Control+k")
+    page.keyboard.type("samples scene")
+    expect(page.locator(FIRST)).to_contain_text("Samples")
+    page.keyboard.press("Enter")
+    expect(page.get_by_role("tab", name="Scene")).to_have_attribute("aria-selected", "true", timeout=SLOW)
+    until(page, "document.activeElement.closest('#scene-samples') !== null")
+
+    page.keyboard.press("Control+k")
+    page.keyboard.type("run wrestl")
+    expect(page.locator(FIRST)).to_contain_text("Run", timeout=SLOW)
+    page.keyboard.press("Enter")
+    page.wait_for_url("**/?run=*")
+    live(page)
+    until(page, "window.__pasdedeux?.id")
+
+
+def test_the_dialog_closes_again_and_says_when_nothing_is_found(
+    server: SimpleNamespace, open_page: Callable[..., Page]
+) -> None:
+    page = live(open_page(server.url, width=1280, height=800))
+    page.locator("#finder button").click()
+    page.keyboard.type("qqqq")
+    expect(page.locator("#finder [role=listbox]")).to_have_text("Nothing has these words.")
+    page.keyboard.press("Escape")
+    expect(page.locator("#finder dialog")).to_be_hidden()
+    page.keyboard.press("Control+k")
+    expect(page.locator(FIELD)).to_have_value("")
+    page.keyboard.type("hist")
+    expect(page.locator(FIRST)).to_contain_text("History")
+    page.keyboard.press("Enter")
+    expect(page.get_by_role("tab", name="History")).to_have_attribute("aria-selected", "true", timeout=SLOW)
