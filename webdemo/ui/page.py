@@ -110,11 +110,7 @@ def build_page(
     with gr.Blocks(title=TITLE, delete_cache=_CACHE, fill_width=True, analytics_enabled=False) as demo:
         for endpoint in ENDPOINTS:
             endpoint(page).publish()
-        with gr.Row(elem_classes="pd-header", equal_height=True):
-            gr.HTML(_HEADER)
-            finder = Finder(elem_id="finder")
-            mark = gr.HTML(model_state("loading"), elem_id="model-state")
-        finder.wire(history, **QUIET)
+        mark = _build_header(history)
         _build_announcement(announced, demo)
         _build_tabs(page, demo)
         _build_own_acts(demo)
@@ -122,6 +118,16 @@ def build_page(
         demo.unload(leave)
     start_queue(demo, partial(Queue, max_size=64))
     return demo
+
+
+def _build_header(history: HistoryLike | None) -> gr.HTML:
+    """The title, the search and the mark that says whether the model is ready, which is returned."""
+    with gr.Row(elem_classes="pd-header", equal_height=True):
+        gr.HTML(_HEADER)
+        finder = Finder(elem_id="finder")
+        mark = gr.HTML(model_state("loading"), elem_id="model-state")
+    finder.wire(history, **QUIET)
+    return mark
 
 
 def start_queue(page: gr.Blocks, make: Callable[..., Queue]) -> None:
