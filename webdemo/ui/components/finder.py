@@ -81,7 +81,7 @@ class Finder(gr.HTML):
 
 
 def known(history: HistoryLike | None) -> dict[str, Any]:
-    """What the browser cannot know.
+    """The part of the list that the browser cannot know.
 
     Returns:
         ``acts``, each act that bodies show in a few words and a sentence that has it; ``runs``, the id, the title and
