@@ -34,7 +34,6 @@ _FOOT_STRETCH = (0.2, 2.5)
 _LEVEL = np.array([1.0, 0.0, 1.0])
 _LARGEST = 3.0
 """Metres from the pelvis beyond which a part of the mesh is no part of a person."""
-_CHAIN = ("knee", "ankle", "foot", "shoulder", "elbow", "wrist")
 _REST = SMPL22.rest_positions()
 
 

@@ -276,12 +276,6 @@ hand_on_chest = _pose(
 open_arms = _pose(
     lambda body, side: on_body(body, f"{side}_shoulder", 0.38 * _out(side), -0.06, 0.24), 1.3, 2.2
 )
-reach_out = _pose(
-    lambda body, side: on_body(body, f"{side}_shoulder", -0.08 * _out(side), -0.28, 0.42),
-    1.4,
-    2.2,
-    both=False,
-)
 
 
 def point(play: Play, i: int) -> Done:

@@ -171,13 +171,6 @@ def turn_to(play: Play, i: int) -> None:
     play.note(("turn-to", STILL), start, i=i, relation="while")
 
 
-def turn_round(play: Play, i: int) -> None:
-    """A full turn on the spot, the other watching."""
-    start = play.sync()
-    ACTS["spin"].make(play, i)
-    play.note(("spin", STILL), start, i=i, relation="while")
-
-
 def step_back(play: Play, i: int) -> None:
     """i goes up a step and the other backs away; or i only steps back."""
     rng = play.rng
