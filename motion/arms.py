@@ -69,7 +69,7 @@ def _touching(pair: Array, near: NDArray[np.bool_]) -> NDArray[np.bool_]:
     """(T,) frames at which an arm is in the other's body."""
     found = np.zeros(pair.shape[1], dtype=bool)
     at = np.flatnonzero(near)
-    grips = _grips(pair[:, at])
+    grips = grips_of_hands(pair[:, at])
     for person in (0, 1):
         push = _pushes(pair[person][at], pair[1 - person][at], grips[person])
         found[at] |= np.abs(push).max(axis=(1, 2, 3)) > 0
@@ -86,7 +86,7 @@ def _stretches(marked: NDArray[np.bool_]) -> list[tuple[int, int]]:
 
 def _resolved(pair: Array, share: Array) -> Array:
     """Some frames (2, N, 22, 3) with their arms pushed out."""
-    result, grips = pair.copy(), _grips(pair)
+    result, grips = pair.copy(), grips_of_hands(pair)
     for _ in range(_ROUNDS):
         pushes = np.stack([_pushes(result[p], result[1 - p], grips[p]) for p in (0, 1)])
         if not pushes.any():
@@ -99,7 +99,7 @@ def _resolved(pair: Array, share: Array) -> Array:
     return result
 
 
-def _grips(pair: Array) -> Array:
+def grips_of_hands(pair: Array) -> Array:
     """(2, N, side) 1 for hands that are at a hand of the other's, 0 for those that are away from both."""
     wrists = pair[:, :, [wrist for *_, wrist in ARMS]]
     gaps = np.linalg.norm(wrists[0][:, :, None] - wrists[1][:, None], axis=-1)

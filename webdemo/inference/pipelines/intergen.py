@@ -14,6 +14,7 @@ from models.intergen.compact import CaptionBank, CompactInterGen, load_captions,
 from models.text import MiniLM
 from motion import Clip, Duet
 from motion.arms import arms_apart
+from motion.embraces import embraced
 from webdemo.inference.cancel import CancelToken
 from webdemo.inference.plans import KeptPlan
 from webdemo.inference.requests import GenerateRequest, Progress, ReactRequest, Result
@@ -121,5 +122,5 @@ class InterGenPipeline(TwoPersonPipeline[CompactInterGen]):
 
 
 def _apart(duet: Duet | Clip) -> Duet | Clip:
-    """A duet whose arms are not in the other's body."""
-    return duet.with_positions(arms_apart(duet.positions)) if isinstance(duet, Duet) else duet
+    """A duet whose embraces are close and whose arms are not in the other's body."""
+    return duet.with_positions(arms_apart(embraced(duet.positions))) if isinstance(duet, Duet) else duet

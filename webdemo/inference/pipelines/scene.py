@@ -18,6 +18,7 @@ from numpy.typing import NDArray
 
 from motion import Duet, InputError
 from motion.arms import arms_apart
+from motion.embraces import embraced
 from motion.metrics import compare
 from webdemo.inference import methods
 from webdemo.inference.actor import FPS, ROLES
@@ -216,7 +217,7 @@ def _blank(request: SceneRequest) -> Array:
 def _duet(request: SceneRequest, scene: Array) -> Duet:
     if request.motion is None:
         if request.cleanup and not (request.loop or request.poses):  # these stay as they are
-            scene = arms_apart(scene).astype(np.float32)
+            scene = arms_apart(embraced(scene)).astype(np.float32)
         return Duet.from_positions(scene, fps=FPS, roles=NAMES)
     return replace(request.motion.with_positions(scene), manifest=None)
 

@@ -1,0 +1,219 @@
+"""Embraces: people who reach around each other come close, and their hands lie on the other's back.
+
+A network that was trained on bodies of lines has people hug at arm's length, with arms stretched out past the other.
+Where both do so, the trunks lean to each other over feet that stay, each head beside the other's. Each right arm goes
+over the other's left shoulder, and each left arm below the other's right one; elbows bend outwards.
+:func:`motion.arms.arms_apart` then bends the arms around what is still in their way.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+import scipy  # its parts are loaded with their first use
+from numpy.typing import NDArray
+
+from .arms import ARMS, grips_of_hands
+from .cleaning import solve_two_bones
+from .skeleton import SMPL22
+from .transforms import facing
+
+Array = NDArray[np.floating]
+
+CLOSE = 0.34
+"""Metres between two spines in an embrace: 10 to 15 cm between two chests."""
+_MOST = 0.75
+"""Metres between two spines beyond which arms that are held out are no embrace."""
+_AROUND = (-0.2, 0.27)
+"""Metres past the other's chest, at least, and beside it, at most, of a wrist that is around the other."""
+_HANDS = ((0.04, 0.12, -0.13, 0.7), (0.11, 0.1, 0.15, 0.0))
+"""Of the left and of the right wrist: metres past the other's spine, beside it and over it, and how far the elbow
+hangs for a metre outwards. Of hundreds drawn at random, such hands leave few arms in the other's body."""
+_STRAIGHT = 0.97
+"""Share of an arm's length that is used at most."""
+_SHARE = 0.55
+"""Share of the way to the other that the pelvis goes; the rest is lean."""
+_ASIDE = 0.13
+"""Metres by which two heads pass each other, each to its own left."""
+_LEVEL = 0.15
+"""Metres between the heights of two pelvises up to which both stand."""
+_EASE, _SHORTEST = 24, 10
+"""Frames in which people come close and part, and of the shortest embrace."""
+_FACES = 0.5
+"""Cosine between the ways that people face and the way to the other, at least."""
+_LIFTED = 0.12
+"""Height in metres of the lower toe of somebody who is lifted."""
+_SINKS = 0.06
+"""Metres by which a body sinks at most."""
+_SPINE = SMPL22.index("spine3")
+_LEGS = tuple(
+    tuple(SMPL22.index(f"{side}_{joint}") for joint in ("hip", "knee", "ankle", "foot"))
+    for side in ("left", "right")
+)
+_TOES = [leg[-1] for leg in _LEGS]
+_HIPS = [0, *(leg[0] for leg in _LEGS)]
+_LOW = [0, *(joint for leg in _LEGS for joint in leg)]
+_UPPER = [joint for joint in range(SMPL22.num_joints) if joint not in _LOW]
+_FLAT = np.array([1.0, 0.0, 1.0])
+
+
+def embraced(pair: Array) -> Array:
+    """Two people who come close where both reach around each other, with hands on the other's back.
+
+    Args:
+        pair: (2, T, 22, 3) metres on constant bones.
+
+    Returns:
+        (2, T, 22, 3) metres; what is no embrace stays as it is.
+    """
+    result = np.array(pair, dtype=np.float64)
+    close = _eased(_on_their_feet(_long(_hugs(result)), result))
+    if not close.any():
+        return result
+    drawn = [_drawn(result[p], result[1 - p], close) for p in (0, 1)]
+    return np.stack([_wrapped(drawn[p], drawn[1 - p], close) for p in (0, 1)])
+
+
+def _around(own: Array, other: Array) -> NDArray[np.bool_]:
+    """(T, side) hands that are beside or past the other's spine, at the height of their trunk."""
+    spine = other[:, _SPINE]
+    way = _level(spine - own[:, _SPINE])
+    across = _left(way)
+    low, high = other[:, 0, 1], other[:, SMPL22.index("neck"), 1] + 0.05
+    found = []
+    for *_, wrist in ARMS:
+        hand = own[:, wrist] - spine
+        past = np.einsum("ti,ti->t", hand, way) > _AROUND[0]
+        beside = np.abs(np.einsum("ti,ti->t", hand, across)) < _AROUND[1]
+        found.append(past & beside & (low < own[:, wrist, 1]) & (own[:, wrist, 1] < high))
+    near = np.linalg.norm((spine - own[:, _SPINE]) * _FLAT, axis=-1) < _MOST
+    return np.stack(found, axis=1) & near[:, None]
+
+
+def _hugs(pair: Array) -> NDArray[np.bool_]:
+    """(T,) frames at which two who stand face to face have at least three arms around each other."""
+    a, b = pair
+    hands = np.stack([_around(a, b), _around(b, a)]) & (
+        grips_of_hands(pair) < 0.5
+    )  # hands that are held hold no back
+    around = hands.sum(axis=(0, 2))
+    way = _level(b[:, _SPINE] - a[:, _SPINE])
+    face = np.einsum("ti,ti->t", facing(a), way) > _FACES
+    face &= np.einsum("ti,ti->t", facing(b), -way) > _FACES
+    stands = np.abs(a[:, 0, 1] - b[:, 0, 1]) < _LEVEL
+    return face & stands & (around >= 3)
+
+
+def _on_their_feet(marked: NDArray[np.bool_], pair: Array) -> NDArray[np.bool_]:
+    """Marked frames but for those at which, or next to which, somebody is lifted."""
+    lifted = (pair[:, :, _TOES, 1].min(axis=2) > _LIFTED).any(axis=0)
+    near = scipy.ndimage.binary_dilation(lifted, np.ones(2 * _EASE + 1)) if lifted.any() else lifted
+    stretches, _ = scipy.ndimage.label(marked)
+    return marked & ~np.isin(stretches, stretches[near])
+
+
+def _long(marked: NDArray[np.bool_]) -> NDArray[np.bool_]:
+    """Marked frames without short gaps and short stretches."""
+    padded = np.pad(marked, _SHORTEST, mode="edge")
+    closed = scipy.ndimage.binary_closing(padded, np.ones(_SHORTEST + 1))
+    return scipy.ndimage.binary_opening(closed, np.ones(_SHORTEST))[_SHORTEST:-_SHORTEST]
+
+
+def _eased(marked: NDArray[np.bool_]) -> Array:
+    """(T,) 1 at marked frames, and along a minimum-jerk course to 0 within :data:`_EASE` frames beside them."""
+    if not marked.any():
+        return np.zeros(len(marked))
+    away = scipy.ndimage.distance_transform_edt(~marked)
+    s = np.clip(1 - away / (_EASE + 1), 0.0, 1.0)
+    return np.asarray(s**3 * (10 - 15 * s + 6 * s**2))
+
+
+def _drawn(own: Array, other: Array, weight: Array) -> Array:
+    """A person (T, 22, 3) who comes half of the way to the other by ``weight`` (T,), over feet that stay."""
+    way = _level(other[:, _SPINE] - own[:, _SPINE])
+    gap = np.linalg.norm((other[:, _SPINE] - own[:, _SPINE]) * _FLAT, axis=-1)
+    metres = 0.5 * weight * np.maximum(gap - CLOSE, 0.0)
+    ahead = metres[:, None] * way + (0.5 * _ASIDE * weight)[:, None] * _left(way)
+    shift = _SHARE * ahead
+    result = own.copy()
+    result[:, _UPPER] = (_leaned(own, ahead - shift) + shift[:, None])[:, _UPPER]
+    result[:, _HIPS] += shift[:, None]
+    result[:, [*_UPPER, *_HIPS], 1] -= scipy.ndimage.gaussian_filter1d(_sunk(own, result), 2.0)[:, None]
+    forward = facing(own)
+    for hip, knee, ankle, toe in _LEGS:
+        moved = own[:, knee] + shift, own[:, ankle] + shift
+        result[:, knee], result[:, ankle] = solve_two_bones(result[:, hip], *moved, own[:, ankle], forward)
+        result[:, toe] = result[:, ankle] + own[:, toe] - own[:, ankle]
+    return result
+
+
+def _sunk(own: Array, moved: Array) -> Array:
+    """(T,) metres by which hips that are ``moved`` (T, 22, 3) go down, so that no leg is too short."""
+    sunk = np.zeros(len(own))
+    for hip, knee, ankle, _ in _LEGS:
+        length = np.linalg.norm(own[:, knee] - own[:, hip], axis=-1)
+        length += np.linalg.norm(own[:, ankle] - own[:, knee], axis=-1)
+        aside = np.linalg.norm((moved[:, hip] - own[:, ankle]) * _FLAT, axis=-1)
+        reach = np.sqrt(np.maximum((0.995 * length) ** 2 - aside**2, 0.0))
+        sunk = np.maximum(sunk, np.minimum(moved[:, hip, 1] - own[:, ankle, 1] - reach, _SINKS))
+    return sunk
+
+
+def _leaned(own: Array, ahead: Array) -> Array:
+    """A person (T, 22, 3) whose trunk turns about the pelvis and takes the chest ``ahead`` by (T, 3) metres."""
+    arm = own[:, _SPINE] - own[:, 0]
+    goal = arm + ahead
+    size = np.linalg.norm(arm, axis=-1, keepdims=True)
+    goal = goal * size / np.maximum(np.linalg.norm(goal, axis=-1, keepdims=True), 1e-9)
+    axis = np.cross(arm, goal)
+    sine = np.linalg.norm(axis, axis=-1, keepdims=True)
+    angle = np.arctan2(sine, np.sum(arm * goal, axis=-1, keepdims=True))
+    turn = scipy.spatial.transform.Rotation.from_rotvec(axis / np.maximum(sine, 1e-9) * angle).as_matrix()
+    return own[:, :1] + np.einsum("tij,tkj->tki", turn, own - own[:, :1])
+
+
+def _wrapped(own: Array, other: Array, weight: Array) -> Array:
+    """A person (T, 22, 3) whose hands lie on the other's back by ``weight`` (T,)."""
+    result = own.copy()
+    way = _level(other[:, _SPINE] - own[:, _SPINE])
+    left, up = _left(way), np.array([0.0, 1.0, 0.0])
+    for (shoulder, elbow, wrist), side, (past, beside, height, hang) in zip(
+        ARMS, (1.0, -1.0), _HANDS, strict=True
+    ):
+        goal = other[:, _SPINE] + past * way + beside * side * left + height * up
+        arm = own[:, shoulder], own[:, elbow], own[:, wrist]
+        bent, met = _bent(*arm, goal, side * left - hang * up)
+        bent, met = (at + weight[:, None] * (to - at) for at, to in ((arm[1], bent), (arm[2], met)))
+        result[:, elbow] = _on_bone(arm[0], bent, np.linalg.norm(arm[1] - arm[0], axis=-1, keepdims=True))
+        lower = np.linalg.norm(arm[2] - arm[1], axis=-1, keepdims=True)
+        result[:, wrist] = _on_bone(result[:, elbow], met, lower)
+    return result
+
+
+def _bent(root: Array, middle: Array, end: Array, goal: Array, pole: Array) -> tuple[Array, Array]:
+    """The elbow and the wrist (T, 3) of an arm that reaches for a goal and bends towards a pole, however it bent."""
+    upper, lower = (
+        np.linalg.norm(tip - base, axis=-1, keepdims=True) for base, tip in ((root, middle), (middle, end))
+    )
+    reach = np.linalg.norm(goal - root, axis=-1, keepdims=True)
+    axis = (goal - root) / np.maximum(reach, 1e-9)
+    reach = np.clip(reach, np.abs(upper - lower) + 1e-3, _STRAIGHT * (upper + lower))
+    along = (reach**2 + upper**2 - lower**2) / (2 * reach)
+    out = pole - np.sum(pole * axis, axis=-1, keepdims=True) * axis
+    aside = np.sqrt(np.maximum(upper**2 - along**2, 0.0))
+    return _on_bone(root + along * axis, root + along * axis + out, aside), root + reach * axis
+
+
+def _on_bone(base: Array, towards: Array, length: Array) -> Array:
+    """(T, 3) the point ``length`` (T, 1) metres from a base on the way to another point."""
+    bone = towards - base
+    return np.asarray(base + bone * length / np.maximum(np.linalg.norm(bone, axis=-1, keepdims=True), 1e-9))
+
+
+def _left(way: Array) -> Array:
+    """(T, 3) what is to the left of a level way (T, 3)."""
+    return np.stack([way[:, 2], np.zeros(len(way)), -way[:, 0]], axis=-1)
+
+
+def _level(way: Array) -> Array:
+    flat = way * _FLAT
+    return np.asarray(flat / np.maximum(np.linalg.norm(flat, axis=-1, keepdims=True), 1e-6))

@@ -1,0 +1,92 @@
+"""People who hug come close, and their hands lie on the other's back."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from motion import SMPL22
+from motion.embraces import CLOSE, embraced
+from motion.metrics.naturalness import jerk_percentile
+from motion.transforms import heading_matrix
+
+J = SMPL22.index
+FRAMES = 120
+SPINE = J("spine3")
+HUGS = slice(55, 65)
+
+
+def _pair(gap: float = 0.55) -> np.ndarray:
+    """Two people face to face, ``gap`` metres apart, who raise their arms past the other for a while: (2, T, 22, 3)."""
+    rest = SMPL22.rest_positions()
+    rest = rest - rest[:, 1].min() * np.array([0.0, 1.0, 0.0])
+    share = np.clip((30 - np.abs(np.arange(FRAMES) - 60)) / 12, 0.0, 1.0)
+    angle = 0.5 * np.pi * share**2 * (3 - 2 * share)
+    one = np.tile(rest, (FRAMES, 1, 1))
+    for side in ("left", "right"):
+        way = np.stack([np.zeros(FRAMES), -np.cos(angle), np.sin(angle)], axis=-1)
+        for joint, reach in ((f"{side}_elbow", 0.26), (f"{side}_wrist", 0.52)):
+            one[:, J(joint)] = one[:, J(f"{side}_shoulder")] + reach * way
+    other = one @ heading_matrix(np.pi).T + np.array([0.0, 0.0, gap])
+    return np.stack([one, other])
+
+
+def test_chests_come_close_and_heads_pass_each_other() -> None:
+    found = embraced(_pair())[:, HUGS]
+    apart = np.linalg.norm((found[0, :, SPINE] - found[1, :, SPINE])[:, [0, 2]], axis=-1)
+    np.testing.assert_allclose(apart, CLOSE, atol=0.06)
+    assert np.linalg.norm(found[0, :, J("head")] - found[1, :, J("head")], axis=-1).min() > 0.15
+
+
+def test_hands_lie_on_the_back_and_the_flank_and_elbows_bend() -> None:
+    found = embraced(_pair())[:, HUGS]
+    for person in (0, 1):
+        for side, past, length in (("left", 0.0, 0.51), ("right", 0.05, 0.45)):
+            shoulder, elbow, wrist = (
+                found[person, :, J(f"{side}_{j}")] for j in ("shoulder", "elbow", "wrist")
+            )
+            hand = wrist - found[1 - person, :, SPINE]
+            assert ((1 - 2 * person) * hand[:, 2] > past).all(), "past the spine"
+            assert (np.linalg.norm(hand[:, [0, 2]], axis=-1) < 0.22).all()
+            assert (np.linalg.norm(wrist - shoulder, axis=-1) < length).all()
+            assert (np.abs(elbow[:, 0]) > 0.15).all(), "elbows are outside of both"
+
+
+def test_feet_and_bones_stay_and_nothing_jolts() -> None:
+    pair = _pair()
+    found = embraced(pair)
+    feet = [J(f"{side}_{joint}") for side in ("left", "right") for joint in ("ankle", "foot")]
+    np.testing.assert_allclose(found[:, :, feet], pair[:, :, feet], atol=0.01)
+    parents, children = (list(ends) for ends in zip(*SMPL22.bones, strict=True))
+    lengths = [np.linalg.norm(x[:, :, children] - x[:, :, parents], axis=-1) for x in (pair, found)]
+    np.testing.assert_allclose(lengths[1], lengths[0], atol=0.02)
+    assert jerk_percentile(found[0], 30) < jerk_percentile(pair[0], 30) + 40
+
+
+def _lifted() -> np.ndarray:
+    pair = _pair()
+    pair[1, 62:, :, 1] += 0.14
+    return pair
+
+
+def _turned() -> np.ndarray:
+    pair = _pair()
+    pair[1] = (pair[1] - [0.0, 0.0, 0.55]) @ heading_matrix(np.pi).T + [0.0, 0.0, 0.55]
+    return pair
+
+
+def _hand_in_hand() -> np.ndarray:
+    pair = _pair(0.4)
+    for left, right in (("left", "right"), ("right", "left")):
+        middle = 0.5 * (pair[0, :, J(f"{left}_elbow")] + pair[1, :, J(f"{right}_elbow")])
+        pair[0, :, J(f"{left}_wrist")] = pair[1, :, J(f"{right}_wrist")] = middle
+    return pair
+
+
+@pytest.mark.parametrize(
+    "pair",
+    [_pair(1.2), _lifted(), _turned(), _hand_in_hand()],
+    ids=["far", "lifted", "from behind", "hand in hand"],
+)
+def test_what_is_no_embrace_stays(pair: np.ndarray) -> None:
+    np.testing.assert_array_equal(embraced(pair), pair)
