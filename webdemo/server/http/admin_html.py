@@ -21,8 +21,9 @@ table {{ border-collapse: collapse; width: 100%; font-variant-numeric: tabular-n
 th, td {{ text-align: left; vertical-align: top; padding: .4rem .9rem .4rem 0; border-bottom: 1px solid var(--line); }}
 th {{ color: var(--soft); font-weight: 600; font-size: .85rem; }} td {{ overflow-wrap: anywhere; }}
 .acts {{ display: flex; flex-wrap: wrap; gap: .4rem .9rem; }}
-form {{ display: inline-flex; gap: .4rem; align-items: end; }}
-label {{ color: var(--soft); }} label input {{ display: block; width: min(40rem, 75vw); }}
+form {{ display: inline-flex; flex-wrap: wrap; gap: .4rem; align-items: end; }}
+label {{ color: var(--soft); }} label input {{ display: block; }}
+label input:not([size]) {{ width: min(40rem, 75vw); }}
 input, button {{ font: inherit; font-size: .9rem; padding: .25rem .6rem; border: 1px solid var(--line);
   border-radius: 8px; background: transparent; color: inherit; }}
 button {{ cursor: pointer; }} button:hover {{ border-color: var(--accent); }}

@@ -213,8 +213,10 @@ def _people(lab: Lab, admin: Administration, action: str) -> str:
 
 def _invitation(action: str) -> str:
     fields = (
-        '<label>Name of the new account <input name="name" maxlength="40" autocapitalize="none" required></label>'
-        '<label>Its room in megabytes; empty: as everybody <input name="megabytes" inputmode="decimal"></label>'
+        "<label>Name of the new account "
+        '<input name="name" size="28" maxlength="40" autocapitalize="none" required></label>'
+        "<label>Its room in megabytes; empty: as everybody "
+        '<input name="megabytes" size="12" inputmode="decimal"></label>'
     )
     return _button(action, "invite", "Make a link", fields)
 

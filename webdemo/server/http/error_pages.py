@@ -23,6 +23,7 @@ label {{ display: block; margin: 0 0 .9rem; font-weight: 600; font-size: .9rem; 
 input {{ display: block; width: 100%; box-sizing: border-box; margin-top: .3rem; padding: .55rem .7rem;
   font: inherit; font-size: 1rem; font-weight: 400; border: 1px solid var(--line); border-radius: 10px;
   background: transparent; color: inherit; }}
+input[hidden] {{ display: none; }}
 input:focus-visible, button:focus-visible {{ outline: 2px solid var(--accent); outline-offset: 1px; }}
 button {{ width: 100%; margin: .3rem 0 1.1rem; padding: .65rem; border: 0; border-radius: 10px; font: inherit;
   font-weight: 600; background: var(--accent); color: #fff; cursor: pointer; }}
