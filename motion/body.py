@@ -18,6 +18,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .clip import Clip
+from .easing import smoothstep
 from .errors import InputError
 from .hands import NUMBERS, SHAPES, Fingers
 from .kinematics import swing
@@ -274,7 +275,7 @@ def _turn_leg(positions: Array, world: Array, side: str) -> None:
     by_foot = np.clip(_angle_about(shin, lower @ rest_sole, sole), -_MOST_SHIN, _MOST_SHIN)
     world[:, _J[knee]] = _rotation(by_foot[:, None] * shin) @ lower
     loose = _follow(positions, world[:, _J[knee]], ankle, foot)
-    low = 1 - _smooth_step(positions[:, _J[foot], 1], *_LOW_FOOT)
+    low = 1 - smoothstep(positions[:, _J[foot], 1], *_LOW_FOOT)
     up = np.broadcast_to(np.array([0.0, 1.0, 0.0]), sole.shape)
     roll = np.clip(_angle_about(sole, loose[:, :, 1], up), -_MOST_ROLL, _MOST_ROLL)
     world[:, _J[ankle]] = _rotation((low * roll)[:, None] * sole) @ loose
@@ -285,14 +286,14 @@ def _turn_leg(positions: Array, world: Array, side: str) -> None:
 
 def _bend(first: Array, second: Array, span: tuple[float, float]) -> Array:
     """(T,) 0 where two bones are in line, 1 where the direction of their hinge is well determined."""
-    return _smooth_step(np.linalg.norm(np.cross(first, second), axis=-1), *span)
+    return smoothstep(np.linalg.norm(np.cross(first, second), axis=-1), *span)
 
 
 def _hinge_twist(first: Array, second: Array, hinge: Array, span: tuple[float, float]) -> Array:
     """(T,) angle about ``first`` that brings its ``hinge`` to where it bends onto ``second``."""
     angle = _angle_about(first, hinge, np.cross(first, second))
     # Half a turn away both ways are equal: fade out before the angle jumps.
-    return angle * _bend(first, second, span) * (1 - _smooth_step(np.abs(angle), 2.4, 3.0))
+    return angle * _bend(first, second, span) * (1 - smoothstep(np.abs(angle), 2.4, 3.0))
 
 
 def _angle_about(axis: Array, first: Array, second: Array) -> Array:
@@ -325,11 +326,6 @@ def _frame(up: Array, across: Array) -> Array:
     y = _unit(up)
     x = _unit(across - np.sum(across * y, axis=-1, keepdims=True) * y)
     return np.stack([x, y, np.cross(x, y)], axis=-1)
-
-
-def _smooth_step(value: Array, low: float, high: float) -> Array:
-    t = np.clip((value - low) / (high - low), 0.0, 1.0)
-    return t * t * (3 - 2 * t)
 
 
 def _unit(vector: Array) -> Array:

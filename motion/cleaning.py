@@ -6,6 +6,7 @@ import numpy as np
 import scipy  # its parts are loaded with their first use
 from numpy.typing import NDArray
 
+from .easing import smoothstep
 from .skeleton import SMPL22, Skeleton
 from .smoothing import REACH, frames_from, least_jerk, led
 from .transforms import facing
@@ -92,7 +93,7 @@ def plant_feet(
     stays = np.zeros(len(result), dtype=bool) if held is None else held
     ankles, toes = _goals(result, contacts, blend, stays, skeleton)
     # A leg is kept from being straight where its foot stands or is led to where it stands, and free frames stay free.
-    near = _ease(1 - frames_from(np.asarray(contacts.any(axis=1))) / (REACH + 1))[:, None]
+    near = smoothstep(1 - frames_from(np.asarray(contacts.any(axis=1))) / (REACH + 1))[:, None]
     soft = _SOFT * near * (1 - _fade(stays, blend))
     sink = _needed_sink(result, ankles, soft[:, 0], skeleton) * (1 - _fade(stays, blend)[:, 0])
     result[..., 1] -= sink[:, None]
@@ -233,7 +234,7 @@ def _goal(
         goal: Array = np.median(joint[start:stop], axis=0)
         goal[1] = np.clip(goal[1], *heights)
         return goal[None]
-    share = _ease(np.arange(1, stop - start + 1) / (stop - start + 1))[:, None]
+    share = smoothstep(np.arange(1, stop - start + 1) / (stop - start + 1))[:, None]
     return beside[0] + share * (beside[-1] - beside[0])
 
 
@@ -292,13 +293,7 @@ def _fade(stands: NDArray[np.bool_], blend: int) -> Array:
     after = np.searchsorted(on, index).clip(0, len(on) - 1)
     before = (np.searchsorted(on, index, side="right") - 1).clip(0)
     distance = np.minimum(np.abs(on[after] - index), np.abs(index - on[before]))
-    return _ease(1 - distance / (blend + 1))[:, None]
-
-
-def _ease(x: Array) -> Array:
-    """Smoothstep of x, clipped to 0..1."""
-    x = np.clip(x, 0.0, 1.0)
-    return x * x * (3 - 2 * x)
+    return smoothstep(1 - distance / (blend + 1))[:, None]
 
 
 def _needed_sink(positions: Array, ankles: list[Array], soft: Array, skeleton: Skeleton) -> Array:
@@ -361,7 +356,7 @@ def open_limb(root: Array, middle: Array, end: Array) -> Array:
     """(…, 1) from 0, where a limb is folded so far that the line between its ends has no direction, to 1."""
     length = np.linalg.norm(middle - root, axis=-1) + np.linalg.norm(end - middle, axis=-1)
     reach = np.linalg.norm(end - root, axis=-1) / np.maximum(length, 1e-9)
-    return _ease((reach - _FOLDED[0]) / (_FOLDED[1] - _FOLDED[0]))[..., None]
+    return smoothstep((reach - _FOLDED[0]) / (_FOLDED[1] - _FOLDED[0]))[..., None]
 
 
 def _along(vector: Array, axis: Array) -> Array:

@@ -14,6 +14,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from .easing import smoothstep
 from .errors import InputError
 
 Array = NDArray[np.floating]
@@ -113,8 +114,7 @@ def strength(grip: Grip, times: Array, fps: float) -> Array:
     rise = (times - grip.start + half) / (2 * half)
     if grip.start == 0:
         rise = np.ones_like(times)
-    share = np.clip(np.minimum(rise, (grip.stop + half - times) / (2 * half)), 0.0, 1.0)
-    return share * share * (3 - 2 * share)
+    return smoothstep(np.minimum(rise, (grip.stop + half - times) / (2 * half)))
 
 
 @dataclass(frozen=True, eq=False)

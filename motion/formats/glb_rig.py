@@ -23,6 +23,7 @@ from motion.retarget import floor_on_smpl, leg_scale, retarget, up_rotation
 from motion.rigs import RigMotion, match_joints, pairs_of
 from motion.skeleton import SMPL22
 
+from ..easing import smoothstep
 from .glb_animations import Animation
 from .glb_file import GlbFile, opened, packed
 from .glb_motion import MESHES, metres_per_unit, read_glb_people
@@ -168,8 +169,7 @@ def _near(clip: Clip, other: Clip) -> dict[str, Array]:
     for side in ("left", "right"):
         wrist = clip.positions[:, None, SMPL22.index(f"{side}_wrist")]
         away = np.linalg.norm(other.positions - wrist, axis=-1).min(axis=1).astype(np.float64)
-        share = np.clip((_REACH[1] - away) / (_REACH[1] - _REACH[0]), 0.0, 1.0)
-        found[side] = share**2 * (3 - 2 * share)
+        found[side] = smoothstep((_REACH[1] - away) / (_REACH[1] - _REACH[0]))
     return found
 
 

@@ -7,16 +7,12 @@ import trimesh
 from scipy.sparse import coo_matrix, csr_matrix, diags
 from scipy.spatial import cKDTree
 
+from motion.easing import smoothstep
+
 from .makehuman import J, Look, MakeHuman
 
 WAIST = 0.985
 """Where the top ends, metres above the floor in the pose of binding."""
-
-
-def smooth_step(x: np.ndarray, low: float, high: float) -> np.ndarray:
-    """0 below ``low``, 1 above ``high``, a smooth step between."""
-    t = np.clip((x - low) / (high - low), 0, 1)
-    return t * t * (3 - 2 * t)
 
 
 def seams(points: np.ndarray, weights: np.ndarray, joints: np.ndarray, look: Look) -> dict[str, np.ndarray]:
@@ -58,16 +54,16 @@ def dressed(
 ) -> np.ndarray:
     """The vertices with cloth over them: smoothed where it hangs, raised along the normals."""
     cover = seams(vertices, weights, joints, look)
-    inside = {name: smooth_step(d, 0.0, 0.012) for name, d in cover.items()}
+    inside = {name: smoothstep(d, 0.0, 0.012) for name, d in cover.items()}
     flat = vertices.copy()
     step = neighbours(faces, len(vertices))
-    chest = smooth_step(flat[:, 1], 1.1, 1.2) * (np.abs(flat[:, 0]) < 0.2)
+    chest = smoothstep(flat[:, 1], 1.1, 1.2) * (np.abs(flat[:, 0]) < 0.2)
     for round_ in range(30 if look.sex == "male" else 90):
         amount = 0.6 * inside["cloth"] * (1.0 if round_ < 20 else chest)
         flat += amount[:, None] * (step @ flat - flat)
     mesh = trimesh.Trimesh(flat, faces, process=False)
     raise_ = 0.005 * inside["cloth"] + 0.002 * inside["trousers"]
-    raise_ += (0.010 if look.sex == "male" else 0.014) * smooth_step(cover["hair"], 0, 0.03)
+    raise_ += (0.010 if look.sex == "male" else 0.014) * smoothstep(cover["hair"], 0, 0.03)
     return flat + raise_[:, None] * mesh.vertex_normals
 
 

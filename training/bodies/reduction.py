@@ -5,7 +5,9 @@ from __future__ import annotations
 import numpy as np
 import trimesh
 
-from .clothes import seams, smooth_step
+from motion.easing import smoothstep
+
+from .clothes import seams
 from .makehuman import J, Look
 
 ZONES = ("skin", "top", "trousers", "shoes", "hair", "eyes")
@@ -18,7 +20,7 @@ def magnified(points: np.ndarray, joints: np.ndarray) -> np.ndarray:
     for name, reach, factor in (("head", 0.16, 1.7), ("left_wrist", 0.17, 1.5), ("right_wrist", 0.17, 1.5)):
         centre = joints[J[name]] + ([0, 0.06, 0.02] if name == "head" else 0)
         offset = points - centre
-        near = 1 - smooth_step(np.linalg.norm(offset, axis=1), reach, 1.6 * reach)
+        near = 1 - smoothstep(np.linalg.norm(offset, axis=1), reach, 1.6 * reach)
         out += (factor - 1) * near[:, None] * offset
     return out
 

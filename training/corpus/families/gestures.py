@@ -6,6 +6,7 @@ from dataclasses import replace
 
 import numpy as np
 
+from motion.easing import smoothstep
 from motion.kinematics import forward_kinematics, global_rotations, local_rotations
 from motion.skeleton import SMPL22
 from training.corpus.blending import ease, slerp
@@ -44,8 +45,7 @@ def deepened(motion: Motion, drop: float) -> Motion:
         raise LookupError("a bow that is none")
     if fallen.max() >= drop:
         return motion
-    weight = np.clip(fallen / fallen.max(), 0, 1)
-    weight = weight * weight * (3 - 2 * weight)
+    weight = smoothstep(fallen / fallen.max())
     angle = 0.0
     bent = motion
     for _ in range(6):

@@ -23,6 +23,7 @@ from models.motion_tokens import FEATURES
 from models.regennet.compact import CompactReGenNet, load_folder
 from models.text import MiniLM
 from motion import SMPL22, Clip, Duet, InputError
+from motion.easing import smoothstep
 from motion.metrics import compare
 from webdemo.inference.actor import FPS, Placement
 from webdemo.inference.cancel import CancelToken
@@ -224,8 +225,7 @@ def settle(off: Array, frames: NDArray[np.integer]) -> Array:
     Returns:
         (samples, T, 22, 3), ``off`` at frame 0 and 0 from :data:`SETTLE` seconds on.
     """
-    share = np.clip(1 - frames / (SETTLE * FPS), 0, 1)
-    return off.reshape(-1, 1, *off.shape[-2:]) * (share**2 * (3 - 2 * share))[:, None, None]
+    return off.reshape(-1, 1, *off.shape[-2:]) * smoothstep(1 - frames / (SETTLE * FPS))[:, None, None]
 
 
 def duet_of(request: ReactRequest, person: Array) -> Duet:

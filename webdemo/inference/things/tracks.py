@@ -6,6 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.spatial.transform import Rotation
 
+from motion.easing import smoothstep
 from motion.things import Mesh
 
 from .holding import Track, frame_of
@@ -34,8 +35,7 @@ class Course:
     def then(self, frame: int, track: Track, seconds: float = BLEND) -> None:
         """From a frame on it follows another track; ``seconds`` on either side it is between both."""
         half = max(seconds * self.fps, 0.5)
-        share = np.clip((np.arange(len(self.places)) - frame + half) / (2 * half), 0.0, 1.0)
-        share = share * share * (3 - 2 * share)
+        share = smoothstep((np.arange(len(self.places)) - frame + half) / (2 * half))
         self.places += share[:, None] * (track[0] - self.places)
         self.rotations = between(self.rotations, track[1], share)
 
@@ -91,7 +91,7 @@ def put(course: Course, frame: int, rest: Track) -> None:
     now = (np.arange(count) - frame) / course.fps
     share = np.clip(now / seconds, 0.0, 1.0)
     fallen = course.places[frame] * np.ones((count, 1))
-    eased = share * share * (3 - 2 * share)
+    eased = smoothstep(share)
     fallen[:, [0, 2]] += eased[:, None] * (rest[0] - fallen)[:, [0, 2]]
     fallen[:, 1] += share**2 * (rest[0][:, 1] - fallen[:, 1])
     held = np.tile(course.rotations[frame], (count, 1, 1))
