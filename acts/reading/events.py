@@ -388,8 +388,8 @@ class Reader:
             return ("conj", mains[-1]) if mains else ("after", None)
         if above is None:
             return "after", None
-        if token.dep_ == "pobj" and token.head.lower_ in _NOUN_MARKS:
-            return _NOUN_MARKS[token.head.lower_], above.i
+        if token.dep_ == "pobj":
+            return _NOUN_MARKS.get(token.head.lower_, "with"), above.i
         if token.dep_ == "pcomp":
             return _MARKS.get(token.head.lower_, "with"), above.i
         if token.dep_ == "advcl":
