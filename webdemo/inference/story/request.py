@@ -310,23 +310,21 @@ def as_scene(request: GenerateRequest, go_on: Callable[[], None] = lambda: None)
 
 
 def _beats(request: GenerateRequest, go_on: Callable[[], None]) -> tuple[Beat, ...]:
-    """The beats of a request: of its acts, or of its words, as phrases or as the acts that they are read as.
+    """The beats of a request: of its acts, of those that its words are read as, or of its phrases where none is read.
 
-    Acts are only taken where all words are understood, the phrases move nobody, and the acts plan more.
+    A sentence of one beat keeps its words, which the network reads.
     """
     most = request.seconds / LEAST_SHARE
-    if request.acts is not None:
-        beats = beats_of(request.acts)
-        return beats if len(beats) <= most else (Beat(acts=request.acts.acts),)
+    script = request.acts if request.acts is not None else understood(request.prompt)
+    if script is not None and (request.acts is not None or request.planned):
+        beats = beats_of(script)
+        if len(beats) > most:
+            return (Beat(request.prompt if request.acts is None else "", acts=script.acts),)
+        return (
+            (replace(beats[0], words=request.prompt),) if len(beats) == 1 and request.acts is None else beats
+        )
     beats = split_sentence(request.prompt, go_on)
-    if len(beats) > most:
-        beats = (Beat(request.prompt),)
-    told = of_words(beats[0].sentence) if len(beats) == 1 and request.planned else None
-    script = understood(request.prompt) if told is not None and not told.moves_bodies else None
-    by_acts = beats_of(script) if script is not None else ()
-    if told is None or len(by_acts) > most or sum(told_by(beat).size for beat in by_acts) <= told.size:
-        return beats
-    return by_acts if len(by_acts) > 1 else (replace(by_acts[0], words=request.prompt),)
+    return beats if len(beats) <= most else (Beat(request.prompt),)
 
 
 def _told_before(story: list[Told]) -> None:

@@ -13,12 +13,12 @@ from .beats import Beat
 
 
 def understood(text: str) -> Plan | None:
-    """The plan of a text; None where it has words that were not understood, or no parser is installed."""
+    """The plan of a text; None where nobody is told to do anything that is known, or no parser is installed."""
     try:
         plan = read(text)
     except InputError:
         return None
-    return plan if plan.acts and not plan.unread else None
+    return plan if any(act.happens for act in plan.acts) else None
 
 
 def beats_of(plan: Plan, known: Lexicon | None = None) -> tuple[Beat, ...]:
@@ -80,11 +80,13 @@ def _belongs(act: Act, entry: Entry, later: Act, after: Entry) -> bool:
     if "lift" in does and "lift" in then:
         return same
     if not same:
-        fallen = getattr(does.get("posture"), "posture", "") == "lies" and not getattr(act, "already", False)
-        return fallen and "touch" in then and later.patient in act.agents  # "she faints and he catches her"
+        down = "posture" in does and not act.already
+        helped = "touch" in then or getattr(then.get("posture"), "who", "") == "patient"
+        return down and helped and later.patient in act.agents  # "she faints and he catches her"
     if "turn" in does:
         return next_way == "away" or after.mutual or "touch" in then
-    led = bool(does.keys() & {"link", "touch"}) and getattr(then.get("go"), "linked", False)
+    pulled = getattr(then.get("go"), "linked", False) or (not then and later.patient is not None)
+    led = bool(does.keys() & {"link", "touch"}) and pulled
     return led or (way == "away" and next_way == "away")
 
 

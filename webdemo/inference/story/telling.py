@@ -18,13 +18,11 @@ from .told import Told
 
 
 def told_by(beat: Beat) -> Told:
-    """Reads a beat by its acts, or by its words: as acts where its phrases move nobody and acts plan more."""
+    """Reads a beat by its acts, by those that its words are read as, or by its phrases where none is read."""
     if beat.acts:
         return staged(beat.acts)
-    told = of_words(beat.sentence)
-    plan = None if told.moves_bodies else understood(beat.sentence)
-    by_acts = None if plan is None else staged(plan.acts)
-    return told if by_acts is None or by_acts.size <= told.size else by_acts
+    plan = understood(beat.sentence)
+    return of_words(beat.sentence) if plan is None else staged(plan.acts)
 
 
 @lru_cache(maxsize=512)
