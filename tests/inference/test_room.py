@@ -15,7 +15,7 @@ from webdemo.inference.pipelines.scene_room import BODY, distance, roomy
 from webdemo.inference.story import Beat
 from webdemo.inference.story.floor import Standing
 from webdemo.inference.story.poses import bowing, lying, upright
-from webdemo.inference.story.telling import told_by
+from webdemo.inference.story.scripting import told_by
 from webdemo.inference.story.told import Told
 
 from .followed import Follower, speeds

@@ -7,7 +7,8 @@ import math
 import numpy as np
 import pytest
 
-from webdemo.inference.story.beginnings import BACKS, beginning
+from tests.inference.story.staged_words import beginning
+from webdemo.inference.story.beginnings import BACKS
 from webdemo.inference.story.floor import ABREAST
 from webdemo.inference.story.poses import grounded, seated
 

@@ -6,7 +6,8 @@ import numpy as np
 import pytest
 
 from motion import SMPL22
-from webdemo.inference.story.contacts import Contact, Region, contact, lean, reach, touched
+from tests.inference.story.staged_words import contact
+from webdemo.inference.story.contacts import Contact, Region, lean, reach, touched
 from webdemo.inference.story.poses import bending, kneeling, lying, upright
 
 ORIGIN = np.zeros(2)

@@ -5,6 +5,7 @@ import math
 import numpy as np
 import pytest
 
+from tests.inference.story.staged_words import hold, moves
 from webdemo.inference.actor import FPS
 from webdemo.inference.story.floor import (
     ABREAST,
@@ -18,8 +19,6 @@ from webdemo.inference.story.floor import (
     plan,
     starting,
 )
-from webdemo.inference.story.holds import hold
-from webdemo.inference.story.moves import moves
 from webdemo.inference.story.track import MOST
 
 FACING = Standing(np.array([[0.0, 0.0], [0.0, 1.2]]), np.array([0.0, math.pi]))

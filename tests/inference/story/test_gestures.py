@@ -6,7 +6,8 @@ import numpy as np
 import pytest
 
 from motion import SMPL22
-from webdemo.inference.story.gestures import Gesture, Hand, gestures, wrist
+from tests.inference.story.staged_words import gestures
+from webdemo.inference.story.gestures import Gesture, Hand, wrist
 from webdemo.inference.story.poses import upright
 
 AHEAD = np.tile([0.0, 0.0, 1.0], (60, 1))

@@ -5,7 +5,7 @@ import pytest
 
 from motion import SMPL22
 from motion.transforms import heading
-from webdemo.inference.story.idle import gesturing, idle, is_planned
+from tests.inference.story.staged_words import gesturing, idle, is_planned
 from webdemo.inference.story.poses import standing
 
 

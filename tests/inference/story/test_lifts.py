@@ -6,9 +6,8 @@ import numpy as np
 import pytest
 
 from motion import SMPL22
-from webdemo.inference.story.beginnings import beginning
-from webdemo.inference.story.lifts import Carry, Lift, carried, lift
-from webdemo.inference.story.moves import moves
+from tests.inference.story.staged_words import beginning, lift, moves
+from webdemo.inference.story.lifts import Carry, Lift, carried
 
 
 @pytest.mark.parametrize(

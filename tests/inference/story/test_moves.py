@@ -2,7 +2,8 @@
 
 import pytest
 
-from webdemo.inference.story.moves import goes, moves
+from tests.inference.story.staged_words import moves
+from webdemo.inference.story.moves import goes
 from webdemo.inference.story.ways import Way
 
 

@@ -4,9 +4,10 @@ from __future__ import annotations
 
 import pytest
 
+from tests.inference.story.staged_words import bows, changes, leaps
+from tests.inference.story.staged_words import told as of_words
 from webdemo.inference.story import told
-from webdemo.inference.story.postures import Posture, bows, changes, leaps
-from webdemo.inference.story.telling import of_words
+from webdemo.inference.story.postures import Posture
 
 
 def at_start(story: list[str], beat: int) -> dict[str, Posture]:

@@ -7,6 +7,7 @@ import pytest
 from acts import lexicon, read
 from acts.plan import Act, Plan, Relation
 from motion import InputError
+from tests.inference.story.staged_words import told as of_words
 from webdemo.inference.requests import GenerateRequest
 from webdemo.inference.story.beats import Beat, acts_of
 from webdemo.inference.story.contacts import Region
@@ -18,7 +19,6 @@ from webdemo.inference.story.request import SceneRequest, as_scene, beat_of
 from webdemo.inference.story.scripting import beats_of
 from webdemo.inference.story.staging import staged
 from webdemo.inference.story.strikes import Bout
-from webdemo.inference.story.telling import of_words
 from webdemo.inference.story.told import Told
 from webdemo.inference.story.toml import read_story, write_story
 from webdemo.inference.story.ways import Way

@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 
 from motion import SMPL22
-from webdemo.inference.story.beginnings import KICK, beginning
-from webdemo.inference.story.moves import moves
-from webdemo.inference.story.strikes import Bout, Strike, blows, catching, poses, ready, strike
+from tests.inference.story.staged_words import beginning, moves, strike
+from webdemo.inference.story.beginnings import KICK
+from webdemo.inference.story.strikes import Bout, Strike, blows, catching, poses, ready
 from webdemo.inference.story.ways import Way
 
 HERE, THERE = np.zeros(2), np.array([0.0, Bout.FISTS.value])

@@ -9,7 +9,7 @@ import pytest
 from motion import SMPL22, Duet, InputError
 from motion.formats import write
 from webdemo.inference.story import Beat, FloorPoint, SceneRequest, read_story, read_words, write_story
-from webdemo.inference.story.splitting import MOST_WORDS
+from webdemo.inference.story.scripting import MOST_WORDS
 from webdemo.inference.story.toml import MOST_CHARACTERS
 
 STORY = """

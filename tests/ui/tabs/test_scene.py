@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from motion import Duet, InputError
-from webdemo.inference.story import Beat, FloorPath, FloorPoint, Pose, splitting
+from webdemo.inference.story import Beat, FloorPath, FloorPoint, Pose, scripting
 from webdemo.ui.components.exports import Record, Shelf
 from webdemo.ui.components.scene_parts import part_request
 from webdemo.ui.components.story import motion_marks, story_fields, story_value
@@ -348,7 +348,7 @@ def test_every_story_of_the_page_is_read_in_limited_time(
     tab: SceneTab, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     laid, record = lay_out("They meet.")[1], generate(tab)[-1]["record"]
-    monkeypatch.setattr(splitting, "READING_SECONDS", 1e-9)
+    monkeypatch.setattr(scripting, "READING_SECONDS", 1e-9)
     said = "The story took longer than 1e-09 seconds to read: shorten it"
     words = "They bow. They hug."
     for updates in (generate(tab, words), generate(tab, words, laid)):

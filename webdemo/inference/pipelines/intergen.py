@@ -21,7 +21,6 @@ from webdemo.inference.requests import GenerateRequest, Progress, ReactRequest, 
 from webdemo.inference.scenes import Scene
 from webdemo.inference.story import understood
 from webdemo.inference.story.request import SceneRequest, as_scene
-from webdemo.inference.story.roles import of_each
 from webdemo.inference.timer import StageTimer
 
 from .scene import SceneMaker
@@ -65,7 +64,7 @@ class InterGenPipeline(TwoPersonPipeline[CompactInterGen]):
         """A sentence, made as a scene where it has several beats or a plan."""
         split = as_scene(request, cancel.raise_if_cancelled)
         if split is None:
-            plan = request.plan or KeptPlan(alone=of_each(request.prompt))
+            plan = request.plan or KeptPlan(alone=understood.of_each(request.prompt))
             events = super().run(replace(request, plan=plan), cancel, timer, passes)
         else:
             plan = KeptPlan(beats=tuple(beat.to_dict() for beat in split.beats))
@@ -96,7 +95,7 @@ class InterGenPipeline(TwoPersonPipeline[CompactInterGen]):
         """
         tokens = self.encoder([prompt])
         parts = [tokens]
-        if self.model.config.words and any(own := of_each(prompt) if alone is None else alone):
+        if self.model.config.words and any(own := understood.of_each(prompt) if alone is None else alone):
             parts += [self.encoder([sentence]) if sentence else tokens.missing() for sentence in own]
         with torch.no_grad():
             return self.model.condition(*parts), tokens.pooled()[0]

@@ -21,7 +21,6 @@ from webdemo.inference.story.poses import ARMS, HANDS, standing, upright
 from webdemo.inference.story.postures import Change, Posture
 from webdemo.inference.story.request import SceneRequest
 from webdemo.inference.story.strikes import Bout
-from webdemo.inference.story.telling import told_by
 from webdemo.inference.story.told import Told
 from webdemo.inference.story.track import HALT
 from webdemo.inference.story.ways import Way
@@ -202,9 +201,8 @@ def plan_note(request: SceneRequest, go_on: Callable[[], None] = lambda: None) -
     ``go_on`` is called before each beat; what it raises ends the reading.
     """
     said = []
-    for number, beat in enumerate(request.beats, 1):
+    for number, told in enumerate(request.told, 1):
         go_on()
-        told = told_by(beat)
         ways = _said_together(told) or [
             *_said_postures(told),
             *(f"person {m.person.upper()} {m.way.value}" for m in told.moves if m.way is not Way.STAY),

@@ -6,7 +6,7 @@ Importing this package imports no torch.
 from .beats import Beat
 from .progress import SceneProgress
 from .request import SceneRequest
-from .splitting import in_time, split_sentence
+from .scripting import in_time, split_sentence
 from .toml import read_story, read_words, write_story
 from .wishes import FloorPath, FloorPoint, Pose
 

@@ -9,6 +9,7 @@ from typing import Any
 
 from pydantic import ValidationError
 
+from acts import read
 from acts.captions import sentence
 from acts.lexicon import lexicon
 from acts.plan import MOST_ACTS, Act, beats, problem
@@ -21,38 +22,8 @@ MOST_BEATS = 60
 TITLE = 90
 """Characters of a title."""
 DEFAULT_SECONDS = 4.0
-"""Of a beat whose words name no act of :data:`ACT_SECONDS`."""
-LEAD_SECONDS = 1.5
-"""Added to an act's length: people reach their places before it and come to rest after it."""
+"""Of a beat whose words name no act that is known."""
 
-ACT_SECONDS: tuple[tuple[str, float], ...] = (
-    (r"danc\w*|waltz\w*", 7.0),
-    (r"circl\w*|carousel", 5.2),
-    (r"sits?\b|sitting|kneel\w*|lies?\b|falls?\b|falling|get\w* up|stands? up|help\w*.* up", 5.0),
-    (r"fight\w*|spar\w*|duel\w*", 4.5),
-    (r"lead\w*|guid\w*|follow\w*", 4.5),
-    (r"walk\w*|stroll\w*|wander\w*|go(?:es|ing)? (?:away|off|their)|leav\w*|part\b|parts\b|approach\w*", 3.0),
-    (r"hand in hand|side by side|together", 4.0),
-    (r"hug\w*|embrac\w*|arm around", 2.4),
-    (r"talk\w*|chat\w*|whisper\w*|listen\w*|quarrel\w*|argu\w*", 2.7),
-    (r"bow\w*", 2.9),
-    (r"shak\w* hands|handshake|hands? over|gives?|passes|takes?\b", 2.2),
-    (r"wav\w*|goodbye|greet\w*|claps?|clapping|cheer\w*", 2.6),
-    (r"high[- ]?fives?|low[- ]?fives?|fist[- ]?bumps?|elbow|pats?\b|patting|taps?\b|points?\b|pointing", 2.0),
-    (r"turn\w*", 2.0),
-    (r"runs?\b|running|chas\w*|jump\w*|push\w*|kick\w*|punch\w*|dodg\w*|steps?\b|nods?\b|shrugs?", 1.8),
-)
-"""Patterns of acts and their seconds, which are medians over the corpus of beats (docs/corpus-beats.md); a dance, which
-goes on as long as one likes, has the length of its scenes."""
-
-_ACTS = tuple((re.compile(rf"\b(?:{act})", re.IGNORECASE), seconds) for act, seconds in ACT_SECONDS)
-_SPEEDS = (
-    (re.compile(r"\b(?:slow|calm|gentl)", re.IGNORECASE), 1.3),
-    (re.compile(r"\b(?:quick|fast\b|brief|hurr)", re.IGNORECASE), 0.75),
-)
-_STATED = re.compile(r"\bfor (?:about )?(\d+(?:\.\d+)?|[a-z]+) seconds?\b", re.IGNORECASE)
-_COUNT = ("one", "two", "three", "four", "five", "six", "seven", "eight", "nine", "ten")
-_NUMBERS = {name: i for i, name in enumerate(_COUNT, 1)}
 
 _SUBJECT = re.compile(
     r"^(?:the\s+(?:two|first|second|other|actor|reactor|man|woman|people|couple|latter|former)\b(?:\s+(?:people|persons?|man|woman|one))?"
@@ -166,11 +137,6 @@ def _of_person(text: str, who: str) -> str:
     return f"{who} {text[:1].lower()}{text[1:]}"
 
 
-def is_known_act(words: str) -> bool:
-    """True if the words have an act whose usual length is known."""
-    return any(act.search(words) for act, _ in _ACTS)
-
-
 def acts_of(values: Sequence[Any]) -> tuple[Act, ...]:
     """Acts from JSON; raises InputError for anything else, with a sentence on the first that is wrong."""
     if not isinstance(values, (list, tuple)) or len(values) > MOST_ACTS:
@@ -198,17 +164,10 @@ def seconds_of_acts(acts: Sequence[Act]) -> float:
     return min(max(round(2 * total) / 2, 1.5), 10.0)
 
 
-def seconds_of(sentence: str) -> float:
-    """The duration of an act in half seconds: as the words say, or as long as such acts usually are."""
-    stated = _STATED.search(sentence)
-    if stated:
-        number = stated[1].lower()
-        value = float(number) if number[0].isdigit() else _NUMBERS.get(number, 0)
-        if SHORTEST <= value <= LONGEST:
-            return float(value)
-    found = [seconds for act, seconds in _ACTS if act.search(sentence)]
-    length = max(found) + LEAD_SECONDS if found else DEFAULT_SECONDS
-    for pattern, factor in _SPEEDS:
-        if pattern.search(sentence):
-            length *= factor
-    return min(max(round(2 * length) / 2, 1.5), 10.0)
+def seconds_of(words: str) -> float:
+    """The length of what a sentence says, in half seconds: as it states, or as long as its acts usually take."""
+    try:
+        acts = read(words).acts
+    except InputError:  # too long, or no parser is installed
+        acts = ()
+    return seconds_of_acts(acts) if acts else DEFAULT_SECONDS

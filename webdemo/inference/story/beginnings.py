@@ -3,38 +3,23 @@
 from __future__ import annotations
 
 import math
-import re
 from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
 
 from .floor import ABREAST, Standing
-from .holds import TWIRL, twirls
-from .lifts import Carry, Lift, lift
+from .holds import TWIRL
+from .lifts import Carry, Lift
 from .poses import grounded, seated
-from .postures import Posture, changes
-from .strikes import Bout, Strike, strike
+from .postures import Posture
+from .strikes import Bout, Strike
 
-_BESIDE = re.compile(
-    r"\b(?:side by side|shoulder to shoulder|next to (?:each other|one another|him|her|person [ab]|the other)"
-    r"|beside (?:each other|one another|him|her|person [ab]|the other))\b"
-)
-_BACKS = re.compile(r"\bback[- ]to[- ]back\b")
-_KICKS = re.compile(
-    r"\bkick(?:s|ing)?(?: (?:out )?at)? (?:person [ab]|the other|him|her|them|each other|one another|(?:the|an?) \w+$)"
-)
 KICK = 1.0
 """Metres between two people one of whom kicks the other."""
 BACKS = 0.5
 """Metres between the pelvises of two people who stand or sit back to back."""
 _SEATS = {Posture.SITS: seated, Posture.GROUND: grounded}
-
-
-def keeps_place(sentence: str) -> bool:
-    """True if a sentence has two people side by side or back to back, where they stay."""
-    words = sentence.lower()
-    return bool(_BACKS.search(words) or _BESIDE.search(words))
 
 
 @dataclass(frozen=True)
@@ -57,18 +42,6 @@ class Setting:
     strike: Strike | None = None
     twirls: bool = False
     apart: float = 0.0
-
-
-def beginning(sentence: str) -> Standing | None:
-    """Places of two people of whom a sentence says where they are; None of others."""
-    words = sentence.lower()
-    held = [change.posture for listed in changes(sentence).values() for change in listed]
-    return standing(
-        Setting(
-            bool(_BACKS.search(words)), bool(_BESIDE.search(words)), held, lift(sentence), strike(sentence),
-            bool(twirls(sentence)), KICK if _KICKS.search(words) else 0.0,
-        )
-    )  # fmt: skip
 
 
 def standing(setting: Setting) -> Standing | None:

@@ -7,8 +7,7 @@ led to where they reach the other, and the hand is given.
 
 from __future__ import annotations
 
-import re
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from enum import Enum
 
 import numpy as np
@@ -17,7 +16,6 @@ from numpy.typing import NDArray
 from motion import SMPL22
 from motion.transforms import heading
 
-from .clauses import OTHER, Clause, clauses
 from .gestures import SIDES
 
 Array = NDArray[np.floating]
@@ -60,79 +58,6 @@ class Contact:
     fells: bool = False
 
 
-_REGIONS = (
-    (Region.HEAD, r"(?:fore)?heads?|hair|cheeks?|faces?|chin|nose|eyes|ears?|mouth|lips|necks?|jaw"),
-    (Region.SHOULDER, r"shoulders?"),
-    (Region.BACK, r"backs?|shoulder blades?|spine"),
-    (Region.CHEST, r"chests?|stomach|belly|tummy|ribs|side|waist|heart"),
-    (Region.ARM, r"(?:upper |fore)?arms?|elbows?|sleeves?|biceps"),
-    (Region.HAND, r"wrists?"),
-    (Region.LEG, r"legs?|knees?|thighs?|calf"),
-    (Region.FOOT, r"foot|feet|ankles?|shoes?|shoelaces?|boots?"),
-)
-_REGION = "|".join(f"(?P<{region.name}>{words})" for region, words in _REGIONS)
-_OTHER = r"(?:person [ab]|him|her|them|the other(?: person| one)?|(?:the|an?|his|her|their) (?:\w+ )?\w+)"
-_OTHERS = r"(?:his|her|their|the|(?:person [ab]|the other(?: person| one)?|(?:the|his|her|an?) \w+)'s?)"
-_HANDS = (
-    r"(?:(?:an?|one|his|her|their|the|both|two|left|right|of|comforting|gentle|heavy|firm) )*"
-    r"(?:hand|arm|palm|finger)s?"
-)
-_LAYS = r"(?:lay|put|plac|rest|press|keep|hold)(?:s|es|ing)?"
-_SHORT = r"(?:pat|tap|touch|pok|prod|nudg|slap|smack|dab|peck)(?:p?ing|t?ing|e?s)?"
-_LONG = (
-    r"(?:strok|rub|caress|massag|squeez|grab|grip|seiz|tak|catch|clasp|clutch|shak|hold|comb|brush|cut|trim|dry|wash|braid|ruffl|feel|examin|bandag|ti)"
-    r"(?:[bmt]?ing|e?s|e)?"
-)
-_COVERS = r"cover(?:s|ing)?"
-_KISSES = r"(?:kiss(?:es|ing)?|peck(?:s|ing)?)"
-_LY = r"(?:\w+ly )?"
-_BY = r"(?:on|by|in|at|across|over|against|around) (?:both )?(?:the|his|her|their) (?:(?:left|right|upper|lower) )?"
-_ACTS = re.compile(
-    rf"\b(?:(?P<lays>{_LAYS}) {_LY}{_HANDS} {_LY}(?:on|onto|upon|over|against) (?:both (?:of )?)?{_OTHERS} |"
-    rf"(?P<kiss>{_KISSES}) {_LY}{_OTHER} {_BY}|"
-    rf"(?P<short>{_SHORT}) {_LY}{_OTHER} {_LY}(?:once |twice )?{_BY}|"
-    rf"(?P<long>{_LONG}) {_LY}(?:hold of )?{_OTHER} {_LY}{_BY}|"
-    rf"(?P<gives>giv(?:es?|ing)) {_OTHERS} (?=\w+ an? (?:\w+ )?(?:shake|squeeze|rub|stroke|pat|tap)\b)|"
-    rf"(?P<covers>{_COVERS}) {_LY}(?:person [ab]|the other(?: person| one)?|the \w+)'s |"
-    rf"(?P<part>{_SHORT}|{_LONG}) {_LY}(?:hold of )?{_OTHERS} )(?:{_REGION})\b"
-)
-_BRIEF = re.compile(_SHORT)
-_ON_BOTH = re.compile(
-    r"\bboth (?:\w+ )?hands\b|\btwo hands\b|\bhands on\b|\b(?:shoulders|eyes)\b|\bmassag\w+"
-)
-_HUGS_BEHIND = re.compile(
-    r"\b(?:(?:hug|embrac|cuddl|hold)\w*|(?:wrap|put|throw|sling|fling)\w* (?:both )?(?:his|her|their) arms around)"
-    r" .*\bfrom behind\b"
-)
-_PUSHES = re.compile(rf"\b(?:push|shov|knock)(?:es?|s|ing)? {_OTHER}\b")
-_COMFORTS = re.compile(
-    rf"\b(?:comfort|consol|reassur|sooth)(?:es|s|e|ing)? {OTHER}\b"
-    rf"|\b(?:put|lay|throw|sling|wrap|plac|hav|keep)(?:s|es|ing)? (?:an|his|her|one|their) arm "
-    rf"(?:a?round|over|about) {OTHER}\b"
-)
-_KISSED = re.compile(rf"(?<!for a )\b{_KISSES}(?! {_LY}(?:\w+ )?(?:hand|goodbye to|\w+'s hand))\b")
-_PASSIVE = re.compile(
-    r"\b(?:is|are|gets?|being) (?:\w+ly )?"
-    r"(?P<verb>patted|tapped|touched|poked|slapped|grabbed|stroked|seized|caught|kissed|massaged|hugged|embraced|cuddled|held|pushed|"
-    r"shoved|knocked)\b"
-    r"(?P<rest>.*)"
-)
-_ACTIVE = {"patted": "pats", "grabbed": "grabs", "caught": "catches", "tapped": "taps", "kissed": "kisses",
-            "pushed": "pushes", "shoved": "shoves"}  # fmt: skip
-_NOT = re.compile(
-    r"\b(?:do(?:es)?n't|not|without|never|refus\w+ to|wants? to|tries to|about to|almost|nearly)\b"
-)
-_OWN = re.compile(r"\bhis own\b|\bher own\b|\btheir own\b")
-_MANY = re.compile(
-    r"\b(?:again and again|repeatedly|several times|three times|patting|tapping|a few times)\b"
-)
-_BEHIND = re.compile(r"\bbehind\b")  # also of somebody who stands there
-_PATS = re.compile(r"\b(?:pat|tap|prod)\w*|\btwice\b")
-_SIDE = re.compile(
-    r"\b(?:with|using) (?:his|her|their|the) (left|right)\b|\b(?:his|her|their) (left|right) (?:hand|arm) (?:up)?on"
-)
-
-
 _JOINTS = {
     Region.HEAD: "head", Region.SHOULDER: "{side}_shoulder", Region.BACK: "spine3", Region.CHEST: "spine2",
     Region.WAIST: "spine2",
@@ -148,51 +73,6 @@ _TRUNK = 0.47
 """Metres from the pelvis to the line of the shoulders."""
 _HIP = 0.93
 """Height in metres of the pelvis of somebody who stands."""
-
-
-def contact(sentence: str) -> Contact | None:
-    """The first contact that a beat's sentence names, if it does."""
-    found = clauses(sentence)
-    touch = next((touch for touch in map(_of, found) if touch is not None), None)
-    if touch is None or touch.behind:
-        return touch
-    return replace(touch, behind=any(_BEHIND.search(c.words) for c in found if c.who == touch.person))
-
-
-def _of(clause: Clause) -> Contact | None:
-    words, person = clause.words, clause.who
-    if (passive := _PASSIVE.search(words)) is not None:
-        stem = _ACTIVE.get(passive["verb"], f"{passive['verb'].removesuffix('ed')}s")
-        words, person = f"{stem} them{passive['rest']}", "b" if person == "a" else "a"
-    act, denied = _ACTS.search(words), _NOT.search(words)
-    kiss = _KISSED.search(words)
-    match = act or kiss
-    if (hug := _HUGS_BEHIND.search(words)) is not None and not (denied and denied.start() < hug.start()):
-        return Contact(person if person != "ab" else "a", Region.WAIST, SIDES, behind=True)
-    if person != "ab" and _PUSHES.search(words) and not denied:
-        return Contact(person, Region.CHEST, SIDES, 1, fells=True)
-    if person == "ab":  # both kiss; of other touches it is not said who of them touches the other
-        act, match, person = None, kiss, "a"
-    if match is None and person != "ab" and _COMFORTS.search(words) and not denied:
-        return Contact(person, Region.SHOULDER, ("right",), late=clause.until)
-    if match is None or _OWN.search(words) or (denied and denied.start() < match.start()):
-        return None
-    if kiss is not None or act is None:
-        return Contact(person, Region.HEAD, (), late=clause.until)
-    region = next(region for region, _ in _REGIONS if act[region.name])
-    side = _SIDE.search(words)
-    sides = SIDES if _ON_BOTH.search(words) else ((side[1] or side[2]),) if side else ("right",)
-    behind = bool(_BEHIND.search(words)) or (region is Region.SHOULDER and "massag" in words)
-    return Contact(person, region, sides, _times(act, words), clause.until, behind)
-
-
-def _times(act: re.Match[str], words: str) -> int:
-    """The number of times that a short touch is made; 0 for one that lasts."""
-    if _MANY.search(words):
-        return 3
-    if not (act["short"] or (act["part"] and _BRIEF.match(act["part"]))):
-        return 0
-    return 2 if _PATS.search(words) else 1
 
 
 def reach(touch: Contact, pose: Array) -> float:

@@ -7,7 +7,6 @@ also to people who only stand.
 
 from __future__ import annotations
 
-import re
 from dataclasses import dataclass
 from enum import Enum
 
@@ -16,7 +15,6 @@ from numpy.typing import NDArray
 
 from motion import SMPL22
 
-from .clauses import clauses
 from .poses import upright
 
 Array = NDArray[np.floating]
@@ -67,68 +65,8 @@ class Gesture:
     sides: tuple[str, ...]
 
 
-_HIS = r"(?:(?:the|his|her|their|a) )?"
-_BOTH = rf"(?:both )?{_HIS}(?:arms|hands)"
-_NOT_UP = r"(?! (?:on|around|out|to|together|behind|forwards?|towards?|at|in front|down)\b)"
-_PATTERNS = (
-    (
-        Hand.HIGH,
-        rf"\b(?:(?:throw|rais|lift|fling|put|stretch|reach)\w* (?:up )?|hold\w* up ){_BOTH}\b{_NOT_UP}"
-        rf"|\b{_BOTH} (?:\w+ )?(?:raised|up|high|above|over (?:his|her|their) heads?|in the air)\b|\bhands up\b",
-    ),
-    (
-        Hand.AHEAD,
-        rf"\b(?:hold|stretch|put)\w* (?:out )?{_BOTH} (?:out|forwards?|in front|ahead)\b"
-        rf"|\b(?:arms|hands) (?:out|outstretched|stretched out|ahead|in front of (?:him|her|them))\b"
-        r"|\boutstretched (?:arms|hands)\b",
-    ),
-    (Hand.SALUTES, r"\bsalut(?:e|es|ing)\b"),
-    (Hand.CLAPS, r"\b(?:clap|applaud)(?:s|ing)?\b(?! (?:him|her|them|the other|person) on)"),
-    (
-        Hand.PHONE,
-        r"\bon (?:the|his|her|their|a) (?:cell ?|mobile ?)?(?:phone|mobile|call)\b|\bphon(?:es?|ing)\b"
-        r"|\bmak(?:es?|ing) a (?:phone )?call\b|\b(?:phone|hand|receiver|shell) to (?:his|her|their) ear\b",
-    ),
-    (Hand.EARS, r"\b(?:cover|plug|block|hold)(?:s|ing)? (?:both )?(?:of )?(?:his|her|their) (?:own )?ears\b"),
-    (
-        Hand.EYES,
-        r"\b(?:cover|hid|shield)(?:e|es|s|ing)? (?:his|her|their) (?:own )?(?:eyes|face)\b"
-        r"|\b(?:face|head) in (?:his|her|their|both) hands\b"
-        r"|\bhands? (?:\w+ )?to (?:his|her|their) (?:face|head|mouth)\b",
-    ),
-    (
-        Hand.PHOTO,
-        r"\b(?:tak|snap|shoot)(?:e|es|s|ing)? (?:an? |some |his |her |their )?(?:picture|photo|photograph|snapshot)s?\b"
-        r"|\bphotograph(?:s|ing)?\b|\bfilms (?:person [ab]|him|her|them|the)\b",
-    ),
-    (Hand.PRAYS, r"\bpray(?:s|ing)?\b|\b(?:palms|hands) (?:folded|together)\b|\bnamaste\b"),
-    (Hand.WAVES, r"\bwav(?:e|es|ing)\b"),
-    (Hand.POINTS, r"\bpoint(?:s|ing)?\b(?! out)|\b(?:aim|shoot|fire)s?\b"),
-    (
-        Hand.UP,
-        rf"\b(?:rais|lift|put|hold)\w* (?:up )?{_HIS}(?:(?:left|right) )?(?:hand|arm)\b(?! out| to| on)"
-        rf"|\b{_HIS}(?:(?:left|right) )?(?:hand|arm) (?:raised|up|in the air)\b",
-    ),
-)
-_THING = r"(?:an?|his|her|their|the) (?!seat|chair|help|apolog|smile|bow|kiss|hug|hands\b)(?:\w+ )??\w+"
-_TO_WHOM = r"(?:(?:person [ab]|him|her|them|the (?:other|\w+)) )?"
-_OFFERS = re.compile(
-    rf"\b(?:offer|extend)(?:s|ing)? {_TO_WHOM}{_THING}"
-    rf"|\b(?:hold|stretch|reach|put|stick)(?:s|es|ing)? (?:out {_THING}|{_THING} out)\b|\b(?:is|are) held out\b"
-)
-_IS_OFFERED = re.compile(r"\b(?:is|are|gets?) offered (?:an?|the|his|her)\b")
-_REFUSES = re.compile(
-    r"\b(?:refus\w+ to|do(?:es)?n't|does not|won't) (?:shake|take|accept|touch) \w+(?: \w)?(?:'s)? (?:\w+ )?"
-    r"(?:hand|handshake)\b"
-    r"|\b(?:refus|declin|ignor|reject)\w* (?:\w+(?: [ab])?(?:'s)? )?(?:\w+ )?(?:hand|handshake)\b"
-)
-_ACCEPTS = re.compile(r"\b(?:shak|accept|grab|grasp|high[- ]five|catch|clasp|hold|help|pull)\w*|\btakes?\b")
-_COMPILED = tuple((hand, re.compile(pattern)) for hand, pattern in _PATTERNS)
-_NOT = re.compile(r"\b(?:do(?:es)?n't|not|without|never|refus\w+ to|lowers?|drops?)\b")
-_SIDE = re.compile(r"\b(left|right)(?:[- ]hand(?:ed)?| arm)?\b")
 OF_BOTH = (Hand.HIGH, Hand.AHEAD, Hand.CLAPS, Hand.EARS, Hand.EYES, Hand.PHOTO, Hand.PRAYS)
 """Gestures of both hands."""
-_OWN = (Hand.PHONE, Hand.EARS, Hand.EYES, Hand.PHOTO, Hand.PRAYS)
 _AT_BODY = {
     Hand.HIPS: (0.21, 0.1, 0.0), Hand.CHEST: (0.02, 0.36, 0.2), Hand.BELLY: (0.04, 0.14, 0.2),
     Hand.HEAD: (0.12, 0.66, -0.05), Hand.MOUTH: (0.04, 0.54, 0.2), Hand.BEHIND: (0.04, 0.02, -0.18),
@@ -136,7 +74,7 @@ _AT_BODY = {
 }  # fmt: skip
 """Metres from the pelvis to the left wrist of hands that are held at one's own body."""
 STOOD = (
-    Hand.CLAPS, Hand.SALUTES, Hand.AHEAD, Hand.OFFERS, *_OWN,
+    Hand.CLAPS, Hand.SALUTES, Hand.AHEAD, Hand.OFFERS, Hand.PHONE, Hand.EARS, Hand.EYES, Hand.PHOTO, Hand.PRAYS,
     *_AT_BODY, Hand.SPREAD, Hand.FLAPS, Hand.CIRCLES, Hand.SWINGS,
 )  # fmt: skip
 """Gestures that are given also to those who only stand."""
@@ -152,42 +90,6 @@ _CLAP_RATE = 2.0
 """Claps a second."""
 _WAVE_RATE = 1.6
 """Strokes a second of a wave."""
-
-
-def gestures(sentence: str) -> dict[str, Gesture]:
-    """The gestures of a beat's sentence, by person "a" and "b"; those of whom it names one."""
-    found = _offers(sentence)
-    for clause in clauses(sentence):
-        for hand, pattern in _COMPILED:
-            match, denied = pattern.search(clause.words), _NOT.search(clause.words)
-            if match is None or (denied and denied.start() < match.start()):
-                continue
-            side = _SIDE.search(clause.words)
-            sides = SIDES if hand in OF_BOTH else (side[1],) if side else ("right",)
-            found |= dict.fromkeys(clause.who, Gesture(hand, sides))
-            break
-    return found
-
-
-def _offers(sentence: str) -> dict[str, Gesture]:
-    """The people who hold out a hand that the other does not take within the beat."""
-    found: dict[str, Gesture] = {}
-    listed = clauses(sentence)
-    for clause in listed:
-        other = {"a": "b", "b": "a"}.get(clause.who, "a")
-        if _REFUSES.search(clause.words) or _IS_OFFERED.search(clause.words):
-            found[other] = Gesture(Hand.OFFERS, ("right",))
-        elif (match := _OFFERS.search(clause.words)) is not None:
-            denied = _NOT.search(clause.words)
-            if not (denied and denied.start() < match.start()):
-                side = _SIDE.search(clause.words)
-                who = clause.who if clause.who != "ab" else "a"
-                found[who] = Gesture(Hand.OFFERS, (side[1] if side else "right",))
-    for clause in listed:
-        accepted = _ACCEPTS.search(clause.words)
-        if accepted and not _NOT.search(clause.words) and not _OFFERS.search(clause.words):
-            return {}
-    return found
 
 
 def wrist(gesture: Gesture, side: str, seconds: Array, towards: Array) -> Array:

@@ -6,7 +6,6 @@ and the hands of who carries.
 
 from __future__ import annotations
 
-import re
 from dataclasses import dataclass
 from enum import Enum
 
@@ -17,9 +16,7 @@ from motion import SMPL22
 from motion.kinematics import forward_kinematics
 from motion.transforms import heading_matrix
 
-from .clauses import OTHER, Clause, clauses
 from .poses import about, bending
-from .ways import Way, way_of
 
 Array = NDArray[np.floating]
 
@@ -66,39 +63,6 @@ _WORDS = {
     Carry.BACK: "carries the other on their back",
     Carry.DRAGS: "drags the other",
 }
-_BACK = re.compile(
-    rf"\bcarr(?:y|ies|ying) {OTHER} (?:\w+ )?on (?:his|her|their|the) (?:back|shoulders)\b"
-    rf"|\bpiggy-?back\w*|\btakes? {OTHER} on (?:his|her|their) back\b"
-)
-_ARMS = re.compile(
-    rf"\bcarr(?:y|ies|ying) {OTHER}"
-    r"(?: (?:away|off|out|across|through|over|along|around|about|home|to|in (?:his|her|their) arms)\b|$)"
-)
-_UP = re.compile(
-    rf"\b(?:pick|lift|hoist|scoop)s? {OTHER} (?:up\b|(?:up )?(?:off|into|in|from) (?:the|his|her|their)\b)"
-    rf"|\bsweeps? {OTHER} off (?:his|her|their) feet\b"
-    rf"|\b(?:lift|hoist|pick)s? up {OTHER}|\blifts? {OTHER}$"
-)
-_DRAGS = re.compile(
-    rf"\b(?:drag|haul|pull)(?:s|ging|ing)? {OTHER} (?:\w+ )?(?:across|over|along) the (?:floor|ground|grass|sand)\b"
-    rf"|\b(?:drag|haul|pull)(?:s|ging|ing)? {OTHER} (?:\w+ )?by (?:the|his|her|their|both) (?:feet|legs|ankles)\b"
-    r"|\b(?:drag|haul)(?:s|ging|ing)? (?:the|an?|his|her) (?:unconscious|lifeless|wounded|injured|dead|limp) \w+"
-)
-_LEAPS = re.compile(
-    r"\b(?:jump|leap)(?:s|ing)? (?:up )?into (?:his|her|their|person [ab]'s|the \w+'s) arms\b"
-)
-_RIDES = re.compile(
-    r"\b(?:jump|climb|hop|get|ride)(?:s|ing)? (?:up )?(?:on|onto) (?:his|her|their|person [ab]'s|the \w+'s) back\b"
-)
-_ON_FLOOR = re.compile(r"\b(?:feet|legs|ankles|floor|ground)\b")
-_CARRIED = re.compile(
-    r"\b(?:is|are|gets?|being) (?P<verb>carried|lifted|picked|dragged) (?P<rest>.*)\bby (?:person [ab]|him|her|the|an?)"
-)
-_SPINS = re.compile(r"\b(?:spin|whirl|swing|twirl|turn)s? (?:\w+(?: [ab])? )?(?:a?round|in circles)\b")
-_NOT = re.compile(
-    r"\b(?:do(?:es)?n't|not|without|never|refus\w+ to|wants? to|about to|tries to|pretends? to|almost|cannot|can't)\b"
-)
-_PATTERNS = ((Carry.BACK, _BACK), (Carry.ARMS, _ARMS), (Carry.DRAGS, _DRAGS), (Carry.UP, _UP))
 _LEANS = {Carry.UP: -0.08, Carry.ARMS: -0.1, Carry.BACK: 0.3, Carry.DRAGS: 1.0}
 """Radians by which the carrier leans forward."""
 _LEGS = {
@@ -109,44 +73,6 @@ _LEGS = {
 }
 """Radians of the hips forward (negative) and out, and of the knees, of who is carried."""
 _SIDES = (("left", 1.0), ("right", -1.0))
-
-
-def lift(sentence: str) -> Lift | None:
-    """The lift of a beat's sentence, if it tells of one."""
-    found = clauses(sentence)
-    spins = any(_SPINS.search(clause.words) for clause in found)
-    comes = next((c.who for c in found if c.who != "ab" and way_of(c.words) is Way.TO), "")
-    named = [
-        read
-        for clause in found
-        if clause.who != "ab" and clause.subject and not _NOT.search(clause.words)
-        if (read := _of_clause(clause)) is not None
-    ]
-    if not named:
-        return None
-    carrier, carry = next((read for read in named if read[1] is not Carry.UP), named[0])
-    if len({carry for _, carry in named}) > 1:
-        comes = comes or carrier  # they are picked up before they are carried
-    return Lift(carrier, carry, spins and carry is not Carry.BACK, comes)
-
-
-def _of_clause(clause: Clause) -> tuple[str, Carry] | None:
-    """The carrier that a clause names, and how the other is held."""
-    words, other = clause.words, "b" if clause.who == "a" else "a"
-    if _LEAPS.search(words):
-        return other, Carry.UP
-    if _RIDES.search(words):
-        return other, Carry.BACK
-    passive = _CARRIED.search(words)
-    if passive is not None and passive["verb"] == "dragged" and not _ON_FLOOR.search(words):
-        return None
-    if passive is not None:
-        up = {"carried": Carry.ARMS, "dragged": Carry.DRAGS}.get(passive["verb"], Carry.UP)
-        return other, Carry.BACK if "back" in passive["rest"] else up
-    for carry, pattern in _PATTERNS:
-        if pattern.search(words):
-            return clause.who, carry
-    return None
 
 
 def carried(carry: Carry, place: Array, angle: float) -> tuple[Array, Array]:

@@ -19,9 +19,7 @@ from webdemo.inference.requests import GenerateRequest, SamplingRequest, _number
 
 from .beats import MOST_BEATS, SHORTEST, Beat, acts_of
 from .postures import Posture
-from .scripting import beats_of, understood
-from .splitting import split_sentence
-from .telling import of_words, told_by
+from .scripting import beats_of, told_by, understood
 from .told import Told, at_start
 from .wishes import MOST_POSES, FloorPath, FloorPoint, Pose, check_together
 
@@ -295,9 +293,7 @@ def as_scene(request: GenerateRequest, go_on: Callable[[], None] = lambda: None)
         go_on()  # may be what raised it
         return None
     if not beats or (
-        len(beats) < 2
-        and request.acts is None
-        and not (request.planned and (beats[0].acts or of_words(beats[0].sentence).is_planned))
+        len(beats) < 2 and request.acts is None and not (request.planned and told_by(beats[0]).is_planned)
     ):
         return None
     factor = request.seconds / sum(beat.length for beat in beats)
@@ -310,21 +306,20 @@ def as_scene(request: GenerateRequest, go_on: Callable[[], None] = lambda: None)
 
 
 def _beats(request: GenerateRequest, go_on: Callable[[], None]) -> tuple[Beat, ...]:
-    """The beats of a request: of its acts, of those that its words are read as, or of its phrases where none is read.
+    """The beats of a request: of its acts, or of those that its words are read as.
 
     A sentence of one beat keeps its words, which the network reads.
     """
+    go_on()
     most = request.seconds / LEAST_SHARE
     script = request.acts if request.acts is not None else understood(request.prompt)
-    if script is not None and (request.acts is not None or request.planned):
-        beats = beats_of(script)
-        if len(beats) > most:
-            return (Beat(request.prompt if request.acts is None else "", acts=script.acts),)
-        return (
-            (replace(beats[0], words=request.prompt),) if len(beats) == 1 and request.acts is None else beats
-        )
-    beats = split_sentence(request.prompt, go_on)
-    return beats if len(beats) <= most else (Beat(request.prompt),)
+    if script is None:
+        return (Beat(request.prompt),)
+    words = request.prompt if request.acts is None else ""
+    beats = beats_of(script)
+    if len(beats) > most:
+        return (Beat(words, acts=script.acts),)
+    return (replace(beats[0], words=words),) if len(beats) == 1 and words else beats
 
 
 def _told_before(story: list[Told]) -> None:

@@ -1,15 +1,102 @@
-"""A plan as beats: what happens one after another becomes a beat each, with its acts and the network's words."""
+"""Words and plans as beats: what happens one after another becomes a beat each, with its acts and its own words."""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+import re
+from collections.abc import Callable, Iterator, Sequence
 
 from acts import Act, Plan, read
 from acts.captions import sentence
 from acts.lexicon import Entry, Lexicon, lexicon
 from motion import InputError
+from webdemo.inference.cancel import CancelToken
+from webdemo.inference.requests import MAX_PROMPT
 
-from .beats import Beat
+from .beats import MOST_BEATS, Beat
+from .staging import staged
+from .told import Told
+
+MOST_WORDS = MOST_BEATS * MAX_PROMPT
+"""Characters of a story in sentences: as many as its beats may have."""
+LONGEST_READ = 2 * MAX_PROMPT
+"""Characters of one sentence of a story, at most."""
+READING_SECONDS = 30.0
+"""In which a story is read that no run waits for."""
+_AT_ONCE = 1200
+"""Characters of sentences that are read together, so that "he" stays who he is."""
+_ENDS = re.compile(r"(?<=[.!?;])\s+")
+
+
+def in_time() -> Callable[[], None]:
+    """A ``go_on`` for :func:`split_sentence` that raises InputError after :data:`READING_SECONDS` from now."""
+    late = "The story took longer than {limit} to read: shorten it, or try again when the lab is less busy."
+    return CancelToken(READING_SECONDS, late).start().raise_if_cancelled
+
+
+def split_sentence(text: str, go_on: Callable[[], None] = lambda: None) -> tuple[Beat, ...]:
+    """The beats of a sentence or a story, by the order of its acts; one beat, in its own words, if it names one thing.
+
+    Args:
+        text: what happens, in linear time of whose length it is read.
+        go_on: called before each stretch of it; what it raises ends the reading.
+
+    Raises:
+        InputError: for a text, or a sentence in it, that is longer than any scene's.
+    """
+    if len(text) > MOST_WORDS:
+        raise InputError(f"The story has {len(text):,} characters: shorten it to {MOST_WORDS:,}.")
+    text = " ".join(text.split())
+    found: list[Beat] = []
+    for stretch in _stretches(text):
+        go_on()
+        found += _beats_in(stretch)
+        if len(found) > MOST_BEATS:
+            raise InputError(f"The story has more than {MOST_BEATS} beats: keep to {MOST_BEATS} or fewer.")
+    if len(found) < 2:
+        return (Beat(text),) if text else ()
+    return tuple(found)
+
+
+def told_by(beat: Beat) -> Told:
+    """The stage of a beat: of its acts, or of those that its words are read as."""
+    plan = None if beat.acts else understood(beat.sentence)
+    return staged(beat.acts or (plan.acts if plan is not None else ()))
+
+
+def _stretches(text: str) -> Iterator[str]:
+    """The text in stretches of whole sentences that are read at once."""
+    stretch = ""
+    for part in _ENDS.split(text):
+        if len(part) > LONGEST_READ:
+            raise InputError(
+                f"The sentence “{part[:40]} …” has {len(part):,} characters: shorten it to {MAX_PROMPT}, or split it."
+            )
+        if stretch and len(stretch) + len(part) > _AT_ONCE:
+            yield stretch
+            stretch = ""
+        stretch = f"{stretch} {part}".strip()
+    if stretch:
+        yield stretch
+
+
+def _beats_in(text: str) -> list[Beat]:
+    """The beats of a stretch of text; a sentence of which nothing is known is one in its own words."""
+    try:
+        plan = read(text)
+    except InputError:  # no parser is installed
+        return [Beat(text)]
+    found = [
+        (min((act.words.start for act in beat.acts if act.words), default=0), beat) for beat in beats_of(plan)
+    ]
+    start = 0
+    for part in _ENDS.split(text):
+        start = text.index(part, start)
+        stop = start + len(part)
+        acts = any(act.words and act.words.start < stop and start < act.words.stop for act in plan.acts)
+        if not acts and any(start <= each.words.start < stop for each in plan.unread):
+            found.append((start, Beat(part)))
+        start = stop
+    return [beat for _, beat in sorted(found, key=lambda each: each[0])]
 
 
 def understood(text: str) -> Plan | None:

@@ -7,8 +7,6 @@ are given at the moments of their blows, in turn. The rest is the network's.
 
 from __future__ import annotations
 
-import re
-from collections.abc import Sequence
 from dataclasses import dataclass
 from enum import Enum
 
@@ -18,7 +16,6 @@ from numpy.typing import NDArray
 from motion import SMPL22
 from motion.transforms import heading_matrix
 
-from .clauses import OTHER, Clause, clauses
 from .poses import bending
 
 Array = NDArray[np.floating]
@@ -59,47 +56,6 @@ class Blow:
     side: str
 
 
-_EACH = r"(?:each other|one another)"
-_THING = r"(?:ball|snowball|frisbee|key|bottle|apple|pillow|stone|book|hat|coin|phone)s?"
-_WEAPONS = re.compile(
-    r"\b(?:swords?|sab(?:re|er)s?|sticks?|staffs?|lightsab(?:re|er)s?|fenc\w+|pillows?|spears?)\b"
-)
-_FAR = re.compile(r"\b(?:guns?|pistols?|rifles?|arrows?|words)\b")
-_FIGHT = re.compile(
-    r"(?<!the )(?<!an )(?<!a )\b(?:fight|box|spar|brawl|scuffle|kickbox|duel|fenc)(?:es|s|e|ing)?\b"
-    r"(?! (?:back|off|over)\b)"
-    r"|\b(?:exchang|trad|swap|throw)\w* (?:\w+ )?(?:blows|punches|jabs|hits)\b"
-    rf"|\b(?:punch|hit|strik|slap|attack|jab|beat)(?:e|es|s|ing|ting)? (?:at )?{_EACH}\b"
-    r"|\bcom(?:e|es|ing) to blows\b|\bin an? (?:\w+ )?(?:fist ?)?(?:fight|duel)\b|\bfist[- ]?fight\w*"
-    r"|\bhav(?:e|ing) an? (?:\w+ )?(?:fight|duel)\b"
-)
-_MEANWHILE = re.compile(r"\b(?:circl|dodg|duck|block|parr|shout|yell|laugh|swear|sweat)\w*")
-"""Acts of people who fight all the while."""
-_AGAINST = re.compile(rf"\b(?:fight|box|spar|duel|fenc)(?:e?s|ing)? (?:with |against )?{OTHER}\b")
-_PUNCHES = re.compile(
-    rf"\b(?:punch|hit|strik|jab|thump|sock)(?:es|s|ing|ting)? (?:out )?(?:at )?{OTHER}(?! with)\b"
-    r"|\b(?:hit|punch|strik|fight)(?:es|s)? back\b|\bretaliates\b|\bpunches$"
-    rf"|\bthrows? an? (?:\w+ )?punch\b|\b(?:swings?|takes? a swing) at {OTHER}\b"
-)
-_ANSWERS = re.compile(
-    r"\b(?:fall|collaps|go(?:es)? down|drop|duck|dodg|block|parr|stagger|stumbl|step|back|flinch|reel|recoil|sway"
-    r"|hop)\w*"
-)
-"""Acts of somebody who is punched, or just not."""
-_RACKETS = re.compile(
-    r"\bplay\w* (?:a game of )?(?:table )?(?:tennis|badminton|squash|ping[- ]?pong|paddle)\b"
-)
-_THROWS = re.compile(
-    rf"\b(?:throw|toss|pass|lob|chuck)(?:es|s|ing)? (?:{OTHER} )??(?:(?:an?|the|his|her|their|some) )?"
-    rf"(?:\w+ )?{_THING}\b"
-    r"|\bplay\w* (?:catch|ball|frisbee)\b|\bsnowball fight\b"
-)
-_THROWN = re.compile(rf"\bcatch\w* .*\bthrown (?:to \w+ )?by {OTHER}")
-_CATCHES = re.compile(r"\bcatch(?:es)? (?:it|the \w+|them)\b")
-_NOT = re.compile(
-    r"\b(?:do(?:es)?n't|not|without|never|refus\w+ to|wants? to|about to|tries to|pretends? to|stops?|almost)\b"
-)
-_MANY = re.compile(r"\b(?:again and again|repeatedly|keeps?|beats? up|several)\b")
 _CIRCLING = 0.03
 """Turns a second of two who fight around the middle between them."""
 FIRST = 20
@@ -129,49 +85,6 @@ _ARM = 0.5
 """Metres from the shoulder to the wrist of an arm that strikes."""
 _FIST = 0.1
 """Metres from the wrist to what its fist hits."""
-
-
-def strike(sentence: str) -> Strike | None:
-    """The blows or throws of a beat's sentence, where they are all that it tells."""
-    found = clauses(sentence)
-    words = " and ".join(clause.words for clause in found)
-    if not found or _NOT.search(words) or _FAR.search(words):
-        return None
-    both = all(clause.who == "ab" for clause in found)
-    if _RACKETS.search(words) and (both or len(found) == 1):
-        return Strike(Bout.RACKETS, "ab")
-    if (throws := _throws(found)) is not None:
-        return throws
-    only = all(_FIGHT.search(clause.words) or _MEANWHILE.search(clause.words) for clause in found)
-    if only and _FIGHT.search(words) and (both or (len(found) == 1 and _AGAINST.search(words))):
-        return Strike(Bout.WEAPONS if _WEAPONS.search(words) else Bout.FISTS, "ab")
-    return _punches(found)
-
-
-def _punches(found: Sequence[Clause]) -> Strike | None:
-    """Punches of one person or of both in turn, and what the other does about the first of them."""
-    struck = [bool(_PUNCHES.search(clause.words)) for clause in found]
-    if any(clause.who == "ab" or not clause.subject for clause in found) or not struck[0]:
-        return None
-    if not all(punch or _ANSWERS.search(clause.words) for clause, punch in zip(found, struck, strict=True)):
-        return None
-    turns = "".join(clause.who for clause, punch in zip(found, struck, strict=True) if punch)
-    return Strike(Bout.FISTS, turns, bool(_MANY.search(found[0].words)), not all(struck))
-
-
-def _throws(found: Sequence[Clause]) -> Strike | None:
-    """Something that one throws and the other may catch, or that goes to and fro."""
-    for clause in found:
-        if _THROWN.search(clause.words) and len(found) == 1 and clause.who != "ab":
-            return Strike(Bout.THROWS, "b" if clause.who == "a" else "a", goes_on=False)
-        if _THROWS.search(clause.words):
-            others = [c for c in found if c is not clause]
-            if not all(_CATCHES.search(c.words) for c in others):
-                return None
-            if clause.who == "ab":
-                return Strike(Bout.THROWS, "ab")
-            return Strike(Bout.THROWS, clause.who, goes_on=False)
-    return None
 
 
 def turning(bout: Bout) -> float:

@@ -41,7 +41,7 @@ from webdemo.inference.requests import SamplingRequest
 
 from .beats import MOST_BEATS, Beat
 from .request import SceneRequest, beat_of, path_of
-from .splitting import split_sentence
+from .scripting import split_sentence
 from .toml_outline import Lines, check_outline
 from .wishes import MOST_POINTS, MOST_POSES, FloorPath, Pose
 

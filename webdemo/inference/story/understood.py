@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
-from acts import Plan, read
+from acts import Plan, captions, read
+from acts.lexicon import lexicon
 from motion import InputError
 
-from .idle import is_planned
+from .staging import staged
 
 MOST_NAMED = 3
 """Parts of a sentence that a note quotes, at most."""
@@ -13,10 +14,8 @@ MOST_NAMED = 3
 
 def is_understood(sentence: str) -> bool:
     """True if people's ways, postures or touches are planned from a sentence, or all of its acts are known."""
-    if is_planned(sentence):
-        return True
     plan = _plan(sentence)
-    return plan is not None and bool(plan.acts) and not plan.unread
+    return plan is not None and bool(plan.acts) and (not plan.unread or staged(plan.acts).is_planned)
 
 
 def notes(sentence: str) -> tuple[str, ...]:
@@ -26,10 +25,16 @@ def notes(sentence: str) -> tuple[str, ...]:
         return ()
     found = list(plan.notes)
     parts = [plan.text(unread.words) for unread in plan.unread][:MOST_NAMED]
-    if parts and not is_planned(sentence):
+    if parts and not staged(plan.acts).is_planned:
         quoted = ", ".join(f"“{part}”" for part in parts)
         found.append(f"Not understood: {quoted}. Say it in plainer words, or as what the two bodies do.")
     return tuple(found)
+
+
+def of_each(sentence: str) -> tuple[str, str]:
+    """A sentence on what person a does and one on what b does, as :func:`acts.captions.of_each` gives them."""
+    plan = _plan(sentence)
+    return ("", "") if plan is None else captions.of_each(plan.acts, lexicon())
 
 
 def _plan(sentence: str) -> Plan | None:
