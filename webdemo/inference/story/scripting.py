@@ -85,18 +85,24 @@ def _beats_in(text: str) -> list[Beat]:
         plan = read(text)
     except InputError:  # no parser is installed
         return [Beat(text)]
-    found = [
-        (min((act.words.start for act in beat.acts if act.words), default=0), beat) for beat in beats_of(plan)
-    ]
+    beats, unread = list(beats_of(plan)), list(_unread_sentences(plan))
+    first = [min((act.words.start for act in beat.acts if act.words), default=0) for beat in beats]
+    for start, beat in reversed(unread):
+        at = next((i for i, begins in enumerate(first) if begins > start), len(beats))
+        beats.insert(at, beat)
+    return beats
+
+
+def _unread_sentences(plan: Plan) -> Iterator[tuple[int, Beat]]:
+    """The sentences of a plan's text of which nothing is known that somebody does, and where they begin."""
     start = 0
-    for part in _ENDS.split(text):
-        start = text.index(part, start)
+    for part in _ENDS.split(plan.sentence):
+        start = plan.sentence.index(part, start)
         stop = start + len(part)
         acts = any(act.words and act.words.start < stop and start < act.words.stop for act in plan.acts)
         if not acts and any(start <= each.words.start < stop for each in plan.unread):
-            found.append((start, Beat(part)))
+            yield start, Beat(part)
         start = stop
-    return [beat for _, beat in sorted(found, key=lambda each: each[0])]
 
 
 def understood(text: str) -> Plan | None:
