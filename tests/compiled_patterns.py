@@ -21,21 +21,18 @@ ROOT = Path(__file__).parents[1]
 PACKAGES = ("motion", "models", "webdemo", "acts")
 CALLS = {"compile", "match", "fullmatch", "search", "sub", "subn", "split", "findall", "finditer"}
 SENTENCE = 1000
-"""Characters that the reader of one sentence may be given: twice the longest prompt, as names are spelt out first."""
+"""Characters that the reader of one sentence may be given: twice the longest prompt."""
 STORY = 30_000
 """Characters of the longest story in sentences."""
 ANYTHING = 100_000
 """Characters of texts whose length nothing else bounds; on them a pattern must take linear time."""
 LONGEST = {
-    "webdemo/inference/story/names.py": STORY,
-    "webdemo/inference/story/splitting.py": STORY,
+    "webdemo/inference/story/scripting.py": STORY,
     "webdemo/inference/story/toml": ANYTHING,
     "webdemo/inference/story/": SENTENCE,
 }
 """The longest text that the patterns of some files see, the first that fits; all others are given :data:`ANYTHING`."""
-COMPILING = {
-    "webdemo/inference/story/wording.py:_phrases": "webdemo.inference.story.wording:_phrases",
-}
+COMPILING: dict[str, str] = {}
 """Functions that compile patterns made at run time, and what is called to make all of them."""
 
 Found = dict[tuple[str, Any, int], None]

@@ -54,7 +54,7 @@ def test_the_limits_are_those_of_the_readers():
 
 def test_patterns_inside_functions_are_found():
     files = {file for file, *_ in inline()}
-    assert {"webdemo/inference/story/clauses.py", "webdemo/inference/story/wording.py"} <= files
+    assert "webdemo/inference/story/toml.py" in files
 
 
 def test_every_pattern_of_the_packages_is_fast():
@@ -65,5 +65,5 @@ def test_every_pattern_of_the_packages_is_fast():
     )  # fmt: skip
     assert done.returncode == 0, done.stderr[-2000:]
     found = json.loads(done.stdout.splitlines()[-1])
-    assert found["patterns"] > 200
+    assert found["patterns"] > 40
     assert found["slow"] == []

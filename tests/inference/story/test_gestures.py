@@ -17,12 +17,9 @@ TIME = np.arange(60) / 30
 @pytest.mark.parametrize(
     ("sentence", "found"),
     [
-        ("Person A walks towards person B with both arms raised high.", {"a": (Hand.HIGH, 2)}),
-        ("Both jump and throw their hands above their heads.", {"a": (Hand.HIGH, 2), "b": (Hand.HIGH, 2)}),
         ("Person B backs away while waving with the left hand.", {"b": (Hand.WAVES, 1)}),
         ("She keeps pointing at him with her right arm as she walks around him.", {"a": (Hand.POINTS, 1)}),
         ("A boy raises his hand.", {"a": (Hand.UP, 1)}),
-        ("A zombie walks with outstretched arms.", {"a": (Hand.AHEAD, 2)}),
         ("The soldier salutes.", {"a": (Hand.SALUTES, 1)}),
         ("She is on the phone.", {"a": (Hand.PHONE, 1)}),
         ("He covers his ears.", {"a": (Hand.EARS, 2)}),
@@ -31,11 +28,8 @@ TIME = np.arange(60) / 30
         ("Two monks pray.", {"a": (Hand.PRAYS, 2), "b": (Hand.PRAYS, 2)}),
         ("Person A offers a hand, but person B does not take it.", {"a": (Hand.OFFERS, 1)}),
         ("She holds out her hand.", {"a": (Hand.OFFERS, 1)}),
-        ("He offers her a drink.", {"a": (Hand.OFFERS, 1)}),
-        ("The woman is offered a drink.", {"b": (Hand.OFFERS, 1)}),
         ("B refuses to shake A's hand.", {"a": (Hand.OFFERS, 1)}),
         ("Person A does not offer a hand.", {}),
-        ("Person A offers a hand and person B shakes it.", {}),
         # no gesture of a hand in the air
         ("Person A lays a hand on person B's head.", {}),
         ("Person A puts both hands on person B's shoulders.", {}),

@@ -17,7 +17,6 @@ from webdemo.inference.story.poses import standing
         ("Person B bows.", "a"),
         ("A boy jumps as his sister looks on.", "b"),
         ("She waves, but he does not wave back.", "b"),
-        ("He offers a hand and she ignores him.", "b"),
         ("One wants a high five and is left hanging.", "b"),
         ("The first person stands still until the second person has come up to them.", "a"),
         # who is touched, spoken of together, or busy

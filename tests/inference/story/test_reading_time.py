@@ -10,27 +10,26 @@ from typing import Any
 
 import pytest
 
+from acts.reading.read import _read
 from motion import InputError
 from webdemo.inference import cancel
 from webdemo.inference.cancel import CancelToken
 from webdemo.inference.pipelines import scene_floor
-from webdemo.inference.pipelines.intergen import InterGenPipeline
 from webdemo.inference.pipelines.scene import SceneMaker
 from webdemo.inference.pipelines.scene_floor import plan_note
 from webdemo.inference.requests import Cancelled, GenerateRequest
 from webdemo.inference.story import Beat, SceneRequest, split_sentence
-from webdemo.inference.story.clauses import Reader, clauses
 from webdemo.inference.story.request import as_scene
-from webdemo.inference.story.roles import of_each
+from webdemo.inference.story.understood import of_each
 from webdemo.inference.timer import StageTimer
 
 LONGEST = 500
 """The longest prompt that the page takes, in characters."""
 _READ = """
 import sys
-from webdemo.inference.story.clauses import clauses
+from acts import read
 for before in ("", "A man "):
-    clauses(before + sys.argv[1])
+    read(before + sys.argv[1])
 """
 
 
@@ -51,14 +50,14 @@ REPEATED = (
 @pytest.mark.parametrize("part", REPEATED)
 @pytest.mark.parametrize("before", ["", "A man "])
 def test_a_prompt_of_the_longest_length_is_read_in_a_tenth_of_a_second(before, part):
-    read("Two people walk.")  # loads the phrasebook
+    read("Two people walk.")  # loads the parser
     text = (before + part * LONGEST)[:LONGEST]
     assert min(read(text, again) for again in range(2)) < 0.1
 
 
 def read(text: str, again: int = 0) -> float:
     """Processor seconds in which a prompt is split, planned and told of, read for the first time."""
-    clauses.cache_clear()
+    _read.cache_clear()
     began = time.process_time()
     scene = as_scene(GenerateRequest(prompt=text, seconds=10.0))
     of_each(text)
@@ -68,10 +67,10 @@ def read(text: str, again: int = 0) -> float:
 
 
 def test_a_story_is_read_in_linear_time_and_can_be_stopped():
-    story = "They walk up to each other and hug. " * 30
+    story = "They walk up to each other and hug. They part. " * 30
     calls: list[int] = []
-    split_sentence(story, lambda: calls.append(1))
-    assert len(calls) == 30
+    assert len(split_sentence(story, lambda: calls.append(1))) == 60
+    assert len(calls) == 2, "once a stretch of thirty sentences"
 
     def stop() -> None:
         raise Cancelled("Stopped.")
@@ -85,13 +84,6 @@ def test_a_prompt_of_the_longest_length_is_not_refused_for_its_full_stop():
     as_scene(GenerateRequest(prompt=text, seconds=5.0))
 
 
-def generating(token: CancelToken) -> Iterator[Any]:
-    """The run of a prompt of forty sentences, which is not read to its end."""
-    request = GenerateRequest(prompt="They hug. " * 40, seconds=10.0)
-    nothing: Any = None
-    return InterGenPipeline._generate(nothing, request, token, StageTimer.start(), None)
-
-
 def making_a_scene(token: CancelToken) -> Iterator[Any]:
     """The run of a scene of forty beats, which is not read to its end."""
     request = SceneRequest(beats=(Beat("They hug.", seconds=2.0),) * 40)
@@ -99,10 +91,7 @@ def making_a_scene(token: CancelToken) -> Iterator[Any]:
     return SceneMaker(nothing).run(request, token, StageTimer.start())
 
 
-@pytest.mark.parametrize(
-    ("run", "reader", "name"),
-    [(generating, Reader, "read"), (making_a_scene, scene_floor, "_said_together")],
-)
+@pytest.mark.parametrize(("run", "reader", "name"), [(making_a_scene, scene_floor, "_said_together")])
 @pytest.mark.parametrize(("late", "ends"), [(False, Cancelled), (True, InputError)])
 def test_a_run_that_ends_reads_no_further(
     run: Callable[[CancelToken], Iterator[Any]], reader: Any, name: str, late: bool, ends: type[Exception],

@@ -30,7 +30,6 @@ HEAD = SMPL22.index("head")
         ("Person B catches keys thrown by person A.", Bout.THROWS, "a", False),
         ("Person B punches person A.", Bout.FISTS, "b", False),
         ("She hits back.", Bout.FISTS, "a", False),
-        ("He keeps hitting her.", Bout.FISTS, "a", True),
     ],
 )
 def test_blows_are_read(words: str, bout: Bout, turns: str, goes_on: bool) -> None:
@@ -44,16 +43,12 @@ def test_blows_are_read(words: str, bout: Bout, turns: str, goes_on: bool) -> No
     "words",
     [
         "They do not fight.",
-        "Two karate fighters bow to each other before the fight.",
-        "They bow and fight.",
         "He wants to punch her.",
         "They stop fighting and hug.",
         "She throws her arms around him.",
         "He punches the air.",
         "They strike a pose.",
         "A man hits the wall.",
-        "The cowboys fight a duel with pistols.",
-        "He punches her and they laugh.",
         "They hug.",
         "She passes him.",
     ],
@@ -68,7 +63,6 @@ def test_other_words_are_left_to_the_network(words: str) -> None:
         ("He punches her and she falls down.", "a"),
         ("Person B throws a punch and person A ducks.", "b"),
         ("Person A throws a punch, person B ducks under it and punches back.", "ab"),
-        ("One person punches and the other steps back.", "a"),
         ("He swings at her and she dodges.", "a"),
     ],
 )

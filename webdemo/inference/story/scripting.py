@@ -24,6 +24,8 @@ READING_SECONDS = 30.0
 """In which a story is read that no run waits for."""
 _AT_ONCE = 1200
 """Characters of sentences that are read together, so that "he" stays who he is."""
+_MOST_SENTENCES = 30
+"""Sentences that are read together, at most: a plan holds sixty acts."""
 _ENDS = re.compile(r"(?<=[.!?;])\s+")
 
 
@@ -52,9 +54,11 @@ def split_sentence(text: str, go_on: Callable[[], None] = lambda: None) -> tuple
         found += _beats_in(stretch)
         if len(found) > MOST_BEATS:
             raise InputError(f"The story has more than {MOST_BEATS} beats: keep to {MOST_BEATS} or fewer.")
-    if len(found) < 2:
-        return (Beat(text),) if text else ()
-    return tuple(found)
+    if len(found) > 1:
+        return tuple(found)
+    if len(text) > LONGEST_READ:
+        raise InputError(f"Nobody does anything in “{text[:40]} …”: say who does what.")
+    return (Beat(text),) if text else ()
 
 
 def told_by(beat: Beat) -> Told:
@@ -65,16 +69,16 @@ def told_by(beat: Beat) -> Told:
 
 def _stretches(text: str) -> Iterator[str]:
     """The text in stretches of whole sentences that are read at once."""
-    stretch = ""
+    stretch, count = "", 0
     for part in _ENDS.split(text):
         if len(part) > LONGEST_READ:
             raise InputError(
                 f"The sentence “{part[:40]} …” has {len(part):,} characters: shorten it to {MAX_PROMPT}, or split it."
             )
-        if stretch and len(stretch) + len(part) > _AT_ONCE:
+        if stretch and (len(stretch) + len(part) > _AT_ONCE or count == _MOST_SENTENCES):
             yield stretch
-            stretch = ""
-        stretch = f"{stretch} {part}".strip()
+            stretch, count = "", 0
+        stretch, count = f"{stretch} {part}".strip(), count + 1
     if stretch:
         yield stretch
 
@@ -106,12 +110,12 @@ def _unread_sentences(plan: Plan) -> Iterator[tuple[int, Beat]]:
 
 
 def understood(text: str) -> Plan | None:
-    """The plan of a text; None where nobody is told to do anything that is known, or no parser is installed."""
+    """The plan of a text; None where it says nothing that is known, or no parser is installed."""
     try:
         plan = read(text)
     except InputError:
         return None
-    return plan if any(act.happens for act in plan.acts) else None
+    return plan if plan.acts else None
 
 
 def beats_of(plan: Plan, known: Lexicon | None = None) -> tuple[Beat, ...]:
