@@ -128,17 +128,41 @@ def beats_of(plan: Plan, known: Lexicon | None = None) -> tuple[Beat, ...]:
     known = known or lexicon()
     found: list[list[list[Act]]] = []
     for group in plan.beats():
-        if found and (_goes_on(found[-1], group) or _same_beat(found[-1][-1], group, known)):
+        if found and (_goes_on(found[-1], group) or _same_beat(found[-1][-1], group, known, plan.sentence)):
             found[-1].append(group)
         else:
             found.append([group])
     if len(found) > 1 and not any(act.happens for group in found[0] for act in group):
         found[:2] = [found[0] + found[1]]
+    own = _own_sentences(plan, [[act for group in groups for act in group] for groups in found])
     return tuple(
-        Beat(words, acts=tuple(act for group in groups for act in group))
-        for groups in found
+        Beat(own.get(i, words), acts=tuple(act for group in groups for act in group))
+        for i, groups in enumerate(found)
         if (words := sentence(groups, known))
     )
+
+
+def _own_sentences(plan: Plan, found: Sequence[Sequence[Act]]) -> dict[int, str]:
+    """The whole sentences of the text that tell a beat's acts and no other's, by the number of the beat."""
+    told: list[tuple[str, set[int]]] = []
+    start = 0
+    for part in _ENDS.split(plan.sentence):
+        start = plan.sentence.index(part, start)
+        stop = start + len(part)
+        within = {
+            i
+            for i, acts in enumerate(found)
+            if any(act.words and act.words.start < stop and start < act.words.stop for act in acts)
+        }
+        told.append((part, within))
+        start = stop
+    shared = {i for _, within in told if len(within) > 1 for i in within}
+    own: dict[int, str] = {}
+    for part, within in told:
+        if len(within) == 1 and not within & shared:
+            (i,) = within
+            own[i] = f"{own[i]} {part}" if i in own else part
+    return {i: words for i, words in own.items() if len(words) <= MAX_PROMPT}
 
 
 def _goes_on(before: Sequence[Sequence[Act]], group: Sequence[Act]) -> bool:
@@ -148,15 +172,15 @@ def _goes_on(before: Sequence[Sequence[Act]], group: Sequence[Act]) -> bool:
     return all(act.already and not busy & set(act.agents) for act in earlier)
 
 
-def _same_beat(before: Sequence[Act], group: Sequence[Act], known: Lexicon) -> bool:
+def _same_beat(before: Sequence[Act], group: Sequence[Act], known: Lexicon, text: str) -> bool:
     """True if a group of acts belongs into the beat of the one before it."""
     if not any(act.happens for act in group):
         return True  # who does not do something says nothing about when
     first, then = _with_entries(before, known), _with_entries(group, known)
-    return any(_belongs(act, e, later, then_e) for act, e in first for later, then_e in then)
+    return any(_belongs(act, e, later, then_e, text) for act, e in first for later, then_e in then)
 
 
-def _belongs(act: Act, entry: Entry, later: Act, after: Entry) -> bool:
+def _belongs(act: Act, entry: Entry, later: Act, after: Entry, text: str) -> bool:
     """True if one act answers another, or goes on with it in one movement."""
     does, then = {shape.do: shape for shape in entry.stage}, {shape.do: shape for shape in after.stage}
     other = "b" if act.agents[0] == "a" else "a"
@@ -170,7 +194,9 @@ def _belongs(act: Act, entry: Entry, later: Act, after: Entry) -> bool:
     if way and next_way == "after" and later.agents != act.agents:
         return True
     if way == "to" and len(act.agents) == 2 and after.mutual and not then:
-        return True  # the network walks two people up to each other and into each other's arms
+        return _in_one_sentence(act, later, text)  # the network walks them into each other's arms
+    if (way == "to" and "lift" in then) or ("link" in does and "hold" in then):
+        return True  # runs up and is lifted; the hands that they take turn them round
     same = later.agents == act.agents
     if "lift" in does and getattr(then.get("hold"), "hold", "") == "twirl":
         return True  # "picks her up and spins her around"
@@ -185,6 +211,13 @@ def _belongs(act: Act, entry: Entry, later: Act, after: Entry) -> bool:
     pulled = getattr(then.get("go"), "linked", False) or (not then and later.patient is not None)
     led = bool(does.keys() & {"link", "touch"}) and pulled
     return led or (way == "away" and next_way == "away")
+
+
+def _in_one_sentence(act: Act, later: Act, text: str) -> bool:
+    """True for two acts of one sentence of a text, and for acts without words."""
+    return (
+        act.words is None or later.words is None or not _ENDS.search(text, act.words.start, later.words.stop)
+    )
 
 
 def _with_entries(acts: Sequence[Act], known: Lexicon) -> list[tuple[Act, Entry]]:

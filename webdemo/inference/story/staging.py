@@ -295,7 +295,7 @@ class _Stage:
         if self.hold is not None:
             return tuple(Move(who, Way.HOLD, near=self.hold.value, turns=self.hold.turns) for who in "ab")
         if self.lift is not None:
-            return lifted_moves(self.lift, 1.1)
+            return lifted_moves(self.lift, max((m.speed for m in self.moves if m.way is Way.TO), default=1.1))
         if self.twirls:
             other = _other(self.twirls)
             turned = Move(other, Way.FACE, late=True), Move(other, Way.TURN, turns=1.0)
