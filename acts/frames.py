@@ -67,6 +67,7 @@ class Event:
         prepositions: (preposition, argument).
         denied, modality: of the clause.
         ongoing: it goes on when the clause begins, as in "is sitting" and "keeps walking".
+        state: a phrase says it that hangs on a noun, as in "the lady on the bench".
         joint: how it is joined to event ``beside``, as in :class:`acts.plan.Relation`.
         first, last: character offsets in the text that was parsed.
         adverbs, seconds, times, distance, direction, side: modifiers.
@@ -81,6 +82,7 @@ class Event:
     prepositions: list[tuple[str, Ref]] = field(default_factory=list)
     denied: bool = False
     ongoing: bool = False
+    state: bool = False
     modality: str = "told"
     joint: str = ""
     beside: int | None = None

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 from acts.frames import Event, Ref
 
-from .people import Cast, reference
+from .people import Cast, reference, states_of
 from .vocabulary import vocabulary
 
 if TYPE_CHECKING:
@@ -57,6 +57,9 @@ class Arguments:
                 agent = next(
                     (self._argument(n, who, event) for n in child.children if n.dep_ == "pobj"), None
                 )
+                if agent is not None and agent.kind == "part":  # "is dragged off by the feet"
+                    event.prepositions.append((child.lower_, replace(agent, who=agent.who or who)))
+                    agent = None
             elif child.dep_ in ("prep", "dative") or (
                 child.dep_ == "prt" and any(c.dep_ == "pobj" for c in child.children)
             ):
@@ -84,9 +87,13 @@ class Arguments:
         event.object = ref
 
     def _argument(self, token: Token, who: str, event: Event) -> Ref:
+        person = self._words.is_person(token.lemma_.lower())
+        states = {phrase.i for phrase, _ in states_of(token)} if person else set()
         for child in token.children:
             if child.dep_ in ("compound", "amod"):
                 event.words.append(child.lemma_.lower())
+            if child.dep_ == "prep" and child.i in states:
+                continue
             if child.dep_ == "prep":  # "puts a hand on his shoulder": the place may hang on the noun
                 self._preposition(child, who, event)
             elif child.dep_ == "nummod" or child.lower_ in self._words.numbers:

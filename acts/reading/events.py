@@ -80,8 +80,25 @@ class Reader:
                 self._event(token)
             elif token.dep_ == "conj" and token.head.i in self._of:
                 self._gapped(token)
+        self._states()
         self._resolve()
         return self.events
+
+    def _states(self) -> None:
+        """Adds what phrases say that hang on the nouns of people: "the lady on the bench" sits."""
+        for i, (verb, who) in sorted(self.cast.states.items()):
+            phrase = self.doc[i]
+            clause = next((t for t in phrase.ancestors if t.i in self._of), None)
+            event = Event(
+                verb,
+                Ref("person", who),
+                first=phrase.idx,
+                last=phrase.idx + len(phrase),
+                ongoing=True,
+                state=True,
+            )
+            self._joints.append((event, phrase, "with", clause.i if clause is not None else None))
+            self.events.append(event)
 
     def _resolve(self) -> None:
         """Gives each event the number of the one beside which it lies."""

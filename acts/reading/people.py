@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING
 
@@ -44,6 +45,8 @@ class Cast:
         """The part or thing that was named last, which "it" means."""
         self.seen: dict[int, Ref] = {}
         """What the tokens mean that were looked at."""
+        self.states: dict[int, tuple[str, str]] = {}
+        """What somebody does by a phrase that hangs on their noun: (verb, who), by the phrase's preposition."""
         self.third: list[Token] = []
         """Mentions of a person who is neither of the two, or of more than two."""
 
@@ -242,9 +245,21 @@ def reference(token: Token, cast: Cast, subject: str) -> Ref:
         return replace(cast.thing, first=first, last=last)
     ref = _reference(token, cast, subject)
     cast.seen[token.i] = ref
+    if ref.kind == "person" and token.pos_ in ("NOUN", "PROPN"):
+        cast.states |= {phrase.i: (verb, ref.who) for phrase, verb in states_of(token)}
     if ref.kind in ("part", "thing") and token.pos_ in ("NOUN", "PROPN") and not ref.place:
         cast.thing = ref
     return ref
+
+
+def states_of(noun: Token) -> Iterator[tuple[Token, str]]:
+    """The phrases of place or posture that hang on a noun or on its adjective, with their verbs: "a man in a chair"."""
+    words = vocabulary()
+    within = [noun, *(c for c in noun.children if c.dep_ in ("amod", "acl", "appos") and c.pos_ == "ADJ")]
+    for phrase in (c for token in within for c in token.children if c.dep_ == "prep"):
+        for place in phrase.children:
+            if place.dep_ == "pobj" and (verb := words.state(phrase.lower_, place.lemma_.lower())):
+                yield phrase, verb
 
 
 def _reference(token: Token, cast: Cast, subject: str) -> Ref:

@@ -2,11 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import replace
 from functools import lru_cache
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 from acts.frames import Event, Frame, Match, Ref
 from acts.lexicon import Lexicon, lexicon
@@ -16,14 +15,12 @@ from motion import InputError
 
 from . import order
 from .events import Reader, spans
+from .language import other_language, unknown
 from .matching import Found, matcher
 from .spelling import Speller
-from .syntax import is_word, parse
+from .syntax import parse
 from .vocabulary import vocabulary
 from .wording import Text, prepared
-
-if TYPE_CHECKING:
-    from spacy.tokens import Doc
 
 MOST_CHARACTERS = 2000
 """Characters of a text that is read at once."""
@@ -59,7 +56,7 @@ def read(text: str, folders: tuple[Path, ...] = ()) -> Plan:
 def _read(text: str, known: Lexicon) -> Plan:
     if not text.strip():
         return Plan(sentence=text, notes=("Nothing is said: write what the two people do.",))
-    if (foreign := _other_language(text)) is not None:
+    if (foreign := other_language(text)) is not None:
         return Plan(
             sentence=text,
             unread=(Unread(words=Span(start=0, stop=len(text)), why=foreign),),
@@ -94,7 +91,7 @@ class _Planner:
         self._unread: list[Unread] = []
         self._of: dict[int, str] = {}
         self._taken: set[int] = set()
-        self._nonsense = list(_unknown(reader.doc, Speller(known).knows))
+        self._nonsense = list(unknown(reader.doc, Speller(known).knows))
         self._held_beside: dict[str, str] = {}
         self._answers: set[str] = set()
         """Acts that repeat the one before."""
@@ -194,19 +191,24 @@ class _Planner:
 
     def _seated(self, number: int, event: Event, found: Found) -> None:
         """Adds that somebody sits where a phrase beside the act says so: "reads in his armchair"."""
-        entry = self._known.entries[found[0]]
-        in_seat = any(p in ("in", "on") and ref.lemma in vocabulary().seats for p, ref in event.prepositions)
-        told = {agent for act in self._acts[:-1] for agent in act.agents}
-        if (
-            not in_seat
-            or told & set(found[2].agents)
-            or not {s.do for s in entry.stage} <= order.BESIDE | {"stay"}
-        ):
+        seat = next(
+            (r for p, r in event.prepositions if p in ("in", "on") and r.lemma in vocabulary().seats), None
+        )
+        if seat is None:
             return
-        sits = Event("sit", event.subject, first=event.first, last=event.last, ongoing=True)
-        seat = self._matcher.find(sits)
-        if seat is not None:
-            self._add(number, sits, *seat, beside=str(len(self._acts)))
+        shown = {shape.do for shape in self._known.entries[found[0]].stage}
+        who, other = event.subject, event.object
+        if found[2].patient and other is not None and other.kind == "person" and other.last <= seat.first:
+            who = other  # "pushes an old man in a wheelchair"
+        elif not shown <= order.BESIDE | {"stay"}:
+            return
+        told = {agent for act in self._acts[:-1] for agent in act.agents}
+        if who is None or told & set(who.who):
+            return
+        sits = Event("sit", who, first=event.first, last=event.last, ongoing=True)
+        sat = self._matcher.find(sits)
+        if sat is not None:
+            self._add(number, sits, *sat, beside=str(len(self._acts)))
             self._acts[-1] = self._acts[-1].model_copy(update={"already": True})
 
     def _beside(self, number: int, event: Event, found: Found) -> None:
@@ -318,6 +320,8 @@ class _Planner:
 
     def _goes_on(self, event: Event, agents: str) -> bool:
         """True for what somebody is doing when the text first speaks of them."""
+        if event.state:
+            return True
         told = {who for act in self._acts for who in act.agents}
         ongoing = event.ongoing or event.joint == "while"
         return ongoing and event.direction != "down" and not told & set(agents)
@@ -366,62 +370,3 @@ class _Planner:
                 kind = kind if kind in ("after", "with", "while", "before", "until") else "with"
                 found[act.id].append(Relation(kind=kind, act=other.id))  # type: ignore[arg-type]
         self._acts = [acts[act.id].model_copy(update={"order": tuple(found[act.id])}) for act in self._acts]
-
-
-def _unknown(doc: Doc, is_verb: Callable[[str], bool]) -> Iterator[tuple[int, int]]:
-    """Stretches of small letters that are no English words, as character offsets in what was parsed."""
-    first = last = -1
-    for token in doc:
-        small = token.text.islower() and token.text.isalpha() and len(token.text) > 3
-        if small and not is_word(token.text) and not is_verb(token.text):
-            first, last = (token.idx if first < 0 else first), token.idx + len(token.text)
-        elif first >= 0:
-            yield first, last
-            first = -1
-    if first >= 0:
-        yield first, last
-
-
-def _other_language(text: str) -> str | None:
-    """A sentence for a text that is not in English; None for one that is."""
-    letters = [c for c in text if c.isalpha()]
-    if not letters:
-        return "There are no words in this text: write in English what the two people do."
-    if sum(ord(c) < 0x250 for c in letters) < 0.6 * len(letters):
-        return "This is not in the Latin alphabet: write in English, or let a director's model read other languages."
-    words = [
-        word for word in "".join(c if c.isalpha() or c == "'" else " " for c in text).split() if len(word) > 1
-    ]
-    if len(words) >= 4 and not any(word.lower() in _ENGLISH for word in words):
-        unknown = sum(not is_word(word.lower()) for word in words)
-        if unknown >= 0.4 * len(words):
-            return "This does not seem to be English: write in English, or let a director's model read other languages."
-    return None
-
-
-_ENGLISH = frozenset(
-    [
-        "the",
-        "a",
-        "an",
-        "and",
-        "to",
-        "of",
-        "he",
-        "she",
-        "they",
-        "his",
-        "her",
-        "him",
-        "on",
-        "in",
-        "with",
-        "one",
-        "each",
-        "other",
-        "then",
-        "while",
-        "person",
-        "two",
-    ]
-)

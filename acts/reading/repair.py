@@ -133,11 +133,13 @@ def _coordinated(token: Token, ending: str, last: str) -> bool:
     """
     if token.pos_ not in ("NOUN", "PROPN") or ending != last or not token.i or not _ends_phrase(token):
         return False
+    if vocabulary().part(token.lemma_.lower()) and _is_absolute(token):
+        return False
     before = token.nbor(-1)
     if before.lower_ not in _JOINS or token.i < 2:
         return False
     earlier = token.nbor(-2)
-    if before.text == "," and ending == "":
+    if before.text == "," and ending == "" and not (token.dep_ == "conj" and token.head.pos_ == "VERB"):
         return False
     bare_noun = earlier.tag_ == "NN" and all(c.dep_ not in ("det", "poss") for c in earlier.children)
     if ending == "" and bare_noun:
@@ -145,6 +147,12 @@ def _coordinated(token: Token, ending: str, last: str) -> bool:
     following = _next(token)
     plural_list = earlier.tag_ == "NNS" and token.dep_ == "conj" and token.head == earlier
     return not plural_list or following is None or following.lower_ not in ("of", "for")
+
+
+def _is_absolute(token: Token) -> bool:
+    """True for "hands flying to his face" and "hand in hand", which stand beside a clause."""
+    following = _next(token)
+    return following is not None and (following.tag_ in ("VBG", "VBN") or following.lower_ == "in")
 
 
 def _opens(token: Token, ending: str) -> bool:

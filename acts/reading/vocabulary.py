@@ -20,6 +20,12 @@ class Vocabulary:
         self.shorthand: dict[str, str] = dict(tables["shorthand"])
         self.places = frozenset(tables["places"]["nouns"].split())
         self.seats = frozenset(tables["places"]["seats"].split())
+        self._states = {
+            (preposition, noun): verb.strip()
+            for verb, (prepositions, nouns) in tables["states"].items()
+            for preposition in prepositions.split()
+            for noun in nouns.split()
+        }
         self.both = frozenset(tables["groups"]["both"].split())
         self._parts = {
             word: family for family, text in tables["body"].items() for word in (family, *text.split())
@@ -62,6 +68,10 @@ class Vocabulary:
             if lemma in self._people[age]:
                 return age
         return ""
+
+    def state(self, preposition: str, lemma: str) -> str:
+        """The verb of what somebody does of whom this phrase says where they are; "" for other phrases."""
+        return self._states.get((preposition, lemma), "")
 
     def part(self, lemma: str) -> str:
         """The family of a part of the body; "" for other nouns."""

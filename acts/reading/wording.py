@@ -79,6 +79,12 @@ _PHRASES = {
     ("beside", "each", "other"): "together", ("beside", "one", "another"): "together",
 }  # fmt: skip
 """What the parser takes apart, and one word for it."""
+_TOWARDS = frozenset(("at", "to", "with", "by", "from", "behind", "past", "towards", "toward", "around"))
+"""Prepositions of people, after which a noun without an article lacks one."""
+_INTENSIFIED = frozenset(
+    ("up", "past", "round", "around", "behind", "through", "into", "across", "by", "over")
+)
+"""Words before which "right" is no direction."""
 _BEHIND_BACK = frozenset(("on", "to", "turned", "towards", "toward"))
 """Words behind "her back" after which it is a part of the body."""
 _NUMBERED = {"a": True, "1": True, "one": True, "b": False, "2": False, "two": False}
@@ -195,6 +201,8 @@ class _Preparation:
             and (owner or _ends_name(self._tokens, i + 2, self._tokens[i + 1][0]))
         ):
             word = (A_NAME if _NUMBERED[letter] else B_NAME) + owner
+        elif lower == "right" and following in _INTENSIFIED and not self._lower(i - 1).startswith("turn"):
+            word = "around" if following == "round" else following  # "walks right past him"
         elif (
             following.isalpha()
             and lower not in self._words.numbers
@@ -223,13 +231,23 @@ class _Preparation:
             and not word.endswith("s")
             and word not in ("one", "person")
         )
-        if not bare or not self._words.is_usual_person(word) or self._lower(i + 1) == "'":
+        if not bare or not self._is_bare_person(i) or self._lower(i + 1) == "'":
             return []
         if (
             self._lower(i - 2) in _DETERMINERS and self._lower(i - 1) not in _DETERMINERS
         ):  # "an unconscious man"
             return []
         return [("the", start, start)] if _begins(self._lower(i - 1)) else []
+
+    def _is_bare_person(self, i: int) -> bool:
+        """True for a usual noun of a person, and for a rarer one before its verb or behind a preposition."""
+        word, following = self._lower(i), self._lower(i + 1)
+        if self._words.is_usual_person(word):
+            return True
+        if not self._words.is_person(word) or self._is_verb(word):
+            return False
+        acts = following.endswith("s") and self._is_verb(following)
+        return acts or self._lower(i - 1) in _TOWARDS
 
     def _worded(self, i: int, word: str) -> str:
         lower, following = word.lower(), self._lower(i + 1)
@@ -245,6 +263,8 @@ class _Preparation:
             return f"{lower}wards"  # "turn left": no past of "leave"
         if word.isalpha() and len(word) > 3 and (right := self._mended(lower)) is not None:
             return right
+        if lower == "round" and self._is_verb(self._lower(i - 1)) and following in _DETERMINERS:
+            return "around"  # the parser takes it for a verb
         if lower == "goodbye" and self._lower(i - 1).startswith(("hug", "kiss", "embrac")):
             return "fondly"  # the parser takes the two for a compound
         joined = lower.replace("-", "")
@@ -275,10 +295,7 @@ def _begins(before: str) -> bool:
     return (
         before not in _DETERMINERS
         and not words.is_person(before)
-        and (
-            before.endswith(("s", "ing", "ed"))
-            or before in ("to", "with", "at", "by", "from", "while", "then", "and")
-        )
+        and (before.endswith(("s", "ing", "ed")) or before in _TOWARDS | {"while", "then", "and"})
     )
 
 

@@ -144,6 +144,8 @@ def beats_of(plan: Plan, known: Lexicon | None = None) -> tuple[Beat, ...]:
 
 def _own_sentences(plan: Plan, found: Sequence[Sequence[Act]]) -> dict[int, str]:
     """The whole sentences of the text that tell a beat's acts and no other's, by the number of the beat."""
+    if any(act.words is None for act in plan.acts):  # of a director's plan, whose text may be in any language
+        return {}
     told: list[tuple[str, set[int]]] = []
     start = 0
     for part in _ENDS.split(plan.sentence):
