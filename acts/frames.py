@@ -312,8 +312,8 @@ def _found(
         if event.object is not None and "object" not in taken and _is_noun(element, event.object, agents):
             taken.add("object")
             return True
-        for i, (_, ref) in enumerate(event.prepositions):  # "from behind"
-            if ref.lemma in element.words and ref.kind == "thing":
+        for i, (preposition, ref) in enumerate(event.prepositions):  # "from behind", but not "like a top"
+            if ref.lemma in element.words and ref.kind == "thing" and preposition != "like":
                 used.append(i)
                 return True
         return None

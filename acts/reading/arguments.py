@@ -21,6 +21,14 @@ _MODIFIERS = frozenset(
 )
 
 
+def is_kept(token: Token) -> bool:
+    """True for the participle of "keeps her back turned", which says how something of one's own is held."""
+    keeps = (
+        token.tag_ in ("VBN", "VBD") and token.dep_ == "dep" and token.head.lemma_ in ("keep", "have", "hold")
+    )
+    return keeps and token.i > 0 and token.nbor(-1).dep_ == "dobj" and token.nbor(-1).head == token.head
+
+
 class Arguments:
     """Fills an event with what hangs on its verb.
 
@@ -70,6 +78,8 @@ class Arguments:
                         event.object = self._argument(noun, who, event)
                 event.words.append(child.lower_)
                 event.particles.append(child.lower_)
+            elif is_kept(child):
+                event.words.append(child.lower_)
             elif child.dep_ in _MODIFIERS or (
                 child.dep_ in ("xcomp", "ccomp", "advcl") and child.pos_ == "ADJ"
             ):

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 from acts.frames import Event, Ref
 
-from .arguments import Arguments
+from .arguments import Arguments, is_kept
 from .people import Cast, reference
 from .syntax import is_ongoing
 from .vocabulary import vocabulary
@@ -133,6 +133,8 @@ class Reader:
             )
         if token.dep_ != "ROOT" and any(c.lower_ == "where" and c.dep_ == "advmod" for c in token.children):
             return False  # "to where she came from" is a place
+        if is_kept(token):
+            return False
         if token.pos_ in ("VERB", "AUX") and token.dep_ not in ("aux", "auxpass", "compound", "punct"):
             return True
         if token.dep_ == "pobj" and token.pos_ == "NOUN" and token.head.lower_ in _NOUN_MARKS:
@@ -269,6 +271,9 @@ class Reader:
                     return Ref("person", "ab", child.lower_, first=ref.first, last=ref.last)
                 if child.lower_ in ("both", "each", "all") and ref.kind != "person":
                     return Ref("person", "ab", child.lower_, first=ref.first, last=ref.last)
+                return ref
+            named = child.dep_ == "compound" and child.tag_ == "NNP" and token.pos_ == "VERB"
+            if named and (ref := reference(child, self.cast, "")).kind == "person":  # "while Beth crouches"
                 return ref
             if child.dep_ == "poss" and token.dep_ == "ccomp" and head is not None:  # "helps her walk"
                 helper = self._subjects.get(head.i)

@@ -35,6 +35,12 @@ _HELD = frozenset(("crossed", "folded", "cross", "fold", "outstretched", "raised
 """Participles of postures of the arms, and the parser's lemmas of them."""
 
 
+def _is_next_to(event: Event) -> bool:
+    """True for what is done beside the other: "lies down next to her"."""
+    near = (p for p, ref in event.prepositions if ref.kind == "person")
+    return any(p in ("beside", "alongside") or (p == "to" and "next" in event.words) for p in near)
+
+
 def read(text: str, folders: tuple[Path, ...] = ()) -> Plan:
     """The plan of an English text.
 
@@ -217,9 +223,12 @@ class _Planner:
         phrases = [
             span for span in self._prepared.phrases("together") if start <= span[0] and span[1] <= stop
         ]
-        if not phrases or any(shape.do in ("go", "place") for shape in self._known.entries[found[0]].stage):
+        shown = {shape.do for shape in self._known.entries[found[0]].stage}
+        next_to = found[2].patient and "posture" in shown and _is_next_to(event)
+        if not (phrases or next_to) or shown & {"go", "place"}:
             return
-        beside = Event("form", event.subject, first=event.first, last=event.last, object=_LINE)
+        who = Ref("person", "ab") if next_to else event.subject
+        beside = Event("form", who, first=event.first, last=event.last, object=_LINE)
         line = self._matcher.find(beside)
         if line is not None:
             self._add(number, beside, *line, beside=str(len(self._acts)))

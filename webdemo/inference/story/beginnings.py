@@ -19,6 +19,8 @@ KICK = 1.0
 """Metres between two people one of whom kicks the other."""
 BACKS = 0.5
 """Metres between the pelvises of two people who stand or sit back to back."""
+RUN_UP = 2.5
+"""Metres that somebody runs who jumps on the other's back."""
 _SEATS = {Posture.SITS: seated, Posture.GROUND: grounded}
 
 
@@ -53,13 +55,23 @@ def standing(setting: Setting) -> Standing | None:
         return Standing(np.array([[0.0, 0.0], [0.0, -apart]]), np.array([0.0, math.pi]))
     if setting.beside:
         return Standing(np.array([[0.0, 0.0], [-ABREAST, 0.0]]), np.zeros(2))
-    if setting.lift is not None and not setting.lift.comes:
-        return _carried(setting.lift)
+    lifted = setting.lift
+    if lifted is not None and lifted.carry is Carry.BACK and lifted.comes not in ("", lifted.carrier):
+        return _from_behind(lifted)
+    if lifted is not None and not lifted.comes:
+        return _carried(lifted)
     struck = setting.strike
     if setting.twirls or (struck and struck.answered) or setting.apart:
         apart = TWIRL if setting.twirls else Bout.FISTS.value if struck else setting.apart
         return Standing(np.array([[0.0, 0.0], [0.0, apart]]), np.array([0.0, math.pi]))
     return None
+
+
+def _from_behind(lifted: Lift) -> Standing:
+    """A place behind the other for who runs up and jumps on their back."""
+    places = np.zeros((2, 2))
+    places["ab".index(lifted.carrier) - 1, 1] = -RUN_UP
+    return Standing(places, np.zeros(2))
 
 
 def _carried(lifted: Lift) -> Standing:

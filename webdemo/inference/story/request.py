@@ -6,6 +6,7 @@ import hashlib
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import asdict, dataclass, field, fields, replace
 from functools import cached_property
+from itertools import pairwise
 from typing import Any
 
 import numpy as np
@@ -18,9 +19,11 @@ from webdemo.inference.predict_request import check_motion
 from webdemo.inference.requests import GenerateRequest, SamplingRequest, _number
 
 from .beats import MOST_BEATS, SHORTEST, Beat, acts_of
+from .contacts import Region
 from .postures import Posture
 from .scripting import beats_of, told_by, understood
 from .told import Told, at_start
+from .ways import Way
 from .wishes import MOST_POSES, FloorPath, FloorPoint, Pose, check_together
 
 MOST_SECONDS = 180.0
@@ -204,6 +207,7 @@ class SceneRequest(SamplingRequest):
         """The stage of each beat."""
         story = [told_by(beat) for beat in self.beats]
         _told_before(story)
+        _touched_from_behind(story)
         for i in range(len(story)):  # who is down does not stand by
             down = {who for who, held in at_start(story, i).items() if held is not Posture.STANDS}
             if story[i].idle & down:
@@ -334,6 +338,17 @@ def _told_before(story: list[Told]) -> None:
         changes = {who: listed[1:] if who in again else listed for who, listed in told.changes.items()}
         story[i] = replace(told, changes=changes) if again else told
         known |= set(told.changes) | told.going
+
+
+def _touched_from_behind(story: list[Told]) -> None:
+    """Puts somebody behind the other whom they touch, where that one turns to them in the next beat."""
+    for i, (told, then) in enumerate(pairwise(story)):
+        touch = told.contact
+        turned = {move.person for move in then.moves if move.way is Way.FACE}
+        if touch is None or touch.region not in (Region.SHOULDER, Region.BACK) or touch.person in turned:
+            continue
+        if turned and not told.changes and all(move.way is Way.STAY for move in told.moves):
+            story[i] = replace(told, contact=replace(touch, behind=True))
 
 
 def beat_of(values: Mapping[str, Any]) -> Beat:

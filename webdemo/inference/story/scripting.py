@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 
 from acts import Act, Plan, read
 from acts.captions import sentence
@@ -171,7 +171,19 @@ def _goes_on(before: Sequence[Sequence[Act]], group: Sequence[Act]) -> bool:
     """True if before a group only others do something, which goes on while it happens: "A sits until B taps him"."""
     earlier = [act for acts in before for act in acts]
     busy = {who for act in group if act.happens for who in act.agents}
-    return all(act.already and not busy & set(act.agents) for act in earlier)
+    if any(relation.kind == "until" for act in before[-1] for relation in act.order):
+        return all(
+            not busy & set(act.agents) for act in before[-1]
+        )  # "covers his eyes until she has run off"
+    return all((act.already and not busy & set(act.agents)) or _stands_by(act) for act in earlier)
+
+
+def _stands_by(act: Act) -> bool:
+    """True for an act that only says where somebody is: "stands behind him and cuts his hair"."""
+    entry = lexicon().entries.get(act.act)
+    return (
+        entry is not None and bool(entry.stage) and {shape.do for shape in entry.stage} <= {"stay", "place"}
+    )
 
 
 def _same_beat(before: Sequence[Act], group: Sequence[Act], known: Lexicon, text: str) -> bool:
@@ -202,17 +214,27 @@ def _belongs(act: Act, entry: Entry, later: Act, after: Entry, text: str) -> boo
     same = later.agents == act.agents
     if "lift" in does and getattr(then.get("hold"), "hold", "") == "twirl":
         return True  # "picks her up and spins her around"
-    if "lift" in does and "lift" in then:
-        return same
+    if ("lift" in does and "lift" in then) or _posture(does) == _posture(then) != "":
+        return same  # "drops to one knee and proposes"
     if not same:
         down = "posture" in does and not act.already
-        helped = "touch" in then or getattr(then.get("posture"), "who", "") == "patient"
+        helped = "touch" in then or _is_caught(then.get("posture"))
         return down and helped and later.patient in act.agents  # "she faints and he catches her"
     if "turn" in does:
         return next_way == "away" or after.mutual or "touch" in then
     pulled = getattr(then.get("go"), "linked", False) or (not then and later.patient is not None)
     led = bool(does.keys() & {"link", "touch"}) and pulled
     return led or (way == "away" and next_way == "away")
+
+
+def _posture(stage: Mapping[str, object]) -> str:
+    """The posture that a stage ends in; "" for none."""
+    return getattr(stage.get("posture"), "posture", "")
+
+
+def _is_caught(posture: object) -> bool:
+    """True for a posture that the other brings about at once: who is helped up was down for a moment."""
+    return getattr(posture, "who", "") == "patient" and getattr(posture, "posture", "") != "stands"
 
 
 def _in_one_sentence(act: Act, later: Act, text: str) -> bool:

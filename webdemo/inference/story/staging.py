@@ -326,7 +326,7 @@ class _Stage:
             denied = any(who in act.agents and not act.happens and not self._stays(act) for act in self.acts)
             waits = bool(own) and all(_only_stays(e) for _, e in own)
             touched = any(_reaches(act, e) for act, e in theirs)
-            if touched or (own and not waits):
+            if touched or (own and not waits) or who in self.gestures:
                 continue
             if waits or denied or any(not _goes(e) for _, e in theirs):
                 found.add(who)
