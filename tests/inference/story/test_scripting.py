@@ -5,8 +5,10 @@ from __future__ import annotations
 import pytest
 
 from acts import read
+from webdemo.inference.story.request import SceneRequest
 from webdemo.inference.story.scripting import beats_of
 from webdemo.inference.story.staging import staged
+from webdemo.inference.story.ways import Way
 
 BEATS = [
     ("walks away and waves back over the shoulder", ["walk-away wave"]),
@@ -21,6 +23,10 @@ BEATS = [
     ("They walk up to each other, shake hands and part again.", ["walk-up shake-hands", "part"]),
     ("He picks her up and spins her around. They bow.", ["lift-up twirl", "bow"]),
     ("A sits on the chair until B taps A, then A gets up.", ["sit-down pat", "stand-up"]),
+    ("He covers his eyes until she has run off.", ["cover-face run-away"]),
+    ("He drops to one knee and proposes, and she nods.", ["kneel propose", "nod"]),
+    ("A pushes B over, B falls down, then A helps B up.", ["push-over fall-down", "help-up"]),
+    ("A sits on a chair while B stands behind and cuts A's hair.", ["sit-down stand-still groom"]),
 ]
 
 
@@ -57,3 +63,31 @@ def test_a_lifted_person_is_turned_round_with_the_carrier() -> None:
 def test_who_kneels_to_tie_a_shoe_kneels() -> None:
     told = staged(read("A kneels down to tie his shoe while B waits.").acts)
     assert set(told.changes) == {"a"} and not told.limbs
+
+
+def test_who_keeps_their_back_turned_stands_so() -> None:
+    told = staged(read("She keeps her back turned to him while he is talking to her.").acts)
+    assert [(move.person, move.way) for move in told.moves] == [("a", Way.AVERTED), ("b", Way.STAY)]
+
+
+def test_a_simile_is_nothing_that_is_used() -> None:
+    acts = read("Dancer 1 spins like a top while dancer 2 crouches low.").acts
+    assert [(act.act, act.agents) for act in acts] == [("spin", ("a",)), ("crouch", ("b",))]
+
+
+def test_who_lies_down_beside_the_other_begins_there() -> None:
+    told = staged(read("He stretches out on the grass beside her.").acts)
+    assert told.keeps_place and set(told.changes) == {"a"}
+
+
+def test_who_turns_round_at_a_tap_was_tapped_from_behind() -> None:
+    beats = beats_of(read("She taps him on the shoulder, he turns around, and she gives him a letter."))
+    first, second, _ = SceneRequest(beats=beats).told
+    assert first.contact is not None and first.contact.behind
+    assert ("b", Way.FACE) in [(move.person, move.way) for move in second.moves]
+    assert not (alone := SceneRequest(beats=beats[:1]).told[0].contact) or not alone.behind
+
+
+def test_who_jumps_on_the_others_back_runs_up_from_behind() -> None:
+    placed = staged(read("A runs up and jumps onto B's back.").acts).placed
+    assert placed is not None and placed.places[0, 1] < placed.places[1, 1] - 1.0

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Callable, Iterator, Mapping, Sequence
+from typing import Any
 
 from acts import Act, Plan, read
 from acts.captions import sentence
@@ -227,7 +228,7 @@ def _belongs(act: Act, entry: Entry, later: Act, after: Entry, text: str) -> boo
     return led or (way == "away" and next_way == "away")
 
 
-def _posture(stage: Mapping[str, object]) -> str:
+def _posture(stage: Mapping[Any, object]) -> str:
     """The posture that a stage ends in; "" for none."""
     return getattr(stage.get("posture"), "posture", "")
 

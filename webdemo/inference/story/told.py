@@ -1,7 +1,6 @@
 """A beat in the terms of the stage: the one form between words or acts and what is given.
 
-The pipelines read no words. They take a :class:`Told`, which comes from the acts of a plan (:mod:`.staging`) or, where
-those are not all known, from a sentence (:mod:`.telling`).
+The pipelines read no words. They take a :class:`Told`, which comes from the acts of a plan (:mod:`.staging`).
 """
 
 from __future__ import annotations
