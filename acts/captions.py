@@ -82,6 +82,13 @@ def worded(act: Act, caption: str) -> str:
     return text
 
 
+def caption_of(act: Act, entry: Entry) -> str:
+    """The caption that fits an act: its entry's first, or the first without the other where one person acts alone."""
+    alone = len(act.agents) == 1 and act.patient is None and entry.to != "other" and not entry.mutual
+    fitting = (caption for caption in entry.caption if "{b}" not in caption and not caption.startswith("{a+b}"))
+    return next(fitting, entry.caption[0]) if alone else entry.caption[0]
+
+
 def beats(plan: Plan, known: Lexicon) -> list[str]:
     """A sentence for each beat of a plan: what is done at the same time stands in one.
 
@@ -103,7 +110,7 @@ def _sentence(group: Sequence[Act], known: Lexicon) -> str:
     done = [act for act in group if act.happens and act.act in known.entries]
     parts: list[tuple[str, str]] = []
     for act in done:
-        parts.append(("".join(act.agents), worded(act, known.entries[act.act].caption[0])))
+        parts.append(("".join(act.agents), worded(act, caption_of(act, known.entries[act.act]))))
     busy: set[str] = {who for act in done for who in act.agents}
     for act in group:
         idle = "".join(who for who in act.agents if who not in busy)
@@ -145,7 +152,7 @@ def of_each(acts: Sequence[Act], known: Lexicon) -> tuple[str, str]:
     for act in done:
         who = act.agents[0]
         own, other = _NAMES[who], _NAMES["b" if who == "a" else "a"]
-        words = worded(act, known.entries[act.act].caption[0]).removeprefix(f"{own} ")
+        words = worded(act, caption_of(act, known.entries[act.act])).removeprefix(f"{own} ")
         words = words.replace(f"{own}'s", "their").replace(own, "them").replace(other, "the other person")
         found[who].append(words)
     a, b = (f"One person {' and '.join(words)}." if words else "" for words in (found["a"], found["b"]))

@@ -320,7 +320,7 @@ def _beats(request: GenerateRequest, go_on: Callable[[], None]) -> tuple[Beat, .
     if script is None:
         return (Beat(request.prompt),)
     words = request.prompt if request.acts is None else ""
-    beats = beats_of(script)
+    beats = beats_of(script, own_words=request.acts is None)
     if not beats or len(beats) > most:
         return (Beat(words, acts=script.acts),)
     return (replace(beats[0], words=words),) if len(beats) == 1 and words else beats

@@ -27,6 +27,7 @@ _AT_ONCE = 1200
 """Characters of sentences that are read together, so that "he" stays who he is."""
 _MOST_SENTENCES = 30
 """Sentences that are read together, at most: a plan holds sixty acts."""
+_THEN = frozenset(("then", "next", "afterwards", "finally"))
 _ENDS = re.compile(r"(?<=[.!?;])\s+")
 
 
@@ -119,12 +120,13 @@ def understood(text: str) -> Plan | None:
     return plan if plan.acts else None
 
 
-def beats_of(plan: Plan, known: Lexicon | None = None) -> tuple[Beat, ...]:
+def beats_of(plan: Plan, known: Lexicon | None = None, *, own_words: bool = True) -> tuple[Beat, ...]:
     """The beats of a plan; an answer, such as a fall after a punch, shares the beat of what it answers.
 
     Args:
         plan: with or without a text.
         known: the lexicon; ours by default.
+        own_words: a beat keeps the sentences of the text that tell it; otherwise its words are its acts' captions.
     """
     known = known or lexicon()
     found: list[list[list[Act]]] = []
@@ -135,7 +137,8 @@ def beats_of(plan: Plan, known: Lexicon | None = None) -> tuple[Beat, ...]:
             found.append([group])
     if len(found) > 1 and not any(act.happens for group in found[0] for act in group):
         found[:2] = [found[0] + found[1]]
-    own = _own_sentences(plan, [[act for group in groups for act in group] for groups in found])
+    acts = [[act for group in groups for act in group] for groups in found]
+    own = _own_sentences(plan, acts) if own_words else {}
     return tuple(
         Beat(own.get(i, words), acts=tuple(act for group in groups for act in group))
         for i, groups in enumerate(found)
@@ -164,8 +167,17 @@ def _own_sentences(plan: Plan, found: Sequence[Sequence[Act]]) -> dict[int, str]
     for part, within in told:
         if len(within) == 1 and not within & shared:
             (i,) = within
+            part = _without_then(part)
             own[i] = f"{own[i]} {part}" if i in own else part
     return {i: words for i, words in own.items() if len(words) <= MAX_PROMPT}
+
+
+def _without_then(part: str) -> str:
+    """A sentence without a "then" at its beginning, which says nothing in a beat of its own."""
+    first, _, rest = part.partition(" ")
+    if first.lower().rstrip(",") not in _THEN or not rest:
+        return part
+    return rest[:1].upper() + rest[1:]
 
 
 def _goes_on(before: Sequence[Sequence[Act]], group: Sequence[Act]) -> bool:

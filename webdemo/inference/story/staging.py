@@ -241,7 +241,10 @@ class _Stage:
         hands = act.side if act.side and shape.hands in ("left", "right") else shape.hands
         sides = {"both": SIDES, "none": ()}.get(hands, (hands,))
         times = min(act.times or shape.times, 5) if shape.times else 0
-        late = any(self.level[act.id] > self.level[other.id] for other, _ in self.done)
+        late = any(
+            self.level[act.id] > self.level[other.id] and not (other.already or _only_stays(entry))
+            for other, entry in self.done
+        )
         behind = shape.behind or giver in self.behind
         self.contact = Contact(giver, region, sides, times, late, behind, shape.fells)
         if shape.fells:
