@@ -85,8 +85,8 @@ def worded(act: Act, caption: str) -> str:
 def caption_of(act: Act, entry: Entry) -> str:
     """The caption that fits an act: its entry's first, or the first without the other where one person acts alone."""
     alone = len(act.agents) == 1 and act.patient is None and entry.to != "other" and not entry.mutual
-    fitting = (caption for caption in entry.caption if "{b}" not in caption and not caption.startswith("{a+b}"))
-    return next(fitting, entry.caption[0]) if alone else entry.caption[0]
+    own = (text for text in entry.caption if "{b}" not in text and not text.startswith("{a+b}"))
+    return next(own, entry.caption[0]) if alone else entry.caption[0]
 
 
 def beats(plan: Plan, known: Lexicon) -> list[str]:
