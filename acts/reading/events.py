@@ -284,9 +284,9 @@ class Reader:
                 "each",
             ):  # "the music starts, both freeze"
                 return Ref("person", "ab", child.lower_, first=child.idx, last=child.idx + len(child.text))
-        named = token.nbor(-1) if token.i and token.tag_ == "VBZ" else None
-        if named is not None and named.dep_ == "conj" and named.tag_ == "NNP":
-            return reference(named, self.cast, "")  # "he runs to Beth and Beth lifts him"
+        before = token.nbor(-1) if token.i and token.tag_ == "VBZ" else None
+        if before is not None and before.dep_ == "conj" and before.tag_ == "NNP":
+            return reference(before, self.cast, "")  # "he runs to Beth and Beth lifts him"
         if token.dep_ in ("relcl", "acl") or token.dep_ == "amod":
             return self._antecedent(token)
         if head is not None:
