@@ -272,9 +272,6 @@ class Reader:
                 if child.lower_ in ("both", "each", "all") and ref.kind != "person":
                     return Ref("person", "ab", child.lower_, first=ref.first, last=ref.last)
                 return ref
-            named = child.dep_ == "compound" and child.tag_ == "NNP" and token.pos_ == "VERB"
-            if named and (ref := reference(child, self.cast, "")).kind == "person":  # "while Beth crouches"
-                return ref
             if child.dep_ == "poss" and token.dep_ == "ccomp" and head is not None:  # "helps her walk"
                 helper = self._subjects.get(head.i)
                 return reference(child, self.cast, helper.who if helper is not None else "")
@@ -284,9 +281,8 @@ class Reader:
                 "each",
             ):  # "the music starts, both freeze"
                 return Ref("person", "ab", child.lower_, first=child.idx, last=child.idx + len(child.text))
-        before = token.nbor(-1) if token.i and token.tag_ == "VBZ" else None
-        if before is not None and before.dep_ == "conj" and before.tag_ == "NNP":
-            return reference(before, self.cast, "")  # "he runs to Beth and Beth lifts him"
+        if (named := self._named_before(token)) is not None:
+            return named
         if token.dep_ in ("relcl", "acl") or token.dep_ == "amod":
             return self._antecedent(token)
         if head is not None:
@@ -318,6 +314,17 @@ class Reader:
                 self.cast.address("a")
             return Ref("person", "a" if alone else "ab", "", first=token.idx, last=token.idx)
         return None
+
+    def _named_before(self, token: Token) -> Ref | None:
+        """The person named right before a verb whom the parser took for a part of it, or for another's object.
+
+        As in "while Beth crouches" and "he runs to Beth and Beth lifts him".
+        """
+        before = token.nbor(-1) if token.i and token.tag_ == "VBZ" else None
+        if before is None or before.tag_ != "NNP" or before.dep_ not in ("conj", "compound"):
+            return None
+        ref = reference(before, self.cast, "")
+        return ref if ref.kind == "person" else None
 
     def _antecedent(self, token: Token) -> Ref | None:
         noun = token.head
