@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Mapping
 from typing import TYPE_CHECKING
 
 from acts.frames import Event, Ref
 
 from .arguments import Arguments, is_kept
+from .clauses import MARKS, is_finite, may_be_main
 from .people import Cast, reference
 from .syntax import is_ongoing
 from .vocabulary import vocabulary
@@ -32,15 +33,9 @@ _CLAUSES = frozenset(
         "prep",
     )
 )
-_MARKS = {
-    "while": "while", "as": "while", "whereas": "while", "whilst": "while", "by": "while", "with": "while",
-    "when": "main-after", "after": "main-after", "once": "main-after", "upon": "main-after", "until": "main-until",
-    "till": "main-until", "before": "after", "because": "with", "so": "after", "without": "while", "instead": "with",
-}  # fmt: skip
-"""How a clause with this word lies beside its main clause; "main-after" puts the main clause behind it."""
 _LEAVES = frozenset(("leave", "find"))
 """Verbs whose object does what follows, beside those that cause or see it."""
-_NOUN_MARKS = {"after": "main-after", "following": "main-after", "upon": "main-after", "before": "after"}
+_NOUNMARKS = {"after": "main-after", "following": "main-after", "upon": "main-after", "before": "after"}
 """Prepositions behind which a noun stands for an act of its own."""
 _THEN = frozenset(
     ("then", "afterwards", "afterward", "finally", "next", "later", "subsequently", "eventually", "lastly")
@@ -137,7 +132,7 @@ class Reader:
             return False
         if token.pos_ in ("VERB", "AUX") and token.dep_ not in ("aux", "auxpass", "compound", "punct"):
             return True
-        if token.dep_ == "pobj" and token.pos_ == "NOUN" and token.head.lower_ in _NOUN_MARKS:
+        if token.dep_ == "pobj" and token.pos_ == "NOUN" and token.head.lower_ in _NOUNMARKS:
             known = self.lemma(token) in self._verbs and token.tag_ == "NN"  # "after a quick hug"
             return (
                 known
@@ -217,7 +212,7 @@ class Reader:
             clauses = (head for head in token.ancestors if self._is_clause(head))
             first = next(clauses, None)
             if first is not None and token.dep_ == "conj" and token.tag_ in ("VBZ", "VBD"):
-                finite = (h for h in (first, *clauses) if _is_finite(h))
+                finite = (h for h in (first, *clauses) if is_finite(h))
                 first = self._nearer(token, next(finite, first))
             self._heads[token.i] = first
         return self._heads[token.i]
@@ -233,9 +228,7 @@ class Reader:
         """True for a clause that stands by itself in the order of the text."""
         passed: list[int] = []
         above: Token | None = token
-        while (
-            above is not None and above.i not in self._main and above.dep_ != "ROOT" and _may_be_main(above)
-        ):
+        while above is not None and above.i not in self._main and above.dep_ != "ROOT" and may_be_main(above):
             passed.append(above.i)
             above = self._head(above) if above.dep_ in ("conj", "parataxis") else above.head
         main = above is not None and self._main.get(above.i, above.dep_ == "ROOT")
@@ -421,13 +414,13 @@ class Reader:
         if above is None:
             return "after", None
         if token.dep_ == "pobj":
-            return _NOUN_MARKS.get(token.head.lower_, "with"), above.i
+            return _NOUNMARKS.get(token.head.lower_, "with"), above.i
         if token.dep_ == "pcomp":
-            return _MARKS.get(token.head.lower_, "with"), above.i
+            return MARKS.get(token.head.lower_, "with"), above.i
         if token.dep_ == "advcl":
             for mark in marks:
-                if mark in _MARKS:
-                    return _MARKS[mark], above.i
+                if mark in MARKS:
+                    return MARKS[mark], above.i
             return "while", above.i
         if token.dep_ == "amod":
             return "while", above.i
@@ -443,40 +436,6 @@ class Reader:
         return any(self.doc[i].lower_ in _THEN for i in range(before, token.i))
 
 
-def _is_finite(token: Token) -> bool:
-    return token.tag_ not in ("VBG", "VBN") and token.dep_ not in ("xcomp", "pcomp")
-
-
-def _may_be_main(token: Token) -> bool:
-    """True for a clause that is a main one if the one above it is."""
-    if token.dep_ == "ccomp":  # of two clauses with nothing but a comma between them, the first
-        return token.i < token.head.i and any(c.dep_ in ("nsubj", "nsubjpass") for c in token.children)
-    if token.dep_ == "advcl":
-        marks = any(c.dep_ in ("mark", "aux") or c.lower_ in _MARKS for c in token.children)
-        return not marks and token.tag_ in ("VB", "VBP", "VBZ")
-    return token.dep_ in ("conj", "parataxis")
-
-
 def _other_person(ref: Ref) -> Ref | None:
     other = {"a": "b", "b": "a"}.get(ref.who)
     return Ref("person", other) if ref.kind == "person" and other else None
-
-
-def spans(doc: Doc, events: Sequence[Event]) -> Iterator[tuple[int, int]]:
-    """The characters of each event's clause: its verb and what hangs on it, without other events' clauses."""
-    heads = {event.first: event for event in events}
-    for event in events:
-        token = next(t for t in doc if t.idx == event.first)
-        own = [token]
-        waiting = [token]
-        while waiting:
-            for child in waiting.pop().children:
-                if (child.idx in heads and heads[child.idx] is not event) or child.dep_ in (
-                    "punct",
-                    "cc",
-                    "mark",
-                ):
-                    continue
-                own.append(child)
-                waiting.append(child)
-        yield min(t.idx for t in own), max(t.idx + len(t.text) for t in own)

@@ -1,4 +1,4 @@
-"""What is no English: texts in other languages, and words that are none."""
+"""Language: texts that are not in English, and words that are none."""
 
 from __future__ import annotations
 

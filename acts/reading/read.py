@@ -14,7 +14,8 @@ from acts.shapes import Go
 from motion import InputError
 
 from . import order
-from .events import Reader, spans
+from .clauses import spans
+from .events import Reader
 from .language import other_language, unknown
 from .matching import Found, matcher
 from .spelling import Speller
