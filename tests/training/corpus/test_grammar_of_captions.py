@@ -38,15 +38,15 @@ def told(number: int, seed: int, split: str = "train") -> list[Told]:
 
 @cache
 def verbs() -> frozenset[str]:
-    """Base forms of the verbs of all phrases in the stories, without those that are like nouns in other forms."""
+    """Base forms of the verbs of all phrases in the stories, without "back", which is an adverb as well ("pushes him back")."""
     names = {
         name for pairs in stories() for pair in pairs for cue in pair for g in steps(cue) for name, *_ in g
     }
     found = {verb for name in names for text in phrases(name) for verb in re.findall(r"\[([a-z-]+)\]", text)}
-    return frozenset(found)
+    return frozenset(found) - {"back"}
 
 
-@settings(max_examples=60, deadline=None)
+@settings(max_examples=60, deadline=None, derandomize=True)
 @given(st.integers(0, 10_000), st.integers(0, 10_000))
 def test_captions_are_sentences(number: int, seed: int) -> None:
     bases, thirds = verbs(), {singular(verb) for verb in verbs()}
@@ -64,7 +64,7 @@ def test_captions_are_sentences(number: int, seed: int) -> None:
         assert not re.search(r"\b(he|she|they) (him|her|them)\b", low), text
 
 
-@settings(max_examples=40, deadline=None)
+@settings(max_examples=40, deadline=None, derandomize=True)
 @given(st.integers(0, 10_000), st.integers(0, 10_000))
 def test_in_the_plan_of_a_caption_a_is_the_person_named_first(number: int, seed: int) -> None:
     for one in told(number, seed):
