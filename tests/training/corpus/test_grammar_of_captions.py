@@ -38,7 +38,7 @@ def told(number: int, seed: int, split: str = "train") -> list[Told]:
 
 @cache
 def verbs() -> frozenset[str]:
-    """Base forms of the verbs of all phrases in the stories, without "back", which is an adverb as well ("pushes him back")."""
+    """Base forms of the verbs of all phrases in the stories; "back" is an adverb as well ("pushes him back")."""
     names = {
         name for pairs in stories() for pair in pairs for cue in pair for g in steps(cue) for name, *_ in g
     }
