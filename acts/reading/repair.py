@@ -139,7 +139,8 @@ def _coordinated(token: Token, ending: str, last: str) -> bool:
     if before.lower_ not in _JOINS or token.i < 2:
         return False
     earlier = token.nbor(-2)
-    if before.text == "," and ending == "" and not (token.dep_ == "conj" and token.head.pos_ == "VERB"):
+    listed = (token.dep_ == "conj" and token.head.pos_ == "VERB") or _before_verb(token)
+    if before.text == "," and ending == "" and not listed:
         return False
     bare_noun = earlier.tag_ == "NN" and all(c.dep_ not in ("det", "poss") for c in earlier.children)
     if ending == "" and bare_noun:
@@ -147,6 +148,18 @@ def _coordinated(token: Token, ending: str, last: str) -> bool:
     following = _next(token)
     plural_list = earlier.tag_ == "NNS" and token.dep_ == "conj" and token.head == earlier
     return not plural_list or following is None or following.lower_ not in ("of", "for")
+
+
+def _before_verb(token: Token) -> bool:
+    """True for the last but one of listed verbs: "run up, hug and then bow"."""
+    rest = (t for t in token.doc[token.i + 2 : token.i + 5] if t.pos_ != "ADV")
+    following, after = _next(token), next(rest, None)
+    return (
+        following is not None
+        and following.pos_ == "CCONJ"
+        and after is not None
+        and after.tag_ in ("VB", "VBP")
+    )
 
 
 def _is_absolute(token: Token) -> bool:

@@ -290,3 +290,14 @@ def test_an_act_that_the_parser_takes_for_a_noun_behind_to_is_read() -> None:
         "First one player offers to hug the other player, then the second player says no with their head."
     )
     assert [(act.act, act.agents) for act in plan.acts] == [("hug", ("a",)), ("shake-head", ("b",))]
+
+
+@pytest.mark.parametrize(
+    ("text", "acts"),
+    [
+        ("Two friends run up to each other, hug and then high-five.", ["run-up", "hug", "high-five"]),
+        ("They eat bread, cheese and drink.", ["eat"]),
+    ],
+)
+def test_a_verb_that_is_listed_before_another_is_no_noun(text: str, acts: list[str]) -> None:
+    assert [act.act for act in read(text).acts] == acts
