@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
 from functools import lru_cache
 from pathlib import Path
@@ -339,6 +339,15 @@ class _Planner:
     def _waits(self, act: Act) -> bool:
         return {shape.do for shape in self._known.entries[act.act].stage} == {"stay"}
 
+    def _last_after(self, first: str, until: str, found: Mapping[str, Sequence[Relation]]) -> str:
+        """The last of the acts that follow each other from ``first`` on, before the act ``until`` in the text."""
+        for act in self._acts:
+            if act.id == until:
+                break
+            follows = any(r.kind == "after" and r.act == first for r in found[act.id])
+            first = act.id if follows and not self._waits(act) else first
+        return first
+
     def _order(self) -> None:
         """Gives the acts their relations, each to one that stands before it or above it in the syntax."""
         number_of = {name: i for i, name in self._of.items()}
@@ -361,9 +370,8 @@ class _Planner:
             told, kind = kind == "then", "after" if kind == "then" else kind
             if kind == "after" and (other.already or self._waits(other)):
                 above = next((r.act for r in found[other.id] if r.kind == "while"), None)
-                other = (
-                    acts[above] if above else other
-                )  # what follows "A talks while B waits" follows the talk
+                # What follows "A talks while B waits" follows the talk.
+                other = acts[self._last_after(above, act.id, found)] if above else other
             if kind == "conj":
                 kind = order.coordinated(other, act, self._known, repeats=act.id in self._answers)
             if kind == "after":

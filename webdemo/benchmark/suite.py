@@ -74,7 +74,7 @@ def run_benchmark(*, seconds: float, steps: int, repeats: int, browser: bool = F
         from webdemo.benchmark.browser import measure_browser
 
         figures |= measure_browser()
-    figures = {k: round(v, 3) if isinstance(v, float) else v for k, v in figures.items()}
+    figures = {k: float(f"{v:.4g}") if isinstance(v, float) else v for k, v in figures.items()}
     for name, value in figures.items():
         print(f"{name:34} {value}")
     return figures

@@ -301,3 +301,9 @@ def test_an_act_that_the_parser_takes_for_a_noun_behind_to_is_read() -> None:
 )
 def test_a_verb_that_is_listed_before_another_is_no_noun(text: str, acts: list[str]) -> None:
     assert [act.act for act in read(text).acts] == acts
+
+
+def test_what_follows_listed_acts_beside_a_wait_follows_the_last_of_them() -> None:
+    plan = read("One person waves, turns and bows, while the other person waits. Finally they hug.")
+    acts = {act.act: act for act in plan.acts}
+    assert ("after", acts["bow"].id) in {(each.kind, each.act) for each in acts["hug"].order}
