@@ -41,7 +41,7 @@ _EASE, _SHORTEST = 24, 10
 _FACES = 0.5
 """Cosine between the ways that people face and the way to the other, at least."""
 _LIFTED = 0.12
-"""Height in metres of the lower toe of somebody who is lifted."""
+"""Height in metres of the lifted person's lower toe."""
 _SINKS = 0.06
 """Metres by which a body sinks at most."""
 _SPINE = SMPL22.index("spine3")

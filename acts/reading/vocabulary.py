@@ -70,7 +70,7 @@ class Vocabulary:
         return ""
 
     def state(self, preposition: str, lemma: str) -> str:
-        """The verb of what somebody does of whom this phrase says where they are; "" for other phrases."""
+        """The verb that a phrase of place implies for its person ("on the bench": sit); "" for other phrases."""
         return self._states.get((preposition, lemma), "")
 
     def part(self, lemma: str) -> str:

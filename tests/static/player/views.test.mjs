@@ -13,7 +13,7 @@ const SKELETON = { head: 0, pelvis: 1, hips: [2, 3] };
 const CROWN = 0.2; // metres of a head over its joint
 const HEIGHTS = [1.6, 0.95, 0.9, 0.9, 0, 0];
 
-/** Somebody who stands at a place: head, pelvis, hips, feet. */
+/** A person standing at a place: head, pelvis, hips, feet. */
 const standing = (x, y) => HEIGHTS.map((height, joint) => [x, y + [0, 0, 0.1, -0.1, 0.1, -0.1][joint], height]);
 const pair = (x, y, apart = 0.8) => [standing(x - apart / 2, y), standing(x + apart / 2, y)];
 const still = (people, box = PANE) => ({ now: people, soon: people, box });

@@ -68,7 +68,7 @@ def standing(setting: Setting) -> Standing | None:
 
 
 def _from_behind(lifted: Lift) -> Standing:
-    """A place behind the other for who runs up and jumps on their back."""
+    """A place behind the other, for a person about to run up and jump on their back."""
     places = np.zeros((2, 2))
     places["ab".index(lifted.carrier) - 1, 1] = -RUN_UP
     return Standing(places, np.zeros(2))

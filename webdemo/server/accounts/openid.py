@@ -182,7 +182,7 @@ def _person(settings: Settings, sign_ins: SignIns, claims: dict[str, Any]) -> st
 
 
 def _begun(settings: Settings, sign_ins: SignIns, name: str, claims: dict[str, Any]) -> str:
-    """A new session's token; raises Refused for somebody who is suspended."""
+    """A new session's token; raises Refused for a suspended person."""
     admin = bool(set(settings.admin_groups) & _groups(claims)) if settings.admin_groups else None
     try:
         return sign_ins.begin_outside(name, admin=admin)

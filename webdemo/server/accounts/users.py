@@ -200,7 +200,7 @@ class SignIns:
         return found.person
 
     def begin_outside(self, name: str, *, admin: bool | None = None) -> str:
-        """A new session's token for somebody who has signed in elsewhere and has no password here.
+        """A new session's token for a person signed in elsewhere, without a password here.
 
         Args:
             name: theirs.

@@ -34,7 +34,7 @@ class Visitors:
     Args:
         settings: whether there are accounts, and whether other machines may connect.
         sign_ins: sessions of people with accounts; None without accounts.
-        people: notes those whom a proxy names.
+        people: notes the people that a proxy names.
     """
 
     def __init__(self, settings: Settings, sign_ins: SignIns | None, people: People) -> None:
@@ -102,7 +102,7 @@ class Visitors:
                 del self._known[key]
 
     def _arrive(self, name: str, admin: bool | None) -> None:
-        """Notes somebody whom a proxy names; raises Refused if they are suspended."""
+        """Notes a person named by a proxy; raises Refused if they are suspended."""
         key, now = f"proxy {admin} {name}", time.monotonic()
         with self._lock:
             known = self._known.get(key)

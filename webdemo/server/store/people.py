@@ -86,7 +86,7 @@ class People:
                 setattr(row, field, value)
 
     def arrive(self, name: str, *, admin: bool | None = None) -> bool:
-        """Notes somebody who signs in elsewhere, so that administrators see them.
+        """Notes a person signing in elsewhere, so that administrators see them.
 
         Args:
             name: theirs.
