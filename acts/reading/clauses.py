@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from typing import TYPE_CHECKING
 
 from acts.frames import Event
+
+from .arguments import is_kept
+from .vocabulary import vocabulary
 
 if TYPE_CHECKING:
     from spacy.tokens import Doc, Token
@@ -16,6 +19,9 @@ MARKS = {
     "till": "main-until", "before": "after", "because": "with", "so": "after", "without": "while", "instead": "with",
 }  # fmt: skip
 """How a clause with this word lies beside its main clause; "main-after" puts the main clause behind it."""
+
+NOUNMARKS = {"after": "main-after", "following": "main-after", "upon": "main-after", "before": "after"}
+"""Prepositions behind which a noun stands for an act of its own."""
 
 
 def is_finite(token: Token) -> bool:
@@ -31,6 +37,101 @@ def may_be_main(token: Token) -> bool:
         marks = any(c.dep_ in ("mark", "aux") or c.lower_ in MARKS for c in token.children)
         return not marks and token.tag_ in ("VB", "VBP", "VBZ")
     return token.dep_ in ("conj", "parataxis")
+
+
+class ClauseTree:
+    """The clauses of a parsed text: which tokens are verbs of one, on which verb each hangs, which are main ones.
+
+    Args:
+        doc: the parsed text.
+        verbs: lemmas that some entry reads.
+        lemmas: lemmas known better than by the parser, by token.
+        forms: (lemma, tag) of a verb's form, where the parser knows no such verb.
+    """
+
+    def __init__(
+        self, doc: Doc, verbs: frozenset[str], lemmas: dict[int, str], forms: Mapping[str, tuple[str, str]]
+    ) -> None:
+        self.doc = doc
+        self.mains: list[int] = []
+        """The verbs of main clauses read so far, by token."""
+        self._verbs = verbs
+        self._lemmas = lemmas
+        self._forms = forms
+        self._words = vocabulary()
+        self._main: dict[int, bool] = {}
+        self._heads: dict[int, Token | None] = {}
+        self._clauses: dict[int, bool] = {}
+
+    def main_before(self, token: Token) -> int | None:
+        """The last main clause's verb in the sentence of ``token``."""
+        return next((i for i in reversed(self.mains) if self.doc[i].sent == token.sent), None)
+
+    def lemma(self, token: Token) -> str:
+        """The lemma of a verb, with what is known better than by the parser."""
+        known = self._lemmas.get(token.i)
+        if known is None and token.lemma_.lower() not in self._verbs and token.lower_ in self._forms:
+            known = self._forms[token.lower_][0]  # "stares" is no "star"
+        return known or token.lemma_.lower()
+
+    def is_clause(self, token: Token) -> bool:
+        """True for the verb of a clause, and for a noun that stands for an act."""
+        if token.i not in self._clauses:
+            self._clauses[token.i] = self._has_verb(token)
+        return self._clauses[token.i]
+
+    def _has_verb(self, token: Token) -> bool:
+        if token.dep_ == "amod":  # "the sleeping baby"
+            return (
+                token.tag_ == "VBG"
+                and self.lemma(token) in self._verbs
+                and self._words.is_person(token.head.lemma_.lower())
+            )
+        if token.dep_ != "ROOT" and any(c.lower_ == "where" and c.dep_ == "advmod" for c in token.children):
+            return False  # "to where she came from" is a place
+        if is_kept(token):
+            return False
+        if token.pos_ in ("VERB", "AUX") and token.dep_ not in ("aux", "auxpass", "compound", "punct"):
+            return True
+        if token.dep_ == "pobj" and token.pos_ == "NOUN" and token.head.lower_ in NOUNMARKS:
+            known = self.lemma(token) in self._verbs and token.tag_ == "NN"  # "after a quick hug"
+            return (
+                known
+                and token.head.head.pos_ in ("VERB", "AUX")
+                and not self._words.is_person(token.lemma_.lower())
+            )
+        if token.dep_ == "ROOT" and token.pos_ in ("NOUN", "PROPN", "ADJ", "INTJ", "ADV", "ADP", "X"):
+            return self.lemma(token) in self._verbs or token.i in self._lemmas
+        return token.dep_ in ("conj", "pcomp") and token.i in self._lemmas
+
+    def head(self, token: Token) -> Token | None:
+        """The verb on which a clause hangs; a finite one goes with a finite one: "does not want to …, and pushes"."""
+        if token.i not in self._heads:
+            clauses = (head for head in token.ancestors if self.is_clause(head))
+            first = next(clauses, None)
+            if first is not None and token.dep_ == "conj" and token.tag_ in ("VBZ", "VBD"):
+                finite = (h for h in (first, *clauses) if is_finite(h))
+                first = self._nearer(token, next(finite, first))
+            self._heads[token.i] = first
+        return self._heads[token.i]
+
+    def _nearer(self, token: Token, head: Token) -> Token:
+        """The main clause behind ``head`` with its own subject: "he talks, but she turns and covers her ears"."""
+        if any(child.dep_ in ("nsubj", "nsubjpass") for child in token.children):
+            return head
+        later = [self.doc[i] for i in self.mains if head.i < i < token.i and self.doc[i].sent == token.sent]
+        return next((t for t in reversed(later) if any(c.dep_ == "nsubj" for c in t.children)), head)
+
+    def is_main(self, token: Token) -> bool:
+        """True for a clause that stands by itself in the order of the text."""
+        passed: list[int] = []
+        above: Token | None = token
+        while above is not None and above.i not in self._main and above.dep_ != "ROOT" and may_be_main(above):
+            passed.append(above.i)
+            above = self.head(above) if above.dep_ in ("conj", "parataxis") else above.head
+        main = above is not None and self._main.get(above.i, above.dep_ == "ROOT")
+        self._main.update((i, main) for i in passed)
+        return main
 
 
 def spans(doc: Doc, events: Sequence[Event]) -> Iterator[tuple[int, int]]:

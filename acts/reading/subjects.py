@@ -1,0 +1,133 @@
+"""Finds the subject of each clause: its own, an earlier clause's, an antecedent or the person spoken to."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import TYPE_CHECKING
+
+from acts.frames import Event, Ref
+
+from .clauses import ClauseTree
+from .people import Cast, reference
+from .vocabulary import vocabulary
+
+if TYPE_CHECKING:
+    from spacy.tokens import Token
+
+_LEAVES = frozenset(("leave", "find"))
+"""Verbs whose object does what follows, beside those that cause or see it."""
+_SOMEBODY = frozenset(("him", "her", "his", "me", "my"))
+
+
+class Subjects:
+    """The subjects of a text's clauses, each found once.
+
+    Args:
+        tree: the text's clauses.
+        cast: the people named so far.
+        event_of: gives the event that was read from a clause's verb, or None before its turn.
+    """
+
+    def __init__(self, tree: ClauseTree, cast: Cast, event_of: Callable[[Token], Event | None]) -> None:
+        self._tree = tree
+        self._cast = cast
+        self._event_of = event_of
+        self._words = vocabulary()
+        self._found: dict[int, Ref | None] = {}
+
+    def found(self, token: Token | None) -> Ref | None:
+        """The subject of a clause whose turn has been, or None."""
+        return self._found.get(token.i) if token is not None else None
+
+    def of(self, token: Token, head: Token | None) -> Ref | None:
+        """The subject of a clause, found once, and before its turn where an earlier clause has the same."""
+        waiting = [(token, head)]
+        while (above := waiting[-1][1]) is not None and above.i not in self._found:
+            if len(waiting) > len(self._tree.doc) or any(
+                c.dep_ in ("nsubj", "nsubjpass") for c in waiting[-1][0].children
+            ):
+                break
+            waiting.append((above, self._tree.head(above)))
+        for clause, its_head in reversed(waiting):  # from above, so that none calls another in turn
+            if clause.i not in self._found:
+                self._found[clause.i] = self._subject_of(clause, its_head)
+        return self._found[token.i]
+
+    def _subject_of(self, token: Token, head: Token | None) -> Ref | None:
+        moving = (
+            c for aux in token.children if aux.dep_ == "aux" for c in aux.children
+        )  # "he comes running"
+        for child in (*token.children, *moving):
+            if child.dep_ in ("nsubj", "nsubjpass", "csubj", "expl"):
+                if child.tag_ in ("WP", "WDT") and token.dep_ == "relcl":
+                    return self._antecedent(token)
+                ref = reference(child, self._cast, "")
+                if child.lower_ in ("nobody", "neither", "none") or (
+                    child.lower_ == "one" and "no" in {c.lower_ for c in child.children}
+                ):
+                    return Ref("person", "ab", child.lower_, first=ref.first, last=ref.last)
+                if child.lower_ in ("both", "each", "all") and ref.kind != "person":
+                    return Ref("person", "ab", child.lower_, first=ref.first, last=ref.last)
+                return ref
+            if child.dep_ == "poss" and token.dep_ == "ccomp" and head is not None:  # "helps her walk"
+                helper = self._found.get(head.i)
+                return reference(child, self._cast, helper.who if helper is not None else "")
+            if child.dep_ == "det" and child.lower_ in (
+                "both",
+                "all",
+                "each",
+            ):  # "the music starts, both freeze"
+                return Ref("person", "ab", child.lower_, first=child.idx, last=child.idx + len(child.text))
+        if (named := self._named_before(token)) is not None:
+            return named
+        if token.dep_ in ("relcl", "acl") or token.dep_ == "amod":
+            return self._antecedent(token)
+        if head is not None:
+            own = self.of(head, self._tree.head(head))
+            if token.dep_ in ("xcomp", "ccomp"):  # "makes her laugh", "asks him to sit"
+                above = self._event_of(head)
+                verbs = self._words.verbs
+                if (
+                    above is not None
+                    and above.object is not None
+                    and above.object.kind == "person"
+                    and (
+                        above.lemma in verbs["causes"] | verbs["sees"] | _LEAVES
+                        or above.lemma in verbs["wished"]
+                    )
+                ):
+                    return above.object
+            return own
+        main = self._tree.main_before(token)
+        if (
+            main is not None and main < token.i
+        ):  # "creeps up, covers her eyes", where the second became the main one
+            return self._found.get(main)
+        if token.dep_ == "ROOT" or head is None:
+            alone = any(
+                t.lower_ in _SOMEBODY for t in token.subtree
+            )  # "grab her by the wrist" is said to one
+            if alone:
+                self._cast.address("a")
+            return Ref("person", "a" if alone else "ab", "", first=token.idx, last=token.idx)
+        return None
+
+    def _named_before(self, token: Token) -> Ref | None:
+        """The person named right before a verb whom the parser took for a part of it, or for another's object.
+
+        As in "while Beth crouches" and "he runs to Beth and Beth lifts him".
+        """
+        before = token.nbor(-1) if token.i and token.tag_ == "VBZ" else None
+        if before is None or before.tag_ != "NNP" or before.dep_ not in ("conj", "compound"):
+            return None
+        ref = reference(before, self._cast, "")
+        return ref if ref.kind == "person" else None
+
+    def _antecedent(self, token: Token) -> Ref | None:
+        noun = token.head
+        if (known := self._cast.seen.get(noun.i)) is not None:
+            return known
+        who = self._cast.person(noun, "") if noun.pos_ in ("NOUN", "PROPN", "PRON", "ADJ", "NUM") else None
+        if who:
+            return Ref("person", who, noun.lemma_.lower(), first=noun.idx, last=noun.idx + len(noun.text))
+        return reference(noun, self._cast, "") if noun.pos_ in ("NOUN", "PROPN") else None
