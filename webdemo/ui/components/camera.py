@@ -6,11 +6,6 @@ The browser finds the people (``static/camera``) and sends the points on their b
 
 from __future__ import annotations
 
-import json
-from pathlib import Path
-from typing import Any
-
-import gradio as gr
 from pydantic import TypeAdapter
 
 from motion import InputError
@@ -18,22 +13,18 @@ from motion.video import people_of, unpack_film
 
 from .accepts import Text
 from .actors import Found, Source
+from .part import STATIC, Part, on_load
 
-CAMERA_FOLDER = Path(__file__).resolve().parents[3] / "static" / "camera"
+CAMERA_FOLDER = STATIC / "camera"
 
-gr.set_static_paths([CAMERA_FOLDER])
-
-_ON_LOAD = """
-const config = window.gradio_config || {};
-const root = (config.root || new URL(".", document.baseURI).href).replace(/[/]$/, "");
-const encode = (path) => path.split("/").map(encodeURIComponent).join("/");
-const folder = root + (config.api_prefix || "/gradio_api") + "/file=" + encode(%s);
+_MOUNT = """
+const folder = file(%s);
 const send = (text) => { props.value = text; trigger("submit"); };
 import(folder + "/camera.js").then((camera) => camera.mount(element, send, { folder: folder + "/mediapipe/" }));
 """
 
 
-class CameraPanel(gr.HTML):
+class CameraPanel(Part):
     """Chooses or records a video and sends its landmarks as a text; the event is ``submit``.
 
     Args:
@@ -41,31 +32,9 @@ class CameraPanel(gr.HTML):
     """
 
     accepts = TypeAdapter(Text | None)
-
-    def __init__(self, *, elem_id: str | None = None, **kwargs: Any) -> None:
-        kwargs = {
-            "html_template": (CAMERA_FOLDER / "camera.html").read_text(encoding="utf-8"),
-            "js_on_load": _ON_LOAD % json.dumps(CAMERA_FOLDER.as_posix()),
-            "apply_default_css": False,
-            **kwargs,
-        }
-        super().__init__(None, elem_id=elem_id, **kwargs)
-
-    def api_info(self) -> dict[str, Any]:
-        """Describes the component's value for the API page."""
-        return {"type": "string", "description": "landmarks of a film, as the page packs them"}
-
-    def example_payload(self) -> None:
-        """None: the component takes no example."""
-        return None
-
-    def example_value(self) -> None:
-        """None: the component takes no example."""
-        return None
-
-    def get_block_name(self) -> str:
-        """Gradio's name of the front end that draws it."""
-        return "html"
+    template = CAMERA_FOLDER / "camera.html"
+    script = on_load(_MOUNT, CAMERA_FOLDER)
+    sends = ("string", "landmarks of a film, as the page packs them")
 
 
 def film_source(text: str | None) -> Source:

@@ -2,10 +2,8 @@
 
 from __future__ import annotations
 
-import json
 from functools import cache
-from pathlib import Path
-from typing import Any
+from typing import Any, ClassVar
 
 import gradio as gr
 from pydantic import TypeAdapter
@@ -15,22 +13,14 @@ from acts.captions import short
 from webdemo.ui.history import HistoryLike, Search
 from webdemo.ui.visitor import visitor
 
-FINDER_FOLDER = Path(__file__).resolve().parents[3] / "static" / "finder"
+from .part import MOUNT, STATIC, Part, on_load, scoped
+
+FINDER_FOLDER = STATIC / "finder"
 _RUNS = 200
 """The newest runs, which are searched by their titles; *History* searches all of them."""
 
-gr.set_static_paths([FINDER_FOLDER])
 
-_ON_LOAD = """
-const config = window.gradio_config || {};
-const root = (config.root || new URL(".", document.baseURI).href).replace(/[/]$/, "");
-const encode = (path) => path.split("/").map(encodeURIComponent).join("/");
-import(root + (config.api_prefix || "/gradio_api") + "/file=" + encode(%s))
-  .then((finder) => finder.mount(element, props, watch, trigger));
-"""
-
-
-class Finder(gr.HTML):
+class Finder(Part):
     """A button and a dialog; its prop ``known`` is what :func:`known` gives, and its value is always None.
 
     Args:
@@ -38,46 +28,15 @@ class Finder(gr.HTML):
     """
 
     accepts = TypeAdapter(None)
-
-    def __init__(self, value: None = None, *, elem_id: str | None = None, **kwargs: Any) -> None:
-        kwargs = {
-            "html_template": (FINDER_FOLDER / "finder.html").read_text(encoding="utf-8"),
-            "css_template": "\n" + (FINDER_FOLDER / "finder.css").read_text(encoding="utf-8"),
-            "js_on_load": _ON_LOAD % json.dumps((FINDER_FOLDER / "main.js").as_posix()),
-            "apply_default_css": False,
-            "known": None,
-            **kwargs,
-        }
-        kwargs["css_template"] = kwargs["css_template"].replace("\n.", "\n& .")
-        super().__init__(value, elem_id=elem_id, **kwargs)
+    template = FINDER_FOLDER / "finder.html"
+    script = on_load(MOUNT, FINDER_FOLDER / "main.js")
+    style = scoped(FINDER_FOLDER / "finder.css")
+    declared: ClassVar = {"known": None}
+    sends = ("null", "nothing")
 
     def wire(self, history: HistoryLike | None, **quiet: Any) -> None:
         """Answers the browser, which asks whenever the dialog opens; ``quiet`` are the options of the page's events."""
         self.input(lambda: gr.update(known=known(history)), outputs=self, concurrency_limit=4, **quiet)
-
-    def preprocess(self, payload: Any) -> None:
-        """None: nothing is sent."""
-        return None
-
-    def postprocess(self, value: Any) -> Any:
-        """The value itself."""
-        return value
-
-    def api_info(self) -> dict[str, Any]:
-        """The kind of value, for the API page."""
-        return {"type": "null", "description": "nothing"}
-
-    def example_payload(self) -> None:
-        """None: the component takes no example."""
-        return None
-
-    def example_value(self) -> None:
-        """None: the component takes no example."""
-        return None
-
-    def get_block_name(self) -> str:
-        """Gradio's name of the front end that draws it."""
-        return "html"
 
 
 def known(history: HistoryLike | None) -> dict[str, Any]:

@@ -9,10 +9,7 @@ from __future__ import annotations
 import base64
 import binascii
 import json
-from pathlib import Path
-from typing import Any
 
-import gradio as gr
 import numpy as np
 from pydantic import TypeAdapter
 
@@ -22,17 +19,11 @@ from webdemo.inference.live_take import LONGEST, LiveTake
 
 from .accepts import Text
 from .camera import CAMERA_FOLDER
-from .player import PLAYER_FOLDER
+from .part import STATIC, Part, on_load
 
-LIVE_FOLDER = Path(__file__).resolve().parents[3] / "static" / "live"
+LIVE_FOLDER = STATIC / "live"
 
-gr.set_static_paths([LIVE_FOLDER, CAMERA_FOLDER, PLAYER_FOLDER])
-
-_ON_LOAD = """
-const config = window.gradio_config || {};
-const root = (config.root || new URL(".", document.baseURI).href).replace(/[/]$/, "");
-const encode = (path) => path.split("/").map(encodeURIComponent).join("/");
-const file = (path) => root + (config.api_prefix || "/gradio_api") + "/file=" + encode(path);
+_MOUNT = """
 const addresses = { address: root + "/live", mediapipe: file(%s) + "/mediapipe/" };
 const keep = (text) => { props.value = text; trigger("submit"); };
 import(file(%s) + "/live.js").then((live) => live.mount(element, keep, addresses));
@@ -42,7 +33,7 @@ FARTHEST = 100.0
 _BROKEN = "The live stream could not be kept, since its motion arrived damaged: press Keep again."
 
 
-class LivePanel(gr.HTML):
+class LivePanel(Part):
     """Lets a partner answer live in the player of the same tab.
 
     A stream that is to be kept is sent as a text for :func:`take_of`; the event is ``submit``.
@@ -52,32 +43,9 @@ class LivePanel(gr.HTML):
     """
 
     accepts = TypeAdapter(Text | None)
-
-    def __init__(self, *, elem_id: str | None = None, **kwargs: Any) -> None:
-        folders = (CAMERA_FOLDER.as_posix(), LIVE_FOLDER.as_posix())
-        kwargs = {
-            "html_template": (LIVE_FOLDER / "live.html").read_text(encoding="utf-8"),
-            "js_on_load": _ON_LOAD % tuple(map(json.dumps, folders)),
-            "apply_default_css": False,
-            **kwargs,
-        }
-        super().__init__(None, elem_id=elem_id, **kwargs)
-
-    def api_info(self) -> dict[str, Any]:
-        """Describes the component's value for the API page."""
-        return {"type": "string", "description": "a live stream, as the page packs it"}
-
-    def example_payload(self) -> None:
-        """None: the component takes no example."""
-        return None
-
-    def example_value(self) -> None:
-        """None: the component takes no example."""
-        return None
-
-    def get_block_name(self) -> str:
-        """Gradio's name of the front end that draws it."""
-        return "html"
+    template = LIVE_FOLDER / "live.html"
+    script = on_load(_MOUNT, CAMERA_FOLDER, LIVE_FOLDER)
+    sends = ("string", "a live stream, as the page packs it")
 
 
 def take_of(text: str | None) -> LiveTake:

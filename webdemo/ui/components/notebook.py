@@ -2,14 +2,11 @@
 
 from __future__ import annotations
 
-import json
 import time
 from collections.abc import Mapping
 from dataclasses import asdict
-from pathlib import Path
 from typing import Any
 
-import gradio as gr
 from pydantic import TypeAdapter
 
 from motion import InputError
@@ -17,8 +14,9 @@ from webdemo.inference.methods import label_of, methods, variants
 from webdemo.ui.history import Entry, Found, Search
 
 from .accepts import Finite, Flag, Sent, Text
+from .part import MOUNT, STATIC, Part, on_load
 
-NOTEBOOK_FOLDER = Path(__file__).resolve().parents[3] / "static" / "notebook"
+NOTEBOOK_FOLDER = STATIC / "notebook"
 STEP = 60
 """Runs that are shown at first, and how many more at a time."""
 MOST_SHOWN = 500
@@ -38,16 +36,6 @@ _MARKS = {
     "cancelled": "✕ cancelled",
     "interrupted": "✕ interrupted",
 }
-
-gr.set_static_paths([NOTEBOOK_FOLDER])
-
-_ON_LOAD = """
-const config = window.gradio_config || {};
-const root = (config.root || new URL(".", document.baseURI).href).replace(/[/]$/, "");
-const encode = (path) => path.split("/").map(encodeURIComponent).join("/");
-import(root + (config.api_prefix || "/gradio_api") + "/file=" + encode(%s))
-  .then((notebook) => notebook.mount(element, props, watch, trigger));
-"""
 
 
 class SentSearch(Sent):
@@ -75,7 +63,7 @@ class SentAction(Sent):
     frame: Finite | None = None
 
 
-class NotebookView(gr.HTML):
+class NotebookView(Part):
     """The runs of a history as cards; its value is what :func:`shown` gives.
 
     What a visitor does arrives as the event ``select``, whose data :class:`Action` reads.
@@ -85,39 +73,9 @@ class NotebookView(gr.HTML):
     """
 
     accepts_event = TypeAdapter(SentAction)
-
-    def __init__(self, *, elem_id: str | None = None, **kwargs: Any) -> None:
-        kwargs = {
-            "html_template": (NOTEBOOK_FOLDER / "notebook.html").read_text(encoding="utf-8"),
-            "js_on_load": _ON_LOAD % json.dumps((NOTEBOOK_FOLDER / "notebook.js").as_posix()),
-            "apply_default_css": False,
-            **kwargs,
-        }
-        super().__init__(None, elem_id=elem_id, **kwargs)
-
-    def preprocess(self, payload: Any) -> Any:
-        """The value itself."""
-        return payload
-
-    def postprocess(self, value: Any) -> Any:
-        """The value itself."""
-        return value
-
-    def api_info(self) -> dict[str, Any]:
-        """The kind of value, for the API page."""
-        return {"type": "object", "description": "runs of a history, or null"}
-
-    def example_payload(self) -> None:
-        """None: the component takes no example."""
-        return None
-
-    def example_value(self) -> None:
-        """None: the component takes no example."""
-        return None
-
-    def get_block_name(self) -> str:
-        """Gradio's name of the front end that draws it."""
-        return "html"
+    template = NOTEBOOK_FOLDER / "notebook.html"
+    script = on_load(MOUNT, NOTEBOOK_FOLDER / "notebook.js")
+    sends = ("object", "runs of a history, or null")
 
 
 def shown(found: Found, *, empty: str, removed: int = 0, search: Search | None = None) -> dict[str, Any]:

@@ -7,10 +7,9 @@ template, it travels as data and the browser sets it as text.
 
 from __future__ import annotations
 
-import json
 import uuid
 from pathlib import Path
-from typing import Any
+from typing import Any, ClassVar
 
 import gradio as gr
 import plotly
@@ -19,7 +18,9 @@ from motion.body import Body
 from motion.character import packed_body
 from webdemo.view.payload import Payload, player_payload
 
-PLAYER_FOLDER = Path(__file__).resolve().parents[3] / "static" / "player"
+from .part import STATIC, Part, on_load
+
+PLAYER_FOLDER = STATIC / "player"
 BODIES_FOLDER = PLAYER_FOLDER.parent / "bodies"
 PLOTLY_JS = Path(plotly.__file__).resolve().parent / "package_data" / "plotly.min.js"
 EMPTY_TEXT = (
@@ -29,23 +30,15 @@ EMPTY_TEXT = (
 )
 """What there is to do, and on a second line what comes of it."""
 
-# Only these become reachable over the network: the player's own files, its bodies and plotly's single script.
-gr.set_static_paths([PLAYER_FOLDER, BODIES_FOLDER, PLOTLY_JS])
+# Only these become reachable over the network: the player's files, its bodies and plotly's single script.
+gr.set_static_paths([BODIES_FOLDER, PLOTLY_JS])
 
-_CSS = "& { min-height: 320px; } .pdd:not(.pdd-styled) { visibility: hidden; }"
-
-_ON_LOAD = """
-const config = window.gradio_config || {};
-const root = (config.root || new URL(".", document.baseURI).href).replace(/[/]$/, "");
-const encode = (path) => path.split("/").map(encodeURIComponent).join("/");
-const file = (path) => root + (config.api_prefix || "/gradio_api") + "/file=" + encode(path);
-import(file(%s)).then((player) => player.mount(element, props, watch, { plotly: file(%s), empty: %s }));
-"""
-"""To be filled with the player's script, plotly's and the text of the empty state: a tab that is opened late
-knows its component's own properties late."""
+_MOUNT = (
+    "import(file(%s)).then((player) => player.mount(element, props, watch, { plotly: file(%s), empty: %s }));"
+)
 
 
-class MotionPlayer(gr.HTML):
+class MotionPlayer(Part):
     """Plays one or two people in 3D.
 
     Its value is a payload of :func:`webdemo.view.player_payload`, or None for the empty state. While
@@ -57,6 +50,11 @@ class MotionPlayer(gr.HTML):
         elem_id: id of the element in the page.
     """
 
+    template = PLAYER_FOLDER / "player.html"
+    style = "& { min-height: 320px; } .pdd:not(.pdd-styled) { visibility: hidden; }"
+    declared: ClassVar = {"busy": "", "progress": None, "live": None, "character": None}
+    sends = ("object", "motion for the player, or null")
+
     def __init__(
         self,
         value: Payload | None = None,
@@ -65,43 +63,9 @@ class MotionPlayer(gr.HTML):
         elem_id: str | None = None,
         **kwargs: Any,
     ) -> None:
-        parts = ((PLAYER_FOLDER / "main.js").as_posix(), PLOTLY_JS.as_posix(), empty_text)
-        kwargs = {
-            "html_template": (PLAYER_FOLDER / "player.html").read_text(encoding="utf-8"),
-            "css_template": _CSS,
-            "js_on_load": _ON_LOAD % tuple(json.dumps(part) for part in parts),
-            "apply_default_css": False,
-            "busy": "",
-            "progress": None,
-            "live": None,
-            "character": None,
-            **kwargs,
-        }
-        super().__init__(value, elem_id=elem_id, **kwargs)
-
-    def preprocess(self, payload: Payload | None) -> Payload | None:
-        """The payload itself."""
-        return payload
-
-    def postprocess(self, value: Payload | None) -> Payload | None:
-        """The payload itself; the browser tells payloads apart by their ``id``."""
-        return value
-
-    def api_info(self) -> dict[str, Any]:
-        """Describes the component's value for the API page."""
-        return {"type": "object", "description": "motion for the player, or null"}
-
-    def example_payload(self) -> None:
-        """None: the component takes no example."""
-        return None
-
-    def example_value(self) -> None:
-        """None: the component takes no example."""
-        return None
-
-    def get_block_name(self) -> str:
-        """Gradio's name of the front end that draws it."""
-        return "html"
+        # all in the script: a tab that is opened late knows its component's own properties late
+        script = on_load(_MOUNT, PLAYER_FOLDER / "main.js", PLOTLY_JS, empty_text)
+        super().__init__(value, elem_id=elem_id, **{"js_on_load": script, **kwargs})
 
 
 def busy(text: str = "", *, progress: float | None = None) -> dict[str, Any]:

@@ -8,8 +8,7 @@ from __future__ import annotations
 
 import json
 from collections.abc import Mapping
-from pathlib import Path
-from typing import Any
+from typing import Any, ClassVar
 
 import gradio as gr
 from pydantic import TypeAdapter
@@ -22,21 +21,14 @@ from motion import InputError
 from webdemo.ui.text.words import error_line
 
 from .accepts import Finite, Flag, Sent, Text
+from .part import MOUNT, STATIC, Part, on_load, scoped
 
-READING_FOLDER = Path(__file__).resolve().parents[3] / "static" / "reading"
+READING_FOLDER = STATIC / "reading"
 
-gr.set_static_paths([READING_FOLDER])
 
 READERS = 2
 """Texts that are read at once; further ones wait."""
 
-_ON_LOAD = """
-const config = window.gradio_config || {};
-const root = (config.root || new URL(".", document.baseURI).href).replace(/[/]$/, "");
-const encode = (path) => path.split("/").map(encodeURIComponent).join("/");
-const file = (path) => root + (config.api_prefix || "/gradio_api") + "/file=" + encode(path);
-import(file(%s)).then((reading) => reading.mount(element, props, watch, trigger));
-"""
 _TYPED = """(text) => ({ __type__: "update", props: { text: text ?? "" } })"""
 """JavaScript that tells the component what is typed; it waits for a pause and asks."""
 
@@ -57,7 +49,7 @@ class SentReading(Sent):
     list: Flag = False
 
 
-class Reading(gr.HTML):
+class Reading(Part):
     """Shows how a text is understood, and lets its plan be edited.
 
     Props beside the value, which is a :class:`SentReading`: ``text``, what is typed; ``shown``, see :func:`shown`;
@@ -70,26 +62,11 @@ class Reading(gr.HTML):
     """
 
     accepts = TypeAdapter(SentReading | None)
-
-    def __init__(
-        self, value: dict[str, Any] | None = None, *, editable: bool = False, elem_id: str | None = None,
-        **kwargs: Any,
-    ) -> None:  # fmt: skip
-        kwargs = {
-            "html_template": (READING_FOLDER / "reading.html").read_text(encoding="utf-8"),
-            "css_template": (READING_FOLDER / "reading.css")
-            .read_text(encoding="utf-8")
-            .replace("\n.", "\n& ."),
-            "js_on_load": _ON_LOAD % json.dumps((READING_FOLDER / "main.js").as_posix()),
-            "apply_default_css": False,
-            "text": "",
-            "shown": None,
-            "acts": None,
-            "checked": None,
-            "editable": editable,
-            **kwargs,
-        }
-        super().__init__(value, elem_id=elem_id, **kwargs)
+    template = READING_FOLDER / "reading.html"
+    script = on_load(MOUNT, READING_FOLDER / "main.js")
+    style = scoped(READING_FOLDER / "reading.css")
+    declared: ClassVar = {"text": "", "shown": None, "acts": None, "checked": None, "editable": False}
+    sends = ("object", "a text that is to be read, or its edited plan; or null")
 
     def follow(self, prompt: gr.Textbox, **quiet: Any) -> None:
         """Reads what is typed into a prompt; ``quiet`` are the options of the page's own events."""
@@ -98,30 +75,6 @@ class Reading(gr.HTML):
             reread, inputs=self, outputs=self, trigger_mode="always_last",
             concurrency_limit=READERS, concurrency_id="reading", **quiet,
         )  # fmt: skip
-
-    def preprocess(self, payload: Any) -> Any:
-        """The value as the browser sent it."""
-        return payload
-
-    def postprocess(self, value: Any) -> Any:
-        """The value itself."""
-        return value
-
-    def api_info(self) -> dict[str, Any]:
-        """Describes the component's value for the API page."""
-        return {"type": "object", "description": "a text that is to be read, or its edited plan; or null"}
-
-    def example_payload(self) -> None:
-        """None: the component takes no example."""
-        return None
-
-    def example_value(self) -> None:
-        """None: the component takes no example."""
-        return None
-
-    def get_block_name(self) -> str:
-        """Gradio's name of the front end that draws it."""
-        return "html"
 
 
 def reread(sent: Any) -> dict[str, Any]:

@@ -6,12 +6,9 @@ Its value is a story as JSON, see :func:`story_value`. Like the player it is a `
 
 from __future__ import annotations
 
-import json
 from collections.abc import Mapping
-from pathlib import Path
-from typing import Any
+from typing import Any, ClassVar
 
-import gradio as gr
 from pydantic import Field, TypeAdapter
 
 from acts import Act
@@ -22,21 +19,13 @@ from webdemo.inference.story.beats import MOST_BEATS
 from webdemo.inference.story.request import beat_of, path_of, pose_of
 
 from .accepts import Finite, Flag, Sent, Text
+from .part import MOUNT, STATIC, Part, on_load, scoped
 
-STORY_FOLDER = Path(__file__).resolve().parents[3] / "static" / "story"
+STORY_FOLDER = STATIC / "story"
 
-gr.set_static_paths([STORY_FOLDER])
 
 TRACK_STEP = 0.1
 """Seconds between two places of a track on the floor."""
-
-_ON_LOAD = """
-const config = window.gradio_config || {};
-const root = (config.root || new URL(".", document.baseURI).href).replace(/[/]$/, "");
-const encode = (path) => path.split("/").map(encodeURIComponent).join("/");
-const file = (path) => root + (config.api_prefix || "/gradio_api") + "/file=" + encode(path);
-import(file(%s)).then((story) => story.mount(element, props, watch, trigger));
-"""
 
 
 class SentBeat(Sent):
@@ -81,7 +70,7 @@ class SentStory(Sent):
     ahead: Flag = False
 
 
-class StoryLine(gr.HTML):
+class StoryLine(Part):
     """Shows a story and lets it be changed; every change is an ``input`` event.
 
     Props beside the value: ``lengths``, seconds of the beats as they follow from the words; ``laid``, the ``beats``,
@@ -89,45 +78,11 @@ class StoryLine(gr.HTML):
     """
 
     accepts = TypeAdapter(SentStory | None)
-
-    def __init__(
-        self, value: dict[str, Any] | None = None, *, elem_id: str | None = None, **kwargs: Any
-    ) -> None:
-        kwargs = {
-            "html_template": (STORY_FOLDER / "story.html").read_text(encoding="utf-8"),
-            "css_template": (STORY_FOLDER / "story.css").read_text(encoding="utf-8").replace("\n.", "\n& ."),
-            "js_on_load": _ON_LOAD % json.dumps((STORY_FOLDER / "main.js").as_posix()),
-            "apply_default_css": False,
-            "lengths": None,
-            "laid": None,
-            "motion": None,
-            **kwargs,
-        }
-        super().__init__(value, elem_id=elem_id, **kwargs)
-
-    def preprocess(self, payload: Any) -> Any:
-        """The story as the browser sent it; it is checked by :func:`story_fields`."""
-        return payload
-
-    def postprocess(self, value: Any) -> Any:
-        """The story itself."""
-        return value
-
-    def api_info(self) -> dict[str, Any]:
-        """Describes the component's value for the API page."""
-        return {"type": "object", "description": "a story, or null"}
-
-    def example_payload(self) -> None:
-        """None: the component takes no example."""
-        return None
-
-    def example_value(self) -> None:
-        """None: the component takes no example."""
-        return None
-
-    def get_block_name(self) -> str:
-        """Gradio's name of the front end that draws it."""
-        return "html"
+    template = STORY_FOLDER / "story.html"
+    script = on_load(MOUNT, STORY_FOLDER / "main.js")
+    style = scoped(STORY_FOLDER / "story.css")
+    declared: ClassVar = {"lengths": None, "laid": None, "motion": None}
+    sends = ("object", "a story, or null")
 
 
 def story_value(

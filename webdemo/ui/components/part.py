@@ -1,0 +1,91 @@
+"""Parts of the page that scripts of our own draw.
+
+A part is a ``gr.HTML`` with constant templates: what a user typed travels as data, and the script sets it as text.
+"""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+from typing import Any, ClassVar
+
+import gradio as gr
+
+STATIC = Path(__file__).resolve().parents[3] / "static"
+
+MOUNT = "import(file(%s)).then((part) => part.mount(element, props, watch, trigger));"
+"""JavaScript that gives a part to its module; to be filled with the module's path."""
+
+_START = """
+const config = window.gradio_config || {};
+const root = (config.root || new URL(".", document.baseURI).href).replace(/[/]$/, "");
+const encode = (path) => path.split("/").map(encodeURIComponent).join("/");
+const file = (path) => root + (config.api_prefix || "/gradio_api") + "/file=" + encode(path);
+"""
+
+
+def on_load(script: str, *values: Path | str) -> str:
+    """JavaScript for a part that appears.
+
+    Args:
+        script: with ``%s`` for each of the values, which become JSON. It knows ``element``, ``props``, ``watch`` and
+            ``trigger`` from Gradio, ``root``, the page's address, and ``file(path)``, the address of a file.
+        values: paths and texts.
+    """
+    return _START + script % tuple(json.dumps(v.as_posix() if isinstance(v, Path) else v) for v in values)
+
+
+class Part(gr.HTML):
+    """A part of the page; what it sends and shows goes through Gradio unchanged.
+
+    A subclass declares what differs. ``accepts`` and ``accepts_event`` say what a browser may send, see
+    :mod:`webdemo.ui.components.accepts`.
+
+    Args:
+        value: shown at first.
+        elem_id: id of the element in the page.
+        kwargs: props and options that replace the declared ones.
+    """
+
+    template: ClassVar[Path]
+    """The HTML file; everything in its folder becomes reachable over the network."""
+    script: ClassVar[str] = ""
+    """What :func:`on_load` gives."""
+    style: ClassVar[str] = ""
+    """CSS that the page gets with the part, or none where the script loads it."""
+    declared: ClassVar[dict[str, Any]] = {}
+    """Props beside the value, as they are at first."""
+    sends: ClassVar[tuple[str, str]]
+    """The JSON type of the value and its description, for the API page."""
+
+    def __init_subclass__(cls) -> None:
+        gr.set_static_paths([cls.template.parent])
+
+    def __init__(self, value: Any = None, *, elem_id: str | None = None, **kwargs: Any) -> None:
+        kwargs = {
+            "html_template": self.template.read_text(encoding="utf-8"),
+            "css_template": self.style,
+            "js_on_load": self.script,
+            "apply_default_css": False,
+            **self.declared,
+            **kwargs,
+        }
+        super().__init__(value, elem_id=elem_id, **kwargs)
+
+    def api_info(self) -> dict[str, Any]:
+        """The kind of value, for the API page."""
+        kind, description = self.sends
+        return {"type": kind, "description": description}
+
+    def example_payload(self) -> None:
+        """None: a part takes no example."""
+        return None
+
+    def example_value(self) -> None:
+        """None: a part takes no example."""
+        return None
+
+
+def scoped(path: Path) -> str:
+    """The rules of a style sheet, each for what lies inside the part only."""
+    return ("\n" + path.read_text(encoding="utf-8")).replace("\n.", "\n& .")
