@@ -23,6 +23,7 @@ from .errors import InputError
 from .hands import NUMBERS, SHAPES, Fingers
 from .kinematics import swing
 from .skeleton import SMPL22
+from .vectors import square_frame, unit
 
 Array = NDArray[np.floating]
 
@@ -152,7 +153,7 @@ def vertex_normals(vertices: Array, faces: NDArray[np.integer]) -> Array:
         total[:, axis] = np.bincount(
             faces.ravel(), weights=np.repeat(flat[:, axis], 3), minlength=len(vertices)
         )
-    return total / np.maximum(np.linalg.norm(total, axis=1, keepdims=True), 1e-12)
+    return unit(total)
 
 
 def bone_rotations(motion: Clip | Array) -> Array:
@@ -204,12 +205,12 @@ def _positions(motion: Clip | Array) -> Array:
 
 def _toward(positions: Array, a: str, b: str) -> Array:
     """(T, 3) unit vector from joint ``a`` to joint ``b``."""
-    return _unit(positions[:, _J[b]] - positions[:, _J[a]])
+    return unit(positions[:, _J[b]] - positions[:, _J[a]])
 
 
 def _rest_toward(a: str, b: str) -> Array:
     """(3,) unit vector from joint ``a`` to joint ``b`` in the T-pose."""
-    return _unit(_REST[_J[b]] - _REST[_J[a]])
+    return unit(_REST[_J[b]] - _REST[_J[a]])
 
 
 def _follow(positions: Array, base: Array, a: str, b: str) -> Array:
@@ -221,10 +222,14 @@ def _turn_trunk(positions: Array, world: Array) -> None:
     """Pelvis and chest turn with hips and collars; the spine between them shares their difference."""
     middle = (positions[:, _J["left_hip"]] + positions[:, _J["right_hip"]]) / 2
     rest_middle = (_REST[_J["left_hip"]] + _REST[_J["right_hip"]]) / 2
-    pelvis = _frame(positions[:, _J["spine1"]] - middle, _toward(positions, "right_hip", "left_hip"))
-    pelvis = pelvis @ _frame(_REST[_J["spine1"]] - rest_middle, _rest_toward("right_hip", "left_hip")).T
-    chest = _frame(_toward(positions, "spine3", "neck"), _toward(positions, "right_collar", "left_collar"))
-    chest = chest @ _frame(_rest_toward("spine3", "neck"), _rest_toward("right_collar", "left_collar")).T
+    pelvis = square_frame(positions[:, _J["spine1"]] - middle, _toward(positions, "right_hip", "left_hip"))
+    pelvis = pelvis @ square_frame(_REST[_J["spine1"]] - rest_middle, _rest_toward("right_hip", "left_hip")).T
+    chest = square_frame(
+        _toward(positions, "spine3", "neck"), _toward(positions, "right_collar", "left_collar")
+    )
+    chest = (
+        chest @ square_frame(_rest_toward("spine3", "neck"), _rest_toward("right_collar", "left_collar")).T
+    )
     world[:, _J["pelvis"]], world[:, _J["spine3"]] = pelvis, chest
     between = _rotation_vector(np.swapaxes(pelvis, -1, -2) @ chest)
     for name, child, share in (("spine1", "spine2", 1 / 3), ("spine2", "spine3", 2 / 3)):
@@ -319,14 +324,3 @@ def _rotation_vector(rotation: Array) -> Array:
     sine = np.linalg.norm(axis, axis=-1, keepdims=True) / 2
     cosine = (np.trace(rotation, axis1=-2, axis2=-1)[..., None] - 1) / 2
     return axis / np.maximum(2 * sine, 1e-9) * np.arctan2(sine, cosine)
-
-
-def _frame(up: Array, across: Array) -> Array:
-    """(…, 3, 3) rotation whose Y column is ``up`` and whose X column is ``across`` made square to it."""
-    y = _unit(up)
-    x = _unit(across - np.sum(across * y, axis=-1, keepdims=True) * y)
-    return np.stack([x, y, np.cross(x, y)], axis=-1)
-
-
-def _unit(vector: Array) -> Array:
-    return vector / np.maximum(np.linalg.norm(vector, axis=-1, keepdims=True), 1e-9)

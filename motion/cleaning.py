@@ -10,6 +10,7 @@ from .easing import smoothstep
 from .skeleton import SMPL22, Skeleton
 from .smoothing import REACH, frames_from, least_jerk, led
 from .transforms import facing
+from .vectors import unit
 
 Array = NDArray[np.floating]
 
@@ -145,7 +146,7 @@ def solve_two_bones(
     along = (distance**2 + upper**2 - lower**2) / (2 * distance)
     aside = np.sqrt(np.maximum(upper**2 - along**2, 0.0))
     old_axis = end - root
-    old_axis = old_axis / np.maximum(np.linalg.norm(old_axis, axis=-1, keepdims=True), 1e-9)
+    old_axis = unit(old_axis)
     bend = middle - root
     bend = bend - np.sum(bend * old_axis, axis=-1, keepdims=True) * old_axis
     # What the limb bends more than before goes towards the pole: the direction in which a nearly straight
@@ -153,7 +154,7 @@ def solve_two_bones(
     more = np.maximum(aside - np.linalg.norm(bend, axis=-1, keepdims=True), 0.0)
     bend = bend + more * pole
     bend = bend - np.sum(bend * axis, axis=-1, keepdims=True) * axis
-    bend = bend / np.maximum(np.linalg.norm(bend, axis=-1, keepdims=True), 1e-9)
+    bend = unit(bend)
     return root + along * axis + aside * bend, root + distance * axis
 
 
@@ -335,7 +336,7 @@ def steadied(
         free: (T,) from 1, where the joint may move, to 0, where it stays.
     """
     axis = end - root
-    axis = axis / np.maximum(np.linalg.norm(axis, axis=-1, keepdims=True), 1e-9)
+    axis = unit(axis)
     along = _along(middle - root, axis)
     aside = np.linalg.norm(middle - root - along, axis=-1, keepdims=True)
     share = np.broadcast_to(np.asarray(free, dtype=np.float64), (len(root),))[:, None]

@@ -8,6 +8,7 @@ from numpy.typing import NDArray
 
 from .cleaning import solve_two_bones
 from .skeleton import SMPL22, Skeleton
+from .vectors import unit
 
 Array = NDArray[np.floating]
 
@@ -62,12 +63,12 @@ def _turned_up(root: Array, middle: Array, end: Array) -> Array:
     if not low.any():
         return middle
     axis = end - root
-    axis = axis / np.maximum(np.linalg.norm(axis, axis=-1, keepdims=True), 1e-9)
+    axis = unit(axis)
     on_axis = root + np.sum((middle - root) * axis, axis=-1, keepdims=True) * axis
     out = middle - on_axis
     aside = np.linalg.norm(out, axis=-1, keepdims=True)
     up = np.array([0.0, 1.0, 0.0]) - axis[:, 1:2] * axis
-    up = up / np.maximum(np.linalg.norm(up, axis=-1, keepdims=True), 1e-9) * aside
+    up = unit(up) * aside
     low_share, high_share = np.zeros((len(root), 1)), np.ones((len(root), 1))
     for _ in range(_HALVINGS):
         share = (low_share + high_share) / 2
@@ -79,4 +80,4 @@ def _turned_up(root: Array, middle: Array, end: Array) -> Array:
 def _between(first: Array, second: Array, length: Array, share: Array) -> Array:
     """(T, 3) vectors between two others, as long as they are."""
     mixed = first + share * (second - first)
-    return mixed / np.maximum(np.linalg.norm(mixed, axis=-1, keepdims=True), 1e-9) * length
+    return unit(mixed) * length

@@ -6,6 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .skeleton import SMPL22, Skeleton
+from .vectors import unit
 
 Array = NDArray[np.floating]
 
@@ -131,8 +132,7 @@ def _quaternions(rotations: Array) -> Array:
 
 def rotation_matrices(quaternions: Array) -> Array:
     """(…, 3, 3) rotations of quaternions (…, 4) of any length but 0, the real part last."""
-    unit = _unit(quaternions)
-    x, y, z, w = np.moveaxis(unit, -1, 0)
+    x, y, z, w = np.moveaxis(unit(quaternions), -1, 0)
     axial = np.zeros((*x.shape, 3, 3))
     axial[..., 0, 1], axial[..., 0, 2], axial[..., 1, 2] = -z, y, -x
     axial -= np.swapaxes(axial, -1, -2)
@@ -163,15 +163,15 @@ def _kabsch(rest: Array, observed: Array) -> Array:
 
 def swing(source: Array, target: Array) -> Array:
     """(…, 3, 3) the smallest rotation that turns ``source`` onto the direction of ``target`` (…, 3)."""
-    source = _unit(source)
-    target = _unit(target)
+    source = unit(source)
+    target = unit(target)
     x, y, z = _cross(source, target)
     cos = np.sum(source * target, axis=-1)[..., None, None]
     # Opposite directions have no smallest rotation; any axis square to the source serves.
     opposite = cos[..., 0, 0] < -1 + 1e-8
     if opposite.any():
         helper = np.where(np.abs(source[..., :1]) < 0.9, np.array([1.0, 0, 0]), np.array([0, 1.0, 0]))
-        axis = _unit(np.stack(_cross(source, helper), axis=-1))
+        axis = unit(np.stack(_cross(source, helper), axis=-1))
         half_turn = 2 * axis[..., :, None] * axis[..., None, :] - np.eye(3)
     skew = np.zeros((*x.shape, 3, 3))
     skew[..., 0, 1], skew[..., 0, 2], skew[..., 1, 2] = -z, y, -x
@@ -185,7 +185,3 @@ def _cross(first: Array, second: Array) -> tuple[Array, Array, Array]:
     a, b, c = (first[..., axis] for axis in range(3))
     d, e, f = (second[..., axis] for axis in range(3))
     return b * f - c * e, c * d - a * f, a * e - b * d
-
-
-def _unit(vector: Array) -> Array:
-    return vector / np.maximum(np.linalg.norm(vector, axis=-1, keepdims=True), 1e-9)

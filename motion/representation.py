@@ -16,6 +16,7 @@ from .clip import Duet
 from .kinematics import fit_rotations
 from .skeleton import FEET
 from .transforms import canonicalize, heading, put_on_floor, turn
+from .vectors import unit
 
 Array = NDArray[np.floating]
 
@@ -178,7 +179,7 @@ def to_6d(rotations: Array) -> Array:
 def from_6d(numbers: Array) -> Array:
     """(…, 3, 3) rotations from (…, 6) by Gram–Schmidt (Zhou et al. 2019, eq. 15)."""
     first, second = numbers[..., :3], numbers[..., 3:]
-    x = first / np.maximum(np.linalg.norm(first, axis=-1, keepdims=True), 1e-9)
+    x = unit(first)
     y = second - np.sum(x * second, axis=-1, keepdims=True) * x
-    y = y / np.maximum(np.linalg.norm(y, axis=-1, keepdims=True), 1e-9)
+    y = unit(y)
     return np.stack([x, y, np.cross(x, y)], axis=-1)

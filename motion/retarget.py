@@ -22,6 +22,7 @@ from .kinematics import project_to_skeleton
 from .rigs import BodyParts, RigMotion, match_joints
 from .skeleton import SMPL22
 from .transforms import axis_to_y, resample
+from .vectors import square_frame, unit
 
 Array = NDArray[np.floating]
 
@@ -243,7 +244,7 @@ def _standing_rest(rig: RigMotion, parts: BodyParts) -> dict[str, Array] | None:
     if not straight or np.linalg.norm(across) < 0.05:
         return None
     bodies = _bodies(rest, rig, parts, axis_to_y(axis, float(np.sign(tall[axis]))))
-    frame = _frame(np.array([[0.0, 1.0, 0.0]]), bodies["left_hip"] - bodies["right_hip"])[0]
+    frame = square_frame(np.array([[0.0, 1.0, 0.0]]), bodies["left_hip"] - bodies["right_hip"])[0]
     bodies = {name: place @ frame for name, place in bodies.items()}
     legs_down = all(
         (bodies[f"{s}_hip"] - bodies[f"{s}_ankle"])[0, 1] > 0.5
@@ -261,19 +262,19 @@ def _trunk(bodies: dict[str, Array]) -> dict[str, Array]:
     points = _along(np.stack(chain, axis=1), _SPINE_FRACTIONS[:-1])
     points = np.concatenate([hips[:, None], points[:, 1:], bodies["neck"][:, None]], axis=1)
     ups = np.diff(points, axis=1)  # pelvis, spine1, spine2, spine3
-    across_hips = _unit(bodies["left_hip"] - bodies["right_hip"])
+    across_hips = unit(bodies["left_hip"] - bodies["right_hip"])
     across_chest: Array = bodies["left_shoulder"] - bodies["right_shoulder"]
     if "left_collar" in bodies and "right_collar" in bodies:
         collars: Array = bodies["left_collar"] - bodies["right_collar"]
         if np.median(np.linalg.norm(collars, axis=-1)) > 0.06:
             across_chest = collars
-    across_chest = _unit(across_chest)
+    across_chest = unit(across_chest)
     frames = {}
     for number, name in enumerate(("pelvis", "spine1", "spine2", "spine3")):
         share = number / 3
-        frames[name] = _frame(ups[:, number], (1 - share) * across_hips + share * across_chest)
+        frames[name] = square_frame(ups[:, number], (1 - share) * across_hips + share * across_chest)
     head = bodies.get("head")
-    frames["neck"] = frames["spine3"] if head is None else _frame(head - bodies["neck"], across_chest)
+    frames["neck"] = frames["spine3"] if head is None else square_frame(head - bodies["neck"], across_chest)
     return frames
 
 
@@ -310,10 +311,10 @@ def _limb_bone(
             return frames["spine3"] @ SMPL22.offsets[joint]
         # Collars begin anywhere between the spine and halfway out; their middle is a place all rigs share.
         start = (source["left_collar"] + source["right_collar"]) / 2
-        return _unit(source[name] - start) * length
+        return unit(source[name] - start) * length
     if name not in source:  # a toe or wrist that the rig lacks
         return frames["pelvis"] @ SMPL22.offsets[joint]
-    return _unit(source[name] - source[parent_name]) * length
+    return unit(source[name] - source[parent_name]) * length
 
 
 def _level_feet(result: Array, source: dict[str, Array], rest: dict[str, Array] | None) -> None:
@@ -336,7 +337,7 @@ def _level_feet(result: Array, source: dict[str, Array], rest: dict[str, Array] 
             flat = np.median(pitch[low & slow])
         correction = np.clip(_FLAT_FOOT - flat, -0.5, 0.5)
         horizontal = bone * np.array([1.0, 0.0, 1.0])
-        horizontal = horizontal / np.maximum(np.linalg.norm(horizontal, axis=-1, keepdims=True), 1e-9)
+        horizontal = unit(horizontal)
         length = np.linalg.norm(bone, axis=-1, keepdims=True)
         new_pitch = (pitch + correction)[:, None]
         down = np.array([0.0, -1.0, 0.0])
@@ -364,14 +365,3 @@ def _along(points: Array, fractions: Array) -> Array:
     segment = np.clip(np.searchsorted(at, fractions, side="right") - 1, 0, len(lengths) - 1)
     share = (fractions - at[segment]) / np.maximum(at[segment + 1] - at[segment], 1e-9)
     return points[:, segment] + share[:, None] * (points[:, segment + 1] - points[:, segment])
-
-
-def _frame(up: Array, across: Array) -> Array:
-    """(T, 3, 3) rotations whose Y column is ``up`` and whose X column is ``across`` made square to it."""
-    y = _unit(up)
-    x = _unit(across - np.sum(across * y, axis=-1, keepdims=True) * y)
-    return np.stack([x, y, np.cross(x, y)], axis=-1)
-
-
-def _unit(vector: Array) -> Array:
-    return vector / np.maximum(np.linalg.norm(vector, axis=-1, keepdims=True), 1e-9)

@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 from .skeleton import SMPL22, Skeleton
 from .smoothing import least_jerk
 from .transforms import facing
+from .vectors import unit
 
 Array = NDArray[np.floating]
 
@@ -111,7 +112,7 @@ def _raised(ankle: Array, toe: Array, lift: Array, forward: Array) -> Array:
     along = bone * [1.0, 0.0, 1.0]
     # A foot that hangs straight down has no direction of its own.
     along += np.maximum(_HANGS - np.linalg.norm(along, axis=-1, keepdims=True), 0.0) * forward
-    along /= np.maximum(np.linalg.norm(along, axis=-1, keepdims=True), 1e-9)
+    along = unit(along)
     turned = ankle + along * np.sqrt(np.maximum(length**2 - drop**2, 0.0))[:, None]
     turned[:, 1] = ankle[:, 1] - drop
     return np.where((lift > _LEAST)[:, None], turned, toe)

@@ -19,7 +19,7 @@ from torch import Tensor, nn
 
 from models.bigraphdiff import BiGraphDiff, BiGraphDiffConfig
 from models.compiled import TwoPersonInputs
-from models.diffusion import classifier_free
+from models.diffusion import Guided
 from models.intergen.compact import DuetSpace, Touch, as_touches
 from models.motion_tokens import TokenLayout
 from models.weights_io import WeightsFolder, load_network
@@ -53,7 +53,7 @@ class CompactBiGraphDiffConfig:
             set_(self, "layout", TokenLayout(**self.layout))
 
 
-class LabelDenoiser(nn.Module, TwoPersonInputs):
+class LabelDenoiser(nn.Module, TwoPersonInputs, Guided):
     """BiGraphDiff with one vector for the class, called as InterGen's denoiser is."""
 
     def __init__(self, config: BiGraphDiffConfig) -> None:
@@ -78,16 +78,6 @@ class LabelDenoiser(nn.Module, TwoPersonInputs):
     def widths(self) -> tuple[int, int]:
         """Widths of x and of a class' vector, see :class:`models.compiled.TwoPersonInputs`."""
         return 2 * self.network.config.input_features, self.network.config.text_dim
-
-    def guided(
-        self, x: Tensor, t: Tensor, cond: Tensor, mask: Tensor | None = None, *, scale: float
-    ) -> Tensor:
-        """:func:`models.diffusion.classifier_free` of this network; shapes as in `forward`."""
-
-        def predict(x: Tensor, t: Tensor, mask: Tensor | None, cond: Tensor) -> Tensor:
-            return self(x, t, cond, mask)
-
-        return classifier_free(predict, x, t, mask, cond=cond, scale=scale)
 
 
 class CompactBiGraphDiff(DuetSpace):

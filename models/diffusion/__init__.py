@@ -1,6 +1,6 @@
 """The diffusion that every network here trains and samples with: schedule, guidance and sampling loop."""
 
-from .guidance import classifier_free, guide
+from .guidance import Guided, classifier_free, guide
 from .sampling import SamplingStep, denoise, sample_steps
 from .schedule import (
     TRAIN_TIMESTEPS,
@@ -14,6 +14,7 @@ from .schedule import (
 
 __all__ = [
     "TRAIN_TIMESTEPS",
+    "Guided",
     "NoiseSchedule",
     "SamplerError",
     "SamplerName",

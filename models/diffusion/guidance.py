@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from typing import cast
 
 import torch
 from torch import Tensor
@@ -40,3 +41,35 @@ def classifier_free(
     twice = (None if value is None else torch.cat([value, value]) for value in inputs)
     conditional, unconditional = predict(*twice, torch.cat([cond, nothing])).chunk(2)
     return guide(conditional, unconditional, scale)
+
+
+class Guided:
+    """A denoiser of two people that its condition guides."""
+
+    @property
+    def takes_scale(self) -> bool:
+        """True for a network that takes the scale as an input and so needs a single pass."""
+        return False
+
+    def guided(
+        self,
+        x: Tensor,
+        t: Tensor,
+        cond: Tensor,
+        mask: Tensor | None = None,
+        known: Tensor | None = None,
+        *,
+        scale: float = 3.5,
+    ) -> Tensor:
+        """:func:`classifier_free` of this network; shapes as in its ``forward``, and ``known`` may have one row."""
+        network = cast(Callable[..., Tensor], self)
+        more = () if known is None else (known.expand(len(x), -1, -1),)
+        if self.takes_scale:
+            scales = torch.full((len(x),), scale, device=x.device)
+            return network(x, t, cond, mask, *(more or (None,)), scales)
+
+        def predict(x: Tensor, t: Tensor, mask: Tensor | None, *rest: Tensor) -> Tensor:
+            *known, cond = rest
+            return network(x, t, cond, mask, *known)
+
+        return classifier_free(predict, x, t, mask, *more, cond=cond, scale=scale)

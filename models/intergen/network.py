@@ -21,7 +21,7 @@ import torch.nn.functional as F
 from torch import Tensor, nn
 
 from models.compiled import TwoPersonInputs
-from models.diffusion import classifier_free
+from models.diffusion import Guided
 from models.errors import as_tensors, count_layers, load_strictly, shape_of
 from models.layers import FeedForward, TimestepEmbedding, sinusoids
 from models.released import read_lightning
@@ -200,7 +200,7 @@ def padding(mask: Tensor | None) -> tuple[Tensor | None, Tensor | None]:
     return real.flatten(0, 1), real.flip(0).flatten(0, 1)
 
 
-class InterGenDenoiser(nn.Module, TwoPersonInputs):
+class InterGenDenoiser(nn.Module, TwoPersonInputs, Guided):
     """D_θ of eq. 8 for both people at once."""
 
     def __init__(self, config: InterGenConfig) -> None:
@@ -258,16 +258,6 @@ class InterGenDenoiser(nn.Module, TwoPersonInputs):
     def widths(self) -> tuple[int, int]:
         """Widths of x and of the text vector, see :class:`models.compiled.TwoPersonInputs`."""
         return 2 * self.config.input_features, self.config.cond_dim
-
-    def guided(
-        self, x: Tensor, t: Tensor, cond: Tensor, mask: Tensor | None = None, *, scale: float = 3.5
-    ) -> Tensor:
-        """:func:`models.diffusion.classifier_free` of this network; shapes as in `forward`."""
-
-        def predict(x: Tensor, t: Tensor, mask: Tensor | None, cond: Tensor) -> Tensor:
-            return self(x, t, cond, mask)
-
-        return classifier_free(predict, x, t, mask, cond=cond, scale=scale)
 
 
 def from_released(weights: Mapping[str, Tensor], *, num_heads: int) -> InterGenDenoiser:

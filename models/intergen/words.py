@@ -19,7 +19,6 @@ import torch
 import torch.nn.functional as F
 from torch import Tensor, nn
 
-from models.diffusion import classifier_free
 from models.layers import TimestepEmbedding
 
 from .network import Block, InterGenConfig, InterGenDenoiser, attend, padding
@@ -193,22 +192,7 @@ class WordDenoiser(InterGenDenoiser):
             real = real.gather(1, first)
         return text.flatten(0, 1), real.repeat(2, 1)
 
-    def guided(
-        self,
-        x: Tensor,
-        t: Tensor,
-        cond: Tensor,
-        mask: Tensor | None = None,
-        known: Tensor | None = None,
-        *,
-        scale: float = 3.5,
-    ) -> Tensor:
-        """Classifier-free guidance, or one pass where the network takes the scale; shapes as in `forward`."""
-        known = None if known is None else known.expand(len(x), -1, -1)
-        if self.embed_guidance is not None:
-            return self(x, t, cond, mask, known, torch.full((len(x),), scale, device=x.device))
-
-        def predict(x: Tensor, t: Tensor, mask: Tensor | None, known: Tensor | None, cond: Tensor) -> Tensor:
-            return self(x, t, cond, mask, known)
-
-        return classifier_free(predict, x, t, mask, known, cond=cond, scale=scale)
+    @property
+    def takes_scale(self) -> bool:
+        """See :class:`models.diffusion.Guided`."""
+        return self.embed_guidance is not None

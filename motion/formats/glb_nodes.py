@@ -9,6 +9,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from motion.vectors import unit
+
 from .glb_file import MOST_JOINTS, GlbFile, Stored, in_order
 
 Array = NDArray[np.floating]
@@ -79,7 +81,7 @@ class Channel:
 
 
 def _slerp(one: Array, other: Array, share: Array) -> Array:
-    one, other = _unit(one), _unit(other)
+    one, other = unit(one), unit(other)
     cosine = np.sum(one * other, axis=-1, keepdims=True)
     other = np.where(cosine < 0, -other, other)
     angle = np.arccos(np.clip(np.abs(cosine), 0.0, 1.0))
@@ -89,10 +91,6 @@ def _slerp(one: Array, other: Array, share: Array) -> Array:
     first = np.where(near, 1.0 - share, np.sin((1.0 - share) * angle) / safe)
     second = np.where(near, share, np.sin(share * angle) / safe)
     return first * one + second * other
-
-
-def _unit(vectors: Array) -> Array:
-    return vectors / np.maximum(np.linalg.norm(vectors, axis=-1, keepdims=True), 1e-12)
 
 
 def people(file: GlbFile, parents: Sequence[int]) -> list[Rig]:
@@ -213,7 +211,7 @@ def _numbers(file: GlbFile, values: Any, count: int) -> Array:
 def matrices(parts: dict[str, Array]) -> Array:
     """(T, 4, 4) of translations (T or 1, 3), rotations (T or 1, 4) and scales (T or 1, 3)."""
     frames = max(len(part) for part in parts.values())
-    x, y, z, w = np.moveaxis(_unit(parts["rotation"]), -1, 0)
+    x, y, z, w = np.moveaxis(unit(parts["rotation"]), -1, 0)
     turn = np.stack([
         1 - 2 * (y * y + z * z), 2 * (x * y - z * w), 2 * (x * z + y * w),
         2 * (x * y + z * w), 1 - 2 * (x * x + z * z), 2 * (y * z - x * w),

@@ -42,7 +42,6 @@ def add_things(buffer: Buffer, things: Sequence[Thing], times: int) -> None:
     import pygltflib as gl
 
     gltf = buffer.gltf
-    animation = gltf.animations[0]
     for thing, name in zip(things, names_of(things), strict=True):
         gltf.meshes.append(gl.Mesh(name=name, primitives=list(_primitives(buffer, thing.mesh, name))))
         turns = quaternions(thing.rotations.astype(np.float64))
@@ -52,14 +51,8 @@ def add_things(buffer: Buffer, things: Sequence[Thing], times: int) -> None:
         gltf.scenes[0].nodes.append(len(gltf.nodes) - 1)
         if not thing.moves:
             continue
-        for path, values, kind in (
-            ("translation", thing.places, gl.VEC3),
-            ("rotation", turns, gl.VEC4),
-        ):
-            output = buffer.add(values.astype(np.float32), kind)
-            animation.samplers.append(gl.AnimationSampler(input=times, output=output, interpolation="LINEAR"))
-            target = gl.AnimationChannelTarget(node=len(gltf.nodes) - 1, path=path)
-            animation.channels.append(gl.AnimationChannel(sampler=len(animation.samplers) - 1, target=target))
+        for path, values in (("translation", thing.places), ("rotation", turns)):
+            buffer.animate(len(gltf.nodes) - 1, path, values, times)
 
 
 def _primitives(buffer: Buffer, mesh: Mesh, name: str) -> Iterator[pygltflib.Primitive]:

@@ -17,6 +17,7 @@ from motion.clip import Clip
 from motion.errors import InputError
 from motion.skeleton import POINTS17
 from motion.transforms import axis_to_y
+from motion.vectors import unit
 
 Array = NDArray[np.floating]
 Points = Mapping[str, Array]
@@ -137,7 +138,7 @@ def _add_hips(found: dict[str, Array], markers: Points) -> None:
         across = wide / np.maximum(width, 1e-9)
         behind = np.mean([markers[name] for name in back], axis=0) - front
         behind -= np.sum(behind * across, axis=-1, keepdims=True) * across
-        behind /= np.maximum(np.linalg.norm(behind, axis=-1, keepdims=True), 1e-9)
+        behind = unit(behind)
         down = np.cross(behind, across)
         for side, sign in (("left", 1.0), ("right", -1.0)):
             found.setdefault(
@@ -160,13 +161,13 @@ def _clip(joints: Mapping[str, Array], upright: Array, fps: float, label: str) -
     unseen = {name: float(np.mean(~np.isfinite(place).all(-1))) for name, place in joints.items()}
     places = {name: _filled(place) @ upright.T for name, place in joints.items()}
     hips, shoulders = ((places[f"left_{part}"] + places[f"right_{part}"]) / 2 for part in ("hip", "shoulder"))
-    trunk = _unit(shoulders - hips)
-    across = _unit(places["left_hip"] - places["right_hip"])
+    trunk = unit(shoulders - hips)
+    across = unit(places["left_hip"] - places["right_hip"])
     places["pelvis"] = hips + 0.09 * trunk
     places.setdefault("neck", shoulders + 0.03 * trunk)
     places.setdefault("head", places["neck"] + 0.1 * trunk)
     for side in ("left", "right"):
-        ahead = np.cross(across, _unit(places[f"{side}_knee"] - places[f"{side}_ankle"]))
+        ahead = np.cross(across, unit(places[f"{side}_knee"] - places[f"{side}_ankle"]))
         places.setdefault(
             f"{side}_foot", places[f"{side}_ankle"] + 0.13 * ahead + np.array([0.0, -0.06, 0.0])
         )
@@ -184,7 +185,3 @@ def _filled(place: Array) -> Array:
     seen = np.flatnonzero(np.isfinite(place).all(-1))
     times = np.arange(len(place))
     return np.stack([np.interp(times, seen, column[seen]) for column in place.T], axis=1)
-
-
-def _unit(vector: Array) -> Array:
-    return vector / np.maximum(np.linalg.norm(vector, axis=-1, keepdims=True), 1e-9)

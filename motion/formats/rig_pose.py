@@ -15,6 +15,7 @@ from motion.kinematics import swing
 from motion.retarget import leg_scale
 from motion.rigs import RigMotion, match_joints
 from motion.skeleton import SMPL22
+from motion.vectors import unit
 
 Array = NDArray[np.floating]
 
@@ -66,7 +67,7 @@ def posed(
         if after is None or rig.parents[after] != joint or np.linalg.norm(bones[after]) < 1e-4:
             continue
         bone = world[:, joint] @ (bones[after] / np.linalg.norm(bones[after]))
-        wanted = _unit(positions[:, pairs[after]] - positions[:, pairs[joint]])
+        wanted = unit(positions[:, pairs[after]] - positions[:, pairs[joint]])
         world[:, joint] = swing(bone, wanted) @ world[:, joint]
     return world
 
@@ -104,9 +105,9 @@ def reached(
         goal = clip.positions[:, SMPL22.index(f"{side}_wrist")] + np.array([0.0, lift, 0.0])
         share = near[side][:, None]
         bent, end = _bent(shoulder, elbow, wrist, wrist + share * (goal / leg_scale(rig) - wrist))
-        upper = swing(_unit(elbow - shoulder), _unit(bent - shoulder))
+        upper = swing(unit(elbow - shoulder), unit(bent - shoulder))
         forearm = np.einsum("tij,tj->ti", upper, wrist - elbow)
-        lower = swing(_unit(forearm), _unit(end - bent)) @ upper
+        lower = swing(unit(forearm), unit(end - bent)) @ upper
         world[:, chain[0]] = upper @ world[:, chain[0]]
         world[:, chain[1]] = lower @ world[:, chain[1]]
     for joint, parent in enumerate(rig.parents):
@@ -122,18 +123,14 @@ def _bent(shoulder: Array, elbow: Array, wrist: Array, goal: Array) -> tuple[Arr
     )
     away = np.linalg.norm(goal - shoulder, axis=-1, keepdims=True)
     far = np.clip(away, np.abs(upper - lower) + 1e-4, 0.9999 * (upper + lower))
-    along = _unit(goal - shoulder)
+    along = unit(goal - shoulder)
     out: Array = elbow - shoulder
     out = out - np.sum(out * along, axis=-1, keepdims=True) * along
     # A straight arm bends down.
     down = np.array([0.0, -1.0, 0.0]) + along * along[:, 1:2]
-    out = _unit(np.where(np.linalg.norm(out, axis=-1, keepdims=True) > 1e-3 * upper, out, down))
+    out = unit(np.where(np.linalg.norm(out, axis=-1, keepdims=True) > 1e-3 * upper, out, down))
     cosine = np.clip((upper**2 + far**2 - lower**2) / np.maximum(2 * upper * far, 1e-9), -1.0, 1.0)
     return shoulder + upper * (cosine * along + np.sqrt(1 - cosine**2) * out), shoulder + far * along
-
-
-def _unit(vectors: Array) -> Array:
-    return vectors / np.maximum(np.linalg.norm(vectors, axis=-1, keepdims=True), 1e-9)
 
 
 def _placed(rig: RigMotion, bones: Array, world: Array) -> Array:

@@ -16,6 +16,7 @@ from numpy.typing import NDArray
 
 from motion.errors import InputError
 from motion.things.thing import Mesh
+from motion.vectors import unit
 
 from .files import read_bytes
 from .glb_file import GlbFile, opened
@@ -247,7 +248,7 @@ def _split(vertices: Array, faces: NDArray, colours: NDArray, label: str) -> Mes
     normals = np.cross(
         vertices[faces[:, 1]] - vertices[faces[:, 0]], vertices[faces[:, 2]] - vertices[faces[:, 0]]
     )
-    normals /= np.maximum(np.linalg.norm(normals, axis=1, keepdims=True), 1e-12)
+    normals = unit(normals)
     # Corners that meet in a vertex stay together where their triangles face the same way, roughly.
     towards = np.rint(1.2 * np.repeat(normals, 3, axis=0)).astype(np.int64)
     keys = np.c_[faces.reshape(-1), towards]

@@ -11,30 +11,20 @@ from collections.abc import Iterable, Mapping
 from pathlib import Path
 
 import numpy as np
-from numpy.typing import NDArray
 
-from motion.body import BODIES, Body, bone_rotations, load_body
-from motion.clip import Clip, Duet
-from motion.colours import BODIES as COLOURS
+from motion.body import Body
+from motion.clip import Duet
 from motion.colours import linear
-from motion.errors import InputError
-from motion.hands import angles
-from motion.kinematics import local_rotations
-from motion.skeleton import SMPL22
 
 from .files import write_files
-from .glb import bone_offsets
 from .glb_nodes import quaternions
-from .hand_rig import FINGER_JOINTS, PARENTS, HandRig
+from .skinned import ABOVE, JOINTS, Skinned, check_rest_pose, skinned
 from .usd_text import identifier, matrices, rows, samples, tuple_of
 from .usd_things import things_text
 
-Array = NDArray[np.floating]
-
 _AROUND = 0.4
 """Metres from the joints to the edge of the box that holds a body."""
-_NAMES = (*SMPL22.joint_names, *FINGER_JOINTS)
-_ONES = f"[{', '.join(['(1, 1, 1)'] * len(_NAMES))}]"
+_ONES = f"[{', '.join(['(1, 1, 1)'] * len(JOINTS))}]"
 
 
 def write_usd(duet: Duet, path: str | Path) -> list[Path]:
@@ -50,10 +40,7 @@ def write_usd(duet: Duet, path: str | Path) -> list[Path]:
     Raises:
         InputError: for people who are not on SMPL22, or where the file cannot be written.
     """
-    if duet.skeleton.joint_names != SMPL22.joint_names:
-        raise InputError(
-            f"USD needs a rest pose, and {duet.skeleton.name} has none: retarget to SMPL22 first."
-        )
+    check_rest_pose(duet, "USD")
     return write_files({Path(path): usd_text(duet).encode()})
 
 
@@ -64,13 +51,7 @@ def usd_text(duet: Duet) -> str:
         names = [f"{name}_{letter}" for name, letter in zip(names, "ab", strict=True)]
     # A string's escapes are those of JSON.
     manifest = json.dumps(json.dumps(duet.manifest or {}, default=str))
-    now = np.arange(float(duet.num_frames))
-    people = (
-        _person(clip, name, load_body(body), zones, angles(duet.grips, person, now, duet.fps))
-        for person, (clip, name, body, zones) in enumerate(
-            zip(duet.people, names, BODIES, COLOURS, strict=True)
-        )
-    )
+    people = (_person(person, name) for person, name in zip(skinned(duet), names, strict=True))
     return f"""#usda 1.0
 (
     customLayerData = {{
@@ -94,18 +75,14 @@ def Xform "duet" (
 """
 
 
-def _person(clip: Clip, name: str, body: Body, colours: Mapping[str, str], shapes: Array) -> str:
-    positions = clip.positions.astype(np.float64)
-    world = bone_rotations(positions)
-    rig = HandRig.of(body)
+def _person(person: Skinned, name: str) -> str:
+    body, positions = person.body, person.positions
     # USD stores rows: points stand to the left of matrices.
-    rest = np.tile(np.eye(4), (len(_NAMES), 1, 1))
-    rest[:, 3, :3] = np.concatenate([bone_offsets(positions, world), rig.offsets])
-    rest[0, 3, :3] = positions[0, 0]
-    bind = np.tile(np.eye(4), (len(_NAMES), 1, 1))
-    bind[:, :3, :3] = np.concatenate([body.turns, rig.turns])
-    bind[:, 3, :3] = np.concatenate([body.joints, rig.joints])
-    local = np.concatenate([local_rotations(world), rig.rotations(body, shapes)], axis=1)
+    rest = np.tile(np.eye(4), (len(JOINTS), 1, 1))
+    rest[:, 3, :3] = person.offsets
+    bind = np.tile(np.eye(4), (len(JOINTS), 1, 1))
+    bind[:, :3, :3] = person.bound_turns
+    bind[:, 3, :3] = person.bound_places
     place = f"/duet/{name}/person"
     box = np.stack([positions.min(axis=(0, 1)) - _AROUND, positions.max(axis=(0, 1)) + _AROUND])
     return f"""    def Scope "{name}"
@@ -118,11 +95,11 @@ def _person(clip: Clip, name: str, body: Body, colours: Mapping[str, str], shape
                 prepend apiSchemas = ["SkelBindingAPI"]
             )
             {{
-                uniform token[] joints = {_JOINTS}
+                uniform token[] joints = {_PATHS}
                 uniform matrix4d[] bindTransforms = {matrices(bind)}
                 uniform matrix4d[] restTransforms = {matrices(rest)}
                 rel skel:animationSource = <{place}/{name}/animation>
-{_animation(positions, local, rest[:, 3, :3])}
+{_animation(person)}
             }}
 
             def Mesh "{name}_body" (
@@ -130,32 +107,32 @@ def _person(clip: Clip, name: str, body: Body, colours: Mapping[str, str], shape
             )
             {{
                 rel skel:skeleton = <{place}/{name}>
-{_surface(body, rig)}
+{_surface(person)}
 {_subsets(body, place)}            }}
-{_materials(body, place, colours)}        }}
+{_materials(body, place, person.colours)}        }}
     }}
 """
 
 
-def _animation(positions: Array, local: Array, offsets: Array) -> str:
+def _animation(person: Skinned) -> str:
     """The motion: quaternions real part first, and where each joint is against the one above it."""
-    turns = np.stack([quaternions(local[:, joint]) for joint in range(len(_NAMES))], axis=1)
-    places = np.repeat(offsets[None], len(positions), axis=0)
-    places[:, 0] = positions[:, 0]
+    turns = np.stack([quaternions(person.turns[:, joint]) for joint in range(len(JOINTS))], axis=1)
+    places = np.repeat(person.offsets[None], len(turns), axis=0)
+    places[:, 0] = person.positions[:, 0]
     return f"""
                 def SkelAnimation "animation"
                 {{
-                    uniform token[] joints = {_JOINTS}
+                    uniform token[] joints = {_PATHS}
                     quatf[] rotations.timeSamples = {samples(turns[..., [3, 0, 1, 2]])}
                     half3[] scales = {_ONES}
                     float3[] translations.timeSamples = {samples(places)}
                 }}"""
 
 
-def _surface(body: Body, rig: HandRig) -> str:
+def _surface(person: Skinned) -> str:
     """The body as it is bound; each vertex follows four joints."""
-    weights = np.round(rig.weights, 6)
-    joints = np.where(weights > 0, rig.bones, 0)
+    body, weights = person.body, np.round(person.weights, 6)
+    joints = np.where(weights > 0, person.bones, 0)
     four = '(\nelementSize = 4\ninterpolation = "vertex"\n)'
     return f"""                uniform token subdivisionScheme = "none"
                 float3[] extent = {rows(np.stack([body.vertices.min(axis=0), body.vertices.max(axis=0)]))}
@@ -202,9 +179,9 @@ def _materials(body: Body, place: str, colours: Mapping[str, str]) -> str:
 def _paths() -> Iterable[str]:
     """The joints as USD calls them: "pelvis/left_hip/left_knee"."""
     found: list[str] = []
-    for name, parent in zip(_NAMES, (*SMPL22.parents, *PARENTS), strict=True):
+    for name, parent in zip(JOINTS, ABOVE, strict=True):
         found.append(f"{found[parent]}/{name}" if parent >= 0 else name)
     return found
 
 
-_JOINTS = json.dumps(list(_paths()))
+_PATHS = json.dumps(list(_paths()))

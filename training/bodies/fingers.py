@@ -10,6 +10,7 @@ import numpy as np
 from scipy.spatial import cKDTree
 
 from motion.hands import FINGERS, SIDES
+from motion.vectors import unit
 
 from .makehuman import J, MakeHuman
 
@@ -80,12 +81,12 @@ def _axes(places: np.ndarray, side: int) -> tuple[np.ndarray, np.ndarray, np.nda
     straight = places[2, 3] - places[2, 0]
     bends, closing = np.zeros((5, 3, 3)), np.zeros(5)
     for f in range(5):
-        goal = out if f else _unit(places[3, 0] - places[0, 1] + 0.03 * out)  # the thumb bends over the palm
+        goal = out if f else unit(places[3, 0] - places[0, 1] + 0.03 * out)  # the thumb bends over the palm
         for k in range(3):
-            bends[f, k] = _unit(np.cross(places[f, k + 1] - places[f, k], goal))
+            bends[f, k] = unit(np.cross(places[f, k + 1] - places[f, k], goal))
         if f:
             flat = [v - (v @ out) * out for v in (places[f, 3] - places[f, 0], straight)]
-            one, other = map(_unit, flat)
+            one, other = map(unit, flat)
             closing[f] = np.arctan2(np.cross(one, other) @ out, one @ other)
     return bends, closing, out
 
@@ -101,10 +102,6 @@ def _finger_weights(mh: MakeHuman) -> np.ndarray:
                 for vertex, weight in pairs:
                     found[vertex, 15 * side + 3 * f + k] += weight
     return found / np.maximum(found.sum(axis=1, keepdims=True), 1.0)
-
-
-def _unit(vector: np.ndarray) -> np.ndarray:
-    return vector / np.linalg.norm(vector)
 
 
 def _text(values: np.ndarray, kind: str) -> str:

@@ -18,6 +18,7 @@ from scipy.spatial.transform import Rotation
 from motion.kinematics import fit_rotations, forward_kinematics, global_rotations
 from motion.skeleton import SMPL22
 from motion.transforms import heading_matrix
+from motion.vectors import wrapped
 
 from .blending import Array, ease, slerp
 from .feet import FPS, plant_feet, planted
@@ -214,7 +215,7 @@ def look_at(motion: Motion, target: Array, *, amount: float = 0.8) -> Motion:
     forward = world[:, SMPL22.index("spine3")] @ np.array([0.0, 0.0, 1.0])
     wanted = target - motion.root
     angle = np.arctan2(wanted[:, 0], wanted[:, 2]) - np.arctan2(forward[:, 0], forward[:, 2])
-    angle = (angle + np.pi) % (2 * np.pi) - np.pi
+    angle = wrapped(angle)
     seen = np.clip((np.radians(140) - np.abs(angle)) / np.radians(50), 0, 1)
     angle = gaussian_filter1d(np.clip(angle, -1.2, 1.2) * seen * amount, 5.0, mode="nearest")
     rotations = motion.rotations.copy()

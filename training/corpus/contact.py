@@ -16,6 +16,7 @@ from scipy.spatial.transform import Rotation
 
 from motion.skeleton import SMPL22
 from motion.transforms import heading
+from motion.vectors import unit
 
 from .compose import ARMS, FPS, Array
 from .feet import LEGS, two_bone
@@ -256,15 +257,15 @@ def reach_arm(
 
     to_left, forward = axes(positions)
     outwards = to_left if side == "left" else -to_left
-    pole = _unit(elbow[0] * outwards + elbow[1] * UP + elbow[2] * forward)
-    pole = _unit(pole - np.sum(pole * along, axis=-1, keepdims=True) * along)
-    was = _unit(old)
+    pole = unit(elbow[0] * outwards + elbow[1] * UP + elbow[2] * forward)
+    pole = unit(pole - np.sum(pole * along, axis=-1, keepdims=True) * along)
+    was = unit(old)
     offset = positions[:, middle] - root
     offset = offset - np.sum(offset * was, axis=-1, keepdims=True) * was
     carried = _carry(offset + 0.02 * pole, was, along)
     # A straight arm has no bend to keep; its elbow turns to the pole as soon as it folds.
-    side_of = _unit(_unit(carried) * (1 - share) + pole * share)
-    side_of = _unit(side_of - np.sum(side_of * along, axis=-1, keepdims=True) * along)
+    side_of = unit(unit(carried) * (1 - share) + pole * share)
+    side_of = unit(side_of - np.sum(side_of * along, axis=-1, keepdims=True) * along)
 
     cosine = (upper**2 + distance**2 - lower**2) / (2 * distance)
     height = np.sqrt(np.maximum(upper**2 - cosine**2, 0))
@@ -314,7 +315,7 @@ def pose_arm(positions: Array, side: str, upper: Array, lower: Array, weight: Ar
     for end, begin, direction in ((elbow, shoulder, upper), (wrist, elbow, lower)):
         bone = positions[:, end] - positions[:, begin]
         length = np.linalg.norm(bone, axis=-1, keepdims=True)
-        posed[:, end] = start + length * _between(_unit(bone), _unit(direction), weight[:, None])
+        posed[:, end] = start + length * _between(unit(bone), unit(direction), weight[:, None])
         start = posed[:, end]
     return posed
 
@@ -341,10 +342,6 @@ def _soft_limit(distance: Array, length: Array) -> Array:
     """Distances that approach the arm's length smoothly and never pass it."""
     knee, room = 0.94 * length, 0.055 * length
     return np.where(distance > knee, knee + room * (1 - np.exp(-(distance - knee) / room)), distance)
-
-
-def _unit(vector: Array) -> Array:
-    return vector / np.maximum(np.linalg.norm(vector, axis=-1, keepdims=True), 1e-9)
 
 
 def shaking(frames: int, start: int, stop: int, *, hertz: float, size: float) -> Array:

@@ -16,6 +16,7 @@ from motion.ik import body_scale, fit_skeleton
 from motion.kinematics import project_to_skeleton
 from motion.skeleton import SMPL22, Skeleton
 from motion.transforms import heading_matrix, resample
+from motion.vectors import wrapped
 
 from .sbu import KinectPair
 
@@ -87,7 +88,7 @@ def _deviation(own: Array, ahead: Array, skeleton: Skeleton) -> Array:
     """(T,) radians from where this person should face to where the hips face, positive from +X to +Z."""
     across = (own[:, skeleton.index("left_hip")] - own[:, skeleton.index("right_hip")])[:, [0, 2]]
     difference = np.arctan2(across[:, 0], -across[:, 1]) - np.arctan2(ahead[:, 1], ahead[:, 0])
-    return (difference + np.pi) % (2 * np.pi) - np.pi
+    return wrapped(difference)
 
 
 def _turned_trunk(own: Array, ahead: Array, skeleton: Skeleton) -> Array:

@@ -13,6 +13,7 @@ from scipy.signal import find_peaks
 
 from motion.kinematics import forward_kinematics
 from motion.skeleton import SMPL22
+from motion.vectors import wrapped
 
 from .compose import Motion, join, mirror, motion_from_positions, time_warp
 from .feet import LEGS
@@ -229,7 +230,7 @@ def blows(motion: Motion, clip: SourceClip, *, most: int = 5) -> list[Take]:
                         clip.style,
                         None if sword else side,
                         tuple(int(peak) - start for peak in peaks[first : last + 1]),
-                        (aim + np.pi) % (2 * np.pi) - np.pi,
+                        wrapped(aim),
                     )
                 )
     return takes

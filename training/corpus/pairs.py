@@ -24,6 +24,7 @@ from scipy.ndimage import binary_closing, binary_opening, gaussian_filter1d
 from motion.cleaning import plant_feet, solve_two_bones
 from motion.skeleton import SMPL22
 from motion.transforms import canonicalize, facing
+from motion.vectors import unit
 
 from .checks import foot_skate
 from .cues import STILL
@@ -218,7 +219,7 @@ def _meet(people: Array, family: str) -> Array:
     people = np.stack([people[0] + shift, people[1] - shift])
     one, other = _wrists(people, sides)
     centre, axis = (one + other) / 2, other - one
-    axis /= np.maximum(np.linalg.norm(axis, axis=-1, keepdims=True), 1e-9)
+    axis = unit(axis)
     weight = _fade(near, frames=10)[:, None]
     goals = (centre - axis * apart / 2, centre + axis * apart / 2)
     return np.stack(
@@ -266,7 +267,7 @@ def _fault(people: Array, family: str, error: float) -> str | None:
         return "a body leans over by more than 60°"
     if family in _MEANT_TO_FACE:
         towards = (people[1, :, 0] - people[0, :, 0]) * np.array([1.0, 0.0, 1.0])
-        towards /= np.maximum(np.linalg.norm(towards, axis=-1, keepdims=True), 1e-9)
+        towards = unit(towards)
         cos = [
             np.mean(np.sum(facing(people[0]) * towards, -1)),
             np.mean(np.sum(facing(people[1]) * -towards, -1)),
@@ -331,7 +332,7 @@ def describe(people: Array, family: str) -> tuple[dict[str, Any], dict[str, Any]
 def _striking_side(people: Array, part: str, *, up: bool = False) -> str | None:
     """The actor's hand or foot that goes furthest to the other, or highest; ``None`` without a lead."""
     towards = (people[1, :, 0] - people[0, :, 0]) * np.array([1.0, 0.0, 1.0])
-    towards /= np.maximum(np.linalg.norm(towards, axis=-1, keepdims=True), 1e-9)
+    towards = unit(towards)
     direction = np.array([0.0, 1.0, 0.0]) if up else towards
     reach = {
         side: np.max(

@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 
 from motion import Duet
 from motion.transforms import heading
+from motion.vectors import wrapped
 from training.core.shell import exit_code
 from training.corpus.pairs import load_pairs
 from training.corpus.scene import Scene
@@ -44,7 +45,7 @@ def facings(positions: Array) -> Array:
 
 def errors(made: Array, truth: Array) -> tuple[float, float]:
     """Mean errors of the distance in centimetres and of the facing in degrees; (2, T, 22, 3) metres each."""
-    turned = (facings(made) - facings(truth) + np.pi) % (2 * np.pi) - np.pi
+    turned = wrapped(facings(made) - facings(truth))
     return (
         100 * float(np.abs(distances(made) - distances(truth)).mean()),
         float(np.degrees(np.abs(turned)).mean()),

@@ -14,17 +14,20 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass
 
+import numpy as np
 import torch
 from torch import Tensor
 
 from models.diffusion import NoiseSchedule, top_timesteps
 from models.motion_tokens import FEATURES, NUM_CONTACTS
 from models.regennet.compact import LEAD
+from motion.easing import smoothstep
 
 SHORTEST = 4
 """Rows that are learned at least, beside the ones that come at once with the first frame."""
 RETURN = 6
 """Rows over which the aim goes from the network's past to the recorded motion: 0.8 s."""
+_LEFT = torch.from_numpy(1 - smoothstep(np.arange(RETURN + 1), 0, RETURN)).float()
 FARTHEST = 0.35
 """Metres: a past that is farther from the recorded one, on average over the joints, is not used."""
 
@@ -92,8 +95,7 @@ def plan(rows: Tensor, *, share: float, steps: int, rollout: int, generator: tor
 def return_share(rows: int, cut: Tensor) -> Tensor:
     """The share of the past's distance from the recorded motion that is left in each row: cut (B,) → (B, rows, 1)."""
     since = torch.arange(rows, device=cut.device) - (cut[:, None] - 1)
-    left = (1 - since / RETURN).clamp(0, 1)
-    return (left**2 * (3 - 2 * left))[..., None]
+    return _LEFT.to(cut.device)[since.clamp(0, RETURN)][..., None]
 
 
 @torch.no_grad()

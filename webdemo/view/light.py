@@ -8,7 +8,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from motion.body import Body, vertex_normals
+from motion.easing import smoothstep
 from motion.skeleton import Skeleton
+from motion.vectors import unit
 
 from .camera import Camera
 from .theme import Lamps, Worn
@@ -62,16 +64,15 @@ def lit(
     normals = vertex_normals(vertices, faces)
     right, _, forward = camera.axes
     flat = forward * np.array([1.0, 0.0, 1.0])
-    key = _unit(-0.75 * flat - 0.75 * right + np.array([0.0, 0.95, 0.0]))
-    rim = _unit(0.8 * flat + 0.9 * right + np.array([0.0, 0.55, 0.0]))
-    to_eye = _unit(camera.eye - vertices)
+    key = unit(-0.75 * flat - 0.75 * right + np.array([0.0, 0.95, 0.0]))
+    rim = unit(0.8 * flat + 0.9 * right + np.array([0.0, 0.55, 0.0]))
+    to_eye = unit(camera.eye - vertices)
     above = 0.5 + 0.5 * normals[:, 1]
     front = np.maximum((normals @ key + 0.25) / 1.25, 0.0) * (0.35 + 0.65 * opened)
     edge = 1 - np.maximum(np.einsum("vi,vi->v", normals, to_eye), 0.0)
     behind = np.maximum(normals @ rim, 0.0) * edge * edge * opened
-    shine = np.maximum(np.einsum("vi,vi->v", _unit(to_eye + key), normals), 0.0) ** 22
-    step = np.clip((vertices[:, 1] + 0.05) / 0.55, 0.0, 1.0)
-    grounded = 0.4 + 0.6 * step * step * (3 - 2 * step)
+    shine = np.maximum(np.einsum("vi,vi->v", unit(to_eye + key), normals), 0.0) ** 22
+    grounded = 0.4 + 0.6 * smoothstep(vertices[:, 1], -0.05, 0.5)
     shares = np.stack(
         [(1 - above) * grounded * opened**2, above * opened**2, front, behind], axis=1
     )  # of ground, sky, key and rim
@@ -160,7 +161,3 @@ class Shadow:
 
 def _radius(joint: str) -> float:
     return _RADII.get(joint.removeprefix("left_").removeprefix("right_"), _RADIUS)
-
-
-def _unit(vectors: Array) -> Array:
-    return vectors / np.maximum(np.linalg.norm(vectors, axis=-1, keepdims=True), 1e-12)

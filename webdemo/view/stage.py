@@ -15,6 +15,7 @@ from PIL import Image, ImageDraw, ImageFont
 
 from motion.body import BODIES, Body, load_body, skin
 from motion.clip import Clip, Duet, stacked_positions
+from motion.easing import smoothstep
 from motion.errors import InputError
 from motion.skeleton import SMPL22
 from motion.things.thing import Thing
@@ -216,8 +217,8 @@ class _Pen:
             lines[:, 0, [0, 2]] = along[:, [first, second]]
             lines[:, 1, [0, 2]] = (along + np.array([1.0, 0.0]))[:, [first, second]]
             lines[..., [0, 2]] += middle
-            away = np.clip(np.linalg.norm(lines.mean(axis=1)[:, [0, 2]] - middle, axis=1) / _GRID, 0, 1)
-            strength = np.round(_GRID_STEPS * (1 - away * away * (3 - 2 * away)))
+            away = np.linalg.norm(lines.mean(axis=1)[:, [0, 2]] - middle, axis=1)
+            strength = np.round(_GRID_STEPS * (1 - smoothstep(away, 0, _GRID)))
             strong = (along[:, 1] + middle[1 - first]) % 5 == 0
             pixels, seen = self._placed(lines)
             for is_strong in (False, True):
@@ -311,14 +312,14 @@ def _ground(camera: Camera, theme: Theme, shadow: Shadow) -> NDArray[np.uint32]:
     first = int(np.searchsorted(-slope, 1e-4))  # of the rows that show floor
     picture = np.empty((height, width), dtype=np.uint32)
     rise = np.arctan(slope[:first] / np.hypot(rows[:first, 0], rows[:first, 2]))
-    picture[:first] = _ramp(theme.horizon, theme.sky)[_levels(_smooth(np.minimum(rise / 0.55, 1)))][:, None]
+    picture[:first] = _ramp(theme.horizon, theme.sky)[_levels(smoothstep(rise, 0.0, 0.55))][:, None]
     if first < height:
         reach = (camera.eye[1] / -slope[first:])[:, None].astype(np.float32)
         # Metres from what the camera looks at, along X and Z.
         east = reach * (rows[first:, :1] + x * right[0]) + np.float32(camera.eye[0] - camera.target[0])
         south = reach * (rows[first:, 2:] + x * right[2]) + np.float32(camera.eye[2] - camera.target[2])
         t = np.minimum(np.sqrt(east * east + south * south) / np.float32(18), np.float32(1))
-        floor = _ramp(theme.floor, theme.far)[_levels(_smooth(t))]
+        floor = _ramp(theme.floor, theme.far)[_levels(smoothstep(t))]
         dark, hidden = shadow.at(east + np.float32(camera.target[0]), south + np.float32(camera.target[2]))
         plain = floor.ravel()[hidden].view(np.uint8).reshape(-1, 4)
         lost = dark[:, None] * np.array([*(1 - np.array(theme.shade)), 0], dtype=np.float32)
@@ -328,10 +329,6 @@ def _ground(camera: Camera, theme: Theme, shadow: Shadow) -> NDArray[np.uint32]:
 
 
 _LEVELS = 1023
-
-
-def _smooth(t: Array) -> Array:
-    return t * t * (3 - 2 * t)
 
 
 def _levels(shares: Array) -> NDArray[np.integer]:

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
+from motion.vectors import wrapped
+
 from ..compose import Array, steer
 from ..contact import envelope
 from ..cues import STILL
@@ -11,7 +13,6 @@ from ..library import pick
 from ..stage import stride
 from ..touches import Touches, arm_around, joined_hands, meet_hands, opposite
 from .moves import abreast, come, side_by_side
-from .performer import wrap
 from .play import Effect, Play
 
 
@@ -80,7 +81,7 @@ def carousel(play: Play, i: int) -> None:
     radius = play.gap / 2
     walk = stride(rng, play.library, f"walk-{side}", radius * rng.uniform(2.5, 5.5), side=side)
     step = walk.motion.root[-1] - walk.motion.root[0]
-    course = wrap(float(np.arctan2(step[0], step[2]) - walk.motion.headings.mean()))
+    course = wrapped(float(np.arctan2(step[0], step[2]) - walk.motion.headings.mean()))
     aim = course - (1 if side == "left" else -1) * np.pi / 2
     steps = np.linalg.norm(np.diff(walk.motion.root[:, [0, 2]], axis=0), axis=-1)
     # Who steps to the left around a point ahead turns to the right.

@@ -4,13 +4,15 @@ from __future__ import annotations
 
 import numpy as np
 
+from motion.vectors import wrapped
+
 from ..blending import ease
 from ..compose import Array, Motion, steer, tempo
 from ..cues import STILL
 from ..library import Take, pick
 from ..stage import stride
 from .acts import ACTS, arms_over
-from .performer import Performer, bearing, wrap
+from .performer import Performer, bearing
 from .play import Play
 
 
@@ -55,7 +57,7 @@ def close_in(play: Play, i: int, distance: float, *, both: bool = False, action:
             take = own.go(stay + axis * distance, towards, action=action)
         if abs(play.off(1 - i)) > 0.3:
             other.hold(max(min(len(own) - start - 40, 12), 0))
-            other.turn(wrap(bearing(own.spot - other.spot) - other.angle))
+            other.turn(wrapped(bearing(own.spot - other.spot) - other.angle))
     play.sync()
     error = play.gap - distance
     if abs(error) > 0.06 or max(abs(play.off(0)), abs(play.off(1))) > 0.22:
@@ -194,7 +196,7 @@ def step_aside(play: Play, i: int) -> None:
     side = pick(rng, ("left", "right"))
     walk = stride(rng, play.library, f"walk-{side}", rng.uniform(0.6, 1.1), side=side)
     step = walk.motion.root[-1] - walk.motion.root[0]
-    course = wrap(float(np.arctan2(step[0], step[2]) - walk.motion.headings.mean()))
+    course = wrapped(float(np.arctan2(step[0], step[2]) - walk.motion.headings.mean()))
     play.people[i].perform(walk.motion, aim=course - (1 if side == "left" else -1) * np.pi / 2)
     play.note(("step-aside", STILL), start, i=i, relation="while", sides=(side, None))
 
@@ -208,7 +210,7 @@ def circle(play: Play, i: int) -> None:
     radius = float(np.clip(play.gap, 0.85, 1.3))
     if abs(play.gap - radius) > 0.15:
         close_in(play, i, radius)
-    own.turn(wrap(bearing(other.spot - own.spot) - side * np.pi / 2 - own.angle))
+    own.turn(wrapped(bearing(other.spot - own.spot) - side * np.pi / 2 - own.angle))
     arc = rng.uniform(0.55, 1.05) * 2 * np.pi
     take, walk = curve(own, radius * arc, side / radius)
     own.append(walk)
@@ -266,11 +268,11 @@ def side_by_side(play: Play, i: int, gap: float) -> tuple[float, int]:
     play.sync()
     way = own.angle + (pick(rng, (-1, 1)) * rng.uniform(0.5, 1.3) if abs(play.off(i)) < 1.2 else 0.0)
     side = 1 if np.dot(other.spot - own.spot, leftwards(way)) >= 0 else -1
-    own.turn(wrap(way - own.angle))
+    own.turn(wrapped(way - own.angle))
     way = own.angle
     other.go(own.spot + side * gap * leftwards(way), way)
     play.sync()
-    other.hold(10, turn=wrap(way - other.angle), shift=own.spot + side * gap * leftwards(way) - other.spot)
+    other.hold(10, turn=wrapped(way - other.angle), shift=own.spot + side * gap * leftwards(way) - other.spot)
     play.sync()
     return way, side
 

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
+from motion.vectors import wrapped
+
 from ..blending import ease
 from ..compose import Array, Motion, drift, facing_at, join, place, steer, tempo
 from ..library import Library, Take
@@ -13,11 +15,6 @@ Rng = np.random.Generator
 
 SHUFFLE = 0.45
 """Metres up to which a person shifts by small steps on the spot instead of walking."""
-
-
-def wrap(angle: float) -> float:
-    """The angle in (-π, π]."""
-    return float((angle + np.pi) % (2 * np.pi) - np.pi)
 
 
 def bearing(vector: Array) -> float:
@@ -121,7 +118,7 @@ class Performer:
 
     def face(self, point: Array) -> float:
         """Turns on the spot towards a point; returns by how much."""
-        angle = wrap(bearing(np.asarray(point) - self.spot) - self.angle)
+        angle = wrapped(bearing(np.asarray(point) - self.spot) - self.angle)
         self.turn(angle)
         return angle
 
@@ -143,14 +140,14 @@ class Performer:
         gap = target - self.spot
         distance = float(np.linalg.norm(gap))
         if distance < SHUFFLE:
-            turn = 0.0 if angle is None else wrap(angle - self.angle)
+            turn = 0.0 if angle is None else wrapped(angle - self.angle)
             self.hold(int(16 + 30 * distance + 12 * abs(turn)), turn=turn, shift=gap)
             return Take(self.motion[-1:], action, "normal")
         take, course = self._walk(gap, angle, action, style or self.style)
         self.append(course)
         if stop:
             self.hold(int(self.rng.integers(8, 16)))
-            if angle is not None and abs(left := wrap(angle - self.angle)) > 0.12:
+            if angle is not None and abs(left := wrapped(angle - self.angle)) > 0.12:
                 self.hold(int(10 + 14 * abs(left)), turn=left)
         return take
 
@@ -172,7 +169,7 @@ class Performer:
         here = self.angle
         walk = place(walk, 0.0, 0.0, here)
         frames = len(walk)
-        first = wrap(bearing(gap) - here)
+        first = wrapped(bearing(gap) - here)
         turning = int(np.clip(14 + 12 * abs(first), 14, frames * 0.7))
         rise = np.concatenate([ease(turning), np.ones(frames - turning)])
         slow = np.ones(frames)
@@ -183,7 +180,7 @@ class Performer:
         if angle is not None:
             ending = min(18, frames // 2)
             fall[frames - ending :] = ease(ending)
-            last = float(np.clip(wrap(angle - bearing(gap)), -0.7, 0.7))
+            last = float(np.clip(wrapped(angle - bearing(gap)), -0.7, 0.7))
         gain, bend = float(np.clip(best[0], 0.7, 1.4)), first
         steps = np.diff(walk.root[:, [0, 2]], axis=0)
         for _ in range(5):
@@ -191,7 +188,7 @@ class Performer:
             cos, sin = np.cos(extra[:-1]), np.sin(extra[:-1])
             way = (steps * (slow * gain)[:-1, None]).T
             end = np.array([(cos * way[0] + sin * way[1]).sum(), (cos * way[1] - sin * way[0]).sum()])
-            bend += wrap(bearing(gap) - bearing(end))
+            bend += wrapped(bearing(gap) - bearing(end))
             gain = float(np.clip(gain * distance / max(np.linalg.norm(end), 1e-3), 0.6, 1.5))
         return take, steer(tempo(walk, slow * gain), bend * rise + last * fall)
 

@@ -9,12 +9,13 @@ from typing import Any
 import numpy as np
 
 from motion.transforms import canonicalize
+from motion.vectors import wrapped
 
 from ..compose import FPS, Array, look_at, realise
 from ..cues import STILL, Beat
 from ..library import Library
 from ..touches import Touches
-from .performer import Performer, Rng, bearing, wrap
+from .performer import Performer, Rng, bearing
 
 Effect = Callable[[Array, Array], tuple[Array, Array, Touches]]
 
@@ -71,7 +72,7 @@ class Play:
     def off(self, i: int) -> float:
         """Radians by which person ``i`` is turned away from the other."""
         own, other = self.people[i], self.people[1 - i]
-        return wrap(bearing(other.spot - own.spot) - own.angle)
+        return wrapped(bearing(other.spot - own.spot) - own.angle)
 
     def seconds(self, low: float, high: float) -> int:
         """A random duration in frames; three quarters of it where many beats must fit into the scene."""

@@ -7,6 +7,7 @@ from collections.abc import Callable
 import numpy as np
 
 from motion.skeleton import SMPL22
+from motion.vectors import wrapped
 
 from ..compose import Array
 from ..contact import UP, envelope, on_body, reach
@@ -18,7 +19,6 @@ from .blows import blow_at, push
 from .joined import arm_around_beat, carousel, hand_in_hand
 from .moves import ahead, close_in, come, leftwards
 from .offers import refused, throw_catch
-from .performer import wrap
 from .play import Play
 
 AFTER = 34
@@ -88,7 +88,7 @@ def _from_the_side(make: Callable, name: str, answer: str) -> Callable[[Play, in
         near = float(np.linalg.norm(own.spot - spot)) < 0.6
         own.go(spot, way)
         play.sync()
-        own.hold(12, turn=wrap(way - own.angle), shift=spot - own.spot)
+        own.hold(12, turn=wrapped(way - own.angle), shift=spot - own.spot)
         start = play.sync()
         if not near:
             play.note_span(("walk-up", STILL), begun, start, i=i, relation="while", minor=True)
@@ -146,13 +146,13 @@ def _tap_turn(play: Play, i: int) -> None:
     side, _ = chosen_side(rng)
     sign = 1.0 if side == "right" else -1.0
     if abs(play.off(1 - i)) < 2.0:  # the other turns away first
-        other.turn(wrap(np.pi - abs(play.off(1 - i))) * pick(rng, (-1, 1)))
+        other.turn(wrapped(np.pi - abs(play.off(1 - i))) * pick(rng, (-1, 1)))
     play.look(1 - i, begun, len(other) + 30, 0.0)
     way = other.angle
     spot = other.spot - rng.uniform(0.5, 0.58) * ahead(way) + sign * rng.uniform(0, 0.1) * leftwards(way)
     own.go(spot, way)
     play.sync()
-    own.hold(10, turn=wrap(way - own.angle), shift=spot - own.spot)
+    own.hold(10, turn=wrapped(way - own.angle), shift=spot - own.spot)
     start = play.sync()
     if start - begun > 30:
         play.note_span(("come-behind", STILL), begun, start, i=i, relation="while", minor=True)

@@ -6,6 +6,7 @@ import numpy as np
 
 from motion.kinematics import forward_kinematics
 from motion.skeleton import SMPL22
+from motion.vectors import wrapped
 
 from ..compose import Motion
 from ..contact import (
@@ -54,7 +55,7 @@ def _strike(rng: Rng, library: Library, family: str) -> Scene:
     for _ in range(2):  # the first round measures which way the blow goes, the second turns it straight ahead
         a, starts = act(rng, library, (start, take.motion, aim), tail=tail)
         hit, ahead, gap = _blow_lands(a, starts[0] + take.peaks[0], take.side or "right", family)
-        aim += (ahead - forward(a, 0)[1] + np.pi) % (2 * np.pi) - np.pi
+        aim += wrapped(ahead - forward(a, 0)[1])
     b = library.idle(rng, hit + 30)
     if rng.random() < 0.75:
         steps = stride(rng, library, "walk-back", rng.uniform(0.4, 1.1)).motion

@@ -11,6 +11,7 @@ import torch
 
 from models.predictors import Predictor, load_predictor
 from motion import SMPL22, stacked_positions
+from motion.vectors import unit
 from webdemo.inference.actor import FPS
 from webdemo.inference.cancel import CancelToken
 from webdemo.inference.predict_request import PredictRequest, PredictResult, with_people
@@ -73,8 +74,7 @@ def with_bones_of(pose: Array, positions: Array) -> Array:
     for parent, child in SMPL22.bones:
         length = np.linalg.norm(pose[:, child] - pose[:, parent], axis=-1)[:, None, None]
         bone = positions[:, :, child] - positions[:, :, parent]
-        unit = bone / np.maximum(np.linalg.norm(bone, axis=-1, keepdims=True), 1e-9)
-        result[:, :, child] = result[:, :, parent] + length * unit
+        result[:, :, child] = result[:, :, parent] + length * unit(bone)
     return result
 
 

@@ -14,7 +14,9 @@ from numpy.typing import NDArray
 
 from motion import SMPL22
 from motion.cleaning import solve_two_bones
+from motion.easing import smoothstep
 from motion.transforms import facing, heading, heading_matrix
+from motion.vectors import wrapped
 from webdemo.inference.actor import FPS
 
 Array = NDArray[np.floating]
@@ -105,7 +107,7 @@ class Steering:
 
     def takes_over(self, raw: Array, shown: Array) -> None:
         """Goes on from the pose that is shown with another pose (22, 3) of the network at the same moment."""
-        self.yaw = _wrapped(float(heading(shown[None])[0] - heading(raw[None])[0]))
+        self.yaw = wrapped(float(heading(shown[None])[0] - heading(raw[None])[0]))
         self.place = (shown[0] - raw[0]) * _FLAT
 
     def _moved(self, pose: Array) -> Array:
@@ -114,7 +116,7 @@ class Steering:
     def _turn(self, off: float) -> None:
         self._turning = abs(off) > (TURN_UNTIL if self._turning else TURN_FROM)
         if self._turning:
-            self.yaw = _wrapped(self.yaw + float(np.clip(off, -TURN_RATE, TURN_RATE)))
+            self.yaw = wrapped(self.yaw + float(np.clip(off, -TURN_RATE, TURN_RATE)))
 
     def _walk(self, moved: Array, *, wanted: bool) -> None:
         self._speed = float(np.clip(self._speed + (SPEED_UP if wanted else -SPEED_UP), 0.0, 1.0))
@@ -183,7 +185,7 @@ class Steps:
         if swing is not None:
             frame, began, foot = swing
             share = (frame + 1) / STRIDE
-            smooth = share**2 * (3 - 2 * share)
+            smooth = float(smoothstep(share))
             place = began + smooth * (goal[0] - began) + [0.0, LIFT * np.sin(np.pi * share), 0.0]
             turned = _turned(foot, goal[1], smooth)
             done = share >= 1
@@ -211,13 +213,9 @@ def _turned(first: Array, second: Array, share: float) -> Array:
     return between * np.linalg.norm(second) / max(float(np.linalg.norm(between)), 1e-9)
 
 
-def _wrapped(angle: float) -> float:
-    return float((angle + np.pi) % (2 * np.pi) - np.pi)
-
-
 def _angle_to(pose: Array, goal: Goal) -> float:
     """Radians from the direction that a pose faces to its goal, positive towards +X."""
     way = (goal.towards - pose[0]) * _FLAT * (-1 if goal.away else 1)
     if np.linalg.norm(way) < 1e-6:
         return 0.0
-    return _wrapped(float(np.arctan2(way[0], way[2]) - heading(pose[None])[0]))
+    return wrapped(float(np.arctan2(way[0], way[2]) - heading(pose[None])[0]))

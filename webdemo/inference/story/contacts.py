@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 
 from motion import SMPL22
 from motion.transforms import heading
+from motion.vectors import unit
 
 from .gestures import SIDES
 
@@ -124,19 +125,19 @@ def touched(touch: Contact, other: Array, own: Array) -> Array:
     if touch.region is Region.BACK and float((own[0] - other[0]) @ _facing(other)) > 0:
         joints = _joints(Region.SHOULDER)  # as far as an arm gets round somebody from the front
     if not touch.sides:
-        return other[joints[0]] + _KISS * _unit(own[SMPL22.index("head")] - other[joints[0]])[None]
+        return other[joints[0]] + _KISS * unit(own[SMPL22.index("head")] - other[joints[0]])[None]
     found = []
     for side in touch.sides:
         shoulder = own[SMPL22.index(f"{side}_shoulder")]
         joint = min(joints, key=lambda j: float(np.linalg.norm(other[j] - shoulder)))
-        place = other[joint] + _SKIN * _unit(shoulder - other[joint])
+        place = other[joint] + _SKIN * unit(shoulder - other[joint])
         if touch.region is Region.WAIST:  # the arms go round
-            across = _unit((shoulder - own[0]) * [1.0, 0.0, 1.0])
+            across = unit((shoulder - own[0]) * [1.0, 0.0, 1.0])
             place = other[joint] + 0.12 * _facing(other) - 0.02 * across + np.array([0.0, 0.02, 0.0])
         elif len(joints) == 1 and len(touch.sides) == 2:
-            place = place + 0.08 * _unit((shoulder - own[0]) * [1.0, 0.0, 1.0])
+            place = place + 0.08 * unit((shoulder - own[0]) * [1.0, 0.0, 1.0])
         if touch.region is Region.BACK and len(joints) == 1:
-            place = place + 0.05 * _unit(shoulder - back)
+            place = place + 0.05 * unit(shoulder - back)
         found.append(place)
     return np.stack(found)
 
@@ -144,7 +145,3 @@ def touched(touch: Contact, other: Array, own: Array) -> Array:
 def _facing(pose: Array) -> Array:
     angle = float(heading(np.asarray(pose)[None])[0])
     return np.array([np.sin(angle), 0.0, np.cos(angle)])
-
-
-def _unit(vector: Array) -> Array:
-    return vector / max(float(np.linalg.norm(vector)), 1e-6)

@@ -36,8 +36,3 @@ def filled(values: Array, known: Array, first: float) -> Array:
 def direction(heading: float) -> Array:
     """The unit vector (x, z) of a heading in radians from +Z towards +X."""
     return np.array([math.sin(heading), math.cos(heading)])
-
-
-def wrapped(angle: float) -> float:
-    """The same angle from -π to π."""
-    return (angle + math.pi) % (2 * math.pi) - math.pi

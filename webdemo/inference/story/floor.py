@@ -14,9 +14,10 @@ from dataclasses import dataclass, field
 import numpy as np
 from numpy.typing import NDArray
 
+from motion.vectors import wrapped
 from webdemo.inference.actor import FPS
 
-from .curves import direction, eased, smoothed, wrapped
+from .curves import direction, eased, smoothed
 from .moves import Move
 from .track import EASE, MOST, Track
 from .ways import Way

@@ -8,9 +8,10 @@ from dataclasses import dataclass, field
 import numpy as np
 from numpy.typing import NDArray
 
+from motion.vectors import wrapped
 from webdemo.inference.actor import FPS
 
-from .curves import eased, filled, wrapped
+from .curves import eased, filled
 
 Array = NDArray[np.floating]
 

@@ -16,6 +16,7 @@ from numpy.typing import NDArray
 
 from motion import SMPL22, Clip, InputError
 from motion.kinematics import swing
+from motion.vectors import unit
 from webdemo.inference.actor import FPS, ROLES, check_actor
 
 Array = NDArray[np.floating]
@@ -204,22 +205,18 @@ def bent_wrong(positions: Array) -> str | None:
     to the left, turned along with the thigh.
     """
     at = {name: np.asarray(positions, dtype=np.float64)[i] for i, name in enumerate(SMPL22.joint_names)}
-    left = _unit(at["left_hip"] - at["right_hip"])
+    left = unit(at["left_hip"] - at["right_hip"])
     up = at["spine1"] - (at["left_hip"] + at["right_hip"]) / 2
-    down = -_unit(up - left * (up @ left))
+    down = -unit(up - left * (up @ left))
     for side in ("left", "right"):
         for first, middle, end in (("hip", "knee", "ankle"), ("shoulder", "elbow", "wrist")):
-            upper = _unit(at[f"{side}_{middle}"] - at[f"{side}_{first}"])
-            lower = _unit(at[f"{side}_{end}"] - at[f"{side}_{middle}"])
+            upper = unit(at[f"{side}_{middle}"] - at[f"{side}_{first}"])
+            lower = unit(at[f"{side}_{end}"] - at[f"{side}_{middle}"])
             if upper @ lower < math.cos(_FOLDED):
                 return f"the {side} {middle} is bent too far"
             if middle == "knee" and np.cross(upper, lower) @ (swing(down, upper) @ left) < -_FORWARD:
                 return f"the {side} knee is bent forward"
     return None
-
-
-def _unit(vector: Array) -> Array:
-    return vector / max(float(np.linalg.norm(vector)), 1e-9)
 
 
 def check_together(paths: Sequence[FloorPath], poses: Sequence[Pose]) -> None:

@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 from motion import SMPL22, Duet
 from motion.body import bone_rotations
 from motion.things import Mesh
+from motion.vectors import unit
 
 Array = NDArray[np.floating]
 
@@ -162,11 +163,6 @@ def level(vectors: Array) -> Array:
     flat = vectors * np.array([1.0, 0.0, 1.0])
     length = np.linalg.norm(flat, axis=-1, keepdims=True)
     return np.where(length > 1e-4, flat / np.maximum(length, 1e-4), np.array([0.0, 0.0, 1.0]))
-
-
-def unit(vectors: Array) -> Array:
-    """Vectors of length 1."""
-    return vectors / np.maximum(np.linalg.norm(vectors, axis=-1, keepdims=True), 1e-9)
 
 
 def smoothed(values: Array, width: int) -> Array:

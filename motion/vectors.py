@@ -1,0 +1,29 @@
+"""Vectors and angles."""
+
+from __future__ import annotations
+
+from typing import Any, TypeVar
+
+import numpy as np
+from numpy.typing import NDArray
+
+Array = NDArray[np.floating]
+Angle = TypeVar("Angle", float, Array)
+Real = TypeVar("Real", bound=np.floating[Any])
+
+
+def unit(vectors: NDArray[Real]) -> NDArray[Real]:
+    """(…, N) the same directions at length 1; zeros stay zero."""
+    return np.asarray(vectors / np.maximum(np.linalg.norm(vectors, axis=-1, keepdims=True), 1e-12))
+
+
+def square_frame(up: Array, across: Array) -> Array:
+    """(…, 3, 3) rotation whose Y column is ``up`` and whose X column is ``across`` made square to it; both (…, 3)."""
+    y = unit(up)
+    x = unit(across - np.sum(across * y, axis=-1, keepdims=True) * y)
+    return np.stack([x, y, np.cross(x, y)], axis=-1)
+
+
+def wrapped(angle: Angle) -> Angle:
+    """The same angle in [-π, π), radians."""
+    return (angle + np.pi) % (2 * np.pi) - np.pi
