@@ -55,10 +55,11 @@ class Turn(_Shape):
 
 
 class Stay(_Shape):
-    """Standing by: in place, facing the other, or with the back to them."""
+    """Standing by: in place, facing the other, or with the back to them; ``frozen`` without any movement."""
 
     do: Literal["stay"] = "stay"
     facing: Literal["", "other", "away"] = ""
+    frozen: bool = False
 
 
 class Place(_Shape):

@@ -13,7 +13,7 @@ import scipy  # its parts are loaded with their first use
 from numpy.typing import NDArray
 
 from .arms import ARMS, grips_of_hands
-from .cleaning import solve_two_bones
+from .planted import HIPS, LEGS, UPPER, over_planted_feet
 from .skeleton import SMPL22
 from .transforms import facing
 
@@ -42,31 +42,25 @@ _FACES = 0.5
 """Cosine between the ways that people face and the way to the other, at least."""
 _LIFTED = 0.12
 """Height in metres of the lifted person's lower toe."""
-_SINKS = 0.06
-"""Metres by which a body sinks at most."""
 _SPINE = SMPL22.index("spine3")
-_LEGS = tuple(
-    tuple(SMPL22.index(f"{side}_{joint}") for joint in ("hip", "knee", "ankle", "foot"))
-    for side in ("left", "right")
-)
-_TOES = [leg[-1] for leg in _LEGS]
-_HIPS = [0, *(leg[0] for leg in _LEGS)]
-_LOW = [0, *(joint for leg in _LEGS for joint in leg)]
-_UPPER = [joint for joint in range(SMPL22.num_joints) if joint not in _LOW]
+_TOES = [leg[-1] for leg in LEGS]
 _FLAT = np.array([1.0, 0.0, 1.0])
 
 
-def embraced(pair: Array) -> Array:
+def embraced(pair: Array, free: Array | None = None) -> Array:
     """Two people who come close where both reach around each other, with hands on the other's back.
 
     Args:
         pair: (2, T, 22, 3) metres on constant bones.
+        free: (T,) how far a frame may be changed, 0 to 1; wholly by default.
 
     Returns:
         (2, T, 22, 3) metres; what is no embrace stays as it is.
     """
     result = np.array(pair, dtype=np.float64)
     close = _eased(_on_their_feet(_long(_hugs(result)), result))
+    if free is not None:
+        close = close * free
     if not close.any():
         return result
     drawn = [_drawn(result[p], result[1 - p], close) for p in (0, 1)]
@@ -135,27 +129,9 @@ def _drawn(own: Array, other: Array, weight: Array) -> Array:
     ahead = metres[:, None] * way + (0.5 * _ASIDE * weight)[:, None] * _left(way)
     shift = _SHARE * ahead
     result = own.copy()
-    result[:, _UPPER] = (_leaned(own, ahead - shift) + shift[:, None])[:, _UPPER]
-    result[:, _HIPS] += shift[:, None]
-    result[:, [*_UPPER, *_HIPS], 1] -= scipy.ndimage.gaussian_filter1d(_sunk(own, result), 2.0)[:, None]
-    forward = facing(own)
-    for hip, knee, ankle, toe in _LEGS:
-        moved = own[:, knee] + shift, own[:, ankle] + shift
-        result[:, knee], result[:, ankle] = solve_two_bones(result[:, hip], *moved, own[:, ankle], forward)
-        result[:, toe] = result[:, ankle] + own[:, toe] - own[:, ankle]
-    return result
-
-
-def _sunk(own: Array, moved: Array) -> Array:
-    """(T,) metres by which hips that are ``moved`` (T, 22, 3) go down, so that no leg is too short."""
-    sunk = np.zeros(len(own))
-    for hip, knee, ankle, _ in _LEGS:
-        length = np.linalg.norm(own[:, knee] - own[:, hip], axis=-1)
-        length += np.linalg.norm(own[:, ankle] - own[:, knee], axis=-1)
-        aside = np.linalg.norm((moved[:, hip] - own[:, ankle]) * _FLAT, axis=-1)
-        reach = np.sqrt(np.maximum((0.995 * length) ** 2 - aside**2, 0.0))
-        sunk = np.maximum(sunk, np.minimum(moved[:, hip, 1] - own[:, ankle, 1] - reach, _SINKS))
-    return sunk
+    result[:, UPPER] = (_leaned(own, ahead - shift) + shift[:, None])[:, UPPER]
+    result[:, HIPS] += shift[:, None]
+    return over_planted_feet(own, result)
 
 
 def _leaned(own: Array, ahead: Array) -> Array:

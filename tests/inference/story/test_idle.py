@@ -5,7 +5,7 @@ import pytest
 
 from motion import SMPL22
 from motion.transforms import heading
-from tests.inference.story.staged_words import gesturing, idle, is_planned
+from tests.inference.story.staged_words import gesturing, idle, is_planned, told
 from webdemo.inference.story.poses import standing
 
 
@@ -55,6 +55,13 @@ def test_gestures_that_the_network_knows_little_of_are_given_to_who_only_stands(
 def test_plain_sentences_have_no_plan() -> None:
     assert is_planned("They walk away.") and is_planned("Person A kneels.") and is_planned("They clap.")
     assert not is_planned("They shake hands.") and not is_planned("Two people hug.")
+
+
+@pytest.mark.parametrize(
+    ("sentence", "found"), [("He stands like a statue.", "a"), ("Person B freezes.", "b"), ("They wait.", "")]
+)
+def test_statues_are_told_from_those_who_wait(sentence: str, found: str) -> None:
+    assert "".join(sorted(told(sentence).frozen)) == found
 
 
 def test_a_bystander_stands_on_the_floor_and_sways() -> None:

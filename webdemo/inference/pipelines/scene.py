@@ -17,8 +17,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from motion import Duet, InputError
-from motion.arms import arms_apart
-from motion.embraces import embraced
 from motion.metrics import compare
 from webdemo.inference import methods
 from webdemo.inference.actor import FPS, ROLES
@@ -33,6 +31,7 @@ from webdemo.inference.story.request import SceneRequest
 from webdemo.inference.story.wishes import meeting
 from webdemo.inference.timer import StageTimer
 
+from .scene_finish import finished
 from .scene_floor import plan_note
 from .scene_setting import Setting
 
@@ -151,7 +150,7 @@ class SceneMaker:
                 )  # fmt: skip
             if request.loop:
                 _close(request, scene)
-            duets.append(_duet(request, scene))
+            duets.append(_duet(request, scene, sample))
         said += _distance_note(duets, request)
         yield timer.progress("finish")
         yield Result(
@@ -214,10 +213,10 @@ def _blank(request: SceneRequest) -> Array:
     return scene
 
 
-def _duet(request: SceneRequest, scene: Array) -> Duet:
+def _duet(request: SceneRequest, scene: Array, sample: int) -> Duet:
+    if request.cleanup and not (request.loop or request.poses):  # these stay as they are
+        scene = finished(request, scene, window_seed(request, sample, windows(request)[0]))
     if request.motion is None:
-        if request.cleanup and not (request.loop or request.poses):  # these stay as they are
-            scene = arms_apart(embraced(scene)).astype(np.float32)
         return Duet.from_positions(scene, fps=FPS, roles=NAMES)
     return replace(request.motion.with_positions(scene), manifest=None)
 

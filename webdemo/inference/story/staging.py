@@ -94,6 +94,7 @@ class _Stage:
         self.blows: list[tuple[tuple[str, ...], shapes.Strike]] = []
         self.setting = Setting()
         self.linked = False
+        self.frozen: set[str] = set()
         self.behind: set[str] = set()
         """Those who stand behind the other."""
 
@@ -111,7 +112,8 @@ class _Stage:
         moves = self._moves(struck)
         idle = self._idle()
         return Told(
-            moves=moves, idle=idle, gesturing=self._gesturing(moves), gestures=self.gestures, contact=self.contact,
+            moves=moves, idle=idle, frozen=frozenset(self.frozen), gesturing=self._gesturing(moves),
+            gestures=self.gestures, contact=self.contact,
             hold=self.hold, by_both_hands=any(m.backwards and m.way is Way.AWAY for m in moves), twirls=self.twirls,
             lift=self.lift, strike=struck, changes=self.changes, limbs=self.limbs,
             leaps=self.leaps, bows=self.bows,
@@ -131,6 +133,8 @@ class _Stage:
 
     def _take(self, act: Act, shape: shapes.Shape) -> None:
         people = self._people(act, shape)
+        if isinstance(shape, shapes.Stay) and shape.frozen:
+            self.frozen |= set(people)
         match shape:
             case shapes.Go(way="after") if len(people) == 2:
                 self._chase(act, shape)

@@ -30,6 +30,7 @@ class Told:
     Attributes:
         moves: of each person in order; () where nobody is sent anywhere.
         idle: those who stand by.
+        frozen: those who stand like statues.
         gesturing: those who only stand and make a gesture that the network knows little of.
         gestures: of hands, by person.
         contact: the first touch.
@@ -51,6 +52,7 @@ class Told:
 
     moves: tuple[Move, ...] = ()
     idle: frozenset[str] = frozenset()
+    frozen: frozenset[str] = frozenset()
     gesturing: frozenset[str] = frozenset()
     gestures: Mapping[str, Gesture] = field(default_factory=dict)
     contact: Contact | None = None

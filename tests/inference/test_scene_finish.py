@@ -1,0 +1,39 @@
+"""The finish of a scene leaves what is kept of a given motion, and statues, as they are."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from motion import SMPL22, Duet
+from motion.transforms import heading_matrix
+from webdemo.inference import SceneRequest
+from webdemo.inference.pipelines.scene_finish import finished
+from webdemo.inference.story.beats import Beat
+
+FRAMES = 180
+
+
+def _still(gap: float = 1.4) -> np.ndarray:
+    """Two people who stand face to face without moving: (2, T, 22, 3) float32."""
+    pose = SMPL22.rest_positions() - SMPL22.rest_positions()[:, 1].min() * np.array([0.0, 1.0, 0.0])
+    other = pose @ heading_matrix(np.pi).T + np.array([0.0, 0.0, gap])
+    return np.tile(np.stack([pose, other])[:, None], (1, FRAMES, 1, 1)).astype(np.float32)
+
+
+def test_frames_that_are_kept_stay_and_what_is_remade_between_them_is_finished() -> None:
+    scene = _still()
+    motion = Duet.from_positions(scene, fps=30.0, roles=("a", "b"))
+    request = SceneRequest(beats=(Beat("They wait."),), motion=motion, start=2.0, end=4.0)
+    found = finished(request, scene, seed=1)
+    np.testing.assert_array_equal(found[:, :60], scene[:, :60])
+    np.testing.assert_array_equal(found[:, 120:], scene[:, 120:])
+    assert np.abs(found[:, 85:95] - scene[:, 85:95]).max() > 0.005
+    assert np.abs(np.diff(found, axis=1)).max() < 0.01, "no jump at the edges"
+
+
+def test_a_statue_does_not_move_and_the_other_does() -> None:
+    scene = _still()
+    request = SceneRequest(beats=(Beat("Person B freezes.", seconds=6.0),))
+    found = finished(request, scene, seed=1)
+    np.testing.assert_array_equal(found[1], scene[1])
+    assert np.abs(found[0] - scene[0]).max() > 0.01
