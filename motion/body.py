@@ -22,15 +22,13 @@ from .easing import smoothstep
 from .errors import InputError
 from .hands import NUMBERS, SHAPES, Fingers
 from .kinematics import swing
+from .looks import LOOKS
 from .skeleton import SMPL22
 from .vectors import square_frame, unit
 
 Array = NDArray[np.floating]
 
 FOLDER = Path(__file__).resolve().parents[1] / "static" / "bodies"
-BODIES = ("a", "b")
-"""The bodies there are: the first person's and the second's."""
-
 _J = {name: index for index, name in enumerate(SMPL22.joint_names)}
 _REST = SMPL22.rest_positions()
 
@@ -40,11 +38,11 @@ class Body:
     """A surface and how it hangs on SMPL22's joints.
 
     Attributes:
-        name: "a" or "b".
+        name: one of :data:`motion.looks.LOOKS`.
         vertices: (V, 3) metres in the pose of binding, the soles at 0, facing +Z.
         faces: (F, 3) vertex indices, counter-clockwise seen from outside.
         face_zones: (F,) index into ``zones``.
-        zones: what there is: skin, top, trousers, shoes, hair, eyes.
+        zones: what there is: skin, top, trousers, shoes, hair (or grey), eyes.
         sky: (V,) ambient light that reaches each vertex, 0 to 1.
         joints: (22, 3) places of the joints in the pose of binding.
         turns: (22, 3, 3) rotation that takes each bone from the pose of binding to SMPL22's T-pose.
@@ -66,15 +64,15 @@ class Body:
     fingers: Fingers | None = field(default=None, repr=False)
 
 
-@lru_cache(maxsize=4)
+@lru_cache(maxsize=8)
 def load_body(name: str, *, small: bool = False) -> Body:
-    """The body ``name``, one of :data:`BODIES`; ``small`` gives about a third of the triangles.
+    """The body ``name``, one of :data:`motion.looks.LOOKS`; ``small`` gives about a third of the triangles.
 
     Raises:
         InputError: for another name, or where the file is missing or damaged.
     """
-    if name not in BODIES:
-        raise InputError(f"There is no body {name!r}: take one of {', '.join(BODIES)}.")
+    if name not in LOOKS:
+        raise InputError(f"There is no body {name!r}: take one of {', '.join(LOOKS)}.")
     path = FOLDER / f"{name}{'-small' if small else ''}.json"
     try:
         stored = json.loads(path.read_text(encoding="utf-8"))

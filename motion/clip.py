@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 from .errors import InputError
 from .hands import Grip
 from .hands import cut as cut_grips
+from .looks import UNSAID, checked
 from .skeleton import SMPL22, Skeleton
 from .things.thing import MOST_THINGS, Thing
 
@@ -85,6 +86,7 @@ class Duet:
         manifest: everything that reproduces the motion, where it was generated.
         things: beside them in the same world, each with a track of as many frames.
         grips: shapes that their hands hold for a while; they are relaxed otherwise.
+        looks: names of the bodies that a and b wear, of :data:`motion.looks.LOOKS`.
     """
 
     a: Clip
@@ -93,8 +95,10 @@ class Duet:
     manifest: dict[str, Any] | None = field(default=None, repr=False)
     things: tuple[Thing, ...] = ()
     grips: tuple[Grip, ...] = ()
+    looks: tuple[str, str] = UNSAID
 
     def __post_init__(self) -> None:
+        checked(self.looks)
         if self.a.num_frames != self.b.num_frames or self.a.fps != self.b.fps:
             raise InputError(
                 f"Two people must share one clock: a has {self.a.num_frames} frames at {self.a.fps:g} fps "

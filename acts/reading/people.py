@@ -40,6 +40,8 @@ class Cast:
     def __init__(self) -> None:
         self._words: Vocabulary = vocabulary()
         self._known: dict[str, _Known] = {}
+        self._pair = _Known()
+        """What words for both say about each: "two men"."""
         self.last = ""
         self.thing: Ref | None = None
         """The part or thing that was named last, which "it" means."""
@@ -52,11 +54,13 @@ class Cast:
 
     def people(self) -> tuple[Person, Person]:
         """The two as a plan has them."""
-        a, b = (self._known.get(who, _Known()) for who in "ab")
-        return (
-            Person(id="a", words=tuple(dict.fromkeys(a.words))[:8], sex=a.sex, age=a.age),  # type: ignore[arg-type]
-            Person(id="b", words=tuple(dict.fromkeys(b.words))[:8], sex=b.sex, age=b.age),  # type: ignore[arg-type]
-        )
+        a, b = (self._person(who) for who in "ab")
+        return a, b
+
+    def _person(self, who: str) -> Person:
+        known, pair = self._known.get(who, _Known()), self._pair
+        words = tuple(dict.fromkeys(known.words))[:8]
+        return Person(id=who, words=words, sex=known.sex or pair.sex, age=known.age or pair.age)  # type: ignore[arg-type]
 
     def person(self, token: Token, subject: str = "") -> str | None:
         """The people whom a noun or pronoun means: "a", "b" or "ab"; None if it means no person.
@@ -104,7 +108,10 @@ class Cast:
             return None
         if token.tag_ in ("NNS", "NNPS") or children & {"two", "both"}:
             return self._many(token, children)
-        return self._noun(token, lemma, children, subject)
+        who = self._noun(token, lemma, children, subject)
+        if who in self._known:
+            self._describe(token, self._known[who])
+        return who
 
     def _noun(self, token: Token, lemma: str, children: set[str], subject: str) -> str | None:
         if "one" in children:
@@ -124,7 +131,16 @@ class Cast:
         if any(self._words.numbers.get(child, 0) > 2 for child in children):  # "three people"
             self.third.append(token)
             return ""
+        self._describe(token, self._pair)
         return "ab"
+
+    def _describe(self, token: Token, known: _Known) -> None:
+        """Notes what a noun and its adjectives say: "an elderly lady", "two men", but not "an old friend"."""
+        words, lemma = self._words, token.lemma_.lower()
+        known.sex = known.sex or words.sex(lemma)
+        known.age = known.age or words.age(lemma)
+        if words.sex(lemma) or lemma in _ANYONE | {"couple", "people"}:
+            known.age = known.age or next((age for c in token.children if (age := words.age(c.lower_))), "")
 
     def _has(self, word: str) -> str:
         return next((who for who, known in self._known.items() if word in known.words), "")

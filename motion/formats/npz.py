@@ -42,13 +42,14 @@ _KEYS = (
     "manifest",
     *npz_things.KEYS,
     npz_things.GRIPS,
+    npz_things.LOOKS,
 )
 
 
 def write_npz(duet: Duet, path: str | Path) -> list[Path]:
     """Writes a duet's positions (2, T, J, 3) float32 with fps, joint_names, parents, roles and manifest.
 
-    Things beside the people and the grips of their hands are further arrays, see :mod:`.npz_things`.
+    Things beside the people, the grips of their hands and their looks are further arrays, see :mod:`.npz_things`.
     """
     arrays: dict[str, Any] = {
         "positions": duet.positions,
@@ -59,6 +60,7 @@ def write_npz(duet: Duet, path: str | Path) -> list[Path]:
         "manifest": np.array(json.dumps(duet.manifest or {}, ensure_ascii=False)),
         **npz_things.arrays_of(duet.things),
         **npz_things.grips_array(duet.grips),
+        **npz_things.looks_array(duet.looks),
     }
     buffer = io.BytesIO()
     np.savez_compressed(buffer, **arrays)
@@ -178,7 +180,8 @@ def _from_arrays(arrays: dict[str, Array], label: str, fps: float | None, everyo
     known = manifest if isinstance(manifest, dict) and manifest else None
     named = (roles[0], roles[1]) if len(roles) == 2 else ("a", "b")
     things = npz_things.things_of(arrays, made.num_frames, label)
-    return Duet(made.a, made.b, named, known, things, npz_things.grips_in(arrays, label))
+    grips, looks = npz_things.grips_in(arrays, label), npz_things.looks_in(arrays, label)
+    return Duet(made.a, made.b, named, known, things, grips, looks)
 
 
 def _motion(

@@ -10,6 +10,7 @@
 ``thing_faces``           (F, 3) int32, counted from each thing's own first vertex
 ``thing_colours``         (F, 3) uint8 sRGB
 ``grips``                 JSON text: person, side, shape, first frame and last frame of each, see :mod:`motion.hands`
+``looks``                 (2,) text, the bodies that the two wear, see :mod:`motion.looks`; absent where nothing is said
 ========================  ======================================================================================
 """
 
@@ -24,6 +25,7 @@ from numpy.typing import NDArray
 
 from motion.errors import InputError
 from motion.hands import Grip, grips_of, to_lists
+from motion.looks import UNSAID, checked
 from motion.things.thing import MOST_THINGS, Mesh, Thing
 
 Array = NDArray[Any]
@@ -34,6 +36,8 @@ KEYS = (
 )  # fmt: skip
 GRIPS = "grips"
 """Name of the array of grips."""
+LOOKS = "looks"
+"""Name of the array of looks."""
 _SHAPES = {
     "thing_places": ("f", 3), "thing_rotations": ("f", 4), "thing_sizes": ("iu", 2), "thing_vertices": ("f", 2),
     "thing_faces": ("iu", 2), "thing_colours": ("u", 2),
@@ -117,3 +121,18 @@ def grips_in(arrays: Mapping[str, Array], label: str) -> tuple[Grip, ...]:
         raise InputError(f"{label}: {error}") from None
     except (ValueError, RecursionError):
         raise InputError(f"{label}: its grips are not JSON text: save it again.") from None
+
+
+def looks_array(looks: tuple[str, str]) -> dict[str, Array]:
+    """The array of the looks of two people; none where nothing is said."""
+    return {} if looks == UNSAID else {LOOKS: np.array(looks)}
+
+
+def looks_in(arrays: Mapping[str, Array], label: str) -> tuple[str, str]:
+    """The looks in a file whose arrays have been read; raises InputError for what is none."""
+    if LOOKS not in arrays:
+        return UNSAID
+    try:
+        return checked([str(look) for look in np.atleast_1d(arrays[LOOKS])[:3]])
+    except InputError as error:
+        raise InputError(f"{label}: {error}") from None

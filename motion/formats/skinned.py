@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from motion.body import BODIES, Body, bone_rotations, load_body
+from motion.body import Body, bone_rotations, load_body
 from motion.clip import Clip, Duet
 from motion.colours import BODIES as COLOURS
 from motion.errors import InputError
@@ -58,9 +58,9 @@ class Skinned:
 def skinned(duet: Duet) -> Iterator[Skinned]:
     """Both people of a duet on SMPL22."""
     now = np.arange(float(duet.num_frames))
-    for person, (clip, role) in enumerate(zip(duet.people, duet.roles, strict=True)):
+    for person, (clip, role, look) in enumerate(zip(duet.people, duet.roles, duet.looks, strict=True)):
         shapes = angles(duet.grips, person, now, duet.fps)
-        yield _skinned(clip, role, load_body(BODIES[person]), COLOURS[person], shapes)
+        yield _skinned(clip, role, load_body(look), COLOURS[person], shapes)
 
 
 def check_rest_pose(duet: Duet, kind: str) -> None:

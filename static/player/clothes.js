@@ -1,63 +1,57 @@
-// What the people of a player wear: bodies that ship, lighter ones where people are many and small, or an
-// uploaded character. They stay skeletons where no body can be had, or plotly is too slow for them.
+// What the people of a player wear: the bodies that ship, as each motion says, lighter ones where people are many and
+// small, or an uploaded character. They stay skeletons where no body can be had, or plotly is too slow for them.
 
 import { coarser, decodeBody } from "./body.js";
 import { loadBody } from "./loader.js";
 
 const GHOST_VERTICES = 2000; // of an uploaded character on each ghost of a future; light bodies have a thousand
 
-const light = () => Promise.all(["a-small", "b-small"].map(loadBody));
+const light = (looks) => Promise.all(looks.map((look) => loadBody(`${look}-small`)));
 
 export class Clothes {
   constructor(player) {
     this.player = player;
-    this.bodies = null; // those that ship, [A's, B's]
+    this.bodies = new Map(); // those that ship and are here, by the names of their files
     this.character = null; // an uploaded one, whom both people may wear
+    this.phone = matchMedia("(max-width: 700px)").matches;
   }
 
-  /** Fetches the bodies that ship and puts them on. */
-  async open() {
-    if (this.player.scene.mode !== "fast") return;
-    const small = matchMedia("(max-width: 700px)").matches;
+  /** What somebody wears whose looks have this name; null while it is not here. */
+  body(look) {
+    if (this.player.show.character) return this.character.body;
+    return this.bodies.get(this.file(look)) ?? null;
+  }
+
+  file(look) {
+    return this.light ? `${look}-small` : look;
+  }
+
+  /** Whether people are seen small: on a phone, or many at a time. */
+  get light() {
+    return this.phone || this.player.grid.cells.length > 0;
+  }
+
+  /** Fetches what the people of the present motions wear, and dresses all panes anew. */
+  async change() {
+    const { player } = this;
+    if (player.scene?.mode !== "fast") return;
+    const files = looksOf(player.data).map((look) => this.file(look));
     try {
-      this.bodies = await Promise.all(["a", "b"].map((name) => loadBody(small ? `${name}-small` : name)));
+      await Promise.all(files.map(async (name) => this.bodies.set(name, await loadBody(name))));
     } catch (error) {
       console.error(error);
-      return;
     }
-    await this.change();
-    this.player.wake();
-  }
-
-  /** What a new pane puts on: the uploaded character's body or those that ship; null while there is none. */
-  get worn() {
-    return this.player.show.character ? [this.character.body, this.character.body] : this.bodies;
-  }
-
-  /** Dresses all panes anew. */
-  async change() {
-    const { panes, scene, show } = this.player;
-    if (scene?.mode !== "fast") return;
-    if (this.worn) for (const pane of panes) pane.dress(this.worn);
-    if (!show.character) await this.dressGrid();
+    for (const pane of player.panes) pane.dress((look) => this.body(look));
     await this.dressFutures();
+    player.wake();
   }
 
   /** What the ghosts of futures wear, once it is there: lighter than people, and the character where they do. */
   async dressFutures() {
     const { futures, show } = this.player;
-    if (!this.bodies || !futures.samples.length) return;
-    const lightBodies = await light();
+    if (!this.bodies.size || !futures.samples.length) return;
+    const lightBodies = await light(futures.samples[0].looks);
     futures.dress(show.character ? [this.character.pale, this.character.pale] : lightBodies);
-  }
-
-  /** Lighter bodies for people who are seen small, many at a time. */
-  async dressGrid() {
-    const { grid, panes, show } = this.player;
-    if (!this.bodies || show.character) return;
-    const several = () => grid.cells.length > 0;
-    const bodies = several() ? await light() : this.bodies;
-    if (several() === (bodies !== this.bodies)) panes[0].dress(bodies);
   }
 
   /** Puts an uploaded character on both people, as motion/character.py packs it, or takes it off for null. */
@@ -81,4 +75,10 @@ export class Clothes {
     else if (bodies) Object.assign(show, { bodies: false, skeletons: true });
     else show.bodies = true;
   }
+}
+
+/** The names of all looks in a decoded payload. */
+function looksOf(data) {
+  const samples = (data?.samples ?? []).flatMap((sample) => [sample, ...(sample.beside ? [sample.beside] : []), ...(sample.cells ?? [])]);
+  return [...new Set(samples.flatMap((sample) => sample.looks))];
 }

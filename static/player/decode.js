@@ -47,8 +47,11 @@ export function poseAt(motion, frame) {
   return pose;
 }
 
+const UNSAID = ["man", "woman"]; // looks, motion/looks.py
+
 const unpackSample = (sample) => ({
   ...sample,
+  looks: sample.looks ?? UNSAID,
   motion: unpackPositions(sample.positions),
   things: new Things((sample.things ?? []).map(decodeThing)),
   ghostMotion: sample.ghost ? unpackPositions(sample.ghost) : null,

@@ -24,13 +24,25 @@ export class Pane {
     this.spots = [];
     this.painted = { floor: "", trails: false, ghosts: false };
     this.ground = new Ground();
+    this.wear = () => null;
+    this.made = new Map(); // figures of all looks that have been seen, for A and for B
     this.figures = [];
   }
 
-  /** The bodies that people wear, A's and B's, once they are there. */
-  dress(bodies) {
-    this.figures = bodies.map((body) => new Figure(body));
+  /** Says what people wear: `wear` gives the body of a look, or null while there is none. */
+  dress(wear) {
+    this.wear = wear;
     this.refresh();
+  }
+
+  /** The figures of the present motion's people; none where a body is missing. */
+  dressed(people) {
+    const bodies = this.sample.looks.slice(0, people).map(this.wear);
+    if (!bodies.every(Boolean)) return [];
+    return bodies.map((body, person) => {
+      const known = this.made.get(body) ?? this.made.set(body, []).get(body);
+      return (known[person] ??= new Figure(body));
+    });
   }
 
   async open(background, Plotly) {
@@ -70,7 +82,8 @@ export class Pane {
     if (pose) {
       const lens = new figure.Lens(view, height);
       const given = clock.shown < (this.sample.past_until ?? 0);
-      const bodies = show.bodies && skeleton.wears ? this.figures.slice(0, pose.length) : [];
+      const bodies = show.bodies && skeleton.wears ? this.dressed(pose.length) : [];
+      if (bodies.length) this.figures = bodies;
       bodies.forEach((body, person) => {
         body.pose(pose[person], shapesAt(this.sample.grips, person, clock.shown, this.sample.fps));
         const alpha = show.skeletons ? TRANSLUCENT : 1;

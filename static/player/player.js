@@ -59,7 +59,7 @@ export class Player {
     this.scene = this.panes[0].scene;
     this.listen();
     this.wake();
-    this.clothes.open();
+    this.clothes.change();
     return this;
   }
 
@@ -67,7 +67,7 @@ export class Player {
     const panes = this.find(".pdd-panes");
     panes.append(panes.querySelector("template").content.cloneNode(true));
     const pane = new Pane(panes.lastElementChild);
-    if (this.clothes.worn) pane.dress(this.clothes.worn);
+    pane.dress((look) => this.clothes.body(look));
     this.panes.push(pane);
     return pane;
   }
@@ -121,8 +121,8 @@ export class Player {
     if (!goesOn) this.clock.frame = Math.min(this.data.samples[0].past_until ?? 0, this.data.samples[0].frames - 1);
     this.controls.load(this.data);
     this.futures.load(this.data);
-    this.clothes.dressFutures();
     this.select(0);
+    this.clothes.change();
     if (!goesOn) this.framing.reset();
     if (this.sample.live) this.clock.pause();
     else if (!goesOn) this.clock.play();
@@ -174,7 +174,7 @@ export class Player {
     this.split(Boolean(sample.beside));
     if (reshaped) {
       this.resize();
-      this.clothes.dressGrid();
+      this.clothes.change();
     } else this.framing.measure();
     this.strip.load(sample, this.theme.curve);
     this.controls.select(sample, this.sampleIndex);

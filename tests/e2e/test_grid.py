@@ -65,7 +65,7 @@ def test_nine_results_share_one_context_and_one_opens_large(
     )
     page.evaluate(f"{PLAYER}.act('play')")
     page.wait_for_function("window.__pasdedeux?.loops === 0")
-    until(page, f"{PLAYER}.clothes.bodies")
+    until(page, f"{PLAYER}.panes[0].figures.length === 2")
     pixels = stage_pixels(page)
     rows = np.array_split(pixels, 3)
     cells = [cell for row in rows for cell in np.array_split(row, 3, axis=1)]

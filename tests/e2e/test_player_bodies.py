@@ -13,6 +13,7 @@ import pytest
 from motion.body import load_body, skin
 from motion.character import character_body, packed_body
 from motion.formats.glb_reader import read_character
+from motion.looks import UNSAID
 from tests.motion.formats.characters import a_pose, glb_character
 from webdemo.ui.components.film import READ_PLAYER
 
@@ -44,7 +45,7 @@ def test_bodies_stand_where_python_puts_them(player, width):
     page.locator(".pdd-range").fill("93")
     until(page, "window.__pasdedeux.frame === 93 && window.__pasdedeux.loops === 0")
     duet = runpy.run_path(str(Path(__file__).with_name("harness.py")))["walking_duet"]()
-    for person, name in enumerate("ab"):
+    for person, name in enumerate(UNSAID):
         body = load_body(name, small=width < 700)
         drawn = page.evaluate(f"[...window.__pasdedeux.player.panes[0].figures[{person}].vertices]")
         drawn = np.reshape(drawn, (-1, 3))[:, [1, 2, 0]]  # the scene's axes are z, x, y
@@ -262,7 +263,7 @@ def test_ghosts_of_futures_wear_the_character_that_people_wear(player):
     press(page, "futures")
     zones = "window.__pasdedeux.player.futures.ghosts.flat().map(({ body }) => body.zones[0])"
     worn = "window.__pasdedeux.player.clothes.character"
-    stock = "window.__pasdedeux.player.clothes.bodies[0].zones[0]"
+    stock = "window.__pasdedeux.player.clothes.bodies.get('man').zones[0]"
     until(page, f"({zones}).length === 6 && ({zones}).every((zone) => zone === {stock})")
     page.evaluate("body => window.__pasdedeux.player.clothes.wear(body)", {"id": "x", **packed_body(body)})
     until(page, f"({zones}).every((zone) => zone === 'character')")
@@ -288,7 +289,7 @@ def test_a_coarser_body_keeps_its_shape_and_what_it_hangs_on(player):
         """async () => {
             const { coarser, Figure } = await import("/player/body.js");
             const { loadBody } = await import("/player/loader.js");
-            const body = await loadBody("a");
+            const body = await loadBody("man");
             const pale = coarser(body, 800);
             return {
                 same: coarser(body, 5000) === body,

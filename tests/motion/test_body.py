@@ -1,16 +1,19 @@
 """Bodies bound to SMPL22: they stand where the joints stand, whatever the pose."""
 
+from itertools import combinations
 from pathlib import Path
 
 import numpy as np
 import pytest
 import trimesh
+from scipy.spatial import cKDTree
 from scipy.spatial.transform import Rotation
 
-from motion.body import BODIES, FOLDER, bone_rotations, load_body, skin, vertex_normals
+from motion.body import FOLDER, bone_rotations, load_body, skin, vertex_normals
 from motion.clip import Clip
 from motion.errors import InputError
 from motion.kinematics import forward_kinematics, global_rotations
+from motion.looks import LOOKS
 from motion.skeleton import SBU15, SMPL22
 
 J = {name: index for index, name in enumerate(SMPL22.joint_names)}
@@ -28,7 +31,7 @@ def recorded() -> np.ndarray:
 
 
 @pytest.mark.parametrize("small", [False, True])
-@pytest.mark.parametrize("name", BODIES)
+@pytest.mark.parametrize("name", LOOKS)
 def test_the_stored_body_is_whole_and_small(name, small):
     body = load_body(name, small=small)
     assert (FOLDER / f"{name}{'-small' if small else ''}.json").stat().st_size < 200_000
@@ -44,9 +47,14 @@ def test_the_stored_body_is_whole_and_small(name, small):
     assert 0.035 < volume < 0.09, "cubic metres; the faces look outwards"
 
 
-def test_the_two_bodies_differ():
-    a, b = (load_body(name) for name in BODIES)
-    assert a.vertices.shape != b.vertices.shape or np.abs(a.vertices - b.vertices).max() > 0.02
+def test_all_bodies_differ():
+    for one, other in combinations((load_body(name) for name in LOOKS), 2):
+        apart = cKDTree(one.vertices).query(other.vertices)[0]
+        assert apart.max() > 0.015, f"metres between {one.name} and {other.name}"
+
+
+def test_old_people_have_grey_hair():
+    assert ["grey" in load_body(look, small=True).zones for look in LOOKS] == [False, False, True, True]
 
 
 def test_the_t_pose_turns_no_bone():
@@ -54,7 +62,7 @@ def test_the_t_pose_turns_no_bone():
     assert np.abs(turned - np.eye(3)).max() < 1e-3
 
 
-@pytest.mark.parametrize("name", BODIES)
+@pytest.mark.parametrize("name", LOOKS)
 def test_limbs_lie_along_their_bones(name):
     """Vertices that one limb moves alone lie within a forearm's, a shin's thickness of its bone."""
     body, positions = load_body(name), recorded()
@@ -74,12 +82,12 @@ def test_the_body_goes_where_the_motion_goes():
     positions = recorded()
     turn = Rotation.from_euler("y", 70, degrees=True).as_matrix()
     moved = positions @ turn.T + [1.0, 0.0, -2.0]
-    body = load_body("b", small=True)
+    body = load_body("woman", small=True)
     assert np.abs(skin(body, moved) - (skin(body, positions) @ turn.T + [1.0, 0.0, -2.0])).max() < 1e-4
 
 
 def test_standing_feet_stay_on_the_floor():
-    surface = skin(load_body("a"), t_pose())
+    surface = skin(load_body("man"), t_pose())
     assert abs(surface[..., 1].min()) < 0.003
 
 
@@ -117,7 +125,7 @@ def test_nothing_jumps_between_frames():
 def test_other_joints_and_other_names_are_refused():
     clip = Clip(np.zeros((2, 15, 3)), 30.0, SBU15)
     with pytest.raises(InputError, match="22 joints"):
-        skin(load_body("a"), clip)
+        skin(load_body("man"), clip)
     with pytest.raises(InputError, match="no body"):
         load_body("c")
 
@@ -127,3 +135,16 @@ def test_normals_of_a_sphere_point_outwards() -> None:
     normals = vertex_normals(np.array(ball.vertices), np.array(ball.faces))
     np.testing.assert_allclose(np.linalg.norm(normals, axis=1), 1)
     assert np.einsum("vi,vi->v", normals, ball.vertices).min() > 0.99
+
+
+@pytest.mark.parametrize("small", [False, True])
+@pytest.mark.parametrize("name", LOOKS)
+def test_no_skin_shows_through_the_clothes(name, small):
+    """Skin is the head and neck and what hangs on the arms; nothing of it lies on the trunk or the legs."""
+    body = load_body(name, small=small)
+    lead = np.array(SMPL22.joint_names)[body.bones[:, 0]]
+    covered = np.isin(
+        lead, ["pelvis", "spine1", "spine2", "left_hip", "right_hip", "left_knee", "right_knee"]
+    )
+    bare = body.faces[body.face_zones == body.zones.index("skin")]
+    assert not covered[bare].all(axis=1).any()

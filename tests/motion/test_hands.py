@@ -9,8 +9,9 @@ import numpy as np
 import pytest
 
 from motion import SMPL22, Duet, InputError, formats
-from motion.body import BODIES, load_body, skin
+from motion.body import load_body, skin
 from motion.hands import FINGERS, SHAPES, SIDES, Grip, angles, grips_of
+from motion.looks import LOOKS
 from tests.motion.bodies import marching
 
 POSE = SMPL22.rest_positions()[None] + np.array([0.0, 0.95, 0.0])
@@ -32,7 +33,7 @@ def tips(shape: str, name: str = "a", *, small: bool = False) -> np.ndarray:
     return found
 
 
-@pytest.mark.parametrize("name", BODIES)
+@pytest.mark.parametrize("name", LOOKS)
 @pytest.mark.parametrize("small", [False, True])
 def test_fingers_curl_in_a_fist_and_one_points(name, small):
     flat, fist, point, relaxed = (tips(s, name, small=small) for s in ("flat", "fist", "point", "relaxed"))
@@ -43,7 +44,7 @@ def test_fingers_curl_in_a_fist_and_one_points(name, small):
 
 
 def test_fingers_bend_towards_the_palm():
-    body = load_body("a")
+    body = load_body("man")
     for side in range(2):
         middle = 15 * side + 3 * FINGERS.index("middle") + 2
         mine = body.fingers.vertices[
@@ -54,7 +55,7 @@ def test_fingers_bend_towards_the_palm():
 
 
 def test_hands_are_relaxed_where_nothing_is_said():
-    body = load_body("b")
+    body = load_body("woman")
     plain = skin(body, POSE)
     np.testing.assert_array_equal(plain, skin(body, POSE, angles((), 1, np.zeros(1), 30)))
     assert np.abs(plain - skin(body, POSE, np.tile(SHAPES["flat"], (1, 2, 1)))).max() > 0.02

@@ -25,7 +25,7 @@ def test_a_person_in_the_air_casts_less() -> None:
 
 
 def test_soles_darken_the_floor_they_touch() -> None:
-    body = load_body("a", small=True)
+    body = load_body("man", small=True)
     poses = np.stack([STANDING])
     plain, pressed = Shadow(poses, SMPL22, []), Shadow(poses, SMPL22, [body.vertices])
     x, z = (np.array([body.joints[SMPL22.index("left_foot"), axis]]) for axis in (0, 2))

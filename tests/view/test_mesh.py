@@ -21,7 +21,7 @@ DUET = Duet.from_positions(np.stack([POSITIONS, POSITIONS + np.array([0, 0, 1.5]
 def test_the_file_holds_both_bodies_at_the_frame(suffix: str, tmp_path: Path) -> None:
     path = write_mesh(DUET, tmp_path / f"x{suffix}", frame=7)
     found = trimesh.load(path, process=False, maintain_order=True)
-    bodies = [load_body("a"), load_body("b")]
+    bodies = [load_body("man"), load_body("woman")]
     wanted = [
         skin(body, person.positions[7][None])[0] for body, person in zip(bodies, DUET.people, strict=True)
     ]

@@ -28,7 +28,7 @@ def job(**changed: object) -> Job:
     views = cameras([DUET], size=(160, 120), times=times, view="front", follow=True)
     panes = (Pane(DUET, "one"), Pane(DUET.a, ghost=DUET.b, past_until=3))
     whole = Job(
-        panes, Style(trails=True, body=load_body("a", small=True)), (320, 120), times, views, "“two” ♥"
+        panes, Style(trails=True, body=load_body("man", small=True)), (320, 120), times, views, "“two” ♥"
     )
     return dataclasses.replace(whole, **changed)
 

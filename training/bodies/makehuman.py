@@ -1,4 +1,4 @@
-"""MakeHuman's base mesh, its targets and its rig, and the parameters in which the two bodies differ."""
+"""MakeHuman's base mesh, its targets and its rig, and the parameters in which the bodies differ."""
 
 from __future__ import annotations
 
@@ -29,18 +29,25 @@ class Look:
 
     Attributes:
         sex: MakeHuman's target.
+        age: "young" or "old", MakeHuman's target.
         muscle: 0 average to 1 the most.
         sleeve: where sleeves end, 0 at the shoulder, 1 at the elbow, 2 at the wrist.
         bun: whether hair is tied at the back of the head.
     """
 
     sex: str
+    age: str
     muscle: float
     sleeve: float
     bun: bool
 
 
-LOOKS = {"a": Look("male", 0.35, 0.72, False), "b": Look("female", 0.3, 1.78, True)}
+LOOKS = {
+    "man": Look("male", "young", 0.35, 0.72, False),
+    "woman": Look("female", "young", 0.3, 1.78, True),
+    "old-man": Look("male", "old", 0.0, 1.78, False),
+    "old-woman": Look("female", "old", 0.0, 1.78, True),
+}
 
 
 class MakeHuman:
@@ -72,12 +79,12 @@ class MakeHuman:
 
     def shape(self, look: Look) -> np.ndarray:
         """All vertices in metres, the soles at 0: no one people's features, an average weight."""
-        sex, shape = look.sex, self.vertices.copy()
+        who, shape = f"{look.sex}-{look.age}", self.vertices.copy()
         for people in ("african", "asian", "caucasian"):
-            shape += self.target(f"{people}-{sex}-young") / 3
+            shape += self.target(f"{people}-{who}") / 3
         for muscle, share in (("averagemuscle", 1 - look.muscle), ("maxmuscle", look.muscle)):
-            shape += share * self.target(f"universal-{sex}-young-{muscle}-averageweight")
-        shape += 0.5 * self.target(f"proportions/{sex}-young-averagemuscle-averageweight-idealproportions")
+            shape += share * self.target(f"universal-{who}-{muscle}-averageweight")
+        shape += 0.5 * self.target(f"proportions/{who}-averagemuscle-averageweight-idealproportions")
         shape *= DECIMETRE
         shape[:, 1] -= shape[self.used("body"), 1].min()
         return shape

@@ -14,6 +14,10 @@ ZONES = ("skin", "top", "trousers", "shoes", "hair", "eyes")
 """The parts that the player colours; a face stores an index into them."""
 
 
+LARGEST_HOLE = 4
+"""Triangles of a patch of skin between two pieces of clothing that is a fault of the seams."""
+
+
 def magnified(points: np.ndarray, joints: np.ndarray) -> np.ndarray:
     """Head and hands blown up, so that reducing the mesh leaves them more triangles."""
     out = points.copy()
@@ -78,4 +82,17 @@ def with_seams(
         moved[stay], carried[stay] = vertices[stay], weights[stay]
         vertices, weights = moved, carried
         zone[distance[faces].sum(axis=1) > 1e-6] = number
-    return vertices, weights, zone
+    return vertices, weights, without_holes(faces, zone)
+
+
+def without_holes(faces: np.ndarray, zone: np.ndarray) -> np.ndarray:
+    """The zones (F,) where a few triangles of skin among clothes, which lie between two seams, are clothes as well."""
+    beside = trimesh.graph.face_adjacency(faces)
+    filled, skin = zone.copy(), ZONES.index("skin")
+    bare = beside[(zone[beside] == skin).all(axis=1)]
+    for patch in trimesh.graph.connected_components(bare, nodes=np.flatnonzero(zone == skin)):
+        if len(patch) <= LARGEST_HOLE:
+            rim = beside[np.isin(beside, patch).sum(axis=1) == 1]
+            around = zone[rim[~np.isin(rim, patch)]]
+            filled[patch] = np.bincount(around).argmax() if len(around) else skin
+    return filled

@@ -41,7 +41,7 @@ def mesh(motion: Clip | Duet, frame: int, *, style: Style | None = None) -> list
     style, people = style or Style(), stacked_positions(motion)
     found = []
     for person, (body, zones) in enumerate(
-        zip(style.worn(len(people), small=False), style.colours.bodies, strict=False)
+        zip(style.worn(motion, small=False), style.colours.bodies, strict=False)
     ):
         shades = np.array([(*zones.get(zone, zones["top"]), 1.0) for zone in body.zones])
         found.append(

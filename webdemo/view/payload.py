@@ -18,6 +18,7 @@ from numpy.typing import NDArray
 from motion.clip import Clip, Duet
 from motion.errors import InputError
 from motion.hands import to_lists
+from motion.looks import UNSAID
 from motion.metrics import Contact, contact_events
 
 from .curves import Curve, distance_curves
@@ -128,13 +129,17 @@ def sample_payload(
 
 
 def _things(motion: Duet | Clip) -> dict[str, Any]:
-    """The things beside two people and the grips of their hands; nothing where there are none."""
+    """The things beside two people, the grips of their hands and their looks; nothing for what is not said."""
     if not isinstance(motion, Duet):
         return {}
-    things = [thing_payload(thing) for thing in motion.things]
-    return ({"things": things} if things else {}) | (
-        {"grips": to_lists(motion.grips)} if motion.grips else {}
-    )
+    found: dict[str, Any] = {}
+    if motion.things:
+        found["things"] = [thing_payload(thing) for thing in motion.things]
+    if motion.grips:
+        found["grips"] = to_lists(motion.grips)
+    if motion.looks != UNSAID:
+        found["looks"] = list(motion.looks)
+    return found
 
 
 def _people(motion: Duet | Clip) -> Array:

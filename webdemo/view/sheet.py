@@ -282,7 +282,7 @@ def _draw_tile(
     add(LineCollection, grid, colors=[theme.grid], linewidths=0.5)
     dressed = style.look != "skeletons" and motion.skeleton.joint_names == SMPL22.joint_names
     triangles, depths, colours = [], [], []
-    bodies = style.worn(len(pose), small=True) if dressed else ()
+    bodies = style.worn(motion, small=True) if dressed else ()
     solid = []
     for person, (body, points) in enumerate(zip(bodies, pose, strict=False)):
         hands = hands_of(motion, person, np.array([frame_number]))

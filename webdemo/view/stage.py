@@ -13,10 +13,11 @@ import numpy as np
 from numpy.typing import NDArray
 from PIL import Image, ImageDraw, ImageFont
 
-from motion.body import BODIES, Body, load_body, skin
+from motion.body import Body, load_body, skin
 from motion.clip import Clip, Duet, stacked_positions
 from motion.easing import smoothstep
 from motion.errors import InputError
+from motion.looks import UNSAID
 from motion.skeleton import SMPL22
 from motion.things.thing import Thing
 
@@ -90,9 +91,10 @@ class Style:
         """The colours of its theme."""
         return THEMES[self.theme]
 
-    def worn(self, people: int, *, small: bool) -> tuple[Body, ...]:
-        """The body of each of so many people; ``small`` gives a third of the triangles where there is a choice."""
-        return tuple(self.body or load_body(name, small=small) for name in BODIES[:people])
+    def worn(self, motion: Clip | Duet, *, small: bool) -> tuple[Body, ...]:
+        """The body of each person; ``small`` gives a third of the triangles where there is a choice."""
+        looks = motion.looks if isinstance(motion, Duet) else UNSAID[:1]
+        return tuple(self.body or load_body(look, small=small) for look in looks)
 
 
 @dataclass
@@ -118,7 +120,7 @@ class Stage:
         dressed = self.style.look != "skeletons" and motion.skeleton.joint_names == SMPL22.joint_names
         # Most of a small picture's triangles would be smaller than its pixels.
         small = self.size[1] < 400
-        self.bodies = self.style.worn(len(self.people), small=small) if dressed else ()
+        self.bodies = self.style.worn(motion, small=small) if dressed else ()
         self.things = drawn_things(motion)
 
     def pictures(self, times: Array, cameras: Sequence[Camera]) -> Iterator[Picture]:

@@ -307,3 +307,18 @@ def test_what_follows_listed_acts_beside_a_wait_follows_the_last_of_them() -> No
     plan = read("One person waves, turns and bows, while the other person waits. Finally they hug.")
     acts = {act.act: act for act in plan.acts}
     assert ("after", acts["bow"].id) in {(each.kind, each.act) for each in acts["hug"].order}
+
+
+@pytest.mark.parametrize(
+    ("text", "people"),
+    [
+        ("She walks up to him and hugs him.", ["f", "m"]),
+        ("Two men shake hands.", ["m", "m"]),
+        ("An elderly lady pats an old man on the back.", ["f old", "m old"]),
+        ("Two old people dance.", ["old", "old"]),
+        ("A woman hugs her old friend.", ["f", ""]),
+        ("One person waves at the other.", ["", ""]),
+    ],
+)
+def test_what_words_say_about_people(text: str, people: list[str]) -> None:
+    assert [f"{person.sex} {person.age}".strip() for person in read(text).people] == people

@@ -6,8 +6,9 @@ import numpy as np
 import pytest
 import trimesh
 
-from acts import Act, Plan
+from acts import Act, Plan, read
 from motion import SMPL22, Duet, InputError
+from motion.looks import UNSAID
 from motion.things import Thing
 from webdemo.inference.requests import GenerateRequest, Result
 from webdemo.inference.things import with_own_thing
@@ -332,3 +333,14 @@ def test_a_file_that_is_no_thing_is_one_sentence(tmp_path):
     result = Result(duets=(Duet.from_positions(standing(), fps=FPS),), manifest={})
     with pytest.raises(InputError, match=r"mine\.stl"):
         with_own_thing(result, GenerateRequest(prompt="They wave.", seconds=4.0), tmp_path / "mine.stl")
+
+
+def test_people_look_as_their_plans_say():
+    """A later plan adds what an earlier one leaves open and changes nothing that it says."""
+    duet = Duet.from_positions(standing().astype(np.float32), fps=FPS)
+    first = read("She bows.")
+    second = read("An old man waves at a boy.")
+    result = Result((duet,), {}, (), {})
+    both = furnished(result, [(first, 0, 60, 0), (second, 60, None, 1)]).duets[0]
+    assert both.looks == ("old-woman", "man")
+    assert furnished(result, []).duets[0].looks == UNSAID

@@ -12,7 +12,7 @@ import pytest
 from scipy.spatial.transform import Rotation
 
 from motion import SMPL22, Clip, Duet, InputError, formats
-from motion.body import BODIES, load_body, skin
+from motion.body import load_body, skin
 from motion.formats.usd import usd_text
 from motion.hands import Grip, angles
 from motion.skeleton import SBU15
@@ -101,7 +101,7 @@ def test_openusd_reads_the_same_joints_and_bodies(tmp_path: Path) -> None:
     assert (stage.GetStartTimeCode(), stage.GetEndTimeCode(), stage.GetTimeCodesPerSecond()) == (0, 23, 30)
     assert json.loads(stage.GetRootLayer().customLayerData["manifest"]) == DUET.manifest
     cache = UsdSkel.Cache()
-    for number, (clip, role, name) in enumerate(zip(DUET.people, DUET.roles, BODIES, strict=True)):
+    for number, (clip, role, name) in enumerate(zip(DUET.people, DUET.roles, DUET.looks, strict=True)):
         person = f"/duet/{role}/person"
         assert stage.GetPrimAtPath(f"/duet/{role}").GetTypeName() == "Scope"
         assert cache.Populate(UsdSkel.Root(stage.GetPrimAtPath(person)), Usd.PrimDefaultPredicate)

@@ -13,7 +13,7 @@ import pytest
 from scipy.spatial.transform import Rotation
 
 from motion import SMPL22, Clip, Duet, InputError, formats
-from motion.body import BODIES, load_body, skin
+from motion.body import load_body, skin
 from motion.formats.hand_rig import FINGER_JOINTS
 from motion.hands import Grip, angles
 from motion.skeleton import SBU15
@@ -120,14 +120,14 @@ def test_normals_of_a_glb_are_of_unit_length(tmp_path):
 
 def test_a_glb_shows_the_body_of_the_player(tmp_path):
     found = Skinned(formats.write(DUET, tmp_path / "x.glb")[0])
-    for person, (name, clip) in enumerate(zip(BODIES, DUET.people, strict=True)):
+    for person, (name, clip) in enumerate(zip(DUET.looks, DUET.people, strict=True)):
         np.testing.assert_allclose(found.surface(person)[0], skin(load_body(name), clip), atol=1e-3)
 
 
 def test_hands_of_a_glb_take_their_shapes(tmp_path):
     grips = (Grip(0, "left", "fist", 6, 20), Grip(1, "right", "point", 0, 24))
     found = Skinned(formats.write(replace(DUET, grips=grips), tmp_path / "x.glb")[0])
-    for person, (name, clip) in enumerate(zip(BODIES, DUET.people, strict=True)):
+    for person, (name, clip) in enumerate(zip(DUET.looks, DUET.people, strict=True)):
         shapes = angles(grips, person, np.arange(24.0), 30)
         surface = skin(load_body(name), clip, shapes)
         np.testing.assert_allclose(found.surface(person)[0], surface, atol=1e-3)

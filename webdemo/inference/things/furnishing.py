@@ -10,6 +10,7 @@ import numpy as np
 
 from acts import Plan
 from motion import SMPL22, Clip, Duet, InputError
+from motion.looks import looks_of
 from motion.things import FURNITURE, MOST_THINGS, Mesh, Thing
 
 from ..requests import Result
@@ -24,7 +25,7 @@ Planned = tuple[Plan, int, int | None, int | None]
 
 
 def furnished(result: Result, plans: Sequence[Planned], own: Mesh | None = None) -> Result:
-    """A result whose duets have the things that their plans' acts are done with, and hands that take shapes.
+    """A result whose people look as their plans say, with the things of the acts, and hands that take shapes.
 
     Args:
         result: of two people on SMPL22; another is returned as it is.
@@ -65,7 +66,7 @@ def _furnished(
         rows.append({"kind": thing.kind, "name": thing.name, "events": course.events})
         rows += [{"kind": table.kind, "name": table.name, "events": []} for table in course.tables]
     grips += grips_of_things(courses, duet.num_frames)
-    duet = replace(duet, grips=fitting(grips, duet.num_frames))
+    duet = replace(duet, grips=fitting(grips, duet.num_frames), looks=_looks(plan for plan, *_ in plans))
     for use, people, thing in furniture(hands, uses):
         if any(_same(thing, other) for other in things):
             continue
@@ -80,6 +81,14 @@ def _furnished(
     things, rows = things[:MOST_THINGS], rows[:MOST_THINGS]
     manifest = {**(duet.manifest or {}), "things": rows}
     return replace(duet, things=tuple(things), manifest=manifest), rows
+
+
+def _looks(plans: Iterable[Plan]) -> tuple[str, str]:
+    """The looks of the two people, each as the first plan that says something about them has it."""
+    people = [("", ""), ("", "")]
+    for plan in plans:
+        people = [(sex or p.sex, age or p.age) for (sex, age), p in zip(people, plan.people, strict=True)]
+    return looks_of(people)
 
 
 def _shaped(thing: Thing, own: Mesh) -> Thing:
