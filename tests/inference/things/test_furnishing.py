@@ -340,7 +340,7 @@ def test_people_look_as_their_plans_say():
     duet = Duet.from_positions(standing().astype(np.float32), fps=FPS)
     first = read("She bows.")
     second = read("An old man waves at a boy.")
-    result = Result((duet,), {}, (), {})
+    result = Result(duets=(duet,), manifest={}, readouts=(), timings={}, notes=())
     both = furnished(result, [(first, 0, 60, 0), (second, 60, None, 1)]).duets[0]
     assert both.looks == ("old-woman", "man")
     assert furnished(result, []).duets[0].looks == UNSAID
