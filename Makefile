@@ -29,6 +29,7 @@ lint: $(VENV)/.tests
 	$(BIN)/ruff check .
 	$(BIN)/ruff format --check .
 	$(BIN)/mypy
+	$(BIN)/lint-imports
 
 # Thousands of mutated files and requests: an hour at most, and the tests bound the memory of what they attack.
 attack: $(VENV)/.tests

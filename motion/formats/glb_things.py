@@ -12,12 +12,11 @@ from motion.body import vertex_normals
 from motion.colours import hex_of, linear
 from motion.things.thing import Mesh, Thing
 
+from .glb_buffer import Buffer
 from .glb_nodes import quaternions
 
 if TYPE_CHECKING:
     import pygltflib
-
-    from .glb import Buffer
 
 ROUGH = 0.75
 

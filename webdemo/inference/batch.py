@@ -25,7 +25,8 @@ from models.intergen.words import join_conditions
 from .cancel import CancelToken
 from .damping import Damping, correct_together
 from .engine import Engine
-from .requests import GenerateRequest, Progress, ReactRequest, Result
+from .requests import GenerateRequest, ReactRequest
+from .results import Progress, Result
 from .story.request import SceneRequest
 
 Event = Progress | Result | Exception

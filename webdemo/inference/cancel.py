@@ -7,7 +7,7 @@ from time import monotonic
 
 from motion import InputError
 
-from .requests import Cancelled
+from .results import Cancelled
 
 LATE = "The run took longer than the {limit} that this lab allows: ask for fewer steps, samples or seconds."
 

@@ -29,7 +29,8 @@ from .methods import WEIGHTS
 from .own.classes import fenced
 from .partner import PARTNERS, LivePartner
 from .predict_request import PredictRequest
-from .requests import GenerateRequest, Progress, ReactRequest, Result, SamplingRequest
+from .requests import GenerateRequest, ReactRequest, SamplingRequest
+from .results import Progress, Result
 from .story.request import SceneRequest
 from .things import furnished
 from .timer import StageTimer

@@ -15,7 +15,8 @@ from numpy.typing import NDArray
 from motion import InputError
 
 from .actor import FPS
-from .requests import Progress, ReactRequest
+from .requests import ReactRequest
+from .results import Progress
 
 Array = NDArray[np.floating]
 

@@ -13,7 +13,8 @@ from motion import Clip, Duet, InputError
 from motion.metrics import compare
 
 from .partner import PARTNERS
-from .requests import Progress, Result, clip_facts
+from .requests import clip_facts
+from .results import Progress, Result
 from .timer import StageTimer
 
 LONGEST = 60.0

@@ -6,17 +6,16 @@ The page, the shell, the API, the queue, the history and the benchmark read thes
 
 from __future__ import annotations
 
+import importlib
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Literal, Protocol
+from typing import Any, Literal, Protocol
 
 from .actor import SECONDS
-
-if TYPE_CHECKING:
-    from .cancel import CancelToken
-    from .requests import Progress, Result
-    from .timer import StageTimer
+from .cancel import CancelToken
+from .results import Progress, Result
+from .timer import StageTimer
 
 Task = Literal["generate", "react", "predict", "scene"]
 DEFAULT_STEPS = 8
@@ -45,6 +44,23 @@ class Pipeline(Protocol):
             Cancelled: within one sampling step of ``cancel.cancel()``.
         """
         ...
+
+
+def load_pipeline(place: str, *parts: Any) -> Pipeline:
+    """The pipeline of a method that is shipped; imports torch.
+
+    Requests read the registry of methods, and pipelines read requests, so the registry names a pipeline and imports
+    none; the engine asks for it.
+
+    Args:
+        place: its module in :mod:`webdemo.inference.pipelines` and its class, "intergen.InterGenPipeline".
+        parts: what :attr:`Method.load` is called with.
+    """
+    module, _, name = place.partition(".")
+    pipeline: Pipeline = getattr(importlib.import_module(f"webdemo.inference.pipelines.{module}"), name)(
+        *parts
+    )
+    return pipeline
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -13,7 +13,8 @@ from motion import SMPL22, Clip, Duet, InputError, stacked_positions
 
 from . import methods
 from .actor import FPS, at_30_fps
-from .requests import Result, _number
+from .limits import number
+from .results import Result
 
 Array = NDArray[np.floating]
 
@@ -44,10 +45,10 @@ class PredictRequest:
     def __post_init__(self) -> None:
         set_ = object.__setattr__
         method = methods.method(self.model, "predict")
-        set_(self, "seconds", _number("Length", self.seconds, *method.seconds, " seconds"))
+        set_(self, "seconds", number("Length", self.seconds, *method.seconds, " seconds"))
         set_(self, "motion", check_motion(self.motion))
         length = self.motion.seconds
-        marker = length if self.marker is None else _number("Marker", self.marker, 0.0, 1e6, " seconds")
+        marker = length if self.marker is None else number("Marker", self.marker, 0.0, 1e6, " seconds")
         if round(length * FPS) < round(PAST_SECONDS * FPS):
             raise InputError(
                 f"The past is {length:.2f} s long, and {PAST_SECONDS:g} s or more is needed: "

@@ -6,7 +6,6 @@ These dataclasses import no torch, so the page, the shell and the API build them
 from __future__ import annotations
 
 import hashlib
-import math
 from collections.abc import Mapping
 from dataclasses import dataclass, field, fields
 from typing import Any
@@ -16,58 +15,32 @@ from numpy.typing import NDArray
 
 from acts.captions import in_words
 from acts.plan import Plan, plan_of
-from motion import Clip, Duet, InputError
+from motion import Clip, InputError
 
 from . import methods
 from .actor import ROLES, check_actor
+from .limits import (
+    DAMPING,
+    GUIDANCE,
+    MAX_PROMPT,
+    MAX_SEED,
+    SAMPLERS,
+    SAMPLES,
+    STEPS,
+    TRIES,
+    choice,
+    number,
+    prompt_of,
+    whole,
+)  # fmt: skip
 from .method import Method
 from .plans import KeptPlan
+from .results import Cancelled, Progress, Result
 
-MAX_PROMPT = 500
-STEPS = (1, 1000)
-SAMPLES = (1, 8)
-TRIES = (1, 4)
-GUIDANCE = (0.0, 10.0)
-DAMPING = (0.0, 1.0)
-MAX_SEED = 2**32 - 1
-SAMPLERS = ("ddim", "dpm++")
-
-
-def _number(name: str, value: Any, low: float, high: float, unit: str = "") -> float:
-    if isinstance(value, bool) or not isinstance(value, (int, float)) or not math.isfinite(value):
-        raise InputError(
-            f"{name} must be a number from {_plain(low)} to {_plain(high)}{unit}, not {value!r:.40}."
-        )
-    if not low <= value <= high:
-        raise InputError(f"{name} must be from {_plain(low)} to {_plain(high)}{unit}, not {_plain(value)}.")
-    return float(value)
-
-
-def _plain(value: float) -> str:
-    """A number as people write it: 4,294,967,295 rather than 4.29497e+09."""
-    return f"{int(value):,}" if 1e4 <= abs(value) < 1e15 and value == int(value) else f"{value:g}"
-
-
-def _whole(name: str, value: Any, low: int, high: int) -> int:
-    number = _number(name, value, low, high)
-    if number != int(number):
-        raise InputError(
-            f"{name} must be a whole number from {_plain(low)} to {_plain(high)}, not {value:g}."
-        )
-    return int(number)
-
-
-def _words(value: Any, *, needed: bool) -> str:
-    if not isinstance(value, str) or (needed and not value.strip()):
-        raise InputError("The prompt is empty: say in a sentence what the two people do.")
-    if len(value) > MAX_PROMPT:
-        raise InputError(f"The prompt has {len(value):,} characters: shorten it to {MAX_PROMPT} or fewer.")
-    return value
-
-
-def _choice(name: str, value: Any, known: tuple[str, ...]) -> None:
-    if value not in known:
-        raise InputError(f"{name} {value!r:.40} is not known: choose one of {', '.join(known)}.")
+__all__ = [
+    "DAMPING", "GUIDANCE", "MAX_PROMPT", "MAX_SEED", "OWN_STEPS", "SAMPLES", "STEPS", "TRIES", "Cancelled",
+    "GenerateRequest", "Progress", "ReactRequest", "Result", "SamplingRequest", "clip_facts", "with_current_names",
+]  # fmt: skip
 
 
 def _others(needed: str) -> str:
@@ -113,13 +86,13 @@ class SamplingRequest:
             set_(self, "steps", method.steps)
         for name, value in method.fixed.items():
             set_(self, name, value)
-        set_(self, "seed", _whole("Seed", self.seed, 0, MAX_SEED))
-        set_(self, "samples", _whole("Samples", self.samples, *SAMPLES))
-        set_(self, "tries", _whole("Tries", self.tries, *TRIES))
-        set_(self, "guidance", _number("Guidance scale", self.guidance, *GUIDANCE))
-        set_(self, "steps", _whole("DDIM steps", self.steps, *STEPS))
-        set_(self, "damping", _number("Damping threshold", self.damping, *DAMPING))
-        _choice("Sampler", self.sampler, SAMPLERS)
+        set_(self, "seed", whole("Seed", self.seed, 0, MAX_SEED))
+        set_(self, "samples", whole("Samples", self.samples, *SAMPLES))
+        set_(self, "tries", whole("Tries", self.tries, *TRIES))
+        set_(self, "guidance", number("Guidance scale", self.guidance, *GUIDANCE))
+        set_(self, "steps", whole("DDIM steps", self.steps, *STEPS))
+        set_(self, "damping", number("Damping threshold", self.damping, *DAMPING))
+        choice("Sampler", self.sampler, SAMPLERS)
         if self.sampler not in method.samplers:
             raise InputError(
                 f"{method.label} does not sample with {self.sampler}: choose {' or '.join(method.samplers)}."
@@ -155,8 +128,8 @@ class GenerateRequest(SamplingRequest):
             object.__setattr__(self, "acts", plan_of(self.acts))
             if not self.prompt.strip():
                 object.__setattr__(self, "prompt", in_words(self.acts))
-        _words(self.prompt, needed=True)
-        object.__setattr__(self, "seconds", _number("Length", self.seconds, *method.seconds, " seconds"))
+        prompt_of(self.prompt, needed=True)
+        object.__setattr__(self, "seconds", number("Length", self.seconds, *method.seconds, " seconds"))
         self._check(method)
 
     def to_dict(self) -> dict[str, Any]:
@@ -207,8 +180,8 @@ class ReactRequest(SamplingRequest):
     first_pose: NDArray[np.floating] | None = field(default=None, compare=False)
 
     def __post_init__(self) -> None:
-        _words(self.prompt, needed=False)
-        _choice("Role", self.role, ROLES)
+        prompt_of(self.prompt, needed=False)
+        choice("Role", self.role, ROLES)
         if self.model == methods.AUTOMATIC:
             chosen = methods.automatic(self.prompt, self.role, self.mode)
             object.__setattr__(self, "model", chosen.name)
@@ -254,55 +227,7 @@ class ReactRequest(SamplingRequest):
         return {"kind": "react", "actor": clip_facts(self.actor), **plain}
 
 
-@dataclass(frozen=True, kw_only=True)
-class Progress:
-    """An event during a run.
-
-    Attributes:
-        stage: "load", "text", "sample", "finish".
-        step: finished steps of the stage.
-        total: all steps of the stage.
-        elapsed: seconds since the request began.
-        unit: what is counted: "step" for denoising steps, "frame", "pass".
-        attempt: the number of the try, from 1, of ``attempts``.
-    """
-
-    stage: str
-    step: int = 0
-    total: int = 1
-    elapsed: float = 0.0
-    unit: str = "step"
-    attempt: int = 1
-    attempts: int = 1
-
-
-@dataclass(frozen=True, kw_only=True)
-class Result:
-    """The result of a request.
-
-    Attributes:
-        duets: one a sample; a prediction for one person is that person's clip.
-        manifest: request, plan, model, weights hash, versions: all that reproduces the result.
-        readouts: one dictionary of interaction measures a sample (see :mod:`motion.metrics`), each
-            measure with its value ``before`` and ``after`` the damping and clean-up where both exist.
-        timings: seconds by stage.
-        notes: sentences the user should read, such as a prompt far from all training captions.
-        run: its id in the history; "" where none keeps it.
-    """
-
-    duets: tuple[Duet | Clip, ...]
-    manifest: dict[str, Any]
-    readouts: tuple[dict[str, Any], ...] = ()
-    timings: dict[str, float] = field(default_factory=dict)
-    notes: tuple[str, ...] = ()
-    run: str = ""
-
-
 def with_current_names(request: Mapping[str, Any]) -> dict[str, Any]:
     """The fields of a stored request by their present names; ``first_pose`` of a reaction was once ``start``."""
     older = {"start": "first_pose"} if request.get("kind") == "react" else {}
     return {older.get(name, name): value for name, value in request.items()}
-
-
-class Cancelled(Exception):
-    """The run was cancelled by its owner; nothing was written."""

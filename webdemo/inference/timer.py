@@ -5,7 +5,7 @@ from __future__ import annotations
 import time
 from dataclasses import dataclass
 
-from .requests import Progress
+from .results import Progress
 
 
 @dataclass

@@ -7,7 +7,8 @@ from dataclasses import replace
 from typing import Any
 
 from .cancel import CancelToken
-from .requests import MAX_SEED, Progress, Result
+from .limits import MAX_SEED
+from .results import Progress, Result
 from .timer import StageTimer
 from .verdicts import Judged, judged, note
 

@@ -12,7 +12,8 @@ from motion import SMPL22, Clip, Duet, InputError
 from motion.metrics.sentences.joints import Motion
 
 from . import methods
-from .requests import GenerateRequest, Result
+from .requests import GenerateRequest
+from .results import Result
 from .story.request import SceneRequest
 
 MOST_NAMED = 6

@@ -19,6 +19,8 @@ from types import ModuleType
 
 from motion import InputError
 from webdemo.inference.method import Method, Task, Variant
+from webdemo.inference.own import method_of, read_entries
+from webdemo.inference.own.classes import method_of_class
 
 from . import agent, bigraphdiff, interformer, intergen, mawgan, motion_mlp, regennet, still
 
@@ -158,8 +160,6 @@ def register_settings() -> None:
 
 
 def _register_settings() -> None:
-    from webdemo.inference.own import method_of, read_entries  # these read requests, which read this registry
-
     entries, failures = read_entries()
     for name, entry in entries.items():
         try:
@@ -202,8 +202,6 @@ def _import(file: Path) -> ModuleType:
 
 def _add(found: Method | type) -> None:
     if isinstance(found, type):
-        from webdemo.inference.own.classes import method_of_class
-
         found = method_of_class(found)
     if not isinstance(found, Method):
         raise InputError("METHOD is not a webdemo.inference.method.Method.")

@@ -3,20 +3,12 @@
 from __future__ import annotations
 
 import os
-from pathlib import Path
+from functools import partial
 
-from webdemo.inference.method import Method, Pipeline
+from webdemo.inference.method import Method, load_pipeline
 
 PREDICTOR_VARIABLE = "PASDEDEUX_AGENT_PREDICTOR"
 """Environment variable that names the method that looks two seconds ahead: motion-mlp, the default, or mawgan."""
-
-
-def load(folder: Path, predictor: Pipeline, partner: Pipeline) -> Pipeline:
-    """The pipeline of a weights folder; imports torch."""
-
-    from webdemo.inference.pipelines.agent import AgentPipeline
-
-    return AgentPipeline(folder, predictor, partner)  # type: ignore[arg-type]
 
 
 METHOD = Method(
@@ -27,5 +19,5 @@ METHOD = Method(
     takes=frozenset({"actor"}),
     weights="agent",
     needs=(os.environ.get(PREDICTOR_VARIABLE) or "motion-mlp", "intergen"),
-    load=load,
+    load=partial(load_pipeline, "agent.AgentPipeline"),
 )

@@ -2,18 +2,9 @@
 
 from __future__ import annotations
 
-from pathlib import Path
+from functools import partial
 
-from webdemo.inference.method import Method, Pipeline
-
-
-def load(folder: Path) -> Pipeline:
-    """The pipeline of a weights folder; imports torch."""
-
-    from webdemo.inference.pipelines.bigraphdiff import BiGraphDiffPipeline
-
-    return BiGraphDiffPipeline(folder)
-
+from webdemo.inference.method import Method, load_pipeline
 
 METHOD = Method(
     name="bigraphdiff",
@@ -24,5 +15,5 @@ METHOD = Method(
     defaults={"guidance": 1.8, "steps": 50},
     shares_passes=True,
     weights="bigraphdiff",
-    load=load,
+    load=partial(load_pipeline, "bigraphdiff.BiGraphDiffPipeline"),
 )

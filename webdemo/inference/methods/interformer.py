@@ -2,18 +2,9 @@
 
 from __future__ import annotations
 
-from pathlib import Path
+from functools import partial
 
-from webdemo.inference.method import Method, Pipeline
-
-
-def load(folder: Path) -> Pipeline:
-    """The pipeline of a weights folder; imports torch."""
-
-    from webdemo.inference.pipelines.interformer import InterFormerPipeline
-
-    return InterFormerPipeline(folder)
-
+from webdemo.inference.method import Method, load_pipeline
 
 METHOD = Method(
     name="interformer",
@@ -24,5 +15,5 @@ METHOD = Method(
     fixed={"steps": 1, "guidance": 1.0, "damping": 0.0, "sampler": "ddim"},
     defaults={"steps": 1},
     weights="interformer",
-    load=load,
+    load=partial(load_pipeline, "interformer.InterFormerPipeline"),
 )

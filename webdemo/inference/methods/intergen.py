@@ -2,18 +2,9 @@
 
 from __future__ import annotations
 
-from pathlib import Path
+from functools import partial
 
-from webdemo.inference.method import Method, Pipeline
-
-
-def load(folder: Path) -> Pipeline:
-    """The pipeline of a weights folder; imports torch."""
-
-    from webdemo.inference.pipelines.intergen import InterGenPipeline
-
-    return InterGenPipeline(folder)
-
+from webdemo.inference.method import Method, load_pipeline
 
 METHOD = Method(
     name="intergen",
@@ -24,5 +15,5 @@ METHOD = Method(
     modes={"offline": "InterGen, person to person"},
     shares_passes=True,
     weights="intergen",
-    load=load,
+    load=partial(load_pipeline, "intergen.InterGenPipeline"),
 )

@@ -2,18 +2,9 @@
 
 from __future__ import annotations
 
-from pathlib import Path
+from functools import partial
 
-from webdemo.inference.method import Method, Pipeline
-
-
-def load(folder: Path) -> Pipeline:
-    """The pipeline of a weights folder; imports torch."""
-
-    from webdemo.inference.pipelines.predictor import PredictorPipeline
-
-    return PredictorPipeline(folder)
-
+from webdemo.inference.method import Method, load_pipeline
 
 METHOD = Method(
     name="motion-mlp",
@@ -23,5 +14,5 @@ METHOD = Method(
     takes=frozenset({"past"}),
     seconds=(0.5, 4.0),
     weights="motion-mlp",
-    load=load,
+    load=partial(load_pipeline, "predictor.PredictorPipeline"),
 )

@@ -2,18 +2,9 @@
 
 from __future__ import annotations
 
-from pathlib import Path
+from functools import partial
 
-from webdemo.inference.method import Method, Pipeline
-
-
-def load(folder: Path) -> Pipeline:
-    """The pipeline of a weights folder; imports torch."""
-
-    from webdemo.inference.pipelines.regennet import ReGenNetPipeline
-
-    return ReGenNetPipeline(folder)
-
+from webdemo.inference.method import Method, load_pipeline
 
 METHOD = Method(
     name="regennet",
@@ -26,5 +17,5 @@ METHOD = Method(
     defaults={"steps": 5},
     samplers=("ddim",),
     weights="regennet",
-    load=load,
+    load=partial(load_pipeline, "regennet.ReGenNetPipeline"),
 )

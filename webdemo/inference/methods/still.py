@@ -2,18 +2,7 @@
 
 from __future__ import annotations
 
-from pathlib import Path
-
-from webdemo.inference.method import Method, Pipeline
-
-
-def load(folder: Path) -> Pipeline:
-    """The pipeline of a weights folder; imports torch."""
-
-    from webdemo.inference.pipelines.predictor import PredictorPipeline
-
-    return PredictorPipeline(None)
-
+from webdemo.inference.method import Method, load_pipeline
 
 METHOD = Method(
     name="still",
@@ -22,5 +11,5 @@ METHOD = Method(
     tasks=("predict",),
     takes=frozenset({"past"}),
     seconds=(0.5, 4.0),
-    load=load,
+    load=lambda _: load_pipeline("predictor.PredictorPipeline", None),
 )

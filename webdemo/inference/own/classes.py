@@ -20,7 +20,7 @@ from motion.skeleton import SMPL22
 from webdemo.inference.actor import SECONDS
 from webdemo.inference.cancel import CancelToken
 from webdemo.inference.method import Method, Pipeline
-from webdemo.inference.requests import Cancelled, Progress, Result
+from webdemo.inference.results import Cancelled, Progress, Result
 from webdemo.inference.timer import StageTimer
 
 from .entries import Entry

@@ -28,7 +28,8 @@ from models.motion_tokens import TokenLayout
 from motion import SMPL22, Clip, Duet
 from webdemo.inference.actor import FPS, MEDIAN_START_DISTANCE, Placement
 from webdemo.inference.cancel import CancelToken
-from webdemo.inference.requests import Progress, ReactRequest, Result
+from webdemo.inference.requests import ReactRequest
+from webdemo.inference.results import Progress, Result
 from webdemo.inference.scenes import NAMES, Finish, Reaction
 from webdemo.inference.timer import StageTimer
 

@@ -28,7 +28,8 @@ from webdemo.inference.actor import FPS, Placement
 from webdemo.inference.cancel import CancelToken
 from webdemo.inference.cleanup import clean_person
 from webdemo.inference.noise import sample_noise
-from webdemo.inference.requests import Progress, ReactRequest, Result
+from webdemo.inference.requests import ReactRequest
+from webdemo.inference.results import Progress, Result
 from webdemo.inference.timer import StageTimer
 
 from .regennet import duet_of, settle

@@ -17,7 +17,8 @@ from motion.arms import arms_apart
 from motion.embraces import embraced
 from webdemo.inference.cancel import CancelToken
 from webdemo.inference.plans import KeptPlan
-from webdemo.inference.requests import GenerateRequest, Progress, ReactRequest, Result
+from webdemo.inference.requests import GenerateRequest, ReactRequest
+from webdemo.inference.results import Progress, Result
 from webdemo.inference.scenes import Scene
 from webdemo.inference.story import understood
 from webdemo.inference.story.request import SceneRequest, as_scene

@@ -15,7 +15,7 @@ from motion.vectors import unit
 from webdemo.inference.actor import FPS
 from webdemo.inference.cancel import CancelToken
 from webdemo.inference.predict_request import PredictRequest, PredictResult, with_people
-from webdemo.inference.requests import Progress, Result
+from webdemo.inference.results import Progress, Result
 from webdemo.inference.timer import StageTimer
 
 from .predict_feet import with_planted_feet

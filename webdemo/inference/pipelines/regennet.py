@@ -32,7 +32,8 @@ from webdemo.inference.damping import Beside, Damping
 from webdemo.inference.following import FollowingCleanup
 from webdemo.inference.live import LiveFrame, LiveProgress, LiveRequest, paced
 from webdemo.inference.noise import sample_noise
-from webdemo.inference.requests import Progress, ReactRequest, Result
+from webdemo.inference.requests import ReactRequest
+from webdemo.inference.results import Progress, Result
 from webdemo.inference.timer import StageTimer
 
 Array = NDArray[np.floating]

@@ -11,11 +11,11 @@ import threading
 from collections import OrderedDict
 from collections.abc import Generator, Iterator, Sequence
 from dataclasses import dataclass, fields, replace
-from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
 
+from models.intergen.compact import CompactInterGen
 from motion import Duet, InputError
 from motion.metrics import compare
 from webdemo.inference import methods
@@ -23,7 +23,8 @@ from webdemo.inference.actor import FPS, ROLES
 from webdemo.inference.cancel import CancelToken
 from webdemo.inference.joining import closed
 from webdemo.inference.plans import KeptPlan, WindowPlan
-from webdemo.inference.requests import GenerateRequest, Progress, Result, SamplingRequest
+from webdemo.inference.requests import GenerateRequest, SamplingRequest
+from webdemo.inference.results import Progress, Result
 from webdemo.inference.scenes import NAMES
 from webdemo.inference.story.plan import Window, window_seed, windows
 from webdemo.inference.story.progress import SceneProgress
@@ -34,10 +35,7 @@ from webdemo.inference.timer import StageTimer
 from .scene_finish import finished
 from .scene_floor import plan_note
 from .scene_setting import Setting
-
-if TYPE_CHECKING:
-    from .intergen import InterGenPipeline
-    from .two_person import Passes
+from .two_person import Passes, TwoPersonPipeline
 
 Array = NDArray[np.floating]
 
@@ -96,7 +94,7 @@ class SceneMaker:
         pipeline: makes the windows.
     """
 
-    def __init__(self, pipeline: InterGenPipeline) -> None:
+    def __init__(self, pipeline: TwoPersonPipeline[CompactInterGen]) -> None:
         self.pipeline = pipeline
         self.parts = Parts()
 

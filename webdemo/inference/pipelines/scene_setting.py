@@ -6,11 +6,11 @@ import hashlib
 import json
 import math
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
 
+from models.intergen.compact import CompactInterGen
 from motion.transforms import heading, heading_matrix
 from webdemo.inference.actor import FPS, MEDIAN_START_DISTANCE, ROLES, SECONDS, Placement
 from webdemo.inference.directed import Directed, directed
@@ -22,9 +22,7 @@ from webdemo.inference.story.request import SceneRequest
 
 from .scene_floor import planned
 from .scene_wishes import wishes
-
-if TYPE_CHECKING:
-    from .intergen import InterGenPipeline
+from .two_person import TwoPersonPipeline
 
 Array = NDArray[np.floating]
 
@@ -77,7 +75,7 @@ class Setting:
         frames = max(past + length + tail, round(SECONDS[0] * FPS))
         return cls(window, frames, (*parts, *plan.parts), placement, plan)
 
-    def scene(self, pipeline: InterGenPipeline) -> Directed:
+    def scene(self, pipeline: TwoPersonPipeline[CompactInterGen]) -> Directed:
         """As the pipeline takes it."""
         return directed(pipeline.model, self.frames, self.parts, check=False)
 

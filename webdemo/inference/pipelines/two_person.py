@@ -25,7 +25,8 @@ from webdemo.inference.cancel import CancelToken
 from webdemo.inference.cleanup import clean_person
 from webdemo.inference.damping import Damping
 from webdemo.inference.noise import sample_noise
-from webdemo.inference.requests import GenerateRequest, Progress, ReactRequest, Result
+from webdemo.inference.requests import GenerateRequest, ReactRequest
+from webdemo.inference.results import Progress, Result
 from webdemo.inference.scenes import Finish, Scene, scene_of
 from webdemo.inference.timer import StageTimer
 

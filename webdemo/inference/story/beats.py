@@ -14,7 +14,7 @@ from acts.captions import sentence
 from acts.lexicon import lexicon
 from acts.plan import MOST_ACTS, Act, beats, problem
 from motion import InputError
-from webdemo.inference.requests import MAX_PROMPT, MAX_SEED
+from webdemo.inference.limits import MAX_PROMPT, MAX_SEED
 
 SHORTEST, LONGEST = 0.5, 30.0
 """Seconds of one beat."""

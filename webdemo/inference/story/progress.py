@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from motion import Duet
-from webdemo.inference.requests import Progress
+from webdemo.inference.results import Progress
 
 
 @dataclass(frozen=True, kw_only=True)

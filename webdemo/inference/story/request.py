@@ -14,9 +14,10 @@ import numpy as np
 from motion import Duet, InputError
 from webdemo.inference import methods
 from webdemo.inference.actor import FPS
+from webdemo.inference.limits import number
 from webdemo.inference.plans import KeptPlan
 from webdemo.inference.predict_request import check_motion
-from webdemo.inference.requests import GenerateRequest, SamplingRequest, _number
+from webdemo.inference.requests import GenerateRequest, SamplingRequest
 
 from .beats import MOST_BEATS, SHORTEST, Beat, acts_of
 from .contacts import Region
@@ -96,10 +97,10 @@ class SceneRequest(SamplingRequest):
             raise InputError("The story is empty: say in a sentence or more what the two people do.")
         if len(self.beats) > MOST_BEATS:
             raise InputError(f"The story has {len(self.beats)} beats: keep to {MOST_BEATS} or fewer.")
-        for number, beat in enumerate(self.beats, 1):
-            beat.check(number)
+        for place, beat in enumerate(self.beats, 1):
+            beat.check(place)
             if self.motion is None and not beat.sentence:
-                raise InputError(f"Beat {number} has no words: say what happens in it, or delete it.")
+                raise InputError(f"Beat {place} has no words: say what happens in it, or delete it.")
 
     def _check_alone(self) -> None:
         if self.start is not None or self.end is not None:
@@ -120,14 +121,14 @@ class SceneRequest(SamplingRequest):
         motion = checked
         set_(self, "motion", motion)
         length = motion.seconds
-        start = length if self.start is None else _number("Start", self.start, 0.0, length, " seconds")
+        start = length if self.start is None else number("Start", self.start, 0.0, length, " seconds")
         start = round(start * FPS) / FPS
         set_(self, "start", start)
         if self.end is None:
             if start < SHORTEST:
                 raise InputError(f"A continuation needs {SHORTEST:g} s of motion before it: start it later.")
             return
-        end = round(_number("End", self.end, 0.0, length, " seconds") * FPS) / FPS
+        end = round(number("End", self.end, 0.0, length, " seconds") * FPS) / FPS
         if end - start < SHORTEST - 1e-6:
             raise InputError(
                 f"The span from {start:g} to {end:g} s is too short: select {SHORTEST:g} s or more."
@@ -291,8 +292,8 @@ def as_scene(request: GenerateRequest, go_on: Callable[[], None] = lambda: None)
         return None
     try:
         beats = _beats(request, go_on)
-        for number, beat in enumerate(beats, 1):
-            beat.check(number)
+        for place, beat in enumerate(beats, 1):
+            beat.check(place)
     except InputError:
         go_on()  # may be what raised it
         return None

@@ -11,7 +11,7 @@ from acts.captions import sentence
 from acts.lexicon import Entry, Lexicon, lexicon
 from motion import InputError
 from webdemo.inference.cancel import CancelToken
-from webdemo.inference.requests import MAX_PROMPT
+from webdemo.inference.limits import MAX_PROMPT
 
 from .beats import MOST_BEATS, Beat
 from .staging import staged

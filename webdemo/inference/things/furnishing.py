@@ -13,7 +13,7 @@ from motion import SMPL22, Clip, Duet, InputError
 from motion.looks import looks_of
 from motion.things import FURNITURE, MOST_THINGS, Mesh, Thing
 
-from ..requests import Result
+from ..results import Result
 from .courses import ThingCourse
 from .grips import fitting, grips_of_contact, grips_of_plan, grips_of_things
 from .holding import Hands, level, yaw_of

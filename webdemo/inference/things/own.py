@@ -10,7 +10,7 @@ from typing import Any
 from motion import InputError
 from motion.formats.thing_files import read_thing
 
-from ..requests import Result
+from ..results import Result
 from ..verdicts import plans_of
 from .furnishing import furnished
 

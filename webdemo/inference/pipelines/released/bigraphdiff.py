@@ -25,7 +25,8 @@ from webdemo.inference.cancel import CancelToken
 from webdemo.inference.cleanup import clean_person
 from webdemo.inference.noise import sample_noise
 from webdemo.inference.own.entries import Entry
-from webdemo.inference.requests import GenerateRequest, Progress, Result
+from webdemo.inference.requests import GenerateRequest
+from webdemo.inference.results import Progress, Result
 from webdemo.inference.timer import StageTimer
 
 from .common import digest

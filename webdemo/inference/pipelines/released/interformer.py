@@ -21,7 +21,8 @@ from webdemo.inference.actor import FPS, Placement
 from webdemo.inference.cancel import CancelToken
 from webdemo.inference.own.entries import Entry
 from webdemo.inference.pipelines.interformer import RECORDED_START_DISTANCE, InterFormerPipeline
-from webdemo.inference.requests import Progress, ReactRequest, Result
+from webdemo.inference.requests import ReactRequest
+from webdemo.inference.results import Progress, Result
 from webdemo.inference.timer import StageTimer
 
 from .common import digest

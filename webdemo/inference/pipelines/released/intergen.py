@@ -15,7 +15,8 @@ from webdemo.inference.actor import FPS, ROLES, Placement
 from webdemo.inference.cancel import CancelToken
 from webdemo.inference.own.entries import Entry
 from webdemo.inference.pipelines.two_person import Conditioning, Passes, TwoPersonPipeline
-from webdemo.inference.requests import GenerateRequest, Progress, ReactRequest, Result
+from webdemo.inference.requests import GenerateRequest, ReactRequest
+from webdemo.inference.results import Progress, Result
 from webdemo.inference.scenes import Reaction, Scene
 from webdemo.inference.timer import StageTimer
 

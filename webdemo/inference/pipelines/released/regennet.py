@@ -25,7 +25,8 @@ from webdemo.inference.live import LiveFrame
 from webdemo.inference.noise import sample_noise
 from webdemo.inference.own.entries import Entry
 from webdemo.inference.pipelines.regennet import ReGenNetPipeline
-from webdemo.inference.requests import Progress, ReactRequest, Result
+from webdemo.inference.requests import ReactRequest
+from webdemo.inference.results import Progress, Result
 from webdemo.inference.timer import StageTimer
 
 from .common import digest
