@@ -129,3 +129,15 @@ def deep_features(network: DeepGRU, clips: Sequence[Array]) -> Array:
 def diversity_score(real: Array, made: Array) -> float:
     """Deviation of the :func:`spread` of features (N, D) from that of recorded motion, in percent (eq. 3.12)."""
     return 100 * abs(spread(real) - spread(made)) / spread(real)
+
+
+def measured(
+    network: DeepGRU, clips: Sequence[Array], labels: Sequence[int], real: Array
+) -> dict[str, float]:
+    """Accuracy, FVD and diversity of clips beside the deep features of recorded ones."""
+    found = deep_features(network, clips)
+    return {
+        "accuracy": round(accuracy(network, clips, labels), 4),
+        "fvd": round(frechet_distance(real, found), 4),
+        "diversity": round(diversity_score(real, found), 4),
+    }

@@ -31,7 +31,7 @@ from training.core.shell import exit_code
 from training.corpus.pairs import load_pairs
 from training.corpus.strict_pairs import strict_pairs
 from training.evaluate.baselines import Baseline, nearest, plain_transformer
-from training.evaluate.deep_gru import accuracy, deep_features, diversity_score, fit, frechet_distance
+from training.evaluate.deep_gru import accuracy, deep_features, fit, frechet_distance, measured
 from training.evaluate.judge.reactions import METHODS, installed, react
 from webdemo.inference import Engine
 from webdemo.inference.methods import WEIGHTS
@@ -160,13 +160,7 @@ def score(
         for method, samples in made.items():
             for people in samples:
                 clips = [seen(person) for person in people]
-                found = deep_features(network, clips)
-                add(
-                    method,
-                    accuracy=accuracy(network, clips, labels),
-                    fvd=frechet_distance(real, found),
-                    diversity=diversity_score(real, found),
-                )
+                add(method, **measured(network, clips, labels, real))
     return rows
 
 

@@ -48,7 +48,11 @@ COMMON = 0.4
 
 @dataclass(frozen=True)
 class Settings:
-    """The settings of a run; a checkpoint of others is refused. Named as in training.trainers.intergen."""
+    """The settings of a run; a checkpoint of others is refused. Named as in training.trainers.intergen.
+
+    graph: see :class:`models.bigraphdiff.BiGraphDiffConfig`. diffusion: if false, the network makes the motion from
+    its class alone and in one pass, S1 of the thesis' Table 4.6.
+    """
 
     latent_dim: int = 192
     ff_size: int = 512
@@ -66,6 +70,8 @@ class Settings:
     root_weight: float = 4.0
     t_bar: float = 0.7
     noisiest: float = 0.4
+    graph: str = "bipartite"
+    diffusion: bool = True
     seed: int = 0
     weights: LossWeights = field(default_factory=lambda: intergen_data.Settings().weights)
 
@@ -74,6 +80,8 @@ class Settings:
             raise InputError(
                 f"latent_dim {self.latent_dim} must be a multiple of 16 and of {self.num_heads} heads."
             )
+        if self.graph not in ("bipartite", "simple", "none"):
+            raise InputError(f"graph is {self.graph!r:.40}: give bipartite, simple or none.")
 
 
 def of_classes(scenes: Scenes) -> Scenes:
@@ -85,7 +93,9 @@ def of_classes(scenes: Scenes) -> Scenes:
     rows = [
         row
         for row in scenes.rows
-        if row.get("label") and not row.get("beats") and "order" not in (row.get("events") or {})
+        if (row.get("label") or row.get("class"))
+        and not row.get("beats")
+        and "order" not in (row.get("events") or {})
     ]
     if not rows:
         raise InputError(
@@ -144,6 +154,7 @@ class Trainer(Loop):
             settings.num_heads,
             settings.embed_dim,
             settings.cond_dim,
+            graph=settings.graph,
             layout=scenes.layout,
         )
         self.model, self.ema = (CompactBiGraphDiff(config).to(device) for _ in range(2))
@@ -165,7 +176,10 @@ class Trainer(Loop):
     def terms(self, batch: intergen_data.Batch, t: Tensor, noise: Tensor, keep: Tensor) -> dict[str, Tensor]:
         """Every loss term of one batch, weighted."""
         people = (*batch.x0.shape[:2], 2, -1)
-        xt = self.schedule.q_sample(batch.x0, t, noise)
+        if self.settings.diffusion:
+            xt = self.schedule.q_sample(batch.x0, t, noise)
+        else:
+            xt, t = torch.zeros_like(batch.x0), torch.zeros_like(t)
         with mixed_precision(self.device):
             cond = self.model.classes(batch.text) * keep[:, None]
             predicted = self.model.denoiser(xt, t, cond, batch.mask)

@@ -177,3 +177,18 @@ def test_it_trains():
 def test_other_weights_are_refused():
     with pytest.raises(WeightsError, match="not BiGraphDiff weights"):
         from_released({"a": torch.zeros(1)}, num_heads=4)
+
+
+def test_a_simple_graph_keeps_the_streams_apart():
+    torch.manual_seed(0)
+    x = torch.randn(3, 2 * 4, 4, 4)
+    other = torch.cat([x[:, :4], torch.randn(3, 4, 4, 4)], dim=1)
+    for simple in (True, False):
+        unit = bigraphdiff.BipartiteGraph(4, 3, simple=simple).eval()
+        assert torch.equal(unit(x)[:, :4], unit(other)[:, :4]) is simple
+
+
+def test_without_a_graph_there_is_no_unit():
+    network = BiGraphDiff(BiGraphDiffConfig(**{**vars(SMALL), "graph": "none"}))
+    assert not any("bipartite_graph" in name for name, _ in network.named_parameters())
+    assert network(*inputs()).shape == inputs()[0].shape

@@ -93,3 +93,18 @@ def test_other_weights_are_refused(ref):
     del weights["decoder.layers.1.norm_3.bias"]
     with pytest.raises(WeightsError, match=r"norm_3\.bias is missing"):
         from_released(weights)
+
+
+@pytest.mark.parametrize(
+    "changes", [{"spatial": False}, {"adjacency": False}, {"interaction": False}, {"spatial_heads": 1}]
+)
+def test_what_the_ablations_leave_out_counts(ref, network, changes):
+    source, target, table, *masks = inputs(ref)
+    config = InterFormerConfig(**{**vars(network.config), **changes})
+    without = InterFormer(config).eval()
+    without.load_state_dict(network.state_dict())
+    made = without(source, target, table, *masks)
+    assert not torch.allclose(made, network(source, target, table, *masks), atol=1e-3)
+    unmoved = without(source, target, table.flip(-1), *masks)
+    blind = not (config.spatial and config.interaction)
+    assert torch.equal(made, unmoved) is blind  # without them, distances change nothing
