@@ -36,7 +36,7 @@ class Clock:
 
 
 def streams(most: int = 3, address: int = 2) -> Streams:
-    return Streams(STUB.StubEngine(), most=most, address=address, clock=Clock())
+    return Streams(STUB.StubEngine(), most=most, address=address, clock=Clock(), processor=Clock())
 
 
 def poses(times: list[float], metres: float = 0.0) -> bytes:
@@ -98,24 +98,41 @@ def test_one_address_cannot_take_all_places() -> None:
     assert some.open(Visitor("d", "d", address="203.0.113.10"), "agent")
 
 
-def test_a_busy_server_takes_nobody_else_in() -> None:
+@pytest.mark.parametrize("pictures", [1, 15])
+def test_a_busy_server_takes_nobody_else_in(pictures: int) -> None:
     some = streams()
-    clock = some.clock
 
     class Slow(STUB.Mirror):
         def step(self, pose: np.ndarray) -> np.ndarray:
-            clock.now += 0.02  # 0.6 seconds a second
+            some.processor.now += 0.02  # 0.6 seconds a second
             return super().step(pose)
 
     some.engine.partner = lambda name, seed=0: Slow()
     stream = some.open(ADA, "agent")
-    for second in range(60):
-        some.answer(stream.id, ADA, poses([second / 10, second / 10 + 1 / 30])).result(20)
+    for frame in range(60):
+        body = poses([(frame + (picture + 1) / pictures) / 30 for picture in range(pictures)])
+        some.answer(stream.id, ADA, body).result(20)
     assert some.pace == pytest.approx(0.02, rel=0.05)
     with pytest.raises(StreamRefused, match="too busy for another live partner beside 1"):
         some.open(EVE, "agent")
     some.close(some.find(stream.id, ADA))
     assert some.open(EVE, "agent"), "one is always let in"
+
+
+def test_runs_beside_a_stream_keep_nobody_out() -> None:
+    some = streams()
+
+    class Delayed(STUB.Mirror):
+        def step(self, pose: np.ndarray) -> np.ndarray:
+            some.processor.now += 0.008
+            some.clock.now += 0.03  # other threads have the processor most of the time
+            return super().step(pose)
+
+    some.engine.partner = lambda name, seed=0: Delayed()
+    stream = some.open(ADA, "agent")
+    for frame in range(60):
+        some.answer(stream.id, ADA, poses([frame / 30])).result(20)
+    assert some.open(EVE, "agent")
 
 
 def test_idle_and_old_streams_are_closed() -> None:

@@ -46,6 +46,7 @@ class Counts:
         dropped: pictures that the page could not send in time.
         seconds: of computing, for all frames together.
         longest: seconds of the slowest message.
+        partner: processor time in seconds of the partner's steps, a frame each.
     """
 
     pictures: int = 0
@@ -53,6 +54,7 @@ class Counts:
     dropped: int = 0
     seconds: float = 0.0
     longest: float = 0.0
+    partner: float = 0.0
 
     @property
     def milliseconds(self) -> float:
@@ -93,6 +95,7 @@ class LiveStream:
         address: where they come from, where that limits them.
         partner: answers.
         clock: gives the time; seconds.
+        processor: gives the processor time of the thread that computes; seconds.
         counts: what has been done.
         ended: why there is no more, for the page; empty while it runs.
     """
@@ -104,6 +107,7 @@ class LiveStream:
     lens: float | None = None
     tilt: float | None = None
     clock: Callable[[], float] = time.monotonic
+    processor: Callable[[], float] = time.thread_time
     counts: Counts = field(default_factory=Counts)
     ended: str = ""
 
@@ -155,7 +159,10 @@ class LiveStream:
         for time_, pose in self._poses(message.content):
             self.counts.pictures += 1
             for given in self._even.add(time_, pose):
-                yield np.stack([given, self.partner.step(given)])
+                began = self.processor()
+                answer = self.partner.step(given)
+                self.counts.partner += self.processor() - began
+                yield np.stack([given, answer])
                 made += 1
             if made >= MOST_FRAMES:
                 return
