@@ -18,7 +18,7 @@ from tests.ui.stub_engine import StubEngine
 from webdemo.server.serve import make_server
 from webdemo.server.settings import Settings
 
-SLOW = 60_000
+SLOW = 120_000
 """Milliseconds that a busy machine may take to draw."""
 OFTEN = 100_000
 """Requests a minute: tests press faster than people."""
