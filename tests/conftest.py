@@ -9,6 +9,8 @@ import pytest
 from tests.quick import TESTS, listed
 
 QUICK = {TESTS / module for module in listed()}
+LONG = (TESTS / "e2e" / "tour", TESTS / "e2e")
+"""Folders of the modules that take longest, the longest first."""
 
 
 def pytest_ignore_collect(collection_path: Path, config: pytest.Config) -> bool | None:
@@ -19,7 +21,13 @@ def pytest_ignore_collect(collection_path: Path, config: pytest.Config) -> bool 
 
 
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
-    """Marks the tests of the modules in ``tests/quick.txt``."""
+    """Marks the tests of the modules in ``tests/quick.txt``, and puts long modules first.
+
+    Where several processes share the tests, short modules at the end keep all of them busy to the last.
+    """
+    items.sort(
+        key=lambda item: next((n for n, long in enumerate(LONG) if long in item.path.parents), len(LONG))
+    )
     for item in items:
         if item.path in QUICK:
             item.add_marker(pytest.mark.quick)

@@ -31,7 +31,7 @@ def rested(server: SimpleNamespace, open_page: Callable[..., Page]) -> Page:
             before=lambda tab: tab.add_init_script(COUNT),
             calm=False,
             reduced_motion="no-preference",
-        )  # fmt: skip
+        )
     )
     page.wait_for_function("window.__pasdedeux && window.__pasdedeux.mode !== null", timeout=SLOW)
     page.evaluate("window.__pasdedeux.player.act('pause')")
