@@ -46,7 +46,7 @@ _LOOKS, _FOLLOWS = np.radians(55.0), np.radians(14.0)
 _NODS = np.radians([-12.0, 38.0])
 """Radians by which a head is raised, and lowered, at most, to look at the other's."""
 _BEHIND = np.radians([95.0, 140.0])
-"""Radians aside of somebody who is still looked at, and of somebody who is behind one's back."""
+"""Radians aside up to which a person is looked at, and from which they are behind one's back."""
 _OWN_LOOK = np.radians([18.0, 35.0])
 """Radians that a head is turned of its own up to which it follows the other, and from which it does as it did."""
 _LATE = 7.0
@@ -62,7 +62,7 @@ _NEAR = (0.24, 0.42)
 _HANGS = (0.16, 0.28)
 """Metres of a wrist below its shoulder, per half metre of the arm, from which the arm begins to hang, and hangs."""
 _STANDS = (0.7, 0.8)
-"""Heights in metres of the pelvis of somebody who sits, at most, and of somebody who stands."""
+"""Heights in metres of the pelvis: of a sitting person at most, and of a standing one at least."""
 _SOLE = 0.12
 """Height in metres of a toe of a foot that is on the floor, at most."""
 _LOOSE, _TIGHT = 5.0, -4.0
@@ -221,7 +221,7 @@ def _with_arms(own: Array, moved: Array, fps: float, rest: Array, stands: Array,
         result[:, [elbow, wrist]] = _about(result[:, shoulder], _rotations(swing), result[:, [elbow, wrist]])
         hinge = -(hangs * BEND * bend)[:, None] * left
         result[:, wrist] = _about(result[:, elbow], _rotations(hinge), result[:, wrist])
-        # The hands of somebody who sits or lies stay where they lie.
+        # A sitting or lying person's hands stay where they are.
         lies = (rest * (1 - smoothstep(own[:, 0, 1], *_STANDS)))[:, None]
         goal = result[:, wrist] + lies * (own[:, wrist] - result[:, wrist])
         pole = -forward + np.array([0.0, -1.0, 0.0])

@@ -7,7 +7,7 @@ from acts.plan import Act
 from acts.shapes import Go
 
 BESIDE = frozenset(("gesture", "limb", "words"))
-"""Shapes of what somebody can do on their way."""
+"""Shapes of what a person can do on their way."""
 _ARRIVES = frozenset(("to", "behind", "back", "aside"))
 
 
@@ -17,7 +17,7 @@ def people_of(act: Act) -> set[str]:
 
 
 def turned_to(first: Act, then: Act, known: Lexicon) -> Act:
-    """The act, where somebody who is touched turns around: to the one who touched them."""
+    """The act; a person who is touched and turns around turns to the one who touched them."""
     touched = first.patient in then.agents and any(s.do == "touch" for s in known.entries[first.act].stage)
     turns = any(s.do == "turn" and s.way == "around" for s in known.entries[then.act].stage)
     if not touched or not turns or then.patient or then.direction:
@@ -43,7 +43,7 @@ def _linked(first: Act, then: Act, known: Lexicon) -> bool:
 
 
 def _accompanies(first: Act, then: Act, known: Lexicon) -> bool:
-    """True for what somebody does on their way or beside a gesture: "walks away and waves", "points and laughs"."""
+    """True for what a person does on their way or beside a gesture: "walks away and waves", "points and laughs"."""
     one, other = known.entries[first.act], known.entries[then.act]
     shown, later = {shape.do for shape in one.stage}, {shape.do for shape in other.stage}
     if not first.happens or not then.happens or other.mutual or not later <= BESIDE:

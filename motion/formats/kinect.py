@@ -188,7 +188,7 @@ class _Lines:
 
 
 def _read_skeleton(text: str, label: str, fps: float) -> list[Array]:
-    """(T, 25, 3) of every body that is seen at least half as long as the longest, who comes first."""
+    """(T, 25, 3) of every body that is seen at least half as long as the longest, which comes first."""
     reader = _Lines(text, label)
     frames = reader.count("frames", 999_999_999)
     if frames < 1:

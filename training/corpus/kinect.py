@@ -70,9 +70,9 @@ def _repair(pair: KinectPair, person: int) -> tuple[Array, Array]:
 
 
 def _ahead(own: Array, other: Array, pair: KinectPair) -> Array | None:
-    """(T, 2) where this person should face in XZ: who walks some way walks forwards, others face each other.
+    """(T, 2) where this person should face in XZ: forwards for a person who walks, and otherwise to the other.
 
-    ``None`` where nothing can be expected: who stands while a departure happens, or points at something.
+    ``None`` where nothing can be expected: of a person who stands while the other leaves, or who points at something.
     """
     torso = pair.skeleton.index("torso")
     middle = own[:, torso][:, [0, 2]]

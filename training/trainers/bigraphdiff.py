@@ -43,7 +43,7 @@ SUMMARY = (
 )
 """Summary of the weights on the page."""
 COMMON = 0.4
-"""Share of a class's scenes from which on a touch is the class's."""
+"""Share of a class's scenes in which a touch must occur to be the class's."""
 
 
 @dataclass(frozen=True)

@@ -97,7 +97,7 @@ async def stream(client: httpx.AsyncClient, seconds: float, partner: str = "agen
 
 
 async def _person(client: httpx.AsyncClient, poses: np.ndarray, seconds: float, partner: str) -> Person:
-    """Somebody who is live for so many seconds."""
+    """A person who is live for so many seconds."""
     cookies = {"cookie": f"{VISITOR_COOKIE}={new_token()}"}
     person = Person()
     opened = await client.post("live", json={"partner": partner}, headers=cookies)

@@ -40,7 +40,7 @@ def add_generate(commands: Any) -> None:
     parser.add_argument(
         "--no-plan",
         action="store_true",
-        help="do not read from the words where people go, who stands by, sits down or jumps",
+        help="do not read from the words where people go and whether they stand by, sit down or jump",
     )
     parser.add_argument(
         "--thing", type=Path, metavar="FILE",

@@ -33,7 +33,7 @@ def add_scene(commands: Any) -> None:
     parser.add_argument(
         "--no-plan",
         action="store_true",
-        help="do not read from the words where people go, who stands by, sits down or jumps",
+        help="do not read from the words where people go and whether they stand by, sit down or jump",
     )
     default = "the story's own if not given"
     parser.add_argument("--seed", type=int, help=default)

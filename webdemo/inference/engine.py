@@ -135,7 +135,7 @@ class Engine:
         return pipeline.live(request)
 
     def partner(self, name: str, *, seed: int = 0) -> LivePartner:
-        """Somebody who answers a stream of poses, one of :data:`webdemo.inference.partner.PARTNERS`.
+        """A partner who answers a stream of poses, one of :data:`webdemo.inference.partner.PARTNERS`.
 
         Raises:
             InputError: if there is no such partner, or its weights are missing or altered.

@@ -24,7 +24,7 @@ _LOW = 0.1
 _FADE = 0.8
 """Factor by which a correction decays each frame after the foot lifts."""
 _FARTHEST = 0.12
-"""Metres between a foot's place and the network's from which on the foot steps instead of standing."""
+"""Metres between a foot's place and the network's beyond which the foot steps instead of standing."""
 
 
 class FollowingCleanup:

@@ -108,8 +108,8 @@ class GenerateRequest(SamplingRequest):
         seconds: length of the motion.
         split: a sentence of several beats ("first …, then …") is made beat by beat, each in its share of the
             seconds, by a model that makes scenes. Off, the whole sentence is given to the network at once.
-        planned: as in a scene: where the words send people, how they hold themselves and who stands by is read from
-            them and given. Only with ``split``.
+        planned: as in a scene: where the words send people, how these hold themselves and which of them stands by
+            is read and given. Only with ``split``.
         acts: what the two do, as a plan that was written or edited by hand; the words are then read by nobody. Where
             there are no words, they follow from the acts. Only with ``split`` and ``planned``.
         plan: of an earlier result of this request, which is used instead of reading the words; read them by default.

@@ -1,4 +1,4 @@
-"""Results of a study: wins of each set, agreement between people, and who was not attentive."""
+"""Results of a study: wins of each set, agreement between people, and inattentive voters."""
 
 from __future__ import annotations
 

@@ -52,5 +52,5 @@ class LazyEngine:
         yield from self._made().run(request, cancel=cancel)
 
     def partner(self, name: str, *, seed: int = 0) -> LivePartner:
-        """Somebody who answers a stream of poses; the first one may have to load the networks."""
+        """A partner who answers a stream of poses; the first one may have to load the networks."""
         return self._made().partner(name, seed=seed)

@@ -53,7 +53,7 @@ class Play:
         self.brisk = False
 
     def wanted(self, options: Sequence[str], role: int = 0) -> str:
-        """One of ``options``; the act that is wished of who begins (0) or of the other (1), if it is one."""
+        """One of ``options``; the act wished of the first person (0) or of the other (1), if it is one of them."""
         if self.wish and self.wish[role] in options:
             return self.wish[role]
         return options[int(self.rng.integers(len(options)))]

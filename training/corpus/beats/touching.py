@@ -71,7 +71,7 @@ def _hug(play: Play, i: int) -> None:
 
 
 def _from_the_side(make: Callable, name: str, answer: str) -> Callable[[Play, int], None]:
-    """i stands half beside the other, as who pats a back or whispers."""
+    """i stands half beside the other, as for a pat on the back or a whisper."""
 
     def beat(play: Play, i: int) -> None:
         rng = play.rng

@@ -164,7 +164,7 @@ def goodbye(rng: Rng, library: Library) -> Scene:
 
 
 def walk_off(rng: Rng, library: Library, *, style: str | None = None, distance: float = 2.2) -> Motion:
-    """A walk that begins with a turn about, as who leaves does."""
+    """A walk that begins with an about-turn, as in leaving."""
     walk = stride(rng, library, "walk", distance + rng.uniform(0, 1.0), style=style).motion
     return about(rng, walk)
 

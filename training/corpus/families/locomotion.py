@@ -50,7 +50,7 @@ def _abreast(rng: Rng, library: Library, family: str, action: str) -> Scene:
     a, b = a[:frames], b[:frames]
     a = place(a, 0.0, 0.0, 0.0, along="travel")
     b = place(b, float(gap), float(rng.normal(0, 0.2)), 0.0, along="travel")
-    if rng.random() < 0.35:  # a gentle common bend: who is outside walks the longer way
+    if rng.random() < 0.35:  # a gentle common bend: the outer person walks the longer way
         bend = pick(rng, (-1, 1)) * rng.uniform(0.1, 0.25) * np.arange(frames) / 30
         a, b = steer(a, bend), steer(b, bend)
     word = pace_word(pace(a)) if action == "walk" else None

@@ -190,7 +190,7 @@ def _distance(duet: Duet, task: Task) -> Verdict:
     if kind == "approach":
         return Verdict("distance", end - start < -CHANGES, end - start)
     if kind == "part":
-        # Somebody who pushes the other away may first walk up: measure from the smallest distance.
+        # A person who pushes the other away may first walk up: measure from the smallest distance.
         growth = end - float(distance.min())
         return Verdict("distance", growth > CHANGES, growth)
     return Verdict("distance", abs(end - start) <= CHANGES, end - start)

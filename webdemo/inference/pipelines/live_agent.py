@@ -4,7 +4,7 @@ Every half second it takes the last second of the person, predicts two more and 
 :mod:`.agent`). Until it is sure, it stands with the person. When it is sure, the online ReGenNet receives the
 sentence of the gesture and answers frame by frame; the thesis plays a prerecorded motion instead. A second gesture
 interrupts the answer, and a person who turns away ends it. While it does not answer, the agent turns to the person and
-looks at them; it leaves somebody who turns their back on it for long, and comes back when they turn round.
+looks at them; it leaves a person who turns their back on it for long, and comes back when they turn round.
 """
 
 from __future__ import annotations

@@ -41,14 +41,14 @@ STEPS = 5
 NEAREST = 0.3
 """Metres between the two pelvises at least: by itself the network walks through a person who turns."""
 PUSHED = 0.5
-"""Metres by which the partner is kept off from which on a new segment begins at the place that is shown."""
+"""Metres: when the partner is kept off by more, a new segment begins at the place shown."""
 FARTHEST = 6.0
-"""Metres between the two from which on the partner begins anew: training scenes are not wider."""
+"""Metres between the two beyond which the partner begins anew: training scenes are not wider."""
 _FLAT = np.array([1.0, 0.0, 1.0])
 
 
 def warm_up(partner: LivePartner) -> None:
-    """Has a partner answer somebody who stands still for two seconds; what is first takes longest."""
+    """Has a partner answer a person who stands still for two seconds: the first passes take longest."""
     standing = SMPL22.rest_positions()
     for _ in range(2 * int(FPS)):
         partner.step(standing - [0, standing[:, 1].min(), 0])

@@ -90,7 +90,7 @@ def given_contact(
     window: Window,
     placement: Placement,
 ) -> KnownFrames | None:
-    """The trunk and the hands of who touches, as the network is given them; None where the beat is too short.
+    """The trunk and hands of the person who touches, as the network is given them; None if the beat is too short.
 
     Args:
         touch: the contact.

@@ -37,13 +37,13 @@ Array = NDArray[np.floating]
 
 
 POSED = 15
-"""Frames between two poses of somebody who stands by."""
+"""Frames between two poses of a bystander."""
 LIMBED = 3
-"""Frames between two poses of somebody who moves limbs of their own."""
+"""Frames between two poses of a person who moves single limbs."""
 TURNED = 5
-"""Frames between two poses of somebody whose trunk the network would turn to the other."""
+"""Frames between two poses of a person whose trunk the network would turn to the other."""
 SETTLES = 24
-"""Frames after which who stood in another way before stands so."""
+"""Frames that changing to another stance takes."""
 
 
 def planned(
@@ -306,7 +306,7 @@ def _limbed(
     stop: int,
     placement: Placement,
 ) -> list[Part]:
-    """All of somebody who moves limbs of their own but their arms, as far as it falls into a window."""
+    """The body, without the arms, of a person who moves single limbs, as far as it falls into a window."""
     frames = np.arange(start + SETTLES // 2 if start else 0, stop, LIMBED)
     frames = frames[(frames >= window.start) & (frames < window.stop)]
     if not len(frames):

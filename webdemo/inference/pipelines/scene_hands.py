@@ -40,7 +40,7 @@ class Course:
 
     @classmethod
     def stays(cls, place: Array, angle: float, frames: int) -> Course:
-        """Of somebody who stays where they are."""
+        """Of a person who stays where they are."""
         return cls(np.tile(np.asarray(place, dtype=float), (frames, 1)), np.full(frames, angle))
 
     @classmethod

@@ -1,4 +1,4 @@
-"""Lifts that the words of a beat ask for: the body of who is carried and the hands of who carries."""
+"""Lifts that the words of a beat ask for: the body of the person carried and the hands of the carrier."""
 
 from __future__ import annotations
 
@@ -24,11 +24,11 @@ Array = NDArray[np.floating]
 OFTEN = 3
 """Frames between two given poses."""
 RISES = 16
-"""Frames in which somebody is picked up, or set down."""
+"""Frames that picking a person up takes, and setting them down."""
 LONG = 75
-"""Frames of a lift, from which on who is lifted is set down again before the beat ends."""
+"""Frames: after a longer lift the person is set down again before the beat ends."""
 _FAR = 0.45
-"""Metres beyond the distance of a lift from which on nobody is picked up."""
+"""Metres beyond a lift's own distance: from farther away nobody is picked up."""
 _STANDS = 0.003
 """Metres or radians a frame below which a body stands."""
 _ELBOWS = [SMPL22.index("left_elbow"), SMPL22.index("right_elbow")]
@@ -86,7 +86,7 @@ class Carrying:
         return found
 
     def given(self, window: Window, placement: Placement) -> list[KnownFrames]:
-        """The body of who is carried, and pelvis, trunk and hands of who carries, as the network is given them."""
+        """The body of the person carried, and the carrier's pelvis, trunk and hands, as the network is given them."""
         course, parts = self._course(self.carrier), []
         at = np.arange(*self.off, OFTEN)
         at = at[(at + self.start >= window.start) & (at + self.start < window.stop)]
@@ -122,7 +122,7 @@ class Carrying:
         return np.stack(found)
 
     def _on_feet(self) -> Iterator[tuple[int, Array]]:
-        """Frames before and after the lift, and poses (22, 3) of who is carried then."""
+        """Frames before and after the lift, and poses (22, 3) of the person carried then."""
         first, last = self.off
         other, frames = 1 - self.carrier, self.stop - self.start
         if first and not self.start:

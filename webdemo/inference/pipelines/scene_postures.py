@@ -38,7 +38,7 @@ Pose = tuple[int, Array]
 """A frame of the scene and a pose (22, 3) in metres of its world."""
 
 HELD = 6
-"""Frames between two poses of somebody who stays as they are."""
+"""Frames between two poses of a person who keeps a posture."""
 SETTLING = 40
 """Frames in which somebody sits down, falls or gets up."""
 RISING = 54
@@ -53,7 +53,7 @@ _HEAD = SMPL22.index("head")
 LEAP = 36
 """Frames from the highest moment of a jump to that of the next."""
 BOWED, DEEP = 0.9, 1.25
-"""Radians by which somebody who bows is bent, and by which they are who bows deeply."""
+"""Radians of a bow, and of a deep one."""
 BOW = 50
 """Frames from the lowest moment of a bow to that of the next."""
 _LOW = (Posture.LIES, Posture.GROUND)
@@ -171,7 +171,7 @@ def _bowing(times: int, deep: bool, start: int, stop: int, place: Array, angle: 
 
 
 def _place(person: int, stand: Standing, last: Array | None) -> tuple[Array, float]:
-    """The place (x, z) and heading of somebody who stands, or of one who is down if they got up."""
+    """The place (x, z) and heading of a standing person, or of a person who is down once they get up."""
     if last is None:
         return np.asarray(stand.places[person], dtype=float), float(stand.headings[person])
     pose = np.asarray(last, dtype=float)

@@ -34,7 +34,7 @@ SPEED_UP = 1 / 12
 STRIDE = 9
 """Frames of a step."""
 STEP_FROM, REST_FROM = 0.07, 0.02
-"""Metres between a standing foot and its place from which on it steps: under a body that moves, and one that stands."""
+"""Metres between a standing foot and its place beyond which it steps: under a body that moves, and one that stands."""
 LIFT = 0.05
 """Metres by which a stepping ankle is lifted."""
 FADE = 0.85

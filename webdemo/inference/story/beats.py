@@ -75,7 +75,7 @@ class Beat:
 
     @property
     def alone(self) -> tuple[str, str]:
-        """A sentence for a and one for b, for a model that reads them; "" for who has no words of their own."""
+        """A sentence for a and one for b, for a model that reads them; "" for a person without words of their own."""
         clauses = [_of_person(text, "one person") if text else "" for text in (self.a, self.b)]
         return (_sentence(clauses[0]), _sentence(clauses[1]))
 

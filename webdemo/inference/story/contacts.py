@@ -1,8 +1,8 @@
 """Contacts: a hand that is laid on the other's shoulder, a pat on the back, a kiss on the cheek.
 
-The network makes the touches of its training sentences. One that comes after a walk, of somebody who sits or kneels,
-or of a part of the body that was not in those sentences, it often misses by a hand's breadth. There, who touches is
-led to where they reach the other, and the hand is given.
+The network makes the touches of its training sentences. It often misses by a hand's breadth after a
+walk, on a person who sits or kneels, or on a part of the body that those sentences never name. In such cases the person
+who touches is led to where they reach the other, and the hand is given.
 """
 
 from __future__ import annotations
@@ -41,12 +41,12 @@ class Contact:
     """A touch of one person.
 
     Attributes:
-        person: "a" or "b", who touches the other.
+        person: "a" or "b", the one who touches the other.
         region: of the other's body.
         sides: the hands that touch, "left", "right" or both; none for a kiss, which the head gives.
         times: how often a short touch is made; 0 for a hand that stays.
         late: something else goes on until then.
-        behind: who touches stands behind the other.
+        behind: the one who touches stands behind the other.
         fells: the other falls from it, and stood before.
     """
 
@@ -73,11 +73,11 @@ _ARM = 0.45
 _TRUNK = 0.47
 """Metres from the pelvis to the line of the shoulders."""
 _HIP = 0.93
-"""Height in metres of the pelvis of somebody who stands."""
+"""Height in metres of a standing person's pelvis."""
 
 
 def reach(touch: Contact, pose: Array) -> float:
-    """Metres between the pelvises at which somebody who stands reaches the other, leaning forward where that is low.
+    """Metres between the pelvises at which a standing person reaches the other, leaning forward where that is low.
 
     Args:
         touch: the contact.
@@ -94,7 +94,7 @@ def reach(touch: Contact, pose: Array) -> float:
 
 
 def lean(touch: Contact, pose: Array) -> float:
-    """Radians by which somebody who stands leans forward to touch the other, whose pose (22, 3) is given."""
+    """Radians by which a standing person leans forward to touch the other, whose pose (22, 3) is given."""
     least = 0.05 if touch.sides else 0.15
     return float(np.clip(0.1 + 1.2 * (1.3 - middle(touch, pose)[1]), least, 1.0))
 

@@ -93,7 +93,7 @@ _WAVE_RATE = 1.6
 
 
 def wrist(gesture: Gesture, side: str, seconds: Array, towards: Array) -> Array:
-    """A wrist's way beside the pelvis of somebody who faces +Z.
+    """A wrist's path beside the pelvis of a person who faces +Z.
 
     Args:
         gesture: the gesture.

@@ -28,7 +28,7 @@ class Hold(Enum):
 TWIRL = 0.42
 """Metres between the pelvises of two of whom one turns under the other's arm."""
 _OVER = 1.88
-"""Height in metres of the hands over somebody who turns under them."""
+"""Height in metres of the hands over the person who turns under them."""
 
 
 def raised(places: Array) -> Array:

@@ -1,7 +1,7 @@
-"""Lifts: one who picks the other up, carries them in the arms, takes them on the back or drags them by the feet.
+"""Lifts: a person picks the other up, carries them in the arms, takes them on the back or drags them by the feet.
 
-No scene of the training data has anybody off the floor on somebody else, so the whole body of who is carried is given,
-and the hands of who carries.
+No scene of the training data has anybody off the floor on another person, so the whole body of the person carried is
+given, and the carrier's hands.
 """
 
 from __future__ import annotations
@@ -48,7 +48,7 @@ class Lift:
         carrier: "a" or "b".
         carry: how the other is held.
         spins: the two turn round meanwhile.
-        comes: who walks up to the other first, if somebody does.
+        comes: the person who walks up to the other first, if either does.
     """
 
     carrier: str
@@ -71,12 +71,12 @@ _LEGS = {
     Carry.BACK: (-1.25, 0.4, 1.3),
     Carry.DRAGS: (-0.9, 0.0, 0.1),
 }
-"""Radians of the hips forward (negative) and out, and of the knees, of who is carried."""
+"""Radians of the hips forward (negative) and out, and of the knees, of the person carried."""
 _SIDES = (("left", 1.0), ("right", -1.0))
 
 
 def carried(carry: Carry, place: Array, angle: float) -> tuple[Array, Array]:
-    """The pose of who is carried, and of who carries.
+    """The pose of the person carried, and the carrier's.
 
     Args:
         carry: how.
@@ -120,7 +120,7 @@ def carried(carry: Carry, place: Array, angle: float) -> tuple[Array, Array]:
 
 
 def _pose(carry: Carry) -> Array:
-    """(22, 3) metres from the pelvis of who is carried by somebody who faces +Z."""
+    """(22, 3) metres from the pelvis of a person whose carrier faces +Z."""
     hip, out, knee = _LEGS[carry]
     turns = np.tile(np.eye(3), (1, SMPL22.num_joints, 1, 1))
     if carry is Carry.UP:

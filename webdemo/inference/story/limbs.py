@@ -46,7 +46,7 @@ class Limb:
 
 
 def limbed(limbs: Sequence[Limb], place: Array, angle: float, seconds: Array, length: float) -> Array:
-    """Somebody who stands and moves limbs of their own.
+    """A standing person who moves single limbs.
 
     Args:
         limbs: which, at the same time.
@@ -80,7 +80,7 @@ def _ramp(seconds: Array) -> Array:
 
 
 def _posed(angles: Mapping[str, Array], count: int, angle: float) -> Array:
-    """Poses (N, 22, 3) around the origin of somebody who stands, with further rotations of joints."""
+    """Poses (N, 22, 3) around the origin of a standing person, with further rotations of joints."""
     turns = np.tile(np.eye(3), (count, SMPL22.num_joints, 1, 1))
     turns[:, 0] = heading_matrix(angle)
     for side, sign in (("left", 1.0), ("right", -1.0)):

@@ -51,7 +51,7 @@ def goes(found: Sequence[Move]) -> bool:
 
 
 def finished(made: Sequence[Move], *, until: bool) -> list[Move]:
-    """The moves, where somebody who is followed or leads backwards goes ahead; ``until`` something ends that early."""
+    """The moves: the person followed, or leading backwards, goes ahead; ``until`` something ends that early."""
     return _led_backwards(_followed(list(made), until=until))
 
 
@@ -84,7 +84,7 @@ def lifted_moves(found: Lift, speed: float) -> tuple[Move, ...]:
 
 
 def _followed(made: list[Move], *, until: bool) -> list[Move]:
-    """The moves, where somebody who is followed goes ahead; ``until`` something ends that early."""
+    """The moves: the person followed goes ahead; ``until`` something ends that early."""
     for person, other in ("ab", "ba"):
         ways = {move.way for move in made if move.person == other}
         after = next((move for move in made if move.person == person and move.way is Way.AFTER), None)

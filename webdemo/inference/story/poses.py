@@ -14,7 +14,7 @@ from motion.transforms import heading_matrix
 Array = NDArray[np.floating]
 
 STANCE = 0.12
-"""Metres by which the toes of somebody who stands are ahead of the place where they stand."""
+"""Metres by which a standing person's toes are ahead of the place where they stand."""
 SOLE = 0.02
 """Height in metres of the toe joint of a foot that stands."""
 LYING = 0.6
@@ -46,11 +46,11 @@ TRUNK = tuple(joint for joint in FLAT if joint not in LOWER or joint == SMPL22.i
 """Joints of the trunk, the head and the shoulders."""
 TOES = (SMPL22.index("left_foot"), SMPL22.index("right_foot"))
 _SIDES = {"left": 1.0, "right": -1.0}
-"""Sides of the body, with the sign of their x as seen by somebody who faces +Z."""
+"""Sides of the body, with the sign of their x for a person who faces +Z."""
 
 
 def standing(place: Array, angle: float, seconds: Array, *, seed: int = 0) -> Array:
-    """Somebody who stands with hanging arms and shifts their weight a little.
+    """A standing person with hanging arms who shifts their weight a little.
 
     Args:
         place: (2,) x and z of the pelvis in metres.
@@ -105,7 +105,7 @@ _BENDS: Mapping[str, float] = {
     "hip": -0.6, "knee": 0.95, "ankle": -0.38, "shoulder": 1.2, "elbow": 0.3, "spine": 0.1,
 }  # fmt: skip
 _BENT = 0.9
-"""Radians by which somebody who bends down is bent."""
+"""Radians of a bend from the hips."""
 STANDS: Mapping[str, float] = {
     "hip": -0.06,
     "knee": 0.12,
@@ -125,17 +125,17 @@ _FLIES: Mapping[str, float] = {
 
 
 def upright(place: Array, angle: float) -> Array:
-    """Somebody who stands still: (22, 3) metres."""
+    """A person standing still: (22, 3) metres."""
     return _on_floor(_posed(angle, STANDS)[None], place, angle)[0]
 
 
 def seated(place: Array, angle: float) -> Array:
-    """Somebody who sits as on a chair, the feet where they stood: (22, 3) metres."""
+    """A person sitting as on a chair, the feet where they stood: (22, 3) metres."""
     return _on_floor(_posed(angle, _SITS)[None], place, angle)[0]
 
 
 def grounded(place: Array, angle: float) -> Array:
-    """Somebody who sits on the ground, the feet where they stood: (22, 3) metres."""
+    """A person sitting on the ground, the feet where they stood: (22, 3) metres."""
     pose = _posed(
         angle, {"hip": -1.8, "knee": 0.35, "ankle": 0.0, "shoulder": 1.3, "elbow": 0.3, "spine": 0.1}
     )
@@ -145,7 +145,7 @@ def grounded(place: Array, angle: float) -> Array:
 
 
 def bending(place: Array, angle: float, lean: float = _BENT) -> Array:
-    """Somebody who bends down from the hips by so many radians: (22, 3) metres."""
+    """A person bent from the hips by so many radians: (22, 3) metres."""
     pose = upright(place, angle)
     upper = [j for j in range(SMPL22.num_joints) if j not in LOWER or j == SMPL22.index("spine1")]
     turn = heading_matrix(angle) @ about(0, lean) @ heading_matrix(-angle)
@@ -154,7 +154,7 @@ def bending(place: Array, angle: float, lean: float = _BENT) -> Array:
 
 
 def crouching(place: Array, angle: float) -> Array:
-    """Somebody who crouches on their feet: (22, 3) metres."""
+    """A person crouching on their feet: (22, 3) metres."""
     return _on_floor(_posed(angle, _CROUCHES)[None], place, angle)[0]
 
 
@@ -170,7 +170,7 @@ def kneeling(place: Array, angle: float) -> Array:
 
 
 def lying(place: Array, angle: float) -> Array:
-    """Somebody who lies on the back, the feet about where they stood: (22, 3) metres."""
+    """A person lying on the back, the feet about where they stood: (22, 3) metres."""
     pose = _posed(
         0.0, {"hip": -0.12, "knee": 0.25, "ankle": 0.4, "shoulder": 0.9, "elbow": 0.2, "spine": 0.0}
     )
@@ -180,7 +180,7 @@ def lying(place: Array, angle: float) -> Array:
 
 
 def rising(place: Array, angle: float, *, lies: bool) -> Sequence[tuple[float, Array]]:
-    """Somebody who gets up from the ground, as poses (22, 3) in metres and shares of the time that it takes.
+    """Getting up from the ground, as poses (22, 3) in metres and shares of the time that it takes.
 
     They sit up, get their feet under them, and stand where :func:`lying` and :func:`grounded` have their feet.
 

@@ -1,4 +1,4 @@
-"""Postures: who sits, kneels, crouches or lies down in a story, and stays so, and who jumps.
+"""Postures: people who sit, kneel, crouch or lie down in a story and stay so, and people who jump.
 
 A network that was trained on people who sit down and get up again does not leave them seated. The acts say how the
 people hold themselves at the end of each beat; until they get up, their pelvis and legs are given, and the trunk and
@@ -31,7 +31,7 @@ class Change:
         posture: how they hold themselves from then on.
         already: they do so when the beat begins, if nothing before it says otherwise ("while she sits").
         after: how much of the beat comes before, from 0 to 1.
-        passing: they are up again at once, as somebody who ducks is.
+        passing: they are up again at once, as after ducking.
     """
 
     posture: Posture

@@ -49,7 +49,7 @@ class SceneRequest(SamplingRequest):
         paths: on the floor, one for a person at most; seconds count from the scene's beginning.
         poses: likewise.
         loop: the end meets the beginning; not with ``motion``.
-        planned: where the words of a beat send people becomes a path (:mod:`.floor`), who stands by is held in place,
+        planned: where the words of a beat send people becomes a path (:mod:`.floor`), bystanders are held in place,
             and postures, jumps and hands become poses (:mod:`.postures`, :mod:`.gestures`), unless a path or pose says
             it.
         motion: a given motion of two people on SMPL22's joints, of up to three minutes.

@@ -41,7 +41,7 @@ def split_sentence(text: str, go_on: Callable[[], None] = lambda: None) -> tuple
     """The beats of a sentence or a story, by the order of its acts; one beat, in its own words, if it names one thing.
 
     Args:
-        text: what happens, in linear time of whose length it is read.
+        text: what happens; reading takes time linear in its length.
         go_on: called before each stretch of it; what it raises ends the reading.
 
     Raises:
@@ -246,7 +246,7 @@ def _posture(stage: Mapping[Any, object]) -> str:
 
 
 def _is_caught(posture: object) -> bool:
-    """True for a posture that the other brings about at once: who is helped up was down for a moment."""
+    """True for a posture that the other brings about at once: a person who is helped up was down for a moment."""
     return getattr(posture, "who", "") == "patient" and getattr(posture, "posture", "") != "stands"
 
 

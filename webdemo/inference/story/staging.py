@@ -1,7 +1,7 @@
 """The acts of a beat in the terms of the stage: each entry's shapes become moves, touches, postures and the like.
 
-What several acts of one beat ask for is settled here, in one place: who is held, carried or struck takes part in that
-and in nothing else, who is named by no act stands by, and a denied act leaves its people where they are.
+What several acts of one beat ask for is settled here, in one place: a person who is held, carried or struck takes part
+in that and in nothing else, a person whom no act names stands by, and a denied act leaves its people where they are.
 """
 
 from __future__ import annotations
@@ -44,7 +44,7 @@ _NEAR = frozenset(("touch", "fight", "dance", "care"))
 _HANDED = frozenset(("things", "handling", "daily"))
 """Groups whose acts with the other person pass something from hand to hand."""
 _JUMPS = 3
-"""Jumps of somebody who is jumping when their beat begins."""
+"""Jumps of a person who is already jumping when the beat begins."""
 _DODGES = (Way.BACK, Way.ASIDE)
 """Ways in which somebody gets out of a blow's reach."""
 _JOINS = frozenset(("touch", "hold", "link", "lift", "strike"))
@@ -220,7 +220,7 @@ class _Stage:
         )  # fmt: skip
 
     def _chase(self, act: Act, shape: shapes.Go) -> None:
-        """Both run after each other: a goes ahead, unless the words say further on who runs after whom."""
+        """Both run after each other: a goes ahead, unless later words say who chases whom."""
         told = [each for each, entry in self.done if any(_is_after(s) for s in entry.stage)]
         if all(len(each.agents) == 2 for each in told):
             self.moves.append(self._go(act, shape, "b"))
@@ -258,7 +258,7 @@ class _Stage:
     # ---- what follows from all of them ---------------------------------------------------------------
 
     def _agree(self) -> None:
-        """Settles what two shapes ask of one body: who is low keeps their trunk, a lifted person is turned round."""
+        """Settles what two shapes ask of one body: a low person keeps their trunk, a lifted one is turned round."""
         low = {who for who, listed in self.changes.items() if listed[-1].posture is not Posture.STANDS}
         self.limbs = {who: limbs for who, limbs in self.limbs.items() if who not in low}
         comes = next((move.person for move in self.moves if move.way is Way.TO), "")
@@ -369,7 +369,7 @@ def _is_deep(act: Act) -> bool:
 
 
 def _only_stays(entry: Entry) -> bool:
-    """True for an act of somebody who stands by."""
+    """True for an act of a bystander."""
     shown = {shape.do for shape in entry.stage}
     return "stay" in shown and shown <= {"stay", "place"}
 

@@ -141,7 +141,7 @@ def poses(bout: Bout, side: str, place: Array, other: Array) -> tuple[tuple[int,
 
 
 def ready(place: Array, other: Array, reach: Array = _READY) -> Array:
-    """A pose (22, 3) from the pelvis of somebody who has both hands ready, towards the other; places as above."""
+    """A pose (22, 3) from the pelvis of a person with both hands ready, towards the other; places as above."""
     line = np.asarray(other) - place
     angle = float(np.arctan2(line[0], line[1]))
     pose = bending(place, angle, _LEAN)

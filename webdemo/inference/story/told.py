@@ -78,7 +78,7 @@ class Told:
 
     @property
     def moves_bodies(self) -> bool:
-        """True if more is planned than who stands by and a gesture."""
+        """True if more is planned than bystanders and a gesture."""
         found = (self.contact, self.changes, self.leaps, self.bows, self.limbs)
         return goes(self.moves) or self.placed is not None or any(found)
 

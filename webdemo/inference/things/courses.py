@@ -1,4 +1,4 @@
-"""The course of one thing through a motion: who holds it, gives it, throws it, and where it is put."""
+"""The course of one thing through a motion: the hands that hold, give and throw it, and where it is put."""
 
 from __future__ import annotations
 
@@ -44,7 +44,7 @@ class ThingCourse:
     events: list[dict[str, Any]] = field(default_factory=list)
     tables: list[Thing] = field(default_factory=list)
     holders: list[tuple[int, tuple[int, ...], tuple[int, ...]]] = field(default_factory=list)
-    """From which frame on who holds it, with which hands: 0 left, 1 right."""
+    """(first frame, holders, their hands) of each hold, in order; hands: 0 left, 1 right."""
 
     def __post_init__(self) -> None:
         first = self.uses[0]

@@ -52,7 +52,7 @@ class Partners(Protocol):
     """An engine that has live partners."""
 
     def partner(self, name: str, *, seed: int = 0) -> LivePartner:
-        """Somebody who answers a stream of poses."""
+        """A partner who answers a stream of poses."""
 
 
 class Streams:

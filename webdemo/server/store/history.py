@@ -169,7 +169,7 @@ class History:
         self.settle()
 
     def settle(self) -> None:
-        """Writes down how runs ended for which there was no disk space when they did."""
+        """Writes down the ends of runs that ended while the disk was full."""
         for run, (state, message) in list(self._owed.items()):
             ended = update(Run).where(Run.id == run).values(state=state, message=message)
             try:

@@ -26,7 +26,7 @@ class Scratch:
 
     Args:
         folder: is emptied and made. Those of other processes lie beside it.
-        most_bytes: size of all its files from which on a person gets no more than they have.
+        most_bytes: size of all its files beyond which nobody's share grows any more.
 
     Raises:
         InputError: if the folder cannot be made.

@@ -1,4 +1,4 @@
-"""The read-outs for somebody who has never seen them: a sentence or two, and what each figure means."""
+"""The read-outs for newcomers: a sentence or two, and what each figure means."""
 
 from __future__ import annotations
 
