@@ -129,7 +129,7 @@ def test_without_the_encoder_a_sentence_says_what_to_install(tmp_path, monkeypat
 def test_people_are_seen_in_every_look_and_theme(look, theme):
     stage = Stage(Pane(DUET), Style(look=look, theme=theme), SMALL)
     times = np.zeros(1)
-    (picture,) = stage.pictures(times, cameras([DUET], size=SMALL, times=times))
+    (picture,) = stage.pictures(times, cameras([DUET], size=SMALL, times=times)[0])
     assert picture.shape == (120, 160, 4) and (picture[..., 3] == 255).all()
     assert _look(picture, True) > 0.003 and _look(picture, False) > 0.003
 
@@ -158,21 +158,41 @@ def test_films_and_sheets_wear_the_character(tmp_path, suffix, theme):
 def test_other_skeletons_and_one_person_are_drawn():
     clip = Clip(np.random.default_rng(0).normal(1, 0.3, size=(3, 15, 3)), 15, SBU15)
     times = np.zeros(1)
-    (picture,) = Stage(Pane(clip), Style(), SMALL).pictures(times, cameras([clip], size=SMALL, times=times))
+    (picture,) = Stage(Pane(clip), Style(), SMALL).pictures(
+        times, cameras([clip], size=SMALL, times=times)[0]
+    )
     assert _look(picture, False) > 0.003
 
 
+FAR = Duet(DUET.a, DUET.b.with_positions(DUET.b.positions + np.array([1.0, 0, 1.5])))
+
+
 @pytest.mark.parametrize("view", VIEWS)
-def test_every_view_holds_everybody_in_all_panes(view):
-    far = Duet(DUET.a, DUET.b.with_positions(DUET.b.positions + np.array([1.0, 0, 1.5])))
+def test_every_view_holds_everybody_in_each_pane(view):
     times = np.arange(12) / 30
     for size in ((1280, 720), (360, 640)):
-        for camera in cameras([DUET, far], size=size, times=times, view=view):
-            for duet in (DUET, far):
+        for duet, own in zip(
+            (DUET, FAR), cameras([DUET, FAR], size=size, times=times, view=view), strict=True
+        ):
+            for camera in own:
                 pixels, depth = camera.project(duet.positions.astype(float))
                 assert (depth > 0).all()
                 if view not in ("a", "b", "front"):  # those stand behind somebody's shoulder
                     assert (pixels >= 0).all() and (pixels <= np.array(size)).all(), (size, camera)
+
+
+@pytest.mark.parametrize("follow", [True, False])
+def test_panes_are_seen_from_one_side_each_about_its_own_people(follow):
+    """A pair twenty metres away is as large and as much in the middle as one at the origin."""
+    away = np.array([20.0, 0, -7.0])
+    moved = Duet(*(person.with_positions(person.positions + away) for person in DUET.people))
+    times = np.arange(12) / 30
+    here, there, wide = cameras([DUET, moved, FAR], size=SMALL, times=times, follow=follow)
+    for one, other, third in zip(here, there, wide, strict=True):
+        np.testing.assert_allclose(other.eye - one.eye, away, atol=1e-6)
+        assert (one.yaw, one.elevation, one.distance) == (third.yaw, third.elevation, third.distance)
+    (alone,) = cameras([DUET], size=SMALL, times=times, follow=follow)
+    assert alone[0].distance < here[0].distance, "the widest pair decides how far all are"
 
 
 def test_the_camera_sees_right_on_the_right_and_up_above():

@@ -25,7 +25,7 @@ DUET = Duet.from_positions(np.stack([A, turn(A, np.pi) + np.array([0, 0, 1.4])])
 
 def job(**changed: object) -> Job:
     times = np.arange(4) / 30
-    views = cameras([DUET], size=(160, 120), times=times, view="front", follow=True)
+    views = cameras([DUET, DUET.a], size=(160, 120), times=times, view="front", follow=True)
     panes = (Pane(DUET, "one"), Pane(DUET.a, ghost=DUET.b, past_until=3))
     whole = Job(
         panes, Style(trails=True, body=load_body("man", small=True)), (320, 120), times, views, "“two” ♥"

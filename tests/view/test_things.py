@@ -33,7 +33,7 @@ def red(picture: np.ndarray) -> int:
 
 
 def drawn(duet: Duet, **style: object) -> np.ndarray:
-    views = cameras([PEOPLE], size=(320, 240), times=np.zeros(1))
+    (views,) = cameras([PEOPLE], size=(320, 240), times=np.zeros(1))
     return next(iter(Stage(Pane(duet), Style(**style), (320, 240)).pictures(np.zeros(1), views)))
 
 

@@ -99,17 +99,20 @@ def cameras(
     follow: bool = True,
     yaw: float | None = None,
     elevation: float | None = None,
-) -> list[Camera]:
-    """The camera of each picture: it looks at a preset's angle and follows everybody in all panes.
+) -> list[list[Camera]]:
+    """The cameras of each pane, one a picture: all look from one side and from equally far, each at its own people.
 
     Args:
         panes: the motions that are shown side by side, on one clock.
         size: of one pane in pixels.
         times: (N,) seconds.
         view: one of :data:`VIEWS`.
-        follow: whether the camera goes with the people and takes in how far apart they are; otherwise it
+        follow: whether the cameras go with the people and take in how far apart they are; otherwise each
             stands where it sees the whole motion.
         yaw, elevation: radians, instead of the preset's.
+
+    Returns:
+        N cameras a pane.
 
     Raises:
         InputError: for an unknown view.
@@ -117,27 +120,35 @@ def cameras(
     if view not in VIEWS:
         raise InputError(f"There is no view {view!r:.30}: choose one of {', '.join(VIEWS)}.")
     aspect = size[0] / size[1]
-    spots = np.concatenate([_roots(motion, times) for motion in panes])  # (people, N, 3)
-    gap = np.array([_apart(motion, times) for motion in panes]).max(axis=0).clip(max=_WIDEST)
-    target = (spots.min(axis=0) + spots.max(axis=0)) / 2
-    target[:, 1] = _LOOK_AT[1] if aspect < 1.1 else _LOOK_AT[0]
-    found_yaw, found_elevation, _ = _preset(view, _heading(panes[0]), gap[0], aspect)
+    targets, across = zip(*(_people(motion, times, follow) for motion in panes), strict=True)
+    look_at = _LOOK_AT[1] if aspect < 1.1 else _LOOK_AT[0]
+    found_yaw, found_elevation, _ = _preset(view, _heading(panes[0]), across[0][0], aspect)
     yaw, elevation = found_yaw if yaw is None else yaw, found_elevation if elevation is None else elevation
-    # People of other panes stand beside the pair: the picture has to hold them all.
-    across = np.maximum(gap, np.linalg.norm(np.ptp(spots[..., [0, 2]], axis=0), axis=-1).clip(max=_WIDEST))
-    if not follow:
-        low, high = spots.min(axis=(0, 1)), spots.max(axis=(0, 1))
-        target[:] = np.append((low + high)[[0]] / 2, [target[0, 1], (low[2] + high[2]) / 2])
-        across[:] = np.linalg.norm((high - low)[[0, 2]])
-    distances = np.array([_preset(view, 0.0, width, aspect)[2] for width in across])
+    distances = np.array([_preset(view, 0.0, wide, aspect)[2] for wide in np.max(across, axis=0)])
     if follow:
         steps = np.diff(times, prepend=times[0])
-        target = _followed(target, 1 - np.exp(-steps / _FOLLOW_SECONDS))
+        targets = tuple(_followed(target, 1 - np.exp(-steps / _FOLLOW_SECONDS)) for target in targets)
         distances = _followed(distances[:, None], 1 - np.exp(-steps / _FRAME_SECONDS))[:, 0]
     return [
-        Camera(point, yaw, elevation, float(metres), size)
-        for point, metres in zip(target, distances, strict=True)
+        [
+            Camera(np.array([x, look_at, z]), yaw, elevation, float(metres), size)
+            for (x, z), metres in zip(target, distances, strict=True)
+        ]
+        for target in targets
     ]
+
+
+def _people(motion: Clip | Duet, times: Array, follow: bool) -> tuple[Array, Array]:
+    """The place (N, 2) on the floor amidst a pane's people, and the width (N,) in metres that they take up.
+
+    Where nothing follows them, both are those of the whole motion.
+    """
+    spots = _roots(motion, times)[..., [0, 2]]
+    low, high = spots.min(axis=0), spots.max(axis=0)
+    if not follow:
+        low, high = (np.broadcast_to(each, low.shape) for each in (low.min(axis=0), high.max(axis=0)))
+    across = np.linalg.norm(high - low, axis=-1)
+    return (low + high) / 2, across.clip(max=_WIDEST) if follow else across
 
 
 def _followed(wanted: Array, shares: Array) -> Array:
@@ -160,12 +171,6 @@ def sampled(positions: Array, fps: float, times: Array) -> Array:
 
 def _roots(motion: Clip | Duet, times: Array) -> Array:
     return sampled(stacked_positions(motion).astype(np.float64), motion.fps, times)[:, :, 0]
-
-
-def _apart(motion: Clip | Duet, times: Array) -> Array:
-    """(N,) metres between the two on the floor, 0 for one person."""
-    roots = _roots(motion, times)[..., [0, 2]]
-    return np.linalg.norm(roots[-1] - roots[0], axis=-1)
 
 
 def _heading(motion: Clip | Duet) -> float:

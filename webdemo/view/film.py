@@ -73,7 +73,7 @@ def write_film(
         size: width and height in pixels.
         style: how people are drawn.
         view: one of :data:`~webdemo.view.camera.VIEWS`.
-        follow: whether the camera goes with the people.
+        follow: whether the cameras go with the people.
         title: stands at the lower edge, with the time.
         yaw, elevation: radians, instead of the view's.
         progress: is called with frames done and frames in all.
@@ -143,7 +143,10 @@ def _cell(size: tuple[int, int], panes: int) -> tuple[int, int]:
 def _draw(job: Job) -> Iterator[Picture]:
     """The pictures of a job, of its shape."""
     size = _cell(job.size, len(job.panes))
-    stages = [Stage(pane, job.style, size).pictures(job.times, job.views) for pane in job.panes]
+    stages = [
+        Stage(pane, job.style, size).pictures(job.times, views)
+        for pane, views in zip(job.panes, job.views, strict=True)
+    ]
     for seconds, shown in zip(job.times, zip(*stages, strict=True), strict=True):
         whole = _joined(job, shown)
         _caption(job, whole, float(seconds))

@@ -33,7 +33,7 @@ class Job:
         style: how people are drawn.
         size: width and height of the whole picture in pixels.
         times: (N,) the moments in seconds.
-        views: the camera of each moment.
+        views: the cameras of each pane, one a moment.
         title: stands at the lower edge, with the time.
         planar: the pictures are made as a video's planes (YUV 4:2:0), of which there are fewer bytes to pass on.
     """
@@ -42,13 +42,14 @@ class Job:
     style: Style
     size: tuple[int, int]
     times: NDArray[np.floating]
-    views: list[Camera]
+    views: list[list[Camera]]
     title: str
     planar: bool = False
 
     def part(self, first: int, step: int) -> Job:
         """Every ``step``-th picture."""
-        return replace(self, times=self.times[first::step], views=self.views[first::step])
+        views = [each[first::step] for each in self.views]
+        return replace(self, times=self.times[first::step], views=views)
 
     @property
     def shape(self) -> tuple[int, ...]:

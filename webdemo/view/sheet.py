@@ -100,7 +100,7 @@ def write_sheet(
     tile = (width // columns, round(width / columns * _TALL))
     times = np.arange(motion.num_frames) / motion.fps
     # Each moment stands alone: a camera that followed from frame to frame would lag behind people who part.
-    ways = [cameras([motion], size=tile, times=times[[frame]], view=view)[0] for frame in moments]
+    ways = [cameras([motion], size=tile, times=times[[frame]], view=view)[0][0] for frame in moments]
     views = [_holding(way, motion, frame) for way, frame in zip(ways, moments, strict=True)]
     with replacing(path) as temporary:
         if suffix == ".png":
@@ -121,7 +121,7 @@ def write_grid_sheet(
     style: Style | None = None,
     view: str = "threequarter",
 ) -> Path:
-    """Writes a row of moments for each of several motions, at the same times and under the same camera, as .png.
+    """Writes a row of moments for each of several motions, at the same times and from one side, as .png.
 
     Args:
         motions: by the name that stands over each row.
@@ -141,8 +141,10 @@ def write_grid_sheet(
     tile = (width // moments, round(width / moments * _TALL))
     times = np.linspace(0.0, max((m.num_frames - 1) / m.fps for m in motions.values()), moments)
     ways = cameras(list(motions.values()), size=tile, times=times, view=view, follow=False)
-    views = [replace(way, distance=_NEARER * way.distance) for way in ways]
-    rows = [_row(motion, name, style, times, views) for name, motion in motions.items()]
+    rows = [
+        _row(motion, name, style, times, [replace(way, distance=_NEARER * way.distance) for way in own])
+        for (name, motion), own in zip(motions.items(), ways, strict=True)
+    ]
     small = _text_size(tile)
     head = np.full((2 * small if title else 0, rows[0].shape[1], 4), 255, dtype=np.uint8)
     head[..., :3] = [round(255 * c) for c in style.colours.horizon]
