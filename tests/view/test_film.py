@@ -14,13 +14,13 @@ from PIL import Image
 from motion import Clip, Duet, InputError
 from motion.character import character_body
 from motion.formats.glb_reader import read_character
-from motion.skeleton import SBU15
+from motion.skeleton import SBU15, SMPL22
 from motion.transforms import turn
 from tests.motion.bodies import marching
 from tests.motion.formats.characters import glb_character
 from tests.static.test_node import newest_node
 from webdemo.view import film
-from webdemo.view.camera import VIEWS, Camera, cameras
+from webdemo.view.camera import VIEWS, Camera, cameras, sampled
 from webdemo.view.sheet import chosen_frames, write_sheet
 from webdemo.view.stage import Pane, Stage, Style
 from webdemo.view.theme import THEMES
@@ -168,17 +168,32 @@ FAR = Duet(DUET.a, DUET.b.with_positions(DUET.b.positions + np.array([1.0, 0, 1.
 
 
 @pytest.mark.parametrize("view", VIEWS)
-def test_every_view_holds_everybody_in_each_pane(view):
-    times = np.arange(12) / 30
-    for size in ((1280, 720), (360, 640)):
-        for duet, own in zip(
-            (DUET, FAR), cameras([DUET, FAR], size=size, times=times, view=view), strict=True
-        ):
-            for camera in own:
-                pixels, depth = camera.project(duet.positions.astype(float))
+@pytest.mark.parametrize("size", [(1280, 720), (360, 640)])
+def test_every_view_holds_everybody_in_each_pane(view, size):
+    """Two who run away from each other for three seconds stay in the picture, at each moment and from every side."""
+    rest = SMPL22.rest_positions() + np.array([0, 0.98, 0])
+    way = np.array([0.4 + 3.0 * max(i / 30 - 1, 0) for i in range(120)])[:, None, None] * np.array(
+        [0.3, 0, 1]
+    )
+    running = Duet.from_positions(np.stack([rest - way, rest + way]).astype(np.float32), fps=30)
+    times = np.arange(48) / 12
+    for follow in (True, False):
+        panes = cameras([running, FAR], size=size, times=times, view=view, follow=follow)
+        for duet, own in zip((running, FAR), panes, strict=True):
+            poses = sampled(duet.positions.astype(float), 30, times)
+            for i, camera in enumerate(own):
+                pixels, depth = camera.project(poses[:, i])
                 assert (depth > 0).all()
-                if view not in ("a", "b", "front"):  # those stand behind somebody's shoulder
-                    assert (pixels >= 0).all() and (pixels <= np.array(size)).all(), (size, camera)
+                assert (pixels >= 0).all() and (pixels <= np.array(size)).all(), (follow, i)
+
+
+def test_a_camera_moves_smoothly_and_no_farther_than_it_must():
+    times = np.arange(36) / 12
+    (own,) = cameras([DUET], size=SMALL, times=times)
+    eyes = np.stack([camera.eye for camera in own])
+    assert np.abs(np.diff(eyes, 2, axis=0)).max() * 144 < 12, "metres a second squared"
+    pixels = own[0].project(DUET.positions[:, 0].astype(float))[0]
+    assert np.ptp(pixels[..., 1]) > 0.4 * SMALL[1], "people fill the picture"
 
 
 @pytest.mark.parametrize("follow", [True, False])

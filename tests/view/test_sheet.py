@@ -7,7 +7,6 @@ import numpy as np
 from motion import SMPL22, Clip, Duet
 from motion.body import load_body, skin
 from webdemo.view.camera import cameras
-from webdemo.view.sheet import _holding
 
 
 def test_people_who_part_quickly_stay_in_each_moment() -> None:
@@ -17,7 +16,7 @@ def test_people_who_part_quickly_stay_in_each_moment() -> None:
     duet = Duet.from_positions(np.stack(people).astype(np.float32), fps=30.0)
     size = (200, 230)
     for frame in (0, 45, 89):
-        found = _holding(cameras([duet], size=size, times=np.array([frame / 30]))[0][0], duet, frame)
+        found = cameras([duet], size=size, times=np.array([frame / 30]), around=0.0)[0][0]
         pixels = found.project(duet.positions[:, frame].reshape(-1, 3))[0]
         assert (pixels > 0).all() and (pixels < size).all()
 
@@ -26,6 +25,6 @@ def test_heads_are_not_cut_off() -> None:
     rest = (SMPL22.rest_positions() + np.array([0, 0.98, 0]))[None]
     clip = Clip(np.repeat(rest, 4, axis=0).astype(np.float32), 30.0)
     size = (250, 288)
-    found = _holding(cameras([clip], size=size, times=np.array([0.0]))[0][0], clip, 0)
+    found = cameras([clip], size=size, times=np.array([0.0]), around=0.0)[0][0]
     crown = found.project(skin(load_body("man"), clip.positions[:1].astype(float))[0])[0]
     assert (crown > 0).all() and (crown < size).all()

@@ -8,6 +8,7 @@ from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.ndimage import maximum_filter1d, uniform_filter1d
 
 from motion.clip import Clip, Duet, stacked_positions
 from motion.errors import InputError
@@ -17,11 +18,16 @@ Array = NDArray[np.floating]
 VIEWS = ("threequarter", "front", "side", "top", "a", "b")
 FIELD_OF_VIEW = np.pi / 4
 """From the lower edge of the picture to the upper one."""
-_BODY_HEIGHT = 2.45
-_SIDE_ROOM = 1.5
-_WIDEST = 8.0
-_LOOK_AT = (0.92, 0.74)
-_FOLLOW_SECONDS, _FRAME_SECONDS = 0.3, 0.8
+_AROUND = 0.13
+"""Metres about a joint that are in view: palms and the sides of a body."""
+_CROWN = 0.24
+"""Metres over the joint of a head that are in view."""
+_LEAST = 2.6
+"""Metres from which a camera looks at least; nearer, one face would fill the picture."""
+_INSETS = (0.03, 0.03, 0.08, 0.06)
+"""What names and captions take of a picture at its right, left, upper and lower edge, in heights of it."""
+_SECONDS = 0.7
+"""Seconds before and after a moment whose people are in view at it as well; cameras move as smoothly as that."""
 _NEAREST = 0.05
 
 
@@ -97,18 +103,22 @@ def cameras(
     times: Array,
     view: str = "threequarter",
     follow: bool = True,
+    around: float = _SECONDS,
     yaw: float | None = None,
     elevation: float | None = None,
 ) -> list[list[Camera]]:
     """The cameras of each pane, one a picture: all look from one side and from equally far, each at its own people.
 
+    Everybody is in every picture. What a camera has to hold within ``around`` seconds is a set of linear conditions
+    on its place (as in ``views.js``), and so the mean of cameras that each hold a moment holds it as well.
+
     Args:
         panes: the motions that are shown side by side, on one clock.
         size: of one pane in pixels.
-        times: (N,) seconds.
+        times: (N,) seconds, evenly spaced.
         view: one of :data:`VIEWS`.
-        follow: whether the cameras go with the people and take in how far apart they are; otherwise each
-            stands where it sees the whole motion.
+        follow: whether the cameras go with the people; otherwise each stands where it sees the whole motion.
+        around: seconds over which a camera that goes with people is smoothed; 0 if each moment stands alone.
         yaw, elevation: radians, instead of the preset's.
 
     Returns:
@@ -119,44 +129,54 @@ def cameras(
     """
     if view not in VIEWS:
         raise InputError(f"There is no view {view!r:.30}: choose one of {', '.join(VIEWS)}.")
-    aspect = size[0] / size[1]
-    targets, across = zip(*(_people(motion, times, follow) for motion in panes), strict=True)
-    look_at = _LOOK_AT[1] if aspect < 1.1 else _LOOK_AT[0]
-    found_yaw, found_elevation, _ = _preset(view, _heading(panes[0]), across[0][0], aspect)
+    found_yaw, found_elevation = _preset(view, _heading(panes[0]))
     yaw, elevation = found_yaw if yaw is None else yaw, found_elevation if elevation is None else elevation
-    distances = np.array([_preset(view, 0.0, wide, aspect)[2] for wide in np.max(across, axis=0)])
-    if follow:
-        steps = np.diff(times, prepend=times[0])
-        targets = tuple(_followed(target, 1 - np.exp(-steps / _FOLLOW_SECONDS)) for target in targets)
-        distances = _followed(distances[:, None], 1 - np.exp(-steps / _FRAME_SECONDS))[:, 0]
-    return [
-        [
-            Camera(np.array([x, look_at, z]), yaw, elevation, float(metres), size)
-            for (x, z), metres in zip(target, distances, strict=True)
-        ]
-        for target in targets
-    ]
+    axes = Camera(np.zeros(3), yaw, elevation, 1.0, size).axes * [[1.0], [1.0], [-1.0]]
+    half = np.array([size[0] / size[1], size[0] / size[1], 1.0, 1.0])
+    slopes = np.tan(FIELD_OF_VIEW / 2) * np.maximum(half - 2 * np.array(_INSETS), 0.1)
+    reaches, depths = zip(
+        *(_reach(motion, times, axes, slopes, around, follow) for motion in panes), strict=True
+    )
+    pairs = np.stack([reach[:, ::2] + reach[:, 1::2] for reach in reaches])
+    least = (pairs / (slopes[::2] + slopes[1::2])).max(axis=2) - np.stack(depths)
+    distances = least.max(axis=0).clip(min=_LEAST)
+    found = []
+    for reach, depth in zip(reaches, depths, strict=True):
+        apart = (slopes[::2] - slopes[1::2]) * (distances + depth)[:, None]
+        middle = np.column_stack([(reach[:, ::2] - reach[:, 1::2] - apart) / 2, depth])
+        found.append(_smooth(np.column_stack([middle @ axes, distances]), times, around if follow else 0.0))
+    return [[Camera(way[:3], yaw, elevation, float(way[3]), size) for way in ways] for ways in found]
 
 
-def _people(motion: Clip | Duet, times: Array, follow: bool) -> tuple[Array, Array]:
-    """The place (N, 2) on the floor amidst a pane's people, and the width (N,) in metres that they take up.
+def _reach(
+    motion: Clip | Duet, times: Array, axes: Array, slopes: Array, around: float, follow: bool
+) -> tuple[Array, Array]:
+    """How far people reach to the right, left, top and bottom of a picture (N, 4), and their mean depth (N,).
 
-    Where nothing follows them, both are those of the whole motion.
+    A point (x, y, z) in the camera's ``axes`` (right, up, back) lies inside a side of slope s, seen from distance d
+    about a centre c, where x - c <= s (d - z): a reach is the largest x + s z of all points.
     """
-    spots = _roots(motion, times)[..., [0, 2]]
-    low, high = spots.min(axis=0), spots.max(axis=0)
+    people = stacked_positions(motion).astype(np.float64)
+    if "head" in (names := motion.skeleton.joint_names):
+        crowns = people[:, :, [names.index("head")]] + np.array([0.0, _CROWN, 0.0])
+        people = np.concatenate([people, crowns], axis=2)
+    across, up, back = np.moveaxis(np.concatenate(list(people), axis=1) @ axes.T, -1, 0)  # (T, joints) each
+    sides = np.stack([across, -across, up, -up], axis=-1) + slopes * back[..., None] + _AROUND
+    reach, depth = sides.max(axis=1), back.mean(axis=1)
     if not follow:
-        low, high = (np.broadcast_to(each, low.shape) for each in (low.min(axis=0), high.max(axis=0)))
-    across = np.linalg.norm(high - low, axis=-1)
-    return (low + high) / 2, across.clip(max=_WIDEST) if follow else across
+        return np.tile(reach.max(axis=0), (len(times), 1)), np.full(len(times), depth.mean())
+    # A moment may lie between two frames, which both count.
+    frames = 2 * (int(np.ceil(around * motion.fps)) + 1) + 1
+    reach = maximum_filter1d(reach, frames, axis=0, mode="nearest")
+    at = np.clip(np.rint(times * motion.fps).astype(int), 0, len(depth) - 1)
+    return reach[at], depth[at]
 
 
-def _followed(wanted: Array, shares: Array) -> Array:
-    """(N, D) values that go a share of the way to what is wanted at each step."""
-    found = wanted.copy()
-    for i in range(1, len(wanted)):
-        found[i] = found[i - 1] + shares[i] * (wanted[i] - found[i - 1])
-    return found
+def _smooth(values: Array, times: Array, around: float) -> Array:
+    """(N, D) the means of values over so many seconds before and after each time."""
+    if len(times) < 2 or around <= 0:
+        return values
+    return uniform_filter1d(values, 2 * int(around / (times[1] - times[0])) + 1, axis=0, mode="nearest")
 
 
 def sampled(positions: Array, fps: float, times: Array) -> Array:
@@ -167,10 +187,6 @@ def sampled(positions: Array, fps: float, times: Array) -> Array:
     share = (frames - low)[:, None, None]
     first, second = (np.take(positions, index, axis=-3) for index in (low, high))
     return first + share * (second - first)
-
-
-def _roots(motion: Clip | Duet, times: Array) -> Array:
-    return sampled(stacked_positions(motion).astype(np.float64), motion.fps, times)[:, :, 0]
 
 
 def _heading(motion: Clip | Duet) -> float:
@@ -186,21 +202,13 @@ def _heading(motion: Clip | Duet) -> float:
     return float(np.arctan2(left[0], left[2]) - np.pi / 2)
 
 
-def _preset(name: str, along: float, gap: float, aspect: float) -> tuple[float, float, float]:
-    """Yaw, elevation and distance, as ``preset`` in views.js."""
-    tangent = 2 * np.tan(FIELD_OF_VIEW / 2)
-
-    def fit(across: float) -> float:
-        high, wide = _BODY_HEIGHT / tangent, (across + _SIDE_ROOM) / (tangent * aspect)
-        return float(max(high, wide) + across / 6)
-
-    if name == "front":
-        return along, 0.16, float(_BODY_HEIGHT / tangent + gap / 2 + 0.6)
-    if name == "side":
-        return along - np.pi / 2, 0.1, fit(gap)
-    if name == "top":
-        return along - np.pi / 2, 1.48, max(fit(gap), 4.0) + 0.5
-    if name in ("a", "b"):
-        yaw = along + np.pi + 0.4 if name == "a" else along - 0.4
-        return yaw, 0.3, gap / 2 + 2.7
-    return along - 1.05, 0.24, fit(gap * 0.9)
+def _preset(name: str, along: float) -> tuple[float, float]:
+    """Yaw and elevation, as ``preset`` in views.js."""
+    return {
+        "front": (along, 0.16),
+        "side": (along - np.pi / 2, 0.1),
+        "top": (along - np.pi / 2, 1.48),
+        "a": (along + np.pi + 0.4, 0.3),
+        "b": (along - 0.4, 0.3),
+        "threequarter": (along - 1.05, 0.24),
+    }[name]

@@ -7,7 +7,6 @@ any size; their shadow is the bodies' outline under a lamp overhead.
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -36,10 +35,6 @@ WIDTH = 1600
 _COLUMNS = 8
 _TALL = 1.15
 """Height of a picture over its width."""
-_NEARER = 0.85
-"""A moment needs no room to move in."""
-_CROWN = 0.2
-"""Metres from the joint of the head to the top of the hair."""
 _VECTOR: dict[Any, Any] = {"svg.fonttype": "none", "pdf.fonttype": 42, "svg.hashsalt": "pas de deux"}
 
 
@@ -99,9 +94,7 @@ def write_sheet(
     columns = min(len(moments), _COLUMNS)
     tile = (width // columns, round(width / columns * _TALL))
     times = np.arange(motion.num_frames) / motion.fps
-    # Each moment stands alone: a camera that followed from frame to frame would lag behind people who part.
-    ways = [cameras([motion], size=tile, times=times[[frame]], view=view)[0][0] for frame in moments]
-    views = [_holding(way, motion, frame) for way, frame in zip(ways, moments, strict=True)]
+    (views,) = cameras([motion], size=tile, times=times[moments], view=view, around=0.0)
     with replacing(path) as temporary:
         if suffix == ".png":
             sheet = _raster(motion, style, moments, views, tile, title)
@@ -142,7 +135,7 @@ def write_grid_sheet(
     times = np.linspace(0.0, max((m.num_frames - 1) / m.fps for m in motions.values()), moments)
     ways = cameras(list(motions.values()), size=tile, times=times, view=view, follow=False)
     rows = [
-        _row(motion, name, style, times, [replace(way, distance=_NEARER * way.distance) for way in own])
+        _row(motion, name, style, times, own)
         for (name, motion), own in zip(motions.items(), ways, strict=True)
     ]
     small = _text_size(tile)
@@ -154,18 +147,6 @@ def write_grid_sheet(
     with replacing(path) as temporary:
         Image.fromarray(sheet).convert("RGB").save(temporary, format="PNG")
     return path
-
-
-def _holding(way: Camera, motion: Clip | Duet, frame: int) -> Camera:
-    """The camera as near as it can go with everybody in the picture at a moment, from the soles to the crown."""
-    joints = stacked_positions(motion)[:, frame].reshape(-1, 3)
-    joints = np.concatenate([joints, joints + np.array([0.0, _CROWN, 0.0])])
-    for nearer in (_NEARER, 1.0, 1.2, 1.5):
-        found = replace(way, distance=nearer * way.distance)
-        pixels = found.project(joints)[0]
-        if (pixels > 0).all() and (pixels < way.size).all():
-            break
-    return found
 
 
 def _row(
