@@ -151,7 +151,7 @@ def cameras(
 def _reach(
     motion: Clip | Duet, times: Array, axes: Array, slopes: Array, around: float, follow: bool
 ) -> tuple[Array, Array]:
-    """How far people reach to the right, left, top and bottom of a picture (N, 4), and their mean depth (N,).
+    """Reach of people to the right, left, top and bottom of a picture (N, 4), and their mean depth (N,).
 
     A point (x, y, z) in the camera's ``axes`` (right, up, back) lies inside a side of slope s, seen from distance d
     about a centre c, where x - c <= s (d - z): a reach is the largest x + s z of all points.
