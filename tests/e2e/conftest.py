@@ -145,8 +145,8 @@ class Tabs:
 
     def close(self) -> None:
         """Closes all tabs."""
-        for context_or_page in self.opened:
-            context_or_page.close()
+        while self.opened:
+            self.opened.pop().close()
 
     def _note_refusal(self, response) -> None:
         if response.status >= 400:
@@ -198,6 +198,26 @@ def open_kept(kept_tabs: Tabs) -> Iterator[Callable]:
     """:meth:`Tabs.open`, for tabs that stay open until the module's tests are over."""
     yield kept_tabs.open
     kept_tabs.check()
+
+
+@pytest.fixture
+def shared_page(
+    request: pytest.FixtureRequest, server: SimpleNamespace, open_kept, kept_tabs: Tabs
+) -> Iterator:
+    """The application in a tab that the module's tests share: each finds the settings that the one before left.
+
+    A test that fails leaves the next one a new tab.
+    """
+    from .serving import live
+
+    failed = request.session.testsfailed
+    if not kept_tabs.opened:
+        live(open_kept(server.url))
+    (page,) = kept_tabs.opened
+    page.set_viewport_size({"width": 1280, "height": 800})
+    yield page
+    if request.session.testsfailed > failed:
+        kept_tabs.close()
 
 
 def free_port() -> int:

@@ -32,6 +32,14 @@ def choose(page, box: str, option: str) -> None:
     page.locator(box).get_by_role("option", name=option, exact=True).click()
 
 
+def give_file(page, field: str, file) -> None:
+    """Gives a file to a field, which takes none while it shows another."""
+    clear = page.locator(f"{field} button[aria-label='Clear']")
+    if clear.count():
+        clear.click()
+    page.set_input_files(f"{field} input[type=file]", file)
+
+
 def settled_box(locator) -> dict[str, float]:
     """The box of something that the player puts in its place with the next picture, once it lies still."""
     until(locator.page, "document.querySelector('.pdd-handle')?.style.transform")

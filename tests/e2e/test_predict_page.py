@@ -2,9 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from pathlib import Path
-from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -13,7 +11,7 @@ from playwright.sync_api import Page, expect
 from motion.formats import write
 from tests.ui.stub_engine import walking
 
-from .playing import choose, unfold
+from .playing import choose, give_file, unfold
 from .serving import SLOW, live
 
 pytestmark = pytest.mark.e2e
@@ -23,8 +21,8 @@ SAMPLE = "window.__pasdedeux.player.sample"
 
 
 @pytest.fixture
-def page(server: SimpleNamespace, open_page: Callable[..., Page]) -> Page:
-    return live(open_page(server.url), "Predict")
+def page(shared_page: Page) -> Page:
+    return live(shared_page, "Predict")
 
 
 def people(page: Page, count: int) -> None:
@@ -41,12 +39,38 @@ def move_marker(page: Page, second: float) -> None:
 
 
 def upload(page: Page, file: Path) -> None:
-    page.set_input_files("#predict-file input[type=file]", file)
+    give_file(page, "#predict-file", file)
 
 
 def predict(page: Page) -> None:
     page.click("button#predict-generate")
     expect(page.locator("#predict-status .pd-done")).to_contain_text("Done", timeout=SLOW)
+
+
+def damaged(kind: str) -> np.ndarray:
+    """(90, 22, 3) of a walker with NaN, with a wrist that jumps, or of half a second."""
+    positions = np.array(walking(0.5 if kind == "short" else 3.0).a.positions)
+    if kind != "short":
+        positions[40, 20] += np.nan if kind == "nan" else 3.0
+    return positions
+
+
+def test_what_cannot_be_predicted_is_a_sentence(page: Page, tmp_path: Path) -> None:
+    """It comes first, on a page where nothing was chosen yet."""
+    error = page.locator("#predict-status .pd-error")
+    page.click("button#predict-generate")
+    expect(error).to_contain_text("There is no motion yet", timeout=SLOW)
+    for kind, read, sentence in (
+        ("short", "Give 1 s or more", "1 s or more is needed: give a longer motion"),
+        ("jump", "one person, 3.0 s", "The left wrist jumps"),
+        ("nan", None, "nan.npy"),
+    ):
+        np.save(tmp_path / f"{kind}.npy", damaged(kind))
+        upload(page, tmp_path / f"{kind}.npy")
+        if read:
+            expect(page.locator("#predict-status")).to_contain_text(read, timeout=SLOW)
+            page.click("button#predict-generate")
+        expect(error).to_contain_text(sentence, timeout=SLOW)
 
 
 def test_the_past_ends_at_the_marker_and_the_truth_is_a_ghost(page: Page, tmp_path: Path) -> None:
@@ -60,6 +84,7 @@ def test_the_past_ends_at_the_marker_and_the_truth_is_a_ghost(page: Page, tmp_pa
     page.wait_for_function(f"{SAMPLE}.frames === 150")  # two seconds after the marker, by default
     assert page.evaluate(f"{SAMPLE}.past_until") == 90
     assert page.evaluate("window.__pasdedeux.player.clock.frame") == 90  # playing begins at the marker
+    page.evaluate("delete window.__pasdedeux.player.clock.play")
     assert page.locator("#predict-curves .modebar").evaluate_all("all => all.every(e => !e.offsetParent)")
     assert page.evaluate(f"{SAMPLE}.ghost !== null")
     expect(page.locator("#predict-curves .main-svg").first).to_be_visible(timeout=SLOW)
@@ -91,6 +116,7 @@ def test_two_methods_go_on_side_by_side_on_one_clock(page: Page, tmp_path: Path)
     assert page.evaluate(f"[{SAMPLE}.ghost !== null, {SAMPLE}.beside.ghost !== null]") == [True, True]
     assert page.evaluate(f"[{SAMPLE}.past_until, {SAMPLE}.beside.past_until]") == [45, 45]
     expect(page.locator("#predict-curves .legendtext", has_text="Zero velocity")).to_be_visible(timeout=SLOW)
+    choose(page, "#predict-other", "nothing")
 
 
 def test_a_result_of_another_tab_goes_on(page: Page) -> None:
@@ -111,42 +137,10 @@ def test_a_result_of_another_tab_goes_on(page: Page) -> None:
     assert marker(page) == 7.0
 
 
-def damaged(kind: str) -> np.ndarray:
-    """(90, 22, 3) of a walker with NaN, with a wrist that jumps, or of half a second."""
-    positions = np.array(walking(0.5 if kind == "short" else 3.0).a.positions)
-    if kind != "short":
-        positions[40, 20] += np.nan if kind == "nan" else 3.0
-    return positions
-
-
-@pytest.mark.parametrize(
-    ("kind", "read", "sentence"),
-    [
-        ("short", "Give 1 s or more", "1 s or more is needed: give a longer motion"),
-        ("jump", "one person, 3.0 s", "The left wrist jumps"),
-        ("nan", None, "nan.npy"),
-    ],
-)
-def test_what_cannot_be_predicted_is_a_sentence(
-    page: Page, tmp_path: Path, kind: str, read: str | None, sentence: str
-) -> None:
-    error = page.locator("#predict-status .pd-error")
-    page.click("button#predict-generate")
-    expect(error).to_contain_text("There is no motion yet", timeout=SLOW)
-    np.save(tmp_path / f"{kind}.npy", damaged(kind))
-    upload(page, tmp_path / f"{kind}.npy")
-    if read:
-        expect(page.locator("#predict-status")).to_contain_text(read, timeout=SLOW)
-        page.click("button#predict-generate")
-    expect(error).to_contain_text(sentence, timeout=SLOW)
-
-
-def test_on_a_phone_the_motion_comes_first_then_the_player_then_the_settings(
-    server: SimpleNamespace, open_page: Callable[..., Page]
-) -> None:
-    tab = live(open_page(server.url, width=390, height=844), "Predict")
+def test_on_a_phone_the_motion_comes_first_then_the_player_then_the_settings(page: Page) -> None:
+    page.set_viewport_size({"width": 390, "height": 844})
     names = ("#predict-file", "#predict-player", "#predict-marker")
-    expect(tab.locator(names[1])).to_be_visible(timeout=SLOW)
-    tops = [tab.locator(name).bounding_box()["y"] for name in names]
+    expect(page.locator(names[1])).to_be_visible(timeout=SLOW)
+    tops = [page.locator(name).bounding_box()["y"] for name in names]
     assert tops == sorted(tops)
-    assert tab.evaluate("document.documentElement.scrollWidth") <= 390
+    assert page.evaluate("document.documentElement.scrollWidth") <= 390

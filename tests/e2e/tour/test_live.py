@@ -54,7 +54,7 @@ def test_live(page: Page, tour: Tour) -> None:
             page.click(f"{LIVE} .pdcam-begin")
             expect(page.locator(f"{LIVE} .pdlive-figures")).to_contain_text("ms to the partner", timeout=SLOW)
             if source == "webcam":
-                page.wait_for_timeout(1500)
+                expect(page.locator(f"{LIVE} .pdlive-keep")).to_be_visible(timeout=SLOW)
                 page.click(f"{LIVE} .pdcam-stop")
             else:
                 expect(page.locator(f"{LIVE} .pdcam-line")).to_contain_text("The end.", timeout=SLOW)
