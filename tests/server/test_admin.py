@@ -18,6 +18,10 @@ from webdemo.server.audit import audited
 from .attacks.target import Target
 from .clients import FIELDS
 from .lab import ROOT
+from .live.test_streams import poses
+
+MANY = [FIELDS[0], 10, FIELDS[2], 8, *FIELDS[4:]]
+"""Eight motions of ten seconds: a quarter of a megabyte."""
 
 
 @pytest.fixture(scope="module")
@@ -81,6 +85,41 @@ def test_a_person_at_their_quota_is_shown_and_refused(lab: Target) -> None:
     assert act(lab, act="room", name="ada", megabytes="much").status_code == 422
     shell(lab, "room", "ada")
     assert shell(lab, "list")["people"][0]["own_room"] is False
+
+
+def test_whoever_has_filled_their_room_is_shown_as_full_and_makes_way_for_themselves(lab: Target) -> None:
+    """Four runs of eight motions, and then a room of 1 MB, of which runs may fill 0.75."""
+    for _ in range(4):
+        assert "complete" in lab.call("ada", "generate", MANY)
+    assert "<strong>full</strong>" not in lab.ask("eve", "GET", "/admin").text
+    assert act(lab, act="room", name="ada", megabytes="1").status_code == 303
+    page = lab.ask("eve", "GET", "/admin").text
+    assert page.count("<strong>full</strong>") == 1 and " of 0.8 MB <strong>full</strong>" in page
+    ada, eve = shell(lab, "list")["people"]
+    assert (ada["full"], eve["full"]) == (True, False) and ada["megabytes"] > 0.75
+    oldest = min((lab.data / "motions").iterdir(), key=lambda folder: folder.stat().st_mtime)
+    lab.call("ada", "generate", MANY)
+    assert not oldest.exists() and len(list((lab.data / "motions").iterdir())) == 4
+    refused = lab.ask("ada", "POST", "/gradio_api/upload", files={"files": ("a.bvh", b"x" * 2**20)})
+    assert refused.status_code == 507 and "There is no room for 1.1 MB more" in refused.text
+    assert act(lab, act="room", name="ada").status_code == 303
+
+
+def test_a_stream_is_ended_and_its_person_told(lab: Target) -> None:
+    origin = {"origin": lab.url}
+    opened = lab.ask("ada", "POST", "/live", json={"partner": "agent"}, headers=origin).json()
+    page = lab.ask("eve", "GET", "/admin").text
+    key = page.split('value="end-stream"')[1].split('name="id" value="')[1].split('"')[0]
+    assert key == opened["id"] and "live stream" in page
+    assert act(lab, act="end-stream", id=key).status_code == 303
+    answer = lab.ask("ada", "POST", f"/live/{key}", content=poses([0.1]), headers=origin)
+    assert answer.status_code == 410 and "The person who runs this server ended this" in answer.text
+    assert act(lab, act="end-stream", id=key).status_code == 422
+    lines = [line for line in audited(lab.data, 100) if line["act"] == "admin-end-stream"]
+    assert [(line["person"], line["ok"], line["id"]) for line in lines] == [
+        ("eve", False, key),
+        ("eve", True, key),
+    ]
 
 
 def test_suspended_and_signed_out_everywhere(lab: Target) -> None:

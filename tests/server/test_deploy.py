@@ -18,6 +18,7 @@ from packaging.utils import canonicalize_name
 
 from tests.server.queue.test_queue import wait_for
 from webdemo.server.settings import PREFIX, read_settings
+from webdemo.server.watchdog import SILENT_SECONDS
 
 from .lab import ROOT
 
@@ -37,43 +38,62 @@ def settings_in(text: str) -> dict[str, str]:
 
 
 def test_the_image_runs_without_rights_and_has_what_it_needs() -> None:
-    assert instructions("USER") == ["10001"]
-    assert "--uid 10001" in DOCKERFILE and "-o lab -g lab -m 700 /data" in DOCKERFILE
+    assert instructions("USER") == ["10001:10001"]
+    assert (
+        "--uid 10001" in DOCKERFILE
+        and "--gid 10001" in DOCKERFILE
+        and "-o lab -g lab -m 700 /data" in DOCKERFILE
+    )
     copied = [line.split()[0] for line in instructions("COPY") if not line.startswith("--from")]
     assert copied and all((ROOT / name).exists() for name in copied)
     let_in = (ROOT / ".dockerignore").read_text().splitlines()
-    assert all(f"!{name}" in let_in for name in [*copied, "requirements.lock"])
-    torch = re.search(r"torch==\S+ --index-url \S+/cpu\b", DOCKERFILE)
-    assert torch is not None and torch[0] in (ROOT / "README.md").read_text()
+    assert all(f"!{name}" in let_in for name in [*copied, *LOCKS])
+    index = re.search(r"--extra-index-url (\S+/cpu)\b", DOCKERFILE)
+    assert index is not None and f"--index-url {index[1]}" in (ROOT / "README.md").read_text()
 
 
+LOCKS = ("requirements.lock", "requirements-ray.lock")
 IMAGE = {"python_version": "3.11", "sys_platform": "linux", "platform_machine": "x86_64"}
 
 
-def test_the_image_installs_what_is_locked() -> None:
-    """Everything by its hash, no address of any index, and what the requirements ask for."""
-    text = (ROOT / "requirements.lock").read_text()
+def locked_in(name: str) -> dict[str, str]:
+    """The versions by package in a lock, each of whose lines must have a hash and none the address of an index."""
+    text = (ROOT / name).read_text()
     blocks = re.findall(
-        r"^([a-z0-9-]+)==(\S+) \\\n((?: +--hash=sha256:[0-9a-f]{64}(?: \\)?\n)+)", text, re.MULTILINE
+        r"^([a-z0-9-]+)(?:\[\S+\])?==(\S+) \\\n((?: +--hash=sha256:[0-9a-f]{64}(?: \\)?\n)+)",
+        text,
+        re.MULTILINE,
     )
-    locked = {name: version for name, version, _ in blocks}
     lines = [line for line in text.splitlines() if not line.startswith(("#", " "))]
     assert len(lines) == len(blocks) > 50 and "://" not in text
-    assert "--require-hashes --no-deps -r requirements.lock" in DOCKERFILE
+    return {name: version for name, version, _ in blocks}
+
+
+def test_the_image_installs_what_is_locked() -> None:
+    """Everything by its hash and nothing else, and what the requirements ask for."""
+    locked, rays = (locked_in(name) for name in LOCKS)
+    installs = re.findall(r"pip install (.+?) &&", DOCKERFILE)
+    assert len(installs) == 1 and {"--require-hashes", "--no-deps"} <= set(installs[0].split())
+    assert "curl" not in DOCKERFILE and "wget" not in DOCKERFILE and "apt" not in DOCKERFILE
+    assert locked["torch"] == "2.13.0+cpu" and "ray" in rays
+    assert all(locked.get(name, version) == version for name, version in rays.items())
     for line in (ROOT / "requirements.txt").read_text().splitlines():
         if line.startswith("#"):
             continue
         wanted = Requirement(line)
         assert re.search("<|==", line), f"{line} has no upper bound"
         here = wanted.marker is None or wanted.marker.evaluate(IMAGE)
-        if wanted.name != "torch" and here:
+        if here:
             assert wanted.specifier.contains(locked[canonicalize_name(wanted.name)]), line
 
 
 def test_compose_takes_every_right_away(monkeypatch: pytest.MonkeyPatch) -> None:
     compose = yaml.safe_load((ROOT / "compose.yaml").read_text())
+    if command := shutil.which("docker-compose"):  # needs no engine
+        checked = subprocess.run([command, "config", "--quiet"], cwd=ROOT, capture_output=True, text=True)
+        assert checked.returncode == 0, checked.stderr
     (lab,) = compose["services"].values()
-    assert lab["read_only"] is True and lab["cap_drop"] == ["ALL"]
+    assert [lab["user"]] == instructions("USER") and lab["read_only"] is True and lab["cap_drop"] == ["ALL"]
     assert lab["security_opt"] == ["no-new-privileges:true"]
     assert all(port.startswith("127.0.0.1:") for port in lab["ports"])
     for name, value in {**settings_in(DOCKERFILE), **lab["environment"]}.items():
@@ -107,6 +127,7 @@ def test_the_unit_is_understood(tmp_path: Path) -> None:
     text = UNIT.read_text()
     assert f"{PREFIX}USERS" in settings_in(text) and "User=root" not in text
     assert "Restart=on-failure" in text and settings_in(text)[f"{PREFIX}EXIT_WHEN_STUCK"] == "1"
+    assert "Type=notify" in text and int(text.split("WatchdogSec=")[1].split()[0]) > SILENT_SECONDS
     fields = set(type(read_settings()).model_fields)
     assert {name.removeprefix(PREFIX).lower() for name in settings_in(text)} <= fields
     if (analyze := shutil.which("systemd-analyze")) is None:
@@ -118,3 +139,23 @@ def test_the_unit_is_understood(tmp_path: Path) -> None:
     env = {**os.environ, "SYSTEMD_LOG_LEVEL": "warning"}
     said = subprocess.run([analyze, "verify", str(unit)], capture_output=True, text=True, env=env)
     assert said.returncode == 0 and not said.stderr.strip(), said.stderr
+    exposed = subprocess.run(
+        [analyze, "security", "--offline=true", "--threshold=20", str(unit)], capture_output=True, text=True
+    )
+    assert exposed.returncode == 0, exposed.stdout
+
+
+def test_the_bill_of_materials_has_every_package_with_its_hashes(tmp_path: Path) -> None:
+    rule = re.search(r"\$\(BIN\)/cyclonedx-py (.+)", (ROOT / "Makefile").read_text())
+    assert rule is not None
+    words = rule[1].replace("$@", str(tmp_path / "sbom.json")).split()
+    made = subprocess.run(
+        [sys.executable, "-m", "cyclonedx_py", *words], cwd=ROOT, capture_output=True, text=True
+    )
+    assert made.returncode == 0, made.stderr
+    bill = json.loads((tmp_path / "sbom.json").read_text())
+    assert bill["bomFormat"] == "CycloneDX"
+    assert {each["name"]: each["version"] for each in bill["components"]} == locked_in("requirements.lock")
+    assert all(
+        any(place.get("hashes") for place in each["externalReferences"]) for each in bill["components"]
+    )

@@ -41,7 +41,7 @@ def add_admin(commands: Any) -> None:
 def admin(options: argparse.Namespace) -> dict[str, Any]:
     """Does one act, audited, in the lab that the settings name; a running server heeds it at once."""
     from webdemo.server.accounts.users import Users
-    from webdemo.server.audit import SENDER, audited, set_up_audit
+    from webdemo.server.audit import audited, audited_shell
     from webdemo.server.lab import administration_of
     from webdemo.server.settings import read_settings
     from webdemo.server.store.database import Database, sentences
@@ -53,13 +53,9 @@ def admin(options: argparse.Namespace) -> dict[str, Any]:
         return {"lines": audited(settings.data, 100)}
     if action not in ("list", "announce") and not name:
         raise InputError(f"Name the account: `admin {action} NAME`.")
-    set_up_audit(
-        settings.audit, settings.data, "shell", megabytes=settings.audit_megabytes, files=settings.audit_files
-    )
-    SENDER.set(("(shell)", ""))
     database = Database(settings.database_url)
     try:
-        with sentences():
+        with sentences(), audited_shell(settings):
             acts = administration_of(settings, database, Users(settings.users) if settings.users else None)
             if action == "list":
                 return {"people": [asdict(row) for row in acts.rows()], "announced": acts.people.announced()}

@@ -150,6 +150,7 @@ def serve(options: argparse.Namespace) -> dict[str, Any]:
 
 def clock(options: argparse.Namespace) -> dict[str, Any]:
     """Shows how far the clock has jumped, or trusts it from now on, at all processes of the lab."""
+    from webdemo.server.audit import audit, audited_shell
     from webdemo.server.settings import read_settings
     from webdemo.server.store.database import Database, sentences
     from webdemo.server.store.ledger import DAY, LabClock
@@ -164,7 +165,9 @@ def clock(options: argparse.Namespace) -> dict[str, Any]:
         with sentences():
             lab = LabClock(database)
             if options.action != "show":
-                lab.confirm(passed=options.action == "passed")
+                with audited_shell(settings):
+                    lab.confirm(passed=options.action == "passed")
+                    audit("clock", action=options.action)
             state = lab.state()
     finally:
         database.close()
@@ -183,9 +186,11 @@ def user(options: argparse.Namespace) -> dict[str, Any]:
     import getpass
 
     from webdemo.server.accounts.users import Users
+    from webdemo.server.audit import audit, audited_shell
     from webdemo.server.settings import read_settings
 
-    path = options.users or read_settings().users
+    settings = read_settings()
+    path = options.users or settings.users
     if path is None:
         raise InputError("Name the file of accounts: give --users FILE, or set PASDEDEUX_USERS.")
     users = Users(path)
@@ -194,10 +199,15 @@ def user(options: argparse.Namespace) -> dict[str, Any]:
     if not options.name:
         raise InputError(f"Give a name: `user {options.action} NAME`.")
     if options.action == "remove":
-        users.remove(options.name)
+        with audited_shell(settings):
+            users.remove(options.name)
+            audit("user-removed", target=options.name)
         return {"removed": options.name}
     terminal = sys.stdin.isatty()
     password = getpass.getpass("Password: ") if terminal else sys.stdin.readline().rstrip("\n")
     if terminal and getpass.getpass("Once more: ") != password:
         raise InputError("The two passwords differ: try again.")
-    return {"added" if users.add(options.name, password) else "changed": options.name}
+    with audited_shell(settings):
+        done = "added" if users.add(options.name, password) else "changed"
+        audit(f"user-{done}", target=options.name)
+    return {done: options.name}

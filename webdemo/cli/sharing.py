@@ -57,6 +57,7 @@ def add_share(commands: Any) -> None:
 @contextmanager
 def _publishing() -> Iterator[Any]:
     """The public pages of the lab that the settings name."""
+    from webdemo.server.audit import audited_shell
     from webdemo.server.lab import history_of, storage_of
     from webdemo.server.settings import read_settings
     from webdemo.server.store.database import Database
@@ -70,7 +71,8 @@ def _publishing() -> Iterator[Any]:
     database = Database(settings.database_url)
     try:
         history = history_of(settings, storage_of(settings, database), settings.node)
-        yield Publishing(history, days=settings.publish_days)
+        with audited_shell(settings):
+            yield Publishing(history, days=settings.publish_days)
     finally:
         database.close()
 

@@ -42,6 +42,7 @@ def add_upkeep(commands: Any) -> None:
 
 def database(options: argparse.Namespace) -> dict[str, Any]:
     """Shows the revision of the lab's database, brings it to the newest, or takes it back to an earlier one."""
+    from webdemo.server.audit import audit, audited_shell
     from webdemo.server.settings import read_settings
     from webdemo.server.store.database import engine_of, opening
     from webdemo.server.store.migrations import NEWEST, REVISIONS, downgrade, revision_of, upgrade
@@ -61,6 +62,9 @@ def database(options: argparse.Namespace) -> dict[str, Any]:
             elif options.action == "downgrade":
                 downgrade(engine, options.revision)
             revision = revision_of(engine)
+            if options.action != "show":
+                with audited_shell(settings):
+                    audit("database", action=options.action, revision=revision)
         finally:
             engine.dispose()
     print(f"The database is at revision {revision or 'none'}; this version of Pas de Deux has {NEWEST}.")
@@ -69,6 +73,7 @@ def database(options: argparse.Namespace) -> dict[str, Any]:
 
 def backup(options: argparse.Namespace) -> dict[str, Any]:
     """Makes a backup of the lab that the settings name."""
+    from webdemo.server.audit import audited_shell
     from webdemo.server.settings import read_settings
     from webdemo.server.store.backup import back_up
 
@@ -76,7 +81,7 @@ def backup(options: argparse.Namespace) -> dict[str, Any]:
     _check_history(settings)
     if options.keep < 0:
         raise InputError("Give --keep 1 or more, or leave it out to keep all.")
-    with _lab(settings) as lab:
+    with _lab(settings) as lab, audited_shell(settings):
         made = back_up(lab, options.folder, keep=options.keep)
     print(f"The backup is in {made}.")
     return {"backup": str(made)}
@@ -84,6 +89,7 @@ def backup(options: argparse.Namespace) -> dict[str, Any]:
 
 def restore(options: argparse.Namespace) -> dict[str, Any]:
     """Restores a backup into the empty data folder and database that the settings name."""
+    from webdemo.server.audit import audit, audited_shell
     from webdemo.server.settings import read_settings
     from webdemo.server.store.backup import MANIFEST, backups, restore
 
@@ -96,6 +102,8 @@ def restore(options: argparse.Namespace) -> dict[str, Any]:
     settings.data.mkdir(mode=0o700, parents=True, exist_ok=True)
     with _lab(settings) as lab:
         restored = restore(chosen, lab)
+    with audited_shell(settings):
+        audit("restore", name=chosen.name, runs=restored["rows"].get("runs", 0))
     print(f"{restored['rows'].get('runs', 0)} runs were restored from {chosen} to {settings.data}.")
     return {"backup": str(chosen), **restored}
 

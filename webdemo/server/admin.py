@@ -16,7 +16,7 @@ from webdemo.server.accounts.visitors import digest
 from webdemo.server.audit import audit
 from webdemo.server.store.database import Database, Published, Run, Study
 from webdemo.server.store.people import ADMIN, People
-from webdemo.server.store.storage import forget
+from webdemo.server.store.storage import SET_ASIDE, forget
 
 
 @dataclass(frozen=True)
@@ -27,6 +27,8 @@ class Row:
         runs: kept in the history.
         megabytes: of runs and studies.
         room: of megabytes altogether.
+        kept: the part of the room that runs and studies may fill.
+        full: another run of this person's usual size does not fit, so that their oldest makes way for it.
         own_room: the room was set for this person.
         computed: runs that were computed, and their minutes of a worker.
     """
@@ -37,6 +39,8 @@ class Row:
     runs: int
     megabytes: float
     room: float
+    kept: float
+    full: bool
     own_room: bool
     computed: int
     minutes: float
@@ -89,12 +93,14 @@ class Administration:
         for name in sorted({*self._accounts, *(known if self.elsewhere else ())}):
             owner, row = f"user {name}", known.get(name)
             room = row.megabytes if row is not None else None
+            allowed = self.person_bytes / 2**20 if room is None else room
+            kept, megabytes = (1 - SET_ASIDE) * allowed, sizes.get(owner, 0.0) / 2**20
+            full = megabytes + megabytes / max(counts.get(owner, 0), 1) > kept
             runs, seconds = computed.get(owner, (0, 0.0))
             found.append(
                 Row(
                     name, row.role if row else "", bool(row and row.suspended), counts.get(owner, 0),
-                    sizes.get(owner, 0.0) / 2**20, self.person_bytes / 2**20 if room is None else room,
-                    room is not None, runs, seconds / 60,
+                    megabytes, allowed, kept, full, room is not None, runs, seconds / 60,
                 )
             )  # fmt: skip
         return found

@@ -10,12 +10,14 @@ import hashlib
 import json
 import logging
 import os
+import sys
 import time
 from collections.abc import Iterator
+from contextlib import contextmanager
 from contextvars import ContextVar
 from logging.handlers import RotatingFileHandler
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 from urllib.parse import quote
 
 from gradio.context import LocalContext
@@ -24,6 +26,9 @@ from motion import InputError
 from webdemo.server.logs import REFERENCE
 from webdemo.ui.visitor import visitor
 
+if TYPE_CHECKING:
+    from webdemo.server.settings import Settings
+
 log = logging.getLogger(__name__)
 _lines = logging.getLogger("webdemo.audit")
 
@@ -31,6 +36,8 @@ SENDER: ContextVar[tuple[str, str]] = ContextVar("sender", default=("", ""))
 """The person and the address behind the request that is being answered."""
 LONGEST = 300
 """Characters of a value."""
+SHELL = "(shell)"
+"""The person behind the commands of a shell."""
 FOLDER = "audit"
 """In the data folder; each process writes a file of its own there."""
 
@@ -104,9 +111,7 @@ def set_up_audit(where: str, data: Path, node: str, *, megabytes: float, files: 
     Raises:
         InputError: if the file cannot be written.
     """
-    for handler in list(_lines.handlers):
-        _lines.removeHandler(handler)
-        handler.close()
+    _close()
     _lines.propagate = where == "log"
     _lines.setLevel(logging.CRITICAL if where == "off" else logging.INFO)
     if where != "file":
@@ -124,6 +129,34 @@ def set_up_audit(where: str, data: Path, node: str, *, megabytes: float, files: 
         ) from None
     handler.setFormatter(_AuditLines())
     _lines.addHandler(handler)
+
+
+@contextmanager
+def audited_shell(settings: Settings) -> Iterator[None]:
+    """Writes what a command does until its end as the server would, as the person :data:`SHELL`.
+
+    Raises:
+        InputError: if the file cannot be written.
+    """
+    set_up_audit(
+        settings.audit, settings.data, "shell", megabytes=settings.audit_megabytes, files=settings.audit_files
+    )
+    if settings.audit == "log":  # a command sets up no logs
+        handler = logging.StreamHandler(sys.stderr)
+        handler.setFormatter(_AuditLines())
+        _lines.addHandler(handler)
+    token = SENDER.set((SHELL, ""))
+    try:
+        yield
+    finally:
+        SENDER.reset(token)
+        _close()
+
+
+def _close() -> None:
+    for handler in list(_lines.handlers):
+        _lines.removeHandler(handler)
+        handler.close()
 
 
 def audited(data: Path, most: int) -> list[dict[str, Any]]:

@@ -26,6 +26,7 @@ from .audit import set_up_audit
 from .logs import keep_last_errors, set_up_logs
 from .memory import share_heaps
 from .settings import Settings
+from .watchdog import tell_systemd
 
 log = logging.getLogger(__name__)
 
@@ -100,14 +101,21 @@ def bounded_protocol(settings: Settings) -> type[H11Protocol]:
 
 
 class Server(uvicorn.Server):
-    """A uvicorn that waits for the runs before it closes the connections which carry them."""
+    """A uvicorn that waits for the runs before it closes the connections which carry them, and tells systemd."""
 
     def __init__(self, config: uvicorn.Config, lab: Lab) -> None:
         super().__init__(config)
         self.lab = lab
 
+    async def startup(self, sockets: list[socket.socket] | None = None) -> None:
+        """Begins to serve."""
+        await super().startup(sockets)
+        if self.started:
+            tell_systemd("READY=1")
+
     async def shutdown(self, sockets: list[socket.socket] | None = None) -> None:
         """Lets running work end, then stops the server."""
+        tell_systemd("STOPPING=1")
         if not self.force_exit:
             await run_in_threadpool(self.lab.stop)
         await super().shutdown(sockets)

@@ -1,4 +1,4 @@
-"""Ends a process that is stuck, so that its supervisor (Docker, systemd) starts it again."""
+"""Ends a process that is stuck, so that its supervisor (Docker, systemd) starts it again; tells systemd how it is."""
 
 from __future__ import annotations
 
@@ -6,6 +6,7 @@ import asyncio
 import faulthandler
 import logging
 import os
+import socket
 from collections.abc import Callable
 
 from starlette.concurrency import run_in_threadpool
@@ -20,6 +21,19 @@ STDERR = 2
 """File descriptor, which stays the same whatever takes the place of ``sys.stderr``."""
 STUCK = 70
 """Exit code of a process that ended itself since a run was stuck."""
+
+
+def tell_systemd(state: str) -> None:
+    """Sends a state such as ``READY=1`` to systemd where it waits for it (``Type=notify``); see sd_notify(3)."""
+    if not (address := os.environ.get("NOTIFY_SOCKET", "")):
+        return
+    try:
+        with socket.socket(socket.AF_UNIX, socket.SOCK_DGRAM) as wire:
+            wire.setblocking(False)
+            wire.connect(f"\0{address[1:]}" if address.startswith("@") else address)
+            wire.sendall(state.encode())
+    except OSError as error:  # it ends the process at WatchdogSec
+        log.error("systemd could not be told %s: %s", state, error)
 
 
 async def watch(
@@ -41,6 +55,7 @@ async def watch(
                 log.critical("The process ends itself, since it is stuck: %s", reason)
                 faulthandler.dump_traceback(STDERR)
                 os._exit(STUCK)
+            tell_systemd("WATCHDOG=1")
             faulthandler.dump_traceback_later(silent_seconds, exit=True, file=STDERR)
             await asyncio.sleep(every)
     finally:

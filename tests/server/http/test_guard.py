@@ -70,6 +70,12 @@ def test_foreign_names_are_refused(local: TestClient) -> None:
     assert local.get("/", headers={"host": "localhost:1234"}).status_code == 200
 
 
+def test_a_server_with_names_of_its_own_still_answers_its_machine_s_health_check(tmp_path: Path) -> None:
+    with client_of(settings_for(tmp_path, host="0.0.0.0", open=True, hosts=["lab.example"])) as client:
+        for name, refused in (("lab.example", False), ("localhost", False), ("evil.example", True)):
+            assert (client.get("/healthz", headers={"host": name}).status_code == 421) == refused
+
+
 def test_gradios_own_check_of_files_is_on(local: TestClient) -> None:
     """It is left out for a page that was not launched, and a mounted one never is."""
     (mounted,) = [r.app for r in local.app.routes if hasattr(getattr(r, "app", None), "state_holder")]

@@ -177,10 +177,7 @@ def _people(lab: Lab, admin: Administration, action: str) -> str:
         )
         confirm = f'<input name="confirm" size="8" placeholder="{name}" aria-label="Type {name} to delete the account">'
         state = " ".join(filter(None, (row.role, "suspended" if row.suspended else "")))
-        full = row.megabytes >= 0.75 * row.room * 0.98
-        share = f"{row.megabytes:,.1f} of {0.75 * row.room:,.0f} MB" + (
-            " <strong>full</strong>" if full else ""
-        )
+        share = f"{row.megabytes:,.1f} of {row.kept:,.1f} MB" + (" <strong>full</strong>" if row.full else "")
         acts = [
             _button(action, "room", "Set room", room, name=row.name),
             _button(

@@ -97,8 +97,9 @@ class Guard:
         self.bindings = Bindings()
         self.rate_limit = RateLimit(settings.rate)
         self.address_rate_limit = RateLimit(settings.rate * settings.address_people)
-        names = settings.hosts or (["localhost", "127.0.0.1", "::1"] if settings.local else [])
-        self.hosts = {name.lower() for name in names}
+        self.hosts = {name.lower() for name in settings.hosts}
+        if self.hosts or settings.local:  # its own health check, and tunnels to it, name the loopback
+            self.hosts |= {"localhost", "127.0.0.1", "::1"}
 
     async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
         """Checks a request, then passes it on."""

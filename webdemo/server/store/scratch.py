@@ -78,8 +78,9 @@ class Scratch:
             near = sum(self.used(name) for name in others)
             missing = max(missing, near + size - ADDRESS_SHARE * self.most_bytes)
         if missing > 0 and self._remove_oldest(self.uploads / person, missing)[1] < missing:
+            megabytes = math.ceil(10 * size / 2**20) / 10  # never "0 MB"
             raise InputError(
-                f"There is no room for {size / 2**20:,.0f} MB more beside your uploads and files for download: use a "
+                f"There is no room for {megabytes:,g} MB more beside your uploads and files for download: use a "
                 "smaller file, remove runs of the history, or wait until the older ones are gone."
             )
 

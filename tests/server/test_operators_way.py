@@ -1,0 +1,121 @@
+"""The way of an operator through docs/hosting.md, from an empty folder: each step by the command that the page gives,
+against servers in processes of their own. Sign-in by a proxy and by OpenID Connect have tests in ``accounts``."""
+
+from __future__ import annotations
+
+import json
+import os
+import subprocess
+import sys
+import threading
+import time
+from contextlib import contextmanager
+from pathlib import Path
+from typing import Any
+
+import httpx
+
+from webdemo.server.audit import audited
+
+from .attacks.target import Target
+from .clients import FIELDS
+from .lab import ROOT
+
+PASSWORD = "a password of ada's"
+
+
+class Way(Target):
+    """A server whose settings are in a file, as the page shows it, and whose accounts are made by commands."""
+
+    def __init__(self, folder: Path, name: str = "data") -> None:
+        super().__init__(folder, accounts=False, stub_pause=0.1)
+        self.data = folder / name
+        self.settings = folder / f"{name}.toml"
+        users, backups = folder / f"users of {name}", folder / "backups"
+        self.settings.write_text(
+            f"users = {json.dumps(str(users))}\ndata = {json.dumps(str(self.data))}\nkeep_days = 60\n"
+            f'backup = {json.dumps(str(backups))}\nhost = "0.0.0.0"\nhosts = ["127.0.0.1"]\n'
+            "free_megabytes = 0\ngrace_seconds = 1\n"
+        )
+        self.env = {"PASDEDEUX_SETTINGS": str(self.settings)}
+
+    def shell(self, *words: str, given: str = "", code: int = 0) -> dict[str, Any]:
+        """What ``python -m webdemo …`` answers."""
+        said = subprocess.run(
+            [sys.executable, "-m", "webdemo", *words], cwd=ROOT, env={**os.environ, **self.env}, input=given,
+            capture_output=True, text=True,
+        )  # fmt: skip
+        assert said.returncode == code, said.stderr
+        return json.loads(said.stdout.splitlines()[-1]) if code == 0 else {"error": said.stderr}
+
+    @contextmanager
+    def browser(self, name: str, password: str) -> Any:
+        """A browser that has signed in."""
+        with httpx.Client(base_url=self.url, timeout=60, headers={"origin": self.url}) as client:
+            given = {"username": name, "password": password}
+            assert client.post("/login", data=given).json() == {"success": True}
+            yield client
+
+
+def generate(browser: httpx.Client, steps: int = 1) -> str:
+    asked = browser.post("/gradio_api/call/generate", json={"data": [*FIELDS[:5], steps, *FIELDS[6:]]}).json()
+    return browser.get(f"/gradio_api/call/generate/{asked['event_id']}").text
+
+
+def test_from_an_empty_folder_to_a_backup_that_serves_again(tmp_path: Path) -> None:
+    lab = Way(tmp_path)
+    assert lab.shell("user", "add", "ada", given=f"{PASSWORD}\n")["added"] == "ada"
+    assert lab.shell("user", "add", "temp", given=f"{PASSWORD}\n")["added"] == "temp"
+    assert lab.shell("user", "remove", "temp")["removed"] == "temp"
+    with lab, lab.browser("ada", PASSWORD) as ada:
+        lab.shell("admin", "make-admin", "ada")
+        link = lab.shell("admin", "invite", "guest", "--megabytes", "200", "--days", "7")["path"]
+        with httpx.Client(base_url=lab.url, timeout=60, headers={"origin": lab.url}) as guest:
+            assert guest.post(link, data={"new": PASSWORD, "again": PASSWORD}).status_code == 303
+            assert "complete" in generate(guest) and "complete" in generate(guest)
+            page = ended_by(ada, guest)
+        assert "<strong>guest</strong>" in page and " of 150.0 MB" in page
+        runs = [run["id"] for run in lab.shell("share", "runs", "--user", "guest")["runs"]]
+        made = lab.shell(
+            "share", "link", "--user", "guest", "--title", "Bows", "--base", lab.url, "--", *runs
+        )
+        gallery = lab.ask("stranger", "GET", f"/share/{made['key']}")
+        assert gallery.status_code == 200 and "<h1>Bows</h1>" in gallery.text
+        backup = lab.shell("backup", str(tmp_path / "backups"), "--keep", "7")["backup"]
+
+    acts = [(line["act"], line["person"]) for line in audited(lab.data, 100)[::-1]]
+    assert acts[:3] == [("user-added", "(shell)"), ("user-added", "(shell)"), ("user-removed", "(shell)")]
+    for act, person in (
+        ("sign-in", "ada"), ("admin-role", "(shell)"), ("admin-invite", "(shell)"), ("admin-end-run", "ada"),
+        ("page-published", "(shell)"), ("backup", "(shell)"),
+    ):  # fmt: skip
+        assert (act, person) in acts, acts
+    assert "page-opened" in dict(acts)
+    text = "".join(path.read_text() for path in (lab.data / "audit").iterdir())
+    assert PASSWORD not in text and made["key"] not in text and link.rsplit("/", 1)[1] not in text
+
+    again = Way(tmp_path, "again")
+    assert again.shell("restore", str(tmp_path / "backups"))["backup"] == backup
+    assert "not empty" in again.shell("restore", str(tmp_path / "backups"), code=2)["error"]
+    with again, again.browser("guest", PASSWORD) as guest:
+        assert "complete" in generate(guest)
+        assert again.ask("stranger", "GET", f"/share/{made['key']}").status_code == 200
+    assert len(again.shell("share", "runs", "--user", "guest")["runs"]) == len(runs) + 1
+    restored = [line for line in audited(again.data, 200) if line["act"] == "restore"]
+    assert [(line["person"], line["name"]) for line in restored] == [("(shell)", Path(backup).name)]
+
+
+def ended_by(admin: httpx.Client, person: httpx.Client) -> str:
+    """A long run of a person's, which an administrator ends; the page as it was before."""
+    said: list[str] = []
+    thread = threading.Thread(target=lambda: said.append(generate(person, 400)))
+    thread.start()
+    until = time.monotonic() + 60
+    while "end-run" not in (page := admin.get("/admin").text):
+        assert time.monotonic() < until
+        time.sleep(0.2)
+    key = page.split('value="end-run"')[1].split('name="id" value="')[1].split('"')[0]
+    assert admin.post("/admin", data={"act": "end-run", "id": key}).status_code == 303
+    thread.join(timeout=60)
+    assert "The person who runs this server ended this" in said[0]
+    return page
