@@ -7,7 +7,7 @@ from collections.abc import Sequence
 
 _PAGE = """<!doctype html>
 <html lang="en"><head><meta charset="utf-8"><meta name="viewport" content="width=device-width">
-<title>Administration · Pas de Deux</title><style>
+<link rel="icon" href="data:,"><title>Administration · Pas de Deux</title><style>
 :root {{ color-scheme: light dark; font: 15px/1.5 system-ui, sans-serif; --ink: #1e2733; --soft: #566275;
   --ground: #f4f6fa; --card: #fff; --line: #c3cad5; --accent: #2368dc; }}
 @media (prefers-color-scheme: dark) {{ :root {{ --ink: #e6eaf0; --soft: #a4afbf; --ground: #0f131a; --card: #181d27;
@@ -19,7 +19,8 @@ section {{ margin: 1rem 0; padding: 1rem 1.2rem; background: var(--card); border
   border-radius: 12px; overflow-x: auto; }}
 table {{ border-collapse: collapse; width: 100%; font-variant-numeric: tabular-nums; }}
 th, td {{ text-align: left; vertical-align: top; padding: .4rem .9rem .4rem 0; border-bottom: 1px solid var(--line); }}
-th {{ color: var(--soft); font-weight: 600; font-size: .85rem; }} td {{ overflow-wrap: anywhere; }}
+th {{ color: var(--soft); font-weight: 600; font-size: .85rem; }}
+td:last-child {{ overflow-wrap: anywhere; min-width: 9rem; }}
 .acts {{ display: flex; flex-wrap: wrap; gap: .4rem .9rem; }}
 form {{ display: inline-flex; flex-wrap: wrap; gap: .4rem; align-items: end; }}
 label {{ color: var(--soft); }} label input {{ display: block; }}

@@ -221,15 +221,26 @@ def _invitation(action: str) -> str:
 def _work(lab: Lab, action: str) -> str:
     now = time.monotonic()
     rows = [
-        [html.escape(job.person), html.escape(job.group), "runs" if begun else "waits",
+        [_name(job.person), html.escape(job.group), "runs" if begun else "waits",
          f"{now - (job.started if begun else job.came):.0f} s", _button(action, "end-run", "End", id=job.id)]
         for job, begun in lab.queue.jobs()
     ] + [
-        [html.escape(stream.person), "live stream", "open", f"{now - stream.began:.0f} s",
+        [_name(stream.person), "live stream", "open", f"{now - stream.began:.0f} s",
          _button(action, "end-stream", "End", id=stream.id)]
         for stream in lab.streams.opened()
     ]  # fmt: skip
     return table(("Person", "Model", "State", "For", "Act"), rows, "Nothing runs or waits in this process.")
+
+
+def _name(person: str) -> str:
+    """A person as the table of people names them."""
+    return html.escape(person.removeprefix("user "))
+
+
+def _moment(line: Mapping[str, Any]) -> str:
+    """The time of a line to the second, for people; its date and time may break apart and nothing else."""
+    day, _, time_of_day = str(line.get("time", ""))[:19].partition("T")
+    return f"{html.escape(day).replace('-', '&#8209;')} {html.escape(time_of_day)}"
 
 
 def _announcement(lab: Lab, action: str) -> str:
@@ -247,7 +258,7 @@ def _health(lab: Lab) -> str:
     rows = [["state", html.escape(str(report["status"]))]]
     rows += [[html.escape(name), html.escape(state)] for name, state in report["checks"].items()]
     rows += [
-        ["disk", f"{disk.free / 2**30:,.1f} of {disk.total / 2**30:,.1f} GB free"],
+        ["disk space", f"{disk.free / 2**30:,.1f} of {disk.total / 2**30:,.1f} GB free"],
         ["queue", f"{lab.queue.waiting} wait, {lab.queue.running} run"],
         ["live streams", str(lab.streams.count)],
     ]
@@ -257,18 +268,25 @@ def _health(lab: Lab) -> str:
 
 def _errors() -> str:
     rows = [
-        [html.escape(str(line["time"])), html.escape(str(line["message"])), html.escape(str(line.get("error", ""))),
+        [_moment(line), html.escape(str(line["message"])), html.escape(str(line.get("error", ""))),
          html.escape(str(line.get("request", "")))]
         for line in reversed(LAST_ERRORS.lines)
     ]  # fmt: skip
-    return table(("Time", "Message", "Error", "Request"), rows, "No errors since this process started.")
+    return table(("Time (UTC)", "Message", "Error", "Request"), rows, "No errors since this process started.")
 
 
 def _audit(lab: Lab) -> str:
     known = ("time", "act", "ok", "person", "address", "request")
     rows = [
-        [html.escape(str(line.get(name, ""))) for name in known[:5]]
+        [
+            _moment(line),
+            html.escape(str(line.get("act", ""))),
+            "yes" if line.get("ok") else "<strong>no</strong>",
+        ]
+        + [html.escape(str(line.get(name, ""))) for name in known[3:5]]
         + [html.escape(", ".join(f"{k}: {v}" for k, v in line.items() if k not in known))]
         for line in audited(lab.settings.data, _LINES)
     ]
-    return table(("Time", "Act", "OK", "Person", "Address", "More"), rows, "No lines in this lab's files.")
+    return table(
+        ("Time (UTC)", "Act", "OK", "Person", "Address", "More"), rows, "No lines in this lab's files."
+    )

@@ -6,7 +6,7 @@ import html
 
 _PAGE = """<!doctype html>
 <html lang="en"><head><meta charset="utf-8"><meta name="viewport" content="width=device-width">
-<title>Pas de Deux</title><style>
+<link rel="icon" href="data:,"><title>Pas de Deux</title><style>
 :root {{ color-scheme: light dark; font: 16px/1.5 system-ui, sans-serif; --ink: #1e2733; --soft: #566275;
   --ground: #f4f6fa; --card: #fff; --line: #c3cad5; --error: #b42318; --accent: #2368dc; }}
 @media (prefers-color-scheme: dark) {{ :root {{ --ink: #e6eaf0; --soft: #a4afbf; --ground: #0f131a;
