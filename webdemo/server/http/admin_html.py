@@ -29,6 +29,12 @@ input, button {{ font: inherit; font-size: .9rem; padding: .25rem .6rem; border:
   border-radius: 8px; background: transparent; color: inherit; }}
 button {{ cursor: pointer; }} button:hover {{ border-color: var(--accent); }}
 input:focus-visible, button:focus-visible, a:focus-visible {{ outline: 2px solid var(--accent); outline-offset: 1px; }}
+@media (max-width: 48rem) {{ /* a row becomes a card, each cell behind the name of its column */
+  thead {{ display: none; }} tr {{ display: block; padding: .5rem 0; border-bottom: 1px solid var(--line); }}
+  td {{ display: flex; gap: .8rem; padding: .15rem 0; border: 0; overflow-wrap: anywhere; }}
+  td:empty {{ display: none; }}
+  td::before {{ content: attr(data-head); flex: 0 0 7.5rem; color: var(--soft); font-size: .85rem; }}
+}}
 p {{ margin: .3rem 0; color: var(--soft); }} p[role=status] {{ color: var(--ink); font-weight: 600; }}
 </style></head><body><header><h1>Administration</h1><a href="{home}">Open the lab</a></header><main>{body}</main></body>
 </html>"""
@@ -46,5 +52,9 @@ def table(heads: Sequence[str], rows: Sequence[Sequence[str]], none: str) -> str
     if not rows:
         return f"<p>{none}</p>"
     head = "".join(f'<th scope="col">{name}</th>' for name in heads)
-    body = "".join(f"<tr>{''.join(f'<td>{cell}</td>' for cell in row)}</tr>" for row in rows)
+    lines = [
+        "".join(f'<td data-head="{name}">{cell}</td>' for name, cell in zip(heads, row, strict=True))
+        for row in rows
+    ]
+    body = "".join(f"<tr>{line}</tr>" for line in lines)
     return f"<table><thead><tr>{head}</tr></thead><tbody>{body}</tbody></table>"

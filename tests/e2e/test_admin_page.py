@@ -1,0 +1,26 @@
+"""The administrators' page on a telephone: each act in reach without scrolling sideways."""
+
+from __future__ import annotations
+
+import pytest
+
+from webdemo.server.http.admin_html import page, table
+
+pytestmark = pytest.mark.e2e
+BUTTONS = "<form><button>Set room</button></form><form><button>Sign out everywhere</button></form>"
+HEADS = ("Account", "Runs kept", "Runs computed", "Minutes computed", "Runs and studies", "Waiting", "Acts")
+ROW = ["<strong>a.person.of.a.long.name</strong>", "1,234", "2,345", "678.9", "0.9 of 0.8 MB", "3",
+       f'<div class="acts">{BUTTONS}</div>']  # fmt: skip
+
+
+@pytest.mark.parametrize("width", [390, 1280])
+def test_every_act_is_in_reach(open_page, tmp_path, width: int) -> None:
+    (tmp_path / "admin.html").write_text(page([("People", table(HEADS, [ROW, ROW], ""))], done="", home="/"))
+    shown = open_page((tmp_path / "admin.html").as_uri(), width=width)
+    for button in shown.get_by_role("button").all():
+        box = button.bounding_box()
+        assert box is not None and box["x"] >= 0 and box["x"] + box["width"] <= width
+    names = shown.eval_on_selector_all(
+        "td", "cells => cells.map(c => getComputedStyle(c, '::before').content)"
+    )
+    assert ('"Runs kept"' in names) == (width == 390), "a card says what each number is"
