@@ -74,12 +74,21 @@ def worded(act: Act, caption: str) -> str:
         return f"{value} " if value and match[0].endswith(" ") else value
 
     text = " ".join(_SLOT.sub(fill, text).split())
+    text += _by_hand(act, caption)
     if act.times is not None and act.times > 1:
         text += f" {_COUNTS.get(act.times, 'several times')}"
     for adverb in act.manner[:1]:
         if adverb not in ("then", "finally"):
             text += f" {adverb}"
     return text
+
+
+def _by_hand(act: Act, caption: str) -> str:
+    """The hand or foot that does it, where the words name one and the caption has no place for it."""
+    told = any(slot in caption for slot in ("{side}", "{limb}", "{part}", "{direction}"))
+    if act.side not in ("left", "right") or act.side == act.direction or act.part or told:
+        return ""
+    return f" with the {act.side} {'foot' if '[kick]' in caption else 'hand'}"
 
 
 def caption_of(act: Act, entry: Entry) -> str:

@@ -42,6 +42,7 @@ class Ref:
         family: of a part: "hand", "head", ….
         side: of a part, "left", "right" or "both".
         place: a thing where people can be, as a room.
+        bare: a thing in the singular without an article, as in "in surprise"; a part without a possessive.
         first, last: character offsets in the text that was parsed.
     """
 
@@ -51,6 +52,7 @@ class Ref:
     family: str = ""
     side: str = ""
     place: bool = False
+    bare: bool = False
     first: int = 0
     last: int = 0
 
@@ -341,7 +343,7 @@ def _fills(element: _Element, ref: Ref, agents: str, event: Event) -> bool:
     if element.slot == "a.part":
         return ref.who in ("", agents) or (len(agents) == 1 and ref.who == "ab")
     if element.slot == "b.part":
-        return ref.who == "" or ref.who != agents or len(agents) == 2
+        return ref.who in ("", "each") or ref.who != agents or len(agents) == 2
     return True
 
 

@@ -57,6 +57,7 @@ class Entry(BaseModel):
             they name none.
         hand: the shape of the fingers while it is done (:mod:`motion.hands`); "" where none is special.
         mutual: done together even where one is named first: "he hugs her" has both arms around.
+        answers: done because of what the other does, and so after it, as who ducks or catches.
         reads, ignores: sentences that have the act and that do not.
         group: the file that it stands in.
     """
@@ -76,6 +77,7 @@ class Entry(BaseModel):
     thing: Does = ""
     hand: Literal["", "flat", "fist", "point", "grasp", "clasp", "thumbs up", "pinch"] = ""
     mutual: bool = False
+    answers: bool = False
     shown: bool = True
     reads: Annotated[tuple[Sentence, ...], Field(min_length=1)]
     ignores: tuple[Sentence, ...] = ()

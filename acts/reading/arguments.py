@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
+from collections.abc import Set
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from acts.frames import Event, Ref
 
+from . import wordnet
 from .people import Cast, reference, states_of
-from .vocabulary import vocabulary
+from .vocabulary import is_act, vocabulary
 
 if TYPE_CHECKING:
     from spacy.tokens import Token
@@ -35,10 +37,12 @@ class Arguments:
     Args:
         cast: the people of the text so far.
         verbs: lemmas of the lexicon's verbs.
+        postures: prepositions, by token, of phrases that say how a part of the body is held.
     """
 
-    def __init__(self, cast: Cast, verbs: frozenset[str]) -> None:
+    def __init__(self, cast: Cast, verbs: frozenset[str], postures: Set[int] = frozenset()) -> None:
         self.cast = cast
+        self._postures = postures
         self._verbs = verbs
         self._words = vocabulary()
 
@@ -48,6 +52,8 @@ class Arguments:
         who = subject.who if subject is not None and subject.kind == "person" else ""
         agent: Ref | None = None
         for child in token.children:
+            if subject is not None and self.cast.seen.get(child.i) is subject:  # "…, said the witch"
+                continue
             bare = all(c.dep_ not in ("poss", "det") for c in child.children)
             if child.dep_ == "aux" and child.lower_ in ("come", "comes", "came"):  # "comes running"
                 event.words.append("come")
@@ -102,6 +108,8 @@ class Arguments:
         for child in token.children:
             if child.dep_ in ("compound", "amod"):
                 event.words.append(child.lemma_.lower())
+                if child.lower_ in ("left", "right") and is_act(token.lemma_.lower()):  # "a left hook"
+                    event.side = event.side or child.lower_
             if child.dep_ == "prep" and child.i in states:
                 continue
             if child.dep_ == "prep":  # "puts a hand on his shoulder": the place may hang on the noun
@@ -116,7 +124,15 @@ class Arguments:
                 return reference(clause.head, self.cast, who)
         return reference(token, self.cast, who)
 
+    def place(self, token: Token, who: str, event: Event) -> None:
+        """Takes up the phrase of a preposition: "on his back"."""
+        self._phrase(token, who, event)
+
     def _preposition(self, token: Token, who: str, event: Event) -> None:
+        if token.i not in self._postures:
+            self._phrase(token, who, event)
+
+    def _phrase(self, token: Token, who: str, event: Event) -> None:
         found = False
         for child in token.children:
             if child.dep_ == "pcomp":
@@ -150,6 +166,14 @@ class Arguments:
             event.direction = event.side = lemma
             event.words.append(lemma)
             return True
+        if lemma == "distance" and preposition.lower_ in ("at", "from"):
+            of = (measure for child in noun.children if child.lower_ == "of" for measure in child.children)
+            measure = next((m for m in of if m.lemma_.lower() in self._words.metres), None)
+            event.distance = (
+                self._amount(measure) * self._words.metres[measure.lemma_.lower()] if measure else None
+            )
+            event.words.append("apart")
+            return True
         if lemma in ("length", "metre", "meter") and preposition.lower_ in ("at", "within", "by"):
             event.distance = 0.7 if lemma == "length" else self._amount(noun)
             return True
@@ -173,6 +197,8 @@ class Arguments:
         lemma = noun.lemma_.lower()
         if value is None or self._words.is_person(lemma) or number.lower_ in ("a", "an"):
             return
+        if lemma in self._words.seconds:  # "on count five", "with a delay of one second"
+            return
         if lemma in self._words.metres:
             event.distance = value * self._words.metres[lemma]
             event.times = value if lemma in ("step", "pace") else event.times
@@ -186,7 +212,7 @@ class Arguments:
             return
         if text in DENY or token.dep_ == "neg":
             return
-        if token.dep_ == "npadvmod" and lemma == "time":
+        if lemma == "time" and (token.dep_ == "npadvmod" or any(c.dep_ == "nummod" for c in token.children)):
             event.times = int(self._amount(token))
             return
         if token.dep_ == "npadvmod" and lemma in self._words.metres:
@@ -233,10 +259,17 @@ class Arguments:
                     event.modality = event.modality if kind == "not" else kind
                     event.denied = event.denied != (kind == "not")
                     return
-        if event.lemma not in self._words.verbs["light"] or noun is None or noun.kind not in ("thing",):
+        if (
+            event.lemma not in self._words.verbs["light"]
+            or noun is None
+            or noun.kind != "thing"
+            or noun.place
+        ):
             return
-        if noun.lemma not in self._verbs or noun.lemma in ("step", "hand"):
+        if noun.lemma not in self._verbs or noun.lemma in ("step", "hand") or not is_act(noun.lemma):
             return
+        if wordnet.kind((wordnet.senses(noun.lemma) or ("00001740",))[0]) == "consumption":
+            return  # "offers her a drink" hands something over
         event.noun = replace(event, lemma=noun.lemma, object=event.dative, dative=None)
         giver = next(
             (i for i, (p, ref) in enumerate(event.prepositions) if p == "from" and ref.kind == "person"), -1

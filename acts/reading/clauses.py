@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence, Set
 from typing import TYPE_CHECKING
 
 from acts.frames import Event
@@ -47,17 +47,20 @@ class ClauseTree:
         verbs: lemmas that some entry reads.
         lemmas: lemmas known better than by the parser, by token.
         forms: (lemma, tag) of a verb's form, where the parser knows no such verb.
+        held: words, by token, that only say how a part of the body is held.
     """
 
     def __init__(
-        self, doc: Doc, verbs: frozenset[str], lemmas: dict[int, str], forms: Mapping[str, tuple[str, str]]
-    ) -> None:
+        self, doc: Doc, verbs: frozenset[str], lemmas: dict[int, str], forms: Mapping[str, tuple[str, str]],
+        held: Set[int] = frozenset(),
+    ) -> None:  # fmt: skip
         self.doc = doc
         self.mains: list[int] = []
         """The verbs of main clauses read so far, by token."""
         self._verbs = verbs
         self._lemmas = lemmas
         self._forms = forms
+        self._held = held
         self._words = vocabulary()
         self._main: dict[int, bool] = {}
         self._heads: dict[int, Token | None] = {}
@@ -81,7 +84,9 @@ class ClauseTree:
         return self._clauses[token.i]
 
     def _has_verb(self, token: Token) -> bool:
-        if token.dep_ == "amod":  # "the sleeping baby"
+        if token.i in self._held:
+            return False
+        if token.dep_ == "amod" and token.tag_ not in ("VBP", "VBZ"):  # "the sleeping baby"
             return (
                 token.tag_ == "VBG"
                 and self.lemma(token) in self._verbs
@@ -91,10 +96,13 @@ class ClauseTree:
             return False  # "to where she came from" is a place
         if is_kept(token):
             return False
+        if token.dep_ == "acomp" and token.head.lemma_ in ("remain", "stay") and token.tag_ == "VBN":
+            return False  # "who remains seated"
         if token.pos_ in ("VERB", "AUX") and token.dep_ not in ("aux", "auxpass", "compound", "punct"):
             return True
         if token.dep_ == "pobj" and token.pos_ == "NOUN" and token.head.lower_ in NOUNMARKS:
             known = self.lemma(token) in self._verbs and token.tag_ == "NN"  # "after a quick hug"
+            known = known and not self._words.part(token.lemma_.lower())
             return (
                 known
                 and token.head.head.pos_ in ("VERB", "AUX")
@@ -102,7 +110,7 @@ class ClauseTree:
             )
         if token.dep_ == "ROOT" and token.pos_ in ("NOUN", "PROPN", "ADJ", "INTJ", "ADV", "ADP", "X"):
             return self.lemma(token) in self._verbs or token.i in self._lemmas
-        return token.dep_ in ("conj", "pcomp") and token.i in self._lemmas
+        return token.dep_ in ("conj", "pcomp", "advcl", "dep") and token.i in self._lemmas
 
     def head(self, token: Token) -> Token | None:
         """The verb on which a clause hangs; a finite one goes with a finite one: "does not want to …, and pushes"."""

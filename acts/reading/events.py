@@ -7,10 +7,11 @@ from typing import TYPE_CHECKING
 
 from acts.frames import Event, Ref
 
+from .absolute import Absolute, absolutes
 from .arguments import Arguments
 from .clauses import MARKS, NOUNMARKS, ClauseTree
 from .people import Cast, reference
-from .subjects import Subjects
+from .subjects import Subjects, ends_before
 from .syntax import is_ongoing
 from .vocabulary import vocabulary
 
@@ -33,9 +34,11 @@ class Reader:
         self.doc = doc
         self.cast = Cast()
         self.events: list[Event] = []
-        self._tree = ClauseTree(doc, verbs, lemmas, forms)
+        self._absolutes = {found.preposition.i: found for found in absolutes(doc)}
+        held = {found.state.i for found in self._absolutes.values()}
+        self._tree = ClauseTree(doc, verbs, lemmas, forms, held)
         self._subjects = Subjects(self._tree, self.cast, self._event_of)
-        self._arguments = Arguments(self.cast, verbs)
+        self._arguments = Arguments(self.cast, verbs, held | self._absolutes.keys())
         self._words = vocabulary()
         self._of: dict[int, int] = {}
         self._joints: list[tuple[Event, Token, str, int | None]] = []
@@ -48,6 +51,7 @@ class Reader:
             elif token.dep_ == "conj" and token.head.i in self._of:
                 self._gapped(token)
         self._states()
+        self._postures()
         self._resolve()
         return self.events
 
@@ -66,6 +70,39 @@ class Reader:
             )
             self._joints.append((event, phrase, "with", clause.i if clause is not None else None))
             self.events.append(event)
+
+    def _postures(self) -> None:
+        """Adds how parts of the body are held beside a clause: "with arms crossed"."""
+        for found in self._absolutes.values():
+            clause = self._clause_of(found)
+            subject = self.events[self._of[clause.i]].subject if clause is not None else None
+            who = subject.who if subject is not None and subject.kind == "person" else ""
+            ref = reference(found.part, self.cast, who)
+            owner = Ref("person", ref.who) if ref.who else subject
+            first = found.part.idx if found.verb == "put" or found.state.i > found.part.i else found.state.idx
+            event = Event(
+                found.verb or self._tree.lemma(found.state), owner, ref, first=first, last=first + len(found.part),
+                ongoing=True, state=True,
+            )  # fmt: skip
+            if found.verb == "put":
+                self._arguments.place(found.state, who, event)
+            elif found.state.lower_ in self._words.directions:
+                event.words.append(found.state.lower_)
+                event.direction = self._words.directions[found.state.lower_]
+            self._joints.append((event, found.preposition, "with", clause.i if clause is not None else None))
+            self.events.append(event)
+
+    def _clause_of(self, found: Absolute) -> Token | None:
+        """The clause beside which a part of the body is held: the one above, else the nearest of its sentence."""
+        sentence = found.preposition.sent
+        above = next((t for t in found.preposition.ancestors if t.i in self._of), None)
+        own = [self.doc[i] for i in self._of if sentence.start <= i < sentence.end]
+        before = [token for token in own if token.i < found.preposition.i]
+        return (
+            before[-1]
+            if before and (above is None or above.i < before[-1].i)
+            else above or next(iter(own), None)
+        )
 
     def _resolve(self) -> None:
         """Gives each event the number of the one beside which it lies."""
@@ -91,7 +128,10 @@ class Reader:
         self._polarity(token, head, event)
         agent = self._arguments.fill(token, event)
         passive = any(child.dep_ in ("nsubjpass", "auxpass", "agent") for child in token.children)
-        if passive and token.tag_ == "VBN":
+        above = self._event_of(token.head) if self._goes_on_passive(token) else None
+        if above is not None:  # "is dipped by him and then spun out"
+            agent = agent or above.subject
+        if (passive and token.tag_ == "VBN") or above is not None:
             agent = agent or (_other_person(subject) if subject is not None else None)
             if agent is None and subject is not None and subject.kind == "thing":  # "is held out to her"
                 agent = next((_other_person(r) for _, r in event.prepositions if r.kind == "person"), None)
@@ -128,11 +168,23 @@ class Reader:
             return Ref("person", part.who, first=part.first, last=part.last)
         return self._subjects.found(head)
 
+    @staticmethod
+    def _goes_on_passive(token: Token) -> bool:
+        """True for a participle that shares the auxiliary of a passive before it."""
+        if token.dep_ != "conj" or any(child.dep_ in ("nsubj", "auxpass", "aux") for child in token.children):
+            return False
+        being = next((child for child in token.head.children if child.dep_ == "auxpass"), None)
+        present = being is not None and being.tag_ in ("VBZ", "VBP")
+        return being is not None and (token.tag_ == "VBN" or (present and token.tag_ == "VBD"))
+
     def _gapped(self, token: Token) -> None:
         """Adds the clause whose verb is left out: "A waves with the right hand and B with the left"."""
         ref = reference(token, self.cast, "")
         if ref.kind != "person" or all(child.dep_ not in ("prep", "dobj") for child in token.children):
             return
+        behind = self.doc[token.right_edge.i + 1] if token.right_edge.i + 1 < len(self.doc) else None
+        if behind is not None and behind.tag_ in ("VBZ", "VBD") and ends_before(token, behind):
+            return  # it is that verb's subject
         before = self.events[self._of[token.head.i]]
         event = Event(
             before.lemma, ref, before.object, before.dative, denied=before.denied, modality=before.modality,
@@ -174,7 +226,17 @@ class Reader:
             token.head.lower_ in ("without", "instead", "from") or token.head.head.lower_ == "instead"
         ):
             event.denied = True
-        if head is None or token.dep_ not in ("xcomp", "ccomp", "pcomp", "advcl"):
+        self._inherited(token, head, event)
+
+    def _inherited(self, token: Token, head: Token | None, event: Event) -> None:
+        """Takes over what the verb above says of a clause: that it is denied, tried, wished or prevented."""
+        marks = {child.lower_ for child in token.children if child.dep_ == "mark"}
+        if head is not None and token.dep_ == "advcl" and "before" in marks:
+            stops = self._event_of(head)
+            if stops is not None and stops.lemma in self._words.verbs["prevents"]:
+                event.modality = "wished"  # "catches him before he falls"
+        asked = token.dep_ == "acl" and token.tag_ == "VB"  # "asks the princess to dance"
+        if head is None or not (asked or token.dep_ in ("xcomp", "ccomp", "pcomp", "advcl")):
             if head is not None and token.dep_ == "conj":
                 above = self._event_of(head)
                 if above is not None and not any(c.dep_ in ("nsubj", "nsubjpass") for c in token.children):
@@ -226,7 +288,8 @@ class Reader:
             return "with", previous
         if self._tree.is_main(token):
             mains = [i for i in self._tree.mains if self.doc[i].sent.start == token.sent.start]
-            return ("conj", mains[-1]) if mains else ("after", None)
+            apart = mains and any(t.text == ";" for t in self.doc[mains[-1] : token.i])
+            return ("after" if apart else "conj", mains[-1]) if mains else ("after", None)
         if above is None:
             return "after", None
         if token.dep_ == "pobj":
@@ -240,6 +303,8 @@ class Reader:
             return "while", above.i
         if token.dep_ == "amod":
             return "while", above.i
+        if token.dep_ == "relcl" and token.i > above.i and token.tag_ != "VBG" and _goes_on(token):
+            return "after", above.i
         if token.dep_ in ("acl", "relcl"):
             return ("while" if token.tag_ == "VBG" else "with"), above.i
         if token.dep_ in ("xcomp", "ccomp"):
@@ -250,6 +315,13 @@ class Reader:
         """True if "then" stands between a clause and the verb before it."""
         before = max((i for i in self._of if i < token.i), default=0)
         return any(self.doc[i].lower_ in _THEN for i in range(before, token.i))
+
+
+def _goes_on(clause: Token) -> bool:
+    """True for a relative clause that goes on with what is told: "kicks the ball to B, who stops it"."""
+    noun = clause.head
+    back = any(c.dep_ == "dobj" and c.lower_ in ("him", "her", "them") for c in clause.children)
+    return back or any(t.text == "," for t in clause.doc[noun.i : clause.i])
 
 
 def _other_person(ref: Ref) -> Ref | None:

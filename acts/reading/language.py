@@ -5,7 +5,9 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator
 from typing import TYPE_CHECKING
 
+from . import wordnet
 from .syntax import is_word
+from .vocabulary import vocabulary
 
 if TYPE_CHECKING:
     from spacy.tokens import Doc
@@ -16,13 +18,27 @@ def unknown(doc: Doc, is_verb: Callable[[str], bool]) -> Iterator[tuple[int, int
     first = last = -1
     for token in doc:
         small = token.text.islower() and token.text.isalpha() and len(token.text) > 3
-        if small and not is_word(token.text) and not is_verb(token.text):
+        if small and not is_word(token.text) and not is_verb(token.text) and not _is_known(token.text):
             first, last = (token.idx if first < 0 else first), token.idx + len(token.text)
         elif first >= 0:
             yield first, last
             first = -1
     if first >= 0:
         yield first, last
+
+
+def _is_known(word: str) -> bool:
+    """True for a noun that the parser has not met: of a person or an animal, a plural, or two words in one."""
+    stem, words = word.removesuffix("s"), vocabulary()
+    if is_word(stem) or _names_something(stem) or word in words.directions or word.endswith("wards"):
+        return True
+    return any(_names_something(stem[:i]) and _names_something(stem[i:]) for i in range(3, len(stem) - 2))
+
+
+def _names_something(noun: str) -> bool:
+    words = vocabulary()
+    known = words.is_person(noun) or noun in words.places or words.part(noun) != ""
+    return known or wordnet.is_animal(noun) or wordnet.is_act(noun) or wordnet.is_verb(noun)
 
 
 def other_language(text: str) -> str | None:

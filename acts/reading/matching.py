@@ -11,6 +11,7 @@ from acts.frames import Event, Frame, Match, best
 from acts.lexicon import Lexicon
 
 from . import wordnet
+from .vocabulary import vocabulary
 
 LEAST_SCORE = -1.0
 """What a frame must score to be taken at all: more beside it than in it is another sentence."""
@@ -45,6 +46,9 @@ class Matcher:
     def _synonym(self, event: Event) -> Found | None:
         """The act whose verbs mean what this one does, of those whose frames fit."""
         found: Found | None = None
+        about = vocabulary().verbs["begins"] | vocabulary().verbs["ends"]
+        if event.object is None and event.lemma in about:
+            return None  # they are about other verbs
         most = LEAST_SCORE
         for cost, (name, frame, match) in self._alike(event):
             worth = match.score - _SYNONYM * cost

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from acts.lexicon import Lexicon
 from acts.plan import Act
-from acts.shapes import Go
+from acts.shapes import Go, Strike
 
 BESIDE = frozenset(("gesture", "limb", "words"))
 """Shapes of what a person can do on their way."""
@@ -25,9 +25,21 @@ def turned_to(first: Act, then: Act, known: Lexicon) -> Act:
     return then.model_copy(update={"patient": first.agents[0]})
 
 
+def answers_blow(first: Act, then: Act, known: Lexicon) -> bool:
+    """True for who ducks under a blow or blocks it, which is staged with the blow."""
+    shapes = known.entries[first.act].stage
+    strikes = any(isinstance(shape, Strike) and shape.bout in ("fists", "weapons") for shape in shapes)
+    return strikes and known.entries[then.act].answers and first.agents != then.agents
+
+
 def coordinated(first: Act, then: Act, known: Lexicon, *, repeats: bool) -> str:
     """The relation of an act to one that stands before it and "and"."""
     if repeats:
+        return "after"
+    if answers_blow(first, then, known):
+        return "with"
+    answers = known.entries[then.act].answers or then.thing == "it"  # "knocks at the door, and he opens it"
+    if answers and first.agents != then.agents:
         return "after"
     if not people_of(first) & people_of(then):
         return "with"

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 from acts.frames import Ref
 from acts.plan import Person
 
+from . import wordnet
 from .vocabulary import Vocabulary, vocabulary
 
 if TYPE_CHECKING:
@@ -45,6 +46,10 @@ class Cast:
         self.last = ""
         self.thing: Ref | None = None
         """The part or thing that was named last, which "it" means."""
+        self.thing_of = ""
+        """The people of the clause that named it."""
+        self.animals: set[str] = set()
+        """Animals that act as people do."""
         self.seen: dict[int, Ref] = {}
         """What the tokens mean that were looked at."""
         self.states: dict[int, tuple[str, str]] = {}
@@ -97,9 +102,11 @@ class Cast:
             return self._as("a" if token.text == A_NAME else "b", "person")
         if text in ("someone", "somebody"):
             return self._new(lemma, token)
-        if token.tag_ == "NNP" and token.pos_ == "PROPN" and not self._words.is_place(lemma):
+        small = token.text.islower() and not self._words.is_usual_person(lemma)  # "her teddy bear"
+        if token.tag_ == "NNP" and token.pos_ == "PROPN" and not self._words.is_place(lemma) and not small:
             return self._named(text)
-        acting = lemma in _ACTING and token.dep_ in ("nsubj", "nsubjpass") and children & _ARTICLES
+        acts = token.dep_ in ("nsubj", "nsubjpass")
+        acting = (lemma in _ACTING and acts and children & _ARTICLES) or self._is_acting_animal(token, lemma)
         if not (self._words.is_person(lemma) or self._has(lemma) or acting) or token.pos_ in (
             "ADV",
             "VERB",
@@ -126,6 +133,16 @@ class Cast:
         if own and "'s" not in children:
             return self._as(own, lemma) if not subject else self._new(lemma, token)
         return self._new(lemma, token)
+
+    def _is_acting_animal(self, token: Token, lemma: str) -> bool:
+        """True for the animals of a fable, which act as people do where nobody else is there to act."""
+        free = [who for who in "ab" if who not in self._known]
+        if not free or not wordnet.is_animal(lemma) or self._words.part(lemma):
+            return False
+        acts = token.dep_ in ("nsubj", "nsubjpass") or any(wordnet.is_animal(w) for w in self.animals)
+        if acts:
+            self.animals.add(lemma)
+        return acts
 
     def _many(self, token: Token, children: set[str]) -> str:
         if any(self._words.numbers.get(child, 0) > 2 for child in children):  # "three people"
@@ -179,10 +196,10 @@ class Cast:
         return self._as("a" if one == "b" else "b", "other")
 
     def _pronoun(self, sex: str, subject: str) -> str:
-        fits = [who for who in "ab" if who in self._known and self._known[who].sex == sex and who != subject]
-        open_ = [
-            who for who in "ab" if (who not in self._known or not self._known[who].sex) and who != subject
-        ]
+        others = [who for who in "ab" if who not in (subject, self._has("i"), self._has("you"))]
+        others = others or [who for who in "ab" if who != subject]
+        fits = [who for who in others if who in self._known and self._known[who].sex == sex]
+        open_ = [who for who in others if who not in self._known or not self._known[who].sex]
         if fits:
             who = self.last if self.last in fits else fits[0]
         elif open_:
@@ -197,9 +214,14 @@ class Cast:
     def _they(self, text: str, subject: str) -> str:
         if len(subject) == 1 and text in ("them", "us"):
             return self._other(subject)
-        if text == "they" and set(self._known) == {"a"} and set(self._known["a"].words) <= _ANYONE:
+        if text == "they" and set(self._known) == {"a"} and self._is_anyone("a"):
             return self._as("a", "they")
         return "ab"
+
+    def _is_anyone(self, who: str) -> bool:
+        """True for somebody of whom no more is known than that they are a person."""
+        known = self._known[who]
+        return not known.sex and bool(known.words) and set(known.words) <= _ANYONE
 
     def address(self, who: str) -> None:
         """Says that an order is given to this person."""
@@ -245,7 +267,11 @@ class Cast:
             if not own and others == sex:
                 return other
             return ""
-        return next((who for who in "ab" if who in self._known and self._known[who].sex == sex), "")
+        owner = next((who for who in "ab" if who in self._known and self._known[who].sex == sex), "")
+        told = any(known.sex for known in self._known.values())
+        return owner or (
+            self._pronoun(sex, "") if subject == "ab" and not told else ""
+        )  # "they dance, her head …"
 
 
 def reference(token: Token, cast: Cast, subject: str) -> Ref:
@@ -258,13 +284,15 @@ def reference(token: Token, cast: Cast, subject: str) -> Ref:
     if token.lower_ in ("other", "another") and children & {"each", "one"}:
         return Ref("each", "ab", "other", first=first, last=last)
     if token.lower_ == "it" and cast.thing is not None:
-        return replace(cast.thing, first=first, last=last)
+        said_of = cast.thing_of if cast.thing_of != subject and len(cast.thing_of) == 1 else ""
+        owner = cast.thing.who or (said_of if cast.thing.kind == "part" else "")
+        return replace(cast.thing, who=owner, first=first, last=last)  # "extends a hand, and she shakes it"
     ref = _reference(token, cast, subject)
     cast.seen[token.i] = ref
     if ref.kind == "person" and token.pos_ in ("NOUN", "PROPN"):
         cast.states |= {phrase.i: (verb, ref.who) for phrase, verb in states_of(token)}
     if ref.kind in ("part", "thing") and token.pos_ in ("NOUN", "PROPN") and not ref.place:
-        cast.thing = ref
+        cast.thing, cast.thing_of = ref, subject
     return ref
 
 
@@ -290,9 +318,9 @@ def _reference(token: Token, cast: Cast, subject: str) -> Ref:
         )
         if not side and token.tag_ == "NNS" and family in ("hand", "arm", "foot", "leg", "knee", "shoulder"):
             side = "both"
-        kind_of = "ab" if owner == "each" else owner
         lemma = "back" if lemma == "spine" else lemma
-        return Ref("part", kind_of, lemma, family, side, first=first, last=last)
+        bare = all(c.dep_ != "poss" and c.tag_ != "PRP$" for c in token.children)
+        return Ref("part", owner, lemma, family, side, bare=bare, first=first, last=last)
     thirds = len(cast.third)
     who = cast.person(token, subject)
     if who:
@@ -304,4 +332,7 @@ def _reference(token: Token, cast: Cast, subject: str) -> Ref:
         return Ref("third", "", lemma, first=first, last=last)
     owner = cast.owner(token, subject) if any(c.dep_ == "poss" for c in token.children) else ""
     owner = "ab" if owner == "each" else owner
-    return Ref("thing", owner, lemma, place=lemma in words.places, first=first, last=last)
+    bare = token.tag_ == "NN" and all(
+        c.dep_ not in ("det", "poss", "nummod", "predet") for c in token.children
+    )
+    return Ref("thing", owner, lemma, place=lemma in words.places, bare=bare, first=first, last=last)

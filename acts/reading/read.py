@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import replace
 from functools import lru_cache
 from pathlib import Path
@@ -13,7 +13,7 @@ from acts.plan import MOST_ACTS, Act, Plan, Relation, Span, Unread
 from acts.shapes import Go
 from motion import InputError
 
-from . import order
+from . import beside, order
 from .clauses import spans
 from .events import Reader
 from .language import other_language, unknown
@@ -27,19 +27,17 @@ MOST_CHARACTERS = 2000
 """Characters of a text that is read at once."""
 _STATES = frozenset(("be", "become", "seem", "have", "there", "feel", "look", "appear"))
 """Verbs that say how somebody is; where no frame knows them, they show nothing and are passed over."""
+_STANDS = frozenset(("stand", "stay", "remain", "pose", "rest", "meet"))
+"""Verbs beside which a formation is all that is shown: "they stand back to back"."""
 _SHARING = frozenset(("conj", "after", "with"))
 """Joints of clauses that may share an object."""
 _SAME = frozenset(("same", "it", "that", "this", "likewise", "so"))
 _MOVEMENTS = frozenset(("movement", "move", "gesture", "motion", "pose", "step", "action"))
-_LINE = Ref("thing", lemma="line")
-_HELD = frozenset(("crossed", "folded", "cross", "fold", "outstretched", "raised", "raise", "outstretch"))
-"""Participles of postures of the arms, and the parser's lemmas of them."""
 
 
-def _is_next_to(event: Event) -> bool:
-    """True for what is done beside the other: "lies down next to her"."""
-    near = (p for p, ref in event.prepositions if ref.kind == "person")
-    return any(p in ("beside", "alongside") or (p == "to" and "next" in event.words) for p in near)
+def _is_implied(subject: Ref | None) -> bool:
+    """True for the agent of a passive that the words leave out."""
+    return subject is not None and subject.kind == "person" and not subject.last
 
 
 def read(text: str, folders: tuple[Path, ...] = ()) -> Plan:
@@ -99,7 +97,8 @@ class _Planner:
         self._of: dict[int, str] = {}
         self._taken: set[int] = set()
         self._nonsense = list(unknown(reader.doc, Speller(known).knows))
-        self._held_beside: dict[str, str] = {}
+        self._beside: dict[str, Relation] = {}
+        """Relations of acts that stand beside a verb's own."""
         self._answers: set[str] = set()
         """Acts that repeat the one before."""
 
@@ -114,8 +113,12 @@ class _Planner:
         people = self._reader.cast.people()
         things = dict.fromkeys(act.thing for act in self._acts if act.thing)
         notes = []
+        if self._reader.cast.animals:
+            notes.append("Only people can be shown: animals that act are people here.")
         if self._reader.cast.third:
             notes.append("Only two people can be shown: the others that are named do nothing.")
+        said = {token.lower() for token in self._text.replace(",", " ").replace(".", " ").split()}
+        notes += [note for note, words in vocabulary().limits.items() if words & said and self._acts]
         if not self._acts and not self._unread:
             span = Span(start=0, stop=len(self._text))
             self._unread.append(Unread(words=span, why="Nothing in this text is something that people do."))
@@ -131,11 +134,24 @@ class _Planner:
         if self._in_turn(number, event) or self._repeated(number, event, bool(inner)):
             return
         found = self._matcher.find(event)
+        if (theirs := self._of_the_last(event)) is not None and (
+            other := self._matcher.find(theirs)
+        ) is not None:
+            touches = self._known.entries[other[0]].group in ("touch", "care") and other[2].patient
+            if touches and (found is None or other[2].score >= found[2].score):
+                event, found = theirs, other
         if self._about_another(event) and inner and (found is None or found[2].score < 2.4):
             return
         if found is None:
             borrowed = (self._matcher.find(other) for other in self._completed(number, event))
             found = next((other for other in borrowed if other is not None), None)
+        start, stop = self._span(number).start, self._span(number).stop
+        formed = self._found(beside.formations(event, self._prepared.formations(start, stop)))
+        vague = found is None or event.lemma in vocabulary().verbs["vague"] | vocabulary().verbs["begins"]
+        if vague and not (found is not None and inner) and (noun := self._noun(event, found)) is not None:
+            event, found = noun
+        elif formed and (vague or event.lemma in _STATES | _STANDS or formed[0][0].lemma == event.lemma):
+            (event, found), *formed = formed
         if found is not None and not self._known.entries[found[0]].shown:
             self._unread.append(Unread(words=self._span(number), why="This is nothing that bodies show."))
         elif found is not None:
@@ -144,11 +160,55 @@ class _Planner:
             ):
                 self._taken.update(inner)
             self._add(number, event, *found)
-            self._held(number, event, found)
-            self._beside(number, event, found)
-            self._seated(number, event, found)
+            self._companions(number, event, found, formed)
         elif event.lemma not in _STATES and not (inner and self._about_another(event)):
             self._not_read(number, event)
+
+    def _found(self, events: Iterable[Event]) -> list[tuple[Event, Found]]:
+        """The events that mean an act, with it."""
+        each = ((event, self._matcher.find(event)) for event in events)
+        return [(event, found) for event, found in each if found is not None]
+
+    def _noun(self, event: Event, found: Found | None) -> tuple[Event, Found] | None:
+        """The act that a noun beside a verb stands for, where the verb itself says little: "answers with a bow"."""
+        rest = range(len(event.prepositions)) if found is None else found[2].rest
+        nouns = (other for _, other in beside.noun_acts(event, self._known.frames, rest))
+        return next(iter(self._found(nouns)), None)
+
+    def _companions(
+        self, number: int, event: Event, found: Found, formed: Sequence[tuple[Event, Found]]
+    ) -> None:
+        """Adds the acts that the words beside a verb name."""
+        of = str(len(self._acts))
+        at_once = Relation(kind="with", act=of)
+        told = {agent for act in self._acts[:-1] for agent in act.agents}
+        both = len(found[2].agents) == 2
+        shown = {shape.do for shape in self._known.entries[found[0]].stage}
+        for other, formation in formed:
+            if formation[0] == "canon" and both and not self._known.entries[found[0]].mutual:
+                self._in_canon()
+            elif formation[0] != found[0] and not (shown & {"go", "place"} and formation[0] == "form-line"):
+                self._add(number, other, *formation, beside=at_once)
+        if beside.is_next_to(event, found, self._known):
+            for other, line in self._found(beside.formations(event, ["form line"])):
+                self._add(number, other, *line, beside=at_once)
+        for other, posture in beside.held(event, found, self._matcher.find):
+            self._add(number, other, *posture, beside=at_once)
+        if (sits := beside.seated(event, found, self._known, told)) is not None:
+            for other, sat in self._found([sits]):
+                self._add(number, other, *sat, beside=at_once)
+        for preposition, noun in beside.noun_acts(event, self._known.frames, found[2].rest):
+            kind = "after" if preposition == "into" else "with"
+            for other, done in self._found([noun]):
+                self._add(number, other, *done, beside=Relation(kind=kind, act=of))  # type: ignore[arg-type]
+
+    def _in_canon(self) -> None:
+        """Has the last act of both done by one after the other."""
+        last = self._acts.pop()
+        self._acts.append(last.model_copy(update={"agents": ("a",)}))
+        then = last.model_copy(update={"agents": ("b",), "id": str(len(self._acts) + 1)})
+        self._acts.append(then)
+        self._beside[then.id] = Relation(kind="after", act=last.id)
 
     def _in_turn(self, number: int, event: Event) -> bool:
         """Passes "take turns" on to the verb of what is done in turn; False for other verbs."""
@@ -165,6 +225,7 @@ class _Planner:
         ref = event.object
         named = ref is None or ref.lemma in _SAME or ref.kind == "person"
         named = named or (repeats and ref is not None and (ref.kind == "part" or ref.lemma in _MOVEMENTS))
+        named = named or (repeats and ref is not None and ref.lemma in self._known.frames)  # "shows a squat"
         if last is None or subject is None or subject.kind != "person" or not named or has_inner:
             return False
         declines = event.lemma in verbs["not"] | verbs["wished"]
@@ -186,6 +247,7 @@ class _Planner:
             "modality": "told",
             "order": (),
             "already": False,
+            "times": event.times or last.times,
         }
         self._acts.append(
             last.model_copy(
@@ -196,46 +258,12 @@ class _Planner:
         self._answers.add(number_of)
         return True
 
-    def _seated(self, number: int, event: Event, found: Found) -> None:
-        """Adds that somebody sits where a phrase beside the act says so: "reads in his armchair"."""
-        seat = next(
-            (r for p, r in event.prepositions if p in ("in", "on") and r.lemma in vocabulary().seats), None
-        )
-        if seat is None:
-            return
-        shown = {shape.do for shape in self._known.entries[found[0]].stage}
-        who, other = event.subject, event.object
-        if found[2].patient and other is not None and other.kind == "person" and other.last <= seat.first:
-            who = other  # "pushes an old man in a wheelchair"
-        elif not shown <= order.BESIDE | {"stay"}:
-            return
-        told = {agent for act in self._acts[:-1] for agent in act.agents}
-        if who is None or told & set(who.who):
-            return
-        sits = Event("sit", who, first=event.first, last=event.last, ongoing=True)
-        sat = self._matcher.find(sits)
-        if sat is not None:
-            self._add(number, sits, *sat, beside=str(len(self._acts)))
-            self._acts[-1] = self._acts[-1].model_copy(update={"already": True})
-
-    def _beside(self, number: int, event: Event, found: Found) -> None:
-        """Adds that two people are side by side in what they do: "they sit next to each other"."""
-        start, stop = self._span(number).start, self._span(number).stop
-        phrases = [
-            span for span in self._prepared.phrases("together") if start <= span[0] and span[1] <= stop
-        ]
-        shown = {shape.do for shape in self._known.entries[found[0]].stage}
-        next_to = found[2].patient and "posture" in shown and _is_next_to(event)
-        if not (phrases or next_to) or shown & {"go", "place"}:
-            return
-        who = Ref("person", "ab") if next_to else event.subject
-        beside = Event("form", who, first=event.first, last=event.last, object=_LINE)
-        line = self._matcher.find(beside)
-        if line is not None:
-            self._add(number, beside, *line, beside=str(len(self._acts)))
-
     def _completed(self, number: int, event: Event) -> Iterator[Event]:
         """The event with the object that a coordinated one has: "he reads and tears up the letter"."""
+        if event.object is not None and _is_implied(
+            event.subject
+        ):  # "is frozen" needs nobody who freezes him
+            yield replace(event, subject=event.object, object=None)
         if event.object is not None or event.dative is not None:
             return
         beside = self._events[event.beside] if event.beside is not None and event.joint in _SHARING else None
@@ -243,26 +271,36 @@ class _Planner:
         for other in (beside, *after):
             if other is not None and other.object is not None and other.subject == event.subject:
                 yield replace(event, object=other.object)
+        if (patient := self._meant(event)) is not None:  # "leans in, but does not kiss"
+            yield replace(event, object=Ref("person", patient))
 
-    def _held(self, number: int, event: Event, found: Found) -> None:
-        """Adds the posture that a phrase beside an act names: "begs on his knees", "with folded arms"."""
-        for i in found[2].rest:
-            preposition, ref = event.prepositions[i]
-            own = ref.kind == "part" and (
-                ref.who == found[2].agents or (preposition == "with" and not ref.who)
-            )
-            if not own or (preposition == "on" and ref.family != "knee"):
-                continue
-            words = [word for word in event.words if word in _HELD]
-            if preposition == "with" and not words:
-                continue
-            posture = replace(
-                event, lemma="stand", object=None, dative=None, words=words, particles=[], noun=None, times=None,
-                prepositions=[(preposition, ref)], side=None, direction=None, adverbs=[],
-            )  # fmt: skip
-            held = self._matcher.find(posture)
-            if held is not None and held[0] != found[0] and not held[2].rest and held[2].score > 1.5:
-                self._add(number, posture, *held, beside=str(len(self._acts)))
+    def _of_the_last(self, event: Event) -> Event | None:
+        """The event about the other's body, where what is done to it follows what was done to them.
+
+        As in "walks up to the other and covers his eyes", where nothing says whose.
+        """
+        last, part = next(reversed(self._acts), None), event.object
+        if (
+            last is None
+            or last.patient is None
+            or part is None
+            or part.kind != "part"
+            or part.who
+            or part.bare
+        ):
+            return None
+        same = event.subject is not None and event.subject.who == "".join(last.agents)
+        return replace(event, object=replace(part, who=last.patient)) if same else None
+
+    def _meant(self, event: Event) -> str | None:
+        """The other person, where a verb without an object follows what was done to them."""
+        last, subject = next(reversed(self._acts), None), event.subject
+        if event.lemma in vocabulary().verbs["sees"] and subject is not None:
+            return {"a": "b", "b": "a"}.get(subject.who)
+        if last is None or subject is None or subject.who != "".join(last.agents):
+            return None
+        bare = not event.particles and not event.prepositions and event.lemma in self._known.frames
+        return last.patient if bare else None
 
     def _unknown_words(self) -> None:
         """Adds the words that are none to what was not read."""
@@ -292,8 +330,9 @@ class _Planner:
         self._unread.append(Unread(words=self._span(number), why=why, nearest=self._matcher.nearest(event)))
 
     def _add(
-        self, number: int, event: Event, name: str, frame: Frame, match: Match, beside: str = ""
-    ) -> None:
+        self, number: int, event: Event, name: str, frame: Frame, match: Match,
+        beside: Relation | None = None,
+    ) -> None:  # fmt: skip
         number_of = str(len(self._acts) + 1)
         part = match.part
         speed = 1.0
@@ -323,8 +362,8 @@ class _Planner:
             direction=event.direction, distance=event.distance, words=self._span(number),
         )  # fmt: skip
         self._acts.append(act)
-        if beside:
-            self._held_beside[number_of] = beside
+        if beside is not None:
+            self._beside[number_of] = beside
         else:
             self._of[number] = number_of
 
@@ -354,8 +393,8 @@ class _Planner:
         found: dict[str, list[Relation]] = {act.id: [] for act in self._acts}
         acts = {act.id: act for act in self._acts}
         for act in self._acts:
-            if act.id in self._held_beside:
-                found[act.id].append(Relation(kind="with", act=self._held_beside[act.id]))
+            if act.id in self._beside:
+                found[act.id].append(self._beside[act.id])
                 continue
             event = self._events[number_of[act.id]]
             kind, beside, seen = event.joint, event.beside, set[int]()
@@ -372,8 +411,12 @@ class _Planner:
                 above = next((r.act for r in found[other.id] if r.kind == "while"), None)
                 # What follows "A talks while B waits" follows the talk.
                 other = acts[self._last_after(above, act.id, found)] if above else other
+            if other.id == act.id:  # two clauses that the parser hangs on each other
+                continue
             if kind == "conj":
                 kind = order.coordinated(other, act, self._known, repeats=act.id in self._answers)
+            if kind == "after" and not told and order.answers_blow(other, act, self._known):
+                kind = "with"
             if kind == "after":
                 act = acts[act.id] = order.turned_to(other, act, self._known)
             apart = not set(other.agents) & set(act.agents)

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 from acts.frames import PREPOSITIONS
 
+from . import wordnet
 from .people import A_NAME, B_NAME
 from .vocabulary import vocabulary
 
@@ -48,7 +49,7 @@ def verbs_taken_for_nouns(doc: Doc, forms: Mapping[str, tuple[str, str]]) -> dic
         form = forms.get(token.lower_)
         if form is not None and (
             (_is_other(token) and (_after_person(token, form[1]) or _opens(token, form[1])))
-            or _coordinated(token, form[1], last)
+            or _coordinated(token, form[1], last, found)
             or _is_kept(token, form[1])
         ):
             found[token.idx] = (_safe(token, form[1]), form[0])
@@ -126,7 +127,7 @@ def _ends_phrase(token: Token) -> bool:
     )
 
 
-def _coordinated(token: Token, ending: str, last: str) -> bool:
+def _coordinated(token: Token, ending: str, last: str, found: Mapping[int, object]) -> bool:
     """True for a bare noun behind "and" or a comma that has the form of the sentence's last finite verb.
 
     "He yawns and stretches", "they clink glasses and drink" and "grab her and twirl her", beside "bread and drink".
@@ -140,10 +141,11 @@ def _coordinated(token: Token, ending: str, last: str) -> bool:
         return False
     earlier = token.nbor(-2)
     listed = (token.dep_ == "conj" and token.head.pos_ == "VERB") or _before_verb(token)
+    listed = listed or (earlier.pos_ == "VERB" and earlier.tag_ in _TAGS)  # "they meet, hug and part"
     if before.text == "," and ending == "" and not listed:
         return False
     bare_noun = earlier.tag_ == "NN" and all(c.dep_ not in ("det", "poss") for c in earlier.children)
-    if ending == "" and bare_noun:
+    if ending == "" and bare_noun and earlier.idx not in found:
         return False  # "they have bread and drink"
     following = _next(token)
     plural_list = earlier.tag_ == "NNS" and token.dep_ == "conj" and token.head == earlier
@@ -175,6 +177,8 @@ def _opens(token: Token, ending: str) -> bool:
         return False
     if ending == "ing":
         return following.text == ","
+    if ending == "" and following.text == "," and following.i + 1 < len(token.doc):
+        return not vocabulary().is_person(token.lower_) and following.nbor(1).lower_ in ("then", "and")
     return (
         ending == ""
         and not vocabulary().is_person(token.lower_)
@@ -189,7 +193,8 @@ def _after_person(token: Token, ending: str) -> bool:
     following = _next(token)
     if before is None or ending == "ing" or (following is not None and following.pos_ == "AUX"):
         return False
-    one = before.lower_ in ("one", "other", "both") or before.text in (A_NAME, B_NAME)
+    numbered = before.lower_ in ("first", "second", "former", "latter") and token.dep_ not in ("dobj", "pobj")
+    one = before.lower_ in ("one", "other", "both") or before.text in (A_NAME, B_NAME) or numbered
     if before.lower_ in ("one", "other") and ending == "":
         return False  # "one knee"
     if before.pos_ == "PRON" and not one:
@@ -206,5 +211,6 @@ def _after_person(token: Token, ending: str) -> bool:
         or before.lower_ in _CROWDS
         or before.lower_ == "both"
         or vocabulary().is_person(before.lemma_.lower())
+        or wordnet.is_animal(before.lemma_.lower())
         or (many and before.lemma_ in vocabulary().both)
     )

@@ -19,6 +19,13 @@ _LEAVES = frozenset(("leave", "find"))
 _SOMEBODY = frozenset(("him", "her", "his", "me", "my"))
 
 
+def ends_before(noun: Token, verb: Token) -> bool:
+    """True for a noun that the parser joined to what stands before, and whose phrase ends where a verb begins."""
+    joined = noun.dep_ == "conj" and noun.tag_ == "NN" and noun.right_edge.i == verb.i - 1
+    own = any(child.dep_ in ("nsubj", "nsubjpass") for child in verb.children)
+    return joined and not own and any(child.dep_ == "det" for child in noun.children)
+
+
 class Subjects:
     """The subjects of a text's clauses, each found once.
 
@@ -103,6 +110,8 @@ class Subjects:
             main is not None and main < token.i
         ):  # "creeps up, covers her eyes", where the second became the main one
             return self._found.get(main)
+        if token.tag_ in ("VBD", "VBZ") and (behind := self._behind(token)) is not None:
+            return behind
         if token.dep_ == "ROOT" or head is None:
             alone = any(
                 t.lower_ in _SOMEBODY for t in token.subtree
@@ -112,16 +121,28 @@ class Subjects:
             return Ref("person", "a" if alone else "ab", "", first=token.idx, last=token.idx)
         return None
 
+    def _behind(self, token: Token) -> Ref | None:
+        """The person behind a verb that nobody stands before: "…, said the witch"."""
+        objects = (
+            child for child in token.children if child.dep_ in ("dobj", "dative") and child.i > token.i
+        )
+        noun = next((child for child in objects if child.pos_ in ("NOUN", "PROPN")), None)
+        ref = reference(noun, self._cast, "") if noun is not None else None
+        return ref if ref is not None and ref.kind == "person" else None
+
     def _named_before(self, token: Token) -> Ref | None:
         """The person named right before a verb whom the parser took for a part of it, or for another's object.
 
-        As in "while Beth crouches" and "he runs to Beth and Beth lifts him".
+        As in "while Beth crouches", "he runs to Beth and Beth lifts him" and "he holds out his hand and the girl
+        shakes it".
         """
-        before = token.nbor(-1) if token.i and token.tag_ == "VBZ" else None
-        if before is None or before.tag_ != "NNP" or before.dep_ not in ("conj", "compound"):
+        before = token.nbor(-1) if token.i and token.tag_ in ("VBZ", "VBD") else None
+        if before is None:
             return None
-        ref = reference(before, self._cast, "")
-        return ref if ref.kind == "person" else None
+        if before.tag_ != "NNP" or before.dep_ not in ("conj", "compound"):
+            before = next((noun for noun in (before, *before.ancestors) if ends_before(noun, token)), None)
+        ref = reference(before, self._cast, "") if before is not None else None
+        return ref if ref is not None and ref.kind == "person" else None
 
     def _antecedent(self, token: Token) -> Ref | None:
         noun = token.head

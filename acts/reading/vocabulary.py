@@ -10,6 +10,9 @@ from typing import Any
 
 from . import wordnet
 
+_FORMATION = "together"
+"""The adverb as which the parser gets a formation."""
+
 
 class Vocabulary:
     """The words of ``words.toml``, and WordNet's nouns of people."""
@@ -38,6 +41,25 @@ class Vocabulary:
         self.gaits = {w: float(value) for value, text in tables["gaits"].items() for w in text.split()}
         """Factors of speed that a verb brings along, beside a walk."""
         self.verbs = {kind: frozenset(text.split()) for kind, text in tables["verbs"].items()}
+        joined: dict[str, str] = dict(tables["phrases"])
+        self.formations = {
+            tuple(phrase.split()): name for name, listed in tables["formations"].items() for phrase in listed
+        }
+        """Ways to stand or move together, by the words that say them."""
+        joined |= {" ".join(words): _FORMATION for words in self.formations}
+        self.phrases: dict[str, list[tuple[tuple[str, ...], str]]] = {}
+        """What the parser takes apart and one word for it, the longest first, by the first word."""
+        for phrase in sorted(joined, key=len, reverse=True):
+            words = tuple(phrase.split())
+            self.phrases.setdefault(words[0], []).append((words, joined[phrase]))
+        self.requests = sorted(
+            (tuple(text.split()) for text in tables["requests"]["phrases"]), key=len, reverse=True
+        )
+        """What asks for a motion before it says which, the longest first."""
+        self.limits: dict[str, frozenset[str]] = {
+            note: frozenset(words.split()) for note, words in tables["limits"].items()
+        }
+        """What the stage cannot do, as a sentence, by the words that ask for it."""
         self.modals = {kind: frozenset(text.split()) for kind, text in tables["modals"].items()}
 
     def is_person(self, lemma: str) -> bool:
@@ -76,6 +98,11 @@ class Vocabulary:
     def part(self, lemma: str) -> str:
         """The family of a part of the body; "" for other nouns."""
         return self._parts.get(lemma, "")
+
+
+def is_act(noun: str) -> bool:
+    """True for a noun that may stand for what somebody does, as "hug", "bow" and "lunge"."""
+    return noun in vocabulary().verbs["nouns"] or wordnet.is_act(noun)
 
 
 @cache

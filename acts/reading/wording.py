@@ -9,6 +9,7 @@ import bisect
 import re
 from collections.abc import Callable, Iterator, Mapping
 
+from .absolute import stands_absolutely
 from .people import A_NAME, B_NAME
 from .vocabulary import vocabulary
 
@@ -67,18 +68,9 @@ _LETTER_BEFORE = frozenset(
     ]
 )
 
-_PHRASES = {
-    ("as", "soon", "as"): "when", ("as", "long", "as"): "while", ("the", "moment", "that"): "when",
-    ("at", "the", "same", "time"): "simultaneously", ("every", "time"): "when",
-    ("even", "though"): "although", ("so", "that"): "so",
-    ("in", "order", "to"): "to", ("all", "of", "a", "sudden"): "suddenly", ("at", "once"): "immediately",
-    ("the", "two", "of", "them"): "they", ("the", "pair", "of", "them"): "they",
-    ("a", "bit"): "slightly", ("a", "little", "bit"): "slightly",
-    ("side", "by", "side"): "together", ("shoulder", "to", "shoulder"): "together",
-    ("next", "to", "each", "other"): "together", ("next", "to", "one", "another"): "together",
-    ("beside", "each", "other"): "together", ("beside", "one", "another"): "together",
-}  # fmt: skip
-"""What the parser takes apart, and one word for it."""
+_SUBJECTS = frozenset(
+    ("i", "you", "he", "she", "it", "they", "we", "someone", "somebody", "nobody", "everyone", "everybody")
+)
 _TOWARDS = frozenset(("at", "to", "with", "by", "from", "behind", "past", "towards", "toward", "around"))
 """Prepositions of people, after which a noun without an article lacks one."""
 _INTENSIFIED = frozenset(
@@ -118,15 +110,22 @@ class Text:
         ]
         return Text(self.original, pieces)
 
-    def phrases(self, word: str) -> list[tuple[int, int]]:
-        """The offsets in the original of the phrases of several words that are parsed as one word."""
-        return [(i, j) for found, i, j in self._pieces if found == word and " " in self.original[i:j]]
+    def formations(self, start: int, stop: int) -> Iterator[str]:
+        """The ways to stand or move together, as "side by side", that a stretch of the original names."""
+        known = vocabulary().formations
+        for _, first, last in self._pieces:
+            if start <= first and last <= stop and (name := known.get(_words_of(self.original[first:last]))):
+                yield name
 
     def span(self, first: int, last: int) -> tuple[int, int]:
         """The offsets in the original of a stretch of what was parsed."""
         i = max(bisect.bisect_right(self._starts, first) - 1, 0)
         j = max(bisect.bisect_left(self._starts, last) - 1, i)
         return self._pieces[i][1], self._pieces[j][2]
+
+
+def _words_of(text: str) -> tuple[str, ...]:
+    return tuple(word.lower() for word, _, _ in _tokens(text))
 
 
 def _tokens(text: str) -> Iterator[tuple[str, int, int]]:
@@ -157,7 +156,7 @@ class _Preparation:
     ) -> None:
         self._text, self._mended, self._is_verb = text, mended, is_verb
         self._words = vocabulary()
-        self._tokens = _without_speech(list(_tokens(text)))
+        self._tokens = _without_request(_without_speech(list(_tokens(text))))
         self._letters = _letters([word for word, _, _ in self._tokens], is_verb)
         self._pieces: list[tuple[str, int, int]] = []
 
@@ -173,14 +172,22 @@ class _Preparation:
 
     def _phrase(self, i: int) -> int:
         """Several words that join clauses as one does, as "as soon as"; how many they were, or 0."""
-        for phrase, word in _PHRASES.items():
+        for phrase, word in self._words.phrases.get(self._lower(i), ()):
             if all(self._lower(i + k) == part for k, part in enumerate(phrase)):
                 self._pieces.append((word, self._tokens[i][1], self._tokens[i + len(phrase) - 1][2]))
                 return len(phrase)
+        if (later := self._later(i)) > 0:
+            self._pieces.append(("later", self._tokens[i][1], self._tokens[i + later - 1][2]))
+            return later
+        if self._lower(i) == "in" and self._lower(i + 1) == "front" and self._lower(i + 2) != "of":
+            self._pieces.append(("ahead", self._tokens[i][1], self._tokens[i + 1][2]))
+            return 2
         if self._lower(i) == "'" and self._lower(i + 1) == "s":  # "person 2's"
             self._pieces.append(("'s", self._tokens[i][1], self._tokens[i + 1][2]))
             return 2
-        if self._lower(i) == "back" and self._lower(i - 1) == "her" and self._lower(i + 1) in _BEHIND_BACK:
+        owned = self._lower(i - 1).endswith("'s") and self._lower(i - 1) not in ("he's", "she's", "it's")
+        turned = self._lower(i - 1) == "her" and self._lower(i + 1) in _BEHIND_BACK
+        if self._lower(i) == "back" and (owned or turned):
             self._pieces.append(("spine", *self._tokens[i][1:]))  # the noun, and no adverb
             return 1
         if self._lower(i) == "the" and self._lower(i + 1) == "two" and self._is_verb(self._lower(i + 2)):
@@ -189,6 +196,14 @@ class _Preparation:
             )  # "the two circle round"
             return 2
         return 0
+
+    def _later(self, i: int) -> int:
+        """The words of "two counts later" and "half a second later", which the parser takes for a clause; or 0."""
+        at = i
+        while self._lower(at) in ("half", "a") or self._lower(at) in self._words.numbers:
+            at += 1
+        unit = self._lower(at).removesuffix("s")
+        return at + 2 - i if at > i and unit in self._words.seconds and self._lower(at + 1) == "later" else 0
 
     def _pair(self, i: int) -> int:
         """Two tokens that are one word, as "person A" and "high five"; 2 if they were, else 0."""
@@ -218,6 +233,8 @@ class _Preparation:
     def _single(self, i: int) -> int:
         """One token; always 1."""
         word, start, stop = self._tokens[i]
+        if stands_absolutely(self._lower, i):
+            self._pieces.append(("with", start, start))
         self._pieces += self._supplied(i)
         self._pieces.append((self._letters.get(i) or self._worded(i, word), start, stop))
         return 1
@@ -285,6 +302,25 @@ def _without_speech(tokens: list[tuple[str, int, int]]) -> list[tuple[str, int, 
             opened = -1
     told = [token for i, token in enumerate(tokens) if i not in spoken]
     return told if sum(word.isalpha() for word, _, _ in told) > 1 else tokens
+
+
+def begins_with_subject(text: str) -> bool:
+    """True if a clause names who acts, as "she waves" and "the man waves" do, and not "waves"."""
+    words = [word for word, _, _ in _tokens(text.lower())][:2]
+    if not words:
+        return False
+    known = vocabulary()
+    alone = words[0] in _SUBJECTS or words[0] in known.both or known.is_usual_person(words[0])
+    return alone or words[0] in _DETERMINERS
+
+
+def _without_request(tokens: list[tuple[str, int, int]]) -> list[tuple[str, int, int]]:
+    """The tokens without what asks for a motion: "show me two people dancing", "i want to see them hug"."""
+    words = [word.lower() for word, _, _ in tokens]
+    for request in vocabulary().requests:
+        if tuple(words[: len(request)]) == request and len(words) > len(request) + 1:
+            return tokens[len(request) :]
+    return tokens
 
 
 def _begins(before: str) -> bool:

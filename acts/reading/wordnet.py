@@ -13,9 +13,9 @@ from pathlib import Path
 from typing import NamedTuple
 
 _HERE = Path(__file__).parent
-VERBS, PEOPLE = _HERE / "verbs.tsv", _HERE / "people.tsv"
-_PERSON = "18"
-"""WordNet's number for the lexicographer's file of people."""
+VERBS, PEOPLE, NOUNS = _HERE / "verbs.tsv", _HERE / "people.tsv", _HERE / "nouns.tsv"
+_PERSON, _ACT = "18", "04"
+"""WordNet's numbers for the lexicographer's files of people and of acts."""
 
 
 _STARTS = (
@@ -59,6 +59,26 @@ def people() -> dict[str, PersonNoun]:
         noun, sex, age = line.split("\t")
         found[noun] = PersonNoun(sex, age)
     return found
+
+
+@cache
+def _nouns() -> dict[str, frozenset[str]]:
+    """Nouns by their kind: "animal", and "act" for those of what a verb of the same spelling means."""
+    found: dict[str, set[str]] = {}
+    for line in NOUNS.read_text(encoding="utf-8").splitlines():
+        noun, kind = line.split("\t")
+        found.setdefault(kind, set()).add(noun)
+    return {kind: frozenset(nouns) for kind, nouns in found.items()}
+
+
+def is_animal(noun: str) -> bool:
+    """True for a noun whose most frequent sense is an animal."""
+    return noun in _nouns()["animal"]
+
+
+def is_act(noun: str) -> bool:
+    """True for a noun that may stand for what somebody does, as "hug", "bow" and "lunge"."""
+    return noun in _nouns()["act"]
 
 
 def is_verb(lemma: str) -> bool:
@@ -135,11 +155,13 @@ def build(folder: Path) -> None:
         word: {key for key, words in words_of.items() if file_of[key] == _PERSON and word in words}
         for word in ("male_person", "female_person", "juvenile_person", "golden_ager", "child")
     }
-    lines = []
+    animal = {key for key, words in words_of.items() if words >= {"animal", "fauna"}}
+    lines, nouns = [], []
     for line in _lines(folder / "index.noun"):
         fields = line.split()
-        noun, first = fields[0], fields[6 + int(fields[3])]
-        if file_of[first] != _PERSON or "_" in noun or not noun.isalpha():
+        noun, senses = fields[0], fields[6 + int(fields[3]) :]
+        first = senses[0]
+        if "_" in noun or not noun.isalpha():
             continue
         closure: set[str] = set()
         waiting = [first]
@@ -148,11 +170,18 @@ def build(folder: Path) -> None:
             if key not in closure:
                 closure.add(key)
                 waiting += above_of[key]
+        if closure & animal and file_of[first] != _PERSON:
+            nouns.append(f"{noun}\tanimal")
+        if is_verb(noun) and any(file_of[sense] == _ACT for sense in senses[:3]):
+            nouns.append(f"{noun}\tact")
+        if file_of[first] != _PERSON:
+            continue
         sex = "m" if closure & roots["male_person"] else "f" if closure & roots["female_person"] else ""
         young = closure & (roots["juvenile_person"] | roots["child"])
         age = "child" if young else "old" if closure & roots["golden_ager"] else ""
         lines.append(f"{noun}\t{sex}\t{age}")
     PEOPLE.write_text("\n".join(lines) + "\n", encoding="utf-8")
+    NOUNS.write_text("\n".join(nouns) + "\n", encoding="utf-8")
 
 
 def _lines(path: Path) -> list[str]:

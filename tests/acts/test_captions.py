@@ -19,6 +19,12 @@ from acts.captions import beats, short, singular
         ("He tries to hug her.", ["Person A stands still."]),
         ("She bows twice.", ["Person A bows twice."]),
         ("She raises both feet.", ["Person A lifts both feet."]),
+        ("Then she bows.", ["Person A bows."]),
+        ("Finally, they hug.", ["They hug each other."]),
+        ("A man waves.", ["Person A waves."]),
+        ("He slaps her with the left hand.", ["Person A slaps person B with the left hand."]),
+        ("She kicks him with the left foot.", ["Person A kicks person B with the left foot."]),
+        ("He turns to the left.", ["Person A turns around."]),
         ("Nothing.", []),
     ],
 )

@@ -10,6 +10,7 @@ from hypothesis import strategies as st
 
 from acts import Act, Plan, read
 from acts.reading.read import MOST_CHARACTERS
+from acts.reading.wording import begins_with_subject
 from motion import InputError
 
 
@@ -79,6 +80,46 @@ def _said(act: Act) -> str:
         ("A and B take turns to jump.", ["ab jump"]),
         ("He hugs and kisses her.", ["a hug b", "a kiss b"]),
         ("She saunters past him.", ["a walk-past b"]),
+        # how a part of the body is held beside an act
+        ("A squats while B waits with arms crossed.", ["a crouch", "b stand-still", "b fold-arms"]),
+        ("They circle each other, hands up.", ["ab circle-together", "ab raise-arm"]),
+        ("The couple dance, her head on his chest.", ["ab dance", "a head-on-shoulder b"]),
+        ("A pushes B with both palms on the chest.", ["a push b"]),
+        # formations
+        ("Both start face to face and end back to back.", ["ab turn-to", "ab back-to-back"]),
+        ("They clap side by side.", ["ab clap", "ab form-line"]),
+        ("Start four metres apart.", ["ab keep-distance"]),
+        ("In canon, both bow.", ["a bow", "b bow"]),
+        ("They never touch, always two metres apart.", ["ab not touch", "ab keep-distance"]),
+        # acts that are nouns
+        ("He answers with a bow.", ["a bow"]),
+        ("She pulls him into a hug.", ["a hug b"]),
+        ("He shivers in surprise.", ["a shiver"]),
+        ("She offers him a drink and he waves it off.", ["a offer-thing b", "b wave-off a"]),
+        # people and pronouns
+        ("One person extends a hand and the other person shakes it.", ["a offer-thing", "b shake-hands a"]),
+        ("The bear held out his paw and the mouse shook it.", ["a offer-thing", "b shake-hands a"]),
+        ('"Come here!" said the witch, and she beckoned Hansel.', ["a tell b", "a beckon b"]),
+        ("She kicks the ball and they high-five.", ["a kick-ball", "ab high-five"]),
+        ("i wanna shake his hand but he walks past me", ["a shake-hands b (wished)", "b walk-past a"]),
+        # verbs that share what stands once
+        ("The dancer is dipped by her partner and then spun out.", ["b dip a", "b twirl a"]),
+        ("The first person is frozen on one leg.", ["a freeze"]),
+        ("She pats him, but does not hug.", ["a pat b", "a not hug b"]),
+        (
+            "One person walks up behind the other and covers his eyes with both hands.",
+            ["a come-behind b", "a cover-eyes b"],
+        ),
+        ("They stand face to face, hands on each other's shoulders.", ["ab turn-to", "ab hand-on"]),
+        ("With one hand on the hip, he shakes a finger at her.", ["a threaten b", "a hands-on-hips"]),
+        ("show me two robots dancing", ["ab dance"]),
+        ("The prince asked the princess to dance.", ["b dance (wished)"]),
+        (
+            "He stumbles, and she catches him before he falls.",
+            ["a stumble", "b catch-person a", "a fall-down (wished)"],
+        ),
+        ("Freeze, then melt to the floor.", ["ab freeze", "ab fall-down"]),
+        ("They meet, hug and part.", ["ab walk-up", "ab hug", "ab part"]),
     ],
 )
 def test_who_does_what_to_whom(text: str, acts: list[str]) -> None:
@@ -96,6 +137,10 @@ def test_who_does_what_to_whom(text: str, acts: list[str]) -> None:
         ("She pats him. He hugs her.", [["1"], ["2"]]),
         ("She pats him before he hugs her.", [["1"], ["2"]]),
         ("She bows, then he waits.", [["1"], ["2"]]),
+        ("She bows; he waves.", [["1"], ["2"]]),
+        ("She throws a ball and he ducks.", [["1"], ["2"]]),
+        ("She knocks at the door and he opens it.", [["1"], ["2"]]),
+        ("A kicks the ball to B, who stops it.", [["1"], ["2"]]),
         ("She bows. He waits.", [["1", "2"]]),
         ("She bows while he waits, and then she pats him.", [["1", "2"], ["3"]]),
         ("She bows while he waits. Then he waits while she leaves.", [["1", "2"], ["3", "4"]]),
@@ -107,7 +152,7 @@ def test_order(text: str, beats: list[list[str]]) -> None:
 
 def test_what_is_about_others_or_means_nothing_stays_unread() -> None:
     for text in (
-        "The dog hugs the man.",
+        "The lamp hugs the man.",
         "He considers his taxes.",
         "She smurfs him.",
         "Rain falls on hugs.",
@@ -322,3 +367,28 @@ def test_what_follows_listed_acts_beside_a_wait_follows_the_last_of_them() -> No
 )
 def test_what_words_say_about_people(text: str, people: list[str]) -> None:
     assert [f"{person.sex} {person.age}".strip() for person in read(text).people] == people
+
+
+@pytest.mark.parametrize(
+    ("text", "has"),
+    [
+        ("she waves", True),
+        ("The man waves", True),
+        ("her hand goes up", True),
+        ("both clap", True),
+        ("waves", False),
+        ("Slowly sits down", False),
+        ("", False),
+    ],
+)
+def test_a_clause_begins_with_its_subject(text: str, has: bool) -> None:
+    assert begins_with_subject(text) is has
+
+
+def test_what_the_stage_cannot_do_is_said() -> None:
+    notes = read("Both walk downstage in canon.").notes
+    assert len(notes) == 2 and "audience" in notes[0] and "canon" in notes[1]
+    assert not read("Both walk.").notes
+    assert read("The fox chases the hen.").notes == (
+        "Only people can be shown: animals that act are people here.",
+    )

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import re
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, fields, replace
 from typing import Any
@@ -13,6 +12,7 @@ from acts import read
 from acts.captions import sentence
 from acts.lexicon import lexicon
 from acts.plan import MOST_ACTS, Act, beats, problem
+from acts.reading.wording import begins_with_subject
 from motion import InputError
 from webdemo.inference.limits import MAX_PROMPT, MAX_SEED
 
@@ -23,14 +23,6 @@ TITLE = 90
 """Characters of a title."""
 DEFAULT_SECONDS = 4.0
 """Of a beat whose words name no act that is known."""
-
-
-_SUBJECT = re.compile(
-    r"^(?:the\s+(?:two|first|second|other|actor|reactor|man|woman|people|couple|latter|former)\b(?:\s+(?:people|persons?|man|woman|one))?"
-    r"|two\s+\w+|both(?:\s+of\s+them|\s+people)?|they|he|she|one(?:\s+(?:person|of\s+them|man|woman))?"
-    r"|person\s+[ab]|(?:a|an|another|each|every)\s+\w+|someone|somebody|everyone|everybody|people|each)\b",
-    re.IGNORECASE,
-)
 
 
 @dataclass(frozen=True)
@@ -132,7 +124,7 @@ def _sentence(clause: str) -> str:
 def _of_person(text: str, who: str) -> str:
     """Writes what one person does as a clause with a subject."""
     text = text.strip().rstrip(".")
-    if _SUBJECT.match(text):
+    if begins_with_subject(text):
         return text[:1].lower() + text[1:]
     return f"{who} {text[:1].lower()}{text[1:]}"
 
