@@ -21,6 +21,15 @@ def clock() -> Clock:
     return Clock()
 
 
+def test_a_machine_that_has_been_up_for_long_gives_nobody_more(clock: Clock) -> None:
+    clock.now = 1e6
+    limit = RateLimit(3, clock)
+    for _ in range(3):
+        limit.take("a")
+    with pytest.raises(Refused):
+        limit.take("a")
+
+
 def test_as_many_as_a_minute_come_at_once_and_then_at_the_rate(clock: Clock) -> None:
     limit = RateLimit(60, clock)
     for _ in range(60):

@@ -23,7 +23,6 @@
 from __future__ import annotations
 
 import difflib
-import json
 import re
 import tomllib
 from collections.abc import Callable, Mapping
@@ -32,6 +31,7 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+import tomlkit
 
 from motion import Duet, InputError
 from motion.formats import read
@@ -43,7 +43,7 @@ from .beats import MOST_BEATS, Beat
 from .request import SceneRequest, beat_of, path_of
 from .scripting import split_sentence
 from .toml_outline import Lines, check_outline
-from .wishes import MOST_POINTS, MOST_POSES, FloorPath, Pose
+from .wishes import MOST_POINTS, MOST_POSES, FloorPath, FloorPoint, Pose
 
 MOST_CHARACTERS = 150_000
 """Of a story in TOML; the longest there is, with all its paths and poses written in full, has fewer."""
@@ -131,70 +131,52 @@ def read_words(text: str, go_on: Callable[[], None] = lambda: None) -> dict[str,
 
 def write_story(request: SceneRequest) -> str:
     """A story as TOML text that :func:`read_story` reads as the same fields; a given motion is not part of it."""
-    out = [f"seed = {request.seed}"]
+    story = tomlkit.document()
+    story["seed"] = request.seed
     for f in fields(SamplingRequest):
         value = getattr(request, f.name)
         default = method(request.model, "scene").steps if f.name == "steps" else f.default
         if f.name != "seed" and value != default:
-            out.append(f"{f.name} = {json.dumps(value)}")
+            story[f.name] = value
     if not request.planned:
-        out.append("planned = false")
+        story["planned"] = False
     if request.loop:
-        out.append("loop = true")
-    for beat in request.beats:
-        out += ["", *_beat_lines(beat)]
-    for path in request.paths:
-        out += ["", "[[path]]", f'person = "{path.person}"', _points(path)]
-    for pose in request.poses:
-        positions = json.dumps(np.asarray(pose.positions).tolist())
-        out += [
-            "",
-            "[[pose]]",
-            f'person = "{pose.person}"',
-            f"seconds = {pose.seconds!r}",
-            f"positions = {positions}",
-        ]
-    return "\n".join(out) + "\n"
+        story["loop"] = True
+    tables = {
+        "beat": [_beat_table(beat) for beat in request.beats],
+        "path": [{"person": path.person, "points": list(map(_point, path.points))} for path in request.paths],
+        "pose": [
+            {"person": p.person, "seconds": p.seconds, "positions": np.asarray(p.positions).tolist()}
+            for p in request.poses
+        ],
+    }
+    return tomlkit.dumps({**story, **{name: listed for name, listed in tables.items() if listed}})
 
 
-def _beat_lines(beat: Beat) -> list[str]:
-    out = ["[[beat]]"]
-    for name in ("words", "a", "b"):
-        if value := getattr(beat, name):
-            out.append(f"{name} = {_quoted(value)}")
+def _point(p: FloorPoint) -> list[float] | dict[str, float]:
+    """A point as a row, or with its names where a row would not say what it is."""
+    row = {
+        name: value for name in ("seconds", "x", "z", "heading") if (value := getattr(p, name)) is not None
+    }
+    if p.seconds is None and p.heading is not None:
+        return row
+    return [round(value, 4) if p.seconds is not None else value for value in row.values()]
+
+
+def _beat_table(beat: Beat) -> dict[str, Any]:
+    table: dict[str, Any] = {name: value for name in ("words", "a", "b") if (value := getattr(beat, name))}
     if beat.seconds is not None:
-        out.append(f"seconds = {beat.seconds:g}")
+        whole = float(beat.seconds).is_integer()
+        table["seconds"] = int(beat.seconds) if whole else beat.seconds
     if beat.seed is not None:
-        out.append(f"seed = {beat.seed}")
+        table["seed"] = beat.seed
     if beat.acts:
-        out += ["acts = [", *(f"  {_inline(act)}," for act in beat.to_dict()["acts"]), "]"]
-    return out
-
-
-def _inline(value: Any) -> str:
-    """A value as TOML on one line."""
-    if isinstance(value, Mapping):
-        return "{ " + ", ".join(f"{key} = {_inline(each)}" for key, each in value.items()) + " }"
-    if isinstance(value, list):
-        return f"[{', '.join(map(_inline, value))}]"
-    return _quoted(value) if isinstance(value, str) else json.dumps(value)
-
-
-def _points(path: FloorPath) -> str:
-    rows = []
-    for p in path.points:
-        row = {"seconds": p.seconds, "x": p.x, "z": p.z, "heading": p.heading}
-        if p.seconds is None:
-            given = (f"{k} = {v!r}" for k, v in row.items() if v is not None)
-            rows.append("{ " + ", ".join(given) + " }" if p.heading is not None else f"[{p.x!r}, {p.z!r}]")
-        else:
-            rows.append("[" + ", ".join(f"{round(v, 4)!r}" for v in row.values() if v is not None) + "]")
-    return f"points = [{', '.join(rows)}]"
-
-
-def _quoted(text: str) -> str:
-    """A basic string of TOML, whose escapes are those of JSON; it takes no control characters as they are."""
-    return json.dumps(text, ensure_ascii=False).replace("\x7f", "\\u007f")
+        acts = table["acts"] = tomlkit.array().multiline(True)
+        for act in beat.to_dict()["acts"]:
+            row = tomlkit.inline_table()
+            row.update(act)
+            acts.append(row)
+    return table
 
 
 def _sentence(error: Exception) -> str:
