@@ -5,7 +5,7 @@ from typing import Any
 import pytest
 
 from acts import Act, lexicon, read
-from acts.captions import beats, short, singular
+from acts.captions import beats, gerund, short, singular
 
 
 @pytest.mark.parametrize(
@@ -72,3 +72,11 @@ def test_every_act_has_few_words_without_slots() -> None:
             words = short(Act(id="1", act=name, agents=("a",), patient=patient), entry)
             assert words.strip() == words and 0 < len(words) <= 60, name
             assert not set("{}[]*'") & set(words), name
+
+
+@pytest.mark.parametrize(
+    ("verb", "form"),
+    [("lie", "lying"), ("tie", "tying"), ("hug", "hugging"), ("wave", "waving"), ("be", "being")],
+)
+def test_verbs_have_their_ing_form(verb: str, form: str) -> None:
+    assert gerund(verb) == form

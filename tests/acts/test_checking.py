@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from acts import Plan, lexicon, read
-from acts.checking import Verdict, cast, checked
+from acts.checking import Verdict, _over, cast, checked
 from acts.plan import Act, Relation
 from motion import Duet
 from motion.metrics.sentences.joints import Motion
@@ -246,3 +246,8 @@ def test_another_skeleton_is_refused() -> None:
     motion = Duet.from_positions(np.zeros((2, 30, 15, 3)), fps=30.0, skeleton=SBU15)
     with pytest.raises(ValueError, match="SMPL"):
         checked(plan(told("raise-arm")), motion)
+
+
+def test_of_what_still_holds_at_the_end_only_its_beginning_comes_before_other_acts() -> None:
+    assert _over("near(1.5)", duet(gap=1.0)) == "begins(near(1.5))"
+    assert _over("near(0.5)", duet(gap=1.0)) == "near(0.5)"

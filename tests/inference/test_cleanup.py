@@ -5,7 +5,7 @@ import pytest
 
 from motion import SMPL22
 from webdemo.inference import cleanup
-from webdemo.inference.cleanup import clean_person, on_constant_bones
+from webdemo.inference.cleanup import _elbow_pole, clean_person, on_constant_bones
 from webdemo.inference.following import FollowingCleanup
 from webdemo.inference.story.poses import lying
 
@@ -88,3 +88,8 @@ def test_an_arm_that_folds_over_its_shoulder_does_not_fling_its_elbow() -> None:
     moving[:, wrist] = moving[:, shoulder] + np.stack([0.02 + 0 * height, height, 0.01 + 0 * height], axis=-1)
     cleaned = clean_person(moving)
     assert np.linalg.norm(np.diff(cleaned[:, elbow], axis=0), axis=-1).max() * 30 < 2.0
+
+
+def test_a_straight_arm_bends_backwards_and_down() -> None:
+    ahead = np.array([[0.0, 0.0, 1.0]])
+    np.testing.assert_array_equal(_elbow_pole(ahead), [[0.0, -1.0, -1.0]])

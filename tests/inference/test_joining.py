@@ -122,3 +122,9 @@ def test_a_dance_that_turns_closes_without_a_jolt_and_only_there() -> None:
     assert np.linalg.norm(closing.sum(0), axis=-1).max() < 0.01
     np.testing.assert_array_equal(found[REACH:-REACH], made[REACH:-REACH])
     np.testing.assert_allclose(lengths(found), lengths(made), atol=1e-6)
+
+
+def test_a_loop_of_an_odd_number_of_frames_stays_in_step() -> None:
+    made = mover(speed=0.1)[:-1]
+    found = closed(made, np.zeros(0, dtype=int))
+    np.testing.assert_allclose(found[REACH:-REACH], made[REACH:-REACH], atol=1e-9)

@@ -158,3 +158,10 @@ def test_an_elbow_does_not_jump_from_side_to_side():
     np.testing.assert_allclose(np.linalg.norm(found, axis=-1), np.linalg.norm(elbow, axis=-1), atol=1e-9)
     assert np.abs(np.diff(elbow, axis=0)).max() > 0.05
     assert np.abs(np.diff(found, axis=0)).max() < 0.015
+
+
+def test_a_body_sinks_no_deeper_than_a_hand_for_feet_out_of_reach():
+    high = gliding(60, speed=0.0, sink=0.0) + np.array([0, 0.5, 0])
+    planted = plant_feet(high, np.ones((60, 4), bool))
+    sunk = high[:, 0, 1] - planted[:, 0, 1]
+    assert 0.1 < sunk.max() < 0.121

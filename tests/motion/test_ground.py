@@ -7,7 +7,7 @@ import pytest
 from numpy.typing import NDArray
 
 from motion import SMPL22
-from motion.ground import above_floor
+from motion.ground import _turned_up, above_floor
 from webdemo.inference.story.poses import kneeling, lying, upright
 
 Array = NDArray[np.floating]
@@ -55,3 +55,9 @@ def test_only_an_arm_in_the_floor_is_turned(side: str) -> None:
 def test_who_is_above_the_floor_stays(pose: Array) -> None:
     still = np.stack([pose] * 3)
     np.testing.assert_allclose(above_floor(still), still, atol=1e-9)
+
+
+def test_an_elbow_is_turned_no_higher_than_onto_the_floor() -> None:
+    root, end = np.array([[0.0, 0.05, 0.0]]), np.array([[0.4, 0.05, 0.0]])
+    found = _turned_up(root, np.array([[0.2, -0.05, 0.08]]), end)
+    assert found[0, 1] == pytest.approx(0.03, abs=1e-3) and found[0, 2] > 0.08

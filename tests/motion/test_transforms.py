@@ -87,3 +87,11 @@ def test_resampling_short_motion():
     positions, _ = marching(2)
     assert len(resample(positions, 30, 60)) == 3
     assert len(resample(positions[:1], 30, 60)) == 1
+
+
+def test_resampled_motion_runs_through_curves_not_along_chords() -> None:
+    def thrown(fps: float) -> np.ndarray:
+        times = np.arange(int(fps) + 1) / fps
+        return np.stack([times, 2 + 3 * times - 4.9 * times**2, times**3], axis=-1)[:, None]
+
+    assert np.allclose(resample(thrown(10), 10, 30), thrown(30), atol=1e-9)

@@ -278,3 +278,10 @@ def test_settings_from_a_shell(monkeypatch: pytest.MonkeyPatch, capsys: pytest.C
     assert "port = 8123  # port to listen on" in said and "s3cret" not in said
     assert main(["serve", "--host", "0.0.0.0"]) == 2
     assert "there are no accounts" in capsys.readouterr().err
+
+
+def test_a_stranger_with_a_hundred_addresses_has_fewer_guesses() -> None:
+    throttle = Throttle(Clock())
+    with pytest.raises(TooManyTries):
+        for i in range(100):
+            throttle.take("ada", f"10.0.0.{i}")

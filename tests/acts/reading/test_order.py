@@ -1,0 +1,11 @@
+"""The order of acts that a text only puts side by side."""
+
+from acts import Act, lexicon
+from acts.reading.order import coordinated
+
+
+def test_an_act_that_repeats_the_one_before_comes_after_it() -> None:
+    first = Act(id="1", act="wave", agents=("a",))
+    then = Act(id="2", act="wave", agents=("b",))
+    assert coordinated(first, then, lexicon(), repeats=False) == "with"
+    assert coordinated(first, then, lexicon(), repeats=True) == "after"
