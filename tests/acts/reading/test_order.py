@@ -9,3 +9,10 @@ def test_an_act_that_repeats_the_one_before_comes_after_it() -> None:
     then = Act(id="2", act="wave", agents=("b",))
     assert coordinated(first, then, lexicon(), repeats=False) == "with"
     assert coordinated(first, then, lexicon(), repeats=True) == "after"
+
+
+def test_only_two_who_hold_each_other_walk_meanwhile() -> None:
+    both = ("a", "b")
+    then = Act(id="2", act="strut", agents=both)
+    assert coordinated(Act(id="1", act="hold-hands", agents=both), then, lexicon(), repeats=False) == "with"
+    assert coordinated(Act(id="1", act="bow", agents=both), then, lexicon(), repeats=False) == "after"
