@@ -4,8 +4,9 @@ from __future__ import annotations
 
 import pytest
 
+from motion import InputError
 from webdemo.inference.story import split_sentence
-from webdemo.inference.story.scripting import told_by
+from webdemo.inference.story.scripting import MOST_WORDS, _without_then, told_by
 
 ONE = [
     "Two people hug.",
@@ -60,3 +61,15 @@ def test_speech_and_remarks_are_no_acts() -> None:
 
 def test_nothing_is_no_beat() -> None:
     assert split_sentence("  \n ") == ()
+
+
+def test_a_sentence_of_its_own_begins_without_then() -> None:
+    assert _without_then("Then, he waves.") == "He waves."
+    assert _without_then("He waves then.") == "He waves then."
+
+
+def test_stories_longer_than_any_scene_are_refused_before_they_are_read() -> None:
+    with pytest.raises(InputError, match=r"The story has [\d,]+ characters: shorten it to 30,000"):
+        split_sentence("A waves. " * (MOST_WORDS // 9 + 2))
+    with pytest.raises(InputError, match="more than 60 beats"):
+        split_sentence("A bows. Then A jumps. " * 31)
