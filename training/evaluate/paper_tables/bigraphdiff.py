@@ -31,6 +31,9 @@ SMALL = Settings(
 """No regularisers, as in the thesis; the clean motion is predicted, as on the page."""
 STEPS = 25
 GUIDANCE = 1.5
+LARGEST = 5.0
+"""Standard deviations within which a predicted motion is kept: the graph units are cubic in what they see, so that
+samples of a network that has learned for some hundred steps can run away."""
 
 
 def _paper(accuracy: str, fvd: str) -> dict[str, str]:
@@ -90,7 +93,7 @@ def people_of(trainer: Trainer, pair: StrictPair, *, seed: int) -> Array:
     shape = (1, layout.num_tokens(frames), 2 * layout.token_features)
 
     def predict(x: torch.Tensor, t: torch.Tensor) -> torch.Tensor:
-        return model.denoiser.guided(x, t, cond, scale=GUIDANCE)
+        return model.denoiser.guided(x, t, cond, scale=GUIDANCE).clamp(-LARGEST, LARGEST)
 
     if trainer.settings.diffusion:
         noise = torch.randn(shape, generator=torch.Generator().manual_seed(seed))

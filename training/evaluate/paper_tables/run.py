@@ -130,8 +130,8 @@ def _run(options: argparse.Namespace) -> None:
     with replacing(out / "scores.json") as temporary:
         temporary.write_text(json.dumps(shown, indent=1) + "\n")
     page = (
-        f"{table.title}. {table.about} {steps} steps, {options.seeds} trainings of each, "
-        f"{options.classifiers} classifiers.\n\n{markdown(table, found, times)}"
+        f"{table.title}. {table.about} Steps: {steps}; trainings of each network: {options.seeds}; "
+        f"classifiers: {options.classifiers}.\n\n{markdown(table, found, times)}"
     )
     with replacing(out / "table.md") as temporary:
         temporary.write_text(page)
