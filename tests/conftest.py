@@ -9,8 +9,8 @@ import pytest
 from tests.quick import TESTS, listed
 
 QUICK = {TESTS / module for module in listed()}
-LONG = (TESTS / "e2e" / "tour", TESTS / "e2e")
-"""Folders of the modules that take longest, the longest first."""
+LONG = TESTS / "e2e" / "tour"
+"""Folder of the modules that take longest."""
 
 
 def pytest_ignore_collect(collection_path: Path, config: pytest.Config) -> bool | None:
@@ -25,9 +25,7 @@ def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
 
     Where several processes share the tests, short modules at the end keep all of them busy to the last.
     """
-    items.sort(
-        key=lambda item: next((n for n, long in enumerate(LONG) if long in item.path.parents), len(LONG))
-    )
+    items.sort(key=lambda item: LONG not in item.path.parents)
     for item in items:
         if item.path in QUICK:
             item.add_marker(pytest.mark.quick)

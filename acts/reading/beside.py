@@ -66,7 +66,8 @@ def formations(event: Event, names: Iterable[str]) -> Iterator[Event]:
     for name in dict.fromkeys(names):
         verb, _, noun = name.partition(" ")
         verb = event.lemma if event.lemma in _OWN.get(noun, ()) else verb
-        formed = Event(verb, who, first=event.first, last=event.last)
+        ongoing = event.ongoing and verb == event.lemma
+        formed = Event(verb, who, first=event.first, last=event.last, ongoing=ongoing)
         if verb == "follow":
             formed.subject, formed.object = Ref("person", "b"), Ref("person", "a")
         elif noun == "each":

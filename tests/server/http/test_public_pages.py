@@ -84,7 +84,7 @@ def test_only_the_player_alone_may_be_framed_and_only_by_the_sites_of_the_settin
 def test_the_files_of_public_pages_are_open_and_nothing_beside_them(lab: Target, runs: list[str]) -> None:
     main = lab.ask("stranger", "GET", "/shown/player/main.js")
     assert main.status_code == 200 and "max-age" in main.headers["cache-control"]
-    assert lab.ask("stranger", "GET", "/shown/bodies/a.json").status_code == 200
+    assert lab.ask("stranger", "GET", "/shown/bodies/man.json").status_code == 200
     assert lab.ask("stranger", "GET", "/shown/share/page.html").status_code == 404
     assert lab.ask("stranger", "GET", "/gradio_api/file=static/player/main.js").status_code == 401
 
