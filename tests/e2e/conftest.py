@@ -37,12 +37,6 @@ FLAGS = [
     "--disable-sync",
 ]
 
-CALM = """
-  window.requestAnimationFrame = (draw) => setTimeout(() => draw(performance.now()), 100);
-  window.cancelAnimationFrame = clearTimeout;
-"""
-"""Ten pictures a second at most: a motion that plays beside what a test does takes most of a core otherwise."""
-
 LONGEST = 900
 """Seconds that a test with a browser may take on a busy machine; a test without one has 300."""
 
@@ -101,16 +95,14 @@ class Tabs:
         self.foreign: list[str] = []
 
     def open(
-        self, url: str, *, width: int = 1280, height: int = 800, before: Callable | None = None, calm: bool = True,
-        **options,
-    ):  # fmt: skip
+        self, url: str, *, width: int = 1280, height: int = 800, before: Callable | None = None, **options
+    ):
         """A tab at an address.
 
         Args:
             url: the address.
             width, height: of the window in pixels.
             before: is called with the tab before it loads.
-            calm: whether the page draws few pictures a second, for tests that do not look at how it moves.
             options: make a browser profile of its own.
         """
         context = self.chromium.new_context(**options) if options else self.shared_context
@@ -118,8 +110,6 @@ class Tabs:
         page.set_viewport_size({"width": width, "height": height})
         self.opened.append(context if options else page)
         self.watch(page)
-        if calm:
-            page.add_init_script(CALM)
         if before:
             before(page)
         page.goto(url)
@@ -319,7 +309,7 @@ def player(open_kept, kept_tabs: Tabs, plain_url):
 
     def open_(button: str | None = "load", *, theme: str = "light", width: int = 1280, height: int = 800):
         if not kept_tabs.opened:
-            open_kept(plain_url, calm=False)
+            open_kept(plain_url)
             _opened(kept_tabs.opened[0], None)
         (page,) = kept_tabs.opened
         page.set_viewport_size({"width": width, "height": height})
@@ -334,7 +324,7 @@ def player_in_page(open_page, player_url):
     """The same as ``player`` in a Gradio page of its own."""
 
     def open_(button: str | None = "load", *, theme: str = "light", **options):
-        return _opened(open_page(f"{player_url}?__theme={theme}", calm=False, **options), button)
+        return _opened(open_page(f"{player_url}?__theme={theme}", **options), button)
 
     return open_
 

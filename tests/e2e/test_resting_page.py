@@ -29,7 +29,6 @@ def rested(server: SimpleNamespace, open_page: Callable[..., Page]) -> Page:
         open_page(
             server.url,
             before=lambda tab: tab.add_init_script(COUNT),
-            calm=False,
             reduced_motion="no-preference",
         )
     )
