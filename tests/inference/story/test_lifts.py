@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from motion import SMPL22
+from motion.metrics.naturalness import limb_depth
 from tests.inference.story.staged_words import beginning, lift, moves
 from webdemo.inference.story.lifts import Carry, Lift, carried
 
@@ -71,6 +72,14 @@ def test_who_is_carried_is_off_the_floor_in_reach_of_both_hands(carry: Carry, an
     still, other = carried(carry, np.zeros(2), 0.0)
     np.testing.assert_allclose(np.sort(pose[:, 1]), np.sort(still[:, 1]), atol=1e-9)
     assert np.linalg.norm(pose[0] - carrier[0]) == pytest.approx(np.linalg.norm(still[0] - other[0]))
+
+
+def test_the_legs_of_somebody_on_the_back_are_beside_the_carrier_and_not_inside() -> None:
+    pose, carrier = carried(Carry.BACK, np.zeros(2), 0.4)
+    arms = [SMPL22.index(f"{side}_{joint}") for side in ("left", "right") for joint in ("elbow", "wrist")]
+    pose[arms], carrier[arms] = [0.0, 9.0, 0.0], [0.0, 19.0, 0.0]  # arms are bent later
+    assert limb_depth(pose[None], carrier[None])[0] < 0.02
+    assert limb_depth(carrier[None], pose[None])[0] < 0.02
 
 
 def test_who_is_carried_from_the_start_is_behind_and_who_is_lifted_before_the_other() -> None:

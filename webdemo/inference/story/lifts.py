@@ -68,10 +68,10 @@ _LEANS = {Carry.UP: -0.08, Carry.ARMS: -0.1, Carry.BACK: 0.3, Carry.DRAGS: 1.0}
 _LEGS = {
     Carry.UP: (-0.15, 0.0, 0.35),
     Carry.ARMS: (-0.9, 0.0, 1.2),
-    Carry.BACK: (-1.25, 0.4, 1.3),
+    Carry.BACK: (-1.25, 0.6, 1.3),
     Carry.DRAGS: (-0.9, 0.0, 0.1),
 }
-"""Radians of the hips forward (negative) and out, and of the knees, of the person carried."""
+"""Radians of the thighs forward (negative) and out, about the upright, and of the knees, of the person carried."""
 _SIDES = (("left", 1.0), ("right", -1.0))
 
 
@@ -111,8 +111,8 @@ def carried(carry: Carry, place: Array, angle: float) -> tuple[Array, Array]:
         hands = {s: theirs(f"{o}_ankle") for s, o in (("left", "right"), ("right", "left"))}
         holds = {s: theirs(f"{s}_shoulder") + 0.45 * ahead - 0.04 * up for s, _ in _SIDES}
     else:
-        hands = {s: 0.7 * theirs(f"{s}_knee") + 0.3 * theirs(f"{s}_hip") - 0.04 * up for s, _ in _SIDES}
-        holds = {s: own("spine3") + 0.14 * ahead + sign * 0.08 * left + 0.08 * up for s, sign in _SIDES}
+        hands = {s: 0.7 * theirs(f"{s}_knee") + 0.3 * theirs(f"{s}_hip") - 0.1 * up for s, _ in _SIDES}
+        holds = {s: own("spine3") + 0.16 * ahead + sign * 0.06 * left - 0.02 * up for s, sign in _SIDES}
     for side, _ in _SIDES:
         wrist = SMPL22.index(f"{side}_wrist")
         carrier[wrist], pose[wrist] = hands[side], holds[side]
@@ -133,7 +133,7 @@ def _pose(carry: Carry) -> Array:
         turns[:, 0] = np.array([[0.0, 0.85, -0.53], [0.0, 0.53, 0.85], [1.0, 0.0, 0.0]])
         turns[:, SMPL22.index("spine1")] = about(0, 0.2)
     for side, sign in _SIDES:
-        turns[:, SMPL22.index(f"{side}_hip")] = about(2, sign * out) @ about(0, hip)
+        turns[:, SMPL22.index(f"{side}_hip")] = heading_matrix(sign * out) @ about(0, hip)
         turns[:, SMPL22.index(f"{side}_knee")] = about(0, knee)
         turns[:, SMPL22.index(f"{side}_shoulder")] = about(2, -sign * 1.2)
     return forward_kinematics(turns, np.zeros((1, 3)))[0]
