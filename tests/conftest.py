@@ -9,8 +9,6 @@ import pytest
 from tests.quick import TESTS, listed
 
 QUICK = {TESTS / module for module in listed()}
-LONG = TESTS / "e2e" / "tour"
-"""Folder of the modules that take longest."""
 
 
 def pytest_ignore_collect(collection_path: Path, config: pytest.Config) -> bool | None:
@@ -21,11 +19,7 @@ def pytest_ignore_collect(collection_path: Path, config: pytest.Config) -> bool 
 
 
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
-    """Marks the tests of the modules in ``tests/quick.txt``, and puts long modules first.
-
-    Where several processes share the tests, short modules at the end keep all of them busy to the last.
-    """
-    items.sort(key=lambda item: LONG not in item.path.parents)
+    """Marks the tests of the modules in ``tests/quick.txt``."""
     for item in items:
         if item.path in QUICK:
             item.add_marker(pytest.mark.quick)
