@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import replace
 from functools import lru_cache
 from pathlib import Path
@@ -13,11 +13,12 @@ from acts.plan import MOST_ACTS, Act, Plan, Relation, Span, Unread
 from acts.shapes import Go
 from motion import InputError
 
-from . import beside, order
+from . import beside
 from .clauses import spans
 from .events import Reader
 from .language import other_language, unknown
 from .matching import Found, matcher
+from .relations import related
 from .spelling import Speller
 from .syntax import parse
 from .vocabulary import vocabulary
@@ -108,7 +109,9 @@ class _Planner:
             if number in self._taken or len(self._acts) == MOST_ACTS:
                 continue
             self._event(number, event)
-        self._order()
+        self._acts = related(
+            self._acts, self._events, self._of, self._beside, known=self._known, repeated=self._answers
+        )
         self._unknown_words()
         people = self._reader.cast.people()
         things = dict.fromkeys(act.thing for act in self._acts if act.thing)
@@ -374,60 +377,3 @@ class _Planner:
         told = {who for act in self._acts for who in act.agents}
         ongoing = event.ongoing or event.joint == "while"
         return ongoing and event.direction != "down" and not told & set(agents)
-
-    def _waits(self, act: Act) -> bool:
-        return {shape.do for shape in self._known.entries[act.act].stage} == {"stay"}
-
-    def _last_after(self, first: str, until: str, found: Mapping[str, Sequence[Relation]]) -> str:
-        """The last of the acts that follow each other from ``first`` on, before the act ``until`` in the text."""
-        for act in self._acts:
-            if act.id == until:
-                break
-            follows = any(r.kind == "after" and r.act == first for r in found[act.id])
-            first = act.id if follows and not self._waits(act) else first
-        return first
-
-    def _order(self) -> None:
-        """Gives the acts their relations, each to one that stands before it or above it in the syntax."""
-        number_of = {name: i for i, name in self._of.items()}
-        found: dict[str, list[Relation]] = {act.id: [] for act in self._acts}
-        acts = {act.id: act for act in self._acts}
-        for act in self._acts:
-            if act.id in self._beside:
-                found[act.id].append(self._beside[act.id])
-                continue
-            event = self._events[number_of[act.id]]
-            kind, beside, seen = event.joint, event.beside, set[int]()
-            while beside is not None and beside not in self._of and beside not in seen:  # passed over
-                seen.add(beside)
-                passed = self._events[beside]
-                kind = passed.joint if kind in ("comp", "") else kind
-                beside = passed.beside
-            if beside is None or beside not in self._of or self._of[beside] == act.id:
-                continue
-            other = acts[self._of[beside]]
-            told, kind = kind == "then", "after" if kind == "then" else kind
-            if kind == "after" and (other.already or self._waits(other)):
-                above = next((r.act for r in found[other.id] if r.kind == "while"), None)
-                # What follows "A talks while B waits" follows the talk.
-                other = acts[self._last_after(above, act.id, found)] if above else other
-            if other.id == act.id:  # two clauses that the parser hangs on each other
-                continue
-            if kind == "conj":
-                kind = order.coordinated(other, act, self._known, repeats=act.id in self._answers)
-            if kind == "after" and not told and order.answers_blow(other, act, self._known):
-                kind = "with"
-            if kind == "after":
-                act = acts[act.id] = order.turned_to(other, act, self._known)
-            apart = not set(other.agents) & set(act.agents)
-            waits = self._waits(act) and not told  # "then she waits" is said of what comes next
-            if kind == "after" and apart and (other.already or act.already or waits):
-                kind = "while"  # what goes on, goes on
-            if kind in ("main-after", "main-until"):
-                found[other.id].append(
-                    Relation(kind="after" if kind == "main-after" else "until", act=act.id)
-                )
-            else:
-                kind = kind if kind in ("after", "with", "while", "before", "until") else "with"
-                found[act.id].append(Relation(kind=kind, act=other.id))  # type: ignore[arg-type]
-        self._acts = [acts[act.id].model_copy(update={"order": tuple(found[act.id])}) for act in self._acts]
