@@ -101,7 +101,7 @@ def duet_with_things() -> Duet:
         Thing("ball", shape("ball"), places, turns),
     )
     grips = (Grip(0, "right", "fist", 30, 120), Grip(1, "left", "point", 91, 140))
-    return replace(duet, things=things, grips=grips)
+    return replace(duet, things=things, grips=grips, looks=("old-woman", "man"))
 
 
 def apart_duet(seconds: float = 4.0) -> Duet:

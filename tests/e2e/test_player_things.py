@@ -10,7 +10,6 @@ import pytest
 
 from motion.body import load_body, skin
 from motion.hands import angles
-from motion.looks import UNSAID
 
 from .playing import pause, press, until
 
@@ -43,7 +42,7 @@ def test_hands_take_the_shapes_that_python_gives_them(player):
     page.locator(".pdd-range").fill("93")
     until(page, "window.__pasdedeux.frame === 93 && window.__pasdedeux.loops === 0")
     duet = runpy.run_path(str(Path(__file__).with_name("harness.py")))["duet_with_things"]()
-    for person, name in enumerate(UNSAID):
+    for person, name in enumerate(duet.looks):
         drawn = page.evaluate(f"[...window.__pasdedeux.player.panes[0].figures[{person}].vertices]")
         drawn = np.reshape(drawn, (-1, 3))[:, [1, 2, 0]]
         body, positions = load_body(name), duet.positions[person][93:94]

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -99,6 +100,11 @@ def test_contacts_are_those_of_the_metrics():
     found = sample_payload(shaking)["contacts"]
     assert found == [contact.to_dict() for contact in contact_events(shaking)]
     assert [(c["start"], c["stop"]) for c in found] == [(20, 40)]
+
+
+def test_looks_are_sent_where_the_words_say_something():
+    assert "looks" not in sample_payload(duet())
+    assert sample_payload(replace(duet(), looks=("woman", "old-man")))["looks"] == ["woman", "old-man"]
 
 
 def test_ghost_and_past():

@@ -392,3 +392,9 @@ def test_what_the_stage_cannot_do_is_said() -> None:
     assert read("The fox chases the hen.").notes == (
         "Only people can be shown: animals that act are people here.",
     )
+
+
+def test_a_formation_goes_on_as_its_verb_does() -> None:
+    """Who sits back to back when the text begins has not stood before."""
+    assert [act.already for act in read("Two people sit back to back on the floor.").acts] == [True]
+    assert [act.already for act in read("They sit down back to back.").acts] == [False]
