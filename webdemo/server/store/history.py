@@ -27,6 +27,7 @@ from webdemo.server.audit import audit, fingerprint
 from webdemo.ui.history import Entry, Opened
 
 from .database import Database, Link, Note, Run, sentence_of, sentences
+from .entries import entry_of, fields_of, is_removed
 from .intake import IMPORT, listed, node_of
 from .ledger import DAY, LabClock, locked
 from .storage import ROW_BYTES, RUN_BYTES, Storage, forget, weight_of
@@ -258,8 +259,8 @@ class History:
             if run is None or not owner or run.owner != owner:
                 link = session.get(Link, key)
                 run = link.run if link is not None and link.until > time.time() else None
-                audit("link-opened", ok=run is not None and not _removed(run), link=fingerprint(key))
-            if run is None or _removed(run):
+                audit("link-opened", ok=run is not None and not is_removed(run), link=fingerprint(key))
+            if run is None or is_removed(run):
                 raise InputError(_MISSING)
             entry = entry_of(run)
             outcome = fields_of(run.outcome)
@@ -334,7 +335,7 @@ class History:
 
     def _own(self, session: Session, run: str, owner: str) -> Run:
         found = session.get(Run, run) if _KEY.match(run) else None
-        if found is None or not owner or found.owner != owner or _removed(found):
+        if found is None or not owner or found.owner != owner or is_removed(found):
             raise InputError("There is no such run in your history: reload the page.")
         return found
 
@@ -378,27 +379,3 @@ class History:
             }
             return PredictResult(**whole, truth=truth, past_frames=kept["past_frames"], **curves)
         return Result(**whole)
-
-
-def _removed(run: Run) -> bool:
-    return run.note is not None and run.note.removed is not None
-
-
-def fields_of(text: str) -> dict[str, Any]:
-    """A column's JSON; empty if it is damaged."""
-    try:
-        found = json.loads(text or "{}")
-    except ValueError:
-        return {}
-    return found if isinstance(found, dict) else {}
-
-
-def entry_of(run: Run) -> Entry:
-    """A row as the page takes it."""
-    now, note = time.time(), run.note or Note(title="", tags="", text="", frame=None, thumbnail="")
-    return Entry(
-        id=run.id, kind=run.kind, title=note.title or run.title, state=run.state, message=run.message,
-        created=run.created, request=fields_of(run.request), favourite=run.favourite,
-        links=sum(link.until > now for link in run.links), tags=tuple(note.tags.split()), note=note.text,
-        frame=note.frame, thumbnail=note.thumbnail,
-    )  # fmt: skip

@@ -24,7 +24,8 @@ from webdemo.ui.visitor import Visitor
 from webdemo.view.thumbnail import thumbnail
 
 from .database import Note, Run, sentences
-from .history import History, entry_of, fields_of
+from .entries import entry_of, fields_of
+from .history import History
 from .intake import announce, intake
 from .kept_settings import MOST_BESIDE
 from .ledger import locked

@@ -18,7 +18,8 @@ from webdemo.ui.history import Entry, Opened
 from webdemo.ui.sharing import PublicPage
 
 from .database import Database, Note, Published, PublishedRun, Run, sentences
-from .history import History, entry_of
+from .entries import entry_of, is_removed
+from .history import History
 from .ledger import DAY
 
 MOST_RUNS = 60
@@ -178,7 +179,7 @@ class Publishing:
     def shown(self, key: str) -> Shown:
         """A page by its key; raises one sentence for none, an ended one, and one without a result left."""
         page = self._found(key, told=True)
-        entries = {each.place: entry_of(each.run) for each in page.runs if not _removed(each.run)}
+        entries = {each.place: entry_of(each.run) for each in page.runs if not is_removed(each.run)}
         if not entries:
             raise InputError(_ENDED)
         return Shown(page.title, page.until, entries)
@@ -198,7 +199,7 @@ class Publishing:
     @staticmethod
     def _run(page: Published, place: int) -> Run:
         run = next((each.run for each in page.runs if each.place == place), None)
-        if run is None or _removed(run):
+        if run is None or is_removed(run):
             raise InputError(_ENDED)
         return run
 
@@ -222,10 +223,6 @@ class Publishing:
         if self.history.clock.look():
             with self.database.session.begin() as session:
                 session.execute(delete(Published).where(Published.until < time.time()))
-
-
-def _removed(run: Run) -> bool:
-    return run.note is not None and run.note.removed is not None
 
 
 def _page(page: Published, runs: int) -> PublicPage:
