@@ -33,7 +33,7 @@ def shared(tmp_path_factory: pytest.TempPathFactory) -> Iterator[TestClient]:
     """A server with the accounts of ada and eve."""
     folder = tmp_path_factory.mktemp("shared")
     with pytest.MonkeyPatch.context() as patch:
-        patch.setitem(accounts._COST, "n", 2**4)
+        patch.setattr(accounts, "COST", 2**4)
         for name in ("ada", "eve"):
             Users(folder / "users").add(name, f"password of {name}")
         settings = settings_for(
@@ -49,7 +49,7 @@ def pair(tmp_path_factory: pytest.TempPathFactory) -> Iterator[tuple[TestClient,
     two runs; a step takes 0.1 s."""
     folder = tmp_path_factory.mktemp("pair")
     with pytest.MonkeyPatch.context() as patch:
-        patch.setitem(accounts._COST, "n", 2**4)
+        patch.setattr(accounts, "COST", 2**4)
         patch.setattr(app, "SHARE_EVERY", 0.05)
         for name in ("ada", "eve"):
             Users(folder / "users").add(name, f"password of {name}")

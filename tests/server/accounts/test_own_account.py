@@ -17,7 +17,7 @@ from webdemo.server.accounts.users import Users
 def lab(tmp_path_factory: pytest.TempPathFactory) -> Iterator[TestClient]:
     folder: Path = tmp_path_factory.mktemp("account")
     with pytest.MonkeyPatch.context() as patch:
-        patch.setitem(accounts._COST, "n", 2**4)
+        patch.setattr(accounts, "COST", 2**4)
         for name in ("ada", "eve"):
             Users(folder / "users").add(name, f"password of {name}")
         settings = settings_for(

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import base64
+import hashlib
 import io
 import json
 import os
@@ -36,7 +38,7 @@ class Clock:
 
 @pytest.fixture
 def users(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Users:
-    monkeypatch.setitem(accounts._COST, "n", 2**4)  # the real cost is there to be slow
+    monkeypatch.setattr(accounts, "COST", 2**4)  # the real cost is there to be slow
     users = Users(tmp_path / "users")
     users.add("ada", "correct horse")
     return users
@@ -50,6 +52,25 @@ def test_passwords_are_kept_as_salted_hashes(users: Users) -> None:
     assert stat.S_IMODE(users.path.stat().st_mode) == 0o600
     assert users.knows("ada", "correct horse") and not users.knows("ada", "wrong horse")
     assert not users.knows("nobody", "nobody") and not users.knows("", "")
+
+
+def test_passwords_outlive_a_change_of_what_a_try_costs(
+    users: Users, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(accounts, "COST", 2**5)
+    users.add("eve", "battery staple")
+    for reader in (users, Users(users.path)):
+        assert reader.knows("ada", "correct horse") and reader.knows("eve", "battery staple")
+
+
+def test_lines_without_a_cost_are_read_and_impossible_costs_refused(users: Users) -> None:
+    salt, digest = b"salt", hashlib.scrypt(b"correct horse", salt=b"salt", n=2**14, r=8, p=1, dklen=32)
+    line = ":".join(base64.b64encode(part).decode() for part in (salt, digest))
+    users.path.write_text(f"ada:{line}\n")
+    assert users.knows("ada", "correct horse") and not users.knows("ada", "wrong horse")
+    users.path.write_text(f"ada:{2**40}:{line}\n")
+    with pytest.raises(InputError, match="damaged"):
+        users.knows("ada", "correct horse")
 
 
 def test_changes_are_seen_by_who_reads(users: Users) -> None:

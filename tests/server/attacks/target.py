@@ -15,9 +15,7 @@ from types import TracebackType
 from typing import Any
 
 import httpx
-import pytest
 
-from webdemo.server.accounts import users
 from webdemo.server.accounts.users import Users
 
 from ..lab import ROOT
@@ -46,10 +44,8 @@ class Target:
         given: dict[str, Any] = {"node": "target", "free_megabytes": 0, "rate": 100_000, "grace_seconds": 1}
         if accounts:
             given |= {"users": folder / "users", "host": "0.0.0.0", "hosts": '["127.0.0.1"]'}
-            with pytest.MonkeyPatch.context() as patch:
-                patch.setitem(users._COST, "n", 2**14)  # other tests make it cheaper in here
-                for name in ("ada", "eve"):
-                    Users(folder / "users").add(name, f"password of {name}")
+            for name in ("ada", "eve"):
+                Users(folder / "users").add(name, f"password of {name}")
         else:
             given |= {"open": 1}
         self.env = {f"PASDEDEUX_{name.upper()}": str(value) for name, value in {**given, **settings}.items()}

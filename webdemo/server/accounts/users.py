@@ -11,7 +11,7 @@ import secrets
 import threading
 import time
 from pathlib import Path
-from typing import Any, cast
+from typing import Any, NamedTuple, cast
 
 from sqlalchemy import CursorResult, delete
 
@@ -29,17 +29,36 @@ LONGEST = 256
 OUTSIDE = "outside"
 """In place of a password's fingerprint, for people who sign in elsewhere; it ends once an account has their name."""
 SUSPENDED = "This account is suspended: ask the person who runs this server."
-_COST = {"n": 2**14, "r": 8, "p": 1}
-"""scrypt's cost: 16 MB and about 50 ms a try."""
+COST = 2**14
+"""scrypt's n for new passwords: 16 MB and about 50 ms a try. Each line says its own, so this may change."""
+_COSTS = {2**power for power in range(4, 18)}
 _HEADER = (
-    "# Accounts of Pas de Deux: a name, then scrypt's salt and hash. `python -m webdemo user` edits it.\n"
+    "# Accounts of Pas de Deux: a name, then scrypt's n, salt and hash. `python -m webdemo user` edits it.\n"
 )
+
+
+class _Password(NamedTuple):
+    """What is stored of a password: scrypt's n, its salt and its hash."""
+
+    cost: int
+    salt: bytes
+    digest: bytes
+
+    @classmethod
+    def of(cls, password: str) -> _Password:
+        salt = secrets.token_bytes(16)
+        return cls(COST, salt, _scrypt(password.encode(), COST, salt, 32))
+
+    def fits(self, password: str) -> bool:
+        """True if it is this password."""
+        given = password[: LONGEST + 1].encode(errors="replace")
+        return hmac.compare_digest(_scrypt(given, self.cost, self.salt, len(self.digest)), self.digest)
 
 
 class Users:
     """The file of accounts, read anew when it changes.
 
-    One line a person: ``name:salt:hash``, salt and hash in base64.
+    One line a person: ``name:n:salt:hash``, salt and hash in base64. Older lines have no n, and mean 2**14.
 
     Args:
         path: the file.
@@ -48,10 +67,10 @@ class Users:
     def __init__(self, path: Path) -> None:
         self.path = path
         self._read_at: tuple[int, int] | None = None
-        self._known: dict[str, tuple[bytes, bytes]] = {}
+        self._known: dict[str, _Password] = {}
         self._lock = threading.Lock()
         self._hashing = threading.Semaphore(2)  # so that guesses cannot take all memory and cores
-        self._nobody = _hashed("nobody")
+        self._nobody = _Password.of("nobody")
 
     @property
     def names(self) -> list[str]:
@@ -63,7 +82,7 @@ class Users:
         self.check(name, password)
         entries = self._entries() if self.path.exists() else {}
         new = name not in entries
-        self._write(entries | {name: _hashed(password)})
+        self._write(entries | {name: _Password.of(password)})
         return new
 
     def check(self, name: str, password: str) -> None:
@@ -85,20 +104,16 @@ class Users:
     def knows(self, name: str, password: str) -> bool:
         """True if this is the person's password; takes as long for a name that is not there."""
         entries = self._entries()
-        known = name in entries
-        salt, digest = entries.get(name, self._nobody)
         with self._hashing:
-            found = hashlib.scrypt(
-                password[: LONGEST + 1].encode(errors="replace"), salt=salt, dklen=len(digest), **_COST
-            )
-        return hmac.compare_digest(found, digest) and known
+            fits = entries.get(name, self._nobody).fits(password)
+        return fits and name in entries
 
     def entry(self, name: str) -> str | None:
         """A fingerprint of a person's password, which changes with it; None if there is no such person."""
         found = self._entries().get(name)
-        return None if found is None else hashlib.sha256(b"".join(found)).hexdigest()
+        return None if found is None else hashlib.sha256(found.salt + found.digest).hexdigest()
 
-    def _entries(self) -> dict[str, tuple[bytes, bytes]]:
+    def _entries(self) -> dict[str, _Password]:
         try:
             status = self.path.stat()
             with self._lock:
@@ -113,27 +128,34 @@ class Users:
                 "make it with `python -m webdemo user add NAME`."
             ) from None
 
-    def _write(self, entries: dict[str, tuple[bytes, bytes]]) -> None:
+    def _write(self, entries: dict[str, _Password]) -> None:
         lines = [
-            ":".join([name, *(base64.b64encode(part).decode() for part in entry)])
-            for name, entry in sorted(entries.items())
+            f"{name}:{known.cost}:{_base64(known.salt)}:{_base64(known.digest)}"
+            for name, known in sorted(entries.items())
         ]
         with replacing(self.path) as temporary:
             temporary.write_text(_HEADER + "".join(f"{line}\n" for line in lines), encoding="utf-8")
         os.chmod(self.path, 0o600)
 
 
-def _hashed(password: str) -> tuple[bytes, bytes]:
-    salt = secrets.token_bytes(16)
-    return salt, hashlib.scrypt(password.encode(), salt=salt, dklen=32, **_COST)
+def _scrypt(password: bytes, cost: int, salt: bytes, length: int) -> bytes:
+    return hashlib.scrypt(password, salt=salt, n=cost, r=8, p=1, maxmem=2**20 + 1024 * cost, dklen=length)
 
 
-def _parse(text: str) -> dict[str, tuple[bytes, bytes]]:
+def _base64(part: bytes) -> str:
+    return base64.b64encode(part).decode()
+
+
+def _parse(text: str) -> dict[str, _Password]:
     entries = {}
     for line in text.splitlines():
         if line.strip() and not line.startswith("#"):
-            name, salt, digest = line.strip().split(":")
-            entries[name] = (base64.b64decode(salt, validate=True), base64.b64decode(digest, validate=True))
+            name, *costs, salt, digest = line.strip().split(":")
+            (cost,) = costs or [str(2**14)]
+            if int(cost) not in _COSTS:
+                raise ValueError(cost)
+            parts = (base64.b64decode(part, validate=True) for part in (salt, digest))
+            entries[name] = _Password(int(cost), *parts)
     return entries
 
 
