@@ -38,7 +38,7 @@ _HEADER = (
 
 
 class _Password(NamedTuple):
-    """What is stored of a password: scrypt's n, its salt and its hash."""
+    """The stored form of a password: scrypt's n, its salt and its hash."""
 
     cost: int
     salt: bytes
