@@ -78,6 +78,26 @@ def test_a_run_is_ended_and_its_person_told(lab: Target) -> None:
     assert (line["person"], line["ok"], line["id"]) == ("eve", True, key)
 
 
+def test_the_shell_ends_a_run_and_shows_health(lab: Target) -> None:
+    said: list[str] = []
+    long = [*FIELDS[:5], 300, *FIELDS[6:]]
+    thread = threading.Thread(target=lambda: said.append(lab.call("ada", "generate", long)))
+    thread.start()
+    until = time.monotonic() + 30
+    while not (jobs := shell(lab, "jobs")["jobs"]):
+        assert time.monotonic() < until
+    assert (jobs[0]["person"], jobs[0]["state"]) == ("user ada", "runs")
+    assert shell(lab, "end", jobs[0]["id"])["done"] == "end"
+    thread.join(timeout=60)
+    assert "The person who runs this server ended this" in said[0]
+    line = next(line for line in audited(lab.data, 100) if line["act"] == "admin-end-run")
+    assert (line["person"], line["ok"], line["id"]) == ("(shell)", True, jobs[0]["id"])
+    with pytest.raises(AssertionError, match="There is no run or live stream"):
+        shell(lab, "end", jobs[0]["id"])
+    (state,) = shell(lab, "health")["processes"].values()
+    assert state["health"]["checks"]["database"] == "ok" and state["queue"] == {"waiting": 0, "running": 0}
+
+
 def test_a_person_at_their_quota_is_shown_and_refused(lab: Target) -> None:
     assert act(lab, act="room", name="ada", megabytes="1").status_code == 303
     assert shell(lab, "list")["people"][0]["room"] == 1.0

@@ -4,15 +4,18 @@ from __future__ import annotations
 
 import argparse
 from dataclasses import asdict
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from motion import InputError
+
+if TYPE_CHECKING:
+    from webdemo.server.activity import Activity
 
 
 def add_admin(commands: Any) -> None:
     """Adds ``admin`` to the shell's commands."""
     parser = commands.add_parser(
-        "admin", help="people's use, rooms, roles; suspend, sign out, delete, announce"
+        "admin", help="people's use, rooms, roles, runs, health; suspend, sign out, delete, end, announce"
     )
     parser.add_argument(
         "action",
@@ -28,9 +31,16 @@ def add_admin(commands: Any) -> None:
             "delete",
             "announce",
             "audit",
+            "jobs",
+            "end",
+            "health",
         ),
     )
-    parser.add_argument("name", nargs="?", help="of the account; with announce, the line (empty: none)")
+    parser.add_argument(
+        "name",
+        nargs="?",
+        help="of the account; with announce: the line (empty: none); with end: the id",
+    )
     parser.add_argument(
         "--megabytes", type=float, help="with room and invite: the person's room; without it, everybody's"
     )
@@ -41,6 +51,7 @@ def add_admin(commands: Any) -> None:
 def admin(options: argparse.Namespace) -> dict[str, Any]:
     """Does one act, audited, in the lab that the settings name; a running server heeds it at once."""
     from webdemo.server.accounts.users import Users
+    from webdemo.server.activity import Activity
     from webdemo.server.audit import audited, audited_shell
     from webdemo.server.lab import administration_of
     from webdemo.server.settings import read_settings
@@ -51,11 +62,15 @@ def admin(options: argparse.Namespace) -> dict[str, Any]:
         raise InputError("There are no accounts: set PASDEDEUX_USERS to their file.")
     if action == "audit":
         return {"lines": audited(settings.data, 100)}
-    if action not in ("list", "announce") and not name:
-        raise InputError(f"Name the account: `admin {action} NAME`.")
+    if action not in ("list", "announce", "jobs", "health") and not name:
+        raise InputError(
+            "Give the id: `admin end ID`." if action == "end" else f"Name the account: `admin {action} NAME`."
+        )
     database = Database(settings.database_url)
     try:
         with sentences(), audited_shell(settings):
+            if action in ("jobs", "end", "health"):
+                return _activity(Activity(database), action, name)
             acts = administration_of(settings, database, Users(settings.users) if settings.users else None)
             if action == "list":
                 return {"people": [asdict(row) for row in acts.rows()], "announced": acts.people.announced()}
@@ -77,3 +92,16 @@ def admin(options: argparse.Namespace) -> dict[str, Any]:
     finally:
         database.close()
     return {"done": action, "name": name}
+
+
+def _activity(activity: Activity, action: str, key: str) -> dict[str, Any]:
+    """What the processes of a running server do, how they are, or the end of a run or a stream."""
+    if action == "end":
+        activity.end(key)
+        return {"done": action, "id": key}
+    if action == "jobs":
+        return {"jobs": [asdict(item) for item in activity.items()]}
+    states = activity.states()
+    return {
+        "processes": {node: {k: v for k, v in state.items() if k != "work"} for node, state in states.items()}
+    }

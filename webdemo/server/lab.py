@@ -10,12 +10,14 @@ from functools import partial
 from typing import Any
 
 from webdemo.server.accounts.users import SignIns, Users
-from webdemo.server.admin import Administration
+from webdemo.server.activity import ENDED, Activity, work_of
+from webdemo.server.admin import Administration, versions
 from webdemo.server.cluster.instance_lock import InstanceLock
 from webdemo.server.http.guard import OpenAnswers
 from webdemo.server.http.health import Health, check_disk
 from webdemo.server.http.metrics import Figures
 from webdemo.server.live.streams import Streams
+from webdemo.server.logs import LAST_ERRORS
 from webdemo.server.queue.places import Places
 from webdemo.server.queue.queue import FairQueue
 from webdemo.server.queue.shared_engine import SharedEngine
@@ -57,9 +59,15 @@ class Lab:
     answers: OpenAnswers
     streams: Streams
     people: People
+    activity: Activity
     administration: Administration | None = None
     sign_ins: SignIns | None = None
     node: InstanceLock | None = None
+
+    @property
+    def name(self) -> str:
+        """This process's name."""
+        return self.settings.node if self.node is None else self.node.name
 
     @property
     def busy(self) -> bool:
@@ -70,6 +78,16 @@ class Lab:
         """Exchanges the work done for people with the other processes."""
         self.queue.charge_elsewhere(self.shares.exchange())
         self.people.write()
+        self.activity.heed(self.end)
+        self.activity.publish(
+            self.name, work_of(self.name, self.queue, self.streams), health=self.health.lately(),
+            queue={"waiting": self.queue.waiting, "running": self.queue.running}, streams=self.streams.count,
+            versions=versions(), errors=list(LAST_ERRORS.lines),
+        )  # fmt: skip
+
+    def end(self, key: str) -> bool:
+        """Ends a run or a live stream of this process; its person is told so. False if it has none of that id."""
+        return self.queue.end(key, ENDED) or self.streams.end(key, ENDED)
 
     def stop(self) -> None:
         """Accepts no more runs and waits for running ones, at most for the grace period of the settings."""
@@ -82,6 +100,7 @@ class Lab:
             time.sleep(0.05)
         if left:
             log.warning("%d runs were stopped before their end.", left)
+        self.activity.leave(self.name)
 
 
 def make_lab(
@@ -133,7 +152,7 @@ def make_lab(
         publishing=Publishing(history, days=settings.publish_days),
         studies=studies_of(settings, database, storage), storage=storage,
         places=Places(database, name, settings.running + settings.waiting), shares=shares, health=health,
-        figures=figures, answers=OpenAnswers(), streams=streams, node=node, people=people,
+        figures=figures, answers=OpenAnswers(), streams=streams, node=node, people=people, activity=Activity(database),
         administration=administration_of(settings, database, users) if settings.accounts else None,
         sign_ins=SignIns(database, users, settings.session_hours) if users is not None else None,
     )  # fmt: skip

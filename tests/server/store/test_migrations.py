@@ -16,13 +16,14 @@ from sqlalchemy import create_engine, inspect, select, text
 from motion import InputError
 from tests.server.clients import DATABASES, database_url
 from webdemo.cli import main
+from webdemo.server import activity
 from webdemo.server.queue import places, shares
 from webdemo.server.store import ledger
 from webdemo.server.store.database import Ballot, Database, Link, Note, Run, SignIn, Study, Table
 from webdemo.server.store.history import History
 from webdemo.server.store.migrations import NEWEST, REVISIONS, downgrade, revision_of, upgrade
 
-TABLES = {Table, places.Place, shares.Work, ledger.Ledger}
+TABLES = {Table, activity.Process, places.Place, shares.Work, ledger.Ledger}
 """Imported for their metadata."""
 SCHEMAS = sorted((Path(__file__).parent / "schemas").glob("*.sql"))
 """Dumps of databases that earlier versions made, each with a row in each table."""

@@ -14,6 +14,7 @@ from starlette.responses import HTMLResponse, RedirectResponse, Response
 
 from motion import InputError
 from webdemo.server.accounts.invitations import DAYS
+from webdemo.server.activity import Item, work_of
 from webdemo.server.admin import Administration, versions
 from webdemo.server.audit import audit, audited
 from webdemo.server.logs import LAST_ERRORS
@@ -26,7 +27,6 @@ from .body_limits import Refused
 if TYPE_CHECKING:
     from webdemo.server.lab import Lab
 
-ENDED = "The person who runs this server ended this."
 _DONE = {
     "end-run": "The run was ended.", "end-stream": "The stream was ended.", "room": "The room was set.",
     "suspend": "The account was suspended and signed out.", "let-in": "The account can sign in again.",
@@ -84,8 +84,8 @@ def _act(lab: Lab, act: str, given: Mapping[str, str]) -> None:
     name, admin = given.get("name", ""), lab.administration
     assert admin is not None  # the routes are only there with accounts
     acts: dict[str, Callable[[], Any]] = {
-        "end-run": lambda: _end(lab.queue.end, "admin-end-run", given.get("id", "")),
-        "end-stream": lambda: _end(lab.streams.end, "admin-end-stream", given.get("id", "")),
+        "end-run": lambda: _end(lab, "admin-end-run", given.get("id", "")),
+        "end-stream": lambda: _end(lab, "admin-end-stream", given.get("id", "")),
         "room": lambda: admin.set_room(name, _megabytes(given.get("megabytes", ""))),
         "suspend": lambda: admin.suspend(name, suspended=True),
         "let-in": lambda: admin.suspend(name, suspended=False),
@@ -100,10 +100,13 @@ def _act(lab: Lab, act: str, given: Mapping[str, str]) -> None:
     acts[act]()
 
 
-def _end(end: Callable[[str, str], bool], act: str, key: str) -> None:
-    found = end(key, ENDED)
-    audit(act, ok=found, id=key)
-    if not found:
+def _end(lab: Lab, act: str, key: str) -> None:
+    if lab.end(key):
+        audit(act, id=key)
+    elif any(item.id == key for item in _elsewhere(lab)):
+        lab.activity.end(key)
+    else:
+        audit(act, ok=False, id=key)
         raise InputError("It has ended already: go back and reload the page.")
 
 
@@ -130,9 +133,9 @@ def _megabytes(text: str) -> float | None:
 def _delete(lab: Lab, admin: Administration, name: str, confirm: str) -> None:
     if confirm != name:
         raise InputError(f"Type the name {name!r:.60} into the field beside Delete to confirm.")
-    for job, _ in lab.queue.jobs():
-        if job.person == f"user {name}":
-            lab.queue.end(job.id, ENDED)
+    for item in (*work_of(lab.name, lab.queue, lab.streams), *_elsewhere(lab)):
+        if item.person == f"user {name}" and not lab.end(item.id):
+            lab.activity.ask(item.id)
     admin.delete(name)
 
 
@@ -146,7 +149,7 @@ def _page(lab: Lab, done: str) -> str:
     parts = [
         ("People", _people(lab, lab.administration, action)),
         *([("Invitation", _invitation(action))] if lab.sign_ins is not None else []),
-        ("Runs and streams", _work(lab, action)),
+        ("Runs and streams", _runs_and_streams(lab, action)),
         ("Announcement", _announcement(lab, action)),
         ("Health", _health(lab)),
         ("Last errors", _errors()),
@@ -166,8 +169,9 @@ def _button(action: str, act: str, label: str, fields: str = "", **hidden: str) 
 
 
 def _people(lab: Lab, admin: Administration, action: str) -> str:
-    waiting = [job.person for job, begun in lab.queue.jobs() if not begun]
-    streams = [stream.person for stream in lab.streams.opened()]
+    work = _work(lab)
+    waiting = [item.person for item in work if item.state == "waits"]
+    streams = [item.person for item in work if item.state == "open"]
     rows = []
     for row in admin.rows():
         name, owner = html.escape(row.name), f"user {row.name}"
@@ -218,18 +222,25 @@ def _invitation(action: str) -> str:
     return _button(action, "invite", "Make a link", fields)
 
 
-def _work(lab: Lab, action: str) -> str:
-    now = time.monotonic()
+def _work(lab: Lab) -> list[Item]:
+    """Everything that runs, waits or is open: here as it is now, in other processes as they said last."""
+    return work_of(lab.name, lab.queue, lab.streams) + _elsewhere(lab)
+
+
+def _elsewhere(lab: Lab) -> list[Item]:
+    return [item for item in lab.activity.items() if item.node != lab.name]
+
+
+def _runs_and_streams(lab: Lab, action: str) -> str:
+    now, several = time.time(), len(lab.activity.states()) > 1
     rows = [
-        [_name(job.person), html.escape(job.group), "runs" if begun else "waits",
-         f"{now - (job.started if begun else job.came):.0f} s", _button(action, "end-run", "End", id=job.id)]
-        for job, begun in lab.queue.jobs()
-    ] + [
-        [_name(stream.person), "live stream", "open", f"{now - stream.began:.0f} s",
-         _button(action, "end-stream", "End", id=stream.id)]
-        for stream in lab.streams.opened()
+        [_name(item.person), html.escape(item.what), item.state, f"{now - item.since:.0f} s",
+         *([html.escape(item.node)] if several else []),
+         _button(action, "end-stream" if item.state == "open" else "end-run", "End", id=item.id)]
+        for item in _work(lab)
     ]  # fmt: skip
-    return table(("Person", "Model", "State", "For", "Act"), rows, "Nothing runs or waits in this process.")
+    heads = ("Person", "Model", "State", "For", *(["Process"] if several else []), "Act")
+    return table(heads, rows, "Nothing runs or waits.")
 
 
 def _name(person: str) -> str:

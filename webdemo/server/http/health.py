@@ -20,6 +20,8 @@ log = logging.getLogger(__name__)
 
 PAUSE = 30.0
 """Seconds between two tries after one that failed."""
+LATELY = 10.0
+"""Seconds for which a report is good enough for administrators."""
 
 
 def check_disk(folder: Path, least: float) -> None:
@@ -62,6 +64,7 @@ class Health:
         self.error = ""
         self._works = False
         self._tried_at = -PAUSE
+        self._lately: tuple[float, dict[str, Any]] = (-LATELY, {})
         self._lock = threading.Lock()
         self._thread: threading.Thread | None = None
 
@@ -103,6 +106,12 @@ class Health:
         failed = any(state.startswith("failed") for state in checks.values())
         status = "stopping" if self.stopping else "ready" if whole else "failed" if failed else "loading"
         return whole, {"status": status, "checks": checks}
+
+    def lately(self) -> dict[str, Any]:
+        """The state of each part, as it was a few seconds ago at most."""
+        if time.monotonic() - self._lately[0] >= LATELY:
+            self._lately = (time.monotonic(), self.report()[1])
+        return self._lately[1]
 
     def stuck(self) -> str:
         """A sentence about what has made no progress for too long; empty while everything goes on."""

@@ -35,7 +35,7 @@ log = logging.getLogger(__name__)
 FORMAT = "pas-de-deux-backup-1"
 PREFIX = "pas-de-deux-"
 ROWS, MANIFEST, ACCOUNTS = "rows.jsonl", "manifest.json", "users"
-LEFT_OUT = {"alembic_version", "places", "sessions", "sign_ins", "invitations"}
+LEFT_OUT = {"alembic_version", "places", "processes", "endings", "sessions", "sign_ins", "invitations"}
 """Tables of the moment. Sign-ins and invitations are left out so that none comes back that was ended: people sign
 in again."""
 _FOLDERS = ("motions", "studies", AUDIT)
