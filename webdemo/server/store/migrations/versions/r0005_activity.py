@@ -1,4 +1,4 @@
-"""What each process does, and what administrators want to end."""
+"""The work of each process, and the wishes of administrators that some of it ends."""
 
 import sqlalchemy as sa
 from alembic import op
