@@ -95,7 +95,7 @@ def admin(options: argparse.Namespace) -> dict[str, Any]:
 
 
 def _activity(activity: Activity, action: str, key: str) -> dict[str, Any]:
-    """What the processes of a running server do, how they are, or the end of a run or a stream."""
+    """Reads what the processes of a running server do, or ends a run or a stream of one."""
     if action == "end":
         activity.end(key)
         return {"done": action, "id": key}
