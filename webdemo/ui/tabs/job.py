@@ -21,13 +21,14 @@ from webdemo.inference.requests import (
     SamplingRequest,
 )
 from webdemo.ui.components.actors import READ_WITH
+from webdemo.ui.components.compare import comparison_payload
 from webdemo.ui.components.exports import Record
 from webdemo.ui.components.player import busy, show
 from webdemo.ui.components.settings import OPENED, differs, snapshot
 from webdemo.ui.components.show import result_payload
 from webdemo.ui.context import PageContext
 from webdemo.ui.history import Kept, Opened, Original
-from webdemo.ui.text.panels import notes_lines, readout_panel, status
+from webdemo.ui.text.panels import comparison_panel, notes_lines, readout_panel, status
 from webdemo.ui.text.words import cancelled_line, error_line, progress_line, seconds
 from webdemo.ui.visitor import visitor
 
@@ -253,6 +254,36 @@ class JobTab(SamplingTab, ABC):
         wanted = self.request(fields)
         result = yield from self.made(session, wanted)
         yield self._updates(**self._shown(result, self.title(wanted)))
+
+    def answer_beside(
+        self, session: str, wanted: Mapping[str, Any], labels: Mapping[str, str]
+    ) -> Iterator[Updates]:
+        """Runs requests of one input one after another, and shows all on one clock.
+
+        Args:
+            session: whose runs they are.
+            wanted: the requests, by the names with which their files begin.
+            labels: of their methods, by the same names.
+        """
+        made: dict[str, Result] = {}
+        for name, request in wanted.items():
+            made[name] = yield from self.made(session, request, label=f"{labels[name]}. ")
+        title = self.title(next(iter(wanted.values())))
+        shown = self.shown_beside({labels[name]: result for name, result in made.items()}, title)
+        spent = " and ".join(seconds(total(result)) for result in made.values())
+        yield self._updates(
+            **shown | {"record": Record(next(iter(made.values())), title, compared=made)},
+            line=status(f"Both done, in {spent}.", tone="done") + "".join(map(notes_lines, made.values())),
+            under=gr.update(visible=True),
+        )
+
+    def shown_beside(self, named: Mapping[str, Result], title: str) -> dict[str, Any]:
+        """Updates that show results of one input beside each other, by the labels of their methods."""
+        return {
+            "player": show(comparison_payload(named, title=title)),
+            "readouts": comparison_panel(named),
+            "record": Record(next(iter(named.values())), title, compared=named),
+        }
 
     def made(
         self, session: str, wanted: Any, *, label: str = "", watch: Watch | None = None

@@ -37,12 +37,12 @@ from webdemo.ui.components.upload import chip, example_chips, file_field
 from webdemo.ui.context import PageContext
 from webdemo.ui.history import Opened
 from webdemo.ui.text.examples import example_clips
-from webdemo.ui.text.panels import comparison_panel, method_line, notes_lines, prediction_lines, status
-from webdemo.ui.text.words import error_line, seconds
+from webdemo.ui.text.panels import comparison_panel, method_line, prediction_lines, status
+from webdemo.ui.text.words import error_line
 from webdemo.view.payload import player_payload
 
 from .generate import named_method
-from .job import QUIET, Updates, total
+from .job import QUIET, Updates
 from .sweeps import SweepTab
 
 EMPTY_TEXT = (
@@ -327,29 +327,15 @@ class PredictTab(SweepTab):
         if models[0] == models[1]:
             raise InputError("Both methods are the same: choose another one to compare with.")
         wanted = {model: self.request({**fields, "model": model}) for model in models}
-        made: dict[str, PredictResult] = {}
-        for model, request in wanted.items():
-            result = yield from self.made(session, request, label=f"{label_of(model)}. ")
-            assert isinstance(result, PredictResult)
-            made[model] = result
-        title = self.title(wanted[models[0]])
-        spent = " and ".join(seconds(total(result)) for result in made.values())
-        yield self._updates(
-            **self._both(list(made.values()), title),
-            line=status(f"Both done, in {spent}.", tone="done") + "".join(map(notes_lines, made.values())),
-            under=gr.update(visible=True),
-        )
+        yield from self.answer_beside(session, wanted, {model: label_of(model) for model in models})
 
-    @staticmethod
-    def _both(results: Sequence[PredictResult], title: str) -> dict[str, Any]:
-        """Updates that show two predictions of one past."""
-        named = {method_name(result): result for result in results}
-        made = {str(result.manifest.get("model")): result for result in results}
-        return {
+    def shown_beside(self, named: Mapping[str, Result], title: str) -> dict[str, Any]:
+        """Also the errors of predictions of one past, and their curves."""
+        results = [result for result in named.values() if isinstance(result, PredictResult)]
+        lines = dict(zip(named, error_lines(*results), strict=True))
+        return super().shown_beside(named, title) | {
             "player": show(prediction_payload(*results, title=title)),
-            "readouts": prediction_lines(dict(zip(named, error_lines(*results), strict=True)))
-            + comparison_panel(named),
-            "record": Record(results[0], title, compared=made),
+            "readouts": prediction_lines(lines) + comparison_panel(named),
             "curves": gr.update(visible=True),
             "plot": curves_figure(*results),
         }
@@ -371,7 +357,9 @@ class PredictTab(SweepTab):
         if others and isinstance(result, PredictResult):
             found |= {
                 self.outputs[name]: update
-                for name, update in self._both([result, *others], run.entry.title).items()
+                for name, update in self.shown_beside(
+                    {method_name(each): each for each in (result, *others)}, run.entry.title
+                ).items()
             }
         return found
 

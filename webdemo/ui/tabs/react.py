@@ -13,7 +13,7 @@ from webdemo.inference.actor import SECONDS
 from webdemo.inference.live import LiveRequest
 from webdemo.inference.live_take import LiveTake
 from webdemo.inference.methods import AUTOMATIC, variants
-from webdemo.inference.requests import ReactRequest, Result
+from webdemo.inference.requests import ReactRequest
 from webdemo.ui.components.actors import (
     READ_WITH,
     Source,
@@ -26,7 +26,6 @@ from webdemo.ui.components.actors import (
 )
 from webdemo.ui.components.animations import animation_field
 from webdemo.ui.components.camera import CameraPanel
-from webdemo.ui.components.compare import comparison_payload
 from webdemo.ui.components.exports import Record
 from webdemo.ui.components.live import LiveView
 from webdemo.ui.components.live_panel import LivePanel, take_of
@@ -36,12 +35,12 @@ from webdemo.ui.components.show import result_payload
 from webdemo.ui.components.sweep import BETWEEN_SENTENCES, Kind
 from webdemo.ui.components.upload import chip, example_chips, file_field
 from webdemo.ui.history import Opened
-from webdemo.ui.text.panels import comparison_panel, method_line, notes_lines, status
+from webdemo.ui.text.panels import method_line, notes_lines, status
 from webdemo.ui.text.words import seconds
 
 from .actor import ActorTab
 from .generate import named_method
-from .job import QUIET, Updates, total
+from .job import QUIET, Updates
 
 EMPTY_TEXT = (
     "Choose one person: drop a motion file or pick an example\n"
@@ -133,7 +132,7 @@ class ReactTab(ActorTab):
         if not run.beside or "grid" in run.kept.controls:
             return {}
         results = {label(each): each.result for each in (run, *run.beside[:1])}
-        shown = self._both(results, run.entry.title)
+        shown = self.shown_beside(results, run.entry.title)
         return {self.outputs[name]: shown[name] for name in ("player", "readouts", "record")}
 
     # ---- layout ----------------------------------------------------------------------------------
@@ -307,26 +306,7 @@ class ReactTab(ActorTab):
         if reactor(keys[0], fields) == reactor(keys[1], fields):
             raise InputError("Both methods are the same: choose another one to compare with.")
         wanted = {key: self.request(with_method(fields, key)) for key in keys}
-        made: dict[str, Result] = {}
-        for key, request in wanted.items():
-            made[key] = yield from self.made(session, request, label=f"{reactor(key, fields).label}. ")
-        title = self.title(wanted[keys[0]])
-        named = {reactor(key, fields).label: result for key, result in made.items()}
-        spent = " and ".join(seconds(total(result)) for result in made.values())
-        yield self._updates(
-            **self._both(named, title) | {"record": Record(made[keys[0]], title, compared=made)},
-            line=status(f"Both done, in {spent}.", tone="done") + "".join(map(notes_lines, made.values())),
-            under=gr.update(visible=True),
-        )
-
-    @staticmethod
-    def _both(named: Mapping[str, Result], title: str) -> dict[str, Any]:
-        """Updates that show two results, by the labels of their methods."""
-        return {
-            "player": show(comparison_payload(named, title=title)),
-            "readouts": comparison_panel(named),
-            "record": Record(next(iter(named.values())), title, compared=named),
-        }
+        yield from self.answer_beside(session, wanted, {key: reactor(key, fields).label for key in keys})
 
     def _answer_streamed(self, session: str, fields: Mapping[str, Any]) -> Iterator[Updates]:
         """Streams one sample of the online method, whatever method is chosen."""
