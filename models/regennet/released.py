@@ -49,13 +49,21 @@ def load_released(checkpoint: Path) -> ReGenNet:
     return network.requires_grad_(False)
 
 
+def rows_of(rotations: Array, root: Array) -> Array:
+    """Rotations against the parents (T, J, 3, 3) of the first J joints and the root's path (T, 3) as (T, 56, 6).
+
+    Joints left out are at rest.
+    """
+    rows = np.tile(np.array([1.0, 0, 0, 0, 1, 0]), (len(root), ROWS, 1))
+    rows[:, : rotations.shape[1]] = rotations[..., :2, :].reshape(*rotations.shape[:2], 6)
+    rows[:, -1] = 0.0
+    rows[:, -1, :3] = root
+    return rows
+
+
 def encode(positions: Array) -> Tensor:
     """One person (T, 22, 3) in metres → (56, 6, T)."""
-    rows = np.tile(np.array([1.0, 0, 0, 0, 1, 0]), (len(positions), ROWS, 1))
-    rows[:, :BODY] = np.concatenate(np.split(fit_rotations(positions)[..., :2, :], 2, axis=-2), -1)[..., 0, :]
-    rows[:, -1] = 0.0
-    rows[:, -1, :3] = positions[:, 0]
-    return torch.from_numpy(rows).float().permute(1, 2, 0)
+    return torch.from_numpy(rows_of(fit_rotations(positions), positions[:, 0])).float().permute(1, 2, 0)
 
 
 def decode(rows: Tensor) -> Array:
