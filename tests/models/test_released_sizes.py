@@ -1,4 +1,4 @@
-"""InterGen and ReGenNet at the sizes of their releases, beside a second implementation in NumPy.
+"""InterGen, ReGenNet and InterFormer at the sizes of their releases, beside a second implementation in NumPy.
 
 The reference outputs of the released networks are of reduced width. Here the weights are made from their names, as for
 BiGraphDiff (:func:`tests.models.reference_arrays.made_weights`), and what the paper says is computed once more, in
@@ -15,10 +15,13 @@ import torch
 from numpy.typing import NDArray
 from scipy.special import erf
 
+from models.interformer import InterFormer, InterFormerConfig, joint_distances, target_mask
+from models.interformer import from_released as interformer_from_released
 from models.intergen import InterGenConfig, InterGenDenoiser
 from models.intergen import from_released as intergen_from_released
 from models.regennet import ReGenNet, ReGenNetConfig
 from models.regennet import from_released as regennet_from_released
+from motion.skeleton import SBU15
 
 from .reference_arrays import TOLERANCE, made_weights
 
@@ -137,6 +140,93 @@ def regennet(w: Weights, x: Array, t: Array, actor: Array, *, layers: int, heads
     return made.reshape(len(x), frames, rows, 6).transpose(0, 2, 3, 1)
 
 
+def softmax(scores: Array, axes: tuple[int, ...] = (-1,)) -> Array:
+    shares = np.exp(scores - scores.max(axes, keepdims=True))
+    return shares / shares.sum(axes, keepdims=True)
+
+
+class FormerLayer:
+    """Parts of a layer of InterFormer (section 3.3): frames (T, 45), all x before all y and z."""
+
+    def __init__(self, w: Weights, name: str) -> None:
+        self.w, self.name = w, name
+        self.graph = np.eye(15, dtype=bool)
+        for parent, child in SBU15.bones:
+            self.graph[parent, child] = self.graph[child, parent] = True
+
+    def norm(self, part: str, x: Array) -> Array:
+        scaled = (x - x.mean(-1, keepdims=True)) / (x.std(-1, ddof=1, keepdims=True) + 1e-6)
+        return scaled * self.w[f"{self.name}.{part}.alpha"] + self.w[f"{self.name}.{part}.bias"]
+
+    def time(self, part: str, query: Array, memory: Array, *, causal: bool = False) -> Array:
+        """Three heads over frames; the first frame sees the given pose after it."""
+        q, k, v = (
+            linear(self.w, f"{self.name}.{part}.{letter}_linear", x).reshape(len(x), 3, 15).swapaxes(0, 1)
+            for letter, x in (("q", query), ("k", memory), ("v", memory))
+        )
+        scores = np.abs(q @ k.swapaxes(-1, -2)) / np.sqrt(15)
+        if causal:
+            seen = np.tril(np.ones(scores.shape[-2:], dtype=bool))
+            seen[0, 1] = True
+            scores = np.where(seen, scores, -np.inf)
+        return linear(self.w, f"{self.name}.{part}.out", (softmax(scores) @ v).swapaxes(0, 1).reshape(-1, 45))
+
+    def joints(self, part: str, query: Array, memory: Array, distances: Array | None = None) -> Array:
+        """A head an axis over the joints of a frame: along the skeleton, or with twice the distances beside."""
+        q, k, v = (
+            linear(self.w, f"{self.name}.{part}.{letter}_linear_sp", x.reshape(-1, 3, 15).swapaxes(1, 2))
+            for letter, x in (("q", query), ("k", memory), ("v", memory))
+        )
+        scores = np.abs(np.einsum("tjh,tih->thji", q, k))
+        if distances is None:
+            weights = softmax(np.where(self.graph, scores, -np.inf), (-2, -1))
+        else:
+            weights = softmax(scores, (-2, -1)) + 2 * distances[:, None]
+        seen = np.einsum("thji,tih->tjh", weights, v)
+        return linear(self.w, f"{self.name}.{part}.out", seen.reshape(-1, 45))
+
+    def feed(self, x: Array) -> Array:
+        hidden = np.maximum(linear(self.w, f"{self.name}.ff.linear_1", x), 0)
+        return linear(self.w, f"{self.name}.ff.linear_2", hidden)
+
+
+def former_places(frames: int) -> Array:
+    """(T, 45): sin(pos / 10000^(2i / 45)) at even i, cos(pos / 10000^(2(i + 1) / 45)) beside it."""
+    table = np.zeros((frames, 46))
+    for i in range(0, 45, 2):
+        table[:, i] = np.sin(np.arange(frames) / 10000 ** (2 * i / 45))
+        table[:, i + 1] = np.cos(np.arange(frames) / 10000 ** (2 * (i + 1) / 45))
+    return table[:, :45]
+
+
+def former_distances(source: Array, target: Array) -> Array:
+    """(T, 15, 15): a softmax of −‖target joint − source joint‖ over the whole table."""
+    a, b = (x.reshape(-1, 3, 15).swapaxes(1, 2) for x in (target, source))
+    return softmax(-np.linalg.norm(a[:, :, None] - b[:, None], axis=-1), (-2, -1))
+
+
+def interformer(w: Weights, source: Array, target: Array, *, layers: int) -> Array:
+    """InterFormer's next frame at every frame (T, 45) of the target."""
+    x = source * np.sqrt(45) + former_places(len(source))
+    for i in range(layers):
+        layer = FormerLayer(w, f"encoder.layers.{i}")
+        y = layer.norm("norm_1", x)
+        time, space = x + layer.time("attn", y, y), x + layer.joints("attn_space", y, y)
+        x = time + space + layer.feed(layer.norm("norm_2", time) + layer.norm("norm_space_1", space))
+    memory = FormerLayer(w, "encoder").norm("norm", x)
+    near, distances = memory[: len(target)], former_distances(source[: len(target)], target)
+    x = target * np.sqrt(45) + former_places(len(target))
+    for i in range(layers):
+        layer = FormerLayer(w, f"decoder.layers.{i}")
+        y = layer.norm("norm_1", x)
+        time = layer.norm("norm_2", x + layer.time("attn_1", y, y, causal=True))
+        time = layer.norm("norm_3", time + layer.time("attn_2", time, memory))
+        space = layer.norm("norm_space_1", x + layer.joints("attn_space_1", y, y))
+        space = layer.norm("norm_space_2", space + layer.joints("attn_space_2", space, near, distances))
+        x = time + space + layer.feed(time + space)
+    return linear(w, "out", FormerLayer(w, "decoder").norm("norm", x))
+
+
 def weights_of(network: torch.nn.Module, seed: int) -> dict[str, torch.Tensor]:
     """Weights made from the names and shapes of a network that has none."""
     return made_weights({name: tuple(value.shape) for name, value in network.state_dict().items()}, seed)
@@ -189,3 +279,22 @@ def test_regennet_at_its_released_size() -> None:
     shape = (2, 56, 6, 9)
     inputs = [rng.normal(size=shape), np.array([3, 901]), rng.normal(size=shape)]
     compared(made, regennet_from_released, regennet, inputs, 8, 4)
+
+
+def test_interformer_at_its_released_size() -> None:
+    rng = np.random.default_rng(2)
+    weights = weights_of(InterFormer(InterFormerConfig(max_length=16)), 5)
+    for name, value in weights.items():
+        if name.endswith("pe.pe"):
+            weights[name] = torch.from_numpy(former_places(16)).float()[None]
+        elif "_sp." in name:  # three numbers wide: larger, so that joints differ in what they see
+            weights[name] = 20 * value
+        elif name.endswith("alpha"):
+            weights[name] = value + 1
+    network = interformer_from_released(weights, num_heads=3).requires_grad_(False)
+    assert network.config.num_layers == 6 and network.config.ff_size == 2048
+    source, target = rng.normal(size=(12, 45)), rng.normal(size=(10, 45))
+    wanted = interformer(as_arrays(weights), source, target, layers=6)
+    given = [torch.from_numpy(value).float()[None] for value in (source, target)]
+    table = joint_distances(given[0][:, :10], given[1])
+    check(network(*given, table, torch.ones(1, 1, 12, dtype=torch.bool), target_mask(10))[0], wanted)
