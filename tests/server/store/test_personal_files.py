@@ -24,7 +24,7 @@ def test_files_belong_to_the_folder_they_lie_in() -> None:
     assert owns("ann", str(mine)) and not owns("bob", str(mine))
 
 
-@pytest.mark.parametrize("path", ["walk.bvh", "", "\0", "/etc/passwd"])
+@pytest.mark.parametrize("path", ["walk.bvh", "", "\0", "/walk\0.bvh", "/etc/passwd"])
 def test_no_other_path_belongs_to_anybody(path: str) -> None:
     assert not owns("ann", path)
 
