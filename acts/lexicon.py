@@ -53,11 +53,11 @@ class Entry(BaseModel):
             ``whom`` for the patient.
         shown: False for what no body shows ("falls in love", "turns on the lamp"): it is known, and stays unread.
         to: "other" for what is done to the other person even where the words do not name them, as a salute.
-        thing: what it does with the thing that its words name, see :mod:`acts.things`; who "sits" has a seat even where
-            they name none.
+        thing: what it does with the thing that its words name, see :mod:`acts.things`; a person who "sits" has a seat
+            even where they name none.
         hand: the shape of the fingers while it is done (:mod:`motion.hands`); "" where none is special.
         mutual: done together even where one is named first: "he hugs her" has both arms around.
-        answers: done because of what the other does, and so after it, as who ducks or catches.
+        answers: done because of what the other does, and so after it, such as ducking or catching.
         reads, ignores: sentences that have the act and that do not.
         group: the file that it stands in.
     """

@@ -20,6 +20,8 @@ DOCUMENTS = sorted(
 )
 FOLDERS = "motion|models|webdemo|training|static|tests|docs"
 _CODE = re.compile(r"^```.*?^```|`[^`]+`", re.DOTALL | re.MULTILINE)
+_CODE_BLOCK = re.compile(r"^```.*?^```", re.DOTALL | re.MULTILINE)
+_HEADING = re.compile(r"^#+ (.+)$", re.MULTILINE)
 _LINK = re.compile(r"\]\(([^)\s]+)\)")
 _PATH = re.compile(rf"(?<![\w./-])(?:{FOLDERS})/[\w./-]*\w")
 _TABLE = re.compile(r"^\[.*\]$", re.MULTILINE)  # a table's heading in a settings file, such as [models.toy]
@@ -27,9 +29,20 @@ _NAME = re.compile(r"(?<![\w./-])(?:motion|models|webdemo|training)(?:\.[A-Za-z_
 
 
 def missing_links(text: str, folder: Path) -> list[str]:
-    """Relative link targets in Markdown that do not exist; `folder` holds the document."""
-    targets = [target.split("#")[0] for target in _LINK.findall(text) if "://" not in target]
-    return [target for target in targets if target and not (folder / target).exists()]
+    """Relative link targets in Markdown that do not exist, headings included; `folder` holds the document."""
+    missing = []
+    for target in (target for target in _LINK.findall(text) if "://" not in target):
+        name, _, heading = target.partition("#")
+        path = folder / name
+        if not path.exists() or (heading and heading not in anchors(path.read_text() if name else text)):
+            missing.append(target)
+    return missing
+
+
+def anchors(text: str) -> set[str]:
+    """The names by which links reach the headings of a Markdown text."""
+    headings = _HEADING.findall(_CODE_BLOCK.sub("", text))
+    return {re.sub(r"[^\w -]", "", heading).lower().replace(" ", "-") for heading in headings}
 
 
 def missing_paths(text: str) -> list[str]:
@@ -81,10 +94,8 @@ def test_the_readme_is_a_map() -> None:
 
 
 def test_what_does_not_exist_is_found() -> None:
-    text = (
-        "[a](gone.md) [b](README.md) `models/gone.py` `models/weights_io.py` `motion.Clip` `motion.Gone` text"
-    )
-    assert missing_links(text, ROOT) == ["gone.md"]
+    text = "# A tab\n[a](gone.md) [b](README.md#start) [c](#a-tab) [d](README.md#gone) `models/gone.py` `models/weights_io.py` `motion.Clip` `motion.Gone` text"
+    assert missing_links(text, ROOT) == ["gone.md", "README.md#gone"]
     assert missing_paths(text) == ["models/gone.py"]
     assert missing_names(text) == ["motion.Gone"]
 
