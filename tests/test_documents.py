@@ -94,7 +94,10 @@ def test_the_readme_is_a_map() -> None:
 
 
 def test_what_does_not_exist_is_found() -> None:
-    text = "# A tab\n[a](gone.md) [b](README.md#start) [c](#a-tab) [d](README.md#gone) `models/gone.py` `models/weights_io.py` `motion.Clip` `motion.Gone` text"
+    text = (
+        "# A tab\n[a](gone.md) [b](README.md#start) [c](#a-tab) [d](README.md#gone) "
+        "`models/gone.py` `models/weights_io.py` `motion.Clip` `motion.Gone` text"
+    )
     assert missing_links(text, ROOT) == ["gone.md", "README.md#gone"]
     assert missing_paths(text) == ["models/gone.py"]
     assert missing_names(text) == ["motion.Gone"]
