@@ -11,7 +11,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from motion import SMPL22, Duet
+from motion import SMPL22
 from motion.cleaning import ANKLE_HEIGHT, TOE_HEIGHT
 from motion.transforms import facing
 
@@ -67,12 +67,6 @@ def naturalness(positions: Array, fps: float, other: Array | None = None) -> Nat
         slow_arms=slow_arms(positions, fps),
         deep=float("nan") if other is None else float((limb_depth(positions, other) > DEEP).mean()),
     )
-
-
-def of_duet(duet: Duet) -> tuple[Naturalness, Naturalness]:
-    """The measures of both people of a duet on SMPL22."""
-    a, b = duet.positions.astype(np.float64)
-    return naturalness(a, duet.fps, b), naturalness(b, duet.fps, a)
 
 
 def standing_foot(positions: Array, fps: float) -> float:

@@ -6,10 +6,6 @@ import errno
 import html
 import logging
 import time
-from collections.abc import Iterator
-from contextlib import contextmanager
-
-import gradio as gr
 
 from motion import InputError
 from webdemo.inference.requests import Progress
@@ -94,15 +90,6 @@ def error_line(error: Exception) -> str:
     reference = visitor().reference
     where = f"its log says more under {reference}" if reference else "its log says more"
     return f"Something went wrong inside the program ({type(error).__name__}); {where}. Try again."
-
-
-@contextmanager
-def shown_errors() -> Iterator[None]:
-    """Lets an event end with the sentence of its error."""
-    try:
-        yield
-    except Exception as error:
-        raise gr.Error(error_line(error), print_exception=False) from None
 
 
 def link_line(until: float) -> str:
