@@ -140,8 +140,10 @@ def _encoded(part: Part) -> dict[str, Any]:
     if isinstance(part, KnownPath):
         headings = None if part.headings is None else _units(part.headings)
         return plain | {"places": _units(part.places), "headings": headings, "turned": part.turned}
-    joints = [int(joint) for joint in part.joints]
-    chosen = np.asarray(part.positions)[:, joints] if joints else np.asarray(part.positions)
+    joints, positions = [int(joint) for joint in part.joints], np.asarray(part.positions)
+    if joints and 0 not in joints:  # known beside the pelvis, which is not written
+        positions = positions - positions[:, :1]
+    chosen = positions[:, joints] if joints else positions
     rows, which = _unique(_units(pose) for pose in chosen)
     return plain | {"joints": joints, "poses": rows, "which": which}
 
