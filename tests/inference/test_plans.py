@@ -114,7 +114,7 @@ def test_a_held_pose_is_written_once_and_numbers_are_kept_to_a_hundredth_of_a_mi
 
 def test_joints_beside_the_pelvis_are_kept_beside_it() -> None:
     """The pelvis of a hand that is given is not written, wherever the person stands."""
-    given = np.zeros((2, 22, 3)) + [3.0, 0.9, -2.0]
+    given = np.full((2, 22, 3), (3.0, 0.9, -2.0))
     given[:, 20] += [0.1, 0.5, 0.2]
     window = WindowPlan((0.0, 0.0, 0.0), (KnownFrames(0, [4, 8], given, [20]),))
     (read,) = WindowPlan.from_dict(json.loads(json.dumps(window.to_dict()))).parts
