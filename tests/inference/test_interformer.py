@@ -51,6 +51,12 @@ def test_the_actor_stays_and_the_reactor_has_constant_bones_without_popping(engi
     assert np.abs(np.diff(reactor, axis=0)).max() < 0.1
 
 
+def test_it_answers_more_than_ten_seconds_window_by_window(engine: Engine) -> None:
+    assert react(engine, actor=waver(12.0), cleanup=False).duets[0].b.num_frames == 360
+    with pytest.raises(InputError, match=r"61\.0 s: trim it to 60 s or less"):
+        replace(REQUEST, actor=waver(61.0))
+
+
 def test_without_a_first_pose_somebody_stands_before_the_actor_out_of_their_way(engine: Engine) -> None:
     duet = react(engine).duets[0]
     ahead = heading_matrix(np.radians(50)) @ np.array([0.0, 0.0, 1.0])

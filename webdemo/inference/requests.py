@@ -161,8 +161,8 @@ class ReactRequest(SamplingRequest):
     The virtual agent chooses the prompt itself and InterGen generates the response; its given person acts first.
 
     Attributes:
-        actor: the given person, 1 to 10 seconds on SMPL22's joints. At 30 fps the result holds these very
-            positions; a clip of another rate is resampled first.
+        actor: the given person, 1 to 10 seconds on SMPL22's joints, 1 to 60 for InterFormer. At 30 fps the result
+            holds these very positions; a clip of another rate is resampled first.
         prompt: what the two people do, in English; empty for a reaction without a stated intent.
         role: role of the given person: "a" acts first, "b" reacts to the generated person.
             ReGenNet's and InterFormer's given person always acts first.

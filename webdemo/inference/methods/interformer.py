@@ -14,6 +14,7 @@ METHOD = Method(
     takes=frozenset({"actor", "first pose"}),
     fixed={"steps": 1, "guidance": 1.0, "damping": 0.0, "sampler": "ddim"},
     defaults={"steps": 1},
+    seconds=(1.0, 60.0),
     weights="interformer",
     load=partial(load_pipeline, "interformer.InterFormerPipeline"),
 )

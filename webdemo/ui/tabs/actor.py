@@ -13,6 +13,7 @@ import gradio as gr
 from motion import InputError
 from motion.formats.importing import AXES, ORDERS, UNITS
 from webdemo.inference.actor import SECONDS
+from webdemo.inference.methods import methods
 from webdemo.ui.again import actor_source
 from webdemo.ui.components.actors import (
     AUTO,
@@ -262,7 +263,9 @@ class ActorTab(SweepTab):
         if end - start < shortest - 1e-6:
             return status(f"{used} Take {shortest:g} s or more.", tone="warning")
         if end - start > longest + 0.05:
-            return status(f"{used} Take {longest:g} s or less.", tone="warning")
+            takers = [found.label for found in methods("react") if end - start <= found.seconds[1] + 0.05]
+            advice = f"Choose {' or '.join(takers)}, or take" if takers else "Take"
+            return status(f"{used} {advice} {longest:g} s or less.", tone="warning")
         return status(" ".join((used, *source.notes)), tone="warning" if source.notes else "quiet")
 
 
