@@ -3,7 +3,7 @@
 The thesis' table (Chopin, Tables 3.2–3.3) on SBU and K3HI: classification accuracy, FVD and diversity of the
 reacting person, for recorded motion, zero velocity and the reaction models of the engine. The classifiers
 (:mod:`training.evaluate.deep_gru`) are trained on recorded reactions of the published training lists and judge those
-to the actors of the test lists, which no model was trained on. Two baselines of :mod:`training.evaluate.baselines`
+to the actors of the test lists, which no model was trained on. Three baselines of :mod:`training.evaluate.baselines`
 know the same recorded pairs.
 
 With ``--strict`` the clips are those of :mod:`training.corpus.strict_pairs`: all of the lists, in the data sets' own
@@ -30,7 +30,7 @@ from motion.metrics import summary
 from training.core.shell import exit_code
 from training.corpus.pairs import load_pairs
 from training.corpus.strict_pairs import strict_pairs
-from training.evaluate.baselines import Baseline, nearest, plain_transformer
+from training.evaluate.baselines import Baseline, conditional_vae, nearest, plain_transformer
 from training.evaluate.deep_gru import accuracy, deep_features, fit, frechet_distance, measured
 from training.evaluate.judge.reactions import METHODS, installed, react
 from webdemo.inference import Engine
@@ -124,6 +124,7 @@ def baselines(
         "Plain Transformer": [
             all_of(plain_transformer(known, seed=seed, steps=steps)) for seed in range(seeds)
         ],
+        "Conditional VAE": [all_of(conditional_vae(known, seed=seed, steps=steps)) for seed in range(seeds)],
     }
 
 

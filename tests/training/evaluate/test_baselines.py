@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from tests.motion.bodies import marching
-from training.evaluate.baselines import nearest, plain_transformer
+from training.evaluate.baselines import conditional_vae, nearest, plain_transformer
 from training.evaluate.reactions import Reaction, baselines, long_enough
 
 REST = marching(2)[0][0]
@@ -44,18 +44,31 @@ def test_a_plain_transformer_learns_to_follow_the_actor() -> None:
     np.testing.assert_array_equal(first[0], asked[1, 0])
 
 
+def test_a_conditional_vae_learns_to_follow_the_actor_and_varies() -> None:
+    train = [pair(way, 20) for way in np.linspace(-1, 1, 9)]
+    asked = pair(0.6, 20)
+    still = np.linalg.norm(asked[1, :1] - asked[1], axis=-1).mean()
+    react = conditional_vae(train, seed=0, steps=80, batch=4)
+    made = [react(asked) for _ in range(4)]
+    assert np.mean([np.linalg.norm(one - asked[1], axis=-1).mean() for one in made]) < 0.6 * still
+    assert not np.allclose(made[0], made[1], atol=1e-3)
+    for one in made:
+        np.testing.assert_array_equal(one[0], asked[1, 0])
+
+
 def test_no_baseline_looks_at_the_reaction() -> None:
     train, asked = [pair(way) for way in (-1.0, 0.2, 1.0)], pair(0.5)
     other = asked.copy()
     other[1, 1:] += 3.0
-    for react in (nearest(train), plain_transformer(train, seed=0, steps=2, batch=2)):
-        np.testing.assert_array_equal(react(asked), react(other))
+    for make in (lambda: nearest(train), lambda: plain_transformer(train, seed=0, steps=2, batch=2),
+                 lambda: conditional_vae(train, seed=0, steps=2, batch=2)):  # fmt: skip
+        np.testing.assert_array_equal(make()(asked), make()(other))
 
 
-def test_both_stand_in_the_table_with_their_seeds() -> None:
+def test_all_stand_in_the_table_with_their_seeds() -> None:
     train = [Reaction(pair(way), 0) for way in (0.0, 1.0)]
     found = baselines(train, train[:1], 2, steps=2)
-    assert [len(samples) for samples in found.values()] == [1, 2]
+    assert [len(samples) for samples in found.values()] == [1, 2, 2]
 
 
 @pytest.mark.parametrize(("frames", "wanted"), [(12, 31), (31, 31), (50, 50)])
