@@ -5,11 +5,16 @@ from __future__ import annotations
 import re
 import subprocess
 from pathlib import Path
+from typing import get_args
 
 import pytest
 
+from acts import read
+from acts.shapes import Shape
+from acts.things import Does
 from models.weights_io import WeightsFolder
 from training.trainers.intergen_data import Settings
+from webdemo.ui.text.examples import EXAMPLES
 
 ROOT = Path(__file__).resolve().parents[1]
 SKIPPED = {".venv", ".git", "node_modules", "runs", "outputs"}
@@ -161,3 +166,30 @@ def test_the_size_of_a_clone_is_right() -> None:
     bytes_here = sum(path.stat().st_size for path in files if path.is_file())
     (said,) = shares((ROOT / "README.md").read_text(), r"brings about (\d+) MB")
     assert 1.5 < int(said) * 1e6 / bytes_here < 2
+
+
+def test_the_acts_page_names_all_shapes_and_uses_of_things() -> None:
+    page = (ROOT / "docs/acts.md").read_text()
+    union, _ = get_args(Shape)
+    known = {get_args(shape.model_fields["do"].annotation)[0] for shape in get_args(union)}
+    known |= set(get_args(Does)) - {""}
+    assert {"go", "words", "passes"} <= known
+    assert not sorted(name for name in known if f"`{name}`" not in page)
+
+
+@pytest.mark.parametrize("page", ["README.md", "docs/using.md"])
+def test_pages_name_all_endpoints(page: str) -> None:
+    sources = [path.read_text() for path in (ROOT / "webdemo/ui").glob("*api.py")]
+    named = re.compile(r'_publish\(self\.\w+, "(\w+)"|api_name="(\w+)"')
+    published = {a or b for source in sources for a, b in named.findall(source)}
+    assert {"generate", "scene", "render", "read"} <= published
+    text = (ROOT / page).read_text()
+    assert not sorted(name for name in published if f"`/{name}`" not in text)
+
+
+def test_every_sentence_that_the_page_and_its_guide_offer_is_read_whole() -> None:
+    guide = (ROOT / "docs/using.md").read_text()
+    table = guide[guide.index("| kind | try |") : guide.index("People look as the words say")]
+    offered = [words for _, words in EXAMPLES] + re.findall(r"\*([A-Z][^*]+)\*", table)
+    assert len(offered) > 25
+    assert {words: plan.unread for words in offered if (plan := read(words)).unread} == {}

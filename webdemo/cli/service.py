@@ -52,7 +52,7 @@ def add_service(commands: Any) -> None:
     serve_parser.add_argument("--print-settings", action="store_true", help="print all settings and exit")
     serve_parser.set_defaults(job=serve)
     clock_parser = commands.add_parser(
-        "clock", help="the machine's clock beside the lab's time; says that it is right after it jumped"
+        "clock", help="show the machine's clock beside the lab's time, and confirm it after a jump"
     )
     clock_parser.add_argument(
         "action", nargs="?", choices=("show", "passed", "corrected"), default="show",

@@ -93,7 +93,9 @@ class Settings(BaseSettings):
         "email", description="claim that names a person; email counts if the provider has verified it"
     )
     openid_scope: str = Field("openid email profile", description="scopes that are asked for")
-    groups: list[str] = Field([], description="groups of which a person must have one; empty: anybody may")
+    groups: list[str] = Field(
+        [], description="groups, of which a person must be in one; empty: anybody may sign in"
+    )
     admin_groups: list[str] = Field(
         [], description="groups whose members are administrators; empty: administrators are made by hand"
     )
@@ -111,7 +113,9 @@ class Settings(BaseSettings):
         30, gt=0, description="age in days at which a run is removed unless it is a favourite"
     )
     keep_megabytes: float = Field(
-        2000, gt=0, description="total size of all people's runs and studies; nobody's make way for others'"
+        2000,
+        gt=0,
+        description="total size of all people's runs and studies; none is removed for another person's",
     )
     person_megabytes: float | None = Field(
         None, gt=0,
@@ -214,7 +218,9 @@ class Settings(BaseSettings):
     )  # fmt: skip
     audit_megabytes: float = Field(10, gt=0, description="size at which a file of the audit log is put aside")
     audit_files: int = Field(10, ge=1, le=1000, description="earlier files of the audit log that are kept")
-    log_level: str = Field("info", pattern="^(debug|info|warning|error)$", description="least severe line")
+    log_level: str = Field(
+        "info", pattern="^(debug|info|warning|error)$", description="lowest level that is logged"
+    )
     log_content: bool = Field(False, description="let logs contain prompts and what errors say about them")
 
     @field_validator("acts", mode="before")

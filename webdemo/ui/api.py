@@ -162,7 +162,7 @@ class GenerateEndpoint(Endpoint):
                 ),
                 gr.Number(
                     GenerateRequest.tries,
-                    label="tries, 1 to 4: seeds until all that is said is seen, or the best",
+                    label="tries, 1 to 4: seeds to try until the motion shows all that is said; the best is kept",
                 ),
             ]
             self._publish(self.generate, "generate", inputs)

@@ -22,7 +22,7 @@ _DAMPING_INFO = (
 )
 _GUIDANCE_INFO = "How strongly the words steer; 1 = no guidance."
 _STEPS_INFO = "Denoising steps: fewer are faster, more are finer."
-_TRIES_INFO = "Seeds tried until all that is said is seen; the best is kept."
+_TRIES_INFO = "Seeds to try until the motion shows all that is said; the best is kept."
 _SEED_INFO = "Same seed, same motion; empty for a new one."
 _SAMPLES_INFO = "Motions to generate."
 
@@ -39,7 +39,7 @@ class SamplingTab(ResultsTab):
     pace: gr.Radio | None = None
     """Switches between few steps and many, where the tab has it."""
     tries: gr.Slider | None = None
-    """Tries until all that is said is seen, where the tab takes sentences."""
+    """Seeds to try until the motion shows all that is said, where the tab takes sentences."""
     compare: dict[str, Any]
     """The event that says what was changed since the result; set where runs are wired."""
 

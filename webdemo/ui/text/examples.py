@@ -12,7 +12,7 @@ EXAMPLES: tuple[tuple[str, str], ...] = (
     ("Cheer", "Two people cheer together."),
     ("High five", "Two people give each other a high five."),
     ("Hug", "One person walks up to the other and they hug."),
-    ("Punch", "One person punches and the other steps back."),
+    ("Punch", "One person punches, and the other steps back."),
     ("Kick", "One person kicks and the other steps back."),
     ("Push", "One person pushes the other, who stumbles back."),
     ("Wave", "One person waves and the other waves back."),

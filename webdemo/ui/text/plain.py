@@ -20,7 +20,7 @@ _OVERLAP = (
 )
 _SHAKING = ((40.0, "the motion is smooth"), (80.0, "the motion shakes a little"), (None, "the motion shakes"))
 _VERDICTS = (("foot_skate", _FEET), ("penetration_max", _OVERLAP), ("jerk", _SHAKING))
-"""Up to which value which words hold. Recorded people, measured in the same way, have a foot skate of
+"""The largest value for which each phrase holds. Recorded people, measured in the same way, have a foot skate of
 about 12 cm/s and a jerk of 31 m/s³ (docs/scores.md)."""
 
 

@@ -77,7 +77,7 @@ def cancelled_line(progress: Progress | None) -> str:
 
 
 def error_line(error: Exception) -> str:
-    """The sentence for an error; what is not the user's doing goes to the log with its traceback."""
+    """The sentence for an error; an error of the program's own goes to the log with its traceback."""
     if isinstance(error, InputError):
         return str(error)
     log.error("A request failed.", exc_info=error, extra={"request": visitor().reference})
