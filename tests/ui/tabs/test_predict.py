@@ -150,6 +150,14 @@ def test_two_methods_stand_side_by_side(tab: PredictTab, pair: Path) -> None:
     assert "Both methods are the same" in run(tab, {**asked, "other": "motion-mlp"})["line"]
 
 
+def test_two_methods_of_one_person_stand_side_by_side(tab: PredictTab, tmp_path: Path) -> None:
+    """One person has no distance curve to compare."""
+    (alone,) = write(walking(4.0).a, tmp_path / "walker.npz")
+    asked = {"source": loaded(tab, alone)["source"], "marker": 3.0, "seconds": 1.0, "model": "motion-mlp"}
+    done = run(tab, {**asked, "other": "still"})
+    assert "Both done" in done["line"] and done["player"]["value"]["samples"][0]["beside"]
+
+
 def test_methods_without_weights_are_not_offered(tmp_path: Path) -> None:
     assert [name for _, name in predict_choices(tmp_path)] == ["motion-mlp", "still"]
     (tmp_path / "mawgan").mkdir()

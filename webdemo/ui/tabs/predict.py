@@ -330,10 +330,11 @@ class PredictTab(SweepTab):
         yield from self.answer_beside(session, wanted, {model: label_of(model) for model in models})
 
     def shown_beside(self, named: Mapping[str, Result], title: str) -> dict[str, Any]:
-        """Also the errors of predictions of one past, and their curves."""
+        """Predictions of one past, with their errors and the curves of these."""
         results = [result for result in named.values() if isinstance(result, PredictResult)]
         lines = dict(zip(named, error_lines(*results), strict=True))
-        return super().shown_beside(named, title) | {
+        return {
+            "record": Record(results[0], title, compared=named),
             "player": show(prediction_payload(*results, title=title)),
             "readouts": prediction_lines(lines) + comparison_panel(named),
             "curves": gr.update(visible=True),
