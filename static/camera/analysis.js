@@ -1,6 +1,6 @@
 // From a film to landmarks: who is in it, then where everybody is in every picture.
 
-import { FilmError, seek, times } from "./film.js";
+import { FilmError, hold, seek, times } from "./film.js";
 import { distinct, hips, torso } from "./geometry.js";
 import { Landmarks } from "./landmarks.js";
 
@@ -45,6 +45,7 @@ async function lookAround(video, detector, when, stopped) {
     await seek(video, time);
     const found = [];
     for (const window of windows) {
+      await hold(video, time);
       found.push(...(await detector.detect(video, time, window)));
       if (stopped()) return null;
     }

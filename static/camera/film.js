@@ -56,6 +56,11 @@ export async function seek(video, time) {
   if (!shown) throw new FilmError("The video cannot be read to its end: save it anew as MP4 and choose it again.");
 }
 
+/** Sees to it that the picture at a time is still shown: a browser may let go of one that is looked at for long. */
+export async function hold(video, time) {
+  if (video.readyState < 2) await seek(video, time);
+}
+
 /** A recording says its length only after its end was looked for. */
 async function findEnd(video) {
   const found = first(video, { durationchange: true }, PATIENCE);
