@@ -251,3 +251,17 @@ def test_another_skeleton_is_refused() -> None:
 def test_of_what_still_holds_at_the_end_only_its_beginning_comes_before_other_acts() -> None:
     assert _over("near(1.5)", duet(gap=1.0)) == "begins(near(1.5))"
     assert _over("near(0.5)", duet(gap=1.0)) == "near(0.5)"
+
+
+@pytest.mark.parametrize(
+    ("sentence", "words"),
+    [
+        ("He brings her a plate.", "A hands the plate to B"),
+        ("She throws him an apple.", "A throws the apple to B"),
+        ("A picks up a book.", "A picks up the book"),
+    ],
+)
+def test_a_verdict_names_the_thing_of_the_words(sentence: str, words: str) -> None:
+    """And not the caption's example of one."""
+    (found,) = checked(read(sentence), duet())
+    assert found.words == words

@@ -10,6 +10,7 @@ import pytest
 from motion import SMPL22, Duet
 from webdemo.inference import SceneRequest
 from webdemo.inference.actor import FPS
+from webdemo.inference.pipelines.scene_floor import plan_note
 from webdemo.inference.pipelines.scene_postures import postures
 from webdemo.inference.pipelines.scene_room import BODY, distance, roomy
 from webdemo.inference.story import Beat
@@ -128,3 +129,9 @@ def test_nobody_drops_into_a_posture(words: str) -> None:
     )
     frame, pose = poses[0]
     assert pose[0, 1] < 0.7 and 1.0 <= (frame - 60) / FPS <= 2.0, "seconds that people take for it"
+
+
+def test_a_note_lets_nobody_stand_who_sits() -> None:
+    (note,) = plan_note(SceneRequest(beats=(Beat("Two people sit back to back on the floor."),)))
+    assert "sits on the ground" in note and "has their back to the other's" in note
+    assert "stands" not in note
