@@ -313,6 +313,13 @@ def test_the_phone_layout_has_the_player_high_and_no_sideways_scroll(phone: Page
     assert top["#player"] < 400
 
 
+def test_a_finger_hits_the_tick_boxes(phone: Page) -> None:
+    unfold(phone, "#advanced")
+    unfold(phone, "#more")
+    for part, least in (("input", 24), ("label", 44)):
+        assert phone.locator(f"#planned {part}").bounding_box()["height"] >= least, part
+
+
 def test_every_control_has_a_name_and_the_focus_is_visible(page: Page) -> None:
     names = page.evaluate(
         "[...document.querySelectorAll('.pd-lab button, .pd-lab input, .pd-lab textarea, .pd-lab select')]"
