@@ -153,21 +153,29 @@ class Panel {
     const waiting = [];
     this.tally = { taken: [], delays: [], parts: [], lost: 0, shown: 0 };
     let wake = () => {};
+    let room = () => {};
     let ended = false;
     const sending = (async () => {
       while (!over() && !(ended && !waiting.length)) {
         if (!waiting.length) await new Promise((resolve) => (wake = resolve));
         else await this.exchange(waiting.splice(0, TOGETHER), over);
+        room();
       }
     })();
-    sending.catch(() => (ended = true)); // awaited below
+    sending.catch(() => {}).then(() => {
+      ended = true; // an error is thrown where it is awaited below
+      room();
+    });
     while (!over() && !ended) {
       const seen = await source.next();
       if (!seen) break;
       if (!this.root.offsetParent) return this.rest("You left this tab, so the live stream ended.");
       if (seen.people) drawPeople(this.drawing, seen.people, source.video.videoWidth, source.video.videoHeight);
       waiting.push(seen);
-      if (waiting.length > WAITING) {
+      if (source.waits) {
+        wake();
+        while (waiting.length >= WAITING && !ended && !over()) await new Promise((resolve) => (room = resolve));
+      } else if (waiting.length > WAITING) {
         waiting.shift();
         this.tally.lost++;
       }

@@ -103,6 +103,7 @@ export class Video extends Pictures {
 
 /** A person of the player, pose by pose at the pace of their motion. */
 export class Person {
+  waits = true; // for a slow server: of a recording nothing is left out
   camera = {};
   missed = 0;
 
