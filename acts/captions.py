@@ -78,7 +78,7 @@ def worded(act: Act, caption: str) -> str:
     if act.times is not None and act.times > 1:
         text += f" {_COUNTS.get(act.times, 'several times')}"
     for adverb in act.manner[:1]:
-        if adverb not in ("then", "finally"):
+        if adverb not in ("then", "finally") and not text.endswith(adverb):
             text += f" {adverb}"
     return text
 
@@ -184,11 +184,10 @@ def short(act: Act, entry: Entry | None) -> str:
     plain = ahead or both
     phrase = _phrase(act, entry)
     text = f"{ahead} {_VERB.sub(lambda m: m[1] if plain else singular(m[1]), phrase)}".strip()
-    said = text.split()
     told: list[str | None] = [act.side] if act.side in ("left", "right") else []
     told += [act.direction] if act.direction in _TURNS else []
     told += [adverb for adverb in act.manner[:1] if adverb not in ("then", "finally")]
-    text = " ".join([text, *dict.fromkeys(word for word in told if word and word not in said)])
+    text = " ".join([text, *dict.fromkeys(word for word in told if word and f" {word} " not in f" {text} ")])
     return f"{text} ×{act.times}" if act.times is not None and act.times > 1 else text
 
 

@@ -3,6 +3,8 @@
 A network that was trained on bodies of lines has people hug at arm's length, with arms stretched out past the other.
 Where both do so, the trunks lean to each other over feet that stay, each head beside the other's. Each right arm goes
 over the other's left shoulder, and each left arm below the other's right one; elbows bend outwards.
+Who holds the other from behind comes close to their back, and reaches around the waist under arms that
+are laid upon theirs.
 :func:`motion.arms.arms_apart` then bends the arms around what is still in their way.
 """
 
@@ -18,6 +20,7 @@ from .skeleton import SMPL22
 from .transforms import facing
 
 Array = NDArray[np.floating]
+Hands = tuple[tuple[float, float, float, float], ...]
 
 CLOSE = 0.34
 """Metres between two spines in an embrace: 10 to 15 cm between two chests."""
@@ -28,6 +31,13 @@ _AROUND = (-0.2, 0.27)
 _HANDS = ((0.04, 0.12, -0.13, 0.7), (0.11, 0.1, 0.15, 0.0))
 """Of the left and of the right wrist: metres past the other's spine, beside it and over it, and how far the elbow
 hangs for a metre outwards. Of hundreds drawn at random, such hands leave few arms in the other's body."""
+_CLOSE_BEHIND = 0.27
+"""Metres between two spines where one holds the other from behind."""
+_ASIDE_BEHIND = 0.06
+_WAIST = ((0.1, 0.13, -0.17, 0.2), (0.12, 0.12, -0.14, 0.2))
+"""As :data:`_HANDS`, of hands that are around the waist of somebody who faces the same way."""
+_UPON = ((0.21, 0.12, -0.12, 0.9), (0.23, 0.12, -0.09, 0.9))
+"""As :data:`_HANDS`, of the hands that this person lays upon them, from their own spine."""
 _STRAIGHT = 0.97
 """Share of an arm's length that is used at most."""
 _SHARE = 0.55
@@ -58,25 +68,41 @@ def embraced(pair: Array, free: Array | None = None) -> Array:
         (2, T, 22, 3) metres; what is no embrace stays as it is.
     """
     result = np.array(pair, dtype=np.float64)
-    close = _eased(_on_their_feet(_long(_hugs(result)), result))
-    if free is not None:
-        close = close * free
-    if not close.any():
-        return result
-    drawn = [_drawn(result[p], result[1 - p], close) for p in (0, 1)]
-    return np.stack([_wrapped(drawn[p], drawn[1 - p], close) for p in (0, 1)])
+    share = np.ones(result.shape[1]) if free is None else free
+    close = share * _eased(_on_their_feet(_long(_hugs(result)), result))
+    if close.any():
+        drawn = [_drawn(result[p], result[1 - p], close) for p in (0, 1)]
+        ways = [_way(drawn[p], drawn[1 - p]) for p in (0, 1)]
+        result = np.stack(
+            [_wrapped(drawn[p], drawn[1 - p][:, _SPINE], ways[p], _HANDS, close) for p in (0, 1)]
+        )
+    for holder in (0, 1):
+        close = share * _eased(
+            _on_their_feet(_long(_holds_from_behind(*result[[holder, 1 - holder]])), result)
+        )
+        if close.any():
+            result[[holder, 1 - holder]] = _held_from_behind(*result[[holder, 1 - holder]], close)
+    return result
 
 
-def _around(own: Array, other: Array) -> NDArray[np.bool_]:
-    """(T, side) hands that are beside or past the other's spine, at the height of their trunk."""
+def _held_from_behind(own: Array, other: Array, close: Array) -> Array:
+    """(2, T, 22, 3) who stands behind the other with their arms around the waist, and the other, by ``close`` (T,)."""
+    own = _drawn(own, other, close, 1.0, _CLOSE_BEHIND, _ASIDE_BEHIND)
+    way = _way(own, other)
+    own = _wrapped(own, other[:, _SPINE], way, _WAIST, close)
+    return np.stack([own, _wrapped(other, other[:, _SPINE], way, _UPON, close)])
+
+
+def _around(own: Array, other: Array, least: float = _AROUND[0]) -> NDArray[np.bool_]:
+    """(T, side) hands that are ``least`` metres past the other's spine, at the height of their trunk."""
     spine = other[:, _SPINE]
-    way = _level(spine - own[:, _SPINE])
+    way = _way(own, other)
     across = _left(way)
     low, high = other[:, 0, 1], other[:, SMPL22.index("neck"), 1] + 0.05
     found = []
     for *_, wrist in ARMS:
         hand = own[:, wrist] - spine
-        past = np.einsum("ti,ti->t", hand, way) > _AROUND[0]
+        past = np.einsum("ti,ti->t", hand, way) > least
         beside = np.abs(np.einsum("ti,ti->t", hand, across)) < _AROUND[1]
         found.append(past & beside & (low < own[:, wrist, 1]) & (own[:, wrist, 1] < high))
     near = np.linalg.norm((spine - own[:, _SPINE]) * _FLAT, axis=-1) < _MOST
@@ -90,11 +116,19 @@ def _hugs(pair: Array) -> NDArray[np.bool_]:
         grips_of_hands(pair) < 0.5
     )  # hands that are held hold no back
     around = hands.sum(axis=(0, 2))
-    way = _level(b[:, _SPINE] - a[:, _SPINE])
+    way = _way(a, b)
     face = np.einsum("ti,ti->t", facing(a), way) > _FACES
     face &= np.einsum("ti,ti->t", facing(b), -way) > _FACES
     stands = np.abs(a[:, 0, 1] - b[:, 0, 1]) < _LEVEL
     return face & stands & (around >= 3)
+
+
+def _holds_from_behind(own: Array, other: Array) -> NDArray[np.bool_]:
+    """(T,) frames at which both hands of a person who stands behind the other are before them."""
+    way = _way(own, other)
+    same = np.minimum(np.einsum("ti,ti->t", facing(own), way), np.einsum("ti,ti->t", facing(other), way))
+    stands = np.abs(own[:, 0, 1] - other[:, 0, 1]) < _LEVEL
+    return np.asarray(_around(own, other, 0.03).all(axis=1) & (same > _FACES) & stands)
 
 
 def _on_their_feet(marked: NDArray[np.bool_], pair: Array) -> NDArray[np.bool_]:
@@ -121,12 +155,19 @@ def _eased(marked: NDArray[np.bool_]) -> Array:
     return np.asarray(s**3 * (10 - 15 * s + 6 * s**2))
 
 
-def _drawn(own: Array, other: Array, weight: Array) -> Array:
-    """A person (T, 22, 3) who comes half of the way to the other by ``weight`` (T,), over feet that stay."""
-    way = _level(other[:, _SPINE] - own[:, _SPINE])
+def _drawn(
+    own: Array,
+    other: Array,
+    weight: Array,
+    share: float = 0.5,
+    close: float = CLOSE,
+    aside: float = _ASIDE / 2,
+) -> Array:
+    """A person (T, 22, 3) who comes a share of the way to the other by ``weight`` (T,), over feet that stay."""
+    way = _way(own, other)
     gap = np.linalg.norm((other[:, _SPINE] - own[:, _SPINE]) * _FLAT, axis=-1)
-    metres = 0.5 * weight * np.maximum(gap - CLOSE, 0.0)
-    ahead = metres[:, None] * way + (0.5 * _ASIDE * weight)[:, None] * _left(way)
+    metres = share * weight * np.maximum(gap - close, 0.0)
+    ahead = metres[:, None] * way + (aside * weight)[:, None] * _left(way)
     shift = _SHARE * ahead
     result = own.copy()
     result[:, UPPER] = (_leaned(own, ahead - shift) + shift[:, None])[:, UPPER]
@@ -147,15 +188,14 @@ def _leaned(own: Array, ahead: Array) -> Array:
     return own[:, :1] + np.einsum("tij,tkj->tki", turn, own - own[:, :1])
 
 
-def _wrapped(own: Array, other: Array, weight: Array) -> Array:
-    """A person (T, 22, 3) whose hands lie on the other's back by ``weight`` (T,)."""
+def _wrapped(own: Array, spine: Array, way: Array, hands: Hands, weight: Array) -> Array:
+    """A person (T, 22, 3) whose hands lie on the trunk around a ``spine`` (T, 3) by ``weight`` (T,)."""
     result = own.copy()
-    way = _level(other[:, _SPINE] - own[:, _SPINE])
     left, up = _left(way), np.array([0.0, 1.0, 0.0])
     for (shoulder, elbow, wrist), side, (past, beside, height, hang) in zip(
-        ARMS, (1.0, -1.0), _HANDS, strict=True
+        ARMS, (1.0, -1.0), hands, strict=True
     ):
-        goal = other[:, _SPINE] + past * way + beside * side * left + height * up
+        goal = spine + past * way + beside * side * left + height * up
         arm = own[:, shoulder], own[:, elbow], own[:, wrist]
         bent, met = _bent(*arm, goal, side * left - hang * up)
         bent, met = (at + weight[:, None] * (to - at) for at, to in ((arm[1], bent), (arm[2], met)))
@@ -183,6 +223,11 @@ def _on_bone(base: Array, towards: Array, length: Array) -> Array:
     """(T, 3) the point ``length`` (T, 1) metres from a base on the way to another point."""
     bone = towards - base
     return np.asarray(base + bone * length / np.maximum(np.linalg.norm(bone, axis=-1, keepdims=True), 1e-9))
+
+
+def _way(own: Array, other: Array) -> Array:
+    """(T, 3) the level way from one person's spine to the other's."""
+    return _level(other[:, _SPINE] - own[:, _SPINE])
 
 
 def _left(way: Array) -> Array:

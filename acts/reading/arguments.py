@@ -7,6 +7,7 @@ from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from acts.frames import Event, Ref
+from acts.plan import FROM_BEHIND
 
 from . import wordnet
 from .people import Cast, reference, states_of
@@ -151,6 +152,8 @@ class Arguments:
                 event.words.append(token.lower_)
                 self._preposition(child, who, event)
                 found = True
+        if token.lower_ == "from" and any(c.lower_ == "behind" and not c.n_rights for c in token.children):
+            event.adverbs.append(FROM_BEHIND)
         if not found:
             event.words.append(token.lower_)
             event.particles.append(token.lower_)

@@ -95,6 +95,23 @@ def test_a_massage_is_given_from_behind(engine: Engine) -> None:
     assert gap.min() < 0.25 and (found[1, 60, 0] - found[0, 60, 0]) @ ahead < 0
 
 
+@pytest.mark.parametrize(
+    "prompt",
+    [
+        "Person A pats person B on the back.",
+        "Person A taps person B on the shoulder from behind.",
+        "Person A waves at person B. Then person A pats person B on the back.",
+    ],
+)
+def test_a_touch_of_the_back_or_from_behind_comes_from_there(engine: Engine, prompt: str) -> None:
+    found = made(engine, prompt, seconds=8.0 if "Then" in prompt else 4.0)
+    gap = nearest(found, 0, ["right_wrist"], ["left_shoulder", "right_shoulder", "spine3"])
+    at = int(gap.argmin())
+    across = found[1, at, SMPL22.index("left_hip")] - found[1, at, SMPL22.index("right_hip")]
+    assert gap[at] < 0.25
+    assert (found[0, at, 0] - found[1, at, 0]) @ np.cross(across, [0.0, 1.0, 0.0]) < 0
+
+
 def test_a_hand_that_is_offered_stays_out_and_nobody_takes_it(engine: Engine) -> None:
     found = made(engine, "Person A offers a hand, but person B does not take it.")
     wrist, pelvis = found[0, 45:105, SMPL22.index("right_wrist")], found[0, 45:105, 0]

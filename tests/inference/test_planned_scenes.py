@@ -21,7 +21,7 @@ WRISTS = [SMPL22.index("left_wrist"), SMPL22.index("right_wrist")]
 
 
 def made(engine: Engine, prompt: str, **fields: Any) -> np.ndarray:
-    return positions(run(engine, GenerateRequest(prompt=prompt, seconds=4.0, **QUICK, **fields)))
+    return positions(run(engine, GenerateRequest(prompt=prompt, **{"seconds": 4.0, **QUICK, **fields})))
 
 
 def heights(motion: np.ndarray, person: int) -> np.ndarray:

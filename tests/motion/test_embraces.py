@@ -7,7 +7,7 @@ import pytest
 
 from motion import SMPL22
 from motion.embraces import CLOSE, embraced
-from motion.metrics.naturalness import jerk_percentile
+from motion.metrics.naturalness import jerk_percentile, limb_depth
 from motion.transforms import heading_matrix
 
 J = SMPL22.index
@@ -69,9 +69,10 @@ def _lifted() -> np.ndarray:
     return pair
 
 
-def _turned() -> np.ndarray:
-    pair = _pair()
-    pair[1] = (pair[1] - [0.0, 0.0, 0.55]) @ heading_matrix(np.pi).T + [0.0, 0.0, 0.55]
+def _turned(gap: float = 0.4) -> np.ndarray:
+    pair = _pair(gap)
+    pair[1] = (pair[1, :1] - [0.0, 0.0, gap]) @ heading_matrix(np.pi).T + [0.0, 0.0, gap]
+    pair[0, :, [J("left_wrist"), J("right_wrist")], 1] -= 0.1
     return pair
 
 
@@ -85,8 +86,23 @@ def _hand_in_hand() -> np.ndarray:
 
 @pytest.mark.parametrize(
     "pair",
-    [_pair(1.2), _lifted(), _turned(), _hand_in_hand()],
-    ids=["far", "lifted", "from behind", "hand in hand"],
+    [_pair(1.2), _lifted(), _turned(0.7), _hand_in_hand()],
+    ids=["far", "lifted", "hands on the shoulders from behind", "hand in hand"],
 )
 def test_what_is_no_embrace_stays(pair: np.ndarray) -> None:
     np.testing.assert_array_equal(embraced(pair), pair)
+
+
+def test_who_holds_from_behind_reaches_around_the_waist_under_the_others_arms() -> None:
+    pair = _turned()
+    found = embraced(pair)[:, HUGS]
+    assert np.median(limb_depth(pair[0, HUGS], pair[1, HUGS])) > 0.05
+    assert max(limb_depth(found[i], found[1 - i]).max() for i in (0, 1)) < 0.02
+    apart = np.linalg.norm((found[0, :, SPINE] - found[1, :, SPINE])[:, [0, 2]], axis=-1)
+    assert (apart < 0.33).all()
+    for side in ("left", "right"):
+        held, upon = (found[i, :, J(f"{side}_wrist")] for i in (0, 1))
+        assert (held[:, 2] > found[1, :, SPINE, 2] + 0.04).all(), "the hands are before the other's trunk"
+        assert (np.linalg.norm(held - upon, axis=-1) < 0.2).all(), "the other's hands lie on them"
+    feet = [J(f"{side}_foot") for side in ("left", "right")]
+    np.testing.assert_allclose(found[:, :, feet], pair[:, HUGS][:, :, feet], atol=0.01)

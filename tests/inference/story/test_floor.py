@@ -7,19 +7,20 @@ import pytest
 
 from tests.inference.story.staged_words import hold, moves
 from webdemo.inference.actor import FPS
+from webdemo.inference.story.beginnings import REACH, starting
 from webdemo.inference.story.floor import (
     ABREAST,
     BEHIND,
     CLOSE,
     FARTHEST,
     LINKED,
-    REACH,
     Standing,
     Way2D,
     plan,
-    starting,
 )
+from webdemo.inference.story.moves import Move
 from webdemo.inference.story.track import MOST
+from webdemo.inference.story.ways import Way
 
 FACING = Standing(np.array([[0.0, 0.0], [0.0, 1.2]]), np.array([0.0, math.pi]))
 BEHIND_B = Standing(np.array([[0.0, 0.0], [0.0, 3.0]]), np.zeros(2))
@@ -263,3 +264,10 @@ def test_those_who_touch_begin_within_reach_unless_one_comes_to_the_other() -> N
 def test_a_turn_that_begins_late_in_a_short_beat_gives_no_place_before_it() -> None:
     _, found = ways("She jumps into his arms and he spins her around.", 1.0, FACING)
     assert found and all(np.isfinite(way.places).all() for way in found.values())
+
+
+def test_who_comes_up_behind_the_other_walks_round_them_and_faces_their_back() -> None:
+    found = plan([Move("a", Way.BEHIND, near=0.5)], FACING, 150)[0]
+    np.testing.assert_allclose(found.places[-1], [0.0, 1.7], atol=0.05)
+    assert math.cos(found.headings[-1] - math.pi) > 0.99
+    assert np.linalg.norm(found.places - FACING.places[1], axis=1).min() > 0.45

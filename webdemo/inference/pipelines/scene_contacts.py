@@ -68,11 +68,15 @@ def meeting(
     if 1 - giver in posed:
         line = stand.towards(1 - giver)
         near += float((middle(touch, pose)[[0, 2]] - stand.places[1 - giver]) @ line)
+    way = Way.BEHIND if touch.behind else Way.TO
     comes = [
-        Move(m.person, m.way, m.speed, late=m.late, near=near) if m.way in _COMES[:2] else m for m in own
+        Move(m.person, way if m.way is Way.TO else m.way, m.speed, late=m.late, near=near)
+        if m.way in _COMES[:2]
+        else m
+        for m in own
     ]
     if not any(move.near for move in comes):
-        comes = [*(m for m in comes if m.way is Way.FACE), Move(touch.person, Way.TO, 0.8, near=near)]
+        comes = [*(m for m in comes if m.way is Way.FACE), Move(touch.person, way, 0.8, near=near)]
     other = "ab"[1 - giver]
     waits = [Move(m.person, m.way, m.speed, near=near) if m.way is Way.TO else m for m in theirs]
     if 1 - giver not in posed and not touch.fells and (not waits or waits[0].way in (Way.TURN, Way.FACE)):

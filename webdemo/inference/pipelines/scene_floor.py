@@ -11,7 +11,8 @@ from motion import SMPL22
 from motion.transforms import heading
 from webdemo.inference.actor import FPS, Placement
 from webdemo.inference.known_parts import KnownFrames, Part
-from webdemo.inference.story.floor import Standing, Way2D, plan, starting
+from webdemo.inference.story.beginnings import starting
+from webdemo.inference.story.floor import Standing, Way2D, plan
 from webdemo.inference.story.gestures import Hand
 from webdemo.inference.story.holds import Hold
 from webdemo.inference.story.limbs import WITH_ARMS, Limb, limbed
@@ -174,9 +175,11 @@ def _held(
             continue
         turned = last is None and _keeps_back(told, who)
         if up and (who in still or ((turned or who in told.gesturing) and who not in gone)):
-            free = () if who in still else HANDS if turned else ARMS
-            parts += _posed(person, stand, window, start, stop, placement, request.seed, free)
-            if free:
+            touched = told.contact is not None and told.contact.person != who
+            free = () if who in still or touched else HANDS if turned else ARMS
+            every = TURNED if turned else POSED
+            parts += _posed(person, stand, window, start, stop, placement, request.seed, free, every)
+            if who not in still:
                 posed[person] = upright(stand.places[person], float(stand.headings[person]))
         elif who not in gone:
             poses = postures(request.told, window.beat, person, start, stop, stand, last)
@@ -283,10 +286,10 @@ def _given_places(stand: Standing, window: Window, placement: Placement) -> list
 
 def _posed(
     person: int, stand: Standing, window: Window, start: int, stop: int, placement: Placement, seed: int,
-    free: Collection[int] = (),
+    free: Collection[int], every: int,
 ) -> list[Part]:  # fmt: skip
     """The poses of a bystander that fall into a window, but for the joints that are ``free``."""
-    frames = np.arange(start + (SETTLES if start else 0), stop, TURNED if free == HANDS else POSED)
+    frames = np.arange(start + (SETTLES if start else 0), stop, every)
     frames = frames[(frames >= window.start) & (frames < window.stop)]
     if not len(frames):
         return []

@@ -8,12 +8,14 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from .floor import ABREAST, Standing
+from .floor import ABREAST, BEHIND, CLOSE, LINKED, Standing
 from .holds import TWIRL
 from .lifts import Carry, Lift
+from .moves import Move
 from .poses import grounded, seated
 from .postures import Posture
 from .strikes import Bout, Strike
+from .ways import Way
 
 KICK = 1.0
 """Metres between two people one of whom kicks the other."""
@@ -21,6 +23,10 @@ BACKS = 0.5
 """Metres between the pelvises of two people who stand or sit back to back."""
 RUN_UP = 2.5
 """Metres that somebody runs who jumps on the other's back."""
+REACH = 0.75
+"""Metres between two people one of whom touches the other."""
+_START = {Way.AWAY: 1.1, Way.PAST: 2.2, Way.ROUND: 1.2, Way.BACK: 0.9}
+"""Metres between two people at the beginning of a first beat with such a move."""
 _SEATS = {Posture.SITS: seated, Posture.GROUND: grounded}
 
 
@@ -44,6 +50,40 @@ class Setting:
     strike: Strike | None = None
     twirls: bool = False
     apart: float = 0.0
+
+
+def starting(moves: Sequence[Move], seconds: float, *, near: bool = False) -> Standing:
+    """Places before a first beat: a at the origin, facing +Z, and b so that their moves can begin.
+
+    Args:
+        moves: of the first beat that has any.
+        seconds: its length.
+        near: they are within reach of each other, unless one comes to the other.
+    """
+    ways = {move.way: move for move in reversed(moves)}
+    if Way.ALONG in ways:
+        gap = LINKED if ways[Way.ALONG].linked else ABREAST
+        return Standing(np.array([[0.0, 0.0], [-gap, 0.0]]), np.zeros(2))
+    if Way.AFTER in ways and any(move.backwards for move in moves):
+        gap = ways[Way.AFTER].near or BEHIND
+        return Standing(np.array([[0.0, 0.0], [0.0, gap]]), np.array([0.0, math.pi]))
+    if Way.AFTER in ways:
+        lead = 1 if ways[Way.AFTER].person == "a" else -1
+        return Standing(np.array([[0.0, 0.0], [0.0, lead * BEHIND]]), np.zeros(2))
+    if Way.BACKS in ways:
+        return Standing(np.array([[0.0, 0.0], [0.0, -0.6]]), np.array([0.0, math.pi]))
+    gap = next((_START[move.way] for move in moves if move.way in _START), REACH if near else 1.4)
+    gap = next((ways[way].near for way in (Way.HOLD, Way.SPAR) if way in ways), gap)
+    for way in (Way.TO, Way.BEHIND):
+        if way in ways:
+            gap = float(
+                np.clip(CLOSE + 0.6 * seconds * ways[way].speed, 1.8, 3.6 if ways[way].speed < 2 else 5.0)
+            )
+    turned = next((m.person for m in moves if m.way in (Way.FACE, Way.AVERTED)), "")
+    turned = turned or next(("b" if m.person == "a" else "a" for m in moves if m.way is Way.BEHIND), "")
+    ahead = -1.0 if turned == "a" else 1.0
+    facing_b = 0.0 if turned else math.pi
+    return Standing(np.array([[0.0, 0.0], [0.0, ahead * gap]]), np.array([0.0, facing_b]))
 
 
 def standing(setting: Setting) -> Standing | None:

@@ -66,6 +66,8 @@ _JOINTS = {
 }  # fmt: skip
 _SKIN = 0.1
 """Metres between a wrist and the joint inside the part of the body that its hand is on."""
+_PALM = 0.05
+"""Metres by which a wrist is further from the spine, so that the palm and not the wrist is on the back."""
 _KISS = 0.22
 """Metres between two heads at a kiss."""
 _ARM = 0.45
@@ -137,7 +139,7 @@ def touched(touch: Contact, other: Array, own: Array) -> Array:
         elif len(joints) == 1 and len(touch.sides) == 2:
             place = place + 0.08 * unit((shoulder - own[0]) * [1.0, 0.0, 1.0])
         if touch.region is Region.BACK and len(joints) == 1:
-            place = place + 0.05 * unit(shoulder - back)
+            place = place + _PALM * unit(shoulder - back)
         found.append(place)
     return np.stack(found)
 

@@ -42,8 +42,6 @@ SIDESTEP = 0.8
 """Metres of a step aside."""
 PACED = 1.1
 """Metres to either side that somebody walks to and fro."""
-REACH = 0.75
-"""Metres between two people one of whom touches the other."""
 WIDE = 0.9
 """Radius in metres of a walk around the other, at least."""
 FARTHEST = 5.0
@@ -54,10 +52,10 @@ _CHASED = 7.0
 """Metres that somebody goes who is followed."""
 _REACTS = 0.4
 """Seconds after which somebody follows who walks away."""
+_ROUND_BEHIND = 0.55
+"""Share of a beat that a walk round the other to their back takes at most: what is done there follows."""
 _WEIGHT = {Way.STAY: 0.4, Way.AVERTED: 0.6, Way.TURN: 0.5, Way.FACE: 0.4, Way.BACK: 0.7, Way.ASIDE: 0.7}
 """Shares of a beat's time that moves take beside a walk."""
-_START = {Way.AWAY: 1.1, Way.PAST: 2.2, Way.ROUND: 1.2, Way.BACK: 0.9}
-"""Metres between two people at the beginning of a first beat with such a move."""
 
 
 @dataclass(frozen=True)
@@ -100,40 +98,6 @@ class Way2D:
     frames: Sequence[int]
     places: Array
     headings: Array | None
-
-
-def starting(moves: Sequence[Move], seconds: float, *, near: bool = False) -> Standing:
-    """Places before a first beat: a at the origin, facing +Z, and b so that their moves can begin.
-
-    Args:
-        moves: of the first beat that has any.
-        seconds: its length.
-        near: they are within reach of each other, unless one comes to the other.
-    """
-    ways = {move.way: move for move in reversed(moves)}
-    if Way.ALONG in ways:
-        gap = LINKED if ways[Way.ALONG].linked else ABREAST
-        return Standing(np.array([[0.0, 0.0], [-gap, 0.0]]), np.zeros(2))
-    if Way.AFTER in ways and any(move.backwards for move in moves):
-        gap = ways[Way.AFTER].near or BEHIND
-        return Standing(np.array([[0.0, 0.0], [0.0, gap]]), np.array([0.0, math.pi]))
-    if Way.AFTER in ways:
-        lead = 1 if ways[Way.AFTER].person == "a" else -1
-        return Standing(np.array([[0.0, 0.0], [0.0, lead * BEHIND]]), np.zeros(2))
-    if Way.BACKS in ways:
-        return Standing(np.array([[0.0, 0.0], [0.0, -0.6]]), np.array([0.0, math.pi]))
-    gap = next((_START[move.way] for move in moves if move.way in _START), REACH if near else 1.4)
-    gap = next((ways[way].near for way in (Way.HOLD, Way.SPAR) if way in ways), gap)
-    for way in (Way.TO, Way.BEHIND):
-        if way in ways:
-            gap = float(
-                np.clip(CLOSE + 0.6 * seconds * ways[way].speed, 1.8, 3.6 if ways[way].speed < 2 else 5.0)
-            )
-    turned = next((m.person for m in moves if m.way in (Way.FACE, Way.AVERTED)), "")
-    turned = turned or next(("b" if m.person == "a" else "a" for m in moves if m.way is Way.BEHIND), "")
-    ahead = -1.0 if turned == "a" else 1.0
-    facing_b = 0.0 if turned else math.pi
-    return Standing(np.array([[0.0, 0.0], [0.0, ahead * gap]]), np.array([0.0, facing_b]))
 
 
 def plan(moves: Sequence[Move], standing: Standing, frames: int, *, first: bool = False) -> list[Way2D]:
@@ -203,7 +167,11 @@ def _moved(
             line = other - here
             track.turn(wrapped(math.atan2(line[0], line[1]) - track.heading))
             track.stay(facing=True, seconds=None if last else 0.2)
-        case Way.TO | Way.BEHIND:
+        case Way.BEHIND:
+            _behind(
+                move, track, other, tracks[1 - who].faces(track.frame, standing.headings[1 - who]), seconds
+            )
+        case Way.TO:
             _to(move, track, gap, to, seconds, both=both, last=last)
         case Way.AWAY:
             _away(move, track, gap, to, seconds, both=both, followed=Way.AFTER in theirs)
@@ -233,12 +201,31 @@ def _moved(
 
 def _to(move: Move, track: Track, gap: float, to: Array, seconds: float, *, both: bool, last: bool) -> None:
     """A walk up to the other, or halfway where both come."""
-    near = move.near or (NEAR_BY if move.way is Way.BEHIND else CLOSE)
+    near = move.near or CLOSE
     way = (gap - near) / (2 if both else 1)
     if way > (0.05 if move.near else 0.25):
         track.walk(np.stack([track.place, track.place + way * to]), _time(way, move.speed, seconds))
     if last and (move.near or not both):
         track.stay(facing=bool(move.near))
+
+
+def _behind(move: Move, track: Track, other: Array, faces: float, seconds: float) -> None:
+    """A walk up to the other's back, round them where they stand in the way, that ends facing it."""
+    near = move.near or NEAR_BY
+    goal, out = other - near * direction(faces), track.place - other
+    start = math.atan2(out[0], out[1])
+    sweep = wrapped(faces + math.pi - start)
+    line = [track.place, goal]
+    if abs(sweep) > math.pi / 3:
+        wide = min(float(np.linalg.norm(out)), WIDE)
+        line[1:1] = [other + wide * direction(start + share * sweep) for share in (0.4, 0.75)]
+    way = float(np.linalg.norm(np.diff(line, axis=0), axis=1).sum())
+    if way > (0.05 if move.near else 0.25):
+        most = seconds if len(line) == 2 else _ROUND_BEHIND * seconds
+        track.walk(smoothed(np.stack(line)), _time(way, move.speed, most))
+    if abs(turn := wrapped(faces - track.heading)) > 0.1:
+        track.turn(turn)
+    track.stay(facing=True)
 
 
 def _away(

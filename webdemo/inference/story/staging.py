@@ -13,7 +13,7 @@ from functools import lru_cache
 from acts import shapes
 from acts.captions import of_each
 from acts.lexicon import Entry, Lexicon, lexicon
-from acts.plan import Act, beats
+from acts.plan import FROM_BEHIND, Act, beats
 from acts.reading.vocabulary import vocabulary
 
 from .beginnings import Setting, standing
@@ -249,7 +249,8 @@ class _Stage:
             self.level[act.id] > self.level[other.id] and not (other.already or _only_stays(entry))
             for other, entry in self.done
         )
-        behind = shape.behind or giver in self.behind
+        behind = shape.behind or giver in self.behind or FROM_BEHIND in act.manner
+        behind = behind or (region is Region.BACK and not any(e.mutual for _, e in self.done))
         self.contact = Contact(giver, region, sides, times, late, behind, shape.fells)
         if shape.fells:
             fallen = Change(Posture.LIES, after=0.4)

@@ -82,6 +82,11 @@ class Track:
         known = np.flatnonzero(np.isfinite(self.places[: frame + 1, 0]))
         return self.places[known[-1]].copy() if len(known) else np.array(start, dtype=float)
 
+    def faces(self, frame: int, start: float) -> float:
+        """The heading that is planned for a frame or was before it; ``start`` before any plan."""
+        known = np.flatnonzero(np.isfinite(self.headings[: frame + 1]))
+        return float(self.headings[known[-1]]) if len(known) else float(start)
+
     def _turned_into(self, facing: Array) -> Array:
         """Headings that begin at the person's own and are turned at a body's pace."""
         found, now, most = np.empty(len(facing)), self.heading, math.pi / TURNING / FPS
