@@ -17,6 +17,7 @@ from numpy.typing import NDArray
 from .arms import ARMS, grips_of_hands
 from .planted import HIPS, LEGS, UPPER, over_planted_feet
 from .skeleton import SMPL22
+from .smoothing import eased_marks, without_flicker
 from .transforms import facing
 
 Array = NDArray[np.floating]
@@ -69,7 +70,7 @@ def embraced(pair: Array, free: Array | None = None) -> Array:
     """
     result = np.array(pair, dtype=np.float64)
     share = np.ones(result.shape[1]) if free is None else free
-    close = share * _eased(_on_their_feet(_long(_hugs(result)), result))
+    close = share * _eased(_hugs(result), result)
     if close.any():
         drawn = [_drawn(result[p], result[1 - p], close) for p in (0, 1)]
         ways = [_way(drawn[p], drawn[1 - p]) for p in (0, 1)]
@@ -77,11 +78,10 @@ def embraced(pair: Array, free: Array | None = None) -> Array:
             [_wrapped(drawn[p], drawn[1 - p][:, _SPINE], ways[p], _HANDS, close) for p in (0, 1)]
         )
     for holder in (0, 1):
-        close = share * _eased(
-            _on_their_feet(_long(_holds_from_behind(*result[[holder, 1 - holder]])), result)
-        )
+        two = result[[holder, 1 - holder]]
+        close = share * _eased(_holds_from_behind(*two), result)
         if close.any():
-            result[[holder, 1 - holder]] = _held_from_behind(*result[[holder, 1 - holder]], close)
+            result[[holder, 1 - holder]] = _held_from_behind(*two, close)
     return result
 
 
@@ -131,28 +131,17 @@ def _holds_from_behind(own: Array, other: Array) -> NDArray[np.bool_]:
     return np.asarray(_around(own, other, 0.03).all(axis=1) & (same > _FACES) & stands)
 
 
+def _eased(marked: NDArray[np.bool_], pair: Array) -> Array:
+    """(T,) how far each frame is an embrace of people on their feet, 0 to 1."""
+    return eased_marks(_on_their_feet(without_flicker(marked, _SHORTEST), pair), _EASE)
+
+
 def _on_their_feet(marked: NDArray[np.bool_], pair: Array) -> NDArray[np.bool_]:
     """Marked frames but for those at which, or next to which, somebody is lifted."""
     lifted = (pair[:, :, _TOES, 1].min(axis=2) > _LIFTED).any(axis=0)
     near = scipy.ndimage.binary_dilation(lifted, np.ones(2 * _EASE + 1)) if lifted.any() else lifted
     stretches, _ = scipy.ndimage.label(marked)
     return marked & ~np.isin(stretches, stretches[near])
-
-
-def _long(marked: NDArray[np.bool_]) -> NDArray[np.bool_]:
-    """Marked frames without short gaps and short stretches."""
-    padded = np.pad(marked, _SHORTEST, mode="edge")
-    closed = scipy.ndimage.binary_closing(padded, np.ones(_SHORTEST + 1))
-    return scipy.ndimage.binary_opening(closed, np.ones(_SHORTEST))[_SHORTEST:-_SHORTEST]
-
-
-def _eased(marked: NDArray[np.bool_]) -> Array:
-    """(T,) 1 at marked frames, and along a minimum-jerk course to 0 within :data:`_EASE` frames beside them."""
-    if not marked.any():
-        return np.zeros(len(marked))
-    away = scipy.ndimage.distance_transform_edt(~marked)
-    s = np.clip(1 - away / (_EASE + 1), 0.0, 1.0)
-    return np.asarray(s**3 * (10 - 15 * s + 6 * s**2))
 
 
 def _drawn(

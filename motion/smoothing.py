@@ -69,3 +69,19 @@ def _third_differences(count: int) -> Array:
         for j in range(i, 4):
             bands[3 - (j - i), j : count - 3 + j] += coefficients[i] * coefficients[j]
     return bands
+
+
+def without_flicker(marked: NDArray[np.bool_], shortest: int) -> NDArray[np.bool_]:
+    """Marked frames (T,) without gaps and stretches that are shorter than so many frames."""
+    padded = np.pad(marked, shortest, mode="edge")
+    closed = scipy.ndimage.binary_closing(padded, np.ones(shortest + 1))
+    return np.asarray(scipy.ndimage.binary_opening(closed, np.ones(shortest))[shortest:-shortest])
+
+
+def eased_marks(marked: NDArray[np.bool_], frames: int) -> Array:
+    """(T,) 1 at marked frames, and along a minimum-jerk course to 0 within so many frames beside them."""
+    if not marked.any():
+        return np.zeros(len(marked))
+    away = scipy.ndimage.distance_transform_edt(~marked)
+    s = np.clip(1 - away / (frames + 1), 0.0, 1.0)
+    return np.asarray(s**3 * (10 - 15 * s + 6 * s**2))

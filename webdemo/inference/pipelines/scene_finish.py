@@ -9,6 +9,7 @@ from motion.arms import arms_apart
 from motion.easing import smoothstep
 from motion.embraces import embraced
 from motion.idling import alive
+from motion.palms import palms_met
 from webdemo.inference.actor import FPS
 from webdemo.inference.story.request import SceneRequest
 
@@ -30,7 +31,7 @@ def finished(request: SceneRequest, scene: Array, seed: int) -> Array:
         (2, T, 22, 3) float32.
     """
     free = _made(request, scene.shape[1])
-    result = arms_apart(embraced(scene, free), np.stack([free, free]))
+    result = palms_met(arms_apart(embraced(scene, free), np.stack([free, free])), free)
     rests = np.stack([free, free])
     for beat, told in enumerate(request.told if request.planned else ()):
         start, stop = request.edges[beat], request.edges[beat + 1]
