@@ -78,10 +78,10 @@ def embraced(pair: Array, free: Array | None = None) -> Array:
             [_wrapped(drawn[p], drawn[1 - p][:, _SPINE], ways[p], _HANDS, close) for p in (0, 1)]
         )
     for holder in (0, 1):
-        two = result[[holder, 1 - holder]]
-        close = share * _eased(_holds_from_behind(*two), result)
+        own, other = result[[holder, 1 - holder]]
+        close = share * _eased(_holds_from_behind(own, other), result)
         if close.any():
-            result[[holder, 1 - holder]] = _held_from_behind(*two, close)
+            result[[holder, 1 - holder]] = _held_from_behind(own, other, close)
     return result
 
 

@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 
 from motion import SMPL22
+from motion.metrics.naturalness import standing_foot
 from webdemo.inference import cleanup
 from webdemo.inference.cleanup import _elbow_pole, clean_person, on_constant_bones
 from webdemo.inference.following import FollowingCleanup
@@ -93,3 +94,24 @@ def test_an_arm_that_folds_over_its_shoulder_does_not_fling_its_elbow() -> None:
 def test_a_straight_arm_bends_backwards_and_down() -> None:
     ahead = np.array([[0.0, 0.0, 1.0]])
     np.testing.assert_array_equal(_elbow_pole(ahead), [[0.0, -1.0, -1.0]])
+
+
+def walking() -> np.ndarray:
+    """(T, 22, 3) a person who walks at 1.2 m/s, whose feet glide by turns as one hands the weight to the other."""
+    rest = SMPL22.rest_positions() + np.array([0, 0.93, 0])
+    time = np.arange(90) / 30
+    walker = np.repeat(rest[None], 90, axis=0)
+    walker[..., 2] += 1.2 * time[:, None]
+    for side, phase in (("left", 0.0), ("right", 0.5)):
+        step = time + phase
+        swing = np.clip((step % 1.0 - 0.54) / 0.46, 0, 1)
+        ahead = 1.2 * (np.floor(step) + swing**2 * (3 - 2 * swing) - phase) + 0.32
+        for joint, rise in (("knee", 0.0), ("ankle", 0.06), ("foot", 0.02)):
+            at = SMPL22.index(f"{side}_{joint}")
+            walker[:, at, 2] = rest[at, 2] + (0.5 * (ahead + 1.2 * time) if joint == "knee" else ahead)
+            walker[:, at, 1] += rise * np.sin(np.pi * swing) ** 2
+    return walker
+
+
+def test_one_foot_stands_until_the_other_does() -> None:
+    assert standing_foot(clean_person(walking()), 30.0) < 1.0

@@ -20,6 +20,9 @@ _CALM = 0.3
 """Weight of what a network made against least jerk: what is slower than 4 Hz stays."""
 _SOFT = 0.04
 """Share of a limb's length before its end that is used up ever more slowly: a straight limb trembles."""
+_LANDS = 0.5
+"""Metres a second of a foot that lands or leaves, up to which it stands already, or still, at a hand-over of weight:
+0.4 leaves both toes gliding for two or three frames, 0.6 has walks jerk a fifth more."""
 _ARMS = [
     tuple(SMPL22.index(f"{side}_{j}") for j in ("shoulder", "elbow", "wrist")) for side in ("left", "right")
 ]
@@ -45,7 +48,10 @@ def clean_person(positions: Array, fps: float = 30.0) -> Array:
     bones, _ = project_to_skeleton(seen)
     result = above_floor(_steady_limbs(_limbs_back(_steady_bones(bones), seen), seen))
     result = stepping(result, fps)
-    return lift_swinging_feet(plant_feet(result, foot_contacts(result, fps)), fps)
+    swung = lift_swinging_feet(plant_feet(result, foot_contacts(result, fps)), fps)
+    return plant_feet(
+        swung, foot_contacts(swung, fps, speed=_LANDS)
+    )  # a toe that is raised glides as it lands
 
 
 def _calmed(positions: Array) -> Array:
