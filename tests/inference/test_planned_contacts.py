@@ -112,6 +112,11 @@ def test_a_touch_of_the_back_or_from_behind_comes_from_there(engine: Engine, pro
     assert (found[0, at, 0] - found[1, at, 0]) @ np.cross(across, [0.0, 1.0, 0.0]) < 0
 
 
+def test_a_hand_that_has_patted_a_back_hangs_again(engine: Engine) -> None:
+    found = made(engine, "Person A pats person B on the back.")
+    assert (found[0, -15:, SMPL22.index("right_wrist"), 1] < found[0, -15:, 0, 1] + 0.15).all()
+
+
 def test_a_hand_that_is_offered_stays_out_and_nobody_takes_it(engine: Engine) -> None:
     found = made(engine, "Person A offers a hand, but person B does not take it.")
     wrist, pelvis = found[0, 45:105, SMPL22.index("right_wrist")], found[0, 45:105, 0]

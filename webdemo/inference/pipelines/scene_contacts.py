@@ -30,6 +30,8 @@ BEAT = 20
 """Frames from one pat to the next."""
 TAKEN_BACK = 0.2
 """Metres by which a hand is taken back between two pats."""
+LOWERS = 24
+"""Frames in which a hand that has patted somebody's back goes down."""
 LOWEST = 0.55
 """Height in metres of the lowest place that somebody on their feet reaches."""
 _HIPS = [SMPL22.index("left_hip"), SMPL22.index("right_hip")]
@@ -133,6 +135,11 @@ def given_contact(
         pose -= pose[0].copy()
         kept.append(start + frame - window.start + window.past)
         poses.append(pose)
+    for frame in _rests(touch, at, frames):
+        if window.start <= start + frame < window.stop:
+            kept.append(start + frame - window.start + window.past)
+            pose = upright(own.places[frame], float(own.headings[frame]))
+            poses.append(pose - pose[0])
     if not kept:
         return None
     return KnownFrames(giver, kept, placement.to_network(np.stack(poses)), joints)
@@ -198,6 +205,13 @@ def _moments(touch: Contact, first: int, last: int) -> list[tuple[int, float]]:
         if i + 1 < touch.times:
             found.append((on + BEAT // 2 + 3, TAKEN_BACK))
     return [(frame, back) for frame, back in found if frame < last]
+
+
+def _rests(touch: Contact, at: Sequence[tuple[int, float]], frames: int) -> range:
+    """The frames after the last pat of somebody's back: their hands hang, where the network would pat the front."""
+    if not touch.times or not touch.behind or not at:
+        return range(0)
+    return range(at[-1][0] + LOWERS, frames, REACHES // 2)
 
 
 def course_of(person: int, ways: Mapping[int, Way2D], stand: Standing, frames: int) -> Course:
