@@ -79,8 +79,11 @@ export class Controls {
     );
   }
 
-  /** Marks a sample's tab, and says how long it is and who is who in it. */
+  /** Marks a sample's tab, and says what happens in it, how long it is and who is who. */
   select(sample, index) {
+    const told = this.find(".pdd-told");
+    told.hidden = !sample.told;
+    if (told.textContent !== (sample.told ?? "")) told.textContent = sample.told ?? "";
     this.find(".pdd-range").max = String(sample.frames - 1);
     for (const [person, key] of ["a", "b"].entries()) {
       const text = this.find(`[data-key=${key}]`);

@@ -15,6 +15,9 @@ export const FIELD_OF_VIEW = Math.PI / 4; // plotly's
 const ease = (t) => 1 - (1 - t) ** 3;
 const clamp = (v, low, high) => Math.min(Math.max(v, low), high);
 
+/** Whether the visitor's system asks for as little movement as possible. */
+export const reducedMotion = () => matchMedia("(prefers-reduced-motion: reduce)").matches;
+
 export class Orbit {
   constructor() {
     this.yaw = 0.9;
@@ -73,8 +76,7 @@ export class Orbit {
     const turn = Math.atan2(Math.sin(yaw - this.yaw), Math.cos(yaw - this.yaw)); // the short way round
     const to = { yaw: this.yaw + turn, elevation, distance: clamp(distance, NEAREST, FARTHEST), pan: keepPan ? this.pan.slice() : [0, 0, 0] };
     this.framing = true;
-    const reduced = matchMedia("(prefers-reduced-motion: reduce)").matches;
-    if (now === null || reduced) {
+    if (now === null || reducedMotion()) {
       Object.assign(this, to);
       this.glide = null;
     } else {

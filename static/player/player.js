@@ -11,7 +11,7 @@ import { Futures } from "./futures.js";
 import * as live from "./live.js";
 import { Grid } from "./grid.js";
 import { Hover } from "./hover.js";
-import { Orbit } from "./orbit.js";
+import { Orbit, reducedMotion } from "./orbit.js";
 import { THEMES, themeName } from "./palette.js";
 import { Pane } from "./pane.js";
 import { Posing } from "./posing.js";
@@ -125,7 +125,7 @@ export class Player {
     this.clothes.change();
     if (!goesOn) this.framing.reset();
     if (this.sample.live) this.clock.pause();
-    else if (!goesOn) this.clock.play();
+    else if (!goesOn && !(payload.rounds && reducedMotion())) this.clock.play();
     if (!payload.rounds && !payload.stream && !this.sample.live) aim(this);
     this.refresh();
   }

@@ -333,6 +333,39 @@ def test_every_control_has_a_name_and_the_focus_is_visible(page: Page) -> None:
     assert page.evaluate("getComputedStyle(document.activeElement).outlineStyle") != "none"
 
 
+def test_axe_finds_nothing_against_wcag_aa_and_reduced_motion_keeps_the_example_still(
+    server: SimpleNamespace, open_page: Callable[..., Page]
+) -> None:
+    axe = pytest.importorskip("axe_playwright_python.sync_playwright").Axe()
+    page = live(open_page(server.url, before=lambda tab: tab.emulate_media(reduced_motion="reduce")))
+    page.wait_for_function("window.__pasdedeux?.player?.data", timeout=SLOW)
+    assert not page.evaluate("window.__pasdedeux.player.clock.playing")
+    page.add_style_tag(
+        content="*, ::before, ::after { transition: none !important; animation: none !important; }"
+    )
+    found = against_wcag(axe, page, "idle")
+    ask(page, "Two people walk home.")
+    status(page, "done")
+    unfold(page, "#downloads", "#share")
+    found += against_wcag(axe, page, "result")
+    for tab in ("Scene", "React", "Predict", "History"):
+        page.get_by_role("tab", name=tab, exact=True).click()
+        found += against_wcag(axe, page, tab)
+    assert found == []
+
+
+def against_wcag(axe: Any, page: Page, where: str) -> list[str]:
+    """What axe finds against WCAG 2.1 AA, in the light theme and in the dark one."""
+    found = []
+    rules = {"runOnly": {"type": "tag", "values": ["wcag2a", "wcag2aa", "wcag21a", "wcag21aa"]}}
+    for dark in (False, True):
+        page.evaluate("dark => document.body.classList.toggle('dark', dark)", dark)
+        for broken in axe.run(page, options=rules).response["violations"]:
+            found += [f"{where}: {broken['help']}: {node['html'][:120]}" for node in broken["nodes"]]
+    page.evaluate("document.body.classList.remove('dark')")
+    return found
+
+
 def test_nothing_but_buttons_takes_room_in_the_rows_of_files(page: Page) -> None:
     ask(page, "Two people walk home.")
     status(page, "done")

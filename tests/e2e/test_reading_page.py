@@ -82,6 +82,9 @@ def test_a_plan_is_edited_and_made(lab: str, open_page: Callable[..., Page]) -> 
     assert made == ["wave", "shake-hands"]
     expect(chips.nth(0).locator(".pdr-check")).to_be_visible(timeout=SLOW)
     assert page.locator("#reading .pdr-check").first.inner_text()[0] in "✓✗"
+    # What happens is told under the stage, to screen readers as well.
+    told = page.locator("#player .pdd-told[role=status]")
+    expect(told).to_have_text("B waves; A and B shake hands with each other.", timeout=SLOW)
     # Words that are typed are read anew, and the page says what that does.
     page.locator("#prompt textarea").press_sequentially(" B nods.")
     expect(reading.locator(".pdr-badge")).to_be_hidden(timeout=SLOW)

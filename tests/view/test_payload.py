@@ -55,6 +55,11 @@ def test_a_flat_axis_survives():
     assert np.allclose(unpack_positions(pack_positions(positions)), positions, atol=1e-4)
 
 
+def test_what_happens_in_words_goes_with_its_sample():
+    told = duet(manifest={"told": "A bows."})
+    assert [sample.get("told") for sample in player_payload([told, duet()])["samples"]] == ["A bows.", None]
+
+
 def test_ten_seconds_are_small_and_plain_json():
     payload = player_payload(duet(300), title="${alert(1)}")
     text = json.dumps(payload)

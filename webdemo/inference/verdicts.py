@@ -8,6 +8,7 @@ from typing import Any
 
 from acts import Act, Plan, read
 from acts.checking import checked
+from acts.telling import told
 from motion import SMPL22, Clip, Duet, InputError
 from motion.metrics.sentences.joints import Motion
 
@@ -29,7 +30,7 @@ class Judged:
     """A result with what its samples show of the words.
 
     Attributes:
-        result: with ``checked`` in the manifests, of the first sample in that of all.
+        result: with ``checked`` and ``told`` in the manifests, of the first sample in that of all.
         rows: of each sample; () where the request has no words that can be read.
     """
 
@@ -52,24 +53,22 @@ class Judged:
 def judged(request: Any, result: Result) -> Judged:
     """A result with the verdicts on the acts of its request's words; as it is where there are none to judge."""
     plans = list(plans_of(request))
-    rows = tuple(_rows(plans, duet) for duet in result.duets) if plans else ()
+    found = [_judged_sample(plans, duet) for duet in result.duets] if plans else []
+    rows = tuple(own["checked"] for own in found)
     if not any(rows):
         return Judged(result)
-    manifest = {**result.manifest, "checked": rows[0]}
-    duets = tuple(_with_rows(duet, own) for duet, own in zip(result.duets, rows, strict=True))
-    return Judged(replace(result, manifest=manifest, duets=duets), rows)
+    duets = tuple(_with(duet, own) for duet, own in zip(result.duets, found, strict=True))
+    return Judged(replace(result, manifest=result.manifest | found[0], duets=duets), rows)
 
 
-def _with_rows(duet: Duet | Clip, rows: Rows) -> Duet | Clip:
-    return (
-        replace(duet, manifest={**(duet.manifest or {}), "checked": rows}) if isinstance(duet, Duet) else duet
-    )
+def _with(duet: Duet | Clip, own: Mapping[str, Any]) -> Duet | Clip:
+    return replace(duet, manifest={**(duet.manifest or {}), **own}) if isinstance(duet, Duet) else duet
 
 
 def kept_rows(duet: Duet) -> dict[str, Any]:
-    """The part of a sample's manifest that is its own: its verdicts and its things; empty where there are none."""
+    """The part of a sample's manifest that is its own: its verdicts, what happens in words, and its things."""
     manifest = duet.manifest or {}
-    return {key: manifest[key] for key in ("checked", "things") if key in manifest}
+    return {key: manifest[key] for key in ("checked", "told", "things") if key in manifest}
 
 
 def plans_of(request: Any) -> Iterator[tuple[Plan, int, int | None, int | None]]:
@@ -103,15 +102,19 @@ def _read(sentence: str) -> Plan | None:
         return None
 
 
-def _rows(plans: Sequence[tuple[Plan, int, int | None, int | None]], duet: Duet | Clip) -> Rows:
+def _judged_sample(
+    plans: Sequence[tuple[Plan, int, int | None, int | None]], duet: Duet | Clip
+) -> dict[str, Any]:
+    """The verdicts on a sample, ``checked``, and what happens in it in words, ``told``."""
     if not isinstance(duet, Duet) or duet.skeleton.joint_names != SMPL22.joint_names:
-        return []
-    found = []
+        return {"checked": []}
+    rows: Rows = []
+    words: list[str] = []
     for plan, start, stop, beat in plans:
-        part = Motion(duet.positions[:, start:stop], duet.fps)
-        for verdict in checked(plan, part):
-            found.append(verdict.to_dict() | ({} if beat is None else {"beat": beat}))
-    return found
+        verdicts = checked(plan, Motion(duet.positions[:, start:stop], duet.fps))
+        rows += [each.to_dict() | ({} if beat is None else {"beat": beat}) for each in verdicts]
+        words.append(told(plan, verdicts))
+    return {"checked": rows, "told": " ".join(filter(None, words))}
 
 
 # ---- the note --------------------------------------------------------------------------------------------

@@ -129,10 +129,12 @@ def sample_payload(
 
 
 def _things(motion: Duet | Clip) -> dict[str, Any]:
-    """The things beside two people, the grips of their hands and their looks; nothing for what is not said."""
+    """The things beside two people, their grips and looks, and what happens in words; nothing for what is not said."""
     if not isinstance(motion, Duet):
         return {}
     found: dict[str, Any] = {}
+    if told := str((motion.manifest or {}).get("told") or ""):
+        found["told"] = told
     if motion.things:
         found["things"] = [thing_payload(thing) for thing in motion.things]
     if motion.grips:
