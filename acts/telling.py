@@ -46,10 +46,16 @@ def _clauses(acts: Sequence[Act], known: Lexicon) -> Iterator[tuple[str, str]]:
             words = f"{letter} {words.removeprefix(f'{name} ')}" if words.startswith(f"{name} ") else words
             words = words.replace(name, letter) if name.startswith("person") else words
         subject = next((each for each in (_BOTH, "A", "B") if words.startswith(f"{each} ")), "")
-        if act.thing and act.thing not in words:  # the network's words leave the thing out
-            subject = _BOTH if len(act.agents) == 2 else act.agents[0].upper()
-            words = short(act, known.entries[act.act]).replace(act.thing, f"the {act.thing}")
-        yield subject, words.removeprefix(subject).strip()
+        brief = short(act, known.entries[act.act])
+        if act.thing and act.thing not in words:  # the network's words leave the thing out, or name another
+            words = words.replace(" a book", f" the {act.thing}")
+            if act.thing in brief:
+                subject = _BOTH if len(act.agents) == 2 else act.agents[0].upper()
+                words = brief.replace(act.thing, f"the {act.thing}")
+        rest = words.removeprefix(subject).strip()
+        if " and A " in rest or " and B " in rest:  # two people's, each with a verb of their own
+            subject, rest = "", f"{subject} {rest}"
+        yield subject, rest
 
 
 def _sided(act: Act, caption: str) -> str:
@@ -71,7 +77,7 @@ def _joined(clauses: Iterator[tuple[str, str]]) -> str:
         elif subject and subject == last:
             text += f" and {words}"
         else:
-            text += f"; {subject} {words}".rstrip()
+            text += "; " + f"{subject} {words}".strip()
         last = subject
     return f"{text[:1].upper()}{text[1:]}." if text else ""
 

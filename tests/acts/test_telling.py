@@ -30,7 +30,8 @@ def tell(sentence: str, missed: Collection[str] = ()) -> str:
             "A waves with the left hand; B bows twice.",
         ),
         ("They carry a table across the room.", "A and B carry the table."),
-        ("One person hands a book to the other.", "A hands a book to B."),
+        ("One person hands a flower to the other.", "A hands the flower to B."),
+        ("One person jumps over the other, who crouches.", "B crouches and A jumps over B; B crouches."),
     ],
 )
 def test_what_is_done_is_told_in_order_with_sides_and_things(sentence: str, expected: str) -> None:

@@ -1,13 +1,16 @@
-"""The search that Ctrl K opens, in the served page."""
+"""The dialogs of the page: the search that Ctrl K opens, and the drawer of examples."""
 
 from __future__ import annotations
 
+import json
 import re
 from collections.abc import Callable
 from types import SimpleNamespace
 
 import pytest
 from playwright.sync_api import Page, expect
+
+from webdemo.ui.components.gallery import SCENES
 
 from .playing import until
 from .serving import SLOW, live
@@ -64,3 +67,19 @@ def test_the_dialog_closes_again_and_says_when_nothing_is_found(
     expect(page.locator(FIRST)).to_contain_text("History")
     page.keyboard.press("Enter")
     expect(page.get_by_role("tab", name="History")).to_have_attribute("aria-selected", "true", timeout=SLOW)
+
+
+def test_a_scene_of_the_drawer_of_examples_is_made_by_one_press(
+    server: SimpleNamespace, open_page: Callable[..., Page]
+) -> None:
+    page = live(open_page(server.url, width=1280, height=800))
+    page.get_by_role("button", name="All examples").click()
+    scenes = page.locator("#gallery .pdx-scene")
+    expect(scenes).to_have_count(24, timeout=SLOW)
+    kept = json.loads(SCENES.read_text(encoding="utf-8"))["scenes"][5]
+    scenes.nth(5).click()
+    expect(page.locator("#prompt textarea")).to_have_value(kept["prompt"], timeout=SLOW)
+    expect(page.locator("#status .pd-done")).to_be_visible(timeout=SLOW)
+    asked = server.engine.requests[-1]
+    assert (asked.prompt, asked.seconds, asked.seed) == (kept["prompt"], kept["seconds"], kept["seed"])
+    expect(page.locator("#gallery dialog")).to_be_hidden()

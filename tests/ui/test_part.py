@@ -7,6 +7,7 @@ import pytest
 
 from webdemo.ui.components.camera import CameraPanel
 from webdemo.ui.components.finder import Finder
+from webdemo.ui.components.gallery import Gallery
 from webdemo.ui.components.live_panel import LivePanel
 from webdemo.ui.components.notebook import NotebookView
 from webdemo.ui.components.part import MOUNT, Part, on_load, scoped
@@ -14,7 +15,7 @@ from webdemo.ui.components.player import MotionPlayer
 from webdemo.ui.components.reading import Reading
 from webdemo.ui.components.story import StoryLine
 
-PARTS = (CameraPanel, Finder, LivePanel, MotionPlayer, NotebookView, Reading, StoryLine)
+PARTS = (CameraPanel, Finder, Gallery, LivePanel, MotionPlayer, NotebookView, Reading, StoryLine)
 
 
 @pytest.mark.parametrize("part", PARTS)

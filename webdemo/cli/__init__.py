@@ -21,6 +21,7 @@ from typing import Any
 from motion import InputError
 
 from .admin import add_admin
+from .gallery import add_gallery
 from .generation import add_generate, add_predict, add_react
 from .parser import Parser
 from .reading import add_read
@@ -46,6 +47,7 @@ def main(argv: Sequence[str] | None = None) -> int:
         add_scene,
         add_read,
         add_render,
+        add_gallery,
         add_score,
         add_study,
         add_share,

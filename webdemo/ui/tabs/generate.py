@@ -16,6 +16,7 @@ from webdemo.inference.acting import acted
 from webdemo.inference.actor import SECONDS
 from webdemo.inference.methods import installed, label_of, method
 from webdemo.inference.requests import GenerateRequest, Result
+from webdemo.ui.components.gallery import Gallery
 from webdemo.ui.components.pace import pace_of
 from webdemo.ui.components.reading import Reading, checked, edited_plan, reread, shown
 from webdemo.ui.components.settings import UNPLANNED, looked_up
@@ -172,6 +173,7 @@ class GenerateTab(SweepTab):
             chip.click(
                 None, outputs=self.prompt, js=f"() => {{ {focus} return {json.dumps(sentence)}; }}", **QUIET
             )
+        self.gallery.fill(self.prompt, self.seconds, self.seed, self.go, **QUIET)
         fitted = [
             self.by_sentence, self.class_name, self.guidance, self.about, self.planned, self.steps, self.pace,
         ]  # fmt: skip
@@ -205,6 +207,7 @@ class GenerateTab(SweepTab):
                     autofocus=True,
                 )
                 with gr.Row(elem_classes="pd-chips"):
+                    self.gallery = Gallery(elem_id="gallery", elem_classes="pd-gallery", min_width=0)
                     self.chips = [
                         gr.Button(name, size="sm", elem_classes="pd-chip", min_width=0)
                         for name, _ in EXAMPLES

@@ -1,0 +1,38 @@
+// The drawer of examples: scenes.json as cards that move. webdemo/ui/components/gallery.py takes the one that is pressed.
+
+import { play } from "../notebook/thumbnail.js";
+
+const SIZE = 240; // pixels of a thumbnail
+
+/** A card for a scene; its words are set as text. */
+function card(scene, take) {
+  const item = document.createElement("li");
+  const button = Object.assign(document.createElement("button"), { type: "button", className: "pdx-scene" });
+  const canvas = Object.assign(document.createElement("canvas"), { width: SIZE, height: SIZE, ariaHidden: "true" });
+  button.append(canvas, scene.prompt);
+  button.addEventListener("click", () => take(scene));
+  item.append(button);
+  play(canvas, scene.thumbnail);
+  return item;
+}
+
+/** Lets a button open the drawer, whose scenes are fetched when it first opens. */
+export function mount(element, props, watch, trigger) {
+  const dialog = element.querySelector("dialog");
+  const list = element.querySelector("ul");
+  const take = ({ prompt, seconds, seed }) => {
+    dialog.close();
+    props.value = { prompt, seconds, seed };
+    trigger("input");
+  };
+  const fill = async () => {
+    const { scenes } = await (await fetch(new URL("scenes.json", import.meta.url))).json();
+    list.replaceChildren(...scenes.map((scene) => card(scene, take)));
+  };
+  element.querySelector(".pdx-open").addEventListener("click", () => {
+    dialog.showModal();
+    if (!list.children.length) fill();
+  });
+  element.querySelector(".pdx-close").addEventListener("click", () => dialog.close());
+  dialog.addEventListener("click", (event) => event.target === dialog && dialog.close());
+}
