@@ -285,6 +285,28 @@ def test_downloads_are_files(page: Page, tmp_path: Path) -> None:
         assert Path(waiting.value.path()).stat().st_size > 1000
 
 
+def test_a_button_never_gives_the_file_of_the_run_before(page: Page, monkeypatch: pytest.MonkeyPatch) -> None:
+    ask(page, "two people walk home")
+    status(page, "done")
+    unfold(page, "#downloads")
+    button = page.locator("#download-json")
+    expect(button).to_be_enabled(timeout=SLOW)
+    written = threading.Event()
+    write_record = results.write_record
+    monkeypatch.setattr(results, "write_record", lambda *given: written.wait(60) and write_record(*given))
+    try:
+        ask(page, "two people hug")
+        expect(page.locator("#player .pdd-title")).to_have_text("two people hug", timeout=SLOW)
+        expect(page.locator("button#generate")).to_be_enabled(timeout=SLOW)
+        expect(button).to_be_disabled()
+    finally:
+        written.set()
+    expect(button).to_be_enabled(timeout=SLOW)
+    with page.expect_download() as waiting:
+        button.click()
+    assert json.loads(Path(waiting.value.path()).read_text())["request"]["prompt"] == "two people hug"
+
+
 def test_two_sessions_do_not_cancel_each_other(page: Page, phone: Page, server: SimpleNamespace) -> None:
     for each in (page, phone):
         each.locator("#pace label", has_text="Faithful").click()  # many steps, so that the run is seen

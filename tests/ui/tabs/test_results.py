@@ -62,6 +62,13 @@ def test_export_fills_the_buttons_once(tab: GenerateTab) -> None:
     assert all(update == gr.skip() for update in tab.export(None))
 
 
+def test_new_files_are_withheld_until_they_are_written(tab: GenerateTab) -> None:
+    record = result_of(tab)
+    assert all(update == gr.update(value=None, interactive=False) for update in tab.withhold(record))
+    tab.export(record)
+    assert all(update == gr.skip() for update in (*tab.withhold(record), *tab.withhold(None)))
+
+
 def test_a_full_disk_is_reported_and_leaves_nothing(
     tab: GenerateTab, monkeypatch: pytest.MonkeyPatch
 ) -> None:

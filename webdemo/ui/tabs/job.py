@@ -150,7 +150,7 @@ class JobTab(SamplingTab, ABC):
         # Only now would a press be taken: while the event goes on, Gradio drops it.
         run.then(self.rest, outputs=[*self.starts().values(), self.stop], queue=False, **QUIET)
         run.then(None, **self.compare)  # what was changed while it ran
-        run.then(
+        run.then(self.withhold, inputs=self.record, outputs=self.handed_out, queue=False, **QUIET).then(
             self.export,
             inputs=[self.record, self.worn],
             outputs=[self.line, *self.downloads],

@@ -268,6 +268,16 @@ class ResultsTab:
         address = link_address(visitor().base, key, shown)
         return status(link_line(until), tone="done"), gr.update(value=address, visible=True)
 
+    @property
+    def handed_out(self) -> list[gr.DownloadButton]:
+        """The buttons of all files of a result: :attr:`downloads`, its film, and its figure and mesh."""
+        return [*self.downloads, self.filmed, *self.figured]
+
+    def withhold(self, record: Record | None) -> Updates:
+        """Takes the last result's files from the buttons where a new result's are still to be written."""
+        new = record is not None and not record.exported
+        return tuple(gr.update(value=None, interactive=False) if new else gr.skip() for _ in self.handed_out)
+
     def export(self, record: Record | None, worn: Worn | None = None) -> Updates:
         """Writes the files of a new result and hands them to the download buttons; both people wear ``worn``."""
         unchanged = (gr.skip(),) * (1 + len(KINDS))
