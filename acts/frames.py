@@ -16,7 +16,7 @@ arguments count against it, and an object that no element asks for rules it out.
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field, replace
 from typing import Literal
 
@@ -28,6 +28,8 @@ _PREPOSITIONS = (
     "round through to toward towards under underneath up upon with within without"
 )
 PREPOSITIONS = frozenset(_PREPOSITIONS.split())
+_DIRECTIONS = frozenset(("across", "along", "around", "back", "by", "in", "out", "over", "past", "up"))
+"""Particles that only say where somebody goes, beside those of who leaves or goes down."""
 _SLOTS = frozenset(("a", "a+b", "b", "self", "thing", "part", "place"))
 
 
@@ -72,6 +74,7 @@ class Event:
         state: a phrase says it that hangs on a noun, as in "the lady on the bench".
         joint: how it is joined to event ``beside``, as in :class:`acts.plan.Relation`.
         first, last: character offsets in the text that was parsed.
+        goes: its verb means that somebody moves, so that a particle may just say where to, as in "jumps out".
         adverbs, seconds, times, distance, direction, side: modifiers.
     """
 
@@ -96,6 +99,7 @@ class Event:
     distance: float | None = None
     direction: str | None = None
     side: str | None = None
+    goes: bool = False
     noun: Event | None = None
     """The same with the verb that its noun stands for: "gives a hug" as "hugs"."""
 
@@ -111,6 +115,8 @@ class Match:
     part: Ref | None = None
     rest: tuple[int, ...] = ()
     """The event's prepositions that no element took, by number."""
+    left: int = 0
+    """Prepositions and particles that no element took."""
 
 
 @dataclass(frozen=True)
@@ -201,14 +207,22 @@ class Frame:
         if event.dative is not None and "dative" not in taken:
             return None
         score += _beside(event, used, taken, together)
+        rest = tuple(i for i in range(len(event.prepositions)) if i not in used)
         return Match(
             score,
             agents,
             self._patient(bound, agents) or _receiver(event, agents),
             bound["thing"].lemma if "thing" in bound else "",
             bound.get("part"),
-            tuple(i for i in range(len(event.prepositions)) if i not in used),
+            rest,
+            len(rest) + sum(word not in taken for word in event.particles),
         )
+
+    def particles(self) -> Iterator[str]:
+        """Particles that belong to the verb, as "up" in "stand up"."""
+        for element in self.elements:
+            if not element.slot and not element.prepositions and not element.optional:
+                yield from element.words & PREPOSITIONS
 
     def _patient(self, bound: Mapping[str, Ref], agents: str) -> str:
         """The person to whom it is done, as the slots say; "" if they do not."""
@@ -256,14 +270,15 @@ def _beside(event: Event, used: list[int], taken: set[str], together: bool) -> f
             score += 0.8
         else:
             score -= 0.7 if ref.kind in ("person", "part") else 0.3
-    score -= 1.5 * sum(word not in taken for word in event.particles)
+    left = [word for word in event.particles if word not in taken]
+    score -= sum(0.5 if event.goes and word in _DIRECTIONS else 1.5 for word in left)
     return score
 
 
 def _receiver(event: Event, agents: str) -> str:
     """The other person, if what the words name beside the frame is theirs or done for them; else ""."""
     other = _other(agents)
-    named = [ref for word, ref in event.prepositions if word not in ("without", "like", "before")]
+    named = [ref for word, ref in event.prepositions if word not in ("without", "like")]
     for ref in (event.object, *named):
         if other and ref is not None and ref.kind in ("person", "part", "thing") and ref.who == other:
             return other

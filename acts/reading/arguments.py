@@ -46,6 +46,8 @@ class Arguments:
         self._postures = postures
         self._verbs = verbs
         self._words = vocabulary()
+        self.seen: set[int] = set()
+        """Tokens that have been taken up."""
 
     def fill(self, token: Token, event: Event) -> Ref | None:
         """Takes up the children of a verb; returns the agent of a passive."""
@@ -91,6 +93,9 @@ class Arguments:
                 child.dep_ in ("xcomp", "ccomp", "advcl") and child.pos_ == "ADJ"
             ):
                 self._modifier(child, event)
+            else:
+                continue
+            self.seen.add(child.i)
         return agent
 
     def _is_measure(self, noun: Token, event: Event) -> bool:
@@ -104,14 +109,18 @@ class Arguments:
         event.object = ref
 
     def _argument(self, token: Token, who: str, event: Event) -> Ref:
+        self.seen.add(token.i)
         person = self._words.is_person(token.lemma_.lower())
         states = {phrase.i for phrase, _ in states_of(token)} if person else set()
         for child in token.children:
             if child.dep_ in ("compound", "amod"):
                 event.words.append(child.lemma_.lower())
+                if child.lower_ in self._words.verbs["imagined"]:
+                    event.modality = "pretended"
                 if child.lower_ in ("left", "right") and is_act(token.lemma_.lower()):  # "a left hook"
                     event.side = event.side or child.lower_
-            if child.dep_ == "prep" and child.i in states:
+            owner = child.lower_ == "of" and self._words.part(token.lemma_.lower())  # "the arms of the other"
+            if child.dep_ == "prep" and (owner or child.i in states):
                 continue
             if child.dep_ == "prep":  # "puts a hand on his shoulder": the place may hang on the noun
                 self._preposition(child, who, event)
@@ -135,7 +144,9 @@ class Arguments:
 
     def _phrase(self, token: Token, who: str, event: Event) -> None:
         found = False
+        self.seen.add(token.i)
         for child in token.children:
+            self.seen.add(child.i)
             if child.dep_ == "pcomp":
                 found = True
                 if child.pos_ in ("ADV", "ADP"):  # "from behind"
@@ -165,8 +176,9 @@ class Arguments:
         if preposition.lower_ in ("for", "within", "after", "over") and lemma in self._words.seconds:
             event.seconds = self._amount(noun) * self._words.seconds[lemma]
             return True
-        if preposition.lower_ in ("to", "on", "towards") and lemma in ("left", "right"):
-            event.direction = event.side = lemma
+        if preposition.lower_ in ("to", "on", "towards", "with") and lemma in ("left", "right"):
+            event.side = lemma  # "mirrors her with the right" leaves the hand out
+            event.direction = event.direction if preposition.lower_ == "with" else lemma
             event.words.append(lemma)
             return True
         if lemma == "distance" and preposition.lower_ in ("at", "from"):
@@ -209,6 +221,7 @@ class Arguments:
             event.times = max(value, 1)
 
     def _modifier(self, token: Token, event: Event) -> None:
+        self.seen.add(token.i)
         text, lemma = token.lower_, token.lemma_.lower()
         if token.dep_ == "intj":
             event.words.append(text)
@@ -256,7 +269,7 @@ class Arguments:
         """Turns "gives him a hug" and "takes a bow" into the verb that their noun stands for."""
         noun = event.object
         if noun is not None and noun.kind == "thing" and noun.lemma in self._verbs:
-            for kind in ("tried", "wished", "not"):  # "wants a hug", "refuses the dance"
+            for kind in ("tried", "wished", "not", "pretended"):  # "wants a hug", "refuses the dance"
                 if event.lemma in self._words.verbs[kind] and event.lemma not in ("hope", "promise"):
                     event.lemma, event.object, event.dative = noun.lemma, event.dative, None
                     event.modality = event.modality if kind == "not" else kind

@@ -12,8 +12,8 @@ from dataclasses import replace
 from acts.frames import Event, Ref
 from acts.lexicon import Lexicon
 
-from . import order
 from .matching import Found
+from .relations import BESIDE
 from .vocabulary import is_act, vocabulary
 
 Find = Callable[[Event], Found | None]
@@ -49,7 +49,7 @@ def seated(event: Event, found: Found, known: Lexicon, told: Iterable[str]) -> E
     who, other = event.subject, event.object
     if found[2].patient and other is not None and other.kind == "person" and other.last <= seat.first:
         who = other  # "pushes an old man in a wheelchair"
-    elif not shown <= order.BESIDE | {"stay"}:
+    elif not shown <= BESIDE | {"stay"}:
         return None
     if who is None or set(told) & set(who.who):
         return None

@@ -51,7 +51,7 @@ class ClauseTree:
     """
 
     def __init__(
-        self, doc: Doc, verbs: frozenset[str], lemmas: dict[int, str], forms: Mapping[str, tuple[str, str]],
+        self, doc: Doc, verbs: frozenset[str], lemmas: Mapping[int, str], forms: Mapping[str, tuple[str, str]],
         held: Set[int] = frozenset(),
     ) -> None:  # fmt: skip
         self.doc = doc

@@ -2,15 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from typing import TYPE_CHECKING
 
 from acts.frames import Event, Ref
 
+from . import wordnet
 from .absolute import Absolute, absolutes
 from .arguments import Arguments
 from .clauses import MARKS, NOUNMARKS, ClauseTree
-from .people import Cast, reference
+from .people import A_NAME, B_NAME, Cast, reference
 from .subjects import Subjects, ends_before
 from .syntax import is_ongoing
 from .vocabulary import vocabulary
@@ -23,13 +24,17 @@ _THEN = frozenset(
 )
 _AT_ONCE = frozenset(("simultaneously", "meanwhile"))
 _NEARLY = frozenset(("almost", "nearly"))
+_MEANING = frozenset(("NOUN", "PROPN", "VERB", "ADV", "ADJ"))
+"""Parts of speech of words with a meaning of their own."""
+_WITHIN = frozenset(("compound", "amod", "poss", "nmod", "det", "nummod"))
+"""Relations of words that only say more about the one above them."""
 
 
 class Reader:
     """Takes a parsed text apart into events."""
 
     def __init__(
-        self, doc: Doc, verbs: frozenset[str], lemmas: dict[int, str], forms: Mapping[str, tuple[str, str]]
+        self, doc: Doc, verbs: frozenset[str], lemmas: Mapping[int, str], forms: Mapping[str, tuple[str, str]]
     ) -> None:
         self.doc = doc
         self.cast = Cast()
@@ -54,6 +59,24 @@ class Reader:
         self._postures()
         self._resolve()
         return self.events
+
+    def missed(self) -> Iterator[Token]:
+        """Words with a meaning of their own that no event has taken up, and verbs that lack their subject."""
+        for i, number in self._of.items():
+            who = self.events[number].subject
+            if who is not None and not who.lemma and self.doc[i].tag_ in ("VBZ", "VBD", "NNS", "NN"):
+                yield self.doc[i]
+        held = {t.i for found in self._absolutes.values() for t in (found.part, found.state)}
+        seen = self._arguments.seen | self._of.keys() | self.cast.seen.keys() | held
+        for token in self.doc:
+            own = token.dep_ not in _WITHIN and token.i not in seen
+            if token.pos_ in _MEANING and (own or self._is_swallowed(token)):
+                yield token
+
+    def _is_swallowed(self, token: Token) -> bool:
+        """True for a person whom the parser took for a part of the noun behind: "the man waves"."""
+        named = token.text in (A_NAME, B_NAME) or self._words.is_person(token.lemma_.lower())
+        return named and token.dep_ in ("compound", "nmod", "amod") and token.head.i > token.i
 
     def _states(self) -> None:
         """Adds what phrases say that hang on the nouns of people: "the lady on the bench" sits."""
@@ -121,6 +144,7 @@ class Reader:
         head = self._tree.head(token)
         subject = self._subjects.of(token, head)
         event = Event(lemma, subject, first=token.idx, last=token.idx + len(token.text))
+        event.goes = wordnet.kind((wordnet.senses(lemma) or ("00001740",))[0]) == "motion"
         kind, beside = self._joint(token, head)
         if self._tree.is_main(token):
             self._tree.mains.append(token.i)
@@ -181,6 +205,7 @@ class Reader:
         """Adds the clause whose verb is left out: "A waves with the right hand and B with the left"."""
         ref = reference(token, self.cast, "")
         if ref.kind != "person" or all(child.dep_ not in ("prep", "dobj") for child in token.children):
+            self.cast.seen.pop(token.i, None)
             return
         behind = self.doc[token.right_edge.i + 1] if token.right_edge.i + 1 < len(self.doc) else None
         if behind is not None and behind.tag_ in ("VBZ", "VBD") and ends_before(token, behind):
@@ -277,14 +302,17 @@ class Reader:
         The token is None for a main clause, which comes after the sentence before; the kind is "then" where the text
         says so in a word of its own.
         """
-        marks = {c.lower_ for c in token.children if c.dep_ in ("mark", "advmod", "prep", "cc", "intj")}
+        bare = (c for c in token.children if all(below.dep_ != "pobj" for below in c.children))
+        marks = [c.lower_ for c in bare if c.dep_ in ("mark", "advmod", "prep", "cc", "intj")]
         above = (
             head if head is not None else next((t for t in token.ancestors if self._tree.is_clause(t)), None)
         )
         previous = max((i for i in self._of if i < token.i), default=None)
-        if marks & _THEN or (above is not None and token.dep_ == "conj" and self._then_before(token)):
+        if not _THEN.isdisjoint(marks) or (
+            above is not None and token.dep_ == "conj" and self._then_before(token)
+        ):
             return "then", previous
-        if marks & _AT_ONCE:
+        if not _AT_ONCE.isdisjoint(marks):
             return "with", previous
         if self._tree.is_main(token):
             mains = [i for i in self._tree.mains if self.doc[i].sent.start == token.sent.start]

@@ -32,7 +32,13 @@ class Matcher:
         self._known = known
         self._named = {wordnet.synset(name): entries for name, entries in known.synsets.items()}
         self._verbs: dict[str, list[tuple[str, int]]] = defaultdict(list)
-        for lemma in known.frames:
+        self._frames = dict(known.frames)
+        """By the lemma of the verb, and by that of a verb with its particle, as "doze_off"."""
+        for lemma, frames in known.frames.items():
+            for named in frames:
+                for particle in named[1].particles():
+                    self._frames.setdefault(_joined(lemma, particle), []).append(named)
+        for lemma in self._frames:
             for rank, sense in enumerate(wordnet.senses(lemma)[:2]):
                 self._verbs[sense].append((lemma, rank))
 
@@ -57,22 +63,25 @@ class Matcher:
         return found
 
     def _alike(self, event: Event) -> Iterator[tuple[float, Found]]:
-        for sense, cost in wordnet.meanings(event.lemma):
+        lemma, event = _phrasal(event)
+        for sense, cost in wordnet.meanings(lemma):
             for name in self._named.get(sense, ()):
                 entry = self._known.entries[name]
                 for text in entry.frames:
                     frame = Frame.parse(text, entry.to == "other")
                     if (match := frame.fits(event)) is not None:
                         yield cost, (name, frame, match)
-        senses = wordnet.senses(event.lemma)[:2]
+        senses = wordnet.senses(lemma)[:2]
         for rank, own in enumerate(senses):
             bodily = wordnet.kind(own) in _BODILY
+            if "_" in lemma and not bodily:  # "bows out"
+                continue
             for sense, level in [(own, 0), *((up, 1) for up in wordnet.above(own) if bodily)]:
-                for lemma, other in self._verbs.get(sense, ()):
+                for verb, other in self._verbs.get(sense, ()):
                     cost = rank + level + other
-                    if lemma == event.lemma or cost > _FARTHEST:
+                    if verb == lemma or cost > _FARTHEST:
                         continue
-                    found = best(self._known.frames, replace(event, lemma=lemma, noun=None))
+                    found = best(self._frames, _as(event, verb))
                     if found is not None and found[2].score >= 0.0:
                         yield cost, found
 
@@ -81,10 +90,36 @@ class Matcher:
         near = [name for name, _ in self._known.frames.get(event.lemma, ())]
         for sense, _ in wordnet.meanings(event.lemma, most=4, height=3):
             near += self._named.get(sense, ())
-            near += [
-                name for lemma, _ in self._verbs.get(sense, ()) for name, _ in self._known.frames[lemma][:2]
-            ]
+            near += [name for lemma, _ in self._verbs.get(sense, ()) for name, _ in self._frames[lemma][:2]]
         return tuple(dict.fromkeys(near))[:5]
+
+
+def _joined(lemma: str, particle: str) -> str:
+    return f"{lemma}_{particle}" if particle else lemma
+
+
+def _phrasal(event: Event) -> tuple[str, Event]:
+    """WordNet's name of an event's verb and the event without what the name says: "bump_into", "rise_up"."""
+    for particle in event.particles:
+        if wordnet.senses(name := _joined(event.lemma, particle)):
+            words, particles = list(event.words), list(event.particles)
+            words.remove(particle)
+            particles.remove(particle)
+            return name, replace(event, words=words, particles=particles)
+    for i, (preposition, ref) in enumerate(event.prepositions):
+        if event.object is None and wordnet.senses(name := _joined(event.lemma, preposition)):
+            rest = [each for j, each in enumerate(event.prepositions) if j != i]
+            return name, replace(event, object=ref, prepositions=rest)
+    return event.lemma, event
+
+
+def _as(event: Event, verb: str) -> Event:
+    """The event with another verb, and that one's particle."""
+    _, _, particle = verb.partition("_")
+    own = [particle] if particle else []
+    return replace(
+        event, lemma=verb, noun=None, words=[*event.words, *own], particles=[*event.particles, *own]
+    )
 
 
 @lru_cache(maxsize=4)

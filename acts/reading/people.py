@@ -22,8 +22,6 @@ _FIRST, _SECOND = frozenset(("first", "former")), frozenset(("second", "latter")
 _THEY = frozenset(("they", "them", "themselves", "we", "us", "ourselves"))
 _HE = {"he": "m", "him": "m", "his": "m", "himself": "m", "she": "f", "her": "f", "hers": "f", "herself": "f"}
 _ANYONE = frozenset(("someone", "somebody", "anyone", "anybody", "person"))
-_ACTING = frozenset(("model", "host", "guide", "lead", "date", "star", "pet", "mark", "help"))
-"""Nouns that are people where they act: "the model poses"."""
 _ARTICLES = frozenset(("a", "an", "the", "his", "her", "their"))
 _NOBODY = frozenset(("nobody", "noone", "none", "neither"))
 
@@ -102,11 +100,15 @@ class Cast:
             return self._as("a" if token.text == A_NAME else "b", "person")
         if text in ("someone", "somebody"):
             return self._new(lemma, token)
-        small = token.text.islower() and not self._words.is_usual_person(lemma)  # "her teddy bear"
+        acts = token.dep_ in ("nsubj", "nsubjpass", "poss")
+        small = (
+            token.text.islower() and not self._words.is_usual_person(lemma) and not acts
+        )  # "her teddy bear"
         if token.tag_ == "NNP" and token.pos_ == "PROPN" and not self._words.is_place(lemma) and not small:
             return self._named(text)
-        acts = token.dep_ in ("nsubj", "nsubjpass")
-        acting = (lemma in _ACTING and acts and children & _ARTICLES) or self._is_acting_animal(token, lemma)
+        acts = acts and token.dep_ != "poss"
+        acting = self._is_acting_animal(token, lemma)
+        acting = acting or (acts and bool(children & _ARTICLES) and self._is_acting(token))
         if not (self._words.is_person(lemma) or self._has(lemma) or acting) or token.pos_ in (
             "ADV",
             "VERB",
@@ -133,6 +135,14 @@ class Cast:
         if own and "'s" not in children:
             return self._as(own, lemma) if not subject else self._new(lemma, token)
         return self._new(lemma, token)
+
+    def _is_acting(self, token: Token) -> bool:
+        """True for a noun that is a person where it acts: "the model poses", "the base lies on her back"."""
+        if len(self._known) == 2 or self._words.part(token.lemma_.lower()):
+            return False
+        own = (t for t in token.head.subtree if t.tag_ == "PRP$" and t.lower_ in _HE and t.i > token.i)
+        bodily = any(self._words.part(t.head.lemma_.lower()) for t in own)
+        return wordnet.may_be_person(token.lemma_.lower()) or (bodily and not self._known)
 
     def _is_acting_animal(self, token: Token, lemma: str) -> bool:
         """True for the animals of a fable, which act as people do where nobody else is there to act."""
@@ -192,6 +202,9 @@ class Cast:
         return who
 
     def _other(self, subject: str) -> str:
+        named = self._has("other")
+        if named and len(subject) != 1 and len(named) == 1:
+            return self._as(named, "other")  # "one whispers into the other's ear, and the other nods"
         one = subject if len(subject) == 1 else self.last
         return self._as("a" if one == "b" else "b", "other")
 
@@ -302,7 +315,8 @@ def states_of(noun: Token) -> Iterator[tuple[Token, str]]:
     within = [noun, *(c for c in noun.children if c.dep_ in ("amod", "acl", "appos") and c.pos_ == "ADJ")]
     for phrase in (c for token in within for c in token.children if c.dep_ == "prep"):
         for place in phrase.children:
-            if place.dep_ == "pobj" and (verb := words.state(phrase.lower_, place.lemma_.lower())):
+            own = not words.part(place.lemma_.lower()) or any(c.tag_ == "PRP$" for c in place.children)
+            if place.dep_ == "pobj" and own and (verb := words.state(phrase.lower_, place.lemma_.lower())):
                 yield phrase, verb
 
 

@@ -18,9 +18,9 @@ from .clauses import spans
 from .events import Reader
 from .language import other_language, unknown
 from .matching import Found, matcher
+from .parses import parses
 from .relations import related
 from .spelling import Speller
-from .syntax import parse
 from .vocabulary import vocabulary
 from .wording import Text, prepared
 
@@ -68,19 +68,20 @@ def _read(text: str, known: Lexicon) -> Plan:
             unread=(Unread(words=Span(start=0, stop=len(text)), why=foreign),),
             notes=(foreign,),
         )
+    return min(_attempts(text, known), key=lambda attempt: attempt[0])[1]
+
+
+def _attempts(text: str, known: Lexicon) -> Iterator[tuple[float, Plan]]:
+    """Plans of several parses of a text, with the cost of what each leaves over, until one leaves nothing."""
     speller = Speller(known)
-    prepared_text = prepared(text, speller.mended, speller.is_form)
-    doc = parse(prepared_text.parsed)
-    lemmas: dict[int, str] = {}
-    if changes := speller.verbs_found(doc):
-        # the new words may be longer: what counts is which of the words they are
-        numbers = {doc_token.i: changes[doc_token.idx] for doc_token in doc if doc_token.idx in changes}
-        prepared_text = prepared_text.replaced({at: word for at, (word, _) in changes.items()})
-        doc = parse(prepared_text.parsed)
-        lemmas = {i: lemma for i, (word, lemma) in numbers.items() if i < len(doc) and doc[i].text == word}
-    reader = Reader(doc, frozenset(known.frames), lemmas, speller.forms)
-    events = reader.read()
-    return _Planner(text, prepared_text, known, events, list(spans(doc, events)), reader).plan()
+    for parsed in parses(prepared(text, speller.mended, speller.is_form), speller):
+        reader = Reader(parsed.doc, frozenset(known.frames), parsed.lemmas, speller.forms)
+        events = reader.read()
+        planner = _Planner(text, parsed.text, known, events, list(spans(parsed.doc, events)), reader)
+        plan = planner.plan()
+        yield planner.cost + parsed.cost, plan
+        if planner.cost == 0:
+            return
 
 
 class _Planner:
@@ -102,6 +103,8 @@ class _Planner:
         """Relations of acts that stand beside a verb's own."""
         self._answers: set[str] = set()
         """Acts that repeat the one before."""
+        self.cost = sum(1.0 for _ in reader.missed())
+        """What the plan leaves over, in words."""
 
     def plan(self) -> Plan:
         """The plan."""
@@ -123,6 +126,7 @@ class _Planner:
         said = {token.lower() for token in self._text.replace(",", " ").replace(".", " ").split()}
         notes += [note for note, words in vocabulary().limits.items() if words & said and self._acts]
         if not self._acts and not self._unread:
+            self.cost += 2.0
             span = Span(start=0, stop=len(self._text))
             self._unread.append(Unread(words=span, why="Nothing in this text is something that people do."))
         return Plan(
@@ -251,6 +255,7 @@ class _Planner:
             "order": (),
             "already": False,
             "times": event.times or last.times,
+            "side": event.side or last.side,
         }
         self._acts.append(
             last.model_copy(
@@ -323,6 +328,7 @@ class _Planner:
         return Span(start=start, stop=max(stop, start))
 
     def _not_read(self, number: int, event: Event) -> None:
+        self.cost += 2.0
         subject = event.subject
         if subject is not None and subject.kind == "third":
             why = "This is done by a third person; only two can be shown."
@@ -337,6 +343,7 @@ class _Planner:
         beside: Relation | None = None,
     ) -> None:  # fmt: skip
         number_of = str(len(self._acts) + 1)
+        self.cost += 0.5 * match.left
         part = match.part
         speed = 1.0
         for adverb in event.adverbs:

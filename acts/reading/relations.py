@@ -1,4 +1,4 @@
-"""Relations in time of a text's acts, each to one that stands before it or above it in the syntax."""
+"""Relations in time of a text's acts, each to one that stands before it, beside it or above it in the syntax."""
 
 from __future__ import annotations
 
@@ -7,9 +7,11 @@ from collections.abc import Collection, Mapping, Sequence
 from acts.frames import Event
 from acts.lexicon import Lexicon
 from acts.plan import Act, Relation
+from acts.shapes import Go, Strike
 
-from . import order
-
+BESIDE = frozenset(("gesture", "limb", "words"))
+"""Shapes of what a person can do on their way."""
+_ARRIVES = frozenset(("to", "behind", "back", "aside"))
 _KINDS = ("after", "with", "while", "before", "until")
 _FOR_THE_OTHER = {"main-after": "after", "main-until": "until"}
 """Joints that say where the act above stands: "as soon as he waves, she bows"."""
@@ -53,11 +55,11 @@ def related(
         if other.id == act.id:  # two clauses that the parser hangs on each other
             continue
         if kind == "conj":
-            kind = order.coordinated(other, act, known, repeats=act.id in repeated)
-        if kind == "after" and not then and order.answers_blow(other, act, known):
+            kind = coordinated(other, act, known, repeats=act.id in repeated)
+        if kind == "after" and not then and _answers_blow(other, act, known):
             kind = "with"
         if kind == "after":
-            act = acts[act.id] = order.turned_to(other, act, known)
+            act = acts[act.id] = _turned_to(other, act, known)
         apart = not set(other.agents) & set(act.agents)
         waits = _waits(act, known) and not then  # "then she waits" is said of what comes next
         if kind == "after" and apart and (other.already or act.already or waits):
@@ -74,6 +76,11 @@ def _joint(number: int, events: Sequence[Event], of: Mapping[int, str]) -> tuple
     kind, above, seen = events[number].joint, events[number].beside, set[int]()
     while above is not None and above not in of and above not in seen:  # passed over
         seen.add(above)
+        inner = (
+            i for i in range(number) if i in of and events[i].beside == above and events[i].joint == "comp"
+        )
+        if kind != "comp" and (told := next(inner, None)) is not None:  # "A pretends to throw, and B ducks"
+            return kind, told
         kind = events[above].joint if kind in ("comp", "") else kind
         above = events[above].beside
     return kind, above if above in of else None
@@ -93,3 +100,57 @@ def _last_after(
         follows = any(r.kind == "after" and r.act == first for r in found[act.id])
         first = act.id if follows and not _waits(act, known) else first
     return first
+
+
+def _people_of(act: Act) -> set[str]:
+    """The people who take part in an act."""
+    return {*act.agents, act.patient} - {None}  # type: ignore[return-value]
+
+
+def _turned_to(first: Act, then: Act, known: Lexicon) -> Act:
+    """The act; a person who is touched and turns around turns to the one who touched them."""
+    touched = first.patient in then.agents and any(s.do == "touch" for s in known.entries[first.act].stage)
+    turns = any(s.do == "turn" and s.way == "around" for s in known.entries[then.act].stage)
+    if not touched or not turns or then.patient or then.direction:
+        return then
+    return then.model_copy(update={"patient": first.agents[0]})
+
+
+def _answers_blow(first: Act, then: Act, known: Lexicon) -> bool:
+    """True for who ducks under a blow or blocks it, which is staged with the blow."""
+    shapes = known.entries[first.act].stage
+    strikes = any(isinstance(shape, Strike) and shape.bout in ("fists", "weapons") for shape in shapes)
+    return strikes and known.entries[then.act].answers and first.agents != then.agents
+
+
+def coordinated(first: Act, then: Act, known: Lexicon, *, repeats: bool) -> str:
+    """The relation of an act to one that stands before it and "and"."""
+    if repeats:
+        return "after"
+    if _answers_blow(first, then, known):
+        return "with"
+    answers = known.entries[then.act].answers or then.thing == "it"  # "knocks at the door, and he opens it"
+    if answers and first.agents != then.agents:
+        return "after"
+    if not _people_of(first) & _people_of(then):
+        return "with"
+    if first.agents == then.agents and (_accompanies(first, then, known) or _linked(first, then, known)):
+        return "with"
+    return "after"
+
+
+def _linked(first: Act, then: Act, known: Lexicon) -> bool:
+    """True if two people go on hand in hand: "hold hands, walk"."""
+    held = any(s.do == "link" for s in known.entries[first.act].stage)
+    return held and any(isinstance(s, Go) for s in known.entries[then.act].stage)
+
+
+def _accompanies(first: Act, then: Act, known: Lexicon) -> bool:
+    """True for what a person does on their way or beside a gesture: "walks away and waves", "points and laughs"."""
+    one, other = known.entries[first.act], known.entries[then.act]
+    shown, later = {shape.do for shape in one.stage}, {shape.do for shape in other.stage}
+    if not first.happens or not then.happens or other.mutual or not later <= BESIDE:
+        return False
+    on_way = any(isinstance(shape, Go) and shape.way not in _ARRIVES for shape in one.stage)
+    jumps = shown == {"jump"} and "gesture" in later
+    return on_way or jumps or first.already or (not later and shown <= BESIDE and other.group == "feelings")

@@ -59,6 +59,17 @@ def verbs_taken_for_nouns(doc: Doc, forms: Mapping[str, tuple[str, str]]) -> dic
     return found
 
 
+def suspects(doc: Doc, forms: Mapping[str, tuple[str, str]]) -> dict[int, tuple[str, str]]:
+    """Forms of verbs that the parser takes for something else, rightly or not: offset → (a safe verb, its lemma)."""
+    return {
+        token.idx: (_safe(token, forms[token.lower_][1]), forms[token.lower_][0])
+        for token in doc
+        if token.lower_ in forms
+        and forms[token.lower_][1] in ("", "s", "ed")
+        and (token.pos_ not in ("VERB", "AUX", "ADP", "ADV") or token.dep_ in ("compound", "amod", "nmod"))
+    }
+
+
 def _verbless(doc: Doc, forms: Mapping[str, tuple[str, str]]) -> Iterator[Token]:
     """The verb of each sentence that seems to have none: "The man in the hat waves."."""
     for sentence in doc.sents:
@@ -140,6 +151,8 @@ def _coordinated(token: Token, ending: str, last: str, found: Mapping[int, objec
     if before.lower_ not in _JOINS or token.i < 2:
         return False
     earlier = token.nbor(-2)
+    if vocabulary().part(token.lemma_.lower()) and vocabulary().part(earlier.lemma_.lower()):
+        return False  # "on hands and knees"
     listed = (token.dep_ == "conj" and token.head.pos_ == "VERB") or _before_verb(token)
     listed = listed or (earlier.pos_ == "VERB" and earlier.tag_ in _TAGS)  # "they meet, hug and part"
     if before.text == "," and ending == "" and not listed:

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 from acts.lexicon import Lexicon
 
 from . import wordnet
-from .repair import verbs_taken_for_nouns
+from .repair import suspects, verbs_taken_for_nouns
 from .syntax import is_word
 from .vocabulary import vocabulary
 
@@ -39,12 +39,20 @@ class Speller:
         if vocabulary().is_person(word.rstrip("s")) or is_verb_form(word):
             return None
         found = [form for form in self.forms if abs(len(form) - len(word)) < 2 and form[0] == word[0]]
-        near = [(distance, form) for form in found if (distance := _distance(word, form)) <= 1]
+        near = [
+            (sorted(word) != sorted(form), form)  # swapped letters are likelier than wrong ones
+            for form in found
+            if _distance(word, form) <= 1
+        ]
         return min(near)[1] if near else None
 
     def verbs_found(self, doc: Doc) -> dict[int, tuple[str, str]]:
         """Verbs that were taken for something else: offset → (a safe verb in the same form, the true lemma)."""
         return verbs_taken_for_nouns(doc, self.forms)
+
+    def suspects(self, doc: Doc) -> dict[int, tuple[str, str]]:
+        """Forms of verbs that were taken for something else, rightly or not, in the same form."""
+        return suspects(doc, self.forms)
 
 
 @lru_cache(maxsize=4)

@@ -68,6 +68,8 @@ class Subjects:
             if child.dep_ in ("nsubj", "nsubjpass", "csubj", "expl"):
                 if child.tag_ in ("WP", "WDT") and token.dep_ == "relcl":
                     return self._antecedent(token)
+                if child.tag_ in ("VBZ", "VBD") and (known := self._found.get(child.i)) is not None:
+                    return known  # "she leans back, then kicks"
                 ref = reference(child, self._cast, "")
                 if child.lower_ in ("nobody", "neither", "none") or (
                     child.lower_ == "one" and "no" in {c.lower_ for c in child.children}
@@ -113,13 +115,18 @@ class Subjects:
         if token.tag_ in ("VBD", "VBZ") and (behind := self._behind(token)) is not None:
             return behind
         if token.dep_ == "ROOT" or head is None:
-            alone = any(
-                t.lower_ in _SOMEBODY for t in token.subtree
-            )  # "grab her by the wrist" is said to one
+            # "grab her by the wrist" is said to one
+            alone = any(t.lower_ in _SOMEBODY or self._is_someone(t) for t in token.subtree)
             if alone:
                 self._cast.address("a")
             return Ref("person", "a" if alone else "ab", "", first=token.idx, last=token.idx)
         return None
+
+    def _is_someone(self, noun: Token) -> bool:
+        """True for one person to whom something is done, but not for "your partner", whom both have."""
+        lemma = noun.lemma_.lower()
+        done_to = noun.dep_ in ("dobj", "dative", "poss") and noun.tag_ == "NN" and lemma != "partner"
+        return done_to and self._words.is_person(lemma)
 
     def _behind(self, token: Token) -> Ref | None:
         """The person behind a verb that nobody stands before: "…, said the witch"."""

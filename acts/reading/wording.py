@@ -110,6 +110,13 @@ class Text:
         ]
         return Text(self.original, pieces)
 
+    def ended(self) -> Text | None:
+        """The same text with the full stop that it lacks, without which the parser errs more; None if it has one."""
+        if not self._pieces or not self._pieces[-1][0][-1].isalnum():
+            return None
+        end = len(self.original)
+        return Text(self.original, [*self._pieces, (".", end, end)])
+
     def formations(self, start: int, stop: int) -> Iterator[str]:
         """The ways to stand or move together, as "side by side", that a stretch of the original names."""
         known = vocabulary().formations
@@ -266,19 +273,27 @@ class _Preparation:
         acts = following.endswith("s") and self._is_verb(following)
         return acts or self._lower(i - 1) in _TOWARDS
 
+    def _owns(self, i: int, word: str) -> bool:
+        """True for a person, or somebody named elsewhere in the text, who owns the noun behind: "a customers beard"."""
+        word = self._words.shorthand.get(word, word)
+        if self._words.part(self._lower(i + 1)):
+            return self._words.is_usual_person(word) or any(word == w.lower() for w, _, _ in self._tokens)
+        article = self._lower(i - 1) in ("a", "an") and i - 1 not in self._letters
+        return article and self._words.is_person(word)
+
     def _worded(self, i: int, word: str) -> str:
         lower, following = word.lower(), self._lower(i + 1)
         if lower in self._words.shorthand:
             return self._words.shorthand[lower]
-        if self._words.part(following) and lower.endswith("s") and self._words.is_usual_person(lower[:-1]):
-            return f"{word[:-1]}'s"  # "her brothers back"
+        if lower.endswith("s") and following.isalpha() and self._owns(i, lower[:-1]):
+            return f"{self._words.shorthand.get(lower[:-1], word[:-1])}'s"  # "her brothers back"
         if (
             lower in ("left", "right")
             and self._is_verb(self._lower(i - 1))
             and not self._words.part(following)
         ):
             return f"{lower}wards"  # "turn left": no past of "leave"
-        if word.isalpha() and len(word) > 3 and (right := self._mended(lower)) is not None:
+        if word.islower() and word.isalpha() and len(word) > 3 and (right := self._mended(lower)) is not None:
             return right
         if lower == "round" and self._is_verb(self._lower(i - 1)) and following in _DETERMINERS:
             return "around"  # the parser takes it for a verb

@@ -63,7 +63,7 @@ def people() -> dict[str, PersonNoun]:
 
 @cache
 def _nouns() -> dict[str, frozenset[str]]:
-    """Nouns by their kind: "animal", and "act" for those of what a verb of the same spelling means."""
+    """Nouns by kind: "animal", "person" for a rarer sense, "act" for those of what a verb so spelt means."""
     found: dict[str, set[str]] = {}
     for line in NOUNS.read_text(encoding="utf-8").splitlines():
         noun, kind = line.split("\t")
@@ -74,6 +74,11 @@ def _nouns() -> dict[str, frozenset[str]]:
 def is_animal(noun: str) -> bool:
     """True for a noun whose most frequent sense is an animal."""
     return noun in _nouns()["animal"]
+
+
+def may_be_person(noun: str) -> bool:
+    """True for a noun with a sense that is a person, as "model" and "base"."""
+    return noun in people() or noun in _nouns()["person"]
 
 
 def is_act(noun: str) -> bool:
@@ -132,7 +137,7 @@ def build(folder: Path) -> None:
     for line in _lines(folder / "index.verb"):
         fields = line.split()
         lemma, count, skipped = fields[0], int(fields[2]), int(fields[3])
-        if "_" not in lemma:
+        if lemma.count("_") < 2:  # "bump_into" is a verb and its particle
             rows.append(f"v\t{lemma}\t{' '.join(fields[6 + skipped :][:count])}")
     for line in _lines(folder / "data.verb"):
         fields = line.split("|")[0].split()
@@ -144,11 +149,13 @@ def build(folder: Path) -> None:
     above_of: dict[str, list[str]] = {}
     file_of: dict[str, str] = {}
     words_of: dict[str, set[str]] = {}
+    spelt: dict[str, set[str]] = {}  # "ball", but not "Ball"
     for line in _lines(folder / "data.noun"):
         fields = line.split("|")[0].split()
         file_of[fields[0]] = fields[1]
         count = int(fields[3], 16)
-        words_of[fields[0]] = {fields[4 + 2 * i].lower() for i in range(count)}
+        spelt[fields[0]] = {fields[4 + 2 * i] for i in range(count)}
+        words_of[fields[0]] = {word.lower() for word in spelt[fields[0]]}
         pointers = fields[4 + 2 * count :]
         above_of[fields[0]] = [pointers[i + 1] for i, sign in enumerate(pointers) if sign in ("@", "@i")]
     roots = {
@@ -175,6 +182,8 @@ def build(folder: Path) -> None:
         if is_verb(noun) and any(file_of[sense] == _ACT for sense in senses[:3]):
             nouns.append(f"{noun}\tact")
         if file_of[first] != _PERSON:
+            if any(file_of[sense] == _PERSON and noun in spelt[sense] for sense in senses[1:]):
+                nouns.append(f"{noun}\tperson")
             continue
         sex = "m" if closure & roots["male_person"] else "f" if closure & roots["female_person"] else ""
         young = closure & (roots["juvenile_person"] | roots["child"])

@@ -73,6 +73,8 @@ def score(readings: Sequence[Reading], reader: Callable[[str], Plan] = read) -> 
 def _kept(kind: str, level: int, other: int) -> bool:
     if kind == "after":
         return level > other
+    if kind == "until":  # what goes on until another act begins before it
+        return level <= other
     return level < other if kind == "before" else level == other
 
 

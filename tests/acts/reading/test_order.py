@@ -1,7 +1,7 @@
 """The order of acts that a text only puts side by side."""
 
 from acts import Act, lexicon
-from acts.reading.order import coordinated
+from acts.reading.relations import coordinated
 
 
 def test_an_act_that_repeats_the_one_before_comes_after_it() -> None:

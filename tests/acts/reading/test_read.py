@@ -97,8 +97,8 @@ def _said(act: Act) -> str:
         ("He shivers in surprise.", ["a shiver"]),
         ("She offers him a drink and he waves it off.", ["a offer-thing b", "b wave-off a"]),
         # people and pronouns
-        ("One person extends a hand and the other person shakes it.", ["a offer-thing", "b shake-hands a"]),
-        ("The bear held out his paw and the mouse shook it.", ["a offer-thing", "b shake-hands a"]),
+        ("One person extends a hand and the other person shakes it.", ["a offer-thing b", "b shake-hands a"]),
+        ("The bear held out his paw and the mouse shook it.", ["a offer-thing b", "b shake-hands a"]),
         ('"Come here!" said the witch, and she beckoned Hansel.', ["a tell b", "a beckon b"]),
         ("She kicks the ball and they high-five.", ["a kick-ball", "ab high-five"]),
         ("i wanna shake his hand but he walks past me", ["a shake-hands b (wished)", "b walk-past a"]),

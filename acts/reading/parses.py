@@ -1,0 +1,66 @@
+"""Parses of a text: with its full stop, as it was written, and with verbs where the parser may have missed them."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING
+
+from .spelling import Speller
+from .syntax import parse
+from .wording import Text
+
+if TYPE_CHECKING:
+    from spacy.tokens import Doc
+
+_MOST = 8
+"""Parses of one text, at most."""
+_MOST_CHARACTERS = 1500
+"""Characters of all of them together, which keeps a long text fast."""
+
+
+@dataclass(frozen=True)
+class Parse:
+    """One parse.
+
+    Attributes:
+        text: what was parsed.
+        doc: its syntax.
+        lemmas: true lemmas, by token, of verbs that others stand for.
+        cost: how unlikely it is beside the parser's own, in words that it must explain more.
+    """
+
+    text: Text
+    doc: Doc
+    lemmas: Mapping[int, str] = field(default_factory=dict)
+    cost: float = 0.0
+
+    def changed(self, changes: Mapping[int, tuple[str, str]], cost: float = 0.0) -> Parse:
+        """The parse with safe verbs in the place of others; the new words may be longer, but are as many."""
+        numbers = {token.i: changes[token.idx] for token in self.doc if token.idx in changes}
+        text = self.text.replaced({at: word for at, (word, _) in changes.items()})
+        doc = parse(text.parsed)
+        lemmas = {i: lemma for i, (word, lemma) in numbers.items() if i < len(doc) and doc[i].text == word}
+        return Parse(text, doc, {**self.lemmas, **lemmas}, cost)
+
+
+def parses(written: Text, speller: Speller) -> Iterator[Parse]:
+    """The parses of a text, the likeliest first."""
+    whole = written.ended()
+    first = _parsed(whole or written, speller)
+    yield first
+    left = max(min(_MOST, _MOST_CHARACTERS // max(len(written.original), 1)) - 1, 0)
+    if whole is not None and left > 0:
+        yield _parsed(written, speller)
+        left -= 1
+    for at, change in list(speller.suspects(first.doc).items())[:left]:
+        base = not change[0].endswith(("s", "ed"))  # is a noun more often
+        other = first.changed({at: change}, 1.0 if base else 0.5)
+        if all(other.doc[i].pos_ == "VERB" for i in other.lemmas):
+            yield other
+
+
+def _parsed(text: Text, speller: Speller) -> Parse:
+    found = Parse(text, parse(text.parsed))
+    changes = speller.verbs_found(found.doc)
+    return found.changed(changes) if changes else found
