@@ -61,32 +61,8 @@ class Subjects:
         return self._found[token.i]
 
     def _subject_of(self, token: Token, head: Token | None) -> Ref | None:
-        moving = (
-            c for aux in token.children if aux.dep_ == "aux" for c in aux.children
-        )  # "he comes running"
-        for child in (*token.children, *moving):
-            if child.dep_ in ("nsubj", "nsubjpass", "csubj", "expl"):
-                if child.tag_ in ("WP", "WDT") and token.dep_ == "relcl":
-                    return self._antecedent(token)
-                if child.tag_ in ("VBZ", "VBD") and (known := self._found.get(child.i)) is not None:
-                    return known  # "she leans back, then kicks"
-                ref = reference(child, self._cast, "")
-                if child.lower_ in ("nobody", "neither", "none") or (
-                    child.lower_ == "one" and "no" in {c.lower_ for c in child.children}
-                ):
-                    return Ref("person", "ab", child.lower_, first=ref.first, last=ref.last)
-                if child.lower_ in ("both", "each", "all") and ref.kind != "person":
-                    return Ref("person", "ab", child.lower_, first=ref.first, last=ref.last)
-                return ref
-            if child.dep_ == "poss" and token.dep_ == "ccomp" and head is not None:  # "helps her walk"
-                helper = self._found.get(head.i)
-                return reference(child, self._cast, helper.who if helper is not None else "")
-            if child.dep_ == "det" and child.lower_ in (
-                "both",
-                "all",
-                "each",
-            ):  # "the music starts, both freeze"
-                return Ref("person", "ab", child.lower_, first=child.idx, last=child.idx + len(child.text))
+        if (told := self._told(token, head)) is not None:
+            return told
         if (named := self._named_before(token)) is not None:
             return named
         if token.dep_ in ("relcl", "acl") or token.dep_ == "amod":
@@ -120,6 +96,31 @@ class Subjects:
             if alone:
                 self._cast.address("a")
             return Ref("person", "a" if alone else "ab", "", first=token.idx, last=token.idx)
+        return None
+
+    def _told(self, token: Token, head: Token | None) -> Ref | None:
+        """The subject that stands beside a verb."""
+        # "he comes running"
+        moving = (c for aux in token.children if aux.dep_ == "aux" for c in aux.children)
+        for child in (*token.children, *moving):
+            if child.dep_ in ("nsubj", "nsubjpass", "csubj", "expl"):
+                if child.tag_ in ("WP", "WDT") and token.dep_ == "relcl":
+                    return self._antecedent(token)
+                if child.tag_ in ("VBZ", "VBD") and (known := self._found.get(child.i)) is not None:
+                    return known  # "she leans back, then kicks"
+                ref = reference(child, self._cast, "")
+                if child.lower_ in ("nobody", "neither", "none") or (
+                    child.lower_ == "one" and "no" in {c.lower_ for c in child.children}
+                ):
+                    return Ref("person", "ab", child.lower_, first=ref.first, last=ref.last)
+                if child.lower_ in ("both", "each", "all") and ref.kind != "person":
+                    return Ref("person", "ab", child.lower_, first=ref.first, last=ref.last)
+                return ref
+            if child.dep_ == "poss" and token.dep_ == "ccomp" and head is not None:  # "helps her walk"
+                helper = self._found.get(head.i)
+                return reference(child, self._cast, helper.who if helper is not None else "")
+            if child.dep_ == "det" and child.lower_ in ("both", "all", "each"):  # "…, both freeze"
+                return Ref("person", "ab", child.lower_, first=child.idx, last=child.idx + len(child.text))
         return None
 
     def _is_someone(self, noun: Token) -> bool:
