@@ -340,6 +340,8 @@ def test_a_finger_hits_the_tick_boxes(phone: Page) -> None:
     unfold(phone, "#more")
     for part, least in (("input", 24), ("label", 44)):
         assert phone.locator(f"#planned {part}").bounding_box()["height"] >= least, part
+    phone.locator("#more button.label-wrap").first.click()
+    phone.locator("#advanced button.label-wrap").first.click()  # the page remembers what is open
 
 
 def test_every_control_has_a_name_and_the_focus_is_visible(page: Page) -> None:

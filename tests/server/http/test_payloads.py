@@ -183,3 +183,14 @@ def test_a_call_names_the_senders_own_upload_alone(component: type) -> None:
     ):
         with pytest.raises(Refused, match="must be uploaded"):
             calls.check({"fn_index": 0, "data": [value]}, None, person)
+
+
+def test_a_call_with_too_few_values_is_told_how_many_there_are() -> None:
+    """It comes from a program that was written for an older server."""
+    with gr.Blocks() as page:
+        gr.Button().click(lambda *_: None, inputs=[gr.Textbox(), gr.Number(), gr.State()])
+    calls = Payloads(page)
+    calls.check({"fn_index": 0, "data": ["They bow.", 3]}, None, "ada")
+    for data in ([], ["They bow."]):
+        with pytest.raises(Refused, match=f"has {len(data)} values and takes 2: see /gradio_api/info"):
+            calls.check({"fn_index": 0, "data": data}, None, "ada")
