@@ -117,6 +117,11 @@ def test_a_hand_that_has_patted_a_back_hangs_again(engine: Engine) -> None:
     assert (found[0, -15:, SMPL22.index("right_wrist"), 1] < found[0, -15:, 0, 1] + 0.15).all()
 
 
+def test_who_waves_while_touched_from_behind_is_not_given_two_places_for_a_hand(engine: Engine) -> None:
+    found = made(engine, "Person A hugs person B from behind while person B waves.")
+    assert np.linalg.norm(np.diff(found[1, :, SMPL22.index("right_wrist")], axis=0), axis=-1).max() * 30 < 8
+
+
 def test_a_hand_that_is_offered_stays_out_and_nobody_takes_it(engine: Engine) -> None:
     found = made(engine, "Person A offers a hand, but person B does not take it.")
     wrist, pelvis = found[0, 45:105, SMPL22.index("right_wrist")], found[0, 45:105, 0]

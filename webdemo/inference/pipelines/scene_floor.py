@@ -175,7 +175,7 @@ def _held(
             continue
         turned = last is None and _keeps_back(told, who)
         if up and (who in still or ((turned or who in told.gesturing) and who not in gone)):
-            touched = told.contact is not None and told.contact.person != who
+            touched = told.contact is not None and told.contact.person != who and who not in told.gestures
             free = () if who in still or touched else HANDS if turned else ARMS
             every = TURNED if turned else POSED
             parts += _posed(person, stand, window, start, stop, placement, request.seed, free, every)
