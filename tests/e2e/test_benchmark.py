@@ -35,6 +35,9 @@ def test_page_and_player_are_measured(
     print(f"\n{figures}")
     assert 0 < figures["page_first_answer_seconds"] < figures["page_prompt_seconds"]
     assert figures["page_prompt_seconds"] <= figures["page_model_ready_seconds"]
+    assert 0 < figures["page_first_paint_seconds"] < figures["page_prompt_seconds"]
+    assert 0 <= figures["page_layout_shift"] < 0.1
+    assert 0.5 < figures["page_megabytes"] < 20
     assert figures["page_request_seconds"] > 0.1
     assert 0 <= figures["page_result_to_body_seconds"] <= figures["page_result_to_motion_seconds"] < 30
     assert figures["player_pixels"] == "960x640"

@@ -41,6 +41,19 @@ LONG_RUN = {"seconds": 10, "samples": 8}
 _STAGE_STYLE = """#player .pdd-stage {{ width: {0}px !important; min-width: {0}px !important;
 height: {1}px !important; min-height: {1}px !important; flex: none !important }}"""
 _PLAYED = "window.__pasdedeux && window.__pasdedeux.mode !== null && !window.__pasdedeux.playing"
+_FIRST_VIEW = """() => new Promise((done) => {
+  let shifted = 0;
+  new PerformanceObserver((list) => {
+    for (const entry of list.getEntries()) if (!entry.hadRecentInput) shifted += entry.value;
+  }).observe({ type: "layout-shift", buffered: true });
+  const files = [...performance.getEntriesByType("navigation"), ...performance.getEntriesByType("resource")];
+  const report = () => done({
+    page_first_paint_seconds: performance.getEntriesByName("first-contentful-paint")[0].startTime / 1000,
+    page_layout_shift: shifted,
+    page_megabytes: files.reduce((sum, file) => sum + file.transferSize, 0) / 1e6,
+  });
+  setTimeout(report, 100);
+})"""
 _FOLLOW_RUN = """() => {
   const seen = (window.__benchmark = { before: window.__pasdedeux?.id ?? null, done: null, motion: null, body: null });
   let looks = 0;
@@ -67,7 +80,9 @@ def measure_browser() -> dict[str, Any]:
 
     Returns:
         ``page_first_answer_seconds`` and ``page_prompt_seconds``, both from the command ``python app.py``;
-        ``page_model_ready_seconds``, from the same; ``page_request_seconds`` from the button to the end of a
+        ``page_model_ready_seconds``, from the same; ``page_first_paint_seconds`` from the address to the first
+        text or picture, ``page_layout_shift`` (Chromium's sum, without unit) and ``page_megabytes`` over the network,
+        all until the first motion has played; ``page_request_seconds`` from the button to the end of a
         run of 4 s of motion; ``page_result_to_body_seconds`` and ``page_result_to_motion_seconds``, from there to
         the first picture of bodies and to the first that moves; ``player_fps_still`` and
         ``player_fps_turning`` (the camera at rest, and dragged) while bodies play, ``player_fps_skeletons``
@@ -90,6 +105,7 @@ def measure_browser() -> dict[str, Any]:
             _wait_for_model(page)
             figures["page_model_ready_seconds"] = time.perf_counter() - began
             page.wait_for_function(_PLAYED, timeout=1000 * LONGEST_RUN)
+            figures |= page.evaluate(_FIRST_VIEW)
             page.wait_for_timeout(1000)
             figures["browser_cores_idle"] = _cores(browser, lambda: page.wait_for_timeout(1000 * WATCHED))
             figures |= _follow_a_run(page) | _frame_rates(page)
