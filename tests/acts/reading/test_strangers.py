@@ -23,6 +23,9 @@ def told(text: str) -> list[tuple[str, str, str | None]]:
         ("The person on the left squats twice and the other one claps.", [("crouch", "a", None), ("clap", "b", "a")]),
         # the other is the other of the one who was named first
         ("One person pushes the other and the other sits down.", [("push", "a", "b"), ("sit-down", "b", None)]),
+        # "the other ducks" may be birds to the parser
+        ("A man punches and the other ducks.", [("punch", "a", None), ("duck", "b", None)]),
+        ("A man waves and the other claps.", [("wave", "a", "b"), ("clap", "b", "a")]),
         ("She staggers into the arms of the other.", [("stagger", "a", "b")]),
         # nouns that are people where they act
         (
