@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 
 _MOST = 8
 """Parses of one text, at most."""
-_MOST_CHARACTERS = 1500
+_MOST_CHARACTERS = 900
 """Characters of all of them together, which keeps a long text fast."""
 
 

@@ -31,13 +31,15 @@ def finished(request: SceneRequest, scene: Array, seed: int) -> Array:
         (2, T, 22, 3) float32.
     """
     free = _made(request, scene.shape[1])
-    result = palms_met(arms_apart(embraced(scene, free), np.stack([free, free])), free)
-    rests = np.stack([free, free])
+    result = arms_apart(embraced(scene, free), np.stack([free, free]))
+    rests, touches = np.stack([free, free]), np.zeros_like(free)
     for beat, told in enumerate(request.told if request.planned else ()):
         start, stop = request.edges[beat], request.edges[beat + 1]
+        if told.touches:
+            touches[start:stop] = free[start:stop]
         for who in told.frozen:
             rests["ab".index(who), start:stop] = 0.0
-    result = alive(result, FPS, seed, rests).astype(np.float32)
+    result = alive(palms_met(result, touches), FPS, seed, rests).astype(np.float32)
     result[:, free <= 0] = scene[:, free <= 0]
     return result
 

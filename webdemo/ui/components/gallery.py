@@ -23,9 +23,9 @@ _TAKEN = "(scene) => [scene.prompt, scene.seconds, scene.seed]"
 class SentScene(Sent):
     """The scene that was pressed, as the browser sends it: its words, its length in seconds and its seed."""
 
-    prompt: Text = ""
-    seconds: Finite = 0
-    seed: Finite = 0
+    prompt: Text
+    seconds: Finite
+    seed: Finite
 
 
 class Gallery(Part):
