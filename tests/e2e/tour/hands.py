@@ -90,12 +90,18 @@ def made(page: Page, tour: Tour, prefix: str = "", times: int = 2) -> None:
 
 
 def with_result(page: Page, tour: Tour, prefix: str, character: Path) -> None:
-    """Uses what is offered for a result: a character, a film, and a link."""
+    """Uses what is offered for a result: a character, a film, a figure and a mesh, and a link.
+
+    A run that begins takes the files of the one before from their buttons, so that they are pressed at once.
+    """
     open_all(page)
     for _ in range(2):
         uploaded(page, tour, f"#{prefix}character", character)
         pressed(page, tour, f"#{prefix}film", 1)
         pressed(page, tour, f"#{prefix}download-film:enabled", 1)
+        pressed(page, tour, f"#{prefix}figure", 1)
+        for kind in ("html", "ply"):
+            pressed(page, tour, f"#{prefix}download-{kind}:enabled", 1)
         pressed(page, tour, f"#{prefix}link", 1)
 
 
