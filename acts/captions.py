@@ -9,10 +9,12 @@ from __future__ import annotations
 
 import re
 from collections.abc import Sequence
+from itertools import pairwise
 
 from .frames import Frame
 from .lexicon import Entry, Lexicon, lexicon
 from .plan import Act, Plan
+from .things import kind_of
 
 _VERB = re.compile(r"\[([a-z-]+)\]")
 _SLOT = re.compile(r"\{([a-z_]+)\} ?")
@@ -89,6 +91,16 @@ def _by_hand(act: Act, caption: str) -> str:
     if act.side not in ("left", "right") or act.side == act.direction or act.part or told:
         return ""
     return f" with the {act.side} {'foot' if '[kick]' in caption else 'hand'}"
+
+
+def with_thing(act: Act, caption: str) -> tuple[Act, str]:
+    """An act and a caption with the thing that its words name, in place of an example: "a book"."""
+    words = caption.split()
+    for i, (article, noun) in enumerate(pairwise(words)):
+        if act.thing and article == "a" and kind_of(noun):
+            caption = " ".join([*words[:i], "{thing}", *words[i + 2 :]])
+            break
+    return (act.model_copy(update={"thing": f"the {act.thing}"}) if act.thing else act), caption
 
 
 def caption_of(act: Act, entry: Entry) -> str:

@@ -11,7 +11,6 @@ import ast
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from functools import lru_cache
-from itertools import pairwise
 from typing import Any
 
 from motion import SMPL22, Duet
@@ -19,11 +18,10 @@ from motion.metrics.sentences.joints import Motion
 from motion.metrics.sentences.language import check, masks, measured
 from motion.metrics.sentences.touches import BODY
 
-from .captions import worded
+from .captions import with_thing, worded
 from .lexicon import Entry, Lexicon, lexicon
 from .plan import Act, Plan
 from .reading.vocabulary import vocabulary
-from .things import kind_of
 
 ONLY = {
     "tried": "it is only tried",
@@ -228,20 +226,7 @@ def _words(act: Act, entry: Entry | None) -> str:
     """An act in plain words, with the people as A and B."""
     if entry is None or not entry.caption:
         return act.act.replace("-", " ")
-    caption = entry.caption[0]
-    if act.thing:
-        caption = _its_thing(caption)
-        act = act.model_copy(update={"thing": f"the {act.thing}"})
-    text = worded(act, caption)
+    text = worded(*with_thing(act, entry.caption[0]))
     for person, name in (("person A", "A"), ("person B", "B")):
         text = text.replace(person, name)
     return f"not: {text}" if act.polarity == "not" else text
-
-
-def _its_thing(caption: str) -> str:
-    """A caption with a slot where it names an example of a thing: "{a} [hand] {thing} to {b}" for "a book"."""
-    words = caption.split()
-    for i, (article, noun) in enumerate(pairwise(words)):
-        if article == "a" and kind_of(noun):
-            return " ".join([*words[:i], "{thing}", *words[i + 2 :]])
-    return caption

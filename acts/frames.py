@@ -29,7 +29,7 @@ _PREPOSITIONS = (
 )
 PREPOSITIONS = frozenset(_PREPOSITIONS.split())
 _DIRECTIONS = frozenset(("across", "along", "around", "back", "by", "in", "out", "over", "past", "up"))
-"""Particles that only say where somebody goes, beside those of who leaves or goes down."""
+"""Particles that only say where somebody goes; "away", "off" and "down" say more."""
 _SLOTS = frozenset(("a", "a+b", "b", "self", "thing", "part", "place"))
 
 

@@ -19,9 +19,9 @@ Name = Annotated[str, StringConstraints(max_length=60)]
 Text = Annotated[str, StringConstraints(max_length=2000)]
 
 MOST_ACTS = 60
+"""Acts of a plan, at most: what sixty beats of one act each need."""
 FROM_BEHIND = "from behind"
 """Manner of an act that is done to the other from behind them."""
-"""Acts of a plan, at most: what sixty beats of one act each need."""
 
 
 class _Model(BaseModel):

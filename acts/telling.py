@@ -1,14 +1,14 @@
-"""A plan and the verdicts on its motion → what happens, in words for who cannot see it.
+"""A plan and the verdicts on its motion → what happens, in words for people who cannot see it.
 
 "A walks up to B and taps B on the right shoulder; B turns to A." An act that was asked for but not seen is not told as
-if it were: it is named behind.
+if it were: it is named at the end.
 """
 
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 
-from .captions import caption_of, short, worded
+from .captions import caption_of, short, with_thing, worded
 from .checking import Verdict
 from .lexicon import Lexicon, lexicon
 from .plan import Act, Plan
@@ -41,17 +41,15 @@ def told(plan: Plan, verdicts: Sequence[Verdict], known: Lexicon | None = None) 
 def _clauses(acts: Sequence[Act], known: Lexicon) -> Iterator[tuple[str, str]]:
     """Each act as (its subject, what they do)."""
     for act in acts:
-        words = _sided(act, caption_of(act, known.entries[act.act]))
+        words = _sided(*with_thing(act, caption_of(act, known.entries[act.act])))
         for name, letter in (("person A", "A"), ("person B", "B"), ("two people", _BOTH), (_THEY, _BOTH)):
             words = f"{letter} {words.removeprefix(f'{name} ')}" if words.startswith(f"{name} ") else words
             words = words.replace(name, letter) if name.startswith("person") else words
         subject = next((each for each in (_BOTH, "A", "B") if words.startswith(f"{each} ")), "")
         brief = short(act, known.entries[act.act])
-        if act.thing and act.thing not in words:  # the network's words leave the thing out, or name another
-            words = words.replace(" a book", f" the {act.thing}")
-            if act.thing in brief:
-                subject = _BOTH if len(act.agents) == 2 else act.agents[0].upper()
-                words = brief.replace(act.thing, f"the {act.thing}")
+        if act.thing and act.thing not in words and act.thing in brief:  # the network's words leave it out
+            subject = _BOTH if len(act.agents) == 2 else act.agents[0].upper()
+            words = brief.replace(act.thing, f"the {act.thing}")
         rest = words.removeprefix(subject).strip()
         if " and A " in rest or " and B " in rest:  # two people's, each with a verb of their own
             subject, rest = "", f"{subject} {rest}"

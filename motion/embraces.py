@@ -3,8 +3,8 @@
 A network that was trained on bodies of lines has people hug at arm's length, with arms stretched out past the other.
 Where both do so, the trunks lean to each other over feet that stay, each head beside the other's. Each right arm goes
 over the other's left shoulder, and each left arm below the other's right one; elbows bend outwards.
-Who holds the other from behind comes close to their back, and reaches around the waist under arms that
-are laid upon theirs.
+A person who holds the other from behind comes close to their back and reaches around the waist; the other lays their
+arms upon these.
 :func:`motion.arms.arms_apart` then bends the arms around what is still in their way.
 """
 
@@ -38,7 +38,7 @@ _ASIDE_BEHIND = 0.06
 _WAIST = ((0.1, 0.13, -0.17, 0.2), (0.12, 0.12, -0.14, 0.2))
 """As :data:`_HANDS`, of hands that are around the waist of somebody who faces the same way."""
 _UPON = ((0.21, 0.12, -0.12, 0.9), (0.23, 0.12, -0.09, 0.9))
-"""As :data:`_HANDS`, of the hands that this person lays upon them, from their own spine."""
+"""As :data:`_HANDS`, of the hands that the person who is held lays upon them, from their own spine."""
 _STRAIGHT = 0.97
 """Share of an arm's length that is used at most."""
 _SHARE = 0.55
@@ -86,7 +86,7 @@ def embraced(pair: Array, free: Array | None = None) -> Array:
 
 
 def _held_from_behind(own: Array, other: Array, close: Array) -> Array:
-    """(2, T, 22, 3) who stands behind the other with their arms around the waist, and the other, by ``close`` (T,)."""
+    """The person behind, with their arms around the waist by ``close`` (T,), and the other: (2, T, 22, 3)."""
     own = _drawn(own, other, close, 1.0, _CLOSE_BEHIND, _ASIDE_BEHIND)
     way = _way(own, other)
     own = _wrapped(own, other[:, _SPINE], way, _WAIST, close)

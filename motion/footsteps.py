@@ -14,6 +14,7 @@ import scipy  # its parts are loaded with their first use
 from numpy.typing import NDArray
 
 from .cleaning import solve_two_bones
+from .easing import minimum_jerk
 from .skeleton import SMPL22, Skeleton
 from .transforms import facing
 
@@ -139,10 +140,8 @@ def _walked(feet: Array, pelvis: Array, start: int, stop: int, fps: float) -> Ar
         for step in (step for step in steps if step.foot == side):
             goal = _set_down(feet[step.goal, side])
             lands = min(step.lands, stop - 1)
-            share = np.clip(
-                (np.arange(step.leaves, lands + 1) - step.leaves) / max(lands - step.leaves, 1), 0, 1
-            )
-            eased = (share**3 * (10 - 15 * share + 6 * share**2))[:, None, None]
+            share = (np.arange(step.leaves, lands + 1) - step.leaves) / max(lands - step.leaves, 1)
+            eased = minimum_jerk(share)[:, None, None]
             swing = held[side] + eased * (goal - held[side])
             swing[:, 0, 1] += _RISE * np.sin(np.pi * share) ** 2
             found[step.leaves : lands + 1, side] = swing

@@ -19,7 +19,7 @@ from numpy.typing import NDArray
 
 from .arms import ARMS
 from .cleaning import solve_two_bones
-from .easing import smoothstep
+from .easing import minimum_jerk, smoothstep
 from .planted import HIPS, LEGS, UPPER, over_planted_feet
 from .skeleton import SMPL22
 from .smoothing import least_jerk
@@ -143,8 +143,7 @@ def _shifts(rng: np.random.Generator, frames: int, fps: float, count: int) -> Ar
     while at < seconds[-1]:
         takes = rng.uniform(*_TAKES)
         then = -np.sign(now) * rng.uniform(0.15, 1, count) * np.where(rng.random(count) < 0.75, 1, -1)
-        s = np.clip((seconds - at) / takes, 0, 1)[:, None]
-        found += (then - now) * (s**3 * (10 - 15 * s + 6 * s**2))
+        found += (then - now) * minimum_jerk((seconds - at) / takes)[:, None]
         now, at = then, at + takes + rng.uniform(*_EVERY)
     return found
 

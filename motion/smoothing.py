@@ -11,6 +11,8 @@ import numpy as np
 import scipy  # its parts are loaded with their first use
 from numpy.typing import NDArray
 
+from .easing import minimum_jerk
+
 Array = NDArray[np.floating]
 
 _FIXED = 1e7
@@ -83,5 +85,4 @@ def eased_marks(marked: NDArray[np.bool_], frames: int) -> Array:
     if not marked.any():
         return np.zeros(len(marked))
     away = scipy.ndimage.distance_transform_edt(~marked)
-    s = np.clip(1 - away / (frames + 1), 0.0, 1.0)
-    return np.asarray(s**3 * (10 - 15 * s + 6 * s**2))
+    return minimum_jerk(1 - away / (frames + 1))

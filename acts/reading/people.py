@@ -101,9 +101,8 @@ class Cast:
         if text in ("someone", "somebody"):
             return self._new(lemma, token)
         acts = token.dep_ in ("nsubj", "nsubjpass", "poss")
-        small = (
-            token.text.islower() and not self._words.is_usual_person(lemma) and not acts
-        )  # "her teddy bear"
+        # "her teddy bear"
+        small = token.text.islower() and not self._words.is_usual_person(lemma) and not acts
         if token.tag_ == "NNP" and token.pos_ == "PROPN" and not self._words.is_place(lemma) and not small:
             return self._named(text)
         acts = acts and token.dep_ != "poss"

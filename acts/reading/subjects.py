@@ -101,9 +101,8 @@ class Subjects:
     def _told(self, token: Token, head: Token | None) -> Ref | None:
         """The subject that stands beside a verb."""
         before = token.nbor(-1) if token.i > 1 else token
-        if (
-            before.lower_ == "other" and before.nbor(-1).lower_ == "the"
-        ):  # "the other ducks" may be birds to the parser
+        # "the other ducks" may be birds to the parser
+        if before.lower_ == "other" and before.nbor(-1).lower_ == "the":
             return reference(before, self._cast, "")
         # "he comes running"
         moving = (c for aux in token.children if aux.dep_ == "aux" for c in aux.children)

@@ -20,17 +20,23 @@ function card(scene, take) {
 export function mount(element, props, watch, trigger) {
   const dialog = element.querySelector("dialog");
   const list = element.querySelector("ul");
+  const failed = element.querySelector(".pdx-failed");
   const take = ({ prompt, seconds, seed }) => {
     dialog.close();
     props.value = { prompt, seconds, seed };
     trigger("input");
   };
   const fill = async () => {
-    const { scenes } = await (await fetch(new URL("scenes.json", import.meta.url))).json();
-    list.replaceChildren(...scenes.map((scene) => card(scene, take)));
+    try {
+      const { scenes } = await (await fetch(new URL("scenes.json", import.meta.url))).json();
+      list.replaceChildren(...scenes.map((scene) => card(scene, take)));
+    } catch {
+      failed.hidden = false;
+    }
   };
   element.querySelector(".pdx-open").addEventListener("click", () => {
     dialog.showModal();
+    failed.hidden = true;
     if (!list.children.length) fill();
   });
   element.querySelector(".pdx-close").addEventListener("click", () => dialog.close());

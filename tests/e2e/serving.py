@@ -62,3 +62,16 @@ def live(page: Page, tab: str | None = None, *, slow: int = SLOW) -> Page:
         page.get_by_role("tab", name=tab).click()
         expect(page.locator(f"#{tab.lower()}-file")).to_be_visible(timeout=slow)
     return page
+
+
+def ask(page: Page, prompt: str) -> None:
+    """Gives the tab *Generate* a prompt and presses its button once it can be pressed."""
+    page.fill("#prompt textarea", prompt)
+    page.click("button#generate", timeout=SLOW)
+
+
+def status(page: Page, tone: str) -> str:
+    """The line that tells of a run, once it has a tone: "done", "warning", "error"."""
+    line = page.locator(f"#status .pd-{tone}")
+    expect(line).to_be_visible(timeout=SLOW)
+    return line.inner_text()

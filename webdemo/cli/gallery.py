@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import Any
 
 from motion import Duet, InputError
+from motion.formats.files import replacing
 from webdemo.inference.acting import acted
 from webdemo.inference.requests import GenerateRequest
 
@@ -38,7 +39,8 @@ def gallery(options: argparse.Namespace) -> dict[str, Any]:
         ) from None
     made = [_made(*one, sheet=_sheet(options.sheets, i)) for i, one in enumerate(asked)]
     lines = ",\n".join(json.dumps(each, ensure_ascii=False) for each in made)
-    options.file.write_text(f'{{"scenes": [\n{lines}\n]}}\n', encoding="utf-8")
+    with replacing(options.file) as temporary:
+        temporary.write_text(f'{{"scenes": [\n{lines}\n]}}\n', encoding="utf-8")
     return {"files": [str(options.file)], "scenes": len(made)}
 
 

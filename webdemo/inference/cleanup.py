@@ -49,9 +49,8 @@ def clean_person(positions: Array, fps: float = 30.0) -> Array:
     result = above_floor(_steady_limbs(_limbs_back(_steady_bones(bones), seen), seen))
     result = stepping(result, fps)
     swung = lift_swinging_feet(plant_feet(result, foot_contacts(result, fps)), fps)
-    return plant_feet(
-        swung, foot_contacts(swung, fps, speed=_LANDS)
-    )  # a toe that is raised glides as it lands
+    # a toe that is raised glides as it lands
+    return plant_feet(swung, foot_contacts(swung, fps, speed=_LANDS))
 
 
 def _calmed(positions: Array) -> Array:

@@ -16,6 +16,7 @@ from numpy.typing import NDArray
 from models.intergen.compact import DuetSpace
 from models.known import Hold, Known
 from motion import SMPL22, Duet, InputError
+from motion.easing import minimum_jerk
 
 from .actor import FPS
 from .joining import PASSING, joined, passing
@@ -83,7 +84,7 @@ def with_given(positions: Array, frames: Array, given: Array) -> Array:
     gap = np.where((frames[0] < time) & (time < frames[-1]), frames[after] - frames[before], 2 * (FADE + 1))
     fade = (0.5 * gap).clip(0.5, FADE + 1)
     s = (np.abs(away) / fade).clip(max=1.0)
-    place = 1 - s**3 * (10 - 15 * s + 6 * s**2)
+    place = 1 - minimum_jerk(s)
     lead = fade * s * (1 - s) ** 3 * (1 + 3 * s)
     moved = positions + place[:, None, None] * apart[nearest] + lead[:, None, None] * speed
     moved[frames] = given

@@ -6,10 +6,12 @@ from __future__ import annotations
 import json
 import time
 from collections.abc import Callable
+from contextlib import suppress
 from dataclasses import asdict, dataclass
 from typing import Any
 
 from sqlalchemy import Text, delete, select
+from sqlalchemy.exc import SQLAlchemyError
 from sqlalchemy.orm import Mapped, mapped_column
 
 from motion import InputError
@@ -147,8 +149,8 @@ class Activity:
         self._written = (node, text, now)
 
     def leave(self, node: str) -> None:
-        """Removes a process that stops."""
-        with self.database.session.begin() as session:
+        """Removes a process that stops; where the database is gone, it is taken for lost a little later."""
+        with suppress(SQLAlchemyError), self.database.session.begin() as session:
             session.execute(delete(Process).where(Process.node == node))
 
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import shutil
 from dataclasses import dataclass
+from functools import cache
 from pathlib import Path
 from typing import Any
 
@@ -175,6 +176,7 @@ class Administration:
             raise InputError(f"There is no account {name!r:.60}: see `admin list`.")
 
 
+@cache
 def versions() -> dict[str, Any]:
     """Versions of the program's main parts."""
     from importlib.metadata import version

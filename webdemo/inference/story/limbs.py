@@ -12,6 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from motion import SMPL22
+from motion.easing import minimum_jerk
 from motion.kinematics import forward_kinematics
 from motion.transforms import heading_matrix
 
@@ -59,7 +60,7 @@ def limbed(limbs: Sequence[Limb], place: Array, angle: float, seconds: Array, le
         (N, 22, 3) metres; a foot that is not raised is on the floor where it stood.
     """
     seconds = np.asarray(seconds, dtype=float)
-    held = _ramp(seconds - BEGINS) * _ramp(length - 0.2 - seconds)
+    held = minimum_jerk((seconds - BEGINS) / RAMP) * minimum_jerk((length - 0.2 - seconds) / RAMP)
     angles: dict[str, Array] = {}
     for limb in limbs:
         for joint, turn in MOVES[limb.does](limb, held, np.maximum(seconds - BEGINS, 0.0)).items():
@@ -71,12 +72,6 @@ def limbed(limbs: Sequence[Limb], place: Array, angle: float, seconds: Array, le
     ahead = 0.12 * np.array([np.sin(angle), 0.0, np.cos(angle)])
     toes = still[list(TOES)].mean(axis=0) * [1, 0, 1]
     return poses + shift[:, None] + np.array([place[0], 0.0, place[1]]) + ahead - toes
-
-
-def _ramp(seconds: Array) -> Array:
-    """From 0 to 1 along a minimum-jerk course."""
-    share = np.clip(seconds / RAMP, 0.0, 1.0)
-    return share**3 * (10 - 15 * share + 6 * share**2)
 
 
 def _posed(angles: Mapping[str, Array], count: int, angle: float) -> Array:

@@ -89,8 +89,11 @@ class Health:
         self.error = f"a run ended in {type(error).__name__}"
 
     def report(self) -> tuple[bool, dict[str, Any]]:
-        """Returns whether all is well, and the state of each part."""
+        """Returns whether all is well, and the state of each part; tries a generation where none has worked yet."""
         self.probe()
+        return self._report()
+
+    def _report(self) -> tuple[bool, dict[str, Any]]:
         checks: dict[str, str] = {}
         for name, check in self.wants.items():
             try:
@@ -110,7 +113,7 @@ class Health:
     def lately(self) -> dict[str, Any]:
         """The state of each part, as it was a few seconds ago at most."""
         if time.monotonic() - self._lately[0] >= LATELY:
-            self._lately = (time.monotonic(), self.report()[1])
+            self._lately = (time.monotonic(), self._report()[1])
         return self._lately[1]
 
     def stuck(self) -> str:

@@ -1,0 +1,143 @@
+"""The page's layout on all sizes of screens, and what it needs to be for people who see, point or hear differently."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from types import SimpleNamespace
+from typing import Any
+
+import pytest
+from playwright.sync_api import Page, expect
+
+from .playing import unfold
+from .serving import SLOW, ask, live, status
+
+pytestmark = pytest.mark.e2e
+
+
+@pytest.fixture
+def page(server: SimpleNamespace, open_page: Callable[..., Page]) -> Page:
+    return live(open_page(server.url))
+
+
+@pytest.fixture
+def phone(server: SimpleNamespace, open_page: Callable[..., Page]) -> Page:
+    return live(open_page(server.url, width=390, height=844))
+
+
+def test_the_phone_layout_has_the_player_high_and_no_sideways_scroll(phone: Page) -> None:
+    ask(phone, "two people walk")
+    status(phone, "done")
+    assert phone.evaluate("document.documentElement.scrollWidth") <= 390
+    top = {name: phone.locator(name).bounding_box()["y"] for name in ("#prompt", "#player", "#seconds")}
+    assert top["#prompt"] < top["#player"] < top["#seconds"]
+    expect(phone.locator("#guidance")).to_be_hidden()  # folded, as every setting is that can wait
+    assert top["#player"] < 400
+
+
+def test_a_finger_hits_the_tick_boxes(phone: Page) -> None:
+    unfold(phone, "#advanced")
+    unfold(phone, "#more")
+    for part, least in (("input", 24), ("label", 44)):
+        assert phone.locator(f"#planned {part}").bounding_box()["height"] >= least, part
+    phone.locator("#more button.label-wrap").first.click()
+    phone.locator("#advanced button.label-wrap").first.click()  # the page remembers what is open
+
+
+def test_every_control_has_a_name_and_the_focus_is_visible(page: Page) -> None:
+    names = page.evaluate(
+        "[...document.querySelectorAll('.pd-lab button, .pd-lab input, .pd-lab textarea, .pd-lab select')]"
+        ".filter(e => e.offsetParent).map(e => [e.outerHTML.slice(0, 80), e.ariaLabel || e.textContent.trim()"
+        " || e.labels?.[0]?.textContent.trim() || ''])"
+    )
+    assert [html for html, name in names if not name] == []
+    page.focus("button#generate")
+    page.keyboard.press("Tab")
+    page.keyboard.press("Shift+Tab")
+    assert page.evaluate("getComputedStyle(document.activeElement).outlineStyle") != "none"
+
+
+def test_axe_finds_nothing_against_wcag_aa_and_reduced_motion_keeps_the_example_still(
+    server: SimpleNamespace, open_page: Callable[..., Page]
+) -> None:
+    axe = pytest.importorskip("axe_playwright_python.sync_playwright").Axe()
+    page = live(open_page(server.url, before=lambda tab: tab.emulate_media(reduced_motion="reduce")))
+    page.wait_for_function("window.__pasdedeux?.player?.data", timeout=SLOW)
+    assert not page.evaluate("window.__pasdedeux.player.clock.playing")
+    page.add_style_tag(
+        content="*, ::before, ::after { transition: none !important; animation: none !important; }"
+    )
+    found = against_wcag(axe, page, "idle")
+    ask(page, "Two people walk home.")
+    status(page, "done")
+    unfold(page, "#downloads", "#share")
+    found += against_wcag(axe, page, "result")
+    for tab in ("Scene", "React", "Predict", "History"):
+        page.get_by_role("tab", name=tab, exact=True).click()
+        found += against_wcag(axe, page, tab)
+    assert found == []
+
+
+def against_wcag(axe: Any, page: Page, where: str) -> list[str]:
+    """What axe finds against WCAG 2.1 AA, in the light theme and in the dark one."""
+    found = []
+    rules = {"runOnly": {"type": "tag", "values": ["wcag2a", "wcag2aa", "wcag21a", "wcag21aa"]}}
+    for dark in (False, True):
+        page.evaluate("dark => document.body.classList.toggle('dark', dark)", dark)
+        for broken in axe.run(page, options=rules).response["violations"]:
+            found += [f"{where}: {broken['help']}: {node['html'][:120]}" for node in broken["nodes"]]
+    page.evaluate("document.body.classList.remove('dark')")
+    return found
+
+
+def test_nothing_but_buttons_takes_room_in_the_rows_of_files(page: Page) -> None:
+    ask(page, "Two people walk home.")
+    status(page, "done")
+    unfold(page, "#downloads", "#share")
+    wide = page.locator(".pd-menu .pd-downloads > *").evaluate_all(
+        "(all) => all.filter((each) => each.offsetWidth > 0).map((each) => each.tagName)"
+    )
+    assert len(wide) > 10 and set(wide) == {"BUTTON"}
+
+
+@pytest.mark.parametrize("tab", ["Generate", "React", "Predict"])
+def test_the_button_and_the_whole_stage_are_in_view_together_on_a_small_laptop(
+    server: SimpleNamespace, open_page: Callable[..., Page], tab: str
+) -> None:
+    page = live(open_page(server.url, width=1024, height=700), None if tab == "Generate" else tab)
+    prefix = "" if tab == "Generate" else f"{tab.lower()}-"
+    page.locator(f"#{prefix}player .pdd-stage").wait_for()
+    for part in (f"button#{prefix}generate", f"#{prefix}player .pdd"):
+        box = page.locator(part).bounding_box()
+        assert box and box["y"] >= 0 and box["y"] + box["height"] <= 700, part
+    player = page.locator(f"#{prefix}player .pdd").bounding_box()
+    assert player and player["width"] > 600 and player["height"] > 600
+    page.mouse.wheel(0, 2000)  # the stage stays while the panels scroll
+    page.wait_for_timeout(300)
+    box = page.locator(f"#{prefix}player .pdd").bounding_box()
+    assert box and box["y"] >= 0
+
+
+def test_no_example_is_cut_off_unseen(server: SimpleNamespace, open_page: Callable[..., Page]) -> None:
+    page = live(open_page(server.url, width=1440, height=900))
+    ends = "row => [row.scrollWidth - row.clientWidth, getComputedStyle(row).scrollbarWidth]"
+    row = page.locator(".pd-ask .pd-chips").first
+    assert row.evaluate(ends)[0] <= 1, "with room for all of them, they wrap"
+    page.set_viewport_size({"width": 1024, "height": 700})
+    hidden, scrollbar = row.evaluate(ends)
+    assert hidden > 1 and scrollbar == "thin", "on a low screen a scroll bar says that there are more"
+
+
+def test_what_was_folded_or_opened_stays_so(page: Page) -> None:
+    page.evaluate("localStorage.removeItem('pas-de-deux-folds')")
+    page.reload()
+    live(page)
+    expect(page.locator("#guidance")).to_be_visible()
+    expect(page.locator("#seed")).to_be_hidden()
+    unfold(page, "#more")
+    page.locator("#advanced > button").click()
+    expect(page.locator("#guidance")).to_be_hidden()
+    page.reload()
+    live(page)
+    expect(page.locator("#seed")).to_be_visible(timeout=SLOW)
+    expect(page.locator("#guidance")).to_be_hidden()
