@@ -8,6 +8,11 @@ import pytest
 from motion import SMPL22
 from webdemo.inference import Engine
 from webdemo.inference.engine import WEIGHTS
+from webdemo.inference.pipelines.scene_contacts import meeting
+from webdemo.inference.story.contacts import Contact, Region
+from webdemo.inference.story.floor import Standing
+from webdemo.inference.story.moves import Move
+from webdemo.inference.story.ways import Way
 
 from .test_planned_scenes import made
 
@@ -110,6 +115,15 @@ def test_a_touch_of_the_back_or_from_behind_comes_from_there(engine: Engine, pro
     across = found[1, at, SMPL22.index("left_hip")] - found[1, at, SMPL22.index("right_hip")]
     assert gap[at] < 0.25
     assert (found[0, at, 0] - found[1, at, 0]) @ np.cross(across, [0.0, 1.0, 0.0]) < 0
+
+
+def test_a_person_who_comes_up_goes_to_the_side_that_is_touched() -> None:
+    stand = Standing(np.array([[0.0, 0.0], [0.0, 2.0]]), np.array([0.0, np.pi]))
+    for behind, way in ((True, Way.BEHIND), (False, Way.TO)):
+        touch = Contact("a", Region.BACK, ("right",), behind=behind)
+        for moves in ((), (Move("a", Way.TO, 1.0),)):
+            _, found = meeting(touch, moves, {}, stand)
+            assert [move.way for move in found if move.person == "a"] == [way]
 
 
 def test_a_hand_that_has_patted_a_back_hangs_again(engine: Engine) -> None:

@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 import numpy as np
+import pytest
 
 from motion import SMPL22, Duet
 from motion.transforms import heading_matrix
 from webdemo.inference import SceneRequest
+from webdemo.inference.pipelines import scene_finish
 from webdemo.inference.pipelines.scene_finish import finished
 from webdemo.inference.story.beats import Beat
 
@@ -37,3 +39,16 @@ def test_a_statue_does_not_move_and_the_other_does() -> None:
     found = finished(request, scene, seed=1)
     np.testing.assert_array_equal(found[1], scene[1])
     assert np.abs(found[0] - scene[0]).max() > 0.01
+
+
+def test_palms_meet_in_the_beats_in_which_people_touch(monkeypatch: pytest.MonkeyPatch) -> None:
+    free: list[np.ndarray] = []
+
+    def met(pair: np.ndarray, share: np.ndarray) -> np.ndarray:
+        free.append(share)
+        return pair
+
+    monkeypatch.setattr(scene_finish, "palms_met", met)
+    beats = (Beat("They wave.", seconds=3.0), Beat("They high-five.", seconds=3.0))
+    finished(SceneRequest(beats=beats), _still(), seed=1)
+    assert not free[0][:90].any() and (free[0][90:] == 1).all()

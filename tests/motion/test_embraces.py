@@ -34,7 +34,7 @@ def _pair(gap: float = 0.55) -> np.ndarray:
 def test_chests_come_close_and_heads_pass_each_other() -> None:
     found = embraced(_pair())[:, HUGS]
     apart = np.linalg.norm((found[0, :, SPINE] - found[1, :, SPINE])[:, [0, 2]], axis=-1)
-    np.testing.assert_allclose(apart, CLOSE, atol=0.06)
+    np.testing.assert_allclose(apart, CLOSE, atol=0.04)
     assert np.linalg.norm(found[0, :, J("head")] - found[1, :, J("head")], axis=-1).min() > 0.15
 
 

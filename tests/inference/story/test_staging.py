@@ -51,6 +51,16 @@ def test_who_carries(name: str, carry: Carry) -> None:
     assert (lifted.carry, lifted.carrier) == (carry, "b" if name == "ride-back" else "a")
 
 
+def test_a_touch_from_behind_or_of_the_back_is_given_there() -> None:
+    for words, behind in (
+        ("Person A taps person B on the shoulder from behind.", True),
+        ("Person A pats person B on the back.", True),
+        ("Person A taps person B on the shoulder.", False),
+    ):
+        contact = told(words).contact
+        assert contact is not None and contact.behind is behind, words
+
+
 def test_numbers_sides_and_speeds_reach_the_stage() -> None:
     wave = staged((Act(id="1", act="wave", agents=("a",), side="left"),))
     assert wave.gestures["a"].sides == ("left",)
