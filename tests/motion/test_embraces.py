@@ -76,6 +76,16 @@ def _turned(gap: float = 0.4) -> np.ndarray:
     return pair
 
 
+def _held_from_before() -> np.ndarray:
+    """The other faces the person who holds them, with hanging arms."""
+    pair = _pair(0.4)
+    pair[0, :, [J("left_wrist"), J("right_wrist")], 1] -= 0.1
+    for side in ("left", "right"):
+        for joint, down in (("elbow", 0.27), ("wrist", 0.52)):
+            pair[1, :, J(f"{side}_{joint}")] = pair[1, :, J(f"{side}_shoulder")] - [0.0, down, 0.0]
+    return pair
+
+
 def _hand_in_hand() -> np.ndarray:
     pair = _pair(0.4)
     for left, right in (("left", "right"), ("right", "left")):
@@ -86,8 +96,8 @@ def _hand_in_hand() -> np.ndarray:
 
 @pytest.mark.parametrize(
     "pair",
-    [_pair(1.2), _lifted(), _turned(0.7), _hand_in_hand()],
-    ids=["far", "lifted", "hands on the shoulders from behind", "hand in hand"],
+    [_pair(1.2), _lifted(), _turned(0.7), _held_from_before(), _hand_in_hand()],
+    ids=["far", "lifted", "hands on the shoulders from behind", "held from before", "hand in hand"],
 )
 def test_what_is_no_embrace_stays(pair: np.ndarray) -> None:
     np.testing.assert_array_equal(embraced(pair), pair)

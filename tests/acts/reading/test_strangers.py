@@ -3,6 +3,7 @@
 import pytest
 
 from acts import Act, read
+from acts.plan import FROM_BEHIND
 
 
 def told(text: str) -> list[tuple[str, str, str | None]]:
@@ -78,3 +79,20 @@ def test_an_answer_follows_what_is_only_tried() -> None:
 def test_a_noun_is_not_forced_to_be_a_verb() -> None:
     for text in ("Her head swims.", "The flag flaps.", "The bridge kneels.", "He looks at her hands."):
         assert not read(text).acts, text
+
+
+def test_names_are_no_misspelt_verbs() -> None:
+    assert [(act.act, act.agents, act.patient) for act in read("Tom pushes Leah.").acts] == [
+        ("push", ("a",), "b")
+    ]
+
+
+def test_a_repeated_act_is_done_with_the_same_side_or_the_one_that_is_named() -> None:
+    for words, side in (("does the same", "left"), ("mirrors it with the right", "right")):
+        first, again = read(f"A raises the left arm and B {words}.").acts
+        assert (first.side, again.side) == ("left", side)
+
+
+def test_from_behind_is_a_manner() -> None:
+    (tap,) = read("A taps B on the shoulder from behind.").acts
+    assert FROM_BEHIND in tap.manner
