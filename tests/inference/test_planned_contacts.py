@@ -31,6 +31,12 @@ def nearest(motion: np.ndarray, giver: int, joints: list[str], others: list[str]
         ("While person B kneels, person A lays a hand on person B's head.", 0, ["head"]),
         ("Person A is tapped on the back by person B.", 1, ["left_shoulder", "right_shoulder", "spine3"]),
         ("Person A puts both hands on person B's shoulders.", 0, ["left_shoulder", "right_shoulder"]),
+        (
+            "Person B lies on the floor. Person A touches person B's shoulder.",
+            0,
+            ["left_shoulder", "right_shoulder"],
+        ),
+        ("Person A bends down and ties person B's shoe.", 0, ["left_ankle", "right_ankle"]),
     ],
 )
 def test_a_hand_touches_what_the_words_name(engine: Engine, prompt: str, giver: int, part: list[str]) -> None:

@@ -11,7 +11,7 @@ from motion import SMPL22
 from webdemo.inference import Engine, GenerateRequest, SceneRequest
 from webdemo.inference.pipelines.scene_postures import led, still_down
 from webdemo.inference.story import Beat
-from webdemo.inference.story.poses import bending, lying, seated, upright
+from webdemo.inference.story.poses import lying, seated, stooping, upright
 
 from .test_scenes import positions, run
 
@@ -127,12 +127,16 @@ def test_who_is_down_at_the_end_of_a_beat_is_so_behind_it() -> None:
 
 def test_who_lies_is_given_the_trunk_and_who_sits_the_legs_alone() -> None:
     given = {}
-    for make in (lying, bending, seated):
+    for make in (lying, stooping, seated):
         ((joints, frames, poses),) = led([(3, make(np.zeros(2), 0.0))], 0, 10)
         assert list(frames) == [3] and poses.shape == (1, SMPL22.num_joints, 3)
         given[make] = {SMPL22.joint_names[joint] for joint in joints}
-    assert given[lying] == given[bending] > given[seated]
+    assert given[lying] == given[stooping] > given[seated]
     assert {"pelvis", "left_ankle", "right_foot"} < given[seated]
+    ((joints, *_),) = led([(3, stooping(np.zeros(2), 0.0))], 0, 10, arms=True)
+    assert {SMPL22.joint_names[joint] for joint in joints} - given[stooping] == {
+        "left_elbow", "right_elbow", "left_wrist", "right_wrist"
+    }  # fmt: skip
     assert given[lying] - given[seated] == {
         "spine2", "spine3", "neck", "head", "left_collar", "right_collar", "left_shoulder", "right_shoulder"
     }  # fmt: skip
@@ -142,7 +146,8 @@ def test_who_bends_down_brings_the_head_forward(engine: Engine) -> None:
     found = made(engine, "Person A bends down.")[0, -20:]
     head = found[:, SMPL22.index("head")] - found[:, 0]
     assert (head[:, 1] < 0.45).all() and (np.linalg.norm(head[:, [0, 2]], axis=1) > 0.35).all()
-    assert (found[:, 0, 1] > 0.85).all(), "on straight legs"
+    wrists = [SMPL22.index(f"{side}_wrist") for side in ("left", "right")]
+    assert (found[:, 0, 1] > 0.8).all() and (found[:, wrists, 1] < 0.45).all(), "the hands near the floor"
 
 
 def test_who_lies_from_the_start_lies_across_the_way_of_the_other(engine: Engine) -> None:

@@ -7,7 +7,17 @@ import pytest
 
 from motion import SMPL22
 from tests.inference.story.staged_words import contact
-from webdemo.inference.story.contacts import Contact, Region, lean, reach, touched
+from webdemo.inference.story.contacts import (
+    Contact,
+    Region,
+    beside,
+    kneels,
+    lean,
+    middle,
+    reach,
+    touched,
+    touching,
+)
 from webdemo.inference.story.poses import bending, kneeling, lying, upright
 
 ORIGIN = np.zeros(2)
@@ -65,6 +75,25 @@ def test_a_hand_that_comes_near_is_at_the_joint(region: Region) -> None:
         (wrist,) = touched(touch, pose, own)
         assert np.linalg.norm(pose - wrist, axis=1).min() < 0.16
         assert np.linalg.norm(own[SMPL22.index("right_shoulder")] - wrist) < 0.75, "about an arm away"
+
+
+@pytest.mark.parametrize("region", [Region.HEAD, Region.SHOULDER, Region.CHEST, Region.LEG, Region.FOOT])
+def test_who_touches_a_person_who_lies_kneels_down_beside_them(region: Region) -> None:
+    touch, pose = Contact("a", region, ("right",)), lying(ORIGIN, 0.0)
+    heading = beside(pose, np.array([2.0, -1.0]))
+    assert heading is not None and abs(heading + np.pi / 2) < 0.01, "across the body, from their side of it"
+    place = middle(touch, pose)[[0, 2]] + reach(touch, pose) * np.array([1.0, 0.0])
+    own = touching(touch, pose, place, heading)
+    (wrist,) = touched(touch, pose, own)
+    assert kneels(touch, pose) and own[0, 1] < 0.6
+    assert np.linalg.norm(own[SMPL22.index("right_shoulder")] - wrist) < 0.6, "about an arm away"
+
+
+def test_nobody_kneels_to_touch_a_person_on_their_feet_above_the_knee() -> None:
+    for region in (Region.HEAD, Region.ARM, Region.HAND, Region.CHEST):
+        assert not kneels(Contact("a", region, ("right",)), upright(ORIGIN, 0.0))
+    assert kneels(Contact("a", Region.FOOT, ("right",)), upright(ORIGIN, 0.0))
+    assert beside(upright(ORIGIN, 0.0), np.ones(2)) is None
 
 
 def test_arms_go_round_who_is_hugged_from_behind() -> None:

@@ -21,6 +21,7 @@ from webdemo.inference.story.poses import (
     leaping,
     lying,
     seated,
+    stooping,
     upright,
 )
 
@@ -33,7 +34,7 @@ def bones(pose: np.ndarray) -> np.ndarray:
     return np.linalg.norm(pose[children] - pose[parents], axis=-1) / SMPL22.bone_lengths[children]
 
 
-@pytest.mark.parametrize("make", [upright, seated, grounded, bending, crouching, kneeling, lying])
+@pytest.mark.parametrize("make", [upright, seated, grounded, bending, stooping, crouching, kneeling, lying])
 def test_poses_are_of_this_body_and_on_the_floor(make) -> None:
     pose = make(PLACE, 0.7)
     np.testing.assert_allclose(bones(pose), 1.0, atol=1e-9)
@@ -53,7 +54,7 @@ def test_poses_are_what_they_are_called(make, rule) -> None:
 def test_feet_stay_where_they_stood() -> None:
     feet = [
         make(PLACE, 0.7)[TOES].mean(axis=0)[[0, 2]]
-        for make in (upright, seated, grounded, bending, crouching)
+        for make in (upright, seated, grounded, bending, stooping, crouching)
     ]
     assert np.ptp(feet, axis=0).max() < 1e-6
     assert np.linalg.norm(lying(PLACE, 0.7)[TOES].mean(axis=0)[[0, 2]] - feet[0]) < 0.35
@@ -70,6 +71,12 @@ def test_who_bends_down_keeps_straight_legs_and_lowers_the_head_forward() -> Non
     assert bent[head, 1] < straight[head, 1] - 0.2 and bent[head, 2] > straight[head, 2] + 0.4
     assert np.array_equal(bent[list(LOWER)][:3], straight[list(LOWER)][:3])
     assert np.array_equal(bent[TOES], straight[TOES])
+
+
+def test_who_bends_down_has_the_hands_near_the_floor() -> None:
+    pose = stooping(PLACE, 0.7)
+    assert pose[[SMPL22.index(f"{side}_wrist") for side in ("left", "right")], 1].max() < 0.4
+    assert 0.75 < pose[0, 1] < 0.9 and pose[SMPL22.index("head"), 1] > 0.6
 
 
 def test_a_jump_takes_as_long_as_its_height_needs() -> None:

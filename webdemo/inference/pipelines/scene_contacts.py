@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from dataclasses import replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -10,12 +11,12 @@ from numpy.typing import NDArray
 from motion import SMPL22
 from webdemo.inference.actor import FPS, Placement
 from webdemo.inference.known_parts import KnownFrames
-from webdemo.inference.story.contacts import Contact, lean, middle, reach, touched
+from webdemo.inference.story.contacts import LOWEST, Contact, beside, kneels, middle, reach, touched, touching
 from webdemo.inference.story.floor import Standing, Way2D
 from webdemo.inference.story.holds import Hold, joined, raised
 from webdemo.inference.story.moves import Move
 from webdemo.inference.story.plan import Window
-from webdemo.inference.story.poses import TRUNK, bending, upright
+from webdemo.inference.story.poses import LOWER, TRUNK, upright
 from webdemo.inference.story.ways import Way
 
 from .scene_hands import Course
@@ -32,8 +33,8 @@ TAKEN_BACK = 0.2
 """Metres by which a hand is taken back between two pats."""
 LOWERS = 24
 """Frames in which a hand that has patted somebody's back goes down."""
-LOWEST = 0.55
-"""Height in metres of the lowest place that somebody on their feet reaches."""
+KNEELS = 40
+"""Frames in which somebody kneels down to touch what is low."""
 _HIPS = [SMPL22.index("left_hip"), SMPL22.index("right_hip")]
 _WRISTS = [SMPL22.index("left_wrist"), SMPL22.index("right_wrist")]
 _COMES = (Way.TO, Way.BEHIND, Way.STAY, Way.FACE)
@@ -61,16 +62,17 @@ def meeting(
         if 1 - giver not in posed:
             return None, moves  # the network knows pushes
         posed = {}
+        if middle(touch, upright(np.zeros(2), 0.0))[1] < LOWEST:
+            return None, moves
     pose = posed.get(1 - giver, upright(np.zeros(2), 0.0))
-    if giver in posed or any(move.way not in _COMES for move in own):
+    down = kneels(touch, pose)
+    if (giver in posed and not down) or any(move.way not in _COMES for move in own):
         return None, moves
-    if any(move.way not in (*_WAITS, Way.TO) for move in theirs) or middle(touch, pose)[1] < LOWEST:
+    if any(move.way not in (*_WAITS, Way.TO) for move in theirs):
         return None, moves
     near = reach(touch, pose)
-    if 1 - giver in posed:
-        line = stand.towards(1 - giver)
-        near += float((middle(touch, pose)[[0, 2]] - stand.places[1 - giver]) @ line)
-    way = Way.BEHIND if touch.behind else Way.TO
+    lies = 1 - giver in posed and beside(pose, stand.places[giver]) is not None
+    way = Way.BEHIND if touch.behind or lies else Way.TO
     comes = [
         Move(m.person, way if m.way is Way.TO else m.way, m.speed, late=m.late, near=near)
         if m.way in _COMES[:2]
@@ -86,6 +88,21 @@ def meeting(
     return touch, (*comes, *waits)
 
 
+def towards_touched(touch: Contact | None, posed: Mapping[int, Array], stand: Standing) -> Standing:
+    """The places that a way to the other is planned from: of a person who is posed, the one that is touched.
+
+    A person who lies is taken to face away from the one who comes, so that they are touched from the side.
+    """
+    other = 1 - "ab".index(touch.person) if touch is not None else 0
+    if touch is None or touch.fells or other not in posed:
+        return stand
+    places, headings = stand.places.copy(), stand.headings.copy()
+    places[other] = middle(touch, posed[other])[[0, 2]]
+    across = beside(posed[other], stand.places[1 - other])
+    headings[other] = headings[other] if across is None else across
+    return replace(stand, places=places, headings=headings)
+
+
 def given_contact(
     touch: Contact,
     ways: Mapping[int, Way2D],
@@ -97,6 +114,8 @@ def given_contact(
     placement: Placement,
 ) -> KnownFrames | None:
     """The trunk and hands of the person who touches, as the network is given them; None if the beat is too short.
+
+    Of a person who kneels down to what they touch, also the pelvis and the legs.
 
     Args:
         touch: the contact.
@@ -112,12 +131,16 @@ def given_contact(
         return None
     own = Course.of(ways[giver], float(stand.headings[giver]), frames)
     other = course_of(1 - giver, ways, stand, frames)
-    first = max(_arrival(own), _arrival(other) if 1 - giver in ways else 0) + REACHES
+    down = kneels(touch, posed.get(1 - giver, upright(np.zeros(2), 0.0)))
+    first = max(_arrival(own), _arrival(other) if 1 - giver in ways else 0) + (KNEELS if down else REACHES)
     first = max(first, round(0.6 * frames)) if touch.late else first
     last = min(frames, _leaving(other, first))
     at = _moments(touch, first, last)
+    if down and at:
+        rest = TAKEN_BACK if touch.times else 0.0
+        at += [(frame, rest) for frame in range(at[-1][0] + REACHES // 2, frames, REACHES // 2)]
     wrists = [SMPL22.index(f"{side}_wrist") for side in touch.sides]
-    joints = [*TRUNK, *wrists]
+    joints = [*(LOWER if down else ()), *(j for j in TRUNK if not down or j not in LOWER), *wrists]
     kept: list[int] = []
     poses: list[Array] = []
     for frame, back in at:
@@ -126,13 +149,8 @@ def given_contact(
         target = None if touch.fells else posed.get(1 - giver)
         if target is None:
             target = upright(other.places[frame], float(other.headings[frame]))
-        pose = bending(own.places[frame], float(own.headings[frame]), lean(touch, target))
-        if touch.sides:
-            places = touched(touch, target, pose)
-            away = pose[wrists] - places
-            away /= np.linalg.norm(away, axis=1, keepdims=True).clip(min=1e-6)
-            pose[wrists] = places + back * away
-        pose -= pose[0].copy()
+        pose = _reaching(touch, target, own, frame, back)
+        pose -= 0.0 if down else pose[0].copy()
         kept.append(start + frame - window.start + window.past)
         poses.append(pose)
     for frame in _rests(touch, at, frames):
@@ -143,6 +161,18 @@ def given_contact(
     if not kept:
         return None
     return KnownFrames(giver, kept, placement.to_network(np.stack(poses)), joints)
+
+
+def _reaching(touch: Contact, target: Array, own: Course, frame: int, back: float) -> Array:
+    """The pose (22, 3) of a person who touches the other's ``target``, with the hands taken ``back`` by some metres."""
+    pose = touching(touch, target, own.places[frame], float(own.headings[frame]))
+    if touch.sides:
+        wrists = [SMPL22.index(f"{side}_wrist") for side in touch.sides]
+        places = touched(touch, target, pose)
+        away = pose[wrists] - places
+        away /= np.linalg.norm(away, axis=1, keepdims=True).clip(min=1e-6)
+        pose[wrists] = places + back * away
+    return pose
 
 
 def given_hold(

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Collection, Iterator, Sequence
 
 import numpy as np
@@ -26,7 +27,7 @@ from webdemo.inference.story.told import Told
 from webdemo.inference.story.track import HALT
 from webdemo.inference.story.ways import Way
 
-from .scene_contacts import given_contact, given_hold, given_twirl, meeting
+from .scene_contacts import given_contact, given_hold, given_twirl, meeting, towards_touched
 from .scene_hands import hands, known_hands
 from .scene_lifts import Carrying
 from .scene_paths import path_of
@@ -91,18 +92,19 @@ def _parts(request: SceneRequest, window: Window, scene: Array, placement: Place
         parts = [part for part in parts if part.person != "ab".index(touch.person)]
     if not start and not parts and not found and told.keeps_place:
         found = tuple(Move(who, Way.AVERTED) for who in "ab")
-    ways = {way.person: way for way in plan(found, stand, stop - start, first=not start)}
+    goal = towards_touched(touch, posed, stand)
+    ways = {way.person: way for way in plan(found, goal, stop - start, first=not start)}
     ways = {person: way for person, way in ways.items() if person not in {part.person for part in parts}}
     if lifted is not None and len(ways) == 2:
         carrying = Carrying(lifted, ways, stand, start, stop)
         parts += carrying.given(window, placement)
         ways = carrying.before()
-    for way in ways.values():
-        parts += path_of(way, window, start, placement)
     if touch is not None and (
         part := given_contact(touch, ways, posed, stand, start, stop, window, placement)
     ):
         parts.append(part)
+    for way in ways.values():
+        parts += path_of(_until_posed(way, parts, window, start), window, start, placement)
     led = Hold.RING if any(move.backwards for move in found) and told.by_both_hands else None
     if (held := told.hold or led) is not None and len(ways) == 2:
         parts += given_hold(held, ways, stand, start, stop, window, placement)
@@ -116,6 +118,19 @@ def _parts(request: SceneRequest, window: Window, scene: Array, placement: Place
             shift = start - window.start + window.past
             parts.append(known_hands(person, gesture, frames[inside], wrists[inside], shift, placement))
     return parts
+
+
+def _until_posed(way: Way2D, parts: Sequence[Part], window: Window, start: int) -> Way2D:
+    """A way as far as the poses of the same person that say where they are."""
+    given = [
+        frame - window.past + window.start - start
+        for part in parts
+        if isinstance(part, KnownFrames) and part.person == way.person and 0 in (part.joints or (0,))
+        for frame in part.frames
+    ]
+    kept = np.asarray(way.frames) < min(given, default=math.inf)
+    headings = None if way.headings is None else way.headings[kept]
+    return Way2D(way.person, np.asarray(way.frames)[kept].tolist(), way.places[kept], headings)
 
 
 def _room(
@@ -186,7 +201,9 @@ def _held(
             if len(poses) > 1:
                 posed[person] = poses[-1][1]
             tail = window.tail(request.edges[-1])
-            for joints, frames, known in led(still_down(poses, stop, tail), window.start, window.stop + tail):
+            busy = who in told.gestures or (told.contact is not None and told.contact.person == who)
+            down = still_down(poses, stop, tail)
+            for joints, frames, known in led(down, window.start, window.stop + tail, arms=not busy):
                 shifted = [frame - window.start + window.past for frame in frames]
                 parts.append(KnownFrames(person, shifted, placement.to_network(known), joints))
     return parts, posed

@@ -14,11 +14,11 @@ from webdemo.inference.actor import FPS
 from webdemo.inference.story.floor import Standing
 from webdemo.inference.story.poses import (
     FLAT,
+    HANDS,
     LOWER,
     LYING,
     STANCE,
     TOES,
-    bending,
     bowing,
     crouching,
     grounded,
@@ -27,6 +27,7 @@ from webdemo.inference.story.poses import (
     lying,
     rising,
     seated,
+    stooping,
     upright,
 )
 from webdemo.inference.story.postures import Change, Posture
@@ -64,7 +65,7 @@ _MAKES: dict[Posture, Callable[[Array, float], Array]] = {
     Posture.GROUND: grounded,
     Posture.KNEELS: kneeling,
     Posture.CROUCHES: crouching,
-    Posture.BENDS: bending,
+    Posture.BENDS: stooping,
     Posture.LIES: lying,
 }
 
@@ -135,10 +136,13 @@ def still_down(poses: list[Pose], stop: int, more: int) -> list[Pose]:
     return [*poses, *sorted(_stays(poses[-1][1], stop, stop + more).items(), key=lambda pose: pose[0])]
 
 
-def led(poses: list[Pose], first: int, last: int) -> Iterator[tuple[Sequence[int], list[int], Array]]:
+def led(
+    poses: list[Pose], first: int, last: int, *, arms: bool = False
+) -> Iterator[tuple[Sequence[int], list[int], Array]]:
     """The joints, frames and poses (N, 22, 3) from ``first`` to before ``last`` that are given.
 
-    Pelvis and legs, and the trunk and head of those who lie or bend down, which the network would raise.
+    Pelvis and legs, and the trunk and head of those who lie or bend down, which the network would raise; with
+    ``arms`` also the arms of those who bend down.
     """
     for joints, lies in ((LOWER, False), (FLAT, True)):
         inside = [
@@ -147,7 +151,9 @@ def led(poses: list[Pose], first: int, last: int) -> Iterator[tuple[Sequence[int
             if first <= f < last and bool(pose[_HEAD, 1] - pose[0, 1] < LOW) is lies
         ]
         if inside:
-            yield joints, [frame for frame, _ in inside], np.stack([pose for _, pose in inside])
+            stoops = arms and lies and inside[-1][1][0, 1] > LOW
+            given = (*joints, *HANDS) if stoops else joints
+            yield given, [frame for frame, _ in inside], np.stack([pose for _, pose in inside])
 
 
 def _stays(pose: Array, start: int, stop: int) -> dict[int, Array]:

@@ -18,6 +18,7 @@ from motion.transforms import heading
 from motion.vectors import unit
 
 from .gestures import SIDES
+from .poses import kneeling, leaning, upright
 
 Array = NDArray[np.floating]
 
@@ -74,18 +75,47 @@ _ARM = 0.45
 """Metres from the shoulder to the wrist of an arm that is nearly straight."""
 _TRUNK = 0.47
 """Metres from the pelvis to the line of the shoulders."""
-_HIP = 0.93
-"""Height in metres of a standing person's pelvis."""
+_HIP, _KNEELING = 0.93, float(kneeling(np.zeros(2), 0.0)[0, 1])
+"""Height in metres of the pelvis of a person who stands, and who kneels."""
+_DOWN = 0.33
+"""Metres that the hand of a person who kneels is below their shoulder."""
+_FLAT = 0.3
+"""Metres between the heights of head and pelvis of a person who lies, at most."""
+LOWEST = 0.55
+"""Height in metres of the lowest place that somebody on their feet reaches."""
+
+
+def kneels(touch: Contact, pose: Array) -> bool:
+    """True for a place of a pose (22, 3) so low that the person who touches it kneels down to it."""
+    return float(middle(touch, pose)[1]) < LOWEST and not touch.fells
+
+
+def beside(pose: Array, place: Array) -> float | None:
+    """The heading across a person's lying body (22, 3), from the side of a place (2,); None if they do not lie."""
+    body = np.asarray(pose)[SMPL22.index("head")] - pose[0]
+    if abs(body[1]) > _FLAT or pose[0][1] > _KNEELING:
+        return None
+    across = np.array([body[2], -body[0]])
+    side = 1.0 if across @ (np.asarray(pose)[0][[0, 2]] - place) >= 0 else -1.0
+    return float(np.arctan2(*(side * across)))
+
+
+def touching(touch: Contact, pose: Array, place: Array, angle: float) -> Array:
+    """The pose (22, 3) of a person at a place (2,) who leans, or kneels down, to the other's pose, arms hanging."""
+    make = kneeling if kneels(touch, pose) else upright
+    return leaning(make(place, angle), angle, lean(touch, pose))
 
 
 def reach(touch: Contact, pose: Array) -> float:
-    """Metres between the pelvises at which a standing person reaches the other, leaning forward where that is low.
+    """Metres over the floor from a person's pelvis to what they touch of the other, leaning or kneeling if it is low.
 
     Args:
         touch: the contact.
         pose: (22, 3) metres of the one who is touched.
     """
     height, angle = float(middle(touch, pose)[1]), lean(touch, pose)
+    if kneels(touch, pose):
+        return float(_TRUNK * np.sin(angle) + np.sqrt(_ARM**2 - _DOWN**2))
     ahead, up = _TRUNK * np.sin(angle), _HIP + _TRUNK * np.cos(angle)
     if not touch.sides:
         return float(ahead + 0.08 + _KISS)
@@ -96,7 +126,10 @@ def reach(touch: Contact, pose: Array) -> float:
 
 
 def lean(touch: Contact, pose: Array) -> float:
-    """Radians by which a standing person leans forward to touch the other, whose pose (22, 3) is given."""
+    """Radians by which a person leans forward to touch the other, whose pose (22, 3) is given."""
+    if kneels(touch, pose):
+        over = float(middle(touch, pose)[1]) + _DOWN - _KNEELING
+        return float(np.arccos(np.clip(over / _TRUNK, 0.2, 1.0)))
     least = 0.05 if touch.sides else 0.15
     return float(np.clip(0.1 + 1.2 * (1.3 - middle(touch, pose)[1]), least, 1.0))
 

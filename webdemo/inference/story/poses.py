@@ -104,6 +104,11 @@ _CROUCHES: Mapping[str, float] = {
 _BENDS: Mapping[str, float] = {
     "hip": -0.6, "knee": 0.95, "ankle": -0.38, "shoulder": 1.2, "elbow": 0.3, "spine": 0.1,
 }  # fmt: skip
+_STOOPS: Mapping[str, float] = {
+    "hip": -0.7, "knee": 0.9, "ankle": -0.2, "shoulder": 1.4, "elbow": 0.3, "spine": 0.05,
+}  # fmt: skip
+_STOOPED = 1.6
+"""Radians by which the trunk of a person leans who bends down to the floor."""
 _BENT = 0.9
 """Radians of a bend from the hips."""
 STANDS: Mapping[str, float] = {
@@ -146,10 +151,25 @@ def grounded(place: Array, angle: float) -> Array:
 
 def bending(place: Array, angle: float, lean: float = _BENT) -> Array:
     """A person bent from the hips by so many radians: (22, 3) metres."""
-    pose = upright(place, angle)
+    return leaning(upright(place, angle), angle, lean)
+
+
+def leaning(pose: Array, angle: float, lean: float) -> Array:
+    """A pose (22, 3) with its trunk, head and arms turned forward about the pelvis by so many radians."""
     upper = [j for j in range(SMPL22.num_joints) if j not in LOWER or j == SMPL22.index("spine1")]
     turn = heading_matrix(angle) @ about(0, lean) @ heading_matrix(-angle)
-    pose[upper] = pose[0] + (pose[upper] - pose[0]) @ turn.T
+    moved = pose.copy()
+    moved[upper] = pose[0] + (pose[upper] - pose[0]) @ turn.T
+    return moved
+
+
+def stooping(place: Array, angle: float) -> Array:
+    """A person bent down on soft knees whose arms hang to the floor: (22, 3) metres."""
+    pose = leaning(_on_floor(_posed(angle, _STOOPS)[None], place, angle)[0], angle, _STOOPED)
+    for side in _SIDES:
+        shoulder, elbow, wrist = (SMPL22.index(f"{side}_{name}") for name in ("shoulder", "elbow", "wrist"))
+        for joint, parent in ((elbow, shoulder), (wrist, elbow)):
+            pose[joint] = pose[parent] - [0.0, float(SMPL22.bone_lengths[joint]), 0.0]
     return pose
 
 
