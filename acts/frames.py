@@ -224,6 +224,10 @@ class Frame:
             if not element.slot and not element.prepositions and not element.optional:
                 yield from element.words & PREPOSITIONS
 
+    def of_agent(self) -> bool:
+        """True if the part of the body that it names is the agent's own."""
+        return any(element.slot == "a.part" for element in self.elements) and not self._of_other()
+
     def _patient(self, bound: Mapping[str, Ref], agents: str) -> str:
         """The person to whom it is done, as the slots say; "" if they do not."""
         patient = bound.get("b")

@@ -23,6 +23,7 @@ _BEFORE = frozenset((",", ";", ":", "-", "", "and"))
 _OWNERS = frozenset(
     ["his", "her", "their", "its", "my", "your", "each", "both", "one", "the", "left", "right"]
 )
+_PLACES = frozenset(("on", "behind", "above", "around", "over"))
 _LONGEST = 4
 """Words before the part of the body, at most."""
 
@@ -102,8 +103,10 @@ def stands_absolutely(lower: Callable[[int], str], i: int) -> bool:
         i: the first word.
     """
     words = vocabulary()
-    if lower(i - 1) not in _BEFORE:
-        return False
+    if lower(i - 1) not in _BEFORE:  # "cuffs the thief hands behind his back"
+        behind = lower(i + 3) if lower(i + 2) in _OWNERS else lower(i + 2)
+        own = words.part(lower(i).removesuffix("s")) and words.part(behind) and lower(i + 1) in _PLACES
+        return bool(own) and words.is_person(lower(i - 1)) and lower(i).endswith("s")
     at = i
     while lower(at) in _OWNERS and at < i + 3:
         at += 1
@@ -116,7 +119,7 @@ def stands_absolutely(lower: Callable[[int], str], i: int) -> bool:
         return False
     held = after in _PARTICIPLES or after in words.verbs["held"]
     ends = not behind.isalpha() or behind in ("and", "while", "as", "then")
-    placed = after in ("on", "behind", "above", "around", "over") and (
+    placed = after in _PLACES and (
         words.part(behind) != "" or behind in _OWNERS or words.part(behind.removesuffix("s")) != ""
     )
     return held or (after in words.directions and ends) or placed

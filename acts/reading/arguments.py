@@ -89,8 +89,10 @@ class Arguments:
                 event.particles.append(child.lower_)
             elif is_kept(child):
                 event.words.append(child.lower_)
-            elif child.dep_ in _MODIFIERS or (
-                child.dep_ in ("xcomp", "ccomp", "advcl") and child.pos_ == "ADJ"
+            elif (
+                child.dep_ in _MODIFIERS
+                or (child.pos_ == "INTJ" and child.i > token.i)
+                or (child.dep_ in ("xcomp", "ccomp", "advcl") and child.pos_ == "ADJ")
             ):
                 self._modifier(child, event)
             else:
@@ -106,6 +108,8 @@ class Arguments:
         ref = self._argument(token, who, event)
         if event.object is not None and event.object.kind == "person" and ref.kind != "person":
             event.dative = event.object
+        if ref.kind == "thing" and token.pos_ == "NOUN":
+            self.cast.thing, self.cast.thing_of = ref, who  # a sofa that is carried is no place
         event.object = ref
 
     def _argument(self, token: Token, who: str, event: Event) -> Ref:
@@ -155,7 +159,7 @@ class Arguments:
                 found = True
                 if self._measure(child, token, event):
                     continue
-                event.prepositions.append((token.lower_, self._argument(child, who, event)))
+                event.prepositions.append((token.lower_, self._instrument(child, who, event)))
                 for more in child.conjuncts:
                     if more.i > child.i and more.pos_ in ("NOUN", "PRON", "PROPN"):
                         event.prepositions.append((token.lower_, self._argument(more, who, event)))
@@ -169,6 +173,12 @@ class Arguments:
             event.words.append(token.lower_)
             event.particles.append(token.lower_)
             self._direction(token.lower_, event)
+
+    def _instrument(self, noun: Token, who: str, event: Event) -> Ref:
+        """The argument of a preposition; what is done "with his hand" is done with one's own, if that may be."""
+        ref = self._argument(noun, who, event)
+        own = noun.head.lower_ == "with" and ref.kind == "part" and len(who) == 1
+        return replace(ref, who="") if own and not self.cast.sex(who) else ref
 
     def _measure(self, noun: Token, preposition: Token, event: Event) -> bool:
         """Takes up "for five seconds", "to the left", "at arm's length"; False for other phrases."""
@@ -223,7 +233,7 @@ class Arguments:
     def _modifier(self, token: Token, event: Event) -> None:
         self.seen.add(token.i)
         text, lemma = token.lower_, token.lemma_.lower()
-        if token.dep_ == "intj":
+        if token.pos_ == "INTJ" or token.dep_ == "intj":  # "says no"
             event.words.append(text)
             return
         if text in DENY or token.dep_ == "neg":
@@ -284,7 +294,7 @@ class Arguments:
             return
         if noun.lemma not in self._verbs or noun.lemma in ("step", "hand") or not is_act(noun.lemma):
             return
-        if wordnet.kind((wordnet.senses(noun.lemma) or ("00001740",))[0]) == "consumption":
+        if wordnet.usual_kind(noun.lemma) == "consumption":
             return  # "offers her a drink" hands something over
         event.noun = replace(event, lemma=noun.lemma, object=event.dative, dative=None)
         giver = next(

@@ -128,7 +128,20 @@ class ClauseTree:
         if any(child.dep_ in ("nsubj", "nsubjpass") for child in token.children):
             return head
         later = [self.doc[i] for i in self.mains if head.i < i < token.i and self.doc[i].sent == token.sent]
+        if (beside := self._within(token, head)) is not None:
+            return beside
         return next((t for t in reversed(later) if any(c.dep_ == "nsubj" for c in t.children)), head)
+
+    def _within(self, token: Token, head: Token) -> Token | None:
+        """The verb of a clause beside ``head`` that goes on: "he steps back as she points at him and comes closer"."""
+        stop = next((c for c in head.children if c.dep_ == "cc" and c.i < token.i), token)
+        for at in range(stop.i - 1, head.i, -1):
+            verb = self.doc[at]
+            if verb.text in (",", ";"):
+                return None
+            if is_finite(verb) and verb.dep_ == "advcl" and any(c.dep_ == "nsubj" for c in verb.children):
+                return verb if verb.tag_ == token.tag_ else None
+        return None
 
     def is_main(self, token: Token) -> bool:
         """True for a clause that stands by itself in the order of the text."""

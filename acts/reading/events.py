@@ -99,6 +99,8 @@ class Reader:
         for found in self._absolutes.values():
             clause = self._clause_of(found)
             subject = self.events[self._of[clause.i]].subject if clause is not None else None
+            if clause is not None and any(t.text == ":" for t in self.doc[found.preposition.i : clause.i]):
+                subject = Ref("person", "ab")  # said of both, before anybody is named
             who = subject.who if subject is not None and subject.kind == "person" else ""
             ref = reference(found.part, self.cast, who)
             owner = Ref("person", ref.who) if ref.who else subject
@@ -144,7 +146,7 @@ class Reader:
         head = self._tree.head(token)
         subject = self._subjects.of(token, head)
         event = Event(lemma, subject, first=token.idx, last=token.idx + len(token.text))
-        event.goes = wordnet.kind((wordnet.senses(lemma) or ("00001740",))[0]) == "motion"
+        event.goes = wordnet.usual_kind(lemma) == "motion"
         kind, beside = self._joint(token, head)
         if self._tree.is_main(token):
             self._tree.mains.append(token.i)
@@ -247,6 +249,8 @@ class Reader:
                 event.modality = "wished"
         if children & _NEARLY:
             event.modality = "tried"
+        if token.dep_ == "advcl" and {"as", "if"} <= {c.lower_ for c in token.children if c.dep_ == "mark"}:
+            event.modality = "pretended"  # "walks up as if to hug"
         if token.dep_ == "pcomp" and (
             token.head.lower_ in ("without", "instead", "from") or token.head.head.lower_ == "instead"
         ):

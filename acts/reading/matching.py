@@ -19,8 +19,6 @@ _SYNONYM = 0.8
 """What each step through WordNet costs."""
 _FARTHEST = 2.0
 """Steps through WordNet, at most: ranks of the two verbs' senses and levels up."""
-_BODILY = frozenset(("body", "competition", "consumption", "contact", "motion"))
-"""WordNet's kinds of verbs that bodies show; others are matched only with verbs of the same meaning."""
 
 Found = tuple[str, Frame, Match]
 
@@ -73,7 +71,7 @@ class Matcher:
                         yield cost, (name, frame, match)
         senses = wordnet.senses(lemma)[:2]
         for rank, own in enumerate(senses):
-            bodily = wordnet.kind(own) in _BODILY
+            bodily = wordnet.kind(own) in wordnet.BODILY
             if "_" in lemma and not bodily:  # "bows out"
                 continue
             for sense, level in [(own, 0), *((up, 1) for up in wordnet.above(own) if bodily)]:

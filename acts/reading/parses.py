@@ -6,6 +6,7 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
+from .run_on import breaks
 from .spelling import Speller
 from .syntax import parse
 from .wording import Text
@@ -47,11 +48,12 @@ class Parse:
 def parses(written: Text, speller: Speller) -> Iterator[Parse]:
     """The parses of a text, the likeliest first."""
     whole = written.ended()
-    first = _parsed(whole or written, speller)
-    yield first
     left = max(min(_MOST, _MOST_CHARACTERS // max(len(written.original), 1)) - 1, 0)
+    first, *others = _stopped(whole or written, speller)
+    yield first
+    yield from others[:left]
     if whole is not None and left > 0:
-        yield _parsed(written, speller)
+        yield _stopped(written, speller)[0]
         left -= 1
     for at, change in list(speller.suspects(first.doc).items())[:left]:
         base = not change[0].endswith(("s", "ed"))  # is a noun more often
@@ -60,7 +62,17 @@ def parses(written: Text, speller: Speller) -> Iterator[Parse]:
             yield other
 
 
-def _parsed(text: Text, speller: Speller) -> Parse:
+def _stopped(text: Text, speller: Speller) -> list[Parse]:
+    """The parses of a text with the stops that it lacks; one if there is no doubt where they stand."""
+    found = _with_verbs(text, speller)
+    missing = [
+        frozenset(found.text.number(token.idx) for token in breaks(found.doc, found.lemmas, within))
+        for within in (False, True)
+    ]
+    return [_with_verbs(text.broken(at), speller) if at else found for at in dict.fromkeys(missing)]
+
+
+def _with_verbs(text: Text, speller: Speller) -> Parse:
     found = Parse(text, parse(text.parsed))
     changes = speller.verbs_found(found.doc)
     return found.changed(changes) if changes else found

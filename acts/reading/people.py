@@ -218,6 +218,9 @@ class Cast:
             known = [who for who in open_ if who in self._known]
             who = self.last if self.last in known else (known or open_)[0]
             self._known.setdefault(who, _Known()).sex = sex
+        elif len(subject) == 1 and not self._known.get(subject, _Known()).sex:
+            who = subject  # "she draws him after her"
+            self._known.setdefault(who, _Known()).sex = sex
         else:
             who = ("b" if subject == "a" else "a") if subject else self.last or "a"
         self.last = who
@@ -239,6 +242,10 @@ class Cast:
         """Says that an order is given to this person."""
         if not self._has("you"):
             self._as(who, "you")
+
+    def sex(self, who: str) -> str:
+        """The sex of a person, as far as the words have told it."""
+        return self._known.get(who, _Known()).sex
 
     def owner(self, token: Token, subject: str) -> str:
         """The owner of a part of the body, by its possessive; "" where the words leave it open."""

@@ -360,7 +360,8 @@ class _Planner:
             patient = patient or ("b" if match.agents == "a" else "a")
         owner = None
         if part is not None:
-            owner = patient or (match.agents if len(match.agents) == 1 else None)
+            whose = match.agents if frame.of_agent() else patient or match.agents
+            owner = whose if len(whose) == 1 else None
         act = Act(
             id=number_of, act=name, agents=tuple(match.agents),  # type: ignore[arg-type]
             patient=patient or None, thing=match.thing or None,  # type: ignore[arg-type]

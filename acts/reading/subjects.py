@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 from acts.frames import Event, Ref
 
-from .clauses import ClauseTree
+from .clauses import ClauseTree, is_finite
 from .people import Cast, reference
 from .vocabulary import vocabulary
 
@@ -16,6 +16,8 @@ if TYPE_CHECKING:
 
 _LEAVES = frozenset(("leave", "find"))
 """Verbs whose object does what follows, beside those that cause or see it."""
+ORDINALS = frozenset(("other", "first", "second", "former", "latter"))
+"""Words that stand for one of the two behind "the"."""
 _SOMEBODY = frozenset(("him", "her", "his", "me", "my"))
 
 
@@ -60,6 +62,13 @@ class Subjects:
                 self._found[clause.i] = self._subject_of(clause, its_head)
         return self._found[token.i]
 
+    @staticmethod
+    def _is_order(token: Token) -> bool:
+        """True for a bare verb before whose clause another begins: "shake on it, then one of them waves"."""
+        bare = token.tag_ in ("VB", "VBP") and all(c.dep_ not in ("aux", "mark") for c in token.children)
+        behind = (c for c in token.head.children if c.dep_ in ("nsubj", "nsubjpass"))
+        return bare and token.dep_ in ("ccomp", "advcl", "dep") and any(token.i < c.i for c in behind)
+
     def _subject_of(self, token: Token, head: Token | None) -> Ref | None:
         if (told := self._told(token, head)) is not None:
             return told
@@ -67,6 +76,8 @@ class Subjects:
             return named
         if token.dep_ in ("relcl", "acl") or token.dep_ == "amod":
             return self._antecedent(token)
+        if head is not None and self._is_order(token):
+            return Ref("person", "ab", first=token.idx, last=token.idx)
         if head is not None:
             own = self.of(head, self._tree.head(head))
             if token.dep_ in ("xcomp", "ccomp"):  # "makes her laugh", "asks him to sit"
@@ -102,14 +113,17 @@ class Subjects:
         """The subject that stands beside a verb."""
         before = token.nbor(-1) if token.i > 1 else token
         # "the other ducks" may be birds to the parser
-        if before.lower_ == "other" and before.nbor(-1).lower_ == "the":
+        if before.lower_ in ORDINALS and before.nbor(-1).lower_ == "the" and is_finite(token):
             return reference(before, self._cast, "")
         # "he comes running"
         moving = (c for aux in token.children if aux.dep_ == "aux" for c in aux.children)
         for child in (*token.children, *moving):
             if child.dep_ in ("nsubj", "nsubjpass", "csubj", "expl"):
                 if child.tag_ in ("WP", "WDT") and token.dep_ == "relcl":
-                    return self._antecedent(token)
+                    found = self._antecedent(token)
+                    if child.lower_ == "who" and found is not None and found.kind == "part" and found.who:
+                        return Ref("person", found.who)  # "holds the ankle of the patient, who lies"
+                    return found
                 if child.tag_ in ("VBZ", "VBD") and (known := self._found.get(child.i)) is not None:
                     return known  # "she leans back, then kicks"
                 ref = reference(child, self._cast, "")

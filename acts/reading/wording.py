@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import bisect
 import re
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Collection, Iterator, Mapping
 
 from .absolute import stands_absolutely
 from .people import A_NAME, B_NAME
@@ -74,9 +74,9 @@ _SUBJECTS = frozenset(
 _TOWARDS = frozenset(("at", "to", "with", "by", "from", "behind", "past", "towards", "toward", "around"))
 """Prepositions of people, after which a noun without an article lacks one."""
 _INTENSIFIED = frozenset(
-    ("up", "past", "round", "around", "behind", "through", "into", "across", "by", "over")
+    ("up", "past", "round", "around", "behind", "through", "into", "across", "by", "over", "down", "out")
 )
-"""Words before which "right" is no direction."""
+"""Words before which "right" and "way" only make more of a direction."""
 _BEHIND_BACK = frozenset(("on", "to", "turned", "towards", "toward"))
 """Words behind "her back" after which it is a part of the body."""
 _NUMBERED = {"a": True, "1": True, "one": True, "b": False, "2": False, "two": False}
@@ -109,6 +109,17 @@ class Text:
             for at, (word, start, stop) in zip(self._starts, self._pieces, strict=True)
         ]
         return Text(self.original, pieces)
+
+    def broken(self, numbers: Collection[int]) -> Text:
+        """The same text with a stop before the words of these numbers."""
+        pieces: list[tuple[str, int, int]] = []
+        for i, piece in enumerate(self._pieces):
+            pieces += [(";", piece[1], piece[1]), piece] if i in numbers else [piece]
+        return Text(self.original, pieces)
+
+    def number(self, at: int) -> int:
+        """The number of the word that begins at this offset of what is parsed."""
+        return bisect.bisect_right(self._starts, at) - 1
 
     def ended(self) -> Text | None:
         """The same text with the full stop that it lacks, without which the parser errs more; None if it has one."""
@@ -223,8 +234,8 @@ class _Preparation:
             and (owner or _ends_name(self._tokens, i + 2, self._tokens[i + 1][0]))
         ):
             word = (A_NAME if _NUMBERED[letter] else B_NAME) + owner
-        elif lower == "right" and following in _INTENSIFIED and not self._lower(i - 1).startswith("turn"):
-            word = "around" if following == "round" else following  # "walks right past him"
+        elif lower in ("right", "way") and following in _INTENSIFIED and not self._keeps(i):
+            word = "around" if following == "round" else following  # "walks right past him", "way up"
         elif (
             following.isalpha()
             and lower not in self._words.numbers
@@ -236,6 +247,11 @@ class _Preparation:
             return 0
         self._pieces.append((word, self._tokens[i][1], self._tokens[i + 1][2]))
         return 2
+
+    def _keeps(self, i: int) -> bool:
+        """True for a direction, and for a noun: "turn right past her", "the way up"."""
+        before = self._lower(i - 1)
+        return before.startswith("turn") if self._lower(i) == "right" else before in _DETERMINERS
 
     def _single(self, i: int) -> int:
         """One token; always 1."""

@@ -27,6 +27,8 @@ _KINDS = (
     "motion", "perception", "possession", "social", "stative", "weather",
 )  # fmt: skip
 """WordNet's kinds of verbs; their synsets stand in this order, each kind from the number in ``_STARTS`` on."""
+BODILY = frozenset(("body", "competition", "consumption", "contact", "motion"))
+"""WordNet's kinds of verbs that bodies show; others are matched only with verbs of the same meaning."""
 
 
 class _Verbs(NamedTuple):
@@ -111,6 +113,11 @@ def above(sense: str) -> tuple[str, ...]:
 def kind(sense: str) -> str:
     """The kind of a verb's synset: "body", "motion", "contact", "cognition", …."""
     return _KINDS[bisect.bisect_right(_STARTS, sense) - 1]
+
+
+def usual_kind(lemma: str) -> str:
+    """The kind of a verb in its first sense; "body" for a verb that WordNet lacks."""
+    return kind((senses(lemma) or _STARTS)[0])
 
 
 def meanings(lemma: str, most: int = 3, height: int = 2) -> list[tuple[str, float]]:
