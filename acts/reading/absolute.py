@@ -24,6 +24,8 @@ _OWNERS = frozenset(
     ["his", "her", "their", "its", "my", "your", "each", "both", "one", "the", "left", "right"]
 )
 _PLACES = frozenset(("on", "behind", "above", "around", "over"))
+_STATES = frozenset(("straight", "upright", "together", "parallel", "loose", "relaxed", "soft", "tense"))
+"""Adjectives of how a part is held that are no directions."""
 _LONGEST = 4
 """Words before the part of the body, at most."""
 
@@ -59,7 +61,8 @@ def _behind(preposition: Token) -> Absolute | None:
     while at < len(doc) and not words.part(doc[at].lemma_.lower()):
         if at - preposition.i >= _LONGEST or not (doc[at].pos_ in _WITHIN or doc[at].tag_ == "VBN"):
             return None
-        before = doc[at] if doc[at].tag_ == "VBN" or doc[at].lower_ in _PARTICIPLES else before
+        held = doc[at].tag_ == "VBN" and doc[at].lower_ not in words.directions
+        before = doc[at] if held or doc[at].lower_ in _PARTICIPLES else before
         at += 1
     if at == len(doc):
         return None
@@ -73,6 +76,8 @@ def _behind(preposition: Token) -> Absolute | None:
         return None
     if after.lower_ in _PARTICIPLES:
         return Absolute(preposition, part, _PARTICIPLES[after.lower_], after)
+    if after.lower_ in _STATES:
+        return Absolute(preposition, part, "hold", after)
     if after.tag_ in ("VBN", "VBD", "VBG"):
         return Absolute(preposition, part, "", after)
     direction = words.directions.get(after.lower_)
@@ -82,7 +87,8 @@ def _behind(preposition: Token) -> Absolute | None:
         return Absolute(preposition, part, verb, after)
     if after.lower_ == "in" and any(t.lower_ == "air" for t in doc[at + 2 : at + 4]):
         return Absolute(preposition, part, "raise", after)
-    if after.lower_ in PREPOSITIONS - {"of", "to"} and _acts_alone(preposition) and not ends:
+    alone = after.lower_ == "behind" or _acts_alone(preposition)
+    if after.lower_ in PREPOSITIONS - {"of", "to"} and alone and not ends:
         return Absolute(preposition, part, "put", after)
     return None
 
@@ -95,11 +101,12 @@ def _acts_alone(preposition: Token) -> bool:
     return verb is None or all(child.dep_ not in ("dobj", "nsubjpass") for child in verb.children)
 
 
-def stands_absolutely(lower: Callable[[int], str], i: int) -> bool:
+def stands_absolutely(lower: Callable[[int], str], has_verb: Callable[[int], bool], i: int) -> bool:
     """True if the words from ``i`` on are such a phrase without its "with": "…, hands up, …", "…, her head down".
 
     Args:
         lower: gives the words of a text by their number, in small letters; "" beyond its ends.
+        has_verb: tells whether a verb stands between a word and the next mark.
         i: the first word.
     """
     words = vocabulary()
@@ -119,7 +126,11 @@ def stands_absolutely(lower: Callable[[int], str], i: int) -> bool:
         return False
     held = after in _PARTICIPLES or after in words.verbs["held"]
     ends = not behind.isalpha() or behind in ("and", "while", "as", "then")
-    placed = after in _PLACES and (
-        words.part(behind) != "" or behind in _OWNERS or words.part(behind.removesuffix("s")) != ""
+    placed = (
+        after in PREPOSITIONS - {"of", "to", "with"} and behind.isalpha() and after not in words.directions
     )
-    return held or (after in words.directions and ends) or placed
+    return (
+        held
+        or ((after in words.directions or after in _STATES) and ends)
+        or (placed and not has_verb(at + 1))
+    )

@@ -63,9 +63,12 @@ class Arguments:
             elif child.dep_ in ("dobj", "obj") and child.lower_ in self._words.directions and bare:
                 self._modifier(child, event)
             elif child.dep_ in ("dobj", "obj") and self._is_measure(child, event):  # "walk a few steps"
-                event.words.append(child.lemma_.lower())
+                lasts = self._words.seconds.get(child.lemma_.lower())
+                event.words += [] if lasts else [child.lemma_.lower()]
+                event.seconds = self._amount(child) * lasts if lasts else event.seconds
                 for number in child.children:
                     self._count(number, child, event)
+                    self._direction(number.lower_, event)
             elif child.dep_ in ("dobj", "obj"):
                 self._object(child, who, event)
             elif child.dep_ in ("dative", "iobj") and child.pos_ != "ADP":
@@ -101,7 +104,9 @@ class Arguments:
         return agent
 
     def _is_measure(self, noun: Token, event: Event) -> bool:
-        return noun.lemma_.lower() in _LENGTHS and event.lemma not in self._words.verbs["light"]
+        lemma = noun.lemma_.lower()
+        lasts = lemma in self._words.seconds and any(c.dep_ == "nummod" for c in noun.children)
+        return (lemma in _LENGTHS or lasts) and event.lemma not in self._words.verbs["light"]
 
     def _object(self, token: Token, who: str, event: Event) -> None:
         """Takes up an object; of two, as in "hands the knight his sword", the person is the receiver."""

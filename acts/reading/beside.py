@@ -12,8 +12,10 @@ from dataclasses import replace
 from acts.frames import Event, Ref
 from acts.lexicon import Lexicon
 
+from .ellipsis import PERFORM
 from .matching import Found
 from .relations import BESIDE
+from .spelling import deeds
 from .vocabulary import is_act, vocabulary
 
 Find = Callable[[Event], Found | None]
@@ -28,6 +30,7 @@ _OWN = {
     "canon": frozenset(("dance", "move", "act", "perform", "do")),
 }
 """Verbs that a formation goes with as one act: "they sit back to back"."""
+_IS = frozenset(("be", "stand", "stay", "remain"))
 _EACH = Ref("each", "ab", "other")
 
 
@@ -110,35 +113,37 @@ def held(event: Event, found: Found, find: Find) -> Iterator[tuple[Event, Found]
             yield posture, posed
 
 
-def noun_acts(event: Event, verbs: Iterable[str], rest: Sequence[int]) -> Iterator[tuple[str, Event]]:
+def noun_acts(event: Event, known: Lexicon, rest: Sequence[int]) -> Iterator[tuple[str, Event]]:
     """The acts that nouns beside a verb stand for, with their prepositions: "pulls her into a hug" has a hug.
 
     Args:
         event: of the verb.
-        verbs: lemmas of the lexicon's verbs.
+        known: the lexicon.
         rest: numbers of the event's prepositions that its own act leaves over.
     """
-    known = set(verbs)
     for i in rest:
         preposition, ref = event.prepositions[i]
         if (
             preposition not in _NOUNS
             or ref.kind != "thing"
-            or ref.lemma not in known
+            or ref.lemma not in deeds(known)
             or ref.place
             or ref.bare
         ):
             continue
-        if not is_act(ref.lemma) or ref.lemma in vocabulary().verbs["no_nouns"]:
+        bodily = is_act(ref.lemma) or (preposition == "in" and event.lemma in _IS)
+        if not bodily or ref.lemma in vocabulary().verbs["no_nouns"]:
             continue
         others = [each for j, each in enumerate(event.prepositions) if j != i and j in rest]
         person = (
             event.object if event.object is not None and event.object.kind in ("person", "each") else None
         )
-        yield (
-            preposition,
-            replace(
-                event, lemma=ref.lemma, object=person or event.dative, dative=None, words=[], particles=[],
-                prepositions=others, noun=None, direction=None,
-            ),
+        done = replace(
+            event, lemma=ref.lemma, object=person or event.dative, dative=None, words=[], particles=[],
+            prepositions=others, noun=None, direction=None,
         )  # fmt: skip
+        words = [word for word in event.words if word not in event.particles]
+        performed = replace(done, lemma=PERFORM, object=ref, dative=done.object, words=words, noun=done)
+        yield preposition, done if ref.lemma in known.frames else performed
+        if done.object is None:
+            yield preposition, performed

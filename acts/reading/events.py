@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from acts.frames import Event, Ref
@@ -40,7 +41,7 @@ class Reader:
         self.cast = Cast()
         self.events: list[Event] = []
         self._absolutes = {found.preposition.i: found for found in absolutes(doc)}
-        held = {found.state.i for found in self._absolutes.values()}
+        held = {token.i for found in self._absolutes.values() for token in (found.state, found.part)}
         self._tree = ClauseTree(doc, verbs, lemmas, forms, held)
         self._subjects = Subjects(self._tree, self.cast, self._event_of)
         self._arguments = Arguments(self.cast, verbs, held | self._absolutes.keys())
@@ -57,6 +58,7 @@ class Reader:
                 self._gapped(token)
         self._states()
         self._postures()
+        self._sort()
         self._resolve()
         return self.events
 
@@ -98,12 +100,10 @@ class Reader:
         """Adds how parts of the body are held beside a clause: "with arms crossed"."""
         for found in self._absolutes.values():
             clause = self._clause_of(found)
-            subject = self.events[self._of[clause.i]].subject if clause is not None else None
-            if clause is not None and any(t.text == ":" for t in self.doc[found.preposition.i : clause.i]):
-                subject = Ref("person", "ab")  # said of both, before anybody is named
+            subject = self._holder(found, clause)
             who = subject.who if subject is not None and subject.kind == "person" else ""
             ref = reference(found.part, self.cast, who)
-            owner = Ref("person", ref.who) if ref.who else subject
+            owner = Ref("person", ref.who) if ref.who and found.state.lower_ != "behind" else subject
             first = found.part.idx if found.verb == "put" or found.state.i > found.part.i else found.state.idx
             event = Event(
                 found.verb or self._tree.lemma(found.state), owner, ref, first=first, last=first + len(found.part),
@@ -111,11 +111,34 @@ class Reader:
             )  # fmt: skip
             if found.verb == "put":
                 self._arguments.place(found.state, who, event)
-            elif found.state.lower_ in self._words.directions:
+                event.prepositions = [
+                    (word, self._own(word, target, event)) for word, target in event.prepositions
+                ]
+            elif found.verb == "hold" or found.state.lower_ in self._words.directions:
                 event.words.append(found.state.lower_)
-                event.direction = self._words.directions[found.state.lower_]
+                event.direction = self._words.directions.get(found.state.lower_)
             self._joints.append((event, found.preposition, "with", clause.i if clause is not None else None))
             self.events.append(event)
+
+    def _holder(self, found: Absolute, clause: Token | None) -> Ref | None:
+        """The person who holds a part of the body so: the clause's subject, where nothing says another."""
+        subject = self.events[self._of[clause.i]].subject if clause is not None else None
+        before = found.preposition.nbor(-1) if found.preposition.i else found.preposition
+        if clause is not None and any(t.text == ":" for t in self.doc[found.preposition.i : clause.i]):
+            return Ref("person", "ab")  # said of both, before anybody is named
+        if before.pos_ in ("NOUN", "PROPN") and found.state.lower_ == "behind":
+            return self.cast.seen.get(before.i, subject)  # "cuffs the thief, hands behind his back"
+        if subject is not None and subject.lemma == "partner" and found.part.idx < subject.first:
+            return _other_person(subject)  # "left knee up, partner mirrors it"
+        return subject
+
+    @staticmethod
+    def _own(preposition: str, target: Ref, event: Event) -> Ref:
+        """A part of the body that nobody is said to own, or behind which hands are, as that of the hands' owner."""
+        if event.subject is None or target.kind != "part" or target.family == "shoulder":
+            return target
+        own = target.bare or preposition == "behind"
+        return replace(target, who=event.subject.who) if own else target
 
     def _clause_of(self, found: Absolute) -> Token | None:
         """The clause beside which a part of the body is held: the one above, else the nearest of its sentence."""
@@ -128,6 +151,14 @@ class Reader:
             if before and (above is None or above.i < before[-1].i)
             else above or next(iter(own), None)
         )
+
+    def _sort(self) -> None:
+        """Puts what is held from the start of a sentence before its verbs."""
+        order = sorted(range(len(self.events)), key=lambda number: self.events[number].first)
+        self.events = [self.events[number] for number in order]
+        self._joints = [self._joints[number] for number in order]
+        place = {number: i for i, number in enumerate(order)}
+        self._of = {token: place[number] for token, number in self._of.items()}
 
     def _resolve(self) -> None:
         """Gives each event the number of the one beside which it lies."""

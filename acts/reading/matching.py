@@ -7,10 +7,11 @@ from collections.abc import Iterator
 from dataclasses import replace
 from functools import lru_cache
 
-from acts.frames import Event, Frame, Match, best
+from acts.frames import Event, Frame, Match, Ref, best
 from acts.lexicon import Lexicon
 
 from . import wordnet
+from .ellipsis import PERFORM
 from .vocabulary import vocabulary
 
 LEAST_SCORE = -1.0
@@ -42,10 +43,24 @@ class Matcher:
 
     def find(self, event: Event) -> Found | None:
         """The act that fits an event best; None if none does."""
-        found = best(self._known.frames, event)
+        found = max(self._said_by_noun(event), key=lambda each: each[2].score, default=None)
         if found is None or found[2].score < LEAST_SCORE:
             found = self._synonym(event)
         return found
+
+    def _said_by_noun(self, event: Event) -> Iterator[Found]:
+        """The best act of an event and of what its noun stands for: with another empty verb, or done to the other."""
+        forms = [event]
+        if event.lemma == PERFORM:  # a verb that does not do something with a thing
+            forms += [replace(event, lemma=verb, noun=None) for verb in vocabulary().verbs["light"]]
+        if event.noun is not None and event.noun.object is None and event.subject is not None:
+            other = {"a": "b", "b": "a"}.get(event.subject.who)
+            whom = Ref("person", other) if other else Ref("each", "ab", "other")
+            forms.append(replace(event.noun, object=whom))
+        for form in forms:
+            found = best(self._known.frames, form)
+            if found is not None and (form.lemma == event.lemma or not found[2].thing):
+                yield found
 
     def _synonym(self, event: Event) -> Found | None:
         """The act whose verbs mean what this one does, of those whose frames fit."""

@@ -128,6 +128,8 @@ class Cast:
             return self._new(lemma, token)
         if "other" in children:
             return self._other(subject)
+        if lemma == "partner" and not self._known:  # of the person addressed
+            self.address("a")
         own = self._has(lemma)
         if own and not (own == subject and len(subject) == 1):
             return self._as(own, lemma)

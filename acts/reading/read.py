@@ -33,6 +33,7 @@ _STANDS = frozenset(("stand", "stay", "remain", "pose", "rest", "meet"))
 _SHARING = frozenset(("conj", "after", "with"))
 """Joints of clauses that may share an object."""
 _SAME = frozenset(("same", "it", "that", "this", "likewise", "so"))
+_MIRRORED = {"left": "right", "right": "left"}
 _MOVEMENTS = frozenset(("movement", "move", "gesture", "motion", "pose", "step", "action"))
 
 
@@ -74,7 +75,7 @@ def _read(text: str, known: Lexicon) -> Plan:
 def _attempts(text: str, known: Lexicon) -> Iterator[tuple[float, Plan]]:
     """Plans of several parses of a text, with the cost of what each leaves over, until one leaves nothing."""
     speller = Speller(known)
-    for parsed in parses(prepared(text, speller.mended, speller.is_form), speller):
+    for parsed in parses(prepared(text, speller), speller):
         reader = Reader(parsed.doc, frozenset(known.frames), parsed.lemmas, speller.forms)
         events = reader.read()
         planner = _Planner(text, parsed.text, known, events, list(spans(parsed.doc, events)), reader)
@@ -149,6 +150,11 @@ class _Planner:
                 event, found = theirs, other
         if self._about_another(event) and inner and (found is None or found[2].score < 2.4):
             return
+        if found is None and event.lemma == "be":
+            placed = replace(event, lemma="stand", ongoing=True, state=True)
+            found = self._matcher.find(placed) if event.prepositions or event.particles else None
+            found = None if found is not None and (found[0] == "stand-still" or found[2].rest) else found
+            event = placed if found is not None else event
         if found is None:
             borrowed = (self._matcher.find(other) for other in self._completed(number, event))
             found = next((other for other in borrowed if other is not None), None)
@@ -179,7 +185,7 @@ class _Planner:
     def _noun(self, event: Event, found: Found | None) -> tuple[Event, Found] | None:
         """The act that a noun beside a verb stands for, where the verb itself says little: "answers with a bow"."""
         rest = range(len(event.prepositions)) if found is None else found[2].rest
-        nouns = (other for _, other in beside.noun_acts(event, self._known.frames, rest))
+        nouns = (other for _, other in beside.noun_acts(event, self._known, rest))
         return next(iter(self._found(nouns)), None)
 
     def _companions(
@@ -204,9 +210,9 @@ class _Planner:
         if (sits := beside.seated(event, found, self._known, told)) is not None:
             for other, sat in self._found([sits]):
                 self._add(number, other, *sat, beside=at_once)
-        for preposition, noun in beside.noun_acts(event, self._known.frames, found[2].rest):
+        for preposition, noun in beside.noun_acts(event, self._known, found[2].rest):
             kind = "after" if preposition == "into" else "with"
-            for other, done in self._found([noun]):
+            for other, done in self._found([noun])[: self._acts[-1].id == of]:
                 self._add(number, other, *done, beside=Relation(kind=kind, act=of))  # type: ignore[arg-type]
 
     def _in_canon(self) -> None:
@@ -233,7 +239,9 @@ class _Planner:
         named = ref is None or ref.lemma in _SAME or ref.kind == "person"
         named = named or (repeats and ref is not None and (ref.kind == "part" or ref.lemma in _MOVEMENTS))
         named = named or (repeats and ref is not None and ref.lemma in self._known.frames)  # "shows a squat"
-        if last is None or subject is None or subject.kind != "person" or not named or has_inner:
+        if last is None or subject is None or subject.kind != "person" or not named:
+            return False
+        if has_inner and not (repeats and ref is not None and ref.lemma in _SAME):  # "mirrors it facing you"
             return False
         declines = event.lemma in verbs["not"] | verbs["wished"]
         if event.lemma != "do" and not repeats and not declines:
@@ -255,7 +263,8 @@ class _Planner:
             "order": (),
             "already": False,
             "times": event.times or last.times,
-            "side": event.side or last.side,
+            "part_of": agents[0] if last.part_of in last.agents else last.part_of,
+            "side": event.side or (_MIRRORED.get(last.side or "") if event.lemma == "mirror" else last.side),
         }
         self._acts.append(
             last.model_copy(

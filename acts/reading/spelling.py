@@ -5,12 +5,13 @@ from __future__ import annotations
 from functools import lru_cache
 from typing import TYPE_CHECKING
 
+from acts.frames import PREPOSITIONS
 from acts.lexicon import Lexicon
 
 from . import wordnet
 from .repair import suspects, verbs_taken_for_nouns
 from .syntax import is_word
-from .vocabulary import vocabulary
+from .vocabulary import is_act, vocabulary
 
 if TYPE_CHECKING:
     from spacy.tokens import Doc
@@ -23,10 +24,15 @@ class Speller:
         verbs = vocabulary().verbs
         about = frozenset().union(*(verbs[kind] for kind in ("tried", "pretended", "begins", "ends")))
         self.forms = _forms(frozenset(known.frames) | about)
+        self._deeds = deeds(known)
 
     def is_form(self, word: str) -> bool:
         """True for a form of a verb of the lexicon."""
         return word in self.forms
+
+    def is_deed(self, noun: str) -> bool:
+        """True for a noun, in the singular, that stands for what somebody does, as "lunge" and "high-five"."""
+        return noun in self._deeds
 
     def knows(self, word: str) -> bool:
         """True for a form of a verb, of the lexicon or of WordNet."""
@@ -53,6 +59,16 @@ class Speller:
     def suspects(self, doc: Doc) -> dict[int, tuple[str, str]]:
         """Forms of verbs that were taken for something else, rightly or not, in the same form."""
         return suspects(doc, self.forms)
+
+
+@lru_cache(maxsize=4)
+def deeds(known: Lexicon) -> frozenset[str]:
+    """Nouns that stand for acts: those of verbs, and those of which entries say that somebody does them."""
+    verbs = vocabulary().verbs
+    said = (frame for verb in ("do", "perform", "throw") for _, frame in known.frames.get(verb, ()))
+    nouns = {word for frame in said for element in frame.elements for word in element.words}
+    of_verbs = {verb for verb in known.frames if is_act(verb)}
+    return frozenset((nouns | of_verbs) - PREPOSITIONS - verbs["no_deeds"])
 
 
 @lru_cache(maxsize=4)

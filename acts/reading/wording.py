@@ -8,50 +8,23 @@ from __future__ import annotations
 import bisect
 import re
 from collections.abc import Callable, Collection, Iterator, Mapping
+from typing import TYPE_CHECKING
 
 from .absolute import stands_absolutely
+from .ellipsis import Ellipsis
 from .people import A_NAME, B_NAME
 from .vocabulary import vocabulary
 
+if TYPE_CHECKING:
+    from .spelling import Speller
+
 _TOKEN = re.compile(r"[Pp][12]\b|[^\W\d_]+(?:['’-][^\W\d_]+)*|\d+(?:[.,]\d+)?|[^\w\s]|_")
 _QUOTES = {"’": "'", "‘": "'", "`": "'", "“": '"', "”": '"', "–": "-", "—": "-"}
-_DETERMINERS = frozenset(
-    [
-        "a",
-        "an",
-        "the",
-        "his",
-        "her",
-        "its",
-        "their",
-        "my",
-        "your",
-        "our",
-        "this",
-        "that",
-        "these",
-        "those",
-        "another",
-        "other",
-        "one",
-        "two",
-        "both",
-        "each",
-        "every",
-        "some",
-        "any",
-        "no",
-        "first",
-        "second",
-        "three",
-        "four",
-        "five",
-        "most",
-        "own",
-        "same",
-        "of",
-    ]
+_BEFORE_NOUNS = (
+    "a an the his her its their my your our this that these those another other one two both each every "
+    "some any no first second three four five most own same of"
 )
+_DETERMINERS = frozenset(_BEFORE_NOUNS.split())
 _LETTER_BEFORE = frozenset(
     [
         "person",
@@ -151,39 +124,43 @@ def _tokens(text: str) -> Iterator[tuple[str, int, int]]:
         yield "".join(_QUOTES.get(c, c) for c in match[0]), match.start(), match.end()
 
 
-def prepared(
-    text: str,
-    mended: Callable[[str], str | None] = lambda word: None,
-    is_verb: Callable[[str], bool] = str.isdigit,
-) -> Text:
+def prepared(text: str, speller: Speller) -> Text:
     """The text as it is parsed.
 
     Args:
         text: as it was written.
-        mended: gives the right spelling of a word, or None if it is right.
-        is_verb: tells forms of verbs.
+        speller: knows the forms of verbs, and mends misspelt ones.
     """
-    return _Preparation(text, mended, is_verb).text()
+    return _Preparation(text, speller).text()
 
 
 class _Preparation:
     """Goes through the words of a text once."""
 
-    def __init__(
-        self, text: str, mended: Callable[[str], str | None], is_verb: Callable[[str], bool]
-    ) -> None:
-        self._text, self._mended, self._is_verb = text, mended, is_verb
+    def __init__(self, text: str, speller: Speller) -> None:
+        self._text, self._mended, self._is_verb = text, speller.mended, speller.is_form
         self._words = vocabulary()
         self._tokens = _without_request(_without_speech(list(_tokens(text))))
-        self._letters = _letters([word for word, _, _ in self._tokens], is_verb)
+        self._letters = _letters([word for word, _, _ in self._tokens], self._is_verb)
+        self._ellipsis = Ellipsis(lambda i: self._letters.get(i, self._lower(i)).lower(), speller)
         self._pieces: list[tuple[str, int, int]] = []
 
     def text(self) -> Text:
         """The prepared text."""
         i = 0
         while i < len(self._tokens):
+            if verb := self._ellipsis.before(i):
+                self._supply(verb, i)
             i += self._phrase(i) or self._pair(i) or self._single(i)
         return Text(self._text, self._pieces)
+
+    def _supply(self, verb: str, i: int) -> None:
+        """Puts a verb that the text leaves out before a token; what it joins by a comma becomes a clause."""
+        start = self._tokens[i][1]
+        if self._lower(i - 1) == "," and not verb.startswith(("is", "are")):
+            _, first, last = self._pieces.pop()
+            self._pieces.append(("and" if verb.endswith("s") else ".", first, last))
+        self._pieces.append((verb, start, start))
 
     def _lower(self, i: int) -> str:
         return self._tokens[i][0].lower() if 0 <= i < len(self._tokens) else ""
@@ -256,8 +233,10 @@ class _Preparation:
     def _single(self, i: int) -> int:
         """One token; always 1."""
         word, start, stop = self._tokens[i]
-        if stands_absolutely(self._lower, i):
+        if stands_absolutely(self._lower, self._ellipsis.has_verb, i):
             self._pieces.append(("with", start, start))
+        if self._pieces and self._pieces[-1][2] == start and word.istitle() and i not in self._letters:
+            word = word.lower()  # a verb or "with" was supplied before it
         self._pieces += self._supplied(i)
         self._pieces.append((self._letters.get(i) or self._worded(i, word), start, stop))
         return 1
@@ -305,7 +284,10 @@ class _Preparation:
             return f"{self._words.shorthand.get(lower[:-1], word[:-1])}'s"  # "her brothers back"
         if (
             lower in ("left", "right")
-            and self._is_verb(self._lower(i - 1))
+            and (
+                self._is_verb(self._lower(i - 1))
+                or (self._pieces[-1:] and self._is_verb(self._pieces[-1][0]))
+            )
             and not self._words.part(following)
         ):
             return f"{lower}wards"  # "turn left": no past of "leave"

@@ -111,7 +111,7 @@ def _said(act: Act) -> str:
             ["a come-behind b", "a cover-eyes b"],
         ),
         ("They stand face to face, hands on each other's shoulders.", ["ab turn-to", "ab hand-on"]),
-        ("With one hand on the hip, he shakes a finger at her.", ["a threaten b", "a hands-on-hips"]),
+        ("With one hand on the hip, he shakes a finger at her.", ["a hands-on-hips", "a threaten b"]),
         ("show me two robots dancing", ["ab dance"]),
         ("The prince asked the princess to dance.", ["b dance (wished)"]),
         (

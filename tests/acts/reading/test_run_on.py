@@ -65,7 +65,8 @@ def test_hands_before_a_colon_are_those_of_both() -> None:
 
 
 def test_hands_behind_a_person_without_a_verb_are_no_verb() -> None:
-    assert told("police guy cuffs the thief hands behind his back") == [("tie-up", "a", "b")]
+    acts = [("tie-up", "a", "b"), ("hands-behind-back", "b", None)]
+    assert told("police guy cuffs the thief hands behind his back") == acts
 
 
 def test_a_verb_beside_a_clause_has_the_subject_of_that_clause() -> None:

@@ -1,0 +1,166 @@
+"""Verbs that a text leaves out, supplied before it is parsed: "(do) two lunges forward", "the coach (is) behind".
+
+Stage directions and training plans name what is done by a noun and how somebody stands by a place. The parser finds no
+clause in them, so each such stretch between two marks gets the verb that it lacks.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import TYPE_CHECKING
+
+from acts.frames import PREPOSITIONS
+
+from .vocabulary import vocabulary
+
+if TYPE_CHECKING:
+    from .spelling import Speller
+
+_ENDS = frozenset(("", ",", ";", ":", ".", "!", "?", "-", "then", "and"))
+_ARTICLES = frozenset(("a", "an", "another", "one"))
+_OF = frozenset(("of", "you", "us", "them", "the", "two"))
+_OTHERS = frozenset(("both", "one", "other", "first", "second", "each"))
+_OWNERS = frozenset(("his", "her", "their", "my", "your", "its", "the", "this", "that", "each", "no", "some"))
+_CLAUSES = frozenset(
+    ("i", "you", "he", "she", "they", "we", "who", "is", "are", "was", "were", "as", "while", "until", "to")
+)
+_NOT_PLACES = frozenset(
+    ("with", "without", "of", "from", "like", "for", "by", "after", "before", "to", "past", "off")
+)
+_HALVES = frozenset((("a", "half"), ("a", "full")))
+"""How a turn begins that stands for the adverb "around"."""
+PERFORM = "perform"
+"""The verb of a noun that has none, which the parser takes for nothing else."""
+_LONGEST = 5
+"""Words of a noun phrase, at most."""
+
+
+class Ellipsis:
+    """Finds the verbs that a text lacks.
+
+    Args:
+        lower: gives the words of a text by their number, in small letters; "" beyond its ends.
+        speller: knows the forms of verbs and the nouns of what people do.
+    """
+
+    def __init__(self, lower: Callable[[int], str], speller: Speller) -> None:
+        self._lower, self._is_deed, self._forms = lower, speller.is_deed, speller.forms
+        self._words = vocabulary()
+        self._last = ""
+        """The last verb of the sentence, also one that was supplied."""
+        self._stands: dict[int, str] = {}
+
+    def before(self, i: int) -> str:
+        """The verb to supply before the word ``i``; "" for none. Asked for each word in order."""
+        word = self._lower(i)
+        if self._lower(i - 1) in ("", ".", "!", "?", ";"):
+            self._last = ""
+        verb = self._stands.pop(i, "") or self._listed_side(i) or self._deed(i)
+        if not verb:
+            self._stand(i)
+        if verb or self._acts(i):
+            self._last = verb.partition(" ")[0] or word
+        return verb
+
+    def _stand(self, i: int) -> None:
+        """Notes the verb "be" behind a person who is said to be somewhere: "therapist behind", "both in a squat"."""
+        if self._lower(i - 1) not in _ENDS:
+            return
+        at, many = i, False
+        while self._lower(at) in _OWNERS or self._count(at):
+            many, at = many or self._count(at) > 1, at + 1
+        if other := self._lower(at) in _OTHERS:
+            many, at = many or self._lower(at) == "both", at + 1
+        while other and self._lower(at) in _OF:
+            at += 1
+        word = self._lower(at)
+        if self._words.is_usual_person(word.removesuffix("s")) and not self._words.part(word):
+            many, at = many or word.endswith("s") or word in self._words.both, at + 1
+        elif not other:
+            return
+        if self._lower(at) in PREPOSITIONS - _NOT_PLACES and not self.has_verb(at):
+            self._stands[at] = "are" if many else "is"
+
+    def _deed(self, i: int) -> str:
+        """The verb that a noun of a deed lacks: "(do) two hops, (turn) a half turn, then (do) a bow"."""
+        count, listed = self._count(i), self._lower(i - 1) in _ENDS
+        if self._lower(i - 1) == "and":  # "throws a jab and a hook" has its verb
+            listed = self._last.startswith(PERFORM)
+        if not count or not listed:
+            return ""
+        at = i + 1
+        while at < i + _LONGEST and self._inside(at):
+            at += 1
+        at += count > 1 and self._ending(self._lower(at)) == "s"
+        noun = self._lower(at - 1)
+        if at - 1 == i or noun in PREPOSITIONS or noun in self._words.directions or self.has_verb(at):
+            return ""
+        if any(self._words.is_person(self._lower(k)) for k in range(i + 1, at)):
+            return ""
+        one = noun if count == 1 else noun.removesuffix("s")
+        if one in self._words.seconds and self._lower(at) in self._words.directions and self._last:
+            return f"{self._last} for"  # "march, (march for) eight counts forward"
+        if (count > 1) == (one == noun) or not (self._is_deed(one) or self._is_deed(one.removesuffix("e"))):
+            return ""
+        if one == "turn" and (self._lower(i), self._lower(i + 1)) in _HALVES:
+            return self._form("turn")
+        return self._form("take" if one in ("step", "pace") else PERFORM)
+
+    def _count(self, i: int) -> int:
+        """The number that a word is, 1 for an article; 0 for other words."""
+        word = self._lower(i)
+        if word.isdecimal() and len(word) < 4:
+            return int(word)
+        return 1 if word in _ARTICLES else self._words.numbers.get(word, 0)
+
+    def _ending(self, word: str) -> str | None:
+        """The ending of a verb's form, as "s" of "waves"; None for other words."""
+        return self._forms[word][1] if word in self._forms else None
+
+    def _form(self, verb: str) -> str:
+        """A verb in the form of the sentence's last one."""
+        ending = "s" if self._last == "is" else self._ending(self._last)
+        if ending == "ing":
+            return verb.removesuffix("e") + ending
+        return verb + "s" if ending == "s" else verb
+
+    def _inside(self, i: int) -> bool:
+        """True for a word that may stand within a noun phrase."""
+        word = self._lower(i)
+        outside = word in PREPOSITIONS | _ENDS | _OWNERS | _CLAUSES or word in self._words.directions
+        outside = outside or word in _ARTICLES or self._ending(word) == "s"
+        return word.isalpha() and (not outside or word in ("left", "right", "high", "low", "back"))
+
+    def _acts(self, i: int) -> bool:
+        """True for a word that is a verb where it stands."""
+        word, before = self._lower(i), self._lower(i - 1)
+        ending = self._ending(word)
+        if ending is None or self._words.part(word) or self._words.part(word.removesuffix("s")):
+            return False
+        if before in _OWNERS | _ARTICLES | PREPOSITIONS or before in self._words.numbers:
+            return False
+        if ending in ("s", "ed", "ing"):
+            return True
+        return before in _ENDS | _CLAUSES
+
+    def has_verb(self, i: int) -> bool:
+        """True if a verb, or another clause, stands between a word and the next mark."""
+        at = i
+        while self._lower(at).isalnum() or "'" in self._lower(at):
+            if self._lower(at) in ("and", "then") and at > i:
+                return False
+            if self._lower(at) in ("is", "are", "was", "were", "he", "she", "they") or self._acts(at):
+                return True
+            at += 1
+        return False
+
+    def _listed_side(self, i: int) -> str:
+        """The verb that is done again to another side: "throws left, (throws) right, (throws) left"."""
+        if self._lower(i) not in ("left", "right") or not self._last:
+            return ""
+        before, at = self._lower(i - 1), i - 1
+        if before not in (",", "and") or self._lower(i + 1) not in (",", ".", "", "and", ";"):
+            return ""
+        while self._lower(at) in (",", "and"):
+            at -= 1
+        return self._last if self._lower(at) in ("left", "right") else ""

@@ -1,0 +1,78 @@
+"""Sentences without a verb: acts that nouns say, how parts of the body are held, and where somebody is."""
+
+import time
+
+import pytest
+
+from acts import lexicon, read
+from acts.reading.spelling import Speller
+from acts.reading.wording import prepared
+
+
+def told(text: str) -> list[tuple[str, str, str | None]]:
+    return [(act.act, "".join(act.agents), act.patient) for act in read(text).acts]
+
+
+@pytest.mark.parametrize(
+    ("text", "parsed"),
+    [
+        ("Two hops, a half turn, then a bow.", "perform two hops . turn around , then perform a bow ."),
+        ("Therapist behind, arms crossed.", "Therapist is behind , with arms crossed ."),
+        ("Both in a deep plie.", "Both are in a deep plie ."),
+        (
+            "She throws left, right, left.",
+            "She throws leftwards and throws rightwards and throws leftwards .",
+        ),
+        # no ellipsis: another clause, an act's own noun, a person
+        ("A hug makes her happy.", "A hug makes her happy ."),
+        ("He gives her a hug.", "He gives her a hug ."),
+        ("A man waves.", "A man waves ."),
+        ("With a wave and a bow he leaves.", "With a wave and a bow he leaves ."),
+    ],
+)
+def test_a_verb_is_supplied_where_one_is_left_out(text: str, parsed: str) -> None:
+    assert prepared(text, Speller(lexicon())).parsed == parsed
+
+
+@pytest.mark.parametrize(
+    ("text", "acts"),
+    [
+        # nouns of acts
+        ("Two hops, a half turn, then a bow.", ["jump ab 2", "turn-around ab", "bow ab"]),
+        ("Four jumping jacks, then a deep lunge.", ["jumping-jacks ab 4", "lunge ab"]),
+        ("high five!! then a hip bump", ["high-five ab", "bump-into ab"]),
+        (
+            "He boxes, two jabs with the left and a cross with the right.",
+            ["fight a", "punch a left 2", "punch a right"],
+        ),
+        ("March in step, eight counts forward.", ["walk-together ab", "unison ab", "walk-together ab"]),
+        ("Both in a deep plie.", ["bend-knees ab"]),
+        # the same to another side
+        ("The athlete throws left, right, left.", ["punch a left", "punch a right", "punch a left"]),
+        # parts of the body, and whose they are
+        ("Left hands behind the back: they lunge.", ["hands-behind-back ab left", "lunge ab"]),
+        ("police guy cuffs the thief hands behind his back", ["tie-up a", "hands-behind-back b both"]),
+        (
+            "Weight on the right leg, left knee at hip height, partner mirrors it facing you.",
+            ["stand-on-one-leg a right", "raise-knee a left", "raise-knee b right"],
+        ),
+        # where somebody is
+        (
+            "Therapist behind, both hands under the patient's shoulder blades; the patient rises from the chair.",
+            ["come-behind a", "hand-on a both", "stand-up b"],
+        ),
+        ("One dancer on her knees, the other behind her.", ["kneel a both", "come-behind b"]),
+    ],
+)
+def test_a_sentence_without_a_verb_has_its_acts(text: str, acts: list[str]) -> None:
+    found = read(text).acts
+    assert [
+        " ".join(filter(None, (a.act, "".join(a.agents), a.side, str(a.times or "")))) for a in found
+    ] == acts
+
+
+def test_an_ellipsis_is_read_in_linear_time() -> None:
+    begin = time.perf_counter()
+    for text in ("a hop, " * 280, "left, " * 330, "a b " * 490):
+        prepared(text, Speller(lexicon()))
+    assert time.perf_counter() - begin < 0.5
