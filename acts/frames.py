@@ -30,6 +30,7 @@ _PREPOSITIONS = (
 PREPOSITIONS = frozenset(_PREPOSITIONS.split())
 _DIRECTIONS = frozenset(("across", "along", "around", "back", "by", "in", "out", "over", "past", "up"))
 """Particles that only say where somebody goes; "away", "off" and "down" say more."""
+_PARTICLES = PREPOSITIONS | {"back"}
 _SLOTS = frozenset(("a", "a+b", "b", "self", "thing", "part", "place"))
 
 
@@ -45,6 +46,7 @@ class Ref:
         side: of a part, "left", "right" or "both".
         place: a thing where people can be, as a room.
         bare: a thing in the singular without an article, as in "in surprise"; a part without a possessive.
+        definite: of a part, behind "the".
         first, last: character offsets in the text that was parsed.
     """
 
@@ -55,6 +57,7 @@ class Ref:
     side: str = ""
     place: bool = False
     bare: bool = False
+    definite: bool = False
     first: int = 0
     last: int = 0
 
@@ -117,6 +120,8 @@ class Match:
     """The event's prepositions that no element took, by number."""
     left: int = 0
     """Prepositions and particles that no element took."""
+    own: bool = False
+    """It is about a part of the agent's own body with a possessive: "grabs his chest", which may be either's."""
 
 
 @dataclass(frozen=True)
@@ -216,6 +221,7 @@ class Frame:
             bound.get("part"),
             rest,
             len(rest) + sum(word not in taken for word in event.particles),
+            self.of_agent() and "part" in bound and not bound["part"].bare,
         )
 
     def particles(self) -> Iterator[str]:
@@ -369,7 +375,8 @@ def _fills(element: _Element, ref: Ref, agents: str, event: Event) -> bool:
 def _is_noun(element: _Element, ref: Ref, agents: str) -> bool:
     """True if a noun is one of an element's; "combs hair" is about one's own, and not "combs her hair" of another."""
     others = ref.kind == "part" and len(agents) == 1 and ref.who not in ("", "ab", agents)
-    return ref.lemma in element.words and not others
+    particle = ref.kind == "part" and element.words & _PARTICLES  # "turns his back" is not "turns back"
+    return ref.lemma in element.words and not others and not particle
 
 
 def _other(who: str) -> str:
@@ -387,4 +394,6 @@ def best(frames: Mapping[str, list[tuple[str, Frame]]], event: Event) -> tuple[s
             if form is event and event.noun is not None and handed:  # "gives a hug" hands nothing over
                 match = replace(match, score=match.score - 3.0)
             fitting.append((name, frame, match))
-    return max(fitting, key=lambda found: (found[2].score, -len(found[1].elements)), default=None)
+    return max(
+        fitting, key=lambda found: (found[2].score, found[2].own, -len(found[1].elements)), default=None
+    )

@@ -23,7 +23,7 @@ _BEFORE = frozenset((",", ";", ":", "-", "", "and"))
 _OWNERS = frozenset(
     ["his", "her", "their", "its", "my", "your", "each", "both", "one", "the", "left", "right"]
 )
-_PLACES = frozenset(("on", "behind", "above", "around", "over"))
+_PLACES = frozenset(("on", "behind", "above", "around", "over", "against"))
 _STATES = frozenset(("straight", "upright", "together", "parallel", "loose", "relaxed", "soft", "tense"))
 """Adjectives of how a part is held that are no directions."""
 _LONGEST = 4

@@ -69,7 +69,9 @@ class Arguments:
                 for number in child.children:
                     self._count(number, child, event)
                     self._direction(number.lower_, event)
-            elif child.dep_ in ("dobj", "obj"):
+            elif child.dep_ in ("dobj", "obj") or (
+                child.dep_ == "appos" and child.pos_ == "NOUN" and token.pos_ == "VERB"
+            ):
                 self._object(child, who, event)
             elif child.dep_ in ("dative", "iobj") and child.pos_ != "ADP":
                 event.dative = self._argument(child, who, event)
@@ -101,7 +103,18 @@ class Arguments:
             else:
                 continue
             self.seen.add(child.i)
+        self._their_back(token, event)
         return agent
+
+    @staticmethod
+    def _their_back(token: Token, event: Event) -> None:
+        """Keeps a second meaning of "touches her back", where the parser takes "back" for a direction."""
+        for her in (c for c in token.children if c.lower_ == "her" and c.dep_ == "dobj"):
+            back, ref = her.nbor(1) if her.i + 1 < len(her.doc) else her, event.object
+            if back.lower_ == "back" and ref is not None and ref.kind == "person":
+                part = Ref("part", ref.who, "back", "back", first=back.idx, last=back.idx + len(back))
+                words = [word for word in event.words if word != "back"]
+                event.noun = replace(event, object=part, words=words, direction=None)
 
     def _is_measure(self, noun: Token, event: Event) -> bool:
         lemma = noun.lemma_.lower()
@@ -113,7 +126,7 @@ class Arguments:
         ref = self._argument(token, who, event)
         if event.object is not None and event.object.kind == "person" and ref.kind != "person":
             event.dative = event.object
-        if ref.kind == "thing" and token.pos_ == "NOUN":
+        if ref.kind == "thing" and token.tag_ == "NN":
             self.cast.thing, self.cast.thing_of = ref, who  # a sofa that is carried is no place
         event.object = ref
 
@@ -164,7 +177,7 @@ class Arguments:
                 found = True
                 if self._measure(child, token, event):
                     continue
-                event.prepositions.append((token.lower_, self._instrument(child, who, event)))
+                event.prepositions.append(self._between(token, self._instrument(child, who, event), who))
                 for more in child.conjuncts:
                     if more.i > child.i and more.pos_ in ("NOUN", "PRON", "PROPN"):
                         event.prepositions.append((token.lower_, self._argument(more, who, event)))
@@ -178,6 +191,12 @@ class Arguments:
             event.words.append(token.lower_)
             event.particles.append(token.lower_)
             self._direction(token.lower_, event)
+
+    @staticmethod
+    def _between(token: Token, ref: Ref, who: str) -> tuple[str, Ref]:
+        """The preposition and its argument; what two people do "between them" they do to each other."""
+        each = token.lower_ == "between" and ref.kind == "person" and ref.who == who == "ab"
+        return ("to", replace(ref, kind="each")) if each else (token.lower_, ref)
 
     def _instrument(self, noun: Token, who: str, event: Event) -> Ref:
         """The argument of a preposition; what is done "with his hand" is done with one's own, if that may be."""
@@ -259,7 +278,8 @@ class Arguments:
         event.words.append(text if token.dep_ in ("prt", "advmod") else lemma)
         if text in ("left", "right"):
             event.side = text
-        self._direction(text, event)
+        if all(child.lower_ != "forth" for child in token.children):  # "back and forth" is no way back
+            self._direction(text, event)
         if token.dep_ == "advmod" and (text.endswith("ly") or text in self._words.speeds):
             event.adverbs.append(text)
         for child in token.children:

@@ -96,8 +96,22 @@ def is_next_to(event: Event, found: Found, known: Lexicon) -> bool:
 
 def held(event: Event, found: Found, find: Find) -> Iterator[tuple[Event, Found]]:
     """The postures that phrases beside an act name: "begs on his knees", "with folded arms"."""
+    theirs = next(
+        (p for p in event.prepositions if p[1].kind == "part" and _is_other(p[1], found[2].agents)), None
+    )
     for i in found[2].rest:
         preposition, ref = event.prepositions[i]
+        if (
+            preposition == "with"
+            and ref.family == "hand"
+            and not ref.who
+            and theirs is not None
+            and len(found[2].rest) > 1
+        ):
+            put = Event("put", event.subject, ref, prepositions=[theirs], first=event.first, last=event.last)
+            if (laid := find(put)) is not None and laid[0] != found[0]:  # "stops him with a hand on his back"
+                yield put, laid
+            return
         own = ref.kind == "part" and (ref.who == found[2].agents or (preposition == "with" and not ref.who))
         if not own or (preposition == "on" and ref.family != "knee"):
             continue
@@ -111,6 +125,10 @@ def held(event: Event, found: Found, find: Find) -> Iterator[tuple[Event, Found]
         posed = find(posture)
         if posed is not None and posed[0] != found[0] and not posed[2].rest and posed[2].score > 1.5:
             yield posture, posed
+
+
+def _is_other(part: Ref, agents: str) -> bool:
+    return len(part.who) == 1 and part.who not in agents
 
 
 def noun_acts(event: Event, known: Lexicon, rest: Sequence[int]) -> Iterator[tuple[str, Event]]:

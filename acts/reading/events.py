@@ -190,8 +190,14 @@ class Reader:
             agent = agent or above.subject
         if (passive and token.tag_ == "VBN") or above is not None:
             agent = agent or (_other_person(subject) if subject is not None else None)
-            if agent is None and subject is not None and subject.kind == "thing":  # "is held out to her"
-                agent = next((_other_person(r) for _, r in event.prepositions if r.kind == "person"), None)
+            if (
+                agent is None and subject is not None and subject.kind in ("thing", "part")
+            ):  # "is held out to her"
+                of = [
+                    *(ref for _, ref in event.prepositions if ref.kind == "person"),
+                    Ref("person", subject.who),
+                ]
+                agent = _other_person(of[0])
             if event.object is not None and event.dative is None:  # "she is given a book"
                 event.dative, event.subject = subject, agent
             else:
@@ -283,7 +289,8 @@ class Reader:
         if token.dep_ == "advcl" and {"as", "if"} <= {c.lower_ for c in token.children if c.dep_ == "mark"}:
             event.modality = "pretended"  # "walks up as if to hug"
         if token.dep_ == "pcomp" and (
-            token.head.lower_ in ("without", "instead", "from") or token.head.head.lower_ == "instead"
+            token.head.lower_ in ("without", "instead", "from")
+            or "instead" in (token.head.head.lower_, *(c.lower_ for c in token.head.children))
         ):
             event.denied = True
         self._inherited(token, head, event)

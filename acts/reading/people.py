@@ -10,6 +10,7 @@ from acts.frames import Ref
 from acts.plan import Person
 
 from . import wordnet
+from .syntax import IN_PLACE
 from .vocabulary import Vocabulary, vocabulary
 
 if TYPE_CHECKING:
@@ -44,6 +45,8 @@ class Cast:
         self.last = ""
         self.thing: Ref | None = None
         """The part or thing that was named last, which "it" means."""
+        self.thing_sex = ""
+        """The sex of its owner, by a possessive."""
         self.thing_of = ""
         """The people of the clause that named it."""
         self.animals: set[str] = set()
@@ -85,7 +88,7 @@ class Cast:
         if text in _NOBODY or (text == "one" and "no" in children):
             return "ab"
         if text == "other" or ("other" in children and (text == "one" or self._words.is_person(lemma))):
-            return self._other(subject) if "each" not in children and "one" not in children else "ab"
+            return self._other(subject, lemma) if children.isdisjoint(("each", "one")) else "ab"
         if text in ("both", "each", "everyone", "everybody", "all") or lemma in self._words.both:
             return self._many(token, children)
         if text in _FIRST or children & _FIRST:
@@ -114,7 +117,10 @@ class Cast:
             "ADP",
         ):
             return None
-        if token.tag_ in ("NNS", "NNPS") or children & {"two", "both"}:
+        named = (
+            token.tag_ == "NNS" and token.text.istitle() and lemma == text and lemma not in self._words.both
+        )
+        if (token.tag_ in ("NNS", "NNPS") and not named) or children & {"two", "both"}:
             return self._many(token, children)
         who = self._noun(token, lemma, children, subject)
         if who in self._known:
@@ -202,12 +208,15 @@ class Cast:
         self.last = who
         return who
 
-    def _other(self, subject: str) -> str:
+    def _other(self, subject: str, lemma: str = "other") -> str:
         named = self._has("other")
-        if named and len(subject) != 1 and len(named) == 1:
-            return self._as(named, "other")  # "one whispers into the other's ear, and the other nods"
         one = subject if len(subject) == 1 else self.last
-        return self._as("a" if one == "b" else "b", "other")
+        who = "a" if one == "b" else "b"
+        if named and len(subject) != 1 and len(named) == 1:
+            who = named  # "one whispers into the other's ear, and the other nods"
+        known = self._known.setdefault(who, _Known())
+        known.sex = known.sex or self._words.sex(lemma)
+        return self._as(who, "other")
 
     def _pronoun(self, sex: str, subject: str) -> str:
         others = [who for who in "ab" if who not in (subject, self._has("i"), self._has("you"))]
@@ -266,13 +275,20 @@ class Cast:
                     return self._other(subject)
                 if child.lower_ == "other" and any(c.lower_ in ("each", "one") for c in child.children):
                     return "each"
-                return self.person(child, subject) or ""
+                who = self.person(child, subject) or ""
+                self.note_states(child, who)
+                return who
             if child.lower_ == "own":
                 return subject
         of = next((child for child in token.children if child.lower_ == "of"), None)
         for child in of.children if of is not None else ():
             return self.person(child, subject) or ""
         return ""
+
+    def note_states(self, noun: Token, who: str) -> None:
+        """Notes what a person does by their noun and the phrases that hang on it."""
+        if who and noun.pos_ in ("NOUN", "PROPN"):
+            self.states |= {phrase.i: (verb, who) for phrase, verb in states_of(noun)}
 
     def _possessive(self, sex: str, subject: str) -> str:
         if len(subject) == 1:
@@ -306,20 +322,26 @@ def reference(token: Token, cast: Cast, subject: str) -> Ref:
         return Ref("each", "ab", "other", first=first, last=last)
     if token.lower_ == "it" and cast.thing is not None:
         said_of = cast.thing_of if cast.thing_of != subject and len(cast.thing_of) == 1 else ""
-        owner = cast.thing.who or (said_of if cast.thing.kind == "part" else "")
+        hers = bool(cast.thing_sex) and cast.thing_sex == cast.sex(
+            subject
+        )  # "kisses her hand; she withdraws it"
+        owner = cast.thing.who or (said_of if cast.thing.kind == "part" and not hers else "")
         return replace(cast.thing, who=owner, first=first, last=last)  # "extends a hand, and she shakes it"
     ref = _reference(token, cast, subject)
     cast.seen[token.i] = ref
-    if ref.kind == "person" and token.pos_ in ("NOUN", "PROPN"):
-        cast.states |= {phrase.i: (verb, ref.who) for phrase, verb in states_of(token)}
-    if ref.kind in ("part", "thing") and token.pos_ in ("NOUN", "PROPN") and not ref.place:
+    if ref.kind == "person":
+        cast.note_states(token, ref.who)
+    if ref.kind in ("part", "thing") and token.tag_ in ("NN", "NNP") and not ref.place:
         cast.thing, cast.thing_of = ref, subject
+        cast.thing_sex = next((sex for c in token.children if (sex := _HE.get(c.lower_))), "")
     return ref
 
 
 def states_of(noun: Token) -> Iterator[tuple[Token, str]]:
     """The phrases of place or posture that hang on a noun or on its adjective, with their verbs: "a man in a chair"."""
     words = vocabulary()
+    if (verb := noun.lemma_.lower().removesuffix("er")) in IN_PLACE:
+        yield noun, verb  # "the sleeper"
     within = [noun, *(c for c in noun.children if c.dep_ in ("amod", "acl", "appos") and c.pos_ == "ADJ")]
     for phrase in (c for token in within for c in token.children if c.dep_ == "prep"):
         for place in phrase.children:
@@ -342,7 +364,10 @@ def _reference(token: Token, cast: Cast, subject: str) -> Ref:
             side = "both"
         lemma = "back" if lemma == "spine" else lemma
         bare = all(c.dep_ != "poss" and c.tag_ != "PRP$" for c in token.children)
-        return Ref("part", owner, lemma, family, side, bare=bare, first=first, last=last)
+        definite = any(c.lower_ == "the" for c in token.children)
+        return Ref(
+            "part", owner, lemma, family, side, bare=bare, definite=definite, first=first, last=last
+        )  # fmt: skip
     thirds = len(cast.third)
     who = cast.person(token, subject)
     if who:

@@ -146,8 +146,13 @@ class _Planner:
             other := self._matcher.find(theirs)
         ) is not None:
             touches = self._known.entries[other[0]].group in ("touch", "care") and other[2].patient
-            if touches and (found is None or other[2].score >= found[2].score):
+            held = (
+                theirs.object is not None and theirs.object.definite
+            )  # "takes his ankle and bends the knee"
+            if touches and (held or found is None or other[2].score >= found[2].score):
                 event, found = theirs, other
+        if event.noun is not None and found is not None and found[2].part is event.noun.object is not None:
+            event = event.noun  # "touches her back"
         if self._about_another(event) and inner and (found is None or found[2].score < 2.4):
             return
         if found is None and event.lemma == "be":
@@ -296,18 +301,16 @@ class _Planner:
 
         As in "walks up to the other and covers his eyes", where nothing says whose.
         """
-        last, part = next(reversed(self._acts), None), event.object
-        if (
-            last is None
-            or last.patient is None
-            or part is None
-            or part.kind != "part"
-            or part.who
-            or part.bare
-        ):
+        part, who = event.object, event.subject.who if event.subject is not None else ""
+        if part is None or part.kind != "part" or part.who:
             return None
-        same = event.subject is not None and event.subject.who == "".join(last.agents)
-        return replace(event, object=replace(part, who=last.patient)) if same else None
+        last = next((act for act in reversed(self._acts) if "".join(act.agents) == who), None)
+        handles = (
+            last is not None
+            and last.patient is not None
+            and (not part.bare or (last.part is not None and part.definite))
+        )
+        return replace(event, object=replace(part, who=last.patient)) if last and handles else None  # type: ignore[arg-type]
 
     def _meant(self, event: Event) -> str | None:
         """The other person, where a verb without an object follows what was done to them."""

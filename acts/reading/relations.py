@@ -134,6 +134,9 @@ def coordinated(first: Act, then: Act, known: Lexicon, *, repeats: bool) -> str:
         return "after"
     if not _people_of(first) & _people_of(then):
         return "with"
+    tugs = first.patient in then.agents and {s.do for s in known.entries[then.act].stage} <= BESIDE
+    if tugs and _is_hold(first, known):
+        return "with"  # "A holds B's wrist, and B tugs"
     if first.agents == then.agents and (_accompanies(first, then, known) or _linked(first, then, known)):
         return "with"
     return "after"
@@ -141,8 +144,11 @@ def coordinated(first: Act, then: Act, known: Lexicon, *, repeats: bool) -> str:
 
 def _linked(first: Act, then: Act, known: Lexicon) -> bool:
     """True if two people go on hand in hand: "hold hands, walk"."""
-    held = any(s.do == "link" for s in known.entries[first.act].stage)
-    return held and any(isinstance(s, Go) for s in known.entries[then.act].stage)
+    return _is_hold(first, known) and any(isinstance(s, Go) for s in known.entries[then.act].stage)
+
+
+def _is_hold(act: Act, known: Lexicon) -> bool:
+    return any(s.do == "link" for s in known.entries[act.act].stage)
 
 
 def _accompanies(first: Act, then: Act, known: Lexicon) -> bool:

@@ -14,8 +14,8 @@ from .vocabulary import vocabulary
 if TYPE_CHECKING:
     from spacy.tokens import Token
 
-_LEAVES = frozenset(("leave", "find"))
-"""Verbs whose object does what follows, beside those that cause or see it."""
+_PROMISES = frozenset(("promise", "threaten"))
+"""Verbs whose subject does what follows, where others' objects do."""
 ORDINALS = frozenset(("other", "first", "second", "former", "latter"))
 """Words that stand for one of the two behind "the"."""
 _SOMEBODY = frozenset(("him", "her", "his", "me", "my"))
@@ -82,15 +82,11 @@ class Subjects:
             own = self.of(head, self._tree.head(head))
             if token.dep_ in ("xcomp", "ccomp"):  # "makes her laugh", "asks him to sit"
                 above = self._event_of(head)
-                verbs = self._words.verbs
                 if (
                     above is not None
                     and above.object is not None
                     and above.object.kind == "person"
-                    and (
-                        above.lemma in verbs["causes"] | verbs["sees"] | _LEAVES
-                        or above.lemma in verbs["wished"]
-                    )
+                    and above.lemma not in _PROMISES
                 ):
                     return above.object
             return own
@@ -137,7 +133,12 @@ class Subjects:
             if child.dep_ == "poss" and token.dep_ == "ccomp" and head is not None:  # "helps her walk"
                 helper = self._found.get(head.i)
                 return reference(child, self._cast, helper.who if helper is not None else "")
-            if child.dep_ == "det" and child.lower_ in ("both", "all", "each"):  # "…, both freeze"
+            if child.dep_ in ("det", "preconj") and child.lower_ in (
+                "both",
+                "all",
+                "each",
+                "neither",
+            ):  # "…, both freeze"
                 return Ref("person", "ab", child.lower_, first=child.idx, last=child.idx + len(child.text))
         return None
 

@@ -77,7 +77,7 @@ def _words() -> frozenset[str]:
 
 
 _GOES_ON = frozenset(("keep", "stay", "remain", "continue"))
-_IN_PLACE = frozenset(("sleep", "kneel", "stand", "crouch", "squat", "lean"))
+IN_PLACE = frozenset(("sleep", "kneel", "stand", "crouch", "squat", "lean"))
 _STATES = frozenset(("sit", "lie"))
 """Verbs that say how somebody is, and with "down" what they do."""
 
@@ -91,7 +91,7 @@ def is_ongoing(token: Token, lemma: str) -> bool:
         return False
     if lemma in _STATES or children & {"still", "already", "there"}:
         return True
-    if token.dep_ == "relcl" and lemma in _IN_PLACE:  # "B, who sleeps on the floor"
+    if token.dep_ == "relcl" and lemma in IN_PLACE:  # "B, who sleeps on the floor"
         return True
     if token.dep_ in ("xcomp", "acomp", "advcl") and token.head.lemma_.lower() in _GOES_ON:
         return True

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from acts import Act, read
+from acts import Act, lexicon, read
 
 
 def told(text: str) -> list[tuple[str, str, str | None]]:
@@ -37,3 +37,90 @@ def test_no_said_with_a_hand_is_a_gesture() -> None:
 
 def test_a_sofa_that_is_carried_is_it() -> None:
     assert last("They carry a sofa and put it down.").thing == "sofa"
+
+
+def test_the_hand_that_is_held_out_is_the_others() -> None:
+    text = "Instead of taking the hand that is held out to him, the second person turns his back."
+    taken, offered, turned = read(text).acts
+    assert (taken.act, taken.polarity) == ("hold-hands", "not")
+    assert (offered.act, offered.agents, offered.patient) == ("offer-thing", ("a",), "b")
+    assert (turned.act, turned.agents) == ("turn-away", ("b",))
+
+
+def test_her_back_is_a_part_of_the_body_where_something_is_done_to_it() -> None:
+    touched = read("He touches her back and then she runs.").acts[0]
+    assert (touched.part, touched.part_of, touched.direction) == ("back", "b", None)
+    assert last("She hugs him and he hugs her back.").act == "hug"
+
+
+def test_the_knee_of_the_one_who_is_handled() -> None:
+    assert told("The physio holds the ankle of the patient and bends the knee.")[1] == (
+        "move-other",
+        "a",
+        "b",
+    )
+    assert told("She holds the ankle of the patient and raises a hand.")[1][0] == "raise-arm"
+
+
+def test_his_chest_is_his_own_where_it_may_be_either_s() -> None:
+    assert told("The man nods and the other man grabs his chest.")[1] == ("hand-on-chest", "b", None)
+
+
+def test_neither_denies_for_both() -> None:
+    act = last("They push each other, but neither gives way.")
+    assert (act.agents, act.polarity) == (("a", "b"), "not")
+
+
+def test_what_stands_against_each_other_is_no_object() -> None:
+    assert told("They push each other over, palms against palms.") == [("push-over", "ab", None)]
+
+
+def test_a_sleeper_lies() -> None:
+    lying = read("The sleeper's arm is lifted by the visitor and falls back when it is let go.").acts
+    assert ("lie-down", ("a",), True) in [(act.act, act.agents, act.already) for act in lying]
+    assert ("free", ("b",)) in [(act.act, act.agents) for act in lying]
+
+
+def test_backing_out_is_walking_backwards() -> None:
+    assert told("The servant backs out of the room.")[0][0] == "step-back"
+
+
+def test_with_a_hand_on_his_back_is_a_touch() -> None:
+    acts = read("A man crawls until a woman stops him with a hand on his back.").acts
+    assert [(act.act, act.agents, act.patient) for act in acts][-1] == ("hand-on", ("b",), "a")
+
+
+def test_what_goes_between_two_goes_to_each() -> None:
+    act = last("They roll a ball to and fro between them.")
+    assert (act.act, act.direction) == ("bowl", None)
+
+
+def test_one_who_is_held_tugs_meanwhile() -> None:
+    (relation,) = read("A holds on to B's wrist, and B tugs backwards.").acts[1].order
+    assert relation.kind == "with"
+
+
+def test_it_is_no_plural() -> None:
+    assert last("A throws a ball to B, who catches it with both hands and throws it back.").thing == "ball"
+
+
+def test_a_name_that_looks_like_a_plural_is_one_person() -> None:
+    assert told("Romeo kneels before Juliet and kisses her hand.") == [
+        ("kneel", "a", "b"),
+        ("kiss-hand", "a", "b"),
+    ]
+
+
+def test_an_object_that_the_parser_took_for_a_remark() -> None:
+    acts = told("One person lies down on the back and the other checks the pulse at the neck.")
+    assert acts[1] == ("examine", "b", "a")
+
+
+def test_what_is_asked_of_somebody_is_theirs() -> None:
+    assert told("She coaxes him to sit down.")[-1][:2] == ("sit-down", "b")
+
+
+def test_who_does_not_flinch_stands_still() -> None:
+    for name in ("move-about", "flinch"):
+        assert [shape.do for shape in lexicon().entries[name].refused] == ["stay"]
+    assert (last("He does not react.").act, last("He does not budge.").act) == ("flinch", "move-about")
