@@ -30,7 +30,7 @@ class Go(_Shape):
         backwards: with the face towards where one comes from.
         linked: the two hold each other by the hands or arms.
         stops: it ends early, before what comes next.
-        manner: a gait that the network's words name.
+        gait: of a person who goes low over the floor.
     """
 
     do: Literal["go"] = "go"
@@ -44,6 +44,7 @@ class Go(_Shape):
     backwards: bool = False
     linked: bool = False
     stops: bool = False
+    gait: Literal["", "crawls", "on the knees"] = ""
 
 
 class Turn(_Shape):
@@ -124,6 +125,7 @@ class Gesture(_Shape):
         "circles",
         "swings",
         "shakes",
+        "around",
     ]
     sides: Literal["left", "right", "both"] = "right"
 

@@ -7,8 +7,10 @@ import pytest
 
 from motion import SMPL22
 from webdemo.inference import Engine, SceneRequest
+from webdemo.inference.actor import FPS
 from webdemo.inference.pipelines.scene_floor import plan_note
 from webdemo.inference.story import Beat, FloorPath, FloorPoint
+from webdemo.inference.story.scripting import split_sentence
 
 from .followed import Follower, speeds
 from .test_planned_scenes import QUICK, made
@@ -109,3 +111,13 @@ def test_who_runs_up_first_begins_apart_and_is_lifted_after_the_run(
     assert speeds(found)[0].max() > 1.8, "at a run"
     assert speeds(found)[1].max() < 0.3, "the other waits"
     assert (feet[gaps > 1.0] < 0.1).all() and feet[-9:].max() > 0.15, "lifted after the run"
+
+
+def test_who_is_lifted_can_spread_the_arms(monkeypatch: pytest.MonkeyPatch) -> None:
+    words = "The father lifts his daughter up and she spreads her arms."
+    ((beat,),) = (split_sentence(words),)
+    result = Follower(monkeypatch).scene(SceneRequest(beats=(Beat(words, acts=beat.acts, seconds=4.0),)))
+    found = positions(result)
+    up = low(found, 1) > 0.3
+    wrists = found[1, :, SMPL22.index("left_wrist")] - found[1, :, SMPL22.index("right_wrist")]
+    assert up.sum() > FPS and np.linalg.norm(wrists[up], axis=-1).min() > 0.9

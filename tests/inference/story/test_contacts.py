@@ -33,8 +33,7 @@ ORIGIN = np.zeros(2)
         ("A girl kisses a boy on the cheek.", ("a", Region.HEAD, 0, 0)),
         ("The man kisses her.", ("a", Region.HEAD, 0, 0)),
         ("She grabs him by the arm.", ("a", Region.ARM, 1, 0)),
-        ("He slaps her in the face.", ("a", Region.HEAD, 1, 1)),
-        ("He slaps her in the face twice.", ("a", Region.HEAD, 1, 2)),
+        ("He pats her head twice.", ("a", Region.HEAD, 1, 2)),
         ("Person A covers person B's eyes with both hands.", ("a", Region.HEAD, 2, 0)),
         ("Person B gets hugged from behind by person A.", ("a", Region.WAIST, 2, 0)),
         ("They turn to each other and kiss.", ("a", Region.HEAD, 0, 0)),
@@ -59,7 +58,7 @@ def test_contacts_are_read(sentence: str, found: tuple[str, Region, int, int] | 
 def test_a_named_hand_touches_and_a_touch_may_come_late() -> None:
     touch = contact("Person A taps person B on the shoulder with the left hand.")
     assert touch is not None and touch.sides == ("left",) and not touch.late
-    late = contact("They argue until person A slaps person B in the face.")
+    late = contact("They argue until person A pats person B on the head.")
     assert late is not None and late.late
 
 

@@ -63,7 +63,7 @@ def test_who_walks_past_keeps_clear_and_gets_beyond() -> None:
 
 
 @pytest.mark.parametrize(
-    ("words", "degrees"), [("walks around", 180), ("walks once all the way around", 330)]
+    ("words", "degrees"), [("walks around", 330), ("walks once all the way around", 330)]
 )
 def test_who_walks_around_goes_around(words: str, degrees: float) -> None:
     begin, found = ways(f"Person A {words} person B.", seconds=8.0)
@@ -271,3 +271,14 @@ def test_who_comes_up_behind_the_other_walks_round_them_and_faces_their_back() -
     np.testing.assert_allclose(found.places[-1], [0.0, 1.7], atol=0.05)
     assert math.cos(found.headings[-1] - math.pi) > 0.99
     assert np.linalg.norm(found.places - FACING.places[1], axis=1).min() > 0.45
+
+
+def test_who_runs_away_gets_up_to_the_speed_of_a_run() -> None:
+    way = plan((Move("a", Way.AWAY, 2.2),), FACING, 120)[0]
+    places = np.stack([np.interp(np.arange(120), way.frames, way.places[:, axis]) for axis in (0, 1)], axis=1)
+    assert np.linalg.norm(np.diff(places, axis=0), axis=1).max() * FPS > 1.9
+
+
+def test_who_comes_up_and_walks_past_does_not_stop_on_the_way() -> None:
+    past = plan((Move("a", Way.TO), Move("a", Way.PAST), Move("b", Way.STAY)), BEHIND_B, 150)[0]
+    assert np.diff(past.places[:, 1]).min() > 0.2

@@ -16,6 +16,7 @@ from webdemo.inference.story.lifts import Carry, Lift, carried
     [
         ("He picks her up.", Lift("a", Carry.UP)),
         ("He picks her up and spins her around.", Lift("a", Carry.UP, spins=True)),
+        ("The groom sweeps the bride off her feet and whirls her round.", Lift("a", Carry.UP, spins=True)),
         ("A man lifts a woman off the ground.", Lift("a", Carry.UP)),
         ("She picks up her baby.", Lift("a", Carry.UP)),
         ("The groom sweeps the bride off her feet.", Lift("a", Carry.UP)),

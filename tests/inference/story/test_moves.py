@@ -3,7 +3,7 @@
 import pytest
 
 from tests.inference.story.staged_words import moves
-from webdemo.inference.story.moves import goes
+from webdemo.inference.story.moves import Move, fastest, goes
 from webdemo.inference.story.ways import Way
 
 
@@ -90,3 +90,9 @@ def test_who_is_on_the_ground_is_not_held_in_place() -> None:
 
 def test_a_halt_is_a_move_but_sends_nobody_away() -> None:
     assert moves_of("Both stop.") == "a:stay b:stay" and not goes(moves("Both stop."))
+
+
+def test_who_walks_and_runs_away_at_once_runs() -> None:
+    walk, run, turn = Move("a", Way.AWAY, 1.1), Move("a", Way.AWAY, 2.2), Move("a", Way.TURN)
+    assert fastest([walk, turn, run, walk]) == [run, turn]
+    assert fastest([walk, Move("b", Way.AWAY, 2.2)]) == [walk, Move("b", Way.AWAY, 2.2)]

@@ -43,6 +43,27 @@ def test_who_refuses_leaves_the_other_with_a_hand_held_out() -> None:
 
 
 @pytest.mark.parametrize(
+    ("name", "hand"), [("shake-hands", Hand.OFFERS), ("hug", Hand.AHEAD), ("high-five", Hand.OFFERS)]
+)
+def test_who_would_like_to_touch_reaches_out_in_vain(name: str, hand: Hand) -> None:
+    wished = staged((Act(id="1", act=name, agents=("a",), patient="b", modality="wished"),))
+    assert set(wished.gestures) == {"a"} and wished.gestures["a"].hand is hand
+    both = staged((Act(id="1", act=name, agents=("a", "b"), modality="wished"),))
+    assert not both.gestures
+
+
+def test_a_gesture_beside_the_posture_of_the_other_is_given() -> None:
+    assert "b" in told("A kneels and B raises one arm.").gesturing
+    assert "b" in told("While A kneels, B stands there and raises one arm.").gesturing
+    assert "b" not in told("B raises one arm.").gesturing, "which the network makes"
+
+
+def test_hands_that_are_tied_are_behind_the_back() -> None:
+    tied = told("The robber ties her hands.")
+    assert tied.gestures["b"].hand is Hand.BEHIND and tied.contact is not None and tied.contact.behind
+
+
+@pytest.mark.parametrize(
     ("name", "carry"), [("carry", Carry.ARMS), ("ride-back", Carry.BACK), ("drag", Carry.DRAGS)]
 )
 def test_who_carries(name: str, carry: Carry) -> None:

@@ -30,6 +30,8 @@ HEAD = SMPL22.index("head")
         ("Person B catches keys thrown by person A.", Bout.THROWS, "a", False),
         ("Person B punches person A.", Bout.FISTS, "b", False),
         ("She hits back.", Bout.FISTS, "a", False),
+        ("He slaps her in the face.", Bout.FISTS, "a", False),
+        ("He slaps her in the face twice.", Bout.FISTS, "aa", False),
     ],
 )
 def test_blows_are_read(words: str, bout: Bout, turns: str, goes_on: bool) -> None:
@@ -37,6 +39,11 @@ def test_blows_are_read(words: str, bout: Bout, turns: str, goes_on: bool) -> No
     found = moves(words)
     assert {m.person for m in found} == {"a", "b"} and {m.way for m in found} == {Way.SPAR}
     assert all(move.near == bout.value for move in found)
+
+
+def test_a_blow_that_ends_something_comes_late() -> None:
+    late, at_once = strike("They argue until A slaps B in the face."), strike("A slaps B.")
+    assert late is not None and late.late and at_once is not None and not at_once.late
 
 
 @pytest.mark.parametrize(

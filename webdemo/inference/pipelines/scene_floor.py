@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Callable, Collection, Iterator, Sequence
 
 import numpy as np
@@ -30,7 +29,7 @@ from webdemo.inference.story.ways import Way
 from .scene_contacts import given_contact, given_hold, given_twirl, meeting, towards_touched
 from .scene_hands import hands, known_hands
 from .scene_lifts import Carrying
-from .scene_paths import path_of
+from .scene_paths import given_gait, path_of
 from .scene_postures import UPRIGHT, led, postures, still_down
 from .scene_room import Room, roomy
 from .scene_strikes import given_blows
@@ -96,15 +95,21 @@ def _parts(request: SceneRequest, window: Window, scene: Array, placement: Place
     ways = {way.person: way for way in plan(found, goal, stop - start, first=not start)}
     ways = {person: way for person, way in ways.items() if person not in {part.person for part in parts}}
     if lifted is not None and len(ways) == 2:
-        carrying = Carrying(lifted, ways, stand, start, stop)
+        other = "ab"["ba".index(lifted.carrier)]
+        carrying = Carrying(lifted, ways, stand, start, stop, told.gestures.get(other))
         parts += carrying.given(window, placement)
         ways = carrying.before()
+    hand = None
     if touch is not None and (
-        part := given_contact(touch, ways, posed, stand, start, stop, window, placement)
+        hand := given_contact(touch, ways, posed, stand, start, stop, window, placement)
     ):
-        parts.append(part)
-    for way in ways.values():
-        parts += path_of(_until_posed(way, parts, window, start), window, start, placement)
+        parts.append(hand)
+    low = {"ab".index(move.person): move.gait for move in found if move.gait}
+    for person, way in ways.items():
+        if person in low:
+            parts += given_gait(low[person], way, stand, _down(scene, start), start, stop, window, placement)
+        else:
+            parts += path_of(_until_posed(way, hand, window, start), window, start, placement)
     led = Hold.RING if any(move.backwards for move in found) and told.by_both_hands else None
     if (held := told.hold or led) is not None and len(ways) == 2:
         parts += given_hold(held, ways, stand, start, stop, window, placement)
@@ -114,21 +119,17 @@ def _parts(request: SceneRequest, window: Window, scene: Array, placement: Place
         parts += given_blows(struck, told, ways, stand, start, stop, window, placement)
     for person, (gesture, frames, wrists) in hands(told, found, ways, posed, stand, stop - start).items():
         inside = (frames + start >= window.start) & (frames + start < window.stop)
-        if inside.any():
+        if inside.any() and (lifted is None or "ab"[person] == lifted.carrier):
             shift = start - window.start + window.past
             parts.append(known_hands(person, gesture, frames[inside], wrists[inside], shift, placement))
     return parts
 
 
-def _until_posed(way: Way2D, parts: Sequence[Part], window: Window, start: int) -> Way2D:
-    """A way as far as the poses of the same person that say where they are."""
-    given = [
-        frame - window.past + window.start - start
-        for part in parts
-        if isinstance(part, KnownFrames) and part.person == way.person and 0 in (part.joints or (0,))
-        for frame in part.frames
-    ]
-    kept = np.asarray(way.frames) < min(given, default=math.inf)
+def _until_posed(way: Way2D, hand: KnownFrames | None, window: Window, start: int) -> Way2D:
+    """A way, up to where the same person kneels down to what they touch: from then on poses say where they are."""
+    if hand is None or hand.person != way.person or 0 not in hand.joints:
+        return way
+    kept = np.asarray(way.frames) < min(hand.frames) - window.past + window.start - start
     headings = None if way.headings is None else way.headings[kept]
     return Way2D(way.person, np.asarray(way.frames)[kept].tolist(), way.places[kept], headings)
 

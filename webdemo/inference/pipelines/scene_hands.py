@@ -79,8 +79,10 @@ def hands(
     """
     found = dict(told.gestures)
     if {move.way for move in moves if move.linked} == {Way.ALONG}:
-        inner = _inner(ways)
-        found |= {who: Gesture(Hand.LINKED, (side,)) for who, side in inner.items()}
+        around = {who for who, gesture in found.items() if gesture.hand is Hand.AROUND}
+        for who, side in _inner(ways).items():
+            if who in around or not around:
+                found[who] = Gesture(Hand.AROUND if around else Hand.LINKED, (side,))
     courses = {
         i: Course.of(ways[i], float(stand.headings[i]), frames)
         if i in ways

@@ -9,9 +9,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from motion import SMPL22
-from webdemo.inference.actor import Placement
+from motion.transforms import heading_matrix
+from webdemo.inference.actor import FPS, Placement
 from webdemo.inference.known_parts import KnownFrames
 from webdemo.inference.story.floor import Standing, Way2D
+from webdemo.inference.story.gestures import Gesture, wrist
 from webdemo.inference.story.lifts import Carry, Lift, carried
 from webdemo.inference.story.plan import Window
 from webdemo.inference.story.poses import LOWER, TRUNK, upright
@@ -46,6 +48,7 @@ class Carrying:
         ways: of both people, by person.
         stand: where they are when the beat begins.
         start, stop: the beat's first frame and the one after its last.
+        gesture: of the person carried, whose hands then do not hold on.
     """
 
     lift: Lift
@@ -53,6 +56,7 @@ class Carrying:
     stand: Standing
     start: int
     stop: int
+    gesture: Gesture | None = None
 
     @property
     def carrier(self) -> int:
@@ -98,6 +102,7 @@ class Carrying:
             own += sinks
             theirs += 0.0 if self.lift.carry is Carry.DRAGS else sinks
             own[:, LOWER] = walking[:, LOWER]
+            self._gesture(theirs, at, course)
             frames = (at + self.start - window.start + window.past).tolist()
             parts.append(KnownFrames(1 - self.carrier, frames, placement.to_network(theirs), _BODY))
             parts.append(KnownFrames(self.carrier, frames, placement.to_network(own), _CARRIER))
@@ -107,6 +112,16 @@ class Carrying:
             poses = placement.to_network(np.stack([pose for _, pose in feet]))
             parts.append(KnownFrames(1 - self.carrier, frames, poses, LOWER))
         return parts
+
+    def _gesture(self, theirs: Array, at: NDArray[np.integer], course: Course) -> None:
+        """Has the hands of the person carried, whose poses (N, 22, 3) are theirs, make their gesture."""
+        if self.gesture is None or self.lift.carry is not Carry.UP:
+            return
+        turns = np.stack([heading_matrix(angle + np.pi) for angle in course.headings[at]])
+        ahead = np.tile([0.0, 0.0, 1.0], (len(at), 1))
+        for side in self.gesture.sides:
+            places = wrist(self.gesture, side, at / FPS, ahead)
+            theirs[:, SMPL22.index(f"{side}_wrist")] = theirs[:, 0] + np.einsum("nij,nj->ni", turns, places)
 
     def _walking(self) -> Array:
         """(N, 22, 3) the carrier's poses while the other is off the floor, one foot after the other."""

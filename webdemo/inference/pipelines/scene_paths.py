@@ -3,16 +3,25 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Collection
 
 import numpy as np
 from numpy.typing import NDArray
 
 from webdemo.inference.actor import Placement
-from webdemo.inference.known_parts import KnownPath, Part
-from webdemo.inference.story.floor import Way2D
+from webdemo.inference.known_parts import KnownFrames, KnownPath, Part
+from webdemo.inference.story.floor import Standing, Way2D
+from webdemo.inference.story.gaits import low_gait
 from webdemo.inference.story.plan import Window
 
+from .scene_hands import Course
+
 Array = NDArray[np.floating]
+
+OFTEN = 3
+"""Frames between two given poses of a person who goes low over the floor."""
+GETS_DOWN = 40
+"""Frames in which somebody gets down on hands and knees."""
 
 
 def path_of(way: Way2D, window: Window, start: int, placement: Placement) -> list[Part]:
@@ -22,6 +31,32 @@ def path_of(way: Way2D, window: Window, start: int, placement: Placement) -> lis
     headings = np.full(len(frames), np.nan) if way.headings is None else way.headings
     at = frames[inside] - window.start + window.past
     return known_paths(way.person, at, way.places[inside], headings[inside], placement)
+
+
+def given_gait(
+    gait: str, way: Way2D, stand: Standing, down: Collection[int], start: int, stop: int, window: Window,
+    placement: Placement,
+) -> list[Part]:  # fmt: skip
+    """The poses of a person who crawls or walks on the knees along a way.
+
+    Args:
+        gait: of :data:`webdemo.inference.story.gaits.GAITS`.
+        way: theirs.
+        stand: where the people are when the beat begins.
+        down: the people who are down already then; the others get down first.
+        start, stop: the beat's first frame and the one after its last.
+        window: the window that is made.
+        placement: from the scene's world to the network's frame.
+    """
+    course = Course.of(way, float(stand.headings[way.person]), stop - start)
+    poses = low_gait(gait, course.places, course.headings)
+    first = GETS_DOWN if start and way.person not in down else 0
+    frames = np.union1d(np.arange(first, stop - start, OFTEN), [stop - start - 1])
+    frames = frames[(frames + start >= window.start) & (frames + start < window.stop)]
+    if not len(frames):
+        return []
+    shifted = (frames + start - window.start + window.past).tolist()
+    return [KnownFrames(way.person, shifted, placement.to_network(poses[frames]))]
 
 
 def known_paths(

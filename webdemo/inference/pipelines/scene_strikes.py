@@ -24,6 +24,8 @@ from .scene_postures import DUCKING
 Array = NDArray[np.floating]
 _Given = tuple[int, tuple[str, ...], tuple[tuple[int, ...], Array]]
 """A person, their hands, and frames with the poses at them."""
+LATE = 0.5
+"""Share of a beat after which a blow comes that something else goes on until."""
 _NEARLY = 0.15
 """Metres from the distance of a blow at which it is struck."""
 
@@ -85,7 +87,7 @@ def _first(struck: Strike, told: Told, courses: Sequence[Course]) -> int:
     there = np.flatnonzero(np.abs(apart - struck.bout.value) < _NEARLY)
     near = int(there[0]) if len(there) else 0
     if not struck.answered:
-        return near
+        return max(near, round(LATE * frames)) if struck.late else near
     change = next(iter(told.changes.get("b" if struck.turns[0] == "a" else "a", ())), None)
     at = round((0.35 if change is None else change.after) * frames)
     if change is not None and change.passing:  # the fist goes over them

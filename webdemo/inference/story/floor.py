@@ -38,6 +38,8 @@ BEHIND = 1.2
 """Metres by which one follows the other."""
 ASIDE = 0.7
 """Metres beside the other at which one walks past."""
+RUN = 1.6
+"""Metres a second from which somebody runs, who gets up their speed within a step."""
 SIDESTEP = 0.8
 """Metres of a step aside."""
 PACED = 1.1
@@ -134,6 +136,8 @@ def _walked(who: int, own: Sequence[Sequence[Move]], tracks: Sequence[Track], st
         later = [after.way for after in listed[i + 1 :]]
         if move.way is Way.TURN and (Way.AWAY in later or Way.PAST in later):
             continue  # who walks away has turned
+        if move.way is Way.TO and Way.PAST in later:
+            continue  # who walks past comes up on the way
         seconds = track.left() * _WEIGHT.get(move.way, 1.0)
         seconds /= _WEIGHT.get(move.way, 1.0) + sum(_WEIGHT.get(way, 1.0) for way in later)
         if move.until:
@@ -236,7 +240,7 @@ def _away(
     away = -to if not np.linalg.norm(track.going) else track.going
     way = min(max(seconds - 0.4, 0.5) * move.speed, max(room, 1.2))
     facing = math.atan2(to[0], to[1]) if move.backwards else None
-    taken = min(seconds, way / (0.8 * move.speed) + 2 * EASE)
+    taken = min(seconds, way / move.speed + EASE if move.speed > RUN else way / (0.8 * move.speed) + 2 * EASE)
     track.walk(np.stack([track.place, track.place + way * away]), taken, heading=facing)
 
 

@@ -50,6 +50,7 @@ class Hand(Enum):
     CIRCLES = "goes round in circles"
     SWINGS = "swings to and fro"
     SHAKES = "is shaken out"
+    AROUND = "around the back of the other, who is beside"
 
 
 @dataclass(frozen=True)
@@ -74,12 +75,15 @@ _AT_BODY = {
 }  # fmt: skip
 """Metres from the pelvis to the left wrist of hands that are held at one's own body."""
 STOOD = (
-    Hand.CLAPS, Hand.SALUTES, Hand.AHEAD, Hand.OFFERS, Hand.PHONE, Hand.EARS, Hand.EYES, Hand.PHOTO, Hand.PRAYS,
+    Hand.CLAPS, Hand.SALUTES, Hand.POINTS, Hand.AHEAD, Hand.OFFERS, Hand.PHONE, Hand.EARS, Hand.EYES, Hand.PHOTO,
+    Hand.PRAYS,
     *_AT_BODY, Hand.SPREAD, Hand.FLAPS, Hand.CIRCLES, Hand.SWINGS,
 )  # fmt: skip
 """Gestures that are given also to those who only stand."""
 _REACH = 0.47
 """Metres from the shoulder to the wrist of an arm that is nearly straight."""
+_BEYOND, _AT_BACK = 0.4, np.array([0.0, 0.32, -0.12])
+"""Metres from the pelvis to the other beside, and up and back, of a hand around their back."""
 _CLAPPING = np.array([0.0, 0.28, 0.3])
 """Metres from the pelvis to where hands clap."""
 _EAR = np.array([0.13, 0.6, 0.1])
@@ -135,6 +139,9 @@ def wrist(gesture: Gesture, side: str, seconds: Array, towards: Array) -> Array:
             offset[:, 0] += 0.14 * np.sin(2 * np.pi * _WAVE_RATE * np.asarray(seconds))
         case Hand.POINTS:
             offset = _REACH * towards + np.array([0.0, -0.05, 0.0])
+        case Hand.AROUND:
+            shoulder = np.zeros(3)
+            offset = _BEYOND * towards + _AT_BACK
         case Hand.LINKED:
             shoulder = np.zeros(3)
             offset[:] = [0.22 * out, 0.0, 0.08]

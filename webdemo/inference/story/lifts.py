@@ -24,7 +24,7 @@ Array = NDArray[np.floating]
 class Carry(Enum):
     """Ways in which somebody is held, and the place of their pelvis beside the carrier's, who faces +Z, in metres."""
 
-    UP = (0.0, 0.27, 0.3)
+    UP = (0.0, 0.38, 0.3)
     ARMS = (0.0, 0.12, 0.3)
     BACK = (0.0, 0.22, -0.2)
     DRAGS = (0.0, -0.83, 1.0)

@@ -27,6 +27,7 @@ class Move:
         metres: length of the way, of :attr:`Way.AHEAD`.
         near: metres from the other at which who comes up to them stands; 0 for as far as the network likes.
         backwards: they go away with their face to the other.
+        gait: of :data:`.gaits.GAITS`, of a person who goes low over the floor; "" for a walk or a run.
     """
 
     person: str
@@ -39,6 +40,7 @@ class Move:
     metres: float = 0.0
     near: float = 0.0
     backwards: bool = False
+    gait: str = ""
 
 
 _GOING = {Way.AWAY, Way.PAST, Way.ROUND, Way.ALONG, Way.TO, Way.BEHIND}
@@ -48,6 +50,16 @@ _GOING = {Way.AWAY, Way.PAST, Way.ROUND, Way.ALONG, Way.TO, Way.BEHIND}
 def goes(found: Sequence[Move]) -> bool:
     """True if any of the moves takes a person elsewhere or turns them."""
     return any(move.way is not Way.STAY for move in found)
+
+
+def fastest(told: Sequence[Move]) -> list[Move]:
+    """The moves, each once: who walks away and runs away at once, runs."""
+    found: dict[tuple[str, Way, bool], Move] = {}
+    for move in told:
+        key = move.person, move.way, move.late
+        if key not in found or move.speed > found[key].speed:
+            found[key] = move
+    return list(found.values())
 
 
 def finished(made: Sequence[Move], *, until: bool) -> list[Move]:

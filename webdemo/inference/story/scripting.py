@@ -225,8 +225,12 @@ def _belongs(act: Act, entry: Entry, later: Act, after: Entry, text: str) -> boo
     if (way == "to" and "lift" in then) or ("link" in does and "hold" in then):
         return True  # runs up and is lifted; the hands that they take turn them round
     same = later.agents == act.agents
-    if "lift" in does and getattr(then.get("hold"), "hold", "") == "twirl":
+    if "lift" in does and ((same and "turn" in then) or getattr(then.get("hold"), "hold", "") == "twirl"):
         return True  # "picks her up and spins her around"
+    if "lift" in does and later.agents == (act.patient,) and then.keys() == {"gesture"}:
+        return True  # "lifts her up, and she spreads her arms"
+    if way == "to" and next_way == "past" and same:
+        return True  # who passes the other comes up to them on the way
     if ("lift" in does and "lift" in then) or _posture(does) == _posture(then) != "":
         return same  # "drops to one knee and proposes"
     if not same:

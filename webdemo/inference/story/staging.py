@@ -22,7 +22,7 @@ from .gestures import OF_BOTH, SIDES, STOOD, Gesture, Hand
 from .holds import TWIRL, Hold
 from .lifts import Carry, Lift
 from .limbs import Limb
-from .moves import Move, finished, goes, lifted_moves, struck_moves
+from .moves import Move, fastest, finished, goes, lifted_moves, struck_moves
 from .postures import Change, Posture
 from .strikes import Bout, Strike
 from .told import Told
@@ -91,7 +91,7 @@ class _Stage:
         self.hold: Hold | None = None
         self.twirls = ""
         self.lift: Lift | None = None
-        self.blows: list[tuple[tuple[str, ...], shapes.Strike]] = []
+        self.blows: list[tuple[tuple[str, ...], shapes.Strike, Act]] = []
         self.setting = Setting()
         self.linked = False
         self.frozen: set[str] = set()
@@ -104,9 +104,13 @@ class _Stage:
             for shape in entry.stage:
                 self._take(act, shape)
         for act in self.acts:
-            if act.polarity == "not" and act.modality == "told" and act.act in self.known.entries:
-                for shape in self.known.entries[act.act].refused:
+            refused = self.known.entries[act.act].refused if act.act in self.known.entries else ()
+            if act.polarity == "not" and act.modality == "told":
+                for shape in refused:
                     self._take(act, shape)
+            elif not act.happens and act.polarity == "done" and len(act.agents) == 1:  # it is offered in vain
+                for shape in refused:
+                    self._take(act, shape.model_copy(update={"who": "agent"}))
         self._agree()
         struck = self._strike()
         moves = self._moves(struck)
@@ -177,7 +181,7 @@ class _Stage:
                 self.lift = Lift(people[0], Carry[shape.carry.upper()], shape.spins)
             case shapes.Strike():
                 both = self.known.entries[act.act].mutual
-                self.blows.append((("a", "b") if both else people, shape))
+                self.blows.append((("a", "b") if both else people, shape, act))
 
     def _place(self, act: Act, shape: shapes.Place) -> None:
         if shape.way == "behind":
@@ -216,7 +220,7 @@ class _Stage:
         return Move(
             who, way, min(shape.speed * act.speed, 3.0), turns,
             shape.stops or any(r.kind == "until" for r in act.order),
-            shape.linked, way is not Way.AFTER and self._late(act), metres, shape.near, shape.backwards,
+            shape.linked, way is not Way.AFTER and self._late(act), metres, shape.near, shape.backwards, shape.gait,
         )  # fmt: skip
 
     def _chase(self, act: Act, shape: shapes.Go) -> None:
@@ -234,6 +238,13 @@ class _Stage:
         going = {other.id for other, entry in self.done if _goes(entry)}
         return any(other.id not in going for other in before)
 
+    def _follows(self, act: Act) -> bool:
+        """True for an act that comes after what somebody does until then."""
+        return any(
+            self.level[act.id] > self.level[other.id] and not (other.already or _only_stays(entry))
+            for other, entry in self.done
+        )
+
     def _touch(self, act: Act, shape: shapes.Touch) -> None:
         if self.contact is not None:
             return
@@ -245,10 +256,7 @@ class _Stage:
         hands = act.side if act.side and shape.hands in ("left", "right") else shape.hands
         sides = {"both": SIDES, "none": ()}.get(hands, (hands,))
         times = min(act.times or shape.times, 5) if shape.times else 0
-        late = any(
-            self.level[act.id] > self.level[other.id] and not (other.already or _only_stays(entry))
-            for other, entry in self.done
-        )
+        late = self._follows(act)
         behind = shape.behind or giver in self.behind or FROM_BEHIND in act.manner
         behind = behind or (region is Region.BACK and not any(e.mutual for _, e in self.done))
         self.contact = Contact(giver, region, sides, times, late, behind, shape.fells)
@@ -265,7 +273,8 @@ class _Stage:
         comes = next((move.person for move in self.moves if move.way is Way.TO), "")
         if self.lift is not None and comes:
             self.lift = replace(self.lift, comes=comes)
-        if self.lift is not None and self.twirls:
+        turns = any(move.way in (Way.TURN, Way.FACE) for move in self.moves)
+        if self.lift is not None and (self.twirls or turns):
             self.lift, self.twirls = replace(self.lift, spins=self.lift.carry is not Carry.BACK), ""
         for (
             who,
@@ -285,11 +294,12 @@ class _Stage:
         """The blows, in the order in which they are told."""
         if not self.blows:
             return None
-        people, shape = self.blows[0]
+        people, shape, act = self.blows[0]
         bout = Bout[shape.bout.upper()]
         if len(people) == 2:
             return Strike(bout, "ab")
-        turns = "".join(dict.fromkeys("".join(each) for each, _ in self.blows))
+        turns = "".join(dict.fromkeys("".join(each) for each, *_ in self.blows))
+        turns = turns if len(self.blows) > 1 else turns * min(act.times or 1, 5)
         hit = _other(people[0])
         answered = any(
             hit in other.agents and shape.do in ("posture", "go")
@@ -297,7 +307,7 @@ class _Stage:
             for shape in e.stage
         )
         goes_on = shape.goes_on or (len(self.blows) > 1 and not answered)
-        return Strike(bout, turns, goes_on, answered)
+        return Strike(bout, turns, goes_on, answered, late=self._follows(act))
 
     def _moves(self, struck: Strike | None) -> tuple[Move, ...]:
         if self.hold is not None:
@@ -313,7 +323,7 @@ class _Stage:
             other = _other(struck.turns[0])
             own = next((m for m in self.moves if m.person == other and m.way in _DODGES), None)
             return struck_moves(struck, own, down=other in self.changes)
-        told = [replace(move, linked=move.linked or self.linked) for move in dict.fromkeys(self.moves)]
+        told = [replace(move, linked=move.linked or self.linked) for move in fastest(self.moves)]
         made = finished(told, until=any(move.until for move in self.moves))
         if not goes(made):
             stay = self.done and all(_only_stays(e) and len(act.agents) == 2 for act, e in self.done)
@@ -347,11 +357,13 @@ class _Stage:
     def _gesturing(self, moves: Sequence[Move]) -> frozenset[str]:
         gone = {move.person for move in moves if move.way not in (Way.STAY, Way.BACKS)}
         each = len(self.gestures) == 2 and not any(len(act.agents) == 2 for act, _ in self.done)
-        own = {who: sum(who in act.agents for act, _ in self.done) for who in "ab"}
+        own = {who: sum(who in act.agents and not _only_stays(e) for act, e in self.done) for who in "ab"}
         return frozenset(
             who
             for who, gesture in self.gestures.items()
-            if (gesture.hand in STOOD or each) and own[who] < 2 and who not in gone
+            if (gesture.hand in STOOD or each or _other(who) in self.changes)
+            and own[who] < 2
+            and who not in gone
         )
 
 

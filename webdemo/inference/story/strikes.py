@@ -39,12 +39,14 @@ class Strike:
         turns: who strikes, in order, "a" and "b", over and over where ``goes_on``.
         goes_on: they strike through the whole beat.
         answered: the other ducks, falls or steps back at the first blow.
+        late: something else goes on until then.
     """
 
     bout: Bout
     turns: str
     goes_on: bool = True
     answered: bool = False
+    late: bool = False
 
 
 @dataclass(frozen=True)
