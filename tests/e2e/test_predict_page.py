@@ -119,6 +119,23 @@ def test_two_methods_go_on_side_by_side_on_one_clock(page: Page, tmp_path: Path)
     choose(page, "#predict-other", "nothing")
 
 
+def test_two_people_have_several_futures_by_a_seed(page: Page, tmp_path: Path) -> None:
+    upload(page, write(walking(3.0), tmp_path / "walkers.npz")[0])
+    people(page, 2)
+    seed = page.locator("#predict-seed")
+    expect(seed).to_be_hidden()
+    choose(page, "#predict-method", "InterGen, both together")
+    expect(seed).to_be_visible()
+    seed.locator("input").fill("7")
+    page.click("button#predict-generate")
+    expect(page.locator("#predict-status .pd-done")).to_contain_text("3 samples done", timeout=SLOW)
+    page.wait_for_function("window.__pasdedeux.player.futures.samples.length === 3")
+    assert page.evaluate("window.__pasdedeux.player.futures.from") == 45
+    expect(page.locator("#predict-curves .legendtext", has_text="InterGen")).to_be_visible(timeout=SLOW)
+    choose(page, "#predict-method", "Motion MLP")
+    expect(seed).to_be_hidden()
+
+
 def test_a_result_of_another_tab_goes_on(page: Page) -> None:
     page.get_by_role("tab", name="Generate").click()
     page.fill("#prompt textarea", "two people walk")

@@ -27,10 +27,10 @@ from webdemo.inference.pipelines.predictor import (
     above_floor,
     faded,
     joined,
-    mean_steps,
     with_bones_of,
     without_jump,
 )
+from webdemo.inference.predict_request import mean_steps
 from webdemo.ui.text.examples import CLIPS
 
 

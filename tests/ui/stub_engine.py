@@ -15,6 +15,7 @@ from motion.metrics import compare
 from motion.transforms import heading_matrix
 from webdemo.inference.live import LiveFrame, LiveProgress, LiveRequest, paced
 from webdemo.inference.live_take import LiveTake
+from webdemo.inference.methods import method
 from webdemo.inference.partner import Belief
 from webdemo.inference.predict_request import PredictRequest, PredictResult, with_people
 from webdemo.inference.requests import Cancelled, GenerateRequest, Progress, ReactRequest, Result
@@ -60,14 +61,18 @@ def beside(person: Clip, role: str, seed: int) -> Duet:
 
 
 def drift(request: PredictRequest) -> PredictResult:
-    """Everyone rises after the marker, by a centimetre a frame, or two by another method than the usual."""
+    """Everyone rises after the marker, by a centimetre a frame, or two by another method than the usual.
+
+    A method for two people has three futures, each half as fast again as the one before.
+    """
     past, frames = stacked_positions(request.past), round(request.seconds * FPS)
     pace = 0.01 if request.model == PredictRequest.model else 0.02
     rise = pace * np.arange(1, frames + 1)[:, None, None] * np.array([0, 1.0, 0])
-    whole = np.concatenate([past, past[:, -1:] + rise], axis=1)
+    futures = range(3 if "two people" in method(request.model).takes else 1)
+    whole = [np.concatenate([past, past[:, -1:] + 1.5**i * rise], axis=1) for i in futures]
     known = 0 if request.truth is None else request.truth.num_frames
     return PredictResult(
-        duets=(with_people(request.motion, whole),),
+        duets=tuple(with_people(request.motion, each) for each in whole),
         manifest={"model": request.model, "request": request.to_dict()},
         past_frames=request.past_frames,
         truth=request.truth,

@@ -11,6 +11,7 @@ import time
 from collections.abc import Callable
 from dataclasses import replace
 from functools import partial
+from itertools import count
 from typing import Any
 
 
@@ -144,20 +145,26 @@ def measure_prediction(repeats: int) -> dict[str, float]:
     recursion; and milliseconds that the virtual agent takes for all its looks at five seconds of a person."""
     import numpy as np
 
-    from motion import SMPL22
-    from webdemo.inference.engine import Engine
+    from motion import SMPL22, Duet
+    from webdemo.inference import Engine, PredictRequest
+    from webdemo.inference.actor import FPS
     from webdemo.inference.methods import methods
 
     sway = 0.05 * np.sin(np.arange(150) / 5)[:, None, None] * SMPL22.rest_positions()
     moving = SMPL22.rest_positions() + sway
-    past = np.stack([moving[:30]] * 2)
+    past, seeds = Duet.from_positions(np.stack([moving[:30]] * 2), fps=FPS), count()
     figures = {}
     engine = Engine()
+
+    def predict(model: str, frames: int) -> None:
+        asked = PredictRequest(motion=past, seconds=frames / FPS, seed=next(seeds), model=model)
+        for _ in engine.run(asked):
+            pass
+
     for i, found in enumerate(m for m in methods("predict") if m.weights):
-        predictor: Any = engine.pipeline(found.name)
         label = found.name if i else "predict"
-        predictor.predict(past, 25)
-        short, long = (timed(partial(predictor.predict, past, n), repeats) for n in (25, 120))
+        predict(found.name, 25)
+        short, long = (timed(partial(predict, found.name, n), repeats) for n in (25, 120))
         figures[f"{label}_25_frames_ms"] = 1000 * statistics.median(short)
         figures[f"{label}_four_seconds"] = statistics.median(long)
     agent: Any = engine.pipeline("agent")

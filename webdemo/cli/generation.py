@@ -187,6 +187,9 @@ def add_predict(commands: Any) -> None:
     parser.add_argument(
         "--seconds", type=float, default=PredictRequest.seconds, help="how many seconds to predict"
     )
+    parser.add_argument(
+        "--seed", type=int, default=PredictRequest.seed, help="of a method that draws its futures"
+    )
     parser.add_argument("--model", default=PredictRequest.model, help=names_of("predict"))
     parser.add_argument("--out", type=Path, required=True, help="file to write: .npz, .bvh …")
     parser.set_defaults(job=predict)
@@ -201,6 +204,7 @@ def predict(options: argparse.Namespace) -> dict[str, Any]:
         motion=read(options.past, fps=options.file_fps, longest=LONGEST, animation=options.animation),
         marker=options.marker,
         seconds=options.seconds,
+        seed=options.seed,
         model=options.model,
     )
     result = run(request)

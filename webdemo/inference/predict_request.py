@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import hashlib
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from typing import Any
 
@@ -13,8 +14,9 @@ from motion import SMPL22, Clip, Duet, InputError, stacked_positions
 
 from . import methods
 from .actor import FPS, at_30_fps
-from .limits import number
+from .limits import MAX_SEED, number, whole
 from .results import Result
+from .timer import StageTimer
 
 Array = NDArray[np.floating]
 
@@ -34,19 +36,27 @@ class PredictRequest:
             only compared with it.
         marker: second at which the past ends; the end of the motion by default.
         seconds: length of the prediction.
+        seed: of a method that draws its futures.
         model: a method that predicts, see :mod:`webdemo.inference.methods`.
     """
 
     motion: Clip | Duet
     marker: float | None = None
     seconds: float = 2.0
+    seed: int = 0
     model: str = "motion-mlp"
 
     def __post_init__(self) -> None:
         set_ = object.__setattr__
         method = methods.method(self.model, "predict")
         set_(self, "seconds", number("Length", self.seconds, *method.seconds, " seconds"))
+        set_(self, "seed", whole("Seed", self.seed, 0, MAX_SEED))
         set_(self, "motion", check_motion(self.motion))
+        if "two people" in method.takes and not isinstance(self.motion, Duet):
+            raise InputError(
+                f"{method.label} continues two people, and this motion is of one: choose another method, or give "
+                "both people."
+            )
         length = self.motion.seconds
         marker = length if self.marker is None else number("Marker", self.marker, 0.0, 1e6, " seconds")
         if round(length * FPS) < round(PAST_SECONDS * FPS):
@@ -95,7 +105,7 @@ class PredictRequest:
         }
         return {
             "kind": "predict", "motion": motion, "marker": self.marker, "seconds": self.seconds,
-            "model": self.model,
+            "seed": self.seed, "model": self.model,
         }  # fmt: skip
 
 
@@ -139,14 +149,14 @@ def _check_steps(past: Clip | Duet, marker: float) -> None:
 
 @dataclass(frozen=True, kw_only=True)
 class PredictResult(Result):
-    """A prediction: the only entry of ``duets`` holds the past and the prediction, of one person or two.
+    """A prediction: ``duets`` holds the past and what follows it, once or as several futures, of one person or two.
 
     Attributes:
         past_frames: the first predicted frame.
         truth: the recorded continuation, as far as it exists.
-        error: (frames of truth,) mean distance of joints from the truth, in millimetres (MPJPE).
+        error: (frames of truth,) mean distance of joints from the truth, in millimetres (MPJPE), over all futures.
         speed: (predicted frames,) mean distance per joint and frame, in millimetres (MPJS, eq. 2.13 of
-            Chopin's thesis).
+            Chopin's thesis), likewise.
         true_speed: (frames of truth,) the same for the recorded continuation.
     """
 
@@ -165,3 +175,43 @@ class PredictResult(Result):
         return with_people(
             motion, np.concatenate([stacked_positions(motion), stacked_positions(self.truth)], axis=1)
         )
+
+
+def mean_steps(positions: Array) -> Array:
+    """(…, T, J, 3) → (…, T − 1) mean distance per joint from frame to frame."""
+    return np.linalg.norm(np.diff(positions, axis=-3), axis=-1).mean(-1)
+
+
+def predicted(
+    request: PredictRequest, futures: Sequence[Array], timer: StageTimer, now: float
+) -> PredictResult:
+    """The result, without a manifest, of a request and its futures.
+
+    Args:
+        request: what was asked for.
+        futures: each (people, F, 22, 3) metres in the world of the past.
+        timer: of the run.
+        now: when the last lap ended.
+    """
+    past = stacked_positions(request.past).astype(np.float64)
+    whole = np.stack([np.concatenate([past, future], axis=1) for future in futures])  # (N, people, T, 22, 3)
+    first = past.shape[1]
+    truth, error, true_speed = request.truth, np.empty(0), np.empty(0)
+    if truth is not None:
+        real = stacked_positions(truth).astype(np.float64)
+        error = np.linalg.norm(whole[:, :, first : first + real.shape[1]] - real, axis=-1).mean(
+            axis=(0, 1, 3)
+        )
+        true_speed = mean_steps(np.concatenate([past[:, -1:], real], axis=1)).mean(0)
+    speed = mean_steps(whole[:, :, first - 1 :]).mean(axis=(0, 1))
+    timer.lap("finish", now)
+    return PredictResult(
+        duets=tuple(with_people(request.motion, each) for each in whole),
+        manifest={},
+        timings={**timer.stages, "total": round(timer.elapsed, 4)},
+        past_frames=first,
+        truth=truth,
+        error=tuple((1000 * error).round(2).tolist()),
+        speed=tuple((1000 * speed).round(3).tolist()),
+        true_speed=tuple((1000 * true_speed).round(3).tolist()),
+    )

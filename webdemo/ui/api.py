@@ -332,12 +332,13 @@ class PredictEndpoint(Endpoint):
                 gr.Textbox(PredictRequest.model, label=" or ".join(m.name for m in methods("predict"))),
                 gr.Textbox("", label=WHICH),
                 gr.Number(0, label=RATE),
+                gr.Number(0, precision=0, label="seed of a method that draws its futures"),
             ]
             self._publish(self.predict, "predict", inputs)
 
     def predict(
         self, past: str, marker: float, seconds: float, model: str, animation: str = "", fps: float = 0.0,
-        progress: gr.Progress = PROGRESS,
+        seed: int = 0, progress: gr.Progress = PROGRESS,
     ) -> Answer:  # fmt: skip
         """Predicts what comes after the past of a motion, for one person or two.
 
@@ -351,7 +352,7 @@ class PredictEndpoint(Endpoint):
                 raise InputError("There is no past: send a motion file, such as a .bvh.")
             return PredictRequest(
                 motion=read(Path(past), fps=fps or None, longest=LONGEST, animation=animation or None),
-                marker=marker or None, seconds=seconds, model=model,
+                marker=marker or None, seconds=seconds, seed=seed, model=model,
             )  # fmt: skip
 
         file = Path(past or "")

@@ -150,7 +150,7 @@ def test_a_name_is_used_once() -> None:
 
 
 def test_a_method_for_a_task_does_that_task() -> None:
-    assert {m.name for m in methods("predict")} == {"motion-mlp", "mawgan", "still"}
+    assert {m.name for m in methods("predict")} == {"motion-mlp", "mawgan", "intergen-together", "still"}
     with pytest.raises(InputError, match="choose one of motion-mlp"):
         method("intergen", "predict")
     with pytest.raises(InputError, match="choose one of"):

@@ -160,8 +160,9 @@ def test_two_methods_of_one_person_stand_side_by_side(tab: PredictTab, tmp_path:
 
 def test_methods_without_weights_are_not_offered(tmp_path: Path) -> None:
     assert [name for _, name in predict_choices(tmp_path)] == ["motion-mlp", "still"]
-    (tmp_path / "mawgan").mkdir()
-    (tmp_path / "mawgan" / "config.json").write_text("{}")
+    for name in ("mawgan", "intergen"):
+        (tmp_path / name).mkdir()
+        (tmp_path / name / "config.json").write_text("{}")
     assert [name for _, name in predict_choices(tmp_path)] == [found.name for found in methods("predict")]
 
 

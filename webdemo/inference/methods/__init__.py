@@ -22,13 +22,33 @@ from webdemo.inference.method import Method, Task, Variant
 from webdemo.inference.own import method_of, read_entries
 from webdemo.inference.own.classes import method_of_class
 
-from . import agent, bigraphdiff, interformer, intergen, mawgan, motion_mlp, regennet, still
+from . import (
+    agent,
+    bigraphdiff,
+    interformer,
+    intergen,
+    intergen_together,
+    mawgan,
+    motion_mlp,
+    regennet,
+    still,
+)
 
 log = logging.getLogger(__name__)
 
 BUILT_IN = tuple(
     module.METHOD
-    for module in (intergen, bigraphdiff, regennet, interformer, agent, motion_mlp, mawgan, still)
+    for module in (
+        intergen,
+        bigraphdiff,
+        regennet,
+        interformer,
+        agent,
+        motion_mlp,
+        mawgan,
+        intergen_together,
+        still,
+    )
 )
 """In the order in which the page offers them; the first one for a task is that task's default."""
 PATHS_VARIABLE = "PASDEDEUX_METHODS"

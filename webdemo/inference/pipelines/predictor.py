@@ -14,7 +14,7 @@ from motion import SMPL22, stacked_positions
 from motion.vectors import unit
 from webdemo.inference.actor import FPS
 from webdemo.inference.cancel import CancelToken
-from webdemo.inference.predict_request import PredictRequest, PredictResult, with_people
+from webdemo.inference.predict_request import PredictRequest, mean_steps, predicted
 from webdemo.inference.results import Progress, Result
 from webdemo.inference.timer import StageTimer
 
@@ -28,11 +28,6 @@ _OVERLAP = 10
 _SEAM_TRIES = 8
 _SEAM_FADE = 0.7
 """Factor by which a correction at the seam decays each frame."""
-
-
-def mean_steps(positions: Array) -> Array:
-    """(…, T, J, 3) → (…, T − 1) mean distance per joint from frame to frame."""
-    return np.linalg.norm(np.diff(positions, axis=-3), axis=-1).mean(-1)
 
 
 def without_jump(past: Array, future: Array, largest: Array) -> Array:
@@ -179,23 +174,4 @@ class PredictorPipeline:
             cancel.raise_if_cancelled()
         future = self._cut(whole, past.shape[1], frames)
         now = timer.lap("sample", now)
-        shown = np.concatenate([past, future], axis=1)
-        truth = request.truth
-        error: Array = np.empty(0)
-        true_speed: Array = np.empty(0)
-        if truth is not None:
-            real = stacked_positions(truth).astype(np.float64)
-            error = np.linalg.norm(future[:, : real.shape[1]] - real, axis=-1).mean(axis=(0, 2))
-            true_speed = mean_steps(np.concatenate([past[:, -1:], real], axis=1)).mean(0)
-        speed = mean_steps(shown[:, past.shape[1] - 1 :]).mean(0)
-        timer.lap("finish", now)
-        yield PredictResult(
-            duets=(with_people(request.motion, shown),),
-            manifest={},
-            timings={**timer.stages, "total": round(timer.elapsed, 4)},
-            past_frames=past.shape[1],
-            truth=truth,
-            error=tuple((1000 * error).round(2).tolist()),
-            speed=tuple((1000 * speed).round(3).tolist()),
-            true_speed=tuple((1000 * true_speed).round(3).tolist()),
-        )
+        yield predicted(request, [future], timer, now)

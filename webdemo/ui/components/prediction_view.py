@@ -29,13 +29,17 @@ _SIDES = ("left", "right")
 def prediction_payload(*results: PredictResult, title: str = "") -> Payload:
     """The player's value: the past marked as given, what really followed as a ghost, the error below.
 
-    Two results of one past, by different methods, stand side by side on one clock.
+    Two results of one past, by different methods, stand side by side on one clock. The futures of a single result
+    are samples, of which the others show as ghosts.
     """
     motion = without_name(results[0].duets[0])
-    samples = [
-        _sample(result, with_shown_roles(without_name(result.duets[0]), result.manifest))
-        for result in results
-    ]
+    if len(results) == 1 and len(results[0].duets) > 1:
+        made = [_sample(results[0], place) for place in range(len(results[0].duets))]
+        return {
+            **build_payload(made, skeleton=motion.skeleton, title=title),
+            "futures": results[0].past_frames,
+        }
+    samples = [_sample(result) for result in results]
     first = samples[0]
     if len(samples) > 1:
         curves = [
@@ -48,13 +52,14 @@ def prediction_payload(*results: PredictResult, title: str = "") -> Payload:
     return build_payload([first], skeleton=motion.skeleton, title=title)
 
 
-def _sample(result: PredictResult, motion: Clip | Duet) -> dict[str, Any]:
+def _sample(result: PredictResult, place: int = 0) -> dict[str, Any]:
+    motion = with_shown_roles(without_name(result.duets[place]), result.manifest)
     curves = [
         Curve("error", "Error", "m", _padded(result.error, motion.num_frames, result.past_frames)),
         Curve("speed", "Speed", "m/s", _speed(motion)),
     ]
     return sample_payload(
-        motion, label="1", curves=curves if result.error else curves[1:], ghost=ghost_of(motion, result),
+        motion, label=str(place + 1), curves=curves if result.error else curves[1:], ghost=ghost_of(motion, result),
         past_until=result.past_frames,
     )  # fmt: skip
 

@@ -56,6 +56,11 @@ def predict_choices(weights: Path | None = None) -> list[tuple[str, str]]:
     return [(method.label, method.name) for method in installed("predict", weights)]
 
 
+def _draws(model: str) -> bool:
+    """True of a method that draws its futures, which needs two people."""
+    return "two people" in method(model, "predict").takes
+
+
 def motion_of(source: Source) -> Clip | Duet:
     """All people of a source, the first called after it."""
     people = source.whole(LONGEST)
@@ -98,7 +103,7 @@ class PredictTab(SweepTab):
             raise InputError("There is no motion yet: drop a file, or pick an example or the last result.")
         return PredictRequest(
             motion=motion_of(source), marker=fields["marker"], seconds=fields["seconds"],
-            model=fields["model"],
+            seed=fields["seed"], model=fields["model"],
         )  # fmt: skip
 
     def title(self, request: PredictRequest) -> str:
@@ -118,7 +123,8 @@ class PredictTab(SweepTab):
 
     def presets(self) -> Mapping[str, tuple[str, str]]:
         """All methods beside each other."""
-        return {"Method beside method": ("model", "; ".join(label for label, _ in predict_choices()))}
+        listed = [label for label, name in predict_choices() if not _draws(name)]
+        return {"Method beside method": ("model", "; ".join(listed))}
 
     def beside_grid(self, made: Mapping[str, Result], fields: Mapping[str, Any]) -> dict[str, Any]:
         """The errors of all cells over their read-outs; the curves of one prediction are hidden."""
@@ -156,13 +162,17 @@ class PredictTab(SweepTab):
                             elem_id="predict-method", min_width=0, filterable=False,
                         )  # fmt: skip
                     self.about = gr.HTML(self.method_about(PredictRequest.model), elem_id="predict-about")
+                    self.seed = gr.Number(
+                        value=PredictRequest.seed, label="Seed", info="Same seed, same futures; empty for new ones.",
+                        elem_id="predict-seed", min_width=0, visible="hidden",
+                    )  # fmt: skip
                     self._sweeps(self._beside)
             self._results(EMPTY_TEXT)
         self.source = gr.State(None, time_to_live=3600)
         self.given = gr.Textbox("", visible=False)
         self.controls = {
             "source": self.source, "given": self.given, "marker": self.marker, "seconds": self.seconds,
-            "model": self.model, "other": self.other,
+            "model": self.model, "other": self.other, "seed": self.seed,
         }  # fmt: skip
         self._wire_run([self.go.click], record)
         self._wire_sweeps()
@@ -211,8 +221,8 @@ class PredictTab(SweepTab):
             button.click(read, **load).then(None, **self.compare)
         self.take.click(self.take_result, inputs=self.record, **load).then(None, **self.compare)
         self.model.input(
-            None, inputs=self.model, outputs=self.about,
-            js=looked_up({name: [self.method_about(name)] for _, name in predict_choices()}), **QUIET,
+            None, inputs=self.model, outputs=[self.about, self.seed],
+            js=looked_up({name: self._of_method(name) for _, name in predict_choices()}), **QUIET,
         )  # fmt: skip
         others = [self.camera.submit, *(button.click for button in (*self.chips, self.take))]
         gr.on(others, None, outputs=self.file, js="() => null", **QUIET)  # the file is no longer what is used
@@ -313,6 +323,11 @@ class PredictTab(SweepTab):
     def method_about(model: str) -> str:
         """One line on a method."""
         return method_line(method(model).summary)
+
+    @classmethod
+    def _of_method(cls, model: str) -> list[Any]:
+        """The line on a method, and whether the seed is shown."""
+        return [cls.method_about(model), {"__type__": "update", "visible": _draws(model) or "hidden"}]
 
     def answer(self, session: str, fields: Mapping[str, Any]) -> Iterator[Updates]:
         """Runs one method, or two side by side."""
