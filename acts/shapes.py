@@ -56,9 +56,13 @@ class Turn(_Shape):
 
 
 class Stay(_Shape):
-    """Standing by: in place, facing the other, or with the back to them; ``frozen`` without any movement."""
+    """Standing by: in place, facing the other, or with the back to them; ``frozen`` without any movement.
+
+    Where a story begins with it, the two are ``apart`` metres from each other; 0 leaves that free.
+    """
 
     do: Literal["stay"] = "stay"
+    apart: Metres = 0.0
     facing: Literal["", "other", "away"] = ""
     frozen: bool = False
 
@@ -150,10 +154,13 @@ class Touch(_Shape):
 
 
 class Hold(_Shape):
-    """Both in a hold while they go round: "closed" as in a waltz, a "ring" with both hands joined, or a "twirl"."""
+    """Both in a hold while they go round: "closed" as in a waltz, a "ring" with both hands joined, or a "twirl".
+
+    Two whose "palms" are against each other's lean in and stay where they are.
+    """
 
     do: Literal["hold"] = "hold"
-    hold: Literal["closed", "ring", "twirl"]
+    hold: Literal["closed", "ring", "twirl", "palms"]
 
 
 class Link(_Shape):

@@ -282,3 +282,18 @@ def test_who_runs_away_gets_up_to_the_speed_of_a_run() -> None:
 def test_who_comes_up_and_walks_past_does_not_stop_on_the_way() -> None:
     past = plan((Move("a", Way.TO), Move("a", Way.PAST), Move("b", Way.STAY)), BEHIND_B, 150)[0]
     assert np.diff(past.places[:, 1]).min() > 0.2
+
+
+def test_who_overtakes_comes_from_behind_and_ends_ahead_of_a_person_who_walks_on() -> None:
+    begin, found = ways("The young man overtakes the old one.", seconds=5.0)
+    assert begin.places[0, 1] < begin.places[1, 1] - 1.0 and np.allclose(begin.headings, 0.0)
+    gone = found[1].places[-1, 1] - begin.places[1, 1]
+    assert gone > 1.0 and found[0].places[-1, 1] > found[1].places[-1, 1] + 0.8
+    walks = [move.way for move in moves("A walks on slowly, and B overtakes him.") if move.person == "a"]
+    assert walks == [Way.AHEAD], "who is overtaken walks past nobody"
+
+
+def test_who_moonwalks_past_the_other_has_their_back_to_where_they_go() -> None:
+    begin, found = ways("He moonwalks past her.", seconds=5.0)
+    assert abs(begin.headings[0]) == math.pi and found[0].places[-1, 1] > begin.places[1, 1] + 1.0
+    assert found[0].headings is not None and np.nanmax(np.cos(found[0].headings)) < -0.99

@@ -22,6 +22,8 @@ LEFT, RIGHT = 0, 1
         ("couple dancing a slow waltz", Hold.CLOSED),
         ("They take each other by both hands and spin round and round.", Hold.RING),
         ("Two girls join hands and dance around in circles.", Hold.RING),
+        ("They push palm against palm.", Hold.PALMS),
+        ("They try to push each other over, palms against palms.", Hold.PALMS),
         # no hold
         ("They dance.", None),
         ("They hold hands and walk.", None),
@@ -75,3 +77,10 @@ def test_the_hands_over_a_twirl_are_above_both_heads_and_in_reach_of_both() -> N
         pose = upright(places[person, 0], angle)
         assert hand[1] > pose[SMPL22.index("head"), 1] + 0.1
         assert np.linalg.norm(hand - pose[SMPL22.index("right_shoulder")]) < 0.56
+
+
+def test_palms_are_against_palms_before_the_shoulders_of_two_who_lean_in_and_do_not_turn() -> None:
+    hands = joined(Hold.PALMS, np.array([[[0.0, 0.0]], [[0.0, Hold.PALMS.value]]]))[:, :, 0]
+    for own, theirs in ((LEFT, RIGHT), (RIGHT, LEFT)):
+        assert np.linalg.norm(hands[0, own] - hands[1, theirs]) < 0.15 and hands[0, own][1] > 1.2
+    assert Hold.PALMS.turns == 0 and Hold.PALMS.lean > 0.2 and Hold.RING.lean == 0

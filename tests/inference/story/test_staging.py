@@ -58,6 +58,12 @@ def test_a_gesture_beside_the_posture_of_the_other_is_given() -> None:
     assert "b" not in told("B raises one arm.").gesturing, "which the network makes"
 
 
+def test_who_stands_over_the_other_begins_near_them() -> None:
+    placed = told("A kneels and B stands over her.").placed
+    assert placed is not None and placed.gap() < 1.0
+    assert told("A kneels and B stands still.").placed is None
+
+
 def test_hands_that_are_tied_are_behind_the_back() -> None:
     tied = told("The robber ties her hands.")
     assert tied.gestures["b"].hand is Hand.BEHIND and tied.contact is not None and tied.contact.behind

@@ -16,7 +16,7 @@ from webdemo.inference.story.floor import Standing, Way2D
 from webdemo.inference.story.holds import Hold, joined, raised
 from webdemo.inference.story.moves import Move
 from webdemo.inference.story.plan import Window
-from webdemo.inference.story.poses import LOWER, TRUNK, upright
+from webdemo.inference.story.poses import LOWER, TRUNK, bending, upright
 from webdemo.inference.story.ways import Way
 
 from .scene_hands import Course
@@ -194,7 +194,7 @@ def given_hold(
     frames = (at + start - window.start + window.past).tolist()
     parts = []
     for person, course in enumerate(courses):
-        poses = np.stack([upright(course.places[t], float(course.headings[t])) for t in at])
+        poses = np.stack([bending(course.places[t], float(course.headings[t]), kind.lean) for t in at])
         poses[:, _WRISTS] = np.moveaxis(wrists[person], 0, 1)
         poses -= poses[:, :1].copy()
         parts.append(KnownFrames(person, frames, placement.to_network(poses), [*TRUNK, *_WRISTS]))

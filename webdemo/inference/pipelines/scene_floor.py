@@ -226,7 +226,7 @@ def plan_note(request: SceneRequest, go_on: Callable[[], None] = lambda: None) -
         go_on()
         ways = _said_together(told) or [
             *_said_postures(told),
-            *(f"person {m.person.upper()} {m.way.value}" for m in told.moves if m.way is not Way.STAY),
+            *(f"person {m.person.upper()} {m.way.value}" for m in told.moves if _is_said(m)),
         ]
         if ways:
             said.append(
@@ -237,6 +237,11 @@ def plan_note(request: SceneRequest, go_on: Callable[[], None] = lambda: None) -
     return [
         f"From the words: {'; '.join(said)}. A path that you draw in the tab Scene takes the place of this."
     ]
+
+
+def _is_said(move: Move) -> bool:
+    """True for a move that takes somebody elsewhere or turns them."""
+    return move.way is not Way.STAY and bool(move.turns or move.way is not Way.HOLD)
 
 
 def _said_together(told: Told) -> list[str]:

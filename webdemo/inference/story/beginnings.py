@@ -23,6 +23,8 @@ BACKS = 0.5
 """Metres between the pelvises of two people who stand or sit back to back."""
 RUN_UP = 2.5
 """Metres that somebody runs who jumps on the other's back."""
+LEAD = 1.6
+"""Metres by which somebody is ahead who is overtaken."""
 REACH = 0.75
 """Metres between two people one of whom touches the other."""
 _START = {Way.AWAY: 1.1, Way.PAST: 2.2, Way.ROUND: 1.2, Way.BACK: 0.9}
@@ -70,6 +72,12 @@ def starting(moves: Sequence[Move], seconds: float, *, near: bool = False) -> St
     if Way.AFTER in ways:
         lead = 1 if ways[Way.AFTER].person == "a" else -1
         return Standing(np.array([[0.0, 0.0], [0.0, lead * BEHIND]]), np.zeros(2))
+    if Way.PAST in ways and Way.AHEAD in ways and ways[Way.PAST].person != ways[Way.AHEAD].person:
+        lead = 1 if ways[Way.PAST].person == "a" else -1
+        return Standing(np.array([[0.0, 0.0], [0.0, lead * LEAD]]), np.zeros(2))
+    if Way.PAST in ways and ways[Way.PAST].backwards:
+        facing = math.pi if ways[Way.PAST].person == "a" else 0.0  # both look the same way
+        return Standing(np.array([[0.0, 0.0], [0.0, _START[Way.PAST]]]), np.full(2, facing))
     if Way.BACKS in ways:
         return Standing(np.array([[0.0, 0.0], [0.0, -0.6]]), np.array([0.0, math.pi]))
     gap = next((_START[move.way] for move in moves if move.way in _START), REACH if near else 1.4)

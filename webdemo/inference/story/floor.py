@@ -247,10 +247,11 @@ def _away(
 def _past(move: Move, track: Track, other: Array, to: Array, seconds: float) -> None:
     """A walk past the other, to one side of them."""
     here, gap = track.place, float(np.linalg.norm(other - track.place))
-    beyond = max(1.3, min(gap, seconds * move.speed - gap))
+    beyond = max(1.3, min(gap, seconds * move.speed - gap)) + move.metres
     aside = ASIDE * np.array([to[1], -to[0]])
     line = np.stack([here, here + 0.5 * gap * to + 0.7 * aside, other + aside, other + beyond * to + aside])
-    track.walk(smoothed(line), min(seconds, (gap + beyond) / min(move.speed, MOST) + EASE))
+    facing = math.atan2(-to[0], -to[1]) if move.backwards else None
+    track.walk(smoothed(line), min(seconds, (gap + beyond) / min(move.speed, MOST) + EASE), heading=facing)
 
 
 def _ahead(move: Move, track: Track, gap: float, to: Array, seconds: float, *, last: bool) -> None:

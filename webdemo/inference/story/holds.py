@@ -18,11 +18,17 @@ class Hold(Enum):
 
     CLOSED = 0.5
     RING = 0.85
+    PALMS = 0.95
 
     @property
     def turns(self) -> float:
         """Turns a second of the two around the middle between them."""
-        return 0.14 if self is Hold.CLOSED else 0.17
+        return {Hold.CLOSED: 0.14, Hold.RING: 0.17, Hold.PALMS: 0.0}[self]
+
+    @property
+    def lean(self) -> float:
+        """Radians by which the two lean towards each other."""
+        return 0.25 if self is Hold.PALMS else 0.0
 
 
 TWIRL = 0.42
@@ -50,9 +56,10 @@ def joined(kind: Hold, places: Array) -> Array:
     ahead = (b - a) / np.linalg.norm(b - a, axis=-1, keepdims=True).clip(min=1e-6)
     left = np.cross([0.0, 1.0, 0.0], ahead)  # of a
     middle, up = (a + b) / 2, np.array([0.0, 1.0, 0.0])
-    if kind is Hold.RING:
-        one, other = (middle + side * 0.24 * left + 1.05 * up for side in (1, -1))
-        gap = 0.03 * ahead
+    if kind is not Hold.CLOSED:
+        wide, high, apart = (0.24, 1.05, 0.03) if kind is Hold.RING else (0.17, 1.3, 0.06)
+        one, other = (middle + side * wide * left + high * up for side in (1, -1))
+        gap = apart * ahead
         return np.stack([[one - gap, other - gap], [other + gap, one + gap]])
     hands = middle + 0.42 * left + 1.3 * up
     return np.stack(

@@ -53,13 +53,14 @@ def goes(found: Sequence[Move]) -> bool:
 
 
 def fastest(told: Sequence[Move]) -> list[Move]:
-    """The moves, each once: who walks away and runs away at once, runs."""
+    """The moves, each once: who walks away and runs away at once, runs; who walks ahead of another passes nobody."""
     found: dict[tuple[str, Way, bool], Move] = {}
     for move in told:
         key = move.person, move.way, move.late
         if key not in found or move.speed > found[key].speed:
             found[key] = move
-    return list(found.values())
+    ahead = {move.person for move in found.values() if move.way is Way.AHEAD}
+    return [move for move in found.values() if move.way is not Way.PAST or move.person not in ahead]
 
 
 def finished(made: Sequence[Move], *, until: bool) -> list[Move]:

@@ -229,6 +229,8 @@ def _belongs(act: Act, entry: Entry, later: Act, after: Entry, text: str) -> boo
         return True  # "picks her up and spins her around"
     if "lift" in does and later.agents == (act.patient,) and then.keys() == {"gesture"}:
         return True  # "lifts her up, and she spreads her arms"
+    if way in ("past", "ahead") and getattr(then.get("go"), "who", "") == "patient" and not same:
+        return True  # who is overtaken walks on meanwhile
     if way == "to" and next_way == "past" and same:
         return True  # who passes the other comes up to them on the way
     if ("lift" in does and "lift" in then) or _posture(does) == _posture(then) != "":

@@ -137,8 +137,9 @@ class _Stage:
 
     def _take(self, act: Act, shape: shapes.Shape) -> None:
         people = self._people(act, shape)
-        if isinstance(shape, shapes.Stay) and shape.frozen:
-            self.frozen |= set(people)
+        if isinstance(shape, shapes.Stay):
+            self.frozen |= set(people) if shape.frozen else set()
+            self.setting = replace(self.setting, apart=self.setting.apart or shape.apart)
         match shape:
             case shapes.Go(way="after") if len(people) == 2:
                 self._chase(act, shape)
@@ -174,7 +175,7 @@ class _Stage:
             case shapes.Hold(hold="twirl"):
                 self.twirls = people[0]
             case shapes.Hold():
-                self.hold = Hold.CLOSED if shape.hold == "closed" else Hold.RING
+                self.hold = Hold[shape.hold.upper()]
             case shapes.Link():
                 self.linked = True
             case shapes.Lift() if self.lift is None or self.lift.carry is Carry.UP:
@@ -218,7 +219,7 @@ class _Stage:
         metres = act.distance if act.distance is not None and way is Way.AHEAD else shape.metres
         turns = float(act.times) if act.times and way is Way.ROUND else shape.turns
         return Move(
-            who, way, min(shape.speed * act.speed, 3.0), turns,
+            who, way, min(shape.speed * (1.0 if shape.who == "patient" else act.speed), 3.0), turns,
             shape.stops or any(r.kind == "until" for r in act.order),
             shape.linked, way is not Way.AFTER and self._late(act), metres, shape.near, shape.backwards, shape.gait,
         )  # fmt: skip
@@ -372,9 +373,9 @@ def _other(who: str) -> str:
 
 
 def _is_attempt(act: Act, entry: Entry) -> bool:
-    """True for a blow that is only tried: it is struck, and the other is elsewhere."""
+    """True for a blow or a push that is only tried: it is struck past the other, or they push against each other."""
     tried = act.polarity == "done" and act.modality == "tried"
-    return tried and any(shape.do == "strike" for shape in entry.stage)
+    return tried and any(shape.do in ("strike", "hold") for shape in entry.stage)
 
 
 def _is_deep(act: Act) -> bool:

@@ -63,7 +63,7 @@ class Track:
             facing[still] = filled(facing, ~still, self.heading)[still]
             facing = self._turned_into(np.unwrap(facing))
         else:
-            facing = np.full(frames, heading)
+            facing = np.full(frames, self.heading + wrapped(heading - self.heading))
         self.headings[self.frame : stop] = facing
         self.place, self.heading, self.frame = at[-1], float(facing[-1]), stop
 
