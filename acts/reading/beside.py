@@ -145,7 +145,7 @@ def noun_acts(event: Event, known: Lexicon, rest: Sequence[int]) -> Iterator[tup
             preposition not in _NOUNS
             or ref.kind != "thing"
             or ref.lemma not in deeds(known)
-            or ref.place
+            or (ref.place and preposition != "with")
             or ref.bare
         ):
             continue

@@ -95,9 +95,10 @@ class Ellipsis:
         noun = self._lower(at - 1)
         if at - 1 == i or noun in PREPOSITIONS or noun in self._words.directions or self.has_verb(at):
             return ""
-        if any(self._words.is_person(self._lower(k)) for k in range(i + 1, at)):
-            return ""
         one = noun if count == 1 else noun.removesuffix("s")
+        before = [self._lower(k) for k in range(i + 1, at - 1)]
+        if any(map(self._words.is_person, (*before, one))) or any(word.endswith("s") for word in before):
+            return ""  # "two boxers throw punches"
         if one in self._words.seconds and self._lower(at) in self._words.directions and self._last:
             return f"{self._last} for"  # "march, (march for) eight counts forward"
         if (count > 1) == (one == noun) or not (self._is_deed(one) or self._is_deed(one.removesuffix("e"))):
@@ -137,6 +138,8 @@ class Ellipsis:
         ending = self._ending(word)
         if ending is None or self._words.part(word) or self._words.part(word.removesuffix("s")):
             return False
+        if ending == "s" and before == "her":  # "the friend behind her catches it"
+            return True
         if before in _OWNERS | _ARTICLES | PREPOSITIONS or before in self._words.numbers:
             return False
         if ending in ("s", "ed", "ing"):

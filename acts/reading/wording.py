@@ -112,6 +112,8 @@ class Text:
         """The offsets in the original of a stretch of what was parsed."""
         i = max(bisect.bisect_right(self._starts, first) - 1, 0)
         j = max(bisect.bisect_left(self._starts, last) - 1, i)
+        while j + 1 < len(self._pieces) and self._pieces[j][2] <= self._pieces[i][1]:
+            j += 1  # a verb that was supplied stands for the word behind it
         return self._pieces[i][1], self._pieces[j][2]
 
 

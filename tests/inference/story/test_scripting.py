@@ -26,7 +26,7 @@ BEATS = [
     ("He covers his eyes until she has run off.", ["cover-face run-away"]),
     ("He drops to one knee and proposes, and she nods.", ["kneel propose", "nod"]),
     ("A pushes B over, B falls down, then A helps B up.", ["push-over fall-down", "help-up"]),
-    ("A sits on a chair while B stands behind and cuts A's hair.", ["sit-down stand-still groom"]),
+    ("A sits on a chair while B stands behind and cuts A's hair.", ["sit-down stand-behind groom"]),
 ]
 
 

@@ -130,3 +130,15 @@ def test_who_kicks_begins_within_reach(words: str) -> None:
     placed = beginning(words)
     assert placed is not None and placed.gap() == pytest.approx(KICK)
     assert beginning("He kicks the ball.") is None
+
+
+def test_blows_are_struck_with_the_hands_that_the_words_name() -> None:
+    told = strike("He throws two jabs with the left.")
+    assert told is not None and told.hands == ("left", "left")
+    assert [(blow.person, blow.side) for blow in blows(told, 150)] == [(0, "left"), (0, "left")]
+
+
+def test_a_person_who_stands_behind_begins_behind() -> None:
+    placed = beginning("The coach stands behind her.")
+    assert placed is not None and placed.gap() < 0.7
+    assert placed.places[0, 1] < placed.places[1, 1] and placed.headings[1] == placed.headings[0] == 0.0

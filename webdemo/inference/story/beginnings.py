@@ -21,6 +21,8 @@ KICK = 1.0
 """Metres between two people one of whom kicks the other."""
 BACKS = 0.5
 """Metres between the pelvises of two people who stand or sit back to back."""
+BEHIND_BACK = 0.6
+"""Metres between two people one of whom stands behind the other."""
 RUN_UP = 2.5
 """Metres that somebody runs who jumps on the other's back."""
 LEAD = 1.6
@@ -43,6 +45,7 @@ class Setting:
         lift, strike: of the beat.
         twirls: one turns under the other's arm.
         apart: metres between them where they face each other; 0 leaves it free.
+        behind: the person who stands behind the other; "" for nobody.
     """
 
     backs: bool = False
@@ -52,6 +55,7 @@ class Setting:
     strike: Strike | None = None
     twirls: bool = False
     apart: float = 0.0
+    behind: str = ""
 
 
 def starting(moves: Sequence[Move], seconds: float, *, near: bool = False) -> Standing:
@@ -108,6 +112,10 @@ def standing(setting: Setting) -> Standing | None:
         return _from_behind(lifted)
     if lifted is not None and not lifted.comes:
         return _carried(lifted)
+    if setting.behind:
+        places = np.zeros((2, 2))
+        places["ab".index(setting.behind), 1] = -BEHIND_BACK
+        return Standing(places, np.zeros(2))
     struck = setting.strike
     if setting.twirls or (struck and struck.answered) or setting.apart:
         apart = TWIRL if setting.twirls else Bout.FISTS.value if struck else setting.apart

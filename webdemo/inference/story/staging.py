@@ -187,6 +187,7 @@ class _Stage:
     def _place(self, act: Act, shape: shapes.Place) -> None:
         if shape.way == "behind":
             self.behind.update(act.agents)
+            self.setting = replace(self.setting, behind=act.agents[0] if len(act.agents) == 1 else "")
             return
         here, backs = self.setting, shape.way == "back to back"
         beside = here.beside or shape.way == "beside"
@@ -308,7 +309,13 @@ class _Stage:
             for shape in e.stage
         )
         goes_on = shape.goes_on or (len(self.blows) > 1 and not answered)
-        return Strike(bout, turns, goes_on, answered, late=self._follows(act))
+        late = self._follows(act)
+        hands = tuple(each.side or "" for _, _, each in self.blows for _ in range(min(each.times or 1, 5)))
+        if len(set(turns)) == 1 and any(
+            hand in SIDES for hand in hands
+        ):  # "two jabs with the left and a cross"
+            return Strike(bout, turns[0] * len(hands), False, answered, late, hands)
+        return Strike(bout, turns, goes_on, answered, late)
 
     def _moves(self, struck: Strike | None) -> tuple[Move, ...]:
         if self.hold is not None:

@@ -40,6 +40,7 @@ class Strike:
         goes_on: they strike through the whole beat.
         answered: the other ducks, falls or steps back at the first blow.
         late: something else goes on until then.
+        hands: the hand of each blow, where the words name them; "" leaves it open.
     """
 
     bout: Bout
@@ -47,6 +48,7 @@ class Strike:
     goes_on: bool = True
     answered: bool = False
     late: bool = False
+    hands: tuple[str, ...] = ()
 
 
 @dataclass(frozen=True)
@@ -96,7 +98,7 @@ def turning(bout: Bout) -> float:
 
 def blows(struck: Strike, frames: int, *, first: int = 0) -> list[Blow]:
     """The blows of a beat of so many frames, from its ``first`` frame at which the two are at their distance."""
-    period = _PERIODS[struck.bout] * (1 if len(struck.turns) > 1 else 2)
+    period = _PERIODS[struck.bout] * (1 if len(set(struck.turns)) > 1 or struck.hands else 2)
     last = frames - (_FLIGHT + 6 if struck.bout is Bout.THROWS else _DRAWN)
     at = range(first + FIRST, last, period)
     made = [
@@ -107,7 +109,9 @@ def blows(struck: Strike, frames: int, *, first: int = 0) -> list[Blow]:
 
 
 def _hand(struck: Strike, number: int) -> str:
-    """Fists take turns; weapons, rackets and balls are in the right hand."""
+    """The hand that the words name; else fists take turns; weapons, rackets and balls are in the right hand."""
+    if (named := "".join(struck.hands[number : number + 1])) in ("left", "right"):
+        return named
     left = struck.bout is Bout.FISTS and number // len(struck.turns) % 2
     return "left" if left else "right"
 
