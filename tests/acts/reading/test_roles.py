@@ -72,7 +72,7 @@ def test_neither_denies_for_both() -> None:
 
 
 def test_what_stands_against_each_other_is_no_object() -> None:
-    assert told("They push each other over, palms against palms.") == [("push-over", "ab", None)]
+    assert told("They push each other over, palms against palms.") == [("push-palms", "ab", None)]
 
 
 def test_a_sleeper_lies() -> None:
