@@ -73,6 +73,7 @@ class Event:
         particles: those of ``words`` that belong to the verb, as "up" in "picks up".
         prepositions: (preposition, argument).
         denied, modality: of the clause.
+        countered: a clause with "but" follows.
         ongoing: it goes on when the clause begins, as in "is sitting" and "keeps walking".
         state: a phrase says it that hangs on a noun, as in "the lady on the bench".
         joint: how it is joined to event ``beside``, as in :class:`acts.plan.Relation`.
@@ -92,6 +93,7 @@ class Event:
     ongoing: bool = False
     state: bool = False
     modality: str = "told"
+    countered: bool = False
     joint: str = ""
     beside: int | None = None
     first: int = 0
@@ -240,11 +242,11 @@ class Frame:
         part = bound.get("part")
         who = patient.who if patient is not None and patient.kind == "person" else ""
         if not who and part is not None and self._of_other() and len(agents) == 1:
-            who = _other(agents)
+            who = other_of(agents)
         if self.subject == "a+b" and len(agents) == 1:
-            who = _other(agents)
+            who = other_of(agents)
         if len(who) == 2:
-            who = _other(agents) if len(agents) == 1 else ""
+            who = other_of(agents) if len(agents) == 1 else ""
         return who if who not in agents else ""
 
     def _of_other(self) -> bool:
@@ -287,7 +289,7 @@ def _beside(event: Event, used: list[int], taken: set[str], together: bool) -> f
 
 def _receiver(event: Event, agents: str) -> str:
     """The other person, if what the words name beside the frame is theirs or done for them; else ""."""
-    other = _other(agents)
+    other = other_of(agents)
     named = [ref for word, ref in event.prepositions if word not in ("without", "like")]
     for ref in (event.object, *named):
         if other and ref is not None and ref.kind in ("person", "part", "thing") and ref.who == other:
@@ -379,7 +381,8 @@ def _is_noun(element: _Element, ref: Ref, agents: str) -> bool:
     return ref.lemma in element.words and not others and not particle
 
 
-def _other(who: str) -> str:
+def other_of(who: str) -> str:
+    """The other of two people; "" for both."""
     return {"a": "b", "b": "a"}.get(who, "")
 
 

@@ -160,6 +160,8 @@ def noun_acts(event: Event, known: Lexicon, rest: Sequence[int]) -> Iterator[tup
             event, lemma=ref.lemma, object=person or event.dative, dative=None, words=[], particles=[],
             prepositions=others, noun=None, direction=None,
         )  # fmt: skip
+        if preposition == "for" and event.countered:  # "goes in for a kiss, but she turns away"
+            done.modality = "tried"
         words = [word for word in event.words if word not in event.particles]
         performed = replace(done, lemma=PERFORM, object=ref, dative=done.object, words=words, noun=done)
         yield preposition, done if ref.lemma in known.frames else performed

@@ -27,6 +27,7 @@ _CLAUSES = frozenset(
 _NOT_PLACES = frozenset(
     ("with", "without", "of", "from", "like", "for", "by", "after", "before", "to", "past", "off")
 )
+_OBJECTS = _OWNERS | _ARTICLES | {"it", "him", "them", "me", "you", "us"}
 _HALVES = frozenset((("a", "half"), ("a", "full")))
 """How a turn begins that stands for the adverb "around"."""
 PERFORM = "perform"
@@ -78,6 +79,9 @@ class Ellipsis:
             many, at = many or word.endswith("s") or word in self._words.both, at + 1
         elif not other:
             return
+        going = other and self._ending(self._lower(at)) == "ing" and not self.has_verb(at + 1)
+        if going:  # "one leading and the other following"
+            self._stands[at] = "are" if many else "is"
         if self._lower(at) in PREPOSITIONS - _NOT_PLACES and not self.has_verb(at):
             self._stands[at] = "are" if many else "is"
 
@@ -138,13 +142,18 @@ class Ellipsis:
         ending = self._ending(word)
         if ending is None or self._words.part(word) or self._words.part(word.removesuffix("s")):
             return False
-        if ending == "s" and before == "her":  # "the friend behind her catches it"
+        if before == "her" and self.is_object(i - 1):
             return True
         if before in _OWNERS | _ARTICLES | PREPOSITIONS or before in self._words.numbers:
             return False
         if ending in ("s", "ed", "ing"):
             return True
         return before in _ENDS | _CLAUSES
+
+    def is_object(self, i: int) -> bool:
+        """True for the "her" of "the friend behind her catches it", which owns no catches."""
+        verb = self._lower(i - 1) in PREPOSITIONS and self._ending(self._lower(i + 1)) == "s"
+        return self._lower(i) == "her" and verb and self._lower(i + 2) in _OBJECTS
 
     def has_verb(self, i: int) -> bool:
         """True if a verb, or another clause, stands between a word and the next mark."""

@@ -224,6 +224,9 @@ class Reader:
                 above.object = subject  # "helps him stand": in the syntax, he is only the second verb's
         self._joints.append((event, token, kind, beside))
         self.events.append(event)
+        countered = self._event_of(token.head) if token.dep_ == "conj" else None
+        if countered is not None and self._conjunction(token) == "but":
+            countered.countered = True
 
     def _owner(self, part: Ref, head: Token | None) -> Ref | None:
         """The person whose part of the body a phrase names: its owner, or whose clause it stands in."""
@@ -286,8 +289,11 @@ class Reader:
                 event.modality = "wished"
         if children & _NEARLY:
             event.modality = "tried"
-        if token.dep_ == "advcl" and {"as", "if"} <= {c.lower_ for c in token.children if c.dep_ == "mark"}:
+        marks = {c.lower_ for c in token.children if c.dep_ in ("mark", "prep")}
+        if token.dep_ == "advcl" and ({"as", "if"} <= marks or {"as", "though"} <= marks or "like" in marks):
             event.modality = "pretended"  # "walks up as if to hug"
+        if token.dep_ == "advcl" and "than" in marks:
+            event.denied = True  # "rather than shake hands, they bow"
         if token.dep_ == "pcomp" and (
             token.head.lower_ in ("without", "instead", "from")
             or "instead" in (token.head.head.lower_, *(c.lower_ for c in token.head.children))

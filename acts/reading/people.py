@@ -45,6 +45,8 @@ class Cast:
         self.last = ""
         self.thing: Ref | None = None
         """The part or thing that was named last, which "it" means."""
+        self.things: Ref | None = None
+        """The things that were named last, which "them" means."""
         self.thing_sex = ""
         """The sex of its owner, by a possessive."""
         self.thing_of = ""
@@ -320,6 +322,8 @@ def reference(token: Token, cast: Cast, subject: str) -> Ref:
         return Ref("self", subject, lemma, first=first, last=last)
     if token.lower_ in ("other", "another") and children & {"each", "one"}:
         return Ref("each", "ab", "other", first=first, last=last)
+    if token.lower_ == "them" and cast.things is not None and len(subject) == 1:
+        return replace(cast.things, first=first, last=last)  # "drops her keys, and he picks them up"
     if token.lower_ == "it" and cast.thing is not None:
         said_of = cast.thing_of if cast.thing_of != subject and len(cast.thing_of) == 1 else ""
         hers = bool(cast.thing_sex) and cast.thing_sex == cast.sex(
@@ -331,10 +335,23 @@ def reference(token: Token, cast: Cast, subject: str) -> Ref:
     cast.seen[token.i] = ref
     if ref.kind == "person":
         cast.note_states(token, ref.who)
+    _note_thing(token, ref, cast, subject)
+    return ref
+
+
+def _note_thing(token: Token, ref: Ref, cast: Cast, subject: str) -> None:
+    """Notes what "it" and "them" mean from here on."""
+    light = token.head.lemma_.lower() in vocabulary().verbs["light"]  # "does two jumps"
+    if ref.kind == "thing" and token.tag_ == "NNS" and token.dep_ == "dobj" and not light:
+        cast.things = ref
+    beside = (
+        token.dep_ == "pobj" and cast.thing is not None and (ref.kind, cast.thing.kind) == ("part", "thing")
+    )
+    if beside:  # "throws the ball over her shoulder, and he catches it"
+        return
     if ref.kind in ("part", "thing") and token.tag_ in ("NN", "NNP") and not ref.place:
         cast.thing, cast.thing_of = ref, subject
         cast.thing_sex = next((sex for c in token.children if (sex := _HE.get(c.lower_))), "")
-    return ref
 
 
 def states_of(noun: Token) -> Iterator[tuple[Token, str]]:

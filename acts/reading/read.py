@@ -7,7 +7,7 @@ from dataclasses import replace
 from functools import lru_cache
 from pathlib import Path
 
-from acts.frames import Event, Frame, Match, Ref
+from acts.frames import Event, Frame, Match, Ref, other_of
 from acts.lexicon import Lexicon, lexicon
 from acts.plan import MOST_ACTS, Act, Plan, Relation, Span, Unread
 from acts.shapes import Go
@@ -26,7 +26,7 @@ from .wording import Text, prepared
 
 MOST_CHARACTERS = 2000
 """Characters of a text that is read at once."""
-_STATES = frozenset(("be", "become", "seem", "have", "there", "feel", "look", "appear"))
+_STATES = frozenset(("be", "become", "seem", "have", "there", "feel", "look", "appear", "act"))
 """Verbs that say how somebody is; where no frame knows them, they show nothing and are passed over."""
 _STANDS = frozenset(("stand", "stay", "remain", "pose", "rest", "meet"))
 """Verbs beside which a formation is all that is shown: "they stand back to back"."""
@@ -211,7 +211,14 @@ class _Planner:
             for other, line in self._found(beside.formations(event, ["form line"])):
                 self._add(number, other, *line, beside=at_once)
         for other, posture in beside.held(event, found, self._matcher.find):
-            self._add(number, other, *posture, beside=at_once)
+            laid = posture[2].part
+            if laid is not None and posture[2].patient and "touch" in shown and found[2].part is None:
+                where = {"part": laid.lemma, "part_of": posture[2].patient}
+                self._acts.append(
+                    self._acts.pop().model_copy(update=where)
+                )  # "stops him with a hand on his back"
+            else:
+                self._add(number, other, *posture, beside=at_once)
         if (sits := beside.seated(event, found, self._known, told)) is not None:
             for other, sat in self._found([sits]):
                 self._add(number, other, *sat, beside=at_once)
@@ -295,6 +302,12 @@ class _Planner:
                 yield replace(event, object=other.object)
         if (patient := self._meant(event)) is not None:  # "leans in, but does not kiss"
             yield replace(event, object=Ref("person", patient))
+        alone = event.lemma in self._known.frames and not event.particles and event.joint != "comp"
+        alone = alone and all(ref.kind == "thing" for _, ref in event.prepositions)
+        inner = any(other.beside == number and other.joint == "comp" for other in self._events)
+        if event.subject is not None and alone and not inner and (whom := other_of(event.subject.who)):
+            self.cost += 1.0
+            yield replace(event, object=Ref("person", whom))  # "one pushes and the other falls"
 
     def _of_the_last(self, event: Event) -> Event | None:
         """The event about the other's body, where what is done to it follows what was done to them.

@@ -47,7 +47,24 @@ _SUBJECTS = frozenset(
 _TOWARDS = frozenset(("at", "to", "with", "by", "from", "behind", "past", "towards", "toward", "around"))
 """Prepositions of people, after which a noun without an article lacks one."""
 _INTENSIFIED = frozenset(
-    ("up", "past", "round", "around", "behind", "through", "into", "across", "by", "over", "down", "out")
+    (
+        "up",
+        "past",
+        "round",
+        "around",
+        "behind",
+        "through",
+        "into",
+        "across",
+        "by",
+        "over",
+        "down",
+        "out",
+        "back",
+        "there",
+        "here",
+        "beside",
+    )
 )
 """Words before which "right" and "way" only make more of a direction."""
 _BEHIND_BACK = frozenset(("on", "to", "turned", "towards", "toward"))
@@ -280,6 +297,8 @@ class _Preparation:
 
     def _worded(self, i: int, word: str) -> str:
         lower, following = word.lower(), self._lower(i + 1)
+        if self._ellipsis.is_object(i):
+            return "them"  # which owns nothing
         if lower in self._words.shorthand:
             return self._words.shorthand[lower]
         if lower.endswith("s") and following.isalpha() and self._owns(i, lower[:-1]):

@@ -86,8 +86,8 @@ def test_backing_out_is_walking_backwards() -> None:
 
 
 def test_with_a_hand_on_his_back_is_a_touch() -> None:
-    acts = read("A man crawls until a woman stops him with a hand on his back.").acts
-    assert [(act.act, act.agents, act.patient) for act in acts][-1] == ("hand-on", ("b",), "a")
+    stops = last("A man crawls until a woman stops him with a hand on his back.")
+    assert (stops.act, stops.agents, stops.part, stops.part_of) == ("catch-person", ("b",), "back", "a")
 
 
 def test_what_goes_between_two_goes_to_each() -> None:
@@ -124,3 +124,44 @@ def test_who_does_not_flinch_stands_still() -> None:
     for name in ("move-about", "flinch"):
         assert [shape.do for shape in lexicon().entries[name].refused] == ["stay"]
     assert (last("He does not react.").act, last("He does not budge.").act) == ("flinch", "move-about")
+
+
+def test_what_is_tried_is_countered() -> None:
+    assert read("He goes in for a kiss but she turns her head away.").acts[0].modality == "tried"
+    assert read("He goes in for a kiss and she turns her head away.").acts[0].modality == "told"
+
+
+def test_what_is_done_instead_is_all_that_is_done() -> None:
+    shaken, bowed = read("Rather than shake hands, they bow.").acts
+    assert (shaken.polarity, bowed.polarity) == ("not", "done")
+
+
+def test_who_acts_like_it_only_pretends() -> None:
+    assert read("He acts like he's gonna throw the ball.").acts[0].modality == "pretended"
+
+
+def test_a_verb_without_its_person_is_done_to_the_other() -> None:
+    assert told("One pushes and the other falls.") == [("push", "a", "b"), ("fall-down", "b", None)]
+    assert told("B feints a stab with the dagger.") == [("sword-fight", "b", "a")]
+    assert told("He dares to hope.") == []
+
+
+def test_them_are_things_that_were_dropped() -> None:
+    assert told("she drops her keys he picks them up") == [("let-go", "a", None), ("pick-up-thing", "b", "a")]
+
+
+def test_the_friend_behind_her_owns_no_catches() -> None:
+    acts = read("the bride throws the bouquet over her shoulder and the friend behind her catches it").acts
+    assert [(act.act, act.agents, act.thing) for act in acts][1] == ("catch-thing", ("b",), "bouquet")
+
+
+def test_one_and_the_other_with_half_a_verb() -> None:
+    assert told("Two people dance a waltz, one leading and the other following.")[-1] == ("follow", "b", "a")
+
+
+def test_right_only_stresses_a_place() -> None:
+    assert last("The other one stops right there.").side is None
+
+
+def test_who_draws_somebody_after_them_leads() -> None:
+    assert told("The ghost draws him after her.") == [("lead", "a", "b")]
