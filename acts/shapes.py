@@ -169,6 +169,12 @@ class Link(_Shape):
     do: Literal["link"] = "link"
 
 
+class Pull(_Shape):
+    """The agent comes to the patient and pulls them up by the hand."""
+
+    do: Literal["pull"] = "pull"
+
+
 class Lift(_Shape):
     """The agent holds the patient off the floor: "up", in the "arms", on the "back", or "drags" them."""
 
@@ -236,6 +242,7 @@ Shape = Annotated[
     | Touch
     | Hold
     | Link
+    | Pull
     | Lift
     | Strike
     | Limb

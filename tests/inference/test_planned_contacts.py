@@ -260,3 +260,10 @@ def test_who_turns_their_back_keeps_the_trunk_over_the_feet(
             [np.linalg.norm(each, axis=-1) for each in flat], axis=0
         )
         assert cosine[10:-10].min() > 0.3, prompt
+
+
+def test_who_is_pulled_up_has_their_hand_held_while_they_are_down(engine: Engine) -> None:
+    found = made(engine, "Person B helps person A up.", seconds=6.0)
+    gap = nearest(found, 1, ["right_wrist"], ["right_wrist"])
+    low = found[0, :, 0, 1] < 0.7
+    assert gap[low].min() < 0.15 and low[0] and not low[-1]

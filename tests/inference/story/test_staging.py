@@ -58,6 +58,12 @@ def test_a_gesture_beside_the_posture_of_the_other_is_given() -> None:
     assert "b" not in told("B raises one arm.").gesturing, "which the network makes"
 
 
+def test_who_pulls_the_other_up_comes_to_them_first() -> None:
+    pulled = told("Person B pulls person A to his feet.")
+    assert pulled.pulls == "b" and [m.person for m in pulled.moves if m.way is Way.TO] == ["b"]
+    assert pulled.changes["a"][-1].after > 0.3
+
+
 def test_who_stands_over_the_other_begins_near_them() -> None:
     placed = told("A kneels and B stands over her.").placed
     assert placed is not None and placed.gap() < 1.0

@@ -88,17 +88,22 @@ def meeting(
     return touch, (*comes, *waits)
 
 
-def towards_touched(touch: Contact | None, posed: Mapping[int, Array], stand: Standing) -> Standing:
+def towards_touched(
+    touch: Contact | None, posed: Mapping[int, Array], stand: Standing, pulls: str = ""
+) -> Standing:
     """The places that a way to the other is planned from: of a person who is posed, the one that is touched.
 
-    A person who lies is taken to face away from the one who comes, so that they are touched from the side.
+    A person who lies is taken to face away from the one who comes, so that they are touched from the side. A person
+    whom the other ``pulls`` up is where they will stand.
     """
-    other = 1 - "ab".index(touch.person) if touch is not None else 0
-    if touch is None or touch.fells or other not in posed:
+    giver = touch.person if touch is not None and not touch.fells else pulls
+    other = 1 - "ab".index(giver) if giver else 0
+    if not giver or other not in posed:
         return stand
     places, headings = stand.places.copy(), stand.headings.copy()
-    places[other] = middle(touch, posed[other])[[0, 2]]
-    across = beside(posed[other], stand.places[1 - other])
+    pose = posed[other]
+    places[other] = (middle(touch, pose) if touch is not None else pose[0])[[0, 2]]
+    across = beside(pose, stand.places[1 - other])
     headings[other] = headings[other] if across is None else across
     return replace(stand, places=places, headings=headings)
 

@@ -31,6 +31,7 @@ from .scene_hands import hands, known_hands
 from .scene_lifts import Carrying
 from .scene_paths import given_gait, path_of
 from .scene_postures import UPRIGHT, led, postures, still_down
+from .scene_pulls import given_pull
 from .scene_room import Room, roomy
 from .scene_strikes import given_blows
 
@@ -91,7 +92,7 @@ def _parts(request: SceneRequest, window: Window, scene: Array, placement: Place
         parts = [part for part in parts if part.person != "ab".index(touch.person)]
     if not start and not parts and not found and told.keeps_place:
         found = tuple(Move(who, Way.AVERTED) for who in "ab")
-    goal = towards_touched(touch, posed, stand)
+    goal = towards_touched(touch, posed, stand, told.pulls)
     ways = {way.person: way for way in plan(found, goal, stop - start, first=not start)}
     ways = {person: way for person, way in ways.items() if person not in {part.person for part in parts}}
     if lifted is not None and len(ways) == 2:
@@ -104,6 +105,11 @@ def _parts(request: SceneRequest, window: Window, scene: Array, placement: Place
         hand := given_contact(touch, ways, posed, stand, start, stop, window, placement)
     ):
         parts.append(hand)
+    if told.pulls:
+        down = 1 - "ab".index(told.pulls)
+        last = scene[down, start - 1] if start else None
+        poses = postures(request.told, window.beat, down, start, stop, stand, last)
+        parts += given_pull(told.pulls, poses, ways, stand, start, stop, window, placement)
     low = {"ab".index(move.person): move.gait for move in found if move.gait}
     for person, way in ways.items():
         if person in low:

@@ -43,6 +43,8 @@ _NEAR = frozenset(("touch", "fight", "dance", "care"))
 """Groups of the lexicon whose acts two people do within each other's reach."""
 _HANDED = frozenset(("things", "handling", "daily"))
 """Groups whose acts with the other person pass something from hand to hand."""
+PULLED = 0.8
+"""Metres from where somebody stands up at which the one stands who pulls them up."""
 _JUMPS = 3
 """Jumps of a person who is already jumping when the beat begins."""
 _DODGES = (Way.BACK, Way.ASIDE)
@@ -89,7 +91,7 @@ class _Stage:
         self.bows: dict[str, tuple[int, bool]] = {}
         self.contact: Contact | None = None
         self.hold: Hold | None = None
-        self.twirls = ""
+        self.twirls, self.pulls = "", ""
         self.lift: Lift | None = None
         self.blows: list[tuple[tuple[str, ...], shapes.Strike, Act]] = []
         self.setting = Setting()
@@ -118,8 +120,8 @@ class _Stage:
         return Told(
             moves=moves, idle=idle, frozen=frozenset(self.frozen), gesturing=self._gesturing(moves),
             gestures=self.gestures, contact=self.contact,
-            hold=self.hold, by_both_hands=any(m.backwards and m.way is Way.AWAY for m in moves), twirls=self.twirls,
-            lift=self.lift, strike=struck, changes=self.changes, limbs=self.limbs,
+            hold=self.hold, by_both_hands=any(m.backwards and m.way is Way.AWAY for m in moves),
+            twirls=self.twirls, pulls=self.pulls, lift=self.lift, strike=struck, changes=self.changes, limbs=self.limbs,
             leaps=self.leaps, bows=self.bows,
             on_feet=frozenset(who for act, e in self.done if e.group in _LEGS for who in act.agents),
             placed=standing(
@@ -176,6 +178,9 @@ class _Stage:
                 self.twirls = people[0]
             case shapes.Hold():
                 self.hold = Hold[shape.hold.upper()]
+            case shapes.Pull():
+                self.pulls = people[0]
+                self.moves.append(Move(people[0], Way.TO, near=PULLED))
             case shapes.Link():
                 self.linked = True
             case shapes.Lift() if self.lift is None or self.lift.carry is Carry.UP:
@@ -199,10 +204,8 @@ class _Stage:
     def _changed(self, act: Act, shape: shapes.Posture) -> list[Change]:
         """The changes of posture of an act, one after another where it is done several times."""
         posture, already = Posture(shape.posture), shape.already or act.already
-        after = max(
-            self.level[act.id] / self.levels,
-            0.4 if posture is Posture.LIES and shape.who == "patient" else 0.0,
-        )
+        waits = {Posture.LIES: 0.4, Posture.STANDS: 0.35} if shape.who == "patient" else {}
+        after = max(self.level[act.id] / self.levels, waits.get(posture, 0.0))
         times = min(act.times or shape.times, 5) if shape.passing else 1
         shares = [0.0 if already else after + (1 - after) * i / times for i in range(times)]
         return [Change(posture, already, share, shape.passing) for share in shares]

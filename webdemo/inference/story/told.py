@@ -37,6 +37,7 @@ class Told:
         hold: in which both dance or spin.
         by_both_hands: one holds both of the other's hands.
         twirls: under whose raised arm the other turns; "" if nobody does.
+        pulls: the one who pulls the other up by the hand; "" if nobody does.
         lift: of one by the other.
         strike: blows or throws.
         changes: of posture in order, by person.
@@ -59,6 +60,7 @@ class Told:
     hold: Hold | None = None
     by_both_hands: bool = False
     twirls: str = ""
+    pulls: str = ""
     lift: Lift | None = None
     strike: Strike | None = None
     changes: Mapping[str, tuple[Change, ...]] = field(default_factory=dict)

@@ -1,0 +1,93 @@
+"""A person who is pulled up by the hand: both hands, while they get up."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+
+import numpy as np
+from numpy.typing import NDArray
+
+from motion import SMPL22
+from webdemo.inference.actor import Placement
+from webdemo.inference.known_parts import KnownFrames
+from webdemo.inference.story.floor import Standing, Way2D
+from webdemo.inference.story.plan import Window
+from webdemo.inference.story.poses import TRUNK, bending
+
+from .scene_contacts import course_of
+from .scene_postures import UPRIGHT, Pose
+
+Array = NDArray[np.floating]
+
+OFTEN = 4
+"""Frames between two given places of the hands."""
+BEFORE = 45
+"""Frames before somebody is up in which their hand is held."""
+_ARM = 0.48
+"""Metres from the shoulder to the wrist of an arm that pulls."""
+_LEANS = np.linspace(0.1, 1.2, 12)
+"""Radians by which somebody leans forward who pulls the other up: as little as gets the hands together."""
+_GAP = 0.03
+"""Metres from where two hands meet to each wrist."""
+_SHOULDER, _WRIST = SMPL22.index("right_shoulder"), SMPL22.index("right_wrist")
+
+
+def given_pull(
+    puller: str,
+    poses: Sequence[Pose],
+    ways: Mapping[int, Way2D],
+    stand: Standing,
+    start: int,
+    stop: int,
+    window: Window,
+    placement: Placement,
+) -> list[KnownFrames]:
+    """The hands of both, and the trunk of the one who pulls, as the network is given them.
+
+    Args:
+        puller: "a" or "b".
+        poses: of the other, as :func:`~.scene_postures.postures` gives them.
+        ways: by person.
+        stand: where the people are when the beat begins.
+        start, stop: the beat's first frame and the one after its last.
+        window: the window that is made.
+        placement: from the scene's world to the network's frame.
+    """
+    person = "ab".index(puller)
+    down = [frame for frame, pose in poses if pose[0, 1] <= UPRIGHT]
+    up = [frame for frame, pose in poses if pose[0, 1] > UPRIGHT and down and frame > down[-1]]
+    if not up:
+        return []
+    course = course_of(person, ways, stand, stop - start)
+    frames, own, theirs = [], [], []
+    known, bodies = np.array([frame for frame, _ in poses]), np.stack([pose for _, pose in poses])
+    for frame in range(max(down[-1] - BEFORE, known[0]), up[0] + 1, OFTEN):
+        if not window.start <= frame < window.stop:
+            continue
+        last = int(np.searchsorted(known, frame).clip(1, len(known) - 1))
+        share = (frame - known[last - 1]) / (known[last] - known[last - 1])
+        pose = bodies[last - 1] + share * (bodies[last] - bodies[last - 1])
+        place, angle = course.places[frame - start], float(course.headings[frame - start])
+        one, other = _leaning_to(pose, place, angle), pose.copy()
+        line = one[_SHOULDER] - other[_SHOULDER]
+        meet, gap = other[_SHOULDER] + line / 2, _GAP * line / np.linalg.norm(line)
+        one[_WRIST], other[_WRIST] = meet + gap, meet - gap
+        frames.append(frame - window.start + window.past)
+        own.append(one - one[0])
+        theirs.append(other - other[0])
+    if not frames:
+        return []
+    return [
+        KnownFrames(person, frames, placement.to_network(np.stack(own)), [*TRUNK, _WRIST]),
+        KnownFrames(1 - person, frames, placement.to_network(np.stack(theirs)), [_WRIST]),
+    ]
+
+
+def _leaning_to(pose: Array, place: Array, angle: float) -> Array:
+    """The pose (22, 3) of a person at a place (2,) who leans forward as far as to reach the hand of another pose."""
+    found = bending(place, angle, float(_LEANS[0]))
+    for lean in _LEANS[1:]:
+        if np.linalg.norm(found[_SHOULDER] - pose[_SHOULDER]) <= 2 * _ARM:
+            break
+        found = bending(place, angle, float(lean))
+    return found
