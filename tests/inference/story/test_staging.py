@@ -37,6 +37,12 @@ def test_shapes_of_several_acts_make_one_beat() -> None:
     assert not told("Person A hugs person B.").idle
 
 
+@pytest.mark.parametrize("text", ["A drinks.", "B sips her tea.", "He eats an apple."])
+def test_who_drinks_or_eats_has_a_hand_at_the_mouth(text: str) -> None:
+    (gesture,) = told(text).gestures.values()
+    assert gesture.hand is Hand.MOUTH
+
+
 def test_who_refuses_leaves_the_other_with_a_hand_held_out() -> None:
     refused = staged((Act(id="1", act="shake-hands", agents=("b",), patient="a", polarity="not"),))
     assert refused.gestures["a"].hand is Hand.OFFERS and "b" in refused.idle
