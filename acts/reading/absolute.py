@@ -67,7 +67,8 @@ def _behind(preposition: Token) -> Absolute | None:
     if at == len(doc):
         return None
     part = doc[at]
-    if words.part(part.lemma_.lower()) == "back":  # "with her back to him" is a way to stand
+    straight = at + 1 < len(doc) and doc[at + 1].lower_ in _STATES
+    if words.part(part.lemma_.lower()) == "back" and not straight:  # "with her back to him" is a way to stand
         return None
     if before is not None:
         return Absolute(preposition, part, _PARTICIPLES.get(before.lower_, ""), before)

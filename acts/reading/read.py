@@ -169,6 +169,8 @@ class _Planner:
         if vague and not (found is not None and inner) and (noun := self._noun(event, found)) is not None:
             event, found = noun
         elif formed and (vague or event.lemma in _STATES | _STANDS or formed[0][0].lemma == event.lemma):
+            if event.lemma == "be" and event.joint == "conj":  # "two lunges, both in unison"
+                event.joint = "with"
             (event, found), *formed = formed
         if found is not None and not self._known.entries[found[0]].shown:
             self._unread.append(Unread(words=self._span(number), why="This is nothing that bodies show."))
@@ -190,8 +192,8 @@ class _Planner:
     def _noun(self, event: Event, found: Found | None) -> tuple[Event, Found] | None:
         """The act that a noun beside a verb stands for, where the verb itself says little: "answers with a bow"."""
         rest = range(len(event.prepositions)) if found is None else found[2].rest
-        nouns = (other for _, other in beside.noun_acts(event, self._known, rest))
-        return next(iter(self._found(nouns)), None)
+        nouns = self._found(other for _, other in beside.noun_acts(event, self._known, rest))
+        return nouns[0] if nouns else None
 
     def _companions(
         self, number: int, event: Event, found: Found, formed: Sequence[tuple[Event, Found]]

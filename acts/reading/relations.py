@@ -59,7 +59,8 @@ def related(
         if kind == "after" and not then and _answers_blow(other, act, known):
             kind = "with"
         if kind == "after":
-            act = acts[act.id] = _turned_to(other, act, known)
+            act = acts[act.id] = _upright_again(other, _turned_to(other, act, known), known)
+            kind = "with" if act.act == other.act == "stand-tall" else kind  # "straighten and rise"
         apart = not set(other.agents) & set(act.agents)
         waits = _waits(act, known) and not then  # "then she waits" is said of what comes next
         if kind == "after" and apart and (other.already or act.already or waits):
@@ -114,6 +115,14 @@ def _turned_to(first: Act, then: Act, known: Lexicon) -> Act:
     if not touched or not turns or then.patient or then.direction:
         return then
     return then.model_copy(update={"patient": first.agents[0]})
+
+
+def _upright_again(first: Act, then: Act, known: Lexicon) -> Act:
+    """The act; a person who rises after bending the knees or a lunge was on their feet, and gets up from no seat."""
+    bent = any(shape.do == "limb" for shape in known.entries[first.act].stage)
+    if not bent or then.act != "stand-up" or set(first.agents) != set(then.agents):
+        return then
+    return then.model_copy(update={"act": "stand-tall"})
 
 
 def _answers_blow(first: Act, then: Act, known: Lexicon) -> bool:

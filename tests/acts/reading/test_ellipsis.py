@@ -48,6 +48,7 @@ def test_a_verb_is_supplied_where_one_is_left_out(text: str, parsed: str) -> Non
         ),
         ("March in step, eight counts forward.", ["walk-together ab", "unison ab", "walk-together ab"]),
         ("Both in a deep plie.", ["bend-knees ab"]),
+        ("Two deep lunges, both in unison.", ["lunge ab 2", "unison ab"]),
         # the same to another side
         ("The athlete throws left, right, left.", ["punch a left", "punch a right", "punch a left"]),
         # parts of the body, and whose they are
@@ -56,6 +57,10 @@ def test_a_verb_is_supplied_where_one_is_left_out(text: str, parsed: str) -> Non
         (
             "Weight on the right leg, left knee at hip height, partner mirrors it facing you.",
             ["stand-on-one-leg a right", "raise-knee a left", "raise-knee b right"],
+        ),
+        (
+            "Both in a plie, backs straight, knees out, then rise.",
+            ["bend-knees ab", "stand-tall ab", "turn-out ab both", "stand-tall ab"],
         ),
         # where somebody is
         (
@@ -70,6 +75,12 @@ def test_a_sentence_without_a_verb_has_its_acts(text: str, acts: list[str]) -> N
     assert [
         " ".join(filter(None, (a.act, "".join(a.agents), a.side, str(a.times or "")))) for a in found
     ] == acts
+
+
+def test_formations_without_a_verb_go_with_the_act_before() -> None:
+    assert [[act.act for act in beat] for beat in read("Two deep lunges, both in unison.").beats()] == [
+        ["lunge", "unison"]
+    ]
 
 
 def test_an_act_without_a_verb_names_the_words_that_say_it() -> None:

@@ -74,3 +74,29 @@ def test_sides_directions_and_numbers_reach_the_limbs() -> None:
     once, twice = (motion("kicks", times=t)[:, SMPL22.index("right_foot"), 1] for t in (1, 2))
     rises = [np.count_nonzero(np.diff((h > 0.3).astype(int)) == 1) for h in (once, twice)]
     assert rises == [1, 2]
+
+
+def test_a_lunge_is_a_long_step_over_a_bent_knee_as_often_as_it_is_told() -> None:
+    found = motion("lunges", side="left", times=2)
+    left, right = (found[:, SMPL22.index(f"{side}_ankle")] for side in ("left", "right"))
+    wide = np.linalg.norm((left - right)[:, [0, 2]], axis=1) > 0.55
+    assert np.sum(np.diff(wide.astype(int)) == 1) == 2
+    assert found[wide, 0, 1].max() < found[0, 0, 1] - 0.08, "the pelvis sinks"
+
+
+def test_the_free_leg_is_held_as_the_other_movement_says() -> None:
+    place = np.zeros(2)
+    knee, leg = Limb("raises knee", "left"), Limb("stands on one leg", "left")
+    np.testing.assert_array_equal(
+        limbed([leg, knee], place, 0.0, SECONDS, 5.0), limbed([knee], place, 0.0, SECONDS, 5.0)
+    )
+
+
+def test_legs_are_turned_out_before_they_are_bent() -> None:
+    limbs = [Limb("bends knees", "both"), Limb("turns legs out", "both")]
+    found = limbed(limbs, np.zeros(2), 0.0, SECONDS, 5.0)[75]
+    knees, hips = (
+        np.abs(np.diff(found[[SMPL22.index(f"{side}_{name}") for side in ("left", "right")], 0]))
+        for name in ("knee", "hip")
+    )
+    assert knees > hips + 0.25, "the knees open to the sides"

@@ -27,6 +27,8 @@ BEGINS = 0.4
 """Seconds of a beat before it moves."""
 SWING = 1.5
 """Seconds of a swing to and fro."""
+LUNGE = 2.4
+"""Seconds of one of several lunges."""
 
 
 @dataclass(frozen=True)
@@ -62,7 +64,8 @@ def limbed(limbs: Sequence[Limb], place: Array, angle: float, seconds: Array, le
     seconds = np.asarray(seconds, dtype=float)
     held = minimum_jerk((seconds - BEGINS) / RAMP) * minimum_jerk((length - 0.2 - seconds) / RAMP)
     angles: dict[str, Array] = {}
-    for limb in limbs:
+    order = list(MOVES)  # legs are turned out before they are bent
+    for limb in sorted(_standing_once(limbs), key=lambda limb: order.index(limb.does)):
         for joint, turn in MOVES[limb.does](limb, held, np.maximum(seconds - BEGINS, 0.0)).items():
             angles[joint] = angles[joint] @ turn if joint in angles else turn
     still, poses = _posed({}, 1, angle)[0], _posed(angles, len(seconds), angle)
@@ -72,6 +75,13 @@ def limbed(limbs: Sequence[Limb], place: Array, angle: float, seconds: Array, le
     ahead = 0.12 * np.array([np.sin(angle), 0.0, np.cos(angle)])
     toes = still[list(TOES)].mean(axis=0) * [1, 0, 1]
     return poses + shift[:, None] + np.array([place[0], 0.0, place[1]]) + ahead - toes
+
+
+def _standing_once(limbs: Sequence[Limb]) -> Sequence[Limb]:
+    """The movements without "stands on one leg" where another says how the free leg is held."""
+    if any(limb.does in RAISES and limb.does != "stands on one leg" for limb in limbs):
+        return [limb for limb in limbs if limb.does != "stands on one leg"]
+    return limbs
 
 
 def _posed(angles: Mapping[str, Array], count: int, angle: float) -> Array:
@@ -156,6 +166,23 @@ def _both_knees(limb: Limb, held: Array, since: Array) -> Turns:
     return {f"{side}_{name}": about(0, a * bent) for side in ("left", "right") for name, a in joints.items()}
 
 
+def _lunged(limb: Limb, held: Array, since: Array) -> Turns:
+    """A long step of the leg that is named, the knees bent, over the other foot, which stays on its toes."""
+    down = np.minimum(1.6 * _pulses(since, held, limb.times, LUNGE), 1.0) if limb.times > 1 else held
+    front = _legs(limb)[0]
+    back = "left" if front == "right" else "right"
+    return _leg(limb, 1.1 * down, 1.25 * down) | {
+        f"{back}_hip": about(0, 0.4 * down), f"{back}_knee": about(0, 0.75 * down),
+        f"{back}_ankle": about(0, -0.55 * down), f"{front}_ankle": about(0, -0.15 * down),
+    }  # fmt: skip
+
+
+def _turned_out(limb: Limb, held: Array, since: Array) -> Turns:
+    return {
+        f"{side}_hip": heading_matrix(sign * 0.7 * held) for side, sign in (("left", 1.0), ("right", -1.0))
+    }
+
+
 def _reached_down(limb: Limb, held: Array, since: Array) -> Turns:
     down = _pulses(since, held, limb.times or 1, 3.0) ** 0.5
     legs = {"hip": -1.6, "knee": 1.9, "ankle": -0.45, "shoulder": -0.75}
@@ -227,7 +254,10 @@ MOVES: Mapping[str, Callable[[Limb, Array, Array], Turns]] = {
     "stamps": _stamped_foot,
     "taps foot": _tapped_foot,
     "stands on one leg": lambda limb, held, since: _leg(limb, 0.7 * held, 1.3 * held),
+    "turns legs out": _turned_out,
     "bends knees": _both_knees,
+    "lunges": _lunged,
+    "stands tall": lambda limb, held, since: {},
     "reaches down": _reached_down,
     "on tiptoe": _tiptoes,
     "crosses legs": _crossed_legs,
@@ -242,6 +272,15 @@ MOVES: Mapping[str, Callable[[Limb, Array, Array], Turns]] = {
 WITH_ARMS = frozenset(("reaches down",))
 """Those that the hands belong to."""
 RAISES = frozenset(
-    ("raises leg", "raises knee", "swings leg", "kicks", "stamps", "stands on one leg", "crosses legs")
+    (
+        "raises leg",
+        "raises knee",
+        "swings leg",
+        "kicks",
+        "stamps",
+        "stands on one leg",
+        "crosses legs",
+        "lunges",
+    )
 )
 """Those in which a foot leaves the floor."""
