@@ -2,6 +2,7 @@
 
 import { Asking } from "./asking.js";
 import { Editor } from "./editor.js";
+import { Length } from "./length.js";
 import { people, pieces, spoken, summary, wordsOf } from "./marks.js";
 import * as edits from "./plan.js";
 
@@ -34,6 +35,7 @@ class View {
     this.note = "";
     this.checks = null;
     this.editor = new Editor(root, this);
+    this.length = new Length(this.find(".pdr-length"), root.closest(".pd-lab")?.querySelector("#seconds"));
     for (const kind of ["pointerover", "focusin"]) root.addEventListener(kind, (event) => this.point(event.target));
     for (const kind of ["pointerleave", "focusout"]) root.addEventListener(kind, () => this.point(null));
     root.addEventListener("click", (event) => this.press(event.target));
@@ -188,6 +190,7 @@ class View {
     this.find(".pdr-said").replaceChildren(...(plan ? this.sentence(plan) : []));
     this.find(".pdr-unread").replaceChildren(...(plan ? plan.unread.map((part, i) => this.unread(part, i)) : []));
     this.find(".pdr-plan").hidden = !plan?.acts.length;
+    this.length.draw(plan ? this.shown.seconds : null);
     this.find(".pdr-beats").replaceChildren(...(plan ? this.shown.beats.map((beat) => this.beat(beat)) : []));
     const notes = plan ? plan.notes.filter((note) => !plan.unread.some((part) => part.why === note)) : [];
     const warnings = [error, this.note].filter(Boolean);

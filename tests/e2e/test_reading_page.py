@@ -37,6 +37,11 @@ def test_words_are_underlined_and_chips_stand_on_two_lanes(page: Page) -> None:
     assert reading.locator(".pdr-words").last.evaluate(lines) == ["solid", "dashed"], (
         "people are told apart by their lines, not by colour alone"
     )
+    length = reading.locator(".pdr-length")
+    expect(length).to_contain_text("This takes about 7 s, and the motion lasts 5 s.")
+    length.get_by_role("button", name="Make it 7 s").click()
+    expect(length).to_be_hidden()
+    expect(page.locator("#seconds input[type=number]")).to_have_value("7")
     prompt.fill(HOSTILE)
     expect(reading.locator(".pdr-chip.pdr-b")).to_contain_text("waves", timeout=SLOW)
     expect(reading.locator(".pdr-said")).to_have_text(HOSTILE)

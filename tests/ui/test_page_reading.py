@@ -124,3 +124,8 @@ def test_marks_are_of_the_acts_that_were_checked() -> None:
     }
     assert checked(plan.sentence, plan, {"checked": rows[1:]}) is None, "rows of another plan"
     assert checked(plan.sentence, plan, {}) is None
+
+
+def test_a_reading_says_how_long_its_beats_take() -> None:
+    assert shown(read("They shake hands and then high five."))["seconds"] == 6.5
+    assert shown(read("Nothing of the kind."))["seconds"] == 0.0

@@ -18,6 +18,7 @@ from acts.captions import short, worded
 from acts.plan import plan_of
 from acts.reading.director import directed
 from motion import InputError
+from webdemo.inference.story.scripting import beats_of
 from webdemo.ui.text.words import error_line
 
 from .accepts import Finite, Flag, Sent, Text
@@ -116,7 +117,8 @@ def shown(plan: Plan) -> dict[str, Any]:
 
     Returns:
         ``plan`` as JSON; ``beats``, the ids of its acts, one list for each; ``said``, each act in a few words by its
-        id; ``nearest``, the facts of each act that is offered for words that were not understood, by its name.
+        id; ``nearest``, the facts of each act that is offered for words that were not understood, by its name;
+        ``seconds``, what all its beats take, in halves of a second.
     """
     entries = lexicon().entries
     nearest = dict.fromkeys(name for part in plan.unread for name in part.nearest if name in entries)
@@ -125,6 +127,7 @@ def shown(plan: Plan) -> dict[str, Any]:
         "beats": [[act.id for act in group] for group in plan.beats()],
         "said": {act.id: short(act, entries.get(act.act)) for act in plan.acts},
         "nearest": {name: entry_facts(name) for name in nearest},
+        "seconds": round(2 * sum(beat.length for beat in beats_of(plan))) / 2,
     }
 
 
