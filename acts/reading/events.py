@@ -360,7 +360,7 @@ class Reader:
             above is not None and token.dep_ == "conj" and self._then_before(token)
         ):
             return "then", previous
-        if not _AT_ONCE.isdisjoint(marks):
+        if not _AT_ONCE.isdisjoint(marks) and token.dep_ != "xcomp":
             return "with", previous
         if self._tree.is_main(token):
             mains = [i for i in self._tree.mains if self.doc[i].sent.start == token.sent.start]

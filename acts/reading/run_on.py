@@ -6,6 +6,7 @@ from collections.abc import Iterator, Mapping
 from typing import TYPE_CHECKING
 
 from . import wordnet
+from .people import A_NAME, B_NAME
 from .vocabulary import vocabulary
 
 if TYPE_CHECKING:
@@ -35,6 +36,8 @@ def breaks(doc: Doc, lemmas: Mapping[int, str], within: bool = False) -> Iterato
     before: Token | None = None
     below = False
     for token in doc:
+        if before is not None and token.lower_ == "and" and _joins_person(token):
+            yield token
         if token.is_sent_start or token.pos_ in ("PUNCT", "CCONJ"):
             before, below = None, False
         elif token.pos_ == "SCONJ" or token.tag_ in ("WRB", "WP", "WDT") or token.dep_ == "mark":
@@ -50,6 +53,25 @@ def breaks(doc: Doc, lemmas: Mapping[int, str], within: bool = False) -> Iterato
             ):
                 yield _person_in(noun) if within else _first(noun)
             before = token
+
+
+def _joins_person(conjunction: Token) -> bool:
+    """True where a thing is joined to a person who acts: "A holds the ladder and B climbs it"."""
+    thing, doc = conjunction.head, conjunction.doc
+    if thing.pos_ != "NOUN" or thing.i > conjunction.i or _is_person(thing):
+        return False
+    person = next((c for c in thing.children if c.dep_ == "conj" and c.i > conjunction.i), None)
+    if person is None or not _is_person(person):
+        return False
+    behind = doc[person.right_edge.i + 1] if person.right_edge.i + 1 < len(doc) else person
+    return (behind.tag_ in _FINITE and behind.pos_ == "VERB") or any(
+        t.tag_ in _FINITE and t.dep_ != "relcl" for t in doc[person.i + 1 : person.right_edge.i + 1]
+    )
+
+
+def _is_person(noun: Token) -> bool:
+    named = noun.text in (A_NAME, B_NAME) or noun.lower_ in _PEOPLE
+    return named or vocabulary().is_person(noun.lemma_.lower())
 
 
 def _subject_behind(verb: Token, before: Token, lemmas: Mapping[int, str]) -> Token | None:
@@ -88,9 +110,7 @@ def _taken_along(verb: Token, before: Token) -> Token | None:
         return None
     if noun.dep_ not in ("dobj", "pobj", "conj", "appos", "attr", "dep", "npadvmod", "dative"):
         return None
-    if not (noun.lower_ in _PEOPLE or vocabulary().is_person(noun.lemma_.lower())):
-        return None
-    return noun
+    return noun if _is_person(noun) else None
 
 
 def _first(noun: Token) -> Token:

@@ -80,7 +80,8 @@ class Subjects:
             return Ref("person", "ab", first=token.idx, last=token.idx)
         if head is not None:
             own = self.of(head, self._tree.head(head))
-            if token.dep_ in ("xcomp", "ccomp"):  # "makes her laugh", "asks him to sit"
+            kept = token.dep_ == "pcomp" and token.head.lower_ == "from"  # "stops him from falling"
+            if kept or token.dep_ in ("xcomp", "ccomp"):  # "makes her laugh", "asks him to sit"
                 above = self._event_of(head)
                 if (
                     above is not None

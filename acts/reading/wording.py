@@ -104,7 +104,8 @@ class Text:
         """The same text with a stop before the words of these numbers."""
         pieces: list[tuple[str, int, int]] = []
         for i, piece in enumerate(self._pieces):
-            pieces += [(";", piece[1], piece[1]), piece] if i in numbers else [piece]
+            stop = "," if piece[0] == "and" else ";"
+            pieces += [(stop, piece[1], piece[1]), piece] if i in numbers else [piece]
         return Text(self.original, pieces)
 
     def number(self, at: int) -> int:

@@ -165,3 +165,12 @@ def test_right_only_stresses_a_place() -> None:
 
 def test_who_draws_somebody_after_them_leads() -> None:
     assert told("The ghost draws him after her.") == [("lead", "a", "b")]
+
+
+def test_who_is_stopped_does_not_fall() -> None:
+    falls = last("She stops him from falling.")
+    assert (falls.act, falls.agents, falls.polarity) == ("fall-down", ("b",), "not")
+
+
+def test_trying_something_at_the_same_time_is_one_act() -> None:
+    assert told("Both try to pick up the pen at the same time.") == [("pick-up-thing", "ab", None)]

@@ -75,3 +75,22 @@ def test_a_verb_beside_a_clause_has_the_subject_of_that_clause() -> None:
         "b",
     )
     assert told("One steps back as the other points at her, and bows.")[-1][:2] == ("bow", "a")
+
+
+@pytest.mark.parametrize(
+    ("text", "acts"),
+    [
+        ("A holds the ladder and B climbs it.", [("hold-thing", "a"), ("climb", "b")]),
+        (
+            "The thief grabs the bag and the woman who was holding it screams and chases him.",
+            [("take-from", "a"), ("touch", "b"), ("scold", "b"), ("chase", "b")],
+        ),
+        ("He drops the cup and the woman behind him laughs.", [("let-go", "a"), ("laugh", "b")]),
+    ],
+)
+def test_a_person_behind_a_thing_and_and_begins_a_clause(text: str, acts: list[tuple[str, str]]) -> None:
+    assert [(name, who) for name, who, _ in told(text)] == acts
+
+
+def test_bread_and_butter_are_no_clause() -> None:
+    assert not list(breaks(parse("They eat bread and butter."), {}))

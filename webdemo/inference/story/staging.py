@@ -254,7 +254,8 @@ class _Stage:
         if self.contact is not None:
             return
         giver = act.agents[0]
-        family = shape.part or vocabulary().part(act.part or "") or (act.part or "")
+        named = vocabulary().part(act.part or "") or (act.part or "")
+        family = named if act.part_of == act.patient and named in _REGIONS else shape.part or named
         region = Region.WAIST if family == "waist" and shape.behind else _REGIONS.get(family or "shoulder")
         if region is None:
             return
