@@ -96,35 +96,40 @@ def is_next_to(event: Event, found: Found, known: Lexicon) -> bool:
 
 def held(event: Event, found: Found, find: Find) -> Iterator[tuple[Event, Found]]:
     """The postures that phrases beside an act name: "begs on his knees", "with folded arms"."""
-    theirs = next(
-        (p for p in event.prepositions if p[1].kind == "part" and _is_other(p[1], found[2].agents)), None
-    )
-    for i in found[2].rest:
-        preposition, ref = event.prepositions[i]
-        if (
-            preposition == "with"
-            and ref.family == "hand"
-            and not ref.who
-            and theirs is not None
-            and len(found[2].rest) > 1
-        ):
-            put = Event("put", event.subject, ref, prepositions=[theirs], first=event.first, last=event.last)
+    agents = found[2].agents
+    rest = [event.prepositions[i] for i in found[2].rest]
+    theirs = [each for each in event.prepositions if each[1].kind == "part" and _is_other(each[1], agents)]
+    for preposition, ref in rest:
+        if preposition == "with" and ref.family == "hand" and not ref.who and theirs and len(rest) > 1:
+            put = Event(
+                "put", event.subject, ref, prepositions=theirs[:1], first=event.first, last=event.last
+            )
             if (laid := find(put)) is not None and laid[0] != found[0]:  # "stops him with a hand on his back"
                 yield put, laid
             return
-        own = ref.kind == "part" and (ref.who == found[2].agents or (preposition == "with" and not ref.who))
-        if not own or (preposition == "on" and ref.family != "knee"):
+        open_ = not ref.who and (preposition == "with" or (_carries(ref) and ref.family != "knee"))
+        if (
+            ref.kind != "part"
+            or not (open_ or ref.who == agents)
+            or (preposition == "on" and not _carries(ref))
+        ):
             continue
         words = [word for word in event.words if word in _HELD]
         if preposition == "with" and not words:
             continue
         posture = replace(
-            event, lemma="stand", object=None, dative=None, words=words, particles=[], noun=None, times=None,
+            event, lemma="stand", subject=Ref("person", agents), object=None, dative=None,
+            words=words, particles=[], noun=None, times=None,
             prepositions=[(preposition, ref)], side=None, direction=None, adverbs=[],
         )  # fmt: skip
         posed = find(posture)
         if posed is not None and posed[0] != found[0] and not posed[2].rest and posed[2].score > 1.5:
             yield posture, posed
+
+
+def _carries(part: Ref) -> bool:
+    """True for what one kneels or stands on: "on his knees", "on one leg"."""
+    return part.family == "knee" or (part.family in ("leg", "foot") and part.side != "both")
 
 
 def _is_other(part: Ref, agents: str) -> bool:

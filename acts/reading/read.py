@@ -410,5 +410,5 @@ class _Planner:
         if event.state:
             return True
         told = {who for act in self._acts for who in act.agents}
-        ongoing = event.ongoing or event.joint == "while"
-        return ongoing and event.direction != "down" and not told & set(agents)
+        ongoing = event.ongoing or (event.joint == "while" and event.direction != "down")
+        return ongoing and not told & set(agents)

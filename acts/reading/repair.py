@@ -184,8 +184,10 @@ def _is_absolute(token: Token) -> bool:
 
 
 def _opens(token: Token, ending: str) -> bool:
-    """True for "Kneeling, …" and "Mirror each …" at the beginning of a sentence."""
+    """True for "Kneeling, …" and "Mirror each …" at the beginning of a sentence, and for "…, kneeling, …" within it."""
     following = _next(token)
+    if following is not None and token.i and token.nbor(-1).text == following.text == ",":
+        return ending == "ing"  # "The mother, kneeling, ties his shoes"
     if not token.is_sent_start or following is None:
         return False
     if ending == "ing":

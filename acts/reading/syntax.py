@@ -87,15 +87,15 @@ def is_ongoing(token: Token, lemma: str) -> bool:
     children = {child.lower_ for child in token.children}
     if lemma in _GOES_ON and any(child.dep_ == "acomp" for child in token.children):  # "stays seated"
         return True
+    being = any(child.dep_ == "aux" and child.lemma_ == "be" for child in token.children)
     if "down" in children:
-        return False
+        return lemma == "lie" and being
     if lemma in _STATES or children & {"still", "already", "there"}:
         return True
     if token.dep_ == "relcl" and lemma in IN_PLACE:  # "B, who sleeps on the floor"
         return True
     if token.dep_ in ("xcomp", "acomp", "advcl") and token.head.lemma_.lower() in _GOES_ON:
         return True
-    being = any(child.dep_ == "aux" and child.lemma_ == "be" for child in token.children)
     return token.tag_ == "VBG" and (being or token.dep_ in ("amod", "acl"))
 
 

@@ -104,7 +104,7 @@ def _said(act: Act) -> str:
         ("i wanna shake his hand but he walks past me", ["a shake-hands b (wished)", "b walk-past a"]),
         # verbs that share what stands once
         ("The dancer is dipped by her partner and then spun out.", ["b dip a", "b twirl a"]),
-        ("The first person is frozen on one leg.", ["a freeze"]),
+        ("The first person is frozen on one leg.", ["a freeze", "a stand-on-one-leg"]),
         ("She pats him, but does not hug.", ["a pat b", "a not hug b"]),
         (
             "One person walks up behind the other and covers his eyes with both hands.",

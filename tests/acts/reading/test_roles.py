@@ -174,3 +174,15 @@ def test_who_is_stopped_does_not_fall() -> None:
 
 def test_trying_something_at_the_same_time_is_one_act() -> None:
     assert told("Both try to pick up the pen at the same time.") == [("pick-up-thing", "ab", None)]
+
+
+def test_what_stands_between_commas_is_done_meanwhile() -> None:
+    assert told("The mother, kneeling, ties the child's shoelaces.")[0] == ("kneel", "a", None)
+
+
+def test_who_is_lying_down_lies_already() -> None:
+    assert last("He waves to the patient, who is lying down.").already
+
+
+def test_frozen_on_one_leg_is_on_one_leg() -> None:
+    assert [name for name, _, _ in told("The first is frozen on one leg.")] == ["freeze", "stand-on-one-leg"]
