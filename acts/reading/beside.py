@@ -154,7 +154,8 @@ def noun_acts(event: Event, known: Lexicon, rest: Sequence[int]) -> Iterator[tup
             or ref.bare
         ):
             continue
-        bodily = is_act(ref.lemma) or (preposition == "in" and event.lemma in _IS)
+        own = any(vocabulary().part(word) for word in event.words)  # "with slow arm circles"
+        bodily = is_act(ref.lemma) or own or (preposition == "in" and event.lemma in _IS)
         if not bodily or ref.lemma in vocabulary().verbs["no_nouns"]:
             continue
         others = [each for j, each in enumerate(event.prepositions) if j != i and j in rest]
@@ -169,6 +170,6 @@ def noun_acts(event: Event, known: Lexicon, rest: Sequence[int]) -> Iterator[tup
             done.modality = "tried"
         words = [word for word in event.words if word not in event.particles]
         performed = replace(done, lemma=PERFORM, object=ref, dative=done.object, words=words, noun=done)
-        yield preposition, done if ref.lemma in known.frames else performed
+        yield preposition, done if ref.lemma in known.frames and not own else performed
         if done.object is None:
             yield preposition, performed
