@@ -10,7 +10,7 @@ from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import replace
 
 from acts.frames import Event, Ref
-from acts.lexicon import Lexicon
+from acts.lexicon import Entry, Lexicon
 
 from .ellipsis import PERFORM
 from .matching import Found
@@ -134,6 +134,24 @@ def _carries(part: Ref) -> bool:
 
 def _is_other(part: Ref, agents: str) -> bool:
     return len(part.who) == 1 and part.who not in agents
+
+
+def is_given(event: Event, entry: Entry) -> bool:
+    """True for a touch or blow that a noun says without anybody's name: "a slap, and he does not move"."""
+    nobody = event.subject is not None and event.subject.first == event.subject.last
+    done_to = any(shape.do in ("touch", "strike") for shape in entry.stage) and not entry.mutual
+    return event.lemma == PERFORM and event.noun is not None and nobody and done_to
+
+
+def given(event: Event, later: Iterable[Event]) -> Event:
+    """Such an event, as done by one person to the other: to the one of whom the text goes on, else to b."""
+    subjects = (other.subject for other in later if other.subject is not None)
+    whom = next(
+        (ref.who for ref in subjects if ref.kind == "person" and ref.lemma and len(ref.who) == 1), "b"
+    )
+    giver = Ref("person", "a" if whom == "b" else "b")
+    noun = replace(event.noun or event, subject=giver, object=Ref("person", whom))
+    return replace(event, subject=giver, noun=noun)
 
 
 def noun_acts(event: Event, known: Lexicon, rest: Sequence[int]) -> Iterator[tuple[str, Event]]:

@@ -142,6 +142,9 @@ class _Planner:
         if self._in_turn(number, event) or self._repeated(number, event, bool(inner)):
             return
         found = self._matcher.find(event)
+        if found is not None and beside.is_given(event, self._known.entries[found[0]]):
+            event = beside.given(event, self._events[number + 1 :])
+            found = self._matcher.find(event)
         if (theirs := self._of_the_last(event)) is not None and (
             other := self._matcher.find(theirs)
         ) is not None:

@@ -50,6 +50,8 @@ def test_a_verb_is_supplied_where_one_is_left_out(text: str, parsed: str) -> Non
         ("Both in a deep plie.", ["bend-knees ab"]),
         ("Two deep lunges, both in unison.", ["lunge ab 2", "unison ab"]),
         ("A leads with slow arm circles.", ["circle-arms a"]),
+        ("A slap, and he doesn't even move.", ["slap b", "move-about a"]),
+        ("A pat on the back, then a bow.", ["pat a", "bow ab"]),
         # the same to another side
         ("The athlete throws left, right, left.", ["punch a left", "punch a right", "punch a left"]),
         # parts of the body, and whose they are
