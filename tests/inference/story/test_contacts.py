@@ -33,6 +33,7 @@ ORIGIN = np.zeros(2)
         ("A girl kisses a boy on the cheek.", ("a", Region.HEAD, 0, 0)),
         ("The man kisses her.", ("a", Region.HEAD, 0, 0)),
         ("She grabs him by the arm.", ("a", Region.ARM, 1, 0)),
+        ("She examines his knee.", ("a", Region.LEG, 1, 0)),
         ("He pats her head twice.", ("a", Region.HEAD, 1, 2)),
         ("Person A covers person B's eyes with both hands.", ("a", Region.HEAD, 2, 0)),
         ("Person B gets hugged from behind by person A.", ("a", Region.WAIST, 2, 0)),

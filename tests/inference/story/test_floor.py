@@ -297,3 +297,18 @@ def test_who_moonwalks_past_the_other_has_their_back_to_where_they_go() -> None:
     begin, found = ways("He moonwalks past her.", seconds=5.0)
     assert abs(begin.headings[0]) == math.pi and found[0].places[-1, 1] > begin.places[1, 1] + 1.0
     assert found[0].headings is not None and np.nanmax(np.cos(found[0].headings)) < -0.99
+
+
+def test_who_walks_on_with_the_other_beside_them_goes_straight_on() -> None:
+    beside = Standing(np.array([[0.0, 0.0], [-0.8, 0.0]]), np.zeros(2))
+    on = plan((Move("a", Way.PAST), Move("b", Way.STAY)), beside, 90)[0]
+    assert on.places[-1, 1] > 1.5 and abs(on.places[-1, 0]) < 0.1
+
+
+def test_steps_back_are_as_long_as_told_and_make_room_for_steps_forward() -> None:
+    back = plan((Move("a", Way.BACK, metres=2.0),), FACING, 120)[0]
+    assert back.places[-1, 1] < -1.8
+    ahead, *_ = plan((Move("a", Way.AHEAD, metres=0.7), Move("b", Way.BACK)), FACING, 90)
+    assert ahead.places[-1, 1] > 0.6
+    alone, *_ = plan((Move("a", Way.AHEAD, metres=0.7),), FACING, 90)
+    assert alone.places[-1, 1] < 0.4, "who stays is not walked into"

@@ -49,7 +49,7 @@ def test_who_refuses_leaves_the_other_with_a_hand_held_out() -> None:
 
 
 @pytest.mark.parametrize(
-    ("name", "hand"), [("shake-hands", Hand.OFFERS), ("hug", Hand.AHEAD), ("high-five", Hand.OFFERS)]
+    ("name", "hand"), [("shake-hands", Hand.OFFERS), ("hug", Hand.AHEAD), ("high-five", Hand.UP)]
 )
 def test_who_would_like_to_touch_reaches_out_in_vain(name: str, hand: Hand) -> None:
     wished = staged((Act(id="1", act=name, agents=("a",), patient="b", modality="wished"),))
@@ -62,6 +62,24 @@ def test_a_gesture_beside_the_posture_of_the_other_is_given() -> None:
     assert "b" in told("A kneels and B raises one arm.").gesturing
     assert "b" in told("While A kneels, B stands there and raises one arm.").gesturing
     assert "b" not in told("B raises one arm.").gesturing, "which the network makes"
+
+
+def test_who_glides_backwards_goes_backwards_and_may_lead_with_a_hand_raised() -> None:
+    back = told("Person A glides backwards.")
+    assert [move.way for move in back.moves if move.person == "a"] == [Way.BACK]
+    led = told("A walks backwards and leads B with one raised hand.")
+    assert led.gestures["a"].hand is Hand.UP and not led.by_both_hands
+
+
+def test_who_brings_something_walks_up_with_both_hands_before_them() -> None:
+    brought = told("The waiter brings a tray.")
+    assert brought.gestures["a"].hand is Hand.AHEAD and len(brought.gestures["a"].sides) == 2
+    assert [move.way for move in brought.moves if move.person == "a"] == [Way.TO]
+
+
+def test_nobody_waits_for_somebody_who_does_not_move() -> None:
+    around = told("B does not move at all, and A walks once around B.")
+    assert [(m.way, m.late) for m in around.moves if m.person == "a"] == [(Way.ROUND, False)]
 
 
 def test_who_pulls_the_other_up_comes_to_them_first() -> None:

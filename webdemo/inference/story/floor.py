@@ -36,8 +36,12 @@ LINKED = 0.5
 """Metres between two people who walk hand in hand or arm in arm."""
 BEHIND = 1.2
 """Metres by which one follows the other."""
+ABEAM = 0.3
+"""Cosine of the angle between where somebody faces and where the other is, below which they cannot walk past them."""
 ASIDE = 0.7
 """Metres beside the other at which one walks past."""
+BACKWARDS = 0.9
+"""Metres of a step back, at most."""
 RUN = 1.6
 """Metres a second from which somebody runs, who gets up their speed within a step."""
 SIDESTEP = 0.8
@@ -180,17 +184,16 @@ def _moved(
         case Way.AWAY:
             _away(move, track, gap, to, seconds, both=both, followed=Way.AFTER in theirs)
         case Way.BACK | Way.ASIDE:
-            step = (
-                -min(0.9, 0.6 * seconds) * to
-                if move.way is Way.BACK
-                else SIDESTEP * np.array([to[1], -to[0]])
-            )
-            track.walk(np.stack([here, here + step]), min(seconds, 1.3), heading=math.atan2(to[0], to[1]))
+            far = min(move.metres, move.speed * seconds) if move.metres else min(BACKWARDS, 0.6 * seconds)
+            step = -far * to if move.way is Way.BACK else SIDESTEP * np.array([to[1], -to[0]])
+            taken = min(seconds, max(1.3, float(np.linalg.norm(step)) / move.speed + EASE))
+            track.walk(np.stack([here, here + step]), taken, heading=math.atan2(to[0], to[1]))
             track.stay(facing=True, seconds=None if last else 0.2)
         case Way.PAST:
             _past(move, track, other, to, seconds)
         case Way.AHEAD:
-            _ahead(move, track, gap, to, seconds, last=last)
+            room = gap + BACKWARDS if Way.BACK in theirs else gap
+            _ahead(move, track, room, to, seconds, last=last)
         case Way.PACE:
             _to_and_fro(track, to, seconds)
         case Way.ROUND:
@@ -247,6 +250,11 @@ def _away(
 def _past(move: Move, track: Track, other: Array, to: Array, seconds: float) -> None:
     """A walk past the other, to one side of them."""
     here, gap = track.place, float(np.linalg.norm(other - track.place))
+    ahead = direction(track.heading)
+    if ahead @ to < ABEAM and not move.backwards:  # the other is beside or behind them: they walk on
+        way = min(max(seconds - 0.4, 0.5) * move.speed, FARTHEST)
+        track.walk(np.stack([here, here + way * ahead]), seconds)
+        return
     beyond = max(1.3, min(gap, seconds * move.speed - gap)) + move.metres
     aside = ASIDE * np.array([to[1], -to[0]])
     line = np.stack([here, here + 0.5 * gap * to + 0.7 * aside, other + aside, other + beyond * to + aside])

@@ -75,9 +75,8 @@ _AT_BODY = {
 }  # fmt: skip
 """Metres from the pelvis to the left wrist of hands that are held at one's own body."""
 STOOD = (
-    Hand.CLAPS, Hand.SALUTES, Hand.POINTS, Hand.AHEAD, Hand.OFFERS, Hand.PHONE, Hand.EARS, Hand.EYES, Hand.PHOTO,
-    Hand.PRAYS,
-    *_AT_BODY, Hand.SPREAD, Hand.FLAPS, Hand.CIRCLES, Hand.SWINGS,
+    Hand.HIGH, Hand.CLAPS, Hand.SALUTES, Hand.POINTS, Hand.AHEAD, Hand.OFFERS, Hand.PHONE, Hand.EARS, Hand.EYES,
+    Hand.PHOTO, Hand.PRAYS, *_AT_BODY, Hand.SPREAD, Hand.FLAPS, Hand.CIRCLES, Hand.SWINGS,
 )  # fmt: skip
 """Gestures that are given also to those who only stand."""
 _REACH = 0.47

@@ -162,7 +162,7 @@ def _tapped_foot(limb: Limb, held: Array, since: Array) -> Turns:
 
 def _both_knees(limb: Limb, held: Array, since: Array) -> Turns:
     bent = _pulses(since, held, limb.times, 1.6) if limb.times > 1 else held
-    joints = {"hip": -0.75, "knee": 1.2, "ankle": -0.45}
+    joints = {"hip": -0.9, "knee": 1.45, "ankle": -0.55}
     return {f"{side}_{name}": about(0, a * bent) for side in ("left", "right") for name, a in joints.items()}
 
 

@@ -120,7 +120,7 @@ class _Stage:
         return Told(
             moves=moves, idle=idle, frozen=frozenset(self.frozen), gesturing=self._gesturing(moves),
             gestures=self.gestures, contact=self.contact,
-            hold=self.hold, by_both_hands=any(m.backwards and m.way is Way.AWAY for m in moves),
+            hold=self.hold, by_both_hands=any(self._leads_by_both_hands(move) for move in moves),
             twirls=self.twirls, pulls=self.pulls, lift=self.lift, strike=struck, changes=self.changes, limbs=self.limbs,
             leaps=self.leaps, bows=self.bows,
             on_feet=frozenset(who for act, e in self.done if e.group in _LEGS for who in act.agents),
@@ -220,7 +220,10 @@ class _Stage:
 
     def _go(self, act: Act, shape: shapes.Go, who: str) -> Move:
         way = _WAYS[shape.way]
-        metres = act.distance if act.distance is not None and way is Way.AHEAD else shape.metres
+        if act.direction == "back" and way in (Way.AHEAD, Way.PAST):
+            way = Way.BACK  # "glides backwards"
+        given = act.distance is not None and way in (Way.AHEAD, Way.BACK)
+        metres = act.distance if act.distance is not None and given else shape.metres
         turns = float(act.times) if act.times and way is Way.ROUND else shape.turns
         return Move(
             who, way, min(shape.speed * (1.0 if shape.who == "patient" else act.speed), 3.0), turns,
@@ -237,7 +240,7 @@ class _Stage:
     def _late(self, act: Act) -> bool:
         """True if an act comes after one that is done in place, or after one that is refused."""
         refused = (other for other in self.acts if not other.happens and other.act in self.known.entries)
-        if any(self.known.entries[other.act].refused for other in refused):
+        if any(shape.do != "stay" for other in refused for shape in self.known.entries[other.act].refused):
             return True
         before = [other for other, _ in self.done if self.level[other.id] < self.level[act.id]]
         going = {other.id for other, entry in self.done if _goes(entry)}
@@ -345,6 +348,9 @@ class _Stage:
             if all(move.person != who for move in made) and who not in low and not backs:
                 made.append(Move(who, Way.STAY))
         return tuple(move for move in made if move.way is not Way.STAY or move.person not in low)
+
+    def _leads_by_both_hands(self, move: Move) -> bool:
+        return move.backwards and move.way is Way.AWAY and move.person not in self.gestures
 
     def _idle(self) -> frozenset[str]:
         """The people who stand by: of whom nothing is told that happens, while the other does something alone."""
