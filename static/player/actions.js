@@ -19,9 +19,10 @@ export class Actions {
     if (player.data) player.data.rounds = null; // a visitor is at hand: it goes on
     if (action === "fullscreen") return this.toggleFullscreen();
     if (!player.data) return;
-    if (action === "pose") return player.togglePosing();
+    if (action === "pose") return player.directing.togglePosing();
+    if (action === "draw") return player.directing.toggleDrawing();
     if (action === "take") return player.futures.take(argument);
-    if (MOVES.has(action) && !player.mayLeave()) return;
+    if (MOVES.has(action) && !player.directing.mayLeave()) return;
     if (action === "pause") clock.pause();
     else if (action === "play") clock.playing ? clock.pause() : clock.play();
     else if (action === "loop") clock.loop = !clock.loop;

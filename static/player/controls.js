@@ -119,7 +119,7 @@ export class Controls {
   }
 
   /** Brings everything to what is true of the player now. */
-  show({ clock, framing, orbit, posing, sample, show }) {
+  show({ clock, directing, framing, orbit, posing, sample, show }) {
     const { root } = this;
     const frame = clock.shown;
     const range = this.find(".pdd-range");
@@ -140,6 +140,7 @@ export class Controls {
     this.find("[data-act=figure]").dataset.figure = show.character ? "character" : show.bodies ? (show.skeletons ? "both" : "body") : "skeleton";
     press("ghosts", show.ghosts);
     press("pose", Boolean(posing));
+    press("draw", Boolean(directing.drawing?.on));
     press("fullscreen", document.fullscreenElement === root || root.classList.contains("pdd-full"));
     for (const button of root.querySelectorAll("[data-camera]")) button.setAttribute("aria-pressed", String(button.dataset.camera === framing.preset));
     this.showPart(sample, frame);

@@ -124,7 +124,7 @@ export class Futures {
     const { player } = this;
     if (!(index in this.samples)) return;
     player.select(index);
-    player.director?.takeFuture(index);
+    player.director?.takeFuture?.(index);
   }
 }
 

@@ -50,7 +50,8 @@ const hooks = {
 export async function mount(element, props, watch, { plotly, empty, styles: address = null }) {
   const root = element.querySelector(".pdd");
   const player = new Player(root);
-  root.player = player; // for what stands under it and follows its clock
+  root.player = player; // for what stands about it and follows its clock
+  document.dispatchEvent(new Event("pdd-here"));
   let shown;
   let heard = null;
   let covered = false;

@@ -5,7 +5,8 @@ import { aim } from "./address.js";
 import { Clock } from "./clock.js";
 import { Clothes } from "./clothes.js";
 import { Controls } from "./controls.js";
-import { decode, toScene } from "./decode.js";
+import { decode } from "./decode.js";
+import { Directing } from "./directing.js";
 import { Framing } from "./framing.js";
 import { Futures } from "./futures.js";
 import * as live from "./live.js";
@@ -14,7 +15,6 @@ import { Hover } from "./hover.js";
 import { Orbit, reducedMotion } from "./orbit.js";
 import { THEMES, themeName } from "./palette.js";
 import { Pane } from "./pane.js";
-import { Posing } from "./posing.js";
 import { Rate } from "./rate.js";
 import { remember } from "./remember.js";
 import { describe } from "./skeleton.js";
@@ -44,8 +44,7 @@ export class Player {
     this.actions = new Actions(this);
     this.strip = new Strip(root, { onSeek: (frame) => this.seek(frame) });
     this.data = null;
-    this.director = null; // keeps poses: see direct()
-    this.posing = null;
+    this.directing = new Directing(this);
     this.sampleIndex = 0;
     this.rate = new Rate();
     this.dirty = true;
@@ -96,7 +95,7 @@ export class Player {
 
   /** Shows a payload of webdemo/view/payload.py, or the empty state for null. */
   load(payload) {
-    this.endPosing();
+    this.directing.end();
     if (!payload?.samples?.length) {
       this.data = null;
       this.futures.load(null);
@@ -192,47 +191,22 @@ export class Player {
   // ---- actions -------------------------------------------------------------------------------
 
   seek(frame) {
-    if (!this.mayLeave()) return;
+    if (!this.directing.mayLeave()) return;
     this.clock.seek(frame);
     this.wake();
   }
 
-  /**
-   * Lets people be posed and futures be taken: `director` has `posesAt(frame)`, which gives each person's kept pose in
-   * world axes or null, `keepPoses(frame, [{ person: "a" or "b", positions }])` and `takeFuture(index)`.
-   */
+  /** Lets a visitor change what `director` keeps, see directing.js. */
   direct(director) {
-    this.director = director;
-    for (const part of this.root.querySelectorAll("[data-act=pose], [data-help=pose]")) part.hidden = false;
+    this.directing.direct(director);
   }
 
-  /** Stops at the frame that is shown and lays handles over the people, or takes them away. */
-  togglePosing() {
-    if (this.posing) return this.endPosing();
-    const frame = Math.round(this.clock.shown);
-    if (!this.director || !this.skeleton?.wears || this.grid.cells.length || this.sample.beside || this.sample.live) return;
-    this.clock.pause();
-    this.clock.seek(frame);
-    this.posing = new Posing(this, this.posesAt(frame));
-    this.refresh();
+  get director() {
+    return this.directing.director;
   }
 
-  /** The poses that are kept at a frame: points [x, y, z] in scene axes, or null. */
-  posesAt(frame) {
-    return (this.director?.posesAt(frame) ?? []).map((points) => points && points.map((p) => toScene(...p)));
-  }
-
-  endPosing() {
-    this.posing?.close();
-    this.posing = null;
-    if (this.data) this.refresh();
-  }
-
-  /** Whether another moment may be shown: not while a pose is neither kept nor given up. */
-  mayLeave() {
-    if (this.posing?.changed.some(Boolean)) this.posing.remind();
-    else if (this.posing) this.endPosing();
-    return !this.posing;
+  get posing() {
+    return this.directing.posing;
   }
 
   act(action, argument) {
@@ -347,7 +321,9 @@ export class Player {
   paint(pose) {
     const { futures, grid, orbit, theme, themeName, clock, skeleton, show } = this;
     const posed = this.posing?.pose;
-    const pinned = pose && !posed && !clock.playing ? this.posesAt(Math.round(clock.shown)) : [];
+    const pinned = pose && !posed && !clock.playing ? this.directing.posesAt(Math.round(clock.shown)) : [];
+    const { drawing } = this.directing;
+    if (pose) drawing?.lay(this.panes[0].scene, theme);
     this.shown.forEach((pane, index) => {
       const people = posed ?? (pose && pane.poseAt(clock.shown));
       const view = orbit.view(index);
@@ -356,6 +332,7 @@ export class Player {
     });
     futures.place(clock.shown, orbit.view().matrix);
     this.posing?.place(this.panes[0].spots);
+    if (pose) drawing?.place(orbit.view());
     if (pose) this.hover.show();
     this.controls.show(this);
     this.strip.show(clock.shown);

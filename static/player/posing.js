@@ -183,13 +183,13 @@ export class Posing {
     const act = event.target.closest("[data-pose]")?.dataset.pose;
     if (act === "keep") this.keep();
     else if (act === "back") this.back();
-    else if (act === "cancel") this.player.endPosing();
+    else if (act === "cancel") this.player.directing.endPosing();
   }
 
   key(event) {
     const { target } = event;
     const handle = target.closest(".pdd-handle");
-    if (event.key === "Escape") this.held ? this.giveUp() : this.player.endPosing();
+    if (event.key === "Escape") this.held ? this.giveUp() : this.player.directing.endPosing();
     else if (event.key === "Enter" && !target.closest(".pdd-posing")) this.keep();
     else if ((event.ctrlKey || event.metaKey) && event.key.toLowerCase() === "z") this.back();
     else if (handle && event.key in KEYS && !this.held) this.nudge(handle, ...KEYS[event.key], event);
@@ -212,7 +212,7 @@ export class Posing {
     const changed = kept.filter((_, person) => this.changed[person]);
     const { player, frame } = this;
     if (!changed.length) return;
-    player.endPosing();
+    player.directing.endPosing();
     player.director.keepPoses(frame, changed);
   }
 

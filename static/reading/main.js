@@ -4,6 +4,7 @@ import { Asking } from "./asking.js";
 import { Editor } from "./editor.js";
 import { Length } from "./length.js";
 import { people, pieces, spoken, summary, wordsOf } from "./marks.js";
+import { Paths } from "./paths.js";
 import * as edits from "./plan.js";
 
 const NAMES = { a: "A", b: "B", ab: "A and B" };
@@ -36,6 +37,7 @@ class View {
     this.checks = null;
     this.editor = new Editor(root, this);
     this.length = new Length(this.find(".pdr-length"), root.closest(".pd-lab")?.querySelector("#seconds"));
+    this.paths = editable ? new Paths(root, () => this.hold()) : null;
     for (const kind of ["pointerover", "focusin"]) root.addEventListener(kind, (event) => this.point(event.target));
     for (const kind of ["pointerleave", "focusout"]) root.addEventListener(kind, () => this.point(null));
     root.addEventListener("click", (event) => this.press(event.target));
@@ -85,10 +87,10 @@ class View {
     this.root.classList.toggle("pdr-old", !current);
   }
 
-  /** The value of the component: the text, and the plan where it was edited. */
+  /** The value of the component: the text, the plan where it was edited, and paths that were drawn. */
   hold(more = {}) {
     const plan = this.edited ? JSON.stringify(this.draft.plan) : null;
-    this.keep({ text: this.asking.text, plan, number: this.number, list: false, ...more });
+    this.keep({ text: this.asking.text, plan, number: this.number, list: false, paths: this.paths?.paths ?? [], ...more });
   }
 
   send(more = {}) {
@@ -112,6 +114,7 @@ class View {
     if (!shown.edited && shown.number == null) this.note = "";
     this.shown = shown;
     this.draft = shown.plan ? shown : null;
+    if (shown.paths) this.paths?.open(shown.paths);
     this.edited = shown.edited;
     this.hold();
   }

@@ -1,6 +1,7 @@
 // The story under the player: beats as blocks in three lanes, a span, paths on the floor. Its value is a story.
 
 import { Draft } from "./draft.js";
+import { chips } from "../player/paths/walks.js";
 import * as edits from "./edits.js";
 import { Floor } from "./floor.js";
 import { block, drawRuler, drawTicks, node } from "./lanes.js";
@@ -54,6 +55,32 @@ class Editor {
     if (motion) story = { ...story, span: edits.spanAround(edits.momentOf(frame), motion) };
     this.edit(story);
     this.tell("The pose is pinned: press Make this span again, and the motion passes through it.");
+  }
+
+  get paths() {
+    return this.story.paths;
+  }
+
+  get seconds() {
+    return this.story.beats.length ? edits.edges(this.story).at(-1) : this.total;
+  }
+
+  get mayUndo() {
+    return this.past.before.length > 0;
+  }
+
+  keepPath(person, points) {
+    this.edit(edits.path(this.story, person, points));
+  }
+
+  undo() {
+    this.travel("undo");
+  }
+
+  /** Goes back to the story before, or forward again. */
+  travel(way) {
+    const next = this.past[way](this.story);
+    if (next !== this.story) this.show(next);
   }
 
   /** The player's sample is to be the motion from now on: as the button *Take the one shown* does. */
@@ -146,10 +173,8 @@ class Editor {
       this.selected = story.beats.length ? selected + 1 : 0;
       this.edit(edits.add(story, selected));
       this.write(this.selected, "words");
-    } else if (act === "undo" || act === "redo") {
-      const next = this.past[act](story);
-      if (next !== story) this.show(next);
-    } else if (act === "no-span") this.edit({ ...story, span: null });
+    } else if (act === "undo" || act === "redo") this.travel(act);
+    else if (act === "no-span") this.edit({ ...story, span: null });
     else if (act === "add-point") this.floor.addPoint();
     else if (act === "clear-path") this.floor.clear();
     else if (story.beats.length) this.change(act);
@@ -199,8 +224,7 @@ class Editor {
       this.find(`.pds-cell[data-beat="${this.selected}"][data-lane="${cell.dataset.lane}"]`)?.focus();
     } else if (cell && event.key === "Delete") this.change("delete");
     else if ((event.ctrlKey || event.metaKey) && event.key.toLowerCase() === "z" && event.target.tagName !== "TEXTAREA") {
-      const next = this.past[event.shiftKey ? "redo" : "undo"](this.story);
-      if (next !== this.story) this.show(next);
+      this.travel(event.shiftKey ? "redo" : "undo");
     } else return;
     event.preventDefault();
   }
@@ -316,6 +340,7 @@ class Editor {
     drawTicks(this.find(".pds-ticks"), this.props.motion?.contacts ?? [], total);
     this.drawSpan(story.span);
     this.floor.draw(story);
+    chips(this.find(".pds-walks"), story.paths, (person) => this.keepPath(person, []));
     this.player?.refresh(); // it shows poses
     const beat = story.beats[this.selected];
     this.find("[data-field=seconds]").value = beat ? edits.lengthOf(beat) : "";

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import hashlib
 from collections.abc import Mapping
-from dataclasses import dataclass, field, fields
+from dataclasses import asdict, dataclass, field, fields
 from typing import Any
 
 import numpy as np
@@ -34,6 +34,7 @@ from .limits import (
     whole,
 )  # fmt: skip
 from .method import Method
+from .paths import FloorPath, path_of, timed_paths
 from .plans import KeptPlan
 from .results import Cancelled, Progress, Result
 
@@ -112,6 +113,7 @@ class GenerateRequest(SamplingRequest):
             is read and given. Only with ``split``.
         acts: what the two do, as a plan that was written or edited by hand; the words are then read by nobody. Where
             there are no words, they follow from the acts. Only with ``split`` and ``planned``.
+        paths: on the floor, one for a person at most; only with ``split``, by a model that makes scenes.
         plan: of an earlier result of this request, which is used instead of reading the words; read them by default.
     """
 
@@ -120,6 +122,7 @@ class GenerateRequest(SamplingRequest):
     split: bool = True
     planned: bool = True
     acts: Plan | None = None
+    paths: tuple[FloorPath, ...] = ()
     plan: KeptPlan | None = field(default=None, compare=False, repr=False)
 
     def __post_init__(self) -> None:
@@ -131,12 +134,22 @@ class GenerateRequest(SamplingRequest):
         prompt_of(self.prompt, needed=True)
         object.__setattr__(self, "seconds", number("Length", self.seconds, *method.seconds, " seconds"))
         self._check(method)
+        if self.paths:
+            self._check_paths(method)
+
+    def _check_paths(self, method: Method) -> None:
+        if not self.split or "scene" not in method.tasks:
+            raise InputError(f"{method.label} follows no path: remove the paths, or ask by a sentence.")
+        given = (path if isinstance(path, FloorPath) else path_of(path) for path in self.paths)
+        object.__setattr__(self, "paths", timed_paths(tuple(given), self.seconds))
 
     def to_dict(self) -> dict[str, Any]:
-        """All fields but the plan, and the kind of the request."""
-        plain = {f.name: getattr(self, f.name) for f in fields(self) if f.name not in ("acts", "plan")}
+        """All fields but the plan, and the kind of the request; acts and paths only where there are some."""
+        own = ("acts", "paths", "plan")
+        plain = {f.name: getattr(self, f.name) for f in fields(self) if f.name not in own}
+        paths = {"paths": [asdict(path) for path in self.paths]} if self.paths else {}
         acts = {} if self.acts is None else {"acts": self.acts.model_dump(mode="json", exclude_defaults=True)}
-        return {"kind": "generate", **plain, **acts}
+        return {"kind": "generate", **plain, **acts, **paths}
 
 
 def clip_facts(clip: Clip) -> dict[str, Any]:

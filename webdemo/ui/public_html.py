@@ -29,7 +29,10 @@ FILES = {
     **{f"share/{name}": SHARE_FOLDER / name for name in ("share.js", "share.css")},
     "notebook/thumbnail.js": NOTEBOOK_FOLDER / "thumbnail.js",
     "player/player.css": PLAYER_FOLDER / "player.css",
-    **{f"player/{path.name}": path for path in sorted(PLAYER_FOLDER.glob("*.js"))},
+    **{
+        f"player/{path.relative_to(PLAYER_FOLDER).as_posix()}": path
+        for path in sorted(PLAYER_FOLDER.rglob("*.js"))
+    },
     **{f"bodies/{path.name}": path for path in sorted(BODIES_FOLDER.glob("*.json"))},
 }
 """All that the pages load, by the names under which they do."""

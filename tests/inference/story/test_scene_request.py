@@ -8,9 +8,10 @@ import numpy as np
 import pytest
 
 from motion import SMPL22, Duet, InputError
+from webdemo.inference.paths import meeting
 from webdemo.inference.story import Beat, FloorPath, FloorPoint, Pose, SceneRequest
 from webdemo.inference.story.plan import AFTER, MOST_FRAMES, PAST, window_seed, windows
-from webdemo.inference.story.wishes import bent_wrong, meeting
+from webdemo.inference.story.wishes import bent_wrong
 
 REST = SMPL22.rest_positions() + np.array([0, 0.98, 0])
 WAVE = Beat("They wave.", seconds=3.0)

@@ -22,6 +22,7 @@ from webdemo.inference import methods
 from webdemo.inference.actor import FPS, ROLES
 from webdemo.inference.cancel import CancelToken
 from webdemo.inference.joining import closed
+from webdemo.inference.paths import meeting
 from webdemo.inference.plans import KeptPlan, WindowPlan
 from webdemo.inference.requests import GenerateRequest, SamplingRequest
 from webdemo.inference.results import Progress, Result
@@ -29,7 +30,6 @@ from webdemo.inference.scenes import NAMES
 from webdemo.inference.story.plan import Window, window_seed, windows
 from webdemo.inference.story.progress import SceneProgress
 from webdemo.inference.story.request import SceneRequest
-from webdemo.inference.story.wishes import meeting
 from webdemo.inference.timer import StageTimer
 
 from .scene_finish import finished

@@ -240,9 +240,7 @@ def plan_note(request: SceneRequest, go_on: Callable[[], None] = lambda: None) -
             )
     if not request.planned or request.loop or request.end is not None or not said:
         return []
-    return [
-        f"From the words: {'; '.join(said)}. A path that you draw in the tab Scene takes the place of this."
-    ]
+    return [f"From the words: {'; '.join(said)}. A path that you draw takes the place of this."]
 
 
 def _is_said(move: Move) -> bool:

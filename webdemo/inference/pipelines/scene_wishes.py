@@ -16,9 +16,9 @@ from numpy.typing import NDArray
 from motion import InputError
 from webdemo.inference.actor import FPS, MEDIAN_START_DISTANCE, ROLES, Placement
 from webdemo.inference.known_parts import KnownFrames, Part
+from webdemo.inference.paths import MOST_SPEED, FloorPath
 from webdemo.inference.story.plan import Window
 from webdemo.inference.story.request import SceneRequest
-from webdemo.inference.story.wishes import MOST_SPEED, FloorPath
 
 from .scene_paths import known_paths
 

@@ -3,12 +3,14 @@
 Importing this package imports no torch.
 """
 
+from webdemo.inference.paths import FloorPath, FloorPoint
+
 from .beats import Beat
 from .progress import SceneProgress
 from .request import SceneRequest
 from .scripting import in_time, split_sentence
 from .toml import read_story, read_words, write_story
-from .wishes import FloorPath, FloorPoint, Pose
+from .wishes import Pose
 
 __all__ = [
     "Beat", "FloorPath", "FloorPoint", "Pose", "SceneProgress", "SceneRequest", "in_time", "read_story",

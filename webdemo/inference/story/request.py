@@ -15,6 +15,7 @@ from motion import Duet, InputError
 from webdemo.inference import methods
 from webdemo.inference.actor import FPS
 from webdemo.inference.limits import number
+from webdemo.inference.paths import FloorPath, path_of, timed_paths
 from webdemo.inference.plans import KeptPlan
 from webdemo.inference.predict_request import check_motion
 from webdemo.inference.requests import GenerateRequest, SamplingRequest
@@ -25,7 +26,7 @@ from .postures import Posture
 from .scripting import beats_of, told_by, understood
 from .told import Told, at_start
 from .ways import Way
-from .wishes import MOST_POSES, FloorPath, FloorPoint, Pose, check_together
+from .wishes import MOST_POSES, Pose, check_together
 
 MOST_SECONDS = 180.0
 """Of a scene."""
@@ -160,9 +161,7 @@ class SceneRequest(SamplingRequest):
         set_, total = object.__setattr__, self.total_seconds
         if len(self.poses) > MOST_POSES:
             raise InputError(f"There are {len(self.poses)} poses: keep to {MOST_POSES} or fewer.")
-        for path in self.paths:
-            path.check(total)
-        set_(self, "paths", tuple(path.timed(total) for path in self.paths))
+        set_(self, "paths", timed_paths(self.paths, total))
         set_(self, "poses", tuple(pose.check(total) for pose in self.poses))
         check_together(self.paths, self.poses)
         if self.motion is None:
@@ -277,7 +276,7 @@ class SceneRequest(SamplingRequest):
 
 
 def as_scene(request: GenerateRequest, go_on: Callable[[], None] = lambda: None) -> SceneRequest | None:
-    """The scene of a sentence with several beats, which share the request's seconds, or of one with a plan.
+    """The scene of a sentence with several beats, which share the request's seconds, or of one with a plan or paths.
 
     None if the sentence is given to the network as it is, as one whose beats would be longer than a prompt. A request
     with a plan has its beats from there. ``go_on`` is called before each sentence; what it raises ends the reading.
@@ -286,7 +285,15 @@ def as_scene(request: GenerateRequest, go_on: Callable[[], None] = lambda: None)
     if request.plan is not None:
         beats = tuple(beat_of(beat) for beat in request.plan.beats)
         return (
-            SceneRequest(beats=beats, planned=request.planned, plan=request.plan, **plain) if beats else None
+            SceneRequest(
+                beats=beats,
+                paths=_staying(request.paths, beats),
+                planned=request.planned,
+                plan=request.plan,
+                **plain,
+            )
+            if beats
+            else None
         )
     if not request.split or "scene" not in methods.method(request.model).tasks:
         return None
@@ -296,9 +303,14 @@ def as_scene(request: GenerateRequest, go_on: Callable[[], None] = lambda: None)
             beat.check(place)
     except InputError:
         go_on()  # may be what raised it
+        if request.paths:
+            raise
         return None
     if not beats or (
-        len(beats) < 2 and request.acts is None and not (request.planned and told_by(beats[0]).is_planned)
+        len(beats) < 2
+        and request.acts is None
+        and not request.paths
+        and not (request.planned and told_by(beats[0]).is_planned)
     ):
         return None
     factor = request.seconds / sum(beat.length for beat in beats)
@@ -307,7 +319,28 @@ def as_scene(request: GenerateRequest, go_on: Callable[[], None] = lambda: None)
         replace(beat, seconds=round(max(float(s), SHORTEST), 4))
         for beat, s in zip(beats, np.diff(edges), strict=True)
     )
-    return SceneRequest(beats=timed, planned=request.planned, **plain)
+    return SceneRequest(beats=timed, paths=_staying(request.paths, timed), planned=request.planned, **plain)
+
+
+def _staying(paths: Sequence[FloorPath], beats: Sequence[Beat]) -> tuple[FloorPath, ...]:
+    """The timed paths of people, who stay where their path ends unless the words lead them on from there."""
+    ends = np.cumsum([beat.length for beat in beats])
+    found = []
+    for path in paths:
+        last = path.points[-1]
+        led = any(
+            end > (last.seconds or 0.0) and _leads(told_by(beat), path.person)
+            for beat, end in zip(beats, ends, strict=True)
+        )
+        rest = float(ends[-1]) - 1 / FPS
+        stays = not led and rest > (last.seconds or 0.0) + 1
+        found.append(replace(path, points=(*path.points, replace(last, seconds=rest))) if stays else path)
+    return tuple(found)
+
+
+def _leads(told: Told, person: str) -> bool:
+    """True if a person of a beat goes somewhere, or has to do with the other's body."""
+    return person in told.going or told.touches or told.joined or bool(told.contact or told.strike)
 
 
 def _beats(request: GenerateRequest, go_on: Callable[[], None]) -> tuple[Beat, ...]:
@@ -356,23 +389,6 @@ def beat_of(values: Mapping[str, Any]) -> Beat:
     """A beat from its fields."""
     plain = {f.name: values[f.name] for f in fields(Beat) if values.get(f.name) is not None}
     return Beat(**{**plain, "acts": acts_of(plain.get("acts", ()))})
-
-
-def path_of(values: Mapping[str, Any]) -> FloorPath:
-    """A path from its fields; a point may be a mapping or ``[seconds, x, z]`` with or without a heading."""
-    return FloorPath(values.get("person", ""), tuple(map(point_of, values.get("points", ()))))
-
-
-def point_of(values: Mapping[str, Any] | Sequence[float]) -> FloorPoint:
-    """A point of a path; raises InputError if it is none."""
-    if isinstance(values, Mapping):
-        return FloorPoint(**{f.name: values[f.name] for f in fields(FloorPoint) if f.name in values})
-    if len(values) == 2:
-        return FloorPoint(values[0], values[1])
-    if len(values) not in (3, 4):
-        raise InputError("A point of a path is [x, z], [seconds, x, z] or [seconds, x, z, heading].")
-    seconds, x, z = values[:3]
-    return FloorPoint(x, z, seconds, values[3] if len(values) == 4 else None)
 
 
 def pose_of(values: Mapping[str, Any]) -> Pose:

@@ -37,13 +37,14 @@ from motion import Duet, InputError
 from motion.formats import read
 from webdemo.inference.actor import ROLES
 from webdemo.inference.methods import method
+from webdemo.inference.paths import MOST_POINTS, FloorPath, FloorPoint, path_of
 from webdemo.inference.requests import SamplingRequest
 
 from .beats import MOST_BEATS, Beat
-from .request import SceneRequest, beat_of, path_of
+from .request import SceneRequest, beat_of
 from .scripting import split_sentence
 from .toml_outline import Lines, check_outline
-from .wishes import MOST_POINTS, MOST_POSES, FloorPath, FloorPoint, Pose
+from .wishes import MOST_POSES, Pose
 
 MOST_CHARACTERS = 150_000
 """Of a story in TOML; the longest there is, with all its paths and poses written in full, has fewer."""

@@ -43,6 +43,16 @@ class Upload(Sent):
     meta: FileMark = FileMark(_type="gradio.FileData")
 
 
+class SentPath(Sent):
+    """A path as the browser sends it; a point is [seconds or null, x, z] with or without a heading."""
+
+    person: Text
+    points: list[list[Finite | None]]
+
+
+SentPaths: TypeAlias = Annotated[list[SentPath], Field(default_factory=list)]
+
+
 _OF_GRADIO: dict[type, TypeAdapter[Any]] = {
     gr.Textbox: TypeAdapter(Text | None),
     gr.Number: TypeAdapter(Finite | None),

@@ -18,10 +18,11 @@ from acts.captions import short, worded
 from acts.plan import plan_of
 from acts.reading.director import directed
 from motion import InputError
+from webdemo.inference.paths import FloorPath, path_of
 from webdemo.inference.story.scripting import beats_of
 from webdemo.ui.text.words import error_line
 
-from .accepts import Finite, Flag, Sent, Text
+from .accepts import Finite, Flag, Sent, SentPaths, Text
 from .part import MOUNT, STATIC, Part, on_load, scoped
 
 READING_FOLDER = STATIC / "reading"
@@ -42,12 +43,14 @@ class SentReading(Sent):
         plan: of this text, as JSON, where it was edited; otherwise the text is read.
         number: of the question; its answer has the same.
         list: true where the list of all acts is wanted as well.
+        paths: drawn on the stage for the next run.
     """
 
     text: Text = ""
     plan: Text | None = None
     number: Finite = 0
     list: Flag = False
+    paths: SentPaths
 
 
 class Reading(Part):
@@ -110,6 +113,19 @@ def edited_plan(sent: Any, text: str) -> Plan | None:
         if act.act not in lexicon().entries:
             raise InputError(f"There is no act “{act.act}”: choose one of the list.")
     return plan
+
+
+def drawn_paths(sent: Any) -> tuple[FloorPath, ...]:
+    """The paths that were drawn for the next run.
+
+    Raises:
+        InputError: if they are none.
+    """
+    listed = sent.get("paths") if isinstance(sent, Mapping) else None
+    try:
+        return tuple(path_of(entry) for entry in listed or ())
+    except (TypeError, ValueError, AttributeError) as error:
+        raise InputError("The paths on the page are damaged: remove them and draw them again.") from error
 
 
 def shown(plan: Plan) -> dict[str, Any]:

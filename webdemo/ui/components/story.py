@@ -14,11 +14,12 @@ from pydantic import Field, TypeAdapter
 from acts import Act
 from motion import Duet, InputError
 from motion.metrics import compare
-from webdemo.inference.story import Beat, FloorPath, Pose, SceneRequest
+from webdemo.inference.paths import FloorPath, path_of
+from webdemo.inference.story import Beat, Pose, SceneRequest
 from webdemo.inference.story.beats import MOST_BEATS
-from webdemo.inference.story.request import beat_of, path_of, pose_of
+from webdemo.inference.story.request import beat_of, pose_of
 
-from .accepts import Finite, Flag, Sent, Text
+from .accepts import Finite, Flag, Sent, SentPaths, Text
 from .part import MOUNT, STATIC, Part, on_load, scoped
 
 STORY_FOLDER = STATIC / "story"
@@ -40,13 +41,6 @@ class SentBeat(Sent):
     acts: list[Act] = Field(default_factory=list)
 
 
-class SentPath(Sent):
-    """A path as the browser sends it; a point is [seconds or null, x, z] with or without a heading."""
-
-    person: Text
-    points: list[list[Finite | None]]
-
-
 class SentPose(Sent):
     """A pose as the browser sends it: a position for each joint."""
 
@@ -62,7 +56,7 @@ class SentStory(Sent):
     """
 
     beats: list[SentBeat] = Field(default_factory=list)
-    paths: list[SentPath] = Field(default_factory=list)
+    paths: SentPaths
     poses: list[SentPose] = Field(default_factory=list)
     loop: Flag = False
     planned: Flag = True
@@ -96,22 +90,19 @@ def story_value(
     """A story as the component holds it."""
     return {
         "beats": [beat.to_dict() | {"auto": beat.length} for beat in beats],
-        "paths": [
-            {
-                "person": path.person,
-                "points": [
-                    [p.seconds, p.x, p.z] + ([p.heading] if p.heading is not None else [])
-                    for p in path.points
-                ],
-            }
-            for path in paths
-        ],
+        "paths": [path_value(path) for path in paths],
         "poses": [pose.to_dict() for pose in poses],
         "loop": loop,
         "planned": planned,
         "span": None,
         "ahead": False,
     }
+
+
+def path_value(path: FloorPath) -> dict[str, Any]:
+    """A path as the browser holds it, see ``SentPath`` of :mod:`.accepts`."""
+    points = [[p.seconds, p.x, p.z] + ([p.heading] if p.heading is not None else []) for p in path.points]
+    return {"person": path.person, "points": points}
 
 
 def value_of(request: SceneRequest) -> dict[str, Any]:

@@ -15,12 +15,14 @@ from motion import InputError
 from webdemo.inference.acting import acted
 from webdemo.inference.actor import SECONDS
 from webdemo.inference.methods import installed, label_of, method
+from webdemo.inference.paths import path_of
 from webdemo.inference.requests import GenerateRequest, Result
 from webdemo.ui.components.gallery import Gallery
 from webdemo.ui.components.pace import pace_of
-from webdemo.ui.components.reading import Reading, checked, edited_plan, reread, shown
+from webdemo.ui.components.reading import Reading, checked, drawn_paths, edited_plan, reread, shown
 from webdemo.ui.components.settings import UNPLANNED, looked_up
 from webdemo.ui.components.show import arrival_payload
+from webdemo.ui.components.story import path_value
 from webdemo.ui.components.sweep import BETWEEN_SENTENCES, Kind
 from webdemo.ui.history import Opened
 from webdemo.ui.text.classes import installed_classes, takes_class
@@ -99,10 +101,11 @@ class GenerateTab(SweepTab):
         asked = {name: value for name, value in fields.items() if name not in ("class_name", "acts")}
         if takes_class(fields.get("model", GenerateRequest.model)):
             asked["prompt"] = _chosen_class(fields)
-        elif (plan := edited_plan(fields.get("acts"), str(fields.get("prompt") or ""))) is not None:
-            if not asked.get("planned", True):
-                raise InputError(_EDITED_UNPLANNED)
-            asked["acts"] = plan
+            return acted(GenerateRequest(**asked))
+        plan = edited_plan(fields.get("acts"), str(fields.get("prompt") or ""))
+        if plan is not None and not asked.get("planned", True):
+            raise InputError(_EDITED_UNPLANNED)
+        asked |= {"acts": plan, "paths": drawn_paths(fields.get("acts"))}
         return acted(GenerateRequest(**asked))
 
     def title(self, request: GenerateRequest) -> str:
@@ -132,6 +135,7 @@ class GenerateTab(SweepTab):
         if asked.get("acts"):
             plan = plan_of(asked["acts"])
             update["shown"] |= {**shown(plan), "edited": plan.reader == "hand"}
+        update["shown"]["paths"] = [path_value(path_of(path)) for path in asked.get("paths") or ()]
         return update | {"checked": _marks(text, asked, result)}
 
     def more_outputs(self) -> dict[str, Any]:

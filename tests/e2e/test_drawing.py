@@ -1,0 +1,159 @@
+"""Paths that are drawn on the stage's floor: seen, measured, sent with the next run, undone and refused."""
+
+from __future__ import annotations
+
+import re
+from typing import Any
+
+import pytest
+from playwright.sync_api import Page, expect
+
+from webdemo.inference.requests import GenerateRequest
+
+from .playing import until
+from .serving import SLOW, ask, status
+
+pytestmark = pytest.mark.e2e
+
+TOOL, SAID = "#player [data-act=draw]", "#player .pdd-drawing output"
+
+
+@pytest.fixture
+def drawing(shared_page: Page) -> Page:
+    """The tab Generate at the first frame of its motion, seen from above, with the tool taken up and no path."""
+    page = shared_page
+    until(page, "window.__pasdedeux.player?.directing.drawing && window.__pasdedeux.frame !== null")
+    page.keyboard.press("Escape")
+    page.evaluate(
+        """() => { const { player } = window.__pasdedeux;
+        player.clock.pause(); player.clock.seek(0); player.orbit.elevation = 1.2; player.orbit.glide = null;
+        player.director.open([]); player.directing.drawing.toggle(false); player.refresh(); }"""
+    )
+    page.click(TOOL)
+    until(
+        page, "document.querySelector('#player .pdd-grip')?.style.transform && window.__pasdedeux.loops === 0"
+    )
+    return page
+
+
+def drag(page: Page, kind: str, person: str, *by: tuple[float, float]) -> None:
+    """Drags a person's handle with the mouse, by pixels on each way."""
+    box = page.locator(f"#player .pdd-grip[data-person={person}][data-kind={kind}]").bounding_box()
+    assert box is not None
+    x, y = box["x"] + box["width"] / 2, box["y"] + box["height"] / 2
+    page.mouse.move(x, y)
+    page.mouse.down()
+    for dx, dy in by:
+        x, y = x + dx, y + dy
+        page.mouse.move(x, y, steps=12)
+    page.mouse.up()
+
+
+def paths(page: Page) -> list[dict[str, Any]]:
+    return page.evaluate("window.__pasdedeux.player.director.paths")
+
+
+def chips(page: Page) -> Any:
+    return page.locator("#reading .pdr-paths li")
+
+
+def generated(page: Page, server: Any, prompt: str) -> GenerateRequest:
+    """The request of a run of a sentence that was not asked for yet, once it is done."""
+    ask(page, prompt)
+    expect(page.locator("#player .pdd-title")).to_have_text(prompt, timeout=SLOW)
+    status(page, "done")
+    request = server.engine.requests[-1]
+    assert isinstance(request, GenerateRequest)
+    return request
+
+
+def test_a_drawn_path_is_sent_with_the_next_run(drawing: Page, server: Any) -> None:
+    page = drawing
+    drag(page, "path", "a", (-120, 30), (0, -60))
+    (path,) = paths(page)
+    assert path["person"] == "a" and path["points"][0][0] == 0 and len(path["points"]) > 2
+    length = page.evaluate("document.querySelector('#player .pdd-length').textContent")
+    expect(chips(page)).to_have_text(f"A’s path {length} ✕")
+    assert page.evaluate("window.__pasdedeux.player.panes[0].scene.layers.get('paths').points.length") > 40
+    (sent,) = generated(page, server, "A waves to B.").paths
+    assert sent.person == "a"
+    assert [[point.x, point.z] for point in sent.points] == [point[1:] for point in path["points"]]
+    # It stays for the run after, until it is taken away; Ctrl+Z brings it back.
+    expect(chips(page)).to_have_count(1)
+    chips(page).get_by_role("button").click()
+    expect(chips(page)).to_have_count(0)
+    page.click(TOOL)
+    page.keyboard.press("Control+z")
+    expect(chips(page)).to_have_count(1)
+    chips(page).get_by_role("button").click()
+    assert generated(page, server, "B waves to A.").paths == ()
+
+
+def test_a_person_is_put_where_they_are_at_a_moment(drawing: Page) -> None:
+    page = drawing
+    page.evaluate("window.__pasdedeux.player.seek(60)")
+    until(page, "window.__pasdedeux.frame === 60 && window.__pasdedeux.loops === 0")
+    place = page.evaluate("window.__pasdedeux.player.directing.drawing.places[1]")
+    drag(page, "here", "b", (90, 0))
+    (path,) = paths(page)
+    ((seconds, x, z),) = path["points"]
+    assert path["person"] == "b" and seconds == 2.0
+    assert 0.2 < ((x - place[0]) ** 2 + (z - place[1]) ** 2) ** 0.5 < 2
+    expect(chips(page)).to_have_text("B is here at 2.0 s ✕")
+    page.locator("#player [data-draw=undo]").click()
+    assert paths(page) == []
+
+
+def test_a_way_that_nobody_runs_is_refused(drawing: Page) -> None:
+    page = drawing
+    page.evaluate("window.__pasdedeux.player.seek(147)")
+    until(page, "window.__pasdedeux.frame === 147 && window.__pasdedeux.loops === 0")
+    drag(page, "path", "a", (-160, 0))
+    expect(page.locator(SAID)).to_contain_text("Nobody runs")
+    assert paths(page) == []
+
+
+def test_keys_draw_as_well(drawing: Page) -> None:
+    page = drawing
+    page.locator("#player .pdd-grip[data-person=a][data-kind=path]").focus()
+    for _ in range(3):
+        page.keyboard.press("ArrowLeft")
+    expect(chips(page)).to_contain_text(re.compile(r"A’s path 1\.[01] m"))
+    page.keyboard.press("Delete")
+    assert paths(page) == []
+    page.keyboard.press("Escape")
+    expect(page.locator("#player .pdd-drawing")).to_be_hidden()
+    expect(page.locator("#player .pdd-grip")).to_have_count(0)
+
+
+def test_a_story_keeps_what_is_drawn(shared_page: Page) -> None:
+    page = shared_page
+    page.get_by_role("tab", name="Scene").click()
+    page.fill("#scene-prompt textarea", "They wave. Then they hug.")
+    page.click("button#scene-generate", timeout=SLOW)
+    expect(page.locator("#scene-status .pd-done")).to_be_visible(timeout=SLOW)
+    player = "document.querySelector('.pds').editor.player"
+    until(page, f"{player}.directing.drawing && {player}.frameShown !== null")
+    page.evaluate(f"{player}.seek(0); {player}.clock.pause()")
+    page.click("#scene-player [data-act=draw]")
+    page.locator("#scene-player .pdd-grip[data-person=b][data-kind=path]").focus()
+    page.keyboard.press("ArrowRight")
+    expect(page.locator(".pds-walks li")).to_contain_text(re.compile(r"B’s path 0\.[34] m"))
+    (path,) = page.evaluate("document.querySelector('.pds').editor.story.paths")
+    assert path["person"] == "b" and len(path["points"]) == 2
+    page.locator(".pds-walks button").click()
+    assert page.evaluate("document.querySelector('.pds').editor.story.paths") == []
+    page.get_by_role("tab", name="Generate").click()
+
+
+def test_a_kept_run_brings_its_paths_back(drawing: Page, server: Any) -> None:
+    page = drawing
+    drag(page, "path", "a", (-120, 0))
+    generated(page, server, "A bows to B.")
+    (path,) = paths(page)
+    page.evaluate("window.__pasdedeux.player.director.open([])")
+    page.get_by_role("tab", name="History").click()
+    expect(page.locator(".pdn-card").first).to_contain_text("A bows to B.", timeout=SLOW)
+    page.click("#history-open")
+    expect(chips(page)).to_have_count(1, timeout=SLOW)
+    assert [point[1:3] for point in paths(page)[0]["points"]] == [point[1:3] for point in path["points"]]
