@@ -88,7 +88,7 @@ def test_a_full_disk_is_reported_and_leaves_nothing(
 def test_a_film_shows_the_last_result(tab: GenerateTab, monkeypatch: pytest.MonkeyPatch, shown: str) -> None:
     monkeypatch.setattr("webdemo.ui.components.film.film.SIZE", (96, 64))
     (busy, _), (line, button) = tab.make_film(result_of(tab, seconds=1.0), shown)
-    assert "Drawing" in busy and "The film is ready" in line
+    assert "Drawing" in busy and "The film is saved" in line
     with av.open(str(button["value"])) as opened:
         assert sum(1 for _ in opened.decode(video=0)) == 30
 

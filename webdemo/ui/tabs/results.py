@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import logging
 import time
 from collections.abc import Callable, Iterator
@@ -51,6 +52,11 @@ _TAKE_PICTURE = """() => {
   shown?.querySelector("[data-act=picture]")?.click();
 }"""
 """JavaScript that presses the picture button of the player in view."""
+_SAVE = """() => {
+  const button = document.getElementById(%s);
+  setTimeout(() => button?.disabled === false && button.click(), 50);
+}"""
+"""JavaScript that presses a download button that has a file; to be filled with its id as JSON."""
 _CHANGED = (*WORN, ALL)
 """The downloads that change when a character is put on."""
 
@@ -97,10 +103,15 @@ class ResultsTab:
             with gr.Column(elem_classes="pd-menus", min_width=0):
                 self._share()
                 self._export()
-            self.onward = gr.Button(
-                "What comes next", size="sm", min_width=0, elem_id=self._id("continue"),
-                elem_classes="pd-onward",
-            )  # fmt: skip
+            with gr.Row(elem_classes="pd-chips"):
+                self.another = gr.Button(
+                    "Another take", size="sm", min_width=0, elem_id=self._id("another"),
+                    elem_classes="pd-onward",
+                )  # fmt: skip
+                self.onward = gr.Button(
+                    "What comes next", size="sm", min_width=0, elem_id=self._id("continue"),
+                    elem_classes="pd-onward",
+                )  # fmt: skip
         below()
 
     def _share(self) -> None:
@@ -172,7 +183,7 @@ class ResultsTab:
         self.film.click(
             self.make_film, inputs=[self.record, self.player_state], outputs=[self.line, self.filmed],
             js=READ_PLAYER, concurrency_limit=1, concurrency_id="film", trigger_mode="once", **QUIET,
-        )  # fmt: skip
+        ).then(None, js=_SAVE % json.dumps(self._id("download-film")), **QUIET)  # fmt: skip
         self.figure.click(
             self.make_figure, inputs=[self.record, self.player_state], outputs=[self.line, *self.figured],
             js=READ_PLAYER, concurrency_limit=1, concurrency_id="film", trigger_mode="once", **QUIET,
@@ -238,9 +249,7 @@ class ResultsTab:
         except Exception as error:
             yield status(error_line(error), tone="error"), gr.skip()
             return
-        line = (
-            f"The film is ready, drawn in {seconds(time.perf_counter() - began)}: press Film {path.suffix}."
-        )
+        line = f"The film is saved, drawn in {seconds(time.perf_counter() - began)}. Film {path.suffix} saves it again."
         yield status(line, tone="done"), gr.update(value=path, interactive=True)
 
     def make_figure(self, record: Record | None, shown: str) -> Iterator[Updates]:

@@ -104,10 +104,13 @@ class SamplingTab(ResultsTab):
         if self.pace is not None:
             chosen = self.pace.input(None, inputs=self.pace, outputs=self.steps, js=CHOSEN, **QUIET)
             chosen.then(None, **self.tell_advanced).then(None, **self.compare)
-        if self.dice is not None:
-            self.dice.click(
-                None, outputs=self.seed, js=f"() => Math.floor(Math.random() * {MAX_SEED + 1})", **QUIET
-            )
+        if self.dice is None:
+            self.another.visible = False
+            return
+        drawn = f"() => Math.floor(Math.random() * {MAX_SEED + 1})"
+        press = f"() => document.getElementById({self.go.elem_id!r}).click()"
+        self.dice.click(None, outputs=self.seed, js=drawn, **QUIET)
+        self.another.click(None, outputs=self.seed, js=drawn, **QUIET).then(None, js=press, **QUIET)
 
     def _opened_sampling(self, request: Mapping[str, Any]) -> dict[Any, Any]:
         """Updates that show the settings of a kept request."""
