@@ -46,11 +46,20 @@ class View {
     this.find(".pdr-add").addEventListener("click", () => this.editor.show());
     this.find(".pdr-fold").addEventListener("click", () => this.fold(false));
     const asks = root.closest(".pd-ask");
-    asks?.addEventListener("click", (event) => event.target.closest(".pd-run") && this.fold(true));
+    asks?.addEventListener("click", (event) => event.target.closest(".pd-run") && this.leave());
     asks?.addEventListener("keydown", (event) => {
-      if (event.key === "Enter" && !event.shiftKey && event.target.matches("textarea")) this.fold(true);
+      if (event.key === "Enter" && !event.shiftKey && event.target.matches("textarea")) this.leave();
     });
     asks?.addEventListener("focusin", (event) => event.target.matches("textarea") && this.fold(false));
+  }
+
+  /** A run begins: what is read and edited makes room for its result. */
+  leave() {
+    this.fold(true);
+    const { activeElement } = document;
+    if (!this.editor.open) return;
+    this.editor.close();
+    activeElement?.focus({ preventScroll: true });
   }
 
   /** On a phone, a line stands for the reading while a motion is made and watched. */
