@@ -8,6 +8,7 @@ import { STEP, inside, lengthOf, named, passing, trouble } from "./walks.js";
 
 const NEAR = 0.4; // metres from a person's place on the floor within which a drag begins their path
 const ASIDE = 0.5; // metres from there to the handle that moves them
+const LEAST = 0.1; // metres of the last step of a path that is drawn
 const NUDGE = 0.1; // metres; with Shift five times as far
 const KEYS = { ArrowLeft: ["right", -1], ArrowRight: ["right", 1], ArrowDown: ["away", -1], ArrowUp: ["away", 1] };
 const HANDLES = {
@@ -147,10 +148,8 @@ export class Drawing {
       held.now = held.place.map((v, i) => v + at[i] - held.from[i]);
       held.points = passing(this.pathOf(held.person), this.seconds, held.now, this.director.seconds);
     } else {
-      const next = inside(at);
-      const last = held.points.at(-1);
-      if (Math.hypot(next[0] - last[1], next[1] - last[2]) < STEP) return;
-      held.points = [...held.points, [null, ...next]];
+      held.end = inside(at);
+      if (!this.further(held, STEP)) return;
     }
     this.say(trouble(held.points, this.director.seconds) || named(held.person, held.points));
     this.player.wake();
@@ -160,10 +159,19 @@ export class Drawing {
     const { held } = this;
     if (!held || event.pointerId !== held.id) return;
     this.held = null;
+    if (held.end) this.further(held, LEAST);
     const drawn = held.kind === "here" ? held.now : held.points.length > 1;
     if (drawn) this.keep(held.person, held.points);
     else this.say();
     this.player.wake();
+  }
+
+  /** Adds the place under the pointer to a path that is drawn, where that is so far from the last; says whether it did. */
+  further(held, least) {
+    const [, x, z] = held.points.at(-1);
+    if (Math.hypot(held.end[0] - x, held.end[1] - z) < least) return false;
+    held.points = [...held.points, [null, ...held.end]];
+    return true;
   }
 
   drop() {

@@ -108,7 +108,7 @@ class SamplingTab(ResultsTab):
             self.another.visible = False
             return
         drawn = f"() => Math.floor(Math.random() * {MAX_SEED + 1})"
-        press = f"() => document.getElementById({self.go.elem_id!r}).click()"
+        press = f"() => document.getElementById({self._id('generate')!r}).click()"
         self.dice.click(None, outputs=self.seed, js=drawn, **QUIET)
         self.another.click(None, outputs=self.seed, js=drawn, **QUIET).then(None, js=press, **QUIET)
 
