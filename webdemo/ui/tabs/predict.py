@@ -103,7 +103,7 @@ class PredictTab(SweepTab):
             raise InputError("There is no motion yet: drop a file, or pick an example or the last result.")
         return PredictRequest(
             motion=motion_of(source), marker=fields["marker"], seconds=fields["seconds"],
-            seed=fields["seed"], model=fields["model"],
+            seed=fields.get("seed", PredictRequest.seed), model=fields["model"],  # older grids have no seed
         )  # fmt: skip
 
     def title(self, request: PredictRequest) -> str:
