@@ -43,6 +43,17 @@ def test_who_drinks_or_eats_has_a_hand_at_the_mouth(text: str) -> None:
     assert gesture.hand is Hand.MOUTH
 
 
+def test_a_throw_and_its_catch_are_one_beat_in_which_hands_are_held_out() -> None:
+    (beat,) = beats_of(read("A throws the ball and B catches it."))
+    stage = staged(beat.acts)
+    assert stage.strike is not None and stage.gestures["b"].hand is Hand.OFFERS
+    there_and_back = beats_of(read("A throws a ball to B, B catches it and throws it back."))
+    assert [[act.act for act in beat.acts] for beat in there_and_back] == [
+        ["throw-ball", "catch-thing"],
+        ["throw-ball"],
+    ]
+
+
 def test_who_refuses_leaves_the_other_with_a_hand_held_out() -> None:
     refused = staged((Act(id="1", act="shake-hands", agents=("b",), patient="a", polarity="not"),))
     assert refused.gestures["a"].hand is Hand.OFFERS and "b" in refused.idle

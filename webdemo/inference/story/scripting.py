@@ -211,6 +211,8 @@ def _belongs(act: Act, entry: Entry, later: Act, after: Entry, text: str) -> boo
     """True if one act answers another, or goes on with it in one movement."""
     does, then = {shape.do: shape for shape in entry.stage}, {shape.do: shape for shape in after.stage}
     other = "b" if act.agents[0] == "a" else "a"
+    if (entry.thing, after.thing) == ("throws", "catches") and later.agents != act.agents:
+        return True
     hit = "strike" in does or getattr(does.get("touch"), "fells", False)
     if hit and other in later.agents and len(later.agents) == 1:
         return bool(then.keys() & {"posture", "strike"}) or getattr(then.get("go"), "way", "") in (
