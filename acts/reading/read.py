@@ -308,6 +308,7 @@ class _Planner:
         if (patient := self._meant(event)) is not None:  # "leans in, but does not kiss"
             yield replace(event, object=Ref("person", patient))
         alone = event.lemma in self._known.frames and not event.particles and event.joint != "comp"
+        alone = alone and event.lemma not in vocabulary().verbs["vague"]  # "leads with arm circles"
         alone = alone and all(ref.kind == "thing" for _, ref in event.prepositions)
         inner = any(other.beside == number and other.joint == "comp" for other in self._events)
         if event.subject is not None and alone and not inner and (whom := other_of(event.subject.who)):
