@@ -77,6 +77,8 @@ def formations(event: Event, names: Iterable[str]) -> Iterator[Event]:
             formed.object = _EACH
         elif noun == "apart":
             formed.words, formed.distance = ["apart"], event.distance
+        elif noun == "close":
+            formed.words = ["close"]
         elif noun == "back":
             formed.words = ["back", "to", "back"]
         elif noun == "line":

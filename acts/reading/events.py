@@ -122,9 +122,11 @@ class Reader:
 
     def _holder(self, found: Absolute, clause: Token | None) -> Ref | None:
         """The person who holds a part of the body so: the clause's subject, where nothing says another."""
-        subject = self.events[self._of[clause.i]].subject if clause is not None else None
+        if clause is None:  # "Both hands behind the back, chin up."
+            return Ref("person", "ab")
+        subject = self.events[self._of[clause.i]].subject
         before = found.preposition.nbor(-1) if found.preposition.i else found.preposition
-        if clause is not None and any(t.text == ":" for t in self.doc[found.preposition.i : clause.i]):
+        if any(t.text == ":" for t in self.doc[found.preposition.i : clause.i]):
             return Ref("person", "ab")  # said of both, before anybody is named
         if before.pos_ in ("NOUN", "PROPN") and found.state.lower_ == "behind":
             return self.cast.seen.get(before.i, subject)  # "cuffs the thief, hands behind his back"

@@ -65,6 +65,7 @@ def test_a_verb_is_supplied_where_one_is_left_out(text: str, parsed: str) -> Non
             "Both in a plie, backs straight, knees out, then rise.",
             ["bend-knees ab", "stand-tall ab", "turn-out ab both", "stand-tall ab"],
         ),
+        ("Left arm overhead, right hand on the hip.", ["raise-arm ab left", "hands-on-hips ab right"]),
         # where somebody is
         (
             "Therapist behind, both hands under the patient's shoulder blades; the patient rises from the chair.",
@@ -96,3 +97,11 @@ def test_an_ellipsis_is_read_in_linear_time() -> None:
     for text in ("a hop, " * 280, "left, " * 330, "a b " * 490):
         prepared(text, Speller(lexicon()))
     assert time.perf_counter() - begin < 0.5
+
+
+def test_nose_to_nose_is_close() -> None:
+    assert told("Begin nose to nose, then circle without losing eye contact.") == [
+        ("stand-close", "ab", None),
+        ("circle-together", "ab", None),
+        ("turn-to", "ab", None),
+    ]

@@ -142,3 +142,8 @@ def test_a_person_who_stands_behind_begins_behind() -> None:
     placed = beginning("The coach stands behind her.")
     assert placed is not None and placed.gap() < 0.7
     assert placed.places[0, 1] < placed.places[1, 1] and placed.headings[1] == placed.headings[0] == 0.0
+
+
+def test_two_who_circle_face_to_face_keep_circling() -> None:
+    ways = {move.way for move in moves("They circle each other without losing eye contact.")}
+    assert ways == {Way.ROUND}

@@ -147,6 +147,8 @@ class _Stage:
                 self._chase(act, shape)
             case shapes.Go():
                 self.moves += [self._go(act, shape, who) for who in people]
+            case shapes.Turn(way="to") if len(people) == 2 and self._is_going(act):
+                pass  # they circle each other face to face
             case shapes.Turn():
                 late, turns = self._late(act), float(act.times or 1) * shape.turns
                 faces = shape.way == "around" and shape.turns < 1 and act.patient and not act.part
@@ -188,6 +190,12 @@ class _Stage:
             case shapes.Strike():
                 both = self.known.entries[act.act].mutual
                 self.blows.append((("a", "b") if both else people, shape, act))
+
+    def _is_going(self, act: Act) -> bool:
+        """True if both are on their way while an act is done."""
+        level = self.level[act.id]
+        beside = (other for other, entry in self.done if self.level[other.id] == level and _goes(entry))
+        return any(len(other.agents) == 2 for other in beside)
 
     def _place(self, act: Act, shape: shapes.Place) -> None:
         if shape.way == "behind":
