@@ -158,8 +158,9 @@ class ClauseTree:
 def spans(doc: Doc, events: Sequence[Event]) -> Iterator[tuple[int, int]]:
     """The characters of each event's clause: its verb and what hangs on it, without other events' clauses."""
     heads = {event.first: event for event in events}
+    at = {token.idx: token for token in doc}
     for event in events:
-        token = next(t for t in doc if t.idx == event.first)
+        token = at[event.first]
         own = [token]
         waiting = [token]
         while waiting:
