@@ -365,9 +365,10 @@ class Reader:
         if not _AT_ONCE.isdisjoint(marks) and token.dep_ != "xcomp":
             return "with", previous
         if self._tree.is_main(token):
-            mains = [i for i in self._tree.mains if self.doc[i].sent.start == token.sent.start]
-            apart = mains and any(t.text == ";" for t in self.doc[mains[-1] : token.i])
-            return ("after" if apart else "conj", mains[-1]) if mains else ("after", None)
+            main = next(reversed(self._tree.mains), None)
+            if main is None or self.doc[main].sent.start != token.sent.start:
+                return "after", None
+            return "after" if any(t.text == ";" for t in self.doc[main : token.i]) else "conj", main
         if above is None:
             return "after", None
         if token.dep_ == "pobj":
