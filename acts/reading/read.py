@@ -20,6 +20,7 @@ from .language import other_language, unknown
 from .matching import Found, matcher
 from .parses import parses
 from .relations import related
+from .repeats import repeated
 from .spelling import Speller
 from .vocabulary import vocabulary
 from .wording import Text, prepared
@@ -32,9 +33,6 @@ _STANDS = frozenset(("stand", "stay", "remain", "pose", "rest", "meet"))
 """Verbs beside which a formation is all that is shown: "they stand back to back"."""
 _SHARING = frozenset(("conj", "after", "with"))
 """Joints of clauses that may share an object."""
-_SAME = frozenset(("same", "it", "that", "this", "likewise", "so"))
-_MIRRORED = {"left": "right", "right": "left"}
-_MOVEMENTS = frozenset(("movement", "move", "gesture", "motion", "pose", "step", "action"))
 
 
 def _is_implied(subject: Ref | None) -> bool:
@@ -249,47 +247,15 @@ class _Planner:
         return bool(done)
 
     def _repeated(self, number: int, event: Event, has_inner: bool) -> bool:
-        """Adds the last act once more where the words say so: "and B copies it", "he does", "she refuses"."""
-        verbs, subject, last = vocabulary().verbs, event.subject, next(reversed(self._acts), None)
-        repeats = event.lemma in verbs["repeats"]
-        ref = event.object
-        named = ref is None or ref.lemma in _SAME or ref.kind == "person"
-        named = named or (repeats and ref is not None and (ref.kind == "part" or ref.lemma in _MOVEMENTS))
-        named = named or (repeats and ref is not None and ref.lemma in self._known.frames)  # "shows a squat"
-        if last is None or subject is None or subject.kind != "person" or not named:
+        """Adds the last act once more where the words say so."""
+        last = next(reversed(self._acts), None)
+        told = None if last is None else repeated(event, last, has_inner, self._known)
+        if last is None or told is None:
             return False
-        if has_inner and not (repeats and ref is not None and ref.lemma in _SAME):  # "mirrors it facing you"
-            return False
-        declines = event.lemma in verbs["not"] | verbs["wished"]
-        if event.lemma != "do" and not repeats and not declines:
-            return False
-        if declines and (event.object is not None or not (event.denied or event.lemma in verbs["not"])):
-            return False
-        agents, other = tuple(subject.who), "b" if subject.who == "a" else "a"
-        if len(last.agents) > 1 or (len(agents) > 1 and event.lemma != "do"):
-            return False
-        both = len(agents) > 1 or last.patient is None
-        patient = None if both else (last.patient if agents == last.agents else other)
-        denied = declines or event.denied
-        number_of = str(len(self._acts) + 1)
-        told = {
-            "id": number_of,
-            "agents": agents,
-            "patient": patient,
-            "modality": "told",
-            "order": (),
-            "already": False,
-            "times": event.times or last.times,
-            "part_of": agents[0] if last.part_of in last.agents else last.part_of,
-            "side": event.side or (_MIRRORED.get(last.side or "") if event.lemma == "mirror" else last.side),
-        }
-        self._acts.append(
-            last.model_copy(
-                update={**told, "polarity": "not" if denied else "done", "words": self._span(number)}
-            )
-        )
-        self._of[number] = number_of
-        self._answers.add(number_of)
+        own = str(len(self._acts) + 1)
+        self._acts.append(last.model_copy(update={**told, "id": own, "words": self._span(number)}))
+        self._of[number] = own
+        self._answers.add(own)
         return True
 
     def _completed(self, number: int, event: Event) -> Iterator[Event]:

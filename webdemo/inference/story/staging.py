@@ -12,10 +12,11 @@ from functools import lru_cache
 
 from acts import shapes
 from acts.captions import of_each
-from acts.lexicon import Entry, Lexicon, lexicon
+from acts.lexicon import Lexicon, lexicon
 from acts.plan import FROM_BEHIND, Act, beats
 from acts.reading.vocabulary import vocabulary
 
+from .act_kinds import is_after, is_attempt, is_deep, is_near, only_stays, reaches, walks
 from .beginnings import Setting, standing
 from .contacts import Contact, Region
 from .gestures import OF_BOTH, SIDES, STOOD, Gesture, Hand
@@ -39,18 +40,12 @@ _REGIONS = {
     "foot": Region.FOOT,
 }  # fmt: skip
 """Families of parts of the body and the region of each."""
-_NEAR = frozenset(("touch", "fight", "dance", "care"))
-"""Groups of the lexicon whose acts two people do within each other's reach."""
-_HANDED = frozenset(("things", "handling", "daily"))
-"""Groups whose acts with the other person pass something from hand to hand."""
 PULLED = 0.8
 """Metres from where somebody stands up at which the one stands who pulls them up."""
 _JUMPS = 3
 """Jumps of a person who is already jumping when the beat begins."""
 _DODGES = (Way.BACK, Way.ASIDE)
 """Ways in which somebody gets out of a blow's reach."""
-_JOINS = frozenset(("touch", "hold", "link", "lift", "strike"))
-"""Shapes that take the other along."""
 _LEGS = frozenset(("dance", "fight", "ways", "play"))
 """Groups whose acts are done on one's feet."""
 
@@ -78,7 +73,7 @@ class _Stage:
         self.done = [
             (act, known.entries[act.act])
             for act in acts
-            if act.act in known.entries and (act.happens or _is_attempt(act, known.entries[act.act]))
+            if act.act in known.entries and (act.happens or is_attempt(act, known.entries[act.act]))
         ]
         groups = beats(self.acts)
         self.level = {act.id: level for level, group in enumerate(groups) for act in group}
@@ -131,7 +126,7 @@ class _Stage:
                 )
             ),
             keeps_place=self.setting.backs or self.setting.beside,
-            touches=any(_is_near(act, e) for act, e in self.done),
+            touches=any(is_near(act, e) for act, e in self.done),
             alone=of_each(self.acts, self.known),
         )  # fmt: skip
 
@@ -169,7 +164,7 @@ class _Stage:
                 times = act.times or (max(shape.times, _JUMPS) if act.already else shape.times)
                 self.leaps |= dict.fromkeys(people, min(times, 5))
             case shapes.Bow():
-                self.bows |= dict.fromkeys(people, (min(act.times or 1, 5), shape.deep or _is_deep(act)))
+                self.bows |= dict.fromkeys(people, (min(act.times or 1, 5), shape.deep or is_deep(act)))
             case shapes.Gesture():
                 hand, side = Hand[shape.gesture.upper()], act.side or shape.sides
                 sides = SIDES if hand in OF_BOTH or side == "both" else (side,)
@@ -194,7 +189,7 @@ class _Stage:
     def _is_going(self, act: Act) -> bool:
         """True if both are on their way while an act is done."""
         level = self.level[act.id]
-        beside = (other for other, entry in self.done if self.level[other.id] == level and _goes(entry))
+        beside = (other for other, entry in self.done if self.level[other.id] == level and walks(entry))
         return any(len(other.agents) == 2 for other in beside)
 
     def _place(self, act: Act, shape: shapes.Place) -> None:
@@ -241,7 +236,7 @@ class _Stage:
 
     def _chase(self, act: Act, shape: shapes.Go) -> None:
         """Both run after each other: a goes ahead, unless later words say who chases whom."""
-        told = [each for each, entry in self.done if any(_is_after(s) for s in entry.stage)]
+        told = [each for each, entry in self.done if any(is_after(s) for s in entry.stage)]
         if all(len(each.agents) == 2 for each in told):
             self.moves.append(self._go(act, shape, "b"))
 
@@ -251,13 +246,13 @@ class _Stage:
         if any(shape.do != "stay" for other in refused for shape in self.known.entries[other.act].refused):
             return True
         before = [other for other, _ in self.done if self.level[other.id] < self.level[act.id]]
-        going = {other.id for other, entry in self.done if _goes(entry)}
+        going = {other.id for other, entry in self.done if walks(entry)}
         return any(other.id not in going for other in before)
 
     def _follows(self, act: Act) -> bool:
         """True for an act that comes after what somebody does until then."""
         return any(
-            self.level[act.id] > self.level[other.id] and not (other.already or _only_stays(entry))
+            self.level[act.id] > self.level[other.id] and not (other.already or only_stays(entry))
             for other, entry in self.done
         )
 
@@ -349,7 +344,7 @@ class _Stage:
         told = [replace(move, linked=move.linked or self.linked) for move in fastest(self.moves)]
         made = finished(told, until=any(move.until for move in self.moves))
         if not goes(made):
-            stay = self.done and all(_only_stays(e) and len(act.agents) == 2 for act, e in self.done)
+            stay = self.done and all(only_stays(e) and len(act.agents) == 2 for act, e in self.done)
             return tuple(Move(who, Way.STAY) for who in "ab") if stay and not made else tuple(made)
         backs = any(move.way in (Way.BACK, Way.ASIDE) for move in made)
         for who in "ab":
@@ -368,22 +363,22 @@ class _Stage:
             own = [(act, e) for act, e in self.done if who in act.agents]
             theirs = [(act, e) for act, e in self.done if other in act.agents and who not in act.agents]
             denied = any(who in act.agents and not act.happens and not self._stays(act) for act in self.acts)
-            waits = bool(own) and all(_only_stays(e) for _, e in own)
-            touched = any(_reaches(act, e) for act, e in theirs)
+            waits = bool(own) and all(only_stays(e) for _, e in own)
+            touched = any(reaches(act, e) for act, e in theirs)
             if touched or (own and not waits) or who in self.gestures:
                 continue
-            if waits or denied or any(not _goes(e) for _, e in theirs):
+            if waits or denied or any(not walks(e) for _, e in theirs):
                 found.add(who)
         return frozenset(found)
 
     def _stays(self, act: Act) -> bool:
         entry = self.known.entries.get(act.act)
-        return entry is not None and _only_stays(entry)
+        return entry is not None and only_stays(entry)
 
     def _gesturing(self, moves: Sequence[Move]) -> frozenset[str]:
         gone = {move.person for move in moves if move.way not in (Way.STAY, Way.BACKS)}
         each = len(self.gestures) == 2 and not any(len(act.agents) == 2 for act, _ in self.done)
-        own = {who: sum(who in act.agents and not _only_stays(e) for act, e in self.done) for who in "ab"}
+        own = {who: sum(who in act.agents and not only_stays(e) for act, e in self.done) for who in "ab"}
         return frozenset(
             who
             for who, gesture in self.gestures.items()
@@ -395,40 +390,3 @@ class _Stage:
 
 def _other(who: str) -> str:
     return "b" if who == "a" else "a"
-
-
-def _is_attempt(act: Act, entry: Entry) -> bool:
-    """True for a blow or a push that is only tried: it is struck past the other, or they push against each other."""
-    tried = act.polarity == "done" and act.modality == "tried"
-    return tried and any(shape.do in ("strike", "hold") for shape in entry.stage)
-
-
-def _is_deep(act: Act) -> bool:
-    return any(adverb in ("deeply", "low", "deep") for adverb in act.manner)
-
-
-def _only_stays(entry: Entry) -> bool:
-    """True for an act of a bystander."""
-    shown = {shape.do for shape in entry.stage}
-    return "stay" in shown and shown <= {"stay", "place"}
-
-
-def _goes(entry: Entry) -> bool:
-    return any(shape.do == "go" for shape in entry.stage)
-
-
-def _is_after(shape: shapes.Shape) -> bool:
-    return isinstance(shape, shapes.Go) and shape.way == "after"
-
-
-def _is_near(act: Act, entry: Entry) -> bool:
-    """True for an act that two people do within each other's reach."""
-    handed = entry.group in _HANDED and (act.patient is not None or entry.mutual) and not _goes(entry)
-    return handed or (entry.group in _NEAR and _reaches(act, entry))
-
-
-def _reaches(act: Act, entry: Entry) -> bool:
-    """True for an act that the other takes part in: it touches, holds, lifts or strikes them, or needs an answer."""
-    if entry.mutual or any(shape.who != "agent" or shape.do in _JOINS for shape in entry.stage):
-        return True
-    return act.patient is not None and all(shape.do in ("place", "stay") for shape in entry.stage)

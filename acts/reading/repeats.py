@@ -1,0 +1,55 @@
+"""Verbs that say that the last act is done once more, or that it is refused: "and B copies it", "he does too"."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from acts.frames import Event
+from acts.lexicon import Lexicon
+from acts.plan import Act
+
+from .vocabulary import vocabulary
+
+_SAME = frozenset(("same", "it", "that", "this", "likewise", "so"))
+_MIRRORED = {"left": "right", "right": "left"}
+_MOVEMENTS = frozenset(("movement", "move", "gesture", "motion", "pose", "step", "action"))
+
+
+def repeated(event: Event, last: Act, has_inner: bool, known: Lexicon) -> dict[str, Any] | None:
+    """Fields by which an event does the last act once more; None where it says something else.
+
+    Args:
+        event: whose verb may repeat or refuse an act.
+        last: the act before it.
+        has_inner: whether a clause depends on the event, as in "mirrors it facing you".
+        known: the lexicon, whose acts may be named: "shows a squat".
+    """
+    verbs, subject, ref = vocabulary().verbs, event.subject, event.object
+    repeats = event.lemma in verbs["repeats"]
+    named = ref is None or ref.lemma in _SAME or ref.kind == "person"
+    named = named or (repeats and ref is not None and (ref.kind == "part" or ref.lemma in _MOVEMENTS))
+    named = named or (repeats and ref is not None and ref.lemma in known.frames)
+    if subject is None or subject.kind != "person" or not named:
+        return None
+    if has_inner and not (repeats and ref is not None and ref.lemma in _SAME):
+        return None
+    declines = event.lemma in verbs["not"] | verbs["wished"]
+    if event.lemma != "do" and not repeats and not declines:
+        return None
+    if declines and (ref is not None or not (event.denied or event.lemma in verbs["not"])):
+        return None
+    agents, other = tuple(subject.who), "b" if subject.who == "a" else "a"
+    if len(last.agents) > 1 or (len(agents) > 1 and event.lemma != "do"):
+        return None
+    both = len(agents) > 1 or last.patient is None
+    return {
+        "agents": agents,
+        "patient": None if both else (last.patient if agents == last.agents else other),
+        "polarity": "not" if declines or event.denied else "done",
+        "modality": "told",
+        "order": (),
+        "already": False,
+        "times": event.times or last.times,
+        "part_of": agents[0] if last.part_of in last.agents else last.part_of,
+        "side": event.side or (_MIRRORED.get(last.side or "") if event.lemma == "mirror" else last.side),
+    }

@@ -1,0 +1,54 @@
+"""Kinds of acts that the stage tells apart, by what they say and by the shapes of their entries."""
+
+from __future__ import annotations
+
+from acts import shapes
+from acts.lexicon import Entry
+from acts.plan import Act
+
+_NEAR = frozenset(("touch", "fight", "dance", "care"))
+"""Groups of the lexicon whose acts two people do within each other's reach."""
+_HANDED = frozenset(("things", "handling", "daily"))
+"""Groups whose acts with the other person pass something from hand to hand."""
+_JOINS = frozenset(("touch", "hold", "link", "lift", "strike"))
+"""Shapes that take the other along."""
+
+
+def is_attempt(act: Act, entry: Entry) -> bool:
+    """True for a blow or a push that is only tried: it is struck past the other, or they push against each other."""
+    tried = act.polarity == "done" and act.modality == "tried"
+    return tried and any(shape.do in ("strike", "hold") for shape in entry.stage)
+
+
+def is_deep(act: Act) -> bool:
+    """True for an act that is done deeply, such as a low bow."""
+    return any(adverb in ("deeply", "low", "deep") for adverb in act.manner)
+
+
+def only_stays(entry: Entry) -> bool:
+    """True for an act of a bystander."""
+    shown = {shape.do for shape in entry.stage}
+    return "stay" in shown and shown <= {"stay", "place"}
+
+
+def walks(entry: Entry) -> bool:
+    """True for an act that goes over the floor."""
+    return any(shape.do == "go" for shape in entry.stage)
+
+
+def is_after(shape: shapes.Shape) -> bool:
+    """True for a way after the other person."""
+    return isinstance(shape, shapes.Go) and shape.way == "after"
+
+
+def is_near(act: Act, entry: Entry) -> bool:
+    """True for an act that two people do within each other's reach."""
+    handed = entry.group in _HANDED and (act.patient is not None or entry.mutual) and not walks(entry)
+    return handed or (entry.group in _NEAR and reaches(act, entry))
+
+
+def reaches(act: Act, entry: Entry) -> bool:
+    """True for an act that the other takes part in: it touches, holds, lifts or strikes them, or needs an answer."""
+    if entry.mutual or any(shape.who != "agent" or shape.do in _JOINS for shape in entry.stage):
+        return True
+    return act.patient is not None and all(shape.do in ("place", "stay") for shape in entry.stage)
