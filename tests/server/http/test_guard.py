@@ -163,6 +163,16 @@ def test_a_kept_page_is_not_made_again() -> None:
     assert made == ["/", "/other", "/"]
 
 
+def test_the_page_is_sent_compressed(local: TestClient) -> None:
+    sizes = {}
+    for encoding in ("gzip", "identity"):
+        for path in ("/", "/?run=abc"):  # made, then kept
+            with local.stream("GET", path, headers={**HTML, "accept-encoding": encoding}) as answer:
+                sizes[encoding] = sum(map(len, answer.iter_raw()))
+                assert answer.headers.get("content-encoding", "identity") == encoding
+    assert sizes["gzip"] < sizes["identity"] / 5
+
+
 def test_nobody_says_where_the_page_is(local: TestClient) -> None:
     """Gradio would take these headers for the page's address, and put it into every link."""
     for name in ("x-forwarded-host", "x-gradio-server"):

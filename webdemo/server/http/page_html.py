@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections import OrderedDict
 from urllib.parse import parse_qs
 
+from starlette.middleware.gzip import GZipMiddleware
 from starlette.types import ASGIApp, Message, Receive, Scope, Send
 
 KEPT = 16
@@ -15,9 +16,10 @@ _NOT_READ = {"run"}
 
 
 class PageCache:
-    """An ASGI middleware that answers ``GET /`` from memory; it runs inside the access checks.
+    """An ASGI middleware that answers ``GET /`` from memory, compressed; it runs inside the access checks.
 
-    The HTML is the same for all visitors: personal content arrives through events.
+    The HTML is the same for all visitors: personal content arrives through events. So it holds no secret that its
+    compressed size could give away.
 
     Args:
         app: renders the page.
@@ -25,6 +27,7 @@ class PageCache:
 
     def __init__(self, app: ASGIApp) -> None:
         self.app = app
+        self._page = GZipMiddleware(app)
         self._kept: OrderedDict[tuple[object, ...], list[Message]] = OrderedDict()
 
     async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
@@ -33,7 +36,7 @@ class PageCache:
             await self.app(scope, receive, send)
             return
         if not parse_qs(scope.get("query_string", b"").decode("latin-1")).keys() <= _NOT_READ:
-            await self.app(scope, receive, send)
+            await self._page(scope, receive, send)
             return
         key = (scope["scheme"], *(pair for pair in scope["headers"] if pair[0] in _VARIES_WITH))
         if (kept := self._kept.get(key)) is not None:
@@ -47,7 +50,7 @@ class PageCache:
             made.append(_copy(message))
             await send(message)
 
-        await self.app(scope, receive, keep)
+        await self._page(scope, receive, keep)
         if made and made[0].get("status") == 200:
             self._kept[key] = made
             while len(self._kept) > KEPT:
