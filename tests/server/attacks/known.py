@@ -91,7 +91,7 @@ OTHERS_THINGS = [
     get("the folder of another's files", f"{API}/file={{folder_of_ada}}", 403, 404),
     call("another's upload as a prompt", [OTHER_FILE, *FIELDS[1:]], 400, 403),
     post(
-        "another's upload as a past", f"{API}/call/predict", 403, body={"data": [OTHER_FILE, 0, 1, "still", "", 0]}
+        "another's upload as a past", f"{API}/call/predict", 403, body={"data": [OTHER_FILE, 0, 1, "still", "", 0, 0]}
     ),
     get("what another's call ends with", f"{API}/call/generate/{{call}}", 403, 404, never=("SECRET",)),
     get("another's session as a call", f"{API}/call/generate/{{session}}", 403, 404, never=("SECRET",)),
