@@ -38,7 +38,11 @@ def drawing(shared_page: Page) -> Page:
 
 def drag(page: Page, kind: str, person: str, *by: tuple[float, float]) -> None:
     """Drags a person's handle with the mouse, by pixels on each way."""
-    box = page.locator(f"#player .pdd-grip[data-person={person}][data-kind={kind}]").bounding_box()
+    grip = page.locator(f"#player .pdd-grip[data-person={person}][data-kind={kind}]")
+    box, before = grip.bounding_box(), None
+    while box != before:  # the page may still be laid out
+        page.wait_for_timeout(150)
+        box, before = grip.bounding_box(), box
     assert box is not None
     x, y = box["x"] + box["width"] / 2, box["y"] + box["height"] / 2
     page.mouse.move(x, y)

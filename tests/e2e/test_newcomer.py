@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import re
 from collections.abc import Callable
 from pathlib import Path
@@ -17,6 +18,10 @@ pytestmark = pytest.mark.e2e
 TABLE = Path(__file__).resolve().parents[2] / "docs" / "newcomer.md"
 
 
+@pytest.mark.skipif(
+    "PASDEDEUX_NEWCOMER" not in os.environ,
+    reason="takes minutes, and has hung once on a busy machine: set PASDEDEUX_NEWCOMER=1",
+)
 def test_twenty_tasks_take_the_presses_of_the_table(
     lab: str, open_page: Callable[..., Page], tmp_path: Path
 ) -> None:

@@ -94,6 +94,9 @@ def with_result(page: Page, tour: Tour, prefix: str, character: Path) -> None:
 
     A run that begins takes the files of the one before from their buttons, so that they are pressed at once.
     """
+    if page.locator(f"#{prefix}another").is_visible():  # a run, whose result takes the place of what is shown
+        pressed(page, tour, f"#{prefix}another")
+        still(page)
     open_all(page)
     for _ in range(2):
         uploaded(page, tour, f"#{prefix}character", character)
