@@ -26,6 +26,7 @@ from motion import InputError
 from motion.formats.files import replacing
 from training.core.handedness import leading_hand
 from training.core.shell import exit_code
+from training.corpus.cues import Label
 
 ROOT_SCALE = 0.5  # metres
 
@@ -44,7 +45,8 @@ class Scenes:
         control: (total knots, 2, 70) float16, the scenes one after the other.
         rows: for each scene {"start", "tokens", "family", "captions", "alone", "split", "events", "sources",
             "beats", "label", "hand"}, see :class:`training.corpus.scene.Scene` and
-            :func:`training.core.handedness.leading_hand`.
+            :func:`training.core.handedness.leading_hand`. The label is a :class:`training.corpus.cues.Label` whose
+            frames are those of the prepared scene.
         layout: frames a knot and knots a token.
     """
 
@@ -107,6 +109,7 @@ def prepare(
         if captions and row["split"] == "train":
             lists = [row["captions"], *(row["alone"] or ())]
             row["captions"], *row["alone"] = [rng.sample(s, min(captions, len(s))) for s in lists]
+        row["label"] = _label(row["label"], frames)
         row["beats"] = [b | {"end": min(b["end"], frames)} for b in row["beats"] or () if b["start"] < frames]
         if captions and row["split"] == "train":
             for beat in row["beats"]:
@@ -116,6 +119,11 @@ def prepare(
     if not rows:
         raise InputError(f"The corpus in {folder} has no scene of a second or more.")
     return Scenes(torch.cat(parts), rows, layout)
+
+
+def _label(row: dict[str, Any] | None, frames: int) -> dict[str, Any] | None:
+    """A scene's label in the frames that are left of it."""
+    return Label.of_row(row).cut(frames).row() if row else None
 
 
 def joined(parts: Sequence[Scenes]) -> Scenes:

@@ -114,6 +114,20 @@ class Label:
             "beats": [list(ids) for ids in self.beats],
         }
 
+    def cut(self, frames: int) -> Label:
+        """The label of the scene's first ``frames`` frames: acts that begin later are left out."""
+        spans = {
+            act: (start, min(stop, frames)) for act, (start, stop) in self.spans.items() if start < frames
+        }
+        acts = [
+            act.model_copy(update={"order": tuple(one for one in act.order if one.act in spans)})
+            for act in self.plan.acts
+            if act.id in spans
+        ]
+        beats = tuple(tuple(act for act in ids if act in spans) for ids in self.beats)
+        plan = self.plan.model_copy(update={"acts": tuple(acts)})
+        return replace(self, plan=plan, spans=spans, minor=self.minor & spans.keys(), beats=beats)
+
     @classmethod
     def of_row(cls, row: Mapping[str, Any]) -> Label:
         """The label that a row of the index holds."""

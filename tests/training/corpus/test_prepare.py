@@ -11,7 +11,7 @@ import torch
 from models.motion_tokens import TokenLayout
 from training import prepare
 from training.corpus import build
-from training.corpus.cues import Beat, label
+from training.corpus.cues import Beat, Label, label
 from training.corpus.scene import Scene
 
 BEAT = {"start": 0, "end": 70, "acts": ["wave", "stand"], "captions": ["A wave."]}
@@ -40,6 +40,31 @@ def test_sentences_of_each_person_and_beats_are_kept_and_cut(tmp_path: Path) -> 
     assert [beat["acts"] for beat in row["beats"]] == [["wave", "stand"]]
     frames = TokenLayout().num_frames(row["tokens"])
     assert row["beats"][0]["end"] == frames < 70
+
+
+def test_the_label_has_the_frames_of_the_prepared_scene(tmp_path: Path) -> None:
+    made = scene(1)
+    beats = [
+        Beat(("walk-up", "stand-still"), 0, 30, relation="while", minor=True),
+        Beat(("wave", "stand-still"), 30, 70, relation="while"),
+        Beat(("bow", "nod"), 69, 70, relation="while"),
+    ]
+    made.label = label(beats, 70)
+    build.save([made], tmp_path)
+    scenes = prepare.prepare(tmp_path, TokenLayout())
+    out = tmp_path / "scenes.safetensors"
+    prepare.save(scenes, out)
+    (row,) = prepare.load(out).rows
+    frames = TokenLayout().num_frames(row["tokens"])
+    known = Label.of_row(row["label"])
+    told = [(act.agents, act.act, *known.spans[act.id]) for act in known.plan.acts]
+    assert told == [
+        (("a",), "walk-up", 0, 30),
+        (("b",), "stand-still", 0, 30),
+        (("a",), "wave", 30, frames),
+        (("b",), "stand-still", 30, frames),
+    ]
+    assert known.minor == {"1", "2"} and known.beats[-1] == ()
 
 
 def test_two_corpora_make_one(tmp_path: Path) -> None:
