@@ -95,7 +95,7 @@ def build(
         hours: composed motion, of which 8 % is the test split.
         seed: the same seed, data and code give the same corpus.
         only: names of families; all by default.
-        recorded: whether the recorded pairs join where their data are there.
+        recorded: whether the recorded pairs and the real duets join where their data are there.
         cache: where the skeletons fitted to the recorded pairs are kept from one build to the next.
 
     Raises:
@@ -121,18 +121,21 @@ def build(
 
 
 def _recorded(data_dir: str | Path, tally: Tally, cache: Path | None) -> list[Scene]:
-    """The recorded pairs, without the benchmark's test sets."""
+    """The recorded pairs, without the benchmark's test sets, and the real duets."""
+    from .duets import load_duets
     from .pairs import load_pairs
 
+    left_out: Counter[str] = Counter()
+    kept = load_duets(data_dir, left_out)
     try:
-        pairs = load_pairs(data_dir, cache)
+        kept += [scene for scene in load_pairs(data_dir, cache) if scene.split != "benchmark"]
     except InputError as error:
         logger.warning("No recorded pairs: %s", error)
-        return []
-    kept = [scene for scene in pairs if scene.split != "benchmark"]
     for scene in kept:
         tally.frames[f"recorded {scene.family}"] += scene.positions.shape[1]
         tally.scenes[f"recorded {scene.family}"] += 1
+    for why, count in left_out.items():
+        tally.rejected["real duets", why] += count
     return kept
 
 

@@ -26,11 +26,12 @@ LIMBS = tuple(
 SLIDING = {
     **dict.fromkeys(("run-together", "chase"), 1.2),
     **dict.fromkeys(("spar", "sword-fight", "punch-dodge", "punch-recoil", "kick-step-back"), 0.3),
-    **dict.fromkeys(("dance-together", "dance-mirrored", "dance-watch"), 0.3),
+    **dict.fromkeys(("dance-together", "dance-mirrored", "dance-watch", "salsa"), 0.3),
 }
 """Foot skate allowed where the recorded motion itself flies or pivots on the foot, metres a second."""
 FLYING = {"run", "jump", "jumping", "dance", "spin", "crawl", "somersault", "cartwheel", "kick", "push", "fall",
-          "cheer", "chase", "throw", "rage", "swing", "punch", "shadow"}  # fmt: skip
+          "cheer", "chase", "throw", "rage", "swing", "punch", "shadow", "skip", "lie",
+          "shoot", "squats"}  # fmt: skip
 """First words of entries during which nobody stands on a foot, or pivots on it."""
 
 

@@ -6,8 +6,9 @@ Writes ``corpus.md``, one row a family, and ``corpus/FAMILY.webp``, a contact sh
 from __future__ import annotations
 
 import argparse
+import re
 import textwrap
-from collections import defaultdict
+from collections import Counter, defaultdict
 from collections.abc import Sequence
 from pathlib import Path
 from typing import Any, NamedTuple
@@ -22,10 +23,14 @@ from training.core.shell import exit_code
 from training.prepare import load_corpus
 from webdemo.view.contact_sheet import contact_sheet
 
+from .cues import Label
+
 FPS = 30.0
 MEASURED = 15
 """Scenes of a family that are measured."""
 PICTURE_WIDTH = 960
+RECORDED = ("sbu/", "k3hi/", "cmu-salsa/", "cmu-handshake/")
+"""How the sources begin whose two people were recorded together."""
 _LINE = 119
 """Characters of a line of prose."""
 
@@ -51,7 +56,7 @@ def report(motions: NDArray[np.floating], index: list[dict[str, Any]], out: Path
     pictures = out / "corpus"
     pictures.mkdir(parents=True, exist_ok=True)
     rows = [_family(name, scenes, motions, pictures) for name, scenes in sorted(families.items())]
-    text = "\n".join([*_head(rows, index), *_table(rows), ""])
+    text = "\n".join([*_head(rows, index), *_table(rows), "", *_acts_table(index), ""])
     with replacing(out / "corpus.md") as temporary:
         temporary.write_text(text)
     return text
@@ -120,16 +125,14 @@ def _head(rows: Sequence[_Family], index: list[dict[str, Any]]) -> list[str]:
         np.average([getattr(row, key) for row in rows], weights=minutes)
         for key in ("drift", "skate", "overlap")
     )
-    recorded = [s for s in index if str((s.get("sources") or [""])[0]).startswith(("sbu", "k3hi"))]
     captions = {caption for scene in index for caption in scene["captions"]}
     return [
         "# The corpus",
         "",
         _wrapped(
             f"{len(index):,} scenes of {len(rows)} families, {minutes.sum() / 60:.1f} hours at "
-            f"30 fps, with {len(captions):,} different captions. {len(recorded)} scenes "
-            f"({sum(s['frames'] for s in recorded) / FPS / 60:.0f} minutes) are recorded pairs; the others "
-            f"are composed from single-person recordings. Overall, bone drift is {drift:.2f} %, foot skate "
+            f"30 fps, with {len(captions):,} different captions. {_together(index)} "
+            f"{_people(index)} Overall, bone drift is {drift:.2f} %, foot skate "
             f"{skate:.1f} cm/s and penetration {overlap:.2f} cm."
         ),
         "",
@@ -148,6 +151,77 @@ def _head(rows: Sequence[_Family], index: list[dict[str, Any]]) -> list[str]:
         "`python -m training.corpus.report` rebuilds this page.",
         "",
     ]
+
+
+def is_recorded(scene: dict[str, Any]) -> bool:
+    """True for a scene whose two people were recorded together."""
+    return str((scene.get("sources") or [""])[0]).startswith(RECORDED)
+
+
+def _together(index: list[dict[str, Any]]) -> str:
+    """A sentence on what was recorded of two people."""
+    recorded = [scene for scene in index if is_recorded(scene)]
+    frames = sum(scene["frames"] for scene in recorded)
+    share = 100 * frames / max(sum(scene["frames"] for scene in index), 1)
+    return (
+        f"{len(recorded):,} scenes ({frames / FPS / 60:.0f} minutes, {share:.1f} %) are recorded duets, cut into windows "
+        "that may overlap; the others are composed from single-person recordings."
+    )
+
+
+def _people(index: list[dict[str, Any]]) -> str:
+    """A sentence on how many performers the sources name."""
+    found = {who for scene in index for source in scene.get("sources") or () for who in performers(source)}
+    return f"The files name {len(found)} performers; some sets do not say who performs."
+
+
+_PERFORMERS = (
+    (r"accad_(Female1|Male1)_", "accad {}"),
+    (r"cmu-(?:iclone_0|solo_)(\d\d)[_-]", "cmu {}"),
+    (r"cmu-dance-martial_(indian|martial)", "cmu {}"),
+    (r"perfume_([ABC])_", "perfume {}"),
+)
+"""Patterns of sources that name their performer."""
+
+
+def performers(source: str) -> set[str]:
+    """The people whom a source names; none where it names nobody.
+
+    >>> sorted(performers("cmu-salsa/05"))
+    ['cmu 60', 'cmu 61']
+    """
+    for pattern, name in _PERFORMERS:
+        match = re.match(pattern, source)
+        if match:
+            return {name.format(match[1])}
+    if source.startswith("cmu-salsa/"):
+        return {"cmu 60", "cmu 61"}
+    if source.startswith("cmu-handshake/"):
+        return {"cmu 18", "cmu 19"}
+    if source.startswith("sbu/"):
+        return {f"sbu {number}" for number in re.findall(r"s(\d\d)", source.split("/")[1])}
+    return set()
+
+
+def _acts_table(index: list[dict[str, Any]]) -> list[str]:
+    """One row an act of the lexicon: scenes, minutes, and how many of them are of recorded duets."""
+    scenes: Counter[str] = Counter()
+    frames: Counter[str] = Counter()
+    real: Counter[str] = Counter()
+    for scene in index:
+        if not scene.get("label"):
+            continue
+        known = Label.of_row(scene["label"])
+        scenes.update({act.act for act in known.plan.acts})
+        for act in known.plan.acts:
+            start, stop = known.spans[act.id]
+            frames[act.act] += stop - start
+            real[act.act] += (stop - start) * is_recorded(scene)
+    lines = ["| Act | Scenes | Minutes | of these recorded duets |", "|---|---:|---:|---:|"]
+    for name in sorted(scenes):
+        minutes, recorded = (count[name] / FPS / 60 for count in (frames, real))
+        lines.append(f"| {name} | {scenes[name]} | {minutes:.1f} | {recorded:.1f} |")
+    return lines
 
 
 def _wrapped(paragraph: str) -> str:

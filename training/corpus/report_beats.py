@@ -24,7 +24,7 @@ from webdemo.view.contact_sheet import contact_sheet
 
 from .cues import STILL, steps
 from .phrasing import phrases
-from .report import touch_gap
+from .report import is_recorded, touch_gap
 from .vocabulary import ANIMATED
 
 FPS = 30.0
@@ -81,10 +81,10 @@ def _head(
     )
     entries = {name for cue in _acts(scenes) for group in steps(cue) for name, *_ in group}
     spoken = sum(len(phrases(name)) for name in entries)
-    recorded = [s for s in index if str(s["sources"][0]).startswith(("sbu", "k3hi"))]
+    recorded = [scene for scene in index if is_recorded(scene)]
     measures = ["| | Foot skate, cm/s | Jerk, m/s³ | Penetration, cm |", "|---|---|---|---|"]
     walking = [s for s in scenes if all(a in _WALKS for beat in s["beats"] for a in beat["acts"])]
-    kinds = (("scenes of beats", scenes), ("of these, walking only", walking), ("recorded pairs", recorded))
+    kinds = (("scenes of beats", scenes), ("of these, walking only", walking), ("recorded duets", recorded))
     for name, kind in kinds:
         if kind:
             duets = [_duet(motions, s) for s in kind[:: max(len(kind) // MEASURED, 1)]]

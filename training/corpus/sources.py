@@ -188,7 +188,9 @@ def _cache_path(root: Path, files: list[Path], cache_dir: str | Path | None) -> 
     state = [
         (path.relative_to(root).as_posix(), path.stat().st_size, path.stat().st_mtime_ns) for path in files
     ]
-    digest = hashlib.sha256(json.dumps([_CACHE_VERSION, state]).encode()).hexdigest()[:16]
+    digest = hashlib.sha256(json.dumps([_CACHE_VERSION, repr(vocabulary.CUTS), state]).encode()).hexdigest()[
+        :16
+    ]
     return folder / f"sources-{digest}.npz"
 
 

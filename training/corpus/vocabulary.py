@@ -1,4 +1,4 @@
-"""The used parts of free one-person clips, and their actions.
+"""The used parts of free one-person clips, and their actions; those of the larger sets are listed in ``cuts.toml``.
 
 Mesh2Motion's clips are animated by hand: their shapes are good, their timing is ideal, so they are smoothed
 and slowed to what a body does (:func:`humanly`). The other sets are recordings.
@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import lzma
 import tarfile
+import tomllib
 from collections.abc import Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass, replace
@@ -32,7 +33,6 @@ from .gltf_clips import read_animations
 
 Array = NDArray[np.floating]
 
-FOLDERS = ("mesh2motion", "deepmimic", "cmu-iclone", "perfume")
 ANIMATED = "mesh2motion"
 """The data set whose clips are animated by hand."""
 MOST_SPEED, MOST_ACCELERATION = 6.5, 150.0
@@ -140,6 +140,8 @@ CUTS: dict[str, tuple[Cut, ...]] = {
         Cut("C_test", "formation-c"),
     ),
 }  # fmt: skip
+_LISTED = tomllib.loads(Path(__file__).with_name("cuts.toml").read_text(encoding="utf-8"))
+CUTS |= {dataset: tuple(Cut(**cut) for cut in listed["cuts"]) for dataset, listed in _LISTED.items()}
 _TIPS = [SMPL22.index(f"{side}_{joint}") for side in ("left", "right") for joint in ("wrist", "ankle")]
 
 
@@ -192,7 +194,8 @@ def _clips(folder: Path, dataset: str, wanted: set[str]) -> dict[str, RigMotion]
                 elif path.stem in wanted and dataset == "deepmimic":
                     found[path.stem] = read_deepmimic(path.read_bytes(), name=path.name)
                 elif path.stem in wanted:
-                    found[path.stem] = _without_first(read_bvh(path))
+                    rig = without_first(read_bvh(path))
+                    found[path.stem] = upright(rig) if dataset in _LISTED else rig
             except InputError:
                 continue
     return found
@@ -215,7 +218,12 @@ def unpacked(folder: Path, dataset: str) -> Iterator[Path]:
         yield Path(place)
 
 
-def _without_first(rig: RigMotion) -> RigMotion:
+def upright(rig: RigMotion) -> RigMotion:
+    """The rig with Y up, which nobody has to guess where a body lies or crawls all the time."""
+    return replace(rig, up="y")
+
+
+def without_first(rig: RigMotion) -> RigMotion:
     """Without the T-pose in the first frame."""
     return replace(rig, positions=rig.positions[1:])
 

@@ -11,7 +11,7 @@ The figures are given by ten seconds, so that it shows whether a reactor drifts 
 from __future__ import annotations
 
 import argparse
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Collection, Mapping, Sequence
 from functools import partial
 from pathlib import Path
 from typing import Any
@@ -25,6 +25,7 @@ from motion.metrics import foot_skate, pelvis_distance
 from motion.transforms import resample
 from motion.vectors import wrapped
 from training.core.shell import exit_code
+from training.corpus.duets import pairs_in
 from training.evaluate.futures import facings
 from training.evaluate.online import NEAR
 from webdemo.inference import Engine, ReactRequest, Result
@@ -42,15 +43,17 @@ COLUMNS = (
 )  # fmt: skip
 
 
-def takes(folder: Path) -> list[Array]:
-    """Pairs of dancers (2, T, 22, 3) at 30 fps, forty seconds at most.
+def takes(folder: Path, only: Collection[str] = ()) -> list[Array]:
+    """Pairs of dancers (2, T, 22, 3) at 30 fps, forty seconds at most; ``only`` names takes, all by default.
 
     Raises:
         InputError: if the folder holds no pair that lasts ten seconds.
     """
     found = []
-    for path in sorted(folder.glob("*_a.bvh")):
-        duet = read_pair(path, path.with_name(path.name.replace("_a.bvh", "_b.bvh")))
+    for name, a, b in pairs_in(folder):
+        if only and name not in only:
+            continue
+        duet = read_pair(a, b)
         people = duet.positions.astype(np.float64)
         if duet.fps != FPS:
             people = np.stack([resample(person, duet.fps, FPS) for person in people])

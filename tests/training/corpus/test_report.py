@@ -9,6 +9,7 @@ from PIL import Image
 
 from motion import SMPL22, Duet
 from training.corpus import report, report_beats
+from training.corpus.cues import Beat, label
 
 WRIST = SMPL22.index("right_wrist")
 TOUCH = {"a": "right_wrist", "b": "right_wrist", "start": 10, "end": 20}
@@ -53,6 +54,26 @@ def test_command_writes_a_row_and_a_picture_a_family(
     assert "| 2 (1) |" in row and "| 8 |" in row
     for name in ("shake", "stand"):
         assert Image.open(out / "corpus" / f"{name}.webp").width == report.PICTURE_WIDTH
+
+
+def test_the_report_counts_acts_people_and_the_share_of_recorded_duets(corpus: Path, tmp_path: Path) -> None:
+    index = json.loads((corpus / "index.json").read_text())
+    beats = [Beat(("dance", "dance"), 0, 45, relation="while"), Beat(("twirl", ""), 45, 60, relation="while")]
+    made = label(beats, 60).row()
+    index[0] |= {"sources": ["cmu-salsa/05"], "label": made}
+    index[1] |= {
+        "sources": ["accad_Female1_A07_Crouch", "cmu-solo_10_01", "cmu-iclone_002_06"],
+        "label": made,
+    }
+    index[2] |= {"sources": ["sbu/s01s02/06/001", "bandai"]}
+    text = report.report(np.load(corpus / "motions.npy"), index, tmp_path / "docs").replace("\n", " ")
+    assert "2 scenes (0 minutes, 66.7 %) are recorded duets" in text and "name 7 performers;" in text
+    rows = [line for line in (tmp_path / "docs" / "corpus.md").read_text().splitlines() if "dance |" in line]
+    assert rows == ["| dance | 2 | 0.1 | 0.0 |"]
+    assert report._acts_table([index[0]] * 60)[2:] == [
+        "| dance | 60 | 1.5 | 1.5 |",
+        "| twirl | 60 | 0.5 | 0.5 |",
+    ]
 
 
 def test_a_folder_without_a_corpus(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:

@@ -16,8 +16,11 @@ from motion.kinematics import forward_kinematics
 from motion.retarget import retarget
 from motion.skeleton import SMPL22
 from tests.motion.bodies import marching
+from tests.motion.formats.rigs import RIGS, bvh_text
 from training.corpus import vocabulary
+from training.corpus.beats.script import MENU
 from training.corpus.deepmimic import WIDTH, read_deepmimic
+from training.corpus.families import load_families
 from training.corpus.gltf_clips import read_animations
 from training.corpus.sources import load_sources
 
@@ -133,3 +136,36 @@ def test_sets_that_are_still_packed_are_read(tmp_path) -> None:
     (folder / "motions.tar.xz").write_bytes(b"no archive")
     with pytest.raises(InputError):
         load_sources(tmp_path / "data", cache_dir=tmp_path / "cache")
+
+
+def test_the_axis_of_listed_sets_is_given_and_their_cuts_are_made(
+    tmp_path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    axes: dict[str, str | None] = {}
+
+    def retargeted(rig, *, fps: float):
+        axes[rig.name] = rig.up
+        return retarget(rig, fps=fps)
+
+    monkeypatch.setattr(vocabulary, "retarget", retargeted)
+    positions, rotations = marching(150)
+    rotations, root = rotations.copy(), positions[:, 0] * [1, 0, 1] + [0, 0.15, 0]
+    rotations[:, 0] = Rotation.from_euler("x", 85, degrees=True).as_matrix()  # face down
+    for folder, stem in (("accad", "Female1_A08_CrouchToLie"), ("cmu-iclone", "002_01")):
+        (tmp_path / "data" / folder).mkdir(parents=True)
+        (tmp_path / "data" / folder / f"{stem}.bvh").write_text(bvh_text(rotations, root, RIGS["cmu"]))
+    found = {one.action: one for one in load_sources(tmp_path / "data", cache_dir=tmp_path / "cache")}
+    assert axes == {"Female1_A08_CrouchToLie.bvh": "y", "002_01.bvh": None}
+    body = found["crouch-to-lie"].positions
+    assert (body[:, J("head"), 1] - body[:, 0, 1]).max() < 0.4
+    assert len(body) == round(4.3 * 30) - round(1.6 * 30)
+
+
+def test_every_listed_action_is_played_by_a_beat_or_a_family() -> None:
+    used = {name for option in MENU.values() for name in option.needs}
+    used |= {name for family in load_families().values() for name in family.needs}
+    used |= {"shadow-box", "dance-show", "ballet", "talking"}  # besides others, where they are there
+    listed = {
+        cut.action for name in ("accad", "cmu-solo", "cmu-dance-martial") for cut in vocabulary.CUTS[name]
+    }
+    assert listed and listed <= used

@@ -8,7 +8,7 @@ import numpy as np
 
 from motion.skeleton import SMPL22
 
-from ..compose import ARMS, Array, Motion, drift, join, layer
+from ..compose import ARMS, Array, Motion, drift, layer
 from ..contact import UP, axes, bend, envelope, nod, on_body, reach_arm
 from ..families.combat import blow
 from ..families.gestures import dance_piece, deepened
@@ -17,107 +17,16 @@ from ..touches import Touches
 from .act import Act, Done, Make
 from .performer import Rng
 from .play import Play
+from .whole import WHOLE, part_of, perform, taken
 
 UPPER = (*ARMS["left"], *ARMS["right"])
 HEAD = SMPL22.index("head")
 
 
-def _perform(play: Play, i: int, take: Take, *, aim: float = 0.0) -> Done:
-    person = play.people[i]
-    start, stop = person.perform(take.motion, aim=aim)
-    return Done(start, stop, take.side, take.style)
-
-
-def taken(
-    action: str, frames: tuple[int, int] = (40, 100), *, side: str | None = None, one: bool = False
-) -> Make:
-    """An act that is one clip of the library; with ``one``, of one hand."""
-
-    def make(play: Play, i: int) -> Done:
-        person, rng = play.people[i], play.rng
-        own = side or (pick(rng, ("left", "right")) if one else None)
-        styles = play.library.styles(action)
-        style = person.style if person.style in styles and rng.random() < 0.7 else pick(rng, styles)
-        length = (frames[0], max(frames[0] + 15, int(0.72 * frames[1]))) if play.brisk else frames
-        return _perform(play, i, play.library.take(rng, action, side=own, style=style, frames=length))
-
-    return make
-
-
 def bow(play: Play, i: int) -> Done:
     """Person i bows."""
     take = play.library.take(play.rng, "bow", frames=(50, 72 if play.brisk else 100))
-    return _perform(play, i, Take(deepened(take.motion, play.rng.uniform(0.27, 0.42)), "bow", take.style))
-
-
-def _then(first: Motion, *more: Motion, blend: int = 12) -> Motion:
-    for motion in more:
-        first = join(first, motion, blend=blend)
-    return first
-
-
-def _plain(play: Play, *actions: str) -> list[Motion]:
-    return [play.library.take(play.rng, action, frames=(1, 400)).motion for action in actions]
-
-
-def frozen(motion: Motion, frames: int) -> Motion:
-    """The last pose held for ``frames`` frames."""
-    last = [len(motion) - 1] * frames
-    return Motion(motion.rotations[last], motion.root[last], motion.contacts[last], motion.sources)
-
-
-def looped(motion: Motion, frames: int, *, blend: int = 8) -> Motion:
-    """At least ``frames`` frames of a clip that ends as it begins."""
-    longer = motion
-    while len(longer) < frames:
-        longer = join(longer, motion, blend=blend)
-    return longer
-
-
-def sit(play: Play, i: int) -> Done:
-    """Sits down, stays a while, gets up."""
-    rng = play.rng
-    down, up = _plain(play, "sit-down", "stand-up")
-    still = _plain(play, pick(rng, ("sitting", "sitting-talk")))[0]
-    rest = looped(still, 120)[: play.seconds(0.8, 2.0)]
-    start, stop = play.people[i].perform(_then(down, rest, up))
-    return Done(start, stop)
-
-
-def fall(play: Play, i: int) -> Done:
-    """Falls on the back, lies there and gets up."""
-    down, up = _plain(play, "fall", "get-up-back")
-    start, stop = play.people[i].perform(_then(down, frozen(down, play.seconds(0.3, 0.8)), up, blend=18))
-    return Done(start, stop)
-
-
-def crawl(play: Play, i: int) -> Done:
-    """Person i lies down, crawls and gets up."""
-    down, on, up = _plain(play, "lie-down-front", "crawl", "get-up-front")
-    start, stop = play.people[i].perform(_then(down[: len(down) - 25], on, up, blend=14))
-    return Done(start, stop)
-
-
-def push_up(play: Play, i: int) -> Done:
-    """Person i does push-ups."""
-    down, press, up = _plain(play, "lie-down-front", "push-up", "get-up-front")
-    presses = looped(press, int(len(press) * play.rng.integers(1, 3)))
-    start, stop = play.people[i].perform(_then(down[: len(down) - 30], presses, up[20:], blend=14))
-    return Done(start, stop)
-
-
-def jacks(play: Play, i: int) -> Done:
-    """Person i does jumping jacks."""
-    (jump,) = _plain(play, "jumping-jacks")
-    start, stop = play.people[i].perform(looped(jump, int(len(jump) * play.rng.uniform(1.9, 3.2)), blend=4))
-    return Done(start, stop)
-
-
-def rage(play: Play, i: int) -> Done:
-    """Person i rages."""
-    (clip,) = _plain(play, "rage")
-    start, stop = play.people[i].perform(looped(clip, play.seconds(1.5, 2.8), blend=5))
-    return Done(start, stop)
+    return perform(play, i, Take(deepened(take.motion, play.rng.uniform(0.27, 0.42)), "bow", take.style))
 
 
 def talk(play: Play, i: int) -> Done:
@@ -300,9 +209,16 @@ def strike(action: str) -> Make:
 
     def make(play: Play, i: int) -> Done:
         take = blow(play.rng, play.library, action, most=2)
-        return _perform(play, i, take, aim=take.aim)
+        return perform(play, i, take, aim=take.aim)
 
     return make
+
+
+def shadow_box(play: Play, i: int) -> Done:
+    """Punches the air: one or two blows, or a boxer's or a karateka's practice."""
+    if play.library.has("shadow-box") and play.rng.random() < 0.6:
+        return part_of("shadow-box", 1.8, 3.2)(play, i)
+    return strike("punch")(play, i)
 
 
 def arms_over(
@@ -347,25 +263,9 @@ ACTS: dict[str, Act] = {
     "dance": Act(dance, ("dance",), 1.6, room=1.4),
     "spin": Act(spin, ("idle",), 1.5),
     "look-around": Act(look_around, ("idle",), 1.0),
-    "jump": Act(taken("jump", (30, 110)), ("jump",), 2.0, room=1.6),
-    "jumping-jacks": Act(jacks, ("jumping-jacks",), 1.2),
-    "sit-down>stand-up": Act(sit, ("sit-down", "sitting", "stand-up"), 2.5),
-    "kneel": Act(taken("kneel", (60, 110)), ("kneel",), 1.6),
-    "fall-down>stand-up": Act(fall, ("fall", "get-up-back"), 1.5, room=1.4),
-    "lie-down>crawl>stand-up": Act(crawl, ("lie-down-front", "crawl", "get-up-front"), 1.0, room=2.6),
-    "lie-down>push-ups>stand-up": Act(push_up, ("lie-down-front", "push-up", "get-up-front"), 0.8, room=2.0),
-    "somersault": Act(taken("roll", (40, 110)), ("roll",), 1.0, room=2.2),
-    "cartwheel": Act(taken("cartwheel", (40, 110)), ("cartwheel",), 0.7, room=3.2),
-    "pick-up-thing": Act(taken("pick-up", (60, 120)), ("pick-up",), 1.5),
-    "rage": Act(rage, ("rage",), 1.2),
-    "scratch-head": Act(taken("scratch-head", (50, 100)), ("scratch-head",), 1.0),
-    "drink": Act(taken("drink", (60, 110)), ("drink",), 1.2),
-    "wave-off": Act(taken("reject", (50, 110)), ("reject",), 1.5),
-    "cheer": Act(taken("victory", (40, 90)), ("victory",), 1.2),
-    "make-fist": Act(taken("fist-pump", (40, 90)), ("fist-pump",), 1.0),
-    "block": Act(taken("guard", (25, 60)), ("guard",), 0.6),
-    "shadow-box": Act(strike("punch"), ("punch",), 1.2, room=1.5),
+    "shadow-box": Act(shadow_box, ("punch",), 1.4, room=1.7),
     "kick-air:leg": Act(strike("kick"), ("kick",), 1.2, room=1.7),
     "swing-sword": Act(strike("slash"), ("slash",), 0.6, room=1.9),
+    **WHOLE,
 }  # fmt: skip
 """What one person does alone, by its cue."""

@@ -368,19 +368,3 @@ def walk_and(play: Play, i: int) -> None:
         (f"{'walk-up' if up else 'step-back'}+{_SAID[over]}", STILL), start, i=i, relation="while",
         sides=(gesture.side, None), styles=(take.style, "normal"),
     )  # fmt: skip
-
-
-def walk_past(play: Play, i: int) -> None:
-    """Both go past each other without stopping."""
-    rng = play.rng
-    start = play.sync()
-    styles = []
-    aside = pick(rng, (-1, 1)) * rng.uniform(0.8, 1.1)
-    spots = [person.spot for person in play.people]
-    for k in (i, 1 - i):
-        person, goal = play.people[k], spots[1 - k]
-        way = bearing(goal - person.spot)
-        target = goal + aside * leftwards(way) + rng.uniform(0.3, 0.8) * ahead(way)
-        # Each keeps to their own side from the middle on.
-        styles.append(person.go(target, None, stop=False).style)
-    play.note(("walk-past", "walk-past"), start, i=i, relation="while", styles=tuple(styles))

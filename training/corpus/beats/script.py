@@ -13,7 +13,7 @@ from ..cues import STILL
 from ..library import Library, pick
 from ..scene import Scene
 from ..telling import describe
-from . import moves
+from . import moves, passing
 from .act import Done
 from .acts import ACTS
 from .performer import Rng
@@ -166,11 +166,12 @@ MENU: dict[str, Option] = {
     "follow": Option(moves.follow, ("walk",), 3.0, _close),
     "walk-together": Option(moves.walk_together, ("walk",), 6.0, _near),
     "walk-and": Option(moves.walk_and, ("walk", "walk-back", "wave"), 3.5, _near),
-    "walk-past": Option(moves.walk_past, ("walk",), 2.5, _far),
+    "walk-past": Option(passing.walk_past, ("walk",), 2.5, _far),
+    "skip": Option(passing.skip_past, ("skip",), 1.8, _far),
 }  # fmt: skip
 
 
-APPROACHES = ("walk-up", "run-up", "creep-up", "walk-up+wave", "walk-up+raise-arm", "walk-past")
+APPROACHES = ("walk-up", "run-up", "creep-up", "walk-up+wave", "walk-up+raise-arm", "walk-past", "skip")
 _CAUSES = ("push", "hand-over", "throw-ball", "punch", "kick", "help-up", "whisper")
 """Cues that the other's part follows from."""
 _STAGED_BY: dict[str | Pair, str] = {

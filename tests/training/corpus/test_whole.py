@@ -1,0 +1,98 @@
+"""Acts that recordings show whole: what is played is what the label says, and where."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from tests.training.corpus.test_beats import main, more, path, staged
+from tests.training.corpus.test_compose import clips, walk
+from training.corpus.beats.act import Done
+from training.corpus.beats.acts import shadow_box
+from training.corpus.beats.script import opening
+from training.corpus.beats.whole import WHOLE, part_of
+from training.corpus.library import Library
+from training.corpus.scene import SourceClip
+
+
+def lowered(frames: int, start: float, stop: float) -> np.ndarray:
+    """A person who sinks from ``start`` to ``stop`` metres."""
+    body = walk(frames, speed=0.0).copy()
+    body[..., 1] -= np.linspace(start, stop, frames)[:, None]
+    return body
+
+
+def clip(positions: np.ndarray, action: str, side: str | None = None) -> SourceClip:
+    return SourceClip(positions, action, "normal", side, f"train-{action}", "made-up", "train")
+
+
+@pytest.fixture(scope="module")
+def library() -> Library:
+    own = [
+        clip(lowered(50, 0.0, 0.45), "crouch-down", "right"),
+        clip(lowered(50, 0.45, 0.0), "crouch-up", "right"),
+        clip(walk(200, speed=2.0), "skip"),
+        clip(lowered(300, 0.0, 0.0), "sway"),
+        clip(lowered(300, 0.0, 0.0), "shadow-box"),
+    ]
+    return Library([*clips(), *clips("test"), *more("train"), *more("test"), *own], "train")
+
+
+def test_a_crouch_goes_down_and_comes_up_again(library: Library) -> None:
+    scene = staged(library, "crouch>stand-up / stand-still")
+    beat = main(scene)[0]
+    i = beat["acts"].index("crouch>stand-up")
+    height = scene.positions[i, beat["start"] : beat["end"], 0, 1]
+    lowest = int(height.argmin())
+    assert height[0] - height[lowest] > 0.25 and height[-1] - height[lowest] > 0.25
+    assert scene.label
+    told = {act.act: scene.label.spans[act.id] for act in scene.label.plan.acts if act.act != "stand-still"}
+    assert list(told)[:2] == ["crouch", "stand-up"]
+    assert told["crouch"][0] < beat["start"] + lowest < told["stand-up"][1]
+
+
+def test_who_skips_passes_the_other_who_stays(library: Library) -> None:
+    scene = staged(library, "skip / stand-still")
+    beat = main(scene)[0]
+    i = beat["acts"].index("skip")
+    own, other = path(scene, i, beat), path(scene, 1 - i, beat)
+    ahead = (other[0] - own[0]) / np.linalg.norm(other[0] - own[0])
+    assert (own[-1] - other[0]) @ ahead > 0.2 > (own[0] - other[0]) @ ahead
+    assert np.linalg.norm(other[-1] - other[0]) < 0.3
+    assert all("skip" in text or "pranc" in text or "gallop" in text for text in scene.captions)
+
+
+def test_a_stretch_of_a_long_clip_lasts_as_long_as_wished(library: Library) -> None:
+    play = opening(np.random.default_rng(0), library)
+    before = len(play.people[0])
+    done = part_of("sway", 2.0, 3.0)(play, 0)
+    assert isinstance(done, Done) and 60 <= done.stop - done.start <= 90 and done.stop > before
+
+
+def test_boxing_is_taken_from_recordings_of_boxers_too(library: Library) -> None:
+    drawn = set()
+    for seed in range(6):
+        play = opening(np.random.default_rng(seed), library)
+        try:
+            shadow_box(play, 1)
+        except LookupError:  # the small library has no punch
+            continue
+        drawn |= {source for source in play.sources() if "shadow-box" in source}
+    assert drawn == {"train-shadow-box"}
+
+
+def test_clips_that_follow_each_other_are_mirrored_alike(
+    library: Library, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    sides: list[str | None] = []
+    take = library.take
+
+    def seen(rng: np.random.Generator, action: str, **wanted):
+        drawn = take(rng, action, **wanted)
+        sides.append(drawn.side)
+        return drawn
+
+    monkeypatch.setattr(library, "take", seen)
+    for seed in range(8):
+        WHOLE["crouch>stand-up"].make(opening(np.random.default_rng(seed), library), 0)
+    assert sides[::2] == sides[1::2] and set(sides) == {"left", "right"}
