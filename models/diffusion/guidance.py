@@ -7,6 +7,7 @@ from typing import cast
 
 import torch
 from torch import Tensor
+from torch.nn.functional import pad
 
 
 def guide(conditional: Tensor, unconditional: Tensor, scale: float) -> Tensor:
@@ -58,18 +59,24 @@ class Guided:
         cond: Tensor,
         mask: Tensor | None = None,
         known: Tensor | None = None,
+        plan: Tensor | None = None,
         *,
         scale: float = 3.5,
     ) -> Tensor:
-        """:func:`classifier_free` of this network; shapes as in its ``forward``, and ``known`` may have one row."""
+        """:func:`classifier_free` of this network, in which no condition is no plan either.
+
+        Shapes are as in its ``forward``; ``known`` and ``plan`` may have one row.
+        """
         network = cast(Callable[..., Tensor], self)
         more = () if known is None else (known.expand(len(x), -1, -1),)
+        told = {} if plan is None else {"plan": plan.expand(len(x), -1, -1)}
         if self.takes_scale:
             scales = torch.full((len(x),), scale, device=x.device)
-            return network(x, t, cond, mask, *(more or (None,)), scales)
+            return network(x, t, cond, mask, *more, guidance=scales, **told)
 
         def predict(x: Tensor, t: Tensor, mask: Tensor | None, *rest: Tensor) -> Tensor:
             *known, cond = rest
-            return network(x, t, cond, mask, *known)
+            padded = {name: pad(value, (0, 0, 0, 0, 0, len(x) - len(value))) for name, value in told.items()}
+            return network(x, t, cond, mask, *known, **padded)
 
         return classifier_free(predict, x, t, mask, *more, cond=cond, scale=scale)

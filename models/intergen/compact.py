@@ -26,6 +26,7 @@ from models.weights_io import WeightsFolder, load_network, save_network
 from motion.errors import InputError
 
 from .fast import FastChange
+from .plan_track import PlanTrack, track_width
 from .words import WordDenoiser
 
 Touch = tuple[tuple[str, str], ...]
@@ -44,6 +45,8 @@ class CompactConfig:
     role_text: see :class:`models.intergen.InterGenConfig`.
     words: the denoiser is a :class:`models.intergen.words.WordDenoiser`, which reads words, a sentence for each
         person and the known part of a motion.
+    plan_words: the vocabulary of the plans of acts that it reads (:mod:`models.intergen.plan_track`); none where it
+        reads none. Only a network with ``words`` has one.
     fast_rank: rank of the :class:`models.intergen.fast.FastChange` that comes with it; 0: there is none.
     """
 
@@ -56,6 +59,7 @@ class CompactConfig:
     dropout: float = 0.0
     role_text: bool = False
     words: bool = False
+    plan_words: tuple[str, ...] = ()
     fast_rank: int = 0
     layout: TokenLayout = field(default_factory=TokenLayout)
     touches: tuple[Touch, ...] = ()
@@ -64,7 +68,10 @@ class CompactConfig:
     def from_dict(cls, values: dict[str, Any]) -> CompactConfig:
         """The config that ``config.json`` holds as a dictionary."""
         touches = as_touches(values.get("touches", ()))
-        return cls(**(values | {"layout": TokenLayout(**values["layout"]), "touches": touches}))
+        words = tuple(values.get("plan_words", ()))
+        return cls(
+            **(values | {"layout": TokenLayout(**values["layout"]), "touches": touches, "plan_words": words})
+        )
 
 
 class TouchReader(nn.Module):
@@ -141,7 +148,11 @@ class CompactInterGen(DuetSpace):
             role_text=config.role_text,
         )
         self.denoiser: InterGenDenoiser = (
-            WordDenoiser(sizes, KNOWN_FEATURES * config.layout.knots_per_token)
+            WordDenoiser(
+                sizes,
+                KNOWN_FEATURES * config.layout.knots_per_token,
+                plan_features=track_width(config.plan_words),
+            )
             if config.words
             else InterGenDenoiser(sizes)
         )
@@ -182,6 +193,12 @@ class CompactInterGen(DuetSpace):
             rows = self.conditioner.rows(tokens.features, tokens.mask)
             text[:, i, : rows.shape[1]] = rows * tokens.mask.any(1)[:, None, None]
         return text
+
+    @cached_property
+    def plan_track(self) -> PlanTrack | None:
+        """Writes plans as this network reads them; None if it reads none."""
+        words = self.config.plan_words
+        return PlanTrack(words, self.layout) if words else None
 
     def no_condition(self, batch: int = 1) -> Tensor:
         """The condition of no words."""

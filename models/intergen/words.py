@@ -80,17 +80,47 @@ class WordBlock(Block):
         return attended + self.ffn(attended, emb)
 
 
+class PlanEmbedding(nn.Module):
+    """The plan of acts, added to each person's tokens and, as a whole, to AdaLN; nothing at the start of training.
+
+    Args:
+        features: numbers a person and token.
+        latent_dim: d.
+    """
+
+    def __init__(self, features: int, latent_dim: int) -> None:
+        super().__init__()
+        self.features = features
+        self.now = nn.Linear(features, latent_dim, bias=False)
+        self.whole = nn.Linear(features, latent_dim, bias=False)
+        nn.init.zeros_(self.now.weight)
+        nn.init.zeros_(self.whole.weight)
+
+    def forward(self, plan: Tensor) -> tuple[Tensor, Tensor]:
+        """plan (2, B, T, features) → what is added to tokens (2, B, T, d), and to AdaLN (2, B, d)."""
+        return self.now(plan), self.whole(plan.amax(2))
+
+
 class WordDenoiser(InterGenDenoiser):
     """The grown denoiser.
 
     Args:
         config: sizes; its text width is that of a row of text.
         known_features: numbers a person and token by which the network sees what is known.
+        plan_features: numbers a person and token by which it sees the plan of acts
+            (:mod:`models.intergen.plan_track`); 0 for a network that reads no plans.
         guidance_input: takes the scale of the guidance as an input, so that one pass gives what two did
             (Meng et al. 2023, "On Distillation of Guided Diffusion Models").
     """
 
-    def __init__(self, config: InterGenConfig, known_features: int, *, guidance_input: bool = False) -> None:
+    def __init__(
+        self,
+        config: InterGenConfig,
+        known_features: int,
+        *,
+        plan_features: int = 0,
+        guidance_input: bool = False,
+    ) -> None:
         super().__init__(config)
         d = config.latent_dim
         self.blocks = nn.ModuleList(WordBlock(config) for _ in range(config.num_layers))
@@ -99,6 +129,7 @@ class WordDenoiser(InterGenDenoiser):
         self.known_embed = nn.Linear(known_features, d, bias=False)
         nn.init.zeros_(self.person_text.weight)
         nn.init.zeros_(self.known_embed.weight)
+        self.plan_embed = PlanEmbedding(plan_features, d) if plan_features else None
         self.embed_guidance = TimestepEmbedding(d) if guidance_input else None
         if self.embed_guidance is not None:
             self.embed_guidance.start_at_zero()
@@ -110,6 +141,7 @@ class WordDenoiser(InterGenDenoiser):
         cond: Tensor,
         mask: Tensor | None = None,
         known: Tensor | None = None,
+        plan: Tensor | None = None,
         guidance: Tensor | None = None,
     ) -> Tensor:
         """The predicted clean motion.
@@ -120,6 +152,8 @@ class WordDenoiser(InterGenDenoiser):
             cond: (B, 3, R, C) text; zeros for the unconditional prediction.
             mask: (B, T, 2), nonzero where a person's token is real; padding is not attended to.
             known: (B, T, 2·known_features), see :attr:`models.known.Hold.features`; None if nothing is.
+            plan: (B, T, 2·plan_features), see :class:`models.intergen.plan_track.PlanTrack`; None, or zeros, for no
+                plan.
             guidance: (B,) scales, for a network with ``guidance_input``.
 
         Returns:
@@ -132,6 +166,9 @@ class WordDenoiser(InterGenDenoiser):
         h = self.embed_motion(x.view(b, length, 2, -1).permute(2, 0, 1, 3))
         if known is not None:
             h = h + self.known_embed(known.view(b, length, 2, -1).permute(2, 0, 1, 3))
+        if self.plan_embed is not None and plan is not None:
+            now, whole = self.plan_embed(plan.view(b, length, 2, -1).permute(2, 0, 1, 3))
+            h, emb = h + now, emb + whole
         text, real = self.text_of_each(cond)
         keep, keep_other = padding(mask)
         for block in cast(list[WordBlock], self.blocks):
@@ -142,6 +179,8 @@ class WordDenoiser(InterGenDenoiser):
     def varying(self) -> dict[str, tuple[int, ...]]:
         """See :class:`models.compiled.Compilable`."""
         more: dict[str, tuple[int, ...]] = {"cond": (0, 2), "known": (0, 1)}
+        if self.plan_embed is not None:
+            more["plan"] = (0, 1)
         return super().varying | more | ({} if self.embed_guidance is None else {"guidance": (0,)})
 
     def filled(
@@ -151,12 +190,16 @@ class WordDenoiser(InterGenDenoiser):
         cond: Tensor,
         mask: Tensor | None = None,
         known: Tensor | None = None,
+        plan: Tensor | None = None,
         guidance: Tensor | None = None,
     ) -> tuple[Tensor, ...]:
-        """See :class:`models.compiled.Compilable`; zeros say that nothing is known."""
+        """See :class:`models.compiled.Compilable`; zeros say that nothing is known, and that there is no plan."""
         if known is None:
             known = x.new_zeros(*x.shape[:2], 2 * self.known_embed.in_features)
         inputs = (*super().filled(x, t, cond, mask), known)
+        if self.plan_embed is not None:
+            none = x.new_zeros(*x.shape[:2], 2 * self.plan_embed.features)
+            inputs = (*inputs, none if plan is None else plan)
         return inputs if self.embed_guidance is None or guidance is None else (*inputs, guidance)
 
     def example(self) -> tuple[Tensor, ...]:
@@ -167,7 +210,9 @@ class WordDenoiser(InterGenDenoiser):
         cond[1, 1:] = 0
         known = torch.randn(2, x.shape[1], 2 * self.known_embed.in_features, generator=draw)
         known[1, 3:] = 0
-        inputs = (x, t, cond, mask, known)
+        inputs: tuple[Tensor, ...] = (x, t, cond, mask, known)
+        if self.plan_embed is not None:
+            inputs = (*inputs, torch.rand(2, x.shape[1], 2 * self.plan_embed.features, generator=draw))
         return inputs if self.embed_guidance is None else (*inputs, torch.tensor([3.5, 1.5]))
 
     def embed(self, t: Tensor, cond: Tensor) -> Tensor:

@@ -61,6 +61,7 @@ def new_model(settings: Settings, data: Data) -> CompactInterGen:
             dropout=settings.dropout,
             role_text=True,
             words=settings.words,
+            plan_words=data.plan_words,
             layout=data.scenes.layout,
         )
     )
@@ -190,6 +191,7 @@ class Trainer(Loop):
         if hold is not None:
             xt = hold(xt)
         seen = {} if hold is None or not self.settings.words else {"known": hold.features.to(xt)}
+        seen |= {"plan": batch.plan} if self.data.plan_words else {}
         with mixed_precision(self.device):
             cond, vectors = condition(self.model, batch)
             predicted = self.model.denoiser(xt, t, cond, batch.mask, **seen)
@@ -244,7 +246,7 @@ def main(argv: list[str] | None = None) -> int:
     parser.add_argument("--device", default="cuda" if torch.cuda.is_available() else "cpu")
     parser.add_argument("--workers", type=int, default=0, help="processes that draw batches ahead (0)")
     parser.add_argument("--compile", action="store_true", help="compile the network (needs a C++ compiler)")
-    add_run_options(parser, Settings, leave_out=("weights", "given"))
+    add_run_options(parser, Settings, leave_out=("weights", "given", "told"))
     options = parser.parse_args(argv)
     if options.threads:
         torch.set_num_threads(options.threads)

@@ -113,7 +113,7 @@ def test_a_beat_that_was_cut_off_is_left_out(scenes: Path, tmp_path: Path) -> No
     row = data.rows[0] | {"beats": [{}, {"start": 300, "end": 320, "captions": ["They bow."]}]}
     assert data.continued(row, [0.0] * 4) is None
     row["beats"][1] |= {"start": 8, "end": 300}
-    assert data.continued(row, [0.0] * 4)[1:] == (8, "They bow.")
+    assert data.continued(row, [0.0] * 4)[1:] == (8, "They bow.", 0)
     row["beats"][1]["captions"] = []
     assert data.continued(row, [0.0] * 4) is None
 
