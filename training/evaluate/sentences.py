@@ -31,7 +31,11 @@ def evaluate(options: argparse.Namespace) -> dict[str, Any]:
     if not sentences:
         raise InputError(f"No sentence has the name or tag {', '.join(options.only)}: see sentences.json.")
     sampling = Sampling(
-        steps=options.steps, guidance=options.guidance, damping=options.damping, fast=options.fast
+        steps=options.steps,
+        guidance=options.guidance,
+        damping=options.damping,
+        told=options.told,
+        fast=options.fast,
     )
     generator = InterGenPipeline(options.weights)
     motions = motions_folder(options.cache, generator.digest, sampling)
@@ -42,6 +46,7 @@ def evaluate(options: argparse.Namespace) -> dict[str, Any]:
         "steps": options.steps,
         "guidance": options.guidance,
         "damping": options.damping,
+        "told": options.told,
         "fast": options.fast,
         "seeds": options.seeds,
         "weights_sha256": generator.digest,
@@ -74,6 +79,9 @@ def main(argv: list[str] | None = None) -> int:
     parser.add_argument("--fast", action="store_true", help="the weights' fast mode, in eight steps")
     parser.add_argument("--guidance", type=float, default=4.3)
     parser.add_argument("--damping", type=float, default=0.7)
+    parser.add_argument(
+        "--told", choices=("words", "plan", "both"), default="both", help="to a network that reads plans"
+    )
     parser.add_argument("--only", nargs="+", default=[], metavar="NAME", help="only these sentences or tags")
     parser.add_argument("--minutes", type=float, default=0.0, help="draw no more after this; 0: no limit")
     options = parser.parse_args(argv)

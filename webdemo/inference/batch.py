@@ -11,7 +11,7 @@ from __future__ import annotations
 import queue
 import threading
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import torch
@@ -87,11 +87,12 @@ class SharedPasses:
         cond: Tensor,
         mask: Tensor | None = None,
         known: Tensor | None = None,
+        plan: Tensor | None = None,
         *,
         scale: float,
     ) -> Tensor:
         """As the denoiser's own ``guided``, together with the other lanes."""
-        return self._meeting.predict(self._lane, _Question(x, t, cond, mask, scale, known))
+        return self._meeting.predict(self._lane, _Question(x, t, cond, mask, scale, known, plan))
 
     def correct(self, damping: Damping, x0: Tensor, timestep: int) -> Tensor:
         """A prediction corrected by its damping, together with the other lanes."""
@@ -108,6 +109,11 @@ class _Question:
     mask: Tensor | None
     scale: float
     known: Tensor | None = None
+    plan: Tensor | None = None
+
+    def untold(self) -> _Question:
+        """The same without words and plan."""
+        return replace(self, cond=torch.zeros_like(self.cond), plan=None)
 
 
 @dataclass(frozen=True)
@@ -201,20 +207,20 @@ def answer_together(denoiser: InterGenDenoiser, questions: Sequence[_Question]) 
     """The guided predictions for all questions; one pass computes both halves of the guidance of all of them."""
     if len(questions) == 1:
         q = questions[0]
-        seen = {} if q.known is None else {"known": q.known}
+        seen = {name: value for name in _SHOWN if (value := getattr(q, name)) is not None}
         return [denoiser.guided(q.x, q.t, q.cond, q.mask, scale=q.scale, **seen)]
     length = max(q.x.shape[1] for q in questions)
     padded = any(q.x.shape[1] < length or q.mask is not None for q in questions)
     guided = [q for q in questions if q.scale != 1]
-    rows = [(q, q.cond) for q in questions] + [(q, torch.zeros_like(q.cond)) for q in guided]
+    rows = [*questions, *(q.untold() for q in guided)]
     out = denoiser(
-        torch.cat([pad(q.x, (0, 0, 0, length - q.x.shape[1])) for q, _ in rows]),
-        torch.cat([q.t for q, _ in rows]),
-        join_conditions([cond for _, cond in rows]),
-        torch.cat([_mask(q, length) for q, _ in rows]) if padded else None,
-        **_known([q for q, _ in rows], length),
+        torch.cat([pad(q.x, (0, 0, 0, length - q.x.shape[1])) for q in rows]),
+        torch.cat([q.t for q in rows]),
+        join_conditions([q.cond for q in rows]),
+        torch.cat([_mask(q, length) for q in rows]) if padded else None,
+        **{name: value for name in _SHOWN if (value := _shown(rows, name, length)) is not None},
     )
-    parts = iter(out.split([len(q.x) for q, _ in rows]))
+    parts = iter(out.split([len(q.x) for q in rows]))
     conditional = [next(parts)[:, : q.x.shape[1]] for q in questions]
     unconditional = {id(q): next(parts)[:, : q.x.shape[1]] for q in guided}
     return [
@@ -223,14 +229,21 @@ def answer_together(denoiser: InterGenDenoiser, questions: Sequence[_Question]) 
     ]
 
 
-def _known(questions: Sequence[_Question], length: int) -> dict[str, Tensor]:
-    """The denoiser's argument ``known`` for all questions; empty if no question has a known part."""
-    width = next((q.known.shape[-1] for q in questions if q.known is not None), None)
+_SHOWN = ("known", "plan")
+"""Arguments of the denoiser that a question may lack."""
+
+
+def _shown(questions: Sequence[_Question], name: str, length: int) -> Tensor | None:
+    """One of :data:`_SHOWN` for all questions; None if no question has it."""
+    values: list[Tensor | None] = [getattr(q, name) for q in questions]
+    width = next((value.shape[-1] for value in values if value is not None), None)
     if width is None:
-        return {}
-    shown = [q.x.new_zeros(1, q.x.shape[1], width) if q.known is None else q.known for q in questions]
-    rows = [known.expand(len(q.x), -1, -1) for q, known in zip(questions, shown, strict=True)]
-    return {"known": torch.cat([pad(row, (0, 0, 0, length - row.shape[1])) for row in rows])}
+        return None
+    rows = [
+        (q.x.new_zeros(1, q.x.shape[1], width) if value is None else value).expand(len(q.x), -1, -1)
+        for q, value in zip(questions, values, strict=True)
+    ]
+    return torch.cat([pad(row, (0, 0, 0, length - row.shape[1])) for row in rows])
 
 
 def _mask(question: _Question, length: int) -> Tensor:

@@ -14,6 +14,7 @@ import torch
 from numpy.typing import NDArray
 
 from models.intergen.compact import DuetSpace
+from models.intergen.plan_track import TimedAct
 from models.known import Hold, Known
 from motion import SMPL22, Duet, InputError
 from motion.easing import minimum_jerk
@@ -91,13 +92,21 @@ def with_given(positions: Array, frames: Array, given: Array) -> Array:
     return moved
 
 
-def directed(model: DuetSpace, frames: int, parts: Sequence[Part], *, check: bool = True) -> Directed:
+def directed(
+    model: DuetSpace,
+    frames: int,
+    parts: Sequence[Part],
+    *,
+    acts: tuple[TimedAct, ...] = (),
+    check: bool = True,
+) -> Directed:
     """A scene of so many frames with what is given of it.
 
     Args:
         model: the network's space.
         frames: length at 30 fps.
         parts: what is given.
+        acts: what happens when, for a network that reads plans.
         check: whether poses and places may be outside the limits; off for what a network made itself.
 
     Raises:
@@ -128,7 +137,8 @@ def directed(model: DuetSpace, frames: int, parts: Sequence[Part], *, check: boo
             known.add_path(part.person, at, torch.from_numpy(np.asarray(part.places)).float(), headings)
             if part.turned and headings is not None:
                 _hold_hips(known, part.person, at, headings)
-    return Directed(frames, Hold(known, model.layout, model.mean, model.std) if parts else None, parts=parts)
+    hold = Hold(known, model.layout, model.mean, model.std) if parts else None
+    return Directed(frames, hold, acts, parts=parts)
 
 
 def _hold_hips(known: Known, person: int, at: list[int], headings: torch.Tensor) -> None:

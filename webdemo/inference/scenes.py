@@ -10,6 +10,7 @@ import torch
 from numpy.typing import NDArray
 
 from models.intergen.compact import DuetSpace
+from models.intergen.plan_track import TimedAct
 from models.known import Hold, Known
 from motion import Clip, Duet
 
@@ -28,10 +29,12 @@ class Scene:
     Attributes:
         frames: length at 30 fps.
         given: what is known of the motion, if anything.
+        acts: what happens when, for a network that reads plans.
     """
 
     frames: int
     given: Hold | None = None
+    acts: tuple[TimedAct, ...] = ()
 
     def duet(self, pair: Array, finish: Finish) -> Duet:
         """The duet of one sample (2, T, 22, 3) in metres; ``finish`` cleans up a generated person."""

@@ -5,7 +5,8 @@ from __future__ import annotations
 from collections import defaultdict
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
-from typing import Protocol
+from functools import partial
+from typing import Any, Protocol
 
 import numpy as np
 import torch
@@ -13,6 +14,7 @@ import torch
 from models.diffusion import TRAIN_TIMESTEPS, denoise, make_scheduler
 from models.intergen.compact import CompactInterGen
 from models.intergen.fast import PASSES
+from models.intergen.plan_track import TimedAct
 from models.intergen.words import join_conditions
 from motion import Duet, InputError
 from webdemo.inference.cleanup import clean_person
@@ -30,6 +32,7 @@ class Sampling:
     """Sampling settings; the names are those of :class:`webdemo.inference.GenerateRequest`.
 
     Attributes:
+        told: "words", "plan" or "both": what a network that reads plans is told.
         fast: in the weights' fast mode, which takes :data:`models.intergen.fast.PASSES` steps whatever ``steps`` says.
     """
 
@@ -37,6 +40,7 @@ class Sampling:
     steps: int = 25
     guidance: float = 4.3
     damping: float = 0.7
+    told: str = "both"
     fast: bool = False
 
 
@@ -66,6 +70,10 @@ class Generator(Protocol):
         """The condition (1, …) and the sentence vector of a prompt."""
         ...
 
+    def acts(self, prompt: str, frames: int) -> tuple[TimedAct, ...]:
+        """What a prompt is read as, for a network that reads plans."""
+        ...
+
 
 def draw(
     generator: Generator, tasks: Sequence[Task], sampling: Sampling, seeds: Sequence[int] | None = None
@@ -86,6 +94,10 @@ def draw(
         shape = (model.layout.num_tokens(frames), 2 * model.layout.token_features)
         noise = torch.cat([sample_noise(seeds[i], 1, shape) for i in group])
         condition = join_conditions([generator.condition(tasks[i].caption)[0] for i in group])
+        touches = model.touches(condition)
+        if sampling.told == "plan":
+            condition = torch.zeros_like(condition)
+        plan = _plan(generator, [tasks[i].caption for i in group], frames, sampling.told)
         scheduler = make_scheduler("ddim", PASSES if sampling.fast else sampling.steps, spacing="top")
         damping = Damping(
             model,
@@ -93,12 +105,9 @@ def draw(
             frames=frames,
             timesteps=TRAIN_TIMESTEPS,
             final_timestep=int(scheduler.timesteps[-1]),
-            touches=model.touches(condition),
+            touches=touches,
         )
-
-        def predict(x: torch.Tensor, t: torch.Tensor, condition: torch.Tensor = condition) -> torch.Tensor:
-            return denoiser.guided(x, t, condition, scale=sampling.guidance)
-
+        predict = partial(_guided, denoiser, condition, plan, sampling.guidance)
         sample = denoise(predict, noise, scheduler, correct=damping)
         with torch.no_grad():
             positions = model.positions(sample)[0][:, :, :frames].numpy()
@@ -107,3 +116,24 @@ def draw(
         for i, pair in zip(group, positions, strict=True):
             clean = np.stack([clean_person(person) for person in pair])
             yield i, Duet.from_positions(clean, fps=30.0, roles=("actor", "reactor"))
+
+
+def _plan(generator: Generator, captions: Sequence[str], frames: int, told: str) -> torch.Tensor | None:
+    """The plans (B, tokens, 2·P) that captions are read as; None where none are told."""
+    track = getattr(generator.model, "plan_track", None)
+    if track is None or told == "words":
+        return None
+    tokens = generator.model.layout.num_tokens(frames)
+    return torch.stack([track(generator.acts(caption, frames), tokens) for caption in captions])
+
+
+def _guided(
+    denoiser: Any,
+    condition: torch.Tensor,
+    plan: torch.Tensor | None,
+    guidance: float,
+    x: torch.Tensor,
+    t: torch.Tensor,
+) -> torch.Tensor:
+    told = {} if plan is None else {"plan": plan}
+    return denoiser.guided(x, t, condition, scale=guidance, **told)

@@ -18,6 +18,7 @@ def motions_folder(cache: Path, digest: str, sampling: Sampling) -> Motions:
     """The folder for motions of these weights and settings."""
     sampler = "fast" if sampling.fast else f"ddim{sampling.steps}"
     name = f"{digest[:12]}-{sampler}-g{sampling.guidance:g}-d{sampling.damping:g}"
+    name += "" if sampling.told == "both" else f"-{sampling.told}"
     return Motions(cache / name)
 
 

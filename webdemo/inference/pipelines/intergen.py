@@ -11,6 +11,7 @@ from torch import Tensor
 
 from models.compiled import compile_network
 from models.intergen.compact import CaptionBank, CompactInterGen, load_captions, load_folder
+from models.intergen.plan_track import TimedAct
 from models.text import MiniLM
 from motion import Clip, Duet
 from motion.arms import arms_apart
@@ -21,7 +22,9 @@ from webdemo.inference.requests import GenerateRequest, ReactRequest
 from webdemo.inference.results import Progress, Result
 from webdemo.inference.scenes import Scene
 from webdemo.inference.story import understood
+from webdemo.inference.story.beats import Beat
 from webdemo.inference.story.request import SceneRequest, as_scene
+from webdemo.inference.timed import acts_of, timed
 from webdemo.inference.timer import StageTimer
 
 from .scene import SceneMaker
@@ -86,6 +89,16 @@ class InterGenPipeline(TwoPersonPipeline[CompactInterGen]):
                     event, notes=tuple(dict.fromkeys((*said, *event.notes))), manifest={"plan": kept}
                 )
             yield event
+
+    def scene(self, request: GenerateRequest | ReactRequest) -> Scene:
+        """As :meth:`TwoPersonPipeline.scene`, with the acts that the words are read as."""
+        scene = super().scene(request)
+        return replace(scene, acts=self.acts(request.prompt, scene.frames))
+
+    def acts(self, prompt: str, frames: int) -> tuple[TimedAct, ...]:
+        """What a prompt is read as, over a motion of so many frames; nothing for a network that reads no plans."""
+        reads = self.model.plan_track is not None and prompt.strip()
+        return timed(acts_of(Beat(prompt)), 0, frames) if reads else ()
 
     def condition(self, prompt: str, alone: tuple[str, str] | None = None) -> tuple[Tensor, Tensor]:
         """The condition (1, …) of a prompt and its unit sentence vector (384,).

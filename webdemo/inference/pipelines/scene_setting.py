@@ -3,14 +3,16 @@
 from __future__ import annotations
 
 import hashlib
+import itertools
 import json
 import math
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
 from models.intergen.compact import CompactInterGen
+from models.intergen.plan_track import TimedAct
 from motion.transforms import heading, heading_matrix
 from webdemo.inference.actor import FPS, MEDIAN_START_DISTANCE, ROLES, SECONDS, Placement
 from webdemo.inference.directed import Directed, directed
@@ -19,6 +21,7 @@ from webdemo.inference.plans import WindowPlan
 from webdemo.inference.requests import GenerateRequest
 from webdemo.inference.story.plan import Window
 from webdemo.inference.story.request import SceneRequest
+from webdemo.inference.timed import acts_of, timed
 
 from .scene_floor import planned
 from .scene_wishes import wishes
@@ -37,6 +40,7 @@ class Setting:
         parts: what is given.
         placement: from the scene's world to the network's frame.
         plan: what was planned of it.
+        acts: what happens when, in the window and in what it sees before and after.
     """
 
     window: Window
@@ -44,6 +48,7 @@ class Setting:
     parts: tuple[Part, ...]
     placement: Placement
     plan: WindowPlan
+    acts: tuple[TimedAct, ...] = ()
 
     @classmethod
     def of(
@@ -73,11 +78,12 @@ class Setting:
                 parts.append(KnownFrames(person, behind, placement.to_network(after[person])))
         tail = window.after or window.tail(request.edges[-1])
         frames = max(past + length + tail, round(SECONDS[0] * FPS))
-        return cls(window, frames, (*parts, *plan.parts), placement, plan)
+        return cls(window, frames, (*parts, *plan.parts), placement, plan, _acts(request, window, frames))
 
     def scene(self, pipeline: TwoPersonPipeline[CompactInterGen]) -> Directed:
         """As the pipeline takes it."""
-        return directed(pipeline.model, self.frames, self.parts, check=False)
+        reads = pipeline.model.plan_track is not None
+        return directed(pipeline.model, self.frames, self.parts, acts=self.acts if reads else (), check=False)
 
     def made(self, positions: Array) -> Array:
         """The new frames (2, T, 22, 3) in the scene's world, of the whole window's."""
@@ -87,9 +93,9 @@ class Setting:
 
     def key(self, asked: GenerateRequest, digest: str) -> str:
         """A hash of all that the window is made from."""
-        found = hashlib.sha256(
-            json.dumps([digest, asked.to_dict(), self.plan.alone, self.frames, self.window.past]).encode()
-        )
+        acts = [asdict(act) for act in self.acts]
+        told = [digest, asked.to_dict(), self.plan.alone, self.frames, self.window.past, acts]
+        found = hashlib.sha256(json.dumps(told).encode())
         for part in self.parts:
             values = part.positions if isinstance(part, KnownFrames) else part.places
             headings = None if isinstance(part, KnownFrames) else part.headings
@@ -112,6 +118,18 @@ def _plan(
         parts += planned(request, window, scene, placement, {part.person for part in parts})
     alone = beat.alone if any(beat.alone) else request.told[window.beat].alone
     return WindowPlan(place, tuple(parts), alone, tuple(notes))
+
+
+def _acts(request: SceneRequest, window: Window, frames: int) -> tuple[TimedAct, ...]:
+    """The acts of all beats of which a window of so many frames sees a part, in the window's frames."""
+    first = window.start - window.past
+    spans = ((start - first, stop - first) for start, stop in itertools.pairwise(request.edges))
+    return tuple(
+        act
+        for beat, (start, stop) in zip(request.beats, spans, strict=True)
+        if start < frames and stop > 0
+        for act in timed(acts_of(beat), start, stop)
+    )
 
 
 def _place(request: SceneRequest, before: Array, after: Array) -> tuple[float, float, float]:

@@ -60,6 +60,7 @@ class Passes(Protocol):
         cond: Tensor,
         mask: Tensor | None = None,
         known: Tensor | None = None,
+        plan: Tensor | None = None,
         *,
         scale: float,
     ) -> Tensor:
@@ -109,6 +110,7 @@ class _Steps:
         given: the part of the motion that is known; it is clean at every timestep, as in training (InterGen,
             section 5.4).
         known: the same as the network is shown it, if it reads it.
+        plan: the plan of acts, if the network reads plans.
     """
 
     uncorrected: Tensor
@@ -122,12 +124,14 @@ class _Steps:
         guidance: float,
         given: Given | None,
         known: Tensor | None,
+        plan: Tensor | None,
     ) -> None:
         self.passes, self.damping = passes, damping
         self.condition, self.guidance = condition, guidance
         self.given = given or _as_is
         self.bend = given.bend if given else _as_is
-        self.seen = {} if known is None else {"known": known}
+        shown = {"known": known, "plan": plan}
+        self.seen = {name: value for name, value in shown.items() if value is not None}
 
     def predict(self, x: Tensor, t: Tensor) -> Tensor:
         """The guided prediction of x0 from xt (samples, tokens, features)."""
@@ -204,7 +208,9 @@ class TwoPersonPipeline(ABC, Generic[Network]):
             touches=(conditioning.touch,) * request.samples,
         )
         known = given.features if given is not None and self.model.reads_known else None
-        steps = _Steps(passes, damping, condition, conditioning.guidance, given, known)
+        track = getattr(self.model, "plan_track", None) if scene.acts else None
+        plan = None if track is None else track(scene.acts, layout.num_tokens(scene.frames))[None]
+        steps = _Steps(passes, damping, condition, conditioning.guidance, given, known, plan)
         cancel.raise_if_cancelled()
         sample = steps.uncorrected = noise
         for step in sample_steps(steps.predict, noise, scheduler, correct=steps.correct):
