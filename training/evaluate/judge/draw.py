@@ -71,7 +71,7 @@ class Generator(Protocol):
         ...
 
     def acts(self, prompt: str, frames: int) -> tuple[TimedAct, ...]:
-        """What a prompt is read as, for a network that reads plans."""
+        """The acts of a prompt, for a network that reads plans."""
         ...
 
 

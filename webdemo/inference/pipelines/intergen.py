@@ -96,7 +96,7 @@ class InterGenPipeline(TwoPersonPipeline[CompactInterGen]):
         return replace(scene, acts=self.acts(request.prompt, scene.frames))
 
     def acts(self, prompt: str, frames: int) -> tuple[TimedAct, ...]:
-        """What a prompt is read as, over a motion of so many frames; nothing for a network that reads no plans."""
+        """The acts of a prompt over a motion of so many frames; nothing for a network that reads no plans."""
         reads = self.model.plan_track is not None and prompt.strip()
         return timed(acts_of(Beat(prompt)), 0, frames) if reads else ()
 

@@ -40,7 +40,7 @@ class Setting:
         parts: what is given.
         placement: from the scene's world to the network's frame.
         plan: what was planned of it.
-        acts: what happens when, in the window and in what it sees before and after.
+        acts: what happens when, in the window and in what it sees before it.
     """
 
     window: Window
@@ -78,7 +78,7 @@ class Setting:
                 parts.append(KnownFrames(person, behind, placement.to_network(after[person])))
         tail = window.after or window.tail(request.edges[-1])
         frames = max(past + length + tail, round(SECONDS[0] * FPS))
-        return cls(window, frames, (*parts, *plan.parts), placement, plan, _acts(request, window, frames))
+        return cls(window, frames, (*parts, *plan.parts), placement, plan, _acts(request, window))
 
     def scene(self, pipeline: TwoPersonPipeline[CompactInterGen]) -> Directed:
         """As the pipeline takes it."""
@@ -120,14 +120,14 @@ def _plan(
     return WindowPlan(place, tuple(parts), alone, tuple(notes))
 
 
-def _acts(request: SceneRequest, window: Window, frames: int) -> tuple[TimedAct, ...]:
-    """The acts of all beats of which a window of so many frames sees a part, in the window's frames."""
+def _acts(request: SceneRequest, window: Window) -> tuple[TimedAct, ...]:
+    """The acts of the beats that a window makes or sees before it, in the window's frames."""
     first = window.start - window.past
     spans = ((start - first, stop - first) for start, stop in itertools.pairwise(request.edges))
     return tuple(
         act
         for beat, (start, stop) in zip(request.beats, spans, strict=True)
-        if start < frames and stop > 0
+        if start < window.stop - first and stop > 0
         for act in timed(acts_of(beat), start, stop)
     )
 

@@ -208,9 +208,7 @@ class TwoPersonPipeline(ABC, Generic[Network]):
             touches=(conditioning.touch,) * request.samples,
         )
         known = given.features if given is not None and self.model.reads_known else None
-        track = getattr(self.model, "plan_track", None) if scene.acts else None
-        plan = None if track is None else track(scene.acts, layout.num_tokens(scene.frames))[None]
-        steps = _Steps(passes, damping, condition, conditioning.guidance, given, known, plan)
+        steps = _Steps(passes, damping, condition, conditioning.guidance, given, known, self._plan(scene))
         cancel.raise_if_cancelled()
         sample = steps.uncorrected = noise
         for step in sample_steps(steps.predict, noise, scheduler, correct=steps.correct):
@@ -229,6 +227,11 @@ class TwoPersonPipeline(ABC, Generic[Network]):
             timings={**timer.stages, "total": round(timer.elapsed, 4)},
             notes=conditioning.notes,
         )
+
+    def _plan(self, scene: Scene) -> Tensor | None:
+        """The plan of a scene (1, tokens, 2·P), for a network that reads plans."""
+        track = getattr(self.model, "plan_track", None) if scene.acts else None
+        return None if track is None else track(scene.acts, self.model.layout.num_tokens(scene.frames))[None]
 
     def _finished(
         self, request: GenerateRequest | ReactRequest, scene: Scene, uncorrected: Tensor, sample: Tensor
