@@ -164,8 +164,8 @@ def _together(index: list[dict[str, Any]]) -> str:
     frames = sum(scene["frames"] for scene in recorded)
     share = 100 * frames / max(sum(scene["frames"] for scene in index), 1)
     return (
-        f"{len(recorded):,} scenes ({frames / FPS / 60:.0f} minutes, {share:.1f} %) are recorded duets, cut into windows "
-        "that may overlap; the others are composed from single-person recordings."
+        f"{len(recorded):,} scenes ({frames / FPS / 60:.0f} minutes, {share:.1f} %) are recorded duets, cut into "
+        "windows that may overlap; the others are composed from single-person recordings."
     )
 
 

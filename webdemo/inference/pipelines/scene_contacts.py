@@ -9,17 +9,16 @@ import numpy as np
 from numpy.typing import NDArray
 
 from motion import SMPL22
-from webdemo.inference.actor import FPS, Placement
+from webdemo.inference.actor import FPS
 from webdemo.inference.known_parts import KnownFrames
 from webdemo.inference.story.contacts import LOWEST, Contact, beside, kneels, middle, reach, touched, touching
-from webdemo.inference.story.floor import Standing, Way2D
+from webdemo.inference.story.floor import Standing
 from webdemo.inference.story.holds import Hold, joined, raised
 from webdemo.inference.story.moves import Move
-from webdemo.inference.story.plan import Window
 from webdemo.inference.story.poses import LOWER, TRUNK, bending, upright
 from webdemo.inference.story.ways import Way
 
-from .scene_hands import Course
+from .scene_stretch import Course, Stretch
 
 Array = NDArray[np.floating]
 
@@ -108,36 +107,23 @@ def towards_touched(
     return replace(stand, places=places, headings=headings)
 
 
-def given_contact(
-    touch: Contact,
-    ways: Mapping[int, Way2D],
-    posed: Mapping[int, Array],
-    stand: Standing,
-    start: int,
-    stop: int,
-    window: Window,
-    placement: Placement,
-) -> KnownFrames | None:
+def given_contact(touch: Contact, posed: Mapping[int, Array], stretch: Stretch) -> KnownFrames | None:
     """The trunk and hands of the person who touches, as the network is given them; None if the beat is too short.
 
     Of a person who kneels down to what they touch, also the pelvis and the legs.
 
     Args:
         touch: the contact.
-        ways: by person.
         posed: a pose (22, 3) of those whose posture is given, by person.
-        stand: where the people are when the beat begins.
-        start, stop: the beat's first frame and the one after its last.
-        window: the window that is made.
-        placement: from the scene's world to the network's frame.
+        stretch: the beat.
     """
-    giver, frames = "ab".index(touch.person), stop - start
-    if giver not in ways:
+    giver, frames = "ab".index(touch.person), stretch.frames
+    if giver not in stretch.ways:
         return None
-    own = Course.of(ways[giver], float(stand.headings[giver]), frames)
-    other = course_of(1 - giver, ways, stand, frames)
+    own, other = stretch.course(giver), stretch.course(1 - giver)
     down = kneels(touch, posed.get(1 - giver, upright(np.zeros(2), 0.0)))
-    first = max(_arrival(own), _arrival(other) if 1 - giver in ways else 0) + (KNEELS if down else REACHES)
+    first = max(_arrival(own), _arrival(other) if 1 - giver in stretch.ways else 0)
+    first += KNEELS if down else REACHES
     first = max(first, round(0.6 * frames)) if touch.late else first
     last = min(frames, _leaving(other, first))
     at = _moments(touch, first, last)
@@ -149,23 +135,23 @@ def given_contact(
     kept: list[int] = []
     poses: list[Array] = []
     for frame, back in at:
-        if not window.start <= start + frame < window.stop:
+        if not stretch.shows(frame):
             continue
         target = None if touch.fells else posed.get(1 - giver)
         if target is None:
             target = upright(other.places[frame], float(other.headings[frame]))
         pose = _reaching(touch, target, own, frame, back)
         pose -= 0.0 if down else pose[0].copy()
-        kept.append(start + frame - window.start + window.past)
+        kept.append(frame)
         poses.append(pose)
     for frame in _rests(touch, at, frames):
-        if window.start <= start + frame < window.stop:
-            kept.append(start + frame - window.start + window.past)
+        if stretch.shows(frame):
+            kept.append(frame)
             pose = upright(own.places[frame], float(own.headings[frame]))
             poses.append(pose - pose[0])
     if not kept:
         return None
-    return KnownFrames(giver, kept, placement.to_network(np.stack(poses)), joints)
+    return stretch.given(giver, kept, np.stack(poses), joints)
 
 
 def _reaching(touch: Contact, target: Array, own: Course, frame: int, back: float) -> Array:
@@ -180,51 +166,36 @@ def _reaching(touch: Contact, target: Array, own: Course, frame: int, back: floa
     return pose
 
 
-def given_hold(
-    kind: Hold,
-    ways: Mapping[int, Way2D],
-    stand: Standing,
-    start: int,
-    stop: int,
-    window: Window,
-    placement: Placement,
-) -> list[KnownFrames]:
-    """The trunks and hands of two people in a hold, as the network is given them; arguments as above."""
-    courses = [course_of(person, ways, stand, stop - start) for person in (0, 1)]
-    at = np.arange(REACHES, stop - start, 3)
-    at = at[(at + start >= window.start) & (at + start < window.stop)]
+def given_hold(kind: Hold, stretch: Stretch) -> list[KnownFrames]:
+    """The trunks and hands of two people in a hold, as the network is given them."""
+    courses = [stretch.course(person) for person in (0, 1)]
+    at = stretch.shown(np.arange(REACHES, stretch.frames, 3))
     if not len(at):
         return []
     wrists = joined(kind, np.stack([course.places[at] for course in courses]))
-    frames = (at + start - window.start + window.past).tolist()
     parts = []
     for person, course in enumerate(courses):
         poses = np.stack([bending(course.places[t], float(course.headings[t]), kind.lean) for t in at])
         poses[:, _WRISTS] = np.moveaxis(wrists[person], 0, 1)
         poses -= poses[:, :1].copy()
-        parts.append(KnownFrames(person, frames, placement.to_network(poses), [*TRUNK, *_WRISTS]))
+        parts.append(stretch.given(person, at, poses, [*TRUNK, *_WRISTS]))
     return parts
 
 
-def given_twirl(
-    ways: Mapping[int, Way2D], stand: Standing, start: int, stop: int, window: Window, placement: Placement
-) -> list[KnownFrames]:
-    """The bodies and joined right hands of two people, one of whom turns under them; arguments as above."""
-    courses = [course_of(person, ways, stand, stop - start) for person in (0, 1)]
-    at = np.arange(REACHES, stop - start - REACHES, 3)
-    at = at[(at + start >= window.start) & (at + start < window.stop)]
+def given_twirl(stretch: Stretch) -> list[KnownFrames]:
+    """The bodies and joined right hands of two people, one of whom turns under them."""
+    courses = [stretch.course(person) for person in (0, 1)]
+    at = stretch.shown(np.arange(REACHES, stretch.frames - REACHES, 3))
     if not len(at):
         return []
-    places = np.stack([course.places[at] for course in courses])
-    hands, wrist = raised(places), SMPL22.index("right_wrist")
-    frames = (at + start - window.start + window.past).tolist()
+    hands = raised(np.stack([course.places[at] for course in courses]))
+    wrist = SMPL22.index("right_wrist")
     parts = []
-    for person in (0, 1):
-        course = courses[person]
+    for person, course in enumerate(courses):
         poses = np.stack([upright(course.places[t], float(course.headings[t])) for t in at])
         poses[:, wrist] = hands
         poses -= poses[:, :1].copy()
-        parts.append(KnownFrames(person, frames, placement.to_network(poses), [*_HIPS, *TRUNK, wrist]))
+        parts.append(stretch.given(person, at, poses, [*_HIPS, *TRUNK, wrist]))
     return parts
 
 
@@ -247,14 +218,6 @@ def _rests(touch: Contact, at: Sequence[tuple[int, float]], frames: int) -> rang
     if not touch.times or not touch.behind or not at:
         return range(0)
     return range(at[-1][0] + LOWERS, frames, REACHES // 2)
-
-
-def course_of(person: int, ways: Mapping[int, Way2D], stand: Standing, frames: int) -> Course:
-    """The course of a person (0 or 1) through a beat; of somebody without a way, that of one who stays."""
-    angle = float(stand.headings[person])
-    if person in ways:
-        return Course.of(ways[person], angle, frames)
-    return Course.stays(stand.places[person], angle, frames)
 
 
 def _arrival(course: Course) -> int:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Collection, Iterator, Sequence
+from dataclasses import replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -12,6 +13,7 @@ from motion.transforms import heading
 from webdemo.inference.actor import FPS, Placement
 from webdemo.inference.known_parts import KnownFrames, Part
 from webdemo.inference.story.beginnings import starting
+from webdemo.inference.story.contacts import Contact
 from webdemo.inference.story.floor import Standing, Way2D, plan
 from webdemo.inference.story.gestures import Hand
 from webdemo.inference.story.holds import Hold
@@ -30,9 +32,10 @@ from .scene_contacts import given_contact, given_hold, given_twirl, meeting, tow
 from .scene_hands import hands, known_hands
 from .scene_lifts import Carrying
 from .scene_paths import given_gait, path_of
-from .scene_postures import UPRIGHT, led, postures, still_down
+from .scene_postures import UPRIGHT, Pose, led, postures, still_down
 from .scene_pulls import given_pull
 from .scene_room import Room, roomy
+from .scene_stretch import Stretch
 from .scene_strikes import given_blows
 
 Array = NDArray[np.floating]
@@ -83,7 +86,8 @@ def _parts(request: SceneRequest, window: Window, scene: Array, placement: Place
     lifted = told.lift
     room = _room(request, window, scene, stand, still, found)
     stand = room.stand
-    parts, posed = ([], {}) if lifted else _held(request, window, scene, room, still, found, placement)
+    beat = Stretch(window, placement, stand, start, stop)
+    parts, posed = ([], {}) if lifted else _held(request, scene, room, still, found, beat)
     parts += room.steps(start, window, placement)
     touch, found = meeting(told.contact, found, posed, stand)
     if lifted is not None and not start and not lifted.comes:  # they are held from the first frame
@@ -95,47 +99,61 @@ def _parts(request: SceneRequest, window: Window, scene: Array, placement: Place
     goal = towards_touched(touch, posed, stand, told.pulls)
     ways = {way.person: way for way in plan(found, goal, stop - start, first=not start)}
     ways = {person: way for person, way in ways.items() if person not in {part.person for part in parts}}
+    beat = replace(beat, ways=ways)
     if lifted is not None and len(ways) == 2:
-        other = "ab"["ba".index(lifted.carrier)]
-        carrying = Carrying(lifted, ways, stand, start, stop, told.gestures.get(other))
-        parts += carrying.given(window, placement)
-        ways = carrying.before()
-    hand = None
-    if touch is not None and (
-        hand := given_contact(touch, ways, posed, stand, start, stop, window, placement)
-    ):
+        carrying = Carrying(lifted, beat, told.gestures.get("ab"["ba".index(lifted.carrier)]))
+        parts += carrying.given()
+        beat = replace(beat, ways=carrying.before())
+    return parts + _on_their_ways(request, scene, found, touch, posed, beat)
+
+
+def _on_their_ways(
+    request: SceneRequest,
+    scene: Array,
+    found: Sequence[Move],
+    touch: Contact | None,
+    posed: dict[int, Array],
+    beat: Stretch,
+) -> list[Part]:
+    """The ways of a beat, and the touches, holds, blows and gestures on them."""
+    told, ways, parts = request.told[beat.window.beat], beat.ways, list[Part]()
+    hand = None if touch is None else given_contact(touch, posed, beat)
+    if hand is not None:
         parts.append(hand)
     if told.pulls:
         down = 1 - "ab".index(told.pulls)
-        last = scene[down, start - 1] if start else None
-        poses = postures(request.told, window.beat, down, start, stop, stand, last)
-        parts += given_pull(told.pulls, poses, ways, stand, start, stop, window, placement)
+        parts += given_pull(told.pulls, _postures(request, scene, down, beat), beat)
     low = {"ab".index(move.person): move.gait for move in found if move.gait}
     for person, way in ways.items():
         if person in low:
-            parts += given_gait(low[person], way, stand, _down(scene, start), start, stop, window, placement)
+            parts += given_gait(low[person], person, _down(scene, beat.start), beat)
         else:
-            parts += path_of(_until_posed(way, hand, window, start), window, start, placement)
+            parts += path_of(_until_posed(way, hand, beat), beat)
     led = Hold.RING if any(move.backwards for move in found) and told.by_both_hands else None
     if (held := told.hold or led) is not None and len(ways) == 2:
-        parts += given_hold(held, ways, stand, start, stop, window, placement)
+        parts += given_hold(held, beat)
     if len(ways) == 2 and told.twirls:
-        parts += given_twirl(ways, stand, start, stop, window, placement)
+        parts += given_twirl(beat)
     if (struck := told.strike) is not None and "ab".index(struck.turns[0]) in ways:
-        parts += given_blows(struck, told, ways, stand, start, stop, window, placement)
-    for person, (gesture, frames, wrists) in hands(told, found, ways, posed, stand, stop - start).items():
-        inside = (frames + start >= window.start) & (frames + start < window.stop)
-        if inside.any() and (lifted is None or "ab"[person] == lifted.carrier):
-            shift = start - window.start + window.past
-            parts.append(known_hands(person, gesture, frames[inside], wrists[inside], shift, placement))
+        parts += given_blows(struck, told, beat)
+    for person, (gesture, frames, wrists) in hands(told, found, posed, beat).items():
+        inside = np.isin(frames, beat.shown(frames))
+        if inside.any() and (told.lift is None or "ab"[person] == told.lift.carrier):
+            parts.append(known_hands(person, gesture, frames[inside], wrists[inside], beat))
     return parts
 
 
-def _until_posed(way: Way2D, hand: KnownFrames | None, window: Window, start: int) -> Way2D:
+def _postures(request: SceneRequest, scene: Array, person: int, beat: Stretch) -> list[Pose]:
+    """The poses by which a person's posture is held in a beat of a scene (2, T, 22, 3)."""
+    last = scene[person, beat.start - 1] if beat.start else None
+    return postures(request.told, beat.window.beat, person, beat.start, beat.stop, beat.stand, last)
+
+
+def _until_posed(way: Way2D, hand: KnownFrames | None, beat: Stretch) -> Way2D:
     """A way, up to where the same person kneels down to what they touch: from then on poses say where they are."""
     if hand is None or hand.person != way.person or 0 not in hand.joints:
         return way
-    kept = np.asarray(way.frames) < min(hand.frames) - window.past + window.start - start
+    kept = np.asarray(beat.in_window(way.frames)) < min(hand.frames)
     headings = None if way.headings is None else way.headings[kept]
     return Way2D(way.person, np.asarray(way.frames)[kept].tolist(), way.places[kept], headings)
 
@@ -175,16 +193,16 @@ def _going(found: Sequence[Move]) -> set[str]:
 
 def _held(
     request: SceneRequest,
-    window: Window,
     scene: Array,
     room: Room,
     still: Collection[str],
     found: Sequence[Move],
-    placement: Placement,
+    beat: Stretch,
 ) -> tuple[list[Part], dict[int, Array]]:
     """The poses of bystanders and of those whose posture is given, and a pose of each of the latter."""
-    stand, stop, told = room.stand, request.edges[window.beat + 1], request.told[window.beat]
-    start = request.edges[window.beat] + room.delay
+    beat = replace(beat, start=beat.start + room.delay)
+    window, stand, start, stop = beat.window, beat.stand, beat.start, beat.stop
+    told = request.told[window.beat]
     gone = {move.person for move in found if move.way not in (Way.STAY, Way.BACKS)}
     parts: list[Part] = []
     posed: dict[int, Array] = {}
@@ -192,7 +210,7 @@ def _held(
         last = scene[person, start - room.delay - 1] if start else None
         up = last is None or last[0, 1] > UPRIGHT
         if up and who in told.limbs and who not in gone:
-            parts += _limbed(told.limbs[who], person, stand, window, start, stop, placement)
+            parts += _limbed(told.limbs[who], person, beat)
             posed[person] = upright(stand.places[person], float(stand.headings[person]))
             continue
         turned = last is None and _keeps_back(told, who)
@@ -200,7 +218,7 @@ def _held(
             touched = told.contact is not None and told.contact.person != who and who not in told.gestures
             free = () if who in still or touched else HANDS if turned else ARMS
             every = TURNED if turned else POSED
-            parts += _posed(person, stand, window, start, stop, placement, request.seed, free, every)
+            parts += _posed(person, beat, request.seed, free, every)
             if who not in still:
                 posed[person] = upright(stand.places[person], float(stand.headings[person]))
         elif who not in gone:
@@ -211,8 +229,7 @@ def _held(
             busy = who in told.gestures or (told.contact is not None and told.contact.person == who)
             down = still_down(poses, stop, tail)
             for joints, frames, known in led(down, window.start, window.stop + tail, arms=not busy):
-                shifted = [frame - window.start + window.past for frame in frames]
-                parts.append(KnownFrames(person, shifted, placement.to_network(known), joints))
+                parts.append(beat.given(person, np.asarray(frames) - start, known, joints))
     return parts, posed
 
 
@@ -308,45 +325,39 @@ def _apart(request: SceneRequest, window: Window, placement: Placement) -> list[
 def _given_places(stand: Standing, window: Window, placement: Placement) -> list[Part]:
     """The places of both people at the first frame."""
     ways = [Way2D(i, [0], stand.places[i : i + 1], stand.headings[i : i + 1]) for i in (0, 1)]
-    return [part for way in ways for part in path_of(way, window, 0, placement)]
+    beat = Stretch(window, placement, stand, 0, window.stop)
+    return [part for way in ways for part in path_of(way, beat)]
 
 
-def _posed(
-    person: int, stand: Standing, window: Window, start: int, stop: int, placement: Placement, seed: int,
-    free: Collection[int], every: int,
-) -> list[Part]:  # fmt: skip
+def _posed(person: int, beat: Stretch, seed: int, free: Collection[int], every: int) -> list[Part]:
     """The poses of a bystander that fall into a window, but for the joints that are ``free``."""
-    frames = np.arange(start + (SETTLES if start else 0), stop, every)
-    frames = frames[(frames >= window.start) & (frames < window.stop)]
+    frames = beat.shown(np.arange(SETTLES if beat.start else 0, beat.frames, every))
     if not len(frames):
         return []
-    place = stand.places[person] + (HALT * stand.speeds[person] if start else 0.0)
-    poses = standing(place, float(stand.headings[person]), frames / FPS, seed=seed + person)
-    shift = window.past - window.start
-    joints = [joint for joint in range(SMPL22.num_joints) if joint not in free]
-    return [KnownFrames(person, (frames + shift).tolist(), placement.to_network(poses), joints)]
+    seconds = (frames + beat.start) / FPS
+    poses = standing(_halted(person, beat), float(beat.stand.headings[person]), seconds, seed=seed + person)
+    return [beat.given(person, frames, poses, _all_but(free))]
 
 
-def _limbed(
-    limbs: Sequence[Limb],
-    person: int,
-    stand: Standing,
-    window: Window,
-    start: int,
-    stop: int,
-    placement: Placement,
-) -> list[Part]:
+def _limbed(limbs: Sequence[Limb], person: int, beat: Stretch) -> list[Part]:
     """The body, without the arms, of a person who moves single limbs, as far as it falls into a window."""
-    frames = np.arange(start + SETTLES // 2 if start else 0, stop, LIMBED)
-    frames = frames[(frames >= window.start) & (frames < window.stop)]
+    frames = beat.shown(np.arange(SETTLES // 2 if beat.start else 0, beat.frames, LIMBED))
     if not len(frames):
         return []
-    place = stand.places[person] + (HALT * stand.speeds[person] if start else 0.0)
-    poses = limbed(limbs, place, float(stand.headings[person]), (frames - start) / FPS, (stop - start) / FPS)
+    angle, seconds = float(beat.stand.headings[person]), beat.frames / FPS
+    poses = limbed(limbs, _halted(person, beat), angle, frames / FPS, seconds)
     free = () if any(limb.does in WITH_ARMS for limb in limbs) else HANDS
-    joints = [joint for joint in range(SMPL22.num_joints) if joint not in free]
-    shifted = (frames + window.past - window.start).tolist()
-    return [KnownFrames(person, shifted, placement.to_network(poses), joints)]
+    return [beat.given(person, frames, poses, _all_but(free))]
+
+
+def _halted(person: int, beat: Stretch) -> Array:
+    """The place (x, z) at which a person comes to a halt."""
+    return beat.stand.places[person] + (HALT * beat.stand.speeds[person] if beat.start else 0.0)
+
+
+def _all_but(free: Collection[int]) -> list[int]:
+    """All joints of a body but some."""
+    return [joint for joint in range(SMPL22.num_joints) if joint not in free]
 
 
 def _stand(poses: Array) -> Standing:

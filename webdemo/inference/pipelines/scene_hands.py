@@ -3,20 +3,21 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
 from motion import SMPL22
 from motion.transforms import heading_matrix
-from webdemo.inference.actor import FPS, Placement
+from webdemo.inference.actor import FPS
 from webdemo.inference.known_parts import KnownFrames
-from webdemo.inference.story.floor import Standing, Way2D
+from webdemo.inference.story.floor import Way2D
 from webdemo.inference.story.gestures import Gesture, Hand, wrist
 from webdemo.inference.story.moves import Move
 from webdemo.inference.story.told import Told
 from webdemo.inference.story.ways import Way
+
+from .scene_stretch import Frames, Stretch
 
 Array = NDArray[np.floating]
 
@@ -26,52 +27,16 @@ OFTEN = 4
 """Frames between two given places of a hand."""
 
 
-@dataclass(frozen=True, eq=False)
-class Course:
-    """A person's places and headings through a beat.
-
-    Attributes:
-        places: (T, 2) x and z in metres.
-        headings: (T,) radians.
-    """
-
-    places: Array
-    headings: Array
-
-    @classmethod
-    def stays(cls, place: Array, angle: float, frames: int) -> Course:
-        """Of a person who stays where they are."""
-        return cls(np.tile(np.asarray(place, dtype=float), (frames, 1)), np.full(frames, angle))
-
-    @classmethod
-    def of(cls, way: Way2D, angle: float, frames: int) -> Course:
-        """Of somebody on a way; where it leaves them free to look, they look as before."""
-        time = np.arange(frames)
-        places = np.stack([np.interp(time, way.frames, way.places[:, axis]) for axis in (0, 1)], axis=1)
-        known = np.array([]) if way.headings is None else np.flatnonzero(np.isfinite(way.headings))
-        if way.headings is None or not len(known):
-            return cls(places, np.full(frames, angle))
-        at = np.asarray(way.frames)[known]
-        return cls(places, np.interp(time, at, np.unwrap(way.headings[known])))
-
-
 def hands(
-    told: Told,
-    moves: Sequence[Move],
-    ways: Mapping[int, Way2D],
-    posed: Mapping[int, Array],
-    stand: Standing,
-    frames: int,
-) -> dict[int, tuple[Gesture, NDArray[np.integer], Array]]:
+    told: Told, moves: Sequence[Move], posed: Mapping[int, Array], stretch: Stretch
+) -> dict[int, tuple[Gesture, Frames, Array]]:
     """The gestures of those whose way or posture is given.
 
     Args:
         told: by the beat.
         moves: of the beat, where they were changed since.
-        ways: by person.
         posed: a pose (22, 3) of those whose posture is given, by person.
-        stand: where the people are when the beat begins.
-        frames: its length.
+        stretch: the beat.
 
     Returns:
         By person the gesture, the frames of the beat (N,) and the wrists' places beside the pelvis in the scene's
@@ -80,20 +45,15 @@ def hands(
     found = dict(told.gestures)
     if {move.way for move in moves if move.linked} == {Way.ALONG}:
         around = {who for who, gesture in found.items() if gesture.hand is Hand.AROUND}
-        for who, side in _inner(ways).items():
+        for who, side in _inner(stretch.ways).items():
             if who in around or not around:
                 found[who] = Gesture(Hand.AROUND if around else Hand.LINKED, (side,))
-    courses = {
-        i: Course.of(ways[i], float(stand.headings[i]), frames)
-        if i in ways
-        else Course.stays(stand.places[i], float(stand.headings[i]), frames)
-        for i in (0, 1)
-    }
-    at = np.arange(BEGINS, frames, OFTEN)
-    made: dict[int, tuple[Gesture, NDArray[np.integer], Array]] = {}
+    courses = [stretch.course(person) for person in (0, 1)]
+    at = np.arange(BEGINS, stretch.frames, OFTEN)
+    made: dict[int, tuple[Gesture, Frames, Array]] = {}
     for person in (0, 1):
         gesture = found.get("ab"[person])
-        if gesture is None or not (person in ways or person in posed) or not len(at):
+        if gesture is None or not (person in stretch.ways or person in posed) or not len(at):
             continue  # the network makes the gesture
         own, other = courses[person], courses[1 - person]
         turns = np.stack([heading_matrix(angle) for angle in own.headings[at]])
@@ -106,18 +66,13 @@ def hands(
 
 
 def known_hands(
-    person: int,
-    gesture: Gesture,
-    frames: NDArray[np.integer],
-    wrists: Array,
-    shift: int,
-    placement: Placement,
+    person: int, gesture: Gesture, frames: Frames, wrists: Array, stretch: Stretch
 ) -> KnownFrames:
-    """The wrists (N, sides, 3) of a person at some frames, as the network is given them."""
+    """The wrists (N, sides, 3) of a person at some frames of a beat, as the network is given them."""
     joints = [SMPL22.index(f"{side}_wrist") for side in gesture.sides]
     poses = np.zeros((len(frames), SMPL22.num_joints, 3))
     poses[:, joints] = wrists
-    return KnownFrames(person, (frames + shift).tolist(), placement.to_network(poses), joints)
+    return stretch.given(person, frames, poses, joints)
 
 
 def _inner(ways: Mapping[int, Way2D]) -> dict[str, str]:

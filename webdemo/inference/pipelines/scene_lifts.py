@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -10,16 +10,14 @@ from numpy.typing import NDArray
 
 from motion import SMPL22
 from motion.transforms import heading_matrix
-from webdemo.inference.actor import FPS, Placement
+from webdemo.inference.actor import FPS
 from webdemo.inference.known_parts import KnownFrames
-from webdemo.inference.story.floor import Standing, Way2D
+from webdemo.inference.story.floor import Way2D
 from webdemo.inference.story.gestures import Gesture, wrist
 from webdemo.inference.story.lifts import Carry, Lift, carried
-from webdemo.inference.story.plan import Window
 from webdemo.inference.story.poses import LOWER, TRUNK, upright
 
-from .scene_contacts import course_of
-from .scene_hands import Course
+from .scene_stretch import Course, Stretch
 from .steering import STRIDE, Steps
 
 Array = NDArray[np.floating]
@@ -45,17 +43,12 @@ class Carrying:
 
     Attributes:
         lift: as the words name it.
-        ways: of both people, by person.
-        stand: where they are when the beat begins.
-        start, stop: the beat's first frame and the one after its last.
+        stretch: the beat, with the ways of both people.
         gesture: of the person carried, whose hands then do not hold on.
     """
 
     lift: Lift
-    ways: Mapping[int, Way2D]
-    stand: Standing
-    start: int
-    stop: int
+    stretch: Stretch
     gesture: Gesture | None = None
 
     @property
@@ -66,10 +59,10 @@ class Carrying:
     @property
     def off(self) -> tuple[int, int]:
         """The first frame of the beat at which the feet are off the floor, and the one after the last."""
-        frames = self.stop - self.start
-        if not self.start and not self.lift.comes and self.lift.carry is not Carry.UP:
+        frames = self.stretch.frames
+        if not self.stretch.start and not self.lift.comes and self.lift.carry is not Carry.UP:
             return 0, frames
-        own, other = (self._course(person) for person in (0, 1))
+        own, other = (self.stretch.course(person) for person in (0, 1))
         apart = np.linalg.norm(own.places - other.places, axis=1)
         near = int(np.flatnonzero(apart < max(self.lift.carry.near, float(apart.min())) + 0.05)[0])
         first = min(near + RISES if apart[near] < self.lift.carry.near + _FAR else frames, frames)
@@ -79,9 +72,9 @@ class Carrying:
     def before(self) -> dict[int, Way2D]:
         """The ways until shortly before the feet leave the floor; from then on, poses say where people are."""
         found, until = {}, self.off[0] - RISES // 2
-        for person, way in self.ways.items():
+        for person, way in self.stretch.ways.items():
             kept = np.asarray(way.frames) < (until if person != self.carrier else self.off[0])
-            if person != self.carrier and not self.start:
+            if person != self.carrier and not self.stretch.start:
                 kept &= np.asarray(way.frames) > 0  # where they begin on their feet
             if kept.any():
                 headings = None if way.headings is None else way.headings[kept]
@@ -89,11 +82,10 @@ class Carrying:
                 found[person] = replace(way, frames=frames, places=way.places[kept], headings=headings)
         return found
 
-    def given(self, window: Window, placement: Placement) -> list[KnownFrames]:
+    def given(self) -> list[KnownFrames]:
         """The body of the person carried, and the carrier's pelvis, trunk and hands, as the network is given them."""
-        course, parts = self._course(self.carrier), []
-        at = np.arange(*self.off, OFTEN)
-        at = at[(at + self.start >= window.start) & (at + self.start < window.stop)]
+        course, parts = self.stretch.course(self.carrier), []
+        at = self.stretch.shown(np.arange(*self.off, OFTEN))
         if len(at):
             walking = self._walking()[at - self.off[0]]
             made = [carried(self.lift.carry, course.places[t], float(course.headings[t])) for t in at]
@@ -103,14 +95,12 @@ class Carrying:
             theirs += 0.0 if self.lift.carry is Carry.DRAGS else sinks
             own[:, LOWER] = walking[:, LOWER]
             self._gesture(theirs, at, course)
-            frames = (at + self.start - window.start + window.past).tolist()
-            parts.append(KnownFrames(1 - self.carrier, frames, placement.to_network(theirs), _BODY))
-            parts.append(KnownFrames(self.carrier, frames, placement.to_network(own), _CARRIER))
-        feet = [(f, pose) for f, pose in self._on_feet() if window.start <= f + self.start < window.stop]
+            parts.append(self.stretch.given(1 - self.carrier, at, theirs, _BODY))
+            parts.append(self.stretch.given(self.carrier, at, own, _CARRIER))
+        feet = [(frame, pose) for frame, pose in self._on_feet() if self.stretch.shows(frame)]
         if feet:
-            frames = [f + self.start - window.start + window.past for f, _ in feet]
-            poses = placement.to_network(np.stack([pose for _, pose in feet]))
-            parts.append(KnownFrames(1 - self.carrier, frames, poses, LOWER))
+            frames, poses = zip(*feet, strict=True)
+            parts.append(self.stretch.given(1 - self.carrier, frames, np.stack(poses), LOWER))
         return parts
 
     def _gesture(self, theirs: Array, at: NDArray[np.integer], course: Course) -> None:
@@ -125,7 +115,7 @@ class Carrying:
 
     def _walking(self) -> Array:
         """(N, 22, 3) the carrier's poses while the other is off the floor, one foot after the other."""
-        course, steps = self._course(self.carrier), Steps()
+        course, steps = self.stretch.course(self.carrier), Steps()
         speed = np.insert(np.gradient(course.places, axis=0), 1, 0.0, axis=1)
         turned = np.gradient(course.headings)
         found = []
@@ -139,15 +129,12 @@ class Carrying:
     def _on_feet(self) -> Iterator[tuple[int, Array]]:
         """Frames before and after the lift, and poses (22, 3) of the person carried then."""
         first, last = self.off
-        other, frames = 1 - self.carrier, self.stop - self.start
-        if first and not self.start:
-            yield 0, upright(self.stand.places[other], float(self.stand.headings[other]))
+        other, frames, stand = 1 - self.carrier, self.stretch.frames, self.stretch.stand
+        if first and not self.stretch.start:
+            yield 0, upright(stand.places[other], float(stand.headings[other]))
         if last < frames:
-            own = self._course(self.carrier)
+            own = self.stretch.course(self.carrier)
             angle = float(own.headings[-1])
             place = own.places[-1] + self.lift.carry.near * np.array([np.sin(angle), np.cos(angle)])
             for frame in (frames - RISES // 2, frames - 1):
                 yield frame, upright(place, angle + np.pi)
-
-    def _course(self, person: int) -> Course:
-        return course_of(person, self.ways, self.stand, self.stop - self.start)

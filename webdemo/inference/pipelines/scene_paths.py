@@ -9,12 +9,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from webdemo.inference.actor import Placement
-from webdemo.inference.known_parts import KnownFrames, KnownPath, Part
-from webdemo.inference.story.floor import Standing, Way2D
+from webdemo.inference.known_parts import KnownPath, Part
+from webdemo.inference.story.floor import Way2D
 from webdemo.inference.story.gaits import low_gait
-from webdemo.inference.story.plan import Window
 
-from .scene_hands import Course
+from .scene_stretch import Stretch
 
 Array = NDArray[np.floating]
 
@@ -24,39 +23,30 @@ GETS_DOWN = 40
 """Frames in which somebody gets down on hands and knees."""
 
 
-def path_of(way: Way2D, window: Window, start: int, placement: Placement) -> list[Part]:
+def path_of(way: Way2D, stretch: Stretch) -> list[Part]:
     """The part of a way that falls into a window."""
-    frames = np.asarray(way.frames) + start
-    inside = (frames >= window.start) & (frames < window.stop)
+    frames = np.asarray(way.frames)
+    inside = np.isin(frames, stretch.shown(frames))
     headings = np.full(len(frames), np.nan) if way.headings is None else way.headings
-    at = frames[inside] - window.start + window.past
-    return known_paths(way.person, at, way.places[inside], headings[inside], placement)
+    at = np.asarray(stretch.in_window(frames[inside]), dtype=int)
+    return known_paths(way.person, at, way.places[inside], headings[inside], stretch.placement)
 
 
-def given_gait(
-    gait: str, way: Way2D, stand: Standing, down: Collection[int], start: int, stop: int, window: Window,
-    placement: Placement,
-) -> list[Part]:  # fmt: skip
+def given_gait(gait: str, person: int, down: Collection[int], stretch: Stretch) -> list[Part]:
     """The poses of a person who crawls or walks on the knees along a way.
 
     Args:
         gait: of :data:`webdemo.inference.story.gaits.GAITS`.
-        way: theirs.
-        stand: where the people are when the beat begins.
-        down: the people who are down already then; the others get down first.
-        start, stop: the beat's first frame and the one after its last.
-        window: the window that is made.
-        placement: from the scene's world to the network's frame.
+        person: 0 for a, 1 for b.
+        down: the people who are down already when the beat begins; the others get down first.
+        stretch: the beat.
     """
-    course = Course.of(way, float(stand.headings[way.person]), stop - start)
+    course = stretch.course(person)
     poses = low_gait(gait, course.places, course.headings)
-    first = GETS_DOWN if start and way.person not in down else 0
-    frames = np.union1d(np.arange(first, stop - start, OFTEN), [stop - start - 1])
-    frames = frames[(frames + start >= window.start) & (frames + start < window.stop)]
-    if not len(frames):
-        return []
-    shifted = (frames + start - window.start + window.past).tolist()
-    return [KnownFrames(way.person, shifted, placement.to_network(poses[frames]))]
+    first = GETS_DOWN if stretch.start and person not in down else 0
+    frames = np.union1d(np.arange(first, stretch.frames, OFTEN), [stretch.frames - 1])
+    frames = stretch.shown(frames)
+    return [stretch.given(person, frames, poses[frames])] if len(frames) else []
 
 
 def known_paths(

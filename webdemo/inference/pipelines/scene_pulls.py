@@ -2,20 +2,17 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 
 import numpy as np
 from numpy.typing import NDArray
 
 from motion import SMPL22
-from webdemo.inference.actor import Placement
 from webdemo.inference.known_parts import KnownFrames
-from webdemo.inference.story.floor import Standing, Way2D
-from webdemo.inference.story.plan import Window
 from webdemo.inference.story.poses import TRUNK, bending
 
-from .scene_contacts import course_of
 from .scene_postures import UPRIGHT, Pose
+from .scene_stretch import Stretch
 
 Array = NDArray[np.floating]
 
@@ -32,54 +29,42 @@ _GAP = 0.03
 _SHOULDER, _WRIST = SMPL22.index("right_shoulder"), SMPL22.index("right_wrist")
 
 
-def given_pull(
-    puller: str,
-    poses: Sequence[Pose],
-    ways: Mapping[int, Way2D],
-    stand: Standing,
-    start: int,
-    stop: int,
-    window: Window,
-    placement: Placement,
-) -> list[KnownFrames]:
+def given_pull(puller: str, poses: Sequence[Pose], stretch: Stretch) -> list[KnownFrames]:
     """The hands of both, and the trunk of the one who pulls, as the network is given them.
 
     Args:
         puller: "a" or "b".
         poses: of the other, as :func:`~.scene_postures.postures` gives them.
-        ways: by person.
-        stand: where the people are when the beat begins.
-        start, stop: the beat's first frame and the one after its last.
-        window: the window that is made.
-        placement: from the scene's world to the network's frame.
+        stretch: the beat.
     """
     person = "ab".index(puller)
     down = [frame for frame, pose in poses if pose[0, 1] <= UPRIGHT]
     up = [frame for frame, pose in poses if pose[0, 1] > UPRIGHT and down and frame > down[-1]]
     if not up:
         return []
-    course = course_of(person, ways, stand, stop - start)
+    course = stretch.course(person)
     frames, own, theirs = [], [], []
     known, bodies = np.array([frame for frame, _ in poses]), np.stack([pose for _, pose in poses])
     for frame in range(max(down[-1] - BEFORE, known[0]), up[0] + 1, OFTEN):
-        if not window.start <= frame < window.stop:
+        if not stretch.shows(frame - stretch.start):
             continue
         last = int(np.searchsorted(known, frame).clip(1, len(known) - 1))
         share = (frame - known[last - 1]) / (known[last] - known[last - 1])
         pose = bodies[last - 1] + share * (bodies[last] - bodies[last - 1])
-        place, angle = course.places[frame - start], float(course.headings[frame - start])
+        t = frame - stretch.start
+        place, angle = course.places[t], float(course.headings[t])
         one, other = _leaning_to(pose, place, angle), pose.copy()
         line = one[_SHOULDER] - other[_SHOULDER]
         meet, gap = other[_SHOULDER] + line / 2, _GAP * line / np.linalg.norm(line)
         one[_WRIST], other[_WRIST] = meet + gap, meet - gap
-        frames.append(frame - window.start + window.past)
+        frames.append(t)
         own.append(one - one[0])
         theirs.append(other - other[0])
     if not frames:
         return []
     return [
-        KnownFrames(person, frames, placement.to_network(np.stack(own)), [*TRUNK, _WRIST]),
-        KnownFrames(1 - person, frames, placement.to_network(np.stack(theirs)), [_WRIST]),
+        stretch.given(person, frames, np.stack(own), [*TRUNK, _WRIST]),
+        stretch.given(1 - person, frames, np.stack(theirs), [_WRIST]),
     ]
 
 

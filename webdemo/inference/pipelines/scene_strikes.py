@@ -2,24 +2,20 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 
 import numpy as np
 from numpy.typing import NDArray
 
 from motion import SMPL22
-from webdemo.inference.actor import Placement
 from webdemo.inference.known_parts import KnownFrames
-from webdemo.inference.story.floor import Standing, Way2D
 from webdemo.inference.story.gestures import SIDES
-from webdemo.inference.story.plan import Window
 from webdemo.inference.story.poses import TRUNK
 from webdemo.inference.story.strikes import FIRST, Bout, Strike, blows, catching, poses, ready
 from webdemo.inference.story.told import Told
 
-from .scene_contacts import course_of
-from .scene_hands import Course
 from .scene_postures import DUCKING
+from .scene_stretch import Course, Stretch
 
 Array = NDArray[np.floating]
 _Given = tuple[int, tuple[str, ...], tuple[tuple[int, ...], Array]]
@@ -30,36 +26,23 @@ _NEARLY = 0.15
 """Metres from the distance of a blow at which it is struck."""
 
 
-def given_blows(
-    struck: Strike,
-    told: Told,
-    ways: Mapping[int, Way2D],
-    stand: Standing,
-    start: int,
-    stop: int,
-    window: Window,
-    placement: Placement,
-) -> list[KnownFrames]:
+def given_blows(struck: Strike, told: Told, stretch: Stretch) -> list[KnownFrames]:
     """The trunks and arms of people who strike or throw, and the hands that catch.
 
     Args:
         struck: the blows of the beat.
         told: by the beat.
-        ways: by person.
-        stand: where the people are when the beat begins.
-        start, stop: the beat's first frame and the one after its last.
-        window: the window that is made.
-        placement: from the scene's world to the network's frame.
+        stretch: the beat.
     """
-    courses = [course_of(person, ways, stand, stop - start) for person in (0, 1)]
+    courses = [stretch.course(person) for person in (0, 1)]
     first = _first(struck, told, courses)
     given: dict[tuple[int, tuple[str, ...]], dict[int, Array]] = {}
-    if not start:
+    if not stretch.start:
         for person in {"ab".index(who) for who in struck.turns}:
             pose = ready(*(courses[i].places[0] for i in (person, 1 - person)))
-            if window.start == 0:
-                given[(person, SIDES)] = {window.past: pose}
-    for blow in blows(struck, stop - start, first=first):
+            if stretch.shows(0):
+                given[(person, SIDES)] = {0: pose}
+    for blow in blows(struck, stretch.frames, first=first):
         places = [course.places[blow.frame] for course in courses]
         own, other = places[blow.person], places[1 - blow.person]
         made: list[_Given] = [(blow.person, (blow.side,), poses(struck.bout, blow.side, own, other))]
@@ -67,14 +50,13 @@ def given_blows(
             made.append((1 - blow.person, SIDES, catching(other, own)))
         for person, sides, (beside, known) in made:
             for frame, pose in zip(beside, known, strict=True):
-                at = start + blow.frame + frame
-                if window.start <= at < window.stop:
-                    given.setdefault((person, sides), {})[at - window.start + window.past] = pose
+                if stretch.shows(blow.frame + frame):
+                    given.setdefault((person, sides), {})[blow.frame + frame] = pose
     return [
-        KnownFrames(
+        stretch.given(
             person,
             list(known),
-            placement.to_network(np.stack(list(known.values()))),
+            np.stack(list(known.values())),
             [*TRUNK, *(SMPL22.index(f"{side}_wrist") for side in sides)],
         )
         for (person, sides), known in given.items()
