@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import cache
@@ -9,6 +10,7 @@ from typing import Any
 
 import numpy as np
 
+from ..compose import Array
 from ..cues import STILL
 from ..library import Library, pick
 from ..scene import Scene
@@ -167,7 +169,7 @@ MENU: dict[str, Option] = {
     "walk-together": Option(moves.walk_together, ("walk",), 6.0, _near),
     "walk-and": Option(moves.walk_and, ("walk", "walk-back", "wave"), 3.5, _near),
     "walk-past": Option(passing.walk_past, ("walk",), 2.5, _far),
-    "skip": Option(passing.skip_past, ("skip",), 1.8, _far),
+    "skip": Option(passing.skip_past, ("skip",), 4.0, _far),
 }  # fmt: skip
 
 
@@ -295,23 +297,35 @@ def _improvise(play: Play, wanted: int, *, first: str | None = None) -> None:
 
 
 def draw_story(rng: Rng, library: Library) -> tuple[Pair, ...]:
-    """The beats of a sentence; one of two beats or more in three of four."""
+    """The beats of a sentence, of two beats or more in three of four; stories with a rare act are drawn more often."""
     keys = _stories(library.split, tuple(sorted(name for name in MENU if library.has(*MENU[name].needs))))
     chosen = keys[rng.random() < 0.7]
     if not chosen:
         raise LookupError("no story fits the sources")
-    return pick(rng, chosen)
+    weights = _rarity(chosen)
+    return chosen[int(rng.choice(len(chosen), p=weights))]
 
 
 @cache
-def _stories(split: str, menu: tuple[str, ...]) -> tuple[list[tuple[Pair, ...]], list[tuple[Pair, ...]]]:
+def _rarity(chosen: tuple[tuple[Pair, ...], ...]) -> Array:
+    """Shares of the stories among those drawn: the root of one over the number that have a story's rarest act."""
+    cues = [{cue for acts in story for cue in acts} for story in chosen]
+    count = Counter(cue for own in cues for cue in own)
+    weights = np.array([1 / np.sqrt(min(count[cue] for cue in own)) for own in cues])
+    return weights / weights.sum()
+
+
+@cache
+def _stories(
+    split: str, menu: tuple[str, ...]
+) -> tuple[tuple[tuple[Pair, ...], ...], tuple[tuple[Pair, ...], ...]]:
     """Stories of one beat and of more whose beats are all on the menu."""
     found: tuple[list[tuple[Pair, ...]], list[tuple[Pair, ...]]] = ([], [])
     for story in stories():
         entries = [staged_by(acts) for acts in story]
         if all(entry and entry[0] in menu for entry in entries):
             found[len(story) > 1].append(story)
-    return found
+    return tuple(found[0]), tuple(found[1])
 
 
 def tell(rng: Rng, library: Library, story: Sequence[Pair]) -> Scene:
