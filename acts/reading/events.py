@@ -6,7 +6,8 @@ from collections.abc import Iterator, Mapping
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
-from acts.frames import Event, Ref
+from acts.frames import Event, Ref, best
+from acts.lexicon import Lexicon
 
 from . import wordnet
 from .absolute import Absolute, absolutes
@@ -35,8 +36,9 @@ class Reader:
     """Takes a parsed text apart into events."""
 
     def __init__(
-        self, doc: Doc, verbs: frozenset[str], lemmas: Mapping[int, str], forms: Mapping[str, tuple[str, str]]
+        self, doc: Doc, known: Lexicon, lemmas: Mapping[int, str], forms: Mapping[str, tuple[str, str]]
     ) -> None:
+        verbs = frozenset(known.frames)
         self.doc = doc
         self.cast = Cast()
         self.events: list[Event] = []
@@ -45,7 +47,7 @@ class Reader:
         self._tree = ClauseTree(doc, verbs, lemmas, forms, held)
         self._subjects = Subjects(self._tree, self.cast, self._event_of)
         self._arguments = Arguments(self.cast, verbs, held | self._absolutes.keys())
-        self._words = vocabulary()
+        self._words, self._known = vocabulary(), known
         self._of: dict[int, int] = {}
         self._joints: list[tuple[Event, Token, str, int | None]] = []
 
@@ -218,6 +220,7 @@ class Reader:
                 self._owner(event.subject, head),
             )  # "with both arms raised"
             event.ongoing, kind = True, "with"
+        self.cast.focus = event.subject.who if event.subject is not None and self._is_mutual(event) else ""
         self._of[token.i] = len(self.events)
         if kind == "comp" and beside in self._of and self._of[beside] < len(self.events):
             above = self.events[self._of[beside]]
@@ -229,6 +232,11 @@ class Reader:
         countered = self._event_of(token.head) if token.dep_ == "conj" else None
         if countered is not None and self._conjunction(token) == "but":
             countered.countered = True
+
+    def _is_mutual(self, event: Event) -> bool:
+        """True for what the two do together even where one is named first."""
+        found = best(self._known.frames, event)
+        return found is not None and self._known.entries[found[0]].mutual
 
     def _owner(self, part: Ref, head: Token | None) -> Ref | None:
         """The person whose part of the body a phrase names: its owner, or whose clause it stands in."""

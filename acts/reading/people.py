@@ -22,6 +22,7 @@ A_NAME, B_NAME = "Adam", "Beth"
 _FIRST, _SECOND = frozenset(("first", "former")), frozenset(("second", "latter"))
 _THEY = frozenset(("they", "them", "themselves", "we", "us", "ourselves"))
 _HE = {"he": "m", "him": "m", "his": "m", "himself": "m", "she": "f", "her": "f", "hers": "f", "herself": "f"}
+_NOMINATIVE = frozenset(("i", "he", "she", "they", "we"))
 _ANYONE = frozenset(("someone", "somebody", "anyone", "anybody", "person"))
 _ARTICLES = frozenset(("a", "an", "the", "his", "her", "their"))
 _NOBODY = frozenset(("nobody", "noone", "none", "neither"))
@@ -43,6 +44,8 @@ class Cast:
         self._pair = _Known()
         """What words for both say about each: "two men"."""
         self.last = ""
+        self.focus = ""
+        """The subject of what the two did together, of whom a pronoun goes on: "A hugs B. He waves."."""
         self.thing: Ref | None = None
         """The part or thing that was named last, which "it" means."""
         self.things: Ref | None = None
@@ -105,6 +108,9 @@ class Cast:
             return self._as("a" if token.text == A_NAME else "b", "person")
         if text in ("someone", "somebody"):
             return self._new(lemma, token)
+        if not self._known and token.tag_ in ("NN", "NNP") and self._is_unlike_pair(lemma):
+            self.third.append(token)
+            return None
         acts = token.dep_ in ("nsubj", "nsubjpass", "poss")
         # "her teddy bear"
         small = token.text.islower() and not self._words.is_usual_person(lemma) and not acts
@@ -128,6 +134,12 @@ class Cast:
         if who in self._known:
             self._describe(token, self._known[who])
         return who
+
+    def _is_unlike_pair(self, lemma: str) -> bool:
+        """True for a person who is neither of the two that were named together: "two kids fight, mom comes"."""
+        sex, age = self._words.sex(lemma), self._words.age(lemma)
+        grown = self._pair.age == "child" and bool(sex) and age != "child"
+        return grown or (bool(sex) and bool(self._pair.sex) and sex != self._pair.sex)
 
     def _noun(self, token: Token, lemma: str, children: set[str], subject: str) -> str | None:
         if "one" in children:
@@ -229,7 +241,8 @@ class Cast:
             who = self.last if self.last in fits else fits[0]
         elif open_:
             known = [who for who in open_ if who in self._known]
-            who = self.last if self.last in known else (known or open_)[0]
+            likely = self.focus or self.last
+            who = likely if likely in known else (known or open_)[0]
             self._known.setdefault(who, _Known()).sex = sex
         elif len(subject) == 1 and not self._known.get(subject, _Known()).sex:
             who = subject  # "she draws him after her"
@@ -354,6 +367,12 @@ def _note_thing(token: Token, ref: Ref, cast: Cast, subject: str) -> None:
         cast.thing_sex = next((sex for c in token.children if (sex := _HE.get(c.lower_))), "")
 
 
+def begins_clause(pronoun: Token) -> bool:
+    """True for a subject that the parser joined to the object before: "hugs Beth and he waves"."""
+    joined = pronoun.dep_ == "conj" and pronoun.head.dep_ in ("dobj", "dative", "pobj")
+    return joined and pronoun.lower_ in _NOMINATIVE and pronoun.tag_ == "PRP"
+
+
 def states_of(noun: Token) -> Iterator[tuple[Token, str]]:
     """The phrases of place or posture that hang on a noun or on its adjective, with their verbs: "a man in a chair"."""
     words = vocabulary()
@@ -388,7 +407,9 @@ def _reference(token: Token, cast: Cast, subject: str) -> Ref:
     thirds = len(cast.third)
     who = cast.person(token, subject)
     if who:
-        conjuncts = [c for c in token.conjuncts if c.i > token.i and c.dep_ == "conj"]
+        conjuncts = [
+            c for c in token.conjuncts if c.i > token.i and c.dep_ == "conj" and not begins_clause(c)
+        ]
         if len(who) == 1 and any(cast.person(c, who) not in (None, who) for c in conjuncts):
             return Ref("person", "ab", lemma, first=first, last=last)
         return Ref("person", who, lemma, first=first, last=last)

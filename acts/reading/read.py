@@ -74,7 +74,7 @@ def _attempts(text: str, known: Lexicon) -> Iterator[tuple[float, Plan]]:
     """Plans of several parses of a text, with the cost of what each leaves over, until one leaves nothing."""
     speller = Speller(known)
     for parsed in parses(prepared(text, speller), speller):
-        reader = Reader(parsed.doc, frozenset(known.frames), parsed.lemmas, speller.forms)
+        reader = Reader(parsed.doc, known, parsed.lemmas, speller.forms)
         events = reader.read()
         planner = _Planner(text, parsed.text, known, events, list(spans(parsed.doc, events)), reader)
         plan = planner.plan()

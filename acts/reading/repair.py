@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from typing import TYPE_CHECKING
 
 from acts.frames import PREPOSITIONS
@@ -26,6 +26,8 @@ _SAFE_WITH_VERB = {"s": "starts", "ing": "starting", "ed": "started", "": "start
 _SUBJECTS = frozenset(
     ("i", "you", "he", "she", "they", "we", "who", "someone", "somebody", "nobody", "everyone")
 )
+_DO = {"does": "makes", "do": "make", "did": "made"}
+"""Forms of "do", and of a verb in the same form that is no part of another."""
 _CROWDS = frozenset(("audience", "crowd", "public", "class", "team", "band", "orchestra", "jury", "family"))
 _JOINS = frozenset(("and", "then", "but", ",", ";", "or"))
 _TAGS = {"VBZ": "s", "VBD": "ed", "VBP": "", "VB": ""}
@@ -68,6 +70,32 @@ def suspects(doc: Doc, forms: Mapping[str, tuple[str, str]]) -> dict[int, tuple[
         and forms[token.lower_][1] in ("", "s", "ed")
         and (token.pos_ not in ("VERB", "AUX", "ADP", "ADV") or token.dep_ in ("compound", "amod", "nmod"))
     }
+
+
+def deeds_done(doc: Doc, is_deed: Callable[[str], bool]) -> dict[int, tuple[str, str]]:
+    """Verbs "do" with a deed as their object that the parser took for a part of a verb: "does slow arm circles".
+
+    Args:
+        doc: the text as it was parsed.
+        is_deed: tells whether a noun, in the singular, stands for what somebody does.
+    """
+    return {
+        token.idx: (_DO[token.lower_], "do")
+        for token in doc
+        if token.lower_ in _DO
+        and token.dep_ == "aux"
+        and token.head.i == token.i + 1
+        and token.head.tag_ == "VB"
+        and all(c.dep_ != "neg" for c in token.head.children)
+        and any(
+            c.dep_ == "dobj" and is_deed(c.lemma_.lower()) and c.left_edge.i == token.i + 2 and _is_bare(c)
+            for c in token.head.children
+        )
+    }
+
+
+def _is_bare(noun: Token) -> bool:
+    return noun.pos_ == "NOUN" and all(c.dep_ not in ("det", "poss", "nummod") for c in noun.children)
 
 
 def _verbless(doc: Doc, forms: Mapping[str, tuple[str, str]]) -> Iterator[Token]:
@@ -192,6 +220,9 @@ def _opens(token: Token, ending: str) -> bool:
         return False
     if ending == "ing":
         return following.text == ","
+    name = token.tag_ == "NNP" and token.dep_ not in ("nsubj", "nsubjpass", "compound", "poss")
+    if ending == "" and name and following.pos_ in ("ADV", "ADP"):
+        return not vocabulary().is_person(token.lower_)  # "march forward", which is no month
     if ending == "" and following.text == "," and following.i + 1 < len(token.doc):
         return not vocabulary().is_person(token.lower_) and following.nbor(1).lower_ in ("then", "and")
     return (

@@ -9,7 +9,7 @@ from acts.frames import PREPOSITIONS
 from acts.lexicon import Lexicon
 
 from . import wordnet
-from .repair import suspects, verbs_taken_for_nouns
+from .repair import deeds_done, suspects, verbs_taken_for_nouns
 from .syntax import is_word
 from .vocabulary import is_act, vocabulary
 
@@ -54,7 +54,7 @@ class Speller:
 
     def verbs_found(self, doc: Doc) -> dict[int, tuple[str, str]]:
         """Verbs that were taken for something else: offset → (a safe verb in the same form, the true lemma)."""
-        return verbs_taken_for_nouns(doc, self.forms)
+        return verbs_taken_for_nouns(doc, self.forms) | deeds_done(doc, self.is_deed)
 
     def suspects(self, doc: Doc) -> dict[int, tuple[str, str]]:
         """Forms of verbs that were taken for something else, rightly or not, in the same form."""

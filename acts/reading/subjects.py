@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 from acts.frames import Event, Ref
 
 from .clauses import ClauseTree, is_finite
-from .people import Cast, reference
+from .people import Cast, begins_clause, reference
 from .vocabulary import vocabulary
 
 if TYPE_CHECKING:
@@ -161,13 +161,13 @@ class Subjects:
     def _named_before(self, token: Token) -> Ref | None:
         """The person named right before a verb whom the parser took for a part of it, or for another's object.
 
-        As in "while Beth crouches", "he runs to Beth and Beth lifts him" and "he holds out his hand and the girl
-        shakes it".
+        As in "while Beth crouches", "he runs to Beth and Beth lifts him", "he hugs Beth and she waves" and "he holds
+        out his hand and the girl shakes it".
         """
         before = token.nbor(-1) if token.i and token.tag_ in ("VBZ", "VBD") else None
         if before is None:
             return None
-        if before.tag_ != "NNP" or before.dep_ not in ("conj", "compound"):
+        if not begins_clause(before) and (before.tag_ != "NNP" or before.dep_ not in ("conj", "compound")):
             before = next((noun for noun in (before, *before.ancestors) if ends_before(noun, token)), None)
         ref = reference(before, self._cast, "") if before is not None else None
         return ref if ref is not None and ref.kind == "person" else None

@@ -12,6 +12,7 @@ from typing import Any
 
 import pytest
 
+from acts import lexicon
 from acts.config import DirectorSettings, director_settings
 from acts.reading import director
 from acts.reading.director import directed
@@ -65,6 +66,7 @@ def fake(monkeypatch: pytest.MonkeyPatch) -> Iterator[Fake]:
     for name, value in {"URL": found.url, "MODEL": "small:1b", "KEY": KEY}.items():
         monkeypatch.setenv(f"PASDEDEUX_DIRECTOR_{name}", value)
     director._kept.clear()
+    director._form_of.clear()
     yield found
     found.server.shutdown()
     found.server.server_close()
@@ -94,10 +96,40 @@ def test_what_the_lexicon_reads_is_not_sent(fake: Fake, monkeypatch: pytest.Monk
     assert directed("Two people hug.").acts[0].act == "wave"
 
 
-def test_a_server_that_refuses_a_schema_is_asked_for_plain_json(fake: Fake) -> None:
-    fake.answers = [(400, b"{}"), chat(f"Here it is:\n```json\n{json.dumps({'acts': [HUG]})}\n```")]
+@pytest.mark.parametrize("state", [400, 422, 500])
+def test_a_server_that_refuses_a_schema_is_asked_in_another_form(fake: Fake, state: int) -> None:
+    plain = chat(f"Here it is:\n```json\n{json.dumps({'acts': [HUG]})}\n```")
+    fake.answers = [(state, b"{}"), (state, b"{}"), plain]
     assert directed(GERMAN).acts[0].act == "hug"
-    assert [("response_format" in sent) for sent in fake.seen] == [True, False]
+    forms = [sent.get("response_format", {}) for sent in fake.seen]
+    assert [form.get("type") for form in forms] == ["json_schema", "json_object", None]
+    assert forms[1]["schema"] == forms[0]["json_schema"]["schema"]
+    director._kept.clear()
+    assert directed(GERMAN).acts and "response_format" not in fake.seen[3], "what it takes is remembered"
+
+
+TOO_LONG = (
+    {"code": "context_length_exceeded", "message": "This model's maximum context length is 2048 tokens."},
+    {"code": 400, "type": "exceed_context_size_error", "message": "the request exceeds the available size"},
+)
+
+
+@pytest.mark.parametrize("error", TOO_LONG)
+def test_a_server_with_a_small_context_gets_the_names_alone(fake: Fake, error: dict[str, Any]) -> None:
+    refused = (400, json.dumps({"error": error}).encode())
+    fake.answers = [refused, chat({"acts": [HUG]})]
+    assert directed(GERMAN).acts[0].act == "hug"
+    long, short = (sent["messages"][0]["content"] for sent in fake.seen)
+    assert "arch-back: lean back" in long and "arch-back\n" in short and len(short) < 0.7 * len(long)
+    director._kept.clear()
+    fake.answers = [refused]
+    assert "too small a context" in directed(GERMAN).notes[-1]
+
+
+def test_the_list_of_acts_is_short() -> None:
+    task = director._task(lexicon())
+    assert "\nbeg: pray\n" in task and "\nhug b\n" in task and "\nbow\n" in task
+    assert "[" not in task.partition("Acts:")[2] and len(task) < 11_000, "about 2,900 tokens"
 
 
 @pytest.mark.parametrize(
@@ -168,7 +200,7 @@ def test_what_fails_leaves_the_reading_of_the_lexicon(
     assert plan.reader == "lexicon" and plan.unread
     assert any(part in plan.notes[-1] for part in said.split("|")), plan.notes
     assert KEY not in plan.model_dump_json() + caplog.text
-    assert len(fake.seen) <= 2
+    assert len(fake.seen) <= 3
 
 
 def test_a_hostile_answer_stays_data(fake: Fake) -> None:

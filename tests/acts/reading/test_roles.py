@@ -2,11 +2,18 @@
 
 from __future__ import annotations
 
+import pytest
+
 from acts import Act, lexicon, read
 
 
 def told(text: str) -> list[tuple[str, str, str | None]]:
     return [(act.act, "".join(act.agents), act.patient) for act in read(text).acts]
+
+
+def said(text: str) -> list[str]:
+    """The acts as "a hug b"."""
+    return [f"{who} {act} {whom or ''}".strip() for act, who, whom in told(text)]
 
 
 def last(text: str) -> Act:
@@ -183,3 +190,36 @@ def test_who_is_lying_down_lies_already() -> None:
 
 def test_frozen_on_one_leg_is_on_one_leg() -> None:
     assert [name for name, _, _ in told("The first is frozen on one leg.")] == ["freeze", "stand-on-one-leg"]
+
+
+@pytest.mark.parametrize(
+    ("text", "acts"),
+    [
+        ("A hugs B and he waves", ["a hug b", "a wave b"]),
+        ("A hugs B. He waves.", ["a hug b", "a wave b"]),
+        ("A hugs B and they wave", ["a hug b", "ab wave"]),
+        ("A woman hugs a man and he waves", ["a hug b", "b wave a"]),
+        ("A pushes B and he falls", ["a push b", "b fall-down"]),
+        ("A and B hug and he waves", ["ab hug", "a wave b"]),
+    ],
+)
+def test_a_pronoun_behind_what_two_do_together_goes_on_with_its_subject(text: str, acts: list[str]) -> None:
+    assert said(text) == acts
+
+
+@pytest.mark.parametrize("text", ["Two kids fight, mom comes", "Two men fight, a woman walks up to them."])
+def test_who_is_unlike_the_two_is_a_third_person(text: str) -> None:
+    plan = read(text)
+    assert said(text) == ["ab fight"] and "third person" in plan.unread[0].why
+    assert said("Two children play, the boy waves.")[-1] == "a wave b", "he is one of them"
+
+
+def test_slow_circles_are_done_and_nothing_slows() -> None:
+    assert said("He does slow arm circles.") == ["a circle-arms"]
+    assert said("does slow arm circles") == ["ab circle-arms"]
+    assert said("They do shake hands.") == ["ab shake-hands"]
+
+
+def test_march_is_no_month_where_it_begins() -> None:
+    assert said("march in step, then salute") == ["ab walk-together", "ab unison", "ab salute"]
+    assert said("March forward in step, then halt.") == ["ab walk-together", "ab unison", "ab stand-still"]
