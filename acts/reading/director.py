@@ -12,7 +12,7 @@ import re
 import threading
 import time
 from collections import OrderedDict
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from pydantic import ValidationError
 
@@ -22,6 +22,9 @@ from acts.plan import MOST_ACTS, Act, Person, Plan, Span, problem
 from motion import InputError
 
 from .read import read
+
+if TYPE_CHECKING:
+    import httpx
 
 MOST_BYTES = 200_000
 """Bytes of an answer, at most; sixty acts take about 20,000."""
@@ -35,6 +38,29 @@ _WORDS = ("thing", "part", "direction")
 
 _FEW_WORDS = frozenset(("a", "an", "the", "their", "b", "b's", "to", "with", "at", "on", "of", "one"))
 """Words of a caption that say nothing that the name of its act leaves open."""
+
+_ASKED = (
+    "id", "words", "act", "agents", "patient", "order", "polarity", "modality", "side", "times", "thing", "part",
+    "direction", "manner", "seconds", "distance",
+)  # fmt: skip
+"""Fields that a model is asked for, the words first: a small model keeps to what it has just quoted."""
+
+_EXAMPLE = (
+    "The nurse hugs him, then he waves.",
+    {
+        "acts": [
+            {"id": "1", "words": "hugs him", "act": "hug", "agents": ["a"], "patient": "b"},
+            {
+                "id": "2",
+                "words": "waves",
+                "act": "wave",
+                "agents": ["b"],
+                "order": [{"kind": "after", "act": "1"}],
+            },
+        ]
+    },
+)
+"""A text and its answer, which small models need to see."""
 
 _asking = threading.BoundedSemaphore(MOST_AT_ONCE)
 _kept: OrderedDict[tuple[str, DirectorSettings, Lexicon], Plan] = OrderedDict()
@@ -147,19 +173,13 @@ async def _ask(messages: list[dict[str, str]], settings: DirectorSettings, known
     url = settings.url.rstrip("/") + "/chat/completions"
     asked: dict[str, Any] = {"model": settings.model, "messages": messages, "temperature": 0, "stream": False}
     forms = _forms(schema(known))
-    began = time.monotonic()
+    stop = time.monotonic() + settings.seconds
     async with httpx.AsyncClient(
         follow_redirects=False, timeout=settings.seconds, trust_env=url.startswith("https:")
     ) as client:
         for number in range(_form_of.get(settings.url, 0), len(forms)):
             async with client.stream("POST", url, json=asked | forms[number], headers=headers) as response:
-                body = bytearray()
-                async for part in response.aiter_bytes(16_384):
-                    body += part
-                    if len(body) > MOST_BYTES:
-                        raise DirectorError("answered with too much")
-                    if time.monotonic() - began > settings.seconds:
-                        raise TimeoutError
+                body = await _body(response, stop)
             if response.status_code == 200:
                 _form_of[settings.url] = number
                 break
@@ -178,6 +198,18 @@ async def _ask(messages: list[dict[str, str]], settings: DirectorSettings, known
     return content
 
 
+async def _body(response: httpx.Response, stop: float) -> bytes:
+    """Bytes that a server sends, at most :data:`MOST_BYTES` and until a moment of the monotonic clock."""
+    body = bytearray()
+    async for part in response.aiter_bytes(16_384):
+        body += part
+        if len(body) > MOST_BYTES:
+            raise DirectorError("answered with too much")
+        if time.monotonic() > stop:
+            raise TimeoutError
+    return bytes(body)
+
+
 def _forms(wanted: dict[str, Any]) -> tuple[dict[str, Any], ...]:
     """The ways to ask for a schema: OpenAI's, that of llama-cpp-python and llama.cpp, and none."""
     return (
@@ -187,7 +219,7 @@ def _forms(wanted: dict[str, Any]) -> tuple[dict[str, Any], ...]:
     )
 
 
-def _is_too_long(body: bytes | bytearray) -> bool:
+def _is_too_long(body: bytes) -> bool:
     """True for an error that says that the messages do not fit the model's context."""
     try:
         error = json.loads(body)["error"]
@@ -199,7 +231,9 @@ def _is_too_long(body: bytes | bytearray) -> bool:
 def schema(known: Lexicon) -> dict[str, Any]:
     """The JSON schema of an answer: people and acts of a plan, with ``words`` quoted, of acts that exist."""
     whole = Plan.model_json_schema()
-    act = whole["$defs"]["Act"]["properties"]
+    fields = whole["$defs"]["Act"]["properties"]
+    act = {name: fields[name] for name in _ASKED}
+    whole["$defs"]["Act"] |= {"properties": act, "required": ["id", "words", "act", "agents"]}
     act["words"] = {"type": "string", "maxLength": 300}
     act["act"] = {
         "type": "string",
@@ -234,7 +268,8 @@ def _task(known: Lexicon, *, names_alone: bool = False) -> str:
         f'first, the other is "b". Fields of an act: {fields}. id: "1", "2", …; act: one of the names below; '
         'agents: ["a"], ["b"] or ["a", "b"]; patient: "a", "b" or null, never one of the agents; polarity: "not" '
         'if it is denied; order: [{"kind": "after" or "with", "act": "1"}]; words: the words of the text that say it, '
-        "as they stand there; thing, manner and part in English. Leave out what the text does not say.\n"
+        "as they stand there; thing, manner and part in English. Leave out what the text does not say. "
+        f"“{_EXAMPLE[0]}” is {json.dumps(_EXAMPLE[1])}\n"
         "Acts:\n" + "\n".join(acts)
     )
 

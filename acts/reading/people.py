@@ -102,13 +102,11 @@ class Cast:
             return self._as("b", lemma)
         if text == "one":
             return self._as("a" if "a" not in self._known or self.last != "a" else "b", "one")
-        if text in ("another", "else"):
+        if text in ("another", "else", "someone", "somebody"):
             return self._new(lemma, token)
         if text in (A_NAME.lower(), B_NAME.lower()) and token.text in (A_NAME, B_NAME):
             return self._as("a" if token.text == A_NAME else "b", "person")
-        if text in ("someone", "somebody"):
-            return self._new(lemma, token)
-        if not self._known and token.tag_ in ("NN", "NNP") and self._is_unlike_pair(lemma):
+        if self._is_unlike_pair(token):
             self.third.append(token)
             return None
         acts = token.dep_ in ("nsubj", "nsubjpass", "poss")
@@ -135,8 +133,11 @@ class Cast:
             self._describe(token, self._known[who])
         return who
 
-    def _is_unlike_pair(self, lemma: str) -> bool:
+    def _is_unlike_pair(self, token: Token) -> bool:
         """True for a person who is neither of the two that were named together: "two kids fight, mom comes"."""
+        if self._known or token.tag_ not in ("NN", "NNP"):
+            return False
+        lemma = token.lemma_.lower()
         sex, age = self._words.sex(lemma), self._words.age(lemma)
         grown = self._pair.age == "child" and bool(sex) and age != "child"
         return grown or (bool(sex) and bool(self._pair.sex) and sex != self._pair.sex)
