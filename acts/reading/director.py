@@ -28,6 +28,8 @@ if TYPE_CHECKING:
 
 MOST_BYTES = 200_000
 """Bytes of an answer, at most; sixty acts take about 20,000."""
+TOKENS, TOKENS_A_WORD = 400, 40
+"""Tokens of an answer, at most, and more of them for each word of the text; an act takes about 60."""
 MOST_AT_ONCE = 4
 """Texts that are with the director at a time; further ones are read by the lexicon."""
 MOST_KEPT = 512
@@ -172,7 +174,7 @@ async def _ask(messages: list[dict[str, str]], settings: DirectorSettings, known
     headers = {"Authorization": f"Bearer {settings.key}"} if settings.key else {}
     url = settings.url.rstrip("/") + "/chat/completions"
     asked: dict[str, Any] = {"model": settings.model, "messages": messages, "temperature": 0, "stream": False}
-    forms = _forms(schema(known))
+    forms = _forms(schema(known), TOKENS + TOKENS_A_WORD * len(messages[1]["content"].split()))
     stop = time.monotonic() + settings.seconds
     async with httpx.AsyncClient(
         follow_redirects=False, timeout=settings.seconds, trust_env=url.startswith("https:")
@@ -210,13 +212,16 @@ async def _body(response: httpx.Response, stop: float) -> bytes:
     return bytes(body)
 
 
-def _forms(wanted: dict[str, Any]) -> tuple[dict[str, Any], ...]:
-    """The ways to ask for a schema: OpenAI's, that of llama-cpp-python and llama.cpp, and none."""
-    return (
-        {"response_format": {"type": "json_schema", "json_schema": {"name": "plan", "schema": wanted}}},
-        {"response_format": {"type": "json_object", "schema": wanted}},
-        {},
-    )
+def _forms(wanted: dict[str, Any], most: int) -> tuple[dict[str, Any], ...]:
+    """The ways to ask for a schema: OpenAI's, that of llama-cpp-python and llama.cpp, and none.
+
+    Args:
+        wanted: the schema.
+        most: tokens of the answer, since a small model may go on without end; not all servers take a limit.
+    """
+    openai = {"response_format": {"type": "json_schema", "json_schema": {"name": "plan", "schema": wanted}}}
+    llama = {"response_format": {"type": "json_object", "schema": wanted}, "max_tokens": most}
+    return openai | {"max_tokens": most}, llama, openai, {}
 
 
 def _is_too_long(body: bytes) -> bool:
@@ -330,11 +335,19 @@ def _act(given: Any, text: str, known: Lexicon) -> Act:
     fields["manner"] = (
         [word for each in manner if (word := _plain(each, 40))] if isinstance(manner, list) else []
     )
+    if fields.get("patient") is None and all("{b}" in text for text in entry.caption):
+        fields["patient"] = _the_other(fields.get("agents"))  # nobody is carried by themselves
     quoted = fields.pop("words", None)
     at = text.find(quoted) if isinstance(quoted, str) and quoted.strip() else -1
     if isinstance(quoted, str) and at >= 0:
         fields["words"] = Span(start=at, stop=at + len(quoted))
     return Act.model_validate(fields)
+
+
+def _the_other(agents: Any) -> str | None:
+    """The one who is no agent, if there is one."""
+    others = [who for who in "ab" if isinstance(agents, list) and who not in agents]
+    return others[0] if len(others) == 1 else None
 
 
 def _people(given: Any) -> tuple[Person, Person]:

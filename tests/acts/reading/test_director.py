@@ -99,13 +99,14 @@ def test_what_the_lexicon_reads_is_not_sent(fake: Fake, monkeypatch: pytest.Monk
 @pytest.mark.parametrize("state", [400, 422, 500])
 def test_a_server_that_refuses_a_schema_is_asked_in_another_form(fake: Fake, state: int) -> None:
     plain = chat(f"Here it is:\n```json\n{json.dumps({'acts': [HUG]})}\n```")
-    fake.answers = [(state, b"{}"), (state, b"{}"), plain]
+    fake.answers = [(state, b"{}")] * 3 + [plain]
     assert directed(GERMAN).acts[0].act == "hug"
     forms = [sent.get("response_format", {}) for sent in fake.seen]
-    assert [form.get("type") for form in forms] == ["json_schema", "json_object", None]
+    assert [form.get("type") for form in forms] == ["json_schema", "json_object", "json_schema", None]
+    assert ["max_tokens" in sent for sent in fake.seen] == [True, True, False, False], "not all take a limit"
     assert forms[1]["schema"] == forms[0]["json_schema"]["schema"]
     director._kept.clear()
-    assert directed(GERMAN).acts and "response_format" not in fake.seen[3], "what it takes is remembered"
+    assert directed(GERMAN).acts and "response_format" not in fake.seen[4], "what it takes is remembered"
 
 
 TOO_LONG = (
@@ -149,6 +150,12 @@ def test_a_wrong_answer_may_be_corrected_once(fake: Fake, wrong: Any, said: str)
     plan = directed(GERMAN)
     assert [act.act for act in plan.acts] == ["hug"] and not plan.notes
     assert said in fake.seen[1]["messages"][-1]["content"]
+
+
+def test_what_is_done_to_somebody_is_done_to_the_other(fake: Fake) -> None:
+    carry = {"id": "1", "act": "carry", "agents": ["b"]}
+    fake.answers = [chat({"acts": [carry, WAVE | {"order": []}]})]
+    assert [act.patient for act in directed(GERMAN).acts] == ["a", None]
 
 
 def test_what_stays_wrong_is_dropped_with_a_note(fake: Fake) -> None:
@@ -200,7 +207,7 @@ def test_what_fails_leaves_the_reading_of_the_lexicon(
     assert plan.reader == "lexicon" and plan.unread
     assert any(part in plan.notes[-1] for part in said.split("|")), plan.notes
     assert KEY not in plan.model_dump_json() + caplog.text
-    assert len(fake.seen) <= 3
+    assert len(fake.seen) <= 4
 
 
 def test_a_hostile_answer_stays_data(fake: Fake) -> None:
