@@ -76,8 +76,9 @@ def test_a_drawn_path_is_sent_with_the_next_run(drawing: Page, server: Any) -> N
     drag(page, "path", "a", (-120, 30), (0, -60))
     (path,) = paths(page)
     assert path["person"] == "a" and path["points"][0][0] == 0 and len(path["points"]) > 2
-    length = page.evaluate("document.querySelector('#player .pdd-length').textContent")
-    expect(chips(page)).to_have_text(f"A’s path {length} ✕")
+    expect(chips(page)).to_have_text(re.compile(r"A’s path 1\.\d m ✕"))
+    length = chips(page).inner_text().removeprefix("A’s path ").split(" m")[0]
+    expect(page.locator("#player .pdd-length")).to_have_text(f"{length} m")
     assert page.evaluate("window.__pasdedeux.player.panes[0].scene.layers.get('paths').points.length") > 40
     (sent,) = generated(page, server, "A waves to B.").paths
     assert sent.person == "a"
