@@ -16,6 +16,7 @@ from motion.ik import pose_bodies
 from motion.kinematics import forward_kinematics
 from motion.skeleton import SMPL22
 
+from .gaze import Gaze, gaze
 from .landmarks import INDEX, TORSO, Landmarks
 from .people import LAYOUT, LENSES, TILTS, layout_points
 from .place import LENS, body_tilt, focal_length, towards, translation, upright
@@ -34,6 +35,8 @@ _PATH = (1.2, 1.0)
 """The same for the path of the pelvis, whose depth is uncertain."""
 _FLOOR = 45
 """Pictures over which the lowest place of the feet is the floor."""
+_UP = np.diag([1.0, -1.0, -1.0])
+"""From a camera's axes, y down and z away from it, to y up and z towards it."""
 _TOES = [SMPL22.index(f"{side}_foot") for side in ("left", "right")]
 _LEGS = [INDEX[f"{side}_{part}"] for side in ("left", "right") for part in ("knee", "ankle")]
 
@@ -73,6 +76,9 @@ def _share(cutoff: Array | float, seconds: float) -> Array:
 class FollowedPerson:
     """Turns the landmarks of one person into poses, one picture after the other.
 
+    Attributes:
+        gaze: of the last picture with a pose; None where the points do not tell.
+
     Args:
         lens: degrees that the camera sees from corner to corner.
         tilt: degrees by which it looks down; found from the first pictures by default.
@@ -96,6 +102,7 @@ class FollowedPerson:
         self._origin = np.zeros(3)
         self._last: tuple[float, Array] | None = None
         self.seen = 0.0
+        self.gaze: Gaze | None = None
 
     @property
     def hint(self) -> str:
@@ -127,6 +134,7 @@ class FollowedPerson:
             pose = self._finished(points, seen, time - before, self._turn)
         except np.linalg.LinAlgError:  # all points in one place
             return None
+        self.gaze = gaze(points, seen, self._turn @ _UP)
         return pose if np.isfinite(pose).all() else None
 
     def _choose(self, landmarks: Landmarks, poses: NDArray[np.integer], time: float) -> int:
@@ -146,7 +154,7 @@ class FollowedPerson:
         stack, trust = (np.stack(values) for values in zip(*self._measured, strict=True))
         if self.tilt is None:
             self.tilt = float(np.clip(np.degrees(body_tilt(stack, trust)), *TILTS))
-        self._turn = upright(np.radians(self.tilt)) @ np.diag([1.0, -1.0, -1.0])
+        self._turn = upright(np.radians(self.tilt)) @ _UP
         chosen, _ = layout_points(stack, trust)
         _, root, self._body, self._size = pose_bodies(chosen, LAYOUT)
         self._origin = np.asarray(root[-1] @ self._turn.T / self._size) * [1, 0, 1]

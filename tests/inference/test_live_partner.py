@@ -9,10 +9,20 @@ import pytest
 
 from motion import InputError
 from motion.transforms import heading, heading_matrix
+from motion.video.gaze import HIDDEN, Gaze
 from webdemo.inference.engine import Engine
 from webdemo.inference.pipelines import live_partner
 from webdemo.inference.pipelines.agent import BETWEEN, FIRST, Eye, Look
-from webdemo.inference.pipelines.live_agent import ANSWER, BACK, BESIDE, IGNORED, LEAVES, LEFT, LiveAgent
+from webdemo.inference.pipelines.live_agent import (
+    ANSWER,
+    BACK,
+    BESIDE,
+    IGNORED,
+    LEAVES,
+    LEFT,
+    LISTENS,
+    LiveAgent,
+)
 from webdemo.inference.pipelines.live_partner import ReactingPartner
 from webdemo.inference.pipelines.steering import Goal, Steering
 
@@ -197,6 +207,40 @@ def test_somebody_who_turns_away_is_waited_for() -> None:
     assert partner.words[-1][1] == SENTENCES[0]
     first = states.index("ignored")
     assert IGNORED <= first + 1 - (FIRST + 2 * BETWEEN) <= IGNORED + BETWEEN
+
+
+AT_CAMERA = Gaze(np.array([1.0, 0, 0]), 0.95)
+AT_AGENT = Gaze(np.array([0, 0, 1.0]), -0.3)
+ELSEWHERE = Gaze(np.array([-1.0, 0, 0]), 0.1)
+
+
+@pytest.mark.parametrize(
+    ("gaze", "answers"),
+    [(None, True), (AT_CAMERA, True), (AT_AGENT, True), (ELSEWHERE, False), (HIDDEN, False)],
+)
+def test_the_agent_answers_only_who_addresses_it(gaze: Gaze | None, answers: bool) -> None:
+    partner = Recorded()
+    agent = LiveAgent(Scripted(WAVE), partner)  # type: ignore[arg-type]
+    agent.gaze = gaze
+    for _ in range(FIRST + 3 * BETWEEN):
+        agent.step(STANDING)
+    assert (agent.belief.state, len(partner.words)) == (("answers", 2) if answers else ("ignored", 1))
+    assert answers or "waits to be addressed" in agent.belief.text
+
+
+def test_the_agent_forgets_what_was_meant_for_others_and_bears_a_short_look_aside() -> None:
+    partner = Recorded()
+    agent = LiveAgent(Scripted(WAVE), partner)  # type: ignore[arg-type]
+    gazes = [ELSEWHERE] * 120 + [AT_CAMERA] * 60 + [ELSEWHERE] * (IGNORED - 5) + [AT_CAMERA] * 40
+    states = []
+    for gaze in [*gazes, *[ELSEWHERE] * 80]:
+        agent.gaze = gaze
+        agent.step(STANDING)
+        states.append(agent.belief.state)
+    began = states.index("answers")
+    assert began >= 120 + LISTENS // 2 + BETWEEN, "two looks after it was addressed"
+    assert set(states[began : len(gazes)]) == {"answers"}
+    assert states[-1] == "ignored" and partner.words[-1][1] == SENTENCES[0]
 
 
 def test_the_agent_looks_at_the_person_until_it_answers() -> None:

@@ -12,6 +12,8 @@ from typing import Protocol
 import numpy as np
 from numpy.typing import NDArray
 
+from motion.video.gaze import Gaze
+
 Array = NDArray[np.floating]
 
 PARTNERS: Mapping[str, str] = {
@@ -38,7 +40,13 @@ class Belief:
 
 
 class LivePartner(Protocol):
-    """Answers one person. Each pose is computed before the next one of the person is known."""
+    """Answers one person. Each pose is computed before the next one of the person is known.
+
+    Attributes:
+        gaze: where the person's face points now, set before a step; None where it is not known, as without a camera.
+    """
+
+    gaze: Gaze | None
 
     @property
     def belief(self) -> Belief:

@@ -61,6 +61,7 @@ def film(
     size: tuple[int, int] = SIZE,
     noise: float = 0.0,
     order: int = 0,
+    face: float | None = None,
 ) -> Landmarks:
     """The landmarks of people (T, 22, 3) about the world's origin, at which the camera looks at hip height.
 
@@ -69,6 +70,7 @@ def film(
         tilt: degrees by which the camera looks down.
         noise: metres by which depth is off, a tenth of that across.
         order: seed of the order of people in a picture, and of the noise.
+        face: radians from +Z towards +X to which their faces point; by default noses and ears are in one place.
     """
     height = 0.95 + distance * np.tan(np.radians(tilt))
     rng = np.random.default_rng(order)
@@ -80,6 +82,8 @@ def film(
     for frame in range(frames):
         for person in rng.permutation(len(people)):
             points = points_of(people[person][frame])
+            if face is not None:
+                put_face(points, face)
             seen = (points - [0, height, distance]) @ to_camera.T
             seen += noise * rng.normal(size=seen.shape) * [0.1, 0.1, 1.0]
             middle = (seen[23] + seen[24]) / 2
@@ -113,6 +117,14 @@ def points_of(joints: np.ndarray) -> np.ndarray:
         if name in J:
             points[i] = seen[J[name]]
     return points
+
+
+def put_face(points: np.ndarray, angle: float) -> None:
+    """Puts nose and ears of points (33, 3) where a face has them that points to an angle from +Z towards +X."""
+    sin, cos = np.sin(angle), np.cos(angle)
+    points[POINTS.index("nose")] += 0.11 * np.array([sin, 0, cos])
+    for ear, sign in (("left_ear", 1), ("right_ear", -1)):
+        points[POINTS.index(ear)] += 0.07 * sign * np.array([cos, 0, -sin])
 
 
 def packed(landmarks: Landmarks, **known: Any) -> str:

@@ -6,7 +6,7 @@ uses the last look only. Until it is sure, it stands and faces the place where t
 generates the response from the sentence of that gesture, where the thesis plays a prerecorded motion. As in the
 thesis, the response is planned once. InterGen receives what both people have done so far and generates the
 person's next movements itself, so no frame of the agent depends on a later frame of the person. The agent does not
-see the person's face, which in the thesis decides whether to respond.
+see the person's face, which in the thesis decides whether to respond; live it sees where a face points.
 """
 
 from __future__ import annotations

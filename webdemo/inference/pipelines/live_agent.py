@@ -3,8 +3,10 @@
 Every half second it takes the last second of the person, predicts two more and recognises the gesture (see
 :mod:`.agent`). Until it is sure, it stands with the person. When it is sure, the online ReGenNet receives the
 sentence of the gesture and answers frame by frame; the thesis plays a prerecorded motion instead. A second gesture
-interrupts the answer, and a person who turns away ends it. While it does not answer, the agent turns to the person and
-looks at them; it leaves a person who turns their back on it for long, and comes back when they turn round.
+interrupts the answer, and a person who turns away ends it. Where a camera sees the person's face, the agent answers
+only if it is addressed: if the face points to the camera, where the agent is seen, or to the agent in the scene. While
+it does not answer, the agent turns to the person and looks at them; it leaves a person who turns their back on it for
+long, and comes back when they turn round.
 """
 
 from __future__ import annotations
@@ -16,6 +18,7 @@ from numpy.typing import NDArray
 
 from models.agent.recogniser import OBSERVED
 from motion.transforms import facing
+from motion.video.gaze import Gaze
 from webdemo.inference.actor import FPS
 from webdemo.inference.partner import Belief
 
@@ -35,6 +38,10 @@ AWAY = -0.2
 """Cosine between the person's direction and the way to the agent below which the person looks away."""
 IGNORED = 45
 """Frames of looking away after which the agent counts as ignored."""
+FACES = 0.64
+"""Cosine of the angle (50°) between a face and what it looks at, at most."""
+LISTENS = 30
+"""Frames of which more than half must have been meant for the agent before it answers."""
 LEAVES = 180
 """Frames of looking away after which the agent leaves."""
 BACK = 20
@@ -61,7 +68,10 @@ class LiveAgent:
         partner.take_words(self.sentences[0])
         self.frame = 0
         self.gesture: int | None = None
+        self.gaze: Gaze | None = None
         self._seen: deque[Array] = deque(maxlen=OBSERVED)
+        self._meant: deque[bool] = deque(maxlen=LISTENS)
+        self._elsewhere = 0
         self._looks: deque[Look] = deque(maxlen=MEMORY)
         self._away = self._met = 0
         self._gone = self._returns = False
@@ -78,6 +88,8 @@ class LiveAgent:
         shown = self._shown = self.partner.step(pose)
         away = _looks_away(pose, shown)
         self._away, self._met = (self._away + 1, 0) if away else (0, self._met + 1)
+        self._meant.append(self.gaze is None or _looks_at(self.gaze, pose, shown))
+        self._elsewhere = 0 if self._meant[-1] else self._elsewhere + 1
         if self.frame >= FIRST and (self.frame - FIRST) % BETWEEN == 0:
             self._look()
         return shown
@@ -108,12 +120,24 @@ class LiveAgent:
             waits = Belief("ignored", "The person looks away, so the agent waits.")
             self.belief = left if self._gone else waits
             return
+        if not self._addressed:
+            self._looks.clear()
+            self._rest()
+            self.belief = Belief("ignored", "The person looks elsewhere, so the agent waits to be addressed.")
+            return
         decision = self.eye.decide(list(self._looks))
         if decision.sure and decision.place is not None:
             self._answer(decision.place)
         elif self.gesture is not None and self._over(look):
             self._rest()
         self.belief = self._believes(decision, look)
+
+    @property
+    def _addressed(self) -> bool:
+        """True if what the person does is meant for the agent; during an answer they may look elsewhere for a while."""
+        if self.gesture is not None:
+            return self._elsewhere < IGNORED
+        return 2 * sum(self._meant) > len(self._meant)
 
     def _answer(self, place: int) -> None:
         """Begins the answer to a gesture; one that is being answered goes on."""
@@ -147,6 +171,11 @@ class LiveAgent:
             return Belief("watches", "The agent sees no gesture that asks for an answer.", named)
         label = self.labels[decision.place]
         return Belief("watches", f"Perhaps “{label}”, but the agent is not sure yet.", named)
+
+
+def _looks_at(gaze: Gaze, pose: Array, other: Array) -> bool:
+    """True if the face of a person (22, 3) points to the camera or to another."""
+    return max(gaze.camera, gaze.towards(other[0] - pose[0])) >= FACES
 
 
 def _looks_away(pose: Array, other: Array) -> bool:

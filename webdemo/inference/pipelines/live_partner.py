@@ -18,6 +18,7 @@ from torch import Tensor
 from models.motion_tokens import FEATURES
 from motion import SMPL22, Clip
 from motion.transforms import turn
+from motion.video.gaze import Gaze
 from webdemo.inference.actor import FPS, Placement
 from webdemo.inference.following import FollowingCleanup
 from webdemo.inference.noise import sample_noise
@@ -109,9 +110,11 @@ class ReactingPartner:
 
     Attributes:
         goal: where the partner turns and goes by itself, beside what the network has it do; None for nowhere.
+        gaze: see :class:`webdemo.inference.partner.LivePartner`; this partner reacts to bodies alone.
     """
 
     belief = Belief("follows", "")
+    gaze: Gaze | None = None
 
     def __init__(
         self,

@@ -176,6 +176,7 @@ class LiveStream:
             return
         for picture, time_ in enumerate(content.times):
             pose = self._camera.add(content, picture)
+            self.partner.gaze = self._camera.gaze
             if (content.frames == picture).any():
                 self.found = self.clock()
             if pose is not None:
