@@ -1,4 +1,4 @@
-"""Where a filmed face points: from ears, eyes and nose, the only points of a head that the pose network finds."""
+"""The direction of a filmed face, from ears and nose: the only points of a head that the pose network finds."""
 
 from __future__ import annotations
 
