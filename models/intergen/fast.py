@@ -49,6 +49,11 @@ class FastChange(nn.Module):
     @torch.no_grad()
     def applied_to(self, denoiser: WordDenoiser) -> WordDenoiser:
         """The network in fast mode: its ``guided`` is one pass; in eval mode, without gradients."""
-        changed = WordDenoiser(denoiser.config, denoiser.known_embed.in_features, guidance_input=True)
+        changed = WordDenoiser(
+            denoiser.config,
+            denoiser.known_embed.in_features,
+            plan_features=denoiser.plan_features,
+            guidance_input=True,
+        )
         changed.load_state_dict(self.tensors(denoiser))
         return changed.to(denoiser.out.linear.weight.device).eval().requires_grad_(False)

@@ -176,6 +176,11 @@ class WordDenoiser(InterGenDenoiser):
         return self.out(h).permute(1, 2, 0, 3).reshape(b, length, -1)
 
     @property
+    def plan_features(self) -> int:
+        """Numbers a person and token by which it sees plans; 0 where it reads none."""
+        return 0 if self.plan_embed is None else self.plan_embed.features
+
+    @property
     def varying(self) -> dict[str, tuple[int, ...]]:
         """See :class:`models.compiled.Compilable`."""
         more: dict[str, tuple[int, ...]] = {"cond": (0, 2), "known": (0, 1)}

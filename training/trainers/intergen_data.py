@@ -222,9 +222,8 @@ class Data:
             self.captions = CaptionFeatures(sorted(known), cache) if on_cpu else CaptionTokens(device)
         self.mean, self.std = normalizer(scenes, SMPL22.mirror)
         self.tokens = torch.tensor([row["tokens"] for row in self.rows])
-        self.acts = {
-            row["start"]: acts_of_label(row) for row in self.rows if settings.plans and settings.words
-        }
+        plans = getattr(settings, "plans", False) and settings.words  # other networks' settings have no words
+        self.acts = {row["start"]: acts_of_label(row) for row in self.rows if plans}
         self.plan_words = vocabulary(self.acts.values())
         self.track = PlanTrack(self.plan_words, scenes.layout)
         self.reader = CaptionReader(scenes.rows, settings.cond_dim)
@@ -262,8 +261,9 @@ class Data:
     @property
     def dropped(self) -> float:
         """The share of scenes whose words are not read."""
-        told = self.settings.told
-        return told.neither + told.plan if self.plan_words else self.settings.cond_drop_prob
+        if not self.plan_words:
+            return self.settings.cond_drop_prob
+        return self.settings.told.neither + self.settings.told.plan
 
     def plan(
         self, row: dict[str, Any], draw: float, drawn: Sequence[float], *, before: float, frames: float
@@ -274,8 +274,10 @@ class Data:
             draw: the number by which :meth:`sentences` says whether words are read.
             drawn, before, frames: see :func:`training.trainers.plan_acts.told`.
         """
+        if not self.plan_words:
+            return []
         shares = self.settings.told
-        if not self.plan_words or draw < shares.neither or draw >= 1 - shares.words:
+        if draw < shares.neither or draw >= 1 - shares.words:
             return []
         return told(self.acts[row["start"]], shares, drawn, before=before, frames=frames)
 

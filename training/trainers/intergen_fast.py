@@ -101,7 +101,12 @@ class FastTrainer(Trainer):
         self.data.mean, self.data.std = self.model.mean.cpu(), self.model.std.cpu()
         denoiser = self.model.denoiser
         assert isinstance(denoiser, WordDenoiser)
-        self.student = WordDenoiser(denoiser.config, denoiser.known_embed.in_features, guidance_input=True)
+        self.student = WordDenoiser(
+            denoiser.config,
+            denoiser.known_embed.in_features,
+            plan_features=denoiser.plan_features,
+            guidance_input=True,
+        )
         self.student.to(device).eval()  # without dropout, as the trained network
         self.change, self.ema = (FastChange(denoiser, settings.rank).to(device) for _ in range(2))
         self.ema.load_state_dict(self.change.state_dict())
