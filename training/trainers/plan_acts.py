@@ -13,6 +13,7 @@ from typing import Any
 
 from models.intergen.plan_track import TimedAct
 from training.corpus.cues import Label
+from webdemo.inference.timed import timed_act
 
 FEWEST = 20
 """Scenes in which a word must occur to be in a network's vocabulary."""
@@ -57,19 +58,7 @@ def acts_of_label(row: dict[str, Any]) -> tuple[LabelledAct, ...]:
         return ()
     label = Label.of_row(row["label"])
     return tuple(
-        LabelledAct(
-            TimedAct(
-                act.act,
-                tuple("ab".index(agent) for agent in act.agents),
-                *map(float, label.spans[act.id]),
-                patient=None if act.patient is None else "ab".index(act.patient),
-                side=act.side,
-                manner=act.manner,
-                direction=act.direction,
-                speed=act.speed,
-            ),
-            act.id in label.minor,
-        )
+        LabelledAct(timed_act(act, *map(float, label.spans[act.id])), act.id in label.minor)
         for act in label.plan.acts
         if act.happens
     )

@@ -25,17 +25,22 @@ def timed(acts: Sequence[Act], start: float, stop: float) -> tuple[TimedAct, ...
     groups = beats([act for act in acts if act.happens])
     part = (stop - start) / max(len(groups), 1)
     return tuple(
-        TimedAct(
-            act.act,
-            tuple("ab".index(agent) for agent in act.agents),
-            start + k * part,
-            start + (k + 1) * part,
-            patient=None if act.patient is None else "ab".index(act.patient),
-            side=act.side,
-            manner=act.manner,
-            direction=act.direction,
-            speed=act.speed,
-        )
+        timed_act(act, start + k * part, start + (k + 1) * part)
         for k, group in enumerate(groups)
         for act in group
+    )
+
+
+def timed_act(act: Act, start: float, stop: float) -> TimedAct:
+    """One act of a plan from frame ``start`` to ``stop``."""
+    return TimedAct(
+        act.act,
+        tuple("ab".index(agent) for agent in act.agents),
+        start,
+        stop,
+        patient=None if act.patient is None else "ab".index(act.patient),
+        side=act.side,
+        manner=act.manner,
+        direction=act.direction,
+        speed=act.speed,
     )
