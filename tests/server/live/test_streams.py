@@ -206,8 +206,9 @@ def test_a_stream_answers_each_frame_once() -> None:
 
 
 def test_landmarks_become_the_persons_poses() -> None:
-    filmed = film([stepping(1.5, heading=0.3)], tilt=0, noise=0.01)
+    filmed = film([stepping(1.5, heading=0.3)], tilt=0, noise=0.01, face=0.0)
     one = stream()
+    assert one.partner.gaze is None
     answers = []
     for picture, time in enumerate(filmed.times):
         chosen = replace(
@@ -219,6 +220,9 @@ def test_landmarks_become_the_persons_poses() -> None:
     person = np.concatenate(frames, axis=1)[0]
     assert len(person) == pytest.approx(30 * 1.5 - 2 * 8, abs=3)
     assert 1.4 < person[..., 1].max() < 2.0 and abs(person[..., 1].min()) < 0.06
+    assert one.partner.gaze is not None and one.partner.gaze.camera > 0.9, (
+        "the partner is told where the face points"
+    )
     one.clock.now += stream_module.LOST + 0.1
     empty = replace(filmed, times=np.array([3.0]), frames=np.zeros(0, int), world=filmed.world[:0],
                     image=filmed.image[:0], seen=filmed.seen[:0])  # fmt: skip
