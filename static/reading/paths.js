@@ -19,13 +19,14 @@ export class Paths {
       event.preventDefault();
       this.undo();
     });
+    this.leaving = new AbortController();
+    document.addEventListener("pdd-here", () => this.meet(), { signal: this.leaving.signal });
     this.meet();
-    document.addEventListener("pdd-here", () => this.meet(), { signal: (this.abort = new AbortController()).signal });
   }
 
-  /** Directs the player of the same tab once it is there. */
+  /** Directs the player of the same tab once it is there; a root that has left the page, or was never on it, does not. */
   meet() {
-    if (!this.root.isConnected) return this.abort.abort();
+    if (!this.root.isConnected) return this.leaving.abort();
     this.root.closest(".pd-lab")?.querySelector(".pdd")?.player?.direct(this);
   }
 

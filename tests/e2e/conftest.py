@@ -119,7 +119,7 @@ class Tabs:
         """Notes what goes wrong in a tab."""
         page.on("request", lambda request: self._note_host(request.url))
         page.on("websocket", lambda websocket: self._note_host(websocket.url))
-        page.on("pageerror", lambda error: self.errors.append(str(error)))
+        page.on("pageerror", lambda error: self.errors.append(error.stack or str(error)))
         page.on("response", self._note_refusal)
         page.on("console", self._note_error)
         page.on("framenavigated", self._forget_leaving)
