@@ -26,7 +26,7 @@ from models.weights_io import WeightsFolder, load_network, save_network
 from motion.errors import InputError
 
 from .fast import FastChange
-from .plan_track import PlanTrack, track_width
+from .plan_track import PlanTrack, columns
 from .words import WordDenoiser
 
 Touch = tuple[tuple[str, str], ...]
@@ -47,6 +47,7 @@ class CompactConfig:
         person and the known part of a motion.
     plan_words: the vocabulary of the plans of acts that it reads (:mod:`models.intergen.plan_track`); none where it
         reads none. Only a network with ``words`` has one.
+    traits: what a network that reads plans can be told of how a person moves whatever is done: energy, tempo.
     fast_rank: rank of the :class:`models.intergen.fast.FastChange` that comes with it; 0: there is none.
     """
 
@@ -60,6 +61,7 @@ class CompactConfig:
     role_text: bool = False
     words: bool = False
     plan_words: tuple[str, ...] = ()
+    traits: tuple[str, ...] = ()
     fast_rank: int = 0
     layout: TokenLayout = field(default_factory=TokenLayout)
     touches: tuple[Touch, ...] = ()
@@ -68,10 +70,13 @@ class CompactConfig:
     def from_dict(cls, values: dict[str, Any]) -> CompactConfig:
         """The config that ``config.json`` holds as a dictionary."""
         touches = as_touches(values.get("touches", ()))
-        words = tuple(values.get("plan_words", ()))
-        return cls(
-            **(values | {"layout": TokenLayout(**values["layout"]), "touches": touches, "plan_words": words})
-        )
+        lists = {key: tuple(values.get(key, ())) for key in ("plan_words", "traits")}
+        return cls(**(values | lists | {"layout": TokenLayout(**values["layout"]), "touches": touches}))
+
+    @property
+    def plan_columns(self) -> tuple[str, ...]:
+        """The columns of a person's track of a plan."""
+        return columns(self.plan_words, self.traits)
 
 
 class TouchReader(nn.Module):
@@ -151,7 +156,7 @@ class CompactInterGen(DuetSpace):
             WordDenoiser(
                 sizes,
                 KNOWN_FEATURES * config.layout.knots_per_token,
-                plan_features=track_width(config.plan_words),
+                plan_features=len(config.plan_columns),
             )
             if config.words
             else InterGenDenoiser(sizes)
@@ -198,7 +203,7 @@ class CompactInterGen(DuetSpace):
     def plan_track(self) -> PlanTrack | None:
         """Writes plans as this network reads them; None if it reads none."""
         words = self.config.plan_words
-        return PlanTrack(words, self.layout) if words else None
+        return PlanTrack(words, self.layout, self.config.traits) if words else None
 
     def no_condition(self, batch: int = 1) -> Tensor:
         """The condition of no words."""
@@ -225,11 +230,21 @@ class CompactInterGen(DuetSpace):
         taken = {
             name: tensor for name, tensor in taken.items() if not name.startswith(("touch_reader.", "fast."))
         }
+        for name in {name for name in taken if name.startswith("plan_embed.")} & set(own):
+            taken[name] = self._columns_of(taken[name], trained.config.plan_columns)
         if any(name not in own or own[name].shape != tensor.shape for name, tensor in taken.items()):
             raise InputError(
                 "The weights to begin with are of other sizes: give the sizes they were trained with."
             )
         self.load_state_dict(own | taken)
+
+    def _columns_of(self, weight: Tensor, columns: Sequence[str]) -> Tensor:
+        """The weights (d, columns) that read another network's track of a plan, for the track of this one."""
+        grown = weight.new_zeros(len(weight), len(self.config.plan_columns))
+        for i, column in enumerate(self.config.plan_columns):
+            if column in columns:
+                grown[:, i] = weight[:, columns.index(column)]
+        return grown
 
 
 @dataclass(frozen=True)

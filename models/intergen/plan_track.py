@@ -2,7 +2,8 @@
 
 A track has a column for each word of a vocabulary ("do shake-hands", "undergo push", "side left", "manner sadly"): the
 share of a token's time in which the word holds for a person. Then come :data:`PACE` columns for how the act that
-began last goes on. Words that a network was not trained on have no column.
+began last goes on, and one for each trait of how a person moves whatever is done (energy, tempo). Words that a network
+was not trained on have no column.
 """
 
 from __future__ import annotations
@@ -15,7 +16,7 @@ from torch import Tensor
 
 from models.motion_tokens import TokenLayout
 
-PACE = 3
+PACE = ("left", "done", "speed")
 """Columns for the act that began last: the share that is left of it, the share that is done, and log2 of its speed."""
 
 
@@ -63,19 +64,29 @@ class PlanTrack:
     Args:
         words: the vocabulary, in the order of the columns.
         layout: frames a knot and knots a token.
+        traits: what is told of how a person moves, in the order of their columns.
     """
 
-    def __init__(self, words: Sequence[str], layout: TokenLayout) -> None:
+    def __init__(self, words: Sequence[str], layout: TokenLayout, traits: Sequence[str] = ()) -> None:
         self.frames = layout.frames_per_knot * layout.knots_per_token
+        self.traits = tuple(traits)
         self._column = {word: i for i, word in enumerate(words)}
-        self.width = track_width(words)
+        self.width = len(columns(words, traits))
 
-    def __call__(self, acts: Sequence[TimedAct], tokens: int) -> Tensor:
-        """(tokens, 2·width) the track of a, then of b."""
+    def __call__(self, acts: Sequence[TimedAct], tokens: int, traits: Tensor | None = None) -> Tensor:
+        """(tokens, 2·width) the track of a, then of b.
+
+        Args:
+            acts: of the plan.
+            tokens: of the motion.
+            traits: (2, number of traits) standard deviations from what is usual; 0 for what is not said.
+        """
         track = torch.zeros(2, tokens, self.width)
         if not self.width:
             return track.transpose(0, 1).flatten(1)
-        pace = self.width - PACE
+        pace = slice(len(self._column), len(self._column) + len(PACE))
+        if traits is not None and self.traits:
+            track[..., pace.stop :] = traits[:, None]
         begins = self.frames * torch.arange(tokens)
         for act in sorted(acts, key=lambda act: act.start):
             share = (
@@ -87,7 +98,7 @@ class PlanTrack:
                     self._write(track[person], word, share)
                 done = ((begins + self.frames / 2 - act.start) / max(act.stop - act.start, 1)).clamp(0, 1)
                 how = torch.stack([1 - done, done, torch.full_like(done, act.speed).log2()], 1)
-                track[person, goes_on, pace:] = how[goes_on]
+                track[person, goes_on, pace] = how[goes_on]
             if act.patient is not None:
                 self._write(track[act.patient], act.undergone, share)
         return track.transpose(0, 1).flatten(1)
@@ -97,6 +108,8 @@ class PlanTrack:
             track[:, column] = torch.maximum(track[:, column], share)
 
 
-def track_width(words: Sequence[str]) -> int:
-    """Columns of one person's track; 0 for a network without a vocabulary, which reads no plans."""
-    return len(words) + PACE if words else 0
+def columns(words: Sequence[str], traits: Sequence[str] = ()) -> tuple[str, ...]:
+    """The columns of one person's track; none for a network without a vocabulary, which reads no plans."""
+    return (
+        (*words, *(f"pace {name}" for name in PACE), *(f"trait {name}" for name in traits)) if words else ()
+    )

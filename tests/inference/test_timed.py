@@ -80,5 +80,5 @@ def test_the_plan_changes_the_motion(planning_engine: Engine, prompt: str) -> No
         (*_, silent) = planning_engine.run(request)
     finally:
         model.__dict__["plan_track"] = track
-    assert track.width == len(PLAN_WORDS) + PACE
+    assert track.width == len(PLAN_WORDS) + len(PACE)
     assert not np.allclose(whole.duets[0].positions, silent.duets[0].positions, atol=1e-3)

@@ -35,6 +35,7 @@ from training.prepare import Scenes, load
 from training.trainers.given import known_parts
 from training.trainers.held import Held
 from training.trainers.intergen_data import Batch, Data, Settings, seeded
+from training.trainers.traits import TRAITS
 
 
 def draw_timesteps(size: int, timesteps: int, noisiest: float, generator: torch.Generator) -> Tensor:
@@ -62,6 +63,7 @@ def new_model(settings: Settings, data: Data) -> CompactInterGen:
             role_text=True,
             words=settings.words,
             plan_words=data.plan_words,
+            traits=TRAITS if data.plan_words else (),
             layout=data.scenes.layout,
         )
     )

@@ -35,6 +35,8 @@ from training.trainers.plan_acts import (
     vocabulary,
 )
 from training.trainers.reading import UNKNOWN, CaptionReader
+from training.trainers.traits import TRAITS, traits
+from training.trainers.traits import UNKNOWN as TRAITS_UNKNOWN
 
 
 @dataclass(frozen=True)
@@ -157,8 +159,8 @@ class Batch:
     plan: Tensor
 
 
-MOST_DRAWN = 2 + 3 * 30
-"""Numbers that are drawn for the plan of a scene, which are enough for thirty acts."""
+MOST_DRAWN = 2 + 3 * 30 + 1
+"""Numbers that are drawn for the plan of a scene, which are enough for thirty acts; the last is for the traits."""
 LEAST = 20
 """Frames of a beat that must be left of it, where a scene was cut to ten seconds."""
 
@@ -225,7 +227,8 @@ class Data:
         plans = getattr(settings, "plans", False) and settings.words  # other networks' settings have no words
         self.acts = {row["start"]: acts_of_label(row) for row in self.rows if plans}
         self.plan_words = vocabulary(self.acts.values())
-        self.track = PlanTrack(self.plan_words, scenes.layout)
+        self.traits = traits(scenes, self.acts)
+        self.track = PlanTrack(self.plan_words, scenes.layout, TRAITS)
         self.reader = CaptionReader(scenes.rows, settings.cond_dim)
         self.batches_an_epoch = len(self.rows) // settings.batch
         self._epoch, self._order = -1, torch.empty(0)
@@ -280,6 +283,12 @@ class Data:
         if draw < shares.neither or draw >= 1 - shares.words:
             return []
         return told(self.acts[row["start"]], shares, drawn, before=before, frames=frames)
+
+    def traits_told(self, row: dict[str, Any], draw: float, drawn: float) -> Tensor | None:
+        """The traits of both people, or nothing; ``draw`` is as for :meth:`plan`, ``drawn`` says whether."""
+        if not self.plan_words or draw < self.settings.told.neither or drawn < TRAITS_UNKNOWN:
+            return None
+        return self.traits[row["start"]]
 
     def continued(self, row: dict[str, Any], draw: Sequence[float]) -> tuple[Tensor, int, str] | None:
         """A scene from some time before one of its later beats until that beat's end.
@@ -345,7 +354,7 @@ class Data:
                 one = mirror_control(one, SMPL22.mirror)
                 sentences = [mirror_caption(sentence) for sentence in sentences]
                 plan = [mirrored_act(act) for act in plan]
-            plans.append(self.track(plan, tokens))
+            plans.append(self.track(plan, tokens, self.traits_told(row, draw[1], planned[i][-1])))
             control[i, :, : one.shape[1]] = one
             mask[i, :own] = 1
             frame_mask[i, : layout.num_frames(own)] = 1

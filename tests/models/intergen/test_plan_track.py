@@ -41,7 +41,7 @@ def test_each_word_holds_for_whom_and_when_it_is_true() -> None:
 
 def test_the_pace_is_that_of_the_act_that_began_last() -> None:
     made = track(TimedAct("wave", (0,), 0, 48), TimedAct("push", (0,), 16, 32, speed=2.0))
-    left, done, speed = made[0, :, -PACE:].unbind(1)
+    left, done, speed = made[0, :, -len(PACE) :].unbind(1)
     torch.testing.assert_close(done, torch.tensor([4 / 48, 12 / 48, 4 / 16, 12 / 16, 36 / 48, 44 / 48]))
     torch.testing.assert_close(left, 1 - done)
     torch.testing.assert_close(speed, torch.tensor([0.0, 0, 1, 1, 0, 0]))
@@ -49,7 +49,7 @@ def test_the_pace_is_that_of_the_act_that_began_last() -> None:
 
 
 def test_words_outside_the_vocabulary_and_the_motion_leave_no_trace() -> None:
-    assert not track(TimedAct("juggle", (0,), 0, 48))[..., :-PACE].any()
+    assert not track(TimedAct("juggle", (0,), 0, 48))[..., : -len(PACE)].any()
     assert not track(TimedAct("wave", (0, 1), 48, 90)).any()
     assert PlanTrack((), LAYOUT)([TimedAct("wave", (0,), 0, 8)], 3).shape == (3, 0)
 

@@ -9,7 +9,7 @@ from typing import Any
 import pytest
 import torch
 
-from models.intergen.plan_track import TimedAct
+from models.intergen.plan_track import PACE, TimedAct
 from tests.training.trainers.runs import SETTINGS, begin, prepared, take
 from training import prepare
 from training.corpus.cues import Beat, label
@@ -22,6 +22,7 @@ from training.trainers.plan_acts import (
     told,
     vocabulary,
 )
+from training.trainers.traits import TRAITS
 
 ALL = PlanShares(untimed=0, minor=0, side=0)
 STILL_DRAWS = [0.5] * 20
@@ -100,7 +101,10 @@ def rare_words_count(monkeypatch: pytest.MonkeyPatch) -> None:
 def test_words_plan_or_both_are_told_as_often_as_the_shares_say(scenes: Path, tmp_path: Path) -> None:
     data = begin(scenes, tmp_path, PLANS).data
     assert {"do wave", "do push"} <= set(data.plan_words)
-    told_of = [(batch.read.any(1), batch.plan.flatten(1).any(1)) for batch in map(data.batch, range(60))]
+    acts = [bool(word.startswith("do ")) for word in (*data.plan_words, *PACE, *TRAITS)] * 2
+    told_of = [
+        (batch.read.any(1), batch.plan[..., acts].flatten(1).any(1)) for batch in map(data.batch, range(60))
+    ]
     read, planned = (torch.cat(parts) for parts in zip(*told_of, strict=True))
     assert (read | planned).all()
     for share, chosen in ((0.3, read & ~planned), (0.4, planned & ~read), (0.3, read & planned)):
