@@ -230,7 +230,7 @@ class CompactInterGen(DuetSpace):
         taken = {
             name: tensor for name, tensor in taken.items() if not name.startswith(("touch_reader.", "fast."))
         }
-        for name in {name for name in taken if name.startswith("plan_embed.")} & set(own):
+        for name in {name for name in taken if name.startswith("denoiser.plan_embed.")} & set(own):
             taken[name] = self._columns_of(taken[name], trained.config.plan_columns)
         if any(name not in own or own[name].shape != tensor.shape for name, tensor in taken.items()):
             raise InputError(

@@ -84,7 +84,7 @@ class Settings:
             velocity=300.0,
             foot_contact=300.0,
             bone_length=30.0,
-            distance_map=0.0,
+            distance_map=10.0,
             joint_affinity=1.0,
             relative_orientation=0.02,
             contact=5.0,

@@ -103,3 +103,26 @@ def test_the_vocabulary_is_kept_in_the_config() -> None:
     assert CompactConfig.from_dict({**SIZES, **values}) == config
     assert CompactInterGen(config).plan_track is not None
     assert CompactInterGen(CompactConfig(**SIZES)).plan_track is None
+
+
+def test_weights_grow_into_a_larger_vocabulary_by_the_names_of_the_columns() -> None:
+    known = CompactInterGen(CompactConfig(**SIZES, plan_words=("do push", "do wave")))
+    grown = CompactInterGen(
+        CompactConfig(**SIZES, plan_words=("do hug", "do push", "do wave"), traits=("energy",))
+    )
+    for weight in (known.denoiser.plan_embed.now.weight, known.denoiser.plan_embed.whole.weight):
+        torch.nn.init.normal_(weight)
+    grown.grow_from(known)
+    plan = [TimedAct("push", (0,), 0, 30, patient=1)]
+    told = [
+        model.denoiser.plan_embed(model.plan_track(plan, 6).view(1, 6, 2, -1)) for model in (known, grown)
+    ]
+    torch.testing.assert_close(told[0], told[1])
+
+
+def test_traits_stand_in_columns_of_their_own_for_all_times() -> None:
+    track = PlanTrack(WORDS, LAYOUT, ("energy", "tempo"))
+    made = track([], 3, torch.tensor([[1.0, -0.5], [0.0, 2.0]])).view(3, 2, -1)
+    assert made[..., -2:].tolist() == [[[1.0, -0.5], [0.0, 2.0]]] * 3
+    assert not made[..., :-2].any()
+    assert not track([], 3).any()
