@@ -98,6 +98,7 @@ def directed(
     parts: Sequence[Part],
     *,
     acts: tuple[TimedAct, ...] = (),
+    traits: torch.Tensor | None = None,
     check: bool = True,
 ) -> Directed:
     """A scene of so many frames with what is given of it.
@@ -107,6 +108,7 @@ def directed(
         frames: length at 30 fps.
         parts: what is given.
         acts: what happens when, for a network that reads plans.
+        traits: see :attr:`Scene.traits`.
         check: whether poses and places may be outside the limits; off for what a network made itself.
 
     Raises:
@@ -138,7 +140,7 @@ def directed(
             if part.turned and headings is not None:
                 _hold_hips(known, part.person, at, headings)
     hold = Hold(known, model.layout, model.mean, model.std) if parts else None
-    return Directed(frames, hold, acts, parts=parts)
+    return Directed(frames, hold, acts, traits, parts=parts)
 
 
 def _hold_hips(known: Known, person: int, at: list[int], headings: torch.Tensor) -> None:

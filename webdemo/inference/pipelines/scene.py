@@ -31,6 +31,7 @@ from webdemo.inference.story.plan import Window, window_seed, windows
 from webdemo.inference.story.progress import SceneProgress
 from webdemo.inference.story.request import SceneRequest
 from webdemo.inference.timer import StageTimer
+from webdemo.inference.traits import traits_of
 
 from .scene_finish import finished
 from .scene_floor import plan_note
@@ -173,10 +174,12 @@ class SceneMaker:
         """One window, made now or kept from an earlier run."""
         window = setting.window
         asked = _asked(request, sample, window, setting.frames, setting.plan)
-        key = setting.key(asked, self.pipeline.digest)
+        # By the seed of the whole scene: people stay who they are from beat to beat.
+        traits = traits_of(self.pipeline.model.plan_track, request.seed, sample, {})
+        key = setting.key(asked, self.pipeline.digest, traits)
         if (kept := self.parts.get(key)) is not None:
             return kept
-        given = setting.scene(self.pipeline)
+        given = setting.scene(self.pipeline, traits)
         for event in self.pipeline.run(asked, cancel, timer, passes, given):
             if isinstance(event, Result):
                 made = setting.made(event.duets[0].positions)

@@ -10,6 +10,7 @@ from dataclasses import asdict, dataclass
 
 import numpy as np
 from numpy.typing import NDArray
+from torch import Tensor
 
 from models.intergen.compact import CompactInterGen
 from models.intergen.plan_track import TimedAct
@@ -80,10 +81,10 @@ class Setting:
         frames = max(past + length + tail, round(SECONDS[0] * FPS))
         return cls(window, frames, (*parts, *plan.parts), placement, plan, _acts(request, window))
 
-    def scene(self, pipeline: TwoPersonPipeline[CompactInterGen]) -> Directed:
-        """As the pipeline takes it."""
-        reads = pipeline.model.plan_track is not None
-        return directed(pipeline.model, self.frames, self.parts, acts=self.acts if reads else (), check=False)
+    def scene(self, pipeline: TwoPersonPipeline[CompactInterGen], traits: Tensor | None) -> Directed:
+        """As the pipeline takes it, of people who have these traits."""
+        acts = () if pipeline.model.plan_track is None else self.acts
+        return directed(pipeline.model, self.frames, self.parts, acts=acts, traits=traits, check=False)
 
     def made(self, positions: Array) -> Array:
         """The new frames (2, T, 22, 3) in the scene's world, of the whole window's."""
@@ -91,10 +92,10 @@ class Setting:
         new = positions[:, first : first + self.window.stop - self.window.start]
         return self.placement.to_world(new).astype(np.float32)
 
-    def key(self, asked: GenerateRequest, digest: str) -> str:
+    def key(self, asked: GenerateRequest, digest: str, traits: Tensor | None) -> str:
         """A hash of all that the window is made from."""
-        acts = [asdict(act) for act in self.acts]
-        told = [digest, asked.to_dict(), self.plan.alone, self.frames, self.window.past, acts]
+        acts, moving = [asdict(act) for act in self.acts], [] if traits is None else traits.tolist()
+        told = [digest, asked.to_dict(), self.plan.alone, self.frames, self.window.past, acts, moving]
         found = hashlib.sha256(json.dumps(told).encode())
         for part in self.parts:
             values = part.positions if isinstance(part, KnownFrames) else part.places

@@ -17,6 +17,7 @@ from models.compiled import compile_network
 from models.diffusion import TRAIN_TIMESTEPS, SamplerName, make_scheduler, sample_steps
 from models.diffusion.schedule import Spacing
 from models.intergen.compact import CompactInterGen, DuetSpace, Touch
+from models.intergen.plan_track import PlanTrack
 from models.intergen.released import ReleasedInterGen
 from models.weights_io import WeightsFolder
 from motion import Duet, InputError
@@ -29,6 +30,7 @@ from webdemo.inference.requests import GenerateRequest, ReactRequest
 from webdemo.inference.results import Progress, Result
 from webdemo.inference.scenes import Finish, Scene, scene_of
 from webdemo.inference.timer import StageTimer
+from webdemo.inference.traits import traits_of
 
 Network = TypeVar("Network", CompactInterGen, CompactBiGraphDiff, ReleasedInterGen)
 
@@ -208,7 +210,7 @@ class TwoPersonPipeline(ABC, Generic[Network]):
             touches=(conditioning.touch,) * request.samples,
         )
         known = given.features if given is not None and self.model.reads_known else None
-        steps = _Steps(passes, damping, condition, conditioning.guidance, given, known, self._plan(scene))
+        steps = _Steps(passes, damping, condition, conditioning.guidance, given, known, self._plan(request, scene))
         cancel.raise_if_cancelled()
         sample = steps.uncorrected = noise
         for step in sample_steps(steps.predict, noise, scheduler, correct=steps.correct):
@@ -228,10 +230,15 @@ class TwoPersonPipeline(ABC, Generic[Network]):
             notes=conditioning.notes,
         )
 
-    def _plan(self, scene: Scene) -> Tensor | None:
-        """The plan of a scene (1, tokens, 2·P), for a network that reads plans."""
-        track = getattr(self.model, "plan_track", None) if scene.acts else None
-        return None if track is None else track(scene.acts, self.model.layout.num_tokens(scene.frames))[None]
+    def _plan(self, request: GenerateRequest | ReactRequest, scene: Scene) -> Tensor | None:
+        """The plan of each sample (samples, tokens, 2·P), for a network that reads plans and has something to read."""
+        track: PlanTrack | None = getattr(self.model, "plan_track", None)
+        if track is None or not (scene.acts or track.traits):
+            return None
+        tokens = self.model.layout.num_tokens(scene.frames)
+        drawn = (traits_of(track, request.seed, sample, {}) for sample in range(request.samples))
+        each = (traits if scene.traits is None else scene.traits for traits in drawn)
+        return torch.stack([track(scene.acts, tokens, traits) for traits in each])
 
     def _finished(
         self, request: GenerateRequest | ReactRequest, scene: Scene, uncorrected: Tensor, sample: Tensor
