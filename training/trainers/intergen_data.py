@@ -284,11 +284,9 @@ class Data:
             return []
         return told(self.acts[row["start"]], shares, drawn, before=before, frames=frames)
 
-    def traits_told(self, row: dict[str, Any], draw: float, drawn: float) -> Tensor | None:
-        """The traits of both people, or nothing; ``draw`` is as for :meth:`plan`, ``drawn`` says whether."""
-        if not self.plan_words or draw < self.settings.told.neither or drawn < TRAITS_UNKNOWN:
-            return None
-        return self.traits[row["start"]]
+    def traits_told(self, row: dict[str, Any], drawn: float) -> Tensor | None:
+        """The traits of both people, or nothing, by a number in [0, 1); with words and plan or without either."""
+        return self.traits[row["start"]] if self.plan_words and drawn >= TRAITS_UNKNOWN else None
 
     def continued(self, row: dict[str, Any], draw: Sequence[float]) -> tuple[Tensor, int, str] | None:
         """A scene from some time before one of its later beats until that beat's end.
@@ -354,7 +352,7 @@ class Data:
                 one = mirror_control(one, SMPL22.mirror)
                 sentences = [mirror_caption(sentence) for sentence in sentences]
                 plan = [mirrored_act(act) for act in plan]
-            plans.append(self.track(plan, tokens, self.traits_told(row, draw[1], planned[i][-1])))
+            plans.append(self.track(plan, tokens, self.traits_told(row, planned[i][-1])))
             control[i, :, : one.shape[1]] = one
             mask[i, :own] = 1
             frame_mask[i, : layout.num_frames(own)] = 1

@@ -210,7 +210,9 @@ class TwoPersonPipeline(ABC, Generic[Network]):
             touches=(conditioning.touch,) * request.samples,
         )
         known = given.features if given is not None and self.model.reads_known else None
-        steps = _Steps(passes, damping, condition, conditioning.guidance, given, known, self._plan(request, scene))
+        steps = _Steps(
+            passes, damping, condition, conditioning.guidance, given, known, self._plan(request, scene)
+        )
         cancel.raise_if_cancelled()
         sample = steps.uncorrected = noise
         for step in sample_steps(steps.predict, noise, scheduler, correct=steps.correct):
