@@ -1,6 +1,6 @@
 """The diffusion that every network here trains and samples with: schedule, guidance and sampling loop."""
 
-from .guidance import Guided, classifier_free, guide
+from .guidance import Guided, Term, classifier_free, guide, terms, weighted
 from .sampling import SamplingStep, denoise, sample_steps
 from .schedule import (
     TRAIN_TIMESTEPS,
@@ -19,11 +19,14 @@ __all__ = [
     "SamplerError",
     "SamplerName",
     "SamplingStep",
+    "Term",
     "classifier_free",
     "cosine_betas",
     "denoise",
     "guide",
     "make_scheduler",
     "sample_steps",
+    "terms",
     "top_timesteps",
+    "weighted",
 ]

@@ -157,6 +157,7 @@ class CompactInterGen(DuetSpace):
                 sizes,
                 KNOWN_FEATURES * config.layout.knots_per_token,
                 plan_features=len(config.plan_columns),
+                traits=len(config.traits),
             )
             if config.words
             else InterGenDenoiser(sizes)

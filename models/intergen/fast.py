@@ -53,6 +53,7 @@ class FastChange(nn.Module):
             denoiser.config,
             denoiser.known_embed.in_features,
             plan_features=denoiser.plan_features,
+            traits=denoiser.traits,
             guidance_input=True,
         )
         changed.load_state_dict(self.tensors(denoiser))

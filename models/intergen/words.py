@@ -109,6 +109,7 @@ class WordDenoiser(InterGenDenoiser):
         known_features: numbers a person and token by which the network sees what is known.
         plan_features: numbers a person and token by which it sees the plan of acts
             (:mod:`models.intergen.plan_track`); 0 for a network that reads no plans.
+        traits: how many of these, the last ones, are traits of the person and say nothing of acts.
         guidance_input: takes the scale of the guidance as an input, so that one pass gives what two did
             (Meng et al. 2023, "On Distillation of Guided Diffusion Models").
     """
@@ -119,6 +120,7 @@ class WordDenoiser(InterGenDenoiser):
         known_features: int,
         *,
         plan_features: int = 0,
+        traits: int = 0,
         guidance_input: bool = False,
     ) -> None:
         super().__init__(config)
@@ -130,6 +132,7 @@ class WordDenoiser(InterGenDenoiser):
         nn.init.zeros_(self.person_text.weight)
         nn.init.zeros_(self.known_embed.weight)
         self.plan_embed = PlanEmbedding(plan_features, d) if plan_features else None
+        self.traits = traits
         self.embed_guidance = TimestepEmbedding(d) if guidance_input else None
         if self.embed_guidance is not None:
             self.embed_guidance.start_at_zero()
@@ -241,6 +244,12 @@ class WordDenoiser(InterGenDenoiser):
             text = text.gather(2, first[None, :, :, None].expand(2, -1, -1, text.shape[-1]))
             real = real.gather(1, first)
         return text.flatten(0, 1), real.repeat(2, 1)
+
+    def untold(self, plan: Tensor) -> Tensor:
+        """See :class:`models.diffusion.Guided`; traits stay, so that guidance makes no more of them."""
+        people = plan.unflatten(-1, (2, -1))
+        acts = people.shape[-1] - self.traits
+        return torch.cat([torch.zeros_like(people[..., :acts]), people[..., acts:]], -1).flatten(-2)
 
     @property
     def takes_scale(self) -> bool:

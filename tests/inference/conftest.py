@@ -17,7 +17,9 @@ CAPTIONS = ("Two people shake hands.", "One person waves.", "They walk away from
 PLAN_WORDS = ("do shake-hands", "do walk-away", "do wave", "side left", "undergo punch")
 
 
-def tiny_weights(folder: Path, *, words: bool, plan_words: tuple[str, ...] = ()) -> Path:
+def tiny_weights(
+    folder: Path, *, words: bool, plan_words: tuple[str, ...] = (), traits: tuple[str, ...] = ()
+) -> Path:
     torch.manual_seed(0)
     sizes = {
         "latent_dim": 32,
@@ -27,7 +29,7 @@ def tiny_weights(folder: Path, *, words: bool, plan_words: tuple[str, ...] = ())
         "cond_dim": 64,
         "text_layers": 1,
     }
-    model = CompactInterGen(CompactConfig(**sizes, words=words, plan_words=plan_words))
+    model = CompactInterGen(CompactConfig(**sizes, words=words, plan_words=plan_words, traits=traits))
     for parameter in model.parameters():  # the zero-initialised layers would hide what the input does
         torch.nn.init.normal_(parameter, std=0.05)
     rest = torch.tensor(SMPL22.rest_positions()).float() + torch.tensor([0.0, 0.98, 0.0])
@@ -53,8 +55,9 @@ def reading_engine(tmp_path_factory: pytest.TempPathFactory) -> Engine:
 
 @pytest.fixture(scope="session")
 def planning_engine(tmp_path_factory: pytest.TempPathFactory) -> Engine:
-    """With a network that reads plans of acts, too."""
-    return Engine(tiny_weights(tmp_path_factory.mktemp("planning"), words=True, plan_words=PLAN_WORDS))
+    """With a network that reads plans of acts, too, and is told traits."""
+    folder = tmp_path_factory.mktemp("planning")
+    return Engine(tiny_weights(folder, words=True, plan_words=PLAN_WORDS, traits=("energy", "tempo")))
 
 
 @pytest.fixture(params=["engine", "reading_engine", "planning_engine"])

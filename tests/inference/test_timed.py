@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from contextlib import contextmanager
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -11,11 +12,17 @@ import torch
 
 from acts import read
 from models.intergen.plan_track import PACE
+from motion import InputError
 from tests.inference.conftest import PLAN_WORDS
-from webdemo.inference import Engine, GenerateRequest
+from training.trainers.traits import TRAITS
+from webdemo.inference import Engine, GenerateRequest, methods
+from webdemo.inference.batch import run_batch
+from webdemo.inference.cancel import CancelToken
+from webdemo.inference.results import Progress
 from webdemo.inference.story.beats import Beat
 from webdemo.inference.story.request import SceneRequest
 from webdemo.inference.timed import acts_of, timed
+from webdemo.inference.traits import SPREAD
 
 
 def test_acts_that_follow_each_other_share_the_time() -> None:
@@ -56,7 +63,8 @@ def test_a_sentence_is_told_as_its_acts_and_guided_by_them(planning_engine: Engi
     assert len(seen) == 2
     for conditional, unconditional in (plan.chunk(2) for plan in seen):
         assert (conditional[0, :3, :, shake] == 1).all()
-        assert not unconditional.any()
+        assert not unconditional[..., : -len(TRAITS)].any()
+        assert torch.equal(unconditional[..., -len(TRAITS) :], conditional[..., -len(TRAITS) :])
 
 
 def test_a_window_is_told_what_went_before_it(planning_engine: Engine) -> None:
@@ -80,5 +88,83 @@ def test_the_plan_changes_the_motion(planning_engine: Engine, prompt: str) -> No
         (*_, silent) = planning_engine.run(request)
     finally:
         model.__dict__["plan_track"] = track
-    assert track.width == len(PLAN_WORDS) + len(PACE)
+    assert track.width == len(PLAN_WORDS) + len(PACE) + len(TRAITS)
     assert not np.allclose(whole.duets[0].positions, silent.duets[0].positions, atol=1e-3)
+
+
+@pytest.fixture
+def takes_plans(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Requests for InterGen may set what only a network that reads plans takes."""
+    method = methods.method("intergen")
+    known = {**methods._registered, "intergen": replace(method, takes=method.takes | {"plan"})}
+    monkeypatch.setattr(methods, "_registered", known)
+
+
+@pytest.mark.parametrize("setting", ["energy", "tempo", "plan_guidance"])
+def test_a_network_that_reads_no_plans_refuses_what_it_cannot_take(setting: str) -> None:
+    with pytest.raises(InputError, match=f"leave {setting.replace('_', ' ')} out"):
+        GenerateRequest(prompt="They wave.", model="bigraphdiff", **{setting: 1.0})
+
+
+def test_settings_of_few_networks_are_kept_where_they_are_set(takes_plans: None) -> None:
+    told = GenerateRequest(prompt="They wave.", energy=1.5, plan_guidance=0.0).to_dict()
+    assert (told["energy"], told["plan_guidance"]) == (1.5, 0.0) and "tempo" not in told
+    scene = SceneRequest(beats=(Beat("They wave."),), tempo=-1.0)
+    assert SceneRequest.from_dict(scene.to_dict()).tempo == -1.0
+    with pytest.raises(InputError, match="Energy must be from -2 to 2"):
+        GenerateRequest(prompt="They wave.", energy=3.0)
+
+
+def told_traits(engine: Engine, request: GenerateRequest | SceneRequest) -> list[torch.Tensor]:
+    """The traits (2, traits) in each call of the network, of its first motion."""
+    with told(engine) as seen:
+        list(engine.run(request))
+    return [plan[0, 0, :, -len(TRAITS) :] for plan in seen]
+
+
+def test_people_are_drawn_by_the_seed_around_what_is_asked(
+    planning_engine: Engine, takes_plans: None
+) -> None:
+    asked = {"prompt": "They dance.", "seconds": 1.0, "steps": 1, "planned": False}
+    draws = [
+        told_traits(planning_engine, GenerateRequest(seed=seed, energy=1.0, **asked))[0] for seed in range(40)
+    ]
+    drawn = torch.stack(draws)
+    assert drawn.mean((0, 1)).tolist() == pytest.approx([1.0, 0.0], abs=0.25)
+    assert drawn.std((0, 1)).tolist() == pytest.approx([SPREAD] * 2, abs=0.15)
+    again = told_traits(planning_engine, GenerateRequest(seed=7, energy=1.0, **asked))[0]
+    assert torch.equal(again, drawn[7])
+
+
+def test_people_stay_who_they_are_from_beat_to_beat(planning_engine: Engine) -> None:
+    beats = (Beat("They shake hands.", seconds=2.0), Beat("One person waves.", seconds=2.0, seed=5))
+    (first, second) = told_traits(planning_engine, SceneRequest(beats=beats, steps=1, seed=11))
+    assert first.any() and torch.equal(first, second)
+
+
+def test_the_plan_has_a_guidance_of_its_own(planning_engine: Engine, takes_plans: None) -> None:
+    asked = {"prompt": "They shake hands.", "seconds": 1.0, "steps": 2, "planned": False, "guidance": 3.0}
+    results = []
+    for scale in (None, 3.0, 1.0):
+        (*_, result) = planning_engine.run(GenerateRequest(plan_guidance=scale, **asked))
+        results.append(result.duets[0].positions)
+    np.testing.assert_array_equal(results[0], results[1])
+    assert not np.allclose(results[0], results[2], atol=1e-3)
+
+
+def test_requests_that_share_a_pass_keep_their_plans_and_scales(
+    planning_engine: Engine, takes_plans: None
+) -> None:
+    asked = {"seconds": 1.0, "steps": 2, "planned": False}
+    wanted = [
+        GenerateRequest(prompt="They shake hands.", plan_guidance=1.5, **asked),
+        GenerateRequest(prompt="One person waves.", seed=3, tempo=1.0, **asked),
+    ]
+    found = {
+        i: event
+        for i, event in run_batch(planning_engine, [(each, CancelToken()) for each in wanted])
+        if not isinstance(event, Progress)
+    }
+    for i, request in enumerate(wanted):
+        (*_, alone) = planning_engine.run(request)
+        np.testing.assert_allclose(found[i].duets[0].positions, alone.duets[0].positions, atol=2e-4)

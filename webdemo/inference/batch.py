@@ -18,7 +18,7 @@ import torch
 from torch import Tensor
 from torch.nn.functional import pad
 
-from models.diffusion import guide
+from models.diffusion import Term, terms, weighted
 from models.intergen import InterGenDenoiser
 from models.intergen.words import join_conditions
 
@@ -90,9 +90,10 @@ class SharedPasses:
         plan: Tensor | None = None,
         *,
         scale: float,
+        plan_scale: float | None = None,
     ) -> Tensor:
         """As the denoiser's own ``guided``, together with the other lanes."""
-        return self._meeting.predict(self._lane, _Question(x, t, cond, mask, scale, known, plan))
+        return self._meeting.predict(self._lane, _Question(x, t, cond, mask, scale, known, plan, plan_scale))
 
     def correct(self, damping: Damping, x0: Tensor, timestep: int) -> Tensor:
         """A prediction corrected by its damping, together with the other lanes."""
@@ -110,10 +111,17 @@ class _Question:
     scale: float
     known: Tensor | None = None
     plan: Tensor | None = None
+    plan_scale: float | None = None
 
-    def untold(self) -> _Question:
-        """The same without words and plan."""
-        return replace(self, cond=torch.zeros_like(self.cond), plan=None)
+    @property
+    def terms(self) -> list[Term]:
+        """The predictions whose sum is the answer."""
+        return terms(self.scale, None if self.plan is None else self.plan_scale)
+
+    def told(self, term: Term, denoiser: InterGenDenoiser) -> _Question:
+        """The question of one of its terms."""
+        plan = self.plan if self.plan is None or term.plan else denoiser.untold(self.plan)
+        return replace(self, cond=self.cond if term.words else torch.zeros_like(self.cond), plan=plan)
 
 
 @dataclass(frozen=True)
@@ -204,15 +212,14 @@ def correct_all(corrections: Sequence[_Correction]) -> list[Tensor]:
 
 
 def answer_together(denoiser: InterGenDenoiser, questions: Sequence[_Question]) -> list[Tensor]:
-    """The guided predictions for all questions; one pass computes both halves of the guidance of all of them."""
+    """The guided predictions for all questions; one pass computes all terms of all guided sums."""
     if len(questions) == 1:
         q = questions[0]
         seen = {name: value for name in _SHOWN if (value := getattr(q, name)) is not None}
-        return [denoiser.guided(q.x, q.t, q.cond, q.mask, scale=q.scale, **seen)]
+        return [denoiser.guided(q.x, q.t, q.cond, q.mask, scale=q.scale, plan_scale=q.plan_scale, **seen)]
     length = max(q.x.shape[1] for q in questions)
     padded = any(q.x.shape[1] < length or q.mask is not None for q in questions)
-    guided = [q for q in questions if q.scale != 1]
-    rows = [*questions, *(q.untold() for q in guided)]
+    rows = [q.told(term, denoiser) for q in questions for term in q.terms]
     out = denoiser(
         torch.cat([pad(q.x, (0, 0, 0, length - q.x.shape[1])) for q in rows]),
         torch.cat([q.t for q in rows]),
@@ -221,12 +228,7 @@ def answer_together(denoiser: InterGenDenoiser, questions: Sequence[_Question]) 
         **{name: value for name in _SHOWN if (value := _shown(rows, name, length)) is not None},
     )
     parts = iter(out.split([len(q.x) for q in rows]))
-    conditional = [next(parts)[:, : q.x.shape[1]] for q in questions]
-    unconditional = {id(q): next(parts)[:, : q.x.shape[1]] for q in guided}
-    return [
-        c if q.scale == 1 else guide(c, unconditional[id(q)], q.scale)
-        for q, c in zip(questions, conditional, strict=True)
-    ]
+    return [weighted(q.terms, [next(parts)[:, : q.x.shape[1]] for _ in q.terms]) for q in questions]
 
 
 _SHOWN = ("known", "plan")

@@ -175,7 +175,7 @@ class SceneMaker:
         window = setting.window
         asked = _asked(request, sample, window, setting.frames, setting.plan)
         # By the seed of the whole scene: people stay who they are from beat to beat.
-        traits = traits_of(self.pipeline.model.plan_track, request.seed, sample, {})
+        traits = traits_of(self.pipeline.model.plan_track, request.seed, sample, request.traits)
         key = setting.key(asked, self.pipeline.digest, traits)
         if (kept := self.parts.get(key)) is not None:
             return kept

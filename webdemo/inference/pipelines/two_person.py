@@ -65,6 +65,7 @@ class Passes(Protocol):
         plan: Tensor | None = None,
         *,
         scale: float,
+        plan_scale: float | None = None,
     ) -> Tensor:
         """The guided prediction of x0, as the denoiser's own ``guided``."""
         ...
@@ -113,6 +114,7 @@ class _Steps:
             section 5.4).
         known: the same as the network is shown it, if it reads it.
         plan: the plan of acts, if the network reads plans.
+        plan_scale: scale of the guidance by it; by default the condition's.
     """
 
     uncorrected: Tensor
@@ -127,13 +129,18 @@ class _Steps:
         given: Given | None,
         known: Tensor | None,
         plan: Tensor | None,
+        plan_scale: float | None,
     ) -> None:
         self.passes, self.damping = passes, damping
         self.condition, self.guidance = condition, guidance
         self.given = given or _as_is
         self.bend = given.bend if given else _as_is
-        shown = {"known": known, "plan": plan}
-        self.seen = {name: value for name, value in shown.items() if value is not None}
+        seen: dict[str, Any] = {
+            "known": known,
+            "plan": plan,
+            "plan_scale": None if plan is None else plan_scale,
+        }
+        self.seen = {name: value for name, value in seen.items() if value is not None}
 
     def predict(self, x: Tensor, t: Tensor) -> Tensor:
         """The guided prediction of x0 from xt (samples, tokens, features)."""
@@ -210,8 +217,9 @@ class TwoPersonPipeline(ABC, Generic[Network]):
             touches=(conditioning.touch,) * request.samples,
         )
         known = given.features if given is not None and self.model.reads_known else None
+        plan = self._plan(request, scene)
         steps = _Steps(
-            passes, damping, condition, conditioning.guidance, given, known, self._plan(request, scene)
+            passes, damping, condition, conditioning.guidance, given, known, plan, request.plan_guidance
         )
         cancel.raise_if_cancelled()
         sample = steps.uncorrected = noise
@@ -238,7 +246,7 @@ class TwoPersonPipeline(ABC, Generic[Network]):
         if track is None or not (scene.acts or track.traits):
             return None
         tokens = self.model.layout.num_tokens(scene.frames)
-        drawn = (traits_of(track, request.seed, sample, {}) for sample in range(request.samples))
+        drawn = (traits_of(track, request.seed, sample, request.traits) for sample in range(request.samples))
         each = (traits if scene.traits is None else scene.traits for traits in drawn)
         return torch.stack([track(scene.acts, tokens, traits) for traits in each])
 

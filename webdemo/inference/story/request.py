@@ -223,8 +223,6 @@ class SceneRequest(SamplingRequest):
 
     def to_dict(self) -> dict[str, Any]:
         """All fields; of a given motion the part that is kept, by its SHA-256."""
-        own = {f.name for f in fields(SceneRequest)} - {f.name for f in fields(SamplingRequest)}
-        plain = {f.name: getattr(self, f.name) for f in fields(self) if f.name not in own}
         written = {
             "kind": "scene",
             "beats": [beat.to_dict() for beat in self.beats],
@@ -243,7 +241,7 @@ class SceneRequest(SamplingRequest):
                 ).hexdigest(),
             }
             written |= {"start": self.start, "end": self.end}
-        return written | plain
+        return written | self.sampling
 
     def kept(self, motion: Duet) -> tuple[np.ndarray, np.ndarray]:
         """The parts of a motion (2, T, 22, 3) before and after what is made."""
