@@ -13,7 +13,6 @@ from acts import read
 from acts.shapes import Shape
 from acts.things import Does
 from models.weights_io import WeightsFolder
-from training.trainers.intergen_data import Settings
 from webdemo.ui.text.examples import EXAMPLES
 
 ROOT = Path(__file__).resolve().parents[1]
@@ -151,10 +150,6 @@ def test_acts_gestures_classes_and_losses_are_counted() -> None:
     classes = WeightsFolder(ROOT / "models/weights/bigraphdiff").meta["model"]["labels"]
     for page in ("README.md", "models/weights/bigraphdiff/CARD.md"):
         assert f"{len(classes)} classes" in (ROOT / page).read_text()
-    weightless = (
-        "distance-map loss (eq. 12, weight 0)" in (ROOT / "models/weights/intergen/CARD.md").read_text()
-    )
-    assert weightless == (Settings().weights.distance_map == 0)
 
 
 def test_the_size_of_a_clone_is_right() -> None:

@@ -92,7 +92,7 @@ class SamplingRequest:
 
     @property
     def traits(self) -> dict[str, float]:
-        """What is asked of how people move."""
+        """The traits that are asked for."""
         return {"energy": self.energy, "tempo": self.tempo}
 
     @property

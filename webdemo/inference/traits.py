@@ -1,4 +1,4 @@
-"""How people move whatever they do: the traits that a network can be told, drawn for each person from the seed.
+"""Traits of how people move whatever they do, as a network can be told them: drawn for each person from the seed.
 
 A network that was trained with traits (:mod:`training.trainers.traits`) knows them in standard deviations from what is
 usual for the same acts. Two people in a room are never both usual, and two seeds are other people: so what is asked for

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import time
 from abc import ABC, abstractmethod
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from typing import Any, Generic, Protocol, TypeVar, cast
 
@@ -112,9 +112,7 @@ class _Steps:
         guidance: scale of classifier-free guidance.
         given: the part of the motion that is known; it is clean at every timestep, as in training (InterGen,
             section 5.4).
-        known: the same as the network is shown it, if it reads it.
-        plan: the plan of acts, if the network reads plans.
-        plan_scale: scale of the guidance by it; by default the condition's.
+        seen: what else the network is shown at every step, by the names of its arguments.
     """
 
     uncorrected: Tensor
@@ -127,20 +125,13 @@ class _Steps:
         condition: Tensor,
         guidance: float,
         given: Given | None,
-        known: Tensor | None,
-        plan: Tensor | None,
-        plan_scale: float | None,
+        seen: Mapping[str, Any],
     ) -> None:
         self.passes, self.damping = passes, damping
         self.condition, self.guidance = condition, guidance
         self.given = given or _as_is
         self.bend = given.bend if given else _as_is
-        seen: dict[str, Any] = {
-            "known": known,
-            "plan": plan,
-            "plan_scale": None if plan is None else plan_scale,
-        }
-        self.seen = {name: value for name, value in seen.items() if value is not None}
+        self.seen = seen
 
     def predict(self, x: Tensor, t: Tensor) -> Tensor:
         """The guided prediction of x0 from xt (samples, tokens, features)."""
@@ -216,11 +207,8 @@ class TwoPersonPipeline(ABC, Generic[Network]):
             frozen=None if given is None else given.frozen[0],
             touches=(conditioning.touch,) * request.samples,
         )
-        known = given.features if given is not None and self.model.reads_known else None
-        plan = self._plan(request, scene)
-        steps = _Steps(
-            passes, damping, condition, conditioning.guidance, given, known, plan, request.plan_guidance
-        )
+        seen = self._seen(request, scene)
+        steps = _Steps(passes, damping, condition, conditioning.guidance, given, seen)
         cancel.raise_if_cancelled()
         sample = steps.uncorrected = noise
         for step in sample_steps(steps.predict, noise, scheduler, correct=steps.correct):
@@ -240,15 +228,20 @@ class TwoPersonPipeline(ABC, Generic[Network]):
             notes=conditioning.notes,
         )
 
-    def _plan(self, request: GenerateRequest | ReactRequest, scene: Scene) -> Tensor | None:
-        """The plan of each sample (samples, tokens, 2·P), for a network that reads plans and has something to read."""
+    def _seen(self, request: GenerateRequest | ReactRequest, scene: Scene) -> dict[str, Any]:
+        """Arguments of the network's ``guided``: what is known, for one that reads it, and each sample's plan."""
+        seen: dict[str, Any] = {}
+        if scene.given is not None and self.model.reads_known:
+            seen["known"] = scene.given.features
         track: PlanTrack | None = getattr(self.model, "plan_track", None)
-        if track is None or not (scene.acts or track.traits):
-            return None
-        tokens = self.model.layout.num_tokens(scene.frames)
-        drawn = (traits_of(track, request.seed, sample, request.traits) for sample in range(request.samples))
-        each = (traits if scene.traits is None else scene.traits for traits in drawn)
-        return torch.stack([track(scene.acts, tokens, traits) for traits in each])
+        if track is not None and (scene.acts or track.traits):
+            tokens = self.model.layout.num_tokens(scene.frames)
+            drawn = [traits_of(track, request.seed, i, request.traits) for i in range(request.samples)]
+            each = drawn if scene.traits is None else [scene.traits] * request.samples
+            seen["plan"] = torch.stack([track(scene.acts, tokens, traits) for traits in each])
+            if request.plan_guidance is not None:
+                seen["plan_scale"] = request.plan_guidance
+        return seen
 
     def _finished(
         self, request: GenerateRequest | ReactRequest, scene: Scene, uncorrected: Tensor, sample: Tensor
