@@ -3,6 +3,7 @@
 import { FilmError, hold, seek, times } from "./film.js";
 import { distinct, hips, torso } from "./geometry.js";
 import { Landmarks } from "./landmarks.js";
+import { say } from "../texts.js";
 
 const GLANCES = 5; // pictures in which people are counted first
 const MOST = 3; // people that are looked for: two can be used
@@ -57,8 +58,8 @@ async function lookAround(video, detector, when, stopped) {
 function countOf(glances) {
   const counts = glances.map((people) => people.length).sort();
   if (counts.at(-1) === 0)
-    throw new FilmError("Nobody was found in the video: film one or two people from head to feet, in good light.");
-  if (counts[1] > 2) throw new FilmError("There are three people or more in the video: film one or two.");
+    throw new FilmError(say("camera.nobody"));
+  if (counts[1] > 2) throw new FilmError(say("camera.too_many"));
   return Math.min(Math.max(1, counts[Math.floor(GLANCES / 2)]), 2);
 }
 

@@ -7,9 +7,11 @@ import { close, FilmError, LONGEST, openFilm } from "./film.js";
 import { keepLens, lensOf } from "./lens.js";
 import { takesTurns, takeTurn } from "./turns.js";
 import { closeWebcam, countDown, openWebcam, record } from "./webcam.js";
+import { say, translate } from "../texts.js";
 
 /** `element` holds camera.html; `send(text)` hands landmarks to the page's Python side. */
 export async function mount(element, send, { folder }) {
+  translate(element);
   new Panel(element.querySelector(".pdcam"), send, detectorsOf(folder));
   const address = new URL("camera.css", import.meta.url).href;
   if (document.querySelector(`link[href="${address}"]`)) return;
@@ -40,7 +42,7 @@ class Panel {
     this.begin.onclick = () => this.attempt(() => this.film(), false);
     this.cancel.onclick = () => {
       this.rest();
-      this.say("Cancelled.");
+      this.say(say("camera.cancelled"));
     };
     this.again.onclick = () => this.hand();
     this.of("video");
@@ -100,19 +102,19 @@ class Panel {
       if (run !== this.run) return;
       if (!(error instanceof FilmError)) console.error(error);
       this.rest();
-      this.say(error instanceof FilmError ? error.message : "The video could not be read here: reload the page and try again.", "error");
+      this.say(error instanceof FilmError ? error.message : say("camera.unread"), "error");
     }
   }
 
   async prepare() {
-    this.say("Opening the camera …");
+    this.say(say("camera.opening"));
     this.of("webcam");
     const run = this.run;
     await openWebcam(this.video);
     if (run !== this.run) return closeWebcam(this.video);
     this.strip.hidden = true;
     this.show(true);
-    this.say(`Step back until you are seen from head to feet. You have three seconds after the start; ${LONGEST} s at most.`);
+    this.say(say("camera.step_back", { most: LONGEST }));
     this.state("ready");
   }
 
@@ -123,7 +125,7 @@ class Panel {
     if (!(await countDown((left) => (this.count.textContent = left || ""), stopped))) return;
     const { film, stop } = record(this.video.srcObject);
     this.state("recording");
-    this.say("Recording …");
+    this.say(say("camera.recording"));
     this.stop.onclick = stop;
     const file = await film;
     if (stopped()) return;
@@ -134,14 +136,14 @@ class Panel {
   async read(file, name) {
     const run = this.run;
     const stopped = () => run !== this.run;
-    this.say("Opening the video …");
+    this.say(say("camera.opening_video"));
     this.state("reading");
     this.progress.value = 0;
     await openFilm(this.video, file);
     if (stopped()) return;
     this.show(false);
     this.strip.hidden = false;
-    this.say("Looking for people …");
+    this.say(say("camera.looking"));
     const wanted = Number(this.people.value);
     const began = performance.now();
     const landmarks = await analyse(this.video, this.detectors, {
@@ -152,7 +154,7 @@ class Panel {
         drawPeople(this.drawing, people, this.video.videoWidth, this.video.videoHeight);
         drawSureness(this.strip, done, all, people, count);
         const left = ((performance.now() - began) / done) * (all - done) / 1000;
-        this.say(`Reading ${count === 2 ? "two people" : "one person"}: picture ${done} of ${all}${left > 3 ? `, about ${Math.ceil(left / 5) * 5} s left` : ""}`);
+        this.say(say(count === 2 ? "camera.reading_two" : "camera.reading_one", { done, all }) + (left > 3 ? say("camera.left", { seconds: Math.ceil(left / 5) * 5 }) : ""));
       },
     });
     if (!landmarks) return;
@@ -166,7 +168,7 @@ class Panel {
   /** Sends what was found, with what is known of the camera. */
   hand() {
     const value = (input) => (input.value === "" ? null : Number(input.value));
-    this.say("The points are with the server: see the motion beside this.");
+    this.say(say("camera.sent"));
     this.send(this.landmarks.pack({ name: this.name, tilt: value(this.tilt), lens: value(this.lens) }));
   }
 

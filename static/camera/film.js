@@ -1,5 +1,7 @@
 // A film that somebody chose or recorded, as a video element that can be stepped through.
 
+import { say } from "../texts.js";
+
 export const LONGEST = 60; // seconds
 const SHORTEST = 0.5;
 const LARGEST = 1e9; // bytes
@@ -11,26 +13,26 @@ export class FilmError extends Error {}
 
 /** Opens a file in a video element; throws a FilmError for what is no film or cannot be shown here. */
 export async function openFilm(video, file) {
-  if (file.type.startsWith("image/")) throw new FilmError("This is a photograph: choose a video of a second or more.");
+  if (file.type.startsWith("image/")) throw new FilmError(say("camera.photo"));
   if (file.size > LARGEST)
-    throw new FilmError(`The video has ${(file.size / 1e9).toFixed(1)} GB, more than the 1 GB allowed: cut it to ${LONGEST} s.`);
+    throw new FilmError(say("camera.too_big", { size: (file.size / 1e9).toFixed(1), most: LONGEST }));
   const address = URL.createObjectURL(file);
   video.src = address;
   video.load();
   const opened = await first(video, { loadeddata: true, error: false }, 20000);
   if (!opened || !video.videoWidth) {
     close(video);
-    throw new FilmError("This browser cannot show the video (HEVC, for example): save it as MP4 with H.264 and choose it again.");
+    throw new FilmError(say("camera.codec"));
   }
   if (!Number.isFinite(video.duration)) await findEnd(video);
   const { duration } = video;
   if (!(duration >= SHORTEST)) {
     close(video);
-    throw new FilmError("The video is a single picture or very short: choose one of a second or more.");
+    throw new FilmError(say("camera.short"));
   }
   if (duration > LONGEST + 0.5) {
     close(video);
-    throw new FilmError(`The video lasts ${Math.round(duration)} s: cut it to ${LONGEST} s or less.`);
+    throw new FilmError(say("camera.long", { seconds: Math.round(duration), most: LONGEST }));
   }
 }
 
@@ -53,7 +55,7 @@ export async function seek(video, time) {
   video.currentTime = Math.min(time, video.duration - 1e-3);
   let shown = await there;
   if (shown && video.readyState < 2) shown = await first(video, { canplay: true, error: false }, PATIENCE);
-  if (!shown) throw new FilmError("The video cannot be read to its end: save it anew as MP4 and choose it again.");
+  if (!shown) throw new FilmError(say("camera.broken"));
 }
 
 /** Sees to it that the picture at a time is still shown: a browser may let go of one that is looked at for long. */

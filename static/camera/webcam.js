@@ -1,6 +1,7 @@
 // The webcam: its picture, and a recording of it.
 
 import { FilmError, LONGEST } from "./film.js";
+import { say } from "../texts.js";
 
 const KINDS = ["video/webm;codecs=vp8", "video/webm", "video/mp4"];
 const COUNTDOWN = 3; // seconds
@@ -8,7 +9,7 @@ const COUNTDOWN = 3; // seconds
 /** Opens the webcam in a video element; throws a FilmError where there is none or it may not be used. */
 export async function openWebcam(video) {
   if (!navigator.mediaDevices?.getUserMedia)
-    throw new FilmError("This browser shows no camera to this page: open the page by https or on this machine.");
+    throw new FilmError(say("camera.insecure"));
   let stream;
   try {
     stream = await navigator.mediaDevices.getUserMedia({
@@ -16,9 +17,9 @@ export async function openWebcam(video) {
       video: { width: { ideal: 1280 }, height: { ideal: 720 }, frameRate: { ideal: 30 } },
     });
   } catch (error) {
-    if (error.name === "NotAllowedError") throw new FilmError("The camera may not be used: allow it beside the page's address and try again.");
-    if (error.name === "NotFoundError") throw new FilmError("No camera was found: connect one, or choose a video.");
-    throw new FilmError("The camera does not start: close other programs that use it and try again.");
+    if (error.name === "NotAllowedError") throw new FilmError(say("camera.refused"));
+    if (error.name === "NotFoundError") throw new FilmError(say("camera.none"));
+    throw new FilmError(say("camera.in_use"));
   }
   video.srcObject = stream;
   await video.play();

@@ -1,5 +1,7 @@
 // What the page's search finds: acts, controls, tabs and runs. Pure, so that Node tests it.
 
+import { say, unmarked } from "../texts.js";
+
 const MOST = 40; // entries that are listed
 const KINDS = new Set(["button", "downloadbutton", "slider", "textbox", "number", "dropdown", "checkbox", "radio", "file", "accordion"]);
 
@@ -14,12 +16,12 @@ export function placesOf({ components, layout }) {
     const { type, props = {} } = byId.get(node.id) ?? {};
     if (props.visible === false) return;
     if (type === "tabitem") {
-      [tab, folds] = [props.label, []];
-      found.push({ kind: "Tab", name: props.label, more: "", tab, folds, target: null });
+      [tab, folds] = [unmarked(props.label), []];
+      found.push({ kind: say("finder.tab"), name: tab, more: "", tab, folds, target: null });
     }
-    const label = props.label || (typeof props.value === "string" && /button$/.test(type) ? props.value : "");
+    const label = unmarked(props.label || (typeof props.value === "string" && /button$/.test(type) ? props.value : ""));
     if (tab && props.elem_id && KINDS.has(type) && label) {
-      found.push({ kind: "Control", name: clean(label), more: tab, tab, folds, target: props.elem_id });
+      found.push({ kind: say("finder.control"), name: clean(label), more: tab, tab, folds, target: props.elem_id });
     }
     const inside = type === "accordion" && props.elem_id ? [...folds, props.elem_id] : folds;
     for (const child of node.children ?? []) walk(child, tab, inside);

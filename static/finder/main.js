@@ -1,6 +1,7 @@
 // The page's search: Ctrl K opens a dialog, arrows choose, Enter goes there. webdemo/ui/components/finder.py has its data.
 
 import { placesOf, search } from "./finder.js";
+import { say, translate } from "../texts.js";
 
 const PATIENCE = 8000; // ms until what was chosen must be on the page
 const SETTLING = 200; // ms in which a tab that opens folds its parts as they were left
@@ -52,8 +53,8 @@ async function goTo({ tab, folds, target }) {
 }
 
 /** Puts a sentence into the prompt, as if it had been typed. */
-async function say(sentence) {
-  await openTab("Generate");
+async function write(sentence) {
+  await openTab(say("tabs.generate"));
   const prompt = await appeared(() => document.querySelector("#prompt textarea, #prompt input"));
   if (!prompt) return;
   Object.getOwnPropertyDescriptor(Object.getPrototypeOf(prompt), "value").set.call(prompt, sentence);
@@ -70,7 +71,7 @@ class Finder {
     this.entries = [];
     this.places = placesOf(window.gradio_config);
     root.querySelector(".pdq-open").addEventListener("click", () => this.open());
-    root.querySelector(".pdq-open kbd").textContent = /Mac|iP(hone|ad)/.test(navigator.platform) ? "⌘ K" : "Ctrl K";
+    root.querySelector(".pdq-open kbd").textContent = /Mac|iP(hone|ad)/.test(navigator.platform) ? "⌘ K" : say("finder.keys");
     this.field.addEventListener("input", () => this.show());
     this.dialog.addEventListener("keydown", (event) => this.type(event));
     this.dialog.addEventListener("click", (event) => {
@@ -99,8 +100,8 @@ class Finder {
   load({ acts, runs }) {
     this.entries = [
       ...this.places,
-      ...acts.map(([name, sentence]) => ({ kind: "Act", name, more: sentence, sentence })),
-      ...runs.map(([run, name, more]) => ({ kind: "Run", name, more, run })),
+      ...acts.map(([name, sentence]) => ({ kind: say("finder.act"), name, more: sentence, sentence })),
+      ...runs.map(([run, name, more]) => ({ kind: say("finder.run"), name, more, run })),
     ];
     if (this.dialog.open) this.show();
   }
@@ -115,7 +116,7 @@ class Finder {
       row.append(make("span", "pdq-kind", entry.kind), make("span", "pdq-name", entry.name), make("span", "pdq-more", entry.more));
       return row;
     }));
-    if (!this.found.length) this.list.append(make("li", "pdq-none", "Nothing has these words."));
+    if (!this.found.length) this.list.append(make("li", "pdq-none", say("finder.nothing")));
     this.mark();
   }
 
@@ -142,7 +143,7 @@ class Finder {
     const entry = this.found[index];
     if (!entry) return;
     this.dialog.close();
-    if (entry.sentence) say(entry.sentence);
+    if (entry.sentence) write(entry.sentence);
     else if (entry.run) window.location.search = `?run=${encodeURIComponent(entry.run)}`;
     else goTo(entry);
   }
@@ -150,6 +151,7 @@ class Finder {
 
 /** `element` holds finder.html; `props` are the component's, watched by `watch`; `trigger` tells Python. */
 export function mount(element, props, watch, trigger) {
+  translate(element);
   const root = element.querySelector(".pdq");
   const finder = new Finder(root, () => trigger("input"));
   const sync = () => props.known && finder.load(props.known);

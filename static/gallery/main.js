@@ -1,6 +1,7 @@
 // The drawer of examples: scenes.json as cards that move. webdemo/ui/components/gallery.py takes the one that is pressed.
 
 import { play } from "../notebook/thumbnail.js";
+import { translate } from "../texts.js";
 
 const SIZE = 240; // pixels of a thumbnail
 
@@ -18,6 +19,7 @@ function card(scene, take) {
 
 /** Lets a button open the drawer, whose scenes are fetched when it first opens. */
 export function mount(element, props, watch, trigger) {
+  translate(element);
   const dialog = element.querySelector("dialog");
   const list = element.querySelector("ul");
   const failed = element.querySelector(".pdx-failed");

@@ -1,5 +1,7 @@
 // A live stream on the server: one message after the other, each answered with the partner's frames.
 
+import { say } from "../texts.js";
+
 const PATIENCE = 60000; // milliseconds in which a lost connection may come back
 const AGAIN = 1000; // milliseconds between two attempts
 const SLOWEST = 15000; // milliseconds for an answer; the networks may have to be loaded for the first
@@ -49,7 +51,7 @@ export class Connection {
         this.lost(false);
         return null;
       } catch (error) {
-        if (!(error instanceof Lost) || performance.now() > until) throw error instanceof Lost ? new LiveError("The server cannot be reached: start it, or check your network, and press Start.") : error;
+        if (!(error instanceof Lost) || performance.now() > until) throw error instanceof Lost ? new LiveError(say("live.unreachable")) : error;
       }
       await new Promise((resolve) => setTimeout(resolve, AGAIN));
     }
@@ -82,7 +84,7 @@ export class Connection {
     if (answer.ok) return fields;
     if (path && answer.status === 404) throw new Lost(); // a server that was started anew
     if ([502, 504].includes(answer.status)) throw new Lost();
-    if (answer.status === 404) throw new LiveError("This page has no live streams: start it with python app.py.");
-    throw new LiveError(typeof fields.detail === "string" ? fields.detail : `The server answered with an error (${answer.status}): try again.`);
+    if (answer.status === 404) throw new LiveError(say("live.no_streams"));
+    throw new LiveError(typeof fields.detail === "string" ? fields.detail : say("live.error", { status: answer.status }));
   }
 }

@@ -8,11 +8,12 @@ import { takesTurns, takeTurn } from "../camera/turns.js";
 import { Stream } from "../player/stream.js";
 import { Connection, LiveError } from "./connection.js";
 import { Person, Video, Webcam } from "./sources.js";
+import { say, translate } from "../texts.js";
 
 const WAITING = 8; // messages that wait for the server; older ones are dropped
 const TOGETHER = 6; // messages that are sent as one
 const FIGURES = 500; // milliseconds between two updates of the figures
-const AGAIN = "What happened can be played again; Keep makes it a result with read-outs and downloads.";
+const PARTS = { camera: "live.part_camera", body: "live.part_body", server: "live.part_server", player: "live.part_player" };
 const NAMES = { agent: "agent", regennet: "reactor" };
 
 /**
@@ -20,6 +21,7 @@ const NAMES = { agent: "agent", regennet: "reactor" };
  * streams, `mediapipe` of the detector's files.
  */
 export function mount(element, keep, { address, mediapipe }) {
+  translate(element);
   new Panel(element, keep, address, mediapipe);
   for (const name of ["../camera/camera.css", "live.css"]) {
     const href = new URL(name, import.meta.url).href;
@@ -42,7 +44,7 @@ class Panel {
       this.file.value = "";
       if (file) this.start(file);
     };
-    this.stop.onclick = () => this.rest(`Stopped. ${AGAIN}`);
+    this.stop.onclick = () => this.rest(`${say("live.stopped")} ${say("live.again")}`);
     this.keep.onclick = () => this.handOver();
     this.source.onchange = () => this.takeLens();
     this.lens.onchange = () => keepLens(this.lens, this.source.value);
@@ -109,14 +111,14 @@ class Panel {
     this.figures.textContent = "";
     try {
       const { player } = this;
-      if (!player) throw new FilmError("The 3D view is not there yet: wait a moment and press Start again.");
+      if (!player) throw new FilmError(say("live.no_view"));
       const source = this.sourceOf(file, player);
       const partner = this.partner.value;
       const connection = new Connection(this.address, { partner, ...source.camera }, {
-        lost: (gone) => this.say(gone ? "The connection was lost: trying again …" : "Connected again.", gone ? "error" : ""),
+        lost: (gone) => this.say(say(gone ? "live.lost" : "live.connected"), gone ? "error" : ""),
       });
       this.live = { source, connection, stream: null };
-      this.say(source.video ? "Opening the camera and the partner …" : "Opening the partner …");
+      this.say(say(source.video ? "live.opening_both" : "live.opening"));
       await source.begin(); // takes seconds, in which nothing could be sent
       if (over()) return;
       const payload = await connection.open();
@@ -128,14 +130,14 @@ class Panel {
         this.stage.hidden = false;
         this.stage.classList.toggle("pdcam-mirror", source.mirrored);
         drawPeople(this.drawing, [], source.video.videoWidth, source.video.videoHeight);
-        this.say("Stand still for a second, seen from head to feet.");
+        this.say(say("live.stand"));
       }
       await this.follow(over);
     } catch (error) {
       if (over()) return;
       const known = error instanceof FilmError || error instanceof LiveError;
       if (!known) console.error(error);
-      this.rest(known ? error.message : "The live stream broke off: reload the page and try again.", "error");
+      this.rest(known ? error.message : say("live.broke"), "error");
     }
   }
 
@@ -169,7 +171,7 @@ class Panel {
     while (!over() && !ended) {
       const seen = await source.next();
       if (!seen) break;
-      if (!this.root.offsetParent) return this.rest("You left this tab, so the live stream ended.");
+      if (!this.root.offsetParent) return this.rest(say("live.left"));
       if (seen.people) drawPeople(this.drawing, seen.people, source.video.videoWidth, source.video.videoHeight);
       waiting.push(seen);
       if (source.waits) {
@@ -185,19 +187,19 @@ class Panel {
     wake();
     await sending;
     if (over()) return;
-    if (!this.live.stream.known) throw new FilmError("Nobody was seen long enough: a partner needs a person in eight pictures, a second or two.");
-    this.rest(`The end. ${AGAIN}`);
+    if (!this.live.stream.known) throw new FilmError(say("live.nobody"));
+    this.rest(`${say("live.ended")} ${say("live.again")}`);
   }
 
   /** Ends the stream, where it still runs, and makes its last minute a result of the page. */
   handOver() {
     const { last } = this;
     this.rest();
-    if (!last?.shown) return this.say("Something else is shown now, so this live stream can no longer be kept.", "error");
+    if (!last?.shown) return this.say(say("live.replaced"), "error");
     this.hand(JSON.stringify({ partner: last.partner, positions: last.pack() }));
     this.last = null;
     this.keep.hidden = true;
-    this.say("Kept: see the result beside this.");
+    this.say(say("live.kept"));
   }
 
   /** Sends what has been seen, and shows what is answered. */
@@ -206,7 +208,7 @@ class Panel {
     const answer = await connection.send(together(seen.map(({ message }) => message)));
     if (over()) return;
     if (!answer) return; // the stream was opened anew
-    if (!stream.shown) return this.rest("Something else is shown now, so the live stream ended.");
+    if (!stream.shown) return this.rest(say("live.gone"));
     const now = performance.now();
     const { tally } = this;
     tally.taken.push(...seen.map(({ taken }) => taken));
@@ -219,7 +221,7 @@ class Panel {
     }
     this.keep.hidden = !stream.long;
     this.believe(answer.belief);
-    this.say(answer.hint || (stream.known ? "Live." : "Stand still for a second, seen from head to feet."), answer.hint ? "error" : "");
+    this.say(answer.hint || (stream.known ? say("live.live") : say("live.stand")), answer.hint ? "error" : "");
     this.measure(now);
   }
 
@@ -248,14 +250,14 @@ class Panel {
     const rate = span > 0 ? (taken.length - 1) / span : 0;
     tally.parts = tally.parts.slice(-30);
     const delay = median(delays);
-    const within = ["camera", "body", "server", "player"]
+    const within = Object.keys(PARTS)
       .map((part) => [part, median(tally.parts.map((each) => each[part]).filter((ms) => ms !== undefined))])
       .filter(([, ms]) => ms !== undefined);
     const missed = this.live.source.missed + tally.lost;
     const parts = [
-      `${rate.toFixed(0)} pictures a second`,
-      delay === undefined ? "" : `${Math.round(delay)} ms to the partner (${within.map(([part, ms]) => `${part} ${Math.round(ms)}`).join(", ")})`,
-      missed ? `${missed} pictures left out` : "",
+      say("live.rate", { rate: rate.toFixed(0) }),
+      delay === undefined ? "" : say("live.delay", { ms: Math.round(delay), parts: within.map(([part, ms]) => `${say(PARTS[part])} ${Math.round(ms)}`).join(", ") }),
+      missed ? say("live.missed", { count: missed }) : "",
     ];
     this.figures.textContent = parts.filter(Boolean).join(" · ");
     this.root.dataset.delay = delay === undefined ? "" : String(Math.round(delay));

@@ -3,6 +3,7 @@
 import { FilmError, close as closeFilm, openFilm } from "../camera/film.js";
 import { Landmarks } from "../camera/landmarks.js";
 import { closeWebcam, openWebcam } from "../camera/webcam.js";
+import { say } from "../texts.js";
 
 const FASTEST = 33; // milliseconds from picture to picture
 const BATCH = 2; // poses of a clip in a message
@@ -109,7 +110,7 @@ export class Person {
 
   constructor(player) {
     const sample = player?.sample;
-    if (!sample || sample.live || !sample.motion) throw new FilmError("Nobody is chosen yet: press an example above, or drop a motion file.");
+    if (!sample || sample.live || !sample.motion) throw new FilmError(say("live.nobody_chosen"));
     Object.assign(this, { motion: sample.motion, fps: sample.fps, place: 0 });
   }
 

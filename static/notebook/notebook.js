@@ -2,10 +2,13 @@
 // Python gives the entries (webdemo/ui/components/notebook.py) and hears of every press by one event.
 
 import { play } from "./thumbnail.js";
+import { say, translate } from "../texts.js";
 
 const MOST_RETRIES = 3;
 const WAIT = 300; // ms after the last key before a search
-const KINDS = [["", "All jobs"], ["generate", "Generate"], ["scene", "Scene"], ["react", "React"], ["predict", "Predict"]];
+const KINDS = [
+  ["", "notebook.all_jobs"], ["generate", "tabs.generate"], ["scene", "tabs.scene"], ["react", "tabs.react"], ["predict", "tabs.predict"],
+];
 
 const element = (tag, className = "", text = "") => Object.assign(document.createElement(tag), { className, textContent: text });
 
@@ -27,7 +30,7 @@ export class Notebook {
         this.timer = setTimeout(() => this.search(), field.type === "search" ? WAIT : 0);
       });
     }
-    this.options("kind", KINDS);
+    this.options("kind", KINDS.map(([kind, key]) => [kind, say(key)]));
   }
 
   options(name, pairs) {
@@ -68,12 +71,12 @@ export class Notebook {
     this.entries = new Map(found.entries.map((entry) => [entry.id, entry]));
     for (const id of this.chosen) if (!this.entries.has(id)) this.chosen.delete(id);
     if (!this.chosen.size && found.entries.length) this.chosen.add(found.entries[0].id);
-    this.options("tag", [["", "All tags"], ...found.tags.map((tag) => [tag, `#${tag}`])]);
-    this.options("model", [["", "All methods"], ...found.models]);
+    this.options("tag", [["", say("notebook.all_tags")], ...found.tags.map((tag) => [tag, `#${tag}`])]);
+    this.options("model", [["", say("notebook.all_methods")], ...found.models]);
     this.find(".pdn-list").replaceChildren(...found.entries.map((entry) => this.card(entry)));
     const empty = this.find(".pdn-empty");
     empty.hidden = found.entries.length > 0;
-    empty.textContent = found.empty;
+    empty.textContent = say(found.empty);
     this.find(".pdn-more").hidden = found.total <= found.entries.length;
     this.show();
   }
@@ -82,7 +85,7 @@ export class Notebook {
     const card = element("li", "pdn-card");
     card.dataset.id = entry.id;
     card.tabIndex = 0;
-    const box = Object.assign(element("input"), { type: "checkbox", ariaLabel: `Choose ${entry.title}` });
+    const box = Object.assign(element("input"), { type: "checkbox", ariaLabel: say("notebook.choose", { title: entry.title }) });
     box.dataset.choose = "";
     const picture = Object.assign(element("canvas", "pdn-thumb"), { width: 88, height: 88 });
     picture.setAttribute("aria-hidden", "true");
@@ -95,9 +98,9 @@ export class Notebook {
     for (const tag of entry.tags) tags.append(element("span", "", `#${tag}`));
     text.append(title, facts, tags);
     if (entry.message) text.append(element("p", "pdn-message", entry.message));
-    if (entry.note) text.append(element("p", "pdn-note", entry.frame === null ? entry.note : `Frame ${entry.frame + 1}: ${entry.note}`));
+    if (entry.note) text.append(element("p", "pdn-note", entry.frame === null ? entry.note : say("notebook.note_at", { frame: entry.frame + 1, note: entry.note })));
     const more = element("details", "pdn-details");
-    more.append(element("summary", "", "Name, tags, note, settings"));
+    more.append(element("summary", "", say("notebook.details")));
     more.addEventListener("toggle", () => more.open && more.children.length === 1 && this.fill(more, entry));
     text.append(more);
     card.append(box, picture, text);
@@ -114,10 +117,10 @@ export class Notebook {
       return line;
     };
     const form = element("div", "pdn-form");
-    const frame = field("Frame of the note", "frame", entry.frame === null ? "" : String(entry.frame + 1));
+    const frame = field(say("notebook.frame"), "frame", entry.frame === null ? "" : String(entry.frame + 1));
     Object.assign(frame.lastElementChild, { type: "number", min: "1" });
-    form.append(field("Name", "title", entry.title), field("Tags", "tags", entry.tags.join(" ")), field("Note", "note", entry.note, "textarea"), frame);
-    const save = Object.assign(element("button", "", "Save"), { type: "button" });
+    form.append(field(say("notebook.name"), "title", entry.title), field(say("notebook.tags"), "tags", entry.tags.join(" ")), field(say("notebook.note"), "note", entry.note, "textarea"), frame);
+    const save = Object.assign(element("button", "", say("notebook.save")), { type: "button" });
     save.dataset.save = entry.id;
     form.append(save);
     const list = element("dl", "pdn-settings");
@@ -188,18 +191,19 @@ export class Notebook {
       remove: chosen.length > 0 && chosen.every((entry) => entry.state !== "running" && !entry.favourite),
     };
     for (const [act, can] of Object.entries(able)) this.find(`[data-act=${act}]`).disabled = !can;
-    this.find("[data-act=favour]").textContent = one?.favourite ? "Stop keeping" : "★ Keep";
+    this.find("[data-act=favour]").textContent = say(one?.favourite ? "notebook.unkeep" : "notebook.keep");
     const undo = this.find("[data-act=restore]");
     undo.hidden = !this.found?.removed;
-    undo.textContent = `Undo: bring ${this.found?.removed === 1 ? "it" : `${this.found?.removed} runs`} back`;
+    undo.textContent = say(this.found?.removed === 1 ? "notebook.run_back" : "notebook.runs_back", { count: this.found?.removed });
     const total = this.found?.total ?? 0;
-    this.find(".pdn-count").textContent = `${chosen.length} of ${total} chosen`;
+    this.find(".pdn-count").textContent = say("notebook.count", { count: chosen.length, total });
     this.find(".pdn-actions").hidden = !total && !this.found?.removed;
   }
 }
 
 /** `element` holds notebook.html; `props` are the component's, watched by `watch`; `trigger` tells Python. */
 export function mount(element, props, watch, trigger) {
+  translate(element);
   const link = Object.assign(document.createElement("link"), { rel: "stylesheet", href: new URL("notebook.css", import.meta.url).href });
   document.head.append(link);
   const events = { open: "submit", compare: "like", study: "edit", publish: "apply", again: "retry", stop: "stop" }; // the others are "select"

@@ -4,11 +4,13 @@
 import { attach } from "./input.js";
 import { actionFor, belongsToControl } from "./keys.js";
 import { roleText } from "./overlay.js";
+import { say, translate } from "../texts.js";
 
 export class Controls {
   constructor(root) {
     this.root = root;
     this.find = (selector) => root.querySelector(selector);
+    translate(root.parentElement ?? root);
   }
 
   /** Hands what is pressed, dragged and typed to the player, which outlives none of these listeners. */
@@ -72,7 +74,7 @@ export class Controls {
         const tab = document.createElement("button");
         tab.type = "button";
         tab.setAttribute("role", "tab");
-        tab.setAttribute("aria-label", `Sample ${sample.label || i + 1}`);
+        tab.setAttribute("aria-label", say("player.sample", { number: sample.label || i + 1 }));
         tab.textContent = sample.label || String(i + 1);
         return tab;
       }),
@@ -126,11 +128,11 @@ export class Controls {
     const at = String(Math.round(frame));
     if (range.value !== at) range.value = at;
     range.style.setProperty("--done", `${(100 * frame) / Math.max(clock.frames - 1, 1)}%`);
-    range.setAttribute("aria-valuetext", `${clock.seconds.toFixed(1)} of ${clock.duration.toFixed(1)} seconds`);
+    range.setAttribute("aria-valuetext", say("player.time_heard", { now: clock.seconds.toFixed(1), all: clock.duration.toFixed(1) }));
     this.find(".pdd-time").textContent = sample
-      ? `${(frame / clock.fps).toFixed(2)} / ${clock.duration.toFixed(2)} s · frame ${Math.round(frame) + 1} of ${clock.frames}` : "";
+      ? say("player.time", { now: (frame / clock.fps).toFixed(2), all: clock.duration.toFixed(2), frame: Math.round(frame) + 1, frames: clock.frames }) : "";
     root.dataset.playing = String(clock.playing);
-    this.find(".pdd-play").setAttribute("aria-label", clock.playing ? "Pause" : "Play");
+    this.find(".pdd-play").setAttribute("aria-label", say(clock.playing ? "player.pause" : "player.play"));
     const speed = this.find(".pdd-speed select");
     if (speed.value !== String(clock.speed)) speed.value = String(clock.speed);
     const press = (name, on) => this.find(`[data-act=${name}]`).setAttribute("aria-pressed", String(on));
@@ -153,10 +155,10 @@ export class Controls {
     chip.hidden = !given && !sample?.live;
     if (sample?.live) {
       chip.dataset.part = "live";
-      chip.textContent = [sample.live.second ? "streaming" : "live", sample.live.text].filter(Boolean).join(" · ");
+      chip.textContent = [say(sample.live.second ? "player.streaming" : "player.live"), sample.live.text].filter(Boolean).join(" · ");
     } else if (given) {
       chip.dataset.part = frame < given ? "given" : "predicted";
-      chip.textContent = frame < given ? "given" : "predicted";
+      chip.textContent = say(frame < given ? "player.given" : "player.predicted");
     }
   }
 }

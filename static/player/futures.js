@@ -7,6 +7,7 @@ import { poseAt } from "./decode.js";
 import { FIELD_OF_VIEW } from "./orbit.js";
 import { project } from "./overlay.js";
 import { FUTURES, css, mix } from "./palette.js";
+import { say } from "../texts.js";
 
 const ALPHA = 0.34;
 const TINTED = 0.72; // of a ghost's colours
@@ -37,8 +38,8 @@ export class Futures {
       number.type = "button";
       number.textContent = String(i + 1);
       number.dataset.future = i;
-      number.title = `Take this continuation (${i + 1})`;
-      number.setAttribute("aria-label", `Take continuation ${i + 1}`);
+      number.title = say("player.take_title", { number: i + 1 });
+      number.setAttribute("aria-label", say("player.take", { number: i + 1 }));
       number.style.background = css(FUTURES[i % FUTURES.length]);
       return number;
     }));

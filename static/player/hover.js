@@ -1,6 +1,7 @@
 // What is said of the joint under the pointer.
 
 import { Tip } from "./overlay.js";
+import { say } from "../texts.js";
 
 export class Hover {
   constructor(player) {
@@ -23,7 +24,9 @@ export class Hover {
       const { clock, data } = player;
       const [now, soon] = [clock.shown, Math.min(clock.shown + 1, clock.frames - 1)].map((f) => player.everybody(f)[person][joint]);
       const speed = Math.hypot(...now.map((v, i) => soon[i] - v)) * clock.fps;
-      return `${"AB"[person % 2]} · ${data.names[joint].replaceAll("_", " ")} — ${now[2].toFixed(2)} m high, ${speed.toFixed(1)} m/s`;
+      return say("player.joint", {
+        person: "AB"[person % 2], joint: data.names[joint].replaceAll("_", " "), height: now[2].toFixed(2), speed: speed.toFixed(1),
+      });
     });
   }
 }

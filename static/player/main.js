@@ -2,6 +2,7 @@
 
 import { loadPlotly, loadStyles } from "./loader.js";
 import { loops, Player } from "./player.js";
+import { say } from "../texts.js";
 
 const players = new Set();
 
@@ -43,7 +44,7 @@ const hooks = {
 
 /**
  * `element` holds player.html; `props` are the component's, watched by `watch`; `plotly` is the address of our
- * copy of it, `empty` what is said while there is no motion, and `styles` the address of player.css where that is not
+ * copy of it, `empty` the key of what is said while there is no motion, and `styles` the address of player.css where that is not
  * beside this module.
  * Safe to call again for an element that was hidden and shown.
  */
@@ -57,7 +58,7 @@ export async function mount(element, props, watch, { plotly, empty, styles: addr
   let covered = false;
   let opening = true;
   const sync = () => {
-    const waits = opening && props.value ? "Opening the 3D view …" : "";
+    const waits = opening && props.value ? say("player.opening") : "";
     player.controls.setBusy(props.busy || waits, props.progress);
     player.cover(Boolean(props.busy));
     const uncovered = covered && !props.busy;
@@ -77,7 +78,7 @@ export async function mount(element, props, watch, { plotly, empty, styles: addr
       if (message) player.arrive(message);
     }
   };
-  player.controls.setEmptyText(empty);
+  player.controls.setEmptyText(say(empty));
   sync();
   watch(["value", "busy", "progress", "live", "character"], sync);
   try {
@@ -89,7 +90,7 @@ export async function mount(element, props, watch, { plotly, empty, styles: addr
   } catch (error) {
     opening = false;
     sync();
-    player.controls.setEmptyText("The 3D view could not start: this browser may have WebGL switched off.");
+    player.controls.setEmptyText(say("player.no_webgl"));
     console.error(error);
     return;
   }

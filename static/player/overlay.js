@@ -1,5 +1,7 @@
 // HTML over the scene: names above heads and the tip that tells about a joint. Text only, never markup.
 
+import { say } from "../texts.js";
+
 const REACH_PX = 16;
 const LABEL_PX = 25; // height of a label with room
 const SPACE_PX = 8;
@@ -13,10 +15,13 @@ export function project(point, matrix, width, height, fieldOfView) {
   return [width / 2 + scale * at(0), height / 2 - scale * at(1), depth];
 }
 
+const ROLES = { given: "player.given", generated: "player.generated", "acts first": "player.acts_first", answers: "player.answers" };
+
 /** "A · actor", or "A" alone where the role says no more. */
 export function roleText(person, role) {
   const letter = "AB"[person];
-  return !role || role.toLowerCase() === letter.toLowerCase() ? letter : `${letter} · ${role}`;
+  if (!role || role.toLowerCase() === letter.toLowerCase()) return letter;
+  return `${letter} · ${role in ROLES ? say(ROLES[role]) : role}`;
 }
 
 export class Labels {

@@ -3,6 +3,7 @@
 
 import { FIELD_OF_VIEW, axesOf } from "./orbit.js";
 import { HANDLES, carry, pull } from "./reach.js";
+import { say } from "../texts.js";
 
 const KEY_STEP = 0.02; // metres; with Shift five times as far
 const WORLD = ([z, x, y]) => [x, y, z].map((v) => Math.round(1e5 * v) / 1e5);
@@ -49,8 +50,8 @@ export class Posing {
       handle.type = "button";
       handle.className = `pdd-handle pdd-handle-${"ab"[person]}`;
       Object.assign(handle.dataset, { person, joint });
-      handle.title = `${name[0].toUpperCase() + name.slice(1)} of ${"AB"[person]}`;
-      handle.setAttribute("aria-label", `${handle.title}: arrow keys move it`);
+      handle.title = say("player.joint_of", { joint: name[0].toUpperCase() + name.slice(1), person: "AB"[person] });
+      handle.setAttribute("aria-label", say("player.handle", { joint: handle.title }));
       return handle;
     }));
     this.host.replaceChildren(...this.handles);
@@ -90,14 +91,14 @@ export class Posing {
       button.disabled = !enabled;
     }
     const seconds = (this.frame / this.player.clock.fps).toFixed(2);
-    const who = this.changed.flatMap((is, person) => (is ? ["AB"[person]] : [])).join(" and ");
-    const where = `${this.chosen ? `${this.chosen.title} at` : "At"} ${seconds} s`;
-    bar.querySelector("output").textContent = `${where}: ${who ? `${who} changed` : "drag a joint or use the arrow keys"}`;
+    const who = this.changed.flatMap((is, person) => (is ? ["AB"[person]] : [])).join(say("player.and"));
+    const where = this.chosen ? say("player.joint_at", { joint: this.chosen.title, seconds }) : say("player.at", { seconds });
+    bar.querySelector("output").textContent = `${where}: ${say(who ? "player.changed" : "player.drag_joint", { who })}`;
   }
 
   /** Shows that the pose must be kept or given up first. */
   remind() {
-    this.bar.querySelector("output").textContent = "Keep the pose or cancel it first";
+    this.bar.querySelector("output").textContent = say("player.keep_first");
     this.bar.querySelector("[data-pose=keep]").focus({ preventScroll: true });
     this.player.wake(); // the slider goes back
   }

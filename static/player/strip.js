@@ -1,5 +1,9 @@
 // Under the scene: curves over time with a playhead, and the contacts as ticks that can be pressed.
 
+import { say } from "../texts.js";
+
+const CURVES = { Apart: "player.apart", Hands: "player.hands" }; // what the server calls its curves
+
 const TOO_MANY_TICKS = 60;
 
 export class Strip {
@@ -34,7 +38,7 @@ export class Strip {
     if (!sample) return;
     sample.curves.forEach((curve, i) => {
       const name = document.createElement("dt");
-      name.textContent = curve.label;
+      name.textContent = curve.label in CURVES ? say(CURVES[curve.label]) : curve.label;
       name.style.setProperty("--key", colors[i % colors.length]);
       const value = document.createElement("dd");
       this.values.append(name, value);
@@ -48,7 +52,7 @@ export class Strip {
       tick.dataset.kind = contact.kind;
       tick.style.left = `${(100 * contact.start) / span}%`;
       tick.style.width = `${(100 * Math.max(contact.stop - 1 - contact.start, 0)) / span}%`;
-      const text = `${contact.label}, ${(contact.start / sample.fps).toFixed(1)} to ${(contact.stop / sample.fps).toFixed(1)} s`;
+      const text = say("player.contact", { label: contact.label, from: (contact.start / sample.fps).toFixed(1), to: (contact.stop / sample.fps).toFixed(1) });
       tick.title = text;
       tick.setAttribute("aria-label", text);
       tick.addEventListener("click", () => this.onSeek(contact.start));

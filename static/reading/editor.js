@@ -2,6 +2,7 @@
 
 import { people } from "./marks.js";
 import * as edits from "./plan.js";
+import { say } from "../texts.js";
 
 let panels = 0;
 
@@ -51,12 +52,12 @@ export class Editor {
       this.panel.hidden = true;
       return;
     }
-    const title = act ? `${people(act)} ${this.view.said[act.id] ?? act.act}` : "A new act";
+    const title = act ? `${people(act)} ${this.view.said[act.id] ?? act.act}` : say("reading.new_act");
     this.panel.querySelector(".pdr-title").textContent = title;
-    this.panel.setAttribute("aria-label", act ? `Change: ${title}` : title);
+    this.panel.setAttribute("aria-label", act ? say("reading.change", { title }) : title);
     this.panel.querySelector(".pdr-moves").hidden = !act;
     this.panel.querySelector(".pdr-whose").hidden = Boolean(act);
-    const verb = act ? "Do something else: search all acts" : "Search all acts";
+    const verb = say(act ? "reading.something_else" : "reading.search");
     this.field.placeholder = verb;
     this.field.ariaLabel = verb;
     this.options = edits.search(this.view.entries ?? [], this.field.value);
@@ -80,7 +81,7 @@ export class Editor {
 
   nothing() {
     const row = document.createElement("li");
-    row.textContent = this.view.entries ? "No act is called so: try another word." : "The acts are on their way …";
+    row.textContent = say(this.view.entries ? "reading.no_act" : "reading.on_their_way");
     return row;
   }
 

@@ -1,11 +1,13 @@
 // The length of the motion beside what its acts take: a line and a button where they need more.
 
+import { say } from "../texts.js";
+
 /** The line for acts that take `needed` seconds in a motion of `seconds`, at most `most`: { text, seconds }, or null. */
 export function advice(needed, seconds, most) {
   const length = Math.min(needed, most);
   if (!(length > seconds)) return null;
-  const longer = needed > most ? " The tab Scene makes longer motions." : "";
-  return { text: `This takes about ${needed} s, and the motion lasts ${seconds} s.${longer}`, seconds: length };
+  const longer = needed > most ? ` ${say("reading.scene")}` : "";
+  return { text: say("reading.takes", { needed, seconds }) + longer, seconds: length };
 }
 
 export class Length {
@@ -26,7 +28,7 @@ export class Length {
     this.host.hidden = !found;
     if (!found) return;
     this.host.querySelector("span").textContent = found.text;
-    this.host.querySelector("button").textContent = `Make it ${found.seconds} s`;
+    this.host.querySelector("button").textContent = say("reading.make_it", { seconds: found.seconds });
     this.seconds = found.seconds;
   }
 

@@ -6,10 +6,10 @@ import { Length } from "./length.js";
 import { people, pieces, spoken, summary, wordsOf } from "./marks.js";
 import { Paths } from "./paths.js";
 import * as edits from "./plan.js";
+import { say, translate } from "../texts.js";
 
-const NAMES = { a: "A", b: "B", ab: "A and B" };
-const MARKS = { true: ["✓", "done"], false: ["✗", "not done"] };
-const DROPPED = "Your edits were dropped, because the sentence changed.";
+const NAMES = { a: "A", b: "B", ab: say("reading.a_and_b") };
+const MARKS = { true: ["✓", say("reading.done")], false: ["✗", say("reading.not_done")] };
 
 /** An element with a class and a text. */
 function node(tag, kind, text = "") {
@@ -88,7 +88,7 @@ class View {
   typed(text) {
     if (!this.asking.typed(text)) return;
     this.fold(false);
-    if (this.edited) this.note = DROPPED;
+    if (this.edited) this.note = say("reading.dropped");
     this.edited = false;
     this.hold();
     const current = this.asking.answers(this.shown);
@@ -219,7 +219,7 @@ class View {
   line(plan) {
     const done = plan.acts.map((act) => this.checked(act)).filter(Boolean);
     const seen = done.filter((each) => each.done).length;
-    return `${summary(plan)}${done.length ? ` ${seen} of ${done.length} done.` : ""}`;
+    return `${summary(plan)}${done.length ? ` ${say("reading.count_done", { seen, all: done.length })}` : ""}`;
   }
 
   sentence(plan) {
@@ -240,10 +240,10 @@ class View {
     const near = part.nearest.filter((name) => this.shown.nearest[name]);
     if (near.length && this.editable) {
       const buttons = node("span", "pdr-near");
-      buttons.append("Put in: ", ...near.map((name) => this.nearest(name, number)));
+      buttons.append(`${say("reading.put_in")} `, ...near.map((name) => this.nearest(name, number)));
       row.append(buttons);
     } else if (near.length) {
-      row.append(` Nearest: ${near.map((name) => this.shown.nearest[name].said).join(", ")}.`);
+      row.append(` ${say("reading.nearest", { names: near.map((name) => this.shown.nearest[name].said).join(", ") })}`);
     }
     return row;
   }
@@ -294,12 +294,13 @@ class View {
   heard(act, said) {
     const found = this.checked(act);
     const done = found ? `; ${MARKS[found.done][1]}${found.measure ? `, ${found.measure}` : ""}` : "";
-    return `${spoken(act, said)}${done}${this.editable ? ". Press to change." : ""}`;
+    return `${spoken(act, said)}${done}${this.editable ? say("reading.press") : ""}`;
   }
 }
 
 /** `element` holds reading.html; `props` are the component's, watched by `watch`; `trigger` tells the server. */
 export function mount(element, props, watch, trigger) {
+  translate(element);
   const root = element.querySelector(".pdr");
   const keep = (value) => (props.value = value);
   const view = new View(root, { keep, ask: () => trigger("input"), editable: props.editable });

@@ -1,5 +1,7 @@
 // Which words of a sentence are whose: it is cut into pieces where its marks begin and end.
 
+import { say } from "../texts.js";
+
 const MOST = 60; // characters of a part that are quoted
 
 /**
@@ -45,14 +47,14 @@ export function people(act) {
 
 /** An act as a screen reader says it: "A to B: pats right shoulder, 2 times". */
 export function spoken(act, said) {
-  const agents = act.agents.map((who) => who.toUpperCase()).join(" and ");
-  const whom = act.patient ? ` to ${act.patient.toUpperCase()}` : "";
-  return `${agents}${whom}: ${said.replace(/ ×(\d+)/, ", $1 times")}`;
+  const agents = act.agents.map((who) => who.toUpperCase()).join(say("reading.and"));
+  const whom = act.patient ? say("reading.to", { person: act.patient.toUpperCase() }) : "";
+  return `${agents}${whom}: ${said.replace(/ ×(\d+)/, (_, count) => say("reading.times", { count }))}`;
 }
 
 /** What was understood, in one sentence. */
 export function summary(plan) {
-  const count = (number, one, many) => (number === 1 ? `1 ${one}` : `${number} ${many}`);
-  const acts = `${count(plan.acts.length, "act is", "acts are")} understood`;
-  return plan.unread.length ? `${acts}, ${count(plan.unread.length, "part is", "parts are")} not.` : `${acts}.`;
+  const [acts, parts] = [plan.acts.length, plan.unread.length];
+  const understood = say(acts === 1 ? "reading.act_understood" : "reading.acts_understood", { count: acts });
+  return understood + (parts ? say(parts === 1 ? "reading.part_not" : "reading.parts_not", { count: parts }) : ".");
 }

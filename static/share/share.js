@@ -4,6 +4,7 @@
 import { play } from "../notebook/thumbnail.js";
 import { supplied } from "../player/loader.js";
 import { mount } from "../player/main.js";
+import { language, translate } from "../texts.js";
 
 const asked = new URLSearchParams(location.search).get("theme"); // an embedding page may ask for one
 const dark = matchMedia("(prefers-color-scheme: dark)");
@@ -11,6 +12,8 @@ const paint = () => document.body.classList.toggle("dark", asked === "dark" || (
 dark.addEventListener("change", paint);
 paint();
 
+document.documentElement.lang = language;
+translate(document);
 Object.assign(supplied, globalThis.pasDeDeuxBodies);
 for (const canvas of document.querySelectorAll("canvas[data-thumbnail]")) play(canvas, canvas.dataset.thumbnail);
 
@@ -20,7 +23,7 @@ if (motion) {
   const absolute = (path) => new URL(path, document.baseURI).href;
   const props = { value: JSON.parse(motion.textContent), busy: "", progress: null, live: null };
   mount(document.querySelector(".psh-stage"), props, () => {}, {
-    plotly: absolute(plotly), styles: absolute(playerStyle), empty: "This motion cannot be shown.",
+    plotly: absolute(plotly), styles: absolute(playerStyle), empty: "player.cannot_show",
   });
 }
 for (const code of document.querySelectorAll(".psh-more textarea")) code.addEventListener("focus", () => code.select());

@@ -1,6 +1,7 @@
 // The floor seen from above: paths are drawn with the pointer, and their points moved with the pointer or the arrow keys.
 
 import { edges, path, pathOf } from "./edits.js";
+import { say } from "../texts.js";
 
 const EDGE = 8;
 const STEP = 0.35; // metres between two points of a drawn path
@@ -136,8 +137,8 @@ export class Floor {
       const group = make("g", { class: `pds-path pds-${person}` }, this.svg);
       make("polyline", { points: points.map(([, x, z]) => `${x},${-z}`).join(" ") }, group);
       points.forEach(([seconds, x, z], i) => {
-        const named = seconds === null ? "" : `, at ${seconds.toFixed(1)} s`;
-        const label = `Point ${i + 1} of the path of ${NAMES[person]}: x ${x}, z ${z}${named}`;
+        const named = seconds === null ? "" : say("story.at", { seconds: seconds.toFixed(1) });
+        const label = say("story.point", { number: i + 1, person: NAMES[person], x, z }) + named;
         const dot = make("circle", {
           cx: x, cy: -z, r: i ? 0.13 : 0.2, tabindex: 0, role: "button", "aria-label": label,
           "data-point": i, "data-person": person,
@@ -160,7 +161,7 @@ export class Floor {
       const [from, to] = [this.start, this.until(story)].map((seconds) => Math.round(seconds / motion.step));
       make("polyline", { points: line(track.slice(from, to + 1)), class: "pds-now" }, group);
       make("circle", { cx: x, cy: -z, r: 0.3 }, group);
-      const label = `${NAMES[person]} stands at x ${x}, z ${z} when the selected beat begins, at ${this.start.toFixed(1)} s`;
+      const label = say("story.stands", { person: NAMES[person], x, z, seconds: this.start.toFixed(1) });
       make("text", { x, y: 0.15 - z, role: "img", "aria-label": label }, group).textContent = NAMES[person];
     });
   }

@@ -1,6 +1,7 @@
 // The parts of the line that show and do nothing else than to be pressed: blocks of beats, the ruler, contacts.
 
 import * as edits from "./edits.js";
+import { say } from "../texts.js";
 
 const MOST_TICKS = 80;
 
@@ -23,7 +24,7 @@ export function block(beat, index, { lane, name, starts, total, selected, stretc
   cell.dataset.lane = lane;
   cell.dataset.key = `${lane} ${index}`;
   cell.title = words;
-  cell.setAttribute("aria-label", `Beat ${index + 1}, ${name}: ${words || "no words"}`);
+  cell.setAttribute("aria-label", say("story.cell", { number: index + 1, lane: name, words: words || say("story.no_words") }));
   if (selected) cell.classList.add("pds-selected");
   box.append(cell);
   if (lane === "words") {
@@ -32,7 +33,7 @@ export function block(beat, index, { lane, name, starts, total, selected, stretc
     handle.dataset.beat = index;
     handle.dataset.key = `length ${index}`;
     handle.setAttribute("role", "slider");
-    handle.setAttribute("aria-label", `Length of beat ${index + 1}`);
+    handle.setAttribute("aria-label", say("story.length", { number: index + 1 }));
     handle.setAttribute("aria-valuenow", edits.lengthOf(beat));
     handle.setAttribute("aria-valuemin", edits.SHORTEST);
     handle.setAttribute("aria-valuemax", edits.LONGEST);

@@ -6,8 +6,9 @@ import * as edits from "./edits.js";
 import { Floor } from "./floor.js";
 import { block, drawRuler, drawTicks, node } from "./lanes.js";
 import { Pins } from "./pins.js";
+import { say, translate } from "../texts.js";
 
-const LANES = [["words", "both"], ["a", "A"], ["b", "B"]];
+const LANES = [["words", say("story.both")], ["a", "A"], ["b", "B"]];
 const PIXELS = 44; // a second, at least
 
 const plain = (story) => JSON.stringify({ ...story, ahead: false });
@@ -54,7 +55,7 @@ class Editor {
     for (const { person, positions } of poses) story = edits.pose(story, person, frame, positions);
     if (motion) story = { ...story, span: edits.spanAround(edits.momentOf(frame), motion) };
     this.edit(story);
-    this.tell("The pose is pinned: press Make this span again, and the motion passes through it.");
+    this.tell(say("story.pinned"));
   }
 
   get paths() {
@@ -295,7 +296,7 @@ class Editor {
     let next = story;
     const drag = (moved) => {
       next = edits.stretch(story, index, before + (moved.clientX - from) / wide);
-      this.find(".pds-hint").textContent = `Beat ${index + 1}: ${next.beats[index].seconds} s`;
+      this.find(".pds-hint").textContent = say("story.beat_length", { number: index + 1, seconds: next.beats[index].seconds });
     };
     const end = () => {
       window.removeEventListener("pointermove", drag);
@@ -353,7 +354,7 @@ class Editor {
     this.find("[data-act=undo]").disabled = !this.past.before.length;
     this.find("[data-act=redo]").disabled = !this.past.after.length;
     this.find("[data-act=no-span]").disabled = !story.span;
-    const said = beat ? this.summary(beat) : "No beats yet: write a story and press Generate, or add one.";
+    const said = beat ? this.summary(beat) : say("story.empty");
     this.find(".pds-hint").textContent = this.note ?? said;
   }
 
@@ -369,9 +370,9 @@ class Editor {
   }
 
   summary(beat) {
-    const length = `${edits.lengthOf(beat).toFixed(1)} s${beat.seconds == null ? ", from its words" : ""}`;
-    const seed = beat.seed == null ? "" : `, seed ${beat.seed}`;
-    return `Beat ${this.selected + 1}: ${length}${seed}. Click a block to change its words.`;
+    const length = `${edits.lengthOf(beat).toFixed(1)} s${beat.seconds == null ? say("story.from_words") : ""}`;
+    const seed = beat.seed == null ? "" : say("story.seed", { seed: beat.seed });
+    return say("story.beat", { number: this.selected + 1, facts: length + seed });
   }
 
   drawSpan(span) {
@@ -385,6 +386,7 @@ class Editor {
 
 /** `element` holds story.html; `props` are the component's, watched by `watch`; `trigger` tells the server. */
 export function mount(element, props, watch, trigger) {
+  translate(element);
   const root = element.querySelector(".pds");
   const editor = new Editor(root, props, (story) => (props.value = story), () => trigger("input"));
   const sync = () => {

@@ -2,6 +2,7 @@
 // Delete takes it away.
 
 import * as edits from "./edits.js";
+import { say } from "../texts.js";
 
 const FPS = 30;
 const SLACK = 3; // pixels that a press may move and still be a click
@@ -24,8 +25,8 @@ export class Pins {
     pin.dataset.pose = index;
     pin.dataset.key = `pin ${index}`;
     pin.style.left = `${(100 * seconds) / total}%`;
-    pin.title = `Pose of ${person.toUpperCase()} at ${seconds.toFixed(2)} s`;
-    pin.setAttribute("aria-label", `${pin.title}: Enter goes there, arrow keys move it, Delete takes it away`);
+    pin.title = say("story.pin", { person: person.toUpperCase(), seconds: seconds.toFixed(2) });
+    pin.setAttribute("aria-label", say("story.pin_keys", { pin: pin.title }));
     pin.addEventListener("pointerdown", (event) => this.begin(event, pin, index));
     pin.addEventListener("click", (event) => {
       if (event.detail === 0) this.goTo(index); // Enter or Space; begin() knows the pointer's clicks from its drags
@@ -64,7 +65,7 @@ export class Pins {
       if (Math.abs(by) < SLACK && frame === before) return;
       frame = Math.min(Math.max(before + Math.round(by * frames), 0), last);
       pin.style.left = `${(100 * frame) / FPS / total}%`;
-      this.editor.find(".pds-hint").textContent = `Pose of ${story.poses[index].person.toUpperCase()}: ${(frame / FPS).toFixed(2)} s`;
+      this.editor.find(".pds-hint").textContent = say("story.pin_at", { person: story.poses[index].person.toUpperCase(), seconds: (frame / FPS).toFixed(2) });
     }, { signal });
     pin.addEventListener("pointerup", () => {
       const still = frame === before;

@@ -1,8 +1,12 @@
 // A person votes: pairs come one after the other, and the keys 1, 2, = and S answer (webdemo/server/http/study_pages.py).
 
+import { language, say, translate } from "../texts.js";
+
 const NARROW = 640; // pixels: below, the two stand above each other
 const KEYS = { 1: "1", 2: "2", "=": "=", s: "skip", S: "skip" };
 
+document.documentElement.lang = language;
+translate(document);
 const main = document.querySelector(".pst");
 const find = (selector) => main.querySelector(selector);
 const { here, player, plotly } = main.dataset;
@@ -14,7 +18,7 @@ dark.addEventListener("change", paint);
 paint();
 
 // What the player expects of the component that holds it in the lab's page.
-const props = { value: null, busy: "Opening the first pair …", progress: null, live: null };
+const props = { value: null, busy: say("vote.opening"), progress: null, live: null };
 const watchers = [];
 function show(changes) {
   Object.assign(props, changes);
@@ -28,7 +32,7 @@ function enable(on) {
   for (const button of buttons) button.disabled = !on;
 }
 
-function say(sentence) {
+function tell(sentence) {
   find(".pst-said").textContent = sentence;
   find(".pst-said").hidden = !sentence;
 }
@@ -36,7 +40,7 @@ function say(sentence) {
 async function ask(what, body) {
   const answer = await fetch(`${here}/${what}`, { method: "POST", headers: { "Content-Type": "application/json" }, body: JSON.stringify(body) });
   const reply = await answer.json().catch(() => ({}));
-  if (!answer.ok) throw new Error(reply.detail || "The server does not answer: reload the page.");
+  if (!answer.ok) throw new Error(reply.detail || say("vote.silent"));
   return reply;
 }
 
@@ -46,10 +50,10 @@ async function go(what, body = {}) {
   clearTimeout(timer);
   try {
     const reply = await ask(what, body);
-    say("");
+    tell("");
     reply.pair ? next(reply) : end(reply);
   } catch (error) {
-    say(error.message === "Failed to fetch" ? "The server cannot be reached: check the network, then answer again." : error.message);
+    tell(error.message === "Failed to fetch" ? say("vote.unreachable") : error.message);
     show({ busy: "" });
     enable(ticket !== null);
     find(".pst-stage").hidden = find(".pst-answers").hidden = ticket === null;
@@ -58,12 +62,12 @@ async function go(what, body = {}) {
 
 function next({ pair, ticket: sent, wait, done, total }) {
   ticket = sent;
-  find(".pst-progress").textContent = `Pair ${done + 1} of ${total}`;
+  find(".pst-progress").textContent = say("vote.pair", { number: done + 1, total });
   const [sample] = pair.samples;
   if (innerWidth < NARROW) {
     Object.assign(sample, { columns: [""], rows: ["", ""] });
-    buttons[0].lastChild.data = "The upper one";
-    buttons[2].lastChild.data = "The lower one";
+    buttons[0].lastChild.textContent = say("vote.upper");
+    buttons[2].lastChild.textContent = say("vote.lower");
   }
   // The same two motions may come again in another place, which must be a motion of its own to the player.
   show({ value: { ...pair, id: `${pair.id} ${sent}` }, busy: "" });
@@ -74,17 +78,17 @@ function end({ total, result }) {
   ticket = null;
   show({ value: null, busy: "" });
   find(".pst-stage").hidden = find(".pst-answers").hidden = true;
-  find(".pst-progress").textContent = `All ${total} pairs done`;
+  find(".pst-progress").textContent = say("vote.all_done", { total });
   find(".pst-end").hidden = false;
-  find(".pst-thanks").textContent = "Thank you: your votes are counted. You can close this page.";
+  find(".pst-thanks").textContent = say("vote.thanks");
   if (!result) return;
   const share = (value) => `${Math.round(100 * value)} %`;
   for (const each of result.comparisons) {
     const row = find("tbody").insertRow();
     const decided = each.wins + each.losses;
     for (const text of [
-      `${each.first} against ${each.second}`, `${each.wins} to ${each.losses}, ${each.ties} ${each.ties === 1 ? "tie" : "ties"}`,
-      decided ? share(each.share) : "–", decided ? `${share(each.low)} to ${share(each.high)}` : "–",
+      say("vote.against", each), say(each.ties === 1 ? "vote.score_tie" : "vote.score", each),
+      decided ? share(each.share) : "–", decided ? say("vote.range", { low: share(each.low), high: share(each.high) }) : "–",
     ]) row.insertCell().textContent = text;
   }
   find("table").hidden = false;

@@ -138,7 +138,7 @@ def test_a_reaction_chooses_its_method_and_greys_words_that_are_not_heard(
     assert names_above_heads(page, "#react-player") == ["A · given"]
     expect(page.locator("#react-method input")).to_have_value("Automatic")
     expect(page.locator("#react-about")).to_contain_text("without words, the virtual agent")
-    expect(page.locator("#react-about")).to_contain_text("Stream always uses ReGenNet, online")
+    expect(page.locator("#react-live-method")).to_contain_text("Stream always uses ReGenNet, online")
 
     page.click("button#react-generate")
     expect(page.locator("#react-readouts .pd-asked")).to_contain_text("Virtual agent", timeout=SLOW)

@@ -15,6 +15,7 @@ from webdemo.inference.requests import GenerateRequest
 from webdemo.ui.history import Entry, Opened
 from webdemo.ui.public_html import FILES
 from webdemo.ui.site import ROOT, offline_script, write_site
+from webdemo.ui.text.texts import languages
 
 TITLE = "<i>Two</i> @files@ people"
 
@@ -42,9 +43,22 @@ def test_every_import_of_the_offline_modules_is_among_them() -> None:
     assert wanted and wanted <= found.keys()
     assert not [name for name, source in found.items() if re.search(r"""from\s+["']\.""", source)]
     outside = {name for name, source in found.items() if "import.meta.url" in source}
-    assert outside <= {f"{ROOT}player/main.js", f"{ROOT}player/loader.js"}, (
-        "an address that holds it has no folder"
-    )
+    supplied = {f"{ROOT}player/main.js", f"{ROOT}player/loader.js", f"{ROOT}texts.js"}
+    assert outside <= supplied, "an address that holds it has no folder"
+
+
+def test_the_offline_pages_bring_the_texts_of_the_player_in_every_language() -> None:
+    second = offline_script().split("\n", 2)[1]
+    texts = json.loads(second.removeprefix("globalThis.pasDeDeuxTexts = ").removesuffix(";"))
+    assert texts["en"]["player.front"] == "Front" and texts["de"]["player.front"] == "Vorn"
+    named = {
+        key
+        for name, source in modules().items()
+        if name.startswith((f"{ROOT}player/", f"{ROOT}share/"))
+        for key in re.findall(r'"((?:[a-z]+)\.[a-z_]+)"', source)
+        if key in languages()["en"]
+    }
+    assert len(named) > 30 and named <= texts["de"].keys() == texts["en"].keys()
 
 
 def test_a_folder_has_a_page_for_each_result_and_every_file_that_they_name(tmp_path: Path) -> None:

@@ -28,6 +28,7 @@ from webdemo.ui.tabs.results import QUIET
 from webdemo.ui.tabs.scene import SceneTab
 from webdemo.ui.text.own_acts import own_acts
 from webdemo.ui.text.panels import model_state
+from webdemo.ui.text.texts import say, translations
 
 from .api import ClassEndpoint, GenerateEndpoint, PredictEndpoint, ReactEndpoint
 from .context import PageContext
@@ -43,17 +44,13 @@ from .theme import HEAD, style_sheet, theme
 
 TITLE = "Pas de Deux"
 TABS = (GenerateTab, SceneTab, ReactTab, PredictTab)
-"""A class a job, with a ``label`` and ``build(demo, record)``."""
+"""A class a job, with a ``label``, the key of its shown name, ``named``, and ``build(demo, record)``."""
 ENDPOINTS = (
     PredictEndpoint, GenerateEndpoint, ClassEndpoint, ReactEndpoint, RenderEndpoint, SceneEndpoint, ReadEndpoint,
 )  # fmt: skip
 """Gradio's client in the browser takes the page's first function for "/predict", so that one comes first."""
 
-_HEADER = (
-    '<div class="pd-brand"><h1>Pas de Deux</h1>'
-    "<p>Write what two people do and watch them in 3D · give one person a partner · see what comes next</p>"
-    "</div>"
-)
+_HEADER = f'<div class="pd-brand"><h1>Pas de Deux</h1><p>{say("page.intro")}</p></div>'
 _CACHE = (1800, 7200)
 """Seconds: how often Gradio's copies of downloads are looked through, and how old they may get."""
 _LOOK = 0.02
@@ -161,7 +158,7 @@ def _build_tabs(page: PageContext, demo: gr.Blocks) -> None:
     jobs: dict[str, GenerateTab | SceneTab | ReactTab | PredictTab] = {}
     with gr.Tabs(elem_classes="pd-tabs") as tabs:
         for tab in TABS:
-            with gr.Tab(tab.label, id=tab.label.lower()):
+            with gr.Tab(say(tab.named), id=tab.label.lower()):
                 jobs[tab.label.lower()] = tab(page)
                 jobs[tab.label.lower()].build(demo, record)
         for onwards in jobs.values():
@@ -171,7 +168,7 @@ def _build_tabs(page: PageContext, demo: gr.Blocks) -> None:
         folds = [fold for job in jobs.values() for fold in (job.folded, job.more) if fold is not None]
         remember_folds(demo, {str(fold.elem_id): fold for fold in folds}, **QUIET)
         if page.history is not None:
-            with gr.Tab(HISTORY, id=HISTORY.lower()) as past:
+            with gr.Tab(say("tabs.history"), id=HISTORY.lower()) as past:
                 HistoryTab(page, jobs, tabs).build(demo, past, record)
 
 
@@ -222,7 +219,7 @@ def launch_options() -> dict[str, Any]:
         "head": HEAD,
         "footer_links": ["api"],
         "run_history": False,
-        "i18n": gr.I18n(en={"common.upload": "Add files"}),  # a name that Gradio uses and does not know
+        "i18n": gr.I18n(**translations()),
         "ssr_mode": False,
         "show_error": True,
         "max_file_size": MAX_BYTES,

@@ -21,6 +21,7 @@ from webdemo.ui.components.player import BODIES_FOLDER, PLAYER_FOLDER, PLOTLY_JS
 from webdemo.ui.components.prediction_view import prediction_payload
 from webdemo.ui.components.show import result_payload
 from webdemo.ui.history import Entry, Opened
+from webdemo.ui.text.texts import TEXTS_FOLDER, TEXTS_JS, english
 from webdemo.view.payload import Payload
 
 SHARE_FOLDER = PLAYER_FOLDER.parent / "share"
@@ -34,6 +35,8 @@ FILES = {
         for path in sorted(PLAYER_FOLDER.rglob("*.js"))
     },
     **{f"bodies/{path.name}": path for path in sorted(BODIES_FOLDER.glob("*.json"))},
+    TEXTS_JS.name: TEXTS_JS,
+    **{f"texts/{path.name}": path for path in sorted(TEXTS_FOLDER.glob("*.json"))},
 }
 """All that the pages load, by the names under which they do."""
 MODULES = '<script type="module" src="@files@share/share.js"></script>'
@@ -101,7 +104,9 @@ def gallery_html(
 
 def player_html(entry: Entry, payload: Payload, place: Place, *, until: float | None) -> str:
     """A page with one result; ``until`` as in :func:`gallery_html`."""
-    back = f'<a class="psh-back" href="{_text(place.back)}">← All results</a>' if place.back else ""
+    back = ""
+    if place.back:
+        back = f'<a class="psh-back" href="{_text(place.back)}" {_said("share.all_results")}</a>'
     body = (
         f'<main><header>{back}<h1>{_text(entry.title)}</h1><p class="psh-facts">{_text(caption(entry))}</p></header>\n'
         f"{_stage(payload)}\n{_embed_code(entry, place)}{_end(until)}</main>"
@@ -133,9 +138,14 @@ def _embed_code(entry: Entry, place: Place) -> str:
         return ""
     code = _text(frame_code(place.embed, entry.title))
     return (
-        '<details class="psh-more"><summary>Show it in a page of your own</summary>'
-        f'<textarea readonly rows="3" aria-label="HTML of the frame">{code}</textarea></details>\n'
+        f'<details class="psh-more"><summary {_said("share.own_page")}</summary><textarea readonly rows="3" '
+        f'aria-label="{english("share.frame")}" data-say-aria-label="share.frame">{code}</textarea></details>\n'
     )
+
+
+def _said(key: str) -> str:
+    """The end of a tag and its text, in English; the browser puts it into its language."""
+    return f'data-say="{key}">{english(key)}'
 
 
 def _end(until: float | None) -> str:

@@ -16,6 +16,7 @@ from posixpath import normpath
 
 from motion.formats.files import replacing
 from webdemo.ui.history import Opened
+from webdemo.ui.text.texts import languages
 
 from .public_html import FILES, SHARE_FOLDER, Place, gallery_html, payload_of, player_html
 
@@ -55,7 +56,7 @@ def write_site(results: Sequence[Opened], file: Path, *, title: str) -> None:
 
 @cache
 def offline_script() -> str:
-    """One plain script that makes a map of all modules and starts ``share/share.js``."""
+    """One plain script that makes a map of all modules, brings their texts along and starts ``share/share.js``."""
     modules: dict[str, str] = {}
     waiting = ["share/share.js"]
     while waiting:
@@ -65,7 +66,18 @@ def offline_script() -> str:
             waiting += [_beside(name, found[3]) for found in _IMPORT.finditer(modules[name])]
     whole = {ROOT + name: _named(name, source) for name, source in modules.items()}
     start = (SHARE_FOLDER / "offline.js").read_text(encoding="utf-8")
-    return f"globalThis.pasDeDeuxModules = {json.dumps(whole)};\n{start}"
+    texts = json.dumps(_texts(), ensure_ascii=False)
+    return (
+        f"globalThis.pasDeDeuxModules = {json.dumps(whole)};\nglobalThis.pasDeDeuxTexts = {texts};\n{start}"
+    )
+
+
+def _texts() -> dict[str, dict[str, str]]:
+    """The texts of the player and of the pages around it, in every language."""
+    return {
+        language: {key: text for key, text in texts.items() if key.startswith(("player.", "share."))}
+        for language, texts in languages().items()
+    }
 
 
 def _named(module: str, source: str) -> str:

@@ -5,6 +5,7 @@ import { FIELD_OF_VIEW, axesOf } from "../orbit.js";
 import { project } from "../overlay.js";
 import { floorUnder, lines, onFloor } from "./floor.js";
 import { STEP, inside, lengthOf, named, passing, trouble } from "./walks.js";
+import { say } from "../../texts.js";
 
 const NEAR = 0.4; // metres from a person's place on the floor within which a drag begins their path
 const ASIDE = 0.5; // metres from there to the handle that moves them
@@ -12,8 +13,8 @@ const LEAST = 0.1; // metres of the last step of a path that is drawn
 const NUDGE = 0.1; // metres; with Shift five times as far
 const KEYS = { ArrowLeft: ["right", -1], ArrowRight: ["right", 1], ArrowDown: ["away", -1], ArrowUp: ["away", 1] };
 const HANDLES = {
-  path: { sign: "✎", title: (who) => `Draw ${who}’s path`, keys: "arrow keys lengthen it, Delete removes it" },
-  here: { sign: "✥", title: (who) => `${who} is here at this moment`, keys: "arrow keys move it" },
+  path: { sign: "✎", title: "player.draw_path", keys: "player.draw_path_keys" },
+  here: { sign: "✥", title: "player.here", keys: "player.here_keys" },
 };
 
 export class Drawing {
@@ -85,15 +86,15 @@ export class Drawing {
       grip.className = `pdd-grip pdd-grip-${person}`;
       Object.assign(grip.dataset, { person, kind });
       grip.textContent = sign;
-      grip.title = title(person.toUpperCase());
-      grip.ariaLabel = `${grip.title}: ${keys}`;
+      grip.title = say(title, { who: person.toUpperCase() });
+      grip.ariaLabel = `${grip.title}: ${say(keys)}`;
       return grip;
     }));
     this.grips.replaceChildren(...made);
   }
 
   say(text = "") {
-    const rest = "✎ from a person’s feet draws where they walk, ✥ puts them where they are at this moment.";
+    const rest = say("player.draw_rest");
     this.bar.querySelector("output").textContent = text || `${this.seconds.toFixed(1)} s: ${rest}`;
     this.bar.querySelector("[data-draw=undo]").disabled = !this.director.mayUndo;
   }
@@ -183,7 +184,7 @@ export class Drawing {
   keep(person, points) {
     const wrong = trouble(points, this.director.seconds);
     if (!wrong) this.director.keepPath(person, points);
-    this.say(wrong || (points.length ? `${named(person, points)}: Generate makes a motion along it.` : ""));
+    this.say(wrong || (points.length ? say("player.drawn", { path: named(person, points) }) : ""));
     this.player.refresh();
   }
 

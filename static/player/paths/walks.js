@@ -1,5 +1,7 @@
 // Arithmetic of paths on the floor. A point is [seconds or null, x, z]: metres in world axes, as in a story's paths.
 
+import { say } from "../../texts.js";
+
 export const STEP = 0.35; // metres between two points of a path that is drawn
 const EDGE = 8; // metres from the middle of the floor to its edges
 const WALKING = 1.2; // metres a second, where a path has no times
@@ -41,8 +43,8 @@ export function trouble(points, total) {
     const [way, seconds] = [between(all[i], point), point[0] - all[i][0]];
     if (way <= MOST_SPEED * Math.max(seconds, 0)) continue;
     const whole = points.slice(i, i + 2).some(([time]) => time === null);
-    const asked = whole ? `${lengthOf(points).toFixed(1)} m from ${all[0][0].toFixed(1)} s on` : `${way.toFixed(1)} m in ${Math.max(seconds, 0).toFixed(1)} s`;
-    return `Nobody runs ${asked}: draw it shorter, begin it earlier, or ask for more seconds.`;
+    const asked = whole ? say("player.way_since", { metres: lengthOf(points).toFixed(1), seconds: all[0][0].toFixed(1) }) : say("player.way_in", { metres: way.toFixed(1), seconds: Math.max(seconds, 0).toFixed(1) });
+    return say("player.too_far", { way: asked });
   }
   return "";
 }
@@ -57,9 +59,9 @@ export function passing(points, seconds, place, total) {
 /** A path in a few words. */
 export function named(person, points) {
   const who = person.toUpperCase();
-  const from = points[0][0] > APART ? ` from ${points[0][0].toFixed(1)} s` : "";
-  if (points.length > 1) return `${who}’s path ${lengthOf(points).toFixed(1)} m${from}`;
-  return `${who} is here at ${(points[0][0] ?? 0).toFixed(1)} s`;
+  const from = points[0][0] > APART ? say("player.path_since", { seconds: points[0][0].toFixed(1) }) : "";
+  if (points.length > 1) return say("player.path", { who, metres: lengthOf(points).toFixed(1) }) + from;
+  return say("player.here_at", { who, seconds: (points[0][0] ?? 0).toFixed(1) });
 }
 
 /** A chip for each path, with a button that takes it away. */
@@ -72,8 +74,8 @@ export function chips(list, paths, remove) {
     chip.append(`${text} `, button);
     button.type = "button";
     button.textContent = "✕";
-    button.title = "Remove it (Ctrl+Z brings it back)";
-    button.ariaLabel = `Remove: ${text}`;
+    button.title = say("player.remove_title");
+    button.ariaLabel = say("player.remove", { text });
     button.addEventListener("click", () => remove(person));
     return chip;
   });

@@ -14,6 +14,7 @@ import pytest
 from motion import InputError
 from motion.formats import write
 from tests.ui.stub_engine import walking
+from tests.ui.tab_events import in_english
 from webdemo.inference.requests import Result
 from webdemo.study import Comparison, StudyResult, matched_pairs
 from webdemo.ui.components.study_sets import MOST_FILES, ONE_SET, candidates, sets_by, uploaded, ways
@@ -153,7 +154,7 @@ def test_a_study_is_made_of_chosen_runs_and_its_link_is_shown() -> None:
     assert "The study has 2 pairs" in line and link == "study/key" and reading == gr.update(visible=True)
     (made,) = study.studies.made  # type: ignore[attr-defined]
     assert (made.question, made.checks, list(made.sets)) == (QUESTIONS[1], 2, ["guidance 2.5", "guidance 4"])
-    assert which["value"] == "id" and closing["value"] == "End the voting"
+    assert which["value"] == "id" and in_english(closing["value"]) == "End the voting"
     assert "Nobody has voted yet" in html and table["interactive"] is False
 
 

@@ -11,8 +11,13 @@ from starlette.types import ASGIApp, Message, Receive, Scope, Send
 KEPT = 16
 """Most cached variants: they differ by host name, scheme and encoding of the request."""
 _VARIES_WITH = (b"host", b"x-forwarded-host", b"x-forwarded-proto", b"accept-encoding")
-_NOT_READ = {"run"}
+_NOT_READ = {"run", "lang"}
 """Parameters of the page's address that its HTML does not depend on; its scripts read them."""
+_ASKED = b"""<script>{
+  const asked = new URLSearchParams(location.search).get("lang");
+  if (/^[a-z]{2,3}(-[a-z0-9]+)*$/i.test(asked ?? "")) Object.defineProperty(navigator, "language", { value: asked });
+}</script>"""
+"""Stands before Gradio's scripts, which take the browser's language: ``?lang=de`` in the address goes before it."""
 
 
 class PageCache:
@@ -27,7 +32,7 @@ class PageCache:
 
     def __init__(self, app: ASGIApp) -> None:
         self.app = app
-        self._page = GZipMiddleware(app)
+        self._page = GZipMiddleware(_Asked(app))
         self._kept: OrderedDict[tuple[object, ...], list[Message]] = OrderedDict()
 
     async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
@@ -55,6 +60,32 @@ class PageCache:
             self._kept[key] = made
             while len(self._kept) > KEPT:
                 self._kept.popitem(last=False)
+
+
+class _Asked:
+    """An ASGI middleware that puts :data:`_ASKED` at the beginning of a page's head."""
+
+    def __init__(self, app: ASGIApp) -> None:
+        self.app = app
+
+    async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
+        """Answers as the page does; an answer that comes in pieces, or has no head, stays as it is."""
+        start: list[Message] = []
+
+        async def put(message: Message) -> None:
+            if message["type"] == "http.response.start":
+                start.append(_copy(message))
+                return
+            body, whole = message.get("body", b""), not message.get("more_body", False)
+            if start:
+                if whole and b"<head>" in body:
+                    body = body.replace(b"<head>", b"<head>" + _ASKED, 1)
+                    headers = [pair for pair in start[0]["headers"] if pair[0] != b"content-length"]
+                    start[0]["headers"] = [*headers, (b"content-length", str(len(body)).encode())]
+                await send(start.pop())
+            await send({**message, "body": body})
+
+        await self.app(scope, receive, put)
 
 
 def _copy(message: Message) -> Message:

@@ -12,6 +12,7 @@ import gradio as gr
 from motion import InputError
 from motion.formats.glb_animations import Animations
 from motion.formats.glb_motion import animations_in
+from webdemo.ui.text.texts import say
 
 MOST_OFFERED = 200
 """Animations in the list; an endpoint takes the name or the number of any other."""
@@ -20,7 +21,13 @@ MOST_OFFERED = 200
 def animation_field(elem_id: str) -> gr.Dropdown:
     """The list, hidden until there is something to choose."""
     return gr.Dropdown(
-        [], value=None, label="Animation", elem_id=elem_id, visible=False, filterable=False, min_width=0
+        [],
+        value=None,
+        label=say("actor.animation"),
+        elem_id=elem_id,
+        visible=False,
+        filterable=False,
+        min_width=0,
     )
 
 

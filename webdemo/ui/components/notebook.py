@@ -83,7 +83,7 @@ def shown(found: Found, *, empty: str, removed: int = 0, search: Search | None =
 
     Args:
         found: by a search.
-        empty: said where it found nothing.
+        empty: said where it found nothing, a sentence or the key of a text.
         removed: runs that can be brought back.
         search: what was searched for; everything by default. The browser drops an answer to another search.
     """

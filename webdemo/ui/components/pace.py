@@ -5,6 +5,7 @@ from __future__ import annotations
 import gradio as gr
 
 from webdemo.inference.method import DEFAULT_STEPS
+from webdemo.ui.text.texts import say
 
 FAST, FAITHFUL = DEFAULT_STEPS, 50
 """Steps of the two."""
@@ -23,9 +24,9 @@ def pace_of(steps: int | None) -> int | None:
 def pace_switch(elem_id: str) -> gr.Radio:
     """Fast or faithful; its values are steps."""
     return gr.Radio(
-        [("Fast", FAST), ("Faithful", FAITHFUL)],
+        [(say("sampling.fast"), FAST), (say("sampling.faithful"), FAITHFUL)],
         value=FAST,
-        label=f"{FAST} denoising steps or {FAITHFUL}",
+        label=say("sampling.pace", fast=FAST, faithful=FAITHFUL),
         show_label=False,
         container=False,
         elem_id=elem_id,

@@ -16,6 +16,7 @@ import plotly
 
 from motion.body import Body
 from motion.character import packed_body
+from webdemo.ui.text.texts import TEXTS_FOLDER, TEXTS_JS
 from webdemo.view.payload import Payload, player_payload
 
 from .part import STATIC, Part, on_load
@@ -23,15 +24,11 @@ from .part import STATIC, Part, on_load
 PLAYER_FOLDER = STATIC / "player"
 BODIES_FOLDER = PLAYER_FOLDER.parent / "bodies"
 PLOTLY_JS = Path(plotly.__file__).resolve().parent / "package_data" / "plotly.min.js"
-EMPTY_TEXT = (
-    "Say what two people do, or pick an example, and press Generate\n"
-    "You can turn the scene while it plays, compare samples, see where the two touch,"
-    " and download the motion."
-)
-"""What there is to do, and on a second line what comes of it."""
+EMPTY_TEXT = "player.empty"
+"""Key of the text that says what there is to do, and on a second line what comes of it."""
 
-# Only these become reachable over the network: the player's files, its bodies and plotly's single script.
-gr.set_static_paths([BODIES_FOLDER, PLOTLY_JS])
+# Only these become reachable over the network: the player's files, its bodies, plotly's single script and the texts.
+gr.set_static_paths([BODIES_FOLDER, PLOTLY_JS, TEXTS_JS, TEXTS_FOLDER])
 
 _MOUNT = (
     "import(file(%s)).then((player) => player.mount(element, props, watch, { plotly: file(%s), empty: %s }));"
@@ -46,7 +43,7 @@ class MotionPlayer(Part):
 
     Args:
         value: the payload shown at first.
-        empty_text: shown while there is no motion: what to do, and on further lines what comes of it.
+        empty_text: key of what is shown while there is no motion: what to do, and on further lines what comes of it.
         elem_id: id of the element in the page.
     """
 

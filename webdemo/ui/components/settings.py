@@ -6,26 +6,32 @@ import json
 from collections.abc import Collection, Mapping, Sequence
 from typing import Any
 
-from webdemo.ui.text.panels import status
+from webdemo.ui.text.texts import SAY, english, say
 
 OPENED = "opened"
 """Stands for the settings of a run that was opened with all controls as they were."""
-CHANGED = "Settings changed: run again to see what they do."
-
-UNPLANNED = ", no paths"
+CHANGED = say("sampling.changed")
+UNPLANNED = english("sampling.unplanned")
 """Ends the line over the folded settings where words do not become paths."""
-ADVANCED = f"""(guidance, steps, damping, tries = 1, planned = true) => ({{
-  __type__: "update",
-  label: `Guidance ${{guidance}}, ${{steps}} steps, damping ${{damping}}`
-    + (tries > 1 ? `, ${{tries}} tries` : "") + (planned ? "" : "{UNPLANNED}"),
-}})"""
+ADVANCED = f"""(guidance, steps, damping, tries = 1, planned = true) => {{
+  {SAY}
+  const line = say("sampling.folded") + (tries > 1 ? say("sampling.folded_tries") : "")
+    + (planned ? "" : say("sampling.unplanned"));
+  const values = {{ guidance, steps, damping, tries }};
+  return {{ __type__: "update", label: line.replace(/\\{{(\\w+)\\}}/g, (_, name) => values[name]) }};
+}}"""
 """JavaScript that gives the line over the folded settings; :func:`advanced_label` begins it in Python."""
 
 
 def advanced_label(guidance: float, steps: int, damping: float, tries: int = 1) -> str:
-    """The line over the folded settings, where words become paths."""
-    more = f", {tries} tries" if tries > 1 else ""
-    return f"Guidance {guidance:g}, {steps} steps, damping {damping:g}{more}"
+    """The line over the folded settings, where words become paths; the browser puts it into its language."""
+    more = english("sampling.folded_tries", tries=tries) if tries > 1 else ""
+    return english("sampling.folded", guidance=f"{guidance:g}", steps=steps, damping=f"{damping:g}") + more
+
+
+def folded_at_first(guidance: float, steps: int, damping: float) -> str:
+    """The same line as the page is built with it."""
+    return say("sampling.folded", guidance=f"{guidance:g}", steps=steps, damping=f"{damping:g}")
 
 
 def snapshot(fields: Mapping[str, Any], names: Collection[str]) -> str:
@@ -35,7 +41,7 @@ def snapshot(fields: Mapping[str, Any], names: Collection[str]) -> str:
 
 def differs(names: Sequence[str]) -> str:
     """JavaScript that says whether controls of these names differ from a snapshot, given before them."""
-    changed = json.dumps(status(CHANGED, tone="warning"))
+    changed = json.dumps(f'<p class="pd-status pd-warning" role="status">{CHANGED}</p>')
     return f"""(asked, ...values) => {{
   if (!asked || asked === "{OPENED}") return "";
   const was = JSON.parse(asked);

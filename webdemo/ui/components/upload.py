@@ -7,14 +7,14 @@ from pathlib import Path
 
 import gradio as gr
 
+from webdemo.ui.text.texts import say, worded
+
 FILE_TYPES = [".bvh", ".glb", ".npz", ".npy", ".c3d", ".trc", ".zip", ".skeleton", ".txt"]
 
 
-def file_field(label: str, *, elem_id: str) -> gr.File:
-    """A field that takes a motion file."""
-    named = (
-        f"{label}: {' '.join(FILE_TYPES[:4])} …"  # all of them would lie under the cross that takes it away
-    )
+def file_field(key: str, *, elem_id: str) -> gr.File:
+    """A field that takes a motion file; ``key`` names its text."""
+    named = say(key, types=" ".join(FILE_TYPES[:4]))  # all would lie under the cross that takes it away
     return gr.File(label=named, file_types=FILE_TYPES, height=64, elem_id=elem_id, elem_classes="pd-file")
 
 
@@ -25,4 +25,4 @@ def chip(label: str, *, elem_id: str | None = None) -> gr.Button:
 
 def example_chips(examples: Sequence[tuple[str, Path]]) -> list[gr.Button]:
     """A chip for each (name, file)."""
-    return [chip(name) for name, _ in examples]
+    return [chip(worded("examples", name)) for name, _ in examples]

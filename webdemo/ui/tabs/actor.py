@@ -32,12 +32,13 @@ from webdemo.ui.context import PageContext
 from webdemo.ui.history import Opened
 from webdemo.ui.text.examples import example_clips
 from webdemo.ui.text.panels import status
+from webdemo.ui.text.texts import say
 from webdemo.ui.text.words import error_line, text
 
 from .job import QUIET, Updates
 from .sweeps import SweepTab
 
-_DETECTED = "detect"
+_DETECTED = say("actor.detect")
 _SHORTEST = 0.1
 """Seconds: the least that the trim's sliders differ in."""
 
@@ -70,23 +71,23 @@ class ActorTab(SweepTab):
 
     def _import_choices(self) -> None:
         """The line on how the file was read, and its settings."""
-        with gr.Accordion("How the file was read", open=False, elem_id="react-import") as self.reading:
+        with gr.Accordion(say("actor.read"), open=False, elem_id="react-import") as self.reading:
             with gr.Row(elem_classes="pd-pair"):
                 self.up = gr.Dropdown(
-                    [(_DETECTED, AUTO), *AXES], value=AUTO, label="Up axis", elem_id="react-up",
+                    [(_DETECTED, AUTO), *AXES], value=AUTO, label=say("actor.up"), elem_id="react-up",
                     min_width=0,
                 )  # fmt: skip
                 self.unit = gr.Dropdown(
-                    [(_DETECTED, AUTO), *UNITS], value=AUTO, label="Unit", elem_id="react-unit",
+                    [(_DETECTED, AUTO), *UNITS], value=AUTO, label=say("actor.unit"), elem_id="react-unit",
                     min_width=0,
                 )  # fmt: skip
                 self.fps = gr.Number(
-                    value=None, label="Frames a second", placeholder=_DETECTED, elem_id="react-fps",
+                    value=None, label=say("actor.fps"), placeholder=_DETECTED, elem_id="react-fps",
                     min_width=0,
                 )  # fmt: skip
                 self.order = gr.Dropdown(
                     [(_DETECTED, AUTO), *((label, name) for name, label in ORDERS.items())],
-                    value=AUTO, label="Data set of a 15-joint file", elem_id="react-order", min_width=0,
+                    value=AUTO, label=say("actor.order"), elem_id="react-order", min_width=0,
                 )  # fmt: skip
             self.found = gr.HTML(elem_id="react-found")
 

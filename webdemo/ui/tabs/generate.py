@@ -28,6 +28,7 @@ from webdemo.ui.history import Opened
 from webdemo.ui.text.classes import installed_classes, takes_class
 from webdemo.ui.text.examples import CLIPS, EXAMPLES
 from webdemo.ui.text.panels import method_line, model_card, status
+from webdemo.ui.text.texts import say, worded
 from webdemo.ui.text.words import error_line
 
 from .job import QUIET, Updates
@@ -80,9 +81,7 @@ def _marks(text: str, asked: Mapping[str, Any], result: Result) -> dict[str, Any
         return None
 
 
-_PLANNED_INFO = (
-    "Words such as “walks up”, “sits down” or “waves” set paths and poses; off, the network alone decides."
-)
+_PLANNED_INFO = say("generate.planned_info")
 _EDITED_UNPLANNED = (
     "The plan was edited, but it is not followed: tick Plan from the words, or press Read again."
 )
@@ -94,6 +93,7 @@ class GenerateTab(SweepTab):
     """Text, or a class → two people."""
 
     label = "Generate"
+    named = "tabs.generate"
     restored = ("by_sentence", "class_name", "about", "folded")
 
     def request(self, fields: Mapping[str, Any]) -> GenerateRequest:
@@ -159,7 +159,7 @@ class GenerateTab(SweepTab):
                 self._ask()
                 self._handed_out()
                 self._settings()
-                with gr.Accordion("About the model", open=False, elem_classes="pd-panel pd-about"):
+                with gr.Accordion(say("generate.about"), open=False, elem_classes="pd-panel pd-about"):
                     self.card = gr.HTML(elem_id="model-card")
             self._results(first=arrival_payload(CLIPS / ARRIVAL))
         assert self.tries is not None  # as in every tab of sentences
@@ -192,7 +192,7 @@ class GenerateTab(SweepTab):
         choices = generate_choices()
         with gr.Column(elem_classes="pd-panel pd-ask", min_width=0):
             self.model = gr.Radio(
-                choices,
+                [(worded("way", label), name) for label, name in choices],
                 value=GenerateRequest.model,
                 show_label=False,
                 container=False,
@@ -203,7 +203,7 @@ class GenerateTab(SweepTab):
             self.about = gr.HTML(method_line(method(GenerateRequest.model).summary), elem_id="about-method")
             with gr.Column(min_width=0, elem_classes="pd-sentence") as self.by_sentence:
                 self.prompt = gr.Textbox(
-                    label="What do the two people do?",
+                    label=say("generate.prompt"),
                     placeholder=EXAMPLES[0][1],
                     lines=1,  # so that Enter generates; the style sheet gives it the height of three
                     max_lines=6,
@@ -213,19 +213,19 @@ class GenerateTab(SweepTab):
                 with gr.Row(elem_classes="pd-chips"):
                     self.gallery = Gallery(elem_id="gallery", elem_classes="pd-gallery", min_width=0)
                     self.chips = [
-                        gr.Button(name, size="sm", elem_classes="pd-chip", min_width=0)
+                        gr.Button(worded("examples", name), size="sm", elem_classes="pd-chip", min_width=0)
                         for name, _ in EXAMPLES
                     ]
                 self.reading = Reading(editable=True, elem_id=self._id("reading"), elem_classes="pd-reading")
             self.class_name = gr.Dropdown(
                 classes,
                 value=None,
-                label="What do the two people do?",
-                info=f"BiGraphDiff knows {len(classes)} classes.",
+                label=say("generate.prompt"),
+                info=say("generate.class_info", count=len(classes)),
                 visible=False,
                 elem_id="class",
             )
-            self._go("Generate")
+            self._go(say("generate.go"))
 
     @staticmethod
     def asked_by(way: str) -> Updates:
@@ -241,8 +241,8 @@ class GenerateTab(SweepTab):
     def _settings(self) -> None:
         with gr.Column(elem_classes="pd-panel pd-settings", min_width=0):
             self.seconds = gr.Slider(
-                *SECONDS, value=GenerateRequest.seconds, step=0.5, label="Seconds",
-                info="Length of the motion.", elem_id="seconds",
+                *SECONDS, value=GenerateRequest.seconds, step=0.5, label=say("generate.seconds"),
+                info=say("generate.seconds_info"), elem_id="seconds",
             )  # fmt: skip
             self._sampling(self._plan, said=True)
             self._sweeps()
@@ -251,7 +251,7 @@ class GenerateTab(SweepTab):
         """A switch: words become paths, or not."""
         self.planned = gr.Checkbox(
             GenerateRequest.planned,
-            label="Plan from the words",
+            label=say("generate.planned"),
             info=_PLANNED_INFO,
             elem_id=self._id("planned"),
         )

@@ -18,6 +18,7 @@ from webdemo.ui.components.sweep import MOST, loose
 from webdemo.ui.context import PageContext
 from webdemo.ui.history import Found, HistoryLike, Opened, Search
 from webdemo.ui.text.panels import status
+from webdemo.ui.text.texts import say
 from webdemo.ui.text.words import cancelled_line, error_line, link_line, progress_line, text
 from webdemo.ui.visitor import Visitor, visitor
 
@@ -28,11 +29,8 @@ from .sweeps import grid_shown
 from .workspace import WorkspacePanel, room_html, runs_line
 
 LABEL = "History"
-EMPTY = (
-    "Nothing yet. What you make in the other tabs is kept here. Open it again with all its settings, "
-    "share it by a link, or check that it comes out the same."
-)
-NOTHING_FOUND = "No run fits: take a filter away."
+EMPTY, NOTHING_FOUND = "notebook.empty", "notebook.nothing_found"
+"""Keys of what the notebook says where there is no run, or none that fits."""
 _CONTROLS = ("prompt", "seconds", "seed", "samples", "guidance", "steps", "damping", "role", "model", "mode")
 """Fields of a request that a tab may have a control of the same name for."""
 _LAST = "last"
@@ -70,10 +68,10 @@ class HistoryTab:
         with gr.Column(elem_classes="pd-panel pd-history", min_width=0):
             self.who = gr.HTML(elem_id="history-who")
             self.line = gr.HTML(status(), elem_id="history-status", elem_classes="pd-line")
-            self.address = gr.Textbox(label="Link", interactive=False, visible=False, buttons=["copy"],
+            self.address = gr.Textbox(label=say("result.link"), interactive=False, visible=False, buttons=["copy"],
                                       elem_id="history-address")  # fmt: skip
             self.saved = gr.DownloadButton(
-                "Save the workspace", visible=False, elem_id="history-saved", size="sm"
+                say("history.save"), visible=False, elem_id="history-saved", size="sm"
             )
             self.study = StudyPanel(self.page) if self.page.studies is not None else None
             if self.study is not None:
@@ -118,6 +116,8 @@ class HistoryTab:
                     js=taken(list(knobs)),
                     **QUIET,
                 )
+                if job.folded is not None:
+                    chain = chain.then(None, **job.tell_advanced)
                 chain = chain.then(
                     self._exporter(kind, job),
                     inputs=[record, job.worn],

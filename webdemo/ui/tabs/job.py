@@ -29,6 +29,7 @@ from webdemo.ui.components.show import result_payload
 from webdemo.ui.context import PageContext
 from webdemo.ui.history import Kept, Opened, Original
 from webdemo.ui.text.panels import comparison_panel, notes_lines, readout_panel, status
+from webdemo.ui.text.texts import say
 from webdemo.ui.text.words import cancelled_line, error_line, progress_line, seconds
 from webdemo.ui.visitor import visitor
 
@@ -59,6 +60,8 @@ class JobTab(SamplingTab, ABC):
     """
 
     label: str
+    named: str
+    """Key of the tab's name as the page shows it."""
     restored: tuple[str, ...] = ()
     """Attributes that :meth:`opened` sets, besides the result and controls named as a request's fields."""
     controls: Mapping[str, gr.components.Component]
@@ -87,7 +90,11 @@ class JobTab(SamplingTab, ABC):
             )
             beside()
             self.stop = gr.Button(
-                "Cancel", elem_id=self._id("cancel"), elem_classes="pd-stop", interactive=False, min_width=0
+                say("job.cancel"),
+                elem_id=self._id("cancel"),
+                elem_classes="pd-stop",
+                interactive=False,
+                min_width=0,
             )
         self.line = gr.HTML(status(), elem_id=self._id("status"), elem_classes="pd-line")
         self.changed = gr.HTML("", elem_id=self._id("changed"), elem_classes="pd-line")

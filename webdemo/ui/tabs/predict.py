@@ -38,6 +38,7 @@ from webdemo.ui.context import PageContext
 from webdemo.ui.history import Opened
 from webdemo.ui.text.examples import example_clips
 from webdemo.ui.text.panels import comparison_panel, method_line, prediction_lines, status
+from webdemo.ui.text.texts import say
 from webdemo.ui.text.words import error_line
 from webdemo.view.payload import player_payload
 
@@ -45,10 +46,7 @@ from .generate import named_method
 from .job import QUIET, Updates
 from .sweeps import SweepTab
 
-EMPTY_TEXT = (
-    "Choose a motion: drop a file or pick an example\n"
-    "Set where the past ends. Predict shows what may follow, next to what really did."
-)
+EMPTY_TEXT = "player.empty_predict"
 
 
 def predict_choices(weights: Path | None = None) -> list[tuple[str, str]]:
@@ -89,6 +87,7 @@ class PredictTab(SweepTab):
     """
 
     label = "Predict"
+    named = "tabs.predict"
     prefix = "predict-"
     restored = ("file", "given", "about", "animation")
 
@@ -147,23 +146,23 @@ class PredictTab(SweepTab):
                 self._handed_out(self._curves)
                 with gr.Column(elem_classes="pd-panel pd-settings", min_width=0):
                     self.marker = gr.Slider(
-                        0, 10, value=PAST_SECONDS, step=0.1, label="The past ends at (s)",
-                        info="The method sees what comes before. What really followed is shown as a pale ghost.",
+                        0, 10, value=PAST_SECONDS, step=0.1, label=say("predict.marker"),
+                        info=say("predict.marker_info"),
                         elem_id="predict-marker",
                     )  # fmt: skip
                     self.seconds = gr.Slider(
                         *method(PredictRequest.model).seconds, value=PredictRequest.seconds, step=0.5,
-                        label="Seconds to predict",
+                        label=say("predict.seconds"),
                         elem_id="predict-seconds",
                     )  # fmt: skip
                     with gr.Row(elem_classes="pd-rows"):
                         self.model = gr.Dropdown(
-                            predict_choices(), value=PredictRequest.model, label="Method",
+                            predict_choices(), value=PredictRequest.model, label=say("react.method"),
                             elem_id="predict-method", min_width=0, filterable=False,
                         )  # fmt: skip
                     self.about = gr.HTML(self.method_about(PredictRequest.model), elem_id="predict-about")
                     self.seed = gr.Number(
-                        value=PredictRequest.seed, label="Seed", info="Same seed, same futures; empty for new ones.",
+                        value=PredictRequest.seed, label=say("sampling.seed"), info=say("predict.seed_info"),
                         elem_id="predict-seed", min_width=0, visible="hidden",
                     )  # fmt: skip
                     self._sweeps(self._beside)
@@ -180,19 +179,19 @@ class PredictTab(SweepTab):
 
     def _ask(self) -> None:
         with gr.Column(elem_classes="pd-panel pd-ask", min_width=0):
-            self.file = file_field("Motion", elem_id="predict-file")
+            self.file = file_field("predict.file", elem_id="predict-file")
             with gr.Row(elem_classes="pd-chips"):
                 self.chips = example_chips(self.examples)
-                self.take = chip("Continue the last result", elem_id="predict-take")
+                self.take = chip(say("predict.take"), elem_id="predict-take")
             self.camera = CameraPanel(elem_id="predict-camera")
             self.animation = animation_field("predict-animation")
-            self._go("Predict")
+            self._go(say("predict.go"))
 
     def _beside(self) -> None:
         """A second method, whose prediction is shown beside the first one's."""
         with gr.Row(elem_classes="pd-rows"):
             self.other = gr.Dropdown(
-                [("nothing", ""), *predict_choices()], value="", label="Compare with",
+                [(say("sweeps.nothing"), ""), *predict_choices()], value="", label=say("sweeps.compare_with"),
                 elem_id="predict-other", min_width=0, filterable=False,
             )  # fmt: skip
 

@@ -36,20 +36,21 @@ from webdemo.ui.components.sweep import BETWEEN_SENTENCES, Kind
 from webdemo.ui.components.upload import chip, example_chips, file_field
 from webdemo.ui.history import Opened
 from webdemo.ui.text.panels import method_line, notes_lines, status
-from webdemo.ui.text.words import seconds
+from webdemo.ui.text.texts import english, say, worded
+from webdemo.ui.text.words import seconds, text
 
 from .actor import ActorTab
 from .generate import named_method
 from .job import QUIET, Updates
 
-EMPTY_TEXT = (
-    "Choose one person: drop a motion file or pick an example\n"
-    "React adds a second person who answers. Stream shows the answer as it is made, frame by frame."
-)
-_AUTOMATIC = (
-    "With words, InterGen answers them; without words, the virtual agent recognises the gesture itself."
-)
-_WORDS = "What do the two people do? (optional)"
+EMPTY_TEXT = "player.empty_react"
+_AUTOMATIC = english("method.automatic")
+_WORDS = say("react.words")
+
+
+def _methods() -> list[tuple[str, str]]:
+    """The choices of methods as the page shows them."""
+    return [(worded("way", label), key) for label, key in react_choices()]
 
 
 class ReactTab(ActorTab):
@@ -61,6 +62,7 @@ class ReactTab(ActorTab):
     """
 
     label = "React"
+    named = "tabs.react"
     prefix = "react-"
     restored = ("file", "found", "method", "other", "about", "given", "person", "folded", *READ_WITH)
 
@@ -180,12 +182,12 @@ class ReactTab(ActorTab):
 
     def _ask(self) -> None:
         with gr.Column(elem_classes="pd-panel pd-ask", min_width=0):
-            self.file = file_field("Given person", elem_id="react-file")
+            self.file = file_field("react.file", elem_id="react-file")
             with gr.Row(elem_classes="pd-chips"):
                 self.chips = example_chips(self.examples)
                 self.take = {
-                    person: chip(f"{person.upper()} of the last result", elem_id=f"react-take-{person}")
-                    for person in ("a", "b")
+                    person: chip(label, elem_id=f"react-take-{person}")
+                    for person, label in (("a", say("react.take_a")), ("b", say("react.take_b")))
                 }
             with gr.Row(elem_classes="pd-cameras"):
                 self.camera = CameraPanel(elem_id="react-camera")
@@ -193,29 +195,32 @@ class ReactTab(ActorTab):
             with gr.Column(visible=False, min_width=0, elem_classes="pd-settings") as self.trim:
                 self.animation = animation_field("react-animation")
                 self.person = gr.Radio(
-                    [("Person A", "a"), ("Person B", "b")], value="a", label="Which person",
+                    [(say("react.person_a"), "a"), (say("react.person_b"), "b")], value="a", label=say("react.which"),
                     elem_id="react-person", visible=False,
                 )  # fmt: skip
                 with gr.Row(elem_classes="pd-trim"):
-                    self.begin = gr.Slider(0, SECONDS[1], value=0, step=0.1, label="Start",
+                    self.begin = gr.Slider(0, SECONDS[1], value=0, step=0.1, label=say("react.start"),
                                            elem_id="react-start", elem_classes="pd-trim-start")  # fmt: skip
-                    self.end = gr.Slider(0, SECONDS[1], value=SECONDS[1], step=0.1, label="End",
+                    self.end = gr.Slider(0, SECONDS[1], value=SECONDS[1], step=0.1, label=say("react.end"),
                                          elem_id="react-end")  # fmt: skip
                 self._import_choices()
                 self.keep = gr.Checkbox(
-                    False, label="Start in the other person's first pose (not InterGen)",
+                    False, label=say("react.keep"),
                     elem_id="react-keep", visible=False, min_width=0,
                 )  # fmt: skip
                 self.role = gr.Radio(
-                    [("acts first", "a"), ("reacts", "b")], value=ReactRequest.role,
-                    label="The given person …", elem_id="react-role",
+                    [(say("react.acts_first"), "a"), (say("react.reacts"), "b")], value=ReactRequest.role,
+                    label=say("react.role"), elem_id="react-role",
                 )  # fmt: skip
             with gr.Row(elem_classes="pd-rows"):
                 self.method = gr.Dropdown(
-                    react_choices(), value=AUTOMATIC, label="Method",
+                    _methods(), value=AUTOMATIC, label=say("react.method"),
                     elem_id="react-method", min_width=0, filterable=False,
                 )  # fmt: skip
             self.about = gr.HTML(self.fit_method(AUTOMATIC)[-1], elem_id="react-about")
+            if live := live_variant():
+                line = say("react.stream_uses", method=text(live.label))
+                gr.HTML(f'<p class="pd-method">{line}</p>', elem_id="react-live-method")
             self.prompt = gr.Textbox(
                 label=_WORDS,
                 placeholder="One person waves and the other waves back.",
@@ -223,19 +228,19 @@ class ReactTab(ActorTab):
                 max_lines=6,
                 elem_id="react-prompt",
             )
-            self._go("React", self._stream_button)
+            self._go(say("react.go"), self._stream_button)
 
     def _beside(self) -> None:
         """A second method, whose partner is shown beside the first one's."""
         with gr.Row(elem_classes="pd-rows"):
             self.other = gr.Dropdown(
-                [("nothing", ""), *react_choices()], value="", label="Compare with",
+                [(say("sweeps.nothing"), ""), *_methods()], value="", label=say("sweeps.compare_with"),
                 elem_id="react-other", min_width=0, filterable=False,
             )  # fmt: skip
 
     def _stream_button(self) -> None:
         self.stream = gr.Button(
-            "Stream", elem_id="react-stream", min_width=0,
+            say("react.stream"), elem_id="react-stream", min_width=0,
             visible=live_variant() is not None,
         )  # fmt: skip
 
@@ -258,15 +263,16 @@ class ReactTab(ActorTab):
         forced: dict[str, Any] = {} if either else {"value": "a"}
         heard = any("words" in variant.method.takes for variant in both)
         fixed = chosen.method.fixed
-        live = live_variant()
         about = _AUTOMATIC if method == AUTOMATIC else chosen.method.summary
         return (
             gr.update(interactive=either, **forced),
             gr.update(value=chosen.method.steps, interactive="steps" not in fixed),
             gr.update(interactive="guidance" not in fixed),
             gr.update(interactive="damping" not in fixed and chosen.mode == "offline"),
-            gr.update(interactive=heard, label=_WORDS if heard else f"{_WORDS} Not used: {chosen.label}"),
-            method_line(about) + (method_line(f"Stream always uses {live.label}.") if live else ""),
+            gr.update(
+                interactive=heard, label=_WORDS if heard else say("react.words_unused", method=chosen.label)
+            ),
+            method_line(about),
         )
 
     def start_stream(

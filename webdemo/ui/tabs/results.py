@@ -34,6 +34,7 @@ from webdemo.ui.components.player import EMPTY_TEXT, MotionPlayer, show, wear
 from webdemo.ui.components.show import result_payload
 from webdemo.ui.context import PageContext
 from webdemo.ui.text.panels import status
+from webdemo.ui.text.texts import say, worded
 from webdemo.ui.text.words import error_line, link_line, seconds
 from webdemo.ui.visitor import visitor
 from webdemo.view.payload import Payload
@@ -105,43 +106,47 @@ class ResultsTab:
                 self._export()
             with gr.Row(elem_classes="pd-chips"):
                 self.another = gr.Button(
-                    "Another take", size="sm", min_width=0, elem_id=self._id("another"),
+                    say("result.another"), size="sm", min_width=0, elem_id=self._id("another"),
                     elem_classes="pd-onward",
                 )  # fmt: skip
                 self.onward = gr.Button(
-                    "What comes next", size="sm", min_width=0, elem_id=self._id("continue"),
+                    say("result.next"), size="sm", min_width=0, elem_id=self._id("continue"),
                     elem_classes="pd-onward",
                 )  # fmt: skip
         below()
 
     def _share(self) -> None:
         """Ways to show a result to somebody, the likeliest first."""
-        with gr.Accordion("Share", open=False, elem_id=self._id("share"), elem_classes="pd-menu"):
+        with gr.Accordion(say("result.share"), open=False, elem_id=self._id("share"), elem_classes="pd-menu"):
             with gr.Row(elem_classes="pd-downloads"):
                 self.link = gr.Button(
-                    "Link to this view", size="sm", min_width=0, elem_id=self._id("link"),
+                    say("result.link_to_view"), size="sm", min_width=0, elem_id=self._id("link"),
                     elem_classes="pd-onward", visible=self.page.history is not None,
                 )  # fmt: skip
-                self.film = gr.Button("Make a film", size="sm", min_width=0, elem_id=self._id("film"))
+                self.film = gr.Button(
+                    say("result.make_film"), size="sm", min_width=0, elem_id=self._id("film")
+                )
                 self.filmed = gr.DownloadButton(
-                    f"Film {film_suffix()}", size="sm", interactive=False, min_width=0,
+                    f"{say('files.film')} {film_suffix()}", size="sm", interactive=False, min_width=0,
                     elem_id=self._id("download-film"),
                 )  # fmt: skip
                 self.picture = gr.Button(
-                    "Save a picture", size="sm", min_width=0, elem_id=self._id("picture")
+                    say("result.picture"), size="sm", min_width=0, elem_id=self._id("picture")
                 )
                 self._download("png")
                 self.player_state = gr.Textbox(visible=False)
             self.address = gr.Textbox(
-                label="Link", interactive=False, visible=False, buttons=["copy"],
+                label=say("result.link"), interactive=False, visible=False, buttons=["copy"],
                 elem_id=self._id("address"),
             )  # fmt: skip
 
     def _export(self) -> None:
         """Files of a result, by what they are for."""
-        with gr.Accordion("Export", open=False, elem_id=self._id("downloads"), elem_classes="pd-menu"):
+        with gr.Accordion(
+            say("result.export"), open=False, elem_id=self._id("downloads"), elem_classes="pd-menu"
+        ):
             for purpose, keys in PURPOSES.items():
-                gr.HTML(f'<p class="pd-purpose">{purpose}</p>', padding=False)
+                gr.HTML(f'<p class="pd-purpose">{worded("purpose", purpose)}</p>', padding=False)
                 with gr.Row(elem_classes="pd-downloads"):
                     for key in keys:
                         self._download(key)
@@ -149,28 +154,28 @@ class ResultsTab:
                         self._figure()
                     if RIG in keys:
                         self.character = gr.UploadButton(
-                            "Wear a character .glb", file_types=[".glb"], size="sm", min_width=0,
+                            say("result.character"), file_types=[".glb"], size="sm", min_width=0,
                             elem_id=self._id("character"), elem_classes="pd-character",
                         )  # fmt: skip
                         self.thing = gr.UploadButton(
-                            "Bring a thing .glb .obj …", file_types=FILE_TYPES, size="sm", min_width=0,
+                            say("result.thing"), file_types=FILE_TYPES, size="sm", min_width=0,
                             elem_id=self._id("thing"), elem_classes="pd-character",
                         )  # fmt: skip
             self.worn = gr.State(None, time_to_live=3600)
 
     def _figure(self) -> None:
         """The button that makes a figure and a mesh, and theirs."""
-        self.figure = gr.Button("Figure and mesh", size="sm", min_width=0, elem_id=self._id("figure"))
+        self.figure = gr.Button(say("result.figure"), size="sm", min_width=0, elem_id=self._id("figure"))
         self.figured = [
             gr.DownloadButton(label, size="sm", interactive=False, min_width=0, elem_id=self._id(name))
-            for label, name in (("Figure .html", "download-html"), ("Mesh .ply", "download-ply"))
+            for label, name in ((say("files.figure"), "download-html"), (say("files.mesh"), "download-ply"))
         ]
 
     def _download(self, key: str) -> None:
         """The button of one kind of file."""
         kind = next(kind for kind in KINDS if kind.key == key)
         self._buttons[key] = gr.DownloadButton(
-            kind.label, size="sm", interactive=False, min_width=0,
+            worded("files", kind.label), size="sm", interactive=False, min_width=0,
             visible=kind.offered(), elem_id=self._id(f"download-{key.replace('.', '-')}"),
         )  # fmt: skip
 

@@ -10,21 +10,19 @@ import gradio as gr
 from webdemo.inference.method import DEFAULT_STEPS
 from webdemo.inference.requests import DAMPING, GUIDANCE, MAX_SEED, SAMPLES, TRIES, SamplingRequest
 from webdemo.ui.components.pace import CHOSEN, FOLLOWED, pace_of, pace_switch
-from webdemo.ui.components.settings import ADVANCED, advanced_label
+from webdemo.ui.components.settings import ADVANCED, advanced_label, folded_at_first
+from webdemo.ui.text.texts import say
 
 from .results import QUIET, ResultsTab
 
 STEPS_SHOWN = (1, 100)
 """What the slider offers; the API takes more."""
-_DAMPING_INFO = (
-    "While t ≤ threshold × T, corrects feet, bones, overlap, touch and facing as the motion is generated; "
-    "0 = off."
-)
-_GUIDANCE_INFO = "How strongly the words steer; 1 = no guidance."
-_STEPS_INFO = "Denoising steps: fewer are faster, more are finer."
-_TRIES_INFO = "Seeds to try until the motion shows all that is said; the best is kept."
-_SEED_INFO = "Same seed, same motion; empty for a new one."
-_SAMPLES_INFO = "Motions to generate."
+_DAMPING_INFO = say("sampling.damping_info")
+_GUIDANCE_INFO = say("sampling.guidance_info")
+_STEPS_INFO = say("sampling.steps_info")
+_TRIES_INFO = say("sampling.tries_info")
+_SEED_INFO = say("sampling.seed_info")
+_SAMPLES_INFO = say("sampling.samples_info")
 
 
 class SamplingTab(ResultsTab):
@@ -52,22 +50,22 @@ class SamplingTab(ResultsTab):
             self.pace = pace_switch(self._id("pace"))
         values = (SamplingRequest.guidance, DEFAULT_STEPS, SamplingRequest.damping)
         with gr.Accordion(
-            advanced_label(*values), open=True, elem_id=self._id("advanced"), elem_classes="pd-advanced"
+            folded_at_first(*values), open=True, elem_id=self._id("advanced"), elem_classes="pd-advanced"
         ) as self.folded:
             self.guidance = gr.Slider(
-                *GUIDANCE, value=values[0], step=0.1, label="Guidance scale", info=_GUIDANCE_INFO,
+                *GUIDANCE, value=values[0], step=0.1, label=say("sampling.guidance"), info=_GUIDANCE_INFO,
                 elem_id=self._id("guidance"),
             )  # fmt: skip
             self.steps = gr.Slider(
-                *STEPS_SHOWN, value=values[1], step=1, label="DDIM steps", info=_STEPS_INFO,
+                *STEPS_SHOWN, value=values[1], step=1, label=say("sampling.steps"), info=_STEPS_INFO,
                 elem_id=self._id("steps"),
             )  # fmt: skip
             self.damping = gr.Slider(
-                *DAMPING, value=values[2], step=0.05, label="Damping threshold",
+                *DAMPING, value=values[2], step=0.05, label=say("sampling.damping"),
                 info=_DAMPING_INFO, elem_id=self._id("damping"),
             )  # fmt: skip
         with gr.Accordion(
-            "More", open=False, elem_id=self._id("more"), elem_classes="pd-advanced"
+            say("sampling.more"), open=False, elem_id=self._id("more"), elem_classes="pd-advanced"
         ) as self.more:
             added = self._more(more, said=said)
         tries = [] if self.tries is None else [self.tries]
@@ -81,20 +79,24 @@ class SamplingTab(ResultsTab):
     def _more(self, more: Callable[[], Sequence[gr.Checkbox]], *, said: bool) -> Sequence[gr.Checkbox]:
         """The settings that are rarely needed; returns those of ``more``."""
         self.samples = gr.Slider(
-            *SAMPLES, value=SamplingRequest.samples, step=1, label="Samples", info=_SAMPLES_INFO,
+            *SAMPLES, value=SamplingRequest.samples, step=1, label=say("sampling.samples"), info=_SAMPLES_INFO,
             elem_id=self._id("samples"),
         )  # fmt: skip
         with gr.Row(elem_classes="pd-seed"):
             self.seed = gr.Number(
-                value=SamplingRequest.seed, label="Seed", info=_SEED_INFO,
+                value=SamplingRequest.seed, label=say("sampling.seed"), info=_SEED_INFO,
                 elem_id=self._id("seed"), elem_classes="pd-seed-field", min_width=0,
             )  # fmt: skip
             self.dice = gr.Button(
-                "Random", size="sm", elem_id=self._id("dice"), elem_classes="pd-dice", min_width=0
+                say("sampling.random"),
+                size="sm",
+                elem_id=self._id("dice"),
+                elem_classes="pd-dice",
+                min_width=0,
             )
         if said:
             self.tries = gr.Slider(
-                *TRIES, value=SamplingRequest.tries, step=1, label="Tries", info=_TRIES_INFO,
+                *TRIES, value=SamplingRequest.tries, step=1, label=say("sampling.tries"), info=_TRIES_INFO,
                 elem_id=self._id("tries"),
             )  # fmt: skip
         return more()

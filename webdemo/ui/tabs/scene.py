@@ -38,17 +38,14 @@ from webdemo.ui.components.story_words import (
 from webdemo.ui.components.upload import chip
 from webdemo.ui.history import Opened
 from webdemo.ui.text.panels import status
+from webdemo.ui.text.texts import say, worded
 from webdemo.ui.text.words import error_line, tries_line
 from webdemo.view.payload import player_payload
 
 from .job import QUIET, Updates
 from .sweeps import SweepTab
 
-EMPTY_TEXT = (
-    "Write a little story, or pick an example, and press Generate\n"
-    "It is laid out as beats under this player. You can change their words and lengths, make a span again,"
-    " and ask for several continuations."
-)
+EMPTY_TEXT = "player.empty_scene"
 EXAMPLES = (
     (
         "A greeting with a walk",
@@ -75,6 +72,7 @@ class SceneTab(SweepTab):
     """A story → a scene."""
 
     label = "Scene"
+    named = "tabs.scene"
     prefix = "scene-"
     restored = ("line_up", "folded")
 
@@ -120,11 +118,11 @@ class SceneTab(SweepTab):
                 with gr.Column(elem_classes="pd-panel pd-settings", min_width=0):
                     self._sampling(said=True)
                     self._sweeps()
-                with gr.Accordion("The story as text", open=False, elem_classes="pd-panel pd-about"):
+                with gr.Accordion(say("scene.text"), open=False, elem_classes="pd-panel pd-about"):
                     self.text = gr.Textbox(
-                        label="TOML to copy, change and keep", lines=8, max_lines=24, elem_id=self._id("text"),
+                        label=say("scene.toml"), lines=8, max_lines=24, elem_id=self._id("text"),
                     )  # fmt: skip
-                    self.use = gr.Button("Use this text", size="sm", elem_id=self._id("use-text"))
+                    self.use = gr.Button(say("scene.use"), size="sm", elem_id=self._id("use-text"))
             self._results(EMPTY_TEXT, self._story)
         assert self.tries is not None  # as in every tab of sentences
         self.controls = {
@@ -140,7 +138,7 @@ class SceneTab(SweepTab):
     def _ask(self) -> None:
         with gr.Column(elem_classes="pd-panel pd-ask", min_width=0):
             self.prompt = gr.Textbox(
-                label="What happens, one thing after another?",
+                label=say("scene.prompt"),
                 placeholder=EXAMPLES[0][1],
                 lines=1,
                 max_lines=8,
@@ -148,32 +146,33 @@ class SceneTab(SweepTab):
             )
             with gr.Row(elem_classes="pd-chips"):
                 self.chips = [
-                    chip(name, elem_id=self._id(f"example-{i}")) for i, (name, _) in enumerate(EXAMPLES)
+                    chip(worded("examples", name), elem_id=self._id(f"example-{i}"))
+                    for i, (name, _) in enumerate(EXAMPLES)
                 ]
-                self.last = chip("Take the last result", elem_id=self._id("last"))
+                self.last = chip(say("scene.last"), elem_id=self._id("last"))
             self.reading = Reading(elem_id=self._id("reading"), elem_classes="pd-reading")
-            self._go("Generate")
+            self._go(say("scene.go"))
 
     def _story(self) -> None:
         self.line_up = StoryLine(elem_id=self._id("story"), elem_classes="pd-story")
         with gr.Column(elem_classes="pd-panel pd-parts", min_width=0):
             self.words = gr.Textbox(
-                label="Make a part again, or continue",
-                placeholder="Words for this part. Empty: the span's own beats, or any continuation",
+                label=say("scene.part"),
+                placeholder=say("scene.part_hint"),
                 elem_id=self._id("part-words"),
             )
             with gr.Row(elem_classes="pd-chips"):
                 self.remake = gr.Button(
-                    "Make this span again", size="sm", min_width=0, elem_id=self._id("remake")
+                    say("scene.remake"), size="sm", min_width=0, elem_id=self._id("remake")
                 )
                 self.futures = gr.Button(
-                    f"{FUTURES} continuations from here", size="sm", min_width=0, elem_id=self._id("futures")
+                    say("scene.futures", count=FUTURES), size="sm", min_width=0, elem_id=self._id("futures")
                 )
                 self.take = gr.Button(
-                    "Take the one shown", size="sm", min_width=0, elem_id=self._id("take"),
+                    say("scene.take"), size="sm", min_width=0, elem_id=self._id("take"),
                     elem_classes="pd-take",
                 )  # fmt: skip
-                self.back = gr.Button("The motion before", size="sm", min_width=0, elem_id=self._id("back"))
+                self.back = gr.Button(say("scene.back"), size="sm", min_width=0, elem_id=self._id("back"))
         self.shown_at = gr.Textbox(visible=False)
         self.earlier = gr.State([], time_to_live=3600)
 

@@ -16,16 +16,14 @@ from webdemo.ui.public_html import frame_code
 from webdemo.ui.sharing import PublicPage, SharingLike
 from webdemo.ui.site import FILES_BYTES, write_site
 from webdemo.ui.text.panels import status
+from webdemo.ui.text.texts import say
 from webdemo.ui.text.words import error_line
 from webdemo.ui.visitor import visitor
 
 from .job import QUIET, Updates
 from .workspace import runs_line
 
-_INTRO = (
-    "Choose runs in the list below and press <b>Publish</b>. Anybody with the address can watch them, without an "
-    "account, until the page ends. They see names, methods, lengths and seeds, and not your notes or tags."
-)
+_INTRO = say("sharing.intro")
 _SITE_TITLE = "Motions of two people"
 
 
@@ -48,42 +46,40 @@ class SharingPanel:
     def build(self) -> None:
         """Lays out the panel, folded until runs are chosen for it."""
         days = self.sharing.days
-        with gr.Accordion(
-            "Public pages: show results to anybody", open=False, elem_id="sharing"
-        ) as self.fold:
+        with gr.Accordion(say("sharing.fold"), open=False, elem_id="sharing") as self.fold:
             gr.HTML(f'<p class="pd-method">{_INTRO}</p>')
             self.line = gr.HTML(status(), elem_id="sharing-status", elem_classes="pd-line")
             with gr.Column(visible=False, min_width=0) as self.making:
                 with gr.Row(elem_classes="pd-pair"):
                     self.title = gr.Textbox(
-                        label="Title", info="Visitors read it. By default the name of the run.",
+                        label=say("sharing.title"), info=say("sharing.title_info"),
                         elem_id="sharing-title", min_width=0,
                     )  # fmt: skip
                     self.days = gr.Number(
-                        days, label="Days", info=f"Until the page ends, {days:g} at most.", minimum=0.01,
+                        days, label=say("sharing.days"), info=say("sharing.days_info", days=f"{days:g}"), minimum=0.01,
                         maximum=days or None, visible=bool(days), elem_id="sharing-days", min_width=0,
                     )  # fmt: skip
                 with gr.Row():
                     self.make = gr.Button(
-                        "Make the page", variant="primary", size="sm", min_width=0, visible=bool(days),
+                        say("sharing.make"), variant="primary", size="sm", min_width=0, visible=bool(days),
                         elem_id="sharing-make",
                     )  # fmt: skip
                     self.folder = gr.Button(
-                        "Save as a folder of pages", size="sm", min_width=0, elem_id="sharing-folder"
+                        say("sharing.folder"), size="sm", min_width=0, elem_id="sharing-folder"
                     )
                     self.saved = gr.DownloadButton(
-                        "Pages .zip", size="sm", min_width=0, visible=False, elem_id="sharing-saved"
+                        say("files.pages"), size="sm", min_width=0, visible=False, elem_id="sharing-saved"
                     )
             with gr.Column(visible=False, min_width=0) as self.reading:
-                self.which = gr.Dropdown([], label="Your public pages", elem_id="sharing-which")
+                self.which = gr.Dropdown([], label=say("sharing.which"), elem_id="sharing-which")
                 self.link = gr.Textbox(
-                    label="Address", interactive=False, buttons=["copy"], elem_id="sharing-link"
+                    label=say("sharing.address"), interactive=False, buttons=["copy"], elem_id="sharing-link"
                 )
                 self.frame = gr.Textbox(
-                    label="HTML of a frame for a page of your own", interactive=False, buttons=["copy"],
+                    label=say("sharing.frame"), interactive=False, buttons=["copy"],
                     elem_id="sharing-frame",
                 )  # fmt: skip
-                self.end = gr.Button("End this page", size="sm", min_width=0, elem_id="sharing-end")
+                self.end = gr.Button(say("sharing.end"), size="sm", min_width=0, elem_id="sharing-end")
         self.chosen = gr.State([])
 
     def wire(self, tab: gr.Tab, choose: Any) -> None:

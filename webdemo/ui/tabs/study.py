@@ -25,6 +25,7 @@ from webdemo.ui.context import PageContext
 from webdemo.ui.history import HistoryLike
 from webdemo.ui.studies import NewStudy, StudiesLike, StudyEntry
 from webdemo.ui.text.panels import status
+from webdemo.ui.text.texts import SAY, say
 from webdemo.ui.text.votes import count, result_html
 from webdemo.ui.text.words import error_line
 from webdemo.ui.visitor import visitor
@@ -36,13 +37,9 @@ QUESTIONS = (
     "Which looks more real?",
     "In which do the two people respond to each other better?",
 )
-_INTRO = (
-    "Choose runs of two or more methods or settings in the list below and press <b>Blind study</b>, or begin with two "
-    "sets of files. People with the link see pairs side by side, in random order and on random sides, without names or "
-    "settings."
-)
+_INTRO = say("study.intro")
 _FILES_ALONE = "Upload two sets of motions. Files of the same name in both stand beside each other."
-_DELETE = "(study) => confirm('Delete this study with all its votes? This cannot be undone.') ? study : ''"
+_DELETE = f"(study) => {{ {SAY} return confirm(say('study.delete_sure')) ? study : ''; }}"
 
 
 def _upload(label: str, name: str, elem_id: str) -> tuple[gr.File, gr.Textbox]:
@@ -52,7 +49,7 @@ def _upload(label: str, name: str, elem_id: str) -> tuple[gr.File, gr.Textbox]:
             label=label, file_types=FILE_TYPES, height=112, file_count="multiple", elem_id=elem_id,
             elem_classes="pd-file",
         )  # fmt: skip
-        return files, gr.Textbox(name, label="Name of this set", elem_id=f"{elem_id}-name")
+        return files, gr.Textbox(name, label=say("study.name"), elem_id=f"{elem_id}-name")
 
 
 class StudyPanel:
@@ -73,9 +70,9 @@ class StudyPanel:
 
     def build(self) -> None:
         """Lays out the panel, folded until runs are chosen for it."""
-        with gr.Accordion("Blind study: let people vote", open=False, elem_id="study") as self.fold:
+        with gr.Accordion(say("study.fold"), open=False, elem_id="study") as self.fold:
             gr.HTML(f'<p class="pd-method">{_INTRO}</p>')
-            self.begin = gr.Button("Begin with files alone", size="sm", elem_id="study-begin")
+            self.begin = gr.Button(say("study.begin"), size="sm", elem_id="study-begin")
             self.line = gr.HTML(status(), elem_id="study-status", elem_classes="pd-line")
             with gr.Column(visible=False, min_width=0) as self.making:
                 self._making()
@@ -85,51 +82,49 @@ class StudyPanel:
 
     def _making(self) -> None:
         with gr.Row(elem_classes="pd-pair"):
-            self.way = gr.Dropdown([], label="What is compared", elem_id="study-way", min_width=0)
+            self.way = gr.Dropdown([], label=say("study.way"), elem_id="study-way", min_width=0)
             self.question = gr.Dropdown(
-                list(QUESTIONS), value=QUESTIONS[0], allow_custom_value=True, label="Question to the voters",
-                info="Choose one, or write your own.", elem_id="study-question", min_width=0,
+                list(QUESTIONS), value=QUESTIONS[0], allow_custom_value=True, label=say("study.question"),
+                info=say("study.question_info"), elem_id="study-question", min_width=0,
             )  # fmt: skip
         with gr.Row(elem_classes="pd-pair"):
             self.uploads = [
-                _upload("Recorded or other motions as one more set (optional)", "Recorded", "study-files"),
-                _upload("Another set of motions (optional)", "Uploaded", "study-more-files"),
+                _upload(say("study.recorded"), "Recorded", "study-files"),
+                _upload(say("study.more"), "Uploaded", "study-more-files"),
             ]
-        self.title = gr.Textbox(label="Name of the study (for you alone)", elem_id="study-title")
+        self.title = gr.Textbox(label=say("study.title"), elem_id="study-title")
         with gr.Row(elem_classes="pd-pair"):
             self.each = gr.Slider(
-                0, MOST_PAIRS, value=0, step=1, label="Pairs for each person", info="0 = all of them.",
+                0, MOST_PAIRS, value=0, step=1, label=say("study.each"), info=say("study.each_info"),
                 elem_id="study-each",
             )  # fmt: skip
             self.checks = gr.Slider(
-                0, MOST_CHECKS, value=2, step=1, label="Attention checks",
-                info="A motion beside its own shuffled copy. Voters who fail more than a third are left out.",
+                0, MOST_CHECKS, value=2, step=1, label=say("study.checks"),
+                info=say("study.checks_info"),
                 elem_id="study-checks",
             )  # fmt: skip
         with gr.Row(elem_classes="pd-pair"):
-            self.sentence = gr.Checkbox(
-                True, label="Show the sentence above the pair", elem_id="study-sentence"
-            )
+            self.sentence = gr.Checkbox(True, label=say("study.sentence"), elem_id="study-sentence")
             self.reveal = gr.Checkbox(
                 False,
-                label="Show people the result, with names, after their last pair",
+                label=say("study.reveal"),
                 elem_id="study-reveal",
             )
-        self.make = gr.Button("Make the study", variant="primary", size="sm", elem_id="study-make")
+        self.make = gr.Button(say("study.make"), variant="primary", size="sm", elem_id="study-make")
 
     def _reading(self) -> None:
-        self.which = gr.Dropdown([], label="Your studies", elem_id="study-which")
+        self.which = gr.Dropdown([], label=say("study.which"), elem_id="study-which")
         self.link = gr.Textbox(
-            label="Link to vote", interactive=False, buttons=["copy"], elem_id="study-link"
+            label=say("study.link"), interactive=False, buttons=["copy"], elem_id="study-link"
         )
         self.result = gr.HTML(elem_id="study-result")
         with gr.Row(elem_classes="pd-downloads"):
-            self.refresh = gr.Button("Refresh", size="sm", min_width=0, elem_id="study-refresh")
+            self.refresh = gr.Button(say("study.refresh"), size="sm", min_width=0, elem_id="study-refresh")
             self.table = gr.DownloadButton(
-                "Votes .csv", size="sm", min_width=0, interactive=False, elem_id="study-csv"
+                say("files.votes"), size="sm", min_width=0, interactive=False, elem_id="study-csv"
             )
-            self.closing = gr.Button("End the voting", size="sm", min_width=0, elem_id="study-close")
-            self.delete = gr.Button("Delete", size="sm", min_width=0, elem_id="study-delete")
+            self.closing = gr.Button(say("study.close"), size="sm", min_width=0, elem_id="study-close")
+            self.delete = gr.Button(say("study.delete"), size="sm", min_width=0, elem_id="study-delete")
 
     def wire(self, tab: gr.Tab, choose: Any) -> None:
         """Wires the panel's events.
@@ -250,7 +245,7 @@ class StudyPanel:
             f"{who.base}study/{found.key}",
             html,
             gr.update(value=file, interactive=file is not None),
-            gr.update(value="Open the voting again" if found.closed else "End the voting"),
+            gr.update(value=say("study.open") if found.closed else say("study.close")),
         )
 
     def _result(self, study: StudyEntry) -> tuple[str, str | None]:

@@ -26,6 +26,7 @@ from webdemo.ui.components.sweep import (
 from webdemo.ui.components.upload import chip
 from webdemo.ui.history import Opened
 from webdemo.ui.text.panels import notes_lines, status
+from webdemo.ui.text.texts import say, worded
 from webdemo.ui.text.words import seconds
 
 from .job import JobTab, Updates, total
@@ -36,9 +37,7 @@ GUIDANCE = Kind("guidance", "Guidance", "guidance", real, named=lambda value: f"
 STEPS = Kind("steps", "DDIM steps", "steps", whole)
 DAMPING = Kind("damping", "Damping", "damping", real, named=lambda value: f"{value:g}")
 _SIDES = ("across", "down")
-_INFO = (
-    f"Up to {MOST} results side by side. Numbers: 1, 2, 3 or 1-3. Sentences and methods: separate them by ;"
-)
+_INFO = say("sweeps.info", most=MOST)
 
 
 class SweepTab(JobTab):
@@ -64,24 +63,32 @@ class SweepTab(JobTab):
 
     def _sweeps(self, beside: Callable[[], None] = lambda: None) -> None:
         """The menu *Compare*, folded away: grids that are one press away, ``beside``, and the settings of a grid."""
-        choices = [("nothing", ""), *((kind.label, kind.field) for kind in self.kinds())]
-        with gr.Accordion("Compare", open=False, elem_id=self._id("grid"), elem_classes="pd-advanced"):
+        choices = [
+            (say("sweeps.nothing"), ""),
+            *((worded("swept", kind.label), kind.field) for kind in self.kinds()),
+        ]
+        with gr.Accordion(
+            say("sweeps.compare"), open=False, elem_id=self._id("grid"), elem_classes="pd-advanced"
+        ):
             with gr.Row(elem_classes="pd-chips"):
-                self.preset_chips = [chip(label) for label in self.presets()]
+                self.preset_chips = [chip(worded("preset", label)) for label in self.presets()]
             beside()
             gr.HTML(f'<p class="pd-method">{_INFO}</p>')
             self.sides: dict[str, tuple[gr.Dropdown, gr.Textbox]] = {}
             for side in _SIDES:
                 with gr.Row(elem_classes="pd-pair"):
                     field = gr.Dropdown(
-                        choices, value="", label=side.capitalize(), elem_id=self._id(f"grid-{side}"),
+                        choices, value="", label=worded("side", side.capitalize()), elem_id=self._id(f"grid-{side}"),
                         min_width=0, filterable=False,
                     )  # fmt: skip
                     values = gr.Textbox(
-                        label="Values", lines=1, elem_id=self._id(f"grid-{side}-values"), min_width=0
+                        label=say("sweeps.values"),
+                        lines=1,
+                        elem_id=self._id(f"grid-{side}-values"),
+                        min_width=0,
                     )
                     self.sides[side] = (field, values)
-            self.make_grid = gr.Button("Make the grid", size="sm", elem_id=self._id("grid-make"))
+            self.make_grid = gr.Button(say("sweeps.make"), size="sm", elem_id=self._id("grid-make"))
 
     def _wire_sweeps(self) -> None:
         parts = [part for side in _SIDES for part in self.sides[side]]

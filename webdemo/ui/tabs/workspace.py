@@ -16,6 +16,7 @@ from webdemo.inference.requests import Cancelled
 from webdemo.ui.context import PageContext
 from webdemo.ui.history import HistoryLike, Usage
 from webdemo.ui.text.panels import status
+from webdemo.ui.text.texts import say
 from webdemo.ui.text.words import error_line, text
 from webdemo.ui.visitor import visitor
 
@@ -46,16 +47,14 @@ class WorkspacePanel:
 
     def build(self) -> None:
         """Lays out the panel, folded."""
-        with gr.Accordion(
-            "Export everything, or import a workspace", open=False, elem_id="history-workspace"
-        ):
-            self.everything = gr.Button("Export everything", size="sm", elem_id="history-export-all")
+        with gr.Accordion(say("history.all"), open=False, elem_id="history-workspace"):
+            self.everything = gr.Button(say("history.export"), size="sm", elem_id="history-export-all")
             self.file = gr.File(
-                label="Import: a .zip of Export", file_types=[".zip"], height=112, elem_id="history-import",
+                label=say("history.import"), file_types=[".zip"], height=112, elem_id="history-import",
                 elem_classes="pd-file",
             )  # fmt: skip
             self.stop = gr.Button(
-                "Cancel the import", size="sm", visible=False, elem_id="history-import-cancel"
+                say("history.stop"), size="sm", visible=False, elem_id="history-import-cancel"
             )
 
     def wire(

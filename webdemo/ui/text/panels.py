@@ -10,6 +10,7 @@ from webdemo.inference.methods import label_of
 from webdemo.inference.requests import Result
 
 from .plain import legend, lines_in_words
+from .texts import say, worded
 from .words import number, seconds, text
 
 Summary = Mapping[str, float]
@@ -51,17 +52,18 @@ def _note_tone(note: str) -> str:
 
 def method_line(summary: str) -> str:
     """One line on a method, under the place where it is chosen."""
-    return f'<p class="pd-method">{text(summary)}</p>'
+    known = worded("method", summary)
+    return f'<p class="pd-method">{text(summary) if known == summary else known}</p>'
 
 
 def model_state(state: str, error: str | None = None) -> str:
     """The small mark in the header: whether the networks are loaded."""
     words = {
-        "loading": "Loading model …",
-        "ready": "Model ready",
-        "failed": error or "The model did not load.",
+        "loading": say("page.loading"),
+        "ready": say("page.ready"),
+        "failed": text(error) if error else say("page.failed"),
     }
-    return f'<p class="pd-model pd-model-{text(state)}" role="status">{text(words[state])}</p>'
+    return f'<p class="pd-model pd-model-{text(state)}" role="status">{words[state]}</p>'
 
 
 def readout_panel(result: Result) -> str:

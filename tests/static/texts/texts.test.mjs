@@ -1,0 +1,77 @@
+import assert from "node:assert/strict";
+import { test } from "node:test";
+
+const { language, nearest, say, translate, unmarked } = await import("../../../static/texts.js");
+
+/** The module as a page loads it, with the globals of that page. */
+async function inPage(globals, name) {
+  const before = Object.fromEntries(Object.keys(globals).map((key) => [key, Object.getOwnPropertyDescriptor(globalThis, key)]));
+  for (const [key, value] of Object.entries(globals)) Object.defineProperty(globalThis, key, { value, configurable: true });
+  try {
+    return await import(`../../../static/texts.js?${name}`);
+  } finally {
+    for (const [key, was] of Object.entries(before)) was ? Object.defineProperty(globalThis, key, was) : delete globalThis[key];
+  }
+}
+
+/** An element with attributes, and a root that finds such elements by one of them. */
+const element = (attributes) => ({
+  attributes, textContent: "as it was", dataset: { say: attributes["data-say"] },
+  getAttribute: (name) => attributes[name], setAttribute: (name, value) => (attributes[name] = value),
+});
+const rooted = (...elements) => ({
+  querySelectorAll: (selector) => elements.filter(({ attributes }) => selector.slice(1, -1) in attributes),
+});
+
+test("a language is found as Gradio finds it", () => {
+  assert.equal(nearest("de"), "de");
+  assert.equal(nearest("de-AT"), "de");
+  assert.equal(nearest("en-US"), "en");
+  assert.equal(nearest("fr-FR"), "en");
+  assert.equal(nearest(undefined), "en");
+});
+
+test("values stand in the place of their names, and what nobody knows is given back", () => {
+  assert.equal(language, "en");
+  assert.equal(say("player.take", { number: 3 }), "Take continuation 3");
+  assert.equal(say("player.take"), "Take continuation {number}");
+  assert.equal(say("vote.pair", { number: 0, total: 12 }), "Pair 0 of 12");
+  assert.equal(say("Something that the server said {number}"), "Something that the server said {number}");
+});
+
+test("a mark of Gradio's configuration is read, with the words around it", () => {
+  assert.equal(unmarked('__i18n__{"__type__": "translation_metadata", "key": "files.film"} .mp4'), "Film .mp4");
+  assert.equal(unmarked("Any label"), "Any label");
+});
+
+test("in the lab's page, Gradio's choice counts, and its configuration has the texts", async () => {
+  const known = { de: { "player.take": "{number} nehmen" }, en: { "player.take": "Take {number}" } };
+  const page = { gradio_config: { i18n_translations: known }, document: { documentElement: { lang: "de" } }, location: { search: "?lang=en" } };
+  const texts = await inPage(page, "gradio");
+  assert.equal(texts.language, "de");
+  assert.equal(texts.say("player.take", { number: 2 }), "2 nehmen");
+});
+
+test("elsewhere, the address goes before the browser's language", async () => {
+  const document = { documentElement: { lang: "en" } };
+  const navigator = { language: "de-DE" };
+  assert.equal((await inPage({ document, navigator, location: { search: "" } }, "browser")).language, "de");
+  assert.equal((await inPage({ document, navigator, location: { search: "?lang=en" } }, "address")).language, "en");
+});
+
+test("pages from a folder bring their texts along", async () => {
+  const pasDeDeuxTexts = { de: { "player.front": "Von vorn" }, en: {} };
+  const page = { pasDeDeuxTexts, document: { documentElement: {} }, navigator: { language: "de" }, location: { search: "" } };
+  assert.equal((await inPage(page, "folder")).say("player.front"), "Von vorn");
+});
+
+test("markup is put into the language, and English markup is left alone", async () => {
+  const button = () => element({ "data-say": "player.front", title: "Front (2)", "data-say-title": "player.front_title" });
+  const english = button();
+  translate(rooted(english));
+  assert.deepEqual([english.textContent, english.attributes.title], ["as it was", "Front (2)"]);
+  const page = { document: { documentElement: {} }, navigator: { language: "de" }, location: { search: "" } };
+  const german = button();
+  (await inPage(page, "markup")).translate(rooted(german));
+  assert.deepEqual([german.textContent, german.attributes.title], ["Vorn", "Von vorn (2)"]);
+});

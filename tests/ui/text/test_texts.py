@@ -1,0 +1,228 @@
+"""The texts of the page: every language has all of them, each is used, and none stands in the code instead."""
+
+from __future__ import annotations
+
+import ast
+import json
+import re
+from collections.abc import Iterator
+from html.parser import HTMLParser
+from pathlib import Path
+
+import pytest
+
+from webdemo.inference.methods import methods
+from webdemo.ui.text.texts import ENGLISH, TEXTS_FOLDER, english, languages, say, translations, worded
+
+ROOT = Path(__file__).resolve().parents[3]
+PYTHON = sorted((ROOT / "webdemo").rglob("*.py"))
+MODULES = [
+    path for path in sorted((ROOT / "static").rglob("*.js")) if "mediapipe" not in path.parts
+]  # what others wrote says nothing to visitors
+MARKUP = sorted((ROOT / "static").rglob("*.html"))
+KEY = re.compile(r"[a-z]+\.[a-z0-9_]+")
+WORDED = ("examples", "files", "method", "preset", "purpose", "side", "swept", "way")
+"""Sections that are looked up by their English labels, which stand in the code or in its data."""
+BY_GRADIO = {"common.upload"}
+PROGRAMS = ("api.py", "read_api.py", "render_api.py", "scene_api.py")
+"""Endpoints, whose labels are the English documentation for programs."""
+SHOWN = ("label", "info", "placeholder")
+NAMED = ("Accordion", "Button", "DownloadButton", "Tab", "UploadButton", "chip")
+"""Components whose first argument is shown."""
+ALONE = {"react-order", "react-prompt", "study-question"}
+"""Names of data sets, a prompt, which is English, and questions that go to the voters as they stand."""
+NO_KEYS = {"scene.bgcolor", "scene.camera"}
+"""Plotly's."""
+
+
+def _literals(path: Path) -> set[str]:
+    text = path.read_text(encoding="utf-8")
+    if path.suffix == ".py":
+        found = {n.value for n in ast.walk(ast.parse(text)) if isinstance(n, ast.Constant)}
+        return {value for value in found if isinstance(value, str)} | set(
+            re.findall(r"say\('([^']+)'\)", text)
+        )
+    return set(re.findall(rf"[\"'`]({KEY.pattern})[\"'`]", text))
+
+
+@pytest.fixture(scope="module")
+def literals() -> set[str]:
+    return set().union(*map(_literals, (*PYTHON, *MODULES, *MARKUP)))
+
+
+def _placeholders(text: str) -> list[str]:
+    return sorted(re.findall(r"\{(\w+)\}", text))
+
+
+@pytest.mark.parametrize("language", [name for name in languages() if name != ENGLISH])
+def test_every_language_has_all_texts_with_the_same_names_in_braces(language: str) -> None:
+    assert languages()[language].keys() == languages()[ENGLISH].keys()
+    for key, text in languages()[language].items():
+        assert text.strip(), key
+        assert _placeholders(text) == _placeholders(english(key)), key
+        assert re.findall(r"</?\w+>", text) == re.findall(r"</?\w+>", english(key)), key
+        spaces = [
+            re.match(r"\s*", each).group() + "|" + re.search(r"\s*$", each).group()
+            for each in (text, english(key))
+        ]
+        assert spaces[0] == spaces[1], f"{key}: the spaces at its ends join it to other texts"
+
+
+def test_a_second_language_is_not_english() -> None:
+    same = [key for key, text in languages()["de"].items() if text == english(key)]
+    assert len(same) < 0.08 * len(languages()["de"]), same
+
+
+def test_scripts_know_the_languages() -> None:
+    (listed,) = re.findall(r"const LANGUAGES = (\[.*?\]);", (ROOT / "static" / "texts.js").read_text())
+    assert json.loads(listed) == sorted(languages()) == [path.stem for path in sorted(TEXTS_FOLDER.iterdir())]
+
+
+def test_every_text_is_used(literals: set[str]) -> None:
+    known = literals | {literal.capitalize() for literal in literals}
+    known |= {
+        path.stem.replace("-", " ").capitalize() for path in (ROOT / "static" / "examples").glob("*.npz")
+    }
+    known |= {method.summary for task in ("generate", "react", "predict") for method in methods(task)}
+    for key, text in languages()[ENGLISH].items():
+        by_label = key.split(".")[0] in WORDED and text in known
+        assert key in literals or key in BY_GRADIO or by_label, key
+
+
+def test_every_text_that_is_named_is_there() -> None:
+    sections = {key.split(".")[0] for key in languages()[ENGLISH]}
+    pages = [path for path in PYTHON if "ui" in path.parts]
+    named = {text for path in (*pages, *MODULES, *MARKUP) for text in _literals(path) if KEY.fullmatch(text)}
+    named = {
+        text
+        for text in named
+        if text.split(".")[0] in sections and not any((ROOT / "static").glob(f"*/{text}"))
+    }
+    assert named - languages()[ENGLISH].keys() <= NO_KEYS
+
+
+class _Said(HTMLParser):
+    """(key, English that stands in the markup) of all texts of a file."""
+
+    def __init__(self) -> None:
+        super().__init__()
+        self.found: list[tuple[str, str]] = []
+        self._open: tuple[str, str] | None = None
+        self.bare: list[str] = []
+        self._said = False
+
+    def handle_starttag(self, tag: str, attrs: list[tuple[str, str | None]]) -> None:
+        given = {name: value or "" for name, value in attrs}
+        for name in ("title", "aria-label", "placeholder"):
+            if key := given.get(f"data-say-{name}"):
+                self.found.append((key, given[name]))
+            elif re.search(r"[A-Za-z]{3}", given.get(name, "")):
+                self.bare.append(given[name])
+        self._said = "data-say" in given
+        if self._said:
+            self.found.append((given["data-say"], ""))
+
+    def handle_data(self, data: str) -> None:
+        if self._said:
+            key, before = self.found[-1] if self.found[-1][1] == "" else self.found.pop()
+            self.found[-1] = key, before + data
+        elif re.search(r"[a-z]{3}", data):
+            self.bare.append(data.strip())
+        self._said = False
+
+
+@pytest.mark.parametrize("path", MARKUP, ids=lambda path: path.stem)
+def test_the_markup_says_what_the_english_file_says(path: Path) -> None:
+    said = _Said()
+    said.feed(re.sub(r"<script.*?</script>|@\w+@", "", path.read_text(encoding="utf-8"), flags=re.DOTALL))
+    for key, text in said.found:
+        assert english(key) == text, key
+    assert set(said.bare) <= {"Esc", "Ctrl K", "· Pas de Deux"}, "texts that no language replaces"
+
+
+def _shown(tree: ast.Module) -> Iterator[tuple[int, ast.expr]]:
+    """What components are given to show, with the values of the module's own constants."""
+    own = {
+        target.id: node.value
+        for node in tree.body
+        if isinstance(node, ast.Assign)
+        for target in node.targets
+        if isinstance(target, ast.Name)
+    }
+    for node in ast.walk(tree):
+        if not isinstance(node, ast.Call):
+            continue
+        if any(
+            isinstance(k.value, ast.Constant) and k.value.value in ALONE
+            for k in node.keywords
+            if k.arg == "elem_id"
+        ):
+            continue
+        name = node.func.attr if isinstance(node.func, ast.Attribute) else getattr(node.func, "id", "")
+        given = [k.value for k in node.keywords if k.arg in SHOWN]
+        given += [k.value for k in node.keywords if k.arg == "value" and name == "update"]
+        given += node.args[:1] if name in NAMED else []
+        choices = [k.value for k in node.keywords if k.arg == "choices"] + (
+            node.args[:1] if name in ("Radio", "Dropdown") else []
+        )
+        for each in choices:
+            given += [pair.elts[0] for pair in ast.walk(each) if isinstance(pair, ast.Tuple)]
+        for value in given:
+            yield node.lineno, own.get(value.id, value) if isinstance(value, ast.Name) else value
+
+
+def _is_literal(value: ast.expr) -> bool:
+    """Whether an expression is English written in the code."""
+    if isinstance(value, ast.IfExp):
+        return _is_literal(value.body) or _is_literal(value.orelse)
+    parts = value.values if isinstance(value, ast.JoinedStr) else [value]
+    texts = [part.value for part in parts if isinstance(part, ast.Constant) and isinstance(part.value, str)]
+    return any(re.search(r"[A-Za-z]{3}", text) for text in texts)
+
+
+def test_components_show_no_english_of_their_own() -> None:
+    found = [
+        f"{path.relative_to(ROOT)}:{line} {ast.unparse(value)}"
+        for path in sorted((ROOT / "webdemo" / "ui").rglob("*.py"))
+        if path.name not in PROGRAMS
+        for line, value in _shown(ast.parse(path.read_text(encoding="utf-8")))
+        if _is_literal(value)
+    ]
+    assert not found
+
+
+def test_the_search_for_english_finds_some() -> None:
+    seen = ast.parse(
+        'X = "Some words"\ngr.Button("Press")\ngr.Slider(label=X)\ngr.Radio([("One way", 1)])\nf(info=f"{n} more")'
+    )
+    assert [_is_literal(value) for _, value in _shown(seen)] == [True, True, True, True]
+    clean = ast.parse('gr.Button(say("a.b"))\ngr.Slider(label=_X)\ngr.Radio([(say("a.b"), 1)])')
+    assert not any(_is_literal(value) for _, value in _shown(clean))
+
+
+_IN_SCRIPT = re.compile(
+    r"""(?:\.(?:textContent|title|ariaLabel|placeholder)\s=\s|setAttribute\("(?:aria-label|aria-valuetext|title)",\s|"""
+    r"""\b(?:say|tell|rest)\(|(?:FilmError|LiveError)\()(["`])(?=[^"`\n]*[A-Za-z]{3})([^"`\n]*)\1"""
+)
+
+
+@pytest.mark.parametrize("path", MODULES, ids=lambda path: path.name)
+def test_scripts_show_no_english_of_their_own(path: Path) -> None:
+    source = path.read_text(encoding="utf-8")
+    shown = [text for _, text in _IN_SCRIPT.findall(source) if not KEY.fullmatch(text)]
+    assert not [text for text in shown if re.search(r"[A-Za-z]{3}", re.sub(r"\$\{[^}]*\}", "", text))]
+
+
+def test_a_text_for_a_component_is_a_mark_that_gradio_resolves() -> None:
+    assert say("files.film") == '__i18n__{"__type__": "translation_metadata", "key": "files.film"}'
+    filled = say("scene.futures", count=3)
+    key = json.loads(filled.removeprefix("__i18n__"))["key"]
+    assert translations()["en"][key] == "3 continuations from here"
+    assert translations()["de"][key] == "3 Fortsetzungen ab hier"
+    with pytest.raises(KeyError):
+        say("files.nothing")
+
+
+def test_a_label_that_no_text_has_is_shown_as_it_is() -> None:
+    assert worded("preset", "Four seeds") == say("preset.four_seeds")
+    assert worded("preset", "A lab's own <b>preset</b>") == "A lab's own <b>preset</b>"
