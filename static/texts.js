@@ -1,4 +1,4 @@
-// What the page says, in one language: static/texts holds a file a language (webdemo/ui/text/texts.py).
+// The texts of the page in one language: static/texts holds a file a language (webdemo/ui/text/texts.py).
 // The lab's page carries all texts in Gradio's configuration, and a page without one fetches the file of its language.
 
 const LANGUAGES = ["de", "en"]; // the names of the files

@@ -1,4 +1,4 @@
-"""What the page says, by key: ``static/texts`` holds a file a language, of which the browser picks one.
+"""The texts of the page, by key: ``static/texts`` holds a file a language, of which the browser picks one.
 
 Gradio carries the texts of all languages in the page's configuration and puts them where a component names a key; the
 page's own scripts read them from there, see ``static/texts.js``. A sentence that the server makes for an event, such as
