@@ -103,6 +103,11 @@ def with_thing(act: Act, caption: str) -> tuple[Act, str]:
     return (act.model_copy(update={"thing": f"the {act.thing}"}) if act.thing else act), caption
 
 
+def naming(act: Act, entry: Entry, other: str) -> str:
+    """The caption of an entry that has a place for the act's thing, where it names one; else another caption."""
+    return next((text for text in entry.caption if act.thing and "{thing}" in text), other)
+
+
 def caption_of(act: Act, entry: Entry) -> str:
     """The caption that fits an act: its entry's first, or the first without the other where one person acts alone."""
     alone = len(act.agents) == 1 and act.patient is None and entry.to != "other" and not entry.mutual

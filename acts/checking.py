@@ -18,7 +18,7 @@ from motion.metrics.sentences.joints import Motion
 from motion.metrics.sentences.language import check, masks, measured
 from motion.metrics.sentences.touches import BODY
 
-from .captions import with_thing, worded
+from .captions import naming, with_thing, worded
 from .lexicon import Entry, Lexicon, lexicon
 from .plan import Act, Plan
 from .reading.vocabulary import vocabulary
@@ -226,7 +226,7 @@ def _words(act: Act, entry: Entry | None) -> str:
     """An act in plain words, with the people as A and B."""
     if entry is None or not entry.caption:
         return act.act.replace("-", " ")
-    text = worded(*with_thing(act, entry.caption[0]))
+    text = worded(*with_thing(act, naming(act, entry, entry.caption[0])))
     for person, name in (("person A", "A"), ("person B", "B")):
         text = text.replace(person, name)
     return f"not: {text}" if act.polarity == "not" else text

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 
-from .captions import caption_of, short, with_thing, worded
+from .captions import caption_of, naming, short, with_thing, worded
 from .checking import Verdict
 from .lexicon import Lexicon, lexicon
 from .plan import Act, Plan
@@ -41,7 +41,8 @@ def told(plan: Plan, verdicts: Sequence[Verdict], known: Lexicon | None = None) 
 def _clauses(acts: Sequence[Act], known: Lexicon) -> Iterator[tuple[str, str]]:
     """Each act as (its subject, what they do)."""
     for act in acts:
-        words = _sided(*with_thing(act, caption_of(act, known.entries[act.act])))
+        entry = known.entries[act.act]
+        words = _sided(*with_thing(act, naming(act, entry, caption_of(act, entry))))
         for name, letter in (("person A", "A"), ("person B", "B"), ("two people", _BOTH), (_THEY, _BOTH)):
             words = f"{letter} {words.removeprefix(f'{name} ')}" if words.startswith(f"{name} ") else words
             words = words.replace(name, letter) if name.startswith("person") else words

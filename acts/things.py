@@ -8,11 +8,13 @@ from functools import lru_cache
 from pathlib import Path
 from typing import Literal
 
+from motion.things import FIXTURES
+
 from .plan import Act
 
 Does = Literal[
     "", "gives", "takes", "throws", "catches", "carries", "holds", "lifts", "puts", "drops", "plays", "sits", "fights",
-    "passes",
+    "passes", "faces", "opens", "closes",
 ]  # fmt: skip
 """What is done with a thing: the values that an entry's ``thing`` may have."""
 
@@ -44,6 +46,11 @@ def on_floor(text: str) -> bool:
     """True if a text names the floor or something like it."""
     _, floor = _tables()
     return any(_singular(word) in floor for word in _WORD.findall(text.lower()))
+
+
+def is_fixture(noun: str | None) -> bool:
+    """True for a noun of what stands where it is, such as a window, so that people go to it and face it."""
+    return bool(noun) and kind_of(noun or "") in FIXTURES
 
 
 def thing_of(act: Act, words: str) -> tuple[str, str]:

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 
 from acts.frames import Ref
 from acts.plan import Person
+from acts.things import is_fixture
 
 from . import wordnet
 from .syntax import IN_PLACE
@@ -363,7 +364,8 @@ def _note_thing(token: Token, ref: Ref, cast: Cast, subject: str) -> None:
     )
     if beside:  # "throws the ball over her shoulder, and he catches it"
         return
-    if ref.kind in ("part", "thing") and token.tag_ in ("NN", "NNP") and not ref.place:
+    goal = ref.kind == "thing" and cast.thing is None and is_fixture(ref.lemma)  # "at the door, and opens it"
+    if ref.kind in ("part", "thing") and token.tag_ in ("NN", "NNP") and (goal or not ref.place):
         cast.thing, cast.thing_of = ref, subject
         cast.thing_sex = next((sex for c in token.children if (sex := _HE.get(c.lower_))), "")
 

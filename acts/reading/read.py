@@ -11,6 +11,7 @@ from acts.frames import Event, Frame, Match, Ref, other_of
 from acts.lexicon import Lexicon, lexicon
 from acts.plan import MOST_ACTS, Act, Plan, Relation, Span, Unread
 from acts.shapes import Go
+from acts.things import is_fixture, kind_of
 from motion import InputError
 
 from . import beside
@@ -31,6 +32,8 @@ _STATES = frozenset(("be", "become", "seem", "have", "there", "feel", "look", "a
 """Verbs that say how somebody is; where no frame knows them, they show nothing and are passed over."""
 _STANDS = frozenset(("stand", "stay", "remain", "pose", "rest", "meet"))
 """Verbs beside which a formation is all that is shown: "they stand back to back"."""
+_BEFORE = frozenset(("to", "toward", "towards", "for", "at", "by", "before", "near"))
+"""Prepositions before what people go to, or stand at."""
 _SHARING = frozenset(("conj", "after", "with"))
 """Joints of clauses that may share an object."""
 
@@ -361,7 +364,7 @@ class _Planner:
             owner = whose if len(whose) == 1 else None
         act = Act(
             id=number_of, act=name, agents=tuple(match.agents),  # type: ignore[arg-type]
-            patient=patient or None, thing=match.thing or None,  # type: ignore[arg-type]
+            patient=patient or None, thing=match.thing or self._named(event, name),  # type: ignore[arg-type]
             part=part.lemma if part is not None else None, part_of=owner,  # type: ignore[arg-type]
             polarity="not" if event.denied else "done", modality=event.modality,  # type: ignore[arg-type]
             already=self._goes_on(event, match.agents), seconds=event.seconds,
@@ -374,6 +377,14 @@ class _Planner:
             self._beside[number_of] = beside
         else:
             self._of[number] = number_of
+
+    def _named(self, event: Event, name: str) -> str | None:
+        """The thing of an act whose frame has its noun as a word, or the window before which one is done."""
+        ref = event.object
+        if ref is not None and ref.kind == "thing" and self._known.entries[name].thing and kind_of(ref.lemma):
+            return ref.lemma
+        goals = (ref for word, ref in event.prepositions if word in _BEFORE and ref.kind == "thing")
+        return next((ref.lemma for ref in goals if is_fixture(ref.lemma)), None)
 
     def _goes_on(self, event: Event, agents: str) -> bool:
         """True for what somebody is doing when the text first speaks of them."""

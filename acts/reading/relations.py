@@ -8,6 +8,7 @@ from acts.frames import Event
 from acts.lexicon import Lexicon
 from acts.plan import Act, Relation
 from acts.shapes import Go, Strike
+from acts.things import is_fixture
 
 BESIDE = frozenset(("gesture", "limb", "words"))
 """Shapes of what a person can do on their way."""
@@ -138,7 +139,8 @@ def coordinated(first: Act, then: Act, known: Lexicon, *, repeats: bool) -> str:
         return "after"
     if _answers_blow(first, then, known):
         return "with"
-    answers = known.entries[then.act].answers or then.thing == "it"  # "knocks at the door, and he opens it"
+    same = is_fixture(then.thing) and then.thing == first.thing  # "knocks at the door, and he opens it"
+    answers = known.entries[then.act].answers or then.thing == "it" or same
     if answers and first.agents != then.agents:
         return "after"
     if not _people_of(first) & _people_of(then):
@@ -167,5 +169,7 @@ def _accompanies(first: Act, then: Act, known: Lexicon) -> bool:
     if not first.happens or not then.happens or other.mutual or not later <= BESIDE:
         return False
     on_way = any(isinstance(shape, Go) and shape.way not in _ARRIVES for shape in one.stage)
+    if is_fixture(first.thing) and then.thing == first.thing:
+        return False  # "goes to the window and opens it"
     jumps = shown == {"jump"} and "gesture" in later
     return on_way or jumps or first.already or (not later and shown <= BESIDE and other.group == "feelings")

@@ -4,10 +4,11 @@
 triangles (ours, CC0 1.0: do with them what you like).
 """
 
-from .shapes import FURNITURE, HELD, HIGH, KINDS, WIDE, shape
+from . import room
+from .shapes import FIXTURES, FURNITURE, HELD, HIGH, KINDS, LEAVES, WIDE, shape
 from .thing import MOST_FACES, MOST_THINGS, MOST_VERTICES, Mesh, Thing
 
 __all__ = [
-    "FURNITURE", "HELD", "HIGH", "KINDS", "MOST_FACES", "MOST_THINGS", "MOST_VERTICES", "WIDE", "Mesh", "Thing",
-    "shape",
+    "FIXTURES", "FURNITURE", "HELD", "HIGH", "KINDS", "LEAVES", "MOST_FACES", "MOST_THINGS", "MOST_VERTICES", "WIDE",
+    "Mesh", "Thing", "room", "shape",
 ]  # fmt: skip

@@ -10,6 +10,7 @@ import numpy as np
 
 from motion.errors import InputError
 
+from . import room
 from .thing import Mesh
 
 if TYPE_CHECKING:
@@ -19,14 +20,19 @@ OAK, WALNUT, STEEL, CLOTH = "#c79a63", "#8a5a34", "#aab2bd", "#6f8fa8"
 CREAM, RED, GREEN, INK, GOLD = "#efe6d6", "#c8453c", "#4f8a4c", "#2b3240", "#d9ab3f"
 CARD, TEAL, ROSE = "#cfa877", "#3d8f8a", "#d8647f"
 
-FURNITURE = ("chair", "bench", "table", "bed", "door frame")
-"""What stands on the floor: the origin is on the floor in its middle, and a seat faces +Z."""
+FIXTURES = ("door frame", "window", "curtain", "hi-fi")
+"""What stands where it is: people go to it, face it and use it."""
+FURNITURE = ("chair", "bench", "table", "computer", "bed", *FIXTURES)
+"""What stands on the floor: the origin is on the floor in its middle, and its front is +Z."""
 HELD = (
     "box", "ball", "book", "cup", "phone", "umbrella", "flower", "ring", "sword", "stick", "guitar", "bag",
+    "cigarette",
 )  # fmt: skip
 """What hands hold: the origin is where a hand holds it, and its length or its upright is +Y."""
 KINDS = (*FURNITURE, *HELD)
 """The kinds of things there are."""
+LEAVES = ("sash", "door")
+"""Parts of fixtures that move, beside curtains."""
 
 
 @lru_cache(maxsize=64)
@@ -34,7 +40,7 @@ def shape(kind: str, *, height: float | None = None, width: float | None = None)
     """The surface of a kind of thing.
 
     Args:
-        kind: one of :data:`KINDS`.
+        kind: one of :data:`KINDS` or :data:`LEAVES`.
         height: metres from the floor to a seat, a table's top, a bed's mattress or the lintel of a door frame, and
             of a box; the usual by default. Other things have one height.
         width: metres along X of furniture, of a box, and across a ball; the usual by default.
@@ -42,7 +48,7 @@ def shape(kind: str, *, height: float | None = None, width: float | None = None)
     Raises:
         InputError: if there is no such kind, or a size is not between 1 cm and 3 m.
     """
-    if kind not in KINDS:
+    if kind not in (*KINDS, *LEAVES):
         raise InputError(f"There is no thing {kind!r:.40}: choose one of {', '.join(KINDS)}.")
     for size in (height, width):
         if size is not None and not 0.01 <= size <= 3.0:
@@ -111,6 +117,19 @@ def _table(height: float = 0.74, width: float = 1.2) -> list[Part]:
     return [
         *_legs(width - 0.08, depth - 0.08, height - 0.035, 0.06, WALNUT), *apron,
         box((width, 0.035, depth), (0, height - 0.0175, 0), OAK),
+    ]  # fmt: skip
+
+
+def _computer() -> list[Part]:
+    """A table with a screen, and a keyboard before the person at it."""
+    from .parts import box, upper
+
+    top = 0.74
+    return [
+        *_table(top), *upper(box((0.56, 0.34, 0.025), (0, top + 0.3, -0.1), INK), "z", "#9cc7e8"),
+        box((0.05, 0.16, 0.03), (0, top + 0.08, -0.115), STEEL),
+        box((0.22, 0.012, 0.16), (0, top + 0.006, -0.1), STEEL),
+        *upper(box((0.42, 0.018, 0.14), (0, top + 0.009, 0.2), INK), "y", STEEL),
     ]  # fmt: skip
 
 
@@ -267,6 +286,16 @@ def _guitar() -> list[Part]:
     ]  # fmt: skip
 
 
+def _cigarette() -> list[Part]:
+    """The origin is between the fingers, the glowing end along +Y."""
+    from .parts import rod
+
+    return [
+        rod((0, -0.03, 0), (0, 0, 0), 0.0045, OAK, sides=6), rod((0, 0, 0), (0, 0.055, 0), 0.0045, "#ffffff", sides=6),
+        rod((0, 0.055, 0), (0, 0.06, 0), 0.0045, RED, sides=6),
+    ]  # fmt: skip
+
+
 def _bag() -> list[Part]:
     """The origin is at the top of its handles; the bag hangs below."""
     from .parts import box, hoop, placed
@@ -280,7 +309,9 @@ def _bag() -> list[Part]:
 
 
 _BUILD: dict[str, Callable[..., list[Part]]] = {
-    "chair": _chair, "bench": _bench, "table": _table, "bed": _bed, "door frame": _door_frame, "box": _box,
+    "chair": _chair, "bench": _bench, "table": _table, "computer": _computer, "bed": _bed,
+    "door frame": _door_frame, "box": _box,
     "ball": _ball, "book": _book, "cup": _cup, "phone": _phone, "umbrella": _umbrella, "flower": _flower,
     "ring": _ring, "sword": _sword, "stick": _stick, "guitar": _guitar, "bag": _bag,
+    "cigarette": _cigarette, **room.BUILD,
 }  # fmt: skip

@@ -189,3 +189,24 @@ def test_who_gets_up_and_leaves_does_both(engine: Engine) -> None:
     assert heights(found, 0)[:15].max() < 0.75 and heights(found, 0)[-5:].min() > 0.85
     assert np.linalg.norm((found[0, -1] - found[0, 0])[0, [0, 2]]) > 1.0
     assert heights(found, 1).max() < 0.75
+
+
+def test_hands_are_at_a_window_from_when_the_person_has_come_to_it(engine: Engine) -> None:
+    result = run(engine, GenerateRequest(prompt="A opens the window.", **{"seconds": 5.0, **QUICK}))
+    found = positions(result)[0]
+    gone = np.linalg.norm((found[:, 0] - found[0, 0])[:, [0, 2]], axis=1)
+    out = np.linalg.norm((found[:, WRISTS] - found[:, None, 0])[..., [0, 2]], axis=-1).min(axis=1)
+    there = int(np.argmax(gone > gone[-1] - 0.1))
+    assert gone[-1] > 1.0 and out[there + 20 :].min() > 0.3
+    window = result.manifest["things"][0]
+    assert window["kind"] == "window" and window["events"][0]["at"] > there / 30 - 0.5
+
+
+def test_a_look_at_a_window_is_judged_where_the_window_is_made(engine: Engine) -> None:
+    result = run(engine, GenerateRequest(prompt="A looks out of the window.", **{"seconds": 5.0, **QUICK}))
+    (row,) = result.manifest["checked"]
+    assert (
+        row["act"] == "look-at-thing"
+        and row["done"] is not None
+        and row["measure"].startswith("looks at it for ")
+    )

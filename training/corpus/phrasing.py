@@ -111,6 +111,7 @@ def fitting(act: Act, *, sided: bool) -> list[str]:
     found = [text for text in found if reads_back(act.act, text, both=both)] or found
     found = [text for text in found if act.part or "{part}" not in text]
     found = [text for text in found if act.direction or "{direction}" not in text]
+    found = [text for text in found if act.thing or "{thing}" not in text] or found
     if both and act.side != "both":  # "they wave with the left hand" has one hand of the two
         found = [text for text in found if "with {limb}" not in text and "{side}" not in text] or found
     with_side = [text for text in found if "{limb}" in text or ("{side}" in text and act.side != "both")]

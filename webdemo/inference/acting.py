@@ -1,10 +1,12 @@
-"""The plan of acts that a request follows where its words are read by the lexicon or a director."""
+"""The plans of acts that a request follows: of its words, read by the lexicon or a director, or of its beats."""
 
 from __future__ import annotations
 
+from collections.abc import Iterator, Sequence
 from dataclasses import replace
+from typing import Any
 
-from acts import Plan, lexicon, read
+from acts import Act, Plan, lexicon, read
 from acts.config import director_settings
 from acts.own import own_files
 from acts.reading.director import directed
@@ -12,6 +14,7 @@ from motion import InputError
 
 from . import methods
 from .requests import GenerateRequest
+from .story.request import SceneRequest
 
 
 def acted(request: GenerateRequest) -> GenerateRequest:
@@ -45,3 +48,34 @@ def _has_director() -> bool:
         return director_settings() is not None
     except InputError:  # `read` and `/read` say what is wrong with it
         return False
+
+
+def plans_of(request: Any) -> Iterator[tuple[Plan, int, int | None, int | None]]:
+    """The plans of a request's words, with the frames of each and the number of its beat, where there are several."""
+    if isinstance(request, SceneRequest):
+        edges = request.edges
+        several = len(request.beats) > 1
+        for i, beat in enumerate(request.beats):
+            plan = _of_acts(beat.acts) if beat.acts else _read(beat.sentence)
+            if plan is not None:
+                yield plan, edges[i], edges[i + 1], i + 1 if several else None
+        return
+    if isinstance(request, GenerateRequest) and "words" in methods.method(request.model).takes:
+        plan = _read(request.prompt) if request.acts is None else request.acts
+        if plan is not None:
+            yield plan, 0, None, None
+
+
+def _of_acts(acts: Sequence[Act]) -> Plan:
+    """The plan of a beat's acts alone, without their relations to acts of other beats."""
+    here = {act.id for act in acts}
+    kept = [act.model_copy(update={"order": tuple(r for r in act.order if r.act in here)}) for act in acts]
+    return Plan(acts=tuple(kept))
+
+
+def _read(sentence: str) -> Plan | None:
+    """The plan of a sentence; None without words, or where no parser is installed."""
+    try:
+        return read(sentence) if sentence.strip() else None
+    except InputError:
+        return None

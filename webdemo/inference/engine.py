@@ -21,6 +21,7 @@ from typing import Any, cast
 from motion import Duet, InputError
 
 from . import methods
+from .acting import plans_of
 from .cancel import CancelToken
 from .live import LiveFrame
 from .live_take import LiveTake
@@ -35,7 +36,7 @@ from .story.request import SceneRequest
 from .things import furnished
 from .timer import StageTimer
 from .tries import run_tries
-from .verdicts import kept_rows, plans_of
+from .verdicts import kept_rows
 
 Request = GenerateRequest | ReactRequest | PredictRequest | SceneRequest | LiveTake
 
@@ -104,14 +105,16 @@ class Engine:
         timer.lap("load", timer.began)
         cancel.raise_if_cancelled()
         if isinstance(request, LiveTake):  # its motion is there
-            events = request.results(timer)
+            events = _with_things(request.results(timer), request)
         else:
             events = run_tries(
-                request, lambda one: pipeline.run(one, cancel, timer, **options), cancel, timer
+                request,
+                lambda one: _with_things(pipeline.run(one, cancel, timer, **options), one),
+                cancel,
+                timer,
             )
         for event in events:
             if isinstance(event, Result):
-                event = furnished(event, list(plans_of(request)))
                 manifest = _manifest(request, pipeline) | event.manifest
                 duets = tuple(
                     replace(duet, manifest=manifest | kept_rows(duet) | {"sample": i})
@@ -173,6 +176,12 @@ class Engine:
                 made = found.load(self.weights / (found.weights or name), *parts)
                 self._pipelines[name] = made if found in methods.BUILT_IN else fenced(made, name)
             return self._pipelines[name]
+
+
+def _with_things(events: Iterator[Progress | Result], request: Any) -> Iterator[Progress | Result]:
+    """The events of a run, whose result has the things of the request's words."""
+    for event in events:
+        yield furnished(event, list(plans_of(request))) if isinstance(event, Result) else event
 
 
 def _take_threads(pipeline: Pipeline | None = None) -> None:

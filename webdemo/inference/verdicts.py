@@ -2,20 +2,20 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Any
 
-from acts import Act, Plan, read
+from acts import Plan
 from acts.checking import checked
 from acts.telling import told
-from motion import SMPL22, Clip, Duet, InputError
+from motion import SMPL22, Clip, Duet
 from motion.metrics.sentences.joints import Motion
 
-from . import methods
-from .requests import GenerateRequest
+from .acting import plans_of
 from .results import Result
-from .story.request import SceneRequest
+from .things.looking import watched
+from .things.uses import lengths_of
 
 MOST_NAMED = 6
 """Acts that a note names of each kind, at most."""
@@ -53,7 +53,8 @@ class Judged:
 def judged(request: Any, result: Result) -> Judged:
     """A result with the verdicts on the acts of its request's words; as it is where there are none to judge."""
     plans = list(plans_of(request))
-    found = [_judged_sample(plans, duet) for duet in result.duets] if plans else []
+    lengths = lengths_of(result.manifest)
+    found = [_judged_sample(plans, duet, lengths) for duet in result.duets] if plans else []
     rows = tuple(own["checked"] for own in found)
     if not any(rows):
         return Judged(result)
@@ -71,39 +72,8 @@ def kept_rows(duet: Duet) -> dict[str, Any]:
     return {key: manifest[key] for key in ("checked", "told", "things") if key in manifest}
 
 
-def plans_of(request: Any) -> Iterator[tuple[Plan, int, int | None, int | None]]:
-    """The plans of a request's words, with the frames of each and the number of its beat, where there are several."""
-    if isinstance(request, SceneRequest):
-        edges = request.edges
-        several = len(request.beats) > 1
-        for i, beat in enumerate(request.beats):
-            plan = _of_acts(beat.acts) if beat.acts else _read(beat.sentence)
-            if plan is not None:
-                yield plan, edges[i], edges[i + 1], i + 1 if several else None
-        return
-    if isinstance(request, GenerateRequest) and "words" in methods.method(request.model).takes:
-        plan = _read(request.prompt) if request.acts is None else request.acts
-        if plan is not None:
-            yield plan, 0, None, None
-
-
-def _of_acts(acts: Sequence[Act]) -> Plan:
-    """The plan of a beat's acts alone, without their relations to acts of other beats."""
-    here = {act.id for act in acts}
-    kept = [act.model_copy(update={"order": tuple(r for r in act.order if r.act in here)}) for act in acts]
-    return Plan(acts=tuple(kept))
-
-
-def _read(sentence: str) -> Plan | None:
-    """The plan of a sentence; None without words, or where no parser is installed."""
-    try:
-        return read(sentence) if sentence.strip() else None
-    except InputError:
-        return None
-
-
 def _judged_sample(
-    plans: Sequence[tuple[Plan, int, int | None, int | None]], duet: Duet | Clip
+    plans: Sequence[tuple[Plan, int, int | None, int | None]], duet: Duet | Clip, lengths: Sequence[float]
 ) -> dict[str, Any]:
     """The verdicts on a sample, ``checked``, and what happens in it in words, ``told``."""
     if not isinstance(duet, Duet) or duet.skeleton.joint_names != SMPL22.joint_names:
@@ -112,6 +82,7 @@ def _judged_sample(
     words: list[str] = []
     for plan, start, stop, beat in plans:
         verdicts = checked(plan, Motion(duet.positions[:, start:stop], duet.fps))
+        verdicts = watched(verdicts, plan, duet, start, stop, () if beat is not None else lengths)
         rows += [each.to_dict() | ({} if beat is None else {"beat": beat}) for each in verdicts]
         words.append(told(plan, verdicts))
     return {"checked": rows, "told": " ".join(filter(None, words))}

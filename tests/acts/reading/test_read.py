@@ -141,6 +141,8 @@ def test_who_does_what_to_whom(text: str, acts: list[str]) -> None:
         ("She throws a ball and he ducks.", [["1"], ["2"]]),
         ("She knocks at the door and he opens it.", [["1"], ["2"]]),
         ("A kicks the ball to B, who stops it.", [["1"], ["2"]]),
+        ("A goes to the window and opens it.", [["1"], ["2"]]),
+        ("A walks away and waves.", [["1", "2"]]),
         ("She bows. He waits.", [["1", "2"]]),
         ("She bows while he waits, and then she pats him.", [["1", "2"], ["3"]]),
         ("She bows while he waits. Then he waits while she leaves.", [["1", "2"], ["3", "4"]]),
@@ -398,3 +400,22 @@ def test_a_formation_goes_on_as_its_verb_does() -> None:
     """Who sits back to back when the text begins has not stood before."""
     assert [act.already for act in read("Two people sit back to back on the floor.").acts] == [True]
     assert [act.already for act in read("They sit down back to back.").acts] == [False]
+
+
+@pytest.mark.parametrize(
+    ("text", "acts"),
+    [
+        ("A goes to the window and opens it.", ["walk-away window", "open-thing window"]),
+        ("A walks over to the hi-fi and turns it down.", ["walk-away stereo", "switch stereo"]),
+        ("A draws the curtains.", ["close-thing curtain"]),
+        (
+            "A picks up a box, walks to the door and puts it down.",
+            ["pick-up-thing box", "walk-away door", "put-down-thing box"],
+        ),
+        ("A looks out of the window.", ["look-at-thing window"]),
+        ("A puts out the cigarette.", ["stub-out cigarette"]),
+        ("A goes to the kitchen.", ["walk-away None"]),
+    ],
+)
+def test_the_thing_of_an_act_is_what_it_is_done_with_or_before(text: str, acts: list[str]) -> None:
+    assert [f"{act.act} {act.thing}" for act in read(text).acts] == acts

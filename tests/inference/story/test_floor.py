@@ -10,6 +10,7 @@ from webdemo.inference.actor import FPS
 from webdemo.inference.story.beginnings import REACH, starting
 from webdemo.inference.story.floor import (
     ABREAST,
+    ACROSS,
     BEHIND,
     CLOSE,
     FARTHEST,
@@ -312,3 +313,14 @@ def test_steps_back_are_as_long_as_told_and_make_room_for_steps_forward() -> Non
     assert ahead.places[-1, 1] > 0.6
     alone, *_ = plan((Move("a", Way.AHEAD, metres=0.7),), FACING, 90)
     assert alone.places[-1, 1] < 0.4, "who stays is not walked into"
+
+
+def test_who_goes_to_a_thing_turns_from_the_other_and_stays_there() -> None:
+    thing = [Move("a", Way.THING)]
+    (way,) = plan(thing, FACING, round(4 * FPS))
+    assert way.person == 0 and way.headings is not None
+    assert np.linalg.norm(way.places[-1] - FACING.places[1]) == pytest.approx(1.2 + ACROSS, abs=0.05)
+    assert abs(abs(way.headings[-1]) - math.pi) < 0.01, "the thing is before them, and the other behind"
+    averted = Standing(FACING.places, np.array([math.pi, math.pi]))
+    (way,) = plan(thing, averted, round(4 * FPS))
+    assert np.ptp(way.places, axis=0).max() == 0 and np.ptp(way.headings) == 0, "they have come to it before"

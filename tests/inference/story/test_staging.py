@@ -236,3 +236,22 @@ def test_words_are_read_as_acts(prompt: str, acts: list[str] | None) -> None:
 def test_a_blow_that_is_only_tried_is_struck_past_the_other() -> None:
     struck = staged(read("Person 1 tries to punch person 2, who dodges it.").acts).strike
     assert struck is not None and struck.turns == "a"
+
+
+@pytest.mark.parametrize(
+    "text", ["A opens the window.", "A turns the hi-fi on.", "A looks out of the window."]
+)
+def test_who_does_something_with_a_window_goes_to_it(text: str) -> None:
+    stage = told(text)
+    assert next((move.person, move.way) for move in stage.moves) == ("a", Way.THING)
+    assert "a" not in stage.idle and stage.alone[0].startswith("One person walks away and "), (
+        "as the network reads it"
+    )
+
+
+def test_who_opens_a_present_or_has_walked_goes_nowhere_else() -> None:
+    for text in ("A opens a gift.", "A looks at the wall.", "A turns on the lamp."):
+        assert all(move.way is not Way.THING for move in told(text).moves), text
+    way, use = (staged(beat.acts) for beat in beats_of(read("A goes to the window and opens it.")))
+    assert [m.way for m in way.moves if m.person == "a"] == [Way.AWAY]
+    assert [m.way for m in use.moves if m.person == "a"] == [Way.THING]

@@ -25,6 +25,8 @@ BEGINS = 15
 """Frames of a beat before a hand is given."""
 OFTEN = 4
 """Frames between two given places of a hand."""
+ARRIVED = 0.15
+"""Metres from where a person stays, at most, at which their hands begin with a thing."""
 
 
 def hands(
@@ -49,13 +51,15 @@ def hands(
             if who in around or not around:
                 found[who] = Gesture(Hand.AROUND if around else Hand.LINKED, (side,))
     courses = [stretch.course(person) for person in (0, 1)]
-    at = np.arange(BEGINS, stretch.frames, OFTEN)
+    always = np.arange(BEGINS, stretch.frames, OFTEN)
+    ways = {("ab".index(move.person), move.way) for move in moves}
     made: dict[int, tuple[Gesture, Frames, Array]] = {}
     for person in (0, 1):
         gesture = found.get("ab"[person])
-        if gesture is None or not (person in stretch.ways or person in posed) or not len(at):
+        if gesture is None or not (person in stretch.ways or person in posed) or not len(always):
             continue  # the network makes the gesture
         own, other = courses[person], courses[1 - person]
+        at = _there(own.places, always) if (person, Way.THING) in ways else always
         turns = np.stack([heading_matrix(angle) for angle in own.headings[at]])
         line = np.insert(other.places[at] - own.places[at], 1, 0.0, axis=1)
         line /= np.linalg.norm(line, axis=1, keepdims=True).clip(min=1e-6)
@@ -63,6 +67,12 @@ def hands(
         wrists = np.stack([wrist(gesture, side, at / FPS, towards) for side in gesture.sides], axis=1)
         made[person] = (gesture, at, np.einsum("nij,nsj->nsi", turns, wrists))
     return made
+
+
+def _there(places: Array, frames: Frames) -> Frames:
+    """Those of some frames at which a person has come to where they stay; the last one, if they are never there."""
+    short = np.linalg.norm(places[frames] - places[-1], axis=1)
+    return frames[short < ARRIVED] if (short < ARRIVED).any() else frames[-1:]
 
 
 def known_hands(

@@ -29,7 +29,7 @@ LEAD = 1.6
 """Metres by which somebody is ahead who is overtaken."""
 REACH = 0.75
 """Metres between two people one of whom touches the other."""
-_START = {Way.AWAY: 1.1, Way.PAST: 2.2, Way.ROUND: 1.2, Way.BACK: 0.9}
+_START = {Way.AWAY: 1.1, Way.THING: 1.1, Way.PAST: 2.2, Way.ROUND: 1.2, Way.BACK: 0.9}
 """Metres between two people at the beginning of a first beat with such a move."""
 _SEATS = {Posture.SITS: seated, Posture.GROUND: grounded}
 

@@ -40,6 +40,8 @@ ABEAM = 0.3
 """Cosine of the angle between where somebody faces and where the other is, below which they cannot walk past them."""
 ASIDE = 0.7
 """Metres beside the other at which one walks past."""
+ACROSS = 1.3
+"""Metres that somebody walks to a thing, for which they turn from the other."""
 BACKWARDS = 0.9
 """Metres of a step back, at most."""
 RUN = 1.6
@@ -168,6 +170,11 @@ def _moved(
             track.stay(
                 None if seconds >= track.left() else seconds, facing=watched or move.way is not Way.STAY
             )
+        case Way.THING:
+            if direction(track.heading) @ to > ABEAM:  # it is not where the other stands
+                far = min(ACROSS, 0.6 * seconds * move.speed)
+                track.walk(np.stack([here, here - far * to]), _time(far, move.speed, 0.7 * seconds))
+            track.stay(facing=True)
         case Way.TURN:
             track.turn(2 * math.pi * move.turns)
             track.stay(facing=True, seconds=None if last else 0.2)

@@ -15,6 +15,7 @@ from acts.captions import of_each
 from acts.lexicon import Lexicon, lexicon
 from acts.plan import FROM_BEHIND, Act, beats
 from acts.reading.vocabulary import vocabulary
+from acts.things import is_fixture
 
 from .act_kinds import is_after, is_attempt, is_deep, is_near, only_stays, reaches, walks
 from .beginnings import Setting, standing
@@ -94,6 +95,8 @@ class _Stage:
         self.frozen: set[str] = set()
         self.behind: set[str] = set()
         """Those who stand behind the other."""
+        self.faces: set[str] = set()
+        """Those who stand before a window or the like and do something with it."""
 
     def told(self) -> Told:
         """All that they tell."""
@@ -127,7 +130,7 @@ class _Stage:
             ),
             keeps_place=self.setting.backs or self.setting.beside,
             touches=any(is_near(act, e) for act, e in self.done),
-            alone=of_each(self.acts, self.known),
+            alone=_away(of_each(self.acts, self.known), moves),
         )  # fmt: skip
 
     # ---- shapes --------------------------------------------------------------------------------------
@@ -137,6 +140,8 @@ class _Stage:
         if isinstance(shape, shapes.Stay):
             self.frozen |= set(people) if shape.frozen else set()
             self.setting = replace(self.setting, apart=self.setting.apart or shape.apart)
+        if isinstance(shape, shapes.Stay | shapes.Gesture) and is_fixture(act.thing):
+            self.faces |= set(people)
         match shape:
             case shapes.Go(way="after") if len(people) == 2:
                 self._chase(act, shape)
@@ -342,6 +347,8 @@ class _Stage:
             own = next((m for m in self.moves if m.person == other and m.way in _DODGES), None)
             return struck_moves(struck, own, down=other in self.changes)
         told = [replace(move, linked=move.linked or self.linked) for move in fastest(self.moves)]
+        going = {move.person for move in told} | low
+        told += [Move(who, Way.THING) for who in sorted(self.faces - going)]
         made = finished(told, until=any(move.until for move in self.moves))
         if not goes(made):
             stay = self.done and all(only_stays(e) and len(act.agents) == 2 for act, e in self.done)
@@ -365,7 +372,7 @@ class _Stage:
             denied = any(who in act.agents and not act.happens and not self._stays(act) for act in self.acts)
             waits = bool(own) and all(only_stays(e) for _, e in own)
             touched = any(reaches(act, e) for act, e in theirs)
-            if touched or (own and not waits) or who in self.gestures:
+            if touched or (own and not waits) or who in self.gestures or who in self.faces:
                 continue
             if waits or denied or any(not walks(e) for _, e in theirs):
                 found.add(who)
@@ -386,6 +393,16 @@ class _Stage:
             and own[who] < 2
             and who not in gone
         )
+
+
+def _away(alone: tuple[str, str], moves: Sequence[Move]) -> tuple[str, str]:
+    """The sentences of each, of which one who goes to a thing walks away: the network knows no things."""
+    gone = {move.person for move in moves if move.way is Way.THING}
+    a, b = (
+        f"One person walks away and{words.removeprefix('One person')}" if words and who in gone else words
+        for who, words in zip("ab", alone, strict=True)
+    )
+    return a, b
 
 
 def _other(who: str) -> str:

@@ -21,6 +21,7 @@ class Way(Enum):
     TURN = "turns around"
     AVERTED = "has their back to the other"
     ASIDE = "steps aside"
+    THING = "goes to a thing"
     FACE = "turns to the other"
     BACKS = "has their back to the other's"
     AHEAD = "walks ahead"

@@ -15,6 +15,7 @@ from motion.things import FURNITURE, MOST_THINGS, Mesh, Thing
 
 from ..results import Result
 from .courses import ThingCourse
+from .fixtures import fixtures
 from .grips import fitting, grips_of_contact, grips_of_plan, grips_of_things
 from .holding import Hands, level, yaw_of
 from .seats import furniture
@@ -73,6 +74,14 @@ def _furnished(
         things.append(thing if own is None or things else _shaped(thing, own))
         event = {"act": use.id, "does": use.does, "by": "".join("ab"[who] for who in people)}
         rows.append({"kind": things[-1].kind, "name": thing.name, "events": [event]})
+    for fixture in fixtures(hands, uses):
+        body, *leaves = fixture.things(hands.frames, hands.fps)
+        shaped = own is not None and not things
+        things += [_shaped(body, own)] if shaped and own is not None else [body, *leaves]
+        rows.append(
+            {"kind": things[-1].kind if shaped else body.kind, "name": body.name, "events": fixture.events}
+        )
+        rows += [] if shaped else [{"kind": leaf.kind, "name": leaf.name, "events": []} for leaf in leaves]
     if own is not None and not things:
         things.append(_beside(hands, own))
         rows.append({"kind": "own", "name": "own", "events": []})
@@ -115,7 +124,7 @@ def _courses(hands: Hands, uses: Iterable[Use], own: Mesh | None) -> list[ThingC
     """One course a thing: uses of one name follow each other, and two who each hold one have two."""
     found: dict[tuple[str, str], list[Use]] = {}
     for use in uses:
-        if use.does in ("sits", "passes", ""):
+        if use.does in ("sits", "passes", "faces", "opens", "closes", ""):
             continue
         if use.kind in FURNITURE and use.does != "carries":
             continue

@@ -10,8 +10,8 @@ from typing import Any
 from motion import InputError
 from motion.formats.thing_files import read_thing
 
+from ..acting import plans_of
 from ..results import Result
-from ..verdicts import plans_of
 from .furnishing import furnished
 
 

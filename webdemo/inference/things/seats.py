@@ -114,7 +114,7 @@ def _tables(hands: Hands, use: Use, spots: dict[int, Spot]) -> Iterator[tuple[Us
             return
     for who, (hips, ahead, _) in spots.items():
         place = (hips + (_AT_TABLE + 0.2) * ahead) * [1, 0, 1]
-        yield use, (who,), Thing.at_rest("table", shape("table"), place, yaw_of(ahead), hands.frames)
+        yield use, (who,), Thing.at_rest(use.on, shape(use.on), place, yaw_of(-ahead), hands.frames)
 
 
 def _doors(hands: Hands, use: Use) -> Iterator[tuple[Use, tuple[int, ...], Thing]]:

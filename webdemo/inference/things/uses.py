@@ -4,15 +4,17 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import pairwise
 from typing import Any
 
 import numpy as np
 
 from acts import Act, Plan, lexicon
-from acts.things import Does, kind_of, nouns_in, on_floor, thing_of
+from acts.things import Does, is_fixture, kind_of, nouns_in, on_floor, thing_of
 
+TABLES = ("computer", "table")
+"""Furniture at which people sit."""
 _THROUGH = re.compile(r"\bthrough (?:the|an?) ((?:\w+ )?(?:door|doorway|gate))\b")
 _ON = re.compile(r"\b(?:on|onto|upon|at|to) (?:the|an?|his|her|their) ((?:\w+ )?\w+)")
 
@@ -58,8 +60,14 @@ def uses_of(plan: Plan, start: int, stop: int, lengths: Sequence[float] = ()) ->
     found = []
     for act, first, last in act_frames(plan, start, stop, lengths):
         words = plan.text(act.words) if act.words else ""
-        found += [use for use in (_use(act, words, first, last), _door(act, words, first, last)) if use]
-    return found
+        for make in (_use, _fixture, _door):
+            if use := make(act, words, first, last):
+                found.append(use)
+    typists = {who for use in found if "computer" in (use.kind, use.on) for who in use.agents}
+    return [
+        replace(use, on="computer") if use.does == "sits" and typists & {*use.agents} else use
+        for use in found
+    ]
 
 
 def act_frames(
@@ -105,17 +113,35 @@ def _use(act: Act, words: str, start: int, stop: int) -> Use | None:
         name, kind = seats[0] if seats else ("chair", "")
         return Use(act.id, does, kind, name, agents, other, side, start, stop, place, words)
     name, kind = thing_of(act, words)
-    if not kind:
+    if not kind or is_fixture(name):
         return None
+    if does in ("opens", "closes"):
+        does = "holds"
     if does == "holds" and len(agents) == 2 and act.thing:
         does = "carries"
     on = place if does in ("puts", "drops") and place != kind else ""
     return Use(act.id, does, kind, name, agents, other, side, start, stop, on, words)
 
 
+def _fixture(act: Act, words: str, start: int, stop: int) -> Use | None:
+    """The window or the like before which an act is done."""
+    name, kind = thing_of(act, words) if act.thing else ("", "")
+    if not is_fixture(name):
+        return None
+    entry = lexicon().entries.get(act.act)
+    does = entry.thing if entry and entry.thing in ("opens", "closes", "carries") else "faces"
+    agents = tuple("ab".index(who) for who in act.agents)
+    return (
+        None
+        if does == "carries"
+        else Use(act.id, does, kind, name, agents, None, "", start, stop, words=words)
+    )
+
+
 def _place(words: str) -> str:
-    """ "table" where the words name one as a place, "" elsewhere."""
-    return "table" if any(kind_of(noun) == "table" for noun in _ON.findall(words.lower())) else ""
+    """ "table" or "computer" where the words name one as a place, "" elsewhere."""
+    kinds = {kind_of(noun) for noun in _ON.findall(words.lower())}
+    return next((kind for kind in TABLES if kind in kinds), "")
 
 
 def _door(act: Act, words: str, start: int, stop: int) -> Use | None:

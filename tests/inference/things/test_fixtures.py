@@ -1,0 +1,196 @@
+"""Windows, doors and a hi-fi: where they stand, what of them moves, and who looks at them."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from acts import Act, Plan, read
+from acts.checking import checked
+from motion import Duet, formats
+from motion.metrics.sentences.joints import Motion
+from motion.things import Thing
+from webdemo.inference.requests import Result
+from webdemo.inference.things.furnishing import furnished
+from webdemo.inference.things.looking import watched
+
+from .test_furnishing import FPS, FRAMES, put_hand, standing
+
+HALF = FRAMES // 2
+
+
+def apart() -> np.ndarray:
+    """(2, T, 22, 3): a faces +Z, b is far behind them; in the second half a's hands are out ahead."""
+    people = standing()
+    people[1] += np.array([0.0, 0.0, -4.0])
+    reach(people, HALF)
+    return people
+
+
+def reach(people: np.ndarray, first: int, who: int = 0) -> None:
+    ahead = 1.0 if who == 0 else -1.0
+    for side, sign in (("left", 1), ("right", -1)):
+        pelvis = people[who, 0, 0]
+        place = people[who, :, 0] + np.array([0.2 * sign * ahead, 1.3 - pelvis[1], 0.1 * ahead])
+        place[first:, 2] += 0.4 * ahead
+        put_hand(people[who], side, place)
+
+
+def made(sentence: str, people: np.ndarray | None = None) -> tuple[dict[str, list[Thing]], Duet]:
+    people = apart() if people is None else people
+    duet = Duet.from_positions(people.astype(np.float32), fps=FPS)
+    result = furnished(Result(duets=(duet,), manifest={}), [(read(sentence), 0, None, None)])
+    (found,) = result.duets
+    assert isinstance(found, Duet)
+    kinds: dict[str, list[Thing]] = {}
+    for thing in found.things:
+        kinds.setdefault(thing.kind, []).append(thing)
+    return kinds, found
+
+
+@pytest.mark.parametrize(
+    ("sentence", "kind", "name"),
+    [
+        ("A opens the window.", "window", "window"),
+        ("A closes the curtains.", "window", "window"),
+        ("A opens the door.", "door frame", "door"),
+        ("A turns the hi-fi on.", "hi-fi", "stereo"),
+        ("A turns the radio down.", "hi-fi", "radio"),
+        ("A looks out of the window.", "window", "window"),
+        ("A walks to the window.", "window", "window"),
+    ],
+)
+def test_what_the_words_name_stands_before_the_person_and_faces_them(sentence, kind, name):
+    kinds, duet = made(sentence)
+    (body,) = kinds[kind]
+    x, y, z = body.places[0]
+    assert body.name == name and not body.moves
+    assert (x, y) == (pytest.approx(0, abs=0.1), 0) and 0.4 < z < 1.2
+    assert body.rotations[0] @ [0, 0, 1] == pytest.approx([0, 0, -1], abs=0.05)
+    row = next(row for row in duet.manifest["things"] if row["kind"] == kind)
+    assert row["events"][0]["by"] == "a" and row["events"][0]["at"] is not None
+
+
+def test_hands_reach_what_they_use():
+    (body,) = made("A turns the hi-fi on.")[0]["hi-fi"]
+    knobs = body.mesh.vertices[body.mesh.vertices[:, 2] > 0.17]
+    front = (knobs @ body.rotations[0].T + body.places[0])[:, 2]
+    assert front.min() == pytest.approx(0.6, abs=0.12), "palms are 0.6 m ahead"
+
+
+def test_nothing_stands_there_for_what_is_wished_or_denied_or_is_no_fixture():
+    for sentence in (
+        "A does not open the window.",
+        "A wants to open the window.",
+        "A opens a gift.",
+        "A waves.",
+    ):
+        assert not {"window", "door frame", "hi-fi"} & made(sentence)[0].keys(), sentence
+
+
+def sill_gaps(sash: Thing, body: Thing) -> tuple[float, float]:
+    """Metres of a sash's free edge before the wall, in the first and the last frame."""
+    edge = sash.mesh.vertices[sash.mesh.vertices[:, 0].argmax()]
+    out = []
+    for frame in (0, -1):
+        world = sash.rotations[frame] @ edge + sash.places[frame]
+        out.append(float((body.rotations[frame].T @ (world - body.places[frame]))[2]))
+    return out[0], out[1]
+
+
+@pytest.mark.parametrize(("verb", "opens"), [("opens", True), ("closes", False)])
+def test_a_window_opens_away_from_the_person_when_hands_are_at_it(verb, opens):
+    kinds, _ = made(f"A {verb} the window.")
+    for sash in kinds["sash"]:
+        gaps = sill_gaps(sash, kinds["window"][0])
+        shut, wide = gaps if opens else gaps[::-1]
+        assert abs(shut) < 0.05 and wide < -0.4
+        moved = np.abs(np.diff(sash.rotations, axis=0)).max(axis=(1, 2)) > 1e-5
+        assert not moved[: HALF - 5].any() and moved[HALF:].any()
+    assert not any(curtain.moves for curtain in kinds["curtain"])
+
+
+def test_curtains_close_and_leave_the_window_alone():
+    kinds, _ = made("A draws the curtains.")
+    left, right = kinds["curtain"]
+    assert (
+        abs(left.places[0, 0] - right.places[0, 0])
+        > 1.5
+        > 0.7
+        > abs(left.places[-1, 0] - right.places[-1, 0])
+    )
+    assert not any(sash.moves for sash in kinds["sash"])
+
+
+def test_a_window_that_is_opened_and_closed_is_one_window():
+    people = apart()
+    kinds, _ = made("A opens the window and then closes it.", people)
+    assert len(kinds["window"]) == 1
+    gaps = sill_gaps(kinds["sash"][0], kinds["window"][0])
+    assert max(map(abs, gaps)) < 0.1, "it is closed at both ends"
+    assert kinds["sash"][0].moves
+
+
+def test_who_is_elsewhere_moves_nothing_and_the_manifest_says_so():
+    people = apart()
+    reach(people, 10, who=1)
+    kinds, duet = made("A looks at the window. B closes it.", people)
+    assert len(kinds["window"]) == 1
+    events = next(row for row in duet.manifest["things"] if row["kind"] == "window")["events"]
+    told = {event["by"]: event for event in events}
+    assert told["b"]["at"] is not None and told["a"]["at"] is None and "m from it" in told["a"]["why"]
+    assert kinds["window"][0].places[0, 2] < -2, "it stands before b, whose hands are at it"
+
+
+def test_a_computer_is_on_the_desk_of_one_who_types():
+    from .test_furnishing import sitting
+
+    kinds, _ = made("A sits at a desk and types on a keyboard.", sitting())
+    assert {"chair", "computer"} <= kinds.keys() and "table" not in kinds
+    (desk,) = kinds["computer"]
+    screen = desk.mesh.vertices[desk.mesh.vertices[:, 1] > 1.0]
+    ahead = (screen @ desk.rotations[0].T + desk.places[0])[:, 2]
+    assert ahead.min() > desk.places[0, 2], "the screen is at the far side"
+
+
+def test_things_with_moving_parts_come_back_from_a_file(tmp_path):
+    kinds, duet = made("A opens the window.")
+    formats.write(duet, tmp_path / "x.npz")
+    back = formats.read(tmp_path / "x.npz")
+    assert isinstance(back, Duet) and [t.kind for t in back.things] == [t.kind for t in duet.things]
+    np.testing.assert_array_equal(back.things[1].rotations, kinds["sash"][0].rotations)
+    formats.write(duet, tmp_path / "x.glb")
+    assert b"sash" in (tmp_path / "x.glb").read_bytes()
+
+
+# ---- looks -----------------------------------------------------------------------------------------------
+def verdict(sentence: str, people: np.ndarray) -> tuple[bool | None, str]:
+    _, duet = made(sentence, people)
+    plan = read(sentence)
+    before = checked(plan, Motion(duet.positions, FPS))
+    (found,) = watched(before, plan, duet, 0, None, ())
+    return found.done, found.measure
+
+
+def test_a_look_at_a_window_is_judged_by_the_face():
+    done, measure = verdict("A looks at the window.", apart())
+    assert done is True and measure == f"looks at it for {FRAMES / FPS:.1f} s"
+
+
+def test_a_look_elsewhere_is_not_done():
+    people = apart()
+    _, duet = made("A looks at the window.", people)
+    plan = read("A looks at the window.")
+    turned = people.copy()
+    turned[0] = turned[0] * [-1, 1, -1]
+    away = Duet.from_positions(turned.astype(np.float32), fps=FPS)
+    away = Duet(away.a, away.b, things=duet.things)
+    (found,) = watched(checked(plan, Motion(away.positions, FPS)), plan, away, 0, None, ())
+    assert found.done is False and found.measure == "looks at it for 0.0 s"
+
+
+def test_a_look_at_what_is_not_there_stays_unjudged():
+    assert verdict("A looks at the wall.", apart())[0] is None
+    plan = Plan(acts=(Act(id="1", act="look-at-thing", agents=("a",), thing="window"),))
+    duet = Duet.from_positions(apart().astype(np.float32), fps=FPS)
+    assert watched(checked(plan, Motion(duet.positions, FPS)), plan, duet, 0, None, ())[0].done is None
