@@ -23,6 +23,8 @@ NEAR, FAR = 0.42, 0.72
 """Metres from a pelvis to a fixture at least, and as far as hands may reach."""
 BY = 1.0
 """Metres from where a fixture is used beyond which somebody is elsewhere."""
+THERE = 0.3
+"""Metres from where somebody stays within which they have come to it."""
 TAKES = 1.1
 """Seconds in which a part opens or closes."""
 _HALF = room.CURTAIN / 2 + 0.01
@@ -139,11 +141,13 @@ def fixtures(hands: Hands, uses: Sequence[Use]) -> list[Fixture]:
 
 
 def _moment(hands: Hands, use: Use, who: int) -> int:
-    """The frame at which somebody first has their hands out as far as they get, or the last one of a way or a look."""
+    """The frame at which somebody there has their hands out as far as they get, or the last one of a way or a look."""
     start, stop = min(use.start, hands.frames - 1), max(min(use.stop, hands.frames), use.start + 1)
     if use.does == "faces":
         return stop - 1
-    reach = _reach(hands, who)[start:stop]
+    pelvis = hands.joint(who, "pelvis")[start:stop, [0, 2]]
+    there = np.linalg.norm(pelvis - pelvis[-1], axis=1) < THERE
+    reach = np.where(there, _reach(hands, who)[start:stop], -np.inf)
     return start + int(np.argmax(reach > reach.max() - 0.08))
 
 
