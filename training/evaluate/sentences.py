@@ -16,18 +16,20 @@ from typing import Any
 
 from motion import InputError
 from motion.formats.files import replacing
-from motion.metrics.sentences import load_sentences
+from motion.metrics.sentences import load_sentences, read_sentences
 from motion.metrics.sentences.scores import score, table
 from training.core.shell import exit_code
 from training.evaluate.judge.draw import Sampling
 from training.evaluate.judge.kept_motions import draw_missing, motions_folder
+from training.evaluate.judge.listening import listening, said
 from webdemo.inference.engine import WEIGHTS
 from webdemo.inference.pipelines.intergen import InterGenPipeline
 
 
 def evaluate(options: argparse.Namespace) -> dict[str, Any]:
     """Scores as :func:`motion.metrics.sentences.scores.table` takes them; draws what is missing."""
-    sentences = [s for s in load_sentences() if not options.only or {s.id, *s.tags} & set(options.only)]
+    known = read_sentences(options.sentences) if options.sentences else load_sentences()
+    sentences = [s for s in known if not options.only or {s.id, *s.tags} & set(options.only)]
     if not sentences:
         raise InputError(f"No sentence has the name or tag {', '.join(options.only)}: see sentences.json.")
     sampling = Sampling(
@@ -35,6 +37,7 @@ def evaluate(options: argparse.Namespace) -> dict[str, Any]:
         guidance=options.guidance,
         damping=options.damping,
         told=options.told,
+        plan_guidance=options.plan_guidance,
         fast=options.fast,
     )
     generator = InterGenPipeline(options.weights)
@@ -47,6 +50,7 @@ def evaluate(options: argparse.Namespace) -> dict[str, Any]:
         "guidance": options.guidance,
         "damping": options.damping,
         "told": options.told,
+        "plan_guidance": options.plan_guidance,
         "fast": options.fast,
         "seeds": options.seeds,
         "weights_sha256": generator.digest,
@@ -60,7 +64,9 @@ def evaluate(options: argparse.Namespace) -> dict[str, Any]:
     )
     if missing:
         about += f"; stopped by --minutes with {missing} motions missing"
-    return score(sentences, duets) | {"about": about + ".", "settings": settings}
+    listened = listening([[pair.positions for pair in each] for each in duets])
+    about += f".{said(listened)}"
+    return score(sentences, duets) | {"about": about, "settings": settings, "listening": listened}
 
 
 def main(argv: list[str] | None = None) -> int:
@@ -82,6 +88,10 @@ def main(argv: list[str] | None = None) -> int:
     parser.add_argument(
         "--told", choices=("words", "plan", "both"), default="both", help="to a network that reads plans"
     )
+    parser.add_argument(
+        "--plan-guidance", type=float, help="scale of the guidance by the plan; by default that of the words"
+    )
+    parser.add_argument("--sentences", type=Path, help="others than the eighty, as a file of their kind")
     parser.add_argument("--only", nargs="+", default=[], metavar="NAME", help="only these sentences or tags")
     parser.add_argument("--minutes", type=float, default=0.0, help="draw no more after this; 0: no limit")
     options = parser.parse_args(argv)

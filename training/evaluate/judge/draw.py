@@ -20,6 +20,7 @@ from motion import Duet, InputError
 from webdemo.inference.cleanup import clean_person
 from webdemo.inference.damping import Damping
 from webdemo.inference.noise import sample_noise
+from webdemo.inference.traits import traits_of
 
 from .rules import Task
 
@@ -33,6 +34,7 @@ class Sampling:
 
     Attributes:
         told: "words", "plan" or "both": what a network that reads plans is told.
+        plan_guidance: scale of the guidance by the plan; by default that of the words.
         fast: in the weights' fast mode, which takes :data:`models.intergen.fast.PASSES` steps whatever ``steps`` says.
     """
 
@@ -41,6 +43,7 @@ class Sampling:
     guidance: float = 4.3
     damping: float = 0.7
     told: str = "both"
+    plan_guidance: float | None = None
     fast: bool = False
 
 
@@ -97,7 +100,7 @@ def draw(
         touches = model.touches(condition)
         if sampling.told == "plan":
             condition = torch.zeros_like(condition)
-        plan = _plan(generator, [tasks[i].caption for i in group], frames, sampling.told)
+        plan = _plan(generator, [(tasks[i].caption, seeds[i]) for i in group], frames, sampling.told)
         scheduler = make_scheduler("ddim", PASSES if sampling.fast else sampling.steps, spacing="top")
         damping = Damping(
             model,
@@ -107,7 +110,7 @@ def draw(
             final_timestep=int(scheduler.timesteps[-1]),
             touches=touches,
         )
-        predict = partial(_guided, denoiser, condition, plan, sampling.guidance)
+        predict = partial(_guided, denoiser, condition, plan, sampling)
         sample = denoise(predict, noise, scheduler, correct=damping)
         with torch.no_grad():
             positions = model.positions(sample)[0][:, :, :frames].numpy()
@@ -118,22 +121,26 @@ def draw(
             yield i, Duet.from_positions(clean, fps=30.0, roles=("actor", "reactor"))
 
 
-def _plan(generator: Generator, captions: Sequence[str], frames: int, told: str) -> torch.Tensor | None:
-    """The plans (B, tokens, 2·P) that captions are read as; None where none are told."""
+def _plan(
+    generator: Generator, asked: Sequence[tuple[str, int]], frames: int, told: str
+) -> torch.Tensor | None:
+    """The plans (B, tokens, 2·P) that captions are read as, of people drawn by their seeds; None for no plans."""
     track = getattr(generator.model, "plan_track", None)
-    if track is None or told == "words":
+    if track is None or (told == "words" and not track.traits):
         return None
     tokens = generator.model.layout.num_tokens(frames)
-    return torch.stack([track(generator.acts(caption, frames), tokens) for caption in captions])
+    acts = [() if told == "words" else generator.acts(caption, frames) for caption, _ in asked]
+    traits = [traits_of(track, seed, 0, {}) for _, seed in asked]
+    return torch.stack([track(one, tokens, other) for one, other in zip(acts, traits, strict=True)])
 
 
 def _guided(
     denoiser: Any,
     condition: torch.Tensor,
     plan: torch.Tensor | None,
-    guidance: float,
+    sampling: Sampling,
     x: torch.Tensor,
     t: torch.Tensor,
 ) -> torch.Tensor:
-    told = {} if plan is None else {"plan": plan}
-    return denoiser.guided(x, t, condition, scale=guidance, **told)
+    told = {} if plan is None else {"plan": plan, "plan_scale": sampling.plan_guidance}
+    return denoiser.guided(x, t, condition, scale=sampling.guidance, **told)

@@ -19,6 +19,7 @@ def motions_folder(cache: Path, digest: str, sampling: Sampling) -> Motions:
     sampler = "fast" if sampling.fast else f"ddim{sampling.steps}"
     name = f"{digest[:12]}-{sampler}-g{sampling.guidance:g}-d{sampling.damping:g}"
     name += "" if sampling.told == "both" else f"-{sampling.told}"
+    name += "" if sampling.plan_guidance is None else f"-p{sampling.plan_guidance:g}"
     return Motions(cache / name)
 
 

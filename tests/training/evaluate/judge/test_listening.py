@@ -1,0 +1,34 @@
+"""A network that listens moves with the sentence more than with the seed."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from motion import SMPL22
+from motion.transforms import turn
+from training.evaluate.judge.listening import listening, said
+
+
+def standing(frames: int = 5, raised: float = 0.0) -> np.ndarray:
+    """Two people (2, T, 22, 3) who stand, a hand raised by so many metres."""
+    pose = np.tile(SMPL22.rest_positions(), (2, frames, 1, 1)).astype(np.float64)
+    pose[:, :, SMPL22.index("left_wrist"), 1] += raised
+    return pose
+
+
+def test_what_the_seed_changes_is_told_from_what_the_sentence_changes() -> None:
+    found = listening([[standing(), standing(raised=0.22)], [standing(7, 0.44), standing(7, 0.66)]])
+    assert found == pytest.approx({"seeds": 1.0, "sentences": 2.0})
+    assert said(found).endswith("2.0 cm, 2.0 times as far.")
+
+
+def test_where_people_are_and_where_they_face_is_no_difference() -> None:
+    moved = turn(standing(), 1.0, np.zeros(3)) + np.array([2.0, 0.0, -1.0])
+    assert listening([[standing(), moved]])["seeds"] == pytest.approx(0.0, abs=1e-9)
+
+
+def test_without_pairs_nothing_is_said() -> None:
+    found = listening([[standing()]])
+    assert found == {"seeds": None, "sentences": None}
+    assert said(found) == ""
