@@ -11,6 +11,7 @@ from acts.plan import FROM_BEHIND
 
 from . import wordnet
 from .people import Cast, reference, states_of
+from .syntax import is_adverb
 from .vocabulary import is_act, vocabulary
 
 if TYPE_CHECKING:
@@ -18,10 +19,18 @@ if TYPE_CHECKING:
 
 DENY = frozenset(("not", "n't", "never", "hardly", "barely", "no", "neither", "nor"))
 _LENGTHS = frozenset(("step", "pace", "metre", "meter", "yard"))
+_WAYS = frozenset(("way", "manner", "fashion", "mood", "style"))
 _RECEIVES = frozenset(("get", "receive", "take", "have"))
 _MODIFIERS = frozenset(
     ("prt", "advmod", "acomp", "attr", "oprd", "npadvmod", "amod", "neg", "intj", "compound")
 )
+
+
+def _adverb(adjective: str) -> str:
+    """The adverb of an adjective: "happily", and "friendly" as it is."""
+    if adjective.endswith("ly"):
+        return adjective
+    return f"{adjective[:-1]}ily" if adjective.endswith("y") else f"{adjective}ly"
 
 
 def is_kept(token: Token) -> bool:
@@ -175,12 +184,14 @@ class Arguments:
                     event.words += [token.lower_, child.lower_]
             elif child.dep_ in ("pobj", "obj"):
                 found = True
-                if self._measure(child, token, event):
+                if self._measure(child, token, event) or self._likeness(child, token, event):
                     continue
                 event.prepositions.append(self._between(token, self._instrument(child, who, event), who))
                 for more in child.conjuncts:
                     if more.i > child.i and more.pos_ in ("NOUN", "PRON", "PROPN"):
                         event.prepositions.append((token.lower_, self._argument(more, who, event)))
+            elif child.dep_ == "advmod" and is_adverb(child.lower_):  # "runs wildly around her"
+                self._modifier(child, event)
             elif child.dep_ == "prep":  # "up to her", "over to him", "out of the room"
                 event.words.append(token.lower_)
                 self._preposition(child, who, event)
@@ -227,6 +238,19 @@ class Arguments:
             event.distance = 0.7 if lemma == "length" else self._amount(noun)
             return True
         return False
+
+    def _likeness(self, noun: Token, preposition: Token, event: Event) -> bool:
+        """Takes up "like an old man" and "in a friendly way" as the adverb of how one moves so; False for others."""
+        said = [c.lower_ for c in noun.children if c.dep_ in ("amod", "compound")]
+        if preposition.lower_ == "in" and noun.lower_ in _WAYS and said:
+            event.adverbs += [_adverb(adjective) for adjective in said]
+            return True
+        if preposition.lower_ != "like":
+            return False
+        named = (noun.lemma_.lower(), *said)
+        adverbs = [self._words.likeness[word] for word in named if word in self._words.likeness]
+        event.adverbs += adverbs[-1:]  # of "an old king", old
+        return bool(adverbs)
 
     def _amount(self, noun: Token) -> float:
         for child in noun.children:
@@ -280,7 +304,8 @@ class Arguments:
             event.side = text
         if all(child.lower_ != "forth" for child in token.children):  # "back and forth" is no way back
             self._direction(text, event)
-        if token.dep_ == "advmod" and (text.endswith("ly") or text in self._words.speeds):
+        adverb = token.dep_ == "advmod" or (token.dep_ == "conj" and token.head.dep_ == "advmod")
+        if adverb and (text.endswith("ly") or text in self._words.speeds):
             event.adverbs.append(text)
         for child in token.children:
             if child.dep_ == "prep":

@@ -6,7 +6,7 @@ from collections.abc import Callable, Iterator
 from typing import TYPE_CHECKING
 
 from . import wordnet
-from .syntax import is_word
+from .syntax import is_adverb, is_word
 from .vocabulary import vocabulary
 
 if TYPE_CHECKING:
@@ -28,9 +28,15 @@ def unknown(doc: Doc, is_verb: Callable[[str], bool]) -> Iterator[tuple[int, int
 
 
 def _is_known(word: str) -> bool:
-    """True for a noun that the parser has not met: of a person or an animal, a plural, or two words in one."""
+    """True for a noun or an adverb that the parser has not met: of a person, a plural, two words in one, "tiredly"."""
     stem, words = word.removesuffix("s"), vocabulary()
-    if is_word(stem) or _names_something(stem) or word in words.directions or word.endswith("wards"):
+    if (
+        is_adverb(word)
+        or is_word(stem)
+        or _names_something(stem)
+        or word in words.directions
+        or word.endswith("wards")
+    ):
         return True
     return any(_names_something(stem[:i]) and _names_something(stem[i:]) for i in range(3, len(stem) - 2))
 

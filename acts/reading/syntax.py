@@ -103,3 +103,8 @@ def is_word(text: str) -> bool:
     """True for a word that the parser has met in its training."""
     with _lock:
         return text in _words()
+
+
+def is_adverb(text: str) -> bool:
+    """True for the adverb of an adjective that the parser has met: "tiredly", "happily"."""
+    return len(text) > 5 and text.endswith("ly") and (is_word(text[:-2]) or is_word(f"{text[:-3]}y"))

@@ -40,6 +40,8 @@ class Vocabulary:
         self.speeds = {w: float(value) for value, text in tables["speeds"].items() for w in text.split()}
         self.gaits = {w: float(value) for value, text in tables["gaits"].items() for w in text.split()}
         """Factors of speed that a verb brings along, beside a walk."""
+        self.likeness = {w: adverb for adverb, text in tables["likeness"].items() for w in text.split()}
+        """How somebody moves who moves like one of these."""
         self.verbs = {kind: frozenset(text.split()) for kind, text in tables["verbs"].items()}
         joined: dict[str, str] = dict(tables["phrases"])
         self.formations = {

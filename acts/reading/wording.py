@@ -6,6 +6,7 @@ Each change keeps the offsets, so that what was understood can be shown in the t
 from __future__ import annotations
 
 import bisect
+import itertools
 import re
 from collections.abc import Callable, Collection, Iterator, Mapping
 from typing import TYPE_CHECKING
@@ -13,6 +14,7 @@ from typing import TYPE_CHECKING
 from .absolute import stands_absolutely
 from .ellipsis import Ellipsis
 from .people import A_NAME, B_NAME
+from .syntax import is_adverb
 from .vocabulary import vocabulary
 
 if TYPE_CHECKING:
@@ -388,14 +390,23 @@ def _letters(words: list[str], is_verb: Callable[[str], bool]) -> dict[int, str]
             found[i] = A_NAME if word[1] == "1" else B_NAME
         elif word == "B":
             found[i] = B_NAME
-        elif (word == "A" and upper_b and (i + 1 == len(words) or not _takes_article(words, i))) or (
-            word == "A"
-            and i + 1 < len(words)
-            and words[i + 1].endswith(("s", "ed"))
-            and is_verb(words[i + 1])
+        elif word == "A" and (
+            (upper_b and (i + 1 == len(words) or not _takes_article(words, i)))
+            or _verb_follows(words, i, is_verb)
         ):
             found[i] = A_NAME
     return found
+
+
+def _verb_follows(words: list[str], i: int, is_verb: Callable[[str], bool]) -> bool:
+    """True for a name before what it does: "A waves", "A slowly and sadly walks"."""
+    following = itertools.islice(words, i + 1, i + 6)
+    verb = next((word for word in following if word not in ("and", ",") and not _says_how(word)), "")
+    return verb.endswith(("s", "ed")) and is_verb(verb)
+
+
+def _says_how(word: str) -> bool:
+    return is_adverb(word) and not vocabulary().is_person(word)
 
 
 def _takes_article(words: list[str], i: int) -> bool:

@@ -1,0 +1,45 @@
+"""How something is done: adverbs, alone and joined, and phrases that stand for them."""
+
+from __future__ import annotations
+
+import pytest
+
+from acts import read
+from acts.reading.syntax import is_adverb
+
+
+@pytest.mark.parametrize(
+    ("text", "act", "agents", "manner"),
+    [
+        ("B waves tiredly.", "wave", ("b",), ["tiredly"]),
+        ("A sadly walks away from B.", "walk-away", ("a",), ["sadly"]),
+        ("A slowly and sadly walks away.", "walk-away", ("a",), ["slowly", "sadly"]),
+        ("The man walks up to her happily and proudly.", "walk-up", ("a",), ["happily", "proudly"]),
+        ("A runs wildly around B.", "walk-around", ("a",), ["wildly"]),
+        ("A walks like a child up to B.", "walk-up", ("a",), ["playfully"]),
+        ("A limps like an old man up to B.", "limp", ("a",), ["stiffly"]),
+        ("A and B dance like robots.", "dance", ("a", "b"), ["stiffly"]),
+        ("A greets B in a friendly way.", "greet", ("a",), ["friendly"]),
+        ("A waves in a happy manner.", "wave", ("a",), ["happily"]),
+    ],
+)
+def test_the_manner_is_read_and_nothing_is_left(
+    text: str, act: str, agents: tuple[str, ...], manner: list[str]
+) -> None:
+    plan = read(text)
+    (found,) = plan.acts
+    assert (found.act, found.agents, list(found.manner)) == (act, agents, manner)
+    assert not plan.unread
+
+
+def test_a_letter_before_a_noun_in_ly_is_an_article() -> None:
+    plan = read("A bully pushes a child.")
+    assert plan.acts[0].agents == ("a",)
+    assert plan.people[0].words == ("bully",)
+
+
+@pytest.mark.parametrize(
+    ("word", "is_one"), [("tiredly", True), ("happily", True), ("family", False), ("fly", False)]
+)
+def test_adverbs_are_told_by_their_adjective(word: str, is_one: bool) -> None:
+    assert is_adverb(word) is is_one
