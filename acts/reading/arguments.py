@@ -184,7 +184,8 @@ class Arguments:
                     event.words += [token.lower_, child.lower_]
             elif child.dep_ in ("pobj", "obj"):
                 found = True
-                if self._measure(child, token, event) or self._likeness(child, token, event):
+                self._likeness(child, token, event)
+                if self._measure(child, token, event):
                     continue
                 event.prepositions.append(self._between(token, self._instrument(child, who, event), who))
                 for more in child.conjuncts:
@@ -239,18 +240,15 @@ class Arguments:
             return True
         return False
 
-    def _likeness(self, noun: Token, preposition: Token, event: Event) -> bool:
-        """Takes up "like an old man" and "in a friendly way" as the adverb of how one moves so; False for others."""
+    def _likeness(self, noun: Token, preposition: Token, event: Event) -> None:
+        """Notes "like an old man" and "in a friendly way" as the adverb of how one moves so."""
         said = [c.lower_ for c in noun.children if c.dep_ in ("amod", "compound")]
-        if preposition.lower_ == "in" and noun.lower_ in _WAYS and said:
+        if preposition.lower_ == "in" and noun.lower_ in _WAYS:
             event.adverbs += [_adverb(adjective) for adjective in said]
-            return True
-        if preposition.lower_ != "like":
-            return False
-        named = (noun.lemma_.lower(), *said)
-        adverbs = [self._words.likeness[word] for word in named if word in self._words.likeness]
-        event.adverbs += adverbs[-1:]  # of "an old king", old
-        return bool(adverbs)
+        elif preposition.lower_ == "like":
+            named = (noun.lemma_.lower(), *said)  # of "an old king", old
+            adverbs = [self._words.likeness[word] for word in named if word in self._words.likeness]
+            event.adverbs += adverbs[-1:]
 
     def _amount(self, noun: Token) -> float:
         for child in noun.children:

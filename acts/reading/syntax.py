@@ -107,4 +107,4 @@ def is_word(text: str) -> bool:
 
 def is_adverb(text: str) -> bool:
     """True for the adverb of an adjective that the parser has met: "tiredly", "happily"."""
-    return len(text) > 5 and text.endswith("ly") and (is_word(text[:-2]) or is_word(f"{text[:-3]}y"))
+    return len(text) > 4 and text.endswith("ly") and (is_word(text[:-2]) or is_word(f"{text[:-3]}y"))
