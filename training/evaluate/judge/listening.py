@@ -1,4 +1,4 @@
-"""Whether a network listens: how far its poses move with the sentence, beside how far they move with the seed.
+"""A measure of whether a network listens: how far its poses move with the sentence, and how far with the seed.
 
 A network that hardly listens gives two sentences of one seed almost the same motion, and one that is a single actor
 gives two seeds of one sentence almost the same.
