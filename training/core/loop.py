@@ -4,9 +4,12 @@ from __future__ import annotations
 
 import json
 import math
+import signal
+import threading
 import time
 from abc import ABC, abstractmethod
 from collections.abc import Callable, Iterable, Iterator
+from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
@@ -15,6 +18,22 @@ from torch import Tensor, nn
 
 from . import checkpoint
 from .checkpoint import Parts
+
+
+@contextmanager
+def asked_to_end() -> Iterator[list[int]]:
+    """A list that gets SIGINT or SIGTERM in place of what they do; outside the main thread it stays empty."""
+    asked: list[int] = []
+    if threading.current_thread() is not threading.main_thread():
+        yield asked
+        return
+    signals = (signal.SIGINT, signal.SIGTERM)
+    before = {number: signal.signal(number, lambda number, _: asked.append(number)) for number in signals}
+    try:
+        yield asked
+    finally:
+        for number, handler in before.items():
+            signal.signal(number, handler)
 
 
 def warm_cosine(peak: float, step: int, *, warmup: int, steps: int) -> float:
@@ -106,13 +125,17 @@ class Loop(ABC):
         torch._foreach_lerp_(list(averaged), list(current), 1 - decay)
 
     def run(self, *, minutes: float, save_every: float = 5.0) -> Iterator[dict[str, float]]:
-        """Trains until the steps or the minutes are over; yields each step's loss terms; saves regularly."""
+        """Trains until the steps or the minutes are over, or somebody asks the process to end (Ctrl+C, SIGTERM).
+
+        Yields each step's loss terms; saves regularly, and after the last step.
+        """
         began = saved = time.monotonic()
-        while self.step < self.settings.steps and time.monotonic() - began < minutes * 60:
-            yield self.train_step()
-            if time.monotonic() - saved > save_every * 60:
-                self.save()
-                saved = time.monotonic()
+        with asked_to_end() as asked:
+            while self.step < self.settings.steps and time.monotonic() - began < minutes * 60 and not asked:
+                yield self.train_step()
+                if time.monotonic() - saved > save_every * 60:
+                    self.save()
+                    saved = time.monotonic()
         self.save()
 
     def run_logged(self, *, minutes: float, every: int = 50, after: Callable[[], None] | None = None) -> None:

@@ -1,6 +1,8 @@
 """The training loop: learning rate, averages, and a run that stops and resumes."""
 
 import json
+import os
+import signal
 from pathlib import Path
 from types import SimpleNamespace
 
@@ -57,3 +59,14 @@ def test_log_has_means_over_its_steps(tmp_path: Path) -> None:
     lines = [json.loads(line) for line in (tmp_path / "log.jsonl").read_text().splitlines()]
     assert [line["step"] for line in lines] == [10, 20]
     assert lines[0]["loss"] > lines[1]["loss"]
+
+
+@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
+def test_a_run_that_is_asked_to_end_saves_its_last_step(tmp_path: Path, number: int) -> None:
+    before = signal.getsignal(number)
+    run = Line(tmp_path, 20)
+    for _ in run.run(minutes=1):
+        if run.step == 7:
+            os.kill(os.getpid(), number)
+    assert run.step == 7 and Line(tmp_path, 20).step == 7
+    assert signal.getsignal(number) is before
