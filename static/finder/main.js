@@ -144,8 +144,10 @@ class Finder {
     if (!entry) return;
     this.dialog.close();
     if (entry.sentence) write(entry.sentence);
-    else if (entry.run) window.location.search = `?run=${encodeURIComponent(entry.run)}`;
-    else goTo(entry);
+    else if (entry.run) {
+      const lang = new URLSearchParams(window.location.search).get("lang"); // which the address may ask for
+      window.location.search = new URLSearchParams({ run: entry.run, ...(lang && { lang }) });
+    } else goTo(entry);
   }
 }
 

@@ -12,7 +12,7 @@ TABS = ("Erzeugen", "Szene", "Reagieren", "Vorhersagen", "Verlauf")
 SEEN = {
     "Erzeugen": ("Was tun die beiden? (auf Englisch)", "Alle Beispiele", "Händedruck", "Stärke der Führung"),
     "Szene": ("Was geschieht nacheinander? (auf Englisch)", "Abschnitt hinzufügen", "Bereich neu erzeugen"),
-    "Reagieren": ("A des letzten Ergebnisses", "Video oder Webcam …", "Gegenüber live …", "Verfahren"),
+    "Reagieren": ("A des letzten Ergebnisses", "Video oder Webcam …", "Live-Gegenüber …", "Verfahren"),
     "Vorhersagen": ("Die Vergangenheit endet bei (s)", "Letztes Ergebnis fortsetzen", "Vergleichen"),
     "Verlauf": ("Alle Aufgaben", "Alles exportieren oder importieren", "Öffentliche Seiten"),
 }
