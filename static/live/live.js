@@ -213,7 +213,7 @@ class Panel {
     const { tally } = this;
     tally.taken.push(...seen.map(({ taken }) => taken));
     if (answer.frames) {
-      stream.add(answer.frames, answer.belief.state === "answers" ? "answers" : "");
+      stream.add(answer.frames, answer.belief.state === "answers" ? "answers" : "", answer);
       const last = seen.at(-1);
       const player = (1000 * stream.lag) / 30;
       tally.delays.push(now - last.taken + player);

@@ -45,13 +45,17 @@ export class Stream {
     return this.started && clock.playing ? Math.max(0, this.known - 1 - clock.frame) : 0;
   }
 
-  /** Takes new frames, packed as in webdemo/view/payload.py, and a line about them. */
-  add(packed, text) {
+  /**
+   * Takes new frames, packed as in webdemo/view/payload.py, a line about them, and the partner's things: whole with the
+   * first frames, then the place and rotation of each that `moved`, by its number.
+   */
+  add(packed, text, { things, moved = [] } = {}) {
     const { player } = this;
     const inHand = this.lag;
-    if (!this.known) this._begin(packed);
+    if (!this.known) this._begin(packed, things);
     else this._append(unpackPositions(packed));
     const { clock, sample } = player;
+    for (const [index, ...pose] of moved) sample.things.figures[index]?.place(pose);
     sample.live = { text };
     sample.frames = clock.frames = this.known;
     clock.limit = this.known - 1;
@@ -83,9 +87,9 @@ export class Stream {
     player.select(0);
   }
 
-  _begin(packed) {
+  _begin(packed, things) {
     const { player, roles } = this;
-    const sample = { ...this.template.samples[0], roles, positions: packed, frames: packed.shape[1], curves: [] };
+    const sample = { ...this.template.samples[0], roles, positions: packed, frames: packed.shape[1], curves: [], ...(things && { things }) };
     player.load({ ...this.template, samples: [sample], stream: true });
     const { values, people, frames, joints } = player.sample.motion;
     const room = new Float32Array(people * KEPT * 3 * joints);

@@ -46,6 +46,12 @@ export function poseOf(thing, frame) {
 
 /** A thing's surface at a moment, lit as a body is. */
 export class ThingFigure extends Figure {
+  /** Puts a thing that has one frame elsewhere: x, y, z and its rotation as x, y, z, w. */
+  place(pose) {
+    this.body.places.set(pose.slice(0, 3));
+    this.body.turns.set(pose.slice(3));
+  }
+
   /** Brings the surface to a frame; axes become the scene's, (z, x, y). */
   move(frame) {
     const { body, vertices, normals } = this;

@@ -102,6 +102,7 @@ class Mirror:
     def __init__(self, pause: float = 0.0) -> None:
         self.pause = pause
         self.gaze = None
+        self.things = ()
         self.belief = Belief("watches", "The stub watches.", (("wave", 0.75), ("bow", 0.2)))
 
     def step(self, pose: np.ndarray) -> np.ndarray:

@@ -12,6 +12,7 @@ from typing import Protocol
 import numpy as np
 from numpy.typing import NDArray
 
+from motion.things import Thing
 from motion.video.gaze import Gaze
 
 Array = NDArray[np.floating]
@@ -47,6 +48,10 @@ class LivePartner(Protocol):
     """
 
     gaze: Gaze | None
+
+    @property
+    def things(self) -> tuple[Thing, ...]:
+        """The things about the partner as they are now, each with a track of one frame, always in the same order."""
 
     @property
     def belief(self) -> Belief:

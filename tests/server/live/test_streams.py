@@ -12,6 +12,7 @@ import numpy as np
 import pytest
 
 from motion import SMPL22, InputError
+from motion.things import Thing, shape
 from tests.motion.video.filming import film, packed, stepping
 from tests.server.lab import stub_module
 from webdemo.server.live import stream as stream_module
@@ -302,3 +303,20 @@ def test_points_that_lie_in_one_place_do_no_harm() -> None:
                  replace(filmed, seen=np.zeros_like(filmed.seen), image=np.zeros_like(filmed.image))):  # fmt: skip
         answer = answered(stream(), read_message(packed(part).encode()))
         assert answer["frames"] is None or np.isfinite(unpack_positions(answer["frames"])).all()
+
+
+def test_things_are_sent_whole_with_the_first_frames_and_then_only_as_they_move() -> None:
+    one = stream()
+    place = np.array([0.5, 0.0, 1.0])
+    still = Thing.at_rest("hi-fi", shape("hi-fi"), place, 0.0, 1)
+    sash = [Thing.at_rest("sash", shape("sash"), place, yaw, 1) for yaw in (0.0, 0.0, 1.0)]
+    answers = []
+    for index, leaf in enumerate(sash):
+        one.partner.things = (still, leaf)  # type: ignore[misc]
+        one.clock.now += 0.1  # type: ignore[attr-defined]
+        answers.append(answered(one, read_message(poses([0.1 * index]))))
+    assert [thing["kind"] for thing in answers[0]["things"]] == ["hi-fi", "sash"]
+    assert "moved" not in answers[0] and not {"things", "moved"} & answers[1].keys()
+    ((number, *pose),) = answers[2]["moved"]
+    assert number == 1 and pose == pytest.approx([0.5, 0, 1, 0, np.sin(0.5), 0, np.cos(0.5)], abs=1e-3)
+    assert "things" not in answers[2]

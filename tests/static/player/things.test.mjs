@@ -40,3 +40,13 @@ test("its surface is moved into the scene's axes, z, x, y, with what shades the 
   near(figure.vertices, [0, 0, 1, -1, 0, 1, 0, -1, 1], "vertices");
   near(figure.spots[0], [-1, 0, 1, 0.5], "spot");
 });
+
+test("a thing of one frame is put elsewhere while a stream goes on", () => {
+  const one = { ...stored, frames: 1, places: text(new Float32Array([0, 0, 0])), turns: text(new Int16Array([0, 0, 0, 32767])) };
+  const figure = new ThingFigure(decodeThing(one));
+  figure.place([0, 1, 0, 0, Math.SQRT1_2, 0, Math.SQRT1_2]);
+  figure.move(57);
+  const moved = new ThingFigure(decodeThing(stored));
+  moved.move(1);
+  near(figure.vertices, moved.vertices, "vertices");
+});

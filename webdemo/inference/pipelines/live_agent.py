@@ -17,13 +17,16 @@ import numpy as np
 from numpy.typing import NDArray
 
 from models.agent.recogniser import OBSERVED
+from motion.things import Thing
 from motion.transforms import facing
 from motion.video.gaze import Gaze
 from webdemo.inference.actor import FPS
+from webdemo.inference.complaints import complaint
 from webdemo.inference.partner import Belief
 
 from .agent import BETWEEN, FIRST, Decision, Eye, Look
 from .live_partner import ReactingPartner
+from .live_room import Errand, Room
 from .steering import Goal
 
 Array = NDArray[np.floating]
@@ -77,6 +80,7 @@ class LiveAgent:
         self._gone = self._returns = False
         self._until = FARTHEST
         self._shown: Array | None = None
+        self._room: Room | None = None
         self._began = 0
         self.belief = Belief("watches", "The agent watches.")
 
@@ -86,16 +90,45 @@ class LiveAgent:
         self._seen.append(np.asarray(pose, dtype=np.float64))
         self.partner.goal = self._goal(self._seen[-1])
         shown = self._shown = self.partner.step(pose)
+        self._room = self._room or Room(self._seen[-1], shown)
+        busy = self._room.errand is not None
+        shown = self._room.step(shown)
+        self._returns = self._returns or (busy and self._room.errand is None)
         away = _looks_away(pose, shown)
         self._away, self._met = (self._away + 1, 0) if away else (0, self._met + 1)
         self._meant.append(self.gaze is None or _looks_at(self.gaze, pose, shown))
         self._elsewhere = 0 if self._meant[-1] else self._elsewhere + 1
-        if self.frame >= FIRST and (self.frame - FIRST) % BETWEEN == 0:
+        if self.frame >= FIRST and (self.frame - FIRST) % BETWEEN == 0 and not self._is_asked():
             self._look()
         return shown
 
+    @property
+    def things(self) -> tuple[Thing, ...]:
+        """See :class:`webdemo.inference.partner.LivePartner`."""
+        return () if self._room is None else self._room.things()
+
+    def _is_asked(self) -> bool:
+        """True while the agent is on an errand; a complaint that is meant for it, and not yet seen to, begins one."""
+        room = self._room
+        if room is None or room.errand is not None:
+            return room is not None
+        said = complaint(np.stack(self._seen), FPS)
+        if said is None or not room.wants(said) or not self._addressed or self._away or self._gone:
+            return False
+        self._looks.clear()
+        self._rest()
+        room.errand = Errand(said)
+        self.belief = Belief("answers", f"The person shows “{said.said}”, so the agent {said.act}.")
+        return True
+
     def _goal(self, pose: Array) -> Goal | None:
         """The place to which the agent turns and goes by itself; none while it answers."""
+        if (
+            self._shown is not None
+            and self._room is not None
+            and (goal := self._room.goal(self._shown)) is not None
+        ):
+            return goal
         if self._shown is None or self.gesture is not None:
             self._returns = False
             return None

@@ -17,6 +17,7 @@ from torch import Tensor
 
 from models.motion_tokens import FEATURES
 from motion import SMPL22, Clip
+from motion.things import Thing
 from motion.transforms import turn
 from motion.video.gaze import Gaze
 from webdemo.inference.actor import FPS, Placement
@@ -114,6 +115,7 @@ class ReactingPartner:
     """
 
     belief = Belief("follows", "")
+    things: tuple[Thing, ...] = ()
     gaze: Gaze | None = None
 
     def __init__(

@@ -9,13 +9,16 @@ from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.spatial.transform import Rotation
 
 from motion import InputError
+from motion.things import Thing
 from motion.video import Landmarks
 from motion.video.following import FollowedPerson
 from webdemo.inference.actor import FPS
 from webdemo.inference.partner import Belief, LivePartner
 from webdemo.view.payload import pack_positions
+from webdemo.view.things import thing_payload
 
 from .messages import Message, Poses
 from .turns import Steps
@@ -115,6 +118,7 @@ class LiveStream:
         camera = {name: value for name in ("lens", "tilt") if (value := getattr(self, name)) is not None}
         self._camera = FollowedPerson(**camera)
         self._even = Resampled()
+        self._shown_things: tuple[Thing, ...] = ()
         self.began = self.heard = self.found = self.clock()
 
     def answer(self, message: Message) -> Steps:
@@ -147,11 +151,25 @@ class LiveStream:
         return {
             "start": start,
             "frames": pack_positions(np.stack(frames, axis=1)) if frames else None,
+            **(self._things() if frames else {}),
             "belief": _plain(self.partner.belief),
             "hint": self._hint(),
             "milliseconds": round(1000 * spent, 1),
             "mean_milliseconds": round(counts.milliseconds, 1),
         }
+
+    def _things(self) -> dict[str, Any]:
+        """The partner's things: whole at first, and later the pose of each that has moved since, by its number."""
+        now = self.partner.things
+        before, self._shown_things = self._shown_things, now
+        if not before:
+            return {"things": [thing_payload(thing) for thing in now]} if now else {}
+        pairs = enumerate(zip(before, now, strict=True))
+        moved = [
+            i for i, (old, new) in pairs
+            if not (np.array_equal(old.places, new.places) and np.array_equal(old.rotations, new.rotations))
+        ]  # fmt: skip
+        return {"moved": [[i, *_pose(now[i])] for i in moved]} if moved else {}
 
     def _frames(self, message: Message) -> Iterator[Array]:
         """(2, 22, 3) the person and the partner, for each frame at 30 fps that a message completes."""
@@ -187,6 +205,12 @@ class LiveStream:
         if self.clock() - self.found > LOST:
             return "Nobody is seen: step into the picture, from head to feet."
         return self._camera.hint
+
+
+def _pose(thing: Thing) -> list[float]:
+    """The place and the rotation, as x, y, z, w, of a thing that has one frame."""
+    turn = Rotation.from_matrix(thing.rotations[0].astype(np.float64)).as_quat()
+    return [round(float(value), 4) for value in (*thing.places[0], *turn)]
 
 
 def _plain(belief: Belief) -> dict[str, Any]:

@@ -1,0 +1,148 @@
+"""The room of the live agent: what a person's complaint sends it to, and what it does there."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from motion import SMPL22
+from motion.transforms import heading_matrix
+from motion.video.gaze import HIDDEN
+from webdemo.inference.complaints import BRIGHT, COLD, FRAMES, HOT, LOUD, Complaint, complaint
+from webdemo.inference.pipelines.agent import FIRST
+from webdemo.inference.pipelines.live_agent import BESIDE, LiveAgent
+from webdemo.inference.pipelines.live_room import PLACES, STANDS, USES
+from webdemo.inference.story.gestures import Gesture, Hand, wrist
+
+from .test_live_partner import NOTHING, STANDING, Recorded, Scripted
+
+J = SMPL22.index
+LONG = 400
+PERSON = SMPL22.rest_positions() - SMPL22.rest_positions()[0] * [1, 0, 1]
+PERSON = PERSON - [0, PERSON[:, 1].min(), 0]
+
+
+def bent(wrists: dict[str, np.ndarray], frames: int) -> np.ndarray:
+    """(T, 22, 3) a person who faces +Z with wrists at (T, 3) from the pelvis; the others hang."""
+    seen = np.repeat(PERSON[None], frames, axis=0)
+    for side, out in (("left", 1.0), ("right", -1.0)):
+        place = wrists.get(side, np.tile([0.25 * out, -0.1, 0.05], (frames, 1)))
+        seen[:, J(f"{side}_wrist")] = seen[:, 0] + place
+        middle = (seen[:, J(f"{side}_wrist")] + seen[:, J(f"{side}_shoulder")]) / 2
+        seen[:, J(f"{side}_elbow")] = middle + np.array([0.12 * out, -0.1, 0.0])
+    return seen
+
+
+def gesture(hand: Hand, frames: int = 60) -> np.ndarray:
+    """(T, 22, 3) a person who makes a gesture of the library with both hands."""
+    made = Gesture(hand, ("left", "right"))
+    towards = np.tile([0.0, 0.0, 1.0], (frames, 1))
+    return bent({side: wrist(made, side, np.arange(frames) / 30, towards) for side in made.sides}, frames)
+
+
+def rubbing(speed: float = 2.0, frames: int = 60) -> np.ndarray:
+    """Each hand on the other upper arm, going up and down it."""
+    up = 0.06 * np.sin(2 * np.pi * speed * np.arange(frames) / 30)
+    found = bent({}, frames)
+    for side, other in (("left", "right"), ("right", "left")):
+        arm = (found[:, J(f"{other}_shoulder")] + found[:, J(f"{other}_elbow")]) / 2
+        found[:, J(f"{side}_wrist")] = arm + np.stack([0 * up, up, 0.09 + 0 * up], axis=1)
+        found[:, J(f"{side}_elbow")] = found[:, J(f"{side}_wrist")] + [
+            0.2 if side == "left" else -0.2,
+            -0.12,
+            0,
+        ]
+    for side, other in (("left", "right"), ("right", "left")):  # the arms have moved: once more
+        arm = (found[:, J(f"{other}_shoulder")] + found[:, J(f"{other}_elbow")]) / 2
+        found[:, J(f"{side}_wrist")] = arm + np.stack([0 * up, up, 0.05 + 0 * up], axis=1)
+    return found
+
+
+def fanning(frames: int = 60) -> np.ndarray:
+    swing = 0.12 * np.sin(2 * np.pi * 2.0 * np.arange(frames) / 30)
+    place = np.stack([-0.12 + swing, 0.42 + 0 * swing, 0.22 + 0 * swing], axis=1)
+    return bent({"right": place}, frames)
+
+
+@pytest.mark.parametrize(
+    ("seen", "said"),
+    [
+        (gesture(Hand.EARS), LOUD), (gesture(Hand.EYES), BRIGHT), (rubbing(), COLD), (fanning(), HOT),
+        (rubbing(speed=0.1), None), (bent({}, 60), None), (gesture(Hand.WAVES), None), (gesture(Hand.HIGH), None),
+        (gesture(Hand.CROSSED), None), (gesture(Hand.AHEAD), None), (gesture(Hand.CLAPS), None),
+        (gesture(Hand.EARS, FRAMES - 1), None),
+    ],
+)  # fmt: skip
+def test_complaints_are_told_from_other_gestures(seen: np.ndarray, said: Complaint | None) -> None:
+    turned = seen @ heading_matrix(2.0).T + [1.0, 0.0, -2.0]
+    assert complaint(seen, 30) is said and complaint(turned, 30) is said
+
+
+def watched(
+    complaining: np.ndarray, *, frames: int = LONG, gaze=None
+) -> tuple[LiveAgent, np.ndarray, list[str]]:
+    """The agent, its poses and its beliefs, before a person who complains for two seconds and then stands."""
+    agent = LiveAgent(Scripted(NOTHING), Recorded())  # type: ignore[arg-type]
+    agent.gaze = gaze
+    poses, beliefs = [], []
+    for index in range(frames):
+        here = 30 <= index < 30 + len(complaining)
+        poses.append(agent.step(complaining[index - 30] if here else STANDING))
+        beliefs.append(agent.belief.text)
+    return agent, np.stack(poses), beliefs
+
+
+@pytest.mark.parametrize(
+    ("seen", "said", "kind"), [(gesture(Hand.EARS), LOUD, "hi-fi"), (gesture(Hand.EYES), BRIGHT, "window")]
+)
+def test_the_agent_goes_to_the_thing_uses_it_and_comes_back(
+    seen: np.ndarray, said: Complaint, kind: str
+) -> None:
+    agent, poses, beliefs = watched(seen)
+    assert any(said.said in text and said.act in text for text in beliefs)
+    (body,) = [thing for thing in agent.things if thing.kind == kind]
+    away = np.linalg.norm((poses[:, 0] - body.places[0])[:, [0, 2]], axis=1)
+    assert away[0] == pytest.approx(np.hypot(*PLACES[kind]), abs=0.05)
+    assert away.min() < STANDS + 0.1 and away.min() > 0.4, "it stands before it"
+    hands = poses[:, [J("left_wrist"), J("right_wrist")]]
+    front = np.linalg.norm((hands - body.places[0])[..., [0, 2]], axis=-1).min()
+    assert front < 0.42, "a hand is at it"
+    parents, children = map(list, zip(*SMPL22.bones, strict=True))
+    bones = np.linalg.norm(poses[:, children] - poses[:, parents], axis=-1)
+    arms = [
+        i
+        for i, child in enumerate(children)
+        if "elbow" in SMPL22.joint_names[child] or "wrist" in SMPL22.joint_names[child]
+    ]
+    assert np.ptp(bones[:, arms], axis=0).max() < 1e-6
+    back = np.linalg.norm((poses[-1, 0] - STANDING[0])[[0, 2]])
+    assert back <= BESIDE + 0.05, "it is with the person again"
+    jumps = np.linalg.norm(np.diff(hands, axis=0), axis=-1)
+    assert jumps.max() < 0.12, "no hand jumps"
+
+
+def test_curtains_move_while_hands_are_there_and_what_is_done_is_not_done_again() -> None:
+    agent = LiveAgent(Scripted(NOTHING), Recorded())  # type: ignore[arg-type]
+    seen = gesture(Hand.EYES)
+    agent.step(STANDING)
+    before = [thing.places.copy() for thing in agent.things if thing.kind == "curtain"]
+    errands = 0
+    for index in range(900):
+        was = agent._room.errand
+        agent.step(seen[index % 60] if index < 60 or 450 < index < 520 else STANDING)
+        errands += was is None and agent._room.errand is not None
+    after = [thing.places for thing in agent.things if thing.kind == "curtain"]
+    apart = [float(np.linalg.norm(pair[0] - pair[1])) for pair in (before, after)]
+    assert errands == 1 and apart[0] > 1.5 and apart[1] < 0.7
+
+
+def test_who_speaks_to_others_sends_the_agent_nowhere() -> None:
+    agent, poses, _ = watched(gesture(Hand.EARS), frames=150, gaze=HIDDEN)
+    assert np.ptp(poses[:, 0], axis=0).max() < 1e-6 and agent._room.errand is None
+
+
+def test_the_room_stands_about_where_the_agent_began_and_has_one_frame() -> None:
+    agent, _, _ = watched(bent({}, 1), frames=FIRST)
+    kinds = [thing.kind for thing in agent.things]
+    assert kinds == ["window", "sash", "sash", "curtain", "curtain", "hi-fi"]
+    assert all(thing.num_frames == 1 for thing in agent.things) and USES > 30

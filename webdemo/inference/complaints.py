@@ -1,0 +1,105 @@
+"""The complaints of Chopin's thesis (Table 5.1), as far as 22 joints tell them: a body says what is wrong in the room.
+
+The recogniser has not been trained on them, and each is a posture that is held, so rules over the last second tell
+them: hands at the ears, before the eyes, rubbing the arms, or fanning the neck. Nothing here needs torch.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from motion import SMPL22
+from motion.transforms import facing
+from motion.vectors import unit
+
+Array = NDArray[np.floating]
+
+FRAMES = 30
+"""Frames, a second, over which a complaint must last."""
+MOST = 0.85
+"""Share of these frames in which it must be seen."""
+PALM = 0.08
+"""Metres from a wrist to the palm, along the forearm."""
+AT_HEAD, APART = 0.26, 0.21
+"""Metres from a palm to the joint of the head at most, and between wrists at the ears; at the eyes they are closer."""
+AT_ARM, RUBS = 0.17, 0.1
+"""Metres from a palm to the other upper arm at most, and metres a second at which it rubs."""
+AT_NECK, FANS = 0.4, 0.5
+"""Metres from a fanning palm to the neck at most, and its metres a second."""
+_SIDES = ("left", "right")
+
+
+@dataclass(frozen=True)
+class Complaint:
+    """Something that bothers a person, and the act that helps.
+
+    Attributes:
+        said: what the gesture stands for.
+        kind: of the thing in the room, as the words call it.
+        opens: whether the thing is to be opened, or turned up; else closed, or turned down.
+        act: what the agent does about it.
+    """
+
+    said: str
+    kind: str
+    opens: bool
+    act: str
+
+
+COLD = Complaint("I am cold", "window", False, "closes the window")
+HOT = Complaint("I am hot", "window", True, "opens the window")
+LOUD = Complaint("This is too loud", "hi-fi", False, "turns the hi-fi down")
+BRIGHT = Complaint("It is too bright", "curtain", False, "closes the curtains")
+
+
+def complaint(seen: Array, fps: float) -> Complaint | None:
+    """The complaint that a person makes in their last second; None for none.
+
+    Args:
+        seen: (T, 22, 3) metres; with fewer than :data:`FRAMES` frames nothing is told.
+        fps: frames a second.
+    """
+    if len(seen) < FRAMES:
+        return None
+    last = np.asarray(seen[-FRAMES:], dtype=np.float64)
+    palms = np.stack([_palm(last, side) for side in _SIDES])
+    speeds = np.linalg.norm(np.gradient(palms - last[:, _j("spine3")], axis=1), axis=-1) * fps
+    head, high = last[:, _j("head")], palms[..., 1] > last[:, _j("neck"), 1]
+    at_head = ((np.linalg.norm(palms - head, axis=-1) < AT_HEAD) & high).all(axis=0)
+    wrists = [last[:, _j(f"{side}_wrist")] for side in _SIDES]
+    apart = np.linalg.norm(wrists[0] - wrists[1], axis=-1) > APART
+    if _mostly(at_head & apart):
+        return LOUD
+    ahead = np.einsum("stj,tj->st", palms - head, np.stack([facing(pose) for pose in last])) > 0.04
+    if _mostly(at_head & ~apart & ahead.all(axis=0)):
+        return BRIGHT
+    arms = np.stack([_to_arm(palms[i], last, _SIDES[1 - i]) for i in (0, 1)])
+    if _mostly((arms < AT_ARM).all(axis=0)) and speeds.mean() > RUBS:
+        return COLD
+    neck = np.linalg.norm(palms - last[:, _j("neck")], axis=-1) < AT_NECK
+    fans = (neck & (palms[..., 1] < head[:, 1] + 0.1)).mean(axis=1) >= MOST
+    return HOT if (fans & (speeds.mean(axis=1) > FANS)).any() else None
+
+
+def _mostly(mask: NDArray[np.bool_]) -> bool:
+    return bool(mask.mean() >= MOST)
+
+
+def _j(name: str) -> int:
+    return SMPL22.index(name)
+
+
+def _palm(poses: Array, side: str) -> Array:
+    wrist = poses[:, _j(f"{side}_wrist")]
+    return wrist + PALM * unit(wrist - poses[:, _j(f"{side}_elbow")])
+
+
+def _to_arm(palms: Array, poses: Array, side: str) -> Array:
+    """(T,) metres from a palm (T, 3) to an upper arm."""
+    shoulder, elbow = poses[:, _j(f"{side}_shoulder")], poses[:, _j(f"{side}_elbow")]
+    along = elbow - shoulder
+    share = np.einsum("tj,tj->t", palms - shoulder, along) / np.maximum((along**2).sum(-1), 1e-9)
+    return np.linalg.norm(palms - shoulder - np.clip(share, 0, 1)[:, None] * along, axis=-1)
