@@ -153,6 +153,20 @@ def test_a_computer_is_on_the_desk_of_one_who_types():
     assert ahead.min() > desk.places[0, 2], "the screen is at the far side"
 
 
+@pytest.mark.parametrize(
+    ("seat", "desk"), [("sits at a desk", "table"), ("sits at a desk and types on a keyboard", "computer")]
+)
+def test_what_is_put_out_at_a_desk_is_on_it(seat, desk):
+    from .test_furnishing import sitting
+
+    kinds, _ = made(f"A {seat}. Then A puts out the cigarette.", sitting())
+    ((cigarette,), (top,)) = kinds["cigarette"], kinds[desk]
+    assert cigarette.places[-1, 1] == pytest.approx(
+        0.74 if desk == "computer" else top.mesh.size[1], abs=0.03
+    )
+    assert not {"table", "computer"} - {desk} & kinds.keys(), "there is one desk"
+
+
 def test_things_with_moving_parts_come_back_from_a_file(tmp_path):
     kinds, duet = made("A opens the window.")
     formats.write(duet, tmp_path / "x.npz")

@@ -184,9 +184,10 @@ class ThingCourse:
         if use.on:
             below = -(self.surface.vertices @ self.course.rotations[frame].T)[:, 1].min()
             support = round(float(np.clip(spot[1] - below, *TABLES)), 2)
-            mesh = shape("table", height=support)
+            support = TABLE if use.on == "computer" else support
+            mesh = shape(use.on, height=support)
             place = (spot + (mesh.size[2] / 2 - 0.15) * ahead) * [1, 0, 1]
-            self.tables.append(Thing.at_rest("table", mesh, place, yaw_of(ahead), hands.frames))
+            self.tables.append(Thing.at_rest(use.on, mesh, place, yaw_of(-ahead), hands.frames))
         rest = at_rest(self.kind, self.surface, spot * [1, 0, 1] + [0, support, 0], ahead, hands.frames)
         put(self.course, frame, rest)
         self.holder = None

@@ -16,7 +16,7 @@ Array = NDArray[np.floating]
 GRAVITY = 9.81
 BLEND = 0.13
 """Seconds on either side of a moment over which a thing goes from one hand to another."""
-_LIES = ("book", "phone", "flower", "sword", "stick", "ring", "guitar", "umbrella")
+_LIES = ("book", "phone", "flower", "sword", "stick", "ring", "guitar", "umbrella", "cigarette")
 """Kinds that lie when they are put down; others stand."""
 
 

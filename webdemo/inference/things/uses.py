@@ -63,11 +63,22 @@ def uses_of(plan: Plan, start: int, stop: int, lengths: Sequence[float] = ()) ->
         for make in (_use, _fixture, _door):
             if use := make(act, words, first, last):
                 found.append(use)
+    return _at_desks(found)
+
+
+def _at_desks(found: Sequence[Use]) -> list[Use]:
+    """The uses; people who type sit at a computer, and what is put down by a person at a desk is put on it."""
     typists = {who for use in found if "computer" in (use.kind, use.on) for who in use.agents}
-    return [
-        replace(use, on="computer") if use.does == "sits" and typists & {*use.agents} else use
-        for use in found
-    ]
+    desks: dict[int, str] = {}
+    made = []
+    for use in found:
+        if use.does == "sits" and (use.on or typists & {*use.agents}):
+            use = replace(use, on="computer" if typists & {*use.agents} else use.on)
+            desks |= dict.fromkeys(use.agents, use.on)
+        elif use.does == "puts" and not use.on:
+            use = replace(use, on=desks.get(use.agents[0], ""))
+        made.append(use)
+    return made
 
 
 def act_frames(
