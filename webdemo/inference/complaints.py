@@ -77,7 +77,7 @@ def complaint(seen: Array, fps: float) -> Complaint | None:
     if _mostly(at_head & ~apart & ahead.all(axis=0)):
         return BRIGHT
     arms = np.stack([_to_arm(palms[i], last, _SIDES[1 - i]) for i in (0, 1)])
-    if _mostly((arms < AT_ARM).all(axis=0)) and speeds.mean() > RUBS:
+    if _mostly(arms.max(axis=0) < AT_ARM) and speeds.mean() > RUBS:
         return COLD
     neck = np.linalg.norm(palms - last[:, _j("neck")], axis=-1) < AT_NECK
     fans = (neck & (palms[..., 1] < head[:, 1] + 0.1)).mean(axis=1) >= MOST
