@@ -110,6 +110,8 @@ def test_a_recorded_person_is_answered_as_they_move(
     page.unroute("**/live/*")
     shown = page.evaluate("[window.__pasdedeux.player.sample.frames, window.__pasdedeux.playing]")
     assert shown == [150, True], "five seconds, which play again"
+    kinds = page.evaluate("window.__pasdedeux.player.sample.things.figures.map(({ body }) => body.kind)")
+    assert kinds == ["window", "sash", "sash", "curtain", "curtain", "hi-fi"], "the agent's room is drawn"
     person, partner = page.evaluate("window.__pasdedeux.positions")
     assert 0.3 < math.dist(person[0], partner[0]) < 4
 

@@ -58,8 +58,9 @@ def rubbing(speed: float = 2.0, frames: int = 60) -> np.ndarray:
     return found
 
 
-def fanning(frames: int = 60) -> np.ndarray:
-    swing = 0.12 * np.sin(2 * np.pi * 2.0 * np.arange(frames) / 30)
+def fanning(frames: int = 60, rate: float = 2.0, wide: float = 0.12) -> np.ndarray:
+    """A hand that goes to and fro before the neck, so many times a second."""
+    swing = wide * np.sin(2 * np.pi * rate * np.arange(frames) / 30)
     place = np.stack([-0.12 + swing, 0.42 + 0 * swing, 0.22 + 0 * swing], axis=1)
     return bent({"right": place}, frames)
 
@@ -68,6 +69,7 @@ def fanning(frames: int = 60) -> np.ndarray:
     ("seen", "said"),
     [
         (gesture(Hand.EARS), LOUD), (gesture(Hand.EYES), BRIGHT), (rubbing(), COLD), (fanning(), HOT),
+        (fanning(rate=0.7, wide=0.24), None),
         (rubbing(speed=0.1), None), (bent({}, 60), None), (gesture(Hand.WAVES), None), (gesture(Hand.HIGH), None),
         (gesture(Hand.CROSSED), None), (gesture(Hand.AHEAD), None), (gesture(Hand.CLAPS), None),
         (gesture(Hand.EARS, FRAMES - 1), None),

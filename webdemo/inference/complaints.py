@@ -27,8 +27,8 @@ AT_HEAD, APART = 0.26, 0.21
 """Metres from a palm to the joint of the head at most, and between wrists at the ears; at the eyes they are closer."""
 AT_ARM, RUBS = 0.17, 0.1
 """Metres from a palm to the other upper arm at most, and metres a second at which it rubs."""
-AT_NECK, FANS = 0.4, 0.5
-"""Metres from a fanning palm to the neck at most, and its metres a second."""
+AT_NECK, FANS, TURNS = 0.4, 0.5, 3
+"""Metres from a fanning palm to the neck at most, its metres a second, and its turns back in one: a guard has none."""
 _SIDES = ("left", "right")
 
 
@@ -81,7 +81,21 @@ def complaint(seen: Array, fps: float) -> Complaint | None:
         return COLD
     neck = np.linalg.norm(palms - last[:, _j("neck")], axis=-1) < AT_NECK
     fans = (neck & (palms[..., 1] < head[:, 1] + 0.1)).mean(axis=1) >= MOST
-    return HOT if (fans & (speeds.mean(axis=1) > FANS)).any() else None
+    to_and_fro = np.array([_turns(course - last[:, _j("spine3")]) >= TURNS for course in palms])
+    return HOT if (fans & to_and_fro & (speeds.mean(axis=1) > FANS)).any() else None
+
+
+def _turns(course: Array) -> int:
+    """How often a course (T, 3) turns back, along the line on which it is longest, by a centimetre or more."""
+    off = course - course.mean(axis=0)
+    along = off @ np.linalg.svd(off, full_matrices=False)[2][0]
+    count, far, way = 0, along[0], 0.0
+    for value in along:
+        if (value - far) * way >= 0:
+            far, way = value, way or (value - far)
+        elif abs(value - far) > 0.01:
+            count, far, way = count + 1, value, value - far
+    return count
 
 
 def _mostly(mask: NDArray[np.bool_]) -> bool:
