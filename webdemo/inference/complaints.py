@@ -86,7 +86,7 @@ def complaint(seen: Array, fps: float) -> Complaint | None:
 
 
 def _turns(course: Array) -> int:
-    """How often a course (T, 3) turns back, along the line on which it is longest, by a centimetre or more."""
+    """The times that a course (T, 3) turns back by a centimetre, along the line on which it is longest."""
     off = course - course.mean(axis=0)
     along = off @ np.linalg.svd(off, full_matrices=False)[2][0]
     count, far, way = 0, along[0], 0.0
