@@ -37,6 +37,7 @@ export class Framing {
     const pairs = shown.map((pane, index) => ({
       now: pane.poseAt(clock.shown),
       soon: [...times.flatMap((frame) => pane.poseAt(frame)), ...ghosts],
+      used: times.flatMap((frame) => pane.sample.things.beside(pane.poseAt(frame), skeleton.pelvis)),
       box: this.boxes[index] ?? this.boxes[0],
     }));
     return fit(pairs, skeleton, view ?? orbit.glide?.to ?? orbit);

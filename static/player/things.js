@@ -5,6 +5,7 @@ import { Figure, normalsOf } from "./body.js";
 const bytes = (text) => Uint8Array.from(atob(text), (c) => c.charCodeAt(0));
 const hex = (text) => [1, 3, 5].map((i) => parseInt(text.slice(i, i + 2), 16) / 255);
 const SHADE = 0.3; // darkness of the shadow for each square metre of surface, as in webdemo/view/light.py
+const AT = 1.5; // metres from a window or the like within which somebody is at it, as in webdemo/view/camera.py
 const HIGHEST = 1.8; // metres over the floor from which nothing is shaded
 
 /** A thing of a payload, as typed arrays in world axes. */
@@ -13,7 +14,7 @@ export function decodeThing(stored) {
   const faces = new Uint16Array(bytes(stored.faces).buffer);
   const zones = stored.palette;
   return {
-    kind: stored.kind, name: stored.name, frames: stored.frames,
+    kind: stored.kind, name: stored.name, frames: stored.frames, stands: stored.stands,
     vertices, faces, zones,
     normals: normalsOf(vertices, faces),
     faceZones: bytes(stored.face_colours),
@@ -50,6 +51,27 @@ export class ThingFigure extends Figure {
   place(pose) {
     this.body.places.set(pose.slice(0, 3));
     this.body.turns.set(pose.slice(3));
+  }
+
+  /** Its place and the corners of its box, in the scene's axes, of a thing that stands where it is. */
+  get box() {
+    this.measured ??= this.measure();
+    return this.measured;
+  }
+
+  measure() {
+    const { rotation: r, place: [east, up, south] } = poseOf(this.body, 0);
+    const { vertices } = this.body;
+    const ends = [0, 1, 2].map((k) => {
+      const values = vertices.filter((_, i) => i % 3 === k);
+      return [values.reduce((a, b) => Math.min(a, b), Infinity), values.reduce((a, b) => Math.max(a, b), -Infinity)];
+    });
+    const corners = Array.from({ length: 8 }, (_, n) => {
+      const [x, y, z] = ends.map((pair, k) => pair[(n >> k) & 1]);
+      const [a, b, c] = [0, 3, 6].map((i) => r[i] * x + r[i + 1] * y + r[i + 2] * z);
+      return [c + south, a + east, b + up];
+    });
+    return { place: [south, east], corners };
   }
 
   /** Brings the surface to a frame; axes become the scene's, (z, x, y). */
@@ -94,6 +116,13 @@ export class Things {
       first += figure.body.faces.length;
     }
     return { positions: this.positions, colors: this.colors };
+  }
+
+  /** The corners of each window or the like at which one of some people is: what a camera holds beside them. */
+  beside(people, root) {
+    return this.figures.filter(({ body }) => body.stands).map(({ box }) => box).filter(({ place: [x, y] }) => (
+      people.some((points) => Math.hypot(points[root][0] - x, points[root][1] - y) < AT)
+    )).map(({ corners }) => corners);
   }
 
   /** What shades the floor: [x, y, width, darkness] of each spot. */

@@ -56,7 +56,7 @@ export function fit(pairs, skeleton, { yaw, elevation }) {
 }
 
 /** How far a pair's people reach to each side of its view, and the least distance from which all are in it. */
-function need({ now, soon, box: { width, height, inset } }, skeleton, { right, up, back }) {
+function need({ now, soon, used = [], box: { width, height, inset } }, skeleton, { right, up, back }) {
   const half = height / 2 || 1;
   const slope = (pixels) => Math.max(Math.tan(FIELD_OF_VIEW / 2) * (pixels / half), 0.05);
   const slopes = [slope(width / 2 - inset.right), slope(width / 2 - inset.left), slope(half - inset.top), slope(half - inset.bottom)];
@@ -77,11 +77,11 @@ function need({ now, soon, box: { width, height, inset } }, skeleton, { right, u
     }
     return most;
   };
-  const all = reach(soon);
+  const all = reach([...soon, ...used]);
   // They are measured from the world's origin: the depth of the centre is free, so it is taken amidst everybody.
   const depth = mean(now.flatMap((points) => points.map((p) => along(back, p))));
   const least = Math.max(...[0, 2].map((k) => (all[k] + all[k + 1]) / (slopes[k] + slopes[k + 1]))) - depth;
-  return { here: reach(now), slopes, depth, least };
+  return { here: reach([...now, ...used]), slopes, depth, least };
 }
 
 const mean = (values) => values.reduce((sum, v) => sum + v, 0) / Math.max(values.length, 1);

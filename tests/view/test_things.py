@@ -103,3 +103,18 @@ def test_a_thing_of_many_colours_is_sent_with_few():
     many = replace(mesh, colours=np.random.default_rng(0).integers(0, 256, mesh.faces.shape).astype(np.uint8))
     packed = thing_payload(Thing.at_rest("own", many, np.zeros(3), 0.0, 4))
     assert len(packed["palette"]) <= 255
+
+
+def test_a_window_is_in_view_while_somebody_is_at_it_and_only_then():
+    way = np.linspace(0, 4, 90)[:, None, None] * np.array([1.0, 0.0, 0.0])
+    people = Duet.from_positions(np.stack([REST - way, REST + [0, 0, 1.0] + 0 * way]), fps=30)
+    window = Thing.at_rest("window", shape("window"), np.array([-4.6, 0.0, 0.0]), np.pi / 2, 90)
+    corners = window.mesh.vertices @ window.rotations[0].T + window.places[0]
+    times = np.array([0.0, 2.9])
+    held = []
+    for motion in (people, replace(people, things=(window,))):
+        (views,) = cameras([motion], size=(640, 400), times=times, view="side", around=0.0)
+        pixels = [view.project(corners.astype(float))[0] for view in views]
+        held.append([bool(((at >= 0) & (at <= [640, 400])).all()) for at in pixels])
+    assert held == [[False, False], [False, True]]
+    assert thing_payload(window)["stands"] and not thing_payload(BALL)["stands"]

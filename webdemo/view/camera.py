@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 
@@ -12,6 +12,7 @@ from scipy.ndimage import maximum_filter1d, uniform_filter1d
 
 from motion.clip import Clip, Duet, stacked_positions
 from motion.errors import InputError
+from motion.things import FIXTURES
 
 Array = NDArray[np.floating]
 
@@ -29,6 +30,8 @@ _INSETS = (0.03, 0.03, 0.08, 0.06)
 _SECONDS = 0.7
 """Seconds before and after a moment whose people are in view at it as well; cameras move as smoothly as that."""
 _NEAREST = 0.05
+_AT = 1.5
+"""Metres from a window or the like within which somebody is at it, so that it is in view."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -163,6 +166,10 @@ def _reach(
     across, up, back = np.moveaxis(np.concatenate(list(people), axis=1) @ axes.T, -1, 0)  # (T, joints) each
     sides = np.stack([across, -across, up, -up], axis=-1) + slopes * back[..., None] + _AROUND
     reach, depth = sides.max(axis=1), back.mean(axis=1)
+    for shown, corners in _used(motion):
+        across, up, back = np.moveaxis(corners @ axes.T, -1, 0)
+        sides = np.stack([across, -across, up, -up], axis=-1) + slopes * back[..., None] + _AROUND
+        reach[shown] = np.maximum(reach[shown], sides.max(axis=0))
     if not follow:
         return np.tile(reach.max(axis=0), (len(times), 1)), np.full(len(times), depth.mean())
     # A moment may lie between two frames, which both count.
@@ -170,6 +177,18 @@ def _reach(
     reach = maximum_filter1d(reach, frames, axis=0, mode="nearest")
     at = np.clip(np.rint(times * motion.fps).astype(int), 0, len(depth) - 1)
     return reach[at], depth[at]
+
+
+def _used(motion: Clip | Duet) -> Iterator[tuple[NDArray[np.bool_], Array]]:
+    """The windows and the like beside a motion: the frames (T,) in which somebody is at one, and its corners (8, 3)."""
+    for thing in motion.things if isinstance(motion, Duet) else ():
+        if thing.kind not in FIXTURES:
+            continue
+        pelvises = stacked_positions(motion)[:, :, 0]
+        away = np.linalg.norm((pelvises - thing.places[0])[..., [0, 2]], axis=-1).min(axis=0)
+        box = np.stack([thing.mesh.vertices.min(axis=0), thing.mesh.vertices.max(axis=0)])
+        corners = np.stack(np.meshgrid(*box.T), axis=-1).reshape(-1, 3)
+        yield away < _AT, corners @ thing.rotations[0].T + thing.places[0]
 
 
 def _smooth(values: Array, times: Array, around: float) -> Array:

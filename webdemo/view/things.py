@@ -14,6 +14,7 @@ from scipy.spatial.transform import Rotation
 from motion.clip import Clip, Duet
 from motion.colours import hex_of
 from motion.hands import angles
+from motion.things import FIXTURES
 from motion.things.thing import Mesh, Thing
 
 Array = NDArray[np.floating]
@@ -80,6 +81,7 @@ def thing_payload(thing: Thing) -> dict[str, Any]:
     return {
         "kind": thing.kind,
         "name": thing.name,
+        "stands": thing.kind in FIXTURES,
         "frames": frames,
         "vertices": _text(mesh.vertices, "<f4"),
         "faces": _text(mesh.faces, "<u2"),

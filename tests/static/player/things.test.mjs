@@ -3,7 +3,7 @@
 import assert from "node:assert/strict";
 import test from "node:test";
 
-import { decodeThing, poseOf, ThingFigure } from "../../../static/player/things.js";
+import { decodeThing, poseOf, ThingFigure, Things } from "../../../static/player/things.js";
 
 const text = (values) => Buffer.from(values.buffer).toString("base64");
 const near = (found, wanted, message) => found.forEach((value, i) => assert.ok(Math.abs(value - wanted[i]) < 2e-3, `${message}: ${[...found]}`));
@@ -49,4 +49,16 @@ test("a thing of one frame is put elsewhere while a stream goes on", () => {
   const moved = new ThingFigure(decodeThing(stored));
   moved.move(1);
   near(figure.vertices, moved.vertices, "vertices");
+});
+
+test("the corners of a window at which somebody is are beside them, and of no other thing", () => {
+  const at = (x, stands) => ({ ...stored, stands, frames: 1, places: text(new Float32Array([x, 0, 0])), turns: text(new Int16Array([0, 0, 0, 32767])) });
+  const things = new Things([at(0, true), at(9, true), at(0, false)].map(decodeThing));
+  const person = (x) => [[0, x, 1]]; // the scene's axes are z, x, y
+  const found = things.beside([person(-1), person(5)], 0);
+  assert.equal(found.length, 1);
+  const ends = [0, 1, 2].map((k) => found[0].map((corner) => corner[k]));
+  near(ends.map((values) => Math.min(...values)), [-1, 0, 0], "lowest");
+  near(ends.map((values) => Math.max(...values)), [0, 1, 0], "highest");
+  assert.equal(things.beside([person(-2)], 0).length, 0);
 });

@@ -90,3 +90,13 @@ test("a view that has come since begins at its own pair", () => {
   orbit.step(0, 1 / 30, wanted);
   assert.deepEqual(orbit.view(1).target, wanted.targets[1]);
 });
+
+test("a window at which somebody is lies in the view as well", () => {
+  const people = pair(0, 0);
+  const window = [[-1.2, 2.5, 0], [1.2, 2.5, 2.2]];
+  const inside = (view) => window.map((p) => project(p, view.matrix, PANE.width, PANE.height, FIELD_OF_VIEW)).every((at) => (
+    at[2] > 0 && at[0] >= 0 && at[0] <= PANE.width && at[1] >= 0 && at[1] <= PANE.height
+  ));
+  assert.ok(inside(cut([{ now: people, soon: people, used: [window], box: PANE }]).view()));
+  assert.ok(!inside(cut([still(people)]).view()), "it is not where nobody uses it");
+});
