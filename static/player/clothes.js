@@ -3,6 +3,7 @@
 
 import { coarser, decodeBody } from "./body.js";
 import { loadBody } from "./loader.js";
+import { keepFigure } from "./remember.js";
 
 const GHOST_VERTICES = 2000; // of an uploaded character on each ghost of a future; light bodies have a thousand
 
@@ -74,6 +75,7 @@ export class Clothes {
     } else if (bodies && skeletons) show.skeletons = false;
     else if (bodies) Object.assign(show, { bodies: false, skeletons: true });
     else show.bodies = true;
+    if (!show.character) keepFigure(show);
   }
 }
 

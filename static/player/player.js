@@ -16,7 +16,7 @@ import { Orbit, reducedMotion } from "./orbit.js";
 import { THEMES, themeName } from "./palette.js";
 import { Pane } from "./pane.js";
 import { Rate } from "./rate.js";
-import { remember } from "./remember.js";
+import { figureAtFirst, remember } from "./remember.js";
 import { describe } from "./skeleton.js";
 import { Strip } from "./strip.js";
 
@@ -32,7 +32,7 @@ export class Player {
     this.controls = new Controls(root);
     this.clock = new Clock();
     this.orbit = new Orbit();
-    this.show = { trails: false, ghosts: false, bodies: true, skeletons: false, character: false };
+    this.show = { trails: false, ghosts: false, ...figureAtFirst(), character: false };
     this.clothes = new Clothes(this);
     this.framing = new Framing(this);
     this.panes = [];
