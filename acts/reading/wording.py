@@ -6,15 +6,14 @@ Each change keeps the offsets, so that what was understood can be shown in the t
 from __future__ import annotations
 
 import bisect
-import itertools
 import re
-from collections.abc import Callable, Collection, Iterator, Mapping
+from collections.abc import Collection, Iterator, Mapping
 from typing import TYPE_CHECKING
 
 from .absolute import stands_absolutely
 from .ellipsis import Ellipsis
+from .letters import names
 from .people import A_NAME, B_NAME
-from .syntax import is_adverb
 from .vocabulary import vocabulary
 
 if TYPE_CHECKING:
@@ -163,7 +162,7 @@ class _Preparation:
         self._text, self._mended, self._is_verb = text, speller.mended, speller.is_form
         self._words = vocabulary()
         self._tokens = _without_request(_without_speech(list(_tokens(text))))
-        self._letters = _letters([word for word, _, _ in self._tokens], self._is_verb)
+        self._letters = names([word for word, _, _ in self._tokens], self._is_verb)
         self._ellipsis = Ellipsis(lambda i: self._letters.get(i, self._lower(i)).lower(), speller)
         self._pieces: list[tuple[str, int, int]] = []
 
@@ -377,38 +376,3 @@ def _ends_name(tokens: list[tuple[str, int, int]], i: int, letter: str) -> bool:
     if letter.isupper() or letter.isdigit() or letter in ("b", "one", "two"):
         return True
     return i >= len(tokens) or not tokens[i][0].isalpha() or tokens[i][0].endswith(("s", "ing", "ed"))
-
-
-def _letters(words: list[str], is_verb: Callable[[str], bool]) -> dict[int, str]:
-    """Letters and P1, P2 that are names."""
-    found = {}
-    upper_b = any(word in ("B", "B's") for word in words)
-    for i, word in enumerate(words):
-        if word in ("A's", "B's"):
-            found[i] = f"{A_NAME if word[0] == 'A' else B_NAME}'s"
-        elif word in ("P1", "P2", "p1", "p2"):
-            found[i] = A_NAME if word[1] == "1" else B_NAME
-        elif word == "B":
-            found[i] = B_NAME
-        elif word == "A" and (
-            (upper_b and (i + 1 == len(words) or not _takes_article(words, i)))
-            or _verb_follows(words, i, is_verb)
-        ):
-            found[i] = A_NAME
-    return found
-
-
-def _verb_follows(words: list[str], i: int, is_verb: Callable[[str], bool]) -> bool:
-    """True for a name before what it does: "A waves", "A slowly and sadly walks"."""
-    following = itertools.islice(words, i + 1, i + 6)
-    verb = next((word for word in following if word not in ("and", ",") and not _says_how(word)), "")
-    return verb.endswith(("s", "ed")) and is_verb(verb)
-
-
-def _says_how(word: str) -> bool:
-    return is_adverb(word) and not vocabulary().is_person(word)
-
-
-def _takes_article(words: list[str], i: int) -> bool:
-    following = words[i + 1]
-    return following.isalpha() and vocabulary().is_person(following.lower()) and i + 2 < len(words)
