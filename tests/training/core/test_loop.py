@@ -1,8 +1,9 @@
 """The training loop: learning rate, averages, and a run that stops and resumes."""
 
 import json
-import os
 import signal
+import subprocess
+import sys
 from pathlib import Path
 from types import SimpleNamespace
 
@@ -11,6 +12,8 @@ import torch
 from torch import nn
 
 from training.core.loop import Loop, adamw, warm_cosine
+
+ROOT = Path(__file__).resolve().parents[3]
 
 
 class Line(Loop):
@@ -61,12 +64,25 @@ def test_log_has_means_over_its_steps(tmp_path: Path) -> None:
     assert lines[0]["loss"] > lines[1]["loss"]
 
 
+ENDED = """
+import os, signal, sys
+from pathlib import Path
+from tests.training.core.test_loop import Line
+
+number = int(sys.argv[1])
+before = signal.getsignal(number)
+run = Line(Path(sys.argv[2]), 20)
+for _ in run.run(minutes=1):
+    if run.step == 7:
+        os.kill(os.getpid(), number)
+print(run.step, signal.getsignal(number) is before)
+"""
+"""A run that sends itself a signal at step 7, in a process of its own: a worker of the tests must not end with it."""
+
+
 @pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
 def test_a_run_that_is_asked_to_end_saves_its_last_step(tmp_path: Path, number: int) -> None:
-    before = signal.getsignal(number)
-    run = Line(tmp_path, 20)
-    for _ in run.run(minutes=1):
-        if run.step == 7:
-            os.kill(os.getpid(), number)
-    assert run.step == 7 and Line(tmp_path, 20).step == 7
-    assert signal.getsignal(number) is before
+    command = [sys.executable, "-c", ENDED, str(int(number)), str(tmp_path)]
+    ended = subprocess.run(command, cwd=ROOT, capture_output=True, text=True, timeout=200)
+    assert (ended.returncode, ended.stdout) == (0, "7 True\n"), ended.stderr
+    assert Line(tmp_path, 20).step == 7
