@@ -15,6 +15,7 @@ from motion.metrics.sentences.joints import Motion
 from .acting import plans_of
 from .results import Result
 from .things.looking import watched
+from .things.opening import opened
 from .things.uses import lengths_of
 
 MOST_NAMED = 6
@@ -82,7 +83,9 @@ def _judged_sample(
     words: list[str] = []
     for plan, start, stop, beat in plans:
         verdicts = checked(plan, Motion(duet.positions[:, start:stop], duet.fps))
-        verdicts = watched(verdicts, plan, duet, start, stop, () if beat is not None else lengths)
+        split = () if beat is not None else lengths
+        verdicts = watched(verdicts, plan, duet, start, stop, split)
+        verdicts = opened(verdicts, plan, duet, start, stop, split)
         rows += [each.to_dict() | ({} if beat is None else {"beat": beat}) for each in verdicts]
         words.append(told(plan, verdicts))
     return {"checked": rows, "told": " ".join(filter(None, words))}

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -13,6 +15,7 @@ from motion.things import Thing
 from webdemo.inference.requests import Result
 from webdemo.inference.things.furnishing import furnished
 from webdemo.inference.things.looking import watched
+from webdemo.inference.things.opening import opened
 
 from .test_furnishing import FPS, FRAMES, put_hand, standing
 
@@ -208,3 +211,37 @@ def test_a_look_at_what_is_not_there_stays_unjudged():
     plan = Plan(acts=(Act(id="1", act="look-at-thing", agents=("a",), thing="window"),))
     duet = Duet.from_positions(apart().astype(np.float32), fps=FPS)
     assert watched(checked(plan, Motion(duet.positions, FPS)), plan, duet, 0, None, ())[0].done is None
+
+
+# ---- openings --------------------------------------------------------------------------------------------
+def opening(sentence: str, duet: Duet) -> tuple[bool | None, str]:
+    plan = read(sentence)
+    before = checked(plan, Motion(duet.positions, FPS))
+    (found,) = opened(before, plan, duet, 0, None, ())
+    return found.done, found.measure
+
+
+@pytest.mark.parametrize(
+    "sentence", ["A opens the window.", "A closes the window.", "A opens the door.", "A draws the curtains."]
+)
+def test_what_opens_or_closes_under_a_hand_is_done(sentence):
+    done, measure = opening(sentence, made(sentence)[1])
+    assert done is True and measure.endswith("from it as it moves")
+
+
+def test_what_opens_far_from_any_hand_of_its_agent_is_not_done():
+    _, duet = made("A opens the window.")
+    away = duet.positions.copy()
+    away[0, :, :, 2] -= 1.0
+    far = Duet.from_positions(away, fps=FPS)
+    done, measure = opening("A opens the window.", replace(far, things=duet.things))
+    assert done is False and 80 < int(measure.split()[1]) < 120
+
+
+def test_a_window_of_which_nothing_moves_is_not_opened():
+    _, duet = made("A looks at the window.")
+    assert opening("A opens the window.", duet) == (False, "nothing of it moves")
+
+
+def test_an_opening_of_what_has_no_shape_is_not_judged():
+    assert opening("A opens a letter.", made("A looks at the window.")[1])[0] is None
