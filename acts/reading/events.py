@@ -15,7 +15,7 @@ from .arguments import Arguments
 from .clauses import MARKS, NOUNMARKS, ClauseTree
 from .people import A_NAME, B_NAME, Cast, reference
 from .subjects import Subjects, ends_before
-from .syntax import is_ongoing
+from .syntax import is_ongoing, seems
 from .vocabulary import vocabulary
 
 if TYPE_CHECKING:
@@ -177,7 +177,7 @@ class Reader:
                 event.joint, event.beside = "", None
 
     def _event(self, token: Token) -> None:
-        lemma = self._tree.lemma(token)
+        lemma = "be" if seems(token) else self._tree.lemma(token)
         head = self._tree.head(token)
         subject = self._subjects.of(token, head)
         event = Event(lemma, subject, first=token.idx, last=token.idx + len(token.text))

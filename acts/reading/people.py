@@ -11,7 +11,7 @@ from acts.plan import Person
 from acts.things import is_fixture
 
 from . import wordnet
-from .syntax import IN_PLACE
+from .syntax import IN_PLACE, is_likeness
 from .vocabulary import Vocabulary, vocabulary
 
 if TYPE_CHECKING:
@@ -89,7 +89,7 @@ class Cast:
             return self._named("i" if text in ("i", "me", "myself") else "you")
         if text in _THEY:
             return self._they(text, subject)
-        if text == "it":
+        if text == "it" or is_likeness(token):
             return None
         if text in _NOBODY or (text == "one" and "no" in children):
             return "ab"

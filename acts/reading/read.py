@@ -321,7 +321,7 @@ class _Planner:
 
     def _about_another(self, event: Event) -> bool:
         verbs = vocabulary().verbs
-        return any(event.lemma in verbs[k] for k in verbs if k not in ("light", "sees"))
+        return any(event.lemma in verbs[k] for k in verbs if k not in ("light", "sees", "seems"))
 
     def _span(self, number: int) -> Span:
         start, stop = self._prepared.span(*self._clauses[number])

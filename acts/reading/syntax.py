@@ -12,6 +12,8 @@ from typing import TYPE_CHECKING
 
 from motion import InputError
 
+from .vocabulary import vocabulary
+
 if TYPE_CHECKING:
     from spacy.language import Language
     from spacy.tokens import Doc, Token
@@ -80,6 +82,8 @@ _GOES_ON = frozenset(("keep", "stay", "remain", "continue"))
 IN_PLACE = frozenset(("sleep", "kneel", "stand", "crouch", "squat", "lean"))
 _STATES = frozenset(("sit", "lie"))
 """Verbs that say how somebody is, and with "down" what they do."""
+_LIKENED, _BESIDE = frozenset(("like", "if", "though")), ("prep", "advcl", "mark", "advmod")
+_ABOUT = frozenset(("around", "round", "about"))
 
 
 def is_ongoing(token: Token, lemma: str) -> bool:
@@ -97,6 +101,31 @@ def is_ongoing(token: Token, lemma: str) -> bool:
     if token.dep_ in ("xcomp", "acomp", "advcl") and token.head.lemma_.lower() in _GOES_ON:
         return True
     return token.tag_ == "VBG" and (being or token.dep_ in ("amod", "acl"))
+
+
+def seems(token: Token) -> bool:
+    """True for a verb that says how somebody is, as "be" does: "looks tired", but not "looks around"."""
+    words = vocabulary()
+    if token.lemma_.lower() not in words.verbs["seems"]:
+        return False
+    found = False
+    for child in token.children:
+        text = child.lower_
+        likened = _LIKENED & {text, *(c.lower_ for c in child.children)}
+        says_how = child.dep_ in ("acomp", "oprd") or (
+            child.dep_ in ("attr", "xcomp") and child.pos_ == "ADJ"
+        )
+        if (says_how and text not in words.directions) or (likened and child.dep_ in _BESIDE):
+            found = True
+        elif child.dep_ in ("prep", "prt", "dobj") or text in _ABOUT or text in words.directions:
+            return False
+    return found
+
+
+def is_likeness(token: Token) -> bool:
+    """True for a noun that only says what somebody is like: "walks like an old man"."""
+    children = {child.lower_ for child in token.children}
+    return token.dep_ == "pobj" and token.head.lower_ == "like" and not children.isdisjoint(("a", "an"))
 
 
 def is_word(text: str) -> bool:

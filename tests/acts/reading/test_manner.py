@@ -43,3 +43,39 @@ def test_a_letter_before_a_noun_in_ly_is_an_article() -> None:
 )
 def test_adverbs_are_told_by_their_adjective(word: str, is_one: bool) -> None:
     assert is_adverb(word) is is_one
+
+
+def test_what_somebody_is_like_is_nobody_else() -> None:
+    walks = read("A walks like a ghost.")
+    assert [(act.act, act.patient, act.manner) for act in walks.acts] == [("walk-ahead", None, ("softly",))]
+    looks = read("A looks like a ghost while B dances.")
+    assert [(act.act, act.agents) for act in looks.acts] == [("dance", ("b",))]
+    assert [person.words for person in (*walks.people, *looks.people)] == [
+        ("person",),
+        (),
+        ("person",),
+        ("person",),
+    ]
+
+
+@pytest.mark.parametrize(
+    ("text", "acts"),
+    [
+        ("A looks tired.", ["yawn"]),
+        ("A looks scared and hides behind B.", ["startle", "come-behind"]),
+        ("B looks as if asleep.", ["lie-down"]),
+        ("A appears confident and waves.", ["wave"]),
+        ("A appears behind B.", ["come-behind"]),
+        ("A appears.", ["enter"]),
+        ("A looks left.", ["look-around"]),
+        ("A looks around as if lost.", ["look-around"]),
+        ("A looks at B like a child.", ["turn-to"]),
+    ],
+)
+def test_how_somebody_looks_is_how_they_are(text: str, acts: list[str]) -> None:
+    assert [act.act for act in read(text).acts] == acts
+
+
+def test_a_likeness_that_no_body_shows_is_said_to_be_unread() -> None:
+    plan = read("A looks like a ghost.")
+    assert not plan.acts and len(plan.unread) == 1
