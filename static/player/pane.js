@@ -12,7 +12,6 @@ import { Scene } from "./scene.js";
 
 const ABOVE_HEAD = 0.2; // metres
 const WIDE = 3.5; // times, skeletons that stand for bodies that cannot be had
-const TRANSLUCENT = 0.42; // of bodies beside their skeletons
 
 export class Pane {
   constructor(host) {
@@ -86,20 +85,21 @@ export class Pane {
       if (bodies.length) this.figures = bodies;
       bodies.forEach((body, person) => {
         body.pose(pose[person], shapesAt(this.sample.grips, person, clock.shown, this.sample.fps));
-        const alpha = show.skeletons ? TRANSLUCENT : 1;
-        body.shade((given ? theme.givenBodies : theme.bodies)[person], theme.lamps, lens, scene.scale, alpha);
-        scene.setTriangles(`body${"AB"[person]}`, { positions: body.positions, colors: body.colors, alpha });
+        body.shade((given ? theme.givenBodies : theme.bodies)[person], theme.lamps, lens, scene.scale, 1);
+        scene.setTriangles(`body${"AB"[person]}`, { positions: body.positions, colors: body.colors });
       });
       this.drop(["bodyA", "bodyB"].slice(bodies.length));
       const { things } = this.sample;
       if (things.figures.length) scene.setTriangles("things", things.at(clock.shown, theme.lamps, lens, scene.scale));
       else this.drop(["things"]);
       const colors = given ? theme.given : theme.people;
-      const wide = bodies.length || show.skeletons ? 1 : WIDE;
+      const wide = bodies.length || !show.bodies ? 1 : WIDE;
       const thin = show.skeletons || !bodies.length ? pose : [];
-      thin.forEach((points, person) => {
-        put(`bones${"AB"[person]}`, figure.bones(points, skeleton, colors[person], lens, wide));
-        put(`joints${"AB"[person]}`, figure.joints(points, skeleton, colors[person], lens, wide));
+      thin.forEach((own, person) => {
+        const points = bodies.length ? figure.ahead(own, lens) : own;
+        const limbs = bodies.length ? figure.paler(colors[person]) : colors[person];
+        put(`bones${"AB"[person]}`, figure.bones(points, skeleton, limbs, lens, wide));
+        put(`joints${"AB"[person]}`, figure.joints(points, skeleton, limbs, lens, wide));
       });
       this.drop(["bonesA", "jointsA", "bonesB", "jointsB"].slice(2 * thin.length));
       this.paintShadow(pose, skeleton, bodies, things, theme);

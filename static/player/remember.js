@@ -11,13 +11,13 @@ export function remember() {
 
 const FIGURE = "pas-de-deux-figure";
 
-/** How people are drawn, as the visitor left it: { bodies, skeletons }, bodies alone at first. */
+/** How people are drawn, as the visitor left it: { bodies, skeletons }, both at first. */
 export function figureAtFirst() {
   try {
     const kept = localStorage.getItem(FIGURE);
-    return { bodies: kept !== "skeleton", skeletons: ["skeleton", "both"].includes(kept) };
+    return { bodies: kept !== "skeleton", skeletons: kept !== "body" };
   } catch {
-    return { bodies: true, skeletons: false };
+    return { bodies: true, skeletons: true };
   }
 }
 

@@ -5,8 +5,8 @@
 // plotly's inside, so openFast() tests each of them; where one is missing, everything goes through
 // Plotly.restyle and Plotly.relayout instead, slower, and with skeletons on lines in place of bodies on a floor.
 //
-// Bodies alone are ever translucent, and only beside their skeletons: one translucent object makes plotly draw
-// the whole scene twice.
+// Only ghosts of futures are translucent: one translucent object makes plotly draw the whole scene twice. Skeletons
+// beside bodies are drawn a little nearer to the eye instead, over bodies that stay solid.
 
 import { css } from "./palette.js";
 

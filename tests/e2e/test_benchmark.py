@@ -43,6 +43,7 @@ def test_page_and_player_are_measured(
     assert figures["player_pixels"] == "960x640"
     assert figures["player_fps_still"] > 1
     assert figures["player_fps_turning"] > 1
+    assert figures["player_fps_bodies"] > 1
     assert figures["player_fps_skeletons"] > 1
     for state in ("idle", "waiting", "paused"):
         assert 0 <= figures[f"browser_cores_{state}"] < 4, "cores, not seconds"

@@ -85,11 +85,12 @@ def measure_browser() -> dict[str, Any]:
         all until the first motion has played; ``page_request_seconds`` from the button to the end of a
         run of 4 s of motion; ``page_result_to_body_seconds`` and ``page_result_to_motion_seconds``, from there to
         the first picture of bodies and to the first that moves; ``player_fps_still`` and
-        ``player_fps_turning`` (the camera at rest, and dragged) while bodies play, ``player_fps_skeletons``
-        and ``player_pixels``. ``browser_cores_idle``, ``browser_cores_waiting`` and ``browser_cores_paused``
-        are what all of the browser's processes took of a core while the page was left alone, in the middle of
-        a run, and while a motion was paused. ``page_memory_mb`` is the memory of the page's process at rest after
-        these runs, ``page_memory_mb_own`` without libraries and mapped files, in megabytes (Linux).
+        ``player_fps_turning`` (the camera at rest, and dragged) while bodies with their skeletons play, as at first,
+        ``player_fps_bodies``, ``player_fps_skeletons`` and ``player_pixels``. ``browser_cores_idle``,
+        ``browser_cores_waiting`` and ``browser_cores_paused`` are what all of the browser's processes took of a core
+        while the page was left alone, in the middle of a run, and while a motion was paused. ``page_memory_mb`` is the
+        memory of the page's process at rest after these runs, ``page_memory_mb_own`` without libraries and mapped
+        files, in megabytes (Linux).
 
     Raises:
         InputError: where Playwright, Chromium or the model's weights are missing, or the page does not come.
@@ -288,9 +289,11 @@ def _frame_rates(page: Any) -> dict[str, Any]:
     page.mouse.down()
     turning = _read_fps(page, lambda i: page.mouse.move(x + 8 * (i % 40), y))
     page.mouse.up()
-    page.evaluate("window.__pasdedeux.player.act('figure')")
-    page.wait_for_timeout(1500)
-    skeletons = _read_fps(page, lambda i: page.wait_for_timeout(50))
+    alone = []
+    for _ in ("bodies", "skeletons"):
+        page.evaluate("window.__pasdedeux.player.act('figure')")
+        page.wait_for_timeout(1500)
+        alone.append(_read_fps(page, lambda i: page.wait_for_timeout(50)))
     width, height = page.evaluate(
         "(({ clientWidth, clientHeight }) => [clientWidth, clientHeight])(window.__pasdedeux.player.stage)"
     )
@@ -298,7 +301,8 @@ def _frame_rates(page: Any) -> dict[str, Any]:
         "player_pixels": f"{width}x{height}",
         "player_fps_still": still,
         "player_fps_turning": turning,
-        "player_fps_skeletons": skeletons,
+        "player_fps_bodies": alone[0],
+        "player_fps_skeletons": alone[1],
     }
 
 
