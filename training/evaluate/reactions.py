@@ -6,6 +6,8 @@ reacting person, for recorded motion, zero velocity and the reaction models of t
 to the actors of the test lists, which no model was trained on. Three baselines of :mod:`training.evaluate.baselines`
 know the same recorded pairs.
 
+Methods whose name ends in *class told* get the sentence of the clip's class (:data:`SENTENCES`), the others no words.
+
 With ``--strict`` the clips are those of :mod:`training.corpus.strict_pairs`: all of the lists, in the data sets' own
 classes.
 """
@@ -33,11 +35,16 @@ from training.corpus.strict_pairs import strict_pairs
 from training.evaluate.baselines import Baseline, conditional_vae, nearest, plain_transformer
 from training.evaluate.deep_gru import accuracy, deep_features, fit, frechet_distance, measured
 from training.evaluate.judge.reactions import METHODS, installed, react
+from training.evaluate.paper_tables.clips import SENTENCES
 from webdemo.inference import Engine
 from webdemo.inference.methods import WEIGHTS
 
 Array = NDArray[np.floating]
 
+CLASS_TOLD = {
+    f"{name}, class told": chosen for name, chosen in METHODS.items() if chosen["model"] == "regennet"
+}
+"""Request fields of ReGenNet with the sentence of a clip's class, at the page's guidance scale."""
 DATASETS = {"sbu": "SBU", "k3hi": "K3HI"}
 STRIDE = 2
 """The classifier sees every second frame, 15 a second, as SBU was recorded."""
@@ -221,13 +228,14 @@ def table(scores: dict[str, Any]) -> str:
 
 def main(argv: list[str] | None = None) -> int:
     """Runs the command; returns its exit code."""
+    offered = METHODS | CLASS_TOLD
     parser = argparse.ArgumentParser(description="Judge reactions by a classifier of recorded ones.")
     parser.add_argument("--data", type=Path, required=True, help="folder that holds sbu and k3hi")
     parser.add_argument("--cache", type=Path, help="folder of the fitted pairs; --data by default")
     parser.add_argument("--out", type=Path, required=True, help="JSON file for all scores")
     parser.add_argument("--table", type=Path, help="Markdown file for the tables, which are printed too")
     parser.add_argument("--datasets", nargs="+", choices=list(DATASETS), default=list(DATASETS))
-    parser.add_argument("--methods", nargs="*", choices=list(METHODS), default=installed())
+    parser.add_argument("--methods", nargs="*", choices=list(offered), default=installed(offered))
     parser.add_argument("--weights", type=Path, default=WEIGHTS, help="folder that holds a folder a model")
     parser.add_argument("--strict", action="store_true", help="the thesis' lists and classes, unfiltered")
     parser.add_argument("--seeds", type=int, default=3, help="classifiers, each with a seed of its own")
@@ -247,7 +255,7 @@ def _run(options: argparse.Namespace) -> None:
             made[method] = []
             for seed in range(options.samples):
                 print(f"{dataset}: {method}, seed {seed}", file=sys.stderr, flush=True)
-                made[method].append([_reacted(engine, one.people, seed, method) for one in test])
+                made[method].append([reacted(engine, one, classes, seed, method) for one in test])
         shown = {"Recorded": [reaction.people[1] for reaction in test]}
         shown |= {method: samples[0] for method, samples in made.items()}
         scores[dataset] = {
@@ -265,10 +273,12 @@ def _run(options: argparse.Namespace) -> None:
             temporary.write_text(table(scores))
 
 
-def _reacted(engine: Engine, people: Array, seed: int, method: str) -> Array:
-    """Person b (T, 22, 3) as a method makes them for a recorded pair."""
-    whole = Duet.from_positions(long_enough(people), fps=30.0)
-    return np.asarray(react(engine, whole, seed, METHODS[method]).b.positions)[: people.shape[1]]
+def reacted(engine: Engine, pair: Reaction, classes: Sequence[str], seed: int, method: str) -> Array:
+    """Person b (T, 22, 3) as a method makes them for a recorded pair, one of these ``classes``."""
+    whole = Duet.from_positions(long_enough(pair.people), fps=30.0)
+    prompt = SENTENCES[classes[pair.label]] if method in CLASS_TOLD else ""
+    made = react(engine, whole, seed, (METHODS | CLASS_TOLD)[method], prompt=prompt)
+    return np.asarray(made.b.positions)[: pair.people.shape[1]]
 
 
 if __name__ == "__main__":

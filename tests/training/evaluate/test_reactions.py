@@ -16,7 +16,18 @@ from training.evaluate.deep_gru import (
     padded,
     spread,
 )
-from training.evaluate.reactions import Reaction, interval, readouts, score, table, zero_velocity
+from training.evaluate.judge.reactions import METHODS
+from training.evaluate.paper_tables.clips import SENTENCES
+from training.evaluate.reactions import (
+    CLASS_TOLD,
+    Reaction,
+    interval,
+    reacted,
+    readouts,
+    score,
+    table,
+    zero_velocity,
+)
 
 
 def clips(count: int, seed: int) -> tuple[list[np.ndarray], list[int]]:
@@ -109,3 +120,37 @@ def test_the_table_holds_every_method(monkeypatch: pytest.MonkeyPatch) -> None:
     row = next(line for line in text.splitlines() if line.startswith("| Zero velocity |"))
     assert "| Delay s |" in text and "| – |" in row and row.count("|") == text.splitlines()[2].count("|")
     assert "SBU: 12 training" in text
+
+
+@pytest.mark.parametrize("name", [name for name, chosen in METHODS.items() if chosen["model"] == "regennet"])
+def test_the_class_is_told_only_where_the_name_says_so(name: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    asked = []
+
+    def listening(engine, whole: Duet, seed: int, chosen: dict, *, prompt: str = "") -> Duet:
+        asked.append((chosen, prompt))
+        return whole
+
+    monkeypatch.setattr("training.evaluate.reactions.react", listening)
+    pair = Reaction(np.random.default_rng(0).normal(size=(2, 40, 22, 3)), 1)
+    for method in (name, f"{name}, class told"):
+        made = reacted(None, pair, ["kick", "push"], 0, method)  # type: ignore[arg-type]
+        assert made.shape == (40, 22, 3)
+    assert asked == [(METHODS[name], ""), (METHODS[name], "One person pushes the other.")]
+
+
+def test_every_class_of_either_protocol_has_a_sentence() -> None:
+    families = {
+        "approach",
+        "depart",
+        "exchange",
+        "handshake",
+        "kick",
+        "meet",
+        "part",
+        "point",
+        "punch",
+        "push",
+    }
+    assert set(SENTENCES) == families | {"walking"}
+    assert len(set(SENTENCES.values())) == len(SENTENCES)
+    assert len(CLASS_TOLD) == 4

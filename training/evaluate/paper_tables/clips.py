@@ -21,12 +21,14 @@ SENTENCES = {
     "exchange": "Two people exchange something.",
     "handshake": "Two people shake hands.",
     "kick": "One person kicks the other.",
+    "meet": "Two people walk up to each other.",
+    "part": "Two people walk away from each other.",
     "point": "One person points at the other.",
     "punch": "One person punches the other.",
     "push": "One person pushes the other.",
     "walking": "One person walks and the other stands still.",
 }
-"""By class."""
+"""What the actor, named first, and the reactor do, by class. *Meet* and *part* are of the filtered pairs."""
 
 
 def class_name(pair: StrictPair) -> str:
