@@ -8,7 +8,16 @@ import pytest
 from motion import SMPL22
 from motion.transforms import heading_matrix
 from motion.video.gaze import HIDDEN
-from webdemo.inference.complaints import BRIGHT, COLD, FRAMES, HOT, LOUD, Complaint, complaint
+from webdemo.inference.complaints import (
+    BRIGHT,
+    COLD,
+    FRAMES,
+    HOT,
+    LOUD,
+    SMELLS,
+    Complaint,
+    complaint,
+)
 from webdemo.inference.pipelines.agent import FIRST
 from webdemo.inference.pipelines.live_agent import BESIDE, LiveAgent
 from webdemo.inference.pipelines.live_room import PLACES, STANDS, USES
@@ -65,9 +74,30 @@ def fanning(frames: int = 60, rate: float = 2.0, wide: float = 0.12) -> np.ndarr
     return bent({"right": place}, frames)
 
 
+def at_nose(
+    *,
+    since: int = 0,
+    until: int = 60,
+    higher: float = 0.0,
+    aside: float = 0.0,
+    rubs: float = 0.0,
+    guard: bool = False,
+) -> np.ndarray:
+    """The right hand at the nose in some of 60 frames, and hanging before and after; a guard has the left one up."""
+    frames = np.arange(60)
+    nose = np.tile([-0.04 - aside, 0.54 + higher, 0.2], (60, 1))
+    nose[:, 1] += rubs * np.sin(2 * np.pi * 2.0 * frames / 30)
+    held = ((frames >= since) & (frames < until))[:, None]
+    hands = {"right": np.where(held, nose, [-0.25, -0.1, 0.05])}
+    return bent(hands | ({"left": np.tile([0.2, 0.5, 0.25], (60, 1))} if guard else {}), 60)
+
+
 @pytest.mark.parametrize(
     ("seen", "said"),
     [
+        (at_nose(), SMELLS), (at_nose(since=20), SMELLS), (at_nose(since=34, until=54), None),
+        (at_nose(rubs=0.04), None), (at_nose(higher=0.12), None), (at_nose(aside=0.075), None),
+        (at_nose(guard=True), None),
         (gesture(Hand.EARS), LOUD), (gesture(Hand.EYES), BRIGHT), (rubbing(), COLD), (fanning(), HOT),
         (fanning(rate=0.7, wide=0.24), None),
         (rubbing(speed=0.1), None), (bent({}, 60), None), (gesture(Hand.WAVES), None), (gesture(Hand.HIGH), None),
@@ -121,6 +151,16 @@ def test_the_agent_goes_to_the_thing_uses_it_and_comes_back(
     assert back <= BESIDE + 0.05, "it is with the person again"
     jumps = np.linalg.norm(np.diff(hands, axis=0), axis=-1)
     assert jumps.max() < 0.12, "no hand jumps"
+
+
+def test_who_holds_their_nose_has_a_closed_window_opened() -> None:
+    agent = LiveAgent(Scripted(NOTHING), Recorded())  # type: ignore[arg-type]
+    agent.step(STANDING)
+    assert agent._room is not None and not agent._room.wants(SMELLS), "it is open at first"
+    agent._room.open["window"] = 0.0
+    for index in range(400):
+        agent.step(at_nose()[index] if index < 60 else STANDING)
+    assert agent._room.open["window"] == 1.0
 
 
 def test_curtains_move_while_hands_are_there_and_what_is_done_is_not_done_again() -> None:

@@ -29,7 +29,15 @@ AT_ARM, RUBS = 0.17, 0.1
 """Metres from a palm to the other upper arm at most, and metres a second at which it rubs."""
 AT_NECK, FANS, TURNS = 0.4, 0.5, 3
 """Metres from a fanning palm to the neck at most, its metres a second, and its turns back in one: a guard has none."""
+NOSE = (0.02, 0.1)
+"""Metres from the joint of the head up and ahead to the nose."""
+AT_NOSE, ASIDE, UNDER = 0.18, 0.1, 0.03
+"""Metres from the wrist of a hand that holds the nose to it at most; aside at most, as it is further at the ear; and
+under it at least, as a fist before the face is higher."""
+STILL, LOW = 0.12, 0.1
+"""Metres a second of that wrist at most, as a hand that rubs is faster, and metres of the other one under the neck."""
 _SIDES = ("left", "right")
+_UP = np.array([0.0, 1.0, 0.0])
 
 
 @dataclass(frozen=True)
@@ -52,6 +60,7 @@ class Complaint:
 COLD = Complaint("I am cold", "window", False, "closes the window")
 HOT = Complaint("I am hot", "window", True, "opens the window")
 LOUD = Complaint("This is too loud", "hi-fi", False, "turns the hi-fi down")
+SMELLS = Complaint("This smells bad", "window", True, "opens the window")
 BRIGHT = Complaint("It is too bright", "curtain", False, "closes the curtains")
 
 
@@ -79,10 +88,24 @@ def complaint(seen: Array, fps: float) -> Complaint | None:
     arms = np.stack([_to_arm(palms[i], last, _SIDES[1 - i]) for i in (0, 1)])
     if _mostly(arms.max(axis=0) < AT_ARM) and speeds.mean() > RUBS:
         return COLD
+    if _holds_nose(last, fps):
+        return SMELLS
     neck = np.linalg.norm(palms - last[:, _j("neck")], axis=-1) < AT_NECK
     fans = (neck & (palms[..., 1] < head[:, 1] + 0.1)).mean(axis=1) >= MOST
     to_and_fro = np.array([_turns(course - last[:, _j("spine3")]) >= TURNS for course in palms])
     return HOT if (fans & to_and_fro & (speeds.mean(axis=1) > FANS)).any() else None
+
+
+def _holds_nose(last: Array, fps: float) -> bool:
+    """True if one hand stays at the nose and the other is low."""
+    wrists = np.stack([last[:, _j(f"{side}_wrist")] for side in _SIDES])
+    ahead = np.stack([facing(pose) for pose in last])
+    off = wrists - last[:, _j("head")] - NOSE[1] * ahead - NOSE[0] * _UP
+    aside = np.abs(np.einsum("stj,tj->st", off, np.cross(_UP, ahead)))
+    speeds = np.linalg.norm(np.gradient(wrists - last[:, _j("head")], axis=1), axis=-1).mean(axis=1) * fps
+    low = wrists[..., 1] < last[:, _j("neck"), 1] - LOW
+    held = (np.linalg.norm(off, axis=-1) < AT_NOSE) & (aside < ASIDE) & (off[..., 1] < -UNDER) & low[::-1]
+    return bool(((held.mean(axis=1) >= MOST) & (speeds < STILL)).any())
 
 
 def _turns(course: Array) -> int:
